@@ -1,0 +1,137 @@
+//! The cursor that walks a plan's machine: what follows when a scope ends and what then starts afresh
+//! (semantics, sections 5 and 6; the paper's third type of transition with its counter c(t)).
+
+use crate::fsm::{Bracket, Kind};
+use crate::{Fsm, Nanos};
+
+/// Storage for one value a level or loop: an array in generated code, a boxed slice for a plan loaded at run time.
+pub trait Slots<T>: AsRef<[T]> + AsMut<[T]> {}
+
+impl<T, S: AsRef<[T]> + AsMut<[T]>> Slots<T> for S {}
+
+/// Where a plan is: the current atom, when each scope around it was entered, the passes left of each loop around it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Cursor<E, P> {
+    atom: u32,
+    entered: E,
+    left: P,
+}
+
+impl<E: Slots<Nanos>, P: Slots<u64>> Cursor<E, P> {
+    /// A cursor at the first atom of `fsm`, everything entered at `t`.
+    ///
+    /// `entered` needs a place for each level of scopes and `left` one for each level of loops; values do not matter.
+    pub fn start(fsm: Fsm<'_>, entered: E, left: P, t: Nanos) -> Self {
+        let mut cursor = Self { atom: 0, entered, left };
+        cursor.open(fsm, 0, None, t);
+        cursor
+    }
+
+    /// The current atom, as written, from 0; the number of atoms when the plan is over.
+    pub fn atom(&self) -> u32 {
+        self.atom
+    }
+
+    /// The time since the scope of this level around the current atom was entered.
+    pub fn since(&self, level: u16, t: Nanos) -> Nanos {
+        t.since(self.entered.as_ref().get(usize::from(level)).copied().unwrap_or(t))
+    }
+
+    /// The bracket of the scope of this level around the current atom; the atom's own if there is none.
+    pub fn scope(&self, fsm: Fsm<'_>, level: u16) -> u32 {
+        let own = fsm.atoms.get(self.atom as usize).map_or(0, |atom| atom.scope);
+        let mut here = own;
+        while let Some(bracket) = fsm.brackets.get(here as usize) {
+            match bracket.kind {
+                Kind::Scope { level: found } if found == level => return here,
+                Kind::Scope { .. } | Kind::Loop { .. } if bracket.parent == here => return own,
+                Kind::Scope { .. } | Kind::Loop { .. } => here = bracket.parent,
+            }
+        }
+        own
+    }
+
+    /// The number of the current state in the expanded plan, from 1; the termination state when the plan is over.
+    pub fn state(&self, fsm: Fsm<'_>) -> u64 {
+        let Some(atom) = fsm.atoms.get(self.atom as usize) else { return fsm.termination };
+        let mut state = atom.state;
+        let mut here = atom.scope;
+        while let Some(bracket) = fsm.brackets.get(here as usize) {
+            if let Kind::Loop { times, slot, stride } = bracket.kind {
+                let left = self.left.as_ref().get(usize::from(slot)).copied().unwrap_or(0);
+                let passed = times.saturating_sub(left).saturating_sub(1);
+                state = state.saturating_add(passed.saturating_mul(stride));
+            }
+            if bracket.parent == here {
+                break;
+            }
+            here = bracket.parent;
+        }
+        state
+    }
+
+    /// Ends the scope of this level around the current atom, at time `t`, and moves to what follows it.
+    /// Returns whether there is such an atom: if not, the plan is over.
+    pub fn end(&mut self, fsm: Fsm<'_>, level: u16, t: Nanos) -> bool {
+        let mut ended = self.scope(fsm, level);
+        while let Some(bracket) = fsm.brackets.get(ended as usize) {
+            let holder = bracket.parent;
+            let Some(around) = fsm.brackets.get(holder as usize) else { break };
+            if holder == ended {
+                break;
+            }
+            if bracket.last != around.last {
+                self.open(fsm, bracket.last.saturating_add(1), Some(holder), t);
+                return true;
+            }
+            if self.spend(around) {
+                self.open(fsm, around.first, Some(holder), t);
+                return true;
+            }
+            ended = holder;
+        }
+        self.atom = u32::try_from(fsm.atoms.len()).unwrap_or(u32::MAX);
+        false
+    }
+
+    /// Spends a pass of `bracket` if it is a loop that has one left.
+    fn spend(&mut self, bracket: &Bracket) -> bool {
+        let Kind::Loop { times, slot, .. } = bracket.kind else { return false };
+        if times == 0 {
+            return true;
+        }
+        match self.left.as_mut().get_mut(usize::from(slot)) {
+            Some(left) if *left > 0 => {
+                *left = left.saturating_sub(1);
+                true
+            }
+            Some(_) | None => false,
+        }
+    }
+
+    /// Makes `atom` current and starts afresh every bracket around it that lies inside `kept`, all of them without one.
+    fn open(&mut self, fsm: Fsm<'_>, atom: u32, kept: Option<u32>, t: Nanos) {
+        self.atom = atom;
+        let Some(own) = fsm.atoms.get(atom as usize) else { return };
+        let mut here = own.scope;
+        while kept != Some(here) {
+            let Some(bracket) = fsm.brackets.get(here as usize) else { return };
+            match bracket.kind {
+                Kind::Scope { level } => {
+                    if let Some(entered) = self.entered.as_mut().get_mut(usize::from(level)) {
+                        *entered = t;
+                    }
+                }
+                Kind::Loop { times, slot, .. } => {
+                    if let Some(left) = self.left.as_mut().get_mut(usize::from(slot)) {
+                        *left = times.saturating_sub(1);
+                    }
+                }
+            }
+            if bracket.parent == here {
+                return;
+            }
+            here = bracket.parent;
+        }
+    }
+}

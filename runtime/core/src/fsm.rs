@@ -1,0 +1,60 @@
+//! The finite state machine of a plan, as a tree of brackets instead of N×N matrices (Algorithm 1; Eq. 2).
+//!
+//! A transition matrix `E_i` is an interval of columns and one destination, so a scope that holds atoms `a..b` is stored
+//! as those two numbers. It is a tree and not a list of intervals because `((s)^2, ξ)` and `(s, ξ)^2` cover the same
+//! atoms, and ξ leaves the first but starts the second pass of the other.
+
+/// A plan's machine: tables that generated code holds as constants and a loaded plan owns.
+///
+/// Invariants, which `mdlec` establishes: brackets are in pre-order, bracket 0 is the plan, and each bracket's children
+/// partition its atoms; atom `a` is the bracket `atoms[a].scope`, which has no children.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Fsm<'a> {
+    /// Scopes and loops in pre-order.
+    pub brackets: &'a [Bracket],
+    /// The atoms as written, from left to right.
+    pub atoms: &'a [Atom],
+    /// The number of the termination state: `N`, one more than the expanded plan has atoms.
+    pub termination: u64,
+}
+
+/// A scope or a loop, and the atoms it holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Bracket {
+    /// Which of the two it is.
+    pub kind: Kind,
+    /// Its first atom.
+    pub first: u32,
+    /// Its last atom.
+    pub last: u32,
+    /// The bracket around it; the plan's own bracket is its own parent.
+    pub parent: u32,
+}
+
+/// What a bracket is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// A closed string: an atom, a behavior or a plan. Its interrupt sends all its atoms behind its last one.
+    Scope {
+        /// The number of scopes around it.
+        level: u16,
+    },
+    /// An open string that is run several times: the paper's counter c(t).
+    Loop {
+        /// Passes in all; 0 is for ever.
+        times: u64,
+        /// The number of loops around it: where a cursor keeps its counter.
+        slot: u16,
+        /// The states of one pass in the expanded plan, or 0 where passes share their states (a loop without end).
+        stride: u64,
+    },
+}
+
+/// An atom as written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Atom {
+    /// Its bracket.
+    pub scope: u32,
+    /// Its number in the expanded plan in the first pass of every loop around it, from 1.
+    pub state: u64,
+}

@@ -1,0 +1,31 @@
+//! What every plan runs on: the machine of Algorithm 1, the traits of a kinetic state machine, quarks, units and time.
+//!
+//! For people who write a robot: [`Robot`], [`Output`] and the traits of [`capability`].
+//! For people who write a quark: [`Interrupt`], [`Control`], [`Law`] and [`Completes`].
+//! For generated code and for whoever runs it: [`fsm`], [`Cursor`], [`Plan`] and [`Machine`].
+//!
+//! No allocation, no unsafe code, no path that panics: what is here runs in a robot's control loop.
+#![no_std]
+#![forbid(unsafe_code)]
+#![deny(clippy::indexing_slicing, clippy::arithmetic_side_effects)]
+
+pub mod capability;
+mod cursor;
+pub mod fsm;
+mod machine;
+mod pose;
+mod quark;
+mod robot;
+mod sonar;
+mod time;
+mod units;
+
+pub use cursor::{Cursor, Slots};
+pub use fsm::Fsm;
+pub use machine::{Cause, Machine, Plan, TRANSITIONS_PER_TURN, Transition, Turn, Unwatched, Watch};
+pub use pose::{Frame, Pose, Twist};
+pub use quark::{Begin, Completes, Control, Interrupt, Law};
+pub use robot::{Output, Robot};
+pub use sonar::{PINGS_KEPT, Ping, Pings, SONARS, SonarId};
+pub use time::Nanos;
+pub use units::{Bits, Meters, MetersPerSecond, Radians, RadiansPerSecond, Volts};

@@ -1,0 +1,63 @@
+//! Poses, velocities and the frames in which headings are meant (paper, section IV-C: each landmark has a frame of its own).
+
+use crate::{Meters, MetersPerSecond, Radians, RadiansPerSecond};
+
+/// A place and a heading in the plane.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Pose {
+    /// Along the first axis.
+    pub x: Meters,
+    /// Along the second axis, to the left of the first.
+    pub y: Meters,
+    /// Heading, counter-clockwise from the first axis.
+    pub theta: Radians,
+}
+
+impl Pose {
+    /// The origin, heading along the first axis.
+    pub const ORIGIN: Self = Self { x: Meters(0.0), y: Meters(0.0), theta: Radians(0.0) };
+
+    /// The distance to the place of `other`.
+    #[must_use]
+    pub fn distance(&self, other: &Self) -> Meters {
+        Meters(libm::hypot(other.x.0 - self.x.0, other.y.0 - self.y.0))
+    }
+
+    /// The place `range` away in direction `bearing` (of the axes in which this pose is given), with that heading.
+    #[must_use]
+    pub fn towards(&self, bearing: Radians, range: Meters) -> Self {
+        Self {
+            x: Meters(self.x.0 + range.0 * libm::cos(bearing.0)),
+            y: Meters(self.y.0 + range.0 * libm::sin(bearing.0)),
+            theta: bearing,
+        }
+    }
+}
+
+/// The input of a differentially driven robot, `(u_f, u_θ)` in the paper's section IV-A; zero is the null input.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Twist {
+    /// Forward speed.
+    pub v: MetersPerSecond,
+    /// Turn rate, counter-clockwise positive.
+    pub omega: RadiansPerSecond,
+}
+
+/// The frame in which an atom's headings are meant: the pose, by odometry, at which the outermost plan began,
+/// turned by the `FRAME`s around the atom.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Frame(pub Pose);
+
+impl Frame {
+    /// This frame turned counter-clockwise.
+    #[must_use]
+    pub fn turned(self, by: Radians) -> Self {
+        Self(Pose { theta: Radians(self.0.theta.0 + by.0), ..self.0 })
+    }
+
+    /// An angle of this frame as an angle of the odometry's axes.
+    #[must_use]
+    pub fn outward(&self, angle: Radians) -> Radians {
+        Radians(self.0.theta.0 + angle.0).wrapped()
+    }
+}

@@ -1,0 +1,42 @@
+//! Quarks as code: interrupts, control laws and their completion (paper, Definition 1; semantics, sections 1 and 4).
+
+use crate::{Frame, Nanos};
+
+/// An interrupt quark: a condition on the output.
+pub trait Interrupt<Y: ?Sized> {
+    /// Whether it has fired: true where the paper's active-low function is 0.
+    fn fired(&self, y: &Y) -> bool;
+}
+
+/// What a law is told when its atom begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Begin {
+    /// The time of the turn in which the atom is entered.
+    pub now: Nanos,
+    /// The frame of the atom, `FRAME`s included.
+    pub frame: Frame,
+}
+
+/// A control quark with its arguments; an atom that begins makes a [`Law`] of it.
+pub trait Control<Y: ?Sized> {
+    /// The law with its state.
+    type Law: Law<Y>;
+
+    /// The law as it stands when its atom is entered. Has no effect outside: a skipped atom's law is made and never run.
+    fn begin(&self, y: &Y, begin: Begin) -> Self::Law;
+}
+
+/// A control law `u(y, t)` with what it remembers since its atom began.
+pub trait Law<Y: ?Sized> {
+    /// The input it computes.
+    type Input;
+
+    /// The input for this turn; called once a turn while the atom runs, with the output and the time of the turn.
+    fn input(&mut self, y: &Y, t: Nanos) -> Self::Input;
+}
+
+/// A law that can be done by itself, as the alphabet says with `completes`.
+pub trait Completes<Y: ?Sized>: Law<Y> {
+    /// Whether it is done; read before the input is computed, also in the turn in which the atom begins.
+    fn completed(&self, y: &Y, t: Nanos) -> bool;
+}

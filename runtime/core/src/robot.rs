@@ -1,0 +1,36 @@
+//! The kinetic state machine as the run-time system meets it (paper, Eq. 1: an output `y` for an input `u`).
+
+use crate::Pose;
+
+/// A robot: takes an input, gives the output that follows it, and can be stopped.
+///
+/// Once an `exchange` has failed the robot is stopped and not used again. An implementation must leave the hardware's
+/// own watchdog armed, so that a program that dies stops the robot as well.
+pub trait Robot {
+    /// What the sensors say: `y`, with everything the quarks of this robot read.
+    type Output: Output;
+    /// What the actuators take: `u`. Its default is the null input.
+    type Input: Default;
+    /// Why an exchange failed, in a sentence for the operator.
+    type Error: core::fmt::Display;
+
+    /// Applies `input` for one period and returns the output that follows.
+    ///
+    /// # Errors
+    /// When the robot does not answer, answers nonsense, or reports that it cannot move.
+    fn exchange(&mut self, input: &Self::Input) -> Result<Self::Output, Self::Error>;
+
+    /// Stops the robot with its own stop command; called on every way out.
+    ///
+    /// # Errors
+    /// When the command could not be delivered; the hardware's watchdog is then what stops it.
+    fn stop(&mut self) -> Result<(), Self::Error>;
+}
+
+/// What every robot's output offers, whatever its sensors are; the rest are the traits of [`crate::capability`].
+pub trait Output {
+    /// Where a plan that began now would put its frame: the pose by odometry; the origin on a robot without.
+    fn here(&self) -> Pose {
+        Pose::ORIGIN
+    }
+}

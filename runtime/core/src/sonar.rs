@@ -1,0 +1,72 @@
+//! Sonar readings with their age and the pose they were taken from, in the paper's sixteen directions.
+
+use crate::{Meters, Nanos, Pose, Radians};
+
+/// The number of sonars, and of the directions the paper's plans count them in.
+pub const SONARS: usize = 16;
+/// How many pings of each sonar an output keeps: what it takes to confirm that a way is free.
+pub const PINGS_KEPT: usize = 3;
+
+/// One of the sixteen sonars: number `i` looks along `i · 22.5°`, counter-clockwise from the front, on every robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SonarId(u8);
+
+impl SonarId {
+    /// Sonar `number`, counted round the ring (16 is 0 again).
+    #[must_use]
+    pub const fn new(number: u8) -> Self {
+        Self(number & 15)
+    }
+
+    /// Its number, below [`SONARS`].
+    #[must_use]
+    pub const fn number(self) -> usize {
+        self.0 as usize
+    }
+
+    /// Where it looks, from the robot's heading.
+    #[must_use]
+    pub const fn bearing(self) -> Radians {
+        Radians::from_degrees(self.0 as f64 * 22.5)
+    }
+}
+
+/// One ping.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ping {
+    /// The range from the transducer; `None` when no echo came back.
+    pub range: Option<Meters>,
+    /// When it was taken.
+    pub at: Nanos,
+    /// Where the robot was by odometry when it was taken.
+    pub pose: Pose,
+}
+
+/// The last pings of one sonar, newest first.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Pings {
+    kept: [Option<Ping>; PINGS_KEPT],
+}
+
+impl Pings {
+    /// Takes in a new ping and forgets the oldest.
+    pub fn push(&mut self, ping: Ping) {
+        let [first, second, _] = self.kept;
+        self.kept = [Some(ping), first, second];
+    }
+
+    /// The pings kept, newest first; fewer than [`PINGS_KEPT`] right after the start.
+    pub fn newest_first(&self) -> impl Iterator<Item = &Ping> {
+        self.kept.iter().flatten()
+    }
+
+    /// The smallest range among the newest `count` pings. `None` when none of them, or no ping yet, brought an echo.
+    #[must_use]
+    pub fn nearest(&self, count: usize) -> Option<Meters> {
+        let ranges = self.newest_first().take(count).filter_map(|ping| ping.range);
+        ranges.fold(None, |least, range| match least {
+            Some(Meters(best)) if best <= range.0 => least,
+            Some(_) | None => Some(range),
+        })
+    }
+}

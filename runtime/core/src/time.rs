@@ -1,0 +1,25 @@
+//! Time as the plan sees it: nanoseconds since the plan started (semantics, section 3).
+
+/// A time since the plan started, or a duration, in nanoseconds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Hash)]
+pub struct Nanos(pub u64);
+
+impl Nanos {
+    /// The start of the plan.
+    pub const ZERO: Self = Self(0);
+    /// Later than any plan lives: 584 years.
+    pub const MAX: Self = Self(u64::MAX);
+
+    /// The time from `earlier` to this one; zero if that is later.
+    #[must_use]
+    pub const fn since(self, earlier: Self) -> Self {
+        Self(self.0.saturating_sub(earlier.0))
+    }
+
+    /// This time in seconds.
+    #[must_use]
+    pub const fn seconds(self) -> f64 {
+        // A run of three months is below 2^53 nanoseconds, so exact; longer ones round to microseconds.
+        self.0 as f64 / 1e9
+    }
+}

@@ -1,0 +1,47 @@
+//! The quantities a quark can take, one type each, so that a speed cannot be passed where an angle is meant.
+
+/// Declares quantities: a newtype over `f64` in one SI unit.
+macro_rules! quantities {
+    ($($(#[$doc:meta])* $name:ident;)*) => {$(
+        $(#[$doc])*
+        #[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Default)]
+        pub struct $name(pub f64);
+    )*};
+}
+
+quantities! {
+    /// A length in metres.
+    Meters;
+    /// A speed in metres a second.
+    MetersPerSecond;
+    /// An angle in radians, counter-clockwise positive.
+    Radians;
+    /// A turn rate in radians a second, counter-clockwise positive.
+    RadiansPerSecond;
+    /// A voltage in volts.
+    Volts;
+}
+
+impl Radians {
+    /// The angle of this many degrees.
+    #[must_use]
+    pub const fn from_degrees(degrees: f64) -> Self {
+        Self(degrees * (core::f64::consts::PI / 180.0))
+    }
+
+    /// This angle in degrees.
+    #[must_use]
+    pub const fn degrees(self) -> f64 {
+        self.0 * (180.0 / core::f64::consts::PI)
+    }
+
+    /// The same direction, between -π and π.
+    #[must_use]
+    pub fn wrapped(self) -> Self {
+        Self(libm::remainder(self.0, core::f64::consts::TAU))
+    }
+}
+
+/// A word of `N` bits, as `atIsection 0100` takes it: the first is the one written first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Bits<const N: usize>(pub [bool; N]);

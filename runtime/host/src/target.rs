@@ -1,0 +1,72 @@
+//! What a target gives the host: its options, its robot and how its time passes.
+
+use std::time::Duration;
+
+use clap::{ArgMatches, Command};
+use mdle_runtime::{Nanos, Robot};
+
+/// A robot that executables are built for; implemented once in each target crate.
+pub trait Target {
+    /// The name of the target, as `mdlec --target` takes it.
+    const NAME: &'static str;
+    /// The period of a turn unless `--period` says otherwise.
+    const PERIOD: Duration;
+    /// The robot.
+    type Robot: Hosted;
+
+    /// Adds the target's own options to the executable's.
+    fn arguments(command: Command) -> Command;
+
+    /// How time passes for this robot with these options.
+    ///
+    /// # Errors
+    /// A sentence for the operator about an option that makes no sense.
+    fn time(matches: &ArgMatches) -> Result<Time, String>;
+
+    /// Opens the robot; no motion yet.
+    ///
+    /// # Errors
+    /// Why there is no robot: a bad option (exit status 2) or a fault (exit status 3).
+    fn connect(matches: &ArgMatches, period: Duration) -> Result<Self::Robot, Refusal>;
+}
+
+/// How time passes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Time {
+    /// By the wall clock, read after each exchange.
+    Wall,
+    /// Turn `k` is at `k` periods exactly, whatever the wall clock says: a simulated world.
+    Stepped(Pace),
+}
+
+/// How fast stepped time passes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Pace {
+    /// This many times as fast as the wall clock; positive and finite.
+    Times(f64),
+    /// As fast as possible.
+    Max,
+}
+
+/// Why a robot could not be opened.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Refusal {
+    /// An option, a world or a start pose is no good.
+    Usage(String),
+    /// The robot does not answer, or answers that it cannot run.
+    Fault(String),
+}
+
+/// A robot that an executable drives: besides the exchange it may follow what the plan does.
+pub trait Hosted: Robot {
+    /// The atom of state `state`, with this law, is the one that the turn at time `t` left standing, and was not before.
+    fn began(&mut self, _state: u64, _law: &str, _t: Nanos) {}
+
+    /// Called once after the robot was stopped, on every orderly way out: write what was asked for, such as a plot.
+    ///
+    /// # Errors
+    /// A sentence for the operator about what could not be written.
+    fn finish(&mut self) -> Result<(), String> {
+        Ok(())
+    }
+}
