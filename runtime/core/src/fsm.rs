@@ -58,3 +58,25 @@ pub struct Atom {
     /// Its number in the expanded plan in the first pass of every loop around it, from 1.
     pub state: u64,
 }
+
+impl Bracket {
+    /// A scope of atoms `first..=last`.
+    #[must_use]
+    pub const fn scope(level: u16, first: u32, last: u32, parent: u32) -> Self {
+        Self { kind: Kind::Scope { level }, first, last, parent }
+    }
+
+    /// A loop over atoms `first..=last`; see [`Kind::Loop`].
+    #[must_use]
+    pub const fn repeat(times: u64, slot: u16, stride: u64, first: u32, last: u32, parent: u32) -> Self {
+        Self { kind: Kind::Loop { times, slot, stride }, first, last, parent }
+    }
+}
+
+impl Atom {
+    /// An atom whose bracket is `scope` and whose first number is `state`.
+    #[must_use]
+    pub const fn new(scope: u32, state: u64) -> Self {
+        Self { scope, state }
+    }
+}

@@ -1,0 +1,177 @@
+//! A target and a plan by hand: a cart that shuttles on a track. `mdlec` writes the second half, a robot's author the first.
+//!
+//! `cargo run -p mdle-host --example cart -- --speed max --timeout 20`. The tests of this package run it as a program.
+
+use std::io::Write;
+use std::process::ExitCode;
+use std::time::Duration;
+
+use mdle_host::clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
+use mdle_host::{Hosted, Pace, Refusal, Target, Time, run};
+use mdle_runtime::fsm::{Atom, Bracket};
+use mdle_runtime::{Begin, Cause, Cursor, Fsm, Meters, MetersPerSecond, Nanos, Output, Plan, Robot};
+
+fn main() -> ExitCode {
+    run::<CartTarget, _>("shuttle", Shuttle { forward: true })
+}
+
+/// What the cart senses.
+struct Sensed {
+    at: Meters,
+    track: Meters,
+}
+
+impl Output for Sensed {}
+
+/// The cart, a simulated one.
+struct Cart {
+    at: Meters,
+    track: Meters,
+    period: Duration,
+    exchanges: u64,
+    /// The exchange that does not work, and whether it panics.
+    broken: Option<(u64, bool)>,
+    /// Whether it tells what it is told.
+    tells: bool,
+}
+
+impl Cart {
+    fn tell(&self, what: std::fmt::Arguments<'_>) {
+        if self.tells {
+            let _ = writeln!(std::io::stderr(), "cart: {what}");
+        }
+    }
+}
+
+impl Robot for Cart {
+    type Output = Sensed;
+    type Input = Speed;
+    type Error = &'static str;
+
+    fn exchange(&mut self, input: &Speed) -> Result<Sensed, &'static str> {
+        let MetersPerSecond(speed) = input.0;
+        self.tell(format_args!("{speed} m/s"));
+        match self.broken {
+            Some((exchange, false)) if exchange == self.exchanges => return Err("the cart fell off its track"),
+            Some((exchange, true)) if exchange == self.exchanges => self.explode(),
+            Some(_) | None => {}
+        }
+        self.exchanges += 1;
+        self.at.0 = (self.at.0 + speed * self.period.as_secs_f64()).clamp(0.0, self.track.0);
+        Ok(Sensed { at: self.at, track: self.track })
+    }
+
+    fn stop(&mut self) -> Result<(), &'static str> {
+        self.tell(format_args!("stop"));
+        Ok(())
+    }
+}
+
+impl Cart {
+    #[expect(clippy::panic, reason = "shows that even a bug leaves no robot moving")]
+    fn explode(&self) {
+        panic!("the cart exploded");
+    }
+}
+
+impl Hosted for Cart {}
+
+/// An input: a speed; the null input is rest.
+#[derive(Default)]
+struct Speed(MetersPerSecond);
+
+/// The cart as a target.
+struct CartTarget;
+
+impl Target for CartTarget {
+    const NAME: &'static str = "cart";
+    const PERIOD: Duration = Duration::from_millis(100);
+    type Robot = Cart;
+
+    fn arguments(command: Command) -> Command {
+        let number = |name| Arg::new(name).long(name).value_name("N").value_parser(value_parser!(u64));
+        command
+            .arg(Arg::new("track").long("track").value_name("METERS").value_parser(value_parser!(f64)))
+            .arg(Arg::new("speed").long("speed").value_parser(["wall", "max"]).help("How time passes [default: wall]"))
+            .arg(number("fail-at").help("Fail at this exchange"))
+            .arg(number("panic-at").help("Panic at this exchange"))
+            .arg(Arg::new("tell").long("tell").action(ArgAction::SetTrue).help("Tell what the cart is told"))
+    }
+
+    fn time(matches: &ArgMatches) -> Result<Time, String> {
+        let fastest = matches.get_one::<String>("speed").is_some_and(|speed| speed == "max");
+        Ok(if fastest { Time::Stepped(Pace::Max) } else { Time::Wall })
+    }
+
+    fn connect(matches: &ArgMatches, period: Duration) -> Result<Cart, Refusal> {
+        let track = matches.get_one("track").copied().unwrap_or(1.0);
+        if !(0.0..=1e3).contains(&track) {
+            return Err(Refusal::Usage("a track is at most 1000 m long".to_owned()));
+        }
+        let at = |name, panics| matches.get_one::<u64>(name).map(|exchange| (*exchange, panics));
+        let broken = at("fail-at", false).or(at("panic-at", true));
+        let tells = matches.get_flag("tell");
+        Ok(Cart { at: Meters(0.0), track: Meters(track), period, exchanges: 0, broken, tells })
+    }
+}
+
+/// `{ Shuttle (wait 1000) ((Atom (far) go 0.5) (Atom (near) go -0.5))^inf }`.
+struct Shuttle {
+    forward: bool,
+}
+
+const LIMIT: Nanos = Nanos(1_000_000_000_000);
+
+const FSM: Fsm<'static> = Fsm {
+    brackets: &[
+        Bracket::scope(0, 0, 1, 0),
+        Bracket::repeat(0, 0, 0, 0, 1, 0),
+        Bracket::scope(1, 0, 0, 1),
+        Bracket::scope(1, 1, 1, 1),
+    ],
+    atoms: &[Atom::new(2, 1), Atom::new(3, 2)],
+    termination: 3,
+};
+
+impl Plan for Shuttle {
+    type Output = Sensed;
+    type Input = Speed;
+    type Entered = [Nanos; 2];
+    type Left = [u64; 1];
+
+    fn fsm(&self) -> Fsm<'_> {
+        FSM
+    }
+
+    fn slots(&self) -> ([Nanos; 2], [u64; 1]) {
+        ([Nanos::ZERO; 2], [0])
+    }
+
+    fn enter(&mut self, atom: u32, _: &Sensed, _: Begin) {
+        self.forward = atom == 0;
+    }
+
+    fn fired(&self, cursor: &Cursor<[Nanos; 2], [u64; 1]>, y: &Sensed, t: Nanos) -> Option<Cause> {
+        if cursor.since(0, t) >= LIMIT {
+            return Some(Cause::Fired(0));
+        }
+        let there = if self.forward { y.at.0 >= y.track.0 } else { y.at.0 <= 0.0 };
+        there.then_some(Cause::Fired(1))
+    }
+
+    fn input(&mut self, _: &Sensed, _: Nanos) -> Speed {
+        Speed(MetersPerSecond(if self.forward { 0.5 } else { -0.5 }))
+    }
+
+    fn law(&self, atom: u32) -> &str {
+        if atom == 0 { "go 0.5" } else { "go -0.5" }
+    }
+
+    fn condition(&self, scope: u32) -> &str {
+        ["wait 1000", "", "far", "near"].get(scope as usize).unwrap_or(&"")
+    }
+
+    fn name(&self, scope: u32) -> &str {
+        if scope == 0 { "Shuttle" } else { "" }
+    }
+}

@@ -1,0 +1,224 @@
+//! When turns begin and what time it is in them (semantics, section 3).
+//!
+//! Turns begin at absolute deadlines, so lateness never adds up. A real robot that was late skips ahead: it is never
+//! sent a burst of inputs. In stepped time no turn may be skipped; what scheduling cost is caught up there.
+
+use std::time::{Duration, Instant};
+
+use mdle_runtime::Nanos;
+
+use crate::signals::{Signal, Signals};
+use crate::{Pace, Time};
+
+/// The longest sleep without a look at the signals.
+const SLICE: Duration = Duration::from_millis(20);
+/// How much lateness stepped time catches up, in nanoseconds; after more, such as a suspended process, it goes on from now.
+const CATCH_UP: u64 = 250_000_000;
+
+/// Where real time comes from; a test drives it by hand.
+pub(crate) trait Instants {
+    /// The time since some moment before the first turn; never goes back.
+    fn now(&mut self) -> Duration;
+    /// Lets about this much time pass.
+    fn sleep(&mut self, time: Duration);
+}
+
+/// The machine's own monotonic clock.
+#[derive(Debug)]
+pub(crate) struct Monotonic(Instant);
+
+impl Monotonic {
+    /// A clock that starts now.
+    pub(crate) fn start() -> Self {
+        Self(Instant::now())
+    }
+}
+
+impl Instants for Monotonic {
+    fn now(&mut self) -> Duration {
+        self.0.elapsed()
+    }
+
+    fn sleep(&mut self, time: Duration) {
+        std::thread::sleep(time);
+    }
+}
+
+/// The one clock of a run.
+#[derive(Debug)]
+pub(crate) struct Clock<I> {
+    instants: I,
+    time: Time,
+    /// In nanoseconds; at least 1.
+    period: u64,
+    /// When turn 0 began, in real nanoseconds; in stepped time moved on by what is not caught up.
+    origin: u64,
+    /// When the first output had been taken: the plan's time 0, in real nanoseconds.
+    zero: u64,
+    /// How many periods after the origin the current turn began.
+    place: u64,
+}
+
+impl<I: Instants> Clock<I> {
+    /// The clock of a run whose turn 0 begins now.
+    pub(crate) fn begin(mut instants: I, time: Time, period: Duration) -> Self {
+        let origin = nanos(instants.now());
+        Self { instants, time, period: nanos(period).max(1), origin, zero: origin, place: 0 }
+    }
+
+    /// Takes note that the first output has been taken: this is the plan's time 0.
+    pub(crate) fn zero(&mut self) -> Nanos {
+        self.zero = nanos(self.instants.now());
+        Nanos::ZERO
+    }
+
+    /// The plan's time of the output that has just been taken.
+    pub(crate) fn taken(&mut self) -> Nanos {
+        match self.time {
+            Time::Wall => Nanos(nanos(self.instants.now()).saturating_sub(self.zero)),
+            Time::Stepped(_) => Nanos(self.place.saturating_mul(self.period)),
+        }
+    }
+
+    /// Waits for the beginning of the next turn; a signal cuts the wait short.
+    pub(crate) fn next_turn(&mut self, signals: &Signals) -> Result<(), Signal> {
+        let deadline = self.deadline();
+        loop {
+            if let Some(signal) = signals.caught() {
+                return Err(signal);
+            }
+            let Some(deadline) = deadline else { return Ok(()) };
+            let left = deadline.saturating_sub(nanos(self.instants.now()));
+            if left == 0 {
+                return Ok(());
+            }
+            self.instants.sleep(Duration::from_nanos(left).min(SLICE));
+        }
+    }
+
+    /// Moves on to the next turn's place; when it begins, in real nanoseconds, or `None` for at once.
+    fn deadline(&mut self) -> Option<u64> {
+        self.place = self.place.saturating_add(1);
+        match self.time {
+            Time::Wall => {
+                let passed = nanos(self.instants.now()).saturating_sub(self.origin);
+                self.place = self.place.max(passed.div_ceil(self.period));
+                Some(self.origin.saturating_add(self.place.saturating_mul(self.period)))
+            }
+            Time::Stepped(Pace::Times(times)) => {
+                // The conversion saturates, and 2^53 nanoseconds, up to which it is exact, are three months.
+                let after = (self.place as f64 * self.period as f64 / times) as u64;
+                let late = nanos(self.instants.now()).saturating_sub(self.origin.saturating_add(after));
+                if late > CATCH_UP {
+                    self.origin = self.origin.saturating_add(late);
+                }
+                Some(self.origin.saturating_add(after))
+            }
+            Time::Stepped(Pace::Max) => None,
+        }
+    }
+}
+
+/// A duration in nanoseconds; 584 years where it is longer.
+pub(crate) fn nanos(duration: Duration) -> u64 {
+    u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Time that passes only in sleeps, and when the test says so.
+    #[derive(Debug, Default)]
+    struct ByHand(Duration);
+
+    impl Instants for ByHand {
+        fn now(&mut self) -> Duration {
+            self.0
+        }
+
+        fn sleep(&mut self, time: Duration) {
+            assert!(time <= SLICE, "a signal would wait for {time:?}");
+            self.0 += time;
+        }
+    }
+
+    const PERIOD: Duration = Duration::from_millis(100);
+
+    /// The real time in milliseconds at which the next turn begins, when the current one took `took` milliseconds.
+    fn next_after(clock: &mut Clock<ByHand>, took: u64) -> u128 {
+        clock.instants.0 += Duration::from_millis(took);
+        clock.next_turn(&Signals::unheard()).expect("no signal");
+        clock.instants.0.as_millis()
+    }
+
+    #[test]
+    fn turns_begin_at_absolute_deadlines() {
+        let mut clock = Clock::begin(ByHand::default(), Time::Wall, PERIOD);
+        let begins = [30, 99, 0, 100].map(|took| next_after(&mut clock, took));
+        assert_eq!(begins, [100, 200, 300, 400]);
+    }
+
+    #[test]
+    fn a_late_robot_skips_ahead() {
+        let mut clock = Clock::begin(ByHand::default(), Time::Wall, PERIOD);
+        let begins = [101, 250, 10].map(|took| next_after(&mut clock, took));
+        assert_eq!(begins, [200, 500, 600]);
+    }
+
+    #[test]
+    fn the_first_output_is_at_zero() {
+        let mut clock = Clock::begin(ByHand(Duration::from_secs(7)), Time::Wall, PERIOD);
+        clock.instants.0 += Duration::from_millis(30);
+        assert_eq!(clock.zero(), Nanos::ZERO);
+        clock.next_turn(&Signals::unheard()).expect("no signal");
+        clock.instants.0 += Duration::from_millis(35);
+        assert_eq!(clock.taken(), Nanos(105_000_000));
+    }
+
+    #[test]
+    fn stepped_time_is_exact() {
+        let third = Duration::from_nanos(33_333_333);
+        let mut clock = Clock::begin(ByHand::default(), Time::Stepped(Pace::Max), third);
+        assert_eq!(clock.zero(), Nanos::ZERO);
+        for turn in 1..=1000 {
+            next_after(&mut clock, 7);
+            assert_eq!(clock.taken(), Nanos(turn * 33_333_333));
+        }
+        assert_eq!(clock.instants.0, Duration::from_secs(7), "the fastest pace never sleeps");
+    }
+
+    #[test]
+    fn a_pace_of_four_is_four_times_as_fast() {
+        let mut clock = Clock::begin(ByHand::default(), Time::Stepped(Pace::Times(4.0)), PERIOD);
+        let begins = [5, 25, 0, 24].map(|took| next_after(&mut clock, took));
+        assert_eq!(begins, [25, 50, 75, 100]);
+    }
+
+    #[test]
+    fn stepped_time_catches_up_a_little_lateness() {
+        let mut clock = Clock::begin(ByHand::default(), Time::Stepped(Pace::Times(1.0)), PERIOD);
+        let begins = [250, 10, 10, 10].map(|took| next_after(&mut clock, took));
+        assert_eq!(begins, [250, 260, 300, 400]);
+        assert_eq!(clock.taken(), Nanos(400_000_000));
+    }
+
+    #[test]
+    fn stepped_time_goes_on_from_now_after_a_suspension() {
+        let mut clock = Clock::begin(ByHand::default(), Time::Stepped(Pace::Times(1.0)), PERIOD);
+        let begins = [600_000, 10, 10].map(|took| next_after(&mut clock, took));
+        assert_eq!(begins, [600_000, 600_100, 600_200]);
+        assert_eq!(clock.taken(), Nanos(300_000_000));
+    }
+
+    #[test]
+    fn a_signal_cuts_the_wait_short() {
+        let signals = Signals::unheard();
+        signals.raise(Signal::Terminate);
+        for time in [Time::Wall, Time::Stepped(Pace::Times(0.001)), Time::Stepped(Pace::Max)] {
+            let mut clock = Clock::begin(ByHand::default(), time, PERIOD);
+            assert_eq!(clock.next_turn(&signals), Err(Signal::Terminate));
+            assert_eq!(clock.instants.0, Duration::ZERO);
+        }
+    }
+}

@@ -1,0 +1,108 @@
+//! How a run ends: the exit status, and the sentence on standard error.
+
+use std::fmt;
+use std::io::Write;
+use std::time::Duration;
+
+use crate::Refusal;
+use crate::signals::Signal;
+
+/// Exit status: the plan is over, whatever ended it.
+pub(crate) const OVER: u8 = 0;
+/// Exit status: a bad option, world or start pose.
+pub(crate) const USAGE: u8 = 2;
+/// Exit status: a fault stopped the robot.
+pub(crate) const FAULT: u8 = 3;
+/// Exit status: timeout or turn limit.
+pub(crate) const LIMIT: u8 = 4;
+
+/// Why a run ended.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Ending {
+    /// The plan is over.
+    Over,
+    /// The plan was not over at this time.
+    Timeout(Duration),
+    /// The plan was not over after this many turns.
+    Turns(u64),
+    /// A signal asked for it.
+    Signal(Signal),
+    /// An exchange failed: the robot's sentence.
+    Robot(String),
+    /// The run log could not be written: why.
+    Log(String),
+    /// Code panicked: its message.
+    Bug(String),
+}
+
+impl Ending {
+    /// The exit status of the executable.
+    pub(crate) fn status(&self) -> u8 {
+        match self {
+            Self::Over => OVER,
+            Self::Timeout(_) | Self::Turns(_) => LIMIT,
+            Self::Signal(signal) => 128 + signal.number(),
+            Self::Robot(_) | Self::Log(_) | Self::Bug(_) => FAULT,
+        }
+    }
+
+    /// Whether the robot still takes inputs: it is not used again once an exchange has failed, and after a panic
+    /// nothing is known of it. Its stop command is sent all the same.
+    pub(crate) fn robot_listens(&self) -> bool {
+        match self {
+            Self::Over | Self::Timeout(_) | Self::Turns(_) | Self::Signal(_) | Self::Log(_) => true,
+            Self::Robot(_) | Self::Bug(_) => false,
+        }
+    }
+
+    /// Whether the robot's own code can still be trusted to write what was asked for.
+    pub(crate) fn is_orderly(&self) -> bool {
+        match self {
+            Self::Over | Self::Timeout(_) | Self::Turns(_) | Self::Signal(_) | Self::Robot(_) | Self::Log(_) => true,
+            Self::Bug(_) => false,
+        }
+    }
+
+    /// Says it on standard error; a plan that is over has said so on standard output.
+    pub(crate) fn tell(&self, err: &mut dyn Write) {
+        match self {
+            Self::Over => {}
+            Self::Timeout(limit) => {
+                say(err, format_args!("stopped by --timeout: the plan was not over after {} s", limit.as_secs_f64()));
+            }
+            Self::Turns(limit) => {
+                let turns = if *limit == 1 { "turn" } else { "turns" };
+                say(err, format_args!("stopped by --turns: the plan was not over after {limit} {turns}"));
+            }
+            Self::Signal(signal) => say(err, format_args!("stopped by {}", signal.name())),
+            Self::Robot(fault) => say(err, format_args!("error: a fault stopped the robot: {fault}")),
+            Self::Log(fault) => {
+                say(err, format_args!("error: the run log cannot be written, so the robot was stopped: {fault}"))
+            }
+            Self::Bug(message) => say(
+                err,
+                format_args!(
+                    "error: a fault stopped the robot: its code or the plan's panicked, which is a bug: {message}"
+                ),
+            ),
+        }
+    }
+}
+
+impl Refusal {
+    /// Says it on standard error; the exit status.
+    pub(crate) fn tell(&self, err: &mut dyn Write) -> u8 {
+        let (sentence, status) = match self {
+            Self::Usage(sentence) => (sentence, USAGE),
+            Self::Fault(sentence) => (sentence, FAULT),
+        };
+        say(err, format_args!("error: {sentence}"));
+        status
+    }
+}
+
+/// Writes a line to standard error.
+pub(crate) fn say(err: &mut dyn Write, line: fmt::Arguments<'_>) {
+    // When even that fails nobody is left to tell; the exit status still says it.
+    let _ = writeln!(err, "{line}").and_then(|()| err.flush());
+}

@@ -1,0 +1,43 @@
+//! The shield around code of the robot and of the plan: a panic in it becomes a value, so that the robot is stopped.
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// What code said when it panicked.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Panicked(pub(crate) String);
+
+/// Runs `code`. What it leaves behind after a panic may be broken: do no more with it than stop the robot.
+///
+/// # Errors
+/// When it panicked. The panic hook has then told where, on standard error.
+pub(crate) fn shielded<T>(code: impl FnOnce() -> T) -> Result<T, Panicked> {
+    catch_unwind(AssertUnwindSafe(code)).map_err(|payload| {
+        let message = text(&*payload);
+        // A payload may panic once more when it is dropped; it is small, and the program is about to end.
+        std::mem::forget(payload);
+        Panicked(message)
+    })
+}
+
+/// The message of a panic.
+fn text(payload: &(dyn Any + Send)) -> String {
+    match (payload.downcast_ref::<&str>(), payload.downcast_ref::<String>()) {
+        (Some(message), _) => (*message).to_owned(),
+        (None, Some(message)) => message.clone(),
+        (None, None) => "no message".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_becomes_its_message() {
+        assert_eq!(shielded(|| 7), Ok(7));
+        assert_eq!(shielded(|| panic!("plain")), Err::<(), _>(Panicked("plain".to_owned())));
+        assert_eq!(shielded(|| panic!("number {}", 7)), Err::<(), _>(Panicked("number 7".to_owned())));
+        assert_eq!(shielded(|| std::panic::panic_any(7)), Err::<(), _>(Panicked("no message".to_owned())));
+    }
+}

@@ -1,0 +1,166 @@
+//! A whole run: options, robot, turns, and the way out, on which the robot is stopped whatever has happened.
+
+use std::ffi::OsString;
+use std::fs::File;
+use std::io::Write;
+
+use clap::ArgMatches;
+use mdle_runtime::{Plan, Robot};
+
+use crate::arguments::{self, Options};
+use crate::clock::{Clock, Instants};
+use crate::ending::{self, Ending, say};
+use crate::log::Log;
+use crate::report::Report;
+use crate::safety::{Panicked, shielded};
+use crate::signals::Signals;
+use crate::turns::{self, Limits, Witnesses};
+use crate::{Hosted, Pace, Refusal, Target, Time};
+
+/// What a run meets outside the program; a test brings its own.
+pub(crate) struct Surroundings<'e, I, O> {
+    /// Where real time comes from.
+    pub(crate) instants: I,
+    /// The signals that end the run.
+    pub(crate) signals: Signals,
+    /// Opens standard output, once it is known how time passes (`None` for help).
+    pub(crate) out: O,
+    /// Standard error.
+    pub(crate) err: &'e mut dyn Write,
+}
+
+/// Runs `plan` on the robot of target `T` with these arguments, the program's name not among them; the exit status.
+pub(crate) fn session<'o, T: Target, P, I, O>(
+    name: &str,
+    arguments: impl IntoIterator<Item = OsString>,
+    plan: P,
+    surroundings: Surroundings<'_, I, O>,
+) -> u8
+where
+    P: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>,
+    I: Instants,
+    O: FnOnce(Option<Time>) -> Box<dyn Write + 'o>,
+{
+    let Surroundings { instants, signals, out, err } = surroundings;
+    let matches = match arguments::command::<T>(name).try_get_matches_from(arguments) {
+        Ok(matches) => matches,
+        Err(error) => return unparsed(&error, || out(None), err),
+    };
+    let options = arguments::options::<T>(&matches);
+    let Ready { mut robot, time, mut log } = match ready::<T>(&matches, &options) {
+        Ok(ready) => ready,
+        Err(refusal) => return refusal.tell(err),
+    };
+    signals.robot_runs();
+    let mut out = out(Some(time));
+    let mut report = Report::new(&mut *out, is_watched(time));
+    let limits = Limits { timeout: options.timeout, turns: options.turns };
+    let ending = shielded(|| {
+        let mut clock = Clock::begin(instants, time, options.period);
+        let mut witnesses = Witnesses { report: &mut report, log: log.as_mut() };
+        turns::run(&mut robot, plan, limits, &mut clock, &signals, &mut witnesses)
+    });
+    let status = way_out(&mut robot, ending.unwrap_or_else(bug), &mut report, log, err);
+    // It stands, and all is said; even code that panics while it tidies up must not change the status.
+    let _ = shielded(move || drop(robot));
+    signals.robot_stands();
+    if let Err(error) = report.close() {
+        say(err, format_args!("warning: standard output could not be written: {error}"));
+    }
+    status
+}
+
+/// Prints help, or why the arguments are wrong; the exit status.
+fn unparsed<'o>(error: &clap::Error, out: impl FnOnce() -> Box<dyn Write + 'o>, err: &mut dyn Write) -> u8 {
+    if error.use_stderr() {
+        say(err, format_args!("{}", error.render().to_string().trim_end()));
+        return ending::USAGE;
+    }
+    // Nobody has to read help to the end.
+    let mut out = out();
+    let _ = write!(out, "{}", error.render()).and_then(|()| out.flush());
+    ending::OVER
+}
+
+/// What a run needs before its first turn.
+struct Ready<R> {
+    robot: R,
+    time: Time,
+    log: Option<Log<File>>,
+}
+
+/// Opens what a run needs, the robot last.
+fn ready<T: Target>(matches: &ArgMatches, options: &Options) -> Result<Ready<T::Robot>, Refusal> {
+    let opened = shielded(|| {
+        let time = T::time(matches).map_err(Refusal::Usage)?;
+        let log = match &options.log {
+            Some(path) => Some(Log::create(path, is_watched(time)).map_err(|error| {
+                Refusal::Usage(format!("the run log {} cannot be written: {error}", path.display()))
+            })?),
+            None => None,
+        };
+        Ok(Ready { robot: T::connect(matches, options.period)?, time, log })
+    });
+    opened.unwrap_or_else(|Panicked(message)| {
+        Err(Refusal::Fault(format!("the robot's code panicked before it ran, which is a bug: {message}")))
+    })
+}
+
+/// Whether somebody may be watching: at the fastest pace it matters more that writing is cheap.
+fn is_watched(time: Time) -> bool {
+    match time {
+        Time::Wall | Time::Stepped(Pace::Times(_)) => true,
+        Time::Stepped(Pace::Max) => false,
+    }
+}
+
+/// A panic as an ending.
+fn bug(Panicked(message): Panicked) -> Ending {
+    Ending::Bug(message)
+}
+
+/// Stops the robot and says why the run ended; the exit status.
+///
+/// The null input is sent once more where the robot still listens, then the stop command in any case. A robot that
+/// cannot be stopped is a fault whatever came before. What [`Hosted::finish`] cannot write makes a fault only of a
+/// plan that is over: any other ending says more.
+fn way_out<R: Hosted>(
+    robot: &mut R,
+    mut ending: Ending,
+    report: &mut Report<'_>,
+    mut log: Option<Log<File>>,
+    err: &mut dyn Write,
+) -> u8 {
+    if ending.robot_listens() {
+        let last = shielded(|| turns::exchange(robot, &R::Input::default()).map(drop));
+        if let Err(fault) = last.unwrap_or_else(|panicked| Err(bug(panicked))) {
+            report.flush();
+            ending.tell(err);
+            ending = fault;
+        }
+    }
+    let stopped = shielded(|| robot.stop().map_err(|fault| fault.to_string()));
+    // Without a word on a broken log the reader of a short one would take it for a whole run.
+    let logged = log.as_mut().map_or(Ok(()), Log::flush);
+    report.flush();
+    ending.tell(err);
+    let mut status = ending.status();
+    if let Err(error) = logged
+        && !matches!(ending, Ending::Log(_))
+    {
+        say(err, format_args!("error: the run log cannot be written: {error}"));
+        status = ending::FAULT;
+    }
+    if let Err(fault) = stopped.unwrap_or_else(|Panicked(message)| Err(format!("its code panicked: {message}"))) {
+        say(err, format_args!("error: the robot could not be told to stop: {fault}"));
+        status = ending::FAULT;
+    }
+    if ending.is_orderly() {
+        let finished = shielded(|| robot.finish());
+        if let Err(sentence) = finished.unwrap_or_else(|Panicked(message)| Err(format!("a panic: {message}"))) {
+            say(err, format_args!("error: {sentence}"));
+            status = if status == ending::OVER { ending::FAULT } else { status };
+        }
+    }
+    status
+}

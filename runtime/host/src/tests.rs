@@ -1,0 +1,7 @@
+//! Whole runs on a toy robot in virtual time: what the robot is sent, what is said, and the exit status, on every way out.
+
+mod limits;
+mod order;
+mod output;
+mod plan;
+mod toy;

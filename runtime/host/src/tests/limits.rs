@@ -1,0 +1,95 @@
+//! Options: help, what is refused, period, timeout and turn limit.
+
+use std::time::Duration;
+
+use mdle_runtime::Cause::Fired;
+
+use super::toy::{Act, Stage};
+use crate::{Pace, Time};
+
+#[test]
+fn help_lists_all_options_and_opens_no_robot() {
+    let run = Stage::default().run(&["--help"]);
+    assert_eq!((run.status, &*run.err, &*run.journal), (0, "", ""));
+    insta::assert_snapshot!(run.out, @"
+    Runs the plan lab on the robot toy.
+
+    Usage: lab [OPTIONS]
+
+    Options:
+          --period <SECONDS>   Time from one turn to the next [default: 0.1]
+          --timeout <SECONDS>  Give up when the plan is not over at this time (exit status 4)
+          --turns <N>          Give up when the plan is not over after this many turns (exit status 4)
+          --log <FILE>         Write what happens, one JSON object a turn, as `mdlec trace` does
+          --device <PATH>      Where the toy is
+      -h, --help               Print help
+
+    Exit status: 0 the plan is over, 2 a bad option, world or start pose, 3 a fault stopped the robot,
+    4 timeout or turn limit, 129, 130 or 143 stopped by a signal. The robot is stopped in every case.
+    ");
+}
+
+#[test]
+fn a_bad_option_opens_no_robot() {
+    let wrong: [&[&str]; 10] = [
+        &["--period", "0"],
+        &["--period", "-0.1"],
+        &["--period", "NaN"],
+        &["--timeout", "0"],
+        &["--timeout", "-1"],
+        &["--turns", "0"],
+        &["--turns", "1.5"],
+        &["--device", "/dev/null"],
+        &["--sped"],
+        &["plan.mdle"],
+    ];
+    for arguments in wrong {
+        let run = Stage::default().run(arguments);
+        assert_eq!((run.status, &*run.out, &*run.journal), (2, "", ""), "{arguments:?}");
+        assert!(run.err.starts_with("error: "), "{arguments:?}: {}", run.err);
+    }
+    insta::assert_snapshot!(Stage::default().run(&["--period=0"]).err, @"
+    error: invalid value '0' for '--period <SECONDS>': expected a number of seconds from 0.0001 to 60
+
+    For more information, try '--help'.
+    ");
+}
+
+#[test]
+fn a_turn_limit_counts_turns() {
+    let run = Stage::default().run(&["--turns", "3"]);
+    assert_eq!(run.journal, "exchange 0, began 1 go 20 0 at 0, exchange 1, exchange 1, exchange 0, stop, finish");
+    assert_eq!((run.status, &*run.err), (4, "stopped by --turns: the plan was not over after 3 turns\n"));
+}
+
+#[test]
+fn a_turn_limit_of_one_applies_nothing() {
+    let run = Stage::default().run(&["--turns", "1"]);
+    assert_eq!(run.journal, "exchange 0, began 1 go 20 0 at 0, exchange 0, stop, finish");
+    assert_eq!((run.status, &*run.err), (4, "stopped by --turns: the plan was not over after 1 turn\n"));
+}
+
+#[test]
+fn a_timeout_is_in_the_time_of_the_plan() {
+    let run = Stage::default().run(&["--timeout", "0.25", "--period", "0.1"]);
+    assert_eq!(run.journal.matches("exchange 1").count(), 3, "turns at 0, 0.1, 0.2 and 0.3: {}", run.journal);
+    assert_eq!((run.status, &*run.err), (4, "stopped by --timeout: the plan was not over after 0.25 s\n"));
+}
+
+#[test]
+fn a_plan_that_is_over_at_its_limit_is_over() {
+    let script = || [Act::Senses(vec![]), Act::Senses(vec![(0, Fired(0))])];
+    assert_eq!(Stage::script(script()).run(&["--turns", "2", "--timeout", "0.1"]).status, 0);
+    assert_eq!(Stage::script(script()).run(&["--turns", "1"]).status, 4);
+}
+
+#[test]
+fn a_pace_decides_how_long_a_run_takes_and_nothing_else() {
+    let at = |pace| Stage { time: Time::Stepped(pace), ..Stage::default() }.run(&["--timeout", "2", "--period", "0.5"]);
+    let (real, fast, fastest) = (at(Pace::Times(1.0)), at(Pace::Times(10.0)), at(Pace::Max));
+    assert_eq!(real.slept, Duration::from_secs(2));
+    assert_eq!(fast.slept, Duration::from_millis(200));
+    assert_eq!(fastest.slept, Duration::ZERO);
+    assert_eq!((&real.journal, &real.out), (&fast.journal, &fast.out));
+    assert_eq!((&real.journal, &real.out), (&fastest.journal, &fastest.out));
+}

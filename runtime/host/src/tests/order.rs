@@ -1,0 +1,163 @@
+//! What the robot is sent, and in which order, on every way out.
+
+use mdle_runtime::Cause::{Completed, Fired};
+
+use super::toy::{Act, Run, Stage};
+use crate::Refusal;
+use crate::signals::Signal;
+
+fn quiet() -> Act {
+    Act::Senses(vec![])
+}
+
+/// What the robot was told, the exit status and standard error, for a snapshot.
+fn way_out(run: &Run) -> String {
+    format!("{}\nstatus {}\n{}", run.journal, run.status, run.err)
+}
+
+#[test]
+fn an_input_acts_one_turn_later_and_the_null_input_ends_a_plan() {
+    let run = Stage::script([quiet(), quiet(), Act::Senses(vec![(0, Fired(0))])]).run(&[]);
+    insta::assert_snapshot!(way_out(&run), @"
+    exchange 0, began 1 go 20 0 at 0, exchange 1, exchange 1, exchange 0, stop, finish
+    status 0
+    ");
+}
+
+#[test]
+fn only_the_atom_that_is_left_standing_has_begun() {
+    let skip = Act::Senses(vec![(0, Fired(1)), (1, Completed(2))]);
+    let again = Act::Senses(vec![(2, Fired(2)), (3, Fired(1))]);
+    let run = Stage::script([quiet(), skip, quiet(), again]).run(&[]);
+    insta::assert_snapshot!(way_out(&run), @"
+    exchange 0, began 1 go 20 0 at 0, exchange 1, began 3 stop at 0.1, exchange 3, exchange 3, exchange 0, stop, finish
+    status 0
+    ");
+}
+
+#[test]
+fn a_plan_that_is_over_in_its_first_turn_is_never_applied() {
+    let run = Stage::script([Act::Senses(vec![(0, Fired(0))])]).run(&[]);
+    insta::assert_snapshot!(way_out(&run), @"
+    exchange 0, exchange 0, stop, finish
+    status 0
+    ");
+}
+
+#[test]
+fn a_robot_whose_exchange_failed_is_only_stopped() {
+    let run = Stage::script([quiet(), Act::Fails("no answer within 300 ms")]).run(&[]);
+    insta::assert_snapshot!(way_out(&run), @"
+    exchange 0, began 1 go 20 0 at 0, exchange 1, stop, finish
+    status 3
+    error: a fault stopped the robot: no answer within 300 ms
+    ");
+}
+
+#[test]
+fn the_first_exchange_may_fail() {
+    let run = Stage::script([Act::Fails("the emergency stop is pressed")]).run(&[]);
+    insta::assert_snapshot!(way_out(&run), @"
+    exchange 0, stop, finish
+    status 3
+    error: a fault stopped the robot: the emergency stop is pressed
+    ");
+}
+
+#[test]
+fn a_fault_in_the_last_exchange_is_a_fault() {
+    let run = Stage::script([Act::Senses(vec![(0, Fired(0))]), Act::Fails("no answer")]).run(&[]);
+    insta::assert_snapshot!(way_out(&run), @"
+    exchange 0, exchange 0, stop, finish
+    status 3
+    error: a fault stopped the robot: no answer
+    ");
+    assert_eq!(run.out, "plan over: bumper (Lab)\n");
+}
+
+#[test]
+fn a_panic_stops_the_robot_and_asks_no_more_of_it() {
+    let run = Stage::script([quiet(), Act::Panics("index out of bounds")]).run(&[]);
+    insta::assert_snapshot!(way_out(&run), @"
+    exchange 0, began 1 go 20 0 at 0, exchange 1, stop
+    status 3
+    error: a fault stopped the robot: its code or the plan's panicked, which is a bug: index out of bounds
+    ");
+}
+
+#[test]
+fn a_panic_in_the_last_exchange_stops_the_robot_too() {
+    let run = Stage::script([Act::Hears(Signal::Interrupt), Act::Panics("oh")]).run(&[]);
+    insta::assert_snapshot!(way_out(&run), @"
+    exchange 0, began 1 go 20 0 at 0, exchange 0, stop
+    status 3
+    stopped by SIGINT
+    error: a fault stopped the robot: its code or the plan's panicked, which is a bug: oh
+    ");
+}
+
+#[test]
+fn a_signal_replaces_the_next_input_by_the_null_input() {
+    let run = Stage::script([quiet(), Act::Hears(Signal::Interrupt)]).run(&[]);
+    insta::assert_snapshot!(way_out(&run), @"
+    exchange 0, began 1 go 20 0 at 0, exchange 1, exchange 0, stop, finish
+    status 130
+    stopped by SIGINT
+    ");
+}
+
+#[test]
+fn each_signal_has_its_status() {
+    let status = |signal| Stage::script([Act::Hears(signal)]).run(&[]).status;
+    assert_eq!([Signal::HangUp, Signal::Interrupt, Signal::Terminate].map(status), [129, 130, 143]);
+}
+
+#[test]
+fn a_second_signal_while_the_robot_is_stopped_changes_nothing() {
+    let script = [Act::Hears(Signal::Terminate), Act::Hears(Signal::Interrupt)];
+    let run = Stage { stop: Act::Hears(Signal::HangUp), ..Stage::script(script) }.run(&[]);
+    insta::assert_snapshot!(way_out(&run), @"
+    exchange 0, began 1 go 20 0 at 0, exchange 0, stop, finish
+    status 143
+    stopped by SIGTERM
+    ");
+}
+
+#[test]
+fn a_stop_that_fails_is_a_fault_whatever_came_before() {
+    let script = || [Act::Hears(Signal::Interrupt)];
+    let run = Stage { stop: Act::Fails("the line is dead"), ..Stage::script(script()) }.run(&[]);
+    insta::assert_snapshot!(way_out(&run), @"
+    exchange 0, began 1 go 20 0 at 0, exchange 0, stop, finish
+    status 3
+    stopped by SIGINT
+    error: the robot could not be told to stop: the line is dead
+    ");
+    let run = Stage { stop: Act::Panics("oh"), ..Stage::script(script()) }.run(&[]);
+    assert_eq!(run.status, 3);
+    assert!(run.err.ends_with("error: the robot could not be told to stop: its code panicked: oh\n"));
+}
+
+#[test]
+fn what_cannot_be_finished_is_a_fault_of_a_plan_that_is_over_only() {
+    let finish = || Err("plot.svg cannot be written".to_owned());
+    let over = [Act::Senses(vec![(0, Fired(0))])];
+    let run = Stage { finish: finish(), ..Stage::script(over) }.run(&[]);
+    insta::assert_snapshot!(way_out(&run), @"
+    exchange 0, exchange 0, stop, finish
+    status 3
+    error: plot.svg cannot be written
+    ");
+    let run = Stage { finish: finish(), ..Stage::script([Act::Hears(Signal::Terminate)]) }.run(&[]);
+    assert_eq!(run.status, 143);
+    assert_eq!(run.err, "stopped by SIGTERM\nerror: plot.svg cannot be written\n");
+}
+
+#[test]
+fn a_robot_that_cannot_be_opened_is_sent_nothing() {
+    let refused = |refusal| way_out(&Stage { refusal: Some(refusal), ..Stage::default() }.run(&[]));
+    let usage = refused(Refusal::Usage("the start pose is inside a wall".to_owned()));
+    let fault = refused(Refusal::Fault("nothing answers at /dev/ttyS0".to_owned()));
+    assert_eq!(usage, "\nstatus 2\nerror: the start pose is inside a wall\n");
+    assert_eq!(fault, "\nstatus 3\nerror: nothing answers at /dev/ttyS0\n");
+}

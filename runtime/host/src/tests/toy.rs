@@ -1,0 +1,231 @@
+//! A robot that plays a script and keeps a journal, and the stage on which a run of it is watched.
+
+use std::cell::{Cell, RefCell};
+use std::collections::VecDeque;
+use std::ffi::OsString;
+use std::io::{self, Write};
+use std::rc::Rc;
+use std::time::Duration;
+
+use clap::{Arg, ArgMatches, Command};
+use mdle_runtime::{Cause, Nanos, Output, Robot};
+
+use super::plan::ToyPlan;
+use crate::clock::Instants;
+use crate::session::{Surroundings, session};
+use crate::signals::{Signal, Signals};
+use crate::{Hosted, Pace, Refusal, Target, Time};
+
+/// An output: what fires while which atom, as written, is the current one.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Sensed(pub(super) Vec<(u32, Cause)>);
+
+impl Output for Sensed {}
+
+/// What the robot does at one exchange; after the script it senses nothing for ever.
+#[derive(Debug, Clone)]
+pub(super) enum Act {
+    Senses(Vec<(u32, Cause)>),
+    Hears(Signal),
+    Fails(&'static str),
+    Panics(&'static str),
+}
+
+/// A stage: the robot's script, how it behaves on the way out, and everything that happens.
+#[derive(Debug)]
+pub(super) struct Stage {
+    pub(super) script: Vec<Act>,
+    pub(super) time: Time,
+    pub(super) refusal: Option<Refusal>,
+    pub(super) stop: Act,
+    pub(super) finish: Result<(), String>,
+    pub(super) plan: ToyPlan,
+}
+
+impl Default for Stage {
+    fn default() -> Self {
+        let time = Time::Stepped(Pace::Max);
+        Self {
+            script: Vec::new(),
+            time,
+            refusal: None,
+            stop: Act::Senses(vec![]),
+            finish: Ok(()),
+            plan: ToyPlan::lab(),
+        }
+    }
+}
+
+/// What came of a run.
+#[derive(Debug)]
+pub(super) struct Run {
+    pub(super) status: u8,
+    pub(super) out: String,
+    pub(super) err: String,
+    /// What the robot was told, in order, with commas between.
+    pub(super) journal: String,
+    /// How much real time passed in sleeps.
+    pub(super) slept: Duration,
+}
+
+thread_local! {
+    /// What [`Toy::connect`] finds: a target has no other way to a test.
+    static READY: RefCell<Option<(Time, Result<Toy, Refusal>)>> = const { RefCell::new(None) };
+}
+
+impl Stage {
+    /// A stage with this script.
+    pub(super) fn script(script: impl IntoIterator<Item = Act>) -> Self {
+        Self { script: script.into_iter().collect(), ..Self::default() }
+    }
+
+    /// Runs the plan with these arguments.
+    pub(super) fn run(self, arguments: &[&str]) -> Run {
+        self.run_to(arguments, Vec::new())
+    }
+
+    /// Runs the plan with these arguments and this standard output.
+    pub(super) fn run_to<W: Write + AsText + 'static>(self, arguments: &[&str], sink: W) -> Run {
+        let journal = Rc::new(RefCell::new(Vec::new()));
+        let signals = Signals::unheard();
+        let toy = Toy {
+            script: self.script.into(),
+            stop: self.stop,
+            finish: self.finish,
+            signals: signals.share(),
+            journal: Rc::clone(&journal),
+        };
+        READY.set(Some((self.time, self.refusal.map_or(Ok(toy), Err))));
+        let out = Rc::new(RefCell::new(sink));
+        let slept = Rc::new(Cell::new(Duration::ZERO));
+        let mut err = Vec::new();
+        let surroundings = Surroundings {
+            instants: ByHand(Rc::clone(&slept)),
+            signals,
+            out: |_| Box::new(Shared(Rc::clone(&out))) as Box<dyn Write>,
+            err: &mut err,
+        };
+        let arguments = arguments.iter().map(OsString::from);
+        let status = session::<ToyTarget, _, _, _>("lab", arguments, self.plan, surroundings);
+        let text = out.borrow().text();
+        let journal = journal.borrow().join(", ");
+        Run { status, out: text, err: String::from_utf8(err).unwrap(), journal, slept: slept.get() }
+    }
+}
+
+/// A sink whose text a test reads afterwards.
+pub(super) trait AsText {
+    fn text(&self) -> String;
+}
+
+impl AsText for Vec<u8> {
+    fn text(&self) -> String {
+        String::from_utf8(self.clone()).unwrap()
+    }
+}
+
+/// A sink that the test and the run share.
+struct Shared<W>(Rc<RefCell<W>>);
+
+impl<W: Write> Write for Shared<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.borrow_mut().write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.borrow_mut().flush()
+    }
+}
+
+/// Time that passes only in sleeps.
+struct ByHand(Rc<Cell<Duration>>);
+
+impl Instants for ByHand {
+    fn now(&mut self) -> Duration {
+        self.0.get()
+    }
+
+    fn sleep(&mut self, time: Duration) {
+        self.0.set(self.0.get() + time);
+    }
+}
+
+/// The target of the toy robot.
+struct ToyTarget;
+
+impl Target for ToyTarget {
+    const NAME: &'static str = "toy";
+    const PERIOD: Duration = Duration::from_millis(100);
+    type Robot = Toy;
+
+    fn arguments(command: Command) -> Command {
+        command.arg(Arg::new("device").long("device").value_name("PATH").help("Where the toy is"))
+    }
+
+    fn time(matches: &ArgMatches) -> Result<Time, String> {
+        if matches.contains_id("device") {
+            return Err("a toy has no device".to_owned());
+        }
+        Ok(READY.with_borrow(|ready| ready.as_ref().unwrap().0))
+    }
+
+    fn connect(_: &ArgMatches, _: Duration) -> Result<Toy, Refusal> {
+        READY.take().unwrap().1
+    }
+}
+
+/// The toy robot. Its input is a number; the null input is 0.
+#[derive(Debug)]
+struct Toy {
+    script: VecDeque<Act>,
+    stop: Act,
+    finish: Result<(), String>,
+    signals: Signals,
+    journal: Rc<RefCell<Vec<String>>>,
+}
+
+impl Toy {
+    fn note(&self, what: String) {
+        self.journal.borrow_mut().push(what);
+    }
+
+    fn act(&self, act: Act) -> Result<Sensed, &'static str> {
+        match act {
+            Act::Senses(fired) => Ok(Sensed(fired)),
+            Act::Hears(signal) => {
+                self.signals.raise(signal);
+                Ok(Sensed::default())
+            }
+            Act::Fails(why) => Err(why),
+            Act::Panics(why) => panic!("{why}"),
+        }
+    }
+}
+
+impl Robot for Toy {
+    type Output = Sensed;
+    type Input = u32;
+    type Error = &'static str;
+
+    fn exchange(&mut self, input: &u32) -> Result<Sensed, &'static str> {
+        self.note(format!("exchange {input}"));
+        let act = self.script.pop_front().unwrap_or(Act::Senses(vec![]));
+        self.act(act)
+    }
+
+    fn stop(&mut self) -> Result<(), &'static str> {
+        self.note("stop".to_owned());
+        self.act(self.stop.clone()).map(drop)
+    }
+}
+
+impl Hosted for Toy {
+    fn began(&mut self, state: u64, law: &str, t: Nanos) {
+        self.note(format!("began {state} {law} at {}", t.seconds()));
+    }
+
+    fn finish(&mut self) -> Result<(), String> {
+        self.note("finish".to_owned());
+        self.finish.clone()
+    }
+}

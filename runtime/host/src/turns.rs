@@ -1,0 +1,135 @@
+//! The turns of a plan on a robot: exchange, time, machine, and the wait for the next (semantics, section 5).
+
+use std::fs::File;
+use std::io;
+use std::time::Duration;
+
+use mdle_runtime::{Machine, Nanos, Plan, Robot, Transition, Turn, Watch};
+
+use crate::Hosted;
+use crate::clock::{Clock, Instants, nanos};
+use crate::ending::Ending;
+use crate::log::{Entry, Log};
+use crate::report::Report;
+use crate::signals::Signals;
+
+/// When a plan that is not over is given up.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Limits {
+    /// At this time of the plan. The turn at that time is still made: the plan may be over in it.
+    pub(crate) timeout: Option<Duration>,
+    /// After this many turns.
+    pub(crate) turns: Option<u64>,
+}
+
+/// What the turns tell of themselves to.
+pub(crate) struct Witnesses<'a, 'o> {
+    /// The lines on standard output.
+    pub(crate) report: &'a mut Report<'o>,
+    /// The run log, if one was asked for.
+    pub(crate) log: Option<&'a mut Log<File>>,
+}
+
+/// Runs `plan` on `robot`, from the exchange of turn 0 until something ends it.
+///
+/// The robot still does what it was told last: the null input and the stop are the caller's, who also has to be ready
+/// for a panic.
+pub(crate) fn run<R: Hosted, P, I: Instants>(
+    robot: &mut R,
+    plan: P,
+    limits: Limits,
+    clock: &mut Clock<I>,
+    signals: &Signals,
+    witnesses: &mut Witnesses<'_, '_>,
+) -> Ending
+where
+    P: Plan<Output = R::Output, Input = R::Input>,
+{
+    if let Some(signal) = signals.caught() {
+        return Ending::Signal(signal);
+    }
+    let mut y = match exchange(robot, &R::Input::default()) {
+        Ok(output) => output,
+        Err(ending) => return ending,
+    };
+    let mut t = clock.zero();
+    let mut machine = Machine::begin(plan, &y, t);
+    let mut seen = Seen::default();
+    // Whether the current atom has been entered since a law was applied last.
+    let mut fresh = true;
+    let mut number: u64 = 0;
+    loop {
+        seen.0.clear();
+        let turn = machine.turn(&y, t, &mut seen);
+        fresh |= !seen.0.is_empty();
+        if let Err(error) = witnesses.tell(&machine, &turn, number, t, &seen.0) {
+            return Ending::Log(error.to_string());
+        }
+        let u = match turn {
+            Turn::Law(input) => {
+                if std::mem::take(&mut fresh) {
+                    robot.began(machine.state(), machine.atom().map_or("", |atom| machine.plan().law(atom)), t);
+                }
+                input
+            }
+            Turn::Cut => R::Input::default(),
+            Turn::Over => return Ending::Over,
+        };
+        number = number.saturating_add(1);
+        if let Some(ending) = limits.reached(number, t) {
+            return ending;
+        }
+        if let Err(signal) = clock.next_turn(signals) {
+            return Ending::Signal(signal);
+        }
+        y = match exchange(robot, &u) {
+            Ok(output) => output,
+            Err(ending) => return ending,
+        };
+        t = clock.taken();
+    }
+}
+
+/// Exchanges an input for the output that follows it.
+pub(crate) fn exchange<R: Robot>(robot: &mut R, input: &R::Input) -> Result<R::Output, Ending> {
+    robot.exchange(input).map_err(|fault| Ending::Robot(fault.to_string()))
+}
+
+impl Limits {
+    /// The limit that a plan has reached which is not over after `turns` turns, the last of them at time `t`.
+    fn reached(&self, turns: u64, t: Nanos) -> Option<Ending> {
+        let timeout = self.timeout.filter(|limit| t.0 >= nanos(*limit)).map(Ending::Timeout);
+        timeout.or(self.turns.filter(|limit| turns >= *limit).map(Ending::Turns))
+    }
+}
+
+impl Witnesses<'_, '_> {
+    /// Tells of a turn.
+    fn tell<P: Plan>(
+        &mut self,
+        machine: &Machine<P>,
+        turn: &Turn<P::Input>,
+        number: u64,
+        t: Nanos,
+        transitions: &[Transition],
+    ) -> io::Result<()> {
+        let plan = machine.plan();
+        self.report.turn(plan, t, transitions);
+        let Some(log) = self.log.as_mut() else { return Ok(()) };
+        let applied = match turn {
+            Turn::Law(_) => machine.atom(),
+            Turn::Cut | Turn::Over => None,
+        };
+        log.turn(&Entry { plan, turn: number, t, state: machine.state(), applied, transitions })
+    }
+}
+
+/// The transitions of a turn. The plan, which has their texts, is not at hand while they are made.
+#[derive(Debug, Default)]
+struct Seen(Vec<Transition>);
+
+impl Watch for Seen {
+    fn transition(&mut self, transition: Transition) {
+        self.0.push(transition);
+    }
+}
