@@ -1,1 +1,32 @@
-//! Placeholder.
+//! The paper's quarks (section IV-A), for any robot whose output has what they need.
+//!
+//! Each quark is a type that holds its arguments, in the order of `alphabet.mdle`, and asks for the capabilities that
+//! the alphabet names. `wait` is no type here: time is the machine's business.
+//!
+//! No allocation, no unsafe code, no path that panics; trigonometry from `libm`, so a law computes the same bits on
+//! every machine.
+#![no_std]
+#![forbid(unsafe_code)]
+#![deny(clippy::indexing_slicing)]
+
+mod align;
+mod at_isection;
+mod bumper;
+mod go;
+mod go_avoid;
+mod heading;
+mod rotate;
+mod stop;
+mod tangent;
+#[cfg(test)]
+mod trial;
+mod turn;
+
+pub use align::{Align, Aligning};
+pub use at_isection::AtIsection;
+pub use bumper::Bumper;
+pub use go::Go;
+pub use go_avoid::{GoAvoid, GoingRound};
+pub use rotate::{Rotate, Rotating};
+pub use stop::Stop;
+pub use turn::{Turn, Turning};

@@ -1,0 +1,155 @@
+//! `goAvoid ψ r v`: drives to a point given by bearing and range, round obstacles (paper, section IV-A).
+
+use mdle_runtime::capability::{DiffDrive, Odometry, SonarRing};
+use mdle_runtime::{
+    Begin, Completes, Control, Law, Meters, MetersPerSecond, Nanos, Pose, Radians, RadiansPerSecond, Twist,
+};
+
+use crate::tangent::{Obstacles, Side, Wish};
+
+/// Nearer than this the goal is reached.
+const ARRIVED: Meters = Meters(0.12);
+/// How far ahead the way should be free. Further, and the robot turns off into a side way before `atIsection` has
+/// confirmed it.
+const LOOK_AHEAD: Meters = Meters(0.4);
+/// In turn rate for each radian off the direction chosen.
+const GAIN: f64 = 2.0;
+/// The fastest turn, in rad/s.
+const FASTEST: f64 = 0.9;
+/// This far off the direction chosen the robot turns on the spot.
+const ON_THE_SPOT: Radians = Radians::from_degrees(50.0);
+/// A detour further than this from the goal's direction is kept up.
+const DETOUR: Radians = Radians::from_degrees(60.0);
+/// A detour is over only when it has brought the robot nearer to the goal by this much...
+const GAINED: Meters = Meters(0.1);
+/// ... and has lasted this long.
+const DETOUR_LEAST: Nanos = Nanos(1_000_000_000);
+
+/// Towards the point at a bearing and range from where the atom begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GoAvoid {
+    bearing: Radians,
+    range: Meters,
+    speed: MetersPerSecond,
+}
+
+impl GoAvoid {
+    /// The quark `goAvoid bearing range speed`: the bearing in the frame in which the atom begins, the range from
+    /// where the robot then is, the speed where the way is free.
+    #[must_use]
+    pub const fn new(bearing: Radians, range: Meters, speed: MetersPerSecond) -> Self {
+        Self { bearing, range, speed }
+    }
+}
+
+/// The law of [`GoAvoid`]: done within 0.12 m of the goal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GoingRound {
+    goal: Pose,
+    speed: MetersPerSecond,
+    previous: Option<Radians>,
+    detour: Option<Detour>,
+}
+
+/// A way round something that leads far off the goal's direction: kept on one side until it has helped, or the robot
+/// would turn to and fro in front of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Detour {
+    side: Side,
+    /// How far the goal was when it began.
+    from: Meters,
+    since: Nanos,
+}
+
+impl GoingRound {
+    /// The direction to drive in, in the odometry's axes.
+    fn choose(&mut self, obstacles: &Obstacles, here: Pose, t: Nanos) -> Radians {
+        let Meters(distance) = here.distance(&self.goal);
+        let goal = Radians(libm::atan2(self.goal.y.0 - here.y.0, self.goal.x.0 - here.x.0));
+        let look_ahead = Meters(LOOK_AHEAD.0.min(distance).max(ARRIVED.0));
+        let over = |detour: Detour| {
+            distance < detour.from.0 - GAINED.0
+                && obstacles.free(goal) >= look_ahead
+                && t.since(detour.since) > DETOUR_LEAST
+        };
+        self.detour = self.detour.filter(|detour| !over(*detour));
+        let side = self.detour.map(|detour| detour.side);
+        let offset = obstacles.best(&Wish { goal, look_ahead, previous: self.previous, side });
+        if self.detour.is_none() && offset.0.abs() > DETOUR.0 {
+            let side = if offset.0 > 0.0 { Side::Left } else { Side::Right };
+            self.detour = Some(Detour { side, from: Meters(distance), since: t });
+        }
+        let chosen = Radians(goal.0 + offset.0).wrapped();
+        self.previous = Some(chosen);
+        chosen
+    }
+}
+
+impl<Y: DiffDrive + Odometry + SonarRing> Control<Y> for GoAvoid {
+    type Law = GoingRound;
+
+    fn begin(&self, y: &Y, begin: Begin) -> GoingRound {
+        let goal = y.pose().towards(begin.frame.outward(self.bearing), self.range);
+        GoingRound { goal, speed: self.speed, previous: None, detour: None }
+    }
+}
+
+impl<Y: DiffDrive + Odometry + SonarRing> Law<Y> for GoingRound {
+    type Input = Twist;
+
+    fn input(&mut self, y: &Y, t: Nanos) -> Twist {
+        let here = y.pose();
+        let obstacles = Obstacles::seen(y, here);
+        let chosen = self.choose(&obstacles, here, t);
+        let Radians(off) = Radians(chosen.0 - here.theta.0).wrapped();
+        let Meters(ahead) = obstacles.free(here.theta);
+        let Meters(distance) = here.distance(&self.goal);
+        let v = (self.speed.0 * (1.0 - off.abs() / ON_THE_SPOT.0)).min(0.9 * (ahead - 0.03)).min(0.8 * distance + 0.03);
+        let omega = (GAIN * off).clamp(-FASTEST, FASTEST);
+        Twist { v: MetersPerSecond(v.max(0.0)), omega: RadiansPerSecond(omega) }
+    }
+}
+
+impl<Y: DiffDrive + Odometry + SonarRing> Completes<Y> for GoingRound {
+    fn completed(&self, y: &Y, _: Nanos) -> bool {
+        y.pose().distance(&self.goal) <= ARRIVED
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trial::{Sensed, begun, framed, until_completed};
+
+    fn quark(bearing: f64, range: f64) -> GoAvoid {
+        GoAvoid::new(Radians::from_degrees(bearing), Meters(range), MetersPerSecond(0.2))
+    }
+
+    #[test]
+    fn arrives_at_a_point_given_from_where_the_atom_begins() {
+        let mut y = Sensed::heading(30.0);
+        y.pose.x = Meters(5.0);
+        let mut law = quark(90.0, 2.0).begin(&y, framed(180.0));
+        until_completed(&mut law, &mut y);
+        let goal = Pose { x: Meters(5.0), y: Meters(-2.0), theta: Radians(0.0) };
+        assert!(y.pose.distance(&goal) <= ARRIVED, "{:?}", y.pose);
+    }
+
+    #[test]
+    fn a_range_of_nothing_is_done_at_once() {
+        let y = Sensed::default();
+        assert!(quark(90.0, 0.0).begin(&y, begun()).completed(&y, Nanos::ZERO));
+    }
+
+    #[test]
+    fn never_drives_backwards_nor_into_what_is_close_ahead() {
+        let mut y = Sensed::default();
+        for number in 0..16 {
+            y.ping(mdle_runtime::SonarId::new(number), Some(0.02));
+        }
+        let mut law = quark(0.0, 40.0).begin(&y, begun());
+        for turn in 0..50 {
+            assert_eq!(law.input(&y, Nanos(turn * 100_000_000)).v.0, 0.0);
+        }
+    }
+}

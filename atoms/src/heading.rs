@@ -1,0 +1,24 @@
+//! How `rotate` and `turn` bring the heading to where it should be: `u_θ = k(α − θ)` (paper, section IV-A).
+
+use mdle_runtime::capability::{DiffDrive, Odometry};
+use mdle_runtime::{Radians, RadiansPerSecond, Twist};
+
+/// `k`, in turn rate for each radian still to turn.
+const GAIN: f64 = 2.0;
+/// The fastest turn, in rad/s.
+const FASTEST: f64 = 0.8;
+/// How far off is near enough.
+const NEAR: Radians = Radians::from_degrees(2.0);
+/// Below this difference of the wheels' speeds, in m/s, the robot no longer turns.
+const AT_REST: f64 = 0.02;
+
+/// The input that turns on the spot, with `left` still to turn.
+pub(crate) fn turning(left: Radians) -> Twist {
+    Twist { omega: RadiansPerSecond((GAIN * left.0).clamp(-FASTEST, FASTEST)), ..Twist::default() }
+}
+
+/// Whether with `left` still to turn the robot is near enough, and at rest.
+pub(crate) fn turned<Y: DiffDrive + Odometry>(left: Radians, y: &Y) -> bool {
+    let wheels_differ = y.velocity().omega.0 * y.wheel_base().0;
+    left.0.abs() <= NEAR.0 && wheels_differ.abs() < AT_REST
+}

@@ -1,0 +1,222 @@
+//! The tangent rule of `goAvoid`: which of 72 directions leads best to the goal past the obstacles that the sonars see
+//! ("to the edge of the obstacle nearest the desired path", paper, section IV-A).
+
+use mdle_runtime::capability::{DiffDrive, SonarRing};
+use mdle_runtime::{Meters, PINGS_KEPT, Ping, Pose, Radians, SONARS, SonarId};
+
+/// Directions tried all round, 5° apart.
+const DIRECTIONS: i32 = 72;
+/// Pings from further away than this, in metres, are not looked at.
+const SEEN_WITHIN: f64 = 2.0;
+/// The points taken of a ping's arc, from its axis.
+const ARC: [Radians; 3] = [Radians::from_degrees(-8.0), Radians(0.0), Radians::from_degrees(8.0)];
+const POINTS: usize = SONARS * ARC.len();
+/// Kept around the body whatever it costs, in metres.
+const MARGIN: f64 = 0.06;
+/// Kept around the body where there is room, in metres.
+const SOFT_MARGIN: f64 = 0.35;
+/// What a way that lacks free length costs, in radians of detour for the whole look-ahead.
+const BLOCKED_COSTS: f64 = 6.0;
+/// What a way along the hard margin costs, in radians of detour. With 0.6 the robot may drift off the middle of a
+/// hallway so far that at the next junction `atIsection` sees, half turned, the pattern it is to see at the end.
+const CLOSE_COSTS: f64 = 0.9;
+/// What another direction than the one before costs, in radians of detour for each radian.
+const CHANGE_COSTS: f64 = 0.15;
+/// Free way is not counted beyond this, in metres.
+const FREE_MOST: f64 = 3.0;
+/// How far back and ahead of the robot, in metres, points count as beside its way.
+const BESIDE: (f64, f64) = (-0.05, 0.9);
+
+/// Where a sonar heard something, from the centre of the body, in the odometry's axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Point {
+    x: f64,
+    y: f64,
+}
+
+/// What the sonars last heard around the robot, and how wide a way it needs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Obstacles {
+    points: [Option<Point>; POINTS],
+    hard: f64,
+    soft: f64,
+}
+
+/// Where a law wants to go.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Wish {
+    /// The direction of the goal.
+    pub(crate) goal: Radians,
+    /// How far ahead the way should be free.
+    pub(crate) look_ahead: Meters,
+    /// The direction chosen in the turn before.
+    pub(crate) previous: Option<Radians>,
+    /// The side of an obstacle to which the law keeps.
+    pub(crate) side: Option<Side>,
+}
+
+/// A side on which to pass.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Side {
+    /// Counter-clockwise of the goal's direction.
+    Left,
+    /// Clockwise of it.
+    Right,
+}
+
+impl Side {
+    /// An angle from the goal's direction, counted round this side only: 0..2π to the left, -2π..0 to the right.
+    fn counted(self, offset: f64) -> f64 {
+        match self {
+            Self::Left if offset < 0.0 => offset + core::f64::consts::TAU,
+            Self::Right if offset > 0.0 => offset - core::f64::consts::TAU,
+            Self::Left | Self::Right => offset,
+        }
+    }
+}
+
+impl Obstacles {
+    /// The points that the sonars of `y` saw, around the body at `here`.
+    pub(crate) fn seen<Y: DiffDrive + SonarRing>(y: &Y, here: Pose) -> Self {
+        let mut points = [None; POINTS];
+        for (number, arc) in (0..).zip(points.chunks_exact_mut(ARC.len())) {
+            let sonar = SonarId::new(number);
+            let Some((ping, range)) = heard(y, sonar) else { continue };
+            for (point, off_axis) in arc.iter_mut().zip(ARC) {
+                *point = Some(echo(&ping, range, sonar, off_axis, y.ring_radius(), here));
+            }
+        }
+        let radius = y.body_radius().0;
+        Self { points, hard: radius + MARGIN, soft: radius + SOFT_MARGIN }
+    }
+
+    /// How far the body, with its margin, can go in this direction before it meets a point; at most 3 m, and negative
+    /// when a point is already inside the margin.
+    pub(crate) fn free(&self, direction: Radians) -> Meters {
+        let mut free = FREE_MOST;
+        for (along, across) in self.along(direction) {
+            if along > 0.0 && across.abs() < self.hard {
+                free = free.min(along - libm::sqrt(self.hard * self.hard - across * across));
+            }
+        }
+        Meters(free)
+    }
+
+    /// The distance of the nearest point beside the way in this direction; infinite without any.
+    fn beside(&self, direction: Radians) -> f64 {
+        let (back, ahead) = BESIDE;
+        let near = self.along(direction).filter(|(along, _)| back < *along && *along < ahead);
+        near.fold(f64::INFINITY, |least, (_, across)| least.min(across.abs()))
+    }
+
+    /// The direction of least cost, as an angle from the goal's direction counted round the side to keep to.
+    pub(crate) fn best(&self, wish: &Wish) -> Radians {
+        let mut best = (f64::INFINITY, 0.0);
+        for step in -DIRECTIONS / 2..DIRECTIONS / 2 {
+            let offset = Radians::from_degrees(f64::from(step) * (360.0 / f64::from(DIRECTIONS))).0;
+            let counted = wish.side.map_or(offset, |side| side.counted(offset));
+            let cost = self.cost(counted, wish);
+            if cost < best.0 {
+                best = (cost, counted);
+            }
+        }
+        Radians(best.1)
+    }
+
+    fn cost(&self, offset: f64, wish: &Wish) -> f64 {
+        let direction = Radians(wish.goal.0 + offset);
+        let mut cost = offset.abs();
+        let Meters(look_ahead) = wish.look_ahead;
+        let Meters(free) = self.free(direction);
+        if free < look_ahead {
+            cost += BLOCKED_COSTS * (look_ahead - free) / look_ahead;
+        }
+        let beside = self.beside(direction);
+        if beside < self.soft {
+            cost += CLOSE_COSTS * (self.soft - beside) / (self.soft - self.hard);
+        }
+        if let Some(previous) = wish.previous {
+            // So that two ways that are equally good do not take turns.
+            cost += CHANGE_COSTS * Radians(direction.0 - previous.0).wrapped().0.abs();
+        }
+        cost
+    }
+
+    /// Every point as its distance along a direction and its distance to the left of it.
+    fn along(&self, direction: Radians) -> impl Iterator<Item = (f64, f64)> {
+        let (sin, cos) = libm::sincos(direction.0);
+        self.points.iter().flatten().map(move |point| (point.x * cos + point.y * sin, point.y * cos - point.x * sin))
+    }
+}
+
+/// The newest ping of a sonar, or the one before if that heard nothing, when it is near enough to matter.
+fn heard<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<(Ping, Meters)> {
+    const { assert!(PINGS_KEPT >= 2) };
+    let (ping, range) = y.pings(sonar).newest_first().take(2).find_map(|ping| Some((*ping, ping.range?)))?;
+    (range.0 < SEEN_WITHIN).then_some((ping, range))
+}
+
+/// A point of a ping's arc, seen from `here`: the arc lies around the transducer, where that was at the time.
+fn echo(ping: &Ping, range: Meters, sonar: SonarId, off_axis: Radians, ring: Meters, here: Pose) -> Point {
+    let axis = Radians(ping.pose.theta.0 + sonar.bearing().0);
+    let point = ping.pose.towards(axis, ring).towards(Radians(axis.0 + off_axis.0), range);
+    Point { x: point.x.0 - here.x.0, y: point.y.0 - here.y.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trial::Sensed;
+
+    fn wish(side: Option<Side>) -> Wish {
+        Wish { goal: Radians(0.0), look_ahead: Meters(0.4), previous: None, side }
+    }
+
+    #[test]
+    fn straight_to_the_goal_where_nothing_is_near() {
+        let mut y = Sensed::default();
+        y.ping(SonarId::new(0), Some(2.1));
+        let obstacles = Obstacles::seen(&y, y.pose);
+        assert_eq!(obstacles.free(Radians(0.0)), Meters(FREE_MOST));
+        assert_eq!(obstacles.best(&wish(None)), Radians(0.0));
+    }
+
+    #[test]
+    fn free_way_ends_where_the_body_with_its_margin_touches() {
+        let mut y = Sensed::default();
+        y.ping(SonarId::new(0), Some(1.0));
+        // The point on the axis is 1.19 m from the centre, the margin 0.265 m around it.
+        let free = Obstacles::seen(&y, y.pose).free(Radians(0.0));
+        assert!((free.0 - 0.925).abs() < 1e-12, "{free:?}");
+    }
+
+    #[test]
+    fn turns_aside_to_the_side_it_keeps_to() {
+        let mut y = Sensed::default();
+        y.ping(SonarId::new(0), Some(0.2));
+        let obstacles = Obstacles::seen(&y, y.pose);
+        let left = obstacles.best(&wish(Some(Side::Left)));
+        let right = obstacles.best(&wish(Some(Side::Right)));
+        assert!(left.0 > 0.5 && left.0 < 2.0, "{left:?}");
+        assert!((left.0 + right.0).abs() < 1e-12, "{right:?}");
+    }
+
+    #[test]
+    fn a_point_stays_where_it_was_heard() {
+        let mut y = Sensed::default();
+        y.ping(SonarId::new(0), Some(1.0));
+        y.pose = Pose { x: Meters(0.5), y: Meters(0.0), theta: Radians(1.0) };
+        let free = Obstacles::seen(&y, y.pose).free(Radians(0.0));
+        assert!((free.0 - 0.425).abs() < 1e-12, "{free:?}");
+    }
+
+    #[test]
+    fn the_ping_before_counts_when_the_newest_heard_nothing() {
+        let mut y = Sensed::default();
+        y.ping(SonarId::new(0), Some(1.0));
+        y.ping(SonarId::new(0), None);
+        assert!(Obstacles::seen(&y, y.pose).free(Radians(0.0)).0 < 1.0);
+        y.ping(SonarId::new(0), None);
+        assert_eq!(Obstacles::seen(&y, y.pose).free(Radians(0.0)), Meters(FREE_MOST));
+    }
+}

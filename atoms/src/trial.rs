@@ -1,0 +1,130 @@
+//! A robot's output made up by hand, for trying quarks on.
+
+use core::f64::consts::PI;
+
+use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, SonarRing};
+use mdle_runtime::{
+    Begin, Completes, Frame, Law, Meters, Nanos, Output, Ping, Pings, Pose, Radians, SONARS, SonarId, Twist,
+};
+
+/// The period of a turn in these trials, in seconds.
+pub(crate) const PERIOD: f64 = 0.1;
+
+/// What a robot with every capability might sense.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Sensed {
+    pub(crate) pose: Pose,
+    pub(crate) velocity: Twist,
+    pub(crate) pressed: bool,
+    pub(crate) pings: [Pings; SONARS],
+    pub(crate) confirmation: usize,
+}
+
+impl Default for Sensed {
+    fn default() -> Self {
+        Self {
+            pose: Pose::ORIGIN,
+            velocity: Twist::default(),
+            pressed: false,
+            pings: [Pings::default(); SONARS],
+            confirmation: 3,
+        }
+    }
+}
+
+impl Sensed {
+    /// At the origin, at rest, with this heading in degrees.
+    pub(crate) fn heading(degrees: f64) -> Self {
+        Self { pose: Pose { theta: Radians::from_degrees(degrees), ..Pose::ORIGIN }, ..Self::default() }
+    }
+
+    /// Takes in a ping, made where the robot is.
+    pub(crate) fn ping(&mut self, sonar: SonarId, range: Option<f64>) {
+        let ping = Ping { range: range.map(Meters), at: Nanos::ZERO, pose: self.pose };
+        self.pings.get_mut(sonar.number()).expect("one of the sixteen").push(ping);
+    }
+
+    /// One period of an ideal drive.
+    pub(crate) fn drive(&mut self, input: Twist) {
+        let theta = self.pose.theta.0;
+        self.pose.x.0 += input.v.0 * PERIOD * libm::cos(theta);
+        self.pose.y.0 += input.v.0 * PERIOD * libm::sin(theta);
+        self.pose.theta.0 += input.omega.0 * PERIOD;
+        self.velocity = input;
+    }
+}
+
+impl Output for Sensed {
+    fn here(&self) -> Pose {
+        self.pose
+    }
+}
+
+impl Odometry for Sensed {
+    fn pose(&self) -> Pose {
+        self.pose
+    }
+
+    fn velocity(&self) -> Twist {
+        self.velocity
+    }
+}
+
+impl Bumpers for Sensed {
+    fn pressed(&self) -> bool {
+        self.pressed
+    }
+}
+
+impl DiffDrive for Sensed {
+    fn body_radius(&self) -> Meters {
+        Meters(0.205)
+    }
+
+    fn wheel_base(&self) -> Meters {
+        Meters(0.345)
+    }
+}
+
+impl SonarRing for Sensed {
+    fn pings(&self, sonar: SonarId) -> &Pings {
+        self.pings.get(sonar.number()).expect("one of the sixteen")
+    }
+
+    fn ring_radius(&self) -> Meters {
+        Meters(0.19)
+    }
+
+    fn confirmation(&self) -> usize {
+        self.confirmation
+    }
+}
+
+/// An atom that begins at time 0 in the odometry's own axes.
+pub(crate) fn begun() -> Begin {
+    framed(0.0)
+}
+
+/// An atom that begins at time 0 in a frame turned by this many degrees.
+pub(crate) fn framed(degrees: f64) -> Begin {
+    Begin { now: Nanos::ZERO, frame: Frame::default().turned(Radians::from_degrees(degrees)) }
+}
+
+/// Runs a law until it is done; how far the robot turned, in degrees, full circles counted.
+pub(crate) fn until_completed<L>(law: &mut L, y: &mut Sensed) -> f64
+where
+    L: Completes<Sensed> + Law<Sensed, Input = Twist>,
+{
+    let mut turned = 0.0;
+    for _ in 0..1000 {
+        if law.completed(y, Nanos::ZERO) {
+            return turned * (180.0 / PI);
+        }
+        let input = law.input(y, Nanos::ZERO);
+        turned += input.omega.0 * PERIOD;
+        y.drive(input);
+        // As odometry reports it.
+        y.pose.theta = y.pose.theta.wrapped();
+    }
+    panic!("not done after 1000 turns");
+}

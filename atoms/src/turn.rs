@@ -1,0 +1,88 @@
+//! `turn α`: turns by an angle from the heading at which it begins; ours, next to the paper's `rotate` (section IV-A).
+
+use mdle_runtime::capability::{DiffDrive, Odometry};
+use mdle_runtime::{Begin, Completes, Control, Law, Nanos, Radians, Twist};
+
+use crate::heading::{turned, turning};
+
+/// `u_θ = k(α − what was turned so far)`, `u_f = 0`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Turn {
+    angle: Radians,
+}
+
+impl Turn {
+    /// The quark `turn angle`: counter-clockwise positive, also by more than a full circle.
+    #[must_use]
+    pub const fn new(angle: Radians) -> Self {
+        Self { angle }
+    }
+}
+
+/// The law of [`Turn`]: done within 2° of the angle and at rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Turning {
+    angle: Radians,
+    /// What was turned up to `last`. Counted, because a heading does not tell 270° from -90°.
+    so_far: Radians,
+    /// The heading of the last turn.
+    last: Radians,
+}
+
+impl Turning {
+    /// What was turned since the atom began.
+    fn so_far<Y: Odometry>(&self, y: &Y) -> Radians {
+        Radians(self.so_far.0 + Radians(y.pose().theta.0 - self.last.0).wrapped().0)
+    }
+
+    /// What is left to turn.
+    fn left<Y: Odometry>(&self, y: &Y) -> Radians {
+        Radians(self.angle.0 - self.so_far(y).0)
+    }
+}
+
+impl<Y: DiffDrive + Odometry> Control<Y> for Turn {
+    type Law = Turning;
+
+    fn begin(&self, y: &Y, _: Begin) -> Turning {
+        Turning { angle: self.angle, so_far: Radians(0.0), last: y.pose().theta }
+    }
+}
+
+impl<Y: DiffDrive + Odometry> Law<Y> for Turning {
+    type Input = Twist;
+
+    fn input(&mut self, y: &Y, _: Nanos) -> Twist {
+        self.so_far = self.so_far(y);
+        self.last = y.pose().theta;
+        turning(self.left(y))
+    }
+}
+
+impl<Y: DiffDrive + Odometry> Completes<Y> for Turning {
+    fn completed(&self, y: &Y, _: Nanos) -> bool {
+        turned(self.left(y), y)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trial::{Sensed, begun, framed, until_completed};
+
+    #[test]
+    fn turns_by_its_angle_whatever_the_heading_and_the_frame() {
+        for angle in [30.0, -90.0, 180.0, 270.0, -450.0] {
+            let mut y = Sensed::heading(100.0);
+            let mut law = Turn::new(Radians::from_degrees(angle)).begin(&y, framed(77.0));
+            let turned = until_completed(&mut law, &mut y);
+            assert!((turned - angle).abs() <= 2.0, "{angle}: {turned}");
+        }
+    }
+
+    #[test]
+    fn nothing_to_turn_is_done_at_once() {
+        let y = Sensed::heading(100.0);
+        assert!(Turn::new(Radians(0.0)).begin(&y, begun()).completed(&y, Nanos(0)));
+    }
+}

@@ -1,0 +1,130 @@
+//! Where the robot starts: read from `x,y,deg`, and checked against the world.
+
+use std::fmt;
+use std::str::FromStr;
+
+use mdle_runtime::{Meters, Pose, Radians};
+
+use crate::body::RADIUS;
+use crate::walls::{self, Walls};
+use crate::world::{Place, World};
+
+/// Directions in which a closed floor must have a wall.
+const LOOKS: u16 = 180;
+/// How far it is looked, in metres: across any world.
+const SIGHT: f64 = 1e7;
+
+/// A start pose as an option gives it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Start(pub Pose);
+
+/// Why a robot cannot start there.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum StartError {
+    /// The text is not `x,y,deg`.
+    Malformed,
+    /// The body would overlap this wall or box.
+    Overlaps(String),
+    /// The centre is inside this box.
+    Inside(String),
+    /// No walls are around it, though the world's own start pose has them.
+    OffTheFloor,
+}
+
+impl fmt::Display for StartError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Malformed => {
+                write!(f, "expected x,y,heading: three numbers in metres and degrees, as in `0.1,-0.05,90`")
+            }
+            Self::Overlaps(name) => write!(f, "the robot, {RADIUS} m around its centre, would stand in {name:?}"),
+            Self::Inside(name) => write!(f, "the robot would stand inside {name:?}"),
+            Self::OffTheFloor => write!(f, "that is off the floor"),
+        }
+    }
+}
+
+impl std::error::Error for StartError {}
+
+impl FromStr for Start {
+    type Err = StartError;
+
+    fn from_str(text: &str) -> Result<Self, StartError> {
+        let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
+        match numbers.as_deref() {
+            Ok([x, y, degrees]) if [x, y, degrees].iter().all(|number| number.is_finite()) => {
+                let theta = Radians::from_degrees(*degrees).wrapped();
+                Ok(Self(Pose { x: Meters(*x), y: Meters(*y), theta }))
+            }
+            Ok(_) | Err(_) => Err(StartError::Malformed),
+        }
+    }
+}
+
+/// Whether a robot can start at `pose` in `world`.
+pub(crate) fn check(pose: &Pose, world: &World, walls: &Walls) -> Result<(), StartError> {
+    let place = Place::of(pose);
+    if let Some(outline) = world.outlines.iter().find(|outline| outline.holds(place)) {
+        return Err(StartError::Inside(outline.name.clone()));
+    }
+    if walls.distance(place) < RADIUS {
+        let name = walls::nearest(world, place).map(|outline| outline.name.clone());
+        return Err(StartError::Overlaps(name.unwrap_or_default()));
+    }
+    // A world whose walls do not close has no outside.
+    if encloses(walls, Place::of(&world.start)) && !encloses(walls, place) {
+        return Err(StartError::OffTheFloor);
+    }
+    Ok(())
+}
+
+/// Whether there is a wall in every direction.
+fn encloses(walls: &Walls, place: Place) -> bool {
+    (0..LOOKS).all(|look| {
+        let direction = Radians::from_degrees(f64::from(look) * (360.0 / f64::from(LOOKS)));
+        walls.ray(place, direction, SIGHT).is_some()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn three_numbers_and_nothing_else() {
+        let Ok(Start(pose)) = "-1.5, 2,90".parse() else { panic!("a good start") };
+        assert_eq!((pose.x, pose.y), (Meters(-1.5), Meters(2.0)));
+        assert!((pose.theta.degrees() - 90.0).abs() < 1e-9);
+        for text in
+            ["", "1", "1,2", "1,2,3,4", "a,b,c", "1;2;3", "nan,0,0", "0,inf,0", "0,0,1e999", "1,2,90deg", "1,,2"]
+        {
+            assert_eq!(text.parse::<Start>(), Err(StartError::Malformed), "{text}");
+        }
+    }
+
+    /// What becomes of a start on the office floor.
+    fn office(x: f64, y: f64) -> Result<(), StartError> {
+        let world = World::office().expect("our own floor");
+        check(&Pose { x: Meters(x), y: Meters(y), theta: Radians(0.0) }, &world, &Walls::of(&world))
+    }
+
+    #[test]
+    fn a_start_must_be_on_the_floor_and_clear_of_walls() {
+        for (x, y) in [(0.0, 0.0), (3.0, 0.0), (7.5, 7.7), (11.5, -2.0), (0.75, 0.0)] {
+            assert_eq!(office(x, y), Ok(()), "{x} {y}");
+        }
+        assert_eq!(office(-0.6, 2.0), Err(StartError::Overlaps("A west".into())));
+        assert_eq!(office(3.65, 4.25), Err(StartError::Inside("obstacle".into())));
+        assert_eq!(office(3.65, 4.55), Err(StartError::Overlaps("obstacle".into())));
+        for (x, y) in [(-3.0, 0.0), (11.5, 5.0), (100.0, 100.0), (3.0, 7.0)] {
+            assert_eq!(office(x, y), Err(StartError::OffTheFloor), "{x} {y}");
+        }
+    }
+
+    #[test]
+    fn walls_that_do_not_close_have_no_outside() {
+        let world = World::parse("one wall", "[[wall]]\npoints = [[0, 1], [5, 1]]").expect("a good world");
+        let far = Pose { x: Meters(-50.0), ..Pose::ORIGIN };
+        assert_eq!(check(&far, &world, &Walls::of(&world)), Ok(()));
+    }
+}

@@ -1,0 +1,216 @@
+//! The paper's tour from lab 2 over lab 1 to the office, on the floor made for it (paper, section V, Fig. 10).
+#![allow(clippy::expect_used, clippy::print_stdout, reason = "a test fails by panicking, and tells how many arrived")]
+
+mod plan;
+
+use std::fmt::Write;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use mdle_host::clap::Command;
+use mdle_host::{Hosted, Target};
+use mdle_runtime::{Cause, Machine, Meters, Nanos, Plan, Pose, Radians, Robot, Transition, Turn, Twist, Watch};
+use mdle_sim::{Sim, Simulated, World};
+use plan::Tour;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+const PERIOD: Duration = Duration::from_millis(100);
+/// Given up after this many turns: ten minutes.
+const TURNS: u64 = 6000;
+
+/// An atom that ended.
+struct End {
+    atom: u64,
+    at: f64,
+    by: String,
+    pose: Pose,
+}
+
+impl End {
+    /// Its heading in degrees, 0..360.
+    fn heading(&self) -> f64 {
+        self.pose.theta.degrees().rem_euclid(360.0)
+    }
+
+    /// How far its heading is from this one, in degrees.
+    fn off(&self, heading: f64) -> f64 {
+        Radians::from_degrees(self.heading() - heading).wrapped().degrees().abs()
+    }
+}
+
+#[derive(Default)]
+struct Watched(Vec<Transition>);
+
+impl Watch for Watched {
+    fn transition(&mut self, transition: Transition) {
+        self.0.push(transition);
+    }
+}
+
+/// Runs the tour; how each atom ended.
+fn run(robot: &mut Simulated) -> Vec<End> {
+    let mut input = Twist::default();
+    let mut machine = None;
+    let mut ends = Vec::new();
+    for turn in 0..TURNS {
+        let y = robot.exchange(&input).expect("finite inputs");
+        let t = Nanos(turn * 100_000_000);
+        let machine = machine.get_or_insert_with(|| Machine::begin(Tour::new(), &y, t));
+        let mut watched = Watched::default();
+        let step = machine.turn(&y, t, &mut watched);
+        if let Some(atom) = machine.atom().filter(|_| turn == 0 || !watched.0.is_empty()) {
+            robot.began(machine.state(), machine.plan().law(atom), t);
+        }
+        for Transition { from, scope, cause, .. } in watched.0 {
+            let by = match cause {
+                Cause::Fired(_) => machine.plan().condition(scope).to_owned(),
+                Cause::Completed(_) => "completed".to_owned(),
+            };
+            ends.push(End { atom: from, at: t.seconds(), by, pose: robot.pose() });
+        }
+        let over = matches!(step, Turn::Over);
+        input = step.input();
+        if over {
+            break;
+        }
+    }
+    robot.exchange(&Twist::default()).expect("finite inputs");
+    robot.stop().expect("a simulated stop");
+    robot.finish().expect("the plot is written");
+    ends
+}
+
+fn tour(start: Pose, seed: Option<u64>) -> Vec<End> {
+    let world = World::office().expect("our own floor");
+    run(&mut Simulated::new(&world, start, seed, PERIOD).expect("a start on the floor"))
+}
+
+/// The robot that an executable with these options drives.
+fn connected(options: &[&str]) -> Simulated {
+    let matches = Sim::arguments(Command::new("tour").no_binary_name(true)).get_matches_from(options);
+    Sim::connect(&matches, PERIOD).expect("good options")
+}
+
+fn table(ends: &[End]) -> String {
+    ends.iter().fold(String::new(), |mut table, end| {
+        let End { atom, at, by, pose } = end;
+        let (x, y, heading) = (pose.x.0, pose.y.0, end.heading());
+        writeln!(table, "{atom:>2}  {at:>5.1} s  {by:<15}  {x:>5.2}  {y:>5.2}  {heading:>3.0}").expect("a string");
+        table
+    })
+}
+
+/// Where the judge wants the robot when an atom ends.
+struct Zone {
+    x: [f64; 2],
+    y: [f64; 2],
+    /// A heading and how far it may be off, in degrees.
+    heading: Option<[f64; 2]>,
+}
+
+/// The zone of an atom; none for those that are not judged.
+fn zone(atom: u64) -> Option<Zone> {
+    let (a_b, b_c) = (([-0.9, 0.9], [4.0, 5.5]), ([6.7, 8.3], [3.9, 5.6]));
+    let (lab_1, corner) = (([6.7, 8.3], [-0.2, 0.8]), ([6.7, 8.3], [-0.9, 0.25]));
+    let office_door = ([11.05, 11.95], [-0.9, 0.9]);
+    let ((x, y), heading) = match atom {
+        1 => (a_b, None),
+        2 => (a_b, Some([0.0, 35.0])),
+        4 => (b_c, None),
+        5 => (b_c, Some([270.0, 35.0])),
+        8 => (lab_1, None),
+        9 => (corner, None),
+        10 => (corner, Some([0.0, 35.0])),
+        12 => (office_door, None),
+        13 => (office_door, Some([270.0, 15.0])),
+        _ => return None,
+    };
+    Some(Zone { x, y, heading })
+}
+
+/// What is wrong with a tour; nothing if every atom ended in its zone.
+fn faults(ends: &[End]) -> Vec<String> {
+    let mut faults = Vec::new();
+    if ends.iter().map(|end| end.atom).ne(1..=13) {
+        faults.push(format!("the atoms that ended are {:?}", ends.iter().map(|end| end.atom).collect::<Vec<_>>()));
+    }
+    for end in ends {
+        let Some(zone) = zone(end.atom) else { continue };
+        let (x, y) = (end.pose.x.0, end.pose.y.0);
+        let within = |[least, most]: [f64; 2], value| (least..=most).contains(&value);
+        let on_course = zone.heading.is_none_or(|[heading, allowed]| end.off(heading) <= allowed);
+        if !within(zone.x, x) || !within(zone.y, y) || !on_course {
+            faults.push(format!("atom {} ended at ({x:.2}, {y:.2}), heading {:.0}", end.atom, end.heading()));
+        }
+    }
+    faults
+}
+
+/// A start off the ideal one by up to 10 cm and 5 degrees.
+fn off(seed: u64) -> Pose {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut within = |most: f64| most * ((random.next_u64() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0);
+    Pose { x: Meters(within(0.1)), y: Meters(within(0.1)), theta: Radians::from_degrees(within(5.0)) }
+}
+
+/// How many of these tours arrive; tells of the others.
+fn arrived(seeds: std::ops::Range<u64>, noisy: bool) -> usize {
+    let count = seeds.clone().count();
+    let arrived = seeds.filter(|seed| {
+        let faults = faults(&tour(off(*seed), noisy.then_some(*seed)));
+        if !faults.is_empty() {
+            println!("start {seed}, noise {noisy}: {faults:?}");
+        }
+        faults.is_empty()
+    });
+    let arrived = arrived.count();
+    println!("{arrived} of {count} arrived, noise {noisy}");
+    arrived
+}
+
+#[test]
+fn every_atom_ends_in_its_zone_by_its_cause() {
+    let ends = tour(Pose::ORIGIN, None);
+    assert_eq!(faults(&ends), Vec::<String>::new());
+    insta::assert_snapshot!(table(&ends), @"
+     1   23.2 s  atIsection 0100   0.04   4.29   90
+     2   36.8 s  atIsection 0010   0.04   4.31    1
+     3   36.8 s  completed         0.04   4.31    1
+     4   73.8 s  atIsection 1000   7.01   4.73  359
+     5   87.5 s  atIsection 0100   7.03   4.73  272
+     6   87.5 s  completed         7.03   4.73  272
+     7   94.5 s  wait 7            7.41   3.53  275
+     8  110.2 s  atIsection 1000   7.45   0.43  270
+     9  112.7 s  atIsection 1001   7.45  -0.05  269
+    10  117.1 s  atIsection 0011   7.45  -0.06  357
+    11  117.1 s  completed         7.45  -0.06  357
+    12  136.4 s  atIsection 0100  11.25  -0.05    0
+    13  139.5 s  completed        11.28  -0.05  271
+    ");
+}
+
+#[test]
+fn a_start_that_is_a_little_off_arrives_too() {
+    assert_eq!(arrived(0..20, false), 20);
+}
+
+#[test]
+fn noisy_sonars_arrive_too() {
+    assert_eq!(arrived(0..3, true), 3);
+}
+
+#[test]
+fn the_same_options_draw_the_same_bytes() {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
+    let plots = ["one.svg", "other.svg"].map(|name| {
+        let path = folder.join(name);
+        let shown = path.to_str().expect("a target folder in UTF-8");
+        assert_eq!(run(&mut connected(&["--plot", shown, "--start=0.02,-0.03,2", "--seed", "7"])).len(), 13);
+        std::fs::read_to_string(&path).expect("the plot was written")
+    });
+    assert_eq!(plots[0], plots[1]);
+    for text in ["goAvoid 90 40 20", "rotate 90", "x in m"] {
+        assert!(plots[0].contains(text), "{text}");
+    }
+}

@@ -1,0 +1,95 @@
+//! The options of the target: what they mean, and how a bad one is refused before anything moves.
+#![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::path::PathBuf;
+
+use mdle_host::clap::{ArgMatches, Command};
+use mdle_host::{Pace, Refusal, Target, Time};
+use mdle_runtime::{Robot, Twist};
+use mdle_sim::Sim;
+
+fn matches(options: &[&str]) -> ArgMatches {
+    Sim::arguments(Command::new("plan").no_binary_name(true)).try_get_matches_from(options).expect("known options")
+}
+
+/// The sentence with which these options are refused.
+fn refused(options: &[&str]) -> String {
+    match Sim::connect(&matches(options), Sim::PERIOD) {
+        Ok(_) => panic!("{options:?} were accepted"),
+        Err(Refusal::Usage(sentence)) => sentence,
+        Err(Refusal::Fault(sentence)) => panic!("a fault: {sentence}"),
+    }
+}
+
+/// A folder of this test's own, empty.
+fn folder(name: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder of our own");
+    folder
+}
+
+#[test]
+fn speed_is_real_unless_told_otherwise() {
+    let speed = |options: &[&str]| Sim::time(&matches(options));
+    assert_eq!(speed(&[]), Ok(Time::Stepped(Pace::Times(1.0))));
+    assert_eq!(speed(&["--speed", "real"]), Ok(Time::Stepped(Pace::Times(1.0))));
+    assert_eq!(speed(&["--speed", "max"]), Ok(Time::Stepped(Pace::Max)));
+    assert_eq!(speed(&["--speed", "2.5"]), Ok(Time::Stepped(Pace::Times(2.5))));
+    for nonsense in ["0", "-1", "nan", "inf", "fast", "", "MAX", "1e999"] {
+        let sentence = speed(&["--speed", nonsense]).expect_err(nonsense);
+        assert!(sentence.contains("as in `--speed 10`"), "{sentence}");
+    }
+}
+
+#[test]
+fn bad_starts_are_refused_with_a_hint() {
+    let sentences = ["1,2", "-0.6,2,0", "3.65,4.25,0", "11.5,5,0"].map(|start| refused(&["--start", start]));
+    insta::assert_snapshot!(sentences.join("\n"), @r#"
+    --start 1,2: expected x,y,heading: three numbers in metres and degrees, as in `0.1,-0.05,90`
+    --start -0.6,2,0: the robot, 0.205 m around its centre, would stand in "A west"; the world's own start is `--start 0,0,0`
+    --start 3.65,4.25,0: the robot would stand inside "obstacle"; the world's own start is `--start 0,0,0`
+    --start 11.5,5,0: that is off the floor; the world's own start is `--start 0,0,0`
+    "#);
+}
+
+#[test]
+fn bad_worlds_are_refused() {
+    let folder = folder("worlds");
+    let world = |name: &str, bytes: &[u8]| {
+        let path = folder.join(name);
+        fs::write(&path, bytes).expect("a file of our own");
+        refused(&["--world", path.to_str().expect("UTF-8")])
+    };
+    assert!(world("typo.toml", b"[[wall]]\npoinst = 3").contains("typo.toml:2:1: unknown field `poinst`"));
+    assert!(world("bytes.toml", b"\xff\xfe").ends_with("bytes.toml: the file is not UTF-8 text"));
+    assert!(world("boxed.toml", b"[[box]]\nmin = [-1, -1]\nmax = [1, 1]").contains("inside \"box 1\""));
+    let missing = refused(&["--world", folder.join("missing.toml").to_str().expect("UTF-8")]);
+    assert!(missing.contains("cannot be read") && missing.contains("without --world"), "{missing}");
+    assert!(refused(&["--world", folder.to_str().expect("UTF-8")]).contains("cannot be read"));
+}
+
+#[test]
+fn a_plot_that_could_not_be_written_is_refused_and_leaves_nothing() {
+    let folder = folder("plots");
+    let plot = |path: PathBuf| refused(&["--plot", path.to_str().expect("UTF-8")]);
+    assert!(plot(folder.join("none/plot.svg")).contains("the folder does not exist"));
+    assert!(plot(folder.clone()).contains("that is a folder"));
+    assert!(plot(PathBuf::from("/dev/null")).contains("not a regular file"));
+    fs::write(folder.join("file"), "").expect("a file of our own");
+    assert!(plot(folder.join("file/plot.svg")).contains("nothing can be written there"));
+    let good = folder.join("plot.svg");
+    assert!(Sim::connect(&matches(&["--plot", good.to_str().expect("UTF-8")]), Sim::PERIOD).is_ok());
+    assert!(!good.exists(), "nothing is written before the run is finished");
+    assert_eq!(fs::read_dir(&folder).expect("our folder").count(), 1);
+}
+
+#[test]
+fn an_input_that_is_not_a_number_is_a_fault() {
+    let mut robot = Sim::connect(&matches(&[]), Sim::PERIOD).expect("no bad options");
+    let mut input = Twist::default();
+    input.omega.0 = f64::NAN;
+    let fault = robot.exchange(&input).expect_err("nonsense");
+    assert_eq!(fault.to_string(), "the plan asked for a speed that is not a number");
+}
