@@ -1,1 +1,64 @@
-//! Placeholder.
+//! The compiler of MDLe: text in, Rust out.
+//!
+//! ```text
+//! text ─syntax→ tree ─plan::resolve→ Plan ─plan::remove_degeneracy→ Nondegenerate ─fsm::algorithm1→ Lowered ─rust::emit→ Rust ─link→ executable
+//! ```
+//!
+//! **A stage does no I/O**: only [`cli`] and [`link`] read and write files.
+
+pub mod alphabet;
+#[allow(clippy::disallowed_methods, reason = "the command line reads and writes files")]
+pub mod cli;
+pub mod diagnostic;
+pub mod fsm;
+pub mod link;
+pub mod plan;
+pub mod rust;
+#[cfg(test)]
+mod samples;
+pub mod syntax;
+pub mod trace;
+
+use alphabet::Alphabet;
+use diagnostic::{Diagnostic, SourceId};
+
+/// A plan at each stage.
+#[derive(Debug, Clone)]
+pub struct Compiled {
+    /// With everything resolved, degenerate as it may be.
+    pub plan: plan::Plan,
+    /// Without repeated interrupts.
+    pub nondegenerate: plan::Nondegenerate,
+    /// As a machine.
+    pub lowered: fsm::Lowered,
+}
+
+/// The compiler on one screen: takes the plan called `wanted`, or every plan that no other refers to, from text to
+/// machine; [`rust::emit`] makes a machine Rust. No plan comes out if there is an error.
+#[must_use]
+pub fn compile(
+    source: SourceId,
+    text: &str,
+    alphabet: &Alphabet,
+    wanted: Option<&str>,
+) -> (Vec<Compiled>, Vec<Diagnostic>) {
+    let (tree, mut found) = syntax::parse(source, text);
+    let (plans, names) = plan::resolve(&tree, alphabet, wanted);
+    found.extend(names);
+    let mut compiled = Vec::new();
+    if !diagnostic::has_errors(&found) {
+        for plan in plans {
+            let (nondegenerate, warnings) = plan::remove_degeneracy(plan.clone());
+            found.extend(warnings);
+            match fsm::algorithm1(&nondegenerate) {
+                Ok(lowered) => compiled.push(Compiled { plan, nondegenerate, lowered }),
+                Err(too_large) => found.push(too_large),
+            }
+        }
+    }
+    if diagnostic::has_errors(&found) {
+        compiled.clear();
+    }
+    diagnostic::sort(&mut found);
+    (compiled, found)
+}

@@ -1,6 +1,6 @@
 //! Quarks as code: interrupts, control laws and their completion (paper, Definition 1; semantics, sections 1 and 4).
 
-use crate::{Frame, Nanos};
+use crate::{Frame, Nanos, Radians};
 
 /// An interrupt quark: a condition on the output.
 pub trait Interrupt<Y: ?Sized> {
@@ -15,6 +15,14 @@ pub struct Begin {
     pub now: Nanos,
     /// The frame of the atom, `FRAME`s included.
     pub frame: Frame,
+}
+
+impl Begin {
+    /// The same moment in a frame turned counter-clockwise.
+    #[must_use]
+    pub fn turned(self, by: Radians) -> Self {
+        Self { frame: self.frame.turned(by), ..self }
+    }
 }
 
 /// A control quark with its arguments; an atom that begins makes a [`Law`] of it.

@@ -1,0 +1,127 @@
+//! Packs the sources that executables are built from, so that an installed mdlec needs no checkout: a table for
+//! `link::sources` to include.
+
+use std::error::Error;
+use std::ffi::OsStr;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+
+/// The packages that every plan is built on; the targets come on top.
+const SHARED: [&str; 3] = ["runtime/core", "runtime/host", "atoms"];
+
+/// Folders that no build of an executable reads; a folder with a package of its own is left out as well.
+const LEFT_OUT: [&str; 5] = ["tests", "benches", "examples", "snapshots", "target"];
+
+/// Writes `$OUT_DIR/sources.rs`: the files with their contents, a hash of them all, the targets and the alphabets.
+pub(crate) fn pack() -> Result<(), Box<dyn Error>> {
+    let root = Path::new(&env::var("CARGO_MANIFEST_DIR")?).join("..").canonicalize()?;
+    let out = PathBuf::from(env::var("OUT_DIR")?);
+    let targets = targets(&root)?;
+    let packages: Vec<String> =
+        SHARED.into_iter().map(str::to_owned).chain(targets.iter().map(|name| format!("targets/{name}"))).collect();
+
+    let manifest = out.join("workspace.toml");
+    fs::write(&manifest, workspace(&root, &packages)?)?;
+    let mut files = vec![("Cargo.toml".to_owned(), manifest), ("Cargo.lock".to_owned(), root.join("Cargo.lock"))];
+    for package in &packages {
+        println!("cargo::rerun-if-changed={}", root.join(package).display());
+        collect(&root.join(package), package, &mut files)?;
+    }
+    for watched in ["Cargo.toml", "Cargo.lock", "targets"] {
+        println!("cargo::rerun-if-changed={}", root.join(watched).display());
+    }
+    files.sort();
+    fs::write(out.join("sources.rs"), table(&root, &files, &targets)?)?;
+    Ok(())
+}
+
+/// The folders below `targets` that are packages with an alphabet.
+fn targets(root: &Path) -> Result<Vec<String>, Box<dyn Error>> {
+    let mut targets = Vec::new();
+    for entry in fs::read_dir(root.join("targets"))? {
+        let folder = entry?.path();
+        if folder.join("Cargo.toml").is_file() && folder.join("alphabet.mdle").is_file() {
+            targets.push(text(folder.file_name())?.to_owned());
+        }
+    }
+    targets.sort();
+    Ok(targets)
+}
+
+/// The root manifest, reduced to `packages`.
+fn workspace(root: &Path, packages: &[String]) -> Result<String, Box<dyn Error>> {
+    let mut manifest: toml::Table = fs::read_to_string(root.join("Cargo.toml"))?.parse()?;
+    let workspace = table_in(&mut manifest, "workspace")?;
+    workspace.remove("default-members");
+    workspace.insert("members".to_owned(), packages.to_vec().into());
+    table_in(workspace, "dependencies")?.retain(|_, dependency| {
+        let path = dependency.get("path").and_then(toml::Value::as_str);
+        path.is_none_or(|path| packages.iter().any(|package| package == path))
+    });
+    Ok(toml::to_string(&manifest)?)
+}
+
+/// The table `name` in `table`.
+fn table_in<'a>(table: &'a mut toml::Table, name: &str) -> Result<&'a mut toml::Table, String> {
+    table.get_mut(name).and_then(toml::Value::as_table_mut).ok_or_else(|| format!("Cargo.toml has no table `{name}`"))
+}
+
+/// Adds what is in `folder`, with the names below `name`.
+fn collect(folder: &Path, name: &str, files: &mut Vec<(String, PathBuf)>) -> Result<(), Box<dyn Error>> {
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        let own = text(path.file_name())?;
+        let below = format!("{name}/{own}");
+        if path.is_dir() {
+            if !LEFT_OUT.contains(&own) && !path.join("Cargo.toml").exists() {
+                collect(&path, &below, files)?;
+            }
+        } else if own != "tests.rs" && !own.starts_with('.') && !own.ends_with('~') {
+            files.push((below, path));
+        }
+    }
+    Ok(())
+}
+
+/// The Rust text of the table.
+fn table(root: &Path, files: &[(String, PathBuf)], targets: &[String]) -> Result<String, Box<dyn Error>> {
+    let mut hasher = blake3::Hasher::new();
+    let mut rust = "pub(super) static FILES: &[(&str, &[u8])] = &[\n".to_owned();
+    for (name, path) in files {
+        let contents = fs::read(path)?;
+        // The length keeps a name apart from the contents before it.
+        hasher.update(name.as_bytes()).update(&[0]).update(&contents.len().to_le_bytes()).update(&contents);
+        writeln!(rust, "    ({name:?}, include_bytes!({:?})),", text(Some(path.as_os_str()))?)?;
+    }
+    writeln!(rust, "];\npub(super) const HASH: &str = {:?};", &hasher.finalize().to_hex()[..12])?;
+
+    rust.push_str("pub(super) static TARGETS: &[(&str, &str)] = &[\n");
+    for name in targets {
+        writeln!(rust, "    ({name:?}, {:?}),", package_name(&root.join("targets").join(name))?)?;
+    }
+    rust.push_str("];\npub(super) static ALPHABETS: &[super::Alphabet] = &[\n");
+    let names = targets.iter().map(|name| (name.as_str(), format!("targets/{name}/alphabet.mdle"), true));
+    for (name, file, target) in [("atoms", "atoms/alphabet.mdle".to_owned(), false)].into_iter().chain(names) {
+        let path = root.join(&file);
+        let path = text(Some(path.as_os_str()))?;
+        writeln!(
+            rust,
+            "    super::Alphabet {{ name: {name:?}, file: {file:?}, text: include_str!({path:?}), target: {target} }},"
+        )?;
+    }
+    rust.push_str("];\n");
+    Ok(rust)
+}
+
+/// The name in the manifest of the package in `folder`.
+fn package_name(folder: &Path) -> Result<String, Box<dyn Error>> {
+    let manifest: toml::Table = fs::read_to_string(folder.join("Cargo.toml"))?.parse()?;
+    let name = manifest.get("package").and_then(|package| package.get("name")).and_then(toml::Value::as_str);
+    Ok(name.ok_or_else(|| format!("{} has no package name", folder.display()))?.to_owned())
+}
+
+/// A path or its last part as text.
+fn text(path: Option<&OsStr>) -> Result<&str, String> {
+    path.and_then(OsStr::to_str).ok_or_else(|| format!("{path:?} is not UTF-8"))
+}

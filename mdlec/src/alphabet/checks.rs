@@ -1,0 +1,57 @@
+//! What an alphabet must not say although its grammar lets it.
+
+use std::collections::BTreeSet;
+
+use super::{AlphabetFile, Declaration, DeclarationKind};
+use crate::diagnostic::{Code, Diagnostic};
+
+/// All that is wrong with the declarations.
+pub(super) fn check(alphabet: &AlphabetFile) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    let mut met = BTreeSet::new();
+    for declaration in &alphabet.declarations {
+        let kinds: Vec<_> = declaration.params.iter().map(|param| param.kind).collect();
+        if !met.insert((declaration.name.as_str(), kinds)) {
+            let message = format!("`{}` is declared twice with the same kinds of arguments", declaration.name);
+            found.push(at(declaration, message));
+        }
+        check_params(declaration, &mut found);
+        let is_signal = declaration.kind == DeclarationKind::Signal;
+        if is_signal != declaration.unit.is_some() {
+            let message =
+                if is_signal { "a signal needs `unit … tolerance …`" } else { "only a signal has a tolerance" };
+            found.push(at(declaration, message.into()));
+        }
+        if declaration.completes && declaration.kind != DeclarationKind::Control {
+            found.push(at(declaration, format!("only a law completes, and `{}` is none", declaration.name)));
+        }
+    }
+    found
+}
+
+fn check_params(declaration: &Declaration, found: &mut Vec<Diagnostic>) {
+    let mut names = BTreeSet::new();
+    let mut has_default = false;
+    for param in &declaration.params {
+        let name = &param.name;
+        if !names.insert(name) {
+            found.push(at(declaration, format!("two parameters are called `{name}`")));
+        }
+        if has_default && param.default.is_none() {
+            let message = format!("`{name}` needs a default, because a parameter before it has one");
+            found.push(at(declaration, message));
+        }
+        has_default |= param.default.is_some();
+        let Some((least, most)) = param.range else { continue };
+        let default = param.default.as_ref().and_then(|default| default.parse::<f64>().ok());
+        if least > most {
+            found.push(at(declaration, format!("the range of `{name}` ends before it begins")));
+        } else if default.is_some_and(|default| default < least || default > most) {
+            found.push(at(declaration, format!("the default of `{name}` is out of its range")));
+        }
+    }
+}
+
+fn at(declaration: &Declaration, message: String) -> Diagnostic {
+    Diagnostic::new(Code::E0601, message, declaration.span, "in this declaration")
+}

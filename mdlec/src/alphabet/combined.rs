@@ -1,0 +1,155 @@
+//! A robot's whole alphabet: its target's own file together with the shared ones that it uses.
+
+use std::fmt;
+
+use super::{AlphabetFile, Capability, Declaration, DeclarationKind};
+use crate::diagnostic::{Code, Diagnostic};
+
+/// The alphabet that plans for one robot are checked against.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Alphabet {
+    /// The target's name.
+    pub name: String,
+    /// The Rust crate that implements the target; empty without a target.
+    pub crate_name: String,
+    /// The period of a turn, in nanoseconds, if the target says so.
+    pub period: Option<u64>,
+    /// What the robot can do.
+    pub capabilities: Vec<Capability>,
+    /// Whether the robot can do everything: there is no target.
+    everything: bool,
+    declarations: Vec<Declaration>,
+}
+
+/// Puts a target's alphabet together with those of `shared` that it uses.
+#[must_use]
+pub fn combine(target: AlphabetFile, shared: &[AlphabetFile]) -> (Alphabet, Vec<Diagnostic>) {
+    let mut found = Vec::new();
+    let mut declarations = target.declarations;
+    for (used, span) in &target.uses {
+        let Some(file) = shared.iter().find(|file| file.name == *used) else {
+            let names: Vec<_> = shared.iter().map(|file| file.name.as_str()).collect();
+            let message = format!("there is no shared alphabet `{used}`");
+            let report = Diagnostic::new(Code::E0601, message, *span, "not known");
+            found.push(report.help(format!("the shared alphabets are {}", names.join(", "))));
+            continue;
+        };
+        for declaration in &file.declarations {
+            if !declarations.iter().any(|own| replaces(own, declaration)) {
+                declarations.push(declaration.clone());
+            }
+        }
+    }
+    let head = target.target;
+    let alphabet = Alphabet {
+        name: target.name,
+        crate_name: head.as_ref().map(|head| head.crate_name.clone()).unwrap_or_default(),
+        period: head.as_ref().and_then(|head| head.period),
+        capabilities: head.map(|head| head.capabilities).unwrap_or_default(),
+        everything: false,
+        declarations: in_order(declarations, shared),
+    };
+    (alphabet, found)
+}
+
+impl Alphabet {
+    /// The alphabet of a robot that has everything: a shared file by itself.
+    #[must_use]
+    pub fn shared(file: AlphabetFile) -> Self {
+        Self {
+            name: file.name,
+            crate_name: String::new(),
+            period: None,
+            capabilities: Vec::new(),
+            everything: true,
+            declarations: file.declarations,
+        }
+    }
+
+    /// Its quarks and signals.
+    pub fn declarations(&self) -> impl Iterator<Item = &Declaration> {
+        self.declarations.iter()
+    }
+
+    /// The declarations of this name, in the order in which overloads are counted.
+    pub fn declarations_of(&self, name: &str) -> impl Iterator<Item = &Declaration> {
+        self.declarations.iter().filter(move |declaration| declaration.name == name)
+    }
+
+    /// The names of its quarks and signals; a name that is declared several times comes as often.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.declarations.iter().map(|declaration| declaration.name.as_str())
+    }
+
+    /// Whether the robot can do this, in at least this number.
+    #[must_use]
+    pub fn has(&self, needed: &Capability) -> bool {
+        let enough = |own: &Capability| own.name == needed.name && own.size >= needed.size;
+        self.everything || self.capabilities.iter().any(enough)
+    }
+
+    /// The name that `name` was probably meant to be, of this kind if one is given.
+    #[must_use]
+    pub fn nearest(&self, name: &str, kind: Option<DeclarationKind>) -> Option<&str> {
+        let of_kind = self.declarations.iter().filter(|found| kind.is_none_or(|kind| found.kind == kind));
+        nearest(name, of_kind.map(|declaration| declaration.name.as_str()))
+    }
+
+    /// A hash over the declarations as read, as sixteen hexadecimal digits: what a target was built for.
+    #[must_use]
+    pub fn hash(&self) -> String {
+        let text = format!("{} {} {:?} {:?}", self.name, self.crate_name, self.period, self.capabilities);
+        let mut hasher = blake3::Hasher::new();
+        hasher.update(text.as_bytes());
+        for declaration in &self.declarations {
+            hasher.update(declaration.to_string().as_bytes());
+        }
+        hasher.finalize().to_hex().chars().take(16).collect()
+    }
+}
+
+/// The most similar of these names, if one is similar enough to be meant.
+#[must_use]
+pub fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<&'n str> {
+    let lower = name.to_lowercase();
+    let distance = |other: &str| strsim::damerau_levenshtein(&lower, &other.to_lowercase());
+    let allowed = (name.chars().count() / 3).max(1);
+    names.map(|other| (distance(other), other)).filter(|(found, _)| *found <= allowed).min().map(|(_, other)| other)
+}
+
+/// Whether a target's own declaration stands for a shared one: same name, same kinds of arguments.
+fn replaces(own: &Declaration, shared: &Declaration) -> bool {
+    let kinds = |declaration: &Declaration| -> Vec<_> { declaration.params.iter().map(|param| param.kind).collect() };
+    own.name == shared.name && kinds(own) == kinds(shared)
+}
+
+/// Overloads in the order of the shared alphabets, a target's additions behind: so a name's first declaration stays its
+/// first, whichever of them a target replaces.
+fn in_order(mut declarations: Vec<Declaration>, shared: &[AlphabetFile]) -> Vec<Declaration> {
+    let order: Vec<&Declaration> = shared.iter().flat_map(|file| &file.declarations).collect();
+    let place = |found: &Declaration| order.iter().position(|shared| replaces(found, shared)).unwrap_or(order.len());
+    declarations.sort_by_cached_key(place);
+    declarations
+}
+
+impl fmt::Display for Capability {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.size {
+            Some(size) => write!(f, "{}[{size}]", self.name),
+            None => f.write_str(&self.name),
+        }
+    }
+}
+
+/// The declaration in a canonical form, without its docs and its place: what the hash is over.
+impl fmt::Display for Declaration {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?} {}(", self.kind, self.name)?;
+        for param in &self.params {
+            let unit = param.unit.map(|unit| unit.name);
+            write!(f, "{}: {:?} {unit:?} {:?} {:?}, ", param.name, param.kind, param.default, param.range)?;
+        }
+        let unit = self.unit.map(|(unit, tolerance)| (unit.name, tolerance));
+        write!(f, ") {unit:?} {} {} {:?}", self.completes, self.remembers, self.needs)
+    }
+}

@@ -1,0 +1,146 @@
+//! Kinds of values and their units (language, sections 2 and 6).
+
+/// What kind of value a parameter takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Kind {
+    /// Metres.
+    Length,
+    /// Metres a second.
+    Speed,
+    /// Degrees or radians, which are never converted into each other exactly.
+    Angle,
+    /// Radians or degrees a second.
+    AngularRate,
+    /// Seconds.
+    Time,
+    /// Volts.
+    Voltage,
+    /// Hertz; no parameter takes it yet, but it is a unit.
+    Frequency,
+    /// A number without a unit.
+    Number,
+    /// A whole number.
+    Integer,
+    /// How often: a positive whole number, or for ever.
+    Count,
+    /// This many digits 0 and 1.
+    Bits(u32),
+    /// One of the sixteen sonars.
+    Sonar,
+    /// The name of a robot.
+    Robot,
+    /// The name of a module.
+    Module,
+    /// A file or the name of a stored path.
+    File,
+}
+
+impl Kind {
+    /// The kind of this name in an alphabet; `bits` is not among them, since it needs its length.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Some(match name {
+            "length" => Self::Length,
+            "speed" => Self::Speed,
+            "angle" => Self::Angle,
+            "angular_rate" => Self::AngularRate,
+            "time" => Self::Time,
+            "voltage" => Self::Voltage,
+            "number" => Self::Number,
+            "integer" => Self::Integer,
+            "count" => Self::Count,
+            "sonar" => Self::Sonar,
+            "robot" => Self::Robot,
+            "module" => Self::Module,
+            "file" => Self::File,
+            _ => return None,
+        })
+    }
+
+    /// The kind in words, with its article: "an angle".
+    #[must_use]
+    pub fn words(self) -> String {
+        match self {
+            Self::Length => "a length".into(),
+            Self::Speed => "a speed".into(),
+            Self::Angle => "an angle".into(),
+            Self::AngularRate => "a turn rate".into(),
+            Self::Time => "a time".into(),
+            Self::Voltage => "a voltage".into(),
+            Self::Frequency => "a frequency".into(),
+            Self::Number => "a number".into(),
+            Self::Integer => "a whole number".into(),
+            Self::Count => "a count".into(),
+            Self::Bits(length) => format!("{length} bits"),
+            Self::Sonar => "a sonar, 0 to 15".into(),
+            Self::Robot => "the name of a robot".into(),
+            Self::Module => "the name of a module".into(),
+            Self::File => "the name of a file".into(),
+        }
+    }
+
+    /// The unit in which values are compared and computed.
+    #[must_use]
+    pub fn base_unit(self) -> Option<Unit> {
+        Unit::ALL.iter().copied().find(|unit| unit.kind == self && unit.is_base)
+    }
+}
+
+/// A unit that may touch a number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Unit {
+    /// As it is written.
+    pub name: &'static str,
+    /// What it measures.
+    pub kind: Kind,
+    /// The exact factor to the unit of its family: this whole number …
+    pub factor: u32,
+    /// … times ten to this power.
+    pub exponent: i32,
+    /// The unit of the family, in which exact values are compared: degrees and radians are two families.
+    pub family: &'static str,
+    /// Whether its family's unit is the SI unit that robots compute with.
+    pub is_base: bool,
+}
+
+impl Unit {
+    /// Every unit.
+    pub const ALL: &[Self] = &[
+        Self::new("m", Kind::Length, 1, 0, "m"),
+        Self::new("cm", Kind::Length, 1, -2, "m"),
+        Self::new("mm", Kind::Length, 1, -3, "m"),
+        Self::new("in", Kind::Length, 254, -4, "m"),
+        Self::new("ft", Kind::Length, 3048, -4, "m"),
+        Self::new("m/s", Kind::Speed, 1, 0, "m/s"),
+        Self::new("cm/s", Kind::Speed, 1, -2, "m/s"),
+        Self::new("mm/s", Kind::Speed, 1, -3, "m/s"),
+        Self::new("in/s", Kind::Speed, 254, -4, "m/s"),
+        Self::new("rad", Kind::Angle, 1, 0, "rad"),
+        Self::new("deg", Kind::Angle, 1, 0, "deg"),
+        Self::new("rad/s", Kind::AngularRate, 1, 0, "rad/s"),
+        Self::new("deg/s", Kind::AngularRate, 1, 0, "deg/s"),
+        Self::new("s", Kind::Time, 1, 0, "s"),
+        Self::new("ms", Kind::Time, 1, -3, "s"),
+        Self::new("min", Kind::Time, 60, 0, "s"),
+        Self::new("h", Kind::Time, 3600, 0, "s"),
+        Self::new("V", Kind::Voltage, 1, 0, "V"),
+        Self::new("Hz", Kind::Frequency, 1, 0, "Hz"),
+    ];
+
+    /// The unit written so.
+    #[must_use]
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.iter().copied().find(|unit| unit.name == name)
+    }
+
+    /// How many SI units one of its family is: 1, or π/180 where the family counts degrees.
+    #[must_use]
+    pub fn family_to_si(self) -> f64 {
+        if self.family.starts_with("deg") { std::f64::consts::PI / 180.0 } else { 1.0 }
+    }
+
+    const fn new(name: &'static str, kind: Kind, factor: u32, exponent: i32, family: &'static str) -> Self {
+        let is_base = factor == 1 && exponent == 0 && !matches!(family.as_bytes(), [b'd', ..]);
+        Self { name, kind, factor, exponent, family, is_base }
+    }
+}

@@ -1,0 +1,332 @@
+//! Reads an alphabet file (language, section 6): a descent over its tokens that goes on behind the next `;` after a defect.
+
+use logos::Logos;
+
+use super::checks;
+use super::token::Token;
+use super::{AlphabetFile, Capability, Decimal, Declaration, DeclarationKind, Kind, Param, TargetHead, Unit};
+use crate::diagnostic::{Code, Diagnostic, SourceId, Span, sort};
+
+/// The alphabet of a text, and all that is wrong with it; none if it has no head.
+#[must_use]
+pub fn read(source: SourceId, text: &str) -> (Option<AlphabetFile>, Vec<Diagnostic>) {
+    let mut reader = Reader { text, source, tokens: Vec::new(), at: 0, found: Vec::new() };
+    reader.lex();
+    let alphabet = reader.file();
+    let mut found = reader.found;
+    if let Some(alphabet) = &alphabet {
+        found.extend(checks::check(alphabet));
+    }
+    sort(&mut found);
+    (alphabet, found)
+}
+
+/// A defect was reported; the declaration it is in is given up.
+struct Defect;
+
+type Read<T> = Result<T, Defect>;
+
+struct Reader<'t> {
+    text: &'t str,
+    source: SourceId,
+    tokens: Vec<(Token, Span)>,
+    at: usize,
+    found: Vec<Diagnostic>,
+}
+
+impl<'t> Reader<'t> {
+    fn lex(&mut self) {
+        for (token, range) in Token::lexer(self.text).spanned() {
+            let [start, end] = [range.start, range.end].map(|at| u32::try_from(at).unwrap_or(u32::MAX));
+            let span = Span { source: self.source, start, end };
+            match token {
+                Ok(token) => self.tokens.push((token, span)),
+                Err(()) => {
+                    let message = format!("no alphabet has the character `{}`", &self.text[range]);
+                    self.found.push(Diagnostic::new(Code::E0101, message, span, "here"));
+                }
+            }
+        }
+    }
+
+    fn file(&mut self) -> Option<AlphabetFile> {
+        let (name, mut target) = self.head().ok()?;
+        let mut uses = Vec::new();
+        let mut declarations = Vec::new();
+        while self.at < self.tokens.len() {
+            let docs = self.docs();
+            let of_target = target.is_some();
+            let read = match (self.peek_word(), &mut target) {
+                (Some("capability"), Some(head)) => self.capabilities().map(|more| head.capabilities.extend(more)),
+                (Some("use"), Some(_)) => self.used().map(|used| uses.push(used)),
+                _ => self.declaration(docs, of_target).map(|declaration| declarations.push(declaration)),
+            };
+            if read.and_then(|()| self.expect(Token::Semicolon)).is_err() {
+                self.skip();
+            }
+        }
+        Some(AlphabetFile { name, target, uses, declarations })
+    }
+
+    /// `"target" NAME ":" "crate" NAME { "," "period" TIME } ";"` or `"alphabet" NAME ";"`.
+    fn head(&mut self) -> Read<(String, Option<TargetHead>)> {
+        self.docs();
+        let head = match self.peek_word() {
+            Some("alphabet") => {
+                self.at += 1;
+                (self.name()?.0, None)
+            }
+            Some("target") => {
+                self.at += 1;
+                let name = self.name()?.0;
+                self.expect(Token::Colon)?;
+                self.keyword("crate")?;
+                let crate_name = self.name()?.0;
+                let mut period = None;
+                while self.take(Token::Comma) {
+                    self.keyword("period")?;
+                    period = Some(self.period()?);
+                }
+                (name, Some(TargetHead { crate_name, period, capabilities: Vec::new() }))
+            }
+            _ => return self.unexpected("`target NAME : crate NAME;` or `alphabet NAME;`"),
+        };
+        self.expect(Token::Semicolon)?;
+        Ok(head)
+    }
+
+    fn period(&mut self) -> Read<u64> {
+        let (digits, span) = self.number()?;
+        let (word, unit_span) = self.name()?;
+        let unit = Unit::from_name(&word).filter(|unit| unit.kind == Kind::Time);
+        let exact = unit.and_then(|unit| Some(Decimal::parse(&digits)?.scaled(unit.factor, unit.exponent)));
+        match exact.and_then(|exact| exact.to_nanos()).filter(|nanos| *nanos > 0) {
+            Some(nanos) => Ok(nanos),
+            None => self.defect(span.to(unit_span), "a period is a time above zero", "write it as `100ms`"),
+        }
+    }
+
+    /// `"capability" CAP { "," CAP }`.
+    fn capabilities(&mut self) -> Read<Vec<Capability>> {
+        self.at += 1;
+        self.capability_list()
+    }
+
+    fn capability_list(&mut self) -> Read<Vec<Capability>> {
+        let mut list = vec![self.capability()?];
+        while self.take(Token::Comma) {
+            list.push(self.capability()?);
+        }
+        Ok(list)
+    }
+
+    /// `NAME [ "[" INT "]" ]`.
+    fn capability(&mut self) -> Read<Capability> {
+        let name = self.name()?.0;
+        Ok(Capability { name, size: self.size()? })
+    }
+
+    fn size(&mut self) -> Read<Option<u32>> {
+        if !self.take(Token::OpenBracket) {
+            return Ok(None);
+        }
+        let (digits, span) = self.number()?;
+        let Ok(size) = digits.parse() else {
+            return self.defect(span, "a size is a whole number", "as in `sonar[16]`");
+        };
+        self.expect(Token::CloseBracket)?;
+        Ok(Some(size))
+    }
+
+    fn used(&mut self) -> Read<(String, Span)> {
+        self.at += 1;
+        self.name()
+    }
+
+    /// `( "control" | "interrupt" | "signal" ) NAME [ "(" … ")" ] …`.
+    fn declaration(&mut self, docs: String, of_target: bool) -> Read<Declaration> {
+        let kind = match self.peek_word() {
+            Some("control") => DeclarationKind::Control,
+            Some("interrupt") => DeclarationKind::Interrupt,
+            Some("signal") => DeclarationKind::Signal,
+            _ if of_target => return self.unexpected("`capability`, `use`, `control`, `interrupt` or `signal`"),
+            _ => return self.unexpected("`control`, `interrupt` or `signal`"),
+        };
+        self.at += 1;
+        let (name, span) = self.name()?;
+        let params = self.params()?;
+        let (unit, mut completes, mut remembers, mut needs) = (self.unit_and_tolerance()?, false, false, Vec::new());
+        loop {
+            match self.peek_word() {
+                Some("completes") => completes = true,
+                Some("remembers") => remembers = true,
+                Some("needs") => {
+                    self.at += 1;
+                    needs = self.capability_list()?;
+                    break;
+                }
+                _ => break,
+            }
+            self.at += 1;
+        }
+        Ok(Declaration { docs, kind, name, params, unit, completes, remembers, needs, of_target, span })
+    }
+
+    fn params(&mut self) -> Read<Vec<Param>> {
+        let mut params = Vec::new();
+        if !self.take(Token::Open) || self.take(Token::Close) {
+            return Ok(params);
+        }
+        params.push(self.param()?);
+        while self.take(Token::Comma) {
+            params.push(self.param()?);
+        }
+        self.expect(Token::Close)?;
+        Ok(params)
+    }
+
+    /// `NAME ":" type [ UNIT ] [ "=" NUMBER ] [ "in" NUMBER ".." NUMBER ]`.
+    fn param(&mut self) -> Read<Param> {
+        let name = self.name()?.0;
+        self.expect(Token::Colon)?;
+        let (word, span) = self.name()?;
+        let size = self.size()?;
+        let kind = match (word.as_str(), size) {
+            ("bits", Some(length)) => Some(Kind::Bits(length)),
+            (word, None) => Kind::from_name(word),
+            (_, Some(_)) => None,
+        };
+        let Some(kind) = kind else {
+            return self.defect(
+                span,
+                "there is no such type of argument",
+                "the types are length, speed, angle, \
+                angular_rate, time, voltage, number, integer, count, bits[N], sonar, robot, module and file",
+            );
+        };
+        let unit = match self.peek_word() {
+            Some(word) if word != "in" => Some(self.unit(kind)?),
+            Some(_) | None => kind.base_unit(),
+        };
+        let default = if self.take(Token::Equals) { Some(self.number()?.0) } else { None };
+        let mut range = None;
+        if self.peek_word() == Some("in") {
+            self.at += 1;
+            let least = self.value()?;
+            self.expect(Token::To)?;
+            range = Some((least, self.value()?));
+        }
+        Ok(Param { name, kind, unit, default, range })
+    }
+
+    fn unit(&mut self, kind: Kind) -> Read<Unit> {
+        let (word, span) = self.name()?;
+        match Unit::from_name(&word) {
+            Some(unit) if unit.kind == kind => Ok(unit),
+            Some(unit) => {
+                let message = format!("expected a unit of {}, found one of {}", kind.words(), unit.kind.words());
+                self.defect(span, &message, "")
+            }
+            None => self.defect(span, &format!("`{word}` is not a unit"), ""),
+        }
+    }
+
+    /// `"unit" UNIT "tolerance" NUMBER`.
+    fn unit_and_tolerance(&mut self) -> Read<Option<(Unit, f64)>> {
+        if self.peek_word() != Some("unit") {
+            return Ok(None);
+        }
+        self.at += 1;
+        let (word, span) = self.name()?;
+        let Some(unit) = Unit::from_name(&word) else {
+            return self.defect(span, &format!("`{word}` is not a unit"), "");
+        };
+        self.keyword("tolerance")?;
+        Ok(Some((unit, self.value()?)))
+    }
+
+    fn docs(&mut self) -> String {
+        let mut docs: Vec<&str> = Vec::new();
+        while let Some((Token::Doc, span)) = self.tokens.get(self.at) {
+            docs.push(self.slice(*span).trim_start_matches('/').trim());
+            self.at += 1;
+        }
+        docs.join(" ")
+    }
+
+    fn value(&mut self) -> Read<f64> {
+        let (digits, span) = self.number()?;
+        match digits.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            Ok(_) | Err(_) => self.defect(span, "this number is too large", ""),
+        }
+    }
+
+    fn number(&mut self) -> Read<(String, Span)> {
+        self.text_of(Token::Number)
+    }
+
+    fn name(&mut self) -> Read<(String, Span)> {
+        self.text_of(Token::Word)
+    }
+
+    fn text_of(&mut self, token: Token) -> Read<(String, Span)> {
+        match self.tokens.get(self.at) {
+            Some((found, span)) if *found == token => {
+                self.at += 1;
+                Ok((self.slice(*span).to_owned(), *span))
+            }
+            Some(_) | None => self.unexpected(token.words()),
+        }
+    }
+
+    fn keyword(&mut self, word: &str) -> Read<()> {
+        if self.peek_word() == Some(word) {
+            self.at += 1;
+            return Ok(());
+        }
+        self.unexpected(&format!("`{word}`"))
+    }
+
+    fn expect(&mut self, token: Token) -> Read<()> {
+        if self.take(token) { Ok(()) } else { self.unexpected(token.words()) }
+    }
+
+    fn take(&mut self, token: Token) -> bool {
+        let found = self.tokens.get(self.at).is_some_and(|(found, _)| *found == token);
+        self.at += usize::from(found);
+        found
+    }
+
+    fn peek_word(&self) -> Option<&'t str> {
+        let (token, span) = self.tokens.get(self.at)?;
+        (*token == Token::Word).then(|| self.slice(*span))
+    }
+
+    fn slice(&self, span: Span) -> &'t str {
+        self.text.get(span.start as usize..span.end as usize).unwrap_or("")
+    }
+
+    fn unexpected<T>(&mut self, expected: &str) -> Read<T> {
+        let end = u32::try_from(self.text.len()).unwrap_or(u32::MAX);
+        let (span, found) = match self.tokens.get(self.at) {
+            Some((_, span)) => (*span, format!("`{}`", self.slice(*span))),
+            None => (Span { source: self.source, start: end, end }, "the end of the file".to_owned()),
+        };
+        self.found.push(Diagnostic::new(Code::E0601, format!("expected {expected}, found {found}"), span, "here"));
+        Err(Defect)
+    }
+
+    fn defect<T>(&mut self, span: Span, message: &str, help: &str) -> Read<T> {
+        let report = Diagnostic::new(Code::E0601, message, span, "here");
+        self.found.push(if help.is_empty() { report } else { report.help(help) });
+        Err(Defect)
+    }
+
+    /// Goes on behind the next `;`.
+    fn skip(&mut self) {
+        let rest = self.tokens.get(self.at..).unwrap_or_default();
+        let end = rest.iter().position(|(token, _)| *token == Token::Semicolon);
+        self.at = end.map_or(self.tokens.len(), |offset| self.at + offset + 1);
+    }
+}

@@ -1,0 +1,198 @@
+//! `mdlec PLAN`: the executable, or a stage on the way to it.
+
+use std::io::{self, IsTerminal, Write};
+use std::os::unix::process::CommandExt;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
+
+use super::input::{self, Input, Target};
+use super::{Build, Emit, EmitKind, Failure, report};
+use crate::diagnostic::Diagnostic;
+use crate::link::{self, Cache, LinkError, Package, Progress, TargetCrate};
+use crate::rust::{self, Header};
+use crate::syntax::outline;
+use crate::{Compiled, compile, fsm, syntax};
+
+/// Does what the command line without a command asks for.
+pub(super) fn build(options: &Build) -> Result<(), Failure> {
+    let Some(path) = options.plan.as_deref() else { return Err(Failure::usage("no plan was given")) };
+    match &options.emit {
+        Some(Emit { kind: EmitKind::Exe, file }) => {
+            let output = file.clone().or_else(|| options.output.clone());
+            executable(options, path, output)
+        }
+        Some(emit) => {
+            if options.run {
+                return Err(Failure::usage("`--run` runs an executable, and this `--emit` makes none"));
+            }
+            let file = emit.file.clone().or_else(|| options.output.clone());
+            let text = stage(options, path, emit.kind)?;
+            match file {
+                Some(file) => link::write_whole(&file, text.as_bytes()).map_err(|error| failure(&error)),
+                None => report::print(&text),
+            }
+        }
+        None => executable(options, path, options.output.clone()),
+    }
+}
+
+/// Compiles the one plan that is to be run; messages go to standard error.
+pub(super) fn compile_one(
+    input: &Input,
+    target: &Target,
+    name: Option<&str>,
+    deny_warnings: bool,
+) -> Result<Compiled, Failure> {
+    let text = input.sources.text(input.source);
+    if let Some(name) = name {
+        known_plan(input, name)?;
+    }
+    let (mut compiled, found) = compile(input.source, text, &target.alphabet, name);
+    if !report::diagnostics(&input.sources, &found, deny_warnings) {
+        return Err(Failure::PLAN);
+    }
+    match (compiled.pop(), compiled.len()) {
+        (Some(only), 0) => Ok(only),
+        (last, _) => {
+            let names = compiled.iter().chain(&last).map(|compiled| compiled.plan.root.name.as_str());
+            let names: Vec<_> = names.collect();
+            Err(Failure::usage(format!(
+                "`{}` holds several plans that no other refers to: {}\nhelp: say which one, as in `--plan {}`",
+                input.sources.name(input.source),
+                names.join(", "),
+                names.first().copied().unwrap_or("NAME"),
+            )))
+        }
+    }
+}
+
+/// Exit status 2 if no plan of the file has this name.
+fn known_plan(input: &Input, name: &str) -> Result<(), Failure> {
+    let (tree, _) = syntax::parse(input.source, input.sources.text(input.source));
+    let names: Vec<_> = tree.plans.iter().map(|plan| plan.name.node.as_str()).collect();
+    if names.contains(&name) || names.is_empty() {
+        return Ok(());
+    }
+    let near = crate::alphabet::nearest(name, names.iter().copied());
+    let near = near.map(|near| format!("; did you mean `{near}`?")).unwrap_or_default();
+    Err(Failure::usage(format!(
+        "`{}` has no plan `{name}`{near}\nhelp: its plans are {}",
+        input.sources.name(input.source),
+        names.join(", ")
+    )))
+}
+
+/// A stage as text.
+fn stage(options: &Build, path: &Path, kind: EmitKind) -> Result<String, Failure> {
+    let target = input::target(options.target.as_deref())?;
+    let input = input::read_plan(path, &target)?;
+    if kind == EmitKind::Tree {
+        let (tree, found) = syntax::parse(input.source, input.sources.text(input.source));
+        let good = report::diagnostics(&input.sources, &found, options.deny_warnings);
+        return if good { Ok(outline::outline(&tree)) } else { Err(Failure::PLAN) };
+    }
+    let compiled = compile_one(&input, &target, options.name.as_deref(), options.deny_warnings)?;
+    let too_large = |found: Diagnostic| {
+        report::diagnostics(&input.sources, &[found], false);
+        Failure::PLAN
+    };
+    Ok(match kind {
+        EmitKind::Tree | EmitKind::Plan => compiled.plan.to_string(),
+        EmitKind::Nondegenerate => compiled.nondegenerate.plan().to_string(),
+        EmitKind::Expanded => {
+            let expanded = fsm::expand(&compiled.nondegenerate).map_err(too_large)?;
+            let mut text = String::new();
+            let printed = expanded.plan().print_numbered(&mut text);
+            printed.map(|()| text).map_err(|error| Failure::usage(error.to_string()))?
+        }
+        EmitKind::Fsm => {
+            let file = fsm::fsm_file(&compiled.nondegenerate).map_err(too_large)?;
+            let text = serde_json::to_string_pretty(&file).map_err(|error| Failure::usage(error.to_string()))?;
+            text + "\n"
+        }
+        EmitKind::Rust | EmitKind::Exe => rust_of(&compiled, path, &needs_target(options, target)?),
+    })
+}
+
+/// The target again, if the command line names one: Rust is written for a robot.
+fn needs_target(options: &Build, target: Target) -> Result<Target, Failure> {
+    match options.target {
+        Some(_) => Ok(target),
+        None => Err(Failure::usage(
+            "for which robot? Name it with `--target`, as in `--target sim`; `mdlec targets` lists them",
+        )),
+    }
+}
+
+fn rust_of(compiled: &Compiled, path: &Path, target: &Target) -> String {
+    let file = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
+    let header = Header { file: &file, plan: &compiled.plan.root.name };
+    rust::emit(&compiled.lowered, header, &target.alphabet)
+}
+
+fn executable(options: &Build, path: &Path, output: Option<PathBuf>) -> Result<(), Failure> {
+    let started = Instant::now();
+    let target = needs_target(options, input::target(options.target.as_deref())?)?;
+    let input = input::read_plan(path, &target)?;
+    let compiled = compile_one(&input, &target, options.name.as_deref(), options.deny_warnings)?;
+    let rust = rust_of(&compiled, path, &target);
+    let output = match output {
+        Some(output) => output,
+        None => path.file_stem().map(PathBuf::from).unwrap_or_else(|| PathBuf::from("plan")),
+    };
+    let crate_name = &target.alphabet.crate_name;
+    let target_crate = match &target.folder {
+        None => TargetCrate::Builtin { name: &target.alphabet.name, crate_name },
+        Some(folder) => TargetCrate::Path { folder, crate_name },
+    };
+    let plan_name = compiled.plan.root.name.as_str();
+    let plan_type = rust::plan_type(plan_name);
+    let package = Package { plan_name, plan_file: path, plan_type: &plan_type, rust: &rust, target: &target_crate };
+    let mut shown = Shown { open: false };
+    let built = Cache::of_user()
+        .and_then(|cache| link::build(&cache, &package, &output, &mut |progress| shown.progress(&progress)));
+    shown.close();
+    let built = built.map_err(|error| failure(&error))?;
+    let seconds = started.elapsed().as_secs_f64();
+    let size = built.size as f64 / 1e6;
+    report::note(format_args!("{}: built in {seconds:.2} s, {size:.1} MB", output.display()));
+    if options.run { run(&output, &options.args) } else { Ok(()) }
+}
+
+/// Becomes the executable, so that its exit status and its signals are this process's.
+fn run(output: &Path, args: &[String]) -> Result<(), Failure> {
+    let program = if output.is_absolute() { output.to_owned() } else { Path::new(".").join(output) };
+    let error = Command::new(&program).args(args).exec();
+    Err(Failure::usage(format!("cannot run `{}`: {error}", program.display())))
+}
+
+fn failure(error: &LinkError) -> Failure {
+    Failure { status: error.exit_status(), message: Some(error.to_string()) }
+}
+
+/// The progress line: one that is written over on a terminal, else one for each thing worth saying.
+struct Shown {
+    open: bool,
+}
+
+impl Shown {
+    fn progress(&mut self, progress: &Progress) {
+        let mut out = io::stderr().lock();
+        // A closed standard error has nobody to wait for the build.
+        let _ = if out.is_terminal() {
+            self.open = true;
+            write!(out, "\r\x1b[K{progress}")
+        } else if progress.is_first() {
+            writeln!(out, "{progress}")
+        } else {
+            Ok(())
+        };
+    }
+
+    fn close(&mut self) {
+        if std::mem::take(&mut self.open) {
+            let _ = write!(io::stderr().lock(), "\r\x1b[K");
+        }
+    }
+}

@@ -1,0 +1,180 @@
+//! Reads plans and alphabets: the files a command works on.
+
+use std::fs;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+use super::{Failure, report};
+use crate::alphabet::{self, Alphabet, AlphabetFile, Declaration, DeclarationKind};
+use crate::diagnostic::{SourceId, Sources, has_errors};
+use crate::link;
+use crate::plan::signature;
+
+/// The robot that plans are checked against.
+pub(super) struct Target {
+    /// What it can do.
+    pub(super) alphabet: Alphabet,
+    /// The folder of a target that did not come with mdlec.
+    pub(super) folder: Option<PathBuf>,
+    /// The files its alphabet was read from, so that messages can show them.
+    sources: Vec<(String, String)>,
+}
+
+/// A plan file, with the alphabet's files beside it.
+pub(super) struct Input {
+    pub(super) sources: Sources,
+    pub(super) source: SourceId,
+}
+
+/// The target that an option names; without one a robot that has everything.
+pub(super) fn target(option: Option<&str>) -> Result<Target, Failure> {
+    let Some(name) = option else { return read_alphabets(None, "") };
+    if let Some(builtin) = link::alphabets().iter().find(|alphabet| alphabet.target && alphabet.name == name) {
+        return read_alphabets(Some((builtin.file.to_owned(), builtin.text.to_owned())), name);
+    }
+    let folder = Path::new(name);
+    if !folder.is_dir() {
+        return Err(unknown_target(name));
+    }
+    let file = folder.join("alphabet.mdle");
+    let text = read_text(&file)?;
+    let mut target = read_alphabets(Some((file.display().to_string(), text)), name)?;
+    target.folder = Some(folder.to_owned());
+    Ok(target)
+}
+
+/// Reads a plan file; `-` is standard input.
+pub(super) fn read_plan(path: &Path, target: &Target) -> Result<Input, Failure> {
+    let text = read_text(path)?;
+    let mut sources = Sources::default();
+    for (name, text) in &target.sources {
+        sources.add(name, text);
+    }
+    let name = if path == Path::new("-") { "standard input".into() } else { path.display().to_string() };
+    let source = sources.add(name, text);
+    Ok(Input { sources, source })
+}
+
+/// Reads a text file, or standard input for `-`.
+pub(super) fn read_text(path: &Path) -> Result<String, Failure> {
+    let name = path.display();
+    let bytes = if path == Path::new("-") {
+        let mut bytes = Vec::new();
+        io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes)
+    } else if path.is_dir() {
+        return Err(Failure::usage(format!("`{name}` is a folder, and a file has to stand here")));
+    } else {
+        fs::read(path)
+    };
+    let bytes = bytes.map_err(|error| {
+        Failure::usage(if error.kind() == io::ErrorKind::NotFound {
+            format!("there is no file `{name}`{}", plan_nearby(path))
+        } else {
+            format!("cannot read `{name}`: {error}")
+        })
+    })?;
+    if u32::try_from(bytes.len()).is_err() {
+        return Err(Failure::usage(format!("`{name}` is larger than 4 GB")));
+    }
+    // A byte order mark is an editor's, and no part of the plan.
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").map(<[u8]>::to_vec).unwrap_or(bytes);
+    String::from_utf8(bytes).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        let (sources, found) = report::not_utf8(&name.to_string(), error.as_bytes(), valid);
+        report::diagnostics(&sources, &[found], false);
+        Failure::PLAN
+    })
+}
+
+/// `mdlec targets`.
+pub(super) fn print_targets() -> Result<(), Failure> {
+    let mut text = String::new();
+    for builtin in link::alphabets().iter().filter(|alphabet| alphabet.target) {
+        let target = target(Some(builtin.name))?;
+        let capabilities: Vec<_> = target.alphabet.capabilities.iter().map(ToString::to_string).collect();
+        text += &format!("{}: {}\n", builtin.name, capabilities.join(", "));
+    }
+    report::print(&text)
+}
+
+/// `mdlec quarks`.
+pub(super) fn print_quarks(option: Option<&str>) -> Result<(), Failure> {
+    let target = target(option)?;
+    let mut text = String::new();
+    for (kind, title) in [
+        (DeclarationKind::Interrupt, "interrupts, each fires when …"),
+        (DeclarationKind::Control, "laws"),
+        (DeclarationKind::Signal, "signals"),
+    ] {
+        text += &format!("{title}\n");
+        let of_kind = target.alphabet.declarations().filter(|declaration| declaration.kind == kind);
+        of_kind.for_each(|declaration| text += &line(declaration, &target.alphabet));
+    }
+    report::print(&text)
+}
+
+fn line(declaration: &Declaration, alphabet: &Alphabet) -> String {
+    let missing: Vec<_> =
+        declaration.needs.iter().filter(|need| !alphabet.has(need)).map(ToString::to_string).collect();
+    let missing = match missing.as_slice() {
+        [] => String::new(),
+        missing => format!(" (not on {}: it has no {})", alphabet.name, missing.join(", ")),
+    };
+    format!("  {:<44} {}{missing}\n", signature(declaration), declaration.docs)
+}
+
+fn read_alphabets(own: Option<(String, String)>, name: &str) -> Result<Target, Failure> {
+    let mut reading = Reading::default();
+    let mut shared = Vec::new();
+    for alphabet in link::alphabets().iter().filter(|alphabet| !alphabet.target) {
+        shared.extend(reading.read(alphabet.file.to_owned(), alphabet.text.to_owned()));
+    }
+    let alphabet = match own {
+        Some((file, text)) => reading.read(file, text).map(|file| {
+            let (alphabet, found) = alphabet::combine(file, &shared);
+            reading.found.extend(found);
+            alphabet
+        }),
+        None => shared.into_iter().next().map(Alphabet::shared),
+    };
+    report::diagnostics(&reading.sources, &reading.found, false);
+    match alphabet {
+        Some(alphabet) if !has_errors(&reading.found) => Ok(Target { alphabet, folder: None, sources: reading.files }),
+        Some(_) | None => Err(Failure::usage(format!("the alphabet of target `{name}` has errors"))),
+    }
+}
+
+/// Alphabet files as they are read one after the other.
+#[derive(Default)]
+struct Reading {
+    sources: Sources,
+    files: Vec<(String, String)>,
+    found: Vec<crate::diagnostic::Diagnostic>,
+}
+
+impl Reading {
+    fn read(&mut self, file: String, text: String) -> Option<AlphabetFile> {
+        let source = self.sources.add(&file, &text);
+        let (alphabet, found) = alphabet::read(source, &text);
+        self.found.extend(found);
+        self.files.push((file, text));
+        alphabet
+    }
+}
+
+fn unknown_target(name: &str) -> Failure {
+    let known: Vec<_> = link::alphabets().iter().filter(|found| found.target).map(|found| found.name).collect();
+    let near = alphabet::nearest(name, known.iter().copied());
+    let near = near.map(|near| format!("; did you mean `{near}`?")).unwrap_or_default();
+    Failure::usage(format!(
+        "there is no target `{name}`{near}\nhelp: the targets are {}; a target of your own is named by its folder, \
+         as in `--target ../rover`",
+        known.join(", ")
+    ))
+}
+
+/// A hint where only the ending was forgotten.
+fn plan_nearby(path: &Path) -> String {
+    let with_ending = path.with_extension("mdle");
+    if with_ending.is_file() { format!("\nhelp: there is `{}`", with_ending.display()) } else { String::new() }
+}

@@ -1,0 +1,191 @@
+//! The command line: what `mdlec` takes and which room does it; exit statuses as the interfaces say.
+
+mod build;
+mod check;
+mod input;
+mod report;
+mod trace;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Compiles plans in MDLe, the Motion Description Language, for robots.
+#[derive(Debug, Parser)]
+#[command(name = "mdlec", version, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
+#[command(after_help = "Exit status: 0 done, 1 the plan has errors, 2 wrong usage or a file that cannot be read or \
+                        written, 101 a bug in mdlec.")]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    build: Build,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Says what is wrong with plans, and builds nothing
+    Check(Check),
+    /// Runs a plan against a script of interrupts, no robot needed
+    Trace(Trace),
+    /// Lists the robots that plans can be compiled for
+    Targets,
+    /// Lists the laws and interrupts that a plan can use
+    Quarks(Quarks),
+}
+
+/// Builds the executable of a plan.
+#[derive(Debug, Args)]
+struct Build {
+    /// The plan
+    #[arg(required = true)]
+    plan: Option<PathBuf>,
+    /// The robot: one of `mdlec targets`, or the folder of a target of your own
+    #[arg(long, value_name = "NAME|FOLDER")]
+    target: Option<String>,
+    /// The executable to write [default: the plan's file name without its ending, in the current folder]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Which plan of the file [default: the one that no other refers to]
+    #[arg(long = "plan", value_name = "NAME")]
+    name: Option<String>,
+    /// Print a stage instead of building, to standard output or to a file
+    #[arg(long, value_name = "KIND[=FILE]", value_parser = Emit::parse)]
+    emit: Option<Emit>,
+    /// Treat warnings as errors
+    #[arg(long)]
+    deny_warnings: bool,
+    /// Run the executable when it is built, with the arguments behind `--`
+    #[arg(long)]
+    run: bool,
+    /// Arguments for the executable, with `--run`
+    #[arg(last = true, requires = "run")]
+    args: Vec<String>,
+}
+
+/// A stage to print, and where to.
+#[derive(Debug, Clone)]
+struct Emit {
+    kind: EmitKind,
+    file: Option<PathBuf>,
+}
+
+/// The stages that can be printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum EmitKind {
+    /// The tree of the text, as it is written
+    Tree,
+    /// The plan with every name resolved
+    Plan,
+    /// The plan without repeated interrupts
+    Nondegenerate,
+    /// The plan with its finite loops written out and its atoms numbered
+    Expanded,
+    /// The finite state machine, as JSON
+    Fsm,
+    /// The Rust that is compiled
+    Rust,
+    /// The executable
+    Exe,
+}
+
+impl Emit {
+    fn parse(text: &str) -> Result<Self, String> {
+        let (kind, file) = match text.split_once('=') {
+            Some((kind, file)) => (kind, Some(PathBuf::from(file))),
+            None => (text, None),
+        };
+        let kinds: Vec<_> = EmitKind::value_variants().iter().filter_map(ValueEnum::to_possible_value).collect();
+        let names: Vec<_> = kinds.iter().map(|kind| kind.get_name().to_owned()).collect();
+        let kind = EmitKind::from_str(kind, false).map_err(|_| format!("the kinds are {}", names.join(", ")))?;
+        Ok(Self { kind, file })
+    }
+}
+
+#[derive(Debug, Args)]
+struct Check {
+    /// The plans
+    #[arg(required = true)]
+    plans: Vec<PathBuf>,
+    /// The robot [default: one that has everything]
+    #[arg(long, value_name = "NAME|FOLDER")]
+    target: Option<String>,
+    /// Treat warnings as errors
+    #[arg(long)]
+    deny_warnings: bool,
+}
+
+#[derive(Debug, Args)]
+struct Trace {
+    /// The plan
+    plan: PathBuf,
+    /// The script: JSON lines, one object a turn; `-` reads standard input
+    #[arg(long, value_name = "FILE")]
+    script: PathBuf,
+    /// Which of the equivalent machines runs the plan
+    #[arg(long, value_enum, default_value_t = Machine::Counted)]
+    machine: Machine,
+    /// Which plan of the file [default: the one that no other refers to]
+    #[arg(long = "plan", value_name = "NAME")]
+    name: Option<String>,
+    /// The robot [default: one that has everything]
+    #[arg(long, value_name = "NAME|FOLDER")]
+    target: Option<String>,
+}
+
+/// The machines of `mdlec trace`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Machine {
+    /// A direct walk over the plan as it is written
+    Tree,
+    /// The machine that robots run: brackets and counters
+    Counted,
+}
+
+#[derive(Debug, Args)]
+struct Quarks {
+    /// The robot [default: one that has everything]
+    #[arg(long, value_name = "NAME|FOLDER")]
+    target: Option<String>,
+}
+
+/// Why a command ends without having done what it was asked: what to say, and the exit status.
+#[derive(Debug)]
+struct Failure {
+    status: u8,
+    /// Nothing where it was said already.
+    message: Option<String>,
+}
+
+impl Failure {
+    /// Wrong usage, or a file that cannot be read or written: exit status 2.
+    fn usage(message: impl Into<String>) -> Self {
+        Self { status: 2, message: Some(message.into()) }
+    }
+
+    /// The plan has errors, and they were printed: exit status 1.
+    const PLAN: Self = Self { status: 1, message: None };
+}
+
+/// Runs the command line of this process.
+#[must_use]
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let done = match cli.command {
+        None => build::build(&cli.build),
+        Some(Command::Check(check)) => check::check(&check),
+        Some(Command::Trace(trace)) => trace::trace(&trace),
+        Some(Command::Targets) => input::print_targets(),
+        Some(Command::Quarks(quarks)) => input::print_quarks(quarks.target.as_deref()),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            if let Some(message) = &failure.message {
+                report::error(message);
+            }
+            ExitCode::from(failure.status)
+        }
+    }
+}

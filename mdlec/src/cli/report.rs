@@ -1,0 +1,68 @@
+//! What is said on standard error and printed on standard output.
+
+use std::fmt::Display;
+use std::io::{self, IsTerminal, Write};
+
+use codespan_reporting::term;
+use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
+
+use super::Failure;
+use crate::diagnostic::{Code, Diagnostic, Severity, Sources};
+
+/// Prints diagnostics in their order, then how many there were.
+///
+/// Returns whether the plan may go on: no error, and no warning where these count as errors.
+pub(super) fn diagnostics(sources: &Sources, found: &[Diagnostic], deny_warnings: bool) -> bool {
+    let choice = if io::stderr().is_terminal() { ColorChoice::Auto } else { ColorChoice::Never };
+    let mut out = StandardStream::stderr(choice);
+    for diagnostic in found {
+        // Nobody is left to be told when standard error is closed.
+        let _ = term::emit_to_write_style(&mut out, &term::Config::default(), sources, &sources.report(diagnostic));
+    }
+    let count = |severity| found.iter().filter(|diagnostic| diagnostic.code.severity() == severity).count();
+    let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
+    if errors > 0 {
+        error(&format!("{} in this plan: nothing was made", number(errors, "error")));
+    } else if deny_warnings && warnings > 0 {
+        error(&format!("{}, and `--deny-warnings` counts them as errors", number(warnings, "warning")));
+    }
+    errors == 0 && (warnings == 0 || !deny_warnings)
+}
+
+/// A code that `mdlec` gives to what is no diagnostic of a plan's text alone.
+pub(super) fn not_utf8(name: &str, bytes: &[u8], valid: usize) -> (Sources, Diagnostic) {
+    let mut sources = Sources::default();
+    let source = sources.add(name, String::from_utf8_lossy(bytes));
+    let start = u32::try_from(valid).unwrap_or(u32::MAX);
+    // The replacement character that stands there now is three bytes long.
+    let span = crate::diagnostic::Span { source, start, end: start.saturating_add(3) };
+    let found = Diagnostic::new(Code::E0109, "this file is not UTF-8 text", span, "no character of UTF-8")
+        .help("save it as UTF-8 in your editor, or convert it: `iconv -f latin1 -t utf-8`");
+    (sources, found)
+}
+
+/// Says what went wrong, in the form of the diagnostics.
+pub(super) fn error(message: &str) {
+    let _ = writeln!(io::stderr().lock(), "error: {message}");
+}
+
+/// Says something that is no error.
+pub(super) fn note(message: impl Display) {
+    let _ = writeln!(io::stderr().lock(), "{message}");
+}
+
+/// Prints to standard output; a reader that went away is no error.
+pub(super) fn print(text: &str) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(Failure::usage(format!("cannot write to standard output: {error}")))
+        }
+        Ok(()) | Err(_) => Ok(()),
+    }
+}
+
+/// `1 error`, `2 errors`.
+fn number(count: usize, thing: &str) -> String {
+    if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
+}

@@ -1,0 +1,32 @@
+//! `mdlec trace`: a plan against a script of interrupts.
+
+use std::io::{self, BufWriter, Write};
+
+use super::{Failure, Machine, Trace, input, report};
+use crate::trace::{Counted, Line, Script, Tree, run};
+
+/// Runs the plan and prints what it does, a line a turn.
+pub(super) fn trace(options: &Trace) -> Result<(), Failure> {
+    let target = input::target(options.target.as_deref())?;
+    let input = input::read_plan(&options.plan, &target)?;
+    let compiled = super::build::compile_one(&input, &target, options.name.as_deref(), false)?;
+    let text = input::read_text(&options.script)?;
+    let script = Script::read(&text)
+        .map_err(|error| Failure::usage(format!("{}:{}: {}", options.script.display(), error.line, error.message)))?;
+    match options.machine {
+        Machine::Tree => print(run(Tree::new(&compiled.plan), &script)),
+        Machine::Counted => print(run(Counted::new(&compiled.lowered), &script)),
+    }
+}
+
+fn print<'p>(lines: impl Iterator<Item = Line<'p>>) -> Result<(), Failure> {
+    let mut out = BufWriter::new(io::stdout().lock());
+    let written = lines.into_iter().try_for_each(|line| writeln!(out, "{line}")).and_then(|()| out.flush());
+    match written {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            report::error("cannot write the trace");
+            Err(Failure::usage(error.to_string()))
+        }
+        Ok(()) | Err(_) => Ok(()),
+    }
+}

@@ -1,0 +1,244 @@
+//! Diagnostics: a code, what is wrong, where, and what to type instead; rendered with codespan-reporting.
+
+use std::fmt;
+
+use codespan_reporting::diagnostic as report;
+use codespan_reporting::files::{Error as FilesError, Files, SimpleFile};
+use codespan_reporting::term;
+
+/// A file that was read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct SourceId(pub u32);
+
+/// A stretch of a source, in bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Span {
+    /// The file.
+    pub source: SourceId,
+    /// The first byte.
+    pub start: u32,
+    /// The byte behind the last.
+    pub end: u32,
+}
+
+impl Span {
+    /// The stretch from the start of this one to the end of `last`, of the same source.
+    #[must_use]
+    pub fn to(self, last: Self) -> Self {
+        Self { end: last.end.max(self.end), ..self }
+    }
+}
+
+/// How bad it is, in the order in which a message beats another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// The plan has a meaning, perhaps not the one that was meant.
+    Warning,
+    /// The plan has no meaning.
+    Error,
+}
+
+/// Declares the codes, each with what it is about.
+macro_rules! codes {
+    ($($name:ident $title:literal,)*) => {
+        /// What a diagnostic is about: E stops, W warns.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Code { $(#[doc = $title] $name,)* }
+
+        impl Code {
+            /// Every code.
+            pub const ALL: &[Self] = &[$(Self::$name,)*];
+
+            /// The code as it is printed.
+            #[must_use]
+            pub fn name(self) -> &'static str {
+                match self { $(Self::$name => stringify!($name),)* }
+            }
+
+            /// What it is about, in a few words.
+            #[must_use]
+            pub fn title(self) -> &'static str {
+                match self { $(Self::$name => $title,)* }
+            }
+        }
+    };
+}
+
+codes! {
+    E0101 "a character that no MDLe text has",
+    E0102 "something else could stand here",
+    E0103 "a bracket without its partner",
+    E0104 "a number that touches what follows it",
+    E0105 "a comment or string that does not end",
+    E0106 "brackets nested too deep",
+    E0107 "a file without a plan",
+    E0108 "nothing to run",
+    E0109 "text that is not UTF-8",
+    E0199 "a form that this version does not know yet",
+    E0201 "an unknown name",
+    E0202 "a plan that contains itself",
+    E0203 "a name that stands for two things",
+    E0204 "a quark of the other kind",
+    E0301 "the wrong number of arguments",
+    E0302 "an argument of the wrong type",
+    E0303 "a unit of the wrong kind",
+    E0304 "a value out of range",
+    E0305 "a loop count that is none",
+    E0401 "a robot that has not what this needs",
+    E0402 "a value that this robot cannot do",
+    E0501 "a plan of too many states",
+    E0502 "an expanded form that is too large",
+    E0601 "an alphabet that makes no sense",
+    W0101 "an interrupt that an outer one repeats",
+}
+
+impl Code {
+    /// Whether it stops the compiler.
+    #[must_use]
+    pub fn severity(self) -> Severity {
+        if self.name().starts_with('W') { Severity::Warning } else { Severity::Error }
+    }
+}
+
+impl fmt::Display for Code {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// A place that a diagnostic points at.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Label {
+    /// Where.
+    pub span: Span,
+    /// What to say there; may be empty.
+    pub text: String,
+    /// Whether it is the place of the defect, and not one that explains it.
+    pub primary: bool,
+}
+
+/// One message to the person who wrote the plan.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// What it is about.
+    pub code: Code,
+    /// What is wrong, in one line without a full stop.
+    pub message: String,
+    /// Where: the primary place first.
+    pub labels: Vec<Label>,
+    /// What to do about it; each a line below the source.
+    pub help: Vec<String>,
+}
+
+impl Diagnostic {
+    /// A diagnostic at `span`, with `here` written beside the place.
+    pub fn new(code: Code, message: impl Into<String>, span: Span, here: impl Into<String>) -> Self {
+        let label = Label { span, text: here.into(), primary: true };
+        Self { code, message: message.into(), labels: vec![label], help: Vec::new() }
+    }
+
+    /// Also points at `span`, which explains the defect.
+    #[must_use]
+    pub fn also(mut self, span: Span, text: impl Into<String>) -> Self {
+        self.labels.push(Label { span, text: text.into(), primary: false });
+        self
+    }
+
+    /// Also says what to do.
+    #[must_use]
+    pub fn help(mut self, text: impl Into<String>) -> Self {
+        self.help.push(text.into());
+        self
+    }
+
+    /// The place of the defect.
+    #[must_use]
+    pub fn span(&self) -> Option<Span> {
+        self.labels.first().map(|label| label.span)
+    }
+}
+
+/// Whether any of these stops the compiler.
+#[must_use]
+pub fn has_errors(diagnostics: &[Diagnostic]) -> bool {
+    diagnostics.iter().any(|diagnostic| diagnostic.code.severity() == Severity::Error)
+}
+
+/// Puts diagnostics into the order of the sources.
+pub fn sort(diagnostics: &mut [Diagnostic]) {
+    diagnostics.sort_by_key(|diagnostic| (diagnostic.span(), diagnostic.code));
+}
+
+/// The files that spans point into.
+#[derive(Debug, Default)]
+pub struct Sources {
+    files: Vec<SimpleFile<String, String>>,
+}
+
+impl Sources {
+    /// Takes in a file: the name that messages show, and its text.
+    pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> SourceId {
+        self.files.push(SimpleFile::new(name.into(), text.into()));
+        SourceId(u32::try_from(self.files.len() - 1).unwrap_or(u32::MAX))
+    }
+
+    /// The text of a file.
+    #[must_use]
+    pub fn text(&self, source: SourceId) -> &str {
+        self.files.get(source.0 as usize).map_or("", |file| file.source().as_str())
+    }
+
+    /// The name of a file.
+    #[must_use]
+    pub fn name(&self, source: SourceId) -> &str {
+        self.files.get(source.0 as usize).map_or("", |file| file.name().as_str())
+    }
+
+    /// The diagnostic as plain text, as a terminal without colours shows it.
+    #[must_use]
+    pub fn render(&self, diagnostic: &Diagnostic) -> String {
+        term::emit_into_string(&term::Config::default(), self, &self.report(diagnostic))
+            .unwrap_or_else(|_| format!("{}: {}\n", diagnostic.code, diagnostic.message))
+    }
+
+    /// The diagnostic as codespan-reporting takes it, for a terminal with colours.
+    #[must_use]
+    pub fn report(&self, diagnostic: &Diagnostic) -> report::Diagnostic<SourceId> {
+        let severity = match diagnostic.code.severity() {
+            Severity::Error => report::Severity::Error,
+            Severity::Warning => report::Severity::Warning,
+        };
+        let labels = diagnostic.labels.iter().map(|label| {
+            let style = if label.primary { report::LabelStyle::Primary } else { report::LabelStyle::Secondary };
+            let range = label.span.start as usize..label.span.end as usize;
+            report::Label::new(style, label.span.source, range).with_message(&label.text)
+        });
+        report::Diagnostic::new(severity)
+            .with_code(diagnostic.code.name())
+            .with_message(&diagnostic.message)
+            .with_labels(labels.collect())
+            .with_notes(diagnostic.help.iter().map(|help| format!("help: {help}")).collect())
+    }
+}
+
+impl<'a> Files<'a> for Sources {
+    type FileId = SourceId;
+    type Name = &'a str;
+    type Source = &'a str;
+
+    fn name(&'a self, id: SourceId) -> Result<&'a str, FilesError> {
+        self.files.get(id.0 as usize).map(|file| file.name().as_str()).ok_or(FilesError::FileMissing)
+    }
+
+    fn source(&'a self, id: SourceId) -> Result<&'a str, FilesError> {
+        self.files.get(id.0 as usize).map(|file| file.source().as_str()).ok_or(FilesError::FileMissing)
+    }
+
+    fn line_index(&'a self, id: SourceId, byte: usize) -> Result<usize, FilesError> {
+        self.files.get(id.0 as usize).ok_or(FilesError::FileMissing)?.line_index((), byte)
+    }
+
+    fn line_range(&'a self, id: SourceId, line: usize) -> Result<std::ops::Range<usize>, FilesError> {
+        self.files.get(id.0 as usize).ok_or(FilesError::FileMissing)?.line_range((), line)
+    }
+}

@@ -1,0 +1,184 @@
+//! Lowers a plan to its finite state machine (paper, Algorithm 1; semantics, section 8), loops as counters.
+//!
+//! Afterwards: brackets are in pre-order, bracket 0 is the plan, the children of a bracket partition its atoms.
+
+mod expand;
+mod file;
+
+pub use expand::expand;
+pub use file::{FsmFile, InterruptEntry, Moves, ScopeEntry, fsm_file};
+
+use mdle_runtime::Fsm;
+use mdle_runtime::fsm::{Atom, Bracket, Kind};
+
+use crate::diagnostic::{Code, Diagnostic, Span};
+use crate::plan::{self, Interrupt, Node, Nondegenerate, Quark, QuarkId, Scope};
+
+/// The most states a plan may have: numbers up to here are exact in JSON as well.
+pub const STATES: u64 = 1 << 53;
+
+/// A plan lowered to its machine: the tables, and what its brackets and atoms mean.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lowered {
+    /// Scopes and loops in pre-order.
+    pub brackets: Vec<Bracket>,
+    /// The atoms as written, from left to right.
+    pub atoms: Vec<Atom>,
+    /// The termination state's number.
+    pub termination: u64,
+    /// What each bracket means: its scope, or `None` for a loop.
+    pub scopes: Vec<Option<ScopeMeaning>>,
+    /// What each atom means.
+    pub laws: Vec<LawMeaning>,
+    /// Every quark with its arguments.
+    pub quarks: Vec<Quark>,
+    /// How many scopes are around an atom at most, its own included.
+    pub levels: usize,
+    /// How many loops are around an atom at most.
+    pub slots: usize,
+}
+
+/// What a scope means.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ScopeMeaning {
+    /// Its name; empty for an atom, and for a scope in formal notation.
+    pub name: String,
+    /// Its interrupt.
+    pub interrupt: Interrupt,
+}
+
+/// What an atom does.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LawMeaning {
+    /// Its law.
+    pub quark: QuarkId,
+    /// The angle by which its frame is turned, in radians.
+    pub frame: f64,
+    /// Where the atom is written.
+    pub span: Span,
+}
+
+impl Lowered {
+    /// The tables, as the machine takes them.
+    #[must_use]
+    pub fn tables(&self) -> Fsm<'_> {
+        Fsm { brackets: &self.brackets, atoms: &self.atoms, termination: self.termination }
+    }
+
+    /// The quark of an id.
+    #[must_use]
+    pub fn quark(&self, id: QuarkId) -> &Quark {
+        &self.quarks[id.0 as usize]
+    }
+}
+
+/// Lowers a plan.
+///
+/// # Errors
+/// E0501 when the plan, expanded, has more than [`STATES`] states.
+pub fn algorithm1(plan: &Nondegenerate) -> Result<Lowered, Diagnostic> {
+    let plan = plan.plan();
+    let mut lowering = Lowering {
+        lowered: Lowered {
+            brackets: Vec::new(),
+            atoms: Vec::new(),
+            termination: 0,
+            scopes: Vec::new(),
+            laws: Vec::new(),
+            quarks: plan.quarks.clone(),
+            levels: 0,
+            slots: 0,
+        },
+    };
+    let states = lowering.scope(&plan.root, Place { parent: 0, level: 0, slot: 0, state: 1 })?;
+    lowering.lowered.termination = states + 1;
+    Ok(lowering.lowered)
+}
+
+struct Lowering {
+    lowered: Lowered,
+}
+
+/// Where a node stands: the bracket around it, the scopes and loops around it, the number of its first state.
+#[derive(Clone, Copy)]
+struct Place {
+    parent: u32,
+    level: u16,
+    slot: u16,
+    state: u64,
+}
+
+impl Lowering {
+    /// Lowers a scope and returns the number of its states.
+    fn scope(&mut self, scope: &Scope, place: Place) -> Result<u64, Diagnostic> {
+        let meaning = ScopeMeaning { name: scope.name.clone(), interrupt: scope.interrupt.clone() };
+        let bracket = self.bracket(Kind::Scope { level: place.level }, place.parent, Some(meaning));
+        self.lowered.levels = self.lowered.levels.max(usize::from(place.level) + 1);
+        let inside = Place { parent: bracket, level: place.level.saturating_add(1), ..place };
+        let states = self.sequence(&scope.body, inside, scope.span)?;
+        self.close(bracket);
+        Ok(states)
+    }
+
+    fn sequence(&mut self, body: &[Node], place: Place, span: Span) -> Result<u64, Diagnostic> {
+        let mut states = 0;
+        for node in body {
+            let here = Place { state: place.state.saturating_add(states), ..place };
+            states += match node {
+                Node::Atom(atom) => self.atom(atom, here),
+                Node::Scope(scope) => self.scope(scope, here)?,
+                Node::Loop(repeated) => self.repeated(repeated, here)?,
+            };
+            if states >= STATES {
+                return Err(too_many(span));
+            }
+        }
+        Ok(states)
+    }
+
+    fn atom(&mut self, atom: &plan::Atom, place: Place) -> u64 {
+        let meaning = ScopeMeaning { name: String::new(), interrupt: atom.interrupt.clone() };
+        let number = u32::try_from(self.lowered.atoms.len()).unwrap_or(u32::MAX);
+        let scope = self.bracket(Kind::Scope { level: place.level }, place.parent, Some(meaning));
+        self.lowered.levels = self.lowered.levels.max(usize::from(place.level) + 1);
+        self.lowered.atoms.push(Atom { scope, state: place.state });
+        self.lowered.laws.push(LawMeaning { quark: atom.law, frame: atom.frame, span: atom.span });
+        debug_assert_eq!(self.lowered.brackets[scope as usize].first, number);
+        1
+    }
+
+    fn repeated(&mut self, repeated: &plan::Loop, place: Place) -> Result<u64, Diagnostic> {
+        let times = repeated.times.unwrap_or(0);
+        let bracket = self.bracket(Kind::Loop { times, slot: place.slot, stride: 0 }, place.parent, None);
+        self.lowered.slots = self.lowered.slots.max(usize::from(place.slot) + 1);
+        let inside = Place { parent: bracket, slot: place.slot.saturating_add(1), ..place };
+        let pass = self.sequence(&repeated.body, inside, repeated.span)?;
+        self.close(bracket);
+        if repeated.times.is_none() {
+            return Ok(pass);
+        }
+        if let Kind::Loop { stride, .. } = &mut self.lowered.brackets[bracket as usize].kind {
+            *stride = pass;
+        }
+        pass.checked_mul(times).filter(|states| *states < STATES).ok_or_else(|| too_many(repeated.span))
+    }
+
+    /// Opens a bracket at the next atom; [`Lowering::close`] tells its last one.
+    fn bracket(&mut self, kind: Kind, parent: u32, meaning: Option<ScopeMeaning>) -> u32 {
+        let number = u32::try_from(self.lowered.brackets.len()).unwrap_or(u32::MAX);
+        let first = u32::try_from(self.lowered.atoms.len()).unwrap_or(u32::MAX);
+        self.lowered.brackets.push(Bracket { kind, first, last: first, parent });
+        self.lowered.scopes.push(meaning);
+        number
+    }
+
+    fn close(&mut self, bracket: u32) {
+        let last = u32::try_from(self.lowered.atoms.len().saturating_sub(1)).unwrap_or(u32::MAX);
+        self.lowered.brackets[bracket as usize].last = last;
+    }
+}
+
+fn too_many(span: Span) -> Diagnostic {
+    Diagnostic::new(Code::E0501, format!("this plan has more than {STATES} states"), span, "these make too many")
+        .help("every pass of a loop counts, and loops inside loops multiply: lower a count, or write `inf`")
+}

@@ -1,0 +1,74 @@
+//! Whose fault it is that a build failed.
+
+use std::os::unix::process::ExitStatusExt;
+use std::path::PathBuf;
+
+use super::cargo::Job;
+use super::messages::Run;
+use super::target::Dependencies;
+use super::{LinkError, TargetCrate};
+
+/// What the system says, through rustc or the linker, when a disk is full.
+const FULL: [&str; 2] = ["No space left on device", "Disk quota exceeded"];
+
+/// What rustc says when there is no linker, or when the linker fails.
+const LINKER: [&str; 2] = ["error: linker `", "error: linking with `"];
+
+/// The fault behind a run that made no executable.
+pub(super) fn fault(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>, dependencies: &Dependencies) -> LinkError {
+    if let Some(signal) = run.status.signal() {
+        return LinkError::Stopped(u8::try_from(signal).unwrap_or(u8::MAX));
+    }
+    let text = run.text();
+    if FULL.iter().any(|sign| text.contains(sign)) {
+        return LinkError::DiskFull(job.cache.folder().to_owned());
+    }
+    let log = match job.plan.keep(&text) {
+        Ok(log) => log,
+        Err(error) => return error,
+    };
+    let errors = run.complaints.iter().filter(|complaint| complaint.is_error);
+    if errors.clone().any(|error| LINKER.iter().any(|sign| error.text.starts_with(sign))) {
+        return LinkError::Linker { log };
+    }
+    let (plan, ours) = (job.plan.manifest(), &dependencies.ours);
+    // The crate that fails first is the cause: what depends on it is not compiled.
+    match errors.map(|error| &error.manifest).next() {
+        Some(manifest) if *manifest == plan => emitted(target, log),
+        Some(manifest) if manifest.starts_with(ours) => LinkError::Packed { folder: ours.clone(), log },
+        Some(_) | None => others(run, target, &text, log, &|manifest| *manifest == plan || manifest.starts_with(ours)),
+    }
+}
+
+/// The emitted text does not compile.
+fn emitted(target: &TargetCrate<'_>, log: PathBuf) -> LinkError {
+    match target {
+        TargetCrate::Builtin { .. } => LinkError::Emitted { log },
+        // More often it is that the crate lags behind its alphabet.
+        TargetCrate::Path { crate_name, .. } => LinkError::TargetMisfit { crate_name: (*crate_name).to_owned(), log },
+    }
+}
+
+/// A crate that is not ours does not compile, or cargo did not even begin.
+fn others(
+    run: &Run,
+    target: &TargetCrate<'_>,
+    text: &str,
+    log: PathBuf,
+    is_ours: &dyn Fn(&PathBuf) -> bool,
+) -> LinkError {
+    match target {
+        TargetCrate::Builtin { .. } if !run.began && run.online => LinkError::NoLibraries { log },
+        TargetCrate::Builtin { .. } => LinkError::Cargo { log },
+        TargetCrate::Path { crate_name, .. } if !run.began => {
+            LinkError::TargetRefused { crate_name: (*crate_name).to_owned(), text: run.stderr.trim_end().to_owned() }
+        }
+        TargetCrate::Path { crate_name, .. } => {
+            let theirs = run.complaints.iter().filter(|complaint| !is_ours(&complaint.manifest));
+            let theirs: String = theirs.map(|complaint| complaint.text.as_str()).collect();
+            // A build script that fails says so through cargo only.
+            let said = if run.complaints.iter().any(|complaint| complaint.is_error) { theirs.as_str() } else { text };
+            LinkError::TargetBroken { crate_name: (*crate_name).to_owned(), text: said.trim_end().to_owned() }
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! Cargo as a child: the same flags whatever the environment says, and nothing of its output on the terminal.
+
+use std::ffi::{OsStr, OsString};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::{env, io};
+
+use super::messages::{self, Run};
+use super::package::PlanPackage;
+use super::{Cache, LinkError, Progress};
+
+/// The oldest Rust that the packed sources are for.
+const NEEDED: &str = env!("CARGO_PKG_RUST_VERSION");
+
+/// What cargo reads from the environment that is the user's business: where its files and its registries are, how it
+/// gets there, how much of the machine it may use. Everything else would change, or build anew, what others built.
+const KEPT: [&str; 6] =
+    ["CARGO_HOME", "CARGO_HTTP_", "CARGO_NET_", "CARGO_REGISTRIES_", "CARGO_REGISTRY_", "CARGO_BUILD_JOBS"];
+
+/// The Rust that is installed.
+#[derive(Debug)]
+pub(super) struct Toolchain {
+    /// The triple of this machine.
+    pub(super) host: String,
+}
+
+impl Toolchain {
+    /// Asks `rustc` in `folder`.
+    pub(super) fn find(folder: &Path) -> Result<Self, LinkError> {
+        let mut command = command("rustc", folder);
+        command.arg("-vV");
+        let found = output(command, "rustc")?;
+        let said = String::from_utf8_lossy(&found.stdout);
+        let field = |name: &str| said.lines().find_map(|line| line.strip_prefix(name));
+        let (Some(host), Some(release), true) = (field("host: "), field("release: "), found.status.success()) else {
+            // Such as rustup without a toolchain; its first line says so.
+            let said = String::from_utf8_lossy(&found.stderr);
+            let why = said.lines().next().unwrap_or("it says nothing").trim_start_matches("error: ").to_owned();
+            return Err(LinkError::NoRust { tool: "rustc", why });
+        };
+        if version(release) < version(NEEDED) {
+            return Err(LinkError::OldRust { needed: NEEDED, found: release.to_owned() });
+        }
+        Ok(Self { host: host.to_owned() })
+    }
+}
+
+/// The first two numbers of a version.
+fn version(text: &str) -> Option<(u32, u32)> {
+    let mut parts = text.split('.');
+    Some((parts.next()?.parse().ok()?, parts.next()?.parse().ok()?))
+}
+
+/// A build of the package of a plan.
+#[derive(Debug)]
+pub(super) struct Job<'a> {
+    pub(super) cache: &'a Cache,
+    pub(super) toolchain: &'a Toolchain,
+    pub(super) plan: &'a PlanPackage,
+}
+
+impl Job<'_> {
+    /// Builds, without the network if that is possible.
+    pub(super) fn build(&self, progress: &mut dyn FnMut(Progress)) -> Result<Run, LinkError> {
+        let run = self.attempt(false, progress)?;
+        if !run.lacks_libraries() {
+            return Ok(run);
+        }
+        progress(Progress::Fetching);
+        self.attempt(true, progress)
+    }
+
+    /// Builds; fetches what is missing if it may go `online`.
+    fn attempt(&self, online: bool, progress: &mut dyn FnMut(Progress)) -> Result<Run, LinkError> {
+        let mut command = command("cargo", &self.plan.folder);
+        // With an explicit triple the flags are for the plan alone: a static procedural macro could not be loaded.
+        command
+            .args(["build", "--release", "--message-format=json", "--target", &self.toolchain.host])
+            .arg("--target-dir")
+            .arg(self.cache.folder().join("target"))
+            .env("CARGO_ENCODED_RUSTFLAGS", self.flags());
+        if !online {
+            command.arg("--offline");
+        }
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        let child = command.spawn().map_err(|error| unusable("cargo", &error))?;
+        messages::follow(child, online, &self.plan.manifest(), progress).map_err(|error| unusable("cargo", &error))
+    }
+
+    /// The flags of rustc: a static executable without a path of this machine in it.
+    ///
+    /// They are the same for every plan, as other flags would build everything anew; so a target outside the home
+    /// folder keeps its path in the messages of its panics.
+    fn flags(&self) -> OsString {
+        let mut flags = OsString::from("-Ctarget-feature=+crt-static");
+        let home = env::home_dir();
+        let cargo_home = env::var_os("CARGO_HOME").map(PathBuf::from).or_else(|| Some(home.as_ref()?.join(".cargo")));
+        // The last that fits wins.
+        let places = [(home, "~"), (cargo_home, "/cargo"), (Some(self.cache.folder().to_owned()), "/mdle")];
+        for (place, name) in places {
+            let Some(place) = place.filter(|place| place.parent().is_some()) else { continue };
+            flags.push("\x1f--remap-path-prefix=");
+            flags.push(place);
+            flags.push("=");
+            flags.push(name);
+        }
+        flags
+    }
+}
+
+/// `tool` in `folder`, without what this process's environment says to cargo and rustc.
+pub(super) fn command(tool: &str, folder: &Path) -> Command {
+    let mut command = Command::new(tool);
+    // Not where the user is: a `.cargo/config.toml` or a `rust-toolchain.toml` there is not about plans.
+    command.current_dir(folder).stdin(Stdio::null());
+    for (name, _) in env::vars_os().filter(|(name, _)| is_about_builds(name)) {
+        command.env_remove(name);
+    }
+    command
+}
+
+/// Runs `command`, whose program is `tool`, to its end.
+pub(super) fn output(mut command: Command, tool: &'static str) -> Result<Output, LinkError> {
+    command.output().map_err(|error| unusable(tool, &error))
+}
+
+/// Whether cargo or rustc would let this variable change what they build. `RUSTUP_TOOLCHAIN` stays: it is how one says
+/// which Rust is meant.
+fn is_about_builds(name: &OsStr) -> bool {
+    let Some(name) = name.to_str() else { return false };
+    let own = name == "CARGO" || name.starts_with("CARGO_") || name.starts_with("__CARGO_");
+    let kept = KEPT.iter().any(|kept| name.starts_with(kept));
+    (own && !kept) || name == "RUSTC" || name.starts_with("RUSTC_") || matches!(name, "RUSTFLAGS" | "RUSTDOCFLAGS")
+}
+
+/// The program could not be run.
+fn unusable(tool: &'static str, error: &io::Error) -> LinkError {
+    let missing = error.kind() == io::ErrorKind::NotFound;
+    let why = if missing { "it is not there".to_owned() } else { format!("it cannot be run ({error})") };
+    LinkError::NoRust { tool, why }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::ffi::OsStr;
+
+    use super::{is_about_builds, version};
+
+    #[test]
+    fn what_changes_a_build_is_removed_and_the_rest_kept() {
+        for name in ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "CARGO_TARGET_DIR", "CARGO_BUILD_TARGET", "RUSTC_WRAPPER"]
+        {
+            assert!(is_about_builds(OsStr::new(name)), "{name}");
+        }
+        for name in ["CARGO", "CARGO_PROFILE_RELEASE_LTO", "CARGO_MANIFEST_DIR", "RUSTC", "RUSTC_WORKSPACE_WRAPPER"] {
+            assert!(is_about_builds(OsStr::new(name)), "{name}");
+        }
+        for name in ["CARGO_HOME", "CARGO_HTTP_PROXY", "CARGO_NET_OFFLINE", "CARGO_BUILD_JOBS", "RUSTUP_TOOLCHAIN"] {
+            assert!(!is_about_builds(OsStr::new(name)), "{name}");
+        }
+        assert!(!is_about_builds(OsStr::new("PATH")));
+    }
+
+    #[test]
+    fn versions_are_compared_as_numbers() {
+        assert!(version("1.100.0-nightly") > version("1.95"));
+        assert!(version("1.80.1") < version("1.95"));
+    }
+}

@@ -1,0 +1,145 @@
+//! What cargo says while it builds, read line by line.
+
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ExitStatus};
+use std::thread;
+
+use serde::Deserialize;
+
+use super::Progress;
+
+/// What came of a run of cargo.
+#[derive(Debug)]
+pub(super) struct Run {
+    /// How it ended.
+    pub(super) status: ExitStatus,
+    /// Whether it might use the network.
+    pub(super) online: bool,
+    /// Whether it came as far as to compile, or to see that all is compiled.
+    pub(super) began: bool,
+    /// The plan's executable, if there is one.
+    pub(super) executable: Option<Executable>,
+    /// What rustc says, warnings included, in order.
+    pub(super) complaints: Vec<Complaint>,
+    /// What cargo says.
+    pub(super) stderr: String,
+}
+
+/// An executable in the cache.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Executable {
+    pub(super) path: PathBuf,
+    /// Whether it was there already.
+    pub(super) fresh: bool,
+}
+
+/// What rustc says of a package.
+#[derive(Debug)]
+pub(super) struct Complaint {
+    /// The package's manifest.
+    pub(super) manifest: PathBuf,
+    /// Whether it stops the build.
+    pub(super) is_error: bool,
+    /// As for a terminal without colours.
+    pub(super) text: String,
+}
+
+impl Run {
+    /// Whether it ended because cargo was not allowed to fetch something: cargo then names the option.
+    pub(super) fn lacks_libraries(&self) -> bool {
+        !self.status.success() && !self.began && self.stderr.contains("--offline")
+    }
+
+    /// Everything that was said.
+    pub(super) fn text(&self) -> String {
+        let mut text: String = self.complaints.iter().map(|complaint| complaint.text.as_str()).collect();
+        text.push_str(&self.stderr);
+        text
+    }
+}
+
+/// Follows cargo, which may use the network if it is `online`, to its end; `plan` is the manifest of the plan.
+pub(super) fn follow(
+    mut child: Child,
+    online: bool,
+    plan: &Path,
+    progress: &mut dyn FnMut(Progress),
+) -> io::Result<Run> {
+    let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
+    // Both pipes must be emptied, or cargo waits for us.
+    let said = thread::spawn(move || {
+        let mut said = Vec::new();
+        // What was read before an error is good enough for a message.
+        let _ = stderr.map(|mut stderr| stderr.read_to_end(&mut said));
+        String::from_utf8_lossy(&said).into_owned()
+    });
+    let mut log = Log { plan, executable: None, complaints: Vec::new(), artifacts: 0, compiled: 0 };
+    for line in stdout.map(BufReader::new).into_iter().flat_map(|lines| lines.split(b'\n')) {
+        let Ok(line) = line else { break };
+        // A line that is no message, such as a compiler wrapper's, is none of ours.
+        if let Ok(line) = serde_json::from_slice(&line) {
+            log.take(line, progress);
+        }
+    }
+    let status = child.wait()?;
+    let stderr = said.join().unwrap_or_default();
+    let began = log.artifacts > 0 || !log.complaints.is_empty();
+    Ok(Run { status, online, began, executable: log.executable, complaints: log.complaints, stderr })
+}
+
+/// What was read so far.
+struct Log<'a> {
+    plan: &'a Path,
+    executable: Option<Executable>,
+    complaints: Vec<Complaint>,
+    artifacts: usize,
+    compiled: usize,
+}
+
+impl Log<'_> {
+    fn take(&mut self, line: Line, progress: &mut dyn FnMut(Progress)) {
+        match line {
+            Line::Artifact { manifest_path, target, executable, fresh } => {
+                self.artifacts += 1;
+                if manifest_path == self.plan {
+                    self.executable = executable.map(|path| Executable { path, fresh });
+                } else if !fresh && !target.kind.iter().any(|kind| kind == "custom-build") {
+                    self.compiled += 1;
+                    progress(Progress::Compiling(self.compiled));
+                }
+            }
+            Line::Message { manifest_path, message } => self.complaints.push(Complaint {
+                manifest: manifest_path,
+                is_error: message.level.starts_with("error"),
+                text: message.rendered.unwrap_or_default(),
+            }),
+            Line::Other => {}
+        }
+    }
+}
+
+/// A line of cargo's.
+#[derive(Debug, Deserialize)]
+#[serde(tag = "reason")]
+enum Line {
+    #[serde(rename = "compiler-artifact")]
+    Artifact { manifest_path: PathBuf, target: Target, executable: Option<PathBuf>, fresh: bool },
+    #[serde(rename = "compiler-message")]
+    Message { manifest_path: PathBuf, message: Said },
+    #[serde(other)]
+    Other,
+}
+
+/// What was compiled.
+#[derive(Debug, Deserialize)]
+struct Target {
+    kind: Vec<String>,
+}
+
+/// What rustc said.
+#[derive(Debug, Deserialize)]
+struct Said {
+    level: String,
+    rendered: Option<String>,
+}

@@ -1,0 +1,113 @@
+//! From emitted Rust to a static executable: a cargo package around it, and cargo to build that.
+//!
+//! Everything happens in the [`Cache`]. The sources that executables are built from are part of mdlec and unpacked
+//! there once, so that an installed mdlec needs no checkout and, when cargo has fetched the libraries once, no network:
+//!
+//! ```text
+//! lock                    held while one mdlec works
+//! src-VERSION-HASH/       the unpacked sources
+//! target/                 what cargo has compiled, for all plans
+//! plans/plan-NAME-HASH/   the package of a plan; HASH is of the plan file's path, the plan and the target
+//! ```
+//!
+//! Versions are those of mdlec's own lock file, flags are set here whatever the environment says, and the paths of the
+//! cache, of cargo's home and of the user's home do not get into the executable.
+#![allow(clippy::disallowed_methods, reason = "what is done here is I/O")]
+
+mod blame;
+mod cache;
+mod cargo;
+mod error;
+mod messages;
+mod output;
+mod package;
+mod progress;
+mod sources;
+mod target;
+
+use std::path::Path;
+
+pub use cache::Cache;
+pub use error::LinkError;
+pub use output::write_whole;
+pub use progress::Progress;
+pub use sources::{Alphabet, alphabets};
+pub use target::TargetCrate;
+
+use cargo::{Job, Toolchain};
+use output::Destination;
+use sources::Sources;
+
+/// A plan as Rust.
+#[derive(Debug, Clone, Copy)]
+pub struct Package<'a> {
+    /// The plan's name, which the executable shows.
+    pub plan_name: &'a str,
+    /// The file that it was written in.
+    pub plan_file: &'a Path,
+    /// The type that implements the plan, in the emitted text.
+    pub plan_type: &'a str,
+    /// The emitted text, without inner attributes.
+    pub rust: &'a str,
+    /// The robot's crate.
+    pub target: &'a TargetCrate<'a>,
+}
+
+/// An executable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Built {
+    /// Its bytes.
+    pub size: u64,
+    /// Whether it was in the cache already, from an earlier build of the same text.
+    pub fresh: bool,
+}
+
+/// Builds the executable of `package` and puts it at `output`, whole or not at all.
+///
+/// # Errors
+/// When `output` cannot be written, which is seen before the build; when the target's crate does not compile; when this
+/// machine lacks what a build needs; when mdlec emitted nonsense.
+pub fn build(
+    cache: &Cache,
+    package: &Package<'_>,
+    output: &Path,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Built, LinkError> {
+    let destination = Destination::check(output, Some(package.plan_file))?;
+    let locked = cache.lock(progress)?;
+    let toolchain = Toolchain::find(cache.folder())?;
+    let sources = Sources::unpack(cache)?;
+    let dependencies = target::dependencies(package.target, &sources, cache)?;
+    let plan = package::write(cache, package, &dependencies)?;
+    let job = Job { cache, toolchain: &toolchain, plan: &plan };
+    let run = job.build(progress)?;
+    let executable = match &run.executable {
+        Some(executable) if run.status.success() => executable,
+        Some(_) | None => return Err(blame::fault(&job, &run, package.target, &dependencies)),
+    };
+    let size = destination.copy(&executable.path)?;
+    // Until here: another build of this plan would write over the executable.
+    drop(locked);
+    Ok(Built { size, fresh: executable.fresh })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::path::{Path, PathBuf};
+
+    use super::Cache;
+
+    /// An empty folder in cargo's own, for the test of this name.
+    pub(super) fn folder(name: &str) -> PathBuf {
+        let folder = Path::new(env!("OUT_DIR")).join("link-tests").join(name);
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).unwrap();
+        folder.canonicalize().unwrap()
+    }
+
+    /// An empty cache for the test of this name.
+    pub(super) fn cache(name: &str) -> Cache {
+        Cache::at(&folder(name)).unwrap()
+    }
+}

@@ -1,0 +1,141 @@
+//! The place of the executable: looked at before the build, written at once after it.
+
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use super::LinkError;
+
+/// Writes `bytes` to the file `output`, whole or not at all; into a device as it comes.
+///
+/// # Errors
+/// When `output` is a folder or cannot be written.
+pub fn write_whole(output: &Path, bytes: &[u8]) -> Result<(), LinkError> {
+    match Destination::check(output, None) {
+        Ok(destination) => destination.put(|new| fs::write(new, bytes)),
+        Err(LinkError::OutputIsSpecial(_)) => {
+            fs::write(output, bytes).map_err(|error| LinkError::output(output, error))
+        }
+        Err(error) => Err(error),
+    }
+}
+
+/// A file that can be written, or written over.
+#[derive(Debug)]
+pub(super) struct Destination {
+    /// As the caller wrote it.
+    shown: PathBuf,
+    /// Behind symbolic links: a rename would replace the link.
+    path: PathBuf,
+}
+
+impl Destination {
+    /// Looks whether a file can be put at `output`, so that nobody waits for a build in vain; it must not be `plan`.
+    pub(super) fn check(output: &Path, plan: Option<&Path>) -> Result<Self, LinkError> {
+        let shown = output.to_owned();
+        let path = match fs::metadata(output) {
+            Ok(found) if found.is_dir() => return Err(LinkError::OutputIsFolder(shown)),
+            Ok(found) if !found.is_file() => return Err(LinkError::OutputIsSpecial(shown)),
+            Ok(_) => output.canonicalize().map_err(|error| LinkError::output(output, error))?,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => output.to_owned(),
+            Err(error) => return Err(LinkError::output(output, error)),
+        };
+        if plan.and_then(|plan| plan.canonicalize().ok()).is_some_and(|plan| plan == path) {
+            return Err(LinkError::OutputIsPlan(shown));
+        }
+        if path.file_name().is_none() || output.as_os_str().as_encoded_bytes().ends_with(b"/") {
+            return Err(LinkError::OutputIsFolder(shown));
+        }
+        let folder = folder(&path);
+        if !folder.is_dir() {
+            return Err(LinkError::OutputFolderMissing(folder.to_owned()));
+        }
+        let destination = Self { shown, path };
+        // Nothing stays behind: a signal in the build must not leave a file.
+        let trial = destination.beside();
+        let tried = File::create_new(&trial).and_then(|_| fs::remove_file(&trial));
+        tried.map_err(|error| LinkError::output(&destination.shown, error))?;
+        Ok(destination)
+    }
+
+    /// Puts a copy of `executable` there, with its permissions, and says how large it is.
+    pub(super) fn copy(&self, executable: &Path) -> Result<u64, LinkError> {
+        self.put(|new| fs::copy(executable, new))
+    }
+
+    /// Has `write` write a file beside it, and renames that.
+    fn put<T>(&self, write: impl FnOnce(&Path) -> io::Result<T>) -> Result<T, LinkError> {
+        let new = self.beside();
+        let written = write(&new).and_then(|written| fs::rename(&new, &self.path).map(|()| written));
+        written.map_err(|error| {
+            // It may not be there; the first error is the one that counts.
+            let _ = fs::remove_file(&new);
+            LinkError::output(&self.shown, error)
+        })
+    }
+
+    /// A new name in the same folder.
+    fn beside(&self) -> PathBuf {
+        static COUNT: AtomicU32 = AtomicU32::new(0);
+        let mut name = OsString::from(".");
+        name.push(self.path.file_name().unwrap_or_default());
+        name.push(format!(".{}-{}.new", process::id(), COUNT.fetch_add(1, Ordering::Relaxed)));
+        folder(&self.path).join(name)
+    }
+}
+
+/// The folder of a file, also when only its name is given.
+fn folder(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::path::Path;
+
+    use super::super::LinkError;
+    use super::super::tests::folder;
+    use super::{Destination, write_whole};
+
+    #[test]
+    fn a_place_that_is_no_file_is_refused_before_the_build() {
+        let folder = folder("refused");
+        let check = |output: &Path| Destination::check(output, Some(&folder.join("nap.mdle"))).unwrap_err();
+        fs::write(folder.join("nap.mdle"), "").unwrap();
+        assert!(matches!(check(&folder), LinkError::OutputIsFolder(_)));
+        assert!(matches!(check(&folder.join("none/nap")), LinkError::OutputFolderMissing(_)));
+        assert!(matches!(check(&folder.join("nap/")), LinkError::OutputIsFolder(_)));
+        assert!(matches!(check(Path::new("/dev/null")), LinkError::OutputIsSpecial(_)));
+        assert!(matches!(check(&folder.join("nap.mdle")), LinkError::OutputIsPlan(_)));
+        assert!(matches!(check(&folder.join("nap.mdle/nap")), LinkError::OutputRefused { .. }));
+        assert_eq!(check(&folder).exit_status(), 2);
+    }
+
+    #[test]
+    fn only_the_whole_file_appears() {
+        let folder = folder("whole");
+        let output = folder.join("nap");
+        Destination::check(&output, None).unwrap();
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 0);
+        write_whole(&output, b"one").unwrap();
+        write_whole(&output, b"two").unwrap();
+        assert_eq!(fs::read(&output).unwrap(), b"two");
+        let destination = Destination::check(&output, None).unwrap();
+        destination.copy(&folder.join("missing")).unwrap_err();
+        assert_eq!(fs::read(&output).unwrap(), b"two");
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_link_is_followed() {
+        let folder = folder("linked");
+        fs::write(folder.join("real"), "old").unwrap();
+        std::os::unix::fs::symlink("real", folder.join("link")).unwrap();
+        write_whole(&folder.join("link"), b"new").unwrap();
+        assert_eq!(fs::read(folder.join("real")).unwrap(), b"new");
+    }
+}

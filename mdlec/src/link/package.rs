@@ -1,0 +1,161 @@
+//! The cargo package around a plan's emitted Rust.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::cache::write_if_changed;
+use super::target::Dependencies;
+use super::{Cache, LinkError, Package};
+
+/// The package of a plan, as written.
+#[derive(Debug)]
+pub(super) struct PlanPackage {
+    /// Its folder, whose name is also that of the package and of its executable.
+    pub(super) folder: PathBuf,
+}
+
+impl PlanPackage {
+    /// Its manifest.
+    pub(super) fn manifest(&self) -> PathBuf {
+        self.folder.join("Cargo.toml")
+    }
+
+    /// Keeps what was said for a report.
+    pub(super) fn keep(&self, text: &str) -> Result<PathBuf, LinkError> {
+        let log = self.folder.join("build.log");
+        write_if_changed(&log, text)?;
+        Ok(log)
+    }
+}
+
+/// Writes the package of `package`; what has not changed since the last time keeps its time, by which cargo goes.
+pub(super) fn write(
+    cache: &Cache,
+    package: &Package<'_>,
+    dependencies: &Dependencies,
+) -> Result<PlanPackage, LinkError> {
+    let name = name(package, &dependencies.identity);
+    let folder = cache.folder().join("plans").join(&name);
+    write_if_changed(&folder.join("Cargo.toml"), &manifest(&name, dependencies)?)?;
+    write_if_changed(&folder.join("src/main.rs"), &main(package))?;
+    write_if_changed(&folder.join("src/plan.rs"), package.rust)?;
+    // Cargo adds the plan's own package to the lock file and drops what the plan does not need.
+    if write_if_changed(&folder.join("seed.lock"), &dependencies.lock)? {
+        let lock = folder.join("Cargo.lock");
+        fs::write(&lock, &dependencies.lock).map_err(|error| LinkError::cache(&lock, error))?;
+    }
+    Ok(PlanPackage { folder })
+}
+
+/// A name that a person recognises and no other plan has: all executables are built in one folder.
+fn name(package: &Package<'_>, target: &str) -> String {
+    let file = package.plan_file.canonicalize().unwrap_or_else(|_| package.plan_file.to_owned());
+    let mut hasher = blake3::Hasher::new();
+    for part in [file.as_os_str().as_encoded_bytes(), package.plan_name.as_bytes(), target.as_bytes()] {
+        hasher.update(&part.len().to_le_bytes()).update(part);
+    }
+    let stem = package.plan_file.file_stem().unwrap_or_default().to_string_lossy();
+    let stem: String = stem.chars().take(40).map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    format!("plan-{stem}-{}", &hasher.finalize().to_hex()[..12])
+}
+
+/// `Cargo.toml`.
+fn manifest(name: &str, dependencies: &Dependencies) -> Result<String, LinkError> {
+    let mut text = format!(
+        "# Made by mdlec, and made again whenever the plan is compiled.\n\
+         [package]\nname = {}\nversion = \"0.0.0\"\nedition = \"2024\"\npublish = false\n\n\
+         [workspace]\n\n[dependencies]\n",
+        quoted(name)
+    );
+    for (package, folder) in &dependencies.packages {
+        let _ = writeln!(text, "{} = {{ path = {} }}", quoted(package), quoted(utf8(folder)?));
+    }
+    for (source, package, folder) in &dependencies.patches {
+        let (source, package, folder) = (quoted(source), quoted(package), quoted(utf8(folder)?));
+        let _ = write!(text, "\n[patch.{source}.{package}]\npath = {folder}\n");
+    }
+    text.push_str("\n[profile.release]\ncodegen-units = 1\nstrip = \"symbols\"\n");
+    Ok(text)
+}
+
+/// `src/main.rs`.
+fn main(package: &Package<'_>) -> String {
+    let (target, plan, name) = (package.target.crate_name(), package.plan_type, package.plan_name);
+    format!(
+        "//! Made by mdlec: runs the plan on its target.\n\n\
+         // Included, as a build script's output is: emitted text must be fit for both.\n\
+         #[forbid(unsafe_code)]\n\
+         mod plan {{\n    include!(\"plan.rs\");\n}}\n\n\
+         fn main() -> ::std::process::ExitCode {{\n    \
+             ::mdle_host::run::<::{target}::alphabet::Target, _>({name:?}, plan::{plan}::new())\n\
+         }}\n"
+    )
+}
+
+/// A path as a manifest can hold it.
+pub(super) fn utf8(path: &Path) -> Result<&str, LinkError> {
+    path.to_str().ok_or_else(|| LinkError::NotUtf8(path.to_owned()))
+}
+
+/// A TOML string: JSON's escapes are among TOML's.
+fn quoted(text: &str) -> String {
+    serde_json::Value::from(text).to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::path::{Path, PathBuf};
+
+    use super::super::tests::cache;
+    use super::super::{Package, TargetCrate};
+    use super::{Dependencies, manifest, name, write};
+
+    const TARGET: TargetCrate<'static> = TargetCrate::Builtin { name: "sim", crate_name: "mdle_sim" };
+
+    fn package<'a>(plan_file: &'a str, rust: &'a str) -> Package<'a> {
+        Package { plan_name: "Nap", plan_file: Path::new(plan_file), plan_type: "Nap", rust, target: &TARGET }
+    }
+
+    fn dependencies() -> Dependencies {
+        Dependencies {
+            packages: vec![("mdle-sim".to_owned(), PathBuf::from("/a \"b\"/sim"))],
+            patches: vec![("crates-io".to_owned(), "mdle-host".to_owned(), PathBuf::from("/src/host"))],
+            lock: "version = 4\n".to_owned(),
+            identity: "sim".to_owned(),
+            ours: PathBuf::from("/src"),
+        }
+    }
+
+    #[test]
+    fn the_manifest_stands_alone() {
+        insta::assert_snapshot!(manifest("plan-nap-0", &dependencies()).unwrap());
+    }
+
+    #[test]
+    fn the_program_runs_the_plan_on_its_target() {
+        insta::assert_snapshot!(super::main(&package("nap.mdle", "")));
+    }
+
+    #[test]
+    fn a_name_is_one_that_cargo_takes() {
+        let name = |file| name(&package(file, ""), "sim");
+        assert!(name("plans/größe 2.mdle").starts_with("plan-gr__e_2-"));
+        assert!(name("-").starts_with("plan-_-"));
+        assert_ne!(name("left/nap.mdle"), name("right/nap.mdle"));
+        assert_ne!(name("nap.mdle"), super::name(&package("nap.mdle", ""), "scout"));
+    }
+
+    #[test]
+    fn what_has_not_changed_keeps_its_time() {
+        let cache = cache("package");
+        let file = |name| write(&cache, &package("nap.mdle", "mod a {}"), &dependencies()).unwrap().folder.join(name);
+        let time = |name| fs::metadata(file(name)).unwrap().modified().unwrap();
+        assert_eq!(time("src/plan.rs"), time("src/plan.rs"));
+        assert_eq!(fs::read_to_string(file("src/plan.rs")).unwrap(), "mod a {}");
+        // Cargo's own lock file stays as long as it grows from the same one.
+        fs::write(file("Cargo.lock"), "grown").unwrap();
+        assert_eq!(fs::read_to_string(file("Cargo.lock")).unwrap(), "grown");
+    }
+}

@@ -1,0 +1,38 @@
+//! What a build tells whoever waits for it.
+
+use std::fmt;
+
+/// How far a build is; a build of which nothing is left to do but the plan tells nothing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Progress {
+    /// Another mdlec is building; this one goes on after it.
+    Waiting,
+    /// Libraries are not on this machine yet and are fetched.
+    Fetching,
+    /// This many crates of what the plan is built on are compiled, counted from 1.
+    Compiling(usize),
+}
+
+impl Progress {
+    /// Whether it says something new, and not only a higher number.
+    #[must_use]
+    pub fn is_first(&self) -> bool {
+        match self {
+            Self::Waiting | Self::Fetching | Self::Compiling(1) => true,
+            Self::Compiling(_) => false,
+        }
+    }
+}
+
+impl fmt::Display for Progress {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Waiting => f.write_str("waiting for another mdlec to finish its build"),
+            Self::Fetching => f.write_str("fetching the libraries that plans are built on; only the first time"),
+            Self::Compiling(1) => f.write_str("compiling what the plan is built on; only the first time takes long"),
+            Self::Compiling(done) => {
+                write!(f, "compiling what the plan is built on; only the first time takes long ({done} crates)")
+            }
+        }
+    }
+}

@@ -1,0 +1,7 @@
+//! `mdlec`, the compiler of MDLe plans.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    mdlec::cli::main()
+}

@@ -1,0 +1,282 @@
+//! Arguments against a signature: count, type, unit, range (language, section 5, E03xx and E0402).
+
+use super::{Decimal, Value};
+use crate::alphabet::{Declaration, DeclarationKind, Kind, Param, Unit};
+use crate::diagnostic::{Code, Diagnostic, Span};
+use crate::syntax::tree::{Arg, Call, Number};
+
+/// The largest whole number that an `f64` tells from its neighbours.
+const WHOLE: f64 = 9_007_199_254_740_992.0;
+
+/// The arguments of a quark with the quark text's words for them.
+pub(super) struct Arguments {
+    pub(super) values: Vec<Value>,
+    pub(super) words: Vec<String>,
+}
+
+/// Fits the arguments of `call` to `declaration`.
+pub(super) fn fit(call: &Call, declaration: &Declaration, robot: &str) -> Result<Arguments, Vec<Diagnostic>> {
+    let params = &declaration.params;
+    let needed = params.iter().filter(|param| param.default.is_none()).count();
+    if call.args.len() < needed || call.args.len() > params.len() {
+        return Err(vec![wrong_count(call, declaration, needed)]);
+    }
+    let mut arguments = Arguments { values: Vec::new(), words: Vec::new() };
+    let mut found = Vec::new();
+    let fitting = Fitting { declaration, robot };
+    for (index, param) in params.iter().enumerate() {
+        let fitted = match (call.args.get(index), &param.default) {
+            (Some(arg), _) => fitting.argument(arg, param),
+            (None, Some(digits)) => {
+                let number = Number { digits: digits.clone(), unit: None, span: call.span };
+                fitting.argument(&Arg::Number(number), param)
+            }
+            (None, None) => continue,
+        };
+        match fitted {
+            Ok((value, words)) => {
+                arguments.values.push(value);
+                arguments.words.push(words);
+            }
+            Err(diagnostic) => found.push(*diagnostic),
+        }
+    }
+    if found.is_empty() { Ok(arguments) } else { Err(found) }
+}
+
+/// How a quark is written: `go v ω`, with units.
+#[must_use]
+pub fn signature(declaration: &Declaration) -> String {
+    let mut text = declaration.name.clone();
+    for param in &declaration.params {
+        let unit = param.unit.map(|unit| format!(" in {}", unit.name)).unwrap_or_default();
+        let what = match param.kind {
+            Kind::Bits(length) => format!("{length} bits"),
+            Kind::Sonar => "sonar 0 to 15".into(),
+            Kind::Module => "module".into(),
+            Kind::Length
+            | Kind::Speed
+            | Kind::Angle
+            | Kind::AngularRate
+            | Kind::Time
+            | Kind::Voltage
+            | Kind::Frequency
+            | Kind::Number
+            | Kind::Integer
+            | Kind::Count
+            | Kind::Robot
+            | Kind::File => format!("{}{unit}", param.name),
+        };
+        let open = if param.default.is_some() { ("[", "]") } else { ("<", ">") };
+        text += &format!(" {}{what}{}", open.0, open.1);
+    }
+    text
+}
+
+type Fitted = Result<(Value, String), Box<Diagnostic>>;
+
+struct Fitting<'a> {
+    declaration: &'a Declaration,
+    robot: &'a str,
+}
+
+impl Fitting<'_> {
+    fn argument(&self, arg: &Arg, param: &Param) -> Fitted {
+        match (arg, param.kind) {
+            (Arg::Number(number), Kind::Bits(length)) => bits(number, length),
+            (
+                Arg::Number(number),
+                Kind::Length | Kind::Speed | Kind::Angle | Kind::AngularRate | Kind::Time | Kind::Voltage,
+            )
+            | (Arg::Number(number), Kind::Frequency | Kind::Number) => self.quantity(number, param),
+            (Arg::Number(number), Kind::Integer | Kind::Count | Kind::Sonar) => self.whole(number, param),
+            (Arg::Infinity(_), Kind::Time | Kind::Count) => Ok((Value::Infinity, "inf".into())),
+            (Arg::Name(name), Kind::Robot | Kind::File)
+            | (Arg::String(name), Kind::File)
+            | (Arg::Module(name), Kind::Module) => {
+                let words = match arg {
+                    Arg::Module(_) => format!("{} module", name.node),
+                    Arg::String(_) => format!("{:?}", name.node),
+                    Arg::Name(_) | Arg::Number(_) | Arg::Infinity(_) => name.node.clone(),
+                };
+                Ok((Value::Name(param.kind, name.node.clone()), words))
+            }
+            (Arg::Name(name), Kind::Module) => Err(self
+                .mismatch(arg, param, format!("found the name `{}`", name.node))
+                .help(format!("if it is a module, say so: `{} module`", name.node))
+                .into()),
+            (Arg::Number(_), Kind::Robot | Kind::Module | Kind::File) => {
+                Err(self.mismatch(arg, param, "found a number".into()).into())
+            }
+            (Arg::Infinity(_), _) => Err(self.mismatch(arg, param, "found infinity".into()).into()),
+            (Arg::Name(name), _) => Err(self.mismatch(arg, param, format!("found the name `{}`", name.node)).into()),
+            (Arg::String(_), _) => Err(self.mismatch(arg, param, "found a text in quotes".into()).into()),
+            (Arg::Module(_), _) => Err(self.mismatch(arg, param, "found a module".into()).into()),
+        }
+    }
+
+    fn mismatch(&self, arg: &Arg, param: &Param, found: String) -> Diagnostic {
+        let message = format!("expected {}, {found}", param.kind.words());
+        let here = format!("`{}` of `{}` is {}", param.name, self.declaration.name, param.kind.words());
+        Diagnostic::new(Code::E0302, message, arg.span(), here)
+    }
+
+    fn quantity(&self, number: &Number, param: &Param) -> Fitted {
+        let Some(decimal) = Decimal::parse(&number.digits) else { return Err(not_a_number(number).into()) };
+        let Some(default) = param.unit else {
+            return match &number.unit {
+                Some(_) => Err(self.wrong_unit(number, param).into()),
+                None => {
+                    let si = self.in_range(number, param, decimal.to_f64())?;
+                    let words = decimal.to_string();
+                    Ok((Value::Quantity { kind: param.kind, exact: decimal, family: "", si }, words))
+                }
+            };
+        };
+        let unit = match &number.unit {
+            None => default,
+            Some(name) => match Unit::from_name(name) {
+                Some(unit) if unit.kind == param.kind => unit,
+                Some(_) | None => return Err(self.wrong_unit(number, param).into()),
+            },
+        };
+        let exact = decimal.scaled(unit.factor, unit.exponent);
+        let in_default = if unit == default { decimal.to_f64() } else { converted(&exact, unit, default) };
+        self.in_range(number, param, in_default)?;
+        let words = if unit == default { decimal.to_string() } else { in_default.to_string() };
+        let si = exact.to_f64() * unit.family_to_si();
+        Ok((Value::Quantity { kind: param.kind, exact, family: unit.family, si }, words))
+    }
+
+    fn whole(&self, number: &Number, param: &Param) -> Fitted {
+        if number.unit.is_some() {
+            return Err(self.wrong_unit(number, param).into());
+        }
+        let Some(decimal) = Decimal::parse(&number.digits).filter(Decimal::is_whole) else {
+            let message = format!("expected {}, found `{}`", param.kind.words(), number.digits);
+            return Err(Diagnostic::new(Code::E0302, message, number.span, "not a whole number").into());
+        };
+        let text = decimal.to_string();
+        let value = self.in_range(number, param, decimal.to_f64())?;
+        let is_sonar = param.kind == Kind::Sonar;
+        let allowed = if is_sonar {
+            0.0..=15.0
+        } else if param.kind == Kind::Count {
+            1.0..=WHOLE
+        } else {
+            -WHOLE..=WHOLE
+        };
+        let Some(whole) = text.parse::<i64>().ok().filter(|_| allowed.contains(&value)) else {
+            let message = format!("expected {}, found `{}`", param.kind.words(), number.digits);
+            let report = Diagnostic::new(Code::E0304, message, number.span, "out of range");
+            let help = "sonar 0 looks ahead, 4 left, 8 back, 12 right";
+            return Err(if is_sonar { report.help(help) } else { report }.into());
+        };
+        let value = match (param.kind, u8::try_from(whole)) {
+            (Kind::Sonar, Ok(sonar)) => Value::Sonar(sonar),
+            _ => Value::Integer(whole),
+        };
+        Ok((value, text))
+    }
+
+    /// The value again, if it is finite and in the parameter's range, which is in its own unit.
+    fn in_range(&self, number: &Number, param: &Param, value: f64) -> Result<f64, Box<Diagnostic>> {
+        let unit = param.unit.map(|unit| format!(" {}", unit.name)).unwrap_or_default();
+        if !value.is_finite() {
+            let message = format!("`{}` is too large a number", number.digits);
+            return Err(Diagnostic::new(Code::E0304, message, number.span, "no robot can do that").into());
+        }
+        let Some((least, most)) = param.range.filter(|(least, most)| value < *least || value > *most) else {
+            return Ok(value);
+        };
+        let quark = &self.declaration.name;
+        let here = format!("`{}` is {value}{unit}", param.name);
+        if self.declaration.of_target {
+            let message = format!(
+                "`{}` cannot do this: `{quark}` takes `{}` from {least} to {most}{unit}",
+                self.robot, param.name
+            );
+            return Err(Diagnostic::new(Code::E0402, message, number.span, here).into());
+        }
+        let message = format!("`{quark}` takes `{}` from {least} to {most}{unit}", param.name);
+        Err(Diagnostic::new(Code::E0304, message, number.span, here).into())
+    }
+
+    fn wrong_unit(&self, number: &Number, param: &Param) -> Diagnostic {
+        let found = number.unit.as_deref().unwrap_or_default();
+        let what = Unit::from_name(found).map_or_else(|| format!("`{found}`"), |unit| unit.kind.words());
+        let message = format!("expected {}, found {what}", param.kind.words());
+        let here = format!("`{}` of `{}` is {}", param.name, self.declaration.name, param.kind.words());
+        let units: Vec<_> = Unit::ALL.iter().filter(|unit| unit.kind == param.kind).map(|unit| unit.name).collect();
+        let report = Diagnostic::new(Code::E0303, message, number.span, here);
+        match units.split_last() {
+            Some((last, [])) => report.help(format!("its unit is {last}")),
+            Some((last, others)) => report.help(format!("its unit is {} or {last}", others.join(", "))),
+            None => report.help("write it without a unit"),
+        }
+    }
+}
+
+fn wrong_count(call: &Call, declaration: &Declaration, needed: usize) -> Diagnostic {
+    let most = declaration.params.len();
+    let takes = match (needed, most) {
+        (_, 0) => "no arguments".to_owned(),
+        (1, 1) => "one argument".to_owned(),
+        (least, most) if least == most => format!("{most} arguments"),
+        (least, most) => format!("{least} to {most} arguments"),
+    };
+    let found = match call.args.len() {
+        0 => "found none".to_owned(),
+        count => format!("found {count}"),
+    };
+    let span = match call.args.get(most) {
+        Some(first_too_many) => first_too_many.span(),
+        None => call.span,
+    };
+    let here = if call.args.len() > most { "one too many" } else { "something is missing" };
+    Diagnostic::new(Code::E0301, format!("`{}` takes {takes}, {found}", declaration.name), span, here)
+        .help(format!("write it as `{}`", signature(declaration)))
+}
+
+fn not_a_number(number: &Number) -> Diagnostic {
+    Diagnostic::new(Code::E0302, format!("`{}` is no number", number.digits), number.span, "")
+}
+
+fn bits(number: &Number, length: u32) -> Fitted {
+    let digits = number.digits.as_bytes();
+    let all_bits = digits.iter().all(|digit| matches!(digit, b'0' | b'1'));
+    if number.unit.is_some() || !all_bits || digits.len() != length as usize {
+        let message = format!("expected {length} digits 0 or 1, found `{}`", number.digits);
+        let here = match digits.iter().find(|digit| !matches!(digit, b'0' | b'1')) {
+            Some(digit) => format!("`{}` is not a bit", char::from(*digit)),
+            None if number.unit.is_some() => "bits have no unit".into(),
+            None => format!("these are {}", digits.len()),
+        };
+        let report = Diagnostic::new(Code::E0302, message, number.span, here);
+        return Err(report.help("the bits are front, left, back, right; 1 where an obstacle is near: `0100`").into());
+    }
+    let bits = digits.iter().map(|digit| *digit == b'1').collect();
+    Ok((Value::Bits(bits), number.digits.clone()))
+}
+
+/// An exact value of `from`'s family in the unit `to`, as the nearest `f64` to be had.
+fn converted(exact: &Decimal, from: Unit, to: Unit) -> f64 {
+    if from.family != to.family {
+        return exact.to_f64() * from.family_to_si() / to.family_to_si() / f64::from(to.factor);
+    }
+    exact.scaled(1, -to.exponent).to_f64() / f64::from(to.factor)
+}
+
+/// The kinds of quark in words.
+pub(super) fn kind_words(kind: DeclarationKind) -> &'static str {
+    match kind {
+        DeclarationKind::Control => "a law",
+        DeclarationKind::Interrupt => "an interrupt",
+        DeclarationKind::Signal => "a signal",
+    }
+}
+
+/// The place of a call's name, for messages about the name.
+pub(super) fn name_span(call: &Call) -> Span {
+    call.name.span
+}

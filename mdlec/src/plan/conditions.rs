@@ -1,0 +1,96 @@
+//! Conditions: quarks joined by AND, OR and NOT, and their text (semantics, section 2; language, section 7).
+
+use super::quarks::Quarks;
+use super::resolve::not_yet;
+use super::{Condition, Interrupt, Value};
+use crate::alphabet::DeclarationKind;
+use crate::diagnostic::{Diagnostic, Span};
+use crate::syntax::tree::{self, Call, ConditionNode};
+
+/// Resolves the condition of a scope at `scope`; without one it is the null interrupt.
+/// What cannot be resolved is reported and counts as null.
+pub(super) fn interrupt(
+    condition: Option<&tree::Condition>,
+    scope: Span,
+    quarks: &mut Quarks<'_>,
+    plans: &[&str],
+    found: &mut Vec<Diagnostic>,
+) -> Interrupt {
+    let Some(written) = condition else {
+        return Interrupt { condition: Condition::Null, text: "null".into(), removed: false, span: scope };
+    };
+    let condition = Resolving { quarks, plans, found }.condition(written);
+    let text = text(&condition, quarks, Precedence::Or);
+    Interrupt { condition, text, removed: false, span: written.span }
+}
+
+struct Resolving<'r, 'a> {
+    quarks: &'r mut Quarks<'a>,
+    plans: &'r [&'r str],
+    found: &'r mut Vec<Diagnostic>,
+}
+
+impl Resolving<'_, '_> {
+    fn condition(&mut self, written: &tree::Condition) -> Condition {
+        let later = match &written.node {
+            ConditionNode::Or(operands) => return Condition::Or(self.all(operands)),
+            ConditionNode::And(operands) => return Condition::And(self.all(operands)),
+            ConditionNode::Not(operand) => return Condition::Not(Box::new(self.condition(operand))),
+            ConditionNode::Call(call) => return self.call(call),
+            ConditionNode::Null | ConditionNode::Broken => return Condition::Null,
+            ConditionNode::Rising(_) => "`RISING`",
+            ConditionNode::Comparison { .. } => "comparing signals",
+            ConditionNode::After { .. } => "`after`",
+        };
+        self.found.push(not_yet(later, written.span));
+        Condition::Null
+    }
+
+    fn all(&mut self, operands: &[tree::Condition]) -> Vec<Condition> {
+        operands.iter().map(|operand| self.condition(operand)).collect()
+    }
+
+    fn call(&mut self, call: &Call) -> Condition {
+        match self.quarks.resolve(call, DeclarationKind::Interrupt, self.plans) {
+            Ok(id) => match self.quarks.get(id) {
+                Some(quark) if quark.name == "wait" => match quark.args.first() {
+                    Some(Value::Quantity { exact, .. }) => {
+                        Condition::Wait { nanos: exact.to_nanos().unwrap_or(u64::MAX), quark: id }
+                    }
+                    Some(_) | None => Condition::Null,
+                },
+                Some(_) | None => Condition::Quark(id),
+            },
+            Err(found) => {
+                self.found.extend(found);
+                Condition::Null
+            }
+        }
+    }
+}
+
+/// What binds how tightly, loosest first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Precedence {
+    Or,
+    And,
+    Test,
+}
+
+fn text(condition: &Condition, quarks: &Quarks<'_>, around: Precedence) -> String {
+    let join = |operands: &[Condition], word: &str, inside: Precedence| {
+        let operands: Vec<_> = operands.iter().map(|operand| text(operand, quarks, inside)).collect();
+        operands.join(word)
+    };
+    let (text, precedence) = match condition {
+        Condition::Null => ("null".to_owned(), Precedence::Test),
+        Condition::Quark(id) | Condition::Wait { quark: id, .. } => {
+            (quarks.get(*id).map(|quark| quark.text.clone()).unwrap_or_default(), Precedence::Test)
+        }
+        // An OR inside an OR needs no parentheses: the text is flattened, the condition stays as written.
+        Condition::Or(operands) => (join(operands, " OR ", Precedence::Or), Precedence::Or),
+        Condition::And(operands) => (join(operands, " AND ", Precedence::And), Precedence::And),
+        Condition::Not(operand) => (format!("NOT {}", text(operand, quarks, Precedence::Test)), Precedence::And),
+    };
+    if precedence < around { format!("({text})") } else { text }
+}

@@ -1,0 +1,169 @@
+//! Quarks by name: which declaration a call means, whether the robot has it, and one id for equal calls.
+
+use std::collections::BTreeMap;
+
+use super::arguments::{self, fit, kind_words, signature};
+use super::{Quark, QuarkId};
+use crate::alphabet::{Alphabet, Declaration, DeclarationKind};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::syntax::tree::{Arg, Call};
+
+/// The quarks met so far.
+#[derive(Debug)]
+pub(super) struct Quarks<'a> {
+    alphabet: &'a Alphabet,
+    met: Vec<Quark>,
+    ids: BTreeMap<(String, String), QuarkId>,
+}
+
+impl<'a> Quarks<'a> {
+    pub(super) fn new(alphabet: &'a Alphabet) -> Self {
+        Self { alphabet, met: Vec::new(), ids: BTreeMap::new() }
+    }
+
+    pub(super) fn alphabet(&self) -> &'a Alphabet {
+        self.alphabet
+    }
+
+    pub(super) fn get(&self, id: QuarkId) -> Option<&Quark> {
+        self.met.get(id.0 as usize)
+    }
+
+    pub(super) fn into_vec(self) -> Vec<Quark> {
+        self.met
+    }
+
+    /// The quark that `call` means where a quark of this kind has to stand.
+    pub(super) fn resolve(
+        &mut self,
+        call: &Call,
+        kind: DeclarationKind,
+        plans: &[&str],
+    ) -> Result<QuarkId, Vec<Diagnostic>> {
+        let name = call.name.node.as_str();
+        let declarations: Vec<&Declaration> = self.alphabet.declarations_of(name).collect();
+        let of_kind = |declaration: &&&Declaration| declaration.kind == kind;
+        let Some(first) = declarations.iter().find(of_kind).copied() else {
+            return Err(vec![match declarations.first() {
+                Some(other) => wrong_kind(call, other.kind, kind),
+                None => self.unknown(call, kind, plans),
+            }]);
+        };
+        // Declarations of one name differ in the kinds of their arguments: a module is told from a location by that.
+        let mut failed = None;
+        for (overload, declaration) in declarations.iter().enumerate().filter(|(_, found)| found.kind == kind) {
+            match fit(call, declaration, &self.alphabet.name) {
+                Ok(arguments) => {
+                    self.available(call, declaration)?;
+                    return Ok(self.intern(declaration, overload, arguments));
+                }
+                Err(found) => {
+                    let meant = std::ptr::eq(*declaration, first) || is_meant(call, declaration);
+                    if failed.is_none() || (meant && is_meant(call, declaration)) {
+                        failed = Some(found);
+                    }
+                }
+            }
+        }
+        Err(failed.unwrap_or_default())
+    }
+
+    fn intern(&mut self, declaration: &Declaration, overload: usize, arguments: arguments::Arguments) -> QuarkId {
+        let mut text = declaration.name.clone();
+        for word in &arguments.words {
+            text.push(' ');
+            text.push_str(word);
+        }
+        // Two texts may be equal although the values differ beyond the digits of an f64, and the other way round.
+        let key = (text.clone(), format!("{overload} {:?}", arguments.values));
+        let next = QuarkId(u32::try_from(self.met.len()).unwrap_or(u32::MAX));
+        let met = &mut self.met;
+        *self.ids.entry(key).or_insert_with(|| {
+            met.push(Quark {
+                name: declaration.name.clone(),
+                overload,
+                args: arguments.values,
+                completes: declaration.completes,
+                remembers: declaration.remembers,
+                text,
+            });
+            next
+        })
+    }
+
+    /// Whether the robot has what the quark needs.
+    fn available(&self, call: &Call, declaration: &Declaration) -> Result<(), Vec<Diagnostic>> {
+        let missing: Vec<String> = declaration
+            .needs
+            .iter()
+            .filter(|capability| !self.alphabet.has(capability))
+            .map(|capability| match capability.size {
+                Some(size) => format!("`{}[{size}]`", capability.name),
+                None => format!("`{}`", capability.name),
+            })
+            .collect();
+        if missing.is_empty() {
+            return Ok(());
+        }
+        let quark = &declaration.name;
+        let missing = missing.join(" and ");
+        let robot = &self.alphabet.name;
+        let message = format!("`{robot}` cannot run `{quark}`: it has no {missing}");
+        let here = format!("needs {missing}");
+        let help =
+            format!("choose a target that has {missing}; `mdlec check` without `--target` assumes one that has all");
+        Err(vec![Diagnostic::new(Code::E0401, message, call.span, here).help(help)])
+    }
+
+    fn unknown(&self, call: &Call, kind: DeclarationKind, plans: &[&str]) -> Diagnostic {
+        let name = call.name.node.as_str();
+        let what = match kind {
+            DeclarationKind::Control => "law",
+            DeclarationKind::Interrupt => "interrupt",
+            DeclarationKind::Signal => "signal",
+        };
+        if plans.contains(&name) {
+            let message = format!("`{name}` is a plan, but {} has to stand here", kind_words(kind));
+            return Diagnostic::new(Code::E0204, message, call.name.span, "a plan")
+                .help(format!("a plan is an element by itself, without `Atom`: `{name}`"));
+        }
+        let message = format!("there is no {what} called `{name}`");
+        let report = Diagnostic::new(Code::E0201, message, call.name.span, "not in the alphabet");
+        let near = self.alphabet.nearest(name, Some(kind)).or_else(|| self.alphabet.nearest(name, None));
+        match near.and_then(|near| self.alphabet.declarations_of(near).next()) {
+            Some(near) => report.help(format!("did you mean `{}`?", signature(near))),
+            None => report.help(format!("these are known: {}", self.known(kind))),
+        }
+    }
+
+    fn known(&self, kind: DeclarationKind) -> String {
+        let mut known: Vec<&str> = self
+            .alphabet
+            .names()
+            .filter(|name| self.alphabet.declarations_of(name).any(|declaration| declaration.kind == kind))
+            .collect();
+        known.sort_unstable();
+        known.dedup();
+        known.join(", ")
+    }
+}
+
+/// Whether the arguments look as if this declaration were meant.
+fn is_meant(call: &Call, declaration: &Declaration) -> bool {
+    let by_module = declaration.params.iter().any(|param| param.kind == crate::alphabet::Kind::Module);
+    by_module == call.args.iter().any(|arg| matches!(arg, Arg::Module(_) | Arg::Name(_)))
+}
+
+fn wrong_kind(call: &Call, found: DeclarationKind, expected: DeclarationKind) -> Diagnostic {
+    let name = &call.name.node;
+    let message = format!("`{name}` is {}, but {} has to stand here", kind_words(found), kind_words(expected));
+    let report = Diagnostic::new(Code::E0204, message, arguments::name_span(call), kind_words(found));
+    match (found, expected) {
+        (DeclarationKind::Control, DeclarationKind::Interrupt) => report
+            .help(format!("an atom is `(Atom (interrupt) law)`: the law comes last, as in `(Atom (wait 10) {name})`")),
+        (DeclarationKind::Interrupt, DeclarationKind::Control) => report
+            .help(format!("an atom is `(Atom (interrupt) law)`: write `(Atom ({name}) stop)` to wait for it at rest")),
+        (DeclarationKind::Signal, DeclarationKind::Interrupt) => report.help(format!("compare it: `{name} < 1`")),
+        (DeclarationKind::Signal | DeclarationKind::Control | DeclarationKind::Interrupt, _) => report,
+    }
+}

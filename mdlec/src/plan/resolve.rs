@@ -1,0 +1,235 @@
+//! Tree to plan: every name, argument, unit and plan by name resolved, each use of a plan a copy of its own.
+
+use std::collections::BTreeMap;
+
+use super::arguments::kind_words;
+use super::definitions::Definitions;
+use super::quarks::Quarks;
+use super::{Atom, Decimal, Loop, Node, Plan, Scope, conditions};
+use crate::alphabet::{self, Alphabet, DeclarationKind, Kind, Unit};
+use crate::diagnostic::{Code, Diagnostic, Span, has_errors};
+use crate::syntax::tree::{self, Call, Count, Element, Number, Primary};
+
+/// Resolves the plans of a file: those that no other refers to, or the one that is `wanted`.
+///
+/// Every plan is checked, whether it is wanted or not; no plan comes out if one has an error.
+#[must_use]
+pub fn resolve(file: &tree::File, alphabet: &Alphabet, wanted: Option<&str>) -> (Vec<Plan>, Vec<Diagnostic>) {
+    let (definitions, mut found) = Definitions::collect(file, alphabet);
+    found.extend(file.uses.iter().map(|used| not_yet("`use`", used.span)));
+    // Each plan by itself: what is wrong with it is said once, however often it is used.
+    for plan in &definitions.plans {
+        let mut resolver = Resolver::new(&definitions, alphabet, Uses::Check);
+        resolver.plan(plan, 0.0);
+        found.append(&mut resolver.found);
+    }
+    if has_errors(&found) {
+        return (Vec::new(), found);
+    }
+    let roots = match wanted {
+        None => definitions.roots(),
+        Some(name) => definitions.get(name).into_iter().collect(),
+    };
+    let copied = roots.into_iter().map(|plan| {
+        let mut resolver = Resolver::new(&definitions, alphabet, Uses::Copy);
+        let root = resolver.plan(plan, 0.0);
+        Plan { root, quarks: resolver.quarks.into_vec() }
+    });
+    (copied.collect(), found)
+}
+
+/// E0199: a form of the language that this version reads but cannot run.
+pub(super) fn not_yet(what: &str, span: Span) -> Diagnostic {
+    let message = format!("{what}: not yet, this version reads it but cannot run it");
+    Diagnostic::new(Code::E0199, message, span, "for a later version")
+}
+
+/// What to do where a plan is used by name.
+#[derive(Debug, Clone, Copy)]
+enum Uses {
+    /// See that there is such a plan.
+    Check,
+    /// Put a copy there: safe once all plans are known to be good, and none to contain itself.
+    Copy,
+}
+
+struct Resolver<'r, 'a> {
+    definitions: &'r Definitions<'a>,
+    quarks: Quarks<'r>,
+    uses: Uses,
+    /// The labels of the definition that is being resolved, with their places.
+    labels: BTreeMap<String, Span>,
+    found: Vec<Diagnostic>,
+}
+
+impl<'r, 'a> Resolver<'r, 'a> {
+    fn new(definitions: &'r Definitions<'a>, alphabet: &'r Alphabet, uses: Uses) -> Self {
+        let quarks = Quarks::new(alphabet);
+        Self { definitions, quarks, uses, labels: BTreeMap::new(), found: Vec::new() }
+    }
+
+    /// A plan of the file, with labels of its own.
+    fn plan(&mut self, plan: &tree::Plan, frame: f64) -> Scope {
+        let around = std::mem::take(&mut self.labels);
+        let scope = self.scope(plan, frame);
+        self.labels = around;
+        scope
+    }
+
+    fn scope(&mut self, plan: &tree::Plan, frame: f64) -> Scope {
+        if let Some(param) = plan.params.first() {
+            self.found.push(not_yet("a plan with parameters", param.name.span));
+        }
+        let interrupt = self.interrupt(plan.condition.as_ref(), plan.name.span);
+        let body = self.sequence(&plan.elements, frame);
+        Scope { name: plan.name.node.clone(), interrupt, body, span: plan.name.span }
+    }
+
+    fn interrupt(&mut self, condition: Option<&tree::Condition>, scope: Span) -> super::Interrupt {
+        conditions::interrupt(condition, scope, &mut self.quarks, &self.definitions.names, &mut self.found)
+    }
+
+    fn sequence(&mut self, elements: &[Element], frame: f64) -> Vec<Node> {
+        let mut nodes = Vec::with_capacity(elements.len());
+        for element in elements {
+            self.element(element, frame, &mut nodes);
+        }
+        nodes
+    }
+
+    fn element(&mut self, element: &Element, frame: f64, nodes: &mut Vec<Node>) {
+        self.label(element);
+        let turned = element.frame.as_ref().map_or(0.0, |number| self.angle(number));
+        let frame = frame + turned;
+        let Some(power) = &element.power else { return self.primary(element, frame, nodes) };
+        let mut body = Vec::new();
+        self.primary(element, frame, &mut body);
+        let times = self.count(power);
+        nodes.push(Node::Loop(Loop { times, body, span: element.span }));
+    }
+
+    fn primary(&mut self, element: &Element, frame: f64, nodes: &mut Vec<Node>) {
+        match &element.primary {
+            Primary::Atom { condition, control } => {
+                let interrupt = self.interrupt(Some(condition), element.span);
+                match self.quarks.resolve(control, DeclarationKind::Control, &self.definitions.names) {
+                    Ok(law) => nodes.push(Node::Atom(Atom { law, interrupt, frame, span: element.span })),
+                    Err(found) => self.found.extend(found),
+                }
+            }
+            Primary::Plan(plan) => nodes.push(Node::Scope(self.scope(plan, frame))),
+            Primary::Ref(call) => {
+                let scope = self.reference(call, frame);
+                nodes.extend(scope.map(Node::Scope));
+            }
+            Primary::Exec { count, body } => {
+                let times = self.count(count);
+                let body = self.sequence(body, frame);
+                nodes.push(Node::Loop(Loop { times, body, span: element.span }));
+            }
+            Primary::String(elements) => elements.iter().for_each(|inner| self.element(inner, frame, nodes)),
+            Primary::Formal { .. } => self.found.push(not_yet("formal notation", element.span)),
+            Primary::Broken => {}
+        }
+    }
+
+    /// A copy of the plan that `call` names.
+    fn reference(&mut self, call: &Call, frame: f64) -> Option<Scope> {
+        let name = call.name.node.as_str();
+        let Some(plan) = self.definitions.get(name) else {
+            self.found.push(self.unknown_plan(call));
+            return None;
+        };
+        if let (Some(arg), []) = (call.args.first(), plan.params.as_slice()) {
+            let message = format!("plan `{name}` takes no arguments, found {}", call.args.len());
+            self.found.push(
+                Diagnostic::new(Code::E0301, message, arg.span(), "one too many")
+                    .also(plan.name.span, format!("`{name}` is written here, without parameters")),
+            );
+        }
+        match self.uses {
+            Uses::Check => None,
+            Uses::Copy => Some(self.plan(plan, frame)),
+        }
+    }
+
+    fn unknown_plan(&self, call: &Call) -> Diagnostic {
+        let name = call.name.node.as_str();
+        let span = call.name.span;
+        if let Some(quark) = self.quarks.alphabet().declarations_of(name).next() {
+            let message = format!("`{name}` is {}, but an atom or a plan has to stand here", kind_words(quark.kind));
+            let example = if quark.kind == DeclarationKind::Control { ("wait 10", name) } else { (name, "stop") };
+            return Diagnostic::new(Code::E0204, message, span, "a quark runs in an atom").help(
+                format!("write `(Atom ({} …) {} …)`", example.0, example.1)
+                    .replace(" 10 …", " 10")
+                    .replace("stop …", "stop"),
+            );
+        }
+        let message = format!("there is no plan called `{name}`");
+        let report = Diagnostic::new(Code::E0201, message, span, "not in this file");
+        if let Some(keyword) = ["Atom", "ExecPlan", "FRAME"].iter().find(|keyword| name.eq_ignore_ascii_case(keyword)) {
+            return report.help(format!("the keyword is spelled `{keyword}`"));
+        }
+        match alphabet::nearest(name, self.definitions.names.iter().copied()) {
+            Some(near) => report.help(format!("did you mean `{near}`?")),
+            None => report.help(format!("write it: `{{ {name} (Atom (wait 10) stop) }}`")),
+        }
+    }
+
+    fn label(&mut self, element: &Element) {
+        let Some(label) = &element.label else { return };
+        if let Some(first) = self.labels.get(&label.node) {
+            let message = format!("there are two labels `{}` in this plan", label.node);
+            self.found.push(
+                Diagnostic::new(Code::E0203, message, label.span, "the second one").also(*first, "the first one"),
+            );
+            return;
+        }
+        self.labels.insert(label.node.clone(), label.span);
+    }
+
+    /// A loop's passes: at least one, `None` for ever.
+    fn count(&mut self, count: &Count) -> Option<u64> {
+        let number = match count {
+            Count::Infinity(_) => return None,
+            Count::Name(name) => {
+                self.found.push(not_yet("a count by name", name.span));
+                return Some(1);
+            }
+            Count::Number(number) => number,
+        };
+        let whole = Decimal::parse(&number.digits).filter(Decimal::is_whole).filter(|_| number.unit.is_none());
+        let times = whole.map(|whole| {
+            let positive = whole.to_f64() > 0.0;
+            // Counts that no u64 holds are too many states, and reported as such where these are counted.
+            if positive { whole.to_string().parse().unwrap_or(u64::MAX) } else { 0_u64 }
+        });
+        if let Some(times) = times.filter(|times| *times > 0) {
+            return Some(times);
+        }
+        let written = format!("{}{}", number.digits, number.unit.as_deref().unwrap_or_default());
+        let message = format!("a loop runs a whole number of times, at least once; found `{written}`");
+        self.found.push(
+            Diagnostic::new(Code::E0305, message, number.span, "not a count")
+                .help("write `1` or more, or `inf` for a loop without end"),
+        );
+        Some(1)
+    }
+
+    /// The angle of a FRAME, in radians.
+    fn angle(&mut self, number: &Number) -> f64 {
+        let unit = number.unit.as_deref().unwrap_or("deg");
+        let decimal = Decimal::parse(&number.digits);
+        match (Unit::from_name(unit).filter(|unit| unit.kind == Kind::Angle), decimal) {
+            (Some(unit), Some(decimal)) if decimal.to_f64().is_finite() => decimal.to_f64() * unit.family_to_si(),
+            _ => {
+                let message = format!("expected an angle, found `{}{unit}`", number.digits);
+                self.found.push(
+                    Diagnostic::new(Code::E0303, message, number.span, "a frame is turned by an angle")
+                        .help("its unit is deg or rad: `FRAME 180deg`"),
+                );
+                0.0
+            }
+        }
+    }
+}

@@ -1,0 +1,232 @@
+//! Names, arguments, plans by name and degeneracy: what comes out, and what is said where nothing can.
+
+use crate::samples::{compiled, judged};
+
+/// One snapshot: the text, what is said of it for a robot that has everything, and the plan.
+macro_rules! assert_judged {
+    ($text:literal) => {
+        insta::assert_snapshot!(judged($text, None))
+    };
+    ($text:literal, $target:literal) => {
+        insta::assert_snapshot!(judged($text, Some($target)))
+    };
+}
+
+#[test]
+fn every_form_resolves() {
+    assert_judged!(
+        "/// A tour.
+{ Tour
+  Leg
+  FRAME 90deg { Inner (wait 1.50min OR bumper AND NOT (bumper OR sync ada)) FRAME 1rad Leg }
+  ExecPlan 2 { (Atom (null) align(0, 15)) Leg }
+  ((Atom (wait inf) rotate 180) here: (Atom (wait 500ms) go(0.50m/s 20deg/s)))^inf
+  ExecPlan 3 Leg
+}
+{ Leg (atIsection 0100) (Atom (wait 0) goAvoid -0.0 1000cm) sigma_null }"
+    );
+}
+
+#[test]
+fn defaults_are_filled_in_and_texts_are_in_default_units() {
+    assert_judged!(
+        "{ P
+  (Atom (wait 20) goAvoid 90.0 40 20)
+  (Atom (wait 20) goAvoid(1.5rad, 10in))
+  (Atom (wait 0.30min) goAvoid(heading module))
+  (Atom (wait 1e1) path \"a b.txt\")
+  (Atom (wait 10) path lastPath)
+}"
+    );
+}
+
+#[test]
+fn unknown_names_come_with_the_nearest_known_one() {
+    assert_judged!(
+        "{ P (bumpr)
+  (Atom (atintersection 0100) stop)
+  (Atom (wait 5) Rotate 90)
+  (Atom (wait 5) zigzag)
+  Legg
+}
+{ Leg (Atom (wait 5) stop) }
+{ Q Leg }"
+    );
+}
+
+#[test]
+fn a_quark_of_the_other_kind_is_told_where_it_belongs() {
+    assert_judged!(
+        "{ P (stop)
+  (Atom (bumper) bumper)
+  (Atom (x) stop)
+  (Atom (wait 5) Leg)
+  stop
+  bumper
+}
+{ Leg (Atom (wait 5) stop) }
+{ Q Leg }"
+    );
+}
+
+#[test]
+fn counts_of_arguments() {
+    assert_judged!(
+        "{ P
+  (Atom (wait) stop)
+  (Atom (wait 1 2) go 1)
+  (Atom (bumper 3) go 1 2 3)
+  (Atom (wait 1) goAvoid 90)
+  (Atom (wait 1) goAvoid 1 2 3 4)
+  Leg(5)
+}
+{ Leg (Atom (wait 5) stop) }"
+    );
+}
+
+#[test]
+fn types_of_arguments() {
+    assert_judged!(
+        "{ P
+  (Atom (wait ada) go inf 0)
+  (Atom (sync 7) go 20 \"fast\")
+  (Atom (atIsection 0121) align 1.5 2)
+  (Atom (atIsection 100) align left 2)
+  (Atom (atIsection 0100cm) goAvoid(heading))
+  (Atom (wait 1) goAvoid(90 module))
+}"
+    );
+}
+
+#[test]
+fn units_of_arguments() {
+    assert_judged!(
+        "{ P
+  (Atom (wait 20cm) go 20deg 0)
+  (Atom (wait 5) rotate 90cm/s)
+  (Atom (wait 5) align 7s 9)
+  FRAME 3m (Atom (wait 5) stop)
+}"
+    );
+}
+
+#[test]
+fn ranges_of_arguments() {
+    assert_judged!(
+        "{ P
+  (Atom (wait -1) align 7 16)
+  (Atom (wait 1e11) go 1e999 0)
+}"
+    );
+}
+
+#[test]
+fn loop_counts() {
+    assert_judged!(
+        "{ P
+  ExecPlan 0 { (Atom (wait 5) stop) }
+  (Atom (wait 5) stop)^1.5
+  (Atom (wait 5) stop)^-2
+  (Atom (wait 5) stop)^3s
+}"
+    );
+}
+
+#[test]
+fn what_a_robot_lacks_and_what_it_cannot_do() {
+    assert_judged!(
+        "{ P (sync ada)
+  (Atom (wait 5) go 500 0)
+  (Atom (wait 5) go 0 -7)
+  (Atom (wait 5) goAvoid(heading module))
+  (Atom (wait 5) goAvoid 90 40 2m/s)
+}",
+        "sim"
+    );
+}
+
+#[test]
+fn forms_of_a_later_version() {
+    assert_judged!(
+        "use \"corridors.mdle\"
+{ P(v: speed) (RISING bumper)
+  L: (Atom (r_3 == r_5) go 1 0)
+  (Atom (after L) stop)
+  (stop, bumper, 3s)
+  ExecPlan n { (Atom (wait 1) stop) }
+}"
+    );
+}
+
+#[test]
+fn a_name_stands_for_one_thing() {
+    assert_judged!(
+        "{ P L: (Atom (wait 1) stop) L: (Atom (wait 2) stop) Q }
+{ Q L: (Atom (wait 1) stop) }
+{ Q (Atom (wait 1) stop) }
+{ stop (Atom (wait 1) stop) }"
+    );
+}
+
+#[test]
+fn recursion_shows_its_cycle() {
+    assert_judged!(
+        "{ A { In (bumper) B } }
+{ B ExecPlan 2 C }
+{ C (Atom (wait 1) stop) (A) }
+{ Self Self }
+{ Caller A (Atom (bumpr) stop) }"
+    );
+}
+
+#[test]
+fn plans_that_explode_are_refused_before_they_are_copied() {
+    let mut text = String::from("{ P0 (Atom (wait 1) stop) }\n");
+    (1..40).for_each(|level| text += &format!("{{ P{level} P{0} P{0} }}\n", level - 1));
+    assert!(judged(&text, None).contains("E0501"));
+    let mut text = String::from("{ P0 (Atom (wait 1) stop) }\n");
+    (1..20_000).for_each(|level| text += &format!("{{ P{level} P{} }}\n", level - 1));
+    assert!(judged(&text, None).contains("E0106"));
+}
+
+#[test]
+fn a_plan_of_too_many_states_names_its_loop() {
+    assert_judged!(
+        "{ P
+  ExecPlan 1000000 { ExecPlan 1000000 { ExecPlan 1000000 { (Atom (wait 1) stop) } } }
+}"
+    );
+    assert!(judged("{ P ExecPlan 99999999999999999999999999 { (Atom (wait 1) stop) } }", None).contains("E0501"));
+    assert_eq!(compiled("{ P ExecPlan 9007199254740991 { (Atom (wait 1) stop) } }")[0].lowered.termination, 1 << 53);
+}
+
+#[test]
+fn repeated_interrupts_are_removed() {
+    assert_judged!(
+        "{ P (bumper)
+  (Atom (bumper) stop)
+  (Atom (bumper) rotate 90)
+  { Inner (wait 5s OR bumper)
+    (Atom (bumper OR wait 5000ms) stop)
+    { Same (NOT (NOT bumper)) (Atom (bumper AND bumper) stop) }
+  }
+  (Atom (bumper AND wait 5) stop)
+}"
+    );
+}
+
+#[test]
+fn what_is_not_the_same_function_is_not_repeated() {
+    assert_judged!(
+        "{ P (NOT wait 5)
+  (Atom (NOT wait 5) stop)
+  { Turned (rendezvous ada) (Atom (rendezvous ada) stop) }
+  { Once (wait inf) (Atom (null) stop) }
+}"
+    );
+}
+
+#[test]
+fn a_repeated_interrupt_is_warned_of_once_however_often_its_plan_is_used() {
+    assert_judged!("{ P (bumper) ExecPlan 3 Leg Leg }\n{ Leg (Atom (bumper OR wait 1) stop) (Atom (bumper) stop) }");
+}

@@ -1,0 +1,130 @@
+//! Every identifier of a generated file is made here.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use proc_macro2::Ident;
+use quote::format_ident;
+
+/// The words that a generated file uses for itself.
+const TAKEN: &[&str] = &["Running", "Output", "Input", "Plan", "Self", "Option", "Some", "None", "Default"];
+
+/// The type of a plan: its name in camel case.
+#[must_use]
+pub fn plan_type(plan: &str) -> String {
+    let name = camel_case(plan);
+    if TAKEN.contains(&name.as_str()) { format!("{name}Plan") } else { name }
+}
+
+/// The type of a quark in its target's crate: its name in camel case, and for further declarations of one name their
+/// number: `GoAvoid`, `GoAvoid2`.
+pub(super) fn quark_type(name: &str, overload: usize) -> Ident {
+    let name = camel_case(name);
+    if overload == 0 { format_ident!("{name}") } else { format_ident!("{name}{}", overload + 1) }
+}
+
+/// The variant that holds the law of an atom, numbered as written, from 1.
+pub(super) fn atom_variant(atom: usize) -> Ident {
+    format_ident!("Atom{}", atom + 1)
+}
+
+/// Names that must differ from each other.
+#[derive(Debug, Default)]
+pub(super) struct Distinct {
+    taken: BTreeSet<String>,
+    /// The last number given to each name, so that the search for the next one is short.
+    numbers: BTreeMap<String, usize>,
+}
+
+impl Distinct {
+    /// The constant of a quark with its arguments, after its text: `GO_0_0_36`.
+    pub(super) fn constant(&mut self, quark_text: &str) -> Ident {
+        let words = quark_text
+            .replace('-', "minus_")
+            .replace(|letter: char| letter.is_ascii() && !letter.is_ascii_alphanumeric(), "_");
+        self.distinct(&snake_case(&words).to_ascii_uppercase())
+    }
+
+    /// The function that asks whether a scope, or one around it, has ended, after the scope's name.
+    pub(super) fn scope_function(&mut self, scope: &str) -> Ident {
+        let name = snake_case(scope);
+        let name = if syn::parse_str::<Ident>(&name).is_ok() { name } else { format!("{name}_scope") };
+        self.distinct(&name)
+    }
+
+    /// `name`, or `name_2`, `name_3`, … where that is taken.
+    fn distinct(&mut self, name: &str) -> Ident {
+        let mut distinct = name.to_owned();
+        while !self.taken.insert(distinct.clone()) {
+            let number = self.numbers.entry(name.to_owned()).or_insert(1);
+            *number += 1;
+            distinct = format!("{name}_{number}");
+        }
+        format_ident!("{distinct}")
+    }
+}
+
+fn ascii(name: &str) -> String {
+    name.chars().fold(String::new(), |mut text, letter| {
+        if letter.is_ascii_alphanumeric() || letter == '_' {
+            text.push(letter);
+        } else {
+            text.push_str(&format!("_u{:x}", u32::from(letter)));
+        }
+        text
+    })
+}
+
+fn camel_case(name: &str) -> String {
+    let mut camel = String::new();
+    for word in ascii(name).split('_').filter(|word| !word.is_empty()) {
+        let (first, rest) = word.split_at(1);
+        camel.push_str(&first.to_ascii_uppercase());
+        camel.push_str(rest);
+    }
+    if camel.starts_with(|letter: char| letter.is_ascii_alphabetic()) { camel } else { format!("P{camel}") }
+}
+
+fn snake_case(name: &str) -> String {
+    let mut snake = String::new();
+    let mut after_lower = false;
+    for letter in ascii(name).chars() {
+        if letter.is_ascii_uppercase() && after_lower {
+            snake.push('_');
+        }
+        after_lower = letter.is_ascii_lowercase() || letter.is_ascii_digit();
+        snake.push(letter.to_ascii_lowercase());
+    }
+    let snake = words(&snake, '_');
+    if snake.starts_with(|letter: char| letter.is_ascii_alphabetic()) { snake } else { format!("scope_{snake}") }
+}
+
+/// The parts of `name` between underscores, joined by single ones.
+fn words(name: &str, joint: char) -> String {
+    let parts: Vec<_> = name.split('_').filter(|part| !part.is_empty()).collect();
+    parts.join(&joint.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Distinct, plan_type};
+
+    #[test]
+    fn names_are_rust_identifiers_and_differ() {
+        assert_eq!(plan_type("lab_tour"), "LabTour");
+        assert_eq!(plan_type("Lab2ToLab1Plan"), "Lab2ToLab1Plan");
+        assert_eq!(plan_type("self"), "SelfPlan");
+        assert_eq!(plan_type("größe"), "GrUf6Udfe");
+        assert_eq!(plan_type("_1"), "P1");
+        let mut names = Distinct::default();
+        let mut constant = |text| names.constant(text).to_string();
+        assert_eq!(constant("go 0 0.36"), "GO_0_0_36");
+        assert_eq!(constant("go 0.0 36"), "GO_0_0_36_2");
+        assert_eq!(constant("go -5 0"), "GO_MINUS_5_0");
+        let mut scope = |name| names.scope_function(name).to_string();
+        assert_eq!(scope("Lab2ToLab1Plan"), "lab2_to_lab1_plan");
+        assert_eq!(scope("loop"), "loop_scope");
+        assert_eq!(scope("Shake"), "shake");
+        assert_eq!(scope("shake_2"), "shake_2");
+        assert_eq!(scope("shake"), "shake_3");
+    }
+}

@@ -1,0 +1,54 @@
+//! The constant tables of a generated file: the machine and the texts that traces and messages show.
+
+use mdle_runtime::fsm::{Bracket, Kind};
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+use crate::fsm::Lowered;
+
+/// `const FSM`, `LAWS`, `CONDITIONS`, `NAMES`.
+pub(super) fn tables(lowered: &Lowered) -> TokenStream {
+    let brackets = lowered.brackets.iter().map(bracket);
+    let atoms = lowered.atoms.iter().map(|atom| {
+        let (scope, state) = (Literal::u32_unsuffixed(atom.scope), Literal::u64_unsuffixed(atom.state));
+        quote!(Atom::new(#scope, #state))
+    });
+    let termination = Literal::u64_unsuffixed(lowered.termination);
+    let laws = lowered.laws.iter().map(|law| &lowered.quark(law.quark).text);
+    let scopes = || lowered.scopes.iter().map(Option::as_ref);
+    let conditions = scopes().map(|scope| scope.map_or("", |scope| &scope.interrupt.text));
+    let names = scopes().map(|scope| scope.map_or("", |scope| &scope.name));
+    quote! {
+        #[doc = " Scopes and loops in pre-order, the atoms as written, the termination state."]
+        const FSM: Fsm<'static> = Fsm {
+            brackets: &[#(#brackets),*],
+            atoms: &[#(#atoms),*],
+            termination: #termination,
+        };
+
+        #[doc = " The quark text of each atom's law."]
+        const LAWS: &[&str] = &[#(#laws),*];
+
+        #[doc = " The condition text of each bracket; empty for a loop."]
+        const CONDITIONS: &[&str] = &[#(#conditions),*];
+
+        #[doc = " The name of each bracket; empty for an atom and a loop."]
+        const NAMES: &[&str] = &[#(#names),*];
+    }
+}
+
+/// `Bracket::scope(level, first, last, parent)` or `Bracket::repeat(times, slot, stride, first, last, parent)`.
+fn bracket(bracket: &Bracket) -> TokenStream {
+    let [first, last, parent] = [bracket.first, bracket.last, bracket.parent].map(Literal::u32_unsuffixed);
+    match bracket.kind {
+        Kind::Scope { level } => {
+            let level = Literal::u16_unsuffixed(level);
+            quote!(Bracket::scope(#level, #first, #last, #parent))
+        }
+        Kind::Loop { times, slot, stride } => {
+            let [times, stride] = [times, stride].map(Literal::u64_unsuffixed);
+            let slot = Literal::u16_unsuffixed(slot);
+            quote!(Bracket::repeat(#times, #slot, #stride, #first, #last, #parent))
+        }
+    }
+}

@@ -1,0 +1,356 @@
+//! Balances brackets before the grammar sees them (language, end of section 3): afterwards every bracket has its partner, none is
+//! nested deeper than 256, and no atom holds an atom.
+
+use std::collections::BTreeSet;
+
+use super::regions::Regions;
+use super::source::{Place, Source};
+use super::token::{Lexed, Tok, Token};
+use crate::diagnostic::{Code, Diagnostic};
+
+/// How deep brackets nest at most.
+pub(super) const MAX_DEPTH: usize = 256;
+
+/// Tokens whose brackets match.
+#[derive(Debug, Default)]
+pub(super) struct Balanced<'s> {
+    /// The tokens; inserted ones have an empty place.
+    pub(super) tokens: Vec<Token<'s>>,
+    /// The doc comments, each with the token that follows it.
+    pub(super) docs: Vec<(usize, &'s str)>,
+    /// Which tokens are so close that one defect may upset them all.
+    pub(super) regions: Regions,
+    /// The lexical errors and those of the brackets.
+    pub(super) diagnostics: Vec<Diagnostic>,
+}
+
+/// Balances the brackets of a text. A brace that is never closed is closed where its plan seems to end, if that leaves no other
+/// bracket over.
+pub(super) fn balance<'s>(source: Source<'s>, lexed: &Lexed<'s>) -> Balanced<'s> {
+    let (plain, ends) = pass(source, lexed, &BTreeSet::new());
+    if ends.is_empty() {
+        return plain;
+    }
+    let (repaired, _) = pass(source, lexed, &ends);
+    if repaired.diagnostics.len() <= plain.diagnostics.len() { repaired } else { plain }
+}
+
+/// Goes through the tokens once and closes all brackets before those of `ends`; also finds such ends for braces never closed.
+fn pass<'s>(source: Source<'s>, lexed: &Lexed<'s>, ends: &BTreeSet<usize>) -> (Balanced<'s>, BTreeSet<usize>) {
+    let mut errors = lexed.errors.iter().peekable();
+    let mut docs = lexed.docs.iter().peekable();
+    let mut pass = Pass {
+        source,
+        raw: &lexed.tokens,
+        balanced: Balanced::default(),
+        open: Vec::new(),
+        braces: 0,
+        reached: 0,
+        ends: BTreeSet::new(),
+    };
+    for (index, token) in lexed.tokens.iter().enumerate() {
+        while let Some((_, error)) = errors.next_if(|(before, _)| *before <= index) {
+            pass.lexical(error.clone());
+        }
+        if ends.contains(&index) {
+            pass.close_all(token.place);
+        }
+        if !pass.token(index, *token) {
+            break;
+        }
+        while let Some((_, doc)) = docs.next_if(|(before, _)| *before <= index) {
+            let at = pass.balanced.tokens.len().saturating_sub(1);
+            pass.balanced.docs.push((at, doc));
+        }
+    }
+    for (_, error) in errors {
+        pass.lexical(error.clone());
+    }
+    pass.end();
+    (pass.balanced, pass.ends)
+}
+
+/// What an open bracket is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Brace,
+    Parenthesis,
+    Atom,
+}
+
+/// A bracket that is open.
+#[derive(Debug, Clone, Copy)]
+struct Open {
+    kind: Kind,
+    /// Its place; `None` if it was inserted.
+    place: Option<Place>,
+    /// The token of the text that it is, or that it was inserted before.
+    raw: usize,
+    /// The message about a `)` where the `}` should be.
+    stray: Option<usize>,
+}
+
+struct Pass<'t, 's> {
+    source: Source<'s>,
+    raw: &'t [Token<'s>],
+    balanced: Balanced<'s>,
+    open: Vec<Open>,
+    /// How many of the open brackets are braces.
+    braces: usize,
+    /// How far the text has been looked through for ends of lines.
+    reached: usize,
+    /// Where braces that are never closed seem to end, as tokens of the text.
+    ends: BTreeSet<usize>,
+}
+
+impl<'s> Pass<'_, 's> {
+    /// Takes in one token; false if reading stops there.
+    fn token(&mut self, index: usize, token: Token<'s>) -> bool {
+        #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are treated alike")]
+        match token.kind {
+            Tok::LBrace => return self.open(Kind::Brace, index, token),
+            Tok::LParen | Tok::TouchParen => {
+                let atom = matches!(self.raw.get(index + 1), Some(Token { kind: Tok::Atom, .. }));
+                if atom {
+                    self.close_atom(token.place);
+                }
+                return self.open(if atom { Kind::Atom } else { Kind::Parenthesis }, index, token);
+            }
+            Tok::Atom if !self.after_parenthesis() => {
+                self.close_atom(token.place);
+                if !self.lone_atom(index, token) {
+                    return false;
+                }
+                self.push(token);
+            }
+            Tok::Use if !self.open.is_empty() => self.inner_use(token),
+            Tok::RBrace => self.close_brace(token),
+            Tok::RParen => self.close_parenthesis(token),
+            _ => self.push(token),
+        }
+        true
+    }
+
+    fn push(&mut self, token: Token<'s>) {
+        self.reach(token.place.start);
+        self.reached = self.reached.max(token.place.end);
+        self.balanced.regions.push();
+        self.balanced.tokens.push(token);
+    }
+
+    /// A line begins where one ends on the way to `start`.
+    fn reach(&mut self, start: usize) {
+        if self.source.slice(Place::new(self.reached, start)).contains('\n') {
+            self.balanced.regions.begin_line();
+        }
+        self.reached = self.reached.max(start);
+    }
+
+    fn lexical(&mut self, diagnostic: Diagnostic) {
+        self.reach(diagnostic.span().map_or(0, |span| span.start as usize));
+        self.spoil(diagnostic);
+    }
+
+    fn spoil(&mut self, diagnostic: Diagnostic) {
+        self.balanced.regions.spoil();
+        self.balanced.diagnostics.push(diagnostic);
+    }
+
+    fn after_parenthesis(&self) -> bool {
+        matches!(self.balanced.tokens.last(), Some(Token { kind: Tok::LParen | Tok::TouchParen, .. }))
+    }
+
+    fn open(&mut self, kind: Kind, raw: usize, token: Token<'s>) -> bool {
+        if self.open.len() >= MAX_DEPTH {
+            let message = format!("brackets nested more than {MAX_DEPTH} deep");
+            let help = "give an inner part a name, as a plan of its own, and use it by that name";
+            let span = self.source.span(token.place);
+            self.spoil(Diagnostic::new(Code::E0106, message, span, "reading stops here").help(help));
+            return false;
+        }
+        let place = (!token.place.is_empty()).then_some(token.place);
+        self.open.push(Open { kind, place, raw, stray: None });
+        match kind {
+            Kind::Brace => {
+                self.braces += 1;
+                self.push(token);
+                self.balanced.regions.open_brace();
+            }
+            Kind::Parenthesis | Kind::Atom => {
+                self.balanced.regions.open_parenthesis();
+                self.push(token);
+            }
+        }
+        true
+    }
+
+    /// Closes the innermost open bracket.
+    fn close(&mut self, token: Token<'s>) -> Option<Open> {
+        let open = self.open.pop()?;
+        self.push(token);
+        match open.kind {
+            Kind::Brace => {
+                self.braces -= 1;
+                self.balanced.regions.close_brace();
+            }
+            Kind::Parenthesis | Kind::Atom => self.balanced.regions.close_parenthesis(),
+        }
+        Some(open)
+    }
+
+    /// Closes the innermost open bracket where the text does not.
+    fn force(&mut self) -> Option<Open> {
+        let kind = if self.open.last()?.kind == Kind::Brace { Tok::RBrace } else { Tok::RParen };
+        self.balanced.regions.spoil();
+        let end = self.balanced.tokens.last().map_or(0, |token| token.place.end);
+        self.close(Token { kind, place: Place::new(end, end) })
+    }
+
+    /// Closes the parentheses above this many open brackets, and says so once.
+    fn force_down_to(&mut self, depth: usize, missing_at: Place, before: &str) {
+        let mut unclosed = Vec::new();
+        let mut atom = false;
+        while let Some(open) = (self.open.len() > depth).then(|| self.force()).flatten() {
+            atom |= open.kind == Kind::Atom;
+            unclosed.extend(open.place);
+        }
+        unclosed.reverse();
+        let Some((first, others)) = unclosed.split_first() else { return };
+        let message = match others.len() {
+            0 => "this `(` is never closed".to_owned(),
+            more => format!("{} parentheses are never closed", more + 1),
+        };
+        let mut diagnostic = Diagnostic::new(Code::E0103, message, self.source.span(*first), "opened here");
+        for other in others.iter().take(3) {
+            diagnostic = diagnostic.also(self.source.span(*other), "and here");
+        }
+        let missing = if others.is_empty() { "a `)` is missing" } else { "their `)` are missing" };
+        let diagnostic = diagnostic.also(self.source.span(missing_at), format!("{missing} {before}"));
+        self.balanced.diagnostics.push(if atom {
+            diagnostic.help("the condition of an atom has parentheses of its own: `(Atom (bumper) stop)`")
+        } else {
+            diagnostic
+        });
+    }
+
+    /// An atom that begins inside of an atom ends that one.
+    fn close_atom(&mut self, at: Place) {
+        let inside = self.open.iter().rev().take_while(|open| open.kind != Kind::Brace);
+        if let Some(up) = inside.enumerate().filter(|(_, open)| open.kind == Kind::Atom).map(|(up, _)| up).last() {
+            self.force_down_to(self.open.len() - up - 1, at, "before this");
+        }
+    }
+
+    /// An `Atom` without its parenthesis gets one.
+    fn lone_atom(&mut self, index: usize, token: Token<'s>) -> bool {
+        let place = Place::new(token.place.start, token.place.start);
+        if !self.open(Kind::Atom, index, Token { kind: Tok::LParen, place }) {
+            return false;
+        }
+        let span = self.source.span(token.place);
+        let diagnostic =
+            Diagnostic::new(Code::E0103, "this atom does not begin with `(`", span, "a `(` is missing before this");
+        self.spoil(diagnostic.help("an atom stands in parentheses: `(Atom (bumper) stop)`"));
+        true
+    }
+
+    /// A `use` inside of a plan, where no recovery could put it, becomes a name.
+    fn inner_use(&mut self, token: Token<'s>) {
+        let span = self.source.span(token.place);
+        let diagnostic =
+            Diagnostic::new(Code::E0102, "`use` stands between plans, not inside of one", span, "not expected here");
+        self.spoil(diagnostic.help("put it at the top of the file: `use \"corridors.mdle\"`"));
+        self.push(Token { kind: Tok::Name("use"), ..token });
+    }
+
+    fn close_brace(&mut self, token: Token<'s>) {
+        if self.braces == 0 {
+            let span = self.source.span(token.place);
+            let diagnostic = Diagnostic::new(Code::E0103, "this `}` closes nothing", span, "no `{` is open here");
+            self.spoil(diagnostic.help("take it out, or open a plan: `{ Name (Atom (bumper) stop) }`"));
+            return;
+        }
+        let above = self.open.iter().rev().take_while(|open| open.kind != Kind::Brace).count();
+        self.force_down_to(self.open.len() - above, token.place, "before this");
+        self.close(token);
+    }
+
+    fn close_parenthesis(&mut self, token: Token<'s>) {
+        let brace = match self.open.last() {
+            Some(open) if open.kind != Kind::Brace => {
+                self.close(token);
+                return;
+            }
+            other => other.and_then(|open| open.place),
+        };
+        let span = self.source.span(token.place);
+        let mut diagnostic = Diagnostic::new(Code::E0103, "this `)` closes nothing", span, "no `(` is open here");
+        if let Some(brace) = brace {
+            diagnostic = diagnostic.also(self.source.span(brace), "the innermost open bracket is this `{`");
+        }
+        let message = self.balanced.diagnostics.len();
+        self.spoil(diagnostic);
+        if let Some(open) = self.open.last_mut() {
+            open.stray.get_or_insert(message);
+        }
+    }
+
+    /// The end of the text closes what is open.
+    fn end(&mut self) {
+        let stopped = self.balanced.diagnostics.iter().any(|diagnostic| diagnostic.code == Code::E0106);
+        let end = self.balanced.tokens.last().map_or(Place::new(0, 0), |token| token.place);
+        let end = Place::new(end.end, end.end);
+        while let Some(open) = self.open.last().copied() {
+            match open.kind {
+                _ if stopped => drop(self.force()),
+                Kind::Brace => {
+                    self.force();
+                    self.unclosed_brace(open, end);
+                }
+                Kind::Parenthesis | Kind::Atom => {
+                    let above = self.open.iter().rev().take_while(|open| open.kind != Kind::Brace).count();
+                    self.force_down_to(self.open.len() - above, end, "at the latest here");
+                }
+            }
+        }
+    }
+
+    fn unclosed_brace(&mut self, open: Open, end: Place) {
+        if let Some(diagnostic) = open.stray.and_then(|stray| self.balanced.diagnostics.get_mut(stray)) {
+            diagnostic.help.push("a `{` is closed by `}`".to_owned());
+            return;
+        }
+        let begins = |token: &Token<'_>| {
+            matches!(token.kind, Tok::LBrace | Tok::Label(_)) && self.source.is_column_one(token.place)
+        };
+        let behind = self.raw.get(open.raw + 1..).unwrap_or(&[]);
+        match behind.iter().position(begins).map(|offset| open.raw + 1 + offset) {
+            Some(next) => {
+                self.ends.insert(next);
+                let place = self.raw.get(next).map_or(end, |token| token.place);
+                self.report_brace(open, place, "perhaps a `}` is missing before this");
+            }
+            None => self.report_brace(open, end, "a `}` is missing at the latest here"),
+        }
+    }
+
+    fn report_brace(&mut self, open: Open, at: Place, text: &str) {
+        let Some(place) = open.place else { return };
+        let span = self.source.span(place);
+        let diagnostic = Diagnostic::new(Code::E0103, "this `{` is never closed", span, "opened here");
+        self.balanced.diagnostics.push(diagnostic.also(self.source.span(at), text));
+    }
+
+    /// Closes what is open before a token that begins a plan of its own.
+    fn close_all(&mut self, at: Place) {
+        while let Some(open) = self.open.last().copied() {
+            if open.kind == Kind::Brace {
+                self.force();
+                self.report_brace(open, at, "perhaps a `}` is missing before this");
+            } else {
+                let above = self.open.iter().rev().take_while(|open| open.kind != Kind::Brace).count();
+                self.force_down_to(self.open.len() - above, at, "before this");
+            }
+        }
+    }
+}

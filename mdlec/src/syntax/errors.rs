@@ -1,0 +1,240 @@
+//! The parser's errors in words: one for each region, the usual mistakes by their names, all others as what was expected and found.
+
+use lalrpop_util::ParseError;
+
+use super::mistakes;
+use super::nodes::Recovery;
+use super::regions::Regions;
+use super::source::{Place, Source};
+use super::token::{Tok, Token};
+use crate::diagnostic::{Code, Diagnostic};
+
+/// The messages about what the parser has recovered from.
+pub(super) fn told(
+    source: Source<'_>,
+    tokens: &[Token<'_>],
+    regions: &mut Regions,
+    recoveries: Vec<Recovery<'_>>,
+) -> Vec<Diagnostic> {
+    if recoveries.is_empty() {
+        return Vec::new();
+    }
+    let end = tokens.len();
+    let mut errors: Vec<_> = recoveries.into_iter().map(|recovery| place_of(recovery, end)).collect();
+    errors.sort_by_key(|(at, _)| *at);
+    let openers = openers(tokens);
+    let mut told = Vec::new();
+    for (at, expected) in errors {
+        let site = Site { source, tokens, openers: &openers, at, expected };
+        if !regions.is_spoiled_once(site.decisive()) {
+            told.push(mistakes::known(&site).unwrap_or_else(|| site.unexpected()));
+        }
+    }
+    told
+}
+
+/// Where the parser stopped, and what could have stood there.
+fn place_of(recovery: Recovery<'_>, end: usize) -> (usize, Vec<String>) {
+    match recovery.error {
+        ParseError::UnrecognizedToken { token: (at, _, _), expected } => (at, expected),
+        ParseError::InvalidToken { location } => (location, Vec::new()),
+        ParseError::ExtraToken { token: (at, _, _) } => (at, Vec::new()),
+        ParseError::UnrecognizedEof { expected, .. } => (end, expected),
+        ParseError::User { error } => match error {},
+    }
+}
+
+/// The innermost bracket that is open before each token, and behind the last.
+fn openers(tokens: &[Token<'_>]) -> Vec<Option<usize>> {
+    let mut open = Vec::new();
+    let mut openers = Vec::with_capacity(tokens.len() + 1);
+    for (at, token) in tokens.iter().enumerate() {
+        openers.push(open.last().copied());
+        #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are no brackets")]
+        match token.kind {
+            Tok::LBrace | Tok::LParen | Tok::TouchParen | Tok::ParamParen | Tok::ConditionParen => open.push(at),
+            Tok::RBrace | Tok::RParen => drop(open.pop()),
+            _ => {}
+        }
+    }
+    openers.push(open.last().copied());
+    openers
+}
+
+/// A place where the parser could not go on.
+pub(super) struct Site<'t, 's> {
+    source: Source<'s>,
+    tokens: &'t [Token<'s>],
+    openers: &'t [Option<usize>],
+    /// The token that was not expected.
+    pub(super) at: usize,
+    expected: Vec<String>,
+}
+
+impl<'s> Site<'_, 's> {
+    /// The token that was not expected; `None` at the end of the text.
+    pub(super) fn found(&self) -> Option<Tok<'s>> {
+        self.kind(self.at)
+    }
+
+    /// The token so many places before it.
+    pub(super) fn before(&self, back: usize) -> Option<Tok<'s>> {
+        self.at.checked_sub(back).and_then(|at| self.kind(at))
+    }
+
+    /// What this token is.
+    pub(super) fn kind(&self, at: usize) -> Option<Tok<'s>> {
+        self.tokens.get(at).map(|token| token.kind)
+    }
+
+    /// The name that stands there.
+    pub(super) fn name_at(&self, at: usize) -> Option<&'s str> {
+        match self.kind(at) {
+            Some(Tok::Name(name)) => Some(name),
+            Some(_) | None => None,
+        }
+    }
+
+    /// The bracket that this one closes.
+    pub(super) fn partner(&self, closer: usize) -> Option<Tok<'s>> {
+        self.openers.get(closer).copied().flatten().and_then(|at| self.kind(at))
+    }
+
+    /// The innermost bracket that is open here.
+    pub(super) fn opener(&self) -> Option<usize> {
+        self.openers.get(self.at).copied().flatten()
+    }
+
+    /// What that bracket is.
+    pub(super) fn opener_kind(&self) -> Option<Tok<'s>> {
+        self.opener().and_then(|at| self.kind(at))
+    }
+
+    /// Whether the innermost open bracket is that of an atom.
+    pub(super) fn in_atom(&self) -> bool {
+        self.opener().is_some_and(|at| self.kind(at + 1) == Some(Tok::Atom))
+    }
+
+    /// Whether a plan lacks its name here.
+    pub(super) fn is_plan_without_name(&self) -> bool {
+        self.before(1) == Some(Tok::LBrace) && self.expects("name") && !self.expects("ExecPlan")
+    }
+
+    /// The token whose region the defect is in: a plan without a name is one where its brace is, not where the name should be.
+    fn decisive(&self) -> usize {
+        if self.is_plan_without_name() { self.at - 1 } else { self.at }
+    }
+
+    /// Where the group closes whose bracket opens at `at`.
+    pub(super) fn end_of_group(&self, at: usize) -> usize {
+        let around = self.openers.get(at).copied().flatten();
+        let inside = |next: &usize| self.openers.get(*next).is_some_and(|opener| *opener != around);
+        (at + 1..self.openers.len()).take_while(inside).last().unwrap_or(at)
+    }
+
+    /// Whether this could have stood here: a terminal of the grammar.
+    pub(super) fn expects(&self, terminal: &str) -> bool {
+        self.expected.iter().any(|expected| expected.trim_matches('"') == terminal)
+    }
+
+    /// Whether an element could have stood here.
+    pub(super) fn expects_element(&self) -> bool {
+        self.expects("ExecPlan")
+    }
+
+    /// Whether a condition could have stood here.
+    pub(super) fn expects_condition(&self) -> bool {
+        self.expects("null")
+    }
+
+    /// Whether an argument could have stood here.
+    pub(super) fn expects_argument(&self) -> bool {
+        self.expects("string") && self.expects("number")
+    }
+
+    /// What is written from one token to another, if that is short enough for a sentence.
+    pub(super) fn text(&self, first: usize, last: usize) -> Option<&'s str> {
+        let (first, last) = (self.tokens.get(first)?, self.tokens.get(last)?);
+        let text = self.source.slice(Place::new(first.place.start, last.place.end));
+        (!text.is_empty() && text.len() <= 60 && !text.contains('\n')).then_some(text)
+    }
+
+    /// A message about this token.
+    pub(super) fn about(&self, at: usize, message: impl Into<String>, here: impl Into<String>) -> Diagnostic {
+        Diagnostic::new(Code::E0102, message, self.source.span(self.place(at)), here)
+    }
+
+    /// The message, pointing at this token as well.
+    pub(super) fn also(&self, diagnostic: Diagnostic, at: usize, text: &str) -> Diagnostic {
+        diagnostic.also(self.source.span(self.place(at)), text)
+    }
+
+    fn place(&self, at: usize) -> Place {
+        let end = self.tokens.last().map_or(0, |token| token.place.end);
+        self.tokens.get(at).map_or(Place::new(end, end), |token| token.place)
+    }
+
+    /// What was expected and what was found.
+    fn unexpected(&self) -> Diagnostic {
+        let message = format!("expected {}, found {}", self.expectation(), self.found_words());
+        self.about(self.at, message, "not expected here")
+    }
+
+    /// The unexpected token in words.
+    pub(super) fn found_words(&self) -> String {
+        let Some(found) = self.found() else { return "the end of the file".to_owned() };
+        let text = self.text(self.at, self.at).unwrap_or("…");
+        #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are what they look like")]
+        match found {
+            Tok::Name(_) => format!("the name `{text}`"),
+            Tok::Label(_) => format!("the label `{text}`"),
+            Tok::Number(_) => format!("the number `{text}`"),
+            Tok::Str(_) => format!("the text `{text}`"),
+            _ => format!("`{text}`"),
+        }
+    }
+
+    /// What could have stood here, in words.
+    pub(super) fn expectation(&self) -> String {
+        let mut left: Vec<&str> = self.expected.iter().map(|terminal| terminal.trim_matches('"')).collect();
+        let mut words: Vec<String> = Vec::new();
+        for (sign, whole, parts) in WHOLES {
+            if sign.iter().all(|sign| left.contains(sign)) {
+                words.push((*whole).to_owned());
+                left.retain(|terminal| !parts.contains(terminal));
+            }
+        }
+        let minor = ["^", ":", "module", "sigma_null", "touching (", "parameters (", "condition ("];
+        let (small, large): (Vec<&str>, Vec<&str>) = left.into_iter().partition(|terminal| minor.contains(terminal));
+        let left = if words.is_empty() && large.is_empty() { small } else { large };
+        words.extend(left.into_iter().map(terminal_words));
+        match words.split_last() {
+            None => "something else".to_owned(),
+            Some((only, [])) => only.clone(),
+            Some((last, others)) => format!("{} or {last}", others.join(", ")),
+        }
+    }
+}
+
+/// What stands for several terminals: those that tell it, its name, and those that begin it.
+const WHOLES: &[(&[&str], &str, &[&str])] = &[
+    (&["ExecPlan"], "an element", &["name", "{", "(", "ExecPlan", "FRAME", "label"]),
+    (&["use", "{"], "a plan", &["use", "label", "{"]),
+    (&["null"], "a condition", &["name", "(", "NOT", "RISING", "null", "after"]),
+    (&["string", "number"], "an argument", &["name", "(", "number", "inf", "string"]),
+    (&["number", "inf", "name"], "a count", &["number", "inf", "name"]),
+    (&["=="], "a comparison", &["==", "<", "<=", ">", ">="]),
+    (&["name", "("], "a law", &["name", "("]),
+];
+
+/// A terminal of the grammar in words.
+fn terminal_words(terminal: &str) -> String {
+    match terminal {
+        "name" => "a name".to_owned(),
+        "label" => "a label".to_owned(),
+        "number" => "a number".to_owned(),
+        "string" => "a text in quotes".to_owned(),
+        "touching (" | "parameters (" | "condition (" => "`(`".to_owned(),
+        other => format!("`{other}`"),
+    }
+}

@@ -1,0 +1,90 @@
+//! Says what a parenthesis behind a plan's own name is (language, section 3): its parameters, its condition, or its first element.
+//! The grammar could not know before the end of it.
+
+use super::token::{Tok, Token};
+
+/// Marks the parentheses in the headers of plans; brackets must match.
+pub(super) fn mark(tokens: &mut [Token<'_>]) {
+    for brace in 0..tokens.len() {
+        if is(tokens, brace, Tok::LBrace) && !is_loop(tokens, brace) && is_name(tokens, brace + 1) {
+            mark_header(tokens, brace + 2);
+        }
+    }
+}
+
+/// Marks the parenthesis at `at`, and the next one if this holds parameters.
+fn mark_header(tokens: &mut [Token<'_>], at: usize) {
+    if !is_parenthesis(tokens, at) {
+        return;
+    }
+    let mut condition = at;
+    if is_name(tokens, at + 1) && is(tokens, at + 2, Tok::Colon) {
+        set(tokens, at, Tok::ParamParen);
+        condition = end_of_group(tokens, at) + 1;
+        if !is_parenthesis(tokens, condition) {
+            return;
+        }
+    }
+    let kind = if is_element(tokens, condition) { Tok::LParen } else { Tok::ConditionParen };
+    set(tokens, condition, kind);
+}
+
+/// Whether the brace belongs to an `ExecPlan`, whose first name is not its own.
+fn is_loop(tokens: &[Token<'_>], brace: usize) -> bool {
+    let before = |back: usize| brace.checked_sub(back).and_then(|at| tokens.get(at)).map(|token| token.kind);
+    match (before(2), before(1)) {
+        (_, Some(Tok::ExecPlan)) => true,
+        (Some(Tok::ExecPlan), Some(Tok::Number(_) | Tok::Infinity | Tok::Name(_))) => true,
+        (_, Some(_) | None) => false,
+    }
+}
+
+/// Whether the group that opens at `at` holds what no condition does.
+fn is_element(tokens: &[Token<'_>], at: usize) -> bool {
+    let mut depth = 0_usize;
+    for token in tokens.get(at..).unwrap_or(&[]) {
+        #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens say nothing")]
+        match token.kind {
+            Tok::LParen | Tok::TouchParen => depth += 1,
+            Tok::RParen if depth == 1 => return false,
+            Tok::RParen => depth -= 1,
+            Tok::Comma if depth == 1 => return true,
+            Tok::Atom | Tok::ExecPlan | Tok::LBrace | Tok::RBrace | Tok::Caret | Tok::Frame => return true,
+            _ => {}
+        }
+    }
+    false
+}
+
+/// Where the group that opens at `at` closes.
+fn end_of_group(tokens: &[Token<'_>], at: usize) -> usize {
+    let mut depth = 0_usize;
+    for (offset, token) in tokens.get(at..).unwrap_or(&[]).iter().enumerate() {
+        #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens say nothing")]
+        match token.kind {
+            Tok::LParen | Tok::TouchParen | Tok::ParamParen => depth += 1,
+            Tok::RParen if depth == 1 => return at + offset,
+            Tok::RParen => depth -= 1,
+            _ => {}
+        }
+    }
+    tokens.len()
+}
+
+fn is(tokens: &[Token<'_>], at: usize, kind: Tok<'_>) -> bool {
+    tokens.get(at).is_some_and(|token| token.kind == kind)
+}
+
+fn is_name(tokens: &[Token<'_>], at: usize) -> bool {
+    matches!(tokens.get(at), Some(Token { kind: Tok::Name(_), .. }))
+}
+
+fn is_parenthesis(tokens: &[Token<'_>], at: usize) -> bool {
+    is(tokens, at, Tok::LParen) || is(tokens, at, Tok::TouchParen)
+}
+
+fn set<'s>(tokens: &mut [Token<'s>], at: usize, kind: Tok<'s>) {
+    if let Some(token) = tokens.get_mut(at) {
+        token.kind = kind;
+    }
+}

@@ -1,0 +1,142 @@
+//! The tree of a file as an outline: a line for each node, as written, nothing resolved.
+
+use super::tree::{
+    Arg, Call, Comparison, Condition, ConditionNode, Count, Element, File, Number, Operand, Param, Plan, Primary,
+};
+
+/// Writes the outline, two blanks deeper for each level.
+#[must_use]
+pub fn outline(file: &File) -> String {
+    let mut outline = Outline { text: String::new(), depth: 0 };
+    file.uses.iter().for_each(|used| outline.line(&format!("use {:?}", used.node)));
+    file.plans.iter().for_each(|plan| outline.plan(plan));
+    outline.text
+}
+
+struct Outline {
+    text: String,
+    depth: usize,
+}
+
+impl Outline {
+    fn line(&mut self, line: &str) {
+        self.text += &format!("{:indent$}{line}\n", "", indent = 2 * self.depth);
+    }
+
+    fn plan(&mut self, plan: &Plan) {
+        let label = plan.label.as_ref().map(|label| format!("{} = ", label.node)).unwrap_or_default();
+        let params: Vec<_> = plan.params.iter().map(param).collect();
+        let params = if params.is_empty() { String::new() } else { format!("({})", params.join(", ")) };
+        let when = plan.condition.as_ref().map(|when| format!(" when {}", condition(when))).unwrap_or_default();
+        plan.docs.iter().for_each(|doc| self.line(&format!("///{doc}")));
+        self.line(&format!("plan {label}{}{params}{when}", plan.name.node));
+        self.elements(&plan.elements);
+    }
+
+    fn elements(&mut self, elements: &[Element]) {
+        self.depth += 1;
+        elements.iter().for_each(|element| self.element(element));
+        self.depth -= 1;
+    }
+
+    fn element(&mut self, element: &Element) {
+        let label = element.label.as_ref().map(|label| format!("{}: ", label.node)).unwrap_or_default();
+        let frame = element.frame.as_ref().map(|frame| format!("frame {} ", number(frame))).unwrap_or_default();
+        let power = element.power.as_ref().map(|power| format!(" ^ {}", count(power))).unwrap_or_default();
+        let head = format!("{label}{frame}");
+        match &element.primary {
+            Primary::Atom { condition: when, control } => {
+                self.line(&format!("{head}atom when {} do {}{power}", condition(when), call(control)));
+            }
+            Primary::Plan(plan) => {
+                if !head.is_empty() || !power.is_empty() {
+                    self.line(&format!("{head}behavior{power}"));
+                }
+                self.plan(plan);
+            }
+            Primary::Ref(plan) => self.line(&format!("{head}run {}{power}", call(plan))),
+            Primary::Exec { count: times, body } => {
+                self.line(&format!("{head}loop {}{power}", count(times)));
+                self.elements(body);
+            }
+            Primary::String(body) => {
+                self.line(&format!("{head}string{power}"));
+                self.elements(body);
+            }
+            Primary::Formal { body, condition: when, time } => {
+                let time = time.as_ref().map(|time| format!(", {}", arg(time))).unwrap_or_default();
+                self.line(&format!("{head}formal when {}{time}{power}", condition(when)));
+                self.elements(body);
+            }
+            Primary::Broken => self.line(&format!("{head}(could not be read){power}")),
+        }
+    }
+}
+
+fn param(param: &Param) -> String {
+    format!("{}: {}", param.name.node, param.type_name.node)
+}
+
+fn condition(written: &Condition) -> String {
+    let all = |word: &str, operands: &[Condition]| {
+        let operands: Vec<_> = operands.iter().map(condition).collect();
+        format!("({})", operands.join(word))
+    };
+    match &written.node {
+        ConditionNode::Or(operands) => all(" OR ", operands),
+        ConditionNode::And(operands) => all(" AND ", operands),
+        ConditionNode::Not(operand) => format!("NOT {}", condition(operand)),
+        ConditionNode::Rising(operand) => format!("RISING {}", condition(operand)),
+        ConditionNode::Call(quark) => format!("({})", call(quark)),
+        ConditionNode::Comparison { left, operator, right } => {
+            let right = match right {
+                Operand::Signal(signal) => call(signal),
+                Operand::Number(value) => number(value),
+            };
+            format!("({} {} {right})", call(left), comparison(*operator))
+        }
+        ConditionNode::Null => "null".into(),
+        ConditionNode::After { label, cause } => {
+            let cause = cause.as_ref().map(|cause| format!(" {}", condition(cause))).unwrap_or_default();
+            format!("(after {}{cause})", label.node)
+        }
+        ConditionNode::Broken => "(could not be read)".into(),
+    }
+}
+
+fn comparison(operator: Comparison) -> &'static str {
+    match operator {
+        Comparison::Equal => "==",
+        Comparison::Less => "<",
+        Comparison::LessOrEqual => "<=",
+        Comparison::Greater => ">",
+        Comparison::GreaterOrEqual => ">=",
+    }
+}
+
+fn call(written: &Call) -> String {
+    let words: Vec<_> = std::iter::once(written.name.node.clone()).chain(written.args.iter().map(arg)).collect();
+    words.join(" ")
+}
+
+fn arg(written: &Arg) -> String {
+    match written {
+        Arg::Number(value) => number(value),
+        Arg::Infinity(_) => "inf".into(),
+        Arg::String(text) => format!("{:?}", text.node),
+        Arg::Name(name) => name.node.clone(),
+        Arg::Module(name) => format!("{} module", name.node),
+    }
+}
+
+fn number(written: &Number) -> String {
+    format!("{}{}", written.digits, written.unit.as_deref().unwrap_or_default())
+}
+
+fn count(written: &Count) -> String {
+    match written {
+        Count::Number(value) => number(value),
+        Count::Infinity(_) => "inf".into(),
+        Count::Name(name) => name.node.clone(),
+    }
+}

@@ -1,0 +1,51 @@
+//! Places in the text that is being parsed.
+
+use crate::diagnostic::{SourceId, Span};
+
+/// A text with the file that it is.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Source<'s> {
+    /// The file.
+    pub(super) id: SourceId,
+    /// Its text.
+    pub(super) text: &'s str,
+}
+
+/// A stretch of the text, in bytes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Place {
+    /// The first byte.
+    pub(super) start: usize,
+    /// The byte behind the last.
+    pub(super) end: usize,
+}
+
+impl Place {
+    /// The stretch between these two bytes.
+    pub(super) fn new(start: usize, end: usize) -> Self {
+        Self { start, end }
+    }
+
+    /// Whether nothing is written there.
+    pub(super) fn is_empty(self) -> bool {
+        self.start == self.end
+    }
+}
+
+impl<'s> Source<'s> {
+    /// The place as trees and diagnostics have it.
+    pub(super) fn span(self, place: Place) -> Span {
+        let offset = |byte: usize| u32::try_from(byte).unwrap_or(u32::MAX);
+        Span { source: self.id, start: offset(place.start), end: offset(place.end) }
+    }
+
+    /// What is written there.
+    pub(super) fn slice(self, place: Place) -> &'s str {
+        self.text.get(place.start..place.end).unwrap_or("")
+    }
+
+    /// Whether it is the first thing of its line.
+    pub(super) fn is_column_one(self, place: Place) -> bool {
+        self.text.get(..place.start).is_some_and(|before| before.is_empty() || before.ends_with('\n'))
+    }
+}

@@ -1,0 +1,26 @@
+//! What the front end reads and says, source beside result.
+
+mod forms;
+mod listings;
+mod mistakes;
+mod properties;
+
+use super::outline::outline;
+use super::parse;
+use crate::diagnostic::Sources;
+
+/// Compares the sources, each with its outline and its messages, with what is recorded.
+fn check(name: &str, texts: &[&str]) {
+    let shown = texts.iter().map(|text| one(text)).collect::<Vec<_>>().join("\n════════\n");
+    let mut settings = insta::Settings::clone_current();
+    settings.set_omit_expression(true);
+    settings.bind(|| insta::assert_snapshot!(name, shown));
+}
+
+fn one(text: &str) -> String {
+    let mut sources = Sources::default();
+    let id = sources.add("plan.mdle", text);
+    let (file, diagnostics) = parse(id, text);
+    let messages: Vec<String> = diagnostics.iter().map(|diagnostic| sources.render(diagnostic)).collect();
+    format!("{text}\n────────\n{}{}", outline(&file), messages.concat())
+}

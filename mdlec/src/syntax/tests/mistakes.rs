@@ -1,0 +1,138 @@
+//! What is said about defects: one message each, and something to type.
+
+use super::{check, one, parse};
+use crate::diagnostic::{Code, SourceId};
+
+#[test]
+fn atoms() {
+    check(
+        "mistakes_atoms",
+        &[
+            "{ A (Atom bumper stop) (Atom (wait 5) stop) }",
+            "{ A (Atom wait 5 (go 5 0)) }",
+            "{ A (Atom stop (bumper)) }",
+            "{ A (Atom) (Atom (bumper)) (Atom (bumper) (go 5 0) 7) (Atom (bumper) stop^3) (Atom (bumper) go 5, 0) }",
+            "{ A Atom (bumper) stop\n Atom (wait 5) stop }",
+            "{ A Atom (bumper) stop) (Atom (wait 5) stop) }",
+            "{ A (bumper) ((wait 5) stop) go 5 0 }",
+        ],
+    );
+}
+
+#[test]
+fn plans() {
+    check(
+        "mistakes_plans",
+        &[
+            "{ (bumper) (Atom (bumper) stop) } { }",
+            "{ module (bumper) (Atom (bumper) stop) }",
+            "{ 3 (Atom (bumper) stop) }",
+            "A { (Atom (bumper) stop) }",
+            "Foo = { A (Atom (bumper) stop) }",
+            "Γ_x { A (Atom (bumper) stop) }",
+            "Γ_x = A { (Atom (bumper) stop) }",
+            "{ A Γ_b (Atom (bumper) stop) }",
+            "Γ_b = ",
+            "(Atom (bumper) stop)",
+            "use corridors { A (Atom (bumper) stop) }",
+            "{ A (v: speed, ) (Atom (bumper) stop) }",
+            "{ A (Atom (bumper) stop) sigma_null B }",
+            "// nothing\n",
+        ],
+    );
+}
+
+#[test]
+fn elements() {
+    check(
+        "mistakes_elements",
+        &[
+            "{ A (Atom (bumper) stop), (Atom (bumper) stop) }",
+            "{ A ((Atom (bumper) stop), (Atom (bumper) stop)) }",
+            "{ A ExecPlan { (Atom (bumper) stop) } }",
+            "{ A ExecPlan 3 (Atom (bumper) stop) }",
+            "{ A ExecPlan Patrol 3 }",
+            "{ A ExecPlan 3 Patrol { (Atom (bumper) stop) } }",
+            "{ A execplan 3 { B (Atom (bumper) stop) } }",
+            "{ A (B)^ (Atom (bumper) stop) }",
+            "{ A FRAME Lab B }",
+            "{ A B(Atom (bumper) stop) }",
+            "{ A 7 (Atom (bumper) stop) = 7 }",
+            "{ A (bumper) ( ) ExecPlan 3 { } { B } }",
+        ],
+    );
+}
+
+#[test]
+fn conditions() {
+    check(
+        "mistakes_conditions",
+        &[
+            "{ A (x = 3) (Atom () stop) (Atom (OR bumper) stop) (Atom (bumper OR) stop) (Atom (NOT NOT bumper) stop) }",
+            "{ A (Atom (0.5 < r 3) stop) (Atom (r 3 < 0.5 m) stop) (Atom (after 5) stop) }",
+            "{ A ((bumper OR) AND wait 5) (Atom (bumper) stop) }",
+        ],
+    );
+}
+
+#[test]
+fn brackets() {
+    check(
+        "mistakes_brackets",
+        &[
+            "{ A (Atom (bumper stop)\n    (Atom (wait 5) stop) }",
+            "{ A\n  (Atom (bumper) stop)\nΓ_b = { B\n  (Atom (bumper) stop)\n}\n",
+            "{ A (Atom (bumper) stop)",
+            "{ A (Atom (bumper) stop) )",
+            "{ A (Atom (bumper) stop) } }",
+            "{ A (Atom (bumper) stop)) (Atom (bumper) stop) }",
+            "{ A (B (C (D }",
+            "{ A \\text{B }",
+            "{ A \\text{B {",
+        ],
+    );
+}
+
+#[test]
+fn brackets_nest_256_deep() {
+    let nested = |depth: usize| format!("{{ A (null) {}B{} }}", "(".repeat(depth - 1), ")".repeat(depth - 1));
+    assert_eq!(parse(SourceId(0), &nested(256)).1, []);
+    let (_, diagnostics) = parse(SourceId(0), &nested(257));
+    assert_eq!(diagnostics.iter().map(|found| found.code).collect::<Vec<_>>(), [Code::E0106]);
+    check("mistakes_brackets_nest_256_deep", &[&nested(257)]);
+}
+
+#[test]
+fn characters_and_numbers() {
+    check(
+        "mistakes_characters_and_numbers",
+        &[
+            "{ A (Atom (bumper && wait 5) stop) (Atom (!bumper) # stop) }",
+            "{ A (Atom (wait 20furlongs) stop) (Atom (wait 20sec) stop) ExecPlan 3Patrol }",
+            "{ A (Atom (wait .5) stop) (Atom (wait 5.) stop) (Atom (wait 5-3) stop) (Atom (wait 5.5.5) stop) }",
+            "{ A (Atom (b) (go 20 cm/s 0.36rad/s2)) (Atom (b) (rotate 90°)) (Atom (b) (rotate − 90)) }",
+            "{ A B\n 3Patrol\n @ = C }",
+            "{ A B \\alpha \\Gamma “x” @@@ }",
+        ],
+    );
+}
+
+#[test]
+fn what_does_not_end() {
+    check(
+        "mistakes_what_does_not_end",
+        &["{ A B } /* and so on", "use \"corridors.mdle\n{ A (Atom (bumper) path(\"a b)) }"],
+    );
+}
+
+#[test]
+fn all_defects_of_a_file_are_told_in_order() {
+    let text = "{ A (Atom bumper stop)\n  (Atom (wait 5x) stop)\n  B,\n  ExecPlan { C }\n  (Atom (wait 5) stop }\n{ (Atom (b OR) u) }\n@";
+    let (_, diagnostics) = parse(SourceId(0), text);
+    let lines: Vec<_> = diagnostics
+        .iter()
+        .filter_map(|found| found.span())
+        .map(|span| text[..span.start as usize].matches('\n').count() + 1)
+        .collect();
+    assert_eq!(lines, [1, 2, 3, 4, 5, 6, 6, 7], "{}", one(text));
+}

@@ -1,0 +1,160 @@
+//! What holds for every text whatever.
+
+use proptest::prelude::*;
+
+use super::super::brackets::{MAX_DEPTH, balance};
+use super::super::source::Source;
+use super::super::token::{Tok, lex};
+use super::{outline, parse};
+use crate::diagnostic::{SourceId, Sources};
+
+/// Pieces of plans.
+const PIECES: &[&str] = &[
+    "{",
+    "}",
+    "(",
+    ")",
+    "\\{",
+    "$",
+    ";",
+    ",",
+    ":",
+    "^",
+    "=",
+    "==",
+    "<",
+    "≤",
+    "\\geq",
+    "[",
+    "]",
+    "Atom",
+    "(Atom",
+    "ExecPlan",
+    "OR",
+    "and",
+    "NOT",
+    "RISING",
+    "use",
+    "null",
+    "module",
+    "after",
+    "FRAME",
+    "sigma_null",
+    "Γ_a^b",
+    "\\Gamma_{a}^{b}",
+    "A",
+    "wait",
+    "5",
+    "0100",
+    "5cm/s",
+    "5 cm/s",
+    "5x",
+    "5-3",
+    "inf",
+    "∞",
+    "\"a\"",
+    "\"a",
+    "/*",
+    "*/",
+    "//",
+    "/// doc\n",
+    "\n",
+    "\\text{",
+    "\\\\",
+    "\\alpha",
+    "@",
+    "é",
+    "{ A",
+    "(bumper)",
+    "(Atom (bumper) stop)",
+    "f(",
+    "ExecPlan 3 {",
+    "s1:",
+];
+
+fn soup() -> impl Strategy<Value = String> {
+    let piece = (proptest::sample::select(PIECES), any::<bool>());
+    proptest::collection::vec(piece, 0..60).prop_map(|pieces| {
+        pieces.into_iter().map(|(piece, blank)| format!("{piece}{}", if blank { " " } else { "" })).collect()
+    })
+}
+
+/// Reads a text, renders all that is said, and looks whether it makes sense.
+fn reads(text: &str) {
+    let mut sources = Sources::default();
+    let id = sources.add("plan.mdle", text);
+    let (file, diagnostics) = parse(id, text);
+    let _ = outline(&file);
+    assert!(diagnostics.len() <= text.len() + 1);
+    assert!(!file.plans.is_empty() || !diagnostics.is_empty());
+    assert!(diagnostics.is_sorted_by_key(|found| found.span()));
+    for found in &diagnostics {
+        assert!(!found.message.is_empty());
+        for label in &found.labels {
+            let range = label.span.start as usize..label.span.end as usize;
+            assert!(text.get(range).is_some(), "{found:?}");
+        }
+        let _ = sources.render(found);
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn token_soup_is_read(text in soup()) {
+        reads(&text);
+    }
+
+    #[test]
+    fn any_text_is_read(text in any::<String>()) {
+        reads(&text);
+    }
+
+    #[test]
+    fn any_bytes_are_read(bytes in proptest::collection::vec(any::<u8>(), 0..200)) {
+        reads(&String::from_utf8_lossy(&bytes));
+    }
+
+    #[test]
+    fn brackets_match_after_the_pass(text in soup()) {
+        let source = Source { id: SourceId(0), text: &text };
+        let balanced = balance(source, &lex(source));
+        let mut open = Vec::new();
+        for (at, token) in balanced.tokens.iter().enumerate() {
+            #[allow(clippy::wildcard_enum_match_arm, reason = "only brackets are looked at")]
+            match token.kind {
+                Tok::LBrace => open.push((at, Tok::RBrace)),
+                Tok::LParen | Tok::TouchParen => open.push((at, Tok::RParen)),
+                closer @ (Tok::RBrace | Tok::RParen) => prop_assert_eq!(open.pop().map(|(_, closer)| closer), Some(closer)),
+                Tok::Atom => {
+                    let around = open.iter().rev().take_while(|(_, closer)| *closer == Tok::RParen);
+                    let atoms = around.filter(|(opener, _)| balanced.tokens[opener + 1].kind == Tok::Atom);
+                    prop_assert_eq!(atoms.count(), 1);
+                }
+                _ => {}
+            }
+            prop_assert!(open.len() <= MAX_DEPTH);
+        }
+        prop_assert!(open.is_empty());
+    }
+
+    /// A defect in one atom is told once and does not reach the other elements.
+    #[test]
+    fn one_broken_atom_is_one_message(piece in proptest::sample::select(&["=", ":", "^", "==", "[", "]", "use", "FRAME", "7x", "@", "Γ_a", ","][..]), place in 0_usize..6) {
+        let mut atom = ["(Atom", "(", "wait 5", ")", "(go 5 0)", ")"].map(str::to_owned);
+        atom[place].push_str(&format!(" {piece} "));
+        let text = format!("{{ A (bumper) (Atom (b) u) {} (Atom (b) u) ExecPlan 2 {{ B }} }}", atom.concat());
+        let (file, diagnostics) = parse(SourceId(0), &text);
+        prop_assert!(diagnostics.len() <= 1, "{}", super::one(&text));
+        prop_assert!(file.plans.len() == 1 && file.plans[0].elements.len() >= 4);
+    }
+}
+
+#[test]
+fn a_hundred_thousand_elements_are_read() {
+    let text = format!("{{ A (bumper) {} }}", "(Atom (wait 5) stop) ".repeat(100_000));
+    let (file, diagnostics) = parse(SourceId(0), &text);
+    assert_eq!(diagnostics, []);
+    assert_eq!(file.plans[0].elements.len(), 100_000);
+}

@@ -1,0 +1,343 @@
+//! Text to tokens (language, section 2): afterwards there are no blanks, no comments and no typesetting, and each parenthesis
+//! knows whether it touches a name.
+
+use logos::{FilterResult, Lexer, Logos};
+
+use super::lexical;
+use super::source::{Place, Source};
+use crate::alphabet::Unit;
+use crate::diagnostic::Diagnostic;
+
+/// A token where it is written.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Token<'s> {
+    /// What it is.
+    pub(super) kind: Tok<'s>,
+    /// Where.
+    pub(super) place: Place,
+}
+
+/// A number as written: its digits, and what touches them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Digits<'s> {
+    /// Sign, digits, fraction, exponent.
+    pub(super) number: &'s str,
+    /// What touches it: a unit, or nothing, once the lexer is done.
+    pub(super) tail: &'s str,
+}
+
+/// What a token is.
+#[derive(Logos, Debug, Clone, Copy, PartialEq)]
+#[logos(skip(r"[\s;$\u{feff}]+"))]
+#[logos(skip(r"\\\\"))]
+#[logos(skip(r"//[^\n]*", allow_greedy = true))]
+pub(super) enum Tok<'s> {
+    #[token("use")]
+    Use,
+    #[token("Atom")]
+    Atom,
+    #[token("ExecPlan")]
+    ExecPlan,
+    #[token("OR")]
+    #[token("or")]
+    Or,
+    #[token("AND")]
+    #[token("and")]
+    And,
+    #[token("NOT")]
+    #[token("not")]
+    Not,
+    #[token("RISING")]
+    #[token("rising")]
+    Rising,
+    #[token("null")]
+    Null,
+    #[token("module")]
+    Module,
+    #[token("after")]
+    After,
+    #[token("FRAME")]
+    Frame,
+    #[token("sigma_null")]
+    #[token("σ_null")]
+    #[regex(r"\\sigma_(null|\{\s*null\s*\}|\{\s*\\text\{\s*null\s*\}\s*\})")]
+    SigmaNull,
+    #[regex(r"[\p{L}_][\p{L}\p{M}\p{Nd}_]*")]
+    Name(&'s str),
+    #[regex(r"(Γ|\\?Gamma)_([\p{L}\p{M}\p{Nd}_]+|\{\s*(\\text\{)?[\s\p{L}\p{M}\p{Nd}_]+\}?\s*\})(\^([\p{L}\p{M}\p{Nd}_]+|\{\s*(\\text\{)?[\s\p{L}\p{M}\p{Nd}_]+\}?\s*\}))?", priority = 40)]
+    Label(&'s str),
+    #[regex(r"[+-]?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?", number)]
+    Number(Digits<'s>),
+    #[token("inf")]
+    #[token("infinity")]
+    #[token("∞")]
+    #[token(r"\infty")]
+    Infinity,
+    #[token("\"", string)]
+    Str(&'s str),
+    #[token("{")]
+    #[token(r"\{")]
+    LBrace,
+    #[token("}")]
+    #[token(r"\}")]
+    RBrace,
+    #[token("(")]
+    LParen,
+    /// A parenthesis that touches the name before it.
+    TouchParen,
+    /// The parenthesis of a plan's parameters.
+    ParamParen,
+    /// The parenthesis of a plan's condition.
+    ConditionParen,
+    #[token(")")]
+    RParen,
+    #[token("[")]
+    LBracket,
+    #[token("]")]
+    RBracket,
+    #[token(",")]
+    Comma,
+    #[token(":")]
+    Colon,
+    #[token("^")]
+    Caret,
+    #[token("=")]
+    Assign,
+    #[token("==")]
+    Equal,
+    #[token("<")]
+    Less,
+    #[token("<=")]
+    #[token("≤")]
+    #[token(r"\leq")]
+    LessOrEqual,
+    #[token(">")]
+    Greater,
+    #[token(">=")]
+    #[token("≥")]
+    #[token(r"\geq")]
+    GreaterOrEqual,
+    /// A doc comment; never reaches the parser.
+    #[regex(r"///[^\n]*", doc, allow_greedy = true, priority = 20)]
+    Doc(&'s str),
+    /// The start of `\text{…}`; never reaches the parser.
+    #[regex(r"\\text\s*\{")]
+    Text,
+    /// A block comment, not terminated; a terminated one is skipped.
+    #[token("/*", comment)]
+    Comment,
+    /// A typesetting command that means nothing here; never reaches the parser.
+    #[regex(r"\\[A-Za-z]+", priority = 1)]
+    Command,
+}
+
+/// What the lexer makes of a text.
+#[derive(Debug, Default)]
+pub(super) struct Lexed<'s> {
+    /// The tokens, in order.
+    pub(super) tokens: Vec<Token<'s>>,
+    /// The doc comments, each with the number of tokens before it.
+    pub(super) docs: Vec<(usize, &'s str)>,
+    /// The lexical errors, in order, each with the number of tokens before it.
+    pub(super) errors: Vec<(usize, Diagnostic)>,
+}
+
+/// The tokens of a text, its doc comments and its lexical errors.
+pub(super) fn lex(source: Source<'_>) -> Lexed<'_> {
+    let mut reader = Reader { source, lexed: Lexed::default(), text_ends: usize::MAX, touches: 0, run: None };
+    for (token, range) in Tok::lexer(source.text).spanned() {
+        let place = Place::new(range.start, range.end);
+        match token {
+            Ok(kind) => reader.token(Token { kind, place }),
+            Err(()) => reader.character(place),
+        }
+    }
+    reader.end_run();
+    reader.lexed
+}
+
+/// Collects tokens.
+struct Reader<'s> {
+    source: Source<'s>,
+    lexed: Lexed<'s>,
+    /// Where the brace of the current `\text{…}` is.
+    text_ends: usize,
+    /// The end of the last token, and of the typesetting that touches it.
+    touches: usize,
+    /// The unexpected characters that have just been read.
+    run: Option<Place>,
+}
+
+impl<'s> Reader<'s> {
+    fn token(&mut self, token: Token<'s>) {
+        self.end_run();
+        let Place { start, end } = token.place;
+        #[allow(clippy::wildcard_enum_match_arm, reason = "only what the parser must not see is named")]
+        match token.kind {
+            Tok::RBrace if start == self.text_ends => self.typesetting(token.place),
+            Tok::Text => self.text(token.place),
+            Tok::Doc(text) => self.lexed.docs.push((self.lexed.tokens.len(), text)),
+            Tok::Command => self.report(lexical::command(self.source, token.place)),
+            Tok::Comment => self.report(lexical::comment(self.source, token.place)),
+            Tok::LParen if start == self.touches && self.after_name() => self.push(Tok::TouchParen, token.place),
+            Tok::Number(digits) => self.number(digits, token.place),
+            Tok::Str(text) => {
+                if end - start != text.len() + 2 {
+                    self.report(lexical::string(self.source, token.place));
+                }
+                self.push(token.kind, token.place);
+            }
+            kind => self.push(kind, token.place),
+        }
+    }
+
+    fn push(&mut self, kind: Tok<'s>, place: Place) {
+        self.touches = place.end;
+        self.lexed.tokens.push(Token { kind, place });
+    }
+
+    fn report(&mut self, diagnostic: Diagnostic) {
+        self.lexed.errors.push((self.lexed.tokens.len(), diagnostic));
+    }
+
+    fn after_name(&self) -> bool {
+        matches!(self.lexed.tokens.last(), Some(Token { kind: Tok::Name(_), .. }))
+    }
+
+    /// A number keeps its unit; whatever else touches it is reported and dropped.
+    fn number(&mut self, digits: Digits<'s>, place: Place) {
+        let known = digits.tail.is_empty() || Unit::from_name(digits.tail).is_some();
+        if known {
+            self.push(Tok::Number(digits), place);
+        } else {
+            self.report(lexical::number(self.source, digits, place));
+            self.push(Tok::Number(Digits { tail: "", ..digits }), place);
+        }
+    }
+
+    /// The braces of `\text{…}` vanish, and do not come between a name and its parenthesis.
+    fn text(&mut self, place: Place) {
+        match text_end(self.source.text, place.end) {
+            Some(end) => self.text_ends = end,
+            None => self.report(lexical::text(self.source, place)),
+        }
+        self.typesetting(place);
+    }
+
+    fn typesetting(&mut self, place: Place) {
+        if place.start == self.touches {
+            self.touches = place.end;
+        }
+    }
+
+    /// Unexpected characters are reported once for a run of them.
+    fn character(&mut self, place: Place) {
+        match &mut self.run {
+            Some(run) if run.end == place.start => run.end = place.end,
+            Some(_) | None => {
+                self.end_run();
+                self.run = Some(place);
+            }
+        }
+    }
+
+    fn end_run(&mut self) {
+        if let Some(run) = self.run.take() {
+            self.report(lexical::characters(self.source, run));
+        }
+    }
+}
+
+/// The end of the text of a label, normalized: `Γ_from^to`.
+pub(super) fn label(text: &str) -> String {
+    let text = text.trim_start_matches('\\').replace(r"\text", "");
+    let bare: String = text.chars().filter(|c| !c.is_whitespace() && !matches!(c, '{' | '}')).collect();
+    match bare.strip_prefix("Gamma") {
+        Some(rest) => format!("Γ{rest}"),
+        None => bare,
+    }
+}
+
+/// Where the `\text{` that ends before `from` is closed; it holds no other braces than escaped ones.
+fn text_end(text: &str, from: usize) -> Option<usize> {
+    let mut bytes = text.bytes().enumerate().skip(from);
+    while let Some((at, byte)) = bytes.next() {
+        match byte {
+            b'\\' => drop(bytes.next()),
+            b'}' => return Some(at),
+            b'{' => return None,
+            _ => {}
+        }
+    }
+    None
+}
+
+/// Takes what touches a number along with it.
+fn number<'s>(lexer: &mut Lexer<'s, Tok<'s>>) -> Digits<'s> {
+    let number = lexer.slice();
+    let mut rest = lexer.remainder().chars();
+    let mut length = 0;
+    while let Some(c) = rest.next() {
+        let next = rest.clone().next().unwrap_or(' ');
+        let belongs = match c {
+            '/' => next.is_alphabetic(),
+            '+' | '-' => next.is_ascii_digit(),
+            _ => c.is_alphanumeric() || matches!(c, '_' | '.' | '°'),
+        };
+        if !belongs {
+            break;
+        }
+        length += c.len_utf8();
+    }
+    if length == 0 {
+        length = unit_apart(lexer.remainder());
+    }
+    let tail = lexer.remainder().get(..length).unwrap_or("");
+    lexer.bump(length);
+    Digits { number, tail }
+}
+
+/// How long the blanks and the unit are that follow a number, if it is a unit with a `/`, which nothing else has.
+fn unit_apart(rest: &str) -> usize {
+    let behind = rest.trim_start_matches([' ', '\t']);
+    let follows = |unit: &Unit| {
+        let next = behind.strip_prefix(unit.name).map(|after| after.chars().next());
+        unit.name.contains('/') && next.is_some_and(|next| !next.is_some_and(|c| c.is_alphanumeric() || c == '_'))
+    };
+    Unit::ALL.iter().find(|unit| follows(unit)).map_or(0, |unit| rest.len() - behind.len() + unit.name.len())
+}
+
+/// The text between the quotes; one that does not end on its line takes what could be the name of a file.
+fn string<'s>(lexer: &mut Lexer<'s, Tok<'s>>) -> &'s str {
+    let rest = lexer.remainder();
+    let stop = rest.find(['"', '\n']).unwrap_or(rest.len());
+    let (line, behind) = rest.split_at_checked(stop).unwrap_or((rest, ""));
+    let closed = behind.starts_with('"');
+    let ends = |c: char| c.is_whitespace() || "(){}[],;".contains(c);
+    let text = if closed { line } else { line.split(ends).next().unwrap_or("") };
+    lexer.bump(text.len() + usize::from(closed));
+    text
+}
+
+/// The text behind the slashes; four of them make no doc comment.
+fn doc<'s>(lexer: &mut Lexer<'s, Tok<'s>>) -> FilterResult<&'s str, ()> {
+    match lexer.slice().strip_prefix("///") {
+        Some(text) if !text.starts_with('/') => FilterResult::Emit(text.trim_end()),
+        Some(_) | None => FilterResult::Skip,
+    }
+}
+
+/// Skips a block comment; one that does not end takes the rest of the text.
+fn comment<'s>(lexer: &mut Lexer<'s, Tok<'s>>) -> FilterResult<(), ()> {
+    let rest = lexer.remainder();
+    match rest.find("*/") {
+        Some(end) => {
+            lexer.bump(end + 2);
+            FilterResult::Skip
+        }
+        None => {
+            lexer.bump(rest.len());
+            FilterResult::Emit(())
+        }
+    }
+}

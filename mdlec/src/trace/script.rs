@@ -1,0 +1,152 @@
+//! Scripts: what interrupts and laws report, turn by turn, as JSON lines (semantics, section 9).
+//!
+//! Afterwards: times are nanoseconds since the first turn and never go back.
+
+use std::collections::BTreeSet;
+use std::fmt;
+
+use mdle_runtime::Nanos;
+use serde::Deserialize;
+
+use crate::alphabet::Decimal;
+
+/// A script as read.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Script {
+    turns: Vec<Reports>,
+}
+
+/// What is reported in one turn: the output `y` of a robot that is only a script.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Reports {
+    /// The time since the first turn.
+    pub t: Nanos,
+    /// The quark texts of the interrupts that have fired.
+    pub fired: BTreeSet<String>,
+    /// The quark texts of the laws that are done.
+    pub completed: BTreeSet<String>,
+}
+
+/// Why a script cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ScriptError {
+    /// The line, from 1.
+    pub line: usize,
+    /// What is wrong with it.
+    pub message: String,
+}
+
+impl fmt::Display for ScriptError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "line {}: {}", self.line, self.message)
+    }
+}
+
+impl std::error::Error for ScriptError {}
+
+/// A line as it is written; a list that is left out is empty.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    t: f64,
+    #[serde(default)]
+    fired: BTreeSet<String>,
+    #[serde(default)]
+    completed: BTreeSet<String>,
+}
+
+impl Script {
+    /// Reads a script: one object a line, blank lines aside.
+    ///
+    /// # Errors
+    /// At the first line that is not such an object, or whose time is before the one of the line before it.
+    pub fn read(text: &str) -> Result<Self, ScriptError> {
+        let mut turns: Vec<Reports> = Vec::new();
+        let mut start = None;
+        for (line, content) in (1..).zip(text.lines()).filter(|(_, content)| !content.trim().is_empty()) {
+            let refused = |message| ScriptError { line, message };
+            let written: Written = serde_json::from_str(content).map_err(|error| refused(reason(&error)))?;
+            let at = nanos(written.t).ok_or_else(|| refused(format!("{} is no time in seconds", written.t)))?;
+            let start = *start.get_or_insert(at);
+            let back = || refused(format!("the time {} is before that of the line before it", written.t));
+            let t = Nanos(at.checked_sub(start).ok_or_else(back)?);
+            if turns.last().is_some_and(|before| t < before.t) {
+                return Err(back());
+            }
+            turns.push(Reports { t, fired: written.fired, completed: written.completed });
+        }
+        Ok(Self { turns })
+    }
+
+    /// Its turns, in order; the first is at time 0.
+    #[must_use]
+    pub fn turns(&self) -> &[Reports] {
+        &self.turns
+    }
+}
+
+/// The time in nanoseconds. By way of the shortest decimal, which is what was written, so that nothing is rounded twice.
+fn nanos(seconds: f64) -> Option<u64> {
+    Decimal::parse(&seconds.to_string())?.to_nanos()
+}
+
+/// The reader's message with the column only: its line is always 1, since each line is read by itself.
+fn reason(error: &serde_json::Error) -> String {
+    let message = error.to_string();
+    match message.split_once(" at line ") {
+        Some((message, _)) => format!("{message} (column {})", error.column()),
+        None => message,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn times(text: &str) -> Vec<u64> {
+        Script::read(text).unwrap().turns().iter().map(|reports| reports.t.0).collect()
+    }
+
+    fn refused(text: &str) -> String {
+        Script::read(text).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn times_count_from_the_first_line_in_nanoseconds() {
+        assert_eq!(times("{\"t\": 5}\n\n{\"t\": 5.1}\n{\"t\": 5.1000000014}\r\n"), [0, 100_000_000, 100_000_001]);
+        assert_eq!(times("{\"t\":1700000000.1}\n{\"t\":1700000000.3}"), [0, 200_000_000]);
+        assert_eq!(times("{\"t\":1e-9}\n{\"t\":2.5e-9}"), [0, 2]);
+        assert_eq!(times(" \n"), [0_u64; 0]);
+    }
+
+    #[test]
+    fn reports_are_read_as_quark_texts() {
+        let script =
+            Script::read(r#"{"t":0.0,"fired":["atIsection 0100","bumper"],"completed":["rotate 90"]}"#).unwrap();
+        assert_eq!(script.turns()[0].fired, BTreeSet::from(["atIsection 0100".into(), "bumper".into()]));
+        assert_eq!(script.turns()[0].completed, BTreeSet::from(["rotate 90".into()]));
+    }
+
+    #[test]
+    fn a_time_that_goes_back_is_refused_with_its_line() {
+        assert_eq!(refused("{\"t\":1}\n\n{\"t\":0.9}"), "line 3: the time 0.9 is before that of the line before it");
+        assert_eq!(
+            refused("{\"t\":1}\n{\"t\":3}\n{\"t\":2}"),
+            "line 3: the time 2 is before that of the line before it"
+        );
+    }
+
+    #[test]
+    fn what_is_no_line_of_a_script_is_refused() {
+        assert_eq!(refused("{\"t\":-1}"), "line 1: -1 is no time in seconds");
+        assert_eq!(refused("{\"t\":1e300}").split_at(8).0, "line 1: ");
+        assert_eq!(
+            refused("{\"t\":0,\"fire\":[]}"),
+            "line 1: unknown field `fire`, expected one of `t`, `fired`, `completed` (column 13)"
+        );
+        for text in ["[]", "{}", "{\"t\":0", "{\"t\":\"0\"}", "{\"t\":0,\"t\":1}", "{\"t\":1e999}", "\u{feff}{\"t\":0}"]
+        {
+            assert!(refused(text).starts_with("line 1: "), "{text}");
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! Emitted Rust becomes a static executable; whatever prevents it is said in a sentence.
+//!
+//! All tests share a cache that outlives them: only the first run compiles the runtime.
+#![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "a test may, and files are what this is about")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use mdlec::link::{Built, Cache, LinkError, Package, Progress, TargetCrate, build};
+
+const PLAN: &str = include_str!("link/plan.rs");
+
+const ROVER: &str = include_str!("link/rover.rs");
+
+const MANIFEST: &str = r#"# Not of the workspace around the folder that tests write to.
+[workspace]
+
+[package]
+name = "mdle-rover"
+version = "0.1.0"
+edition = "2024"
+
+[dependencies]
+mdle-runtime = "0.1"
+mdle-host = "0.1"
+"#;
+
+#[test]
+fn the_executable_is_static_and_holds_no_path_of_this_machine() {
+    let robot = Robot::new("static", MANIFEST, ROVER);
+    let (built, output) = robot.build("nap.mdle", PLAN).unwrap();
+    let bytes = fs::read(&output).unwrap();
+    assert_eq!(built.size, bytes.len() as u64);
+    assert!(!has_interpreter(&bytes));
+    let (cache, user) = (cache(), std::env::home_dir().unwrap());
+    for place in [cache.folder(), user.as_path()] {
+        let place = place.as_os_str().as_encoded_bytes();
+        assert!(!bytes.windows(place.len()).any(|window| window == place), "{}", String::from_utf8_lossy(place));
+    }
+    let said = Command::new(&output).output().unwrap();
+    assert_eq!(said.status.code(), Some(0), "{said:?}");
+    assert!(String::from_utf8(said.stdout).unwrap().contains("plan over: morning"));
+}
+
+#[test]
+fn the_same_text_again_is_fresh() {
+    let robot = Robot::new("again", MANIFEST, ROVER);
+    let (first, output) = robot.build("nap.mdle", PLAN).unwrap();
+    let before = fs::read(&output).unwrap();
+    let (second, _) = robot.build("nap.mdle", PLAN).unwrap();
+    assert_eq!(second, Built { size: first.size, fresh: true });
+    assert_eq!(before, fs::read(&output).unwrap());
+}
+
+#[test]
+fn plans_of_one_name_do_not_meet() {
+    let robot = Robot::new("names", MANIFEST, ROVER);
+    let (_, left) = robot.build("left/nap.mdle", &PLAN.replace("morning", "noon")).unwrap();
+    let (_, right) = robot.build("right/nap.mdle", &PLAN.replace("morning", "night")).unwrap();
+    for (output, cause) in [(left, "noon"), (right, "night")] {
+        let said = Command::new(output).output().unwrap();
+        assert!(String::from_utf8(said.stdout).unwrap().contains(cause));
+    }
+}
+
+#[test]
+fn a_target_that_does_not_compile_is_quoted_whole() {
+    let robot = Robot::new("broken", MANIFEST, &ROVER.replace("Ok(Self)", "Ok(Rower)"));
+    let error = robot.build("nap.mdle", PLAN).unwrap_err();
+    let text = error.to_string();
+    let (sentence, quoted) = text.split_once('\n').unwrap();
+    assert_eq!(sentence, "the target crate `mdle_rover` does not compile; this is not a fault of your plan:");
+    assert!(quoted.starts_with("error[E0425]"), "{quoted}");
+    assert!(quoted.contains("Rower") && !quoted.contains("Compiling"), "{quoted}");
+    assert_eq!(error.exit_status(), 1);
+}
+
+#[test]
+fn a_plan_that_does_not_fit_the_target_is_not_quoted() {
+    let robot = Robot::new("misfit", MANIFEST, ROVER);
+    let error = robot.build("nap.mdle", &PLAN.replace("Sensed", "Felt")).unwrap_err();
+    let LinkError::TargetMisfit { log, .. } = &error else { panic!("{error:?}") };
+    assert!(fs::read_to_string(log).unwrap().contains("Felt"));
+    assert!(!error.to_string().contains("Felt"));
+    assert_eq!(error.exit_status(), 1);
+}
+
+#[test]
+fn a_target_must_be_what_its_alphabet_says() {
+    let robot = Robot::new("other", &MANIFEST.replace("mdle-rover", "mdle-scout"), ROVER);
+    let error = robot.build("nap.mdle", PLAN).unwrap_err();
+    assert!(matches!(&error, LinkError::OtherCrate { found, .. } if found == "`mdle_scout`"), "{error:?}");
+
+    let robot = Robot::new("without", &MANIFEST.replace("mdle-host", "mdle-home"), ROVER);
+    let error = robot.build("nap.mdle", PLAN).unwrap_err();
+    assert!(matches!(error, LinkError::TargetLacks { missing: "mdle-host", .. }), "{error:?}");
+
+    let robot = Robot::new("garbled", "[package", ROVER);
+    let error = robot.build("nap.mdle", PLAN).unwrap_err();
+    assert!(matches!(error, LinkError::TargetRefused { .. }), "{error:?}");
+
+    fs::remove_file(robot.folder.join("rover/Cargo.toml")).unwrap();
+    let error = robot.build("nap.mdle", PLAN).unwrap_err();
+    assert!(matches!(error, LinkError::NotACrate(_)), "{error:?}");
+}
+
+/// A target crate by path in a folder of its own.
+struct Robot {
+    folder: PathBuf,
+}
+
+impl Robot {
+    fn new(name: &str, manifest: &str, rust: &str) -> Self {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("link").join(name);
+        fs::create_dir_all(folder.join("rover/src")).unwrap();
+        fs::write(folder.join("rover/Cargo.toml"), manifest).unwrap();
+        fs::write(folder.join("rover/src/lib.rs"), rust).unwrap();
+        Self { folder }
+    }
+
+    /// Builds `rust`, as if emitted from `plan`; the executable is beside the plan.
+    fn build(&self, plan: &str, rust: &str) -> Result<(Built, PathBuf), LinkError> {
+        let plan_file = self.folder.join(plan);
+        fs::create_dir_all(plan_file.parent().unwrap()).unwrap();
+        fs::write(&plan_file, "{ Nap (bumper) (Atom (null) stop) }").unwrap();
+        let target = TargetCrate::Path { folder: &self.folder.join("rover"), crate_name: "mdle_rover" };
+        let package = Package { plan_name: "Nap", plan_file: &plan_file, plan_type: "Nap", rust, target: &target };
+        let output = plan_file.with_extension("");
+        let built = build(&cache(), &package, &output, &mut |_: Progress| {})?;
+        Ok((built, output))
+    }
+}
+
+fn cache() -> Cache {
+    Cache::at(&Path::new(env!("CARGO_TARGET_TMPDIR")).join("link/cache")).unwrap()
+}
+
+/// Whether an ELF file of 64 bits asks for a dynamic loader: whether it has a program header of type 3.
+fn has_interpreter(elf: &[u8]) -> bool {
+    assert_eq!(elf[..5], *b"\x7fELF\x02");
+    let number = |at: usize, bytes: usize| elf[at..at + bytes].iter().rev().fold(0, |n, byte| n << 8 | *byte as usize);
+    let (headers, size, count) = (number(0x20, 8), number(0x36, 2), number(0x38, 2));
+    (0..count).any(|header| number(headers + header * size, 4) == 3)
+}

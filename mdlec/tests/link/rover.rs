@@ -1,0 +1,58 @@
+//! The robot of the tests of `link`, as a third party would write it: one that can do nothing.
+#![forbid(unsafe_code)]
+
+use std::convert::Infallible;
+use std::time::Duration;
+
+use mdle_host::clap::{ArgMatches, Command};
+use mdle_host::{Hosted, Pace, Refusal, Time};
+use mdle_runtime::Robot;
+
+/// What emitted code refers to.
+pub mod alphabet {
+    pub use crate::Rover as Target;
+}
+
+/// The robot.
+#[derive(Debug)]
+pub struct Rover;
+
+/// Its output.
+#[derive(Debug)]
+pub struct Sensed;
+
+impl mdle_runtime::Output for Sensed {}
+
+impl Robot for Rover {
+    type Output = Sensed;
+    type Input = ();
+    type Error = Infallible;
+
+    fn exchange(&mut self, _: &()) -> Result<Sensed, Infallible> {
+        Ok(Sensed)
+    }
+
+    fn stop(&mut self) -> Result<(), Infallible> {
+        Ok(())
+    }
+}
+
+impl Hosted for Rover {}
+
+impl mdle_host::Target for Rover {
+    const NAME: &'static str = "rover";
+    const PERIOD: Duration = Duration::from_millis(100);
+    type Robot = Self;
+
+    fn arguments(command: Command) -> Command {
+        command
+    }
+
+    fn time(_: &ArgMatches) -> Result<Time, String> {
+        Ok(Time::Stepped(Pace::Max))
+    }
+
+    fn connect(_: &ArgMatches, _: Duration) -> Result<Self, Refusal> {
+        Ok(Self)
+    }
+}

@@ -1,0 +1,87 @@
+//! Runs a plan over a script and writes its trace as `mdlec trace` does.
+
+use alloc::vec::Vec;
+use core::fmt::{self, Write};
+
+use mdle_runtime::{Cause, Machine, Nanos, Plan, Transition, Turn, Watch};
+
+use crate::{Input, LAWS, Output};
+
+/// Writes the trace of `plan` over a script: one JSON object a turn, to the turn in which the plan is over.
+///
+/// `law` is what the input says, not what the plan says of itself. Where the two differ, and where the law was not made
+/// when its atom began, `law` says `broken`, so that a comparison fails there.
+///
+/// # Errors
+/// When `trace` cannot be written.
+pub fn drive<P>(plan: P, script: &[(Nanos, Output)], trace: &mut impl Write) -> fmt::Result
+where
+    P: Plan<Output = Output, Input = Input>,
+{
+    let Some((start, first)) = script.first() else { return Ok(()) };
+    let mut machine = Machine::begin(plan, first, *start);
+    let (mut began, mut computed) = (*start, 0_u32);
+    for (turn, (t, y)) in script.iter().enumerate() {
+        let mut transitions = Transitions(Vec::new());
+        let outcome = machine.turn(y, *t, &mut transitions);
+        if !transitions.0.is_empty() {
+            (began, computed) = (*t, 0);
+        }
+        let law = match outcome {
+            Turn::Law(input) => {
+                computed = computed.saturating_add(1);
+                let named = machine.atom().map_or("", |atom| machine.plan().law(atom));
+                Some(applied(input, named, began, computed))
+            }
+            Turn::Cut | Turn::Over => None,
+        };
+        line(trace, &machine, (turn, *t), law, &transitions.0)?;
+        if machine.is_over() {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// The law that computed this input, if it is the one named and was made when its atom began.
+fn applied(input: Input, named: &str, began: Nanos, computed: u32) -> &'static str {
+    match input.law.and_then(|law| LAWS.get(law)) {
+        Some(law) if *law == named && input.began == began && input.computed == computed => law,
+        Some(_) | None => "broken",
+    }
+}
+
+fn line<P: Plan>(
+    trace: &mut impl Write,
+    machine: &Machine<P>,
+    (turn, t): (usize, Nanos),
+    law: Option<&str>,
+    transitions: &[Transition],
+) -> fmt::Result {
+    // Texts of this alphabet are plain ASCII without quotes, so that Rust's quoting is JSON's.
+    write!(trace, "{{\"turn\":{turn},\"t\":{:?},\"state\":{},\"law\":", t.seconds(), machine.state())?;
+    match law {
+        Some(law) => write!(trace, "{law:?}")?,
+        None => trace.write_str("null")?,
+    }
+    trace.write_str(",\"fired\":[")?;
+    for (place, transition) in transitions.iter().enumerate() {
+        let comma = if place == 0 { "" } else { "," };
+        let by = match transition.cause {
+            Cause::Fired(_) => machine.plan().condition(transition.scope),
+            Cause::Completed(_) => "completed",
+        };
+        let (from, level) = (transition.from, transition.cause.level());
+        write!(trace, "{comma}{{\"from\":{from},\"level\":{level},\"by\":{by:?}}}")?;
+    }
+    trace.write_str("]}\n")
+}
+
+/// The transitions of a turn.
+struct Transitions(Vec<Transition>);
+
+impl Watch for Transitions {
+    fn transition(&mut self, transition: Transition) {
+        self.0.push(transition);
+    }
+}

@@ -1,0 +1,14 @@
+//! A robot that is only a script: its output says what each quark reports, its input which law was applied.
+//!
+//! Emitted Rust is compiled against it as against any target, so that what it does can be compared with other machines.
+#![no_std]
+#![forbid(unsafe_code)]
+
+extern crate alloc;
+
+pub mod alphabet;
+mod drive;
+mod reports;
+
+pub use drive::drive;
+pub use reports::{INTERRUPTS, Input, LAWS, Output};

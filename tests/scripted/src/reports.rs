@@ -1,0 +1,89 @@
+//! What a script can report, and what the robot can be told, as numbers of quark texts.
+
+use mdle_runtime::Nanos;
+
+/// The quark texts of every interrupt that a script can report, with arguments where it takes some.
+pub const INTERRUPTS: &[&str] = &[
+    "a",
+    "b",
+    "c",
+    "d",
+    "e",
+    "f",
+    "farOff 2",
+    "farOff 0.25",
+    "faster 20",
+    "faster 0.5",
+    "facing 90",
+    "facing -22.5",
+    "spinning 0.36",
+    "spinning -1",
+    "low_battery 10.8",
+    "pattern 0100",
+    "pattern 1011",
+    "echo 7",
+    "echo 15",
+    "beyond 0.125 -3",
+];
+
+/// The quark texts of every law.
+pub const LAWS: &[&str] = &[
+    "seek",
+    "climb",
+    "veer 90",
+    "veer -45",
+    "wander 3 1.5",
+    "wander 0.5 0.02",
+    "idle",
+    "drift",
+    "drive 20 0",
+    "drive -5 0.36",
+];
+
+/// The output of a turn: what the script reports in it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Output {
+    /// Bit `i`: `INTERRUPTS[i]` has fired.
+    pub fired: u64,
+    /// Bit `i`: `LAWS[i]` is done.
+    pub completed: u64,
+}
+
+impl mdle_runtime::Output for Output {}
+
+impl Output {
+    /// Whether the interrupt of this name with these arguments, in its default units, has fired.
+    pub(crate) fn has_fired(&self, name: &str, arguments: &[f64]) -> bool {
+        number(INTERRUPTS, name, arguments).is_some_and(|bit| self.fired >> bit & 1 == 1)
+    }
+
+    /// Whether the law of this number is done.
+    pub(crate) fn is_completed(&self, law: usize) -> bool {
+        self.completed >> law & 1 == 1
+    }
+}
+
+/// The input of a turn: the law that computed it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Input {
+    /// Its number among [`LAWS`]; `None` is the null input.
+    pub law: Option<usize>,
+    /// When its atom began.
+    pub began: Nanos,
+    /// How many inputs it has computed since then, this one included.
+    pub computed: u32,
+}
+
+/// The number of the text of this name with these arguments. Numbers went through SI units, so they are compared closely.
+pub(crate) fn number(texts: &[&str], name: &str, arguments: &[f64]) -> Option<usize> {
+    texts.iter().position(|text| {
+        let mut words = text.split(' ');
+        let same_name = words.next() == Some(name);
+        let mut given = arguments.iter();
+        let same = words.all(|word| match (word.parse::<f64>(), given.next()) {
+            (Ok(word), Some(argument)) => (word - argument).abs() < 1e-9,
+            (Ok(_), None) | (Err(_), _) => false,
+        });
+        same_name && same && given.next().is_none()
+    })
+}
