@@ -1,1 +1,12 @@
-//! Placeholder.
+//! What the tests of this crate share: random plans and scripts, the way from text to machines, the repository's files.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test tool fails by panicking")]
+
+pub mod chance;
+pub mod executable;
+pub mod golden;
+pub mod pipeline;
+pub mod random_condition;
+pub mod random_plan;
+pub mod random_script;
+pub mod repository;

@@ -1,0 +1,28 @@
+//! Holds every machine to a trace that was written out by hand from the rules.
+
+use mdle_tests::pipeline::{Machines, compile};
+use mdlec::trace::Script;
+
+/// What is reported in a turn: time, interrupts and completed laws, separated by commas.
+pub(crate) type Turn = (f64, &'static str, &'static str);
+
+/// Holds every machine to the trace, one line a turn.
+pub(crate) fn assert_trace(plan: &str, script: &[Turn], expected: &[&str]) {
+    let compiled = compile(plan).unwrap_or_else(|report| panic!("{report}"));
+    let script = Script::read(&written(script)).expect("a script");
+    for (machine, trace) in Machines::new(&compiled).traces(&script) {
+        let lines: Vec<_> = trace.iter().map(ToString::to_string).collect();
+        assert_eq!(lines, expected, "machine {machine} on\n{plan}");
+    }
+}
+
+fn written(script: &[Turn]) -> String {
+    let list = |texts: &str| {
+        let texts = texts.split(',').map(str::trim).filter(|text| !text.is_empty());
+        texts.map(|text| format!("{text:?}")).collect::<Vec<_>>().join(",")
+    };
+    let lines = script.iter().map(|(t, fired, completed)| {
+        format!("{{\"t\":{t:?},\"fired\":[{}],\"completed\":[{}]}}\n", list(fired), list(completed))
+    });
+    lines.collect()
+}

@@ -1,0 +1,141 @@
+//! What `mdlec` says to bad input, through the real binary: a message with a code or a hint, the exit status, and nothing
+//! half-written left behind.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::path::Path;
+
+use mdle_tests::executable::{folder, run_mdlec};
+
+/// A plan that is good.
+const REST: &str = "{ Rest (Atom (wait 0) stop) }\n";
+
+/// What a person sees: the exit status and standard error.
+fn said(folder: &Path, arguments: &[&str]) -> String {
+    let before = listing(folder);
+    let output = run_mdlec(folder, arguments);
+    assert_eq!(output.stdout, b"", "nothing goes to standard output");
+    assert_eq!(before, listing(folder), "something was left behind");
+    let said = String::from_utf8(output.stderr).expect("UTF-8");
+    assert!(!said.contains("panicked"), "{said}");
+    let status = output.status.code().expect("mdlec ends by itself");
+    format!("$ mdlec {}\n{said}exit status {status}\n", arguments.join(" "))
+}
+
+fn listing(folder: &Path) -> Vec<std::ffi::OsString> {
+    let mut names: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    names.sort();
+    names
+}
+
+fn with_plan(test: &str, plan: impl AsRef<[u8]>) -> std::path::PathBuf {
+    let folder = folder(test);
+    fs::write(folder.join("plan.mdle"), plan).unwrap();
+    folder
+}
+
+#[test]
+fn a_plan_with_errors() {
+    let plan = "{ P (bumpr)\n  (Atom (wait 1 2) go fast 0)\n  { Inner (Atom (atIsection 0121) rotate 90)\n  Legg\n}\n";
+    let folder = with_plan("errors", plan);
+    insta::assert_snapshot!(said(&folder, &["plan.mdle", "--target", "sim"]));
+}
+
+#[test]
+fn every_command_gives_a_plan_with_errors_the_same_status() {
+    let folder = with_plan("status", "{ P (bumpr) (Atom (wait 1) stop) }");
+    let check = said(&folder, &["check", "plan.mdle"]);
+    for arguments in [&["plan.mdle", "--emit", "fsm"][..], &["plan.mdle", "--emit", "rust", "--target", "sim"]] {
+        assert_eq!(check.split_once('\n').unwrap().1, said(&folder, arguments).split_once('\n').unwrap().1);
+    }
+}
+
+#[test]
+fn targets_that_are_none() {
+    let folder = with_plan("target", REST);
+    let said = ["sin", "spaceship", "../rover"].map(|target| said(&folder, &["plan.mdle", "--target", target]));
+    insta::assert_snapshot!(said.join("\n") + &self::said(&folder, &["plan.mdle"]));
+}
+
+#[test]
+fn plans_by_name() {
+    let folder = with_plan("several", format!("{REST}{{ Other Rest2 }}\n{{ Rest2 (Atom (wait 0) stop) }}\n"));
+    let none = said(&folder, &["plan.mdle", "--target", "sim"]);
+    let wrong = said(&folder, &["plan.mdle", "--target", "sim", "--plan", "Othre"]);
+    insta::assert_snapshot!(format!("{none}\n{wrong}"));
+}
+
+#[test]
+fn files_that_are_no_plans() {
+    let folder = with_plan("files", b"{ Caf\xE9 (Atom (wait 1) stop) }");
+    fs::create_dir(folder.join("folder.mdle")).unwrap();
+    fs::write(folder.join("empty.mdle"), "// nothing yet\n").unwrap();
+    let files = ["plan.mdle", "folder.mdle", "missing.mdle", "plan", "empty.mdle"];
+    insta::assert_snapshot!(files.map(|file| said(&folder, &["check", file])).join("\n"));
+}
+
+#[test]
+fn places_that_cannot_be_written() {
+    let folder = with_plan("places", REST);
+    fs::create_dir(folder.join("taken")).unwrap();
+    let build = |output: &str| said(&folder, &["plan.mdle", "--target", "sim", "-o", output]);
+    let emit = said(&folder, &["plan.mdle", "--emit=plan=missing/plan.txt"]);
+    insta::assert_snapshot!([build("taken"), build("missing/plan"), build("plan.mdle"), emit].join("\n"));
+}
+
+#[test]
+fn options_that_are_wrong() {
+    let folder = with_plan("options", REST);
+    for arguments in [
+        &["plan.mdle", "--emit", "bytecode"][..],
+        &["plan.mdle", "--nonsense"],
+        &["plan.mdle", "extra"],
+        &["trace", "plan.mdle"],
+        &["plan.mdle", "--emit", "plan", "--run"],
+        &["plan.mdle", "--target", "sim", "arg"],
+        &[],
+    ] {
+        let said = said(&folder, arguments);
+        assert!(said.ends_with("exit status 2\n"), "{said}");
+    }
+}
+
+#[test]
+fn warnings_can_be_denied() {
+    let folder = with_plan("warnings", "{ P (bumper) (Atom (bumper) rotate 90) }\n");
+    let allowed = said(&folder, &["check", "plan.mdle"]);
+    assert!(allowed.contains("warning[W0101]") && allowed.ends_with("exit status 0\n"), "{allowed}");
+    let denied = said(&folder, &["check", "plan.mdle", "--deny-warnings"]);
+    assert!(denied.ends_with("exit status 1\n"), "{denied}");
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    let plan: String = (0..5000).map(|number| format!("{{ P{number} (Atom (wait 1) stop) }}\n")).collect();
+    let folder = with_plan("pipe", plan);
+    let mut child = std::process::Command::new(mdle_tests::executable::mdlec())
+        .args(["plan.mdle", "--emit", "tree"])
+        .current_dir(&folder)
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .unwrap();
+    drop(child.stdout.take());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!((output.status.code(), String::from_utf8(output.stderr).unwrap().as_str()), (Some(0), ""));
+}
+
+#[test]
+fn scripts_that_are_wrong() {
+    let folder = with_plan("scripts", REST);
+    fs::write(folder.join("script"), "{\"t\": 1.0, \"fired\": [], \"completed\": []}\n{\"t\": 0.5}\n").unwrap();
+    fs::write(folder.join("nonsense"), "{\"t\": }\n").unwrap();
+    let scripts = ["script", "nonsense", "missing"];
+    insta::assert_snapshot!(scripts.map(|file| said(&folder, &["trace", "plan.mdle", "--script", file])).join("\n"));
+}
+
+#[test]
+fn an_expanded_form_that_is_too_large_names_its_loop() {
+    let folder = with_plan("large", "{ P ExecPlan 1000000 { (Atom (wait 1) stop) } }\n");
+    insta::assert_snapshot!(said(&folder, &["plan.mdle", "--emit", "fsm"]));
+}

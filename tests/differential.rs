@@ -1,0 +1,78 @@
+//! Random plans on random scripts: every machine prints the same trace (semantics, section 9).
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use mdle_tests::chance::Chance;
+use mdle_tests::pipeline::{Machines, compile};
+use mdle_tests::random_plan::RandomPlan;
+use mdle_tests::random_script::script;
+use mdlec::trace::{Applied, Fired, Line, Outcome, Script};
+
+/// How many plans are tried.
+const PLANS: u64 = 5000;
+
+/// What a random plan and its script brought about, to see that chance tries what it is meant to try.
+#[derive(Debug, Default)]
+struct Seen {
+    plans: usize,
+    refused: usize,
+    turns: usize,
+    over: usize,
+    cut: usize,
+    chains: usize,
+    completions: usize,
+    repeated: usize,
+}
+
+#[test]
+fn every_machine_prints_the_same_trace() {
+    let mut seen = Seen::default();
+    for seed in 0..PLANS {
+        let mut chance = Chance::new(seed);
+        // Small plans first, so that the first seed to fail is easy to read; a long search takes its time.
+        let long = seed % 200 == 199;
+        let text = RandomPlan::new(&mut chance, 2 + (seed as usize) * 20 / (PLANS as usize), long).to_string();
+        let turns = if long { 4 } else { 12 };
+        compare(seed, &text, &script(&mut chance, turns), &mut seen);
+    }
+    println!("{seen:?}");
+    assert!(seen.refused < seen.plans / 50, "{seen:?}");
+    let rare = [seen.over, seen.cut * 10, seen.chains, seen.completions, seen.repeated];
+    assert!(rare.iter().all(|count| *count > seen.plans / 10), "{seen:?}");
+}
+
+fn compare(seed: u64, text: &str, script: &str, seen: &mut Seen) {
+    let compiled = match compile(text) {
+        Ok(compiled) => compiled,
+        // Loops in loops in loops can make too many states.
+        Err(report) if report.contains("E0501") => {
+            seen.refused += 1;
+            return;
+        }
+        Err(report) => panic!("seed {seed}: {report}"),
+    };
+    let machines = Machines::new(&compiled);
+    let traces = machines.traces(&Script::read(script).expect("a script"));
+    let (reference, tree) = &traces[0];
+    for (machine, trace) in &traces[1..] {
+        if trace != tree {
+            panic!("seed {seed}: {}", difference((reference, tree), (machine, trace), text, script));
+        }
+    }
+    seen.plans += 1;
+    seen.repeated += usize::from(compiled.nondegenerate.plan() != &compiled.plan);
+    for Line { outcome: Outcome { applied, fired, .. }, .. } in tree {
+        seen.turns += 1;
+        seen.over += usize::from(*applied == Applied::Over);
+        seen.cut += usize::from(*applied == Applied::Cut);
+        seen.chains += usize::from(fired.len() > 1);
+        seen.completions += usize::from(fired.iter().any(|transition| transition.by == Fired::COMPLETED));
+    }
+}
+
+/// The first lines in which two traces differ, and what they are traces of.
+fn difference(one: (&str, &[Line<'_>]), other: (&str, &[Line<'_>]), text: &str, script: &str) -> String {
+    let turn = one.1.iter().zip(other.1).take_while(|(one, other)| one == other).count();
+    let line = |trace: &[Line<'_>]| trace.get(turn).map_or("(no line)".into(), ToString::to_string);
+    format!("turn {turn}\n{}: {}\n{}: {}\n{text}\n{script}", one.0, line(one.1), other.0, line(other.1))
+}

@@ -1,0 +1,143 @@
+//! The directions of the architecture: who may use whom, between packages and between the rooms of the compiler.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use mdle_tests::repository::{TextFile, files, names_from};
+
+/// What each package may use of ours. A folder that is not listed may not hold a package.
+const PACKAGES: &[(&str, &[&str])] = &[
+    ("runtime/core", &[]),
+    ("runtime/host", &["mdle-runtime"]),
+    ("atoms", &["mdle-runtime"]),
+    ("mdlec", &["mdle-runtime"]),
+    ("targets/sim", &["mdle-runtime", "mdle-host", "mdle-atoms"]),
+    ("tests", &["mdle-runtime", "mdle-host", "mdle-atoms", "mdle-sim", "mdle-scripted", "mdlec"]),
+    ("tests/scripted", &["mdle-runtime"]),
+];
+
+/// What each room of the compiler may use of the others. `crate` is what `lib.rs` itself holds.
+const ROOMS: &[(&str, &[&str])] = &[
+    ("diagnostic", &[]),
+    ("alphabet", &["diagnostic"]),
+    ("syntax", &["diagnostic", "alphabet"]),
+    ("plan", &["diagnostic", "syntax", "alphabet"]),
+    ("fsm", &["diagnostic", "alphabet", "plan"]),
+    ("trace", &["diagnostic", "alphabet", "plan", "fsm"]),
+    ("rust", &["diagnostic", "alphabet", "plan", "fsm"]),
+    ("embed", &["crate", "diagnostic", "syntax", "alphabet", "plan", "fsm", "rust"]),
+    ("link", &["crate", "diagnostic", "syntax", "alphabet", "plan", "fsm", "rust"]),
+    ("cli", &["crate", "diagnostic", "syntax", "alphabet", "plan", "fsm", "trace", "rust", "embed", "link"]),
+    ("main", &["cli"]),
+];
+
+/// The rooms that may read files and the environment.
+const WITH_IO: &[&str] = &["main", "cli", "embed", "link"];
+
+#[test]
+fn packages_use_only_those_below_them() {
+    let mut breaches = Vec::new();
+    for manifest in files(&["Cargo.toml"]) {
+        let Some(folder) = manifest.path.strip_suffix("/Cargo.toml") else { continue };
+        match PACKAGES.iter().find(|(package, _)| *package == folder) {
+            None => breaches.push(format!("{folder}: say in tests/directions.rs what it may use")),
+            Some((_, allowed)) => breaches.extend(
+                ours(&manifest)
+                    .filter(|name| !allowed.contains(name))
+                    .map(|name| format!("{}: may not use {name}", manifest.path)),
+            ),
+        }
+    }
+    assert_eq!(breaches, [""; 0]);
+}
+
+/// The packages of ours that a manifest names as dependencies, of whatever sort.
+fn ours(manifest: &TextFile) -> impl Iterator<Item = &str> {
+    let mut in_dependencies = false;
+    manifest.text.lines().filter_map(move |line| {
+        if line.starts_with('[') {
+            in_dependencies = line.contains("dependencies");
+        }
+        let name = line.split(['.', ' ', '=']).next().unwrap_or_default();
+        (in_dependencies && name.starts_with("mdle")).then_some(name)
+    })
+}
+
+#[test]
+fn rooms_of_the_compiler_use_only_those_before_them() {
+    let mut breaches = Vec::new();
+    for (room, file) in rooms() {
+        let Some((_, allowed)) = ROOMS.iter().find(|(name, _)| *name == room) else {
+            breaches.push(format!("{}: say in tests/directions.rs what it may use", file.path));
+            continue;
+        };
+        for name in names_from(&file.text, "crate").into_iter().chain(names_from(&file.text, "mdlec")) {
+            let is_room = ROOMS.iter().any(|(room, _)| *room == name);
+            let used = if is_room { name.as_str() } else { "crate" };
+            if used != room && !allowed.contains(&used) {
+                breaches.push(format!("{}: may not use {name}", file.path));
+            }
+        }
+        if let Some(line) = climbs_to_the_root(&file) {
+            breaches.push(format!("{}: say `crate::` and not `{line}`", file.path));
+        }
+    }
+    assert_eq!(breaches, [""; 0]);
+}
+
+/// The files of the compiler's rooms, tests aside. `lib.rs`, which shows them all on one screen, belongs to none, nor does
+/// what only tests share.
+fn rooms() -> impl Iterator<Item = (String, TextFile)> {
+    files(&[".rs"]).into_iter().filter_map(|file| {
+        let inside =
+            file.path.strip_prefix("mdlec/src/").filter(|inside| !["lib.rs", "samples.rs"].contains(inside))?;
+        let room = inside.split(['/', '.']).next().unwrap_or_default().to_owned();
+        let text = file.text.split("#[cfg(test)]").next().unwrap_or_default().to_owned();
+        let is_test = inside.ends_with("/tests.rs") || inside.contains("/tests/");
+        (!is_test).then_some((room, TextFile { text, ..file }))
+    })
+}
+
+/// A line whose `super::` lead out of the room, where the names of other rooms could be had without `crate::`.
+fn climbs_to_the_root(file: &TextFile) -> Option<&str> {
+    let folders = file.path.matches('/').count();
+    // mdlec/src/room.rs and mdlec/src/room/mod.rs are one step below the root.
+    let depth = if file.path.ends_with("/mod.rs") { folders - 2 } else { folders - 1 };
+    let climb = "super::".repeat(depth);
+    file.text.lines().map(str::trim).find(|line| !line.starts_with("//") && line.contains(&climb))
+}
+
+#[test]
+fn the_walk_over_the_tree_shares_no_stepping_with_other_machines() {
+    let tree = files(&["tree.rs"]).into_iter().find(|file| file.path == "mdlec/src/trace/tree.rs").expect("`tree`");
+    let used = [
+        (names_from(&tree.text, "mdle_runtime"), &["Nanos", "TRANSITIONS_PER_TURN"][..]),
+        (names_from(&tree.text, "crate"), &["plan"]),
+        (names_from(&tree.text, "super"), &["Applied", "Fired", "Machine", "Outcome", "Reports"]),
+    ];
+    for (names, allowed) in used {
+        assert!(!names.is_empty());
+        let others: Vec<_> = names.iter().filter(|name| !allowed.contains(&name.as_str())).collect();
+        assert_eq!(others, [""; 0], "in {}", tree.path);
+    }
+}
+
+#[test]
+fn stages_of_the_compiler_read_no_files() {
+    let mut breaches = Vec::new();
+    for (room, file) in rooms().filter(|(room, _)| !WITH_IO.contains(&room.as_str())) {
+        for name in names_from(&file.text, "std") {
+            if ["fs", "env", "process", "net", "time", "thread"].contains(&name.as_str()) {
+                breaches.push(format!("{}: std::{name} is not for {room}", file.path));
+            }
+        }
+    }
+    assert_eq!(breaches, [""; 0]);
+}
+
+#[test]
+fn names_are_found_in_paths_and_in_groups() {
+    let text =
+        "use crate::plan::{self, Node};\n// crate::never\nuse crate::{a::{b, c},\n    D, e as f};\nlet x = crate::g();";
+    assert_eq!(names_from(text, "crate"), ["plan", "a", "D", "e", "g"]);
+    assert_eq!(names_from("$crate::x my_crate::y", "crate"), ["x"]);
+}

@@ -1,0 +1,200 @@
+//! Emitted Rust, compiled: it does what the machines of the compiler do (semantics, section 9).
+//!
+//! All plans go into one package, which is compiled once and run once.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use mdle_scripted::{INTERRUPTS, LAWS};
+use mdle_tests::chance::Chance;
+use mdle_tests::pipeline::{Machines, compile, scripted};
+use mdle_tests::random_plan::RandomPlan;
+use mdle_tests::random_script::script;
+use mdle_tests::repository::root;
+use mdlec::rust::{Header, emit, plan_type};
+use mdlec::trace::Script;
+
+/// How many random plans are emitted, and on how many scripts each of them runs.
+const PLANS: u64 = 20;
+const SCRIPTS: u64 = 25;
+
+/// A plan with its scripts.
+struct Case {
+    text: String,
+    scripts: Vec<String>,
+}
+
+#[test]
+fn emitted_rust_does_what_the_other_machines_do() {
+    let cases: Vec<_> = (0..PLANS).map(random).chain([every_quark(), deep()]).collect();
+    let package = Package::write(&cases);
+    let printed = package.run(&cases);
+    let mut traces = printed.split("== next\n");
+    for (number, case) in cases.iter().enumerate() {
+        let compiled = compile(&case.text).unwrap_or_else(|report| panic!("{report}"));
+        let machines = Machines::new(&compiled);
+        for script in &case.scripts {
+            let emitted = traces.next().expect("a trace for every script");
+            for (machine, trace) in machines.traces(&Script::read(script).expect("a script")) {
+                let trace: String = trace.iter().map(|line| format!("{line}\n")).collect();
+                assert!(
+                    trace == emitted,
+                    "plan {number}\n{machine}:\n{trace}emitted:\n{emitted}{}\n{script}",
+                    case.text
+                );
+            }
+        }
+    }
+}
+
+fn random(seed: u64) -> Case {
+    let mut chance = Chance::new(1_000_000 + seed);
+    let text = RandomPlan::new(&mut chance, 4 + seed as usize, seed % 10 == 9).to_string();
+    let scripts = (0..SCRIPTS).map(|_| script(&mut chance, 12)).collect();
+    Case { text, scripts }
+}
+
+/// Each interrupt and each law of the target once, arguments in their default units, so that each is seen to be made of
+/// the arguments that its text says.
+fn every_quark() -> Case {
+    let mut text = String::from("{ Main");
+    for (number, interrupt) in INTERRUPTS.iter().enumerate() {
+        write!(text, " FRAME {}deg (Atom ({interrupt}) {})", number * 15, LAWS[number % LAWS.len()]).unwrap();
+    }
+    text.push_str(" }");
+    let mut script = String::new();
+    for (turn, interrupt) in INTERRUPTS.iter().enumerate() {
+        // First what must not do anything, then what ends the atom.
+        let others: Vec<_> =
+            INTERRUPTS.iter().filter(|other| *other != interrupt).map(|text| format!("{text:?}")).collect();
+        writeln!(script, "{{\"t\":{turn}.0,\"fired\":[{}]}}", others.join(",")).unwrap();
+        writeln!(script, "{{\"t\":{turn}.5,\"fired\":[{interrupt:?}]}}").unwrap();
+    }
+    let completions = LAWS.iter().fold(String::new(), |lines, law| {
+        format!("{lines}{{\"t\":{}.0,\"completed\":[{law:?}]}}\n", lines.lines().count())
+    });
+    Case { text, scripts: vec![script, completions] }
+}
+
+/// Scopes in scopes: a hundred, each with a condition of its own.
+fn deep() -> Case {
+    let scopes = (0..100).map(|level| format!("{{ Level{level} ({} AND wait {level}) ", ["a", "b", "c"][level % 3]));
+    let text =
+        format!("{{ Main {} (Atom (d) idle) {} (Atom (e) drift) }}", scopes.collect::<String>(), "}".repeat(100));
+    let mut chance = Chance::new(0);
+    let scripts = (0..SCRIPTS).map(|_| script(&mut chance, 12)).collect();
+    Case { text, scripts }
+}
+
+/// The package with the emitted plans.
+struct Package {
+    folder: PathBuf,
+}
+
+impl Package {
+    fn write(cases: &[Case]) -> Self {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("emitted");
+        let package = Self { folder };
+        fs::create_dir_all(package.folder.join("src")).unwrap();
+        fs::copy(root().join("Cargo.lock"), package.folder.join("Cargo.lock")).unwrap();
+        package.file("Cargo.toml", &manifest());
+        let mut library = String::from(
+            "//! Emitted plans: what they are is plain Rust without a warning, for any robot.\n#![no_std]\n",
+        );
+        library.push_str("#![deny(warnings, missing_docs)]\n#![forbid(unsafe_code)]\n");
+        let mut arms = String::new();
+        for (number, case) in cases.iter().enumerate() {
+            let compiled = compile(&case.text).unwrap_or_else(|report| panic!("{report}"));
+            let header = Header { file: "plan.mdle", plan: "Main" };
+            package.file(&format!("src/plan_{number}.rs"), &emit(&compiled.lowered, header, scripted()));
+            writeln!(library, "\n/// Plan {number}.\npub mod plan_{number};").unwrap();
+            let plan = plan_type("Main");
+            writeln!(arms, "        {number} => drive(emitted::plan_{number}::{plan}::new(), script, trace),").unwrap();
+        }
+        package.file("src/lib.rs", &library);
+        package.file("src/main.rs", &MAIN.replace("ARMS", &arms));
+        package
+    }
+
+    /// Writes a file unless it is there as it should be, so that what did not change is not compiled again.
+    fn file(&self, name: &str, text: &str) {
+        let path = self.folder.join(name);
+        if fs::read_to_string(&path).ok().as_deref() != Some(text) {
+            fs::write(path, text).unwrap();
+        }
+    }
+
+    /// Compiles the plans and runs each on its scripts: their traces, one behind the other.
+    fn run(&self, cases: &[Case]) -> String {
+        let mut turns = String::new();
+        for (number, case) in cases.iter().enumerate() {
+            case.scripts.iter().for_each(|script| writeln!(turns, "plan {number}\n{}", bits(script)).unwrap());
+        }
+        self.file("scripts", &turns);
+        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let output = Command::new(cargo)
+            .args(["run", "--offline", "--quiet", "--", "scripts"])
+            .current_dir(&self.folder)
+            .env("CARGO_TARGET_DIR", self.folder.join("target"))
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    }
+}
+
+fn manifest() -> String {
+    let path = |folder: &str| root().join(folder).display().to_string();
+    format!(
+        "[package]\nname = \"emitted\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n[workspace]\n\n[dependencies]\n\
+         mdle-runtime = {{ path = {:?} }}\nmdle-scripted = {{ path = {:?} }}\n",
+        path("runtime/core"),
+        path("tests/scripted"),
+    )
+}
+
+/// A script as `main` reads it: nanoseconds, then what is reported as the bits of two numbers.
+fn bits(script: &str) -> String {
+    let number = |texts: &[&str], said: &std::collections::BTreeSet<String>| {
+        let bits = texts.iter().zip(0..).filter(|(text, _)| said.contains(**text));
+        bits.fold(0_u64, |number, (_, bit)| number | 1 << bit)
+    };
+    let script = Script::read(script).expect("a script");
+    let lines = script.turns().iter().map(|reports| {
+        format!("{} {} {}", reports.t.0, number(INTERRUPTS, &reports.fired), number(LAWS, &reports.completed))
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+const MAIN: &str = r#"//! Runs the emitted plans on the scripts of a file.
+
+use mdle_runtime::Nanos;
+use mdle_scripted::{Output, drive};
+
+fn main() {
+    let file = std::env::args().nth(1).expect("a file of scripts");
+    let text = std::fs::read_to_string(file).expect("a file of scripts");
+    for (place, script) in text.split("plan ").skip(1).enumerate() {
+        let (plan, turns) = script.split_once('\n').expect("turns");
+        let turns: Vec<_> = turns.lines().map(turn).collect();
+        let mut trace = String::new();
+        run(plan.parse().expect("a number"), &turns, &mut trace).expect("room for the trace");
+        print!("{}{trace}", if place == 0 { "" } else { "== next\n" });
+    }
+}
+
+fn turn(line: &str) -> (Nanos, Output) {
+    let numbers: Vec<u64> = line.split(' ').map(|number| number.parse().expect("a number")).collect();
+    (Nanos(numbers[0]), Output { fired: numbers[1], completed: numbers[2] })
+}
+
+fn run(plan: usize, script: &[(Nanos, Output)], trace: &mut String) -> std::fmt::Result {
+    match plan {
+ARMS        _ => panic!("no plan {plan}"),
+    }
+}
+"#;

@@ -1,0 +1,188 @@
+//! The main job, end to end: the paper's lab tour, compiled by the real `mdlec` and driven by the executable it builds.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+
+use mdle_tests::executable::{folder, run_mdlec};
+use mdle_tests::repository::root;
+
+/// The executable of the tour, built once.
+fn tour() -> &'static Path {
+    static TOUR: OnceLock<PathBuf> = OnceLock::new();
+    TOUR.get_or_init(|| {
+        let folder = folder("lab_tour");
+        let plan = root().join("plans/lab_tour.mdle");
+        let output = run_mdlec(&folder, &[plan.to_str().unwrap(), "--target", "sim"]);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{said}");
+        assert!(said.contains("lab_tour: built in "), "{said}");
+        folder.join("lab_tour")
+    })
+}
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(tour()).args(arguments).current_dir(folder).output().unwrap()
+}
+
+/// Where the robot was at a time.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    x: f64,
+    y: f64,
+    /// Degrees, from 0 to 360.
+    heading: f64,
+}
+
+fn places(trail: &str) -> Vec<(f64, Place)> {
+    let numbers = |line: &str| line.split(',').map(|number| number.parse().unwrap()).collect::<Vec<f64>>();
+    let rows = trail.lines().skip(1).map(numbers);
+    rows.map(|row| (row[0], Place { x: row[1], y: row[2], heading: row[3].rem_euclid(360.0) })).collect()
+}
+
+fn apart(one: f64, other: f64) -> f64 {
+    let apart = (one - other).rem_euclid(360.0);
+    apart.min(360.0 - apart)
+}
+
+/// Where each atom has to end: zone and, after a turn, heading (`office-world.md`: zones, and 35 degrees after `go`).
+type Zone = ([f64; 4], Option<(f64, f64)>);
+
+const ROUND: f64 = 35.0;
+const AB: [f64; 4] = [-0.9, 0.9, 4.0, 5.5];
+const BC: [f64; 4] = [6.7, 8.3, 3.9, 5.6];
+const C: [f64; 4] = [6.7, 8.3, 0.8, 4.5];
+const LAB_1: [f64; 4] = [6.7, 8.3, -0.2, 0.8];
+const CORNER: [f64; 4] = [6.7, 8.3, -0.9, 0.25];
+const OFFICE: [f64; 4] = [11.05, 11.95, -0.9, 0.9];
+const ZONES: [Zone; 13] = [
+    (AB, None),
+    (AB, Some((0.0, ROUND))),
+    (AB, Some((0.0, ROUND))),
+    (BC, None),
+    (BC, Some((270.0, ROUND))),
+    (BC, Some((270.0, ROUND))),
+    (C, None),
+    (LAB_1, None),
+    (CORNER, None),
+    (CORNER, Some((0.0, ROUND))),
+    (CORNER, Some((0.0, ROUND))),
+    (OFFICE, None),
+    (OFFICE, Some((270.0, 15.0))),
+];
+
+fn assert_in_zone(atom: usize, place: Place) {
+    let ([left, right, low, high], heading) = ZONES[atom - 1];
+    let inside = (left..=right).contains(&place.x) && (low..=high).contains(&place.y);
+    assert!(inside, "atom {atom} ended at {place:?}");
+    if let Some((degrees, most)) = heading {
+        assert!(apart(place.heading, degrees) <= most, "atom {atom} ended at {place:?}");
+    }
+}
+
+#[test]
+fn it_goes_from_lab_2_past_lab_1_to_the_office() {
+    let folder = folder("lab_tour_run");
+    let output = run(&folder, &["--speed", "max", "--plot", "tour.svg", "--trail", "tour.csv"]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert_eq!((output.status.code(), output.stderr.as_slice()), (Some(0), &b""[..]), "{said}");
+    let trail = places(&fs::read_to_string(folder.join("tour.csv")).unwrap());
+    let (ends, over) = said.trim_end().rsplit_once('\n').unwrap();
+    let mut atoms = 0;
+    for (line, atom) in ends.lines().zip(1..) {
+        let (t, entered) = line.split_once(" s  atom ").unwrap();
+        let t: f64 = t.parse().unwrap();
+        assert!(entered.starts_with(&format!("{} ", atom + 1)), "no atom is left out: {line}");
+        let (_, place) = trail.iter().find(|(when, _)| (when - t).abs() < 1e-6).unwrap();
+        assert_in_zone(atom, *place);
+        atoms = atom;
+    }
+    assert_eq!(atoms, 12, "{said}");
+    assert!(["plan over: completed (atom 13)", "plan over: wait 10 (atom 13)"].contains(&over), "{over}");
+    assert_in_zone(13, trail.last().unwrap().1);
+    let picture = fs::read(folder.join("tour.svg")).unwrap();
+    let shown = fs::read(root().join("docs/lab_tour.svg")).unwrap();
+    assert!(
+        picture == shown,
+        "docs/lab_tour.svg is not the picture the tour makes now: copy {folder:?}/tour.svg there"
+    );
+}
+
+#[test]
+fn it_gives_the_same_bytes_on_every_processor() {
+    let files = |name: &str, tunables: Option<&str>| {
+        let folder = folder(name);
+        let mut command = Command::new(tour());
+        command.args(["--speed", "max", "--seed", "4", "--plot", "tour.svg", "--trail", "tour.csv", "--log", "log"]);
+        if let Some(tunables) = tunables {
+            command.env("GLIBC_TUNABLES", tunables);
+        }
+        let output = command.current_dir(&folder).output().unwrap();
+        assert!(output.status.success());
+        let written = ["tour.svg", "tour.csv", "log"].map(|file| fs::read(folder.join(file)).unwrap());
+        (output.stdout, written)
+    };
+    let once = files("bytes_once", None);
+    assert!(once == files("bytes_again", None), "two runs differ");
+    let plain = Some("glibc.cpu.hwcaps=-FMA,-AVX2");
+    assert!(once == files("bytes_plain", plain), "a processor without FMA and AVX2 gives other bytes");
+}
+
+#[test]
+fn it_is_static() {
+    let bytes = fs::read(tour()).unwrap();
+    let half = |at: usize| usize::from(u16::from_le_bytes([bytes[at], bytes[at + 1]]));
+    let headers = u64::from_le_bytes(bytes[32..40].try_into().unwrap()) as usize;
+    let kinds = (0..half(56)).map(|number| half(headers + number * half(54)));
+    // 3 is PT_INTERP: the path of a dynamic loader.
+    assert!(kinds.into_iter().all(|kind| kind != 3), "it needs a dynamic loader");
+}
+
+#[test]
+fn it_refuses_what_it_cannot_run_and_leaves_nothing_behind() {
+    let folder = folder("lab_tour_refused");
+    fs::write(folder.join("broken.toml"), "[[wall]]\nname = 3\n").unwrap();
+    let cases: [&[&str]; 8] = [
+        &["--world", "missing.toml"],
+        &["--world", "broken.toml"],
+        &["--start", "3.65,4.25,0"],
+        &["--start", "0,0"],
+        &["--speed", "0"],
+        &["--plot", "missing/tour.svg"],
+        &["--period", "0"],
+        &["--nonsense"],
+    ];
+    let mut said = String::new();
+    for arguments in cases {
+        let output = run(&folder, arguments);
+        assert_eq!((output.status.code(), output.stdout.as_slice()), (Some(2), &b""[..]), "{arguments:?}");
+        said += &format!("$ ./lab_tour {}\n{}\n", arguments.join(" "), String::from_utf8(output.stderr).unwrap());
+    }
+    assert_eq!(fs::read_dir(&folder).unwrap().count(), 1, "only the broken world is there");
+    insta::assert_snapshot!(said);
+}
+
+#[test]
+fn a_limit_ends_it_with_its_own_status() {
+    let folder = folder("lab_tour_limit");
+    for limit in [["--turns", "5"], ["--timeout", "1.5"]] {
+        let output = run(&folder, &[&limit[..], &["--speed", "max"]].concat());
+        assert_eq!(output.status.code(), Some(4), "{limit:?}");
+    }
+}
+
+#[test]
+fn run_passes_on_the_status_of_the_executable() {
+    let folder = folder("run");
+    fs::write(folder.join("wait.mdle"), "{ Wait (Atom (wait 5) stop) }\n").unwrap();
+    let run = |arguments: &[&str]| {
+        let all = [&["wait.mdle", "--target", "sim", "--run", "--", "--speed", "max"][..], arguments].concat();
+        run_mdlec(&folder, &all)
+    };
+    let over = run(&[]);
+    assert_eq!((over.status.code(), over.stdout.as_slice()), (Some(0), &b"plan over: wait 5 (atom 1)\n"[..]));
+    assert_eq!(run(&["--turns", "3"]).status.code(), Some(4));
+    assert_eq!(run(&["--start", "nowhere"]).status.code(), Some(2));
+}

@@ -1,0 +1,51 @@
+//! The paper's own listings, as printed: typesetting marks and all.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+
+use mdle_tests::golden::judge;
+use mdle_tests::repository::{TextFile, root};
+
+/// The first words of each listing in code, with the file that holds it and the number of its repeated interrupts.
+const LISTINGS: [(&str, &str, usize); 4] = [
+    (r"$\Gamma_{lab2}^{lab1} = \{$", "lab2_to_lab1", 0),
+    (r"$\Gamma_{lab}^{office} = \{$", "lab1_to_office", 0),
+    (r"$\Gamma_{robot1} = \{$", "first_robot", 2),
+    (r"$\Gamma_{robot2} = \{$", "second_robot", 2),
+];
+
+/// The listing that begins so: up to the end of the block it stands in.
+fn cut<'p>(paper: &'p str, first: &str) -> &'p str {
+    let block = paper.split("```\n").find(|block| block.trim_start().starts_with(first)).expect(first);
+    block.trim_matches('\n')
+}
+
+/// The text of the paper lies beside a checkout, or does not; the listings are in `plans/paper/` either way.
+fn paper() -> Option<String> {
+    let folder = root().join("../shared/paper");
+    let file = fs::read_dir(folder).ok()?.find_map(|entry| Some(entry.ok()?.path()).filter(|path| path.is_file()))?;
+    fs::read_to_string(file).ok()
+}
+
+#[test]
+fn listings_are_accepted_as_printed() {
+    for (first, name, repeated) in LISTINGS {
+        let path = format!("plans/paper/{name}.mdle");
+        let text = fs::read_to_string(root().join(&path)).expect(&path);
+        assert!(text.trim_start().starts_with(first), "{path} is not as printed");
+        let (compiled, said) = judge(&TextFile { path, text }, None);
+        assert_eq!(compiled.len(), 1, "{said}");
+        assert_eq!(said.matches("warning[W0101]").count(), repeated, "{said}");
+        assert_eq!(said.matches("[W").count(), repeated, "{said}");
+    }
+}
+
+#[test]
+fn listings_are_those_of_the_paper() {
+    let Some(paper) = paper() else { return };
+    for (first, name, _) in LISTINGS {
+        let path = root().join(format!("plans/paper/{name}.mdle"));
+        let kept = fs::read_to_string(path).expect(name);
+        assert_eq!(cut(&paper, first), kept.trim_matches('\n'));
+    }
+}

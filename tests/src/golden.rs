@@ -1,0 +1,62 @@
+//! What the compiler makes of the plans in `plans/`, as text that a person compares.
+
+use std::fmt::Write;
+
+use mdlec::alphabet::{self, Alphabet};
+use mdlec::diagnostic::{SourceId, Sources};
+use mdlec::rust::{Header, emit};
+use mdlec::syntax::{outline::outline, parse};
+use mdlec::{Compiled, compile, fsm, link};
+
+use crate::repository::TextFile;
+
+/// The alphabet of a built-in target, or of a robot that has everything.
+#[must_use]
+pub fn alphabet(target: Option<&str>) -> Alphabet {
+    let read = |file: &link::Alphabet| alphabet::read(SourceId(0), file.text).0.expect(file.file);
+    let (targets, shared): (Vec<_>, Vec<_>) = link::alphabets().iter().partition(|file| file.target);
+    let mut shared: Vec<_> = shared.into_iter().map(read).collect();
+    match target.map(|name| targets.iter().find(|file| file.name == name).expect(name)) {
+        None => Alphabet::shared(shared.swap_remove(0)),
+        Some(own) => alphabet::combine(read(own), &shared).0,
+    }
+}
+
+/// The plans of a file, and what is said of it, for a robot.
+#[must_use]
+pub fn judge(file: &TextFile, target: Option<&str>) -> (Vec<Compiled>, String) {
+    let mut sources = Sources::default();
+    let source = sources.add(&file.path, &file.text);
+    let (compiled, found) = compile(source, &file.text, &alphabet(target), None);
+    let said = found.iter().map(|diagnostic| sources.render(diagnostic)).collect();
+    (compiled, said)
+}
+
+/// The tree of a file as an outline.
+#[must_use]
+pub fn tree(file: &TextFile) -> String {
+    outline(&parse(SourceId(0), &file.text).0)
+}
+
+/// The machine of a plan, a line for each interrupt: its matrix's columns, as runs.
+#[must_use]
+pub fn machine(compiled: &Compiled) -> String {
+    let file = fsm::fsm_file(&compiled.nondegenerate).expect("a small plan");
+    let mut text = format!("{} states, the last of them `{}`\n", file.states.len(), file.states.last().unwrap());
+    for (state, law) in file.states.iter().zip(&file.laws) {
+        writeln!(text, "{state}: {law}").unwrap();
+    }
+    for interrupt in &file.interrupts {
+        let never = if file.never.contains(&interrupt.name) { " (never)" } else { "" };
+        let moves: Vec<_> = interrupt.moves.0.iter().map(|(from, to)| format!("{from}→{to}")).collect();
+        writeln!(text, "{} = {}{never}: {}", interrupt.name, interrupt.text, moves.join(" ")).unwrap();
+    }
+    text
+}
+
+/// The Rust that is emitted for a plan on the simulator.
+#[must_use]
+pub fn rust(file: &TextFile, compiled: &Compiled) -> String {
+    let name = file.path.rsplit('/').next().unwrap();
+    emit(&compiled.lowered, Header { file: name, plan: &compiled.plan.root.name }, &alphabet(Some("sim")))
+}

@@ -1,0 +1,75 @@
+//! From the text of a plan for the target `scripted` to the traces of the machines.
+
+use std::sync::LazyLock;
+
+use mdlec::Compiled;
+use mdlec::alphabet::{self, Alphabet};
+use mdlec::diagnostic::{Diagnostic, Sources, has_errors};
+use mdlec::fsm::{Lowered, algorithm1, expand};
+use mdlec::trace::{Counted, Line, Script, Tree, run};
+
+/// The most states of a plan whose expanded form is run as well.
+const EXPANDED: u64 = 2000;
+
+static SCRIPTED: LazyLock<Alphabet> = LazyLock::new(|| {
+    let (file, found) = alphabet::read(Sources::default().add("", ""), include_str!("../scripted/alphabet.mdle"));
+    assert_eq!(found, [], "the alphabet of `scripted`");
+    let (alphabet, found) = alphabet::combine(file.expect("an alphabet"), &[]);
+    assert_eq!(found, [], "the alphabet of `scripted`");
+    alphabet
+});
+
+/// The alphabet of the target `scripted`.
+#[must_use]
+pub fn scripted() -> &'static Alphabet {
+    &SCRIPTED
+}
+
+/// Compiles the plan `Main` of a text.
+///
+/// # Errors
+/// The text with the errors, as a person sees them.
+pub fn compile(text: &str) -> Result<Compiled, String> {
+    let mut sources = Sources::default();
+    let source = sources.add("plan.mdle", text);
+    let (mut compiled, found) = mdlec::compile(source, text, scripted(), Some("Main"));
+    assert_eq!(compiled.is_empty(), has_errors(&found), "a plan or an error:\n{text}");
+    match compiled.pop() {
+        Some(compiled) => Ok(compiled),
+        None => Err(rendered(&sources, &found)),
+    }
+}
+
+fn rendered(sources: &Sources, found: &[Diagnostic]) -> String {
+    found.iter().map(|diagnostic| sources.render(diagnostic)).collect()
+}
+
+/// A plan as each machine takes it.
+#[derive(Debug)]
+pub struct Machines<'c> {
+    compiled: &'c Compiled,
+    /// With its finite loops written out, if that is not too long.
+    expanded: Option<Lowered>,
+}
+
+impl<'c> Machines<'c> {
+    /// The machines of a plan.
+    #[must_use]
+    pub fn new(compiled: &'c Compiled) -> Self {
+        let expand = || algorithm1(&expand(&compiled.nondegenerate)?);
+        let is_small = compiled.lowered.termination <= EXPANDED;
+        Self { compiled, expanded: is_small.then(|| expand().expect("a small plan")) }
+    }
+
+    /// The trace of each machine, by its name.
+    #[must_use]
+    pub fn traces(&self, script: &Script) -> Vec<(&'static str, Vec<Line<'_>>)> {
+        let mut traces = vec![
+            ("tree", run(Tree::new(&self.compiled.plan), script).collect()),
+            ("counted", run(Counted::new(&self.compiled.lowered), script).collect()),
+        ];
+        let expanded = self.expanded.as_ref().map(|lowered| run(Counted::new(lowered), script).collect());
+        traces.extend(expanded.map(|trace| ("counted, expanded", trace)));
+        traces
+    }
+}

@@ -1,0 +1,92 @@
+//! Random conditions and laws, in the spellings that plans may use.
+
+use crate::chance::Chance;
+
+/// The interrupts of the target `scripted`; arguments in every unit and notation, each of them among its texts.
+const INTERRUPTS: &[&str] = &[
+    "a",
+    "b",
+    "c",
+    "d",
+    "e",
+    "f",
+    "farOff",
+    "farOff 2",
+    "farOff(200cm)",
+    "farOff 25cm",
+    "faster 20",
+    "faster(0.2m/s)",
+    "faster 5mm/s",
+    "facing 90",
+    "facing(90deg)",
+    "facing -22.5",
+    "spinning 0.36",
+    "spinning(-1rad/s)",
+    "low_battery 10.8V",
+    "pattern 0100",
+    "pattern(1011)",
+    "echo 7",
+    "echo(15)",
+    "beyond 0.125 -3",
+    "beyond(0.125, -3)",
+];
+
+/// Timers; among the scripts' steps, so that they are over just before, at and just after a turn.
+const TIMERS: &[&str] =
+    &["wait 0", "wait 0.05", "wait 100ms", "wait(0.2)", "wait 0.25", "wait 0.3s", "wait 1", "wait 2.5", "wait inf"];
+
+/// The laws of the target `scripted`; the first half never completes.
+const LAWS: &[&str] = &[
+    "idle",
+    "drift",
+    "drive 20 0",
+    "(drive 20)",
+    "drive(-5cm/s, 0.36)",
+    "seek",
+    "(climb)",
+    "veer 90",
+    "veer(-45deg)",
+    "wander 3",
+    "wander(50cm, 20ms)",
+];
+
+/// A law with its arguments.
+pub fn law(chance: &mut Chance) -> String {
+    chance.pick(LAWS).to_owned()
+}
+
+/// A condition, as it stands between parentheses.
+pub fn condition(chance: &mut Chance) -> String {
+    match chance.below(10) {
+        0 => "null".into(),
+        1..=4 => quark(chance),
+        5 | 6 => chance.pick(TIMERS).to_owned(),
+        _ => or(chance, 2),
+    }
+}
+
+/// A quark, more often one of a few, so that scopes repeat each other's interrupts.
+fn quark(chance: &mut Chance) -> String {
+    if chance.percent(60) { chance.pick(&INTERRUPTS[..3]).to_owned() } else { chance.pick(INTERRUPTS).to_owned() }
+}
+
+fn or(chance: &mut Chance, depth: usize) -> String {
+    let operands: Vec<_> = (0..=chance.below(3)).map(|_| and(chance, depth)).collect();
+    operands.join(if chance.percent(80) { " OR " } else { " or " })
+}
+
+fn and(chance: &mut Chance, depth: usize) -> String {
+    let more = usize::from(chance.percent(40));
+    let operands: Vec<_> = (0..=more).map(|_| not(chance, depth)).collect();
+    operands.join(" AND ")
+}
+
+fn not(chance: &mut Chance, depth: usize) -> String {
+    let test = match chance.below(8) {
+        0 => chance.pick(TIMERS).to_owned(),
+        1 if chance.percent(20) => "null".into(),
+        2 | 3 if depth > 0 => format!("({})", or(chance, depth - 1)),
+        _ => quark(chance),
+    };
+    if chance.percent(20) { format!("NOT {test}") } else { test }
+}

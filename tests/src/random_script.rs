@@ -1,0 +1,48 @@
+//! Random scripts, as text: irregular times, interrupts that come and go, laws that complete.
+
+use std::fmt::Write;
+
+use mdle_scripted::{INTERRUPTS, LAWS};
+
+use crate::chance::Chance;
+
+/// Steps between turns in seconds: none at all, timers' own lengths, and one nanosecond more or less than these.
+const STEPS: &[&str] =
+    &["0", "0.05", "0.1", "0.1", "0.1", "0.099999999", "0.100000001", "0.25", "0.299999999", "1", "2.500000001", "7"];
+
+/// A script of this many turns for the target `scripted`.
+pub fn script(chance: &mut Chance, turns: usize) -> String {
+    let mut text = String::new();
+    let mut nanos: u64 = if chance.percent(80) { 0 } else { 1_234_567_890 };
+    let mut fired = vec![false; INTERRUPTS.len()];
+    // Laws that never complete are listed as well: that must change nothing.
+    let mut completed = vec![false; LAWS.len()];
+    // How readily interrupts fire and laws complete in this script, and how often they change at all.
+    let often = [2, 5, 10, 20, 40, 70][chance.below(6)];
+    let done = [2, 5, 20, 60][chance.below(4)];
+    let restless = [10, 50, 100][chance.below(3)];
+    for _ in 0..turns {
+        change(chance, &mut fired, often, restless);
+        change(chance, &mut completed, done, restless);
+        let (seconds, fraction) = (nanos / 1_000_000_000, nanos % 1_000_000_000);
+        let (fired, completed) = (quoted(INTERRUPTS, &fired), quoted(LAWS, &completed));
+        writeln!(text, "{{\"t\": {seconds}.{fraction:09}, \"fired\": [{fired}], \"completed\": [{completed}]}}")
+            .unwrap();
+        let step: f64 = chance.pick(STEPS).parse().unwrap();
+        nanos += (step * 1e9).round() as u64;
+    }
+    text
+}
+
+fn change(chance: &mut Chance, reports: &mut [bool], often: usize, restless: usize) {
+    for report in reports {
+        if chance.percent(restless) {
+            *report = chance.percent(often);
+        }
+    }
+}
+
+fn quoted(texts: &[&str], reports: &[bool]) -> String {
+    let listed = texts.iter().zip(reports).filter(|(_, reported)| **reported);
+    listed.map(|(text, _)| format!("\"{text}\"")).collect::<Vec<_>>().join(", ")
+}
