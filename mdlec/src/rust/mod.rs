@@ -1,4 +1,4 @@
-//! A plan's machine as a Rust file: one construct of the file for each function here and in [`meaning`] and [`tables`].
+//! A plan's machine as a Rust file: one construct of the file for each function here and in `meaning` and `tables`.
 //!
 //! The file is one module: a constant for each quark with its arguments, a variant for each atom as written, a function
 //! for each scope that asks the scope around it first, and the tables. It grows with the text, never with loop counts.
