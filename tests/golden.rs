@@ -1,22 +1,22 @@
-//! Every plan in `plans/`: tree, machine and Rust as golden files where `sim` can run it, what is said of it elsewhere.
+//! Every plan in `plans/`: tree, machine and Rust as snapshots where `sim` can run it, what is said of it elsewhere.
 //!
-//! Rust is kept as a `.rs` file in `golden/`, to be opened and read as one. After a change that is meant, record all of
-//! them with `INSTA_UPDATE=always cargo test -p mdle-tests --test golden`.
+//! The Rust is a file of its own beside its snapshot, `snapshots/golden__rust-….snap.rs`, to be opened and read as one.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
-
-use std::fs;
 
 use mdle_runtime::Plan;
 use mdle_tests::golden::{judge, machine, rust, tree};
-use mdle_tests::repository::{TextFile, files, root};
+use mdle_tests::repository::{TextFile, files};
 
 /// The recorded Rust, compiled as it is under the lints of this workspace.
 mod recorded {
     pub(crate) mod lab_tour {
-        include!("golden/lab_tour.rs");
+        include!("snapshots/golden__rust-lab_tour.snap.rs");
+    }
+    pub(crate) mod dock {
+        include!("snapshots/golden__rust-dock.snap.rs");
     }
     pub(crate) mod lab2_to_lab1 {
-        include!("golden/paper-lab2_to_lab1.rs");
+        include!("snapshots/golden__rust-paper-lab2_to_lab1.snap.rs");
     }
 }
 
@@ -60,24 +60,12 @@ fn machines_of_what_the_simulator_runs_and_why_it_does_not_run_the_rest() {
 }
 
 #[test]
-fn rust_is_as_recorded() {
-    let folder = root().join("tests/golden");
-    let mut recorded: Vec<_> = fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+fn rust_for_the_simulator() {
     for file in plans() {
-        let (compiled, _) = judge(&file, Some("sim"));
-        for compiled in &compiled {
-            let name = format!("{}.rs", name(&file));
-            let path = folder.join(&name);
-            let text = rust(&file, compiled);
-            if std::env::var("INSTA_UPDATE").as_deref() == Ok("always") {
-                fs::write(&path, &text).unwrap();
-            }
-            let golden = fs::read_to_string(&path).unwrap_or_default();
-            assert!(golden == text, "tests/golden/{name} is not what is emitted now; see the head of this file");
-            recorded.retain(|other| *other != *name);
+        for compiled in judge(&file, Some("sim")).0 {
+            insta::assert_binary_snapshot!(&format!("rust-{}.rs", name(&file)), rust(&file, &compiled).into_bytes());
         }
     }
-    assert_eq!(recorded, [] as [&str; 0], "no plan makes these any more");
 }
 
 #[test]
@@ -87,6 +75,7 @@ fn recorded_rust_compiles_and_has_the_tables_of_its_plan() {
         judge(&file, Some("sim")).0.swap_remove(0).lowered
     };
     assert_eq!(recorded::lab_tour::LabTour::new().fsm(), tables("lab_tour").tables());
+    assert_eq!(recorded::dock::Dock::new().fsm(), tables("dock").tables());
     let plan = recorded::lab2_to_lab1::Lab2ToLab1Plan::new();
     assert_eq!(plan.fsm(), tables("paper-lab2_to_lab1").tables());
     assert_eq!([plan.law(2), plan.condition(0), plan.name(0)], ["align 7 9", "bumper", "Lab2ToLab1Plan"]);
