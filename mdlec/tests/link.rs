@@ -73,7 +73,7 @@ fn a_target_that_does_not_compile_is_quoted_whole() {
     assert_eq!(sentence, "the target crate `mdle_rover` does not compile; this is not a fault of your plan:");
     assert!(quoted.starts_with("error[E0425]"), "{quoted}");
     assert!(quoted.contains("Rower") && !quoted.contains("Compiling"), "{quoted}");
-    assert_eq!(error.exit_status(), 1);
+    assert_eq!(error.exit_status(), 2);
 }
 
 #[test]
@@ -83,7 +83,7 @@ fn a_plan_that_does_not_fit_the_target_is_not_quoted() {
     let LinkError::TargetMisfit { log, .. } = &error else { panic!("{error:?}") };
     assert!(fs::read_to_string(log).unwrap().contains("Felt"));
     assert!(!error.to_string().contains("Felt"));
-    assert_eq!(error.exit_status(), 1);
+    assert_eq!(error.exit_status(), 2);
 }
 
 #[test]

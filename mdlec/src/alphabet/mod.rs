@@ -12,7 +12,7 @@ mod token;
 
 pub use combined::{Alphabet, combine, nearest};
 pub use decimal::Decimal;
-pub use quantity::{Kind, Unit};
+pub use quantity::{Kind, Unit, family_to_si};
 pub use read::read;
 
 use crate::diagnostic::Span;

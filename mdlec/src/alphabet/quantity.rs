@@ -136,11 +136,17 @@ impl Unit {
     /// How many SI units one of its family is: 1, or π/180 where the family counts degrees.
     #[must_use]
     pub fn family_to_si(self) -> f64 {
-        if self.family.starts_with("deg") { std::f64::consts::PI / 180.0 } else { 1.0 }
+        family_to_si(self.family)
     }
 
     const fn new(name: &'static str, kind: Kind, factor: u32, exponent: i32, family: &'static str) -> Self {
         let is_base = factor == 1 && exponent == 0 && !matches!(family.as_bytes(), [b'd', ..]);
         Self { name, kind, factor, exponent, family, is_base }
     }
+}
+
+/// How many SI units one of this family's unit is: 1, or π/180 where the family counts degrees.
+#[must_use]
+pub fn family_to_si(family: &str) -> f64 {
+    if family.starts_with("deg") { std::f64::consts::PI / 180.0 } else { 1.0 }
 }

@@ -8,7 +8,6 @@ use std::time::Instant;
 
 use super::input::{self, Input, Target};
 use super::{Build, Emit, EmitKind, Failure, report};
-use crate::diagnostic::Diagnostic;
 use crate::link::{self, Cache, LinkError, Package, Progress, TargetCrate};
 use crate::rust::{self, Header};
 use crate::syntax::outline;
@@ -17,23 +16,20 @@ use crate::{Compiled, compile, fsm, syntax};
 /// Does what the command line without a command asks for.
 pub(super) fn build(options: &Build) -> Result<(), Failure> {
     let Some(path) = options.plan.as_deref() else { return Err(Failure::usage("no plan was given")) };
-    match &options.emit {
-        Some(Emit { kind: EmitKind::Exe, file }) => {
-            let output = file.clone().or_else(|| options.output.clone());
-            executable(options, path, output)
-        }
-        Some(emit) => {
-            if options.run {
-                return Err(Failure::usage("`--run` runs an executable, and this `--emit` makes none"));
-            }
-            let file = emit.file.clone().or_else(|| options.output.clone());
-            let text = stage(options, path, emit.kind)?;
-            match file {
-                Some(file) => link::write_whole(&file, text.as_bytes()).map_err(|error| failure(&error)),
-                None => report::print(&text),
-            }
-        }
-        None => executable(options, path, options.output.clone()),
+    let (kind, file) = match &options.emit {
+        None => (EmitKind::Exe, options.output.clone()),
+        Some(Emit { kind, file }) => (*kind, file.clone()),
+    };
+    if kind == EmitKind::Exe {
+        return executable(options, path, file);
+    }
+    if options.run {
+        return Err(Failure::usage("`--run` runs an executable, and this `--emit` makes none"));
+    }
+    let text = stage(options, path, kind)?;
+    match file {
+        Some(file) => link::write_whole(&file, text.as_bytes()).map_err(|error| failure(&error)),
+        None => report::print(&text),
     }
 }
 
@@ -74,11 +70,10 @@ fn known_plan(input: &Input, name: &str) -> Result<(), Failure> {
     if names.contains(&name) || names.is_empty() {
         return Ok(());
     }
-    let near = crate::alphabet::nearest(name, names.iter().copied());
-    let near = near.map(|near| format!("; did you mean `{near}`?")).unwrap_or_default();
     Err(Failure::usage(format!(
-        "`{}` has no plan `{name}`{near}\nhelp: its plans are {}",
+        "`{}` has no plan `{name}`{}\nhelp: its plans are {}",
         input.sources.name(input.source),
+        input::did_you_mean(name, &names),
         names.join(", ")
     )))
 }
@@ -93,36 +88,27 @@ fn stage(options: &Build, path: &Path, kind: EmitKind) -> Result<String, Failure
         return if good { Ok(outline::outline(&tree)) } else { Err(Failure::PLAN) };
     }
     let compiled = compile_one(&input, &target, options.name.as_deref(), options.deny_warnings)?;
-    let too_large = |found: Diagnostic| {
-        report::diagnostics(&input.sources, &[found], false);
-        Failure::PLAN
+    let nondegenerate = &compiled.nondegenerate;
+    let text = match kind {
+        EmitKind::Plan => Ok(compiled.plan.to_string()),
+        EmitKind::Nondegenerate => Ok(nondegenerate.plan().to_string()),
+        EmitKind::Expanded => fsm::expand(nondegenerate).map(|expanded| expanded.plan().numbered()),
+        EmitKind::Fsm => fsm::fsm_file(nondegenerate).map(|file| file.to_json()),
+        EmitKind::Tree | EmitKind::Rust | EmitKind::Exe => {
+            needs_target(options)?;
+            Ok(rust_of(&compiled, path, &target))
+        }
     };
-    Ok(match kind {
-        EmitKind::Tree | EmitKind::Plan => compiled.plan.to_string(),
-        EmitKind::Nondegenerate => compiled.nondegenerate.plan().to_string(),
-        EmitKind::Expanded => {
-            let expanded = fsm::expand(&compiled.nondegenerate).map_err(too_large)?;
-            let mut text = String::new();
-            let printed = expanded.plan().print_numbered(&mut text);
-            printed.map(|()| text).map_err(|error| Failure::usage(error.to_string()))?
-        }
-        EmitKind::Fsm => {
-            let file = fsm::fsm_file(&compiled.nondegenerate).map_err(too_large)?;
-            let text = serde_json::to_string_pretty(&file).map_err(|error| Failure::usage(error.to_string()))?;
-            text + "\n"
-        }
-        EmitKind::Rust | EmitKind::Exe => rust_of(&compiled, path, &needs_target(options, target)?),
+    text.map_err(|too_large| {
+        report::diagnostics(&input.sources, &[too_large], false);
+        Failure::PLAN
     })
 }
 
-/// The target again, if the command line names one: Rust is written for a robot.
-fn needs_target(options: &Build, target: Target) -> Result<Target, Failure> {
-    match options.target {
-        Some(_) => Ok(target),
-        None => Err(Failure::usage(
-            "for which robot? Name it with `--target`, as in `--target sim`; `mdlec targets` lists them",
-        )),
-    }
+/// Rust is written for a robot.
+fn needs_target(options: &Build) -> Result<(), Failure> {
+    let question = "for which robot? Name it with `--target`, as in `--target sim`; `mdlec targets` lists them";
+    options.target.as_ref().map(|_| ()).ok_or_else(|| Failure::usage(question))
 }
 
 fn rust_of(compiled: &Compiled, path: &Path, target: &Target) -> String {
@@ -133,20 +119,20 @@ fn rust_of(compiled: &Compiled, path: &Path, target: &Target) -> String {
 
 fn executable(options: &Build, path: &Path, output: Option<PathBuf>) -> Result<(), Failure> {
     let started = Instant::now();
-    let target = needs_target(options, input::target(options.target.as_deref())?)?;
+    needs_target(options)?;
+    let target = input::target(options.target.as_deref())?;
     let input = input::read_plan(path, &target)?;
     let compiled = compile_one(&input, &target, options.name.as_deref(), options.deny_warnings)?;
     let rust = rust_of(&compiled, path, &target);
-    let output = match output {
-        Some(output) => output,
-        None => path.file_stem().map(PathBuf::from).unwrap_or_else(|| PathBuf::from("plan")),
-    };
+    let plan_name = compiled.plan.root.name.as_str();
+    // Standard input has no name of its own.
+    let stem = path.file_stem().filter(|stem| *stem != "-").map_or_else(|| PathBuf::from(plan_name), PathBuf::from);
+    let output = output.unwrap_or(stem);
     let crate_name = &target.alphabet.crate_name;
     let target_crate = match &target.folder {
         None => TargetCrate::Builtin { name: &target.alphabet.name, crate_name },
         Some(folder) => TargetCrate::Path { folder, crate_name },
     };
-    let plan_name = compiled.plan.root.name.as_str();
     let plan_type = rust::plan_type(plan_name);
     let package = Package { plan_name, plan_file: path, plan_type: &plan_type, rust: &rust, target: &target_crate };
     let mut shown = Shown { open: false };

@@ -164,13 +164,24 @@ impl Reading {
 
 fn unknown_target(name: &str) -> Failure {
     let known: Vec<_> = link::alphabets().iter().filter(|found| found.target).map(|found| found.name).collect();
-    let near = alphabet::nearest(name, known.iter().copied());
-    let near = near.map(|near| format!("; did you mean `{near}`?")).unwrap_or_default();
+    if name.contains('/') {
+        return Failure::usage(format!(
+            "there is no folder `{name}`\nhelp: the built-in targets are {}",
+            known.join(", ")
+        ));
+    }
     Failure::usage(format!(
-        "there is no target `{name}`{near}\nhelp: the targets are {}; a target of your own is named by its folder, \
+        "there is no target `{name}`{}\nhelp: the targets are {}; a target of your own is named by its folder, \
          as in `--target ../rover`",
+        did_you_mean(name, &known),
         known.join(", ")
     ))
+}
+
+/// The end of a sentence about a name that is not known.
+pub(super) fn did_you_mean(name: &str, known: &[&str]) -> String {
+    let near = alphabet::nearest(name, known.iter().copied());
+    near.map(|near| format!("; did you mean `{near}`?")).unwrap_or_default()
 }
 
 /// A hint where only the ending was forgotten.

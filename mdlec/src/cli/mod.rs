@@ -14,8 +14,10 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 /// Compiles plans in MDLe, the Motion Description Language, for robots.
 #[derive(Debug, Parser)]
 #[command(name = "mdlec", version, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
-#[command(after_help = "Exit status: 0 done, 1 the plan has errors, 2 wrong usage or a file that cannot be read or \
-                        written, 101 a bug in mdlec.")]
+#[command(
+    after_help = "Exit status: 0 done, 1 the plan has errors, 2 wrong usage, a target that does not compile, or a \
+                        file that cannot be read or written, 101 a bug in mdlec. With --run, that of the executable."
+)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -38,14 +40,14 @@ enum Command {
 /// Builds the executable of a plan.
 #[derive(Debug, Args)]
 struct Build {
-    /// The plan
+    /// The plan; `-` reads standard input
     #[arg(required = true)]
     plan: Option<PathBuf>,
     /// The robot: one of `mdlec targets`, or the folder of a target of your own
     #[arg(long, value_name = "NAME|FOLDER")]
     target: Option<String>,
     /// The executable to write [default: the plan's file name without its ending, in the current folder]
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE", conflicts_with = "emit")]
     output: Option<PathBuf>,
     /// Which plan of the file [default: the one that no other refers to]
     #[arg(long = "plan", value_name = "NAME")]
@@ -71,7 +73,7 @@ struct Emit {
     file: Option<PathBuf>,
 }
 
-/// The stages that can be printed.
+/// What `--emit` makes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum EmitKind {
     /// The tree of the text, as it is written

@@ -22,14 +22,14 @@ pub(super) fn diagnostics(sources: &Sources, found: &[Diagnostic], deny_warnings
     let count = |severity| found.iter().filter(|diagnostic| diagnostic.code.severity() == severity).count();
     let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
     if errors > 0 {
-        error(&format!("{} in this plan: nothing was made", number(errors, "error")));
+        error(&number(errors, "error"));
     } else if deny_warnings && warnings > 0 {
         error(&format!("{}, and `--deny-warnings` counts them as errors", number(warnings, "warning")));
     }
     errors == 0 && (warnings == 0 || !deny_warnings)
 }
 
-/// A code that `mdlec` gives to what is no diagnostic of a plan's text alone.
+/// The diagnostic of a file that is not text, with the file as far as it can be shown; its first `valid` bytes are good.
 pub(super) fn not_utf8(name: &str, bytes: &[u8], valid: usize) -> (Sources, Diagnostic) {
     let mut sources = Sources::default();
     let source = sources.add(name, String::from_utf8_lossy(bytes));

@@ -2,11 +2,14 @@
 
 use std::io::{self, BufWriter, Write};
 
-use super::{Failure, Machine, Trace, input, report};
+use super::{Failure, Machine, Trace, input};
 use crate::trace::{Counted, Line, Script, Tree, run};
 
 /// Runs the plan and prints what it does, a line a turn.
 pub(super) fn trace(options: &Trace) -> Result<(), Failure> {
+    if options.plan.as_os_str() == "-" && options.script.as_os_str() == "-" {
+        return Err(Failure::usage("standard input can be the plan or the script, but not both"));
+    }
     let target = input::target(options.target.as_deref())?;
     let input = input::read_plan(&options.plan, &target)?;
     let compiled = super::build::compile_one(&input, &target, options.name.as_deref(), false)?;
@@ -24,8 +27,7 @@ fn print<'p>(lines: impl Iterator<Item = Line<'p>>) -> Result<(), Failure> {
     let written = lines.into_iter().try_for_each(|line| writeln!(out, "{line}")).and_then(|()| out.flush());
     match written {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            report::error("cannot write the trace");
-            Err(Failure::usage(error.to_string()))
+            Err(Failure::usage(format!("cannot write the trace: {error}")))
         }
         Ok(()) | Err(_) => Ok(()),
     }

@@ -1,8 +1,6 @@
 //! The machine as an FSM file (interfaces, "FSM files"): states, interrupts with their moves, finite loops expanded.
 
-use std::collections::BTreeMap;
-
-use mdle_runtime::fsm::Kind;
+use mdle_runtime::fsm::{Bracket, Kind};
 use serde::Serialize;
 
 use super::{Lowered, algorithm1, expand};
@@ -71,77 +69,67 @@ pub struct ScopeEntry {
 /// E0501 and E0502, as [`expand`] has them.
 pub fn fsm_file(plan: &Nondegenerate) -> Result<FsmFile, Diagnostic> {
     let lowered = algorithm1(&expand(plan)?)?;
-    let machine = Columns::of(&lowered);
-    let scopes: Vec<_> = lowered
-        .scopes
-        .iter()
-        .zip(&lowered.brackets)
-        .enumerate()
-        .filter_map(|(bracket, (scope, extent))| Some((bracket, scope.as_ref()?, extent)))
-        .collect();
-    let name = |index: usize| format!("x{}", index + 1);
-    let mut interrupts: Vec<_> = scopes
-        .iter()
-        .enumerate()
-        .map(|(index, (bracket, scope, extent))| {
-            let to = machine.state(machine.destination(*bracket));
-            let moves = (extent.first..=extent.last).map(|atom| (machine.state(atom), to.clone())).collect();
-            InterruptEntry { name: name(index), text: scope.interrupt.text.clone(), moves: Moves(moves) }
-        })
-        .collect();
-    interrupts.extend(machine.completion());
-    let never = |(index, (_, scope, _)): (usize, &(usize, &super::ScopeMeaning, _))| {
-        (scope.interrupt.condition == Condition::Null).then(|| name(index))
-    };
-    Ok(FsmFile {
+    let columns = Columns(&lowered);
+    let mut file = FsmFile {
         version: VERSION,
-        source: plan.plan().root.name.clone(),
-        states: (0..=machine.atoms()).map(|atom| machine.state(atom)).collect(),
+        source: lowered.scopes.iter().flatten().next().map(|plan| plan.name.clone()).unwrap_or_default(),
+        states: (0..=columns.atoms()).map(|atom| columns.state(atom)).collect(),
         laws: lowered.laws.iter().map(|law| lowered.quark(law.quark).text.clone()).collect(),
-        never: scopes.iter().enumerate().filter_map(never).collect(),
-        scopes: scopes
-            .iter()
-            .enumerate()
-            .map(|(index, (_, scope, extent))| ScopeEntry {
-                interrupt: name(index),
-                name: scope.name.clone(),
-                first: machine.state(extent.first),
-                last: machine.state(extent.last),
-            })
-            .collect(),
-        interrupts,
-    })
+        interrupts: Vec::new(),
+        never: Vec::new(),
+        scopes: Vec::new(),
+    };
+    for (scope, bracket) in lowered.scopes.iter().zip(&lowered.brackets) {
+        let Some(scope) = scope else { continue };
+        let name = format!("x{}", file.interrupts.len() + 1);
+        let to = columns.state(columns.destination(bracket));
+        let moves = (bracket.first..=bracket.last).map(|atom| (columns.state(atom), to.clone())).collect();
+        if scope.interrupt.condition == Condition::Null {
+            file.never.push(name.clone());
+        }
+        file.scopes.push(ScopeEntry {
+            interrupt: name.clone(),
+            name: scope.name.clone(),
+            first: columns.state(bracket.first),
+            last: columns.state(bracket.last),
+        });
+        file.interrupts.push(InterruptEntry { name, text: scope.interrupt.text.clone(), moves: Moves(moves) });
+    }
+    file.interrupts.extend(columns.completion());
+    Ok(file)
+}
+
+impl FsmFile {
+    /// The file as JSON, on several lines.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        // Only maps with keys that are no strings cannot be written, and there are none.
+        serde_json::to_string_pretty(self).map(|text| text + "\n").unwrap_or_default()
+    }
 }
 
 /// The columns of the transition matrices of a machine whose finite loops are expanded.
-struct Columns<'a> {
-    lowered: &'a Lowered,
-    /// For each atom, the loops without end that end there, by their brackets, outermost first.
-    loops: BTreeMap<u32, Vec<u32>>,
-}
+struct Columns<'a>(&'a Lowered);
 
-impl<'a> Columns<'a> {
-    fn of(lowered: &'a Lowered) -> Self {
-        let mut loops: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
-        for (bracket, number) in lowered.brackets.iter().zip(0..) {
-            if matches!(bracket.kind, Kind::Loop { .. }) {
-                loops.entry(bracket.last).or_default().push(number);
-            }
-        }
-        Self { lowered, loops }
-    }
-
+impl Columns<'_> {
     fn atoms(&self) -> u32 {
-        u32::try_from(self.lowered.atoms.len()).unwrap_or(u32::MAX)
+        u32::try_from(self.0.atoms.len()).unwrap_or(u32::MAX)
     }
 
     /// Where the interrupt of a scope sends its columns: to the start of the innermost loop outside it that ends where
     /// it ends, else behind its last atom.
-    fn destination(&self, scope: usize) -> u32 {
-        let last = self.lowered.brackets[scope].last;
-        // Pre-order: a loop around the scope has a smaller number, and the innermost of them the largest.
-        let around = self.loops.get(&last).into_iter().flatten().filter(|number| (**number as usize) < scope);
-        around.max().map_or(last + 1, |number| self.lowered.brackets[*number as usize].first)
+    fn destination(&self, scope: &Bracket) -> u32 {
+        let mut inside = scope;
+        loop {
+            let around = &self.0.brackets[inside.parent as usize];
+            if around.last != scope.last || std::ptr::eq(around, inside) {
+                return scope.last + 1;
+            }
+            if matches!(around.kind, Kind::Loop { .. }) {
+                return around.first;
+            }
+            inside = around;
+        }
     }
 
     fn state(&self, atom: u32) -> String {
@@ -150,10 +138,13 @@ impl<'a> Columns<'a> {
 
     /// The interrupt that laws raise when they are done.
     fn completion(&self) -> Option<InterruptEntry> {
-        let atoms = self.lowered.laws.iter().zip(&self.lowered.atoms).zip(0..);
+        let atoms = self.0.laws.iter().zip(&self.0.atoms).zip(0..);
         let moves: Vec<_> = atoms
-            .filter(|((law, _), _)| self.lowered.quark(law.quark).completes)
-            .map(|((_, atom), number)| (self.state(number), self.state(self.destination(atom.scope as usize))))
+            .filter(|((law, _), _)| self.0.quark(law.quark).completes)
+            .map(|((_, atom), number)| {
+                let own = &self.0.brackets[atom.scope as usize];
+                (self.state(number), self.state(self.destination(own)))
+            })
             .collect();
         let name = "completed".to_owned();
         (!moves.is_empty()).then(|| InterruptEntry { text: name.clone(), name, moves: Moves(moves) })

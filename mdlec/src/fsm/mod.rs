@@ -54,8 +54,6 @@ pub struct LawMeaning {
     pub quark: QuarkId,
     /// The angle by which its frame is turned, in radians.
     pub frame: f64,
-    /// Where the atom is written.
-    pub span: Span,
 }
 
 impl Lowered {
@@ -138,12 +136,10 @@ impl Lowering {
 
     fn atom(&mut self, atom: &plan::Atom, place: Place) -> u64 {
         let meaning = ScopeMeaning { name: String::new(), interrupt: atom.interrupt.clone() };
-        let number = u32::try_from(self.lowered.atoms.len()).unwrap_or(u32::MAX);
         let scope = self.bracket(Kind::Scope { level: place.level }, place.parent, Some(meaning));
         self.lowered.levels = self.lowered.levels.max(usize::from(place.level) + 1);
         self.lowered.atoms.push(Atom { scope, state: place.state });
-        self.lowered.laws.push(LawMeaning { quark: atom.law, frame: atom.frame, span: atom.span });
-        debug_assert_eq!(self.lowered.brackets[scope as usize].first, number);
+        self.lowered.laws.push(LawMeaning { quark: atom.law, frame: atom.frame });
         1
     }
 

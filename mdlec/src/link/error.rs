@@ -118,8 +118,8 @@ pub enum LinkError {
     },
     /// The target's crate is not what its alphabet says.
     #[error(
-        "the target crate `{crate_name}` does not fit its alphabet: run `mdlec bind` on the alphabet and compile the \
-         crate; if this stays, please report it with the plan and `{log}`"
+        "the target crate `{crate_name}` does not fit its alphabet: its module `alphabet` has to export a type for every \
+         quark the alphabet declares, as `{log}` says; if it does, please report this with the plan and that file"
     )]
     TargetMisfit {
         /// The target's crate.
@@ -167,8 +167,10 @@ impl LinkError {
     #[must_use]
     pub fn exit_status(&self) -> u8 {
         match self {
-            Self::TargetRefused { .. } | Self::TargetBroken { .. } | Self::TargetMisfit { .. } => 1,
-            Self::OutputIsFolder(_)
+            Self::TargetRefused { .. }
+            | Self::TargetBroken { .. }
+            | Self::TargetMisfit { .. }
+            | Self::OutputIsFolder(_)
             | Self::OutputIsSpecial(_)
             | Self::OutputIsPlan(_)
             | Self::OutputFolderMissing(_)

@@ -2,7 +2,7 @@
 
 use super::{Decimal, Value};
 use crate::alphabet::{Declaration, DeclarationKind, Kind, Param, Unit};
-use crate::diagnostic::{Code, Diagnostic, Span};
+use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::tree::{Arg, Call, Number};
 
 /// The largest whole number that an `f64` tells from its neighbours.
@@ -127,9 +127,9 @@ impl Fitting<'_> {
             return match &number.unit {
                 Some(_) => Err(self.wrong_unit(number, param).into()),
                 None => {
-                    let si = self.in_range(number, param, decimal.to_f64())?;
+                    self.in_range(number, param, decimal.to_f64())?;
                     let words = decimal.to_string();
-                    Ok((Value::Quantity { kind: param.kind, exact: decimal, family: "", si }, words))
+                    Ok((Value::Quantity { kind: param.kind, exact: decimal, family: "" }, words))
                 }
             };
         };
@@ -144,8 +144,7 @@ impl Fitting<'_> {
         let in_default = if unit == default { decimal.to_f64() } else { converted(&exact, unit, default) };
         self.in_range(number, param, in_default)?;
         let words = if unit == default { decimal.to_string() } else { in_default.to_string() };
-        let si = exact.to_f64() * unit.family_to_si();
-        Ok((Value::Quantity { kind: param.kind, exact, family: unit.family, si }, words))
+        Ok((Value::Quantity { kind: param.kind, exact, family: unit.family }, words))
     }
 
     fn whole(&self, number: &Number, param: &Param) -> Fitted {
@@ -274,9 +273,4 @@ pub(super) fn kind_words(kind: DeclarationKind) -> &'static str {
         DeclarationKind::Interrupt => "an interrupt",
         DeclarationKind::Signal => "a signal",
     }
-}
-
-/// The place of a call's name, for messages about the name.
-pub(super) fn name_span(call: &Call) -> Span {
-    call.name.span
 }

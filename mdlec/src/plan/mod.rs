@@ -2,6 +2,7 @@
 //!
 //! After this stage no string is looked up again: a quark is an id, an argument its exact decimal, its unit and its SI value.
 
+mod angle;
 mod arguments;
 mod conditions;
 mod definitions;
@@ -12,6 +13,7 @@ mod resolve;
 #[cfg(test)]
 mod tests;
 
+pub use angle::{frame_text, in_degrees};
 pub use arguments::signature;
 pub use nondegenerate::{Nondegenerate, remove_degeneracy};
 pub use resolve::resolve;
@@ -41,7 +43,7 @@ impl Plan {
 pub struct QuarkId(pub u32);
 
 /// A quark with its arguments.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Quark {
     /// Its name in the alphabet.
     pub name: String,
@@ -57,8 +59,8 @@ pub struct Quark {
     pub text: String,
 }
 
-/// An argument.
-#[derive(Debug, Clone, PartialEq)]
+/// An argument; equal arguments are the same to the last digit.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Value {
     /// A number of some kind.
     Quantity {
@@ -66,10 +68,8 @@ pub enum Value {
         kind: Kind,
         /// Its exact value in the unit of its family.
         exact: Decimal,
-        /// That unit: degrees and radians are two families.
+        /// That unit: degrees and radians are two families. Empty for a number without a unit.
         family: &'static str,
-        /// The value in SI units (radians for angles).
-        si: f64,
     },
     /// For ever, as `wait inf` takes it.
     Infinity,

@@ -47,13 +47,8 @@ enum Normal {
 /// For each quark the first one that is the same function.
 fn same_functions(quarks: &[Quark]) -> Vec<QuarkId> {
     let mut first = BTreeMap::new();
-    let ids = (0..).map(QuarkId);
-    // The Debug form of an argument holds its exact value and family, so equal forms are equal functions.
-    quarks
-        .iter()
-        .zip(ids)
-        .map(|(quark, id)| *first.entry((&quark.name, quark.overload, format!("{:?}", quark.args))).or_insert(id))
-        .collect()
+    let ids = quarks.iter().zip((0..).map(QuarkId));
+    ids.map(|(quark, id)| *first.entry((&quark.name, quark.overload, &quark.args)).or_insert(id)).collect()
 }
 
 /// The interrupts of the scopes around the place where the removal is, each with its scope's name and its own place.

@@ -1,72 +1,76 @@
 //! A resolved plan as MDLe text: plans by name copied in, every argument in its default unit.
 
-use std::fmt::{self, Write};
+use std::fmt;
 
+use super::angle::frame_text;
 use super::{Atom, Interrupt, Node, Plan, Scope};
 
 impl fmt::Display for Plan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        Printer { plan: self, f, depth: 0, numbered: false, state: 0 }.scope(&self.root, "")
+        f.write_str(&self.printed(false))
     }
 }
 
 impl Plan {
     /// The text with each atom's number behind it: for a plan whose loops are expanded, the states of its machine.
-    ///
-    /// # Errors
-    /// When `out` cannot be written to.
-    pub fn print_numbered(&self, out: &mut dyn Write) -> fmt::Result {
-        Printer { plan: self, f: out, depth: 0, numbered: true, state: 0 }.scope(&self.root, "")
+    #[must_use]
+    pub fn numbered(&self) -> String {
+        self.printed(true)
+    }
+
+    fn printed(&self, numbered: bool) -> String {
+        let mut printer = Printer { plan: self, text: String::new(), depth: 0, numbered, atoms: 0 };
+        printer.scope(&self.root);
+        printer.text
     }
 }
 
-struct Printer<'p, 'f> {
+struct Printer<'p> {
     plan: &'p Plan,
-    f: &'f mut dyn Write,
+    text: String,
     depth: usize,
     numbered: bool,
     /// The atoms printed so far.
-    state: u64,
+    atoms: u64,
 }
 
-impl Printer<'_, '_> {
-    fn line(&mut self, text: &str) -> fmt::Result {
-        writeln!(self.f, "{:indent$}{text}", "", indent = 2 * self.depth)
+impl Printer<'_> {
+    fn line(&mut self, text: &str) {
+        self.text += &format!("{:indent$}{text}\n", "", indent = 2 * self.depth);
     }
 
-    fn scope(&mut self, scope: &Scope, frame: &str) -> fmt::Result {
+    fn scope(&mut self, scope: &Scope) {
         let name = if scope.name.is_empty() { "_" } else { scope.name.as_str() };
         let condition = condition(&scope.interrupt);
         let condition = if condition == "null" { String::new() } else { format!(" ({condition})") };
-        self.line(&format!("{frame}{{ {name}{condition}"))?;
-        self.inside(&scope.body)?;
-        self.line("}")
+        self.line(&format!("{{ {name}{condition}"));
+        self.inside(&scope.body);
+        self.line("}");
     }
 
-    fn inside(&mut self, body: &[Node]) -> fmt::Result {
+    fn inside(&mut self, body: &[Node]) {
         self.depth += 1;
         for node in body {
             match node {
-                Node::Atom(atom) => self.atom(atom)?,
-                Node::Scope(scope) => self.scope(scope, "")?,
+                Node::Atom(atom) => self.atom(atom),
+                Node::Scope(scope) => self.scope(scope),
                 Node::Loop(repeated) => {
                     let times = repeated.times.map_or_else(|| "inf".to_owned(), |times| times.to_string());
-                    self.line(&format!("ExecPlan {times} {{"))?;
-                    self.inside(&repeated.body)?;
-                    self.line("}")?;
+                    self.line(&format!("ExecPlan {times} {{"));
+                    self.inside(&repeated.body);
+                    self.line("}");
                 }
             }
         }
         self.depth -= 1;
-        Ok(())
     }
 
-    fn atom(&mut self, atom: &Atom) -> fmt::Result {
-        self.state += 1;
-        let frame = if atom.frame == 0.0 { String::new() } else { format!("FRAME {}deg ", atom.frame.to_degrees()) };
-        let number = if self.numbered { format!("  // a{}", self.state) } else { String::new() };
+    fn atom(&mut self, atom: &Atom) {
+        self.atoms += 1;
+        let frame = frame_text(atom.frame);
+        let number = if self.numbered { format!("  // a{}", self.atoms) } else { String::new() };
         let law = &self.plan.quark(atom.law).text;
-        self.line(&format!("{frame}(Atom ({}) {law}){number}", condition(&atom.interrupt)))
+        self.line(&format!("{frame}(Atom ({}) {law}){number}", condition(&atom.interrupt)));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::arguments::{self, fit, kind_words, signature};
+use super::arguments::{Arguments, fit, kind_words, signature};
 use super::{Quark, QuarkId};
 use crate::alphabet::{Alphabet, Declaration, DeclarationKind};
 use crate::diagnostic::{Code, Diagnostic};
@@ -13,7 +13,7 @@ use crate::syntax::tree::{Arg, Call};
 pub(super) struct Quarks<'a> {
     alphabet: &'a Alphabet,
     met: Vec<Quark>,
-    ids: BTreeMap<(String, String), QuarkId>,
+    ids: BTreeMap<Quark, QuarkId>,
 }
 
 impl<'a> Quarks<'a> {
@@ -42,66 +42,53 @@ impl<'a> Quarks<'a> {
     ) -> Result<QuarkId, Vec<Diagnostic>> {
         let name = call.name.node.as_str();
         let declarations: Vec<&Declaration> = self.alphabet.declarations_of(name).collect();
-        let of_kind = |declaration: &&&Declaration| declaration.kind == kind;
-        let Some(first) = declarations.iter().find(of_kind).copied() else {
+        let of_kind = declarations.iter().copied().enumerate().filter(|(_, declaration)| declaration.kind == kind);
+        let mut candidates: Vec<_> = of_kind.collect();
+        if candidates.is_empty() {
             return Err(vec![match declarations.first() {
                 Some(other) => wrong_kind(call, other.kind, kind),
                 None => self.unknown(call, kind, plans),
             }]);
-        };
-        // Declarations of one name differ in the kinds of their arguments: a module is told from a location by that.
-        let mut failed = None;
-        for (overload, declaration) in declarations.iter().enumerate().filter(|(_, found)| found.kind == kind) {
+        }
+        // Declarations of one name differ in the kinds of their arguments; if none fits, what is wrong is told of the
+        // one that was probably meant.
+        candidates.sort_by_key(|(_, declaration)| !is_meant(call, declaration));
+        let mut wrong = None;
+        for (overload, declaration) in candidates {
             match fit(call, declaration, &self.alphabet.name) {
                 Ok(arguments) => {
                     self.available(call, declaration)?;
                     return Ok(self.intern(declaration, overload, arguments));
                 }
-                Err(found) => {
-                    let meant = std::ptr::eq(*declaration, first) || is_meant(call, declaration);
-                    if failed.is_none() || (meant && is_meant(call, declaration)) {
-                        failed = Some(found);
-                    }
-                }
+                Err(found) => wrong = wrong.or(Some(found)),
             }
         }
-        Err(failed.unwrap_or_default())
+        Err(wrong.unwrap_or_default())
     }
 
-    fn intern(&mut self, declaration: &Declaration, overload: usize, arguments: arguments::Arguments) -> QuarkId {
-        let mut text = declaration.name.clone();
-        for word in &arguments.words {
-            text.push(' ');
-            text.push_str(word);
+    fn intern(&mut self, declaration: &Declaration, overload: usize, arguments: Arguments) -> QuarkId {
+        let text = [declaration.name.clone()].into_iter().chain(arguments.words).collect::<Vec<_>>().join(" ");
+        let quark = Quark {
+            name: declaration.name.clone(),
+            overload,
+            args: arguments.values,
+            completes: declaration.completes,
+            remembers: declaration.remembers,
+            text,
+        };
+        if let Some(id) = self.ids.get(&quark) {
+            return *id;
         }
-        // Two texts may be equal although the values differ beyond the digits of an f64, and the other way round.
-        let key = (text.clone(), format!("{overload} {:?}", arguments.values));
-        let next = QuarkId(u32::try_from(self.met.len()).unwrap_or(u32::MAX));
-        let met = &mut self.met;
-        *self.ids.entry(key).or_insert_with(|| {
-            met.push(Quark {
-                name: declaration.name.clone(),
-                overload,
-                args: arguments.values,
-                completes: declaration.completes,
-                remembers: declaration.remembers,
-                text,
-            });
-            next
-        })
+        let id = QuarkId(u32::try_from(self.met.len()).unwrap_or(u32::MAX));
+        self.met.push(quark.clone());
+        self.ids.insert(quark, id);
+        id
     }
 
     /// Whether the robot has what the quark needs.
     fn available(&self, call: &Call, declaration: &Declaration) -> Result<(), Vec<Diagnostic>> {
-        let missing: Vec<String> = declaration
-            .needs
-            .iter()
-            .filter(|capability| !self.alphabet.has(capability))
-            .map(|capability| match capability.size {
-                Some(size) => format!("`{}[{size}]`", capability.name),
-                None => format!("`{}`", capability.name),
-            })
-            .collect();
+        let missing = declaration.needs.iter().filter(|capability| !self.alphabet.has(capability));
+        let missing: Vec<String> = missing.map(|capability| format!("`{capability}`")).collect();
         if missing.is_empty() {
             return Ok(());
         }
@@ -157,7 +144,7 @@ fn is_meant(call: &Call, declaration: &Declaration) -> bool {
 fn wrong_kind(call: &Call, found: DeclarationKind, expected: DeclarationKind) -> Diagnostic {
     let name = &call.name.node;
     let message = format!("`{name}` is {}, but {} has to stand here", kind_words(found), kind_words(expected));
-    let report = Diagnostic::new(Code::E0204, message, arguments::name_span(call), kind_words(found));
+    let report = Diagnostic::new(Code::E0204, message, call.name.span, kind_words(found));
     match (found, expected) {
         (DeclarationKind::Control, DeclarationKind::Interrupt) => report
             .help(format!("an atom is `(Atom (interrupt) law)`: the law comes last, as in `(Atom (wait 10) {name})`")),

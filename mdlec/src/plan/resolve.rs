@@ -10,6 +10,9 @@ use crate::alphabet::{self, Alphabet, DeclarationKind, Kind, Unit};
 use crate::diagnostic::{Code, Diagnostic, Span, has_errors};
 use crate::syntax::tree::{self, Call, Count, Element, Number, Primary};
 
+/// The largest angle of a FRAME, in its unit: far beyond a full circle, and sums of it are still exact enough.
+const FRAME: f64 = 100_000.0;
+
 /// Resolves the plans of a file: those that no other refers to, or the one that is `wanted`.
 ///
 /// Every plan is checked, whether it is wanted or not; no plan comes out if one has an error.
@@ -158,12 +161,13 @@ impl<'r, 'a> Resolver<'r, 'a> {
         let span = call.name.span;
         if let Some(quark) = self.quarks.alphabet().declarations_of(name).next() {
             let message = format!("`{name}` is {}, but an atom or a plan has to stand here", kind_words(quark.kind));
-            let example = if quark.kind == DeclarationKind::Control { ("wait 10", name) } else { (name, "stop") };
-            return Diagnostic::new(Code::E0204, message, span, "a quark runs in an atom").help(
-                format!("write `(Atom ({} …) {} …)`", example.0, example.1)
-                    .replace(" 10 …", " 10")
-                    .replace("stop …", "stop"),
-            );
+            let help = match quark.kind {
+                DeclarationKind::Control => format!("say when it ends: `(Atom (wait 10) {name} …)`"),
+                DeclarationKind::Interrupt => format!("say what runs until then: `(Atom ({name} …) stop)`"),
+                DeclarationKind::Signal => format!("compare it in an atom: `(Atom ({name} < 1) stop)`"),
+            };
+            let help = if quark.params.is_empty() { help.replace(" …", "") } else { help };
+            return Diagnostic::new(Code::E0204, message, span, "a quark runs in an atom").help(help);
         }
         let message = format!("there is no plan called `{name}`");
         let report = Diagnostic::new(Code::E0201, message, span, "not in this file");
@@ -221,7 +225,12 @@ impl<'r, 'a> Resolver<'r, 'a> {
         let unit = number.unit.as_deref().unwrap_or("deg");
         let decimal = Decimal::parse(&number.digits);
         match (Unit::from_name(unit).filter(|unit| unit.kind == Kind::Angle), decimal) {
-            (Some(unit), Some(decimal)) if decimal.to_f64().is_finite() => decimal.to_f64() * unit.family_to_si(),
+            (Some(unit), Some(decimal)) if decimal.to_f64().abs() <= FRAME => decimal.to_f64() * unit.family_to_si(),
+            (Some(_), Some(_)) => {
+                let message = format!("a frame is turned by an angle up to {FRAME}, found `{}`", number.digits);
+                self.found.push(Diagnostic::new(Code::E0304, message, number.span, "out of range"));
+                0.0
+            }
             _ => {
                 let message = format!("expected an angle, found `{}{unit}`", number.digits);
                 self.found.push(

@@ -121,6 +121,11 @@ fn ranges_of_arguments() {
 }
 
 #[test]
+fn frames_that_are_no_angle_worth_the_name() {
+    assert_judged!("{ P FRAME 1e308rad { Q FRAME -2e5 (Atom (wait 1) stop) } FRAME 30 (Atom (wait 1) stop) }");
+}
+
+#[test]
 fn loop_counts() {
     assert_judged!(
         "{ P

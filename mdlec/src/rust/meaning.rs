@@ -7,7 +7,7 @@ use quote::{format_ident, quote};
 use super::names::{Distinct, atom_variant, quark_type};
 use crate::alphabet::{self, Alphabet};
 use crate::fsm::{LawMeaning, Lowered};
-use crate::plan::{Condition, Quark, QuarkId, Value};
+use crate::plan::{Condition, Quark, QuarkId, Value, frame_text, in_degrees};
 
 /// The crate of the target, as Rust writes its name.
 pub(super) fn target_crate(alphabet: &Alphabet) -> Ident {
@@ -25,11 +25,9 @@ pub(super) struct Meaning<'a> {
 
 impl<'a> Meaning<'a> {
     pub(super) fn new(lowered: &'a Lowered) -> Self {
-        let mut names = Distinct::default();
+        let mut names = Distinct::constants();
         let constants = lowered.quarks.iter().map(|quark| names.constant(&quark.text)).collect();
-        let mut names = Distinct::default();
-        // These two are the file's own.
-        let _ = (names.scope_function("text"), names.scope_function("turned"));
+        let mut names = Distinct::functions();
         let functions = lowered
             .scopes
             .iter()
@@ -42,7 +40,7 @@ impl<'a> Meaning<'a> {
         Self { lowered, constants, functions }
     }
 
-    /// `const GO_20_0: ::mdle_sim::alphabet::Go = ::mdle_sim::alphabet::Go::new(…);` for each quark that is not a `wait`.
+    /// `const GO_20_0: robot::Go = robot::Go::new(…);` for each quark that is not a `wait`.
     pub(super) fn constants(&self) -> TokenStream {
         let quarks = self.lowered.quarks.iter().zip(&self.constants).filter(|(quark, _)| quark.name != "wait");
         let constants = quarks.map(|(quark, constant)| {
@@ -214,7 +212,7 @@ impl<'a> Meaning<'a> {
         let bracket = self.lowered.atoms[atom].scope as usize;
         let interrupt = self.lowered.scopes[bracket].as_ref().map(|scope| &scope.interrupt);
         let condition = interrupt.filter(|interrupt| !interrupt.removed).map_or("null", |interrupt| &interrupt.text);
-        let frame = if law.frame == 0.0 { String::new() } else { format!("FRAME {}deg ", law.frame.to_degrees()) };
+        let frame = frame_text(law.frame);
         format!("`{frame}(Atom ({condition}) {})`", quark.text)
     }
 
@@ -247,8 +245,7 @@ fn turned(frame: f64) -> TokenStream {
 
 /// An angle, in degrees where that gives the same value.
 fn angle(radians: f64) -> TokenStream {
-    let degrees = radians.to_degrees().round();
-    if mdle_runtime::Radians::from_degrees(degrees).0 == radians {
+    if let Some(degrees) = in_degrees(radians) {
         let degrees = number(degrees);
         return quote!(::mdle_runtime::Radians::from_degrees(#degrees));
     }
@@ -266,12 +263,13 @@ fn number(value: f64) -> TokenStream {
 fn argument(value: &Value) -> TokenStream {
     use alphabet::Kind;
     match value {
-        Value::Quantity { kind, exact, si, .. } => {
-            let number = number(*si);
+        Value::Quantity { kind, exact, family } => {
+            let si = exact.to_f64() * alphabet::family_to_si(family);
+            let number = number(si);
             match kind {
                 Kind::Length => quote!(::mdle_runtime::Meters(#number)),
                 Kind::Speed => quote!(::mdle_runtime::MetersPerSecond(#number)),
-                Kind::Angle => angle(*si),
+                Kind::Angle => angle(si),
                 Kind::AngularRate => quote!(::mdle_runtime::RadiansPerSecond(#number)),
                 Kind::Voltage => quote!(::mdle_runtime::Volts(#number)),
                 Kind::Time => {

@@ -5,14 +5,21 @@ use std::collections::{BTreeMap, BTreeSet};
 use proc_macro2::Ident;
 use quote::format_ident;
 
-/// The words that a generated file uses for itself.
-const TAKEN: &[&str] = &["Running", "Output", "Input", "Plan", "Self", "Option", "Some", "None", "Default"];
+/// The types that a generated file uses, beside those of the robot, which it writes with their module.
+const TYPES: &[&str] = &[
+    "At", "Atom", "Begin", "Bracket", "Cause", "Cursor", "Debug", "Default", "Fsm", "Input", "Nanos", "None", "Option",
+    "Output", "Plan", "Running", "Self", "Some",
+];
+/// The constants that it has in any case.
+const CONSTANTS: &[&str] = &["FSM", "LAWS", "CONDITIONS", "NAMES"];
+/// Its other function, and the names of arguments and variables, which would hide a function.
+const FUNCTIONS: &[&str] = &["text", "texts", "index", "cursor", "y", "t", "law", "atom", "begin", "scope"];
 
 /// The type of a plan: its name in camel case.
 #[must_use]
 pub fn plan_type(plan: &str) -> String {
     let name = camel_case(plan);
-    if TAKEN.contains(&name.as_str()) { format!("{name}Plan") } else { name }
+    if TYPES.contains(&name.as_str()) { format!("{name}Plan") } else { name }
 }
 
 /// The type of a quark in its target's crate: its name in camel case, and for further declarations of one name their
@@ -28,7 +35,7 @@ pub(super) fn atom_variant(atom: usize) -> Ident {
 }
 
 /// Names that must differ from each other.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Distinct {
     taken: BTreeSet<String>,
     /// The last number given to each name, so that the search for the next one is short.
@@ -36,6 +43,20 @@ pub(super) struct Distinct {
 }
 
 impl Distinct {
+    /// Names of constants.
+    pub(super) fn constants() -> Self {
+        Self::beside(CONSTANTS)
+    }
+
+    /// Names of functions.
+    pub(super) fn functions() -> Self {
+        Self::beside(FUNCTIONS)
+    }
+
+    fn beside(taken: &[&str]) -> Self {
+        Self { taken: taken.iter().map(|name| (*name).to_owned()).collect(), numbers: BTreeMap::new() }
+    }
+
     /// The constant of a quark with its arguments, after its text: `GO_0_0_36`.
     pub(super) fn constant(&mut self, quark_text: &str) -> Ident {
         let words = quark_text
@@ -113,18 +134,22 @@ mod tests {
         assert_eq!(plan_type("lab_tour"), "LabTour");
         assert_eq!(plan_type("Lab2ToLab1Plan"), "Lab2ToLab1Plan");
         assert_eq!(plan_type("self"), "SelfPlan");
+        assert_eq!(plan_type("Cursor"), "CursorPlan");
         assert_eq!(plan_type("größe"), "GrUf6Udfe");
         assert_eq!(plan_type("_1"), "P1");
-        let mut names = Distinct::default();
+        let mut names = Distinct::constants();
         let mut constant = |text| names.constant(text).to_string();
         assert_eq!(constant("go 0 0.36"), "GO_0_0_36");
         assert_eq!(constant("go 0.0 36"), "GO_0_0_36_2");
         assert_eq!(constant("go -5 0"), "GO_MINUS_5_0");
+        assert_eq!(constant("laws"), "LAWS_2");
+        let mut names = Distinct::functions();
         let mut scope = |name| names.scope_function(name).to_string();
         assert_eq!(scope("Lab2ToLab1Plan"), "lab2_to_lab1_plan");
         assert_eq!(scope("loop"), "loop_scope");
         assert_eq!(scope("Shake"), "shake");
         assert_eq!(scope("shake_2"), "shake_2");
         assert_eq!(scope("shake"), "shake_3");
+        assert_eq!(scope("T"), "t_2");
     }
 }

@@ -1,0 +1,34 @@
+//! Angles as people write them: degrees where these say exactly the same.
+
+use mdle_runtime::Radians;
+
+/// The degrees, to a millionth, that are exactly this angle, if there are such.
+#[must_use]
+pub fn in_degrees(radians: f64) -> Option<f64> {
+    let degrees = (radians.to_degrees() * 1e6).round() / 1e6;
+    (Radians::from_degrees(degrees).0 == radians).then_some(degrees)
+}
+
+/// What stands before an element whose frame is turned by this angle: `FRAME 30deg `, or nothing.
+#[must_use]
+pub fn frame_text(radians: f64) -> String {
+    match in_degrees(radians) {
+        Some(0.0) => String::new(),
+        Some(degrees) => format!("FRAME {degrees}deg "),
+        None => format!("FRAME {radians}rad "),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Radians, frame_text, in_degrees};
+
+    #[test]
+    fn degrees_come_back_as_they_were_written() {
+        for degrees in (-720..=720).map(|half| f64::from(half) / 2.0) {
+            assert_eq!(in_degrees(Radians::from_degrees(degrees).0), Some(degrees));
+        }
+        assert_eq!([frame_text(0.0), frame_text(1.5)], ["", "FRAME 1.5rad "]);
+        assert_eq!(frame_text(Radians::from_degrees(30.0).0), "FRAME 30deg ");
+    }
+}
