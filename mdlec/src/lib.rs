@@ -60,5 +60,7 @@ pub fn compile(
         compiled.clear();
     }
     diagnostic::sort(&mut found);
+    // What several plans copy is found in each of them.
+    found.dedup();
     (compiled, found)
 }

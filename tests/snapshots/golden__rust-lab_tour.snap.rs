@@ -110,13 +110,13 @@ mod machine {
         Atom1(<robot::GoAvoid as ::mdle_runtime::Control<Output>>::Law),
         /// `(Atom (atIsection 0010) go 0 0.36)`
         Atom2(<robot::Go as ::mdle_runtime::Control<Output>>::Law),
-        /// `(Atom (null) align 7 9)`
+        /// `(Atom (wait inf) align 7 9)`
         Atom3(<robot::Align as ::mdle_runtime::Control<Output>>::Law),
         /// `(Atom (atIsection 1000) goAvoid 0 40 20)`
         Atom4(<robot::GoAvoid as ::mdle_runtime::Control<Output>>::Law),
         /// `(Atom (atIsection 0100) go 0 0.36)`
         Atom5(<robot::Go as ::mdle_runtime::Control<Output>>::Law),
-        /// `(Atom (null) align 3 5)`
+        /// `(Atom (wait inf) align 3 5)`
         Atom6(<robot::Align as ::mdle_runtime::Control<Output>>::Law),
         /// `(Atom (wait 7) goAvoid 270 40 20)`
         Atom7(<robot::GoAvoid as ::mdle_runtime::Control<Output>>::Law),
@@ -126,7 +126,7 @@ mod machine {
         Atom9(<robot::GoAvoid as ::mdle_runtime::Control<Output>>::Law),
         /// `FRAME 180deg (Atom (atIsection 0011) go 0 0.36)`
         Atom10(<robot::Go as ::mdle_runtime::Control<Output>>::Law),
-        /// `FRAME 180deg (Atom (null) align 11 13)`
+        /// `FRAME 180deg (Atom (wait inf) align 11 13)`
         Atom11(<robot::Align as ::mdle_runtime::Control<Output>>::Law),
         /// `FRAME 180deg (Atom (atIsection 0100) goAvoid 180 40 20)`
         Atom12(<robot::GoAvoid as ::mdle_runtime::Control<Output>>::Law),
@@ -442,16 +442,16 @@ mod machine {
         "bumper",
         "atIsection 0100",
         "atIsection 0010",
-        "null",
+        "wait inf",
         "atIsection 1000",
         "atIsection 0100",
-        "null",
+        "wait inf",
         "wait 7",
         "atIsection 1000",
         "bumper",
         "atIsection 1001",
         "atIsection 0011",
-        "null",
+        "wait inf",
         "atIsection 0100",
         "wait 10",
     ];

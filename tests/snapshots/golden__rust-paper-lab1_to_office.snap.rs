@@ -80,7 +80,7 @@ mod machine {
         Atom1(<robot::GoAvoid as ::mdle_runtime::Control<Output>>::Law),
         /// `(Atom (atIsection 0011) go 0 0.36)`
         Atom2(<robot::Go as ::mdle_runtime::Control<Output>>::Law),
-        /// `(Atom (null) align 11 13)`
+        /// `(Atom (wait inf) align 11 13)`
         Atom3(<robot::Align as ::mdle_runtime::Control<Output>>::Law),
         /// `(Atom (atIsection 0100) goAvoid 180 40 20)`
         Atom4(<robot::GoAvoid as ::mdle_runtime::Control<Output>>::Law),
@@ -233,7 +233,7 @@ mod machine {
         "bumper",
         "atIsection 1001",
         "atIsection 0011",
-        "null",
+        "wait inf",
         "atIsection 0100",
         "wait 10",
     ];

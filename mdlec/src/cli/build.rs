@@ -18,7 +18,10 @@ pub(super) fn build(options: &Build) -> Result<(), Failure> {
     let Some(path) = options.plan.as_deref() else { return Err(Failure::usage("no plan was given")) };
     let (kind, file) = match &options.emit {
         None => (EmitKind::Exe, options.output.clone()),
-        Some(Emit { kind, file }) => (*kind, file.clone()),
+        Some(Emit { file: Some(_), .. }) if options.output.is_some() => {
+            return Err(Failure::usage("there are two files to write to: one in `--emit` and one with `-o`"));
+        }
+        Some(Emit { kind, file }) => (*kind, file.clone().or_else(|| options.output.clone())),
     };
     if kind == EmitKind::Exe {
         return executable(options, path, file);

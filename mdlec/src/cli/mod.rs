@@ -47,7 +47,7 @@ struct Build {
     #[arg(long, value_name = "NAME|FOLDER")]
     target: Option<String>,
     /// The executable to write [default: the plan's file name without its ending, in the current folder]
-    #[arg(short, long, value_name = "FILE", conflicts_with = "emit")]
+    #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Which plan of the file [default: the one that no other refers to]
     #[arg(long = "plan", value_name = "NAME")]
@@ -95,6 +95,8 @@ enum EmitKind {
 impl Emit {
     fn parse(text: &str) -> Result<Self, String> {
         let (kind, file) = match text.split_once('=') {
+            Some((_, "")) => return Err("name a file behind `=`, or leave it out".into()),
+            Some((kind, "-")) => (kind, None),
             Some((kind, file)) => (kind, Some(PathBuf::from(file))),
             None => (text, None),
         };

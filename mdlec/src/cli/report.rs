@@ -9,15 +9,21 @@ use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
 use super::Failure;
 use crate::diagnostic::{Code, Diagnostic, Severity, Sources};
 
+/// The most diagnostics that are shown at once: nobody reads more, and each shows its whole line of the source.
+const SHOWN: usize = 100;
+
 /// Prints diagnostics in their order, then how many there were.
 ///
 /// Returns whether the plan may go on: no error, and no warning where these count as errors.
 pub(super) fn diagnostics(sources: &Sources, found: &[Diagnostic], deny_warnings: bool) -> bool {
     let choice = if io::stderr().is_terminal() { ColorChoice::Auto } else { ColorChoice::Never };
     let mut out = StandardStream::stderr(choice);
-    for diagnostic in found {
+    for diagnostic in found.iter().take(SHOWN) {
         // Nobody is left to be told when standard error is closed.
         let _ = term::emit_to_write_style(&mut out, &term::Config::default(), sources, &sources.report(diagnostic));
+    }
+    if found.len() > SHOWN {
+        note(format_args!("… and {} more", found.len() - SHOWN));
     }
     let count = |severity| found.iter().filter(|diagnostic| diagnostic.code.severity() == severity).count();
     let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));

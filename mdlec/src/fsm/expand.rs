@@ -44,24 +44,36 @@ fn expand_sequence(body: &[Node]) -> Vec<Node> {
 fn too_large(lowered: &Lowered, plan: &Nondegenerate) -> Diagnostic {
     let states = lowered.termination;
     let message = format!("expanded, this plan has {states} states; an expanded form has at most {EXPANDED}");
-    let (span, here) = match largest_loop(&plan.plan().root.body) {
-        Some((span, times)) => (span, format!("this loop of {times} passes makes most of them")),
-        None => (plan.plan().root.span, "this plan".to_owned()),
-    };
-    Diagnostic::new(Code::E0502, message, span, here)
-        .help("the executable and `--emit rust` need no expansion: their size does not depend on loop counts")
+    let help = "the executable and `--emit rust` need no expansion: their size does not depend on loop counts";
+    match largest_loop(&plan.plan().root.body).1 {
+        Some((states, span)) => {
+            let here = format!("this loop makes {states} of them");
+            Diagnostic::new(Code::E0502, message, span, here).help(help)
+        }
+        None => {
+            Diagnostic::new(Code::E0502, message, plan.plan().root.span, "this plan").help("cut it into several plans")
+        }
+    }
 }
 
-/// The loop with the most passes.
-fn largest_loop(body: &[Node]) -> Option<(Span, u64)> {
-    body.iter()
-        .filter_map(|node| match node {
-            Node::Atom(_) => None,
+/// The states of a sequence, and the loop that makes the most of them, with its own.
+fn largest_loop(body: &[Node]) -> (u64, Option<(u64, Span)>) {
+    let mut all = 0_u64;
+    let mut largest: Option<(u64, Span)> = None;
+    for node in body {
+        let (states, inside) = match node {
+            Node::Atom(_) => (1, None),
             Node::Scope(scope) => largest_loop(&scope.body),
-            Node::Loop(repeated) => {
-                let here = repeated.times.map(|times| (repeated.span, times));
-                here.into_iter().chain(largest_loop(&repeated.body)).max_by_key(|(_, times)| *times)
+            Node::Loop(Loop { times, body, span }) => {
+                let (pass, inside) = largest_loop(body);
+                let states = pass.saturating_mul(times.unwrap_or(1));
+                (states, if times.is_some_and(|times| times > 1) { Some((states, *span)) } else { inside })
             }
-        })
-        .max_by_key(|(_, times)| *times)
+        };
+        all = all.saturating_add(states);
+        if inside.is_some_and(|(states, _)| largest.is_none_or(|(most, _)| states > most)) {
+            largest = inside;
+        }
+    }
+    (all, largest)
 }

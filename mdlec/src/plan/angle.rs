@@ -2,11 +2,11 @@
 
 use mdle_runtime::Radians;
 
-/// The degrees, to a millionth, that are exactly this angle, if there are such.
+/// The degrees, to a millionth, that are this angle but for the rounding of a sum, if there are such.
 #[must_use]
 pub fn in_degrees(radians: f64) -> Option<f64> {
     let degrees = (radians.to_degrees() * 1e6).round() / 1e6;
-    (Radians::from_degrees(degrees).0 == radians).then_some(degrees)
+    ((Radians::from_degrees(degrees).0 - radians).abs() < 1e-12 * radians.abs().max(1.0)).then_some(degrees)
 }
 
 /// What stands before an element whose frame is turned by this angle: `FRAME 30deg `, or nothing.
@@ -29,6 +29,8 @@ mod tests {
             assert_eq!(in_degrees(Radians::from_degrees(degrees).0), Some(degrees));
         }
         assert_eq!([frame_text(0.0), frame_text(1.5)], ["", "FRAME 1.5rad "]);
+        let sum = Radians::from_degrees(0.1).0 + Radians::from_degrees(0.2).0;
+        assert_eq!(frame_text(sum), "FRAME 0.3deg ");
         assert_eq!(frame_text(Radians::from_degrees(30.0).0), "FRAME 30deg ");
     }
 }

@@ -90,13 +90,13 @@ impl Fitting<'_> {
             )
             | (Arg::Number(number), Kind::Frequency | Kind::Number) => self.quantity(number, param),
             (Arg::Number(number), Kind::Integer | Kind::Count | Kind::Sonar) => self.whole(number, param),
-            (Arg::Infinity(_), Kind::Time | Kind::Count) => Ok((Value::Infinity, "inf".into())),
+            (Arg::Infinity(_), Kind::Time | Kind::Count) => Ok((Value::Infinity(param.kind), "inf".into())),
             (Arg::Name(name), Kind::Robot | Kind::File)
             | (Arg::String(name), Kind::File)
             | (Arg::Module(name), Kind::Module) => {
                 let words = match arg {
                     Arg::Module(_) => format!("{} module", name.node),
-                    Arg::String(_) => format!("{:?}", name.node),
+                    Arg::String(_) => format!("\"{}\"", name.node),
                     Arg::Name(_) | Arg::Number(_) | Arg::Infinity(_) => name.node.clone(),
                 };
                 Ok((Value::Name(param.kind, name.node.clone()), words))
@@ -189,7 +189,10 @@ impl Fitting<'_> {
             return Ok(value);
         };
         let quark = &self.declaration.name;
-        let here = format!("`{}` is {value}{unit}", param.name);
+        let here = match number.unit {
+            None => format!("`{}` is {}{unit}", param.name, number.digits),
+            Some(_) => format!("`{}` is {value}{unit}", param.name),
+        };
         if self.declaration.of_target {
             let message = format!(
                 "`{}` cannot do this: `{quark}` takes `{}` from {least} to {most}{unit}",
@@ -238,7 +241,7 @@ fn wrong_count(call: &Call, declaration: &Declaration, needed: usize) -> Diagnos
 }
 
 fn not_a_number(number: &Number) -> Diagnostic {
-    Diagnostic::new(Code::E0302, format!("`{}` is no number", number.digits), number.span, "")
+    Diagnostic::new(Code::E0304, format!("`{}` is too large or too small a number", number.digits), number.span, "here")
 }
 
 fn bits(number: &Number, length: u32) -> Fitted {

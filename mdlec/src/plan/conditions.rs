@@ -17,11 +17,26 @@ pub(super) fn interrupt(
     found: &mut Vec<Diagnostic>,
 ) -> Interrupt {
     let Some(written) = condition else {
-        return Interrupt { condition: Condition::Null, text: "null".into(), removed: false, span: scope };
+        return Interrupt::none(scope);
     };
     let condition = Resolving { quarks, plans, found }.condition(written);
     let text = text(&condition, quarks, Precedence::Or);
-    Interrupt { condition, text, removed: false, span: written.span }
+    Interrupt { condition: without_infinite_waits(condition), text, removed: false, span: written.span }
+}
+
+/// The nanoseconds of `wait inf`; no other wait may be as long.
+const FOR_EVER: u64 = u64::MAX;
+
+/// `wait inf` is the null interrupt, once its text is made.
+fn without_infinite_waits(condition: Condition) -> Condition {
+    let all = |operands: Vec<Condition>| operands.into_iter().map(without_infinite_waits).collect();
+    match condition {
+        Condition::Wait { nanos: FOR_EVER, .. } => Condition::Null,
+        Condition::Or(operands) => Condition::Or(all(operands)),
+        Condition::And(operands) => Condition::And(all(operands)),
+        Condition::Not(operand) => Condition::Not(Box::new(without_infinite_waits(*operand))),
+        other @ (Condition::Null | Condition::Quark(_) | Condition::Wait { .. }) => other,
+    }
 }
 
 struct Resolving<'r, 'a> {
@@ -57,7 +72,7 @@ impl Resolving<'_, '_> {
                     Some(Value::Quantity { exact, .. }) => {
                         Condition::Wait { nanos: exact.to_nanos().unwrap_or(u64::MAX), quark: id }
                     }
-                    Some(_) | None => Condition::Null,
+                    Some(_) | None => Condition::Wait { nanos: FOR_EVER, quark: id },
                 },
                 Some(_) | None => Condition::Quark(id),
             },

@@ -2,12 +2,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::alphabet::Alphabet;
+use crate::alphabet::{Alphabet, DeclarationKind};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::tree::{self, Call, Element, Primary};
 
-/// The most atoms a plan may have once every plan by name is copied in; loops are not expanded for this.
-const ATOMS: u64 = 1 << 22;
+/// The most atoms a plan may have once every plan by name is copied in, unless the file has more; loops are not expanded
+/// for this.
+const ATOMS: u64 = 1 << 19;
 /// The deepest nesting once every plan by name is copied in.
 const DEPTH: u32 = 512;
 
@@ -23,6 +24,8 @@ pub(super) struct Definitions<'a> {
     refers: Vec<BTreeMap<usize, Span>>,
     /// The plans that are too large, or refer to one that is: the first is reported, those around it are not.
     too_large: BTreeSet<usize>,
+    /// The atoms of the file, as written.
+    written: u64,
 }
 
 impl<'a> Definitions<'a> {
@@ -41,7 +44,8 @@ impl<'a> Definitions<'a> {
                 );
                 continue;
             }
-            if alphabet.declarations_of(name).next().is_some() {
+            // Signals are not in the name space of laws, interrupts and plans.
+            if alphabet.declarations_of(name).any(|declaration| declaration.kind != DeclarationKind::Signal) {
                 let message = format!("`{name}` is a quark, so a plan cannot be called that");
                 found.push(
                     Diagnostic::new(Code::E0203, message, plan.name.span, "a quark of the alphabet has this name")
@@ -53,7 +57,7 @@ impl<'a> Definitions<'a> {
         let plans: Vec<_> = file.plans.iter().collect();
         let refers = plans.iter().map(|plan| references(plan, &by_name)).collect();
         let names = by_name.keys().copied().collect();
-        let mut definitions = Self { plans, names, by_name, refers, too_large: BTreeSet::new() };
+        let mut definitions = Self { plans, names, by_name, refers, too_large: BTreeSet::new(), written: 0 };
         definitions.measure(&mut found);
         (definitions, found)
     }
@@ -81,6 +85,8 @@ impl<'a> Definitions<'a> {
         }
         let mut ready: Vec<usize> = (0..self.plans.len()).filter(|index| waits[*index] == 0).collect();
         let mut sizes = vec![Size { atoms: 0, depth: 0 }; self.plans.len()];
+        // With nothing copied in yet, the sizes are those of the text.
+        self.written = self.plans.iter().map(|plan| self.size_of(&plan.elements, &sizes).atoms).sum();
         let mut done = 0;
         while let Some(index) = ready.pop() {
             done += 1;
@@ -106,10 +112,9 @@ impl<'a> Definitions<'a> {
         }
         let plan = self.plans[index];
         let here = plan.name.span;
-        if size.atoms > ATOMS {
+        if size.atoms > ATOMS.max(self.written) {
             self.too_large.insert(index);
-            let message =
-                format!("`{}` has more than {ATOMS} atoms once every plan by name is copied in", plan.name.node);
+            let message = format!("`{}` has {} atoms once every plan by name is copied in", plan.name.node, size.atoms);
             found.push(
                 Diagnostic::new(Code::E0501, message, here, "this plan")
                     .help("use a loop where the same plan is named many times: `ExecPlan 1000 Name`"),
@@ -118,7 +123,10 @@ impl<'a> Definitions<'a> {
             self.too_large.insert(index);
             let message = format!("`{}` nests scopes and loops more than {DEPTH} deep", plan.name.node);
             let label = "once every plan by name is copied in";
-            found.push(Diagnostic::new(Code::E0106, message, here, label).help("split the plan"));
+            found.push(
+                Diagnostic::new(Code::E0106, message, here, label)
+                    .help("run the plans one after the other, not each inside the next"),
+            );
         }
     }
 

@@ -71,8 +71,8 @@ pub enum Value {
         /// That unit: degrees and radians are two families. Empty for a number without a unit.
         family: &'static str,
     },
-    /// For ever, as `wait inf` takes it.
-    Infinity,
+    /// For ever: a time or a count.
+    Infinity(Kind),
     /// Bits, the one written first first.
     Bits(Vec<bool>),
     /// A whole number.
@@ -142,6 +142,14 @@ pub struct Interrupt {
     pub removed: bool,
     /// Where it is; the scope's own place if it has none.
     pub span: Span,
+}
+
+impl Interrupt {
+    /// The interrupt of a scope at `scope` that has none: it never fires.
+    #[must_use]
+    pub fn none(scope: Span) -> Self {
+        Self { condition: Condition::Null, text: "null".into(), removed: false, span: scope }
+    }
 }
 
 /// A condition; `true` is "has fired".

@@ -111,13 +111,17 @@ impl<'a> Quarks<'a> {
         };
         if plans.contains(&name) {
             let message = format!("`{name}` is a plan, but {} has to stand here", kind_words(kind));
-            return Diagnostic::new(Code::E0204, message, call.name.span, "a plan")
-                .help(format!("a plan is an element by itself, without `Atom`: `{name}`"));
+            let report = Diagnostic::new(Code::E0204, message, call.name.span, "a plan");
+            return match kind {
+                DeclarationKind::Control => report.help(format!("a plan is an element by itself, without `Atom`: `{name}`")),
+                DeclarationKind::Interrupt | DeclarationKind::Signal => report.help(
+                    "parentheses behind a plan's own name are its condition; write `(null)` before them if they are a string",
+                ),
+            };
         }
         let message = format!("there is no {what} called `{name}`");
         let report = Diagnostic::new(Code::E0201, message, call.name.span, "not in the alphabet");
-        let near = self.alphabet.nearest(name, Some(kind)).or_else(|| self.alphabet.nearest(name, None));
-        match near.and_then(|near| self.alphabet.declarations_of(near).next()) {
+        match self.alphabet.nearest(name, Some(kind)).and_then(|near| self.alphabet.declarations_of(near).next()) {
             Some(near) => report.help(format!("did you mean `{}`?", signature(near))),
             None => report.help(format!("these are known: {}", self.known(kind))),
         }

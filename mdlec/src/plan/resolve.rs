@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::arguments::kind_words;
 use super::definitions::Definitions;
 use super::quarks::Quarks;
-use super::{Atom, Decimal, Loop, Node, Plan, Scope, conditions};
+use super::{Atom, Decimal, Interrupt, Loop, Node, Plan, Scope, conditions};
 use crate::alphabet::{self, Alphabet, DeclarationKind, Kind, Unit};
 use crate::diagnostic::{Code, Diagnostic, Span, has_errors};
 use crate::syntax::tree::{self, Call, Count, Element, Number, Primary};
@@ -82,13 +82,20 @@ impl<'r, 'a> Resolver<'r, 'a> {
     fn scope(&mut self, plan: &tree::Plan, frame: f64) -> Scope {
         if let Some(param) = plan.params.first() {
             self.found.push(not_yet("a plan with parameters", param.name.span));
+            // Its parameters are names that mean nothing yet.
+            return Scope {
+                name: plan.name.node.clone(),
+                interrupt: Interrupt::none(plan.name.span),
+                body: Vec::new(),
+                span: plan.name.span,
+            };
         }
         let interrupt = self.interrupt(plan.condition.as_ref(), plan.name.span);
         let body = self.sequence(&plan.elements, frame);
         Scope { name: plan.name.node.clone(), interrupt, body, span: plan.name.span }
     }
 
-    fn interrupt(&mut self, condition: Option<&tree::Condition>, scope: Span) -> super::Interrupt {
+    fn interrupt(&mut self, condition: Option<&tree::Condition>, scope: Span) -> Interrupt {
         conditions::interrupt(condition, scope, &mut self.quarks, &self.definitions.names, &mut self.found)
     }
 

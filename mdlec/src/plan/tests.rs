@@ -235,3 +235,42 @@ fn what_is_not_the_same_function_is_not_repeated() {
 fn a_repeated_interrupt_is_warned_of_once_however_often_its_plan_is_used() {
     assert_judged!("{ P (bumper) ExecPlan 3 Leg Leg }\n{ Leg (Atom (bumper OR wait 1) stop) (Atom (bumper) stop) }");
 }
+
+#[test]
+fn what_two_plans_copy_is_warned_of_once() {
+    assert_judged!("{ A B }\n{ B (bumper) (Atom (bumper) stop) }\n{ C B }");
+}
+
+#[test]
+fn an_infinite_wait_keeps_its_text_and_never_fires() {
+    assert_judged!("{ P (wait inf OR bumper) (Atom (NOT wait inf) stop) { Q (wait inf) (Atom (wait inf) stop) } }");
+}
+
+#[test]
+fn a_plan_may_be_called_as_a_signal_is() {
+    assert_judged!("{ t (Atom (wait 1) stop) }");
+}
+
+#[test]
+fn a_string_behind_a_plans_name_is_told_how_to_be_one() {
+    assert_judged!("{ P (Q) R }\n{ Q (Atom (wait 1) stop) }\n{ R (Atom (wait 1) stop) }");
+}
+
+#[test]
+fn parameters_bring_no_other_errors() {
+    assert_judged!("{ P (v: speed) (Atom (wait 1) go v 0) }\n{ R P(15cm/s) }");
+}
+
+#[test]
+fn one_letter_is_not_similar_to_another() {
+    assert_judged!("{ A (q) (Atom (wait 1) Z) B }");
+}
+
+#[test]
+fn the_loop_that_makes_most_states_is_named() {
+    let text = "{ P ExecPlan 2000 { (Atom (wait 1) stop) } ExecPlan 1000 { ((Atom (wait 1) stop))^500 } }";
+    let too_large = crate::fsm::expand(&compiled(text)[0].nondegenerate).expect_err("502001 states");
+    let span = too_large.span().expect("a place");
+    assert!(text[span.start as usize..].starts_with("ExecPlan 1000"));
+    assert!(too_large.labels[0].text.contains("500000"), "{too_large:?}");
+}

@@ -188,14 +188,8 @@ impl<'a> Meaning<'a> {
                 let nanos = Literal::u64_unsuffixed(*nanos);
                 quote!(cursor.since(#level, t) >= Nanos(#nanos))
             }
-            Condition::Or(operands) => {
-                let operands = operands.iter().map(operand);
-                quote!(#(#operands)|*)
-            }
-            Condition::And(operands) => {
-                let operands = operands.iter().map(operand);
-                quote!(#(#operands)&*)
-            }
+            Condition::Or(operands) => joined(operands.iter().map(operand).collect(), &quote!(|)),
+            Condition::And(operands) => joined(operands.iter().map(operand).collect(), &quote!(&)),
             Condition::Not(inner) => {
                 let inner = operand(inner);
                 quote!(!#inner)
@@ -227,6 +221,25 @@ impl<'a> Meaning<'a> {
         let first = lowered.brackets[bracket].first as usize;
         lowered.atoms.get(first).is_some_and(|atom| atom.scope as usize == bracket)
     }
+}
+
+/// Operands with an operator between them, in groups where there are many: Rust's syntax nests operators to the left, and
+/// compilers follow it down.
+fn joined(operands: Vec<TokenStream>, operator: &TokenStream) -> TokenStream {
+    const GROUP: usize = 64;
+    let join = |operands: &[TokenStream]| {
+        let (first, others) = operands.split_first().map_or((None, operands), |(first, others)| (Some(first), others));
+        quote!(#first #(#operator #others)*)
+    };
+    if operands.len() <= GROUP {
+        return join(&operands);
+    }
+    let size = operands.len().div_ceil(GROUP).max(GROUP);
+    let groups = operands.chunks(size).map(|group| {
+        let group = joined(group.to_vec(), operator);
+        quote!((#group))
+    });
+    join(&groups.collect::<Vec<_>>())
 }
 
 /// Questions in order, each asked only if those before it found nothing: `a.or_else(|| b).or_else(|| c)`.
@@ -287,7 +300,8 @@ fn argument(value: &Value) -> TokenStream {
                 | Kind::File => quote!(#number),
             }
         }
-        Value::Infinity => quote!(::mdle_runtime::Nanos::MAX),
+        Value::Infinity(Kind::Time) => quote!(::mdle_runtime::Nanos::MAX),
+        Value::Infinity(_) => quote!(u64::MAX),
         Value::Bits(bits) => quote!(::mdle_runtime::Bits([#(#bits),*])),
         Value::Integer(whole) => {
             let digits = Literal::u64_unsuffixed(whole.unsigned_abs());

@@ -12,8 +12,9 @@ const TYPES: &[&str] = &[
 ];
 /// The constants that it has in any case.
 const CONSTANTS: &[&str] = &["FSM", "LAWS", "CONDITIONS", "NAMES"];
-/// Its other function, and the names of arguments and variables, which would hide a function.
-const FUNCTIONS: &[&str] = &["text", "texts", "index", "cursor", "y", "t", "law", "atom", "begin", "scope"];
+/// Its other function, the names of arguments and variables, which would hide a function, and the keyword that syn does
+/// not know yet.
+const FUNCTIONS: &[&str] = &["text", "texts", "index", "gen", "cursor", "y", "t", "law", "atom", "begin", "scope"];
 
 /// The type of a plan: its name in camel case.
 #[must_use]
