@@ -1,7 +1,8 @@
 //! The paper's quarks (section IV-A), for any robot whose output has what they need.
 //!
-//! Each quark is a type that holds its arguments, in the order of `alphabet.mdle`, and asks for the capabilities that
-//! the alphabet names. `wait` is no type here: time is the machine's business.
+//! A quark is a type that holds its arguments, in the order of `alphabet.mdle`, and asks for the capabilities that the
+//! alphabet names. `wait` is no type here: time is the machine's business. There is none yet for `sync`, `rendezvous`,
+//! `goAvoid` with a module, `Follow` and `path`, whose capabilities no robot can offer yet either.
 //!
 //! No allocation, no unsafe code, no path that panics; trigonometry from `libm`, so a law computes the same bits on
 //! every machine.

@@ -47,10 +47,7 @@ struct Transitions<'p> {
 
 impl Watch for Transitions<'_> {
     fn transition(&mut self, Transition { from, scope, cause, .. }: Transition) {
-        let by = match cause {
-            Cause::Fired(_) => self.lowered.condition(scope),
-            Cause::Completed(_) => Fired::COMPLETED,
-        };
+        let by = cause.by(self.lowered.condition(scope));
         self.fired.push(Fired { from, level: usize::from(cause.level()), by });
     }
 }

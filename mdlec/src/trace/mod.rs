@@ -28,9 +28,3 @@ pub fn run<'p, 's>(mut machine: impl Machine<'p> + 's, script: &'s Script) -> im
         Some(Line { turn, t: reports.t, outcome })
     })
 }
-
-impl<'p, M: Machine<'p> + ?Sized> Machine<'p> for Box<M> {
-    fn turn(&mut self, reports: &Reports) -> Outcome<'p> {
-        (**self).turn(reports)
-    }
-}

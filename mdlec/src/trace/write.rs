@@ -3,6 +3,8 @@
 use std::fmt;
 
 use mdle_runtime::Nanos;
+use mdle_runtime::trace;
+pub use mdle_runtime::trace::Fired;
 
 /// What came of one turn.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -37,60 +39,15 @@ pub enum Applied<'p> {
     Over,
 }
 
-/// A transition.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Fired<'p> {
-    /// The state left.
-    pub from: u64,
-    /// How many scopes are around the one that ended.
-    pub level: usize,
-    /// The condition text of its interrupt, or [`Fired::COMPLETED`].
-    pub by: &'p str,
-}
-
-impl Fired<'_> {
-    /// What a scope ended by where only its law's completion did it.
-    pub const COMPLETED: &'static str = "completed";
-}
-
 impl fmt::Display for Line<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Outcome { state, applied, fired } = &self.outcome;
-        write!(f, "{{\"turn\":{},\"t\":{},\"state\":{state},\"law\":", self.turn, Seconds(self.t))?;
-        match applied {
-            Applied::Law(text) => write!(f, "{}", Quoted(text))?,
-            Applied::Cut | Applied::Over => f.write_str("null")?,
-        }
-        f.write_str(",\"fired\":[")?;
-        for (place, Fired { from, level, by }) in fired.iter().enumerate() {
-            let comma = if place == 0 { "" } else { "," };
-            write!(f, "{comma}{{\"from\":{from},\"level\":{level},\"by\":{}}}", Quoted(by))?;
-        }
-        f.write_str("]}")
-    }
-}
-
-/// A time in seconds: exact, which an `f64` is not after some months, and always with a point.
-struct Seconds(Nanos);
-
-impl fmt::Display for Seconds {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Nanos(nanos) = self.0;
-        let digits = format!("{:09}", nanos % 1_000_000_000);
-        let fraction = match digits.trim_end_matches('0') {
-            "" => "0",
-            fraction => fraction,
+        let law = match applied {
+            Applied::Law(text) => Some(*text),
+            Applied::Cut | Applied::Over => None,
         };
-        write!(f, "{}.{fraction}", nanos / 1_000_000_000)
-    }
-}
-
-/// A JSON string.
-struct Quoted<'a>(&'a str);
-
-impl fmt::Display for Quoted<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&serde_json::to_string(self.0).map_err(|_| fmt::Error)?)
+        let fired = fired.iter().copied();
+        trace::Line { turn: self.turn as u64, t: self.t, state: *state, law, fired }.fmt(f)
     }
 }
 
@@ -115,13 +72,5 @@ mod tests {
                 r#"{"from":2,"level":0,"by":"bumper OR path \"x\""}]}"#
             )
         );
-    }
-
-    #[test]
-    fn times_are_exact() {
-        let texts = [(0, "0.0"), (1, "0.000000001"), (12_340_000_000, "12.34"), (u64::MAX, "18446744073.709551615")];
-        for (nanos, text) in texts {
-            assert_eq!(Seconds(Nanos(nanos)).to_string(), text);
-        }
     }
 }

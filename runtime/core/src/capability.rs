@@ -1,4 +1,5 @@
 //! What a robot can offer to quarks: one trait for each capability an alphabet can name, implemented by the robot's output.
+//! `state_link`, `modules` and `paths` have none yet, so no robot can offer them.
 
 use crate::{Meters, Output, Pings, Pose, SonarId, Twist};
 

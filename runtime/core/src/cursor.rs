@@ -40,55 +40,42 @@ impl<E: Slots<Nanos>, P: Slots<u64>> Cursor<E, P> {
     /// The bracket of the scope of this level around the current atom; the atom's own if there is none.
     pub fn scope(&self, fsm: Fsm<'_>, level: u16) -> u32 {
         let own = fsm.atoms.get(self.atom as usize).map_or(0, |atom| atom.scope);
-        let mut here = own;
-        while let Some(bracket) = fsm.brackets.get(here as usize) {
-            match bracket.kind {
-                Kind::Scope { level: found } if found == level => return here,
-                Kind::Scope { .. } | Kind::Loop { .. } if bracket.parent == here => return own,
-                Kind::Scope { .. } | Kind::Loop { .. } => here = bracket.parent,
-            }
-        }
-        own
+        let mut outwards = fsm.outwards(own);
+        let found = outwards.find(|(_, bracket)| match bracket.kind {
+            Kind::Scope { level: found } => found == level,
+            Kind::Loop { .. } => false,
+        });
+        found.map_or(own, |(number, _)| number)
     }
 
     /// The number of the current state in the expanded plan, from 1; the termination state when the plan is over.
     pub fn state(&self, fsm: Fsm<'_>) -> u64 {
         let Some(atom) = fsm.atoms.get(self.atom as usize) else { return fsm.termination };
-        let mut state = atom.state;
-        let mut here = atom.scope;
-        while let Some(bracket) = fsm.brackets.get(here as usize) {
-            if let Kind::Loop { times, slot, stride } = bracket.kind {
+        fsm.outwards(atom.scope).fold(atom.state, |state, (_, bracket)| match bracket.kind {
+            Kind::Scope { .. } => state,
+            Kind::Loop { times, slot, stride } => {
                 let left = self.left.as_ref().get(usize::from(slot)).copied().unwrap_or(0);
                 let passed = times.saturating_sub(left).saturating_sub(1);
-                state = state.saturating_add(passed.saturating_mul(stride));
+                state.saturating_add(passed.saturating_mul(stride))
             }
-            if bracket.parent == here {
-                break;
-            }
-            here = bracket.parent;
-        }
-        state
+        })
     }
 
     /// Ends the scope of this level around the current atom, at time `t`, and moves to what follows it.
     /// Returns whether there is such an atom: if not, the plan is over.
     pub fn end(&mut self, fsm: Fsm<'_>, level: u16, t: Nanos) -> bool {
-        let mut ended = self.scope(fsm, level);
-        while let Some(bracket) = fsm.brackets.get(ended as usize) {
-            let holder = bracket.parent;
-            let Some(around) = fsm.brackets.get(holder as usize) else { break };
-            if holder == ended {
-                break;
-            }
-            if bracket.last != around.last {
-                self.open(fsm, bracket.last.saturating_add(1), Some(holder), t);
+        let mut outwards = fsm.outwards(self.scope(fsm, level));
+        // What ends together with the scope has the same last atom.
+        let last = outwards.next().map_or(0, |(_, ended)| ended.last);
+        for (holder, around) in outwards {
+            if last != around.last {
+                self.open(fsm, last.saturating_add(1), Some(holder), t);
                 return true;
             }
             if self.spend(around) {
                 self.open(fsm, around.first, Some(holder), t);
                 return true;
             }
-            ended = holder;
         }
         self.atom = u32::try_from(fsm.atoms.len()).unwrap_or(u32::MAX);
         false
@@ -113,9 +100,7 @@ impl<E: Slots<Nanos>, P: Slots<u64>> Cursor<E, P> {
     fn open(&mut self, fsm: Fsm<'_>, atom: u32, kept: Option<u32>, t: Nanos) {
         self.atom = atom;
         let Some(own) = fsm.atoms.get(atom as usize) else { return };
-        let mut here = own.scope;
-        while kept != Some(here) {
-            let Some(bracket) = fsm.brackets.get(here as usize) else { return };
+        for (_, bracket) in fsm.outwards(own.scope).take_while(|(here, _)| kept != Some(*here)) {
             match bracket.kind {
                 Kind::Scope { level } => {
                     if let Some(entered) = self.entered.as_mut().get_mut(usize::from(level)) {
@@ -128,10 +113,6 @@ impl<E: Slots<Nanos>, P: Slots<u64>> Cursor<E, P> {
                     }
                 }
             }
-            if bracket.parent == here {
-                return;
-            }
-            here = bracket.parent;
         }
     }
 }

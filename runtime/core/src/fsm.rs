@@ -18,6 +18,16 @@ pub struct Fsm<'a> {
     pub termination: u64,
 }
 
+impl<'a> Fsm<'a> {
+    /// A bracket and those around it, outwards to the plan's own, each with its number. It ends after as many steps as
+    /// there are brackets, so that tables whose parents form a circle hold nobody up.
+    pub(crate) fn outwards(self, bracket: u32) -> impl Iterator<Item = (u32, &'a Bracket)> {
+        let at = move |number: u32| self.brackets.get(number as usize).map(|bracket| (number, bracket));
+        let around = move |(here, bracket): &(u32, &Bracket)| at(bracket.parent).filter(|_| bracket.parent != *here);
+        core::iter::successors(at(bracket), around).take(self.brackets.len())
+    }
+}
+
 /// A scope or a loop, and the atoms it holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bracket {

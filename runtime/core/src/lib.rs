@@ -2,12 +2,16 @@
 //!
 //! For people who write a robot: [`Robot`], [`Output`] and the traits of [`capability`].
 //! For people who write a quark: [`Interrupt`], [`Control`], [`Law`] and [`Completes`].
-//! For generated code and for whoever runs it: [`fsm`], [`Cursor`], [`Plan`] and [`Machine`].
+//! For generated code and for whoever runs it: [`fsm`], [`Cursor`], [`Plan`] and [`Machine`], whose turns [`trace`] writes down.
 //!
 //! No allocation, no unsafe code, no path that panics: what is here runs in a robot's control loop.
 #![no_std]
 #![forbid(unsafe_code)]
 #![deny(clippy::indexing_slicing, clippy::arithmetic_side_effects)]
+#![cfg_attr(test, allow(clippy::indexing_slicing, clippy::arithmetic_side_effects, reason = "a test may panic"))]
+
+#[cfg(test)]
+extern crate std;
 
 pub mod capability;
 mod cursor;
@@ -17,12 +21,15 @@ mod pose;
 mod quark;
 mod robot;
 mod sonar;
+#[cfg(test)]
+mod tests;
 mod time;
+pub mod trace;
 mod units;
 
 pub use cursor::{Cursor, Slots};
 pub use fsm::Fsm;
-pub use machine::{Cause, Machine, Plan, TRANSITIONS_PER_TURN, Transition, Turn, Unwatched, Watch};
+pub use machine::{Cause, Machine, Plan, TRANSITIONS_PER_TURN, Transition, Turn, Watch};
 pub use pose::{Frame, Pose, Twist};
 pub use quark::{Begin, Completes, Control, Interrupt, Law};
 pub use robot::{Output, Robot};

@@ -77,14 +77,6 @@ pub trait Watch {
     fn transition(&mut self, transition: Transition);
 }
 
-/// A watch that looks away.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Unwatched;
-
-impl Watch for Unwatched {
-    fn transition(&mut self, _: Transition) {}
-}
-
 /// What came of a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Turn<U> {

@@ -61,3 +61,18 @@ impl Frame {
         Radians(self.0.theta.0 + angle.0).wrapped()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_angle_of_a_frame_is_turned_by_its_heading() {
+        let degrees = |angle: f64| Radians::from_degrees(angle);
+        let frame = Frame(Pose { theta: degrees(100.0), ..Pose::ORIGIN });
+        let outward = |frame: Frame, angle| libm::round(frame.outward(degrees(angle)).degrees() * 1e6) / 1e6;
+        assert_eq!([0.0, 45.0, -100.0, 90.0].map(|angle| outward(frame, angle)), [100.0, 145.0, 0.0, -170.0]);
+        assert_eq!(outward(frame.turned(degrees(-30.0)), 45.0), 115.0);
+        assert_eq!(outward(Frame(Pose::ORIGIN), 360.0), 0.0);
+    }
+}

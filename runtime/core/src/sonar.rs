@@ -70,3 +70,34 @@ impl Pings {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Pings of these ranges, in the order in which they are taken.
+    fn pings(ranges: &[Option<f64>]) -> Pings {
+        let mut pings = Pings::default();
+        for range in ranges {
+            pings.push(Ping { range: range.map(Meters), at: Nanos::ZERO, pose: Pose::ORIGIN });
+        }
+        pings
+    }
+
+    #[test]
+    fn the_nearest_echo_counts_and_silence_does_not() {
+        assert_eq!(pings(&[]).nearest(3), None);
+        assert_eq!(pings(&[None, None]).nearest(3), None);
+        assert_eq!(pings(&[Some(2.0), None, Some(3.0)]).nearest(3), Some(Meters(2.0)));
+        assert_eq!(pings(&[Some(2.0), Some(1.0), Some(3.0)]).nearest(3), Some(Meters(1.0)));
+    }
+
+    #[test]
+    fn only_the_newest_pings_are_asked() {
+        let pings = pings(&[Some(0.1), Some(1.0), Some(2.0), Some(3.0)]);
+        assert_eq!(
+            [0, 1, 2, 3, 9].map(|count| pings.nearest(count)),
+            [None, Some(Meters(3.0)), Some(Meters(2.0)), Some(Meters(1.0)), Some(Meters(1.0))]
+        );
+    }
+}

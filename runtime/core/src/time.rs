@@ -23,3 +23,15 @@ impl Nanos {
         self.0 as f64 / 1e9
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_time_has_passed_since_what_is_still_to_come() {
+        assert_eq!(Nanos(7).since(Nanos(3)), Nanos(4));
+        assert_eq!(Nanos(3).since(Nanos(7)), Nanos::ZERO);
+        assert_eq!(Nanos::MAX.since(Nanos::ZERO), Nanos::MAX);
+    }
+}

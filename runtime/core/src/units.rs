@@ -45,3 +45,24 @@ impl Radians {
 /// A word of `N` bits, as `atIsection 0100` takes it: the first is the one written first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bits<const N: usize>(pub [bool; N]);
+
+#[cfg(test)]
+mod tests {
+    use core::f64::consts::{FRAC_PI_2, PI, TAU};
+
+    use super::*;
+
+    #[test]
+    fn a_wrapped_angle_lies_between_minus_pi_and_pi() {
+        for (angle, wrapped) in [(0.0, 0.0), (PI, PI), (-PI, -PI), (3.0 * FRAC_PI_2, -FRAC_PI_2), (-TAU, 0.0)] {
+            assert!((Radians(angle).wrapped().0 - wrapped).abs() < 1e-12, "{angle}");
+        }
+        for degrees in -2000..2000 {
+            let angle = Radians::from_degrees(f64::from(degrees));
+            let wrapped = angle.wrapped();
+            assert!(wrapped.0.abs() <= PI, "{degrees}");
+            assert!((libm::cos(wrapped.0) - libm::cos(angle.0)).abs() < 1e-9, "{degrees}");
+            assert!((libm::sin(wrapped.0) - libm::sin(angle.0)).abs() < 1e-9, "{degrees}");
+        }
+    }
+}

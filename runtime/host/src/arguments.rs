@@ -30,13 +30,13 @@ pub(crate) struct Options {
     pub(crate) log: Option<PathBuf>,
 }
 
-/// The command line of the executable of plan `name` for target `T`.
+/// The command line of the executable of plan `name` for target `T`. Its usage names the first argument's file, and the
+/// plan where there is none.
 pub(crate) fn command<T: Target>(name: &str) -> Command {
     let seconds = T::PERIOD.as_secs_f64();
     let command = Command::new(name.to_owned())
         .about(format!("Runs the plan {name} on the robot {}.", T::NAME))
         .after_help(STATUS)
-        .no_binary_name(true)
         .arg(
             option("period", "SECONDS")
                 .help(format!("Time from one turn to the next [default: {seconds}]"))

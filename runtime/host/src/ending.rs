@@ -1,7 +1,7 @@
 //! How a run ends: the exit status, and the sentence on standard error.
 
 use std::fmt;
-use std::io::Write;
+use std::io::{self, Write};
 use std::time::Duration;
 
 use crate::Refusal;
@@ -36,9 +36,18 @@ pub(crate) enum Ending {
 }
 
 impl Ending {
-    /// The exit status of the executable.
-    pub(crate) fn status(&self) -> u8 {
+    /// The exit status of the executable, after these faults on the way out.
+    ///
+    /// A robot that could not be stopped in good order, or a log that is cut short, is a fault whatever came before. What
+    /// [`Hosted::finish`](crate::Hosted::finish) could not write makes one only of a plan that is over: any other ending
+    /// says more.
+    pub(crate) fn status(&self, faults: &[Fault]) -> u8 {
+        let grave = faults.iter().any(|fault| match fault {
+            Fault::Exchange(_) | Fault::Log(_) | Fault::Stop(_) => true,
+            Fault::Finish(_) => *self == Self::Over,
+        });
         match self {
+            _ if grave => FAULT,
             Self::Over => OVER,
             Self::Timeout(_) | Self::Turns(_) => LIMIT,
             Self::Signal(signal) => 128 + signal.number(),
@@ -85,6 +94,31 @@ impl Ending {
                     "error: a fault stopped the robot: its code or the plan's panicked, which is a bug: {message}"
                 ),
             ),
+        }
+    }
+}
+
+/// What goes wrong on the way out.
+#[derive(Debug)]
+pub(crate) enum Fault {
+    /// The null input could not be exchanged once more.
+    Exchange(Ending),
+    /// The rest of the run log could not be written.
+    Log(io::Error),
+    /// The stop command could not be delivered: the robot's sentence.
+    Stop(String),
+    /// What was asked for could not be written: the robot's sentence.
+    Finish(String),
+}
+
+impl Fault {
+    /// Says it on standard error.
+    pub(crate) fn tell(&self, err: &mut dyn Write) {
+        match self {
+            Self::Exchange(ending) => ending.tell(err),
+            Self::Log(error) => say(err, format_args!("error: the run log cannot be written: {error}")),
+            Self::Stop(fault) => say(err, format_args!("error: the robot could not be told to stop: {fault}")),
+            Self::Finish(sentence) => say(err, format_args!("error: {sentence}")),
         }
     }
 }

@@ -28,7 +28,7 @@ use mdle_runtime::{Plan, Robot};
 pub use target::{Hosted, Pace, Refusal, Target, Time};
 
 /// Runs `plan` on the robot of the target `T`, with the arguments of this process: what the `main` of an executable
-/// that mdlec builds calls. `name` is the plan's, for `--help`.
+/// that mdlec builds calls. `name` is the plan's, for `--help`; its usage names the executable as it was called.
 ///
 /// Exit status: 0 the plan is over; 2 a bad option, world or start pose; 3 a fault stopped the robot, or what was asked
 /// for could not be written; 4 `--timeout` or `--turns`; 129, 130 or 143 a signal. In every case the robot was stopped.
@@ -46,7 +46,7 @@ where
     };
     let instants = clock::Monotonic::start();
     let surroundings = session::Surroundings { instants, signals, out: standard_output, err: &mut io::stderr() };
-    ExitCode::from(session::session::<T, P, _, _>(name, std::env::args_os().skip(1), plan, surroundings))
+    ExitCode::from(session::session::<T, P, _, _>(name, std::env::args_os(), plan, surroundings))
 }
 
 /// Standard output for a run in which time passes like this.

@@ -1,11 +1,11 @@
 //! The run log: JSON lines, one object a turn, in the format of `mdlec trace`.
 
-use std::fmt;
-use std::fs::File;
+use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
-use mdle_runtime::{Cause, Nanos, Plan, Transition};
+use mdle_runtime::trace::Line;
+use mdle_runtime::{Nanos, Plan, Transition};
 
 /// A run log that is being written.
 #[derive(Debug)]
@@ -31,13 +31,54 @@ pub(crate) struct Entry<'a, P> {
     pub(crate) transitions: &'a [Transition],
 }
 
-impl Log<File> {
-    /// Begins a log, in place of whatever the file held.
+/// A file for a run log, open and still as it was found; dropped, it leaves no file where there was none.
+#[derive(Debug)]
+pub(crate) struct Untouched<'p> {
+    file: File,
+    new: Option<New<'p>>,
+}
+
+impl<'p> Untouched<'p> {
+    /// Opens the file at `path`.
     ///
     /// # Errors
-    /// When the file cannot be written.
-    pub(crate) fn create(path: &Path, prompt: bool) -> io::Result<Self> {
-        Ok(Self::new(File::create(path)?, prompt))
+    /// When it cannot be written.
+    pub(crate) fn open(path: &'p Path) -> io::Result<Self> {
+        match File::create_new(path) {
+            Ok(file) => Ok(Self { file, new: Some(New(path)) }),
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
+                let file = OpenOptions::new().write(true).create(true).truncate(false).open(path)?;
+                Ok(Self { file, new: None })
+            }
+            Err(error) => Err(error),
+        }
+    }
+
+    /// Begins a log in it, in place of whatever it held. Each turn reaches the file at once if `prompt`.
+    ///
+    /// # Errors
+    /// When what it held cannot be cut off.
+    pub(crate) fn begin(self, prompt: bool) -> io::Result<Log<File>> {
+        let Self { file, new } = self;
+        // A device or a pipe has no length.
+        if file.metadata()?.is_file() {
+            file.set_len(0)?;
+        }
+        if let Some(new) = new {
+            std::mem::forget(new);
+        }
+        Ok(Log::new(file, prompt))
+    }
+}
+
+/// A file that was not there before; removed again when dropped.
+#[derive(Debug)]
+struct New<'p>(&'p Path);
+
+impl Drop for New<'_> {
+    fn drop(&mut self) {
+        // The start has been refused with its own sentence; an empty file left behind is not worth another.
+        let _ = fs::remove_file(self.0);
     }
 }
 
@@ -53,22 +94,9 @@ impl<W: Write> Log<W> {
     /// When the file cannot be written, such as when the disk is full.
     pub(crate) fn turn<P: Plan>(&mut self, entry: &Entry<'_, P>) -> io::Result<()> {
         let Entry { plan, turn, t, state, applied, transitions } = *entry;
-        write!(self.file, "{{\"turn\":{turn},\"t\":{},\"state\":{state},\"law\":", Seconds(t))?;
-        match applied {
-            Some(atom) => write!(self.file, "{}", Json(plan.law(atom)))?,
-            None => write!(self.file, "null")?,
-        }
-        write!(self.file, ",\"fired\":[")?;
-        for (index, transition) in transitions.iter().enumerate() {
-            let comma = if index == 0 { "" } else { "," };
-            let by = match transition.cause {
-                Cause::Fired(_) => plan.condition(transition.scope),
-                Cause::Completed(_) => "completed",
-            };
-            let (from, level) = (transition.from, transition.cause.level());
-            write!(self.file, "{comma}{{\"from\":{from},\"level\":{level},\"by\":{}}}", Json(by))?;
-        }
-        writeln!(self.file, "]}}")?;
+        let law = applied.map(|atom| plan.law(atom));
+        let fired = transitions.iter().map(|transition| transition.fired(plan));
+        writeln!(self.file, "{}", Line { turn, t, state, law, fired })?;
         if self.prompt { self.flush() } else { Ok(()) }
     }
 
@@ -78,67 +106,5 @@ impl<W: Write> Log<W> {
     /// When the file cannot be written.
     pub(crate) fn flush(&mut self) -> io::Result<()> {
         self.file.flush()
-    }
-}
-
-/// A time as a JSON number of seconds, exact to the nanosecond, with at least one decimal.
-struct Seconds(Nanos);
-
-impl fmt::Display for Seconds {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Nanos(nanos) = self.0;
-        let (seconds, mut fraction) = (nanos / 1_000_000_000, nanos % 1_000_000_000);
-        let mut digits = 9;
-        while digits > 1 && fraction % 10 == 0 {
-            fraction /= 10;
-            digits -= 1;
-        }
-        write!(f, "{seconds}.{fraction:0digits$}")
-    }
-}
-
-/// A text as a JSON string.
-struct Json<'a>(&'a str);
-
-impl fmt::Display for Json<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "\"")?;
-        for letter in self.0.chars() {
-            match letter {
-                '"' => write!(f, "\\\"")?,
-                '\\' => write!(f, "\\\\")?,
-                '\n' => write!(f, "\\n")?,
-                '\r' => write!(f, "\\r")?,
-                '\t' => write!(f, "\\t")?,
-                '\u{8}' => write!(f, "\\b")?,
-                '\u{c}' => write!(f, "\\f")?,
-                control if control < ' ' => write!(f, "\\u{:04x}", u32::from(control))?,
-                plain => write!(f, "{plain}")?,
-            }
-        }
-        write!(f, "\"")
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn seconds_are_exact_and_short() {
-        let shown = |nanos| Seconds(Nanos(nanos)).to_string();
-        assert_eq!(shown(0), "0.0");
-        assert_eq!(shown(100_000_000), "0.1");
-        assert_eq!(shown(12_300_000_000), "12.3");
-        assert_eq!(shown(7_000_000_000), "7.0");
-        assert_eq!(shown(33_333_333), "0.033333333");
-        assert_eq!(shown(1_000_000_001), "1.000000001");
-        assert_eq!(shown(60_050_000_000), "60.05");
-    }
-
-    #[test]
-    fn strings_are_escaped() {
-        assert_eq!(Json(r#"path "a\b""#).to_string(), r#""path \"a\\b\"""#);
-        assert_eq!(Json("a\nb\tc\u{1}\u{7f}π").to_string(), "\"a\\nb\\tc\\u0001\u{7f}π\"");
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::io::{self, Write};
 
-use mdle_runtime::{Cause, Nanos, Plan, Transition};
+use mdle_runtime::{Nanos, Plan, Transition};
 
 /// The report of a run; goes quiet when nobody reads it any more.
 pub(crate) struct Report<'a> {
@@ -95,12 +95,8 @@ struct CauseText<'a, P> {
 
 impl<P: Plan> fmt::Display for CauseText<'_, P> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Transition { from, scope, cause, .. } = *self.transition;
-        let by = match cause {
-            Cause::Fired(_) => self.plan.condition(scope),
-            Cause::Completed(_) => "completed",
-        };
-        write!(f, "{by} (")?;
+        let Transition { from, scope, .. } = *self.transition;
+        write!(f, "{} (", self.transition.by(self.plan))?;
         let name = self.plan.name(scope);
         let fsm = self.plan.fsm();
         let bracket = fsm.brackets.get(scope as usize);

@@ -2,15 +2,16 @@
 
 use std::ffi::OsString;
 use std::fs::File;
-use std::io::Write;
+use std::io::{self, Write};
+use std::path::Path;
 
 use clap::ArgMatches;
 use mdle_runtime::{Plan, Robot};
 
 use crate::arguments::{self, Options};
 use crate::clock::{Clock, Instants};
-use crate::ending::{self, Ending, say};
-use crate::log::Log;
+use crate::ending::{self, Ending, Fault, say};
+use crate::log::{Log, Untouched};
 use crate::report::Report;
 use crate::safety::{Panicked, shielded};
 use crate::signals::Signals;
@@ -29,7 +30,7 @@ pub(crate) struct Surroundings<'e, I, O> {
     pub(crate) err: &'e mut dyn Write,
 }
 
-/// Runs `plan` on the robot of target `T` with these arguments, the program's name not among them; the exit status.
+/// Runs `plan` on the robot of target `T` with these arguments, the program's own name first; the exit status.
 pub(crate) fn session<'o, T: Target, P, I, O>(
     name: &str,
     arguments: impl IntoIterator<Item = OsString>,
@@ -89,21 +90,29 @@ struct Ready<R> {
     log: Option<Log<File>>,
 }
 
-/// Opens what a run needs, the robot last.
+/// Opens what a run needs. A start that is refused leaves the file of the log as it was.
 fn ready<T: Target>(matches: &ArgMatches, options: &Options) -> Result<Ready<T::Robot>, Refusal> {
     let opened = shielded(|| {
         let time = T::time(matches).map_err(Refusal::Usage)?;
-        let log = match &options.log {
-            Some(path) => Some(Log::create(path, is_watched(time)).map_err(|error| {
-                Refusal::Usage(format!("the run log {} cannot be written: {error}", path.display()))
-            })?),
+        let file = match &options.log {
+            Some(path) => Some((path, Untouched::open(path).map_err(|error| no_log(path, &error))?)),
             None => None,
         };
-        Ok(Ready { robot: T::connect(matches, options.period)?, time, log })
+        let robot = T::connect(matches, options.period)?;
+        let log = match file {
+            Some((path, file)) => Some(file.begin(is_watched(time)).map_err(|error| no_log(path, &error))?),
+            None => None,
+        };
+        Ok(Ready { robot, time, log })
     });
     opened.unwrap_or_else(|Panicked(message)| {
         Err(Refusal::Fault(format!("the robot's code panicked before it ran, which is a bug: {message}")))
     })
+}
+
+/// Why there is no run log at `path`.
+fn no_log(path: &Path, error: &io::Error) -> Refusal {
+    Refusal::Usage(format!("the run log {} cannot be written: {error}", path.display()))
 }
 
 /// Whether somebody may be watching: at the fastest pace it matters more that writing is cheap.
@@ -119,48 +128,39 @@ fn bug(Panicked(message): Panicked) -> Ending {
     Ending::Bug(message)
 }
 
-/// Stops the robot and says why the run ended; the exit status.
+/// Stops the robot and says why the run ended, and what else went wrong; the exit status.
 ///
-/// The null input is sent once more where the robot still listens, then the stop command in any case. A robot that
-/// cannot be stopped is a fault whatever came before. What [`Hosted::finish`] cannot write makes a fault only of a
-/// plan that is over: any other ending says more.
+/// The null input is sent once more where the robot still listens, then the stop command in any case.
 fn way_out<R: Hosted>(
     robot: &mut R,
-    mut ending: Ending,
+    ending: Ending,
     report: &mut Report<'_>,
-    mut log: Option<Log<File>>,
+    log: Option<Log<File>>,
     err: &mut dyn Write,
 ) -> u8 {
+    let mut faults = Vec::new();
+    let mut orderly = ending.is_orderly();
     if ending.robot_listens() {
         let last = shielded(|| turns::exchange(robot, &R::Input::default()).map(drop));
         if let Err(fault) = last.unwrap_or_else(|panicked| Err(bug(panicked))) {
-            report.flush();
-            ending.tell(err);
-            ending = fault;
+            orderly = fault.is_orderly();
+            faults.push(Fault::Exchange(fault));
         }
     }
     let stopped = shielded(|| robot.stop().map_err(|fault| fault.to_string()));
+    let stopped = stopped.unwrap_or_else(|Panicked(message)| Err(format!("its code panicked: {message}")));
     // Without a word on a broken log the reader of a short one would take it for a whole run.
-    let logged = log.as_mut().map_or(Ok(()), Log::flush);
+    let logged = log.map_or(Ok(()), |mut log| log.flush());
+    faults.extend(logged.err().filter(|_| !matches!(ending, Ending::Log(_))).map(Fault::Log));
+    faults.extend(stopped.err().map(Fault::Stop));
     report.flush();
+    // Before the robot finishes, which may take a while.
     ending.tell(err);
-    let mut status = ending.status();
-    if let Err(error) = logged
-        && !matches!(ending, Ending::Log(_))
-    {
-        say(err, format_args!("error: the run log cannot be written: {error}"));
-        status = ending::FAULT;
-    }
-    if let Err(fault) = stopped.unwrap_or_else(|Panicked(message)| Err(format!("its code panicked: {message}"))) {
-        say(err, format_args!("error: the robot could not be told to stop: {fault}"));
-        status = ending::FAULT;
-    }
-    if ending.is_orderly() {
+    if orderly {
         let finished = shielded(|| robot.finish());
-        if let Err(sentence) = finished.unwrap_or_else(|Panicked(message)| Err(format!("a panic: {message}"))) {
-            say(err, format_args!("error: {sentence}"));
-            status = if status == ending::OVER { ending::FAULT } else { status };
-        }
+        let finished = finished.unwrap_or_else(|Panicked(message)| Err(format!("a panic: {message}")));
+        faults.extend(finished.err().map(Fault::Finish));
     }
-    status
+    faults.iter().for_each(|fault| fault.tell(err));
+    ending.status(&faults)
 }

@@ -65,16 +65,13 @@ where
         if let Err(error) = witnesses.tell(&machine, &turn, number, t, &seen.0) {
             return Ending::Log(error.to_string());
         }
-        let u = match turn {
-            Turn::Law(input) => {
-                if std::mem::take(&mut fresh) {
-                    robot.began(machine.state(), machine.atom().map_or("", |atom| machine.plan().law(atom)), t);
-                }
-                input
+        match turn {
+            Turn::Law(_) if std::mem::take(&mut fresh) => {
+                robot.began(machine.state(), machine.atom().map_or("", |atom| machine.plan().law(atom)), t);
             }
-            Turn::Cut => R::Input::default(),
+            Turn::Law(_) | Turn::Cut => {}
             Turn::Over => return Ending::Over,
-        };
+        }
         number = number.saturating_add(1);
         if let Some(ending) = limits.reached(number, t) {
             return ending;
@@ -82,7 +79,7 @@ where
         if let Err(signal) = clock.next_turn(signals) {
             return Ending::Signal(signal);
         }
-        y = match exchange(robot, &u) {
+        y = match exchange(robot, &turn.input()) {
             Ok(output) => output,
             Err(ending) => return ending,
         };

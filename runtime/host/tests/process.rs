@@ -21,6 +21,9 @@ fn start(arguments: &[&str]) -> Child {
     cart(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
+/// Options with which the cart tells what it is told, and drives on for longer than any test takes.
+const FAR: [&str; 5] = ["--tell", "--period", "0.02", "--track", "1000"];
+
 /// Reads what the cart tells until it is told to move.
 fn wait_until_it_moves(stderr: ChildStderr) -> impl Iterator<Item = String> {
     let mut lines = BufReader::new(stderr).lines().map(Result::unwrap);
@@ -41,7 +44,7 @@ fn text(bytes: &[u8]) -> String {
 #[test]
 fn a_signal_stops_the_cart_and_names_the_status() {
     for (signal, status) in [("HUP", 129), ("INT", 130), ("TERM", 143)] {
-        let mut child = start(&["--tell", "--period", "0.02"]);
+        let mut child = start(&FAR);
         let lines = wait_until_it_moves(child.stderr.take().unwrap());
         send(&child, signal);
         let rest: Vec<_> = lines.skip_while(|line| line == "cart: 0.5 m/s").collect();
@@ -62,7 +65,7 @@ fn a_signal_is_noticed_in_a_long_period() {
 
 #[test]
 fn many_signals_are_one() {
-    let mut child = start(&["--tell", "--period", "0.02"]);
+    let mut child = start(&FAR);
     let lines = wait_until_it_moves(child.stderr.take().unwrap());
     // The last may come when the robot stands already, and then ends the program at once: the status says nothing here.
     let all = format!("kill -TERM {0}; kill -TERM {0}; kill -TERM {0}", child.id());
@@ -76,7 +79,7 @@ fn many_signals_are_one() {
 #[test]
 fn whoever_ignores_hangups_is_not_stopped_by_one() {
     let example = cart(&[]);
-    let script = format!("trap '' HUP; exec {} --tell --period 0.02", example.get_program().display());
+    let script = format!("trap '' HUP; exec {} {}", example.get_program().display(), FAR.join(" "));
     let mut child =
         Command::new("sh").args(["-c", &script]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut lines = wait_until_it_moves(child.stderr.take().unwrap());

@@ -2,9 +2,7 @@
 
 pub use mdle_atoms::{Align, AtIsection, Bumper, Go, GoAvoid, Rotate, Stop, Turn};
 
-/// The robot.
-pub type Robot = crate::Simulated;
-/// Its output, `y`.
+/// The robot's output, `y`.
 pub type Output = crate::Sensed;
 /// Its input, `u`.
 pub type Input = mdle_runtime::Twist;

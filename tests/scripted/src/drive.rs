@@ -3,7 +3,8 @@
 use alloc::vec::Vec;
 use core::fmt::{self, Write};
 
-use mdle_runtime::{Cause, Machine, Nanos, Plan, Transition, Turn, Watch};
+use mdle_runtime::trace::Line;
+use mdle_runtime::{Machine, Nanos, Plan, Transition, Turn, Watch};
 
 use crate::{Input, LAWS, Output};
 
@@ -21,7 +22,7 @@ where
     let Some((start, first)) = script.first() else { return Ok(()) };
     let mut machine = Machine::begin(plan, first, *start);
     let (mut began, mut computed) = (*start, 0_u32);
-    for (turn, (t, y)) in script.iter().enumerate() {
+    for (turn, (t, y)) in (0..).zip(script) {
         let mut transitions = Transitions(Vec::new());
         let outcome = machine.turn(y, *t, &mut transitions);
         if !transitions.0.is_empty() {
@@ -35,7 +36,8 @@ where
             }
             Turn::Cut | Turn::Over => None,
         };
-        line(trace, &machine, (turn, *t), law, &transitions.0)?;
+        let fired = transitions.0.iter().map(|transition| transition.fired(machine.plan()));
+        writeln!(trace, "{}", Line { turn, t: *t, state: machine.state(), law, fired })?;
         if machine.is_over() {
             break;
         }
@@ -49,32 +51,6 @@ fn applied(input: Input, named: &str, began: Nanos, computed: u32) -> &'static s
         Some(law) if *law == named && input.began == began && input.computed == computed => law,
         Some(_) | None => "broken",
     }
-}
-
-fn line<P: Plan>(
-    trace: &mut impl Write,
-    machine: &Machine<P>,
-    (turn, t): (usize, Nanos),
-    law: Option<&str>,
-    transitions: &[Transition],
-) -> fmt::Result {
-    // Texts of this alphabet are plain ASCII without quotes, so that Rust's quoting is JSON's.
-    write!(trace, "{{\"turn\":{turn},\"t\":{:?},\"state\":{},\"law\":", t.seconds(), machine.state())?;
-    match law {
-        Some(law) => write!(trace, "{law:?}")?,
-        None => trace.write_str("null")?,
-    }
-    trace.write_str(",\"fired\":[")?;
-    for (place, transition) in transitions.iter().enumerate() {
-        let comma = if place == 0 { "" } else { "," };
-        let by = match transition.cause {
-            Cause::Fired(_) => machine.plan().condition(transition.scope),
-            Cause::Completed(_) => "completed",
-        };
-        let (from, level) = (transition.from, transition.cause.level());
-        write!(trace, "{comma}{{\"from\":{from},\"level\":{level},\"by\":{by:?}}}")?;
-    }
-    trace.write_str("]}\n")
 }
 
 /// The transitions of a turn.

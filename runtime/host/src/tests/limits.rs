@@ -12,9 +12,9 @@ fn help_lists_all_options_and_opens_no_robot() {
     let run = Stage::default().run(&["--help"]);
     assert_eq!((run.status, &*run.err, &*run.journal), (0, "", ""));
     insta::assert_snapshot!(run.out, @"
-    Runs the plan lab on the robot toy.
+    Runs the plan Lab on the robot toy.
 
-    Usage: lab [OPTIONS]
+    Usage: lab_tour [OPTIONS]
 
     Options:
           --period <SECONDS>   Time from one turn to the next [default: 0.1]
@@ -27,6 +27,17 @@ fn help_lists_all_options_and_opens_no_robot() {
     Exit status: 0 the plan is over, 2 a bad option, world or start pose, 3 a fault stopped the robot,
     4 timeout or turn limit, 129, 130 or 143 stopped by a signal. The robot is stopped in every case.
     ");
+}
+
+#[test]
+fn usage_names_the_executable_or_else_the_plan() {
+    let usage = |program, option| {
+        let run = Stage { program, ..Stage::default() }.run(&[option]);
+        (run.out + &run.err).lines().find(|line| line.starts_with("Usage: ")).unwrap().to_owned()
+    };
+    assert_eq!(usage("bin/tour", "--help"), "Usage: tour [OPTIONS]");
+    assert_eq!(usage("./tour", "--nonsense"), "Usage: tour [OPTIONS]");
+    assert_eq!(usage("..", "--nonsense"), "Usage: Lab [OPTIONS]");
 }
 
 #[test]

@@ -153,6 +153,23 @@ fn what_cannot_be_finished_is_a_fault_of_a_plan_that_is_over_only() {
     assert_eq!(run.err, "stopped by SIGTERM\nerror: plot.svg cannot be written\n");
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn everything_that_goes_wrong_on_the_way_out_is_told_in_order() {
+    let script = [Act::Hears(Signal::Interrupt), Act::Fails("no answer")];
+    let finish = Err("plot.svg cannot be written".to_owned());
+    let stage = Stage { stop: Act::Fails("the line is dead"), finish, ..Stage::script(script) };
+    insta::assert_snapshot!(way_out(&stage.run(&["--log", "/dev/full"])), @"
+    exchange 0, began 1 go 20 0 at 0, exchange 0, stop, finish
+    status 3
+    stopped by SIGINT
+    error: a fault stopped the robot: no answer
+    error: the run log cannot be written: No space left on device (os error 28)
+    error: the robot could not be told to stop: the line is dead
+    error: plot.svg cannot be written
+    ");
+}
+
 #[test]
 fn a_robot_that_cannot_be_opened_is_sent_nothing() {
     let refused = |refusal| way_out(&Stage { refusal: Some(refusal), ..Stage::default() }.run(&[]));

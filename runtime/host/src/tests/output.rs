@@ -1,13 +1,14 @@
 //! What a run says: the lines on standard output and the run log.
 
 use std::io::{self, Write};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use mdle_runtime::Cause::{Completed, Fired};
 
 use super::plan::ToyPlan;
 use super::toy::{Act, AsText, Run, Stage};
-use crate::{Pace, Time};
+use crate::{Pace, Refusal, Time};
 
 /// A tour through the plan: one interrupt, a completion in the same turn, and the end of a behavior.
 fn tour() -> Stage {
@@ -20,11 +21,16 @@ fn tour() -> Stage {
     ])
 }
 
-/// What a run with these options says, and its log.
-fn logged(stage: Stage, options: &[&str]) -> (Run, String) {
+/// A place for a log, at which nothing is yet.
+fn fresh() -> PathBuf {
     static LOGS: AtomicU32 = AtomicU32::new(0);
     let name = format!("mdle-host-{}-{}.jsonl", std::process::id(), LOGS.fetch_add(1, Ordering::Relaxed));
-    let path = std::env::temp_dir().join(name);
+    std::env::temp_dir().join(name)
+}
+
+/// What a run with these options says, and its log.
+fn logged(stage: Stage, options: &[&str]) -> (Run, String) {
+    let path = fresh();
     let run = stage.run(&[options, &["--log", path.to_str().unwrap()]].concat());
     let log = std::fs::read_to_string(&path).unwrap();
     std::fs::remove_file(path).unwrap();
@@ -83,6 +89,36 @@ fn a_log_that_cannot_be_opened_opens_no_robot() {
     let run = Stage::default().run(&["--log", "/nowhere/at/all"]);
     assert_eq!((run.status, &*run.journal), (2, ""));
     assert!(run.err.starts_with("error: the run log /nowhere/at/all cannot be written: "), "{}", run.err);
+}
+
+#[test]
+fn a_refused_start_leaves_the_log_as_it_was() {
+    let path = fresh();
+    let refused = |options: &[&str], refusal| {
+        let run = Stage { refusal, ..tour() }.run(&[options, &["--log", path.to_str().unwrap()]].concat());
+        assert_ne!((run.status, &*run.journal), (0, ""), "{}", run.err);
+    };
+    let all = || {
+        refused(&["--device", "/dev/null"], None);
+        refused(&[], Some(Refusal::Usage("the start pose is inside a wall".to_owned())));
+        refused(&[], Some(Refusal::Fault("nothing answers".to_owned())));
+    };
+    all();
+    assert!(!path.exists());
+    std::fs::write(&path, "an old log\n").unwrap();
+    all();
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), "an old log\n");
+    std::fs::remove_file(path).unwrap();
+}
+
+#[test]
+fn a_log_takes_the_place_of_an_older_one() {
+    let path = fresh();
+    std::fs::write(&path, "an older and longer log\n".repeat(100)).unwrap();
+    let run = tour().run(&["--log", path.to_str().unwrap()]);
+    assert_eq!(run.status, 0);
+    assert_eq!(std::fs::read_to_string(&path).unwrap().lines().count(), 5);
+    std::fs::remove_file(path).unwrap();
 }
 
 #[cfg(target_os = "linux")]

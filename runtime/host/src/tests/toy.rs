@@ -40,6 +40,8 @@ pub(super) struct Stage {
     pub(super) stop: Act,
     pub(super) finish: Result<(), String>,
     pub(super) plan: ToyPlan,
+    /// The name by which the program is called.
+    pub(super) program: &'static str,
 }
 
 impl Default for Stage {
@@ -52,6 +54,7 @@ impl Default for Stage {
             stop: Act::Senses(vec![]),
             finish: Ok(()),
             plan: ToyPlan::lab(),
+            program: "./lab_tour",
         }
     }
 }
@@ -105,8 +108,8 @@ impl Stage {
             out: |_| Box::new(Shared(Rc::clone(&out))) as Box<dyn Write>,
             err: &mut err,
         };
-        let arguments = arguments.iter().map(OsString::from);
-        let status = session::<ToyTarget, _, _, _>("lab", arguments, self.plan, surroundings);
+        let arguments = [&self.program].into_iter().chain(arguments).map(OsString::from);
+        let status = session::<ToyTarget, _, _, _>("Lab", arguments, self.plan, surroundings);
         let text = out.borrow().text();
         let journal = journal.borrow().join(", ");
         Run { status, out: text, err: String::from_utf8(err).unwrap(), journal, slept: slept.get() }

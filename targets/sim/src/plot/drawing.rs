@@ -87,9 +87,9 @@ fn axes(chart: &mut Chart<'_>, layout: &Layout) -> Drawn {
 
 /// A number of an axis, without zeros that say nothing.
 fn metres(value: &f64) -> String {
-    let tenths = libm::round(value * 1000.0) / 1000.0;
+    let rounded = libm::round(value * 1000.0) / 1000.0;
     // Adding zero makes a negative zero positive.
-    format!("{}", tenths + 0.0)
+    format!("{}", rounded + 0.0)
 }
 
 fn floor(chart: &Chart<'_>, world: &World) -> Drawn {

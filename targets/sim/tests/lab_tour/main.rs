@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use mdle_host::clap::Command;
 use mdle_host::{Hosted, Target};
-use mdle_runtime::{Cause, Machine, Meters, Nanos, Plan, Pose, Radians, Robot, Transition, Turn, Twist, Watch};
+use mdle_runtime::{Machine, Meters, Nanos, Plan, Pose, Radians, Robot, Transition, Turn, Twist, Watch};
 use mdle_sim::{Sim, Simulated, World};
 use plan::Tour;
 use rand_chacha::ChaCha8Rng;
@@ -62,12 +62,9 @@ fn run(robot: &mut Simulated) -> Vec<End> {
         if let Some(atom) = machine.atom().filter(|_| turn == 0 || !watched.0.is_empty()) {
             robot.began(machine.state(), machine.plan().law(atom), t);
         }
-        for Transition { from, scope, cause, .. } in watched.0 {
-            let by = match cause {
-                Cause::Fired(_) => machine.plan().condition(scope).to_owned(),
-                Cause::Completed(_) => "completed".to_owned(),
-            };
-            ends.push(End { atom: from, at: t.seconds(), by, pose: robot.pose() });
+        for transition in watched.0 {
+            let by = transition.by(machine.plan()).to_owned();
+            ends.push(End { atom: transition.from, at: t.seconds(), by, pose: robot.pose() });
         }
         let over = matches!(step, Turn::Over);
         input = step.input();

@@ -1,0 +1,199 @@
+//! What a turn comes to (semantics, section 5).
+
+use std::vec::Vec;
+
+use crate::fsm::{Atom, Bracket, Kind};
+use crate::{Begin, Cause, Cursor, Fsm, Machine, Nanos, Output, Plan, TRANSITIONS_PER_TURN, Transition, Turn, Watch};
+
+/// An output: the brackets whose interrupts have fired, and whether the current law is done.
+struct Sensed(&'static [u32], bool);
+
+impl Output for Sensed {}
+
+/// A plan by hand. The input of atom `a`, as written and from 0, is `a + 1`.
+struct Toy {
+    brackets: Vec<Bracket>,
+    atoms: Vec<Atom>,
+    termination: u64,
+    /// The atoms entered, in order.
+    entered: Vec<u32>,
+    /// How many inputs were computed.
+    computed: u32,
+}
+
+/// The brackets of [`Toy::nested`].
+const PLAN: u32 = 0;
+const SCOPE: u32 = 1;
+const FIRST: u32 = 2;
+const SECOND: u32 = 3;
+const LAST: u32 = 4;
+
+impl Toy {
+    /// `{ Plan { Scope (Atom first) (Atom second) } (Atom last) }`.
+    fn nested() -> Self {
+        Self::new(
+            [
+                Bracket::scope(0, 0, 2, 0),
+                Bracket::scope(1, 0, 1, 0),
+                Bracket::scope(2, 0, 0, 1),
+                Bracket::scope(2, 1, 1, 1),
+                Bracket::scope(1, 2, 2, 0),
+            ],
+            [Atom::new(FIRST, 1), Atom::new(SECOND, 2), Atom::new(LAST, 3)],
+            4,
+        )
+    }
+
+    /// `{ Plan ((Atom first))^times (Atom last) }`, where bracket 2 is the first atom's; 0 times is for ever.
+    fn repeated(times: u64) -> Self {
+        Self::new(
+            [
+                Bracket::scope(0, 0, 1, 0),
+                Bracket::repeat(times, 0, u64::from(times > 0), 0, 0, 0),
+                Bracket::scope(1, 0, 0, 1),
+                Bracket::scope(1, 1, 1, 0),
+            ],
+            [Atom::new(FIRST, 1), Atom::new(3, times.max(1) + 1)],
+            times.max(1) + 2,
+        )
+    }
+
+    fn new(brackets: impl Into<Vec<Bracket>>, atoms: impl Into<Vec<Atom>>, termination: u64) -> Self {
+        Self { brackets: brackets.into(), atoms: atoms.into(), termination, entered: Vec::new(), computed: 0 }
+    }
+}
+
+impl Plan for Toy {
+    type Output = Sensed;
+    type Input = u32;
+    type Entered = [Nanos; 3];
+    type Left = [u64; 1];
+
+    fn fsm(&self) -> Fsm<'_> {
+        Fsm { brackets: &self.brackets, atoms: &self.atoms, termination: self.termination }
+    }
+
+    fn slots(&self) -> ([Nanos; 3], [u64; 1]) {
+        ([Nanos::ZERO; 3], [0])
+    }
+
+    fn enter(&mut self, atom: u32, _: &Sensed, _: Begin) {
+        self.entered.push(atom);
+    }
+
+    fn fired(&self, cursor: &Cursor<[Nanos; 3], [u64; 1]>, y: &Sensed, _: Nanos) -> Option<Cause> {
+        let own = self.atoms[cursor.atom() as usize].scope;
+        let Kind::Scope { level: own } = self.brackets[own as usize].kind else { panic!("an atom's own scope") };
+        let outermost = (0..=own).find(|level| y.0.contains(&cursor.scope(self.fsm(), *level)));
+        outermost.map(Cause::Fired).or(y.1.then_some(Cause::Completed(own)))
+    }
+
+    fn input(&mut self, _: &Sensed, _: Nanos) -> u32 {
+        self.computed += 1;
+        self.entered[self.entered.len() - 1] + 1
+    }
+
+    fn law(&self, _: u32) -> &str {
+        "law"
+    }
+
+    fn condition(&self, _: u32) -> &str {
+        "condition"
+    }
+
+    fn name(&self, _: u32) -> &str {
+        ""
+    }
+}
+
+#[derive(Default)]
+struct Watched(Vec<Transition>);
+
+impl Watch for Watched {
+    fn transition(&mut self, transition: Transition) {
+        self.0.push(transition);
+    }
+}
+
+const QUIET: Sensed = Sensed(&[], false);
+
+fn begin(plan: Toy) -> Machine<Toy> {
+    Machine::begin(plan, &QUIET, Nanos::ZERO)
+}
+
+/// One turn, and its transitions.
+fn turn(machine: &mut Machine<Toy>, y: Sensed) -> (Turn<u32>, Vec<Transition>) {
+    let mut watched = Watched::default();
+    (machine.turn(&y, Nanos::ZERO, &mut watched), watched.0)
+}
+
+#[test]
+fn a_turn_in_which_nothing_fires_computes_the_law() {
+    let mut machine = begin(Toy::nested());
+    assert_eq!(turn(&mut machine, QUIET), (Turn::Law(1), Vec::new()));
+    assert_eq!((machine.state(), machine.atom(), machine.is_over()), (1, Some(0), false));
+}
+
+#[test]
+fn the_outermost_interrupt_wins() {
+    let mut machine = begin(Toy::nested());
+    let made = Transition { from: 1, scope: SCOPE, cause: Cause::Fired(1), atom: Some(2), to: 3 };
+    assert_eq!(turn(&mut machine, Sensed(&[FIRST, SCOPE], true)).1[0], made);
+    let mut machine = begin(Toy::nested());
+    let over = Transition { from: 1, scope: PLAN, cause: Cause::Fired(0), atom: None, to: 4 };
+    assert_eq!(turn(&mut machine, Sensed(&[FIRST, SCOPE, PLAN], true)), (Turn::Over, std::vec![over]));
+}
+
+#[test]
+fn an_interrupt_is_named_where_the_law_is_done_as_well() {
+    let plan = Toy::nested();
+    let cause = |y| {
+        let transition = turn(&mut begin(Toy::nested()), y).1[0];
+        (transition.cause, transition.by(&plan))
+    };
+    assert_eq!(cause(Sensed(&[FIRST], true)), (Cause::Fired(2), "condition"));
+    assert_eq!(cause(Sensed(&[LAST], true)), (Cause::Completed(2), "completed"));
+}
+
+#[test]
+fn an_atom_whose_interrupt_has_fired_is_entered_and_never_computed() {
+    let mut machine = begin(Toy::nested());
+    let (came, made) = turn(&mut machine, Sensed(&[FIRST, SECOND], false));
+    assert_eq!((came, made.len()), (Turn::Law(3), 2));
+    assert_eq!((&*machine.plan().entered, machine.plan().computed), (&[0, 1, 2][..], 1));
+}
+
+#[test]
+fn a_plan_that_is_over_stays_over() {
+    let mut machine = begin(Toy::nested());
+    assert_eq!(turn(&mut machine, Sensed(&[PLAN], false)).0, Turn::Over);
+    assert_eq!(turn(&mut machine, QUIET), (Turn::Over, Vec::new()));
+    assert_eq!((machine.state(), machine.atom(), machine.is_over()), (4, None, true));
+    assert_eq!(Turn::<u32>::Over.input(), 0, "the null input");
+}
+
+#[test]
+fn as_many_transitions_as_the_limit_are_no_cut() {
+    let mut machine = begin(Toy::repeated(u64::from(TRANSITIONS_PER_TURN)));
+    let (came, made) = turn(&mut machine, Sensed(&[FIRST], false));
+    assert_eq!((came, made.len()), (Turn::Law(2), 4096));
+}
+
+#[test]
+fn the_search_goes_on_in_the_turn_after_a_cut() {
+    let mut machine = begin(Toy::repeated(u64::from(TRANSITIONS_PER_TURN) + 1));
+    let (came, made) = turn(&mut machine, Sensed(&[FIRST], false));
+    assert_eq!((came, made.len(), machine.state()), (Turn::Cut, 4096, 4097));
+    assert_eq!((came.input(), machine.plan().computed), (0, 0), "the null input");
+    let (came, made) = turn(&mut machine, Sensed(&[FIRST], false));
+    assert_eq!((came, made.len(), machine.state()), (Turn::Law(2), 1, 4098));
+}
+
+#[test]
+fn a_loop_without_end_is_cut_in_every_turn() {
+    let mut machine = begin(Toy::repeated(0));
+    for _ in 0..3 {
+        let (came, made) = turn(&mut machine, Sensed(&[FIRST], false));
+        assert_eq!((came, made.len(), machine.state()), (Turn::Cut, 4096, 1));
+    }
+}

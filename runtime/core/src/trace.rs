@@ -1,0 +1,162 @@
+//! The line of a trace: JSON, one object a turn, by which every machine tells what it did (semantics, section 9).
+
+use core::fmt::{self, Write};
+
+use crate::{Cause, Nanos, Plan, Transition};
+
+/// A line of a trace, without the line break.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Line<'a, F> {
+    /// The number of the turn, from 0.
+    pub turn: u64,
+    /// Its time.
+    pub t: Nanos,
+    /// The state in which it ended, in the expanded plan, from 1.
+    pub state: u64,
+    /// The quark text of the law that was applied; `None` for the null input.
+    pub law: Option<&'a str>,
+    /// Its transitions, in order: anything that gives [`Fired`].
+    pub fired: F,
+}
+
+/// A transition as a trace tells it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Fired<'a> {
+    /// The state left.
+    pub from: u64,
+    /// How many scopes are around the one that ended.
+    pub level: usize,
+    /// The condition text of its interrupt, or [`Fired::COMPLETED`].
+    pub by: &'a str,
+}
+
+impl Fired<'_> {
+    /// What a scope ended by where only its law's completion did it.
+    pub const COMPLETED: &'static str = "completed";
+}
+
+impl Cause {
+    /// What a trace says of it, where the scope that ended has an interrupt of this condition text.
+    #[must_use]
+    pub const fn by(self, condition: &str) -> &str {
+        match self {
+            Self::Fired(_) => condition,
+            Self::Completed(_) => Fired::COMPLETED,
+        }
+    }
+}
+
+impl Transition {
+    /// What a trace says ended the scope: the condition text of its interrupt, or [`Fired::COMPLETED`].
+    pub fn by<'p, P: Plan>(&self, plan: &'p P) -> &'p str {
+        self.cause.by(plan.condition(self.scope))
+    }
+
+    /// This transition of `plan` as a trace tells it.
+    pub fn fired<'p, P: Plan>(&self, plan: &'p P) -> Fired<'p> {
+        Fired { from: self.from, level: usize::from(self.cause.level()), by: self.by(plan) }
+    }
+}
+
+impl<'a, F: IntoIterator<Item = Fired<'a>> + Clone> fmt::Display for Line<'_, F> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{{\"turn\":{},\"t\":{},\"state\":{},\"law\":", self.turn, Seconds(self.t), self.state)?;
+        match self.law {
+            Some(law) => write!(f, "{}", Json(law))?,
+            None => f.write_str("null")?,
+        }
+        f.write_str(",\"fired\":[")?;
+        for (place, Fired { from, level, by }) in self.fired.clone().into_iter().enumerate() {
+            let comma = if place == 0 { "" } else { "," };
+            write!(f, "{comma}{{\"from\":{from},\"level\":{level},\"by\":{}}}", Json(by))?;
+        }
+        f.write_str("]}")
+    }
+}
+
+/// A time as a JSON number of seconds: exact, which an `f64` is not after some months, with at least one decimal.
+struct Seconds(Nanos);
+
+impl fmt::Display for Seconds {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Nanos(nanos) = self.0;
+        let (seconds, mut fraction) = (nanos / 1_000_000_000, nanos % 1_000_000_000);
+        let mut digits: usize = 9;
+        while digits > 1 && fraction % 10 == 0 {
+            fraction /= 10;
+            digits = digits.saturating_sub(1);
+        }
+        write!(f, "{seconds}.{fraction:0digits$}")
+    }
+}
+
+/// A text as a JSON string.
+struct Json<'a>(&'a str);
+
+impl fmt::Display for Json<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_char('"')?;
+        for letter in self.0.chars() {
+            match letter {
+                '"' => f.write_str("\\\"")?,
+                '\\' => f.write_str("\\\\")?,
+                '\n' => f.write_str("\\n")?,
+                '\r' => f.write_str("\\r")?,
+                '\t' => f.write_str("\\t")?,
+                '\u{8}' => f.write_str("\\b")?,
+                '\u{c}' => f.write_str("\\f")?,
+                control if control < ' ' => write!(f, "\\u{:04x}", u32::from(control))?,
+                plain => f.write_char(plain)?,
+            }
+        }
+        f.write_char('"')
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::string::ToString;
+
+    use super::*;
+
+    #[test]
+    fn lines_look_as_the_interface_says() {
+        let line = Line { turn: 0, t: Nanos::ZERO, state: 1, law: Some("goAvoid 90 40 20"), fired: [] };
+        assert_eq!(line.to_string(), r#"{"turn":0,"t":0.0,"state":1,"law":"goAvoid 90 40 20","fired":[]}"#);
+        let fired = [
+            Fired { from: 1, level: 2, by: Fired::COMPLETED },
+            Fired { from: 2, level: 0, by: "bumper OR path \"x\"" },
+        ];
+        assert_eq!(
+            Line { turn: 1, t: Nanos(100_000_000), state: 9, law: None, fired }.to_string(),
+            concat!(
+                r#"{"turn":1,"t":0.1,"state":9,"law":null,"fired":[{"from":1,"level":2,"by":"completed"},"#,
+                r#"{"from":2,"level":0,"by":"bumper OR path \"x\""}]}"#
+            )
+        );
+    }
+
+    #[test]
+    fn seconds_are_exact_and_short() {
+        let texts = [
+            (0, "0.0"),
+            (1, "0.000000001"),
+            (100_000_000, "0.1"),
+            (12_340_000_000, "12.34"),
+            (7_000_000_000, "7.0"),
+            (33_333_333, "0.033333333"),
+            (1_000_000_001, "1.000000001"),
+            (60_050_000_000, "60.05"),
+            (u64::MAX, "18446744073.709551615"),
+        ];
+        for (nanos, text) in texts {
+            assert_eq!(Seconds(Nanos(nanos)).to_string(), text);
+        }
+    }
+
+    #[test]
+    fn strings_are_escaped() {
+        assert_eq!(Json(r#"path "a\b""#).to_string(), r#""path \"a\\b\"""#);
+        assert_eq!(Json("a\nb\tc\rd\u{8}\u{c}\u{1}\u{7f}π").to_string(), "\"a\\nb\\tc\\rd\\b\\f\\u0001\u{7f}π\"");
+    }
+}
