@@ -24,14 +24,13 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("fsm", &["diagnostic", "alphabet", "plan"]),
     ("trace", &["diagnostic", "alphabet", "plan", "fsm"]),
     ("rust", &["diagnostic", "alphabet", "plan", "fsm"]),
-    ("embed", &["crate", "diagnostic", "syntax", "alphabet", "plan", "fsm", "rust"]),
     ("link", &["crate", "diagnostic", "syntax", "alphabet", "plan", "fsm", "rust"]),
-    ("cli", &["crate", "diagnostic", "syntax", "alphabet", "plan", "fsm", "trace", "rust", "embed", "link"]),
+    ("cli", &["crate", "diagnostic", "syntax", "alphabet", "plan", "fsm", "trace", "rust", "link"]),
     ("main", &["cli"]),
 ];
 
 /// The rooms that may read files and the environment.
-const WITH_IO: &[&str] = &["main", "cli", "embed", "link"];
+const WITH_IO: &[&str] = &["main", "cli", "link"];
 
 #[test]
 fn packages_use_only_those_below_them() {

@@ -11,7 +11,7 @@ use std::process::Command;
 
 use mdle_scripted::{INTERRUPTS, LAWS};
 use mdle_tests::chance::Chance;
-use mdle_tests::pipeline::{Machines, compile, scripted};
+use mdle_tests::pipeline::{Machines, compile_plan, scripted};
 use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::random_script::script;
 use mdle_tests::repository::root;
@@ -22,8 +22,14 @@ use mdlec::trace::Script;
 const PLANS: u64 = 20;
 const SCRIPTS: u64 = 25;
 
+/// Names of plans, each of which a generated file may have a use of its own for.
+const ROOTS: &[&str] = &[
+    "Main", "Cursor", "Plan", "Output", "At", "Nanos", "Fsm", "Begin", "Cause", "atom", "Bracket", "Input", "Running",
+];
+
 /// A plan with its scripts.
 struct Case {
+    root: &'static str,
     text: String,
     scripts: Vec<String>,
 }
@@ -35,7 +41,7 @@ fn emitted_rust_does_what_the_other_machines_do() {
     let printed = package.run(&cases);
     let mut traces = printed.split("== next\n");
     for (number, case) in cases.iter().enumerate() {
-        let compiled = compile(&case.text).unwrap_or_else(|report| panic!("{report}"));
+        let compiled = compile_plan(&case.text, case.root).unwrap_or_else(|report| panic!("{report}"));
         let machines = Machines::new(&compiled);
         for script in &case.scripts {
             let emitted = traces.next().expect("a trace for every script");
@@ -53,9 +59,10 @@ fn emitted_rust_does_what_the_other_machines_do() {
 
 fn random(seed: u64) -> Case {
     let mut chance = Chance::new(1_000_000 + seed);
-    let text = RandomPlan::new(&mut chance, 4 + seed as usize, seed % 10 == 9).to_string();
+    let root = ROOTS[seed as usize % ROOTS.len()];
+    let text = RandomPlan::new(&mut chance, 4 + seed as usize, seed % 10 == 9).named(root).to_string();
     let scripts = (0..SCRIPTS).map(|_| script(&mut chance, 12)).collect();
-    Case { text, scripts }
+    Case { root, text, scripts }
 }
 
 /// Each interrupt and each law of the target once, arguments in their default units, so that each is seen to be made of
@@ -77,7 +84,7 @@ fn every_quark() -> Case {
     let completions = LAWS.iter().fold(String::new(), |lines, law| {
         format!("{lines}{{\"t\":{}.0,\"completed\":[{law:?}]}}\n", lines.lines().count())
     });
-    Case { text, scripts: vec![script, completions] }
+    Case { root: "Main", text, scripts: vec![script, completions] }
 }
 
 /// Scopes in scopes: a hundred, each with a condition of its own.
@@ -87,7 +94,7 @@ fn deep() -> Case {
         format!("{{ Main {} (Atom (d) idle) {} (Atom (e) drift) }}", scopes.collect::<String>(), "}".repeat(100));
     let mut chance = Chance::new(0);
     let scripts = (0..SCRIPTS).map(|_| script(&mut chance, 12)).collect();
-    Case { text, scripts }
+    Case { root: "Main", text, scripts }
 }
 
 /// The package with the emitted plans.
@@ -108,11 +115,11 @@ impl Package {
         library.push_str("#![deny(warnings, missing_docs)]\n#![forbid(unsafe_code)]\n");
         let mut arms = String::new();
         for (number, case) in cases.iter().enumerate() {
-            let compiled = compile(&case.text).unwrap_or_else(|report| panic!("{report}"));
-            let header = Header { file: "plan.mdle", plan: "Main" };
+            let compiled = compile_plan(&case.text, case.root).unwrap_or_else(|report| panic!("{report}"));
+            let header = Header { file: "plan.mdle", plan: case.root };
             package.file(&format!("src/plan_{number}.rs"), &emit(&compiled.lowered, header, scripted()));
             writeln!(library, "\n/// Plan {number}.\npub mod plan_{number};").unwrap();
-            let plan = plan_type("Main");
+            let plan = plan_type(case.root);
             writeln!(arms, "        {number} => drive(emitted::plan_{number}::{plan}::new(), script, trace),").unwrap();
         }
         package.file("src/lib.rs", &library);

@@ -18,6 +18,9 @@ mod recorded {
     pub(crate) mod lab2_to_lab1 {
         include!("snapshots/golden__rust-paper-lab2_to_lab1.snap.rs");
     }
+    pub(crate) mod lab1_to_office {
+        include!("snapshots/golden__rust-paper-lab1_to_office.snap.rs");
+    }
 }
 
 fn plans() -> Vec<TextFile> {
@@ -78,5 +81,7 @@ fn recorded_rust_compiles_and_has_the_tables_of_its_plan() {
     assert_eq!(recorded::dock::Dock::new().fsm(), tables("dock").tables());
     let plan = recorded::lab2_to_lab1::Lab2ToLab1Plan::new();
     assert_eq!(plan.fsm(), tables("paper-lab2_to_lab1").tables());
+    let office = recorded::lab1_to_office::Lab1ToOfficePlan::new();
+    assert_eq!(office.fsm(), tables("paper-lab1_to_office").tables());
     assert_eq!([plan.law(2), plan.condition(0), plan.name(0)], ["align 7 9", "bumper", "Lab2ToLab1Plan"]);
 }

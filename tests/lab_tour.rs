@@ -7,7 +7,9 @@ use std::process::{Command, Output};
 use std::sync::OnceLock;
 
 use mdle_tests::executable::{folder, run_mdlec};
-use mdle_tests::repository::root;
+use mdle_tests::golden::judge;
+use mdle_tests::repository::{TextFile, root};
+use serde_json::{Value, json};
 
 /// The executable of the tour, built once.
 fn tour() -> &'static Path {
@@ -128,6 +130,56 @@ fn it_gives_the_same_bytes_on_every_processor() {
     assert!(once == files("bytes_again", None), "two runs differ");
     let plain = Some("glibc.cpu.hwcaps=-FMA,-AVX2");
     assert!(once == files("bytes_plain", plain), "a processor without FMA and AVX2 gives other bytes");
+}
+
+/// What the executable did is what the compiler's machine does on the same happenings.
+#[test]
+fn its_log_is_the_trace_of_what_it_met() {
+    let folder = folder("lab_tour_log");
+    assert!(run(&folder, &["--speed", "max", "--log", "log.jsonl"]).status.success());
+    let log = fs::read_to_string(folder.join("log.jsonl")).unwrap();
+    let turns: Vec<Value> = log.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let script: String = turns.iter().map(|turn| format!("{}\n", happenings(turn))).collect();
+    fs::write(folder.join("script.jsonl"), script).unwrap();
+    let plan = root().join("plans/lab_tour.mdle");
+    for machine in ["tree", "counted"] {
+        let plan = plan.to_str().unwrap();
+        let output =
+            run_mdlec(&folder, &["trace", plan, "--target", "sim", "--script", "script.jsonl", "--machine", machine]);
+        let trace = String::from_utf8(output.stdout).unwrap();
+        for (logged, traced) in log.lines().zip(trace.lines()) {
+            assert_eq!(logged, traced, "{machine}");
+        }
+        assert_eq!(log.lines().count(), trace.lines().count(), "{machine}");
+    }
+    let transitions = turns.iter().flat_map(|turn| turn["fired"].as_array().unwrap()).count();
+    assert!(transitions >= 13, "every atom of the tour ends, and {transitions} did");
+}
+
+/// The line of a script that has happen what a line of a log says happened.
+fn happenings(turn: &Value) -> Value {
+    let (mut fired, mut completed) = (Vec::new(), Vec::new());
+    for transition in turn["fired"].as_array().unwrap() {
+        match transition["by"].as_str().unwrap() {
+            "completed" => completed.push(law(transition["from"].as_u64().unwrap())),
+            // Time decides.
+            text if text.starts_with("wait ") => {}
+            text => fired.push(text),
+        }
+    }
+    json!({"t": turn["t"], "fired": fired, "completed": completed})
+}
+
+/// The text of the law of a state of the tour, which has no loops.
+fn law(state: u64) -> &'static str {
+    static LAWS: OnceLock<Vec<String>> = OnceLock::new();
+    let laws = LAWS.get_or_init(|| {
+        let path = "plans/lab_tour.mdle".to_owned();
+        let text = fs::read_to_string(root().join(&path)).unwrap();
+        let lowered = judge(&TextFile { path, text }, Some("sim")).0.swap_remove(0).lowered;
+        lowered.laws.iter().map(|law| lowered.quark(law.quark).text.clone()).collect()
+    });
+    &laws[usize::try_from(state).unwrap() - 1]
 }
 
 #[test]

@@ -6,16 +6,20 @@ use std::fs;
 use mdle_tests::golden::judge;
 use mdle_tests::repository::{TextFile, root};
 
-/// The first words of each listing in code, with the file that holds it and the number of its repeated interrupts.
-const LISTINGS: [(&str, &str, usize); 4] = [
+/// The first words of each listing, with the file that holds it and the number of its repeated interrupts.
+const LISTINGS: [(&str, &str, usize); 5] = [
     (r"$\Gamma_{lab2}^{lab1} = \{$", "lab2_to_lab1", 0),
     (r"$\Gamma_{lab}^{office} = \{$", "lab1_to_office", 0),
     (r"$\Gamma_{robot1} = \{$", "first_robot", 2),
     (r"$\Gamma_{robot2} = \{$", "second_robot", 2),
+    (r"$$\Gamma_{\text{soundFollow}} = \{", "sound_following", 0),
 ];
 
-/// The listing that begins so: up to the end of the block it stands in.
+/// The listing that begins so: up to the end of the block it stands in, or of the line where it is set as a formula.
 fn cut<'p>(paper: &'p str, first: &str) -> &'p str {
+    if first.starts_with("$$") {
+        return paper.lines().find(|line| line.starts_with(first)).expect(first);
+    }
     let block = paper.split("```\n").find(|block| block.trim_start().starts_with(first)).expect(first);
     block.trim_matches('\n')
 }

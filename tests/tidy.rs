@@ -8,7 +8,7 @@ fn is_generated(file: &TextFile) -> bool {
 }
 
 /// Where the paper's listings stand as it prints them.
-const AS_PRINTED: &[&str] = &["plans/paper/", "mdlec/src/syntax/tests/listings.rs"];
+const AS_PRINTED: &[&str] = &["plans/paper/"];
 
 fn assert_none(breaches: &[String]) {
     assert!(breaches.is_empty(), "{}", breaches.join("\n"));
@@ -93,6 +93,19 @@ fn every_snapshot_belongs_to_a_test() {
         }
     }
     assert_none(&breaches);
+}
+
+#[test]
+fn the_compiler_is_forbidden_what_the_workspace_is() {
+    // Clippy reads the nearest `clippy.toml` only.
+    let forbidden = |path: &str| {
+        let file = files(&["clippy.toml"]).into_iter().find(|file| file.path == path).expect("a file");
+        let methods = file.text.lines().filter(|line| line.trim_start().starts_with("{ path"));
+        methods.map(|line| line.trim().to_owned()).collect::<Vec<_>>()
+    };
+    let (workspace, compiler) = (forbidden("clippy.toml"), forbidden("mdlec/clippy.toml"));
+    assert!(!workspace.is_empty());
+    assert_none(&workspace.into_iter().filter(|method| !compiler.contains(method)).collect::<Vec<_>>());
 }
 
 /// The name of a snapshot in `…/crate__module__name-2@input.snap`: given in the test, or that of its function.

@@ -1,7 +1,8 @@
 //! The real `mdlec`, built from this checkout, and the executables that it builds.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
 
 use crate::repository::root;
@@ -11,13 +12,11 @@ use crate::repository::root;
 pub fn mdlec() -> &'static Path {
     static MDLEC: OnceLock<PathBuf> = OnceLock::new();
     MDLEC.get_or_init(|| {
-        // target/PROFILE/deps/this-test: the folder of the build that this test belongs to.
-        let this = std::env::current_exe().expect("a test has a path");
-        let target = this.ancestors().nth(3).expect("a target folder");
+        let target = target();
         let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
         let built = Command::new(cargo)
             .args(["build", "--quiet", "--package", "mdlec", "--bin", "mdlec", "--target-dir"])
-            .arg(target)
+            .arg(&target)
             .current_dir(root())
             .status()
             .expect("cargo runs");
@@ -26,10 +25,17 @@ pub fn mdlec() -> &'static Path {
     })
 }
 
+/// The target folder of the build that this test belongs to, wherever `CARGO_TARGET_DIR` put it.
+fn target() -> PathBuf {
+    // TARGET/PROFILE/deps/this-test
+    let this = std::env::current_exe().expect("a test has a path");
+    this.ancestors().nth(3).expect("a target folder").to_owned()
+}
+
 /// A folder of its own for a test, empty.
 #[must_use]
 pub fn folder(test: &str) -> PathBuf {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../target/tmp/end_to_end").join(test);
+    let folder = target().join("tmp/end_to_end").join(test);
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).expect("a folder");
     folder.canonicalize().expect("a folder")
@@ -38,8 +44,24 @@ pub fn folder(test: &str) -> PathBuf {
 /// `mdlec` with these arguments in `folder`; its cache outlives the tests, so that only the first compiles the runtime.
 #[must_use]
 pub fn run_mdlec(folder: &Path, arguments: &[&str]) -> Output {
-    let cache = root().join("target/tmp/mdlec-cache");
+    command(folder, arguments).output().expect("mdlec runs")
+}
+
+/// As [`run_mdlec`], with this text on standard input.
+#[must_use]
+pub fn run_mdlec_reading(folder: &Path, arguments: &[&str], input: &str) -> Output {
+    let mut command = command(folder, arguments);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("mdlec runs");
+    // Small enough for a pipe to hold, whether it is read or not. Dropped at once: that is the end of the input.
+    let written = child.stdin.take().expect("a pipe").write_all(input.as_bytes());
+    let output = child.wait_with_output().expect("mdlec runs");
+    written.expect("mdlec reads its input");
+    output
+}
+
+fn command(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(mdlec());
-    command.args(arguments).current_dir(folder).env("MDLEC_CACHE", cache);
-    command.output().expect("mdlec runs")
+    command.args(arguments).current_dir(folder).env("MDLEC_CACHE", target().join("tmp/mdlec-cache"));
+    command
 }

@@ -30,9 +30,17 @@ pub fn scripted() -> &'static Alphabet {
 /// # Errors
 /// The text with the errors, as a person sees them.
 pub fn compile(text: &str) -> Result<Compiled, String> {
+    compile_plan(text, "Main")
+}
+
+/// Compiles the plan of this name of a text.
+///
+/// # Errors
+/// The text with the errors, as a person sees them.
+pub fn compile_plan(text: &str, name: &str) -> Result<Compiled, String> {
     let mut sources = Sources::default();
     let source = sources.add("plan.mdle", text);
-    let (mut compiled, found) = mdlec::compile(source, text, scripted(), Some("Main"));
+    let (mut compiled, found) = mdlec::compile(source, text, scripted(), Some(name));
     assert_eq!(compiled.is_empty(), has_errors(&found), "a plan or an error:\n{text}");
     match compiled.pop() {
         Some(compiled) => Ok(compiled),

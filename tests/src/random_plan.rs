@@ -39,8 +39,10 @@ enum Element {
 }
 
 /// Names that scopes may have, some of which emitted code has uses of its own for.
-const NAMES: &[&str] =
-    &["P", "Shake", "shake", "Running", "text", "turned", "fn", "Output", "None", "größe", "Atom1", "x_"];
+const NAMES: &[&str] = &[
+    "P", "Shake", "shake", "Running", "text", "turned", "fn", "Output", "None", "größe", "Atom1", "x_", "t", "Y",
+    "law", "cursor", "Self_", "loop",
+];
 
 /// Passes: small ones mostly, for others make long searches in one turn.
 const TIMES: &[&str] = &["1", "1", "2", "2", "2", "2", "3", "3", "3", "3", "5", "7", "inf"];
@@ -71,6 +73,17 @@ impl RandomPlan {
             definitions.reverse();
         }
         Self { definitions }
+    }
+
+    /// The same with another name in place of `Main`.
+    #[must_use]
+    pub fn named(mut self, name: &'static str) -> Self {
+        for (plan, _) in &mut self.definitions {
+            if *plan == "Main" {
+                *plan = name;
+            }
+        }
+        self
     }
 }
 

@@ -100,27 +100,28 @@ pub(super) fn print_targets() -> Result<(), Failure> {
 /// `mdlec quarks`.
 pub(super) fn print_quarks(option: Option<&str>) -> Result<(), Failure> {
     let target = target(option)?;
+    let width = target.alphabet.declarations().map(|declaration| signature(declaration).len()).max().unwrap_or(0);
     let mut text = String::new();
     for (kind, title) in [
-        (DeclarationKind::Interrupt, "interrupts, each fires when …"),
+        (DeclarationKind::Interrupt, "interrupts"),
         (DeclarationKind::Control, "laws"),
         (DeclarationKind::Signal, "signals"),
     ] {
         text += &format!("{title}\n");
         let of_kind = target.alphabet.declarations().filter(|declaration| declaration.kind == kind);
-        of_kind.for_each(|declaration| text += &line(declaration, &target.alphabet));
+        of_kind.for_each(|declaration| text += &line(declaration, &target.alphabet, width));
     }
     report::print(&text)
 }
 
-fn line(declaration: &Declaration, alphabet: &Alphabet) -> String {
+fn line(declaration: &Declaration, alphabet: &Alphabet, width: usize) -> String {
     let missing: Vec<_> =
         declaration.needs.iter().filter(|need| !alphabet.has(need)).map(ToString::to_string).collect();
     let missing = match missing.as_slice() {
         [] => String::new(),
         missing => format!(" (not on {}: it has no {})", alphabet.name, missing.join(", ")),
     };
-    format!("  {:<44} {}{missing}\n", signature(declaration), declaration.docs)
+    format!("  {:width$}  {}{missing}\n", signature(declaration), declaration.docs)
 }
 
 fn read_alphabets(own: Option<(String, String)>, name: &str) -> Result<Target, Failure> {

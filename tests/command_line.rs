@@ -1,0 +1,166 @@
+//! What `mdlec` prints when all is well, through the real binary.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Output;
+
+use mdle_tests::executable::{folder, run_mdlec, run_mdlec_reading};
+use mdle_tests::golden::{judge, rust};
+use mdle_tests::repository::{TextFile, root};
+use serde_json::Value;
+
+/// A plan in which each stage differs from the one before it: a unit, a plan by name, a repeated interrupt, a loop.
+const PLAN: &str = "\
+/// Ahead, then a shake.
+{ Outing (bumper)
+  (Atom (bumper OR wait 20s) (go 20 0))
+  Shake
+}
+{ Shake (wait 15s) ((Atom (wait 500ms) (go 5 0)) (Atom (bumper) rotate 90))^2 }
+";
+
+/// The kinds of `--emit` that are text.
+const KINDS: [&str; 6] = ["tree", "plan", "nondegenerate", "expanded", "fsm", "rust"];
+
+/// The script of the interfaces.
+const SCRIPT: &str = r#"{"t": 0.0, "fired": [], "completed": []}
+{"t": 0.1, "fired": ["atIsection 0100", "bumper"], "completed": ["rotate 90"]}
+"#;
+
+/// The trace of the interfaces: what the plan from lab 2 to lab 1 makes of the script.
+const TRACE: &str = r#"{"turn":0,"t":0.0,"state":1,"law":"goAvoid 90 40 20","fired":[]}
+{"turn":1,"t":0.1,"state":9,"law":null,"fired":[{"from":1,"level":0,"by":"bumper"}]}
+"#;
+
+fn with_plan(test: &str, plan: &str) -> PathBuf {
+    let folder = folder(test);
+    fs::write(folder.join("plan.mdle"), plan).unwrap();
+    folder
+}
+
+/// Standard output of a command that succeeds.
+fn printed(output: Output) -> String {
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).expect("UTF-8")
+}
+
+/// Standard output of a command that succeeds and has nothing to say on standard error.
+fn printed_alone(output: Output) -> String {
+    assert_eq!(String::from_utf8_lossy(&output.stderr), "");
+    printed(output)
+}
+
+fn emitted(folder: &Path, kind: &str) -> String {
+    printed(run_mdlec(folder, &["plan.mdle", "--target", "sim", "--emit", kind]))
+}
+
+/// Holds both machines to the trace of a plan, one line a turn.
+fn assert_trace(folder: &Path, expected: &str) {
+    for machine in [&[][..], &["--machine", "tree"], &["--machine", "counted"]] {
+        let arguments = [&["trace", "plan.mdle", "--script", "script.jsonl"][..], machine].concat();
+        assert_eq!(printed_alone(run_mdlec(folder, &arguments)), expected, "{machine:?}");
+    }
+}
+
+#[test]
+fn a_trace_is_a_line_for_each_turn() {
+    let plan = fs::read_to_string(root().join("plans/paper/lab2_to_lab1.mdle")).unwrap();
+    let folder = with_plan("trace", &plan);
+    fs::write(folder.join("script.jsonl"), SCRIPT).unwrap();
+    assert_trace(&folder, TRACE);
+}
+
+#[test]
+fn a_trace_ends_with_the_plan_and_counts_every_pass() {
+    let folder = with_plan(
+        "trace_passes",
+        "{ P (bumper) { Shake (wait 15s) ((Atom (wait 500ms) (go 5 0)) (Atom (null) rotate 90))^2 } (Atom (wait 1) stop) }",
+    );
+    let script = "{\"t\":3.0}\n{\"t\":3.5}\n{\"t\":4.0,\"completed\":[\"rotate 90\"]}\n\
+                  {\"t\":4.5,\"completed\":[\"rotate 90\"]}\n{\"t\":5.5}\n{\"t\":6.5}\n";
+    fs::write(folder.join("script.jsonl"), script).unwrap();
+    let expected = [
+        r#"{"turn":0,"t":0.0,"state":1,"law":"go 5 0","fired":[]}"#,
+        r#"{"turn":1,"t":0.5,"state":2,"law":"rotate 90","fired":[{"from":1,"level":2,"by":"wait 0.5"}]}"#,
+        r#"{"turn":2,"t":1.0,"state":3,"law":"go 5 0","fired":[{"from":2,"level":2,"by":"completed"}]}"#,
+        concat!(
+            r#"{"turn":3,"t":1.5,"state":5,"law":"stop","#,
+            r#""fired":[{"from":3,"level":2,"by":"wait 0.5"},{"from":4,"level":2,"by":"completed"}]}"#
+        ),
+        r#"{"turn":4,"t":2.5,"state":6,"law":null,"fired":[{"from":5,"level":1,"by":"wait 1"}]}"#,
+    ];
+    assert_trace(&folder, &expected.map(|line| format!("{line}\n")).concat());
+}
+
+#[test]
+fn a_script_can_come_from_standard_input() {
+    let plan = fs::read_to_string(root().join("plans/paper/lab2_to_lab1.mdle")).unwrap();
+    let folder = with_plan("trace_input", &plan);
+    let output = run_mdlec_reading(&folder, &["trace", "plan.mdle", "--script", "-"], SCRIPT);
+    assert_eq!(printed_alone(output), TRACE);
+}
+
+#[test]
+fn stages_are_printed() {
+    let folder = with_plan("stages", PLAN);
+    // The Rust is compared with what the emitter writes, below.
+    let stages = KINDS.iter().filter(|kind| **kind != "rust");
+    let stages: Vec<_> = stages.map(|kind| format!("$ --emit {kind}\n{}", emitted(&folder, kind))).collect();
+    insta::assert_snapshot!(format!("{PLAN}----\n{}", stages.join("\n")));
+}
+
+#[test]
+fn the_rust_that_is_printed_is_what_is_compiled() {
+    let folder = with_plan("stage_rust", PLAN);
+    let file = TextFile { path: "plan.mdle".into(), text: PLAN.into() };
+    let (compiled, _) = judge(&file, Some("sim"));
+    assert_eq!(emitted(&folder, "rust"), rust(&file, &compiled[0]));
+}
+
+#[test]
+fn a_stage_is_the_same_in_a_file() {
+    let folder = with_plan("stage_files", PLAN);
+    for kind in KINDS {
+        let emit = format!("{kind}=stage.{kind}");
+        let nothing = printed(run_mdlec(&folder, &["plan.mdle", "--target", "sim", "--emit", &emit]));
+        assert_eq!(nothing, "", "{kind}");
+        let written = fs::read_to_string(folder.join(format!("stage.{kind}"))).expect(kind);
+        assert!(!written.is_empty() && written == emitted(&folder, kind), "{kind}:\n{written}");
+    }
+}
+
+#[test]
+fn an_fsm_file_has_the_keys_of_the_interfaces() {
+    let folder = with_plan("fsm_keys", PLAN);
+    let file: Value = serde_json::from_str(&emitted(&folder, "fsm")).expect("JSON");
+    assert_eq!(keys(&file), ["interrupts", "laws", "never", "scopes", "source", "states", "version"]);
+    let states: BTreeSet<_> = file["states"].as_array().unwrap().iter().map(|state| state.as_str().unwrap()).collect();
+    let interrupts = file["interrupts"].as_array().unwrap();
+    assert!(!interrupts.is_empty());
+    for interrupt in interrupts {
+        assert_eq!(keys(interrupt), ["moves", "name", "text"]);
+        for (from, to) in interrupt["moves"].as_object().unwrap() {
+            assert!(states.contains(from.as_str()) && states.contains(to.as_str().unwrap()), "{interrupt}");
+        }
+    }
+    let named = |name: &Value| interrupts.iter().any(|interrupt| interrupt["name"] == *name);
+    let never = file["never"].as_array().unwrap();
+    assert!(never.len() == 2 && never.iter().all(named), "one in each pass: {never:?}");
+}
+
+fn keys(object: &Value) -> Vec<&str> {
+    let mut keys: Vec<_> = object.as_object().unwrap().keys().map(String::as_str).collect();
+    keys.sort_unstable();
+    keys
+}
+
+#[test]
+fn targets_and_their_quarks_are_listed() {
+    let folder = folder("lists");
+    let list = |arguments: &[&str]| {
+        format!("$ mdlec {}\n{}", arguments.join(" "), printed_alone(run_mdlec(&folder, arguments)))
+    };
+    insta::assert_snapshot!([list(&["targets"]), list(&["quarks", "--target", "sim"])].join("\n"));
+}
