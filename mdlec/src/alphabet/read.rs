@@ -61,7 +61,7 @@ impl<'t> Reader<'t> {
                 (Some("use"), Some(_)) => self.used().map(|used| uses.push(used)),
                 _ => self.declaration(docs, of_target).map(|declaration| declarations.push(declaration)),
             };
-            if read.and_then(|()| self.expect(Token::Semicolon)).is_err() {
+            if read.and_then(|()| self.require(Token::Semicolon)).is_err() {
                 self.skip();
             }
         }
@@ -79,7 +79,7 @@ impl<'t> Reader<'t> {
             Some("target") => {
                 self.at += 1;
                 let name = self.name()?.0;
-                self.expect(Token::Colon)?;
+                self.require(Token::Colon)?;
                 self.keyword("crate")?;
                 let crate_name = self.name()?.0;
                 let mut period = None;
@@ -91,7 +91,7 @@ impl<'t> Reader<'t> {
             }
             _ => return self.unexpected("`target NAME : crate NAME;` or `alphabet NAME;`"),
         };
-        self.expect(Token::Semicolon)?;
+        self.require(Token::Semicolon)?;
         Ok(head)
     }
 
@@ -134,7 +134,7 @@ impl<'t> Reader<'t> {
         let Ok(size) = digits.parse() else {
             return self.defect(span, "a size is a whole number", "as in `sonar[16]`");
         };
-        self.expect(Token::CloseBracket)?;
+        self.require(Token::CloseBracket)?;
         Ok(Some(size))
     }
 
@@ -181,14 +181,14 @@ impl<'t> Reader<'t> {
         while self.take(Token::Comma) {
             params.push(self.param()?);
         }
-        self.expect(Token::Close)?;
+        self.require(Token::Close)?;
         Ok(params)
     }
 
     /// `NAME ":" type [ UNIT ] [ "=" NUMBER ] [ "in" NUMBER ".." NUMBER ]`.
     fn param(&mut self) -> Read<Param> {
         let name = self.name()?.0;
-        self.expect(Token::Colon)?;
+        self.require(Token::Colon)?;
         let (word, span) = self.name()?;
         let size = self.size()?;
         let kind = match (word.as_str(), size) {
@@ -213,7 +213,7 @@ impl<'t> Reader<'t> {
         if self.peek_word() == Some("in") {
             self.at += 1;
             let least = self.value()?;
-            self.expect(Token::To)?;
+            self.require(Token::To)?;
             range = Some((least, self.value()?));
         }
         Ok(Param { name, kind, unit, default, range })
@@ -288,7 +288,7 @@ impl<'t> Reader<'t> {
         self.unexpected(&format!("`{word}`"))
     }
 
-    fn expect(&mut self, token: Token) -> Read<()> {
+    fn require(&mut self, token: Token) -> Read<()> {
         if self.take(token) { Ok(()) } else { self.unexpected(token.words()) }
     }
 

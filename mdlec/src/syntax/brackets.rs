@@ -227,7 +227,7 @@ impl<'s> Pass<'_, 's> {
         let missing = if others.is_empty() { "a `)` is missing" } else { "their `)` are missing" };
         let diagnostic = diagnostic.also(self.source.span(missing_at), format!("{missing} {before}"));
         self.balanced.diagnostics.push(if atom {
-            diagnostic.help("the condition of an atom has parentheses of its own: `(Atom (bumper) stop)`")
+            diagnostic.help("an atom has parentheses around its condition and around all of it: `(Atom (bumper) stop)`")
         } else {
             diagnostic
         });
