@@ -1,8 +1,12 @@
-//! Random plans on random scripts: every machine prints the same trace (semantics, section 9).
+//! Random plans on random scripts: every machine prints the same trace, and so do plans loaded at run time
+//! (semantics, section 9).
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
+use mdle_scripted::drive;
 use mdle_tests::chance::Chance;
+use mdle_tests::loaded::Loaded;
+use mdle_tests::outputs::outputs;
 use mdle_tests::pipeline::{Machines, compile};
 use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::random_script::script;
@@ -52,13 +56,19 @@ fn compare(seed: u64, text: &str, script: &str, seen: &mut Seen) {
         Err(report) => panic!("seed {seed}: {report}"),
     };
     let machines = Machines::new(&compiled);
-    let traces = machines.traces(&Script::read(script).expect("a script"));
+    let turns = Script::read(script).expect("a script");
+    let traces = machines.traces(&turns);
     let (reference, tree) = &traces[0];
     for (machine, trace) in &traces[1..] {
         if trace != tree {
             panic!("seed {seed}: {}", difference((reference, tree), (machine, trace), text, script));
         }
     }
+    let loaded = Loaded::new(&compiled.lowered);
+    let mut printed = String::new();
+    drive(loaded.plan(), &outputs(&turns), &mut printed).expect("room for the trace");
+    let expected: String = tree.iter().map(|line| format!("{line}\n")).collect();
+    assert!(printed == expected, "seed {seed}\n{reference}:\n{expected}loaded:\n{printed}{text}\n{script}");
     seen.plans += 1;
     seen.repeated += usize::from(compiled.nondegenerate.plan() != &compiled.plan);
     for Line { outcome: Outcome { applied, fired, .. }, .. } in tree {

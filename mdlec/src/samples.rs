@@ -4,24 +4,33 @@ use crate::alphabet::{self, Alphabet, AlphabetFile};
 use crate::diagnostic::{SourceId, Sources};
 use crate::{Compiled, compile, link};
 
-/// The alphabet of a built-in target, or of a robot that has everything.
+/// The alphabet of a built-in target, or of a robot that has everything; its places are in [`sources`].
 pub(crate) fn alphabet(target: Option<&str>) -> Alphabet {
-    let read = |file: &link::Alphabet| -> AlphabetFile {
-        let (alphabet, found) = alphabet::read(SourceId(0), file.text);
+    let read = |(source, file): (u32, &link::Alphabet)| -> AlphabetFile {
+        let (alphabet, found) = alphabet::read(SourceId(source), file.text);
         assert_eq!(found, [], "{}", file.file);
         alphabet.expect("an alphabet has a head")
     };
-    let (targets, shared): (Vec<_>, Vec<_>) = link::alphabets().iter().partition(|file| file.target);
+    let (targets, shared): (Vec<_>, Vec<_>) = (0..).zip(link::alphabets()).partition(|(_, file)| file.target);
     let shared: Vec<_> = shared.into_iter().map(read).collect();
     match target {
         None => Alphabet::shared(shared[0].clone()),
         Some(name) => {
-            let own = read(targets.into_iter().find(|file| file.name == name).expect(name));
+            let own = read(targets.into_iter().find(|(_, file)| file.name == name).expect(name));
             let (alphabet, found) = alphabet::combine(own, &shared);
             assert_eq!(found, []);
             alphabet
         }
     }
+}
+
+/// The files of the alphabets; a plan's comes behind them.
+pub(crate) fn sources() -> Sources {
+    let mut sources = Sources::default();
+    for file in link::alphabets() {
+        sources.add(file.file, file.text);
+    }
+    sources
 }
 
 /// The plans of a text that has no error.
@@ -39,7 +48,7 @@ pub(crate) fn judged(text: &str, target: Option<&str>) -> String {
 }
 
 fn said(text: &str, target: Option<&str>) -> (Vec<Compiled>, String) {
-    let mut sources = Sources::default();
+    let mut sources = sources();
     let source = sources.add("plan.mdle", text);
     let (compiled, found) = compile(source, text, &alphabet(target), None);
     let said = found.iter().map(|diagnostic| sources.render(diagnostic)).collect();

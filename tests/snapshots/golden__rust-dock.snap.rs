@@ -11,14 +11,20 @@ pub use machine::Dock;
 )]
 #[allow(unused_variables, reason = "a scope is asked with all that any scope may need")]
 mod machine {
+    use ::mdle_runtime as runtime;
     use ::mdle_runtime::fsm::{Atom, Bracket};
     use ::mdle_runtime::{Begin, Cause, Cursor, Fsm, Nanos};
     use ::mdle_sim::alphabet::{self as robot, Input, Output};
+    const _: () = assert!(
+        robot::HASH == 0x18e7cb8d94f135d4,
+        "the crate of target `sim` is bound to another alphabet: run `mdlec bind`"
+    );
     /// The plan `Dock`.
     #[derive(Debug)]
     pub struct Dock {
         running: Running,
     }
+
     impl Dock {
         /// The plan before it begins.
         #[must_use]
@@ -26,44 +32,45 @@ mod machine {
             Self { running: Running::Idle }
         }
     }
+
     impl Default for Dock {
         fn default() -> Self {
             Self::new()
         }
     }
+
     /// `bumper`
     const BUMPER: robot::Bumper = robot::Bumper::new();
     /// `atIsection 1000`
     const AT_ISECTION_1000: robot::AtIsection = robot::AtIsection::new(
-        ::mdle_runtime::Bits([true, false, false, false]),
+        runtime::Bits([true, false, false, false]),
     );
     /// `go 20 0`
     const GO_20_0: robot::Go = robot::Go::new(
-        ::mdle_runtime::MetersPerSecond(0.2),
-        ::mdle_runtime::RadiansPerSecond(0.0),
+        runtime::MetersPerSecond(0.2),
+        runtime::RadiansPerSecond(0.0),
     );
     /// `go 5 0`
     const GO_5_0: robot::Go = robot::Go::new(
-        ::mdle_runtime::MetersPerSecond(0.05),
-        ::mdle_runtime::RadiansPerSecond(0.0),
+        runtime::MetersPerSecond(0.05),
+        runtime::RadiansPerSecond(0.0),
     );
     /// `turn 90`
-    const TURN_90: robot::Turn = robot::Turn::new(
-        ::mdle_runtime::Radians::from_degrees(90.0),
-    );
+    const TURN_90: robot::Turn = robot::Turn::new(runtime::Radians::from_degrees(90.0));
     /// The law of the current atom, with what it remembers since the atom began.
     #[derive(Debug)]
     enum Running {
         /// Before the plan begins.
         Idle,
         /// `(Atom (atIsection 1000 OR wait 20) go 20 0)`
-        Atom1(<robot::Go as ::mdle_runtime::Control<Output>>::Law),
+        Atom1(<robot::Go as runtime::Control<Output>>::Law),
         /// `(Atom (wait 0.5) go 5 0)`
-        Atom2(<robot::Go as ::mdle_runtime::Control<Output>>::Law),
+        Atom2(<robot::Go as runtime::Control<Output>>::Law),
         /// `(Atom (null) turn 90)`
-        Atom3(<robot::Turn as ::mdle_runtime::Control<Output>>::Law),
+        Atom3(<robot::Turn as runtime::Control<Output>>::Law),
     }
-    impl ::mdle_runtime::Plan for Dock {
+
+    impl runtime::Plan for Dock {
         type Output = Output;
         type Input = Input;
         type Entered = [Nanos; 3];
@@ -76,9 +83,9 @@ mod machine {
         }
         fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
             self.running = match atom {
-                0 => Running::Atom1(::mdle_runtime::Control::begin(&GO_20_0, y, begin)),
-                1 => Running::Atom2(::mdle_runtime::Control::begin(&GO_5_0, y, begin)),
-                2 => Running::Atom3(::mdle_runtime::Control::begin(&TURN_90, y, begin)),
+                0 => Running::Atom1(runtime::Control::begin(&GO_20_0, y, begin)),
+                1 => Running::Atom2(runtime::Control::begin(&GO_5_0, y, begin)),
+                2 => Running::Atom3(runtime::Control::begin(&TURN_90, y, begin)),
                 _ => Running::Idle,
             };
         }
@@ -88,7 +95,7 @@ mod machine {
                 Running::Atom1(_) => {
                     dock(cursor, y, t)
                         .or_else(|| {
-                            (::mdle_runtime::Interrupt::fired(&AT_ISECTION_1000, y)
+                            (runtime::Interrupt::fired(&AT_ISECTION_1000, y)
                                 | (cursor.since(1u16, t) >= Nanos(20000000000)))
                                 .then_some(Cause::Fired(1u16))
                         })
@@ -103,7 +110,7 @@ mod machine {
                 Running::Atom3(law) => {
                     shake(cursor, y, t)
                         .or_else(|| {
-                            ::mdle_runtime::Completes::completed(law, y, t)
+                            runtime::Completes::completed(law, y, t)
                                 .then_some(Cause::Completed(2u16))
                         })
                 }
@@ -112,9 +119,9 @@ mod machine {
         fn input(&mut self, y: &Output, t: Nanos) -> Input {
             match &mut self.running {
                 Running::Idle => Input::default(),
-                Running::Atom1(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom2(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom3(law) => ::mdle_runtime::Law::input(law, y, t),
+                Running::Atom1(law) => runtime::Law::input(law, y, t),
+                Running::Atom2(law) => runtime::Law::input(law, y, t),
+                Running::Atom3(law) => runtime::Law::input(law, y, t),
             }
         }
         fn law(&self, atom: u32) -> &str {
@@ -127,15 +134,18 @@ mod machine {
             text(NAMES, scope)
         }
     }
+
     /// The cursor of this plan: its levels of scopes and of loops are known.
     type At = Cursor<[Nanos; 3], [u64; 1]>;
     fn text(texts: &'static [&'static str], index: u32) -> &'static str {
         texts.get(index as usize).copied().unwrap_or("")
     }
+
     /// Dock (bumper), and the scopes around it first.
     fn dock(cursor: &At, y: &Output, t: Nanos) -> Option<Cause> {
-        (::mdle_runtime::Interrupt::fired(&BUMPER, y)).then_some(Cause::Fired(0u16))
+        (runtime::Interrupt::fired(&BUMPER, y)).then_some(Cause::Fired(0u16))
     }
+
     /// Shake (wait 15), and the scopes around it first.
     fn shake(cursor: &At, y: &Output, t: Nanos) -> Option<Cause> {
         dock(cursor, y, t)
@@ -144,6 +154,7 @@ mod machine {
                     .then_some(Cause::Fired(1u16))
             })
     }
+
     /// Scopes and loops in pre-order, the atoms as written, the termination state.
     const FSM: Fsm<'static> = Fsm {
         brackets: &[

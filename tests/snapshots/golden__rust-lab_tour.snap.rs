@@ -11,14 +11,20 @@ pub use machine::LabTour;
 )]
 #[allow(unused_variables, reason = "a scope is asked with all that any scope may need")]
 mod machine {
+    use ::mdle_runtime as runtime;
     use ::mdle_runtime::fsm::{Atom, Bracket};
     use ::mdle_runtime::{Begin, Cause, Cursor, Fsm, Nanos};
     use ::mdle_sim::alphabet::{self as robot, Input, Output};
+    const _: () = assert!(
+        robot::HASH == 0x18e7cb8d94f135d4,
+        "the crate of target `sim` is bound to another alphabet: run `mdlec bind`"
+    );
     /// The plan `LabTour`.
     #[derive(Debug)]
     pub struct LabTour {
         running: Running,
     }
+
     impl LabTour {
         /// The plan before it begins.
         #[must_use]
@@ -26,80 +32,82 @@ mod machine {
             Self { running: Running::Idle }
         }
     }
+
     impl Default for LabTour {
         fn default() -> Self {
             Self::new()
         }
     }
+
     /// `bumper`
     const BUMPER: robot::Bumper = robot::Bumper::new();
     /// `atIsection 0100`
     const AT_ISECTION_0100: robot::AtIsection = robot::AtIsection::new(
-        ::mdle_runtime::Bits([false, true, false, false]),
+        runtime::Bits([false, true, false, false]),
     );
     /// `goAvoid 90 40 20`
     const GO_AVOID_90_40_20: robot::GoAvoid = robot::GoAvoid::new(
-        ::mdle_runtime::Radians::from_degrees(90.0),
-        ::mdle_runtime::Meters(40.0),
-        ::mdle_runtime::MetersPerSecond(0.2),
+        runtime::Radians::from_degrees(90.0),
+        runtime::Meters(40.0),
+        runtime::MetersPerSecond(0.2),
     );
     /// `atIsection 0010`
     const AT_ISECTION_0010: robot::AtIsection = robot::AtIsection::new(
-        ::mdle_runtime::Bits([false, false, true, false]),
+        runtime::Bits([false, false, true, false]),
     );
     /// `go 0 0.36`
     const GO_0_0_36: robot::Go = robot::Go::new(
-        ::mdle_runtime::MetersPerSecond(0.0),
-        ::mdle_runtime::RadiansPerSecond(0.36),
+        runtime::MetersPerSecond(0.0),
+        runtime::RadiansPerSecond(0.36),
     );
     /// `align 7 9`
     const ALIGN_7_9: robot::Align = robot::Align::new(
-        ::mdle_runtime::SonarId::new(7),
-        ::mdle_runtime::SonarId::new(9),
+        runtime::SonarId::new(7),
+        runtime::SonarId::new(9),
     );
     /// `atIsection 1000`
     const AT_ISECTION_1000: robot::AtIsection = robot::AtIsection::new(
-        ::mdle_runtime::Bits([true, false, false, false]),
+        runtime::Bits([true, false, false, false]),
     );
     /// `goAvoid 0 40 20`
     const GO_AVOID_0_40_20: robot::GoAvoid = robot::GoAvoid::new(
-        ::mdle_runtime::Radians::from_degrees(0.0),
-        ::mdle_runtime::Meters(40.0),
-        ::mdle_runtime::MetersPerSecond(0.2),
+        runtime::Radians::from_degrees(0.0),
+        runtime::Meters(40.0),
+        runtime::MetersPerSecond(0.2),
     );
     /// `align 3 5`
     const ALIGN_3_5: robot::Align = robot::Align::new(
-        ::mdle_runtime::SonarId::new(3),
-        ::mdle_runtime::SonarId::new(5),
+        runtime::SonarId::new(3),
+        runtime::SonarId::new(5),
     );
     /// `goAvoid 270 40 20`
     const GO_AVOID_270_40_20: robot::GoAvoid = robot::GoAvoid::new(
-        ::mdle_runtime::Radians::from_degrees(270.0),
-        ::mdle_runtime::Meters(40.0),
-        ::mdle_runtime::MetersPerSecond(0.2),
+        runtime::Radians::from_degrees(270.0),
+        runtime::Meters(40.0),
+        runtime::MetersPerSecond(0.2),
     );
     /// `atIsection 1001`
     const AT_ISECTION_1001: robot::AtIsection = robot::AtIsection::new(
-        ::mdle_runtime::Bits([true, false, false, true]),
+        runtime::Bits([true, false, false, true]),
     );
     /// `atIsection 0011`
     const AT_ISECTION_0011: robot::AtIsection = robot::AtIsection::new(
-        ::mdle_runtime::Bits([false, false, true, true]),
+        runtime::Bits([false, false, true, true]),
     );
     /// `align 11 13`
     const ALIGN_11_13: robot::Align = robot::Align::new(
-        ::mdle_runtime::SonarId::new(11),
-        ::mdle_runtime::SonarId::new(13),
+        runtime::SonarId::new(11),
+        runtime::SonarId::new(13),
     );
     /// `goAvoid 180 40 20`
     const GO_AVOID_180_40_20: robot::GoAvoid = robot::GoAvoid::new(
-        ::mdle_runtime::Radians::from_degrees(180.0),
-        ::mdle_runtime::Meters(40.0),
-        ::mdle_runtime::MetersPerSecond(0.2),
+        runtime::Radians::from_degrees(180.0),
+        runtime::Meters(40.0),
+        runtime::MetersPerSecond(0.2),
     );
     /// `rotate 90`
     const ROTATE_90: robot::Rotate = robot::Rotate::new(
-        ::mdle_runtime::Radians::from_degrees(90.0),
+        runtime::Radians::from_degrees(90.0),
     );
     /// The law of the current atom, with what it remembers since the atom began.
     #[derive(Debug)]
@@ -107,33 +115,34 @@ mod machine {
         /// Before the plan begins.
         Idle,
         /// `(Atom (atIsection 0100) goAvoid 90 40 20)`
-        Atom1(<robot::GoAvoid as ::mdle_runtime::Control<Output>>::Law),
+        Atom1(<robot::GoAvoid as runtime::Control<Output>>::Law),
         /// `(Atom (atIsection 0010) go 0 0.36)`
-        Atom2(<robot::Go as ::mdle_runtime::Control<Output>>::Law),
+        Atom2(<robot::Go as runtime::Control<Output>>::Law),
         /// `(Atom (wait inf) align 7 9)`
-        Atom3(<robot::Align as ::mdle_runtime::Control<Output>>::Law),
+        Atom3(<robot::Align as runtime::Control<Output>>::Law),
         /// `(Atom (atIsection 1000) goAvoid 0 40 20)`
-        Atom4(<robot::GoAvoid as ::mdle_runtime::Control<Output>>::Law),
+        Atom4(<robot::GoAvoid as runtime::Control<Output>>::Law),
         /// `(Atom (atIsection 0100) go 0 0.36)`
-        Atom5(<robot::Go as ::mdle_runtime::Control<Output>>::Law),
+        Atom5(<robot::Go as runtime::Control<Output>>::Law),
         /// `(Atom (wait inf) align 3 5)`
-        Atom6(<robot::Align as ::mdle_runtime::Control<Output>>::Law),
+        Atom6(<robot::Align as runtime::Control<Output>>::Law),
         /// `(Atom (wait 7) goAvoid 270 40 20)`
-        Atom7(<robot::GoAvoid as ::mdle_runtime::Control<Output>>::Law),
+        Atom7(<robot::GoAvoid as runtime::Control<Output>>::Law),
         /// `(Atom (atIsection 1000) goAvoid 270 40 20)`
-        Atom8(<robot::GoAvoid as ::mdle_runtime::Control<Output>>::Law),
+        Atom8(<robot::GoAvoid as runtime::Control<Output>>::Law),
         /// `FRAME 180deg (Atom (atIsection 1001) goAvoid 90 40 20)`
-        Atom9(<robot::GoAvoid as ::mdle_runtime::Control<Output>>::Law),
+        Atom9(<robot::GoAvoid as runtime::Control<Output>>::Law),
         /// `FRAME 180deg (Atom (atIsection 0011) go 0 0.36)`
-        Atom10(<robot::Go as ::mdle_runtime::Control<Output>>::Law),
+        Atom10(<robot::Go as runtime::Control<Output>>::Law),
         /// `FRAME 180deg (Atom (wait inf) align 11 13)`
-        Atom11(<robot::Align as ::mdle_runtime::Control<Output>>::Law),
+        Atom11(<robot::Align as runtime::Control<Output>>::Law),
         /// `FRAME 180deg (Atom (atIsection 0100) goAvoid 180 40 20)`
-        Atom12(<robot::GoAvoid as ::mdle_runtime::Control<Output>>::Law),
+        Atom12(<robot::GoAvoid as runtime::Control<Output>>::Law),
         /// `FRAME 180deg (Atom (wait 10) rotate 90)`
-        Atom13(<robot::Rotate as ::mdle_runtime::Control<Output>>::Law),
+        Atom13(<robot::Rotate as runtime::Control<Output>>::Law),
     }
-    impl ::mdle_runtime::Plan for LabTour {
+
+    impl runtime::Plan for LabTour {
         type Output = Output;
         type Input = Input;
         type Entered = [Nanos; 3];
@@ -147,71 +156,65 @@ mod machine {
         fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
             self.running = match atom {
                 0 => {
-                    Running::Atom1(
-                        ::mdle_runtime::Control::begin(&GO_AVOID_90_40_20, y, begin),
-                    )
+                    Running::Atom1(runtime::Control::begin(&GO_AVOID_90_40_20, y, begin))
                 }
-                1 => Running::Atom2(::mdle_runtime::Control::begin(&GO_0_0_36, y, begin)),
-                2 => Running::Atom3(::mdle_runtime::Control::begin(&ALIGN_7_9, y, begin)),
-                3 => {
-                    Running::Atom4(
-                        ::mdle_runtime::Control::begin(&GO_AVOID_0_40_20, y, begin),
-                    )
-                }
-                4 => Running::Atom5(::mdle_runtime::Control::begin(&GO_0_0_36, y, begin)),
-                5 => Running::Atom6(::mdle_runtime::Control::begin(&ALIGN_3_5, y, begin)),
+                1 => Running::Atom2(runtime::Control::begin(&GO_0_0_36, y, begin)),
+                2 => Running::Atom3(runtime::Control::begin(&ALIGN_7_9, y, begin)),
+                3 => Running::Atom4(runtime::Control::begin(&GO_AVOID_0_40_20, y, begin)),
+                4 => Running::Atom5(runtime::Control::begin(&GO_0_0_36, y, begin)),
+                5 => Running::Atom6(runtime::Control::begin(&ALIGN_3_5, y, begin)),
                 6 => {
                     Running::Atom7(
-                        ::mdle_runtime::Control::begin(&GO_AVOID_270_40_20, y, begin),
+                        runtime::Control::begin(&GO_AVOID_270_40_20, y, begin),
                     )
                 }
                 7 => {
                     Running::Atom8(
-                        ::mdle_runtime::Control::begin(&GO_AVOID_270_40_20, y, begin),
+                        runtime::Control::begin(&GO_AVOID_270_40_20, y, begin),
                     )
                 }
                 8 => {
                     Running::Atom9(
-                        ::mdle_runtime::Control::begin(
+                        runtime::Control::begin(
                             &GO_AVOID_90_40_20,
                             y,
-                            begin.turned(::mdle_runtime::Radians::from_degrees(180.0)),
+                            begin.turned(runtime::Radians::from_degrees(180.0)),
                         ),
                     )
                 }
                 9 => {
                     Running::Atom10(
-                        ::mdle_runtime::Control::begin(
+                        runtime::Control::begin(
                             &GO_0_0_36,
                             y,
-                            begin.turned(::mdle_runtime::Radians::from_degrees(180.0)),
+                            begin.turned(runtime::Radians::from_degrees(180.0)),
                         ),
                     )
                 }
                 10 => {
                     Running::Atom11(
-                        ::mdle_runtime::Control::begin(
+                        runtime::Control::begin(
                             &ALIGN_11_13,
                             y,
-                            begin.turned(::mdle_runtime::Radians::from_degrees(180.0)),
+                            begin.turned(runtime::Radians::from_degrees(180.0)),
                         ),
                     )
                 }
                 11 => {
                     Running::Atom12(
-                        ::mdle_runtime::Control::begin(
+                        runtime::Control::begin(
                             &GO_AVOID_180_40_20,
                             y,
-                            begin.turned(::mdle_runtime::Radians::from_degrees(180.0)),
+                            begin.turned(runtime::Radians::from_degrees(180.0)),
                         ),
                     )
                 }
                 12 => {
                     Running::Atom13(
-                        ::mdle_runtime::Control::begin(
+                        runtime::Control::begin(
                             &ROTATE_90,
                             y,
-                            begin.turned(::mdle_runtime::Radians::from_degrees(180.0)),
+                            begin.turned(runtime::Radians::from_degrees(180.0)),
                         ),
                     )
                 }
@@ -224,50 +227,50 @@ mod machine {
                 Running::Atom1(law) => {
                     lab2_to_lab1_plan(cursor, y, t)
                         .or_else(|| {
-                            (::mdle_runtime::Interrupt::fired(&AT_ISECTION_0100, y))
+                            (runtime::Interrupt::fired(&AT_ISECTION_0100, y))
                                 .then_some(Cause::Fired(2u16))
                         })
                         .or_else(|| {
-                            ::mdle_runtime::Completes::completed(law, y, t)
+                            runtime::Completes::completed(law, y, t)
                                 .then_some(Cause::Completed(2u16))
                         })
                 }
                 Running::Atom2(_) => {
                     lab2_to_lab1_plan(cursor, y, t)
                         .or_else(|| {
-                            (::mdle_runtime::Interrupt::fired(&AT_ISECTION_0010, y))
+                            (runtime::Interrupt::fired(&AT_ISECTION_0010, y))
                                 .then_some(Cause::Fired(2u16))
                         })
                 }
                 Running::Atom3(law) => {
                     lab2_to_lab1_plan(cursor, y, t)
                         .or_else(|| {
-                            ::mdle_runtime::Completes::completed(law, y, t)
+                            runtime::Completes::completed(law, y, t)
                                 .then_some(Cause::Completed(2u16))
                         })
                 }
                 Running::Atom4(law) => {
                     lab2_to_lab1_plan(cursor, y, t)
                         .or_else(|| {
-                            (::mdle_runtime::Interrupt::fired(&AT_ISECTION_1000, y))
+                            (runtime::Interrupt::fired(&AT_ISECTION_1000, y))
                                 .then_some(Cause::Fired(2u16))
                         })
                         .or_else(|| {
-                            ::mdle_runtime::Completes::completed(law, y, t)
+                            runtime::Completes::completed(law, y, t)
                                 .then_some(Cause::Completed(2u16))
                         })
                 }
                 Running::Atom5(_) => {
                     lab2_to_lab1_plan(cursor, y, t)
                         .or_else(|| {
-                            (::mdle_runtime::Interrupt::fired(&AT_ISECTION_0100, y))
+                            (runtime::Interrupt::fired(&AT_ISECTION_0100, y))
                                 .then_some(Cause::Fired(2u16))
                         })
                 }
                 Running::Atom6(law) => {
                     lab2_to_lab1_plan(cursor, y, t)
                         .or_else(|| {
-                            ::mdle_runtime::Completes::completed(law, y, t)
+                            runtime::Completes::completed(law, y, t)
                                 .then_some(Cause::Completed(2u16))
                         })
                 }
@@ -278,54 +281,54 @@ mod machine {
                                 .then_some(Cause::Fired(2u16))
                         })
                         .or_else(|| {
-                            ::mdle_runtime::Completes::completed(law, y, t)
+                            runtime::Completes::completed(law, y, t)
                                 .then_some(Cause::Completed(2u16))
                         })
                 }
                 Running::Atom8(law) => {
                     lab2_to_lab1_plan(cursor, y, t)
                         .or_else(|| {
-                            (::mdle_runtime::Interrupt::fired(&AT_ISECTION_1000, y))
+                            (runtime::Interrupt::fired(&AT_ISECTION_1000, y))
                                 .then_some(Cause::Fired(2u16))
                         })
                         .or_else(|| {
-                            ::mdle_runtime::Completes::completed(law, y, t)
+                            runtime::Completes::completed(law, y, t)
                                 .then_some(Cause::Completed(2u16))
                         })
                 }
                 Running::Atom9(law) => {
                     lab1_to_office_plan(cursor, y, t)
                         .or_else(|| {
-                            (::mdle_runtime::Interrupt::fired(&AT_ISECTION_1001, y))
+                            (runtime::Interrupt::fired(&AT_ISECTION_1001, y))
                                 .then_some(Cause::Fired(2u16))
                         })
                         .or_else(|| {
-                            ::mdle_runtime::Completes::completed(law, y, t)
+                            runtime::Completes::completed(law, y, t)
                                 .then_some(Cause::Completed(2u16))
                         })
                 }
                 Running::Atom10(_) => {
                     lab1_to_office_plan(cursor, y, t)
                         .or_else(|| {
-                            (::mdle_runtime::Interrupt::fired(&AT_ISECTION_0011, y))
+                            (runtime::Interrupt::fired(&AT_ISECTION_0011, y))
                                 .then_some(Cause::Fired(2u16))
                         })
                 }
                 Running::Atom11(law) => {
                     lab1_to_office_plan(cursor, y, t)
                         .or_else(|| {
-                            ::mdle_runtime::Completes::completed(law, y, t)
+                            runtime::Completes::completed(law, y, t)
                                 .then_some(Cause::Completed(2u16))
                         })
                 }
                 Running::Atom12(law) => {
                     lab1_to_office_plan(cursor, y, t)
                         .or_else(|| {
-                            (::mdle_runtime::Interrupt::fired(&AT_ISECTION_0100, y))
+                            (runtime::Interrupt::fired(&AT_ISECTION_0100, y))
                                 .then_some(Cause::Fired(2u16))
                         })
                         .or_else(|| {
-                            ::mdle_runtime::Completes::completed(law, y, t)
+                            runtime::Completes::completed(law, y, t)
                                 .then_some(Cause::Completed(2u16))
                         })
                 }
@@ -336,7 +339,7 @@ mod machine {
                                 .then_some(Cause::Fired(2u16))
                         })
                         .or_else(|| {
-                            ::mdle_runtime::Completes::completed(law, y, t)
+                            runtime::Completes::completed(law, y, t)
                                 .then_some(Cause::Completed(2u16))
                         })
                 }
@@ -345,19 +348,19 @@ mod machine {
         fn input(&mut self, y: &Output, t: Nanos) -> Input {
             match &mut self.running {
                 Running::Idle => Input::default(),
-                Running::Atom1(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom2(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom3(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom4(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom5(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom6(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom7(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom8(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom9(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom10(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom11(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom12(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom13(law) => ::mdle_runtime::Law::input(law, y, t),
+                Running::Atom1(law) => runtime::Law::input(law, y, t),
+                Running::Atom2(law) => runtime::Law::input(law, y, t),
+                Running::Atom3(law) => runtime::Law::input(law, y, t),
+                Running::Atom4(law) => runtime::Law::input(law, y, t),
+                Running::Atom5(law) => runtime::Law::input(law, y, t),
+                Running::Atom6(law) => runtime::Law::input(law, y, t),
+                Running::Atom7(law) => runtime::Law::input(law, y, t),
+                Running::Atom8(law) => runtime::Law::input(law, y, t),
+                Running::Atom9(law) => runtime::Law::input(law, y, t),
+                Running::Atom10(law) => runtime::Law::input(law, y, t),
+                Running::Atom11(law) => runtime::Law::input(law, y, t),
+                Running::Atom12(law) => runtime::Law::input(law, y, t),
+                Running::Atom13(law) => runtime::Law::input(law, y, t),
             }
         }
         fn law(&self, atom: u32) -> &str {
@@ -370,19 +373,23 @@ mod machine {
             text(NAMES, scope)
         }
     }
+
     /// The cursor of this plan: its levels of scopes and of loops are known.
     type At = Cursor<[Nanos; 3], [u64; 0]>;
     fn text(texts: &'static [&'static str], index: u32) -> &'static str {
         texts.get(index as usize).copied().unwrap_or("")
     }
+
     /// Lab2ToLab1Plan (bumper), and the scopes around it first.
     fn lab2_to_lab1_plan(cursor: &At, y: &Output, t: Nanos) -> Option<Cause> {
-        (::mdle_runtime::Interrupt::fired(&BUMPER, y)).then_some(Cause::Fired(1u16))
+        (runtime::Interrupt::fired(&BUMPER, y)).then_some(Cause::Fired(1u16))
     }
+
     /// Lab1ToOfficePlan (bumper), and the scopes around it first.
     fn lab1_to_office_plan(cursor: &At, y: &Output, t: Nanos) -> Option<Cause> {
-        (::mdle_runtime::Interrupt::fired(&BUMPER, y)).then_some(Cause::Fired(1u16))
+        (runtime::Interrupt::fired(&BUMPER, y)).then_some(Cause::Fired(1u16))
     }
+
     /// Scopes and loops in pre-order, the atoms as written, the termination state.
     const FSM: Fsm<'static> = Fsm {
         brackets: &[

@@ -11,14 +11,20 @@ pub use machine::Lab1ToOfficePlan;
 )]
 #[allow(unused_variables, reason = "a scope is asked with all that any scope may need")]
 mod machine {
+    use ::mdle_runtime as runtime;
     use ::mdle_runtime::fsm::{Atom, Bracket};
     use ::mdle_runtime::{Begin, Cause, Cursor, Fsm, Nanos};
     use ::mdle_sim::alphabet::{self as robot, Input, Output};
+    const _: () = assert!(
+        robot::HASH == 0x18e7cb8d94f135d4,
+        "the crate of target `sim` is bound to another alphabet: run `mdlec bind`"
+    );
     /// The plan `Lab1ToOfficePlan`.
     #[derive(Debug)]
     pub struct Lab1ToOfficePlan {
         running: Running,
     }
+
     impl Lab1ToOfficePlan {
         /// The plan before it begins.
         #[must_use]
@@ -26,50 +32,52 @@ mod machine {
             Self { running: Running::Idle }
         }
     }
+
     impl Default for Lab1ToOfficePlan {
         fn default() -> Self {
             Self::new()
         }
     }
+
     /// `bumper`
     const BUMPER: robot::Bumper = robot::Bumper::new();
     /// `atIsection 1001`
     const AT_ISECTION_1001: robot::AtIsection = robot::AtIsection::new(
-        ::mdle_runtime::Bits([true, false, false, true]),
+        runtime::Bits([true, false, false, true]),
     );
     /// `goAvoid 90 40 20`
     const GO_AVOID_90_40_20: robot::GoAvoid = robot::GoAvoid::new(
-        ::mdle_runtime::Radians::from_degrees(90.0),
-        ::mdle_runtime::Meters(40.0),
-        ::mdle_runtime::MetersPerSecond(0.2),
+        runtime::Radians::from_degrees(90.0),
+        runtime::Meters(40.0),
+        runtime::MetersPerSecond(0.2),
     );
     /// `atIsection 0011`
     const AT_ISECTION_0011: robot::AtIsection = robot::AtIsection::new(
-        ::mdle_runtime::Bits([false, false, true, true]),
+        runtime::Bits([false, false, true, true]),
     );
     /// `go 0 0.36`
     const GO_0_0_36: robot::Go = robot::Go::new(
-        ::mdle_runtime::MetersPerSecond(0.0),
-        ::mdle_runtime::RadiansPerSecond(0.36),
+        runtime::MetersPerSecond(0.0),
+        runtime::RadiansPerSecond(0.36),
     );
     /// `align 11 13`
     const ALIGN_11_13: robot::Align = robot::Align::new(
-        ::mdle_runtime::SonarId::new(11),
-        ::mdle_runtime::SonarId::new(13),
+        runtime::SonarId::new(11),
+        runtime::SonarId::new(13),
     );
     /// `atIsection 0100`
     const AT_ISECTION_0100: robot::AtIsection = robot::AtIsection::new(
-        ::mdle_runtime::Bits([false, true, false, false]),
+        runtime::Bits([false, true, false, false]),
     );
     /// `goAvoid 180 40 20`
     const GO_AVOID_180_40_20: robot::GoAvoid = robot::GoAvoid::new(
-        ::mdle_runtime::Radians::from_degrees(180.0),
-        ::mdle_runtime::Meters(40.0),
-        ::mdle_runtime::MetersPerSecond(0.2),
+        runtime::Radians::from_degrees(180.0),
+        runtime::Meters(40.0),
+        runtime::MetersPerSecond(0.2),
     );
     /// `rotate 90`
     const ROTATE_90: robot::Rotate = robot::Rotate::new(
-        ::mdle_runtime::Radians::from_degrees(90.0),
+        runtime::Radians::from_degrees(90.0),
     );
     /// The law of the current atom, with what it remembers since the atom began.
     #[derive(Debug)]
@@ -77,17 +85,18 @@ mod machine {
         /// Before the plan begins.
         Idle,
         /// `(Atom (atIsection 1001) goAvoid 90 40 20)`
-        Atom1(<robot::GoAvoid as ::mdle_runtime::Control<Output>>::Law),
+        Atom1(<robot::GoAvoid as runtime::Control<Output>>::Law),
         /// `(Atom (atIsection 0011) go 0 0.36)`
-        Atom2(<robot::Go as ::mdle_runtime::Control<Output>>::Law),
+        Atom2(<robot::Go as runtime::Control<Output>>::Law),
         /// `(Atom (wait inf) align 11 13)`
-        Atom3(<robot::Align as ::mdle_runtime::Control<Output>>::Law),
+        Atom3(<robot::Align as runtime::Control<Output>>::Law),
         /// `(Atom (atIsection 0100) goAvoid 180 40 20)`
-        Atom4(<robot::GoAvoid as ::mdle_runtime::Control<Output>>::Law),
+        Atom4(<robot::GoAvoid as runtime::Control<Output>>::Law),
         /// `(Atom (wait 10) rotate 90)`
-        Atom5(<robot::Rotate as ::mdle_runtime::Control<Output>>::Law),
+        Atom5(<robot::Rotate as runtime::Control<Output>>::Law),
     }
-    impl ::mdle_runtime::Plan for Lab1ToOfficePlan {
+
+    impl runtime::Plan for Lab1ToOfficePlan {
         type Output = Output;
         type Input = Input;
         type Entered = [Nanos; 2];
@@ -101,22 +110,16 @@ mod machine {
         fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
             self.running = match atom {
                 0 => {
-                    Running::Atom1(
-                        ::mdle_runtime::Control::begin(&GO_AVOID_90_40_20, y, begin),
-                    )
+                    Running::Atom1(runtime::Control::begin(&GO_AVOID_90_40_20, y, begin))
                 }
-                1 => Running::Atom2(::mdle_runtime::Control::begin(&GO_0_0_36, y, begin)),
-                2 => {
-                    Running::Atom3(
-                        ::mdle_runtime::Control::begin(&ALIGN_11_13, y, begin),
-                    )
-                }
+                1 => Running::Atom2(runtime::Control::begin(&GO_0_0_36, y, begin)),
+                2 => Running::Atom3(runtime::Control::begin(&ALIGN_11_13, y, begin)),
                 3 => {
                     Running::Atom4(
-                        ::mdle_runtime::Control::begin(&GO_AVOID_180_40_20, y, begin),
+                        runtime::Control::begin(&GO_AVOID_180_40_20, y, begin),
                     )
                 }
-                4 => Running::Atom5(::mdle_runtime::Control::begin(&ROTATE_90, y, begin)),
+                4 => Running::Atom5(runtime::Control::begin(&ROTATE_90, y, begin)),
                 _ => Running::Idle,
             };
         }
@@ -126,36 +129,36 @@ mod machine {
                 Running::Atom1(law) => {
                     lab1_to_office_plan(cursor, y, t)
                         .or_else(|| {
-                            (::mdle_runtime::Interrupt::fired(&AT_ISECTION_1001, y))
+                            (runtime::Interrupt::fired(&AT_ISECTION_1001, y))
                                 .then_some(Cause::Fired(1u16))
                         })
                         .or_else(|| {
-                            ::mdle_runtime::Completes::completed(law, y, t)
+                            runtime::Completes::completed(law, y, t)
                                 .then_some(Cause::Completed(1u16))
                         })
                 }
                 Running::Atom2(_) => {
                     lab1_to_office_plan(cursor, y, t)
                         .or_else(|| {
-                            (::mdle_runtime::Interrupt::fired(&AT_ISECTION_0011, y))
+                            (runtime::Interrupt::fired(&AT_ISECTION_0011, y))
                                 .then_some(Cause::Fired(1u16))
                         })
                 }
                 Running::Atom3(law) => {
                     lab1_to_office_plan(cursor, y, t)
                         .or_else(|| {
-                            ::mdle_runtime::Completes::completed(law, y, t)
+                            runtime::Completes::completed(law, y, t)
                                 .then_some(Cause::Completed(1u16))
                         })
                 }
                 Running::Atom4(law) => {
                     lab1_to_office_plan(cursor, y, t)
                         .or_else(|| {
-                            (::mdle_runtime::Interrupt::fired(&AT_ISECTION_0100, y))
+                            (runtime::Interrupt::fired(&AT_ISECTION_0100, y))
                                 .then_some(Cause::Fired(1u16))
                         })
                         .or_else(|| {
-                            ::mdle_runtime::Completes::completed(law, y, t)
+                            runtime::Completes::completed(law, y, t)
                                 .then_some(Cause::Completed(1u16))
                         })
                 }
@@ -166,7 +169,7 @@ mod machine {
                                 .then_some(Cause::Fired(1u16))
                         })
                         .or_else(|| {
-                            ::mdle_runtime::Completes::completed(law, y, t)
+                            runtime::Completes::completed(law, y, t)
                                 .then_some(Cause::Completed(1u16))
                         })
                 }
@@ -175,11 +178,11 @@ mod machine {
         fn input(&mut self, y: &Output, t: Nanos) -> Input {
             match &mut self.running {
                 Running::Idle => Input::default(),
-                Running::Atom1(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom2(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom3(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom4(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom5(law) => ::mdle_runtime::Law::input(law, y, t),
+                Running::Atom1(law) => runtime::Law::input(law, y, t),
+                Running::Atom2(law) => runtime::Law::input(law, y, t),
+                Running::Atom3(law) => runtime::Law::input(law, y, t),
+                Running::Atom4(law) => runtime::Law::input(law, y, t),
+                Running::Atom5(law) => runtime::Law::input(law, y, t),
             }
         }
         fn law(&self, atom: u32) -> &str {
@@ -192,15 +195,18 @@ mod machine {
             text(NAMES, scope)
         }
     }
+
     /// The cursor of this plan: its levels of scopes and of loops are known.
     type At = Cursor<[Nanos; 2], [u64; 0]>;
     fn text(texts: &'static [&'static str], index: u32) -> &'static str {
         texts.get(index as usize).copied().unwrap_or("")
     }
+
     /// Lab1ToOfficePlan (bumper), and the scopes around it first.
     fn lab1_to_office_plan(cursor: &At, y: &Output, t: Nanos) -> Option<Cause> {
-        (::mdle_runtime::Interrupt::fired(&BUMPER, y)).then_some(Cause::Fired(0u16))
+        (runtime::Interrupt::fired(&BUMPER, y)).then_some(Cause::Fired(0u16))
     }
+
     /// Scopes and loops in pre-order, the atoms as written, the termination state.
     const FSM: Fsm<'static> = Fsm {
         brackets: &[

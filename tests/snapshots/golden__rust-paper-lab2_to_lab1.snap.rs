@@ -11,14 +11,20 @@ pub use machine::Lab2ToLab1Plan;
 )]
 #[allow(unused_variables, reason = "a scope is asked with all that any scope may need")]
 mod machine {
+    use ::mdle_runtime as runtime;
     use ::mdle_runtime::fsm::{Atom, Bracket};
     use ::mdle_runtime::{Begin, Cause, Cursor, Fsm, Nanos};
     use ::mdle_sim::alphabet::{self as robot, Input, Output};
+    const _: () = assert!(
+        robot::HASH == 0x18e7cb8d94f135d4,
+        "the crate of target `sim` is bound to another alphabet: run `mdlec bind`"
+    );
     /// The plan `Lab2ToLab1Plan`.
     #[derive(Debug)]
     pub struct Lab2ToLab1Plan {
         running: Running,
     }
+
     impl Lab2ToLab1Plan {
         /// The plan before it begins.
         #[must_use]
@@ -26,57 +32,59 @@ mod machine {
             Self { running: Running::Idle }
         }
     }
+
     impl Default for Lab2ToLab1Plan {
         fn default() -> Self {
             Self::new()
         }
     }
+
     /// `bumper`
     const BUMPER: robot::Bumper = robot::Bumper::new();
     /// `atIsection 0100`
     const AT_ISECTION_0100: robot::AtIsection = robot::AtIsection::new(
-        ::mdle_runtime::Bits([false, true, false, false]),
+        runtime::Bits([false, true, false, false]),
     );
     /// `goAvoid 90 40 20`
     const GO_AVOID_90_40_20: robot::GoAvoid = robot::GoAvoid::new(
-        ::mdle_runtime::Radians::from_degrees(90.0),
-        ::mdle_runtime::Meters(40.0),
-        ::mdle_runtime::MetersPerSecond(0.2),
+        runtime::Radians::from_degrees(90.0),
+        runtime::Meters(40.0),
+        runtime::MetersPerSecond(0.2),
     );
     /// `atIsection 0010`
     const AT_ISECTION_0010: robot::AtIsection = robot::AtIsection::new(
-        ::mdle_runtime::Bits([false, false, true, false]),
+        runtime::Bits([false, false, true, false]),
     );
     /// `go 0 0.36`
     const GO_0_0_36: robot::Go = robot::Go::new(
-        ::mdle_runtime::MetersPerSecond(0.0),
-        ::mdle_runtime::RadiansPerSecond(0.36),
+        runtime::MetersPerSecond(0.0),
+        runtime::RadiansPerSecond(0.36),
     );
     /// `align 7 9`
     const ALIGN_7_9: robot::Align = robot::Align::new(
-        ::mdle_runtime::SonarId::new(7),
-        ::mdle_runtime::SonarId::new(9),
+        runtime::SonarId::new(7),
+        runtime::SonarId::new(9),
     );
     /// `atIsection 1000`
     const AT_ISECTION_1000: robot::AtIsection = robot::AtIsection::new(
-        ::mdle_runtime::Bits([true, false, false, false]),
+        runtime::Bits([true, false, false, false]),
     );
     /// `goAvoid 0 40 20`
     const GO_AVOID_0_40_20: robot::GoAvoid = robot::GoAvoid::new(
-        ::mdle_runtime::Radians::from_degrees(0.0),
-        ::mdle_runtime::Meters(40.0),
-        ::mdle_runtime::MetersPerSecond(0.2),
+        runtime::Radians::from_degrees(0.0),
+        runtime::Meters(40.0),
+        runtime::MetersPerSecond(0.2),
     );
     /// `align 3 5`
     const ALIGN_3_5: robot::Align = robot::Align::new(
-        ::mdle_runtime::SonarId::new(3),
-        ::mdle_runtime::SonarId::new(5),
+        runtime::SonarId::new(3),
+        runtime::SonarId::new(5),
     );
     /// `goAvoid 270 40 20`
     const GO_AVOID_270_40_20: robot::GoAvoid = robot::GoAvoid::new(
-        ::mdle_runtime::Radians::from_degrees(270.0),
-        ::mdle_runtime::Meters(40.0),
-        ::mdle_runtime::MetersPerSecond(0.2),
+        runtime::Radians::from_degrees(270.0),
+        runtime::Meters(40.0),
+        runtime::MetersPerSecond(0.2),
     );
     /// The law of the current atom, with what it remembers since the atom began.
     #[derive(Debug)]
@@ -84,23 +92,24 @@ mod machine {
         /// Before the plan begins.
         Idle,
         /// `(Atom (atIsection 0100) goAvoid 90 40 20)`
-        Atom1(<robot::GoAvoid as ::mdle_runtime::Control<Output>>::Law),
+        Atom1(<robot::GoAvoid as runtime::Control<Output>>::Law),
         /// `(Atom (atIsection 0010) go 0 0.36)`
-        Atom2(<robot::Go as ::mdle_runtime::Control<Output>>::Law),
+        Atom2(<robot::Go as runtime::Control<Output>>::Law),
         /// `(Atom (wait inf) align 7 9)`
-        Atom3(<robot::Align as ::mdle_runtime::Control<Output>>::Law),
+        Atom3(<robot::Align as runtime::Control<Output>>::Law),
         /// `(Atom (atIsection 1000) goAvoid 0 40 20)`
-        Atom4(<robot::GoAvoid as ::mdle_runtime::Control<Output>>::Law),
+        Atom4(<robot::GoAvoid as runtime::Control<Output>>::Law),
         /// `(Atom (atIsection 0100) go 0 0.36)`
-        Atom5(<robot::Go as ::mdle_runtime::Control<Output>>::Law),
+        Atom5(<robot::Go as runtime::Control<Output>>::Law),
         /// `(Atom (wait inf) align 3 5)`
-        Atom6(<robot::Align as ::mdle_runtime::Control<Output>>::Law),
+        Atom6(<robot::Align as runtime::Control<Output>>::Law),
         /// `(Atom (wait 7) goAvoid 270 40 20)`
-        Atom7(<robot::GoAvoid as ::mdle_runtime::Control<Output>>::Law),
+        Atom7(<robot::GoAvoid as runtime::Control<Output>>::Law),
         /// `(Atom (atIsection 1000) goAvoid 270 40 20)`
-        Atom8(<robot::GoAvoid as ::mdle_runtime::Control<Output>>::Law),
+        Atom8(<robot::GoAvoid as runtime::Control<Output>>::Law),
     }
-    impl ::mdle_runtime::Plan for Lab2ToLab1Plan {
+
+    impl runtime::Plan for Lab2ToLab1Plan {
         type Output = Output;
         type Input = Input;
         type Entered = [Nanos; 2];
@@ -114,27 +123,21 @@ mod machine {
         fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
             self.running = match atom {
                 0 => {
-                    Running::Atom1(
-                        ::mdle_runtime::Control::begin(&GO_AVOID_90_40_20, y, begin),
-                    )
+                    Running::Atom1(runtime::Control::begin(&GO_AVOID_90_40_20, y, begin))
                 }
-                1 => Running::Atom2(::mdle_runtime::Control::begin(&GO_0_0_36, y, begin)),
-                2 => Running::Atom3(::mdle_runtime::Control::begin(&ALIGN_7_9, y, begin)),
-                3 => {
-                    Running::Atom4(
-                        ::mdle_runtime::Control::begin(&GO_AVOID_0_40_20, y, begin),
-                    )
-                }
-                4 => Running::Atom5(::mdle_runtime::Control::begin(&GO_0_0_36, y, begin)),
-                5 => Running::Atom6(::mdle_runtime::Control::begin(&ALIGN_3_5, y, begin)),
+                1 => Running::Atom2(runtime::Control::begin(&GO_0_0_36, y, begin)),
+                2 => Running::Atom3(runtime::Control::begin(&ALIGN_7_9, y, begin)),
+                3 => Running::Atom4(runtime::Control::begin(&GO_AVOID_0_40_20, y, begin)),
+                4 => Running::Atom5(runtime::Control::begin(&GO_0_0_36, y, begin)),
+                5 => Running::Atom6(runtime::Control::begin(&ALIGN_3_5, y, begin)),
                 6 => {
                     Running::Atom7(
-                        ::mdle_runtime::Control::begin(&GO_AVOID_270_40_20, y, begin),
+                        runtime::Control::begin(&GO_AVOID_270_40_20, y, begin),
                     )
                 }
                 7 => {
                     Running::Atom8(
-                        ::mdle_runtime::Control::begin(&GO_AVOID_270_40_20, y, begin),
+                        runtime::Control::begin(&GO_AVOID_270_40_20, y, begin),
                     )
                 }
                 _ => Running::Idle,
@@ -146,50 +149,50 @@ mod machine {
                 Running::Atom1(law) => {
                     lab2_to_lab1_plan(cursor, y, t)
                         .or_else(|| {
-                            (::mdle_runtime::Interrupt::fired(&AT_ISECTION_0100, y))
+                            (runtime::Interrupt::fired(&AT_ISECTION_0100, y))
                                 .then_some(Cause::Fired(1u16))
                         })
                         .or_else(|| {
-                            ::mdle_runtime::Completes::completed(law, y, t)
+                            runtime::Completes::completed(law, y, t)
                                 .then_some(Cause::Completed(1u16))
                         })
                 }
                 Running::Atom2(_) => {
                     lab2_to_lab1_plan(cursor, y, t)
                         .or_else(|| {
-                            (::mdle_runtime::Interrupt::fired(&AT_ISECTION_0010, y))
+                            (runtime::Interrupt::fired(&AT_ISECTION_0010, y))
                                 .then_some(Cause::Fired(1u16))
                         })
                 }
                 Running::Atom3(law) => {
                     lab2_to_lab1_plan(cursor, y, t)
                         .or_else(|| {
-                            ::mdle_runtime::Completes::completed(law, y, t)
+                            runtime::Completes::completed(law, y, t)
                                 .then_some(Cause::Completed(1u16))
                         })
                 }
                 Running::Atom4(law) => {
                     lab2_to_lab1_plan(cursor, y, t)
                         .or_else(|| {
-                            (::mdle_runtime::Interrupt::fired(&AT_ISECTION_1000, y))
+                            (runtime::Interrupt::fired(&AT_ISECTION_1000, y))
                                 .then_some(Cause::Fired(1u16))
                         })
                         .or_else(|| {
-                            ::mdle_runtime::Completes::completed(law, y, t)
+                            runtime::Completes::completed(law, y, t)
                                 .then_some(Cause::Completed(1u16))
                         })
                 }
                 Running::Atom5(_) => {
                     lab2_to_lab1_plan(cursor, y, t)
                         .or_else(|| {
-                            (::mdle_runtime::Interrupt::fired(&AT_ISECTION_0100, y))
+                            (runtime::Interrupt::fired(&AT_ISECTION_0100, y))
                                 .then_some(Cause::Fired(1u16))
                         })
                 }
                 Running::Atom6(law) => {
                     lab2_to_lab1_plan(cursor, y, t)
                         .or_else(|| {
-                            ::mdle_runtime::Completes::completed(law, y, t)
+                            runtime::Completes::completed(law, y, t)
                                 .then_some(Cause::Completed(1u16))
                         })
                 }
@@ -200,18 +203,18 @@ mod machine {
                                 .then_some(Cause::Fired(1u16))
                         })
                         .or_else(|| {
-                            ::mdle_runtime::Completes::completed(law, y, t)
+                            runtime::Completes::completed(law, y, t)
                                 .then_some(Cause::Completed(1u16))
                         })
                 }
                 Running::Atom8(law) => {
                     lab2_to_lab1_plan(cursor, y, t)
                         .or_else(|| {
-                            (::mdle_runtime::Interrupt::fired(&AT_ISECTION_1000, y))
+                            (runtime::Interrupt::fired(&AT_ISECTION_1000, y))
                                 .then_some(Cause::Fired(1u16))
                         })
                         .or_else(|| {
-                            ::mdle_runtime::Completes::completed(law, y, t)
+                            runtime::Completes::completed(law, y, t)
                                 .then_some(Cause::Completed(1u16))
                         })
                 }
@@ -220,14 +223,14 @@ mod machine {
         fn input(&mut self, y: &Output, t: Nanos) -> Input {
             match &mut self.running {
                 Running::Idle => Input::default(),
-                Running::Atom1(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom2(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom3(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom4(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom5(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom6(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom7(law) => ::mdle_runtime::Law::input(law, y, t),
-                Running::Atom8(law) => ::mdle_runtime::Law::input(law, y, t),
+                Running::Atom1(law) => runtime::Law::input(law, y, t),
+                Running::Atom2(law) => runtime::Law::input(law, y, t),
+                Running::Atom3(law) => runtime::Law::input(law, y, t),
+                Running::Atom4(law) => runtime::Law::input(law, y, t),
+                Running::Atom5(law) => runtime::Law::input(law, y, t),
+                Running::Atom6(law) => runtime::Law::input(law, y, t),
+                Running::Atom7(law) => runtime::Law::input(law, y, t),
+                Running::Atom8(law) => runtime::Law::input(law, y, t),
             }
         }
         fn law(&self, atom: u32) -> &str {
@@ -240,15 +243,18 @@ mod machine {
             text(NAMES, scope)
         }
     }
+
     /// The cursor of this plan: its levels of scopes and of loops are known.
     type At = Cursor<[Nanos; 2], [u64; 0]>;
     fn text(texts: &'static [&'static str], index: u32) -> &'static str {
         texts.get(index as usize).copied().unwrap_or("")
     }
+
     /// Lab2ToLab1Plan (bumper), and the scopes around it first.
     fn lab2_to_lab1_plan(cursor: &At, y: &Output, t: Nanos) -> Option<Cause> {
-        (::mdle_runtime::Interrupt::fired(&BUMPER, y)).then_some(Cause::Fired(0u16))
+        (runtime::Interrupt::fired(&BUMPER, y)).then_some(Cause::Fired(0u16))
     }
+
     /// Scopes and loops in pre-order, the atoms as written, the termination state.
     const FSM: Fsm<'static> = Fsm {
         brackets: &[

@@ -13,10 +13,10 @@ use crate::repository::TextFile;
 /// The alphabet of a built-in target, or of a robot that has everything.
 #[must_use]
 pub fn alphabet(target: Option<&str>) -> Alphabet {
-    let read = |file: &link::Alphabet| alphabet::read(SourceId(0), file.text).0.expect(file.file);
-    let (targets, shared): (Vec<_>, Vec<_>) = link::alphabets().iter().partition(|file| file.target);
+    let read = |(source, file): (u32, &link::Alphabet)| alphabet::read(SourceId(source), file.text).0.expect(file.file);
+    let (targets, shared): (Vec<_>, Vec<_>) = (0..).zip(link::alphabets()).partition(|(_, file)| file.target);
     let mut shared: Vec<_> = shared.into_iter().map(read).collect();
-    match target.map(|name| targets.iter().find(|file| file.name == name).expect(name)) {
+    match target.map(|name| targets.into_iter().find(|(_, file)| file.name == name).expect(name)) {
         None => Alphabet::shared(shared.swap_remove(0)),
         Some(own) => alphabet::combine(read(own), &shared).0,
     }
@@ -26,6 +26,9 @@ pub fn alphabet(target: Option<&str>) -> Alphabet {
 #[must_use]
 pub fn judge(file: &TextFile, target: Option<&str>) -> (Vec<Compiled>, String) {
     let mut sources = Sources::default();
+    for alphabet in link::alphabets() {
+        sources.add(alphabet.file, alphabet.text);
+    }
     let source = sources.add(&file.path, &file.text);
     let (compiled, found) = compile(source, &file.text, &alphabet(target), None);
     let said = found.iter().map(|diagnostic| sources.render(diagnostic)).collect();

@@ -5,6 +5,8 @@
 pub mod chance;
 pub mod executable;
 pub mod golden;
+pub mod loaded;
+pub mod outputs;
 pub mod pipeline;
 pub mod random_condition;
 pub mod random_plan;

@@ -11,8 +11,10 @@ use mdlec::trace::{Counted, Line, Script, Tree, run};
 /// The most states of a plan whose expanded form is run as well.
 const EXPANDED: u64 = 2000;
 
+const SCRIPTED_FILE: &str = include_str!("../scripted/alphabet.mdle");
+
 static SCRIPTED: LazyLock<Alphabet> = LazyLock::new(|| {
-    let (file, found) = alphabet::read(Sources::default().add("", ""), include_str!("../scripted/alphabet.mdle"));
+    let (file, found) = alphabet::read(Sources::default().add("", ""), SCRIPTED_FILE);
     assert_eq!(found, [], "the alphabet of `scripted`");
     let (alphabet, found) = alphabet::combine(file.expect("an alphabet"), &[]);
     assert_eq!(found, [], "the alphabet of `scripted`");
@@ -39,6 +41,7 @@ pub fn compile(text: &str) -> Result<Compiled, String> {
 /// The text with the errors, as a person sees them.
 pub fn compile_plan(text: &str, name: &str) -> Result<Compiled, String> {
     let mut sources = Sources::default();
+    sources.add("alphabet.mdle", SCRIPTED_FILE);
     let source = sources.add("plan.mdle", text);
     let (mut compiled, found) = mdlec::compile(source, text, scripted(), Some(name));
     assert_eq!(compiled.is_empty(), has_errors(&found), "a plan or an error:\n{text}");

@@ -95,16 +95,16 @@ impl Alphabet {
         nearest(name, of_kind.map(|declaration| declaration.name.as_str()))
     }
 
-    /// A hash over the declarations as read, as sixteen hexadecimal digits: what a target was built for.
+    /// A hash over the declarations as read: what a target was built for.
     #[must_use]
-    pub fn hash(&self) -> String {
+    pub fn hash(&self) -> u64 {
         let text = format!("{} {} {:?} {:?}", self.name, self.crate_name, self.period, self.capabilities);
         let mut hasher = blake3::Hasher::new();
         hasher.update(text.as_bytes());
         for declaration in &self.declarations {
             hasher.update(declaration.to_string().as_bytes());
         }
-        hasher.finalize().to_hex().chars().take(16).collect()
+        hasher.finalize().as_bytes().first_chunk().copied().map_or(0, u64::from_be_bytes)
     }
 }
 

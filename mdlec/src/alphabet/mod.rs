@@ -80,10 +80,19 @@ pub struct Declaration {
     pub remembers: bool,
     /// What the robot must be able to do.
     pub needs: Vec<Capability>,
-    /// Whether a target declared it, and not a shared alphabet.
-    pub of_target: bool,
+    /// Who declares it.
+    pub origin: Origin,
     /// Where.
     pub span: Span,
+}
+
+/// Who declares a quark: its implementation stands there too.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Origin {
+    /// The target itself.
+    Target,
+    /// The shared alphabet of this name.
+    Shared(String),
 }
 
 /// A parameter of a quark.

@@ -4,7 +4,7 @@ use logos::Logos;
 
 use super::checks;
 use super::token::Token;
-use super::{AlphabetFile, Capability, Decimal, Declaration, DeclarationKind, Kind, Param, TargetHead, Unit};
+use super::{AlphabetFile, Capability, Decimal, Declaration, DeclarationKind, Kind, Origin, Param, TargetHead, Unit};
 use crate::diagnostic::{Code, Diagnostic, SourceId, Span, sort};
 
 /// The alphabet of a text, and all that is wrong with it; none if it has no head.
@@ -55,11 +55,11 @@ impl<'t> Reader<'t> {
         let mut declarations = Vec::new();
         while self.at < self.tokens.len() {
             let docs = self.docs();
-            let of_target = target.is_some();
+            let origin = if target.is_some() { Origin::Target } else { Origin::Shared(name.clone()) };
             let read = match (self.peek_word(), &mut target) {
                 (Some("capability"), Some(head)) => self.capabilities().map(|more| head.capabilities.extend(more)),
                 (Some("use"), Some(_)) => self.used().map(|used| uses.push(used)),
-                _ => self.declaration(docs, of_target).map(|declaration| declarations.push(declaration)),
+                _ => self.declaration(docs, origin).map(|declaration| declarations.push(declaration)),
             };
             if read.and_then(|()| self.require(Token::Semicolon)).is_err() {
                 self.skip();
@@ -144,12 +144,14 @@ impl<'t> Reader<'t> {
     }
 
     /// `( "control" | "interrupt" | "signal" ) NAME [ "(" … ")" ] …`.
-    fn declaration(&mut self, docs: String, of_target: bool) -> Read<Declaration> {
+    fn declaration(&mut self, docs: String, origin: Origin) -> Read<Declaration> {
         let kind = match self.peek_word() {
             Some("control") => DeclarationKind::Control,
             Some("interrupt") => DeclarationKind::Interrupt,
             Some("signal") => DeclarationKind::Signal,
-            _ if of_target => return self.unexpected("`capability`, `use`, `control`, `interrupt` or `signal`"),
+            _ if origin == Origin::Target => {
+                return self.unexpected("`capability`, `use`, `control`, `interrupt` or `signal`");
+            }
             _ => return self.unexpected("`control`, `interrupt` or `signal`"),
         };
         self.at += 1;
@@ -169,7 +171,7 @@ impl<'t> Reader<'t> {
             }
             self.at += 1;
         }
-        Ok(Declaration { docs, kind, name, params, unit, completes, remembers, needs, of_target, span })
+        Ok(Declaration { docs, kind, name, params, unit, completes, remembers, needs, origin, span })
     }
 
     fn params(&mut self) -> Read<Vec<Param>> {

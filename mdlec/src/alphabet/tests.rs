@@ -1,6 +1,6 @@
 //! What alphabets are read as, and what is said about those that make no sense.
 
-use super::{Alphabet, AlphabetFile, Capability, DeclarationKind, combine, read};
+use super::{Alphabet, AlphabetFile, Capability, DeclarationKind, Origin, combine, read};
 use crate::diagnostic::{Code, SourceId, Sources};
 
 const ATOMS: &str = include_str!("../../../atoms/alphabet.mdle");
@@ -55,9 +55,10 @@ fn a_declaration_of_the_target_replaces_the_shared_one() {
     let sim = sim();
     let go: Vec<_> = sim.declarations_of("go").collect();
     assert_eq!(go.len(), 1);
-    assert!(go[0].of_target && go[0].params[0].range == Some((-100.0, 100.0)));
-    let avoid: Vec<_> = sim.declarations_of("goAvoid").map(|found| (found.of_target, found.params.len())).collect();
-    assert_eq!(avoid, [(true, 3), (false, 1)]);
+    assert!(go[0].origin == Origin::Target && go[0].params[0].range == Some((-100.0, 100.0)));
+    let avoid: Vec<_> =
+        sim.declarations_of("goAvoid").map(|found| (found.origin.clone(), found.params.len())).collect();
+    assert_eq!(avoid, [(Origin::Target, 3), (Origin::Shared("atoms".into()), 1)]);
 }
 
 #[test]

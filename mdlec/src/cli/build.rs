@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
+use super::bind;
 use super::input::{self, Input, Target};
 use super::{Build, Emit, EmitKind, Failure, report};
 use crate::link::{self, Cache, LinkError, Package, Progress, TargetCrate};
@@ -126,6 +127,9 @@ fn executable(options: &Build, path: &Path, output: Option<PathBuf>) -> Result<(
     let target = input::target(options.target.as_deref())?;
     let input = input::read_plan(path, &target)?;
     let compiled = compile_one(&input, &target, options.name.as_deref(), options.deny_warnings)?;
+    if let Some(folder) = &target.folder {
+        bind::must_be_bound(folder, &target.alphabet)?;
+    }
     let rust = rust_of(&compiled, path, &target);
     let plan_name = compiled.plan.root.name.as_str();
     // Standard input has no name of its own.

@@ -43,6 +43,13 @@ pub(super) fn target(option: Option<&str>) -> Result<Target, Failure> {
     Ok(target)
 }
 
+/// The alphabet of this file, with the shared ones that it uses.
+pub(super) fn alphabet(file: &Path) -> Result<Alphabet, Failure> {
+    let name = file.display().to_string();
+    let text = read_text(file)?;
+    read_alphabets(Some((name.clone(), text)), &name).map(|target| target.alphabet)
+}
+
 /// Reads a plan file; `-` is standard input.
 pub(super) fn read_plan(path: &Path, target: &Target) -> Result<Input, Failure> {
     let text = read_text(path)?;

@@ -1,5 +1,6 @@
 //! The command line: what `mdlec` takes and which room does it; exit statuses as the interfaces say.
 
+mod bind;
 mod build;
 mod check;
 mod input;
@@ -35,6 +36,8 @@ enum Command {
     Targets,
     /// Lists the laws and interrupts that a plan can use
     Quarks(Quarks),
+    /// Writes a target's `src/alphabet.rs`, which holds its crate to its alphabet
+    Bind(Bind),
 }
 
 /// Builds the executable of a plan.
@@ -154,6 +157,15 @@ struct Quarks {
     target: Option<String>,
 }
 
+#[derive(Debug, Args)]
+struct Bind {
+    /// The target's `alphabet.mdle`; `src/alphabet.rs` is beside it
+    alphabet: PathBuf,
+    /// Write nothing; exit status 1 if the file is not up to date
+    #[arg(long)]
+    check: bool,
+}
+
 /// Why a command ends without having done what it was asked: what to say, and the exit status.
 #[derive(Debug)]
 struct Failure {
@@ -181,6 +193,7 @@ pub fn main() -> ExitCode {
         Some(Command::Check(check)) => check::check(&check),
         Some(Command::Trace(trace)) => trace::trace(&trace),
         Some(Command::Targets) => input::print_targets(),
+        Some(Command::Bind(bind)) => bind::bind(&bind),
         Some(Command::Quarks(quarks)) => input::print_quarks(quarks.target.as_deref()),
     };
     match done {

@@ -14,7 +14,7 @@ use super::cargo;
 use super::sources::{self, SHARED, Sources};
 use super::{LinkError, package};
 
-/// The crate of a robot. It implements `mdle_host::Target` for a type that it exports as `alphabet::Target`.
+/// The crate of a robot. It implements `mdle_host::Target` for a type that its root exports as `Target`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TargetCrate<'a> {
     /// One that came with mdlec.

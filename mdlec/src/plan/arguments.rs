@@ -1,7 +1,7 @@
 //! Arguments against a signature: count, type, unit, range (language, section 5, E03xx and E0402).
 
 use super::{Decimal, Value};
-use crate::alphabet::{Declaration, DeclarationKind, Kind, Param, Unit};
+use crate::alphabet::{Declaration, DeclarationKind, Kind, Origin, Param, Unit};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::tree::{Arg, Call, Number};
 
@@ -193,7 +193,7 @@ impl Fitting<'_> {
             None => format!("`{}` is {}{unit}", param.name, number.digits),
             Some(_) => format!("`{}` is {value}{unit}", param.name),
         };
-        if self.declaration.of_target {
+        if self.declaration.origin == Origin::Target {
             let message = format!(
                 "`{}` cannot do this: `{quark}` takes `{}` from {least} to {most}{unit}",
                 self.robot, param.name

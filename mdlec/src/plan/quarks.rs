@@ -55,15 +55,15 @@ impl<'a> Quarks<'a> {
         candidates.sort_by_key(|(_, declaration)| !is_meant(call, declaration));
         let mut wrong = None;
         for (overload, declaration) in candidates {
-            match fit(call, declaration, &self.alphabet.name) {
-                Ok(arguments) => {
-                    self.available(call, declaration)?;
-                    return Ok(self.intern(declaration, overload, arguments));
-                }
-                Err(found) => wrong = wrong.or(Some(found)),
+            let fitted = fit(call, declaration, &self.alphabet.name);
+            match fitted.and_then(|arguments| self.available(call, declaration).map(|()| arguments)) {
+                Ok(arguments) => return Ok(self.intern(declaration, overload, arguments)),
+                Err(found) => wrong = wrong.or(Some((declaration, found))),
             }
         }
-        Err(wrong.unwrap_or_default())
+        let Some((declaration, found)) = wrong else { return Err(Vec::new()) };
+        let declared = |found: Diagnostic| found.also(declaration.span, format!("`{name}` is declared here"));
+        Err(found.into_iter().map(declared).collect())
     }
 
     fn intern(&mut self, declaration: &Declaration, overload: usize, arguments: Arguments) -> QuarkId {

@@ -10,6 +10,9 @@ const TYPES: &[&str] = &[
     "At", "Atom", "Begin", "Bracket", "Cause", "Cursor", "Debug", "Default", "Fsm", "Input", "Nanos", "None", "Option",
     "Output", "Plan", "Running", "Self", "Some",
 ];
+/// What a bound alphabet has beside its quarks, and what its text uses of Rust's own.
+const BOUND: &[&str] =
+    &["Input", "Output", "Alphabet", "AnyInterrupt", "AnyControl", "AnyLaw", "Debug", "None", "Option", "Self", "Some"];
 /// The constants that it has in any case.
 const CONSTANTS: &[&str] = &["FSM", "LAWS", "CONDITIONS", "NAMES"];
 /// Its other function, the names of arguments and variables, which would hide a function, and the keyword that syn does
@@ -27,6 +30,7 @@ pub fn plan_type(plan: &str) -> String {
 /// number: `GoAvoid`, `GoAvoid2`.
 pub(super) fn quark_type(name: &str, overload: usize) -> Ident {
     let name = camel_case(name);
+    let name = if BOUND.contains(&name.as_str()) { format!("{name}Quark") } else { name };
     if overload == 0 { format_ident!("{name}") } else { format_ident!("{name}{}", overload + 1) }
 }
 
@@ -54,6 +58,11 @@ impl Distinct {
         Self::beside(FUNCTIONS)
     }
 
+    /// Names of a function's parameters.
+    pub(super) fn parameters() -> Self {
+        Self::beside(&[])
+    }
+
     fn beside(taken: &[&str]) -> Self {
         Self { taken: taken.iter().map(|name| (*name).to_owned()).collect(), numbers: BTreeMap::new() }
     }
@@ -70,6 +79,13 @@ impl Distinct {
     pub(super) fn scope_function(&mut self, scope: &str) -> Ident {
         let name = snake_case(scope);
         let name = if syn::parse_str::<Ident>(&name).is_ok() { name } else { format!("{name}_scope") };
+        self.distinct(&name)
+    }
+
+    /// A parameter of a quark, after its name in the alphabet.
+    pub(super) fn parameter(&mut self, name: &str) -> Ident {
+        let name = snake_case(name);
+        let name = if syn::parse_str::<Ident>(&name).is_ok() { name } else { format!("{name}_") };
         self.distinct(&name)
     }
 

@@ -8,10 +8,8 @@ use mdle_host::clap::{ArgMatches, Command};
 use mdle_host::{Hosted, Pace, Refusal, Time};
 use mdle_runtime::Robot;
 
-/// What emitted code refers to.
-pub mod alphabet {
-    pub use crate::Rover as Target;
-}
+/// What the program refers to.
+pub use Rover as Target;
 
 /// The robot.
 #[derive(Debug)]

@@ -13,6 +13,7 @@
 #[cfg(test)]
 extern crate std;
 
+mod alphabet;
 pub mod capability;
 mod cursor;
 pub mod fsm;
@@ -20,6 +21,7 @@ mod machine;
 mod pose;
 mod quark;
 mod robot;
+mod rows;
 mod sonar;
 #[cfg(test)]
 mod tests;
@@ -27,12 +29,14 @@ mod time;
 pub mod trace;
 mod units;
 
+pub use alphabet::{Alphabet, Argument};
 pub use cursor::{Cursor, Slots};
 pub use fsm::Fsm;
 pub use machine::{Cause, Machine, Plan, TRANSITIONS_PER_TURN, Transition, Turn, Watch};
 pub use pose::{Frame, Pose, Twist};
 pub use quark::{Begin, Completes, Control, Interrupt, Law};
 pub use robot::{Output, Robot};
+pub use rows::{Condition, InRows, LawRow, Rows, Texts};
 pub use sonar::{PINGS_KEPT, Ping, Pings, SONARS, SonarId};
 pub use time::Nanos;
 pub use units::{Bits, Meters, MetersPerSecond, Radians, RadiansPerSecond, Volts};

@@ -1,6 +1,6 @@
 //! The simulated robot as a target: a differential drive with bumper, odometry and sixteen sonars in a flat world.
 //!
-//! For generated code: [`Sim`], which the host runs a plan on, and [`alphabet`], the quarks this robot has.
+//! For generated code: [`Target`], which the host runs a plan on, and [`alphabet`], the quarks this robot has.
 //! For tests and tools: [`World`], [`Simulated`] and [`Sensed`].
 //!
 //! Nothing here depends on the machine it runs on: no wall clock, no platform trigonometry, no unordered maps. Two
@@ -12,6 +12,7 @@ mod body;
 mod options;
 mod output;
 mod plot;
+pub mod quarks;
 mod robot;
 mod sonar;
 mod start;
@@ -22,9 +23,15 @@ mod whole_file;
 mod world;
 mod world_file;
 
+/// The robot's input.
+pub use mdle_runtime::Twist as Input;
 pub use output::Sensed;
+/// Its output.
+pub use output::Sensed as Output;
 pub use robot::{Fault, Simulated};
 pub use start::{Start, StartError};
 pub use target::Sim;
+/// What the host runs a plan on.
+pub use target::Sim as Target;
 pub use world::{Outline, Place, World};
 pub use world_file::WorldError;

@@ -6,18 +6,18 @@ use mdle_host::clap::{ArgMatches, Command};
 use mdle_host::{Refusal, Target, Time};
 use mdle_runtime::Pose;
 
-use crate::options;
 use crate::robot::Simulated;
 use crate::start::Start;
 use crate::whole_file::WholeFile;
+use crate::{alphabet, options};
 
 /// The target `sim`.
 #[derive(Debug, Clone, Copy)]
 pub struct Sim;
 
 impl Target for Sim {
-    const NAME: &'static str = "sim";
-    const PERIOD: Duration = Duration::from_millis(100);
+    const NAME: &'static str = alphabet::NAME;
+    const PERIOD: Duration = Duration::from_nanos(alphabet::PERIOD.0);
     type Robot = Simulated;
 
     fn arguments(command: Command) -> Command {

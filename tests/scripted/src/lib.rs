@@ -8,6 +8,7 @@ extern crate alloc;
 
 pub mod alphabet;
 mod drive;
+pub mod quarks;
 mod reports;
 
 pub use drive::drive;

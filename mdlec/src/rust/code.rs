@@ -1,17 +1,73 @@
-//! What the atoms and scopes of a plan mean, as Rust: quarks as constants, laws as variants, interrupts as functions.
+//! A plan as code: quarks as constants, laws as variants, interrupts as functions that ask the scopes around them first.
 
 use mdle_runtime::fsm::Kind;
 use proc_macro2::{Ident, Literal, TokenStream};
-use quote::{format_ident, quote};
+use quote::quote;
 
+use super::arguments::{angle, made};
 use super::names::{Distinct, atom_variant, quark_type};
-use crate::alphabet::{self, Alphabet};
 use crate::fsm::{LawMeaning, Lowered};
-use crate::plan::{Condition, Quark, QuarkId, Value, frame_text, in_degrees};
+use crate::plan::{Condition, Quark, QuarkId, frame_text};
 
-/// The crate of the target, as Rust writes its name.
-pub(super) fn target_crate(alphabet: &Alphabet) -> Ident {
-    format_ident!("{}", alphabet.crate_name.replace('-', "_"))
+/// The plan's type and its implementation.
+pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered) -> TokenStream {
+    let meaning = Meaning::new(lowered);
+    let constants = meaning.constants();
+    let running = meaning.running();
+    let implementation = implementation(plan, lowered, &meaning);
+    let scopes = meaning.scope_functions();
+    quote! {
+        #[doc = #doc]
+        #[derive(Debug)]
+        pub struct #plan { running: Running }
+
+        impl #plan {
+            #[doc = " The plan before it begins."]
+            #[must_use]
+            pub const fn new() -> Self { Self { running: Running::Idle } }
+        }
+
+        impl Default for #plan {
+            fn default() -> Self { Self::new() }
+        }
+
+        #constants
+        #running
+        #implementation
+        #scopes
+    }
+}
+
+/// `impl Plan for LabTour`: what the machine asks of a plan.
+fn implementation(plan: &Ident, lowered: &Lowered, meaning: &Meaning<'_>) -> TokenStream {
+    let [levels, slots] = [lowered.levels, lowered.slots].map(Literal::usize_unsuffixed);
+    let enter = meaning.enter();
+    let fired = meaning.fired();
+    let input = meaning.input();
+    quote! {
+        impl runtime::Plan for #plan {
+            type Output = Output;
+            type Input = Input;
+            type Entered = [Nanos; #levels];
+            type Left = [u64; #slots];
+
+            fn fsm(&self) -> Fsm<'_> { FSM }
+            fn slots(&self) -> (Self::Entered, Self::Left) { ([Nanos::ZERO; #levels], [0; #slots]) }
+            #enter
+            #fired
+            #input
+            fn law(&self, atom: u32) -> &str { text(LAWS, atom) }
+            fn condition(&self, scope: u32) -> &str { text(CONDITIONS, scope) }
+            fn name(&self, scope: u32) -> &str { text(NAMES, scope) }
+        }
+
+        #[doc = " The cursor of this plan: its levels of scopes and of loops are known."]
+        type At = Cursor<[Nanos; #levels], [u64; #slots]>;
+
+        fn text(texts: &'static [&'static str], index: u32) -> &'static str {
+            texts.get(index as usize).copied().unwrap_or("")
+        }
+    }
 }
 
 /// A plan's meaning with the names that its constants and functions have.
@@ -45,11 +101,11 @@ impl<'a> Meaning<'a> {
         let quarks = self.lowered.quarks.iter().zip(&self.constants).filter(|(quark, _)| quark.name != "wait");
         let constants = quarks.map(|(quark, constant)| {
             let kind = quark_type(&quark.name, quark.overload);
-            let arguments = quark.args.iter().map(argument);
+            let value = made(quark);
             let doc = format!(" `{}`", quark.text);
             quote! {
                 #[doc = #doc]
-                const #constant: robot::#kind = robot::#kind::new(#(#arguments),*);
+                const #constant: robot::#kind = #value;
             }
         });
         quote!(#(#constants)*)
@@ -63,7 +119,7 @@ impl<'a> Meaning<'a> {
             let doc = format!(" {}", self.atom_text(atom, law, quark));
             quote! {
                 #[doc = #doc]
-                #variant(<robot::#kind as ::mdle_runtime::Control<Output>>::Law)
+                #variant(<robot::#kind as runtime::Control<Output>>::Law)
             }
         });
         quote! {
@@ -84,7 +140,7 @@ impl<'a> Meaning<'a> {
             let variant = atom_variant(atom);
             let constant = &self.constants[law.quark.0 as usize];
             let begin = turned(law.frame);
-            quote!(#number => Running::#variant(::mdle_runtime::Control::begin(&#constant, y, #begin)))
+            quote!(#number => Running::#variant(runtime::Control::begin(&#constant, y, #begin)))
         });
         quote! {
             fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
@@ -106,7 +162,7 @@ impl<'a> Meaning<'a> {
                 self.condition(bracket, level).map(|fired| quote!((#fired).then_some(Cause::Fired(#level))));
             let completion = quark
                 .completes
-                .then(|| quote!(::mdle_runtime::Completes::completed(law, y, t).then_some(Cause::Completed(#level))));
+                .then(|| quote!(runtime::Completes::completed(law, y, t).then_some(Cause::Completed(#level))));
             let law = if quark.completes { quote!(law) } else { quote!(_) };
             let asked = in_order(self.around(bracket).into_iter().chain(interrupt).chain(completion));
             quote!(Running::#variant(#law) => #asked)
@@ -128,7 +184,7 @@ impl<'a> Meaning<'a> {
             fn input(&mut self, y: &Output, t: Nanos) -> Input {
                 match &mut self.running {
                     Running::Idle => Input::default(),
-                    #(Running::#variants(law) => ::mdle_runtime::Law::input(law, y, t),)*
+                    #(Running::#variants(law) => runtime::Law::input(law, y, t),)*
                 }
             }
         }
@@ -182,7 +238,7 @@ impl<'a> Meaning<'a> {
             Condition::Null => quote!(false),
             Condition::Quark(QuarkId(id)) => {
                 let constant = &self.constants[*id as usize];
-                quote!(::mdle_runtime::Interrupt::fired(&#constant, y))
+                quote!(runtime::Interrupt::fired(&#constant, y))
             }
             Condition::Wait { nanos, .. } => {
                 let nanos = Literal::u64_unsuffixed(*nanos);
@@ -254,63 +310,4 @@ fn turned(frame: f64) -> TokenStream {
     }
     let angle = angle(frame);
     quote!(begin.turned(#angle))
-}
-
-/// An angle, in degrees where that gives the same value.
-fn angle(radians: f64) -> TokenStream {
-    if let Some(degrees) = in_degrees(radians) {
-        let degrees = number(degrees);
-        return quote!(::mdle_runtime::Radians::from_degrees(#degrees));
-    }
-    let radians = number(radians);
-    quote!(::mdle_runtime::Radians(#radians))
-}
-
-/// A number with its sign apart, as Rust's syntax has it.
-fn number(value: f64) -> TokenStream {
-    let digits = Literal::f64_unsuffixed(value.abs());
-    if value.is_sign_negative() { quote!(-#digits) } else { quote!(#digits) }
-}
-
-/// An argument as its unit type.
-fn argument(value: &Value) -> TokenStream {
-    use alphabet::Kind;
-    match value {
-        Value::Quantity { kind, exact, family } => {
-            let si = exact.to_f64() * alphabet::family_to_si(family);
-            let number = number(si);
-            match kind {
-                Kind::Length => quote!(::mdle_runtime::Meters(#number)),
-                Kind::Speed => quote!(::mdle_runtime::MetersPerSecond(#number)),
-                Kind::Angle => angle(si),
-                Kind::AngularRate => quote!(::mdle_runtime::RadiansPerSecond(#number)),
-                Kind::Voltage => quote!(::mdle_runtime::Volts(#number)),
-                Kind::Time => {
-                    let nanos = Literal::u64_unsuffixed(exact.to_nanos().unwrap_or(u64::MAX));
-                    quote!(::mdle_runtime::Nanos(#nanos))
-                }
-                Kind::Frequency
-                | Kind::Number
-                | Kind::Integer
-                | Kind::Count
-                | Kind::Bits(_)
-                | Kind::Sonar
-                | Kind::Robot
-                | Kind::Module
-                | Kind::File => quote!(#number),
-            }
-        }
-        Value::Infinity(Kind::Time) => quote!(::mdle_runtime::Nanos::MAX),
-        Value::Infinity(_) => quote!(u64::MAX),
-        Value::Bits(bits) => quote!(::mdle_runtime::Bits([#(#bits),*])),
-        Value::Integer(whole) => {
-            let digits = Literal::u64_unsuffixed(whole.unsigned_abs());
-            if *whole < 0 { quote!(-#digits) } else { quote!(#digits) }
-        }
-        Value::Sonar(sonar) => {
-            let sonar = Literal::u8_unsuffixed(*sonar);
-            quote!(::mdle_runtime::SonarId::new(#sonar))
-        }
-        Value::Name(_, name) => quote!(#name),
-    }
 }

@@ -1,0 +1,54 @@
+//! `mdlec bind`: a target's `src/alphabet.rs` from its `alphabet.mdle`.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::{Bind, Failure, input, report};
+use crate::alphabet::Alphabet;
+use crate::{link, rust};
+
+/// Writes `src/alphabet.rs` beside the alphabet, or says whether it is up to date.
+pub(super) fn bind(options: &Bind) -> Result<(), Failure> {
+    let file = &options.alphabet;
+    let alphabet = input::alphabet(file)?;
+    if alphabet.crate_name.is_empty() {
+        return Err(Failure::usage(format!(
+            "`{}` is a shared alphabet, which targets `use`: only a target's own is bound to a crate",
+            file.display()
+        )));
+    }
+    let text = rust::bind(&alphabet);
+    let bound = bound(file);
+    if fs::read(&bound).is_ok_and(|found| found == text.as_bytes()) {
+        report::note(format_args!("{} is up to date", bound.display()));
+        return Ok(());
+    }
+    if options.check {
+        return Err(Failure { status: 1, message: Some(out_of_date(file)) });
+    }
+    link::write_whole(&bound, text.as_bytes())
+        .map_err(|error| Failure { status: error.exit_status(), message: Some(error.to_string()) })?;
+    report::note(format_args!("{} is written", bound.display()));
+    Ok(())
+}
+
+/// Exit status 2 if the crate of the target in `folder` is not bound to this alphabet: nothing can be built for it.
+pub(super) fn must_be_bound(folder: &Path, alphabet: &Alphabet) -> Result<(), Failure> {
+    let file = folder.join("alphabet.mdle");
+    let is_up_to_date = fs::read(bound(&file)).is_ok_and(|found| found == rust::bind(alphabet).as_bytes());
+    if is_up_to_date { Ok(()) } else { Err(Failure::usage(out_of_date(&file))) }
+}
+
+/// The Rust of an alphabet.
+fn bound(file: &Path) -> PathBuf {
+    file.with_file_name("src").join("alphabet.rs")
+}
+
+fn out_of_date(file: &Path) -> String {
+    let (rust, file) = (bound(file), file.display());
+    let bound = rust.display();
+    if !rust.is_file() {
+        return format!("there is no `{bound}`\nhelp: `mdlec bind {file}` writes it");
+    }
+    format!("`{bound}` is not what `{file}` says\nhelp: `mdlec bind {file}` writes it anew")
+}

@@ -1,0 +1,73 @@
+//! Quarks and their arguments as Rust values, in SI units.
+
+use proc_macro2::{Literal, TokenStream};
+use quote::quote;
+
+use super::names::quark_type;
+use crate::alphabet::{Kind, family_to_si};
+use crate::plan::{Quark, Value, in_degrees};
+
+/// `robot::Go::new(…)`: a quark made of its arguments, for a constant.
+pub(super) fn made(quark: &Quark) -> TokenStream {
+    let kind = quark_type(&quark.name, quark.overload);
+    let arguments = quark.args.iter().map(argument);
+    quote!(robot::#kind::new(#(#arguments),*))
+}
+
+/// An angle, in degrees where that gives the same value.
+pub(super) fn angle(radians: f64) -> TokenStream {
+    if let Some(degrees) = in_degrees(radians) {
+        let degrees = number(degrees);
+        return quote!(runtime::Radians::from_degrees(#degrees));
+    }
+    let radians = number(radians);
+    quote!(runtime::Radians(#radians))
+}
+
+/// A number with its sign apart, as Rust's syntax has it.
+fn number(value: f64) -> TokenStream {
+    let digits = Literal::f64_unsuffixed(value.abs());
+    if value.is_sign_negative() { quote!(-#digits) } else { quote!(#digits) }
+}
+
+/// An argument as its unit type.
+fn argument(value: &Value) -> TokenStream {
+    match value {
+        Value::Quantity { kind, exact, family } => {
+            let si = exact.to_f64() * family_to_si(family);
+            let number = number(si);
+            match kind {
+                Kind::Length => quote!(runtime::Meters(#number)),
+                Kind::Speed => quote!(runtime::MetersPerSecond(#number)),
+                Kind::Angle => angle(si),
+                Kind::AngularRate => quote!(runtime::RadiansPerSecond(#number)),
+                Kind::Voltage => quote!(runtime::Volts(#number)),
+                Kind::Time => {
+                    let nanos = Literal::u64_unsuffixed(exact.to_nanos().unwrap_or(u64::MAX));
+                    quote!(runtime::Nanos(#nanos))
+                }
+                Kind::Frequency
+                | Kind::Number
+                | Kind::Integer
+                | Kind::Count
+                | Kind::Bits(_)
+                | Kind::Sonar
+                | Kind::Robot
+                | Kind::Module
+                | Kind::File => quote!(#number),
+            }
+        }
+        Value::Infinity(Kind::Time) => quote!(runtime::Nanos::MAX),
+        Value::Infinity(_) => quote!(u64::MAX),
+        Value::Bits(bits) => quote!(runtime::Bits([#(#bits),*])),
+        Value::Integer(whole) => {
+            let digits = Literal::u64_unsuffixed(whole.unsigned_abs());
+            if *whole < 0 { quote!(-#digits) } else { quote!(#digits) }
+        }
+        Value::Sonar(sonar) => {
+            let sonar = Literal::u8_unsuffixed(*sonar);
+            quote!(runtime::SonarId::new(#sonar))
+        }
+        Value::Name(_, name) => quote!(#name),
+    }
+}

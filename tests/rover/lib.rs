@@ -1,0 +1,63 @@
+//! A robot as a third party would write it: its battery runs down by a volt a turn.
+#![forbid(unsafe_code)]
+
+pub mod alphabet;
+pub mod quarks;
+
+use std::convert::Infallible;
+use std::time::Duration;
+
+use mdle_host::clap::{ArgMatches, Command};
+use mdle_host::{Hosted, Pace, Refusal, Time};
+use mdle_runtime::{Robot, Volts};
+
+pub use Rover as Target;
+pub use Sensed as Output;
+
+/// Its input: a number.
+pub type Input = i64;
+
+/// The robot.
+#[derive(Debug)]
+pub struct Rover(Volts);
+
+/// Its output.
+#[derive(Debug)]
+pub struct Sensed(pub Volts);
+
+impl mdle_runtime::Output for Sensed {}
+
+impl Robot for Rover {
+    type Output = Sensed;
+    type Input = i64;
+    type Error = Infallible;
+
+    fn exchange(&mut self, _: &i64) -> Result<Sensed, Infallible> {
+        self.0.0 -= 1.0;
+        Ok(Sensed(self.0))
+    }
+
+    fn stop(&mut self) -> Result<(), Infallible> {
+        Ok(())
+    }
+}
+
+impl Hosted for Rover {}
+
+impl mdle_host::Target for Rover {
+    const NAME: &'static str = alphabet::NAME;
+    const PERIOD: Duration = Duration::from_nanos(alphabet::PERIOD.0);
+    type Robot = Self;
+
+    fn arguments(command: Command) -> Command {
+        command
+    }
+
+    fn time(_: &ArgMatches) -> Result<Time, String> {
+        Ok(Time::Stepped(Pace::Max))
+    }
+
+    fn connect(_: &ArgMatches, _: Duration) -> Result<Self, Refusal> {
+        Ok(Self(Volts(14.0)))
+    }
+}

@@ -1,0 +1,121 @@
+//! The quarks of `alphabet.mdle`: interrupts that read the script, laws that leave their number in the input.
+
+use mdle_runtime::{
+    Begin, Bits, Completes, Control, Interrupt, Law, Meters, MetersPerSecond, Nanos, Radians, RadiansPerSecond,
+    SonarId, Volts,
+};
+
+use crate::reports::number;
+use crate::{Input, LAWS, Output};
+
+/// Declares interrupts: the type, the name in the alphabet, the parameters, and the arguments in default units.
+macro_rules! interrupts {
+    ($($name:ident $text:literal ($($arg:ident: $type:ty),*) [$($value:expr),*];)*) => {$(
+        #[doc = concat!("The interrupt `", $text, "`.")]
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub struct $name { $($arg: $type),* }
+
+        impl $name {
+            /// The interrupt with its arguments.
+            #[must_use]
+            #[allow(clippy::new_without_default, reason = "as bound alphabets have it")]
+            pub const fn new($($arg: $type),*) -> Self {
+                Self { $($arg),* }
+            }
+        }
+
+        impl Interrupt<Output> for $name {
+            fn fired(&self, y: &Output) -> bool {
+                let Self { $($arg),* } = *self;
+                y.has_fired($text, &[$($value),*])
+            }
+        }
+    )*};
+}
+
+interrupts! {
+    A "a" () [];
+    B "b" () [];
+    C "c" () [];
+    D "d" () [];
+    E "e" () [];
+    F "f" () [];
+    FarOff "farOff" (range: Meters) [range.0];
+    Faster "faster" (than: MetersPerSecond) [than.0 * 100.0];
+    Facing "facing" (bearing: Radians) [bearing.degrees()];
+    Spinning "spinning" (rate: RadiansPerSecond) [rate.0];
+    LowBattery "low_battery" (limit: Volts) [limit.0];
+    Pattern "pattern" (bits: Bits<4>) [bits.0.iter().fold(0.0, |digits, bit| digits * 10.0 + f64::from(u8::from(*bit)))];
+    Echo "echo" (sonar: SonarId) [sonar.number() as f64];
+    Beyond "beyond" (ratio: f64, times: i64) [ratio, times as f64];
+}
+
+/// Declares laws as interrupts are declared, and what they become when their atom begins.
+macro_rules! laws {
+    ($($name:ident $text:literal ($($arg:ident: $type:ty),*) [$($value:expr),*] $law:ident;)*) => {$(
+        #[doc = concat!("The law `", $text, "`.")]
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub struct $name { $($arg: $type),* }
+
+        impl $name {
+            /// The law with its arguments.
+            #[must_use]
+            #[allow(clippy::new_without_default, reason = "as bound alphabets have it")]
+            pub const fn new($($arg: $type),*) -> Self {
+                Self { $($arg),* }
+            }
+        }
+
+        impl Control<Output> for $name {
+            type Law = $law;
+
+            fn begin(&self, _: &Output, begin: Begin) -> $law {
+                let Self { $($arg),* } = *self;
+                let number = number(LAWS, $text, &[$($value),*]);
+                $law(Input { law: number, began: begin.now, computed: 0 })
+            }
+        }
+    )*};
+}
+
+laws! {
+    Idle "idle" () [] Endless;
+    Drift "drift" () [] Endless;
+    Drive "drive" (v: MetersPerSecond, omega: RadiansPerSecond) [v.0 * 100.0, omega.0] Endless;
+    Seek "seek" () [] Finite;
+    Climb "climb" () [] Finite;
+    Veer "veer" (by: Radians) [by.degrees()] Finite;
+    Wander "wander" (radius: Meters, pause: Nanos) [radius.0, pause.seconds()] Finite;
+}
+
+/// A law that runs until an interrupt fires.
+#[derive(Debug, Clone, Copy)]
+pub struct Endless(Input);
+
+/// A law that runs until the script says that it is done.
+#[derive(Debug, Clone, Copy)]
+pub struct Finite(Input);
+
+impl Law<Output> for Endless {
+    type Input = Input;
+
+    fn input(&mut self, _: &Output, _: Nanos) -> Input {
+        self.0.computed = self.0.computed.saturating_add(1);
+        self.0
+    }
+}
+
+impl Law<Output> for Finite {
+    type Input = Input;
+
+    fn input(&mut self, _: &Output, _: Nanos) -> Input {
+        self.0.computed = self.0.computed.saturating_add(1);
+        self.0
+    }
+}
+
+impl Completes<Output> for Finite {
+    fn completed(&self, y: &Output, _: Nanos) -> bool {
+        self.0.law.is_some_and(|law| y.is_completed(law))
+    }
+}

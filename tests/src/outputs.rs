@@ -1,0 +1,25 @@
+//! Scripts as the target `scripted` takes them: an output for each turn.
+
+use std::collections::BTreeSet;
+
+use mdle_runtime::Nanos;
+use mdle_scripted::{INTERRUPTS, LAWS, Output};
+use mdlec::trace::Script;
+
+/// The times and outputs of a script's turns.
+#[must_use]
+pub fn outputs(script: &Script) -> Vec<(Nanos, Output)> {
+    let turns = script.turns().iter();
+    turns
+        .map(|reports| {
+            let output = Output { fired: bits(INTERRUPTS, &reports.fired), completed: bits(LAWS, &reports.completed) };
+            (reports.t, output)
+        })
+        .collect()
+}
+
+/// Bit `i` says whether text `i` is among those that were said.
+fn bits(texts: &[&str], said: &BTreeSet<String>) -> u64 {
+    let bits = texts.iter().zip(0..).filter(|(text, _)| said.contains(**text));
+    bits.fold(0, |number, (_, bit)| number | 1 << bit)
+}
