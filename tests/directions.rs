@@ -13,6 +13,7 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("targets/sim", &["mdle-runtime", "mdle-host", "mdle-atoms"]),
     ("tests", &["mdle-runtime", "mdle-host", "mdle-atoms", "mdle-sim", "mdle-scripted", "mdlec"]),
     ("tests/scripted", &["mdle-runtime"]),
+    ("tests/benchmarks", &["mdle-tests", "mdlec"]),
 ];
 
 /// What each room of the compiler may use of the others. `crate` is what `lib.rs` itself holds.

@@ -1,0 +1,9 @@
+//! What the benchmarks work on, and what they are measured against; `benches/` holds one file for each subject.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a benchmark fails by panicking")]
+
+pub mod bare;
+pub mod front_end;
+pub mod plan_text;
+#[cfg(test)]
+mod tests;
