@@ -64,11 +64,14 @@ fn compare(seed: u64, text: &str, script: &str, seen: &mut Seen) {
             panic!("seed {seed}: {}", difference((reference, tree), (machine, trace), text, script));
         }
     }
-    let loaded = Loaded::new(&compiled.lowered);
-    let mut printed = String::new();
-    drive(loaded.plan(), &outputs(&turns), &mut printed).expect("room for the trace");
     let expected: String = tree.iter().map(|line| format!("{line}\n")).collect();
-    assert!(printed == expected, "seed {seed}\n{reference}:\n{expected}loaded:\n{printed}{text}\n{script}");
+    for foresight in [true, false] {
+        let loaded = Loaded::new(&compiled.lowered, foresight);
+        let rows = loaded.rows();
+        let mut printed = String::new();
+        drive(|| loaded.plan(&rows), &outputs(&turns), &mut printed).expect("room for the trace");
+        assert!(printed == expected, "seed {seed}\n{reference}:\n{expected}loaded:\n{printed}{text}\n{script}");
+    }
     seen.plans += 1;
     seen.repeated += usize::from(compiled.nondegenerate.plan() != &compiled.plan);
     for Line { outcome: Outcome { applied, fired, .. }, .. } in tree {

@@ -130,7 +130,7 @@ impl Package {
             package.file(&format!("src/plan_{number}.rs"), &emit_as(shape, &compiled.lowered, header, scripted()));
             writeln!(library, "\n/// Plan {number}.\npub mod plan_{number};").unwrap();
             let plan = plan_type(case.root);
-            writeln!(arms, "        {number} => drive(emitted::plan_{number}::{plan}::new(), script, trace),").unwrap();
+            writeln!(arms, "        {number} => drive(emitted::plan_{number}::{plan}::new, script, trace),").unwrap();
         }
         package.file("src/lib.rs", &library);
         package.file("src/main.rs", &MAIN.replace("ARMS", &arms));

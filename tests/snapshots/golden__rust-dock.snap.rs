@@ -13,7 +13,7 @@ pub use machine::Dock;
 mod machine {
     use ::mdle_runtime as runtime;
     use ::mdle_runtime::fsm::{Atom, Bracket};
-    use ::mdle_runtime::{Begin, Cause, Cursor, Fsm, Nanos};
+    use ::mdle_runtime::{Begin, Cause, Cursor, Ending, Fsm, Nanos, Next};
     use ::mdle_sim::alphabet::{self as robot, Input, Output};
     const _: () = assert!(
         robot::HASH == 0x18e7cb8d94f135d4,
@@ -89,32 +89,66 @@ mod machine {
                 _ => Running::Idle,
             };
         }
-        fn fired(&self, cursor: &At, y: &Output, t: Nanos) -> Option<Cause> {
+        #[inline(always)]
+        fn next(
+            &mut self,
+            cursor: &mut At,
+            y: &Output,
+            begin: Begin,
+            direct: bool,
+        ) -> Next {
+            let t = begin.now;
             match &self.running {
-                Running::Idle => None,
+                Running::Idle => {}
                 Running::Atom1(_) => {
-                    dock(cursor, y, t)
-                        .or_else(|| {
-                            (runtime::Interrupt::fired(&AT_ISECTION_1000, y)
-                                | (cursor.since(1u16, t) >= Nanos(20000000000)))
-                                .then_some(Cause::Fired(1u16))
-                        })
+                    if let Some(ending) = dock(cursor, y, t) {
+                        return Next::Ends(ending);
+                    }
+                    if runtime::Interrupt::fired(&AT_ISECTION_1000, y)
+                        | (cursor.since(1u16, t) >= Nanos(20000000000))
+                    {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Fired(1u16).into(),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
                 }
                 Running::Atom2(_) => {
-                    shake(cursor, y, t)
-                        .or_else(|| {
-                            (cursor.since(2u16, t) >= Nanos(500000000))
-                                .then_some(Cause::Fired(2u16))
-                        })
+                    if let Some(ending) = shake(cursor, y, t) {
+                        return Next::Ends(ending);
+                    }
+                    if cursor.since(2u16, t) >= Nanos(500000000) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Fired(2u16).then(runtime::Follows::new(2, 2, 3)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
                 }
                 Running::Atom3(law) => {
-                    shake(cursor, y, t)
-                        .or_else(|| {
-                            runtime::Completes::completed(law, y, t)
-                                .then_some(Cause::Completed(2u16))
-                        })
+                    if let Some(ending) = shake(cursor, y, t) {
+                        return Next::Ends(ending);
+                    }
+                    if runtime::Completes::completed(law, y, t) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Completed(2u16).into(),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
                 }
             }
+            Next::Stays
         }
         fn input(&mut self, y: &Output, t: Nanos) -> Input {
             match &mut self.running {
@@ -142,17 +176,22 @@ mod machine {
     }
 
     /// Dock (bumper), and the scopes around it first.
-    fn dock(cursor: &At, y: &Output, t: Nanos) -> Option<Cause> {
-        (runtime::Interrupt::fired(&BUMPER, y)).then_some(Cause::Fired(0u16))
+    fn dock(cursor: &At, y: &Output, t: Nanos) -> Option<Ending> {
+        if runtime::Interrupt::fired(&BUMPER, y) {
+            return Some(Cause::Fired(0u16).then(runtime::Follows::new(3, 0, 0)));
+        }
+        None
     }
 
     /// Shake (wait 15), and the scopes around it first.
-    fn shake(cursor: &At, y: &Output, t: Nanos) -> Option<Cause> {
-        dock(cursor, y, t)
-            .or_else(|| {
-                (cursor.since(1u16, t) >= Nanos(15000000000))
-                    .then_some(Cause::Fired(1u16))
-            })
+    fn shake(cursor: &At, y: &Output, t: Nanos) -> Option<Ending> {
+        if let Some(ending) = dock(cursor, y, t) {
+            return Some(ending);
+        }
+        if cursor.since(1u16, t) >= Nanos(15000000000) {
+            return Some(Cause::Fired(1u16).then(runtime::Follows::new(3, 0, 0)));
+        }
+        None
     }
 
     /// Scopes and loops in pre-order, the atoms as written, the termination state.

@@ -13,7 +13,7 @@ pub use machine::LabTour;
 mod machine {
     use ::mdle_runtime as runtime;
     use ::mdle_runtime::fsm::{Atom, Bracket};
-    use ::mdle_runtime::{Begin, Cause, Cursor, Fsm, Nanos};
+    use ::mdle_runtime::{Begin, Cause, Cursor, Ending, Fsm, Nanos, Next};
     use ::mdle_sim::alphabet::{self as robot, Input, Output};
     const _: () = assert!(
         robot::HASH == 0x18e7cb8d94f135d4,
@@ -221,129 +221,284 @@ mod machine {
                 _ => Running::Idle,
             };
         }
-        fn fired(&self, cursor: &At, y: &Output, t: Nanos) -> Option<Cause> {
+        #[inline(always)]
+        fn next(
+            &mut self,
+            cursor: &mut At,
+            y: &Output,
+            begin: Begin,
+            direct: bool,
+        ) -> Next {
+            let t = begin.now;
             match &self.running {
-                Running::Idle => None,
+                Running::Idle => {}
                 Running::Atom1(law) => {
-                    lab2_to_lab1_plan(cursor, y, t)
-                        .or_else(|| {
-                            (runtime::Interrupt::fired(&AT_ISECTION_0100, y))
-                                .then_some(Cause::Fired(2u16))
-                        })
-                        .or_else(|| {
-                            runtime::Completes::completed(law, y, t)
-                                .then_some(Cause::Completed(2u16))
-                        })
+                    if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
+                        return Next::Ends(ending);
+                    }
+                    if runtime::Interrupt::fired(&AT_ISECTION_0100, y) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Fired(2u16).then(runtime::Follows::new(1, 2, 3)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
+                    if runtime::Completes::completed(law, y, t) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Completed(2u16).then(runtime::Follows::new(1, 2, 3)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
                 }
                 Running::Atom2(_) => {
-                    lab2_to_lab1_plan(cursor, y, t)
-                        .or_else(|| {
-                            (runtime::Interrupt::fired(&AT_ISECTION_0010, y))
-                                .then_some(Cause::Fired(2u16))
-                        })
+                    if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
+                        return Next::Ends(ending);
+                    }
+                    if runtime::Interrupt::fired(&AT_ISECTION_0010, y) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Fired(2u16).then(runtime::Follows::new(2, 2, 3)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
                 }
                 Running::Atom3(law) => {
-                    lab2_to_lab1_plan(cursor, y, t)
-                        .or_else(|| {
-                            runtime::Completes::completed(law, y, t)
-                                .then_some(Cause::Completed(2u16))
-                        })
+                    if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
+                        return Next::Ends(ending);
+                    }
+                    if runtime::Completes::completed(law, y, t) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Completed(2u16).then(runtime::Follows::new(3, 2, 3)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
                 }
                 Running::Atom4(law) => {
-                    lab2_to_lab1_plan(cursor, y, t)
-                        .or_else(|| {
-                            (runtime::Interrupt::fired(&AT_ISECTION_1000, y))
-                                .then_some(Cause::Fired(2u16))
-                        })
-                        .or_else(|| {
-                            runtime::Completes::completed(law, y, t)
-                                .then_some(Cause::Completed(2u16))
-                        })
+                    if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
+                        return Next::Ends(ending);
+                    }
+                    if runtime::Interrupt::fired(&AT_ISECTION_1000, y) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Fired(2u16).then(runtime::Follows::new(4, 2, 3)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
+                    if runtime::Completes::completed(law, y, t) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Completed(2u16).then(runtime::Follows::new(4, 2, 3)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
                 }
                 Running::Atom5(_) => {
-                    lab2_to_lab1_plan(cursor, y, t)
-                        .or_else(|| {
-                            (runtime::Interrupt::fired(&AT_ISECTION_0100, y))
-                                .then_some(Cause::Fired(2u16))
-                        })
+                    if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
+                        return Next::Ends(ending);
+                    }
+                    if runtime::Interrupt::fired(&AT_ISECTION_0100, y) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Fired(2u16).then(runtime::Follows::new(5, 2, 3)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
                 }
                 Running::Atom6(law) => {
-                    lab2_to_lab1_plan(cursor, y, t)
-                        .or_else(|| {
-                            runtime::Completes::completed(law, y, t)
-                                .then_some(Cause::Completed(2u16))
-                        })
+                    if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
+                        return Next::Ends(ending);
+                    }
+                    if runtime::Completes::completed(law, y, t) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Completed(2u16).then(runtime::Follows::new(6, 2, 3)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
                 }
                 Running::Atom7(law) => {
-                    lab2_to_lab1_plan(cursor, y, t)
-                        .or_else(|| {
-                            (cursor.since(2u16, t) >= Nanos(7000000000))
-                                .then_some(Cause::Fired(2u16))
-                        })
-                        .or_else(|| {
-                            runtime::Completes::completed(law, y, t)
-                                .then_some(Cause::Completed(2u16))
-                        })
+                    if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
+                        return Next::Ends(ending);
+                    }
+                    if cursor.since(2u16, t) >= Nanos(7000000000) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Fired(2u16).then(runtime::Follows::new(7, 2, 3)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
+                    if runtime::Completes::completed(law, y, t) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Completed(2u16).then(runtime::Follows::new(7, 2, 3)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
                 }
                 Running::Atom8(law) => {
-                    lab2_to_lab1_plan(cursor, y, t)
-                        .or_else(|| {
-                            (runtime::Interrupt::fired(&AT_ISECTION_1000, y))
-                                .then_some(Cause::Fired(2u16))
-                        })
-                        .or_else(|| {
-                            runtime::Completes::completed(law, y, t)
-                                .then_some(Cause::Completed(2u16))
-                        })
+                    if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
+                        return Next::Ends(ending);
+                    }
+                    if runtime::Interrupt::fired(&AT_ISECTION_1000, y) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Fired(2u16).then(runtime::Follows::new(8, 1, 3)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
+                    if runtime::Completes::completed(law, y, t) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Completed(2u16).then(runtime::Follows::new(8, 1, 3)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
                 }
                 Running::Atom9(law) => {
-                    lab1_to_office_plan(cursor, y, t)
-                        .or_else(|| {
-                            (runtime::Interrupt::fired(&AT_ISECTION_1001, y))
-                                .then_some(Cause::Fired(2u16))
-                        })
-                        .or_else(|| {
-                            runtime::Completes::completed(law, y, t)
-                                .then_some(Cause::Completed(2u16))
-                        })
+                    if let Some(ending) = lab1_to_office_plan(cursor, y, t) {
+                        return Next::Ends(ending);
+                    }
+                    if runtime::Interrupt::fired(&AT_ISECTION_1001, y) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Fired(2u16).then(runtime::Follows::new(9, 2, 3)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
+                    if runtime::Completes::completed(law, y, t) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Completed(2u16).then(runtime::Follows::new(9, 2, 3)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
                 }
                 Running::Atom10(_) => {
-                    lab1_to_office_plan(cursor, y, t)
-                        .or_else(|| {
-                            (runtime::Interrupt::fired(&AT_ISECTION_0011, y))
-                                .then_some(Cause::Fired(2u16))
-                        })
+                    if let Some(ending) = lab1_to_office_plan(cursor, y, t) {
+                        return Next::Ends(ending);
+                    }
+                    if runtime::Interrupt::fired(&AT_ISECTION_0011, y) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Fired(2u16).then(runtime::Follows::new(10, 2, 3)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
                 }
                 Running::Atom11(law) => {
-                    lab1_to_office_plan(cursor, y, t)
-                        .or_else(|| {
-                            runtime::Completes::completed(law, y, t)
-                                .then_some(Cause::Completed(2u16))
-                        })
+                    if let Some(ending) = lab1_to_office_plan(cursor, y, t) {
+                        return Next::Ends(ending);
+                    }
+                    if runtime::Completes::completed(law, y, t) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Completed(2u16).then(runtime::Follows::new(11, 2, 3)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
                 }
                 Running::Atom12(law) => {
-                    lab1_to_office_plan(cursor, y, t)
-                        .or_else(|| {
-                            (runtime::Interrupt::fired(&AT_ISECTION_0100, y))
-                                .then_some(Cause::Fired(2u16))
-                        })
-                        .or_else(|| {
-                            runtime::Completes::completed(law, y, t)
-                                .then_some(Cause::Completed(2u16))
-                        })
+                    if let Some(ending) = lab1_to_office_plan(cursor, y, t) {
+                        return Next::Ends(ending);
+                    }
+                    if runtime::Interrupt::fired(&AT_ISECTION_0100, y) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Fired(2u16).then(runtime::Follows::new(12, 2, 3)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
+                    if runtime::Completes::completed(law, y, t) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Completed(2u16).then(runtime::Follows::new(12, 2, 3)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
                 }
                 Running::Atom13(law) => {
-                    lab1_to_office_plan(cursor, y, t)
-                        .or_else(|| {
-                            (cursor.since(2u16, t) >= Nanos(10000000000))
-                                .then_some(Cause::Fired(2u16))
-                        })
-                        .or_else(|| {
-                            runtime::Completes::completed(law, y, t)
-                                .then_some(Cause::Completed(2u16))
-                        })
+                    if let Some(ending) = lab1_to_office_plan(cursor, y, t) {
+                        return Next::Ends(ending);
+                    }
+                    if cursor.since(2u16, t) >= Nanos(10000000000) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Fired(2u16).then(runtime::Follows::new(13, 0, 0)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
+                    if runtime::Completes::completed(law, y, t) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Completed(2u16).then(runtime::Follows::new(13, 0, 0)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
                 }
             }
+            Next::Stays
         }
         fn input(&mut self, y: &Output, t: Nanos) -> Input {
             match &mut self.running {
@@ -381,13 +536,19 @@ mod machine {
     }
 
     /// Lab2ToLab1Plan (bumper), and the scopes around it first.
-    fn lab2_to_lab1_plan(cursor: &At, y: &Output, t: Nanos) -> Option<Cause> {
-        (runtime::Interrupt::fired(&BUMPER, y)).then_some(Cause::Fired(1u16))
+    fn lab2_to_lab1_plan(cursor: &At, y: &Output, t: Nanos) -> Option<Ending> {
+        if runtime::Interrupt::fired(&BUMPER, y) {
+            return Some(Cause::Fired(1u16).then(runtime::Follows::new(8, 1, 3)));
+        }
+        None
     }
 
     /// Lab1ToOfficePlan (bumper), and the scopes around it first.
-    fn lab1_to_office_plan(cursor: &At, y: &Output, t: Nanos) -> Option<Cause> {
-        (runtime::Interrupt::fired(&BUMPER, y)).then_some(Cause::Fired(1u16))
+    fn lab1_to_office_plan(cursor: &At, y: &Output, t: Nanos) -> Option<Ending> {
+        if runtime::Interrupt::fired(&BUMPER, y) {
+            return Some(Cause::Fired(1u16).then(runtime::Follows::new(13, 0, 0)));
+        }
+        None
     }
 
     /// Scopes and loops in pre-order, the atoms as written, the termination state.

@@ -13,7 +13,7 @@ pub use machine::Lab2ToLab1Plan;
 mod machine {
     use ::mdle_runtime as runtime;
     use ::mdle_runtime::fsm::{Atom, Bracket};
-    use ::mdle_runtime::{Begin, Cause, Cursor, Fsm, Nanos};
+    use ::mdle_runtime::{Begin, Cause, Cursor, Ending, Fsm, Nanos, Next};
     use ::mdle_sim::alphabet::{self as robot, Input, Output};
     const _: () = assert!(
         robot::HASH == 0x18e7cb8d94f135d4,
@@ -143,82 +143,179 @@ mod machine {
                 _ => Running::Idle,
             };
         }
-        fn fired(&self, cursor: &At, y: &Output, t: Nanos) -> Option<Cause> {
+        #[inline(always)]
+        fn next(
+            &mut self,
+            cursor: &mut At,
+            y: &Output,
+            begin: Begin,
+            direct: bool,
+        ) -> Next {
+            let t = begin.now;
             match &self.running {
-                Running::Idle => None,
+                Running::Idle => {}
                 Running::Atom1(law) => {
-                    lab2_to_lab1_plan(cursor, y, t)
-                        .or_else(|| {
-                            (runtime::Interrupt::fired(&AT_ISECTION_0100, y))
-                                .then_some(Cause::Fired(1u16))
-                        })
-                        .or_else(|| {
-                            runtime::Completes::completed(law, y, t)
-                                .then_some(Cause::Completed(1u16))
-                        })
+                    if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
+                        return Next::Ends(ending);
+                    }
+                    if runtime::Interrupt::fired(&AT_ISECTION_0100, y) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Fired(1u16).then(runtime::Follows::new(1, 1, 2)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
+                    if runtime::Completes::completed(law, y, t) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Completed(1u16).then(runtime::Follows::new(1, 1, 2)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
                 }
                 Running::Atom2(_) => {
-                    lab2_to_lab1_plan(cursor, y, t)
-                        .or_else(|| {
-                            (runtime::Interrupt::fired(&AT_ISECTION_0010, y))
-                                .then_some(Cause::Fired(1u16))
-                        })
+                    if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
+                        return Next::Ends(ending);
+                    }
+                    if runtime::Interrupt::fired(&AT_ISECTION_0010, y) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Fired(1u16).then(runtime::Follows::new(2, 1, 2)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
                 }
                 Running::Atom3(law) => {
-                    lab2_to_lab1_plan(cursor, y, t)
-                        .or_else(|| {
-                            runtime::Completes::completed(law, y, t)
-                                .then_some(Cause::Completed(1u16))
-                        })
+                    if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
+                        return Next::Ends(ending);
+                    }
+                    if runtime::Completes::completed(law, y, t) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Completed(1u16).then(runtime::Follows::new(3, 1, 2)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
                 }
                 Running::Atom4(law) => {
-                    lab2_to_lab1_plan(cursor, y, t)
-                        .or_else(|| {
-                            (runtime::Interrupt::fired(&AT_ISECTION_1000, y))
-                                .then_some(Cause::Fired(1u16))
-                        })
-                        .or_else(|| {
-                            runtime::Completes::completed(law, y, t)
-                                .then_some(Cause::Completed(1u16))
-                        })
+                    if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
+                        return Next::Ends(ending);
+                    }
+                    if runtime::Interrupt::fired(&AT_ISECTION_1000, y) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Fired(1u16).then(runtime::Follows::new(4, 1, 2)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
+                    if runtime::Completes::completed(law, y, t) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Completed(1u16).then(runtime::Follows::new(4, 1, 2)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
                 }
                 Running::Atom5(_) => {
-                    lab2_to_lab1_plan(cursor, y, t)
-                        .or_else(|| {
-                            (runtime::Interrupt::fired(&AT_ISECTION_0100, y))
-                                .then_some(Cause::Fired(1u16))
-                        })
+                    if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
+                        return Next::Ends(ending);
+                    }
+                    if runtime::Interrupt::fired(&AT_ISECTION_0100, y) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Fired(1u16).then(runtime::Follows::new(5, 1, 2)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
                 }
                 Running::Atom6(law) => {
-                    lab2_to_lab1_plan(cursor, y, t)
-                        .or_else(|| {
-                            runtime::Completes::completed(law, y, t)
-                                .then_some(Cause::Completed(1u16))
-                        })
+                    if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
+                        return Next::Ends(ending);
+                    }
+                    if runtime::Completes::completed(law, y, t) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Completed(1u16).then(runtime::Follows::new(6, 1, 2)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
                 }
                 Running::Atom7(law) => {
-                    lab2_to_lab1_plan(cursor, y, t)
-                        .or_else(|| {
-                            (cursor.since(1u16, t) >= Nanos(7000000000))
-                                .then_some(Cause::Fired(1u16))
-                        })
-                        .or_else(|| {
-                            runtime::Completes::completed(law, y, t)
-                                .then_some(Cause::Completed(1u16))
-                        })
+                    if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
+                        return Next::Ends(ending);
+                    }
+                    if cursor.since(1u16, t) >= Nanos(7000000000) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Fired(1u16).then(runtime::Follows::new(7, 1, 2)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
+                    if runtime::Completes::completed(law, y, t) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Completed(1u16).then(runtime::Follows::new(7, 1, 2)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
                 }
                 Running::Atom8(law) => {
-                    lab2_to_lab1_plan(cursor, y, t)
-                        .or_else(|| {
-                            (runtime::Interrupt::fired(&AT_ISECTION_1000, y))
-                                .then_some(Cause::Fired(1u16))
-                        })
-                        .or_else(|| {
-                            runtime::Completes::completed(law, y, t)
-                                .then_some(Cause::Completed(1u16))
-                        })
+                    if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
+                        return Next::Ends(ending);
+                    }
+                    if runtime::Interrupt::fired(&AT_ISECTION_1000, y) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Fired(1u16).then(runtime::Follows::new(8, 0, 0)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
+                    if runtime::Completes::completed(law, y, t) {
+                        return runtime::Plan::end(
+                            self,
+                            cursor,
+                            Cause::Completed(1u16).then(runtime::Follows::new(8, 0, 0)),
+                            y,
+                            begin,
+                            direct,
+                        );
+                    }
                 }
             }
+            Next::Stays
         }
         fn input(&mut self, y: &Output, t: Nanos) -> Input {
             match &mut self.running {
@@ -251,8 +348,11 @@ mod machine {
     }
 
     /// Lab2ToLab1Plan (bumper), and the scopes around it first.
-    fn lab2_to_lab1_plan(cursor: &At, y: &Output, t: Nanos) -> Option<Cause> {
-        (runtime::Interrupt::fired(&BUMPER, y)).then_some(Cause::Fired(0u16))
+    fn lab2_to_lab1_plan(cursor: &At, y: &Output, t: Nanos) -> Option<Ending> {
+        if runtime::Interrupt::fired(&BUMPER, y) {
+            return Some(Cause::Fired(0u16).then(runtime::Follows::new(8, 0, 0)));
+        }
+        None
     }
 
     /// Scopes and loops in pre-order, the atoms as written, the termination state.

@@ -1,18 +1,20 @@
 //! Plans loaded at run time: rows whose quarks the bound alphabet of the target `scripted` makes by their names.
 
+use mdle_runtime::fsm::Kind;
 use mdle_runtime::{
-    Alphabet, Argument, Condition, InRows, LawRow, Meters, MetersPerSecond, Nanos, Radians, RadiansPerSecond, Rows,
-    SonarId, Texts, Volts,
+    Alphabet, Argument, Condition, Guard, InRows, LawRow, Meters, MetersPerSecond, Nanos, Radians, RadiansPerSecond,
+    Rows, SonarId, Texts, Volts,
 };
 use mdle_scripted::alphabet::{self as scripted, AnyControl, AnyInterrupt};
-use mdlec::alphabet::{Kind, family_to_si};
+use mdlec::alphabet::{self, family_to_si};
 use mdlec::fsm::Lowered;
 use mdlec::plan::{self, Quark, Value};
 
 /// A plan's rows, owned.
 pub struct Loaded<'l> {
     lowered: &'l Lowered,
-    conditions: Vec<Condition<AnyInterrupt>>,
+    guards: Vec<Guard<AnyInterrupt>>,
+    operands: Vec<Condition<AnyInterrupt>>,
     laws: Vec<LawRow<AnyControl>>,
     texts: [Vec<&'l str>; 3],
 }
@@ -21,12 +23,12 @@ pub struct Loaded<'l> {
 pub type LoadedPlan<'l> = InRows<'l, scripted::Alphabet, Box<[Nanos]>, Box<[u64]>>;
 
 impl<'l> Loaded<'l> {
-    /// Makes the rows of a plan.
+    /// Makes the rows of a plan. Without `foresight` they do not say what follows when a scope ends.
     ///
     /// # Panics
     /// If the alphabet does not know a quark of the plan.
     #[must_use]
-    pub fn new(lowered: &'l Lowered) -> Self {
+    pub fn new(lowered: &'l Lowered, foresight: bool) -> Self {
         let laws = lowered.laws.iter().map(|law| LawRow {
             control: by_name(lowered.quark(law.quark), scripted::Alphabet::control),
             frame: Radians(law.frame),
@@ -37,44 +39,61 @@ impl<'l> Loaded<'l> {
             scopes().map(|scope| scope.map_or("", |scope| scope.interrupt.text.as_str())).collect(),
             scopes().map(|scope| scope.map_or("", |scope| scope.name.as_str())).collect(),
         ];
-        Self { lowered, conditions: conditions(lowered), laws: laws.collect(), texts }
+        let mut loaded = Self { lowered, guards: Vec::new(), operands: Vec::new(), laws: laws.collect(), texts };
+        for (number, scope) in (0..).zip(scopes()) {
+            let condition = loaded.condition(scope.map_or(&plan::Condition::Null, |scope| &scope.interrupt.condition));
+            let bracket = lowered.brackets[number as usize];
+            let level = if let Kind::Scope { level } = bracket.kind { level } else { 0 };
+            let follows = lowered.tables().follows(number).filter(|_| foresight);
+            // Every bracket around it is asked, whether it can fire or not.
+            loaded.guards.push(Guard { condition, level, around: bracket.parent, follows });
+        }
+        loaded
     }
 
-    /// The plan before it begins.
+    /// The rows as a plan takes them.
     #[must_use]
-    pub fn plan(&self) -> LoadedPlan<'_> {
+    pub fn rows(&self) -> Rows<'_, scripted::Alphabet> {
         let [laws, conditions, names] = &self.texts;
         let texts = Texts { laws, conditions, names };
-        let rows = Rows { fsm: self.lowered.tables(), conditions: &self.conditions, laws: &self.laws, texts };
+        Rows { fsm: self.lowered.tables(), guards: &self.guards, operands: &self.operands, laws: &self.laws, texts }
+    }
+
+    /// The plan of these rows before it begins.
+    #[must_use]
+    pub fn plan<'r>(&self, rows: &'r Rows<'r, scripted::Alphabet>) -> LoadedPlan<'r> {
         let (levels, slots) = (self.lowered.levels, self.lowered.slots);
         InRows::new(rows, vec![Nanos::ZERO; levels].into(), vec![0; slots].into())
     }
-}
 
-/// The conditions of the brackets; the operands of each condition behind all that there is so far.
-fn conditions(lowered: &Lowered) -> Vec<Condition<AnyInterrupt>> {
-    let scopes = lowered.scopes.iter().map(Option::as_ref);
-    let of_scopes = scopes.map(|scope| scope.map_or(&plan::Condition::Null, |scope| &scope.interrupt.condition));
-    let mut written: Vec<&plan::Condition> = of_scopes.collect();
-    let mut rows = Vec::new();
-    while let Some(condition) = written.get(rows.len()).copied() {
-        let first = u32::try_from(written.len()).unwrap();
-        let count = |operands: &[plan::Condition]| u32::try_from(operands.len()).unwrap();
-        rows.push(match condition {
+    /// A condition; its operands go behind all operands that there are so far, and theirs behind them.
+    fn condition(&mut self, written: &plan::Condition) -> Condition<AnyInterrupt> {
+        match written {
             plan::Condition::Null => Condition::Null,
-            plan::Condition::Quark(id) => Condition::Quark(by_name(lowered.quark(*id), scripted::Alphabet::interrupt)),
+            plan::Condition::Quark(id) => {
+                Condition::Quark(by_name(self.lowered.quark(*id), scripted::Alphabet::interrupt))
+            }
             plan::Condition::Wait { nanos, .. } => Condition::Wait(Nanos(*nanos)),
-            plan::Condition::Or(operands) => Condition::Or(first, count(operands)),
-            plan::Condition::And(operands) => Condition::And(first, count(operands)),
-            plan::Condition::Not(_) => Condition::Not(first),
-        });
-        match condition {
-            plan::Condition::Or(operands) | plan::Condition::And(operands) => written.extend(operands),
-            plan::Condition::Not(operand) => written.push(operand),
-            plan::Condition::Null | plan::Condition::Quark(_) | plan::Condition::Wait { .. } => {}
+            plan::Condition::Or(operands) => {
+                let (first, count) = self.operands(operands);
+                Condition::Or(first, count)
+            }
+            plan::Condition::And(operands) => {
+                let (first, count) = self.operands(operands);
+                Condition::And(first, count)
+            }
+            plan::Condition::Not(operand) => Condition::Not(self.operands(std::slice::from_ref(&**operand)).0),
         }
     }
-    rows
+
+    fn operands(&mut self, written: &[plan::Condition]) -> (u32, u32) {
+        let first = self.operands.len();
+        self.operands.extend(written.iter().map(|_| Condition::Null));
+        for (place, operand) in written.iter().enumerate() {
+            self.operands[first + place] = self.condition(operand);
+        }
+        (u32::try_from(first).unwrap(), u32::try_from(written.len()).unwrap())
+    }
 }
 
 fn by_name<Q>(quark: &Quark, make: fn(&str, &[Argument<'_>]) -> Option<Q>) -> Q {
@@ -87,24 +106,24 @@ fn argument(value: &Value) -> Argument<'_> {
         Value::Quantity { kind, exact, family } => {
             let si = exact.to_f64() * family_to_si(family);
             match kind {
-                Kind::Length => Argument::Length(Meters(si)),
-                Kind::Speed => Argument::Speed(MetersPerSecond(si)),
-                Kind::Angle => Argument::Angle(Radians(si)),
-                Kind::AngularRate => Argument::AngularRate(RadiansPerSecond(si)),
-                Kind::Voltage => Argument::Voltage(Volts(si)),
-                Kind::Time => Argument::Time(Nanos(exact.to_nanos().unwrap())),
-                Kind::Number => Argument::Number(si),
-                Kind::Frequency
-                | Kind::Integer
-                | Kind::Count
-                | Kind::Bits(_)
-                | Kind::Sonar
-                | Kind::Robot
-                | Kind::Module
-                | Kind::File => panic!("no quantity is {kind:?}"),
+                alphabet::Kind::Length => Argument::Length(Meters(si)),
+                alphabet::Kind::Speed => Argument::Speed(MetersPerSecond(si)),
+                alphabet::Kind::Angle => Argument::Angle(Radians(si)),
+                alphabet::Kind::AngularRate => Argument::AngularRate(RadiansPerSecond(si)),
+                alphabet::Kind::Voltage => Argument::Voltage(Volts(si)),
+                alphabet::Kind::Time => Argument::Time(Nanos(exact.to_nanos().unwrap())),
+                alphabet::Kind::Number => Argument::Number(si),
+                alphabet::Kind::Frequency
+                | alphabet::Kind::Integer
+                | alphabet::Kind::Count
+                | alphabet::Kind::Bits(_)
+                | alphabet::Kind::Sonar
+                | alphabet::Kind::Robot
+                | alphabet::Kind::Module
+                | alphabet::Kind::File => panic!("no quantity is {kind:?}"),
             }
         }
-        Value::Infinity(Kind::Time) => Argument::Time(Nanos::MAX),
+        Value::Infinity(alphabet::Kind::Time) => Argument::Time(Nanos::MAX),
         Value::Infinity(_) => Argument::Count(u64::MAX),
         Value::Bits(bits) => Argument::Bits(bits),
         Value::Integer(whole) => Argument::Integer(*whole),

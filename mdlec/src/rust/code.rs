@@ -1,11 +1,11 @@
 //! A plan as code: quarks as constants, laws as variants, interrupts as functions that ask the scopes around them first.
 
-use mdle_runtime::fsm::Kind;
 use proc_macro2::{Ident, Literal, TokenStream};
-use quote::quote;
+use quote::{format_ident, quote};
 
 use super::arguments::{angle, made};
 use super::names::{Distinct, atom_variant, quark_type};
+use super::tables::{follows, level};
 use crate::fsm::{LawMeaning, Lowered};
 use crate::plan::{Condition, Quark, QuarkId, frame_text};
 
@@ -42,7 +42,7 @@ pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered) -> TokenStream
 fn implementation(plan: &Ident, lowered: &Lowered, meaning: &Meaning<'_>) -> TokenStream {
     let [levels, slots] = [lowered.levels, lowered.slots].map(Literal::usize_unsuffixed);
     let enter = meaning.enter();
-    let fired = meaning.fired();
+    let next = meaning.next();
     let input = meaning.input();
     quote! {
         impl runtime::Plan for #plan {
@@ -54,7 +54,7 @@ fn implementation(plan: &Ident, lowered: &Lowered, meaning: &Meaning<'_>) -> Tok
             fn fsm(&self) -> Fsm<'_> { FSM }
             fn slots(&self) -> (Self::Entered, Self::Left) { ([Nanos::ZERO; #levels], [0; #slots]) }
             #enter
-            #fired
+            #next
             #input
             fn law(&self, atom: u32) -> &str { text(LAWS, atom) }
             fn condition(&self, scope: u32) -> &str { text(CONDITIONS, scope) }
@@ -152,27 +152,35 @@ impl<'a> Meaning<'a> {
         }
     }
 
-    /// `fn fired`: an arm for each atom, which asks the scope around it first and itself last.
-    pub(super) fn fired(&self) -> TokenStream {
+    /// `fn next`: an arm for each atom, which asks the scope around it first and itself last.
+    pub(super) fn next(&self) -> TokenStream {
         let arms = self.atoms().map(|(atom, _, quark)| {
             let variant = atom_variant(atom);
             let bracket = self.lowered.atoms[atom].scope;
-            let level = self.level(bracket);
-            let interrupt =
-                self.condition(bracket, level).map(|fired| quote!((#fired).then_some(Cause::Fired(#level))));
-            let completion = quark
-                .completes
-                .then(|| quote!(runtime::Completes::completed(law, y, t).then_some(Cause::Completed(#level))));
+            let around = self.around(bracket).map(|function| {
+                quote! {
+                    if let Some(ending) = #function(cursor, y, t) { return Next::Ends(ending); }
+                }
+            });
+            let asked = |question: &TokenStream, cause| {
+                let ending = self.ending(bracket, cause);
+                quote!(if #question { return runtime::Plan::end(self, cursor, #ending, y, begin, direct); })
+            };
+            let interrupt = self.condition(bracket).map(|fired| asked(&fired, "Fired"));
+            let completion =
+                quark.completes.then(|| asked(&quote!(runtime::Completes::completed(law, y, t)), "Completed"));
             let law = if quark.completes { quote!(law) } else { quote!(_) };
-            let asked = in_order(self.around(bracket).into_iter().chain(interrupt).chain(completion));
-            quote!(Running::#variant(#law) => #asked)
+            quote!(Running::#variant(#law) => { #around #interrupt #completion })
         });
         quote! {
-            fn fired(&self, cursor: &At, y: &Output, t: Nanos) -> Option<Cause> {
+            #[inline(always)]
+            fn next(&mut self, cursor: &mut At, y: &Output, begin: Begin, direct: bool) -> Next {
+                let t = begin.now;
                 match &self.running {
-                    Running::Idle => None,
-                    #(#arms,)*
+                    Running::Idle => {}
+                    #(#arms)*
                 }
+                Next::Stays
             }
         }
     }
@@ -190,40 +198,53 @@ impl<'a> Meaning<'a> {
         }
     }
 
-    /// For each scope with an interrupt: `fn shake(cursor, y, t) -> Option<Cause> { dock(…).or_else(|| …) }`.
+    /// For each scope with an interrupt: `fn shake(cursor, y, t) -> Option<Ending>`.
     pub(super) fn scope_functions(&self) -> TokenStream {
         let functions = self.functions.iter().zip(0_u32..).filter_map(|(function, bracket)| {
             let function = function.as_ref()?;
             let scope = self.lowered.scopes[bracket as usize].as_ref()?;
-            let level = self.level(bracket);
-            let fired = self.condition(bracket, level).map(|fired| quote!((#fired).then_some(Cause::Fired(#level))));
-            let asked = in_order(self.around(bracket).into_iter().chain(fired));
+            let ending = self.ending(bracket, "Fired");
+            let fired = self.condition(bracket).map(|fired| quote!(if #fired { return Some(#ending); }));
+            let around = self.around(bracket).map(|function| {
+                quote! {
+                    if let Some(ending) = #function(cursor, y, t) { return Some(ending); }
+                }
+            });
             let doc = format!(" {} ({}), and the scopes around it first.", scope.name, scope.interrupt.text);
             Some(quote! {
                 #[doc = #doc]
-                fn #function(cursor: &At, y: &Output, t: Nanos) -> Option<Cause> { #asked }
+                fn #function(cursor: &At, y: &Output, t: Nanos) -> Option<Ending> { #around #fired None }
             })
         });
         quote!(#(#functions)*)
     }
 
-    /// The call of the nearest scope around this bracket that has an interrupt.
-    fn around(&self, bracket: u32) -> Option<TokenStream> {
+    /// The function of the nearest scope around this bracket that has an interrupt.
+    fn around(&self, bracket: u32) -> Option<&Ident> {
         let mut here = bracket;
         while here != 0 {
             here = self.lowered.brackets[here as usize].parent;
             if let Some(function) = &self.functions[here as usize] {
-                return Some(quote!(#function(cursor, y, t)));
+                return Some(function);
             }
         }
         None
     }
 
+    /// `Cause::Fired(level).then(…)`, or without what follows where that depends on a loop's count.
+    fn ending(&self, bracket: u32, cause: &str) -> TokenStream {
+        let (cause, level) = (format_ident!("{cause}"), self.level(bracket));
+        match self.lowered.tables().follows(bracket).map(follows) {
+            Some(follows) => quote!(Cause::#cause(#level).then(#follows)),
+            None => quote!(Cause::#cause(#level).into()),
+        }
+    }
+
     /// Whether the interrupt of this scope has fired; `None` where it never does.
-    fn condition(&self, bracket: u32, level: u16) -> Option<TokenStream> {
+    fn condition(&self, bracket: u32) -> Option<TokenStream> {
         let scope = self.lowered.scopes[bracket as usize].as_ref()?;
         let condition = &scope.interrupt.condition;
-        (*condition != Condition::Null).then(|| self.expression(condition, level))
+        (*condition != Condition::Null).then(|| self.expression(condition, self.level(bracket)))
     }
 
     fn expression(&self, condition: &Condition, level: u16) -> TokenStream {
@@ -267,10 +288,7 @@ impl<'a> Meaning<'a> {
     }
 
     fn level(&self, bracket: u32) -> u16 {
-        match self.lowered.brackets[bracket as usize].kind {
-            Kind::Scope { level } => level,
-            Kind::Loop { .. } => 0,
-        }
+        level(self.lowered.brackets[bracket as usize].kind)
     }
 
     fn is_atom(lowered: &Lowered, bracket: usize) -> bool {
@@ -296,11 +314,6 @@ fn joined(operands: Vec<TokenStream>, operator: &TokenStream) -> TokenStream {
         quote!((#group))
     });
     join(&groups.collect::<Vec<_>>())
-}
-
-/// Questions in order, each asked only if those before it found nothing: `a.or_else(|| b).or_else(|| c)`.
-fn in_order(questions: impl Iterator<Item = TokenStream>) -> TokenStream {
-    questions.reduce(|asked, next| quote!(#asked.or_else(|| #next))).unwrap_or_else(|| quote!(None))
 }
 
 /// `begin`, or `begin` in a frame that is turned.

@@ -7,6 +7,7 @@ use quote::quote;
 
 use super::arguments::{angle, made};
 use super::names::quark_type;
+use super::tables::{follows, level};
 use crate::fsm::Lowered;
 use crate::plan::{Condition, Quark};
 
@@ -21,7 +22,7 @@ pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered) -> TokenStream
         impl #plan {
             #[doc = " The plan before it begins."]
             #[must_use]
-            pub const fn new() -> Self { Self(runtime::InRows::new(ROWS, [Nanos::ZERO; #levels], [0; #slots])) }
+            pub const fn new() -> Self { Self(runtime::InRows::new(&ROWS, [Nanos::ZERO; #levels], [0; #slots])) }
         }
 
         impl Default for #plan {
@@ -37,8 +38,15 @@ pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered) -> TokenStream
             fn fsm(&self) -> Fsm<'_> { runtime::Plan::fsm(&self.0) }
             fn slots(&self) -> (Self::Entered, Self::Left) { runtime::Plan::slots(&self.0) }
             fn enter(&mut self, atom: u32, y: &Output, begin: Begin) { runtime::Plan::enter(&mut self.0, atom, y, begin); }
-            fn fired(&self, cursor: &Cursor<Self::Entered, Self::Left>, y: &Output, t: Nanos) -> Option<Cause> {
-                runtime::Plan::fired(&self.0, cursor, y, t)
+            #[inline(always)]
+            fn next(
+                &mut self,
+                cursor: &mut Cursor<Self::Entered, Self::Left>,
+                y: &Output,
+                begin: Begin,
+                direct: bool,
+            ) -> Next {
+                runtime::Plan::next(&mut self.0, cursor, y, begin, direct)
             }
             fn input(&mut self, y: &Output, t: Nanos) -> Input { runtime::Plan::input(&mut self.0, y, t) }
             fn law(&self, atom: u32) -> &str { runtime::Plan::law(&self.0, atom) }
@@ -50,38 +58,81 @@ pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered) -> TokenStream
     }
 }
 
-/// `const ROWS`: the condition of each bracket and behind them their operands, the law of each atom.
+/// `static ROWS`: when each bracket ends, the operands of their conditions, the law of each atom.
 fn rows(lowered: &Lowered) -> TokenStream {
-    let conditions = conditions(lowered);
+    let mut operands = Operands { lowered, waiting: VecDeque::new(), count: 0 };
+    let around = around(lowered);
+    let guards: Vec<_> = (0_u32..)
+        .zip(&lowered.brackets)
+        .map(|(number, bracket)| {
+            let condition = operands.row(condition(lowered, number));
+            let level = Literal::u16_unsuffixed(level(bracket.kind));
+            let around = Literal::u32_unsuffixed(around[number as usize]);
+            let follows = match lowered.tables().follows(number).map(follows) {
+                Some(follows) => quote!(Some(#follows)),
+                None => quote!(None),
+            };
+            quote!(runtime::Guard { condition: runtime::Condition::#condition, level: #level, around: #around, follows: #follows })
+        })
+        .collect();
+    let operands = operands.rows();
     let laws = lowered.laws.iter().map(|law| {
         let control = variant("AnyControl", lowered.quark(law.quark));
         let frame = angle(law.frame);
         quote!(runtime::LawRow { control: #control, frame: #frame })
     });
     quote! {
-        #[doc = " What brackets and atoms mean, in the order of the tables below; operands of conditions stand behind them."]
-        const ROWS: runtime::Rows<'static, robot::Alphabet> = runtime::Rows {
+        #[doc = " What brackets and atoms mean, in the order of the tables below."]
+        static ROWS: runtime::Rows<'static, robot::Alphabet> = runtime::Rows {
             fsm: FSM,
-            conditions: &[#(runtime::Condition::#conditions),*],
+            guards: &[#(#guards),*],
+            operands: &[#(runtime::Condition::#operands),*],
             laws: &[#(#laws),*],
             texts: runtime::Texts { laws: LAWS, conditions: CONDITIONS, names: NAMES },
         };
     }
 }
 
-/// The variants of the conditions: breadth first, so that operands stand side by side and behind what they belong to.
-fn conditions(lowered: &Lowered) -> Vec<TokenStream> {
-    let scopes = lowered.scopes.iter().map(Option::as_ref);
-    let mut waiting: VecDeque<_> =
-        scopes.map(|scope| scope.map_or(&Condition::Null, |scope| &scope.interrupt.condition)).collect();
-    let mut rows = Vec::with_capacity(waiting.len());
-    while let Some(condition) = waiting.pop_front() {
-        // Behind this row those that wait, and behind those its own operands.
-        let first = Literal::usize_unsuffixed(rows.len() + 1 + waiting.len());
-        rows.push(match condition {
+/// The condition of a bracket.
+fn condition(lowered: &Lowered, bracket: u32) -> &Condition {
+    let scope = lowered.scopes[bracket as usize].as_ref();
+    scope.map_or(&Condition::Null, |scope| &scope.interrupt.condition)
+}
+
+/// For each bracket the nearest one around it whose condition can fire; itself where there is none.
+fn around(lowered: &Lowered) -> Vec<u32> {
+    let mut around = Vec::with_capacity(lowered.brackets.len());
+    for (number, bracket) in (0_u32..).zip(&lowered.brackets) {
+        let parent = bracket.parent;
+        around.push(if number == parent {
+            number
+        } else if *condition(lowered, parent) != Condition::Null {
+            parent
+        } else if around[parent as usize] == parent {
+            number
+        } else {
+            around[parent as usize]
+        });
+    }
+    around
+}
+
+/// The operands of conditions, breadth first: so they stand side by side, and behind what they belong to.
+struct Operands<'l> {
+    lowered: &'l Lowered,
+    waiting: VecDeque<&'l Condition>,
+    /// How many have been given a number.
+    count: usize,
+}
+
+impl<'l> Operands<'l> {
+    /// The variant of a condition, whose operands are given the next numbers.
+    fn row(&mut self, condition: &'l Condition) -> TokenStream {
+        let first = Literal::usize_unsuffixed(self.count);
+        match condition {
             Condition::Null => quote!(Null),
             Condition::Quark(id) => {
-                let interrupt = variant("AnyInterrupt", lowered.quark(*id));
+                let interrupt = variant("AnyInterrupt", self.lowered.quark(*id));
                 quote!(Quark(#interrupt))
             }
             Condition::Wait { nanos, .. } => {
@@ -89,7 +140,8 @@ fn conditions(lowered: &Lowered) -> Vec<TokenStream> {
                 quote!(Wait(Nanos(#nanos)))
             }
             Condition::Or(operands) | Condition::And(operands) => {
-                waiting.extend(operands);
+                self.waiting.extend(operands);
+                self.count += operands.len();
                 let count = Literal::usize_unsuffixed(operands.len());
                 if matches!(condition, Condition::Or(_)) {
                     quote!(Or(#first, #count))
@@ -98,12 +150,21 @@ fn conditions(lowered: &Lowered) -> Vec<TokenStream> {
                 }
             }
             Condition::Not(operand) => {
-                waiting.push_back(operand);
+                self.waiting.push_back(operand);
+                self.count += 1;
                 quote!(Not(#first))
             }
-        });
+        }
     }
-    rows
+
+    /// The rows of all that were given a number, in that order.
+    fn rows(mut self) -> Vec<TokenStream> {
+        let mut rows = Vec::new();
+        while let Some(operand) = self.waiting.pop_front() {
+            rows.push(self.row(operand));
+        }
+        rows
+    }
 }
 
 /// `robot::AnyControl::Go(robot::Go::new(…))`: a quark as one of its alphabet's.

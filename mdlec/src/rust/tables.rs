@@ -1,5 +1,6 @@
 //! The constant tables of a generated file: the machine and the texts that traces and messages show.
 
+use mdle_runtime::Follows;
 use mdle_runtime::fsm::{Bracket, Kind};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
@@ -51,4 +52,20 @@ fn bracket(bracket: &Bracket) -> TokenStream {
             quote!(Bracket::repeat(#times, #slot, #stride, #first, #last, #parent))
         }
     }
+}
+
+/// How many scopes are around a scope.
+pub(super) fn level(kind: Kind) -> u16 {
+    match kind {
+        Kind::Scope { level } => level,
+        Kind::Loop { .. } => 0,
+    }
+}
+
+/// `runtime::Follows::new(atom, from, to)`.
+pub(super) fn follows(follows: Follows) -> TokenStream {
+    let Follows { atom, from, to } = follows;
+    let atom = Literal::u32_unsuffixed(atom);
+    let [from, to] = [from, to].map(Literal::u16_unsuffixed);
+    quote!(runtime::Follows::new(#atom, #from, #to))
 }

@@ -1,7 +1,7 @@
 //! The machine `counted`: the run-time system's own machine on a lowered plan, loops as the paper's counters
 //! (semantics, section 9). It is what robots run, with a script in place of the robot.
 
-use mdle_runtime::{Begin, Cause, Cursor, Fsm, Nanos, Transition, Turn, Watch};
+use mdle_runtime::{Begin, Cause, Cursor, Ending, Fsm, Nanos, Next, Transition, Turn, Watch};
 
 use super::{Applied, Fired, Machine, Outcome, Reports};
 use crate::fsm::Lowered;
@@ -58,23 +58,9 @@ impl mdle_runtime::Output for Reports {}
 #[derive(Debug)]
 struct Scripted<'p>(&'p Lowered);
 
-impl mdle_runtime::Plan for Scripted<'_> {
-    type Output = Reports;
-    type Input = ();
-    type Entered = Box<[Nanos]>;
-    type Left = Box<[u64]>;
-
-    fn fsm(&self) -> Fsm<'_> {
-        self.0.tables()
-    }
-
-    fn slots(&self) -> (Self::Entered, Self::Left) {
-        (vec![Nanos::ZERO; self.0.levels].into(), vec![0; self.0.slots].into())
-    }
-
-    fn enter(&mut self, _: u32, _: &Reports, _: Begin) {}
-
-    fn fired(&self, cursor: &Cursor<Self::Entered, Self::Left>, y: &Reports, t: Nanos) -> Option<Cause> {
+impl Scripted<'_> {
+    /// Which scope around the current atom ends, and why.
+    fn ending(&self, cursor: &Cursor<Box<[Nanos]>, Box<[u64]>>, y: &Reports, t: Nanos) -> Option<Cause> {
         let own = self.0.atoms.get(cursor.atom() as usize)?.scope;
         let quark = |id| y.fired.contains(&self.0.quark(id).text);
         let mut outermost = None;
@@ -94,6 +80,27 @@ impl mdle_runtime::Plan for Scripted<'_> {
             here = bracket.parent;
         }
         outermost.or_else(|| self.0.completed(cursor.atom(), y))
+    }
+}
+
+impl mdle_runtime::Plan for Scripted<'_> {
+    type Output = Reports;
+    type Input = ();
+    type Entered = Box<[Nanos]>;
+    type Left = Box<[u64]>;
+
+    fn fsm(&self) -> Fsm<'_> {
+        self.0.tables()
+    }
+
+    fn slots(&self) -> (Self::Entered, Self::Left) {
+        (vec![Nanos::ZERO; self.0.levels].into(), vec![0; self.0.slots].into())
+    }
+
+    fn enter(&mut self, _: u32, _: &Reports, _: Begin) {}
+
+    fn next(&mut self, cursor: &mut Cursor<Self::Entered, Self::Left>, y: &Reports, begin: Begin, _: bool) -> Next {
+        self.ending(cursor, y, begin.now).map(Ending::from).into()
     }
 
     fn input(&mut self, _: &Reports, _: Nanos) {}

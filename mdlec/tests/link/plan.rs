@@ -29,13 +29,14 @@ impl ::mdle_runtime::Plan for Nap {
 
     fn enter(&mut self, _: u32, _: &Self::Output, _: ::mdle_runtime::Begin) {}
 
-    fn fired(
-        &self,
-        _: &::mdle_runtime::Cursor<Self::Entered, Self::Left>,
+    fn next(
+        &mut self,
+        _: &mut ::mdle_runtime::Cursor<Self::Entered, Self::Left>,
         _: &Self::Output,
-        _: ::mdle_runtime::Nanos,
-    ) -> Option<::mdle_runtime::Cause> {
-        Some(::mdle_runtime::Cause::Fired(0))
+        _: ::mdle_runtime::Begin,
+        _: bool,
+    ) -> ::mdle_runtime::Next {
+        ::mdle_runtime::Next::Ends(::mdle_runtime::Cause::Fired(0).into())
     }
 
     fn input(&mut self, _: &Self::Output, _: ::mdle_runtime::Nanos) {}

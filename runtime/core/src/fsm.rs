@@ -19,12 +19,16 @@ pub struct Fsm<'a> {
 }
 
 impl<'a> Fsm<'a> {
-    /// A bracket and those around it, outwards to the plan's own, each with its number. It ends after as many steps as
-    /// there are brackets, so that tables whose parents form a circle hold nobody up.
+    /// A bracket and those around it, outwards to the plan's own, each with its number. A bracket stands behind those
+    /// around it, so that tables whose parents form a circle hold nobody up.
     pub(crate) fn outwards(self, bracket: u32) -> impl Iterator<Item = (u32, &'a Bracket)> {
         let at = move |number: u32| self.brackets.get(number as usize).map(|bracket| (number, bracket));
-        let around = move |(here, bracket): &(u32, &Bracket)| at(bracket.parent).filter(|_| bracket.parent != *here);
-        core::iter::successors(at(bracket), around).take(self.brackets.len())
+        core::iter::successors(
+            at(bracket),
+            move |(here, bracket)| {
+                if bracket.parent < *here { at(bracket.parent) } else { None }
+            },
+        )
     }
 }
 

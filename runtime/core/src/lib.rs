@@ -30,13 +30,13 @@ pub mod trace;
 mod units;
 
 pub use alphabet::{Alphabet, Argument};
-pub use cursor::{Cursor, Slots};
+pub use cursor::{Cursor, Follows, Slots};
 pub use fsm::Fsm;
-pub use machine::{Cause, Machine, Plan, TRANSITIONS_PER_TURN, Transition, Turn, Watch};
+pub use machine::{Cause, Ending, Machine, Next, Plan, TRANSITIONS_PER_TURN, Transition, Turn, Watch};
 pub use pose::{Frame, Pose, Twist};
 pub use quark::{Begin, Completes, Control, Interrupt, Law};
 pub use robot::{Output, Robot};
-pub use rows::{Condition, InRows, LawRow, Rows, Texts};
+pub use rows::{Condition, Guard, InRows, LawRow, Rows, Texts};
 pub use sonar::{PINGS_KEPT, Ping, Pings, SONARS, SonarId};
 pub use time::Nanos;
 pub use units::{Bits, Meters, MetersPerSecond, Radians, RadiansPerSecond, Volts};

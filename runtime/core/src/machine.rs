@@ -1,6 +1,6 @@
 //! One turn of a plan: interrupts outermost first, then the law of the atom that is left standing (semantics, section 5).
 
-use crate::{Begin, Cursor, Frame, Fsm, Nanos, Output, Slots};
+use crate::{Begin, Cursor, Follows, Frame, Fsm, Nanos, Output, Slots};
 
 /// The most transitions of one turn; the search for the next atom then goes on in the next turn.
 pub const TRANSITIONS_PER_TURN: u32 = 4096;
@@ -24,8 +24,36 @@ pub trait Plan {
     fn slots(&self) -> (Self::Entered, Self::Left);
     /// Makes the law of `atom`, which is now the current one; called once for each atom entered.
     fn enter(&mut self, atom: u32, y: &Self::Output, begin: Begin);
-    /// The outermost scope around the current atom whose interrupt has fired, the law's completion last.
-    fn fired(&self, cursor: &Cursor<Self::Entered, Self::Left>, y: &Self::Output, t: Nanos) -> Option<Cause>;
+    /// Asks the interrupts around the current atom, the outermost first, and the law's completion last. The first that
+    /// has fired is what the answer is about; with `direct` the plan may leave its scope at once, by [`Plan::end`].
+    fn next(
+        &mut self,
+        cursor: &mut Cursor<Self::Entered, Self::Left>,
+        y: &Self::Output,
+        begin: Begin,
+        direct: bool,
+    ) -> Next;
+    /// What [`Plan::next`] answers where a scope ends: with `direct`, and where it is known what follows, that has begun.
+    ///
+    /// Inlined, so that a plan whose code names the ending needs neither table nor match to make the transition.
+    #[inline(always)]
+    fn end(
+        &mut self,
+        cursor: &mut Cursor<Self::Entered, Self::Left>,
+        ending: Ending,
+        y: &Self::Output,
+        begin: Begin,
+        direct: bool,
+    ) -> Next {
+        let Some(follows) = ending.follows.filter(|_| direct) else { return Next::Ends(ending) };
+        cursor.follow(follows, begin.now);
+        if follows.is_over() {
+            return Next::Over;
+        }
+        self.enter(cursor.atom(), y, begin);
+        Next::Moved
+    }
+
     /// The input that the current atom's law computes.
     fn input(&mut self, y: &Self::Output, t: Nanos) -> Self::Input;
 
@@ -56,6 +84,48 @@ impl Cause {
     }
 }
 
+/// A scope that ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Ending {
+    /// Which scope around the current atom, and why.
+    pub cause: Cause,
+    /// What follows, if the plan knows it beforehand; the cursor finds it out otherwise.
+    pub follows: Option<Follows>,
+}
+
+/// What the interrupts around the current atom ask for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Next {
+    /// Nothing: none has fired.
+    Stays,
+    /// This scope is to end.
+    Ends(Ending),
+    /// A scope has ended, and what follows has begun.
+    Moved,
+    /// A scope has ended, and with it the plan.
+    Over,
+}
+
+impl From<Option<Ending>> for Next {
+    fn from(ending: Option<Ending>) -> Self {
+        ending.map_or(Self::Stays, Self::Ends)
+    }
+}
+
+impl From<Cause> for Ending {
+    fn from(cause: Cause) -> Self {
+        Self { cause, follows: None }
+    }
+}
+
+impl Cause {
+    /// The ending of a scope behind which this follows.
+    #[must_use]
+    pub const fn then(self, follows: Follows) -> Ending {
+        Ending { cause: self, follows: Some(follows) }
+    }
+}
+
 /// A transition of the machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Transition {
@@ -73,8 +143,18 @@ pub struct Transition {
 
 /// Told of every transition, in order.
 pub trait Watch {
+    /// Whether it looks at what it is told: the numbers of states need not be found out for one that does not.
+    const LOOKS: bool = true;
+
     /// A transition was made.
     fn transition(&mut self, transition: Transition);
+}
+
+/// Nobody watches.
+impl Watch for () {
+    const LOOKS: bool = false;
+
+    fn transition(&mut self, _: Transition) {}
 }
 
 /// What came of a turn.
@@ -117,32 +197,73 @@ impl<P: Plan> Machine<P> {
     }
 
     /// One turn with output `y` at time `t`: transitions until no interrupt around the current atom has fired, then its law.
-    pub fn turn(&mut self, y: &P::Output, t: Nanos, watch: &mut impl Watch) -> Turn<P::Input> {
+    pub fn turn<W: Watch>(&mut self, y: &P::Output, t: Nanos, watch: &mut W) -> Turn<P::Input> {
         if self.is_over() {
             return Turn::Over;
         }
-        let mut made: u32 = 0;
-        while let Some(cause) = self.plan.fired(&self.cursor, y, t) {
-            if made == TRANSITIONS_PER_TURN {
-                return Turn::Cut;
+        let begin = Begin { now: t, frame: self.frame };
+        match self.plan.next(&mut self.cursor, y, begin, !W::LOOKS) {
+            Next::Stays => Turn::Law(self.plan.input(y, t)),
+            Next::Moved => self.go_on(y, t, watch),
+            Next::Over => Turn::Over,
+            Next::Ends(Ending { follows: Some(follows), .. }) if !W::LOOKS && follows.is_over() => {
+                self.cursor.leave(follows);
+                Turn::Over
             }
-            made = made.saturating_add(1);
-            let transition = self.step(cause, t);
-            watch.transition(transition);
-            let Some(atom) = transition.atom else { return Turn::Over };
-            self.plan.enter(atom, y, Begin { now: t, frame: self.frame });
+            Next::Ends(_) => self.search(0, y, t, watch),
         }
-        Turn::Law(self.plan.input(y, t))
     }
 
-    /// Makes the transition that `cause` asks for.
-    fn step(&mut self, cause: Cause, t: Nanos) -> Transition {
-        let fsm = self.plan.fsm();
-        let from = self.cursor.state(fsm);
-        let scope = self.cursor.scope(fsm, cause.level());
-        let goes_on = self.cursor.end(fsm, cause.level(), t);
-        let atom = goes_on.then_some(self.cursor.atom());
-        Transition { from, scope, cause, atom, to: self.cursor.state(fsm) }
+    /// The rest of a turn that has made one transition, as long as it goes from atom to atom directly. Apart from
+    /// [`Machine::turn`], so that a turn in which nothing happens carries nothing of a loop with it.
+    #[inline(never)]
+    fn go_on<W: Watch>(&mut self, y: &P::Output, t: Nanos, watch: &mut W) -> Turn<P::Input> {
+        let begin = Begin { now: t, frame: self.frame };
+        let mut made: u32 = 1;
+        loop {
+            match self.plan.next(&mut self.cursor, y, begin, made < TRANSITIONS_PER_TURN) {
+                Next::Stays => return Turn::Law(self.plan.input(y, t)),
+                Next::Moved => made = made.saturating_add(1),
+                Next::Over => return Turn::Over,
+                Next::Ends(_) => return self.search(made, y, t, watch),
+            }
+        }
+    }
+
+    /// The rest of a turn that has made `made` transitions, one after the other as the semantics have them.
+    #[inline(never)]
+    fn search<W: Watch>(&mut self, mut made: u32, y: &P::Output, t: Nanos, watch: &mut W) -> Turn<P::Input> {
+        let begin = Begin { now: t, frame: self.frame };
+        loop {
+            let ending = match self.plan.next(&mut self.cursor, y, begin, false) {
+                Next::Stays | Next::Moved => return Turn::Law(self.plan.input(y, t)),
+                Next::Over => return Turn::Over,
+                Next::Ends(_) if made == TRANSITIONS_PER_TURN => return Turn::Cut,
+                Next::Ends(ending) => ending,
+            };
+            self.step(ending, t, watch);
+            if self.is_over() {
+                return Turn::Over;
+            }
+            self.plan.enter(self.cursor.atom(), y, begin);
+            made = made.saturating_add(1);
+        }
+    }
+
+    /// Makes the transition that `ending` asks for.
+    fn step<W: Watch>(&mut self, ending: Ending, t: Nanos, watch: &mut W) {
+        let (fsm, level) = (self.plan.fsm(), ending.cause.level());
+        let looked = W::LOOKS.then(|| (self.cursor.state(fsm), self.cursor.scope(fsm, level)));
+        match ending.follows {
+            Some(follows) => self.cursor.follow(follows, t),
+            None => {
+                self.cursor.end(fsm, level, t);
+            }
+        }
+        if let Some((from, scope)) = looked {
+            let to = self.cursor.state(self.plan.fsm());
+            watch.transition(Transition { from, scope, cause: ending.cause, atom: self.atom(), to });
+        }
     }
 
     /// Whether the plan is over.
@@ -158,6 +279,11 @@ impl<P: Plan> Machine<P> {
     /// The current atom, as written, from 0; `None` when the plan is over.
     pub fn atom(&self) -> Option<u32> {
         (!self.is_over()).then_some(self.cursor.atom())
+    }
+
+    /// Where the plan is.
+    pub fn cursor(&self) -> &Cursor<P::Entered, P::Left> {
+        &self.cursor
     }
 
     /// The plan, for its texts.

@@ -3,23 +3,39 @@
 //! `mdlec` emits this for plans that are too long to be code of their own, and a plan loaded at run time is this. A row
 //! costs rustc next to nothing, and a turn looks at as many of them as there are scopes around the current atom.
 
-use crate::fsm::Kind;
-use crate::{Alphabet, Begin, Cause, Completes, Control, Cursor, Fsm, Interrupt, Law, Nanos, Plan, Radians, Slots};
+use crate::{
+    Alphabet, Begin, Cause, Completes, Control, Cursor, Ending, Follows, Fsm, Interrupt, Law, Nanos, Next, Plan,
+    Radians, Slots,
+};
 
 /// What the brackets and atoms of a plan mean.
 pub struct Rows<'a, A: Alphabet> {
     /// The machine's tables.
     pub fsm: Fsm<'a>,
-    /// When each scope ends, in the order of the brackets, [`Condition::Null`] for a loop; behind them the operands.
-    pub conditions: &'a [Condition<A::Interrupt>],
+    /// When each bracket ends, in their order.
+    pub guards: &'a [Guard<A::Interrupt>],
+    /// The operands of conditions; those of operands stand further behind, so that no table goes round in a circle.
+    pub operands: &'a [Condition<A::Interrupt>],
     /// What each atom does, in their order.
     pub laws: &'a [LawRow<A::Control>],
     /// What traces and messages call all this.
     pub texts: Texts<'a>,
 }
 
-/// The condition of an interrupt, or an operand of one. Operands stand further behind in the table, so that no table
-/// goes round in a circle.
+/// When a scope ends, and what then; a loop has a row that never fires.
+#[derive(Debug)]
+pub struct Guard<I> {
+    /// Its interrupt.
+    pub condition: Condition<I>,
+    /// How many scopes are around it.
+    pub level: u16,
+    /// The nearest bracket around it whose condition can fire; its own number where there is none.
+    pub around: u32,
+    /// What follows, if that is known beforehand: [`Fsm::follows`].
+    pub follows: Option<Follows>,
+}
+
+/// The condition of an interrupt, or an operand of one.
 #[derive(Debug)]
 pub enum Condition<I> {
     /// Never fires.
@@ -36,6 +52,29 @@ pub enum Condition<I> {
     Not(u32),
 }
 
+impl<I> Condition<I> {
+    /// Whether it has fired, `since` its scope was entered; reads every operand, which stand in `operands` from number
+    /// `from` on. It calls itself as deep as the text's parentheses go.
+    fn fired<Y>(&self, y: &Y, since: Nanos, operands: &[Self], from: u32) -> bool
+    where
+        I: Interrupt<Y>,
+    {
+        let operand = |number: u32| {
+            let operand = operands.get(number as usize).filter(|_| number >= from);
+            operand.is_some_and(|operand| operand.fired(y, since, operands, number.saturating_add(1)))
+        };
+        let all = |first: u32, count: u32| (first..first.saturating_add(count)).map(operand);
+        match self {
+            Self::Null => false,
+            Self::Quark(interrupt) => interrupt.fired(y),
+            Self::Wait(time) => since >= *time,
+            Self::Or(first, count) => all(*first, *count).fold(false, |fired, operand| fired | operand),
+            Self::And(first, count) => all(*first, *count).fold(true, |fired, operand| fired & operand),
+            Self::Not(number) => !operand(*number),
+        }
+    }
+}
+
 /// The law of an atom, and the angle by which its frame is turned.
 #[derive(Debug)]
 pub struct LawRow<C> {
@@ -46,7 +85,7 @@ pub struct LawRow<C> {
 }
 
 /// The texts of a plan; empty where there is none.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug)]
 pub struct Texts<'a> {
     /// The quark text of each atom's law.
     pub laws: &'a [&'a str],
@@ -56,40 +95,50 @@ pub struct Texts<'a> {
     pub names: &'a [&'a str],
 }
 
-impl<A: Alphabet> Clone for Rows<'_, A> {
-    fn clone(&self) -> Self {
-        *self
-    }
-}
-
-impl<A: Alphabet> Copy for Rows<'_, A> {}
-
-/// Whether the condition of this number has fired; reads every operand. `since` is the time since its scope was entered.
-fn fired<Y, I: Interrupt<Y>>(conditions: &[Condition<I>], number: u32, y: &Y, since: Nanos) -> bool {
-    let operand = |operand: u32| operand > number && fired(conditions, operand, y, since);
-    let operands = |first: u32, count: u32| (first..first.saturating_add(count)).map(operand);
-    match conditions.get(number as usize) {
-        Some(Condition::Null) | None => false,
-        Some(Condition::Quark(interrupt)) => interrupt.fired(y),
-        Some(Condition::Wait(time)) => since >= *time,
-        Some(Condition::Or(first, count)) => operands(*first, *count).fold(false, |fired, operand| fired | operand),
-        Some(Condition::And(first, count)) => operands(*first, *count).fold(true, |fired, operand| fired & operand),
-        Some(Condition::Not(number)) => !operand(*number),
-    }
-}
-
 /// A plan in rows that a [`Machine`](crate::Machine) runs.
 pub struct InRows<'a, A: Alphabet, E, P> {
-    rows: Rows<'a, A>,
+    rows: &'a Rows<'a, A>,
     slots: (E, P),
     running: Option<A::Law>,
+    /// The bracket of the current atom.
+    own: u32,
 }
 
-impl<'a, A: Alphabet, E, P> InRows<'a, A, E, P> {
+impl<'a, A: Alphabet, E: Slots<Nanos>, P: Slots<u64>> InRows<'a, A, E, P> {
     /// The plan before it begins, with a place for each level of scopes and of loops; values do not matter.
     #[must_use]
-    pub const fn new(rows: Rows<'a, A>, entered: E, left: P) -> Self {
-        Self { rows, slots: (entered, left), running: None }
+    pub const fn new(rows: &'a Rows<'a, A>, entered: E, left: P) -> Self {
+        Self { rows, slots: (entered, left), running: None, own: 0 }
+    }
+
+    /// The outermost scope around the current atom whose interrupt has fired.
+    #[inline(always)]
+    fn outermost(&self, cursor: &Cursor<E, P>, y: &A::Output, t: Nanos) -> Option<&'a Guard<A::Interrupt>> {
+        // From inside out, and the last one found counts: so the outermost wins, however deep scopes are nested.
+        let (mut here, mut found) = (self.own, None);
+        while let Some(guard) = self.rows.guards.get(here as usize) {
+            let fired = match &guard.condition {
+                Condition::Null => false,
+                Condition::Quark(interrupt) => interrupt.fired(y),
+                Condition::Wait(time) => cursor.since(guard.level, t) >= *time,
+                Condition::Or(..) | Condition::And(..) | Condition::Not(_) => self.compound(guard, cursor, y, t),
+            };
+            if fired {
+                found = Some(guard);
+            }
+            if guard.around >= here {
+                break;
+            }
+            here = guard.around;
+        }
+        found
+    }
+
+    /// Whether a condition that is made of others has fired.
+    #[cold]
+    #[inline(never)]
+    fn compound(&self, guard: &Guard<A::Interrupt>, cursor: &Cursor<E, P>, y: &A::Output, t: Nanos) -> bool {
+        guard.condition.fired(y, cursor.since(guard.level, t), self.rows.operands, 0)
     }
 }
 
@@ -108,6 +157,7 @@ impl<A: Alphabet, E: Slots<Nanos> + Clone, P: Slots<u64> + Clone> Plan for InRow
     }
 
     fn enter(&mut self, atom: u32, y: &A::Output, begin: Begin) {
+        self.own = self.rows.fsm.atoms.get(atom as usize).map_or(0, |atom| atom.scope);
         let row = self.rows.laws.get(atom as usize);
         self.running = row.map(|LawRow { control, frame }| {
             let turned = *frame != Radians(0.0);
@@ -115,22 +165,23 @@ impl<A: Alphabet, E: Slots<Nanos> + Clone, P: Slots<u64> + Clone> Plan for InRow
         });
     }
 
-    fn fired(&self, cursor: &Cursor<E, P>, y: &A::Output, t: Nanos) -> Option<Cause> {
-        let own = self.rows.fsm.atoms.get(cursor.atom() as usize)?.scope;
-        let mut level_of_own = None;
-        // From inside out, and the last one found counts: so the outermost wins, however deep scopes are nested.
-        let mut found = None;
-        for (bracket, of) in self.rows.fsm.outwards(own) {
-            let Kind::Scope { level } = of.kind else { continue };
-            level_of_own = level_of_own.or(Some(level));
-            if fired(self.rows.conditions, bracket, y, cursor.since(level, t)) {
-                found = Some(Cause::Fired(level));
-            }
+    #[inline(always)]
+    fn next(&mut self, cursor: &mut Cursor<E, P>, y: &A::Output, begin: Begin, direct: bool) -> Next {
+        let t = begin.now;
+        if let Some(Guard { level, follows, .. }) = self.outermost(cursor, y, t) {
+            let ending = Ending { cause: Cause::Fired(*level), follows: *follows };
+            return self.end(cursor, ending, y, begin, direct);
         }
-        found.or_else(|| {
-            let done = self.running.as_ref().is_some_and(|law| law.completed(y, t));
-            level_of_own.filter(|_| done).map(Cause::Completed)
-        })
+        if !self.running.as_ref().is_some_and(|law| law.completed(y, t)) {
+            return Next::Stays;
+        }
+        match self.rows.guards.get(self.own as usize) {
+            Some(Guard { level, follows, .. }) => {
+                let ending = Ending { cause: Cause::Completed(*level), follows: *follows };
+                self.end(cursor, ending, y, begin, direct)
+            }
+            None => Next::Stays,
+        }
     }
 
     fn input(&mut self, y: &A::Output, t: Nanos) -> A::Input {

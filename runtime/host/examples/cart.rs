@@ -9,7 +9,7 @@ use std::time::Duration;
 use mdle_host::clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use mdle_host::{Hosted, Pace, Refusal, Target, Time, run};
 use mdle_runtime::fsm::{Atom, Bracket};
-use mdle_runtime::{Begin, Cause, Cursor, Fsm, Meters, MetersPerSecond, Nanos, Output, Plan, Robot};
+use mdle_runtime::{Begin, Cause, Cursor, Fsm, Meters, MetersPerSecond, Nanos, Next, Output, Plan, Robot};
 
 fn main() -> ExitCode {
     run::<CartTarget, _>("shuttle", Shuttle { forward: true })
@@ -151,12 +151,15 @@ impl Plan for Shuttle {
         self.forward = atom == 0;
     }
 
-    fn fired(&self, cursor: &Cursor<[Nanos; 2], [u64; 1]>, y: &Sensed, t: Nanos) -> Option<Cause> {
-        if cursor.since(0, t) >= LIMIT {
-            return Some(Cause::Fired(0));
-        }
+    fn next(&mut self, cursor: &mut Cursor<[Nanos; 2], [u64; 1]>, y: &Sensed, begin: Begin, _: bool) -> Next {
         let there = if self.forward { y.at.0 >= y.track.0 } else { y.at.0 <= 0.0 };
-        there.then_some(Cause::Fired(1))
+        if cursor.since(0, begin.now) >= LIMIT {
+            Next::Ends(Cause::Fired(0).into())
+        } else if there {
+            Next::Ends(Cause::Fired(1).into())
+        } else {
+            Next::Stays
+        }
     }
 
     fn input(&mut self, _: &Sensed, _: Nanos) -> Speed {

@@ -10,17 +10,19 @@ use crate::{Input, LAWS, Output};
 
 /// Writes the trace of `plan` over a script: one JSON object a turn, to the turn in which the plan is over.
 ///
-/// `law` is what the input says, not what the plan says of itself. Where the two differ, and where the law was not made
-/// when its atom began, `law` says `broken`, so that a comparison fails there.
+/// `law` is what the input says, not what the plan says of itself. Where the two differ, where the law was not made when
+/// its atom began, and where a machine that nobody watches does otherwise, `law` says `broken`, so that a comparison
+/// fails there.
 ///
 /// # Errors
 /// When `trace` cannot be written.
-pub fn drive<P>(plan: P, script: &[(Nanos, Output)], trace: &mut impl Write) -> fmt::Result
+pub fn drive<P>(plan: impl Fn() -> P, script: &[(Nanos, Output)], trace: &mut impl Write) -> fmt::Result
 where
-    P: Plan<Output = Output, Input = Input>,
+    P: Plan<Output = Output, Input = Input, Entered: PartialEq, Left: PartialEq>,
 {
     let Some((start, first)) = script.first() else { return Ok(()) };
-    let mut machine = Machine::begin(plan, first, *start);
+    let mut machine = Machine::begin(plan(), first, *start);
+    let mut unwatched = Machine::begin(plan(), first, *start);
     let (mut began, mut computed) = (*start, 0_u32);
     for (turn, (t, y)) in (0..).zip(script) {
         let mut transitions = Transitions(Vec::new());
@@ -28,7 +30,9 @@ where
         if !transitions.0.is_empty() {
             (began, computed) = (*t, 0);
         }
+        let is_same = unwatched.turn(y, *t, &mut ()) == outcome && unwatched.cursor() == machine.cursor();
         let law = match outcome {
+            _ if !is_same => Some("broken"),
             Turn::Law(input) => {
                 computed = computed.saturating_add(1);
                 let named = machine.atom().map_or("", |atom| machine.plan().law(atom));

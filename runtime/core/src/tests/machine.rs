@@ -3,7 +3,10 @@
 use std::vec::Vec;
 
 use crate::fsm::{Atom, Bracket, Kind};
-use crate::{Begin, Cause, Cursor, Fsm, Machine, Nanos, Output, Plan, TRANSITIONS_PER_TURN, Transition, Turn, Watch};
+use crate::{
+    Begin, Cause, Cursor, Ending, Follows, Fsm, Machine, Nanos, Next, Output, Plan, TRANSITIONS_PER_TURN, Transition,
+    Turn, Watch,
+};
 
 /// An output: the brackets whose interrupts have fired, and whether the current law is done.
 struct Sensed(&'static [u32], bool);
@@ -19,6 +22,8 @@ struct Toy {
     entered: Vec<u32>,
     /// How many inputs were computed.
     computed: u32,
+    /// Whether it says what follows when a scope ends.
+    foresees: bool,
 }
 
 /// The brackets of [`Toy::nested`].
@@ -59,7 +64,14 @@ impl Toy {
     }
 
     fn new(brackets: impl Into<Vec<Bracket>>, atoms: impl Into<Vec<Atom>>, termination: u64) -> Self {
-        Self { brackets: brackets.into(), atoms: atoms.into(), termination, entered: Vec::new(), computed: 0 }
+        Self {
+            brackets: brackets.into(),
+            atoms: atoms.into(),
+            termination,
+            entered: Vec::new(),
+            computed: 0,
+            foresees: true,
+        }
     }
 }
 
@@ -81,11 +93,15 @@ impl Plan for Toy {
         self.entered.push(atom);
     }
 
-    fn fired(&self, cursor: &Cursor<[Nanos; 3], [u64; 1]>, y: &Sensed, _: Nanos) -> Option<Cause> {
+    fn next(&mut self, cursor: &mut Cursor<[Nanos; 3], [u64; 1]>, y: &Sensed, begin: Begin, direct: bool) -> Next {
         let own = self.atoms[cursor.atom() as usize].scope;
         let Kind::Scope { level: own } = self.brackets[own as usize].kind else { panic!("an atom's own scope") };
         let outermost = (0..=own).find(|level| y.0.contains(&cursor.scope(self.fsm(), *level)));
-        outermost.map(Cause::Fired).or(y.1.then_some(Cause::Completed(own)))
+        let Some(cause) = outermost.map(Cause::Fired).or(y.1.then_some(Cause::Completed(own))) else {
+            return Next::Stays;
+        };
+        let follows = self.fsm().follows(cursor.scope(self.fsm(), cause.level())).filter(|_| self.foresees);
+        self.end(cursor, Ending { cause, follows }, y, begin, direct)
     }
 
     fn input(&mut self, _: &Sensed, _: Nanos) -> u32 {
@@ -196,4 +212,40 @@ fn a_loop_without_end_is_cut_in_every_turn() {
         let (came, made) = turn(&mut machine, Sensed(&[FIRST], false));
         assert_eq!((came, made.len(), machine.state()), (Turn::Cut, 4096, 1));
     }
+}
+
+#[test]
+fn who_watches_and_what_is_foreseen_changes_nothing() {
+    const SCRIPT: [Sensed; 6] = [
+        QUIET,
+        Sensed(&[FIRST], false),
+        Sensed(&[SECOND, LAST], true),
+        Sensed(&[FIRST, SECOND], false),
+        Sensed(&[SCOPE], false),
+        Sensed(&[PLAN], false),
+    ];
+    let plans = [Toy::nested as fn() -> Toy, || Toy::repeated(4095), || Toy::repeated(4096), || Toy::repeated(4097)];
+    for (plan, foresees) in plans.into_iter().flat_map(|plan| [(plan, false), (plan, true)]) {
+        let begin = |foresees| begin(Toy { foresees, ..plan() });
+        let (mut watched, mut unwatched) = (begin(false), begin(foresees));
+        for y in SCRIPT {
+            let came = watched.turn(&y, Nanos(1), &mut Watched::default());
+            assert_eq!(unwatched.turn(&y, Nanos(1), &mut ()), came);
+            assert_eq!(unwatched.cursor(), watched.cursor());
+        }
+        assert_eq!(unwatched.plan().entered, watched.plan().entered);
+    }
+}
+
+#[test]
+fn what_follows_is_known_where_no_loop_has_a_say() {
+    let plan = Toy::nested();
+    let follows = [PLAN, SCOPE, FIRST, SECOND, LAST].map(|scope| plan.fsm().follows(scope).unwrap());
+    let expected = [(3, 0, 0), (2, 1, 2), (1, 2, 3), (2, 1, 2), (3, 0, 0)];
+    assert_eq!(follows, expected.map(|(atom, from, to)| Follows::new(atom, from, to)));
+    let plan = Toy::repeated(2);
+    assert_eq!(
+        [0, 2, 3].map(|scope| plan.fsm().follows(scope)),
+        [Some(Follows::new(2, 0, 0)), None, Some(Follows::new(2, 0, 0))]
+    );
 }
