@@ -67,8 +67,8 @@ impl<'a, F: IntoIterator<Item = Fired<'a>> + Clone> fmt::Display for Line<'_, F>
         }
         f.write_str(",\"fired\":[")?;
         for (place, Fired { from, level, by }) in self.fired.clone().into_iter().enumerate() {
-            let comma = if place == 0 { "" } else { "," };
-            write!(f, "{comma}{{\"from\":{from},\"level\":{level},\"by\":{}}}", Json(by))?;
+            f.write_str(if place == 0 { "" } else { "," })?;
+            write!(f, "{{\"from\":{from},\"level\":{level},\"by\":{}}}", Json(by))?;
         }
         f.write_str("]}")
     }
@@ -80,13 +80,17 @@ struct Seconds(Nanos);
 impl fmt::Display for Seconds {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Nanos(nanos) = self.0;
-        let (seconds, mut fraction) = (nanos / 1_000_000_000, nanos % 1_000_000_000);
-        let mut digits: usize = 9;
-        while digits > 1 && fraction % 10 == 0 {
-            fraction /= 10;
-            digits = digits.saturating_sub(1);
+        let (seconds, mut rest) = (nanos / 1_000_000_000, nanos % 1_000_000_000);
+        write!(f, "{seconds}.")?;
+        // Digit by digit: to be told a width at run time, `write!` needs a path that panics.
+        loop {
+            rest = rest.saturating_mul(10);
+            write!(f, "{}", rest / 1_000_000_000)?;
+            rest %= 1_000_000_000;
+            if rest == 0 {
+                return Ok(());
+            }
         }
-        write!(f, "{seconds}.{fraction:0digits$}")
     }
 }
 
