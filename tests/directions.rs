@@ -2,7 +2,10 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
-use mdle_tests::repository::{TextFile, files, names_from};
+use std::collections::BTreeSet;
+use std::process::Command;
+
+use mdle_tests::repository::{TextFile, files, names_from, root};
 
 /// What each package may use of ours. A folder that is not listed may not hold a package.
 const PACKAGES: &[(&str, &[&str])] = &[
@@ -14,6 +17,8 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("tests", &["mdle-runtime", "mdle-host", "mdle-atoms", "mdle-sim", "mdle-scripted", "mdlec"]),
     ("tests/scripted", &["mdle-runtime"]),
     ("tests/benchmarks", &["mdle-tests", "mdlec"]),
+    ("tests/benchmarks/turn", &["mdle-runtime", "mdlec"]),
+    ("tests/bare", &["mdle-runtime", "mdle-atoms"]),
 ];
 
 /// What each room of the compiler may use of the others. `crate` is what `lib.rs` itself holds.
@@ -48,6 +53,22 @@ fn packages_use_only_those_below_them() {
         }
     }
     assert_eq!(breaches, [""; 0]);
+}
+
+#[test]
+fn what_a_robot_runs_needs_no_package_but_libm() {
+    let needed = |folder: &str| {
+        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let shown = ["--no-default-features", "--edges", "normal", "--prefix", "none", "--format", "{p}"];
+        let output =
+            Command::new(cargo).args(["tree", "--offline"]).args(shown).current_dir(root().join(folder)).output();
+        let output = output.expect("cargo runs");
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let packages = String::from_utf8(output.stdout).expect("names");
+        packages.lines().filter_map(|line| line.split(' ').next()).map(str::to_owned).collect::<BTreeSet<_>>()
+    };
+    assert_eq!(needed("runtime/core"), BTreeSet::from(["libm", "mdle-runtime"].map(str::to_owned)));
+    assert_eq!(needed("atoms"), BTreeSet::from(["libm", "mdle-atoms", "mdle-runtime"].map(str::to_owned)));
 }
 
 /// The packages of ours that a manifest names as dependencies, of whatever sort.

@@ -198,7 +198,7 @@ impl<'a> Meaning<'a> {
         }
     }
 
-    /// For each scope with an interrupt: `fn shake(cursor, y, t) -> Option<Ending>`.
+    /// For each scope with an interrupt: `fn shake(cursor, y, t) -> Option<runtime::Ending>`.
     pub(super) fn scope_functions(&self) -> TokenStream {
         let functions = self.functions.iter().zip(0_u32..).filter_map(|(function, bracket)| {
             let function = function.as_ref()?;
@@ -213,7 +213,7 @@ impl<'a> Meaning<'a> {
             let doc = format!(" {} ({}), and the scopes around it first.", scope.name, scope.interrupt.text);
             Some(quote! {
                 #[doc = #doc]
-                fn #function(cursor: &At, y: &Output, t: Nanos) -> Option<Ending> { #around #fired None }
+                fn #function(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> { #around #fired None }
             })
         });
         quote!(#(#functions)*)
@@ -235,8 +235,8 @@ impl<'a> Meaning<'a> {
     fn ending(&self, bracket: u32, cause: &str) -> TokenStream {
         let (cause, level) = (format_ident!("{cause}"), self.level(bracket));
         match self.lowered.tables().follows(bracket).map(follows) {
-            Some(follows) => quote!(Cause::#cause(#level).then(#follows)),
-            None => quote!(Cause::#cause(#level).into()),
+            Some(follows) => quote!(runtime::Cause::#cause(#level).then(#follows)),
+            None => quote!(runtime::Cause::#cause(#level).into()),
         }
     }
 

@@ -78,7 +78,7 @@ pub fn emit_as(shape: Shape, lowered: &Lowered, header: Header<'_>, alphabet: &A
         mod machine {
             use ::mdle_runtime as runtime;
             use ::mdle_runtime::fsm::{Atom, Bracket};
-            use ::mdle_runtime::{Begin, Cause, Cursor, Ending, Fsm, Nanos, Next};
+            use ::mdle_runtime::{Begin, Cursor, Fsm, Nanos, Next};
             use ::#target::alphabet::{self as robot, Input, Output};
 
             #same_alphabet

@@ -1,0 +1,226 @@
+//! No path that panics: the executables of `tests/bare` link although nothing is there that a panic could call, and run.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::collections::BTreeSet;
+use std::f64::consts::PI;
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::sync::LazyLock;
+
+use mdle_tests::elf::sections;
+use mdle_tests::repository::root;
+use mdlec::alphabet::{self, Alphabet};
+use mdlec::diagnostic::SourceId;
+use mdlec::rust::{Header, Shape, emit_as};
+use mdlec::trace::{Reports, Script, Tree, run};
+use mdlec::{Compiled, compile, link};
+
+/// The executables: what each is called, its plan, and the plan's shape.
+const EXECUTABLES: [(&str, &str, Shape); 3] = [
+    ("round_as_code", "Round", Shape::Code),
+    ("round_as_rows", "Round", Shape::Rows),
+    ("every_quark", "EveryQuark", Shape::Code),
+];
+
+/// One way through the plan: most of its interrupts fire.
+const ROUND: &str = r#"
+{"t": 0.0, "fired": ["atIsection 0100"]}
+{"t": 0.1, "fired": ["atIsection 1000"]}
+{"t": 0.2}
+{"t": 0.6}
+{"t": 0.7, "completed": ["rotate 90"]}
+{"t": 0.8}
+{"t": 0.9, "completed": ["rotate -90"]}
+{"t": 1.4}
+{"t": 1.5, "fired": ["atIsection 0100"]}
+{"t": 4.4}
+{"t": 4.5, "fired": ["atIsection 0000"]}
+{"t": 4.6, "completed": ["rotate 45"]}
+{"t": 4.7, "fired": ["atIsection 0010"]}
+{"t": 5.7}
+{"t": 5.8, "completed": ["rotate 0"]}
+{"t": 6.8}
+{"t": 7.8}
+{"t": 9.6, "fired": ["atIsection 0000"]}
+{"t": 9.7, "fired": ["atIsection 0001"]}
+"#;
+
+/// Another: time runs out, and contact is the end.
+const ROUND_IN_TIME: &str = r#"
+{"t": 0.0}
+{"t": 20.0}
+{"t": 35.0, "fired": ["atIsection 1000"]}
+{"t": 35.1}
+{"t": 65.1, "fired": ["atIsection 0010"]}
+{"t": 65.2, "fired": ["bumper"]}
+"#;
+
+const EVERY_QUARK: &str = r#"
+{"t": 0.0}
+{"t": 0.1, "completed": ["goAvoid 0 2 20"]}
+{"t": 1.1}
+{"t": 1.2, "completed": ["turn -90"]}
+{"t": 1.3}
+{"t": 1.4, "completed": ["align 7 9"]}
+{"t": 1.5}
+{"t": 1.6, "completed": ["rotate 90"]}
+{"t": 1.7}
+{"t": 2.6}
+"#;
+
+fn compiled(plan: &str) -> (Compiled, Alphabet) {
+    let folder = root().join("tests/bare");
+    let read = |text: &str| alphabet::read(SourceId(0), text).0.expect("an alphabet");
+    let own = read(&fs::read_to_string(folder.join("alphabet.mdle")).unwrap());
+    let shared: Vec<_> = link::alphabets().iter().filter(|file| !file.target).map(|file| read(file.text)).collect();
+    let alphabet = alphabet::combine(own, &shared).0;
+    let text = fs::read_to_string(folder.join("plan.mdle")).unwrap();
+    let (mut compiled, found) = compile(SourceId(0), &text, &alphabet, Some(plan));
+    assert_eq!(found, []);
+    (compiled.pop().expect("a plan"), alphabet)
+}
+
+/// The executables in a folder of this test's, built once.
+fn built() -> &'static Path {
+    static BUILT: LazyLock<PathBuf> = LazyLock::new(|| {
+        for (name, plan, shape) in EXECUTABLES {
+            let (Compiled { lowered, .. }, alphabet) = compiled(plan);
+            let text = emit_as(shape, &lowered, Header { file: "plan.mdle", plan }, &alphabet);
+            write_if_changed(&plans().join(name).with_extension("rs"), &text);
+        }
+        let bins = EXECUTABLES.iter().flat_map(|(name, ..)| ["--bin", name]);
+        let output = cargo_build().args(bins).output().unwrap();
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{said}\n`tests/bare/src/system.rs` says how to find a path that panics");
+        target().join("release")
+    });
+    &BUILT
+}
+
+fn plans() -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join("bare/plans")
+}
+
+fn target() -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join("bare/target")
+}
+
+/// Leaves the time of a file as it is where nothing has changed, so that it is not compiled again.
+fn write_if_changed(path: &Path, text: &str) {
+    if fs::read_to_string(path).ok().as_deref() != Some(text) {
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, text).unwrap();
+    }
+}
+
+fn cargo_build() -> Command {
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.args(["build", "--release", "--locked", "--offline", "--quiet", "--target-dir"]).arg(target());
+    command.current_dir(root().join("tests/bare")).env("PLANS", plans());
+    // What the workspace is built with is not for an executable without std.
+    let about_builds = ["CARGO_BUILD", "CARGO_ENCODED", "CARGO_PROFILE", "RUSTFLAGS", "RUSTC_W"];
+    for (name, _) in std::env::vars_os() {
+        if about_builds.iter().any(|start| name.to_string_lossy().starts_with(start)) {
+            command.env_remove(name);
+        }
+    }
+    command
+}
+
+/// Runs an executable on a script: what it printed.
+fn printed(executable: &str, script: &Script) -> String {
+    let mut child =
+        Command::new(built().join(executable)).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    let outputs: Vec<u8> = script.turns().iter().flat_map(record).collect();
+    // An executable whose plan is over reads no further.
+    let _ = child.stdin.take().unwrap().write_all(&outputs);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// An output on which the quarks report what a script says, as the executables read it. Pose and ranges are of the turn
+/// alone. Nothing is at rest that is not done, so that no law completes of itself.
+fn record(reports: &Reports) -> Vec<u8> {
+    let said = |text: &str| reports.completed.contains(text);
+    let goals = [("rotate 90", 90.0), ("rotate -90", -90.0), ("rotate 45", 225.0), ("turn -90", -90.0)];
+    let heading = goals.iter().find(|(law, _)| said(law)).map_or(0.0, |(_, degrees)| degrees * (PI / 180.0));
+    let x = if said("goAvoid 0 2 20") { 2.0 } else { 0.0 };
+    let omega = if reports.completed.is_empty() { 0.5 } else { 0.0 };
+    let pressed = f64::from(u8::from(reports.fired.contains("bumper")));
+    // Without a pattern everything is near: `atIsection 1111`, which no plan asks for.
+    let pattern = reports.fired.iter().find_map(|text| text.strip_prefix("atIsection ")).unwrap_or("1111");
+    let mut ranges = [1.0; 16];
+    for (range, bit) in ranges.iter_mut().step_by(4).zip(pattern.chars()) {
+        *range = if bit == '1' { 0.5 } else { -1.0 };
+    }
+    ranges[9] = if said("align 7 9") { ranges[7] } else { 1.5 };
+    let numbers = [x, 0.0, heading, 0.0, omega, pressed];
+    let bits = numbers.into_iter().chain(ranges).map(f64::to_bits);
+    std::iter::once(reports.t.0).chain(bits).flat_map(u64::to_le_bytes).collect()
+}
+
+/// Asserts that an executable does on a script what the compiler's machine does. Its lines, the inputs behind the turns.
+fn traced(executable: &str, plan: &str, script: &str) -> String {
+    let (Compiled { plan, .. }, _) = compiled(plan);
+    let script = Script::read(script).expect("a script");
+    let printed = printed(executable, &script);
+    let (mut trace, mut turns) = (String::new(), String::new());
+    for turn in printed.lines().collect::<Vec<_>>().chunks(2) {
+        trace += &format!("{}\n", turn[0]);
+        turns += &format!("{}  {}\n", turn[0], turn[1]);
+    }
+    let expected: String = run(Tree::new(&plan), &script).map(|line| format!("{line}\n")).collect();
+    assert_eq!(trace, expected, "{executable}");
+    turns
+}
+
+#[test]
+fn conditions_and_nesting_of_every_form_link_and_run_in_both_shapes() {
+    let turns = |executable| traced(executable, "Round", ROUND) + &traced(executable, "Round", ROUND_IN_TIME);
+    let (turns, rows) = (turns("round_as_code"), turns("round_as_rows"));
+    assert_eq!(turns, rows);
+    let (Compiled { lowered, .. }, _) = compiled("Round");
+    let conditions: BTreeSet<_> = lowered.scopes.iter().flatten().map(|scope| &scope.interrupt.text).collect();
+    let never: Vec<_> = conditions.into_iter().filter(|text| !turns.contains(&format!("\"by\":\"{text}\""))).collect();
+    assert_eq!(never, ["null"]);
+    insta::assert_snapshot!(turns);
+}
+
+#[test]
+fn every_quark_links_and_runs() {
+    insta::assert_snapshot!(traced("every_quark", "EveryQuark", EVERY_QUARK));
+}
+
+#[test]
+fn a_panic_that_is_left_does_not_link() {
+    let output = cargo_build().args(["--bin", "indexing"]).output().unwrap();
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(!output.status.success());
+    assert!(said.contains("undefined") && said.contains("a_panic_path_is_left"), "{said}");
+}
+
+#[test]
+fn a_plan_with_its_machine_is_less_than_16_kilobytes_of_code() {
+    let sizes = EXECUTABLES.map(|(name, ..)| {
+        let sections = sections(&fs::read(built().join(name)).unwrap());
+        let size = |name: &str| sections.iter().find(|(section, _)| section == name).expect(name).1;
+        (name, size(".text"), size(".rodata"))
+    });
+    println!("{sizes:?}");
+    assert!(sizes[0].1 < 16 * 1024, "{sizes:?}");
+    assert!(sizes.iter().all(|(_, code, _)| *code < 24 * 1024), "{sizes:?}");
+}
+
+#[test]
+fn it_is_built_of_what_the_workspace_is() {
+    let lock = |folder: &str| fs::read_to_string(root().join(folder).join("Cargo.lock")).unwrap();
+    let (own, workspace) = (lock("tests/bare"), lock(""));
+    let foreign: Vec<_> = own.split("\n\n").filter(|package| package.contains("checksum = ")).collect();
+    assert!(!foreign.is_empty());
+    let others: Vec<_> = foreign.into_iter().filter(|package| !workspace.contains(package.trim())).collect();
+    assert_eq!(others, [""; 0], "`cargo update --manifest-path tests/bare/Cargo.toml` can choose another version");
+}

@@ -1,0 +1,56 @@
+//! Runs a plan on the outputs that are read, and prints what it did.
+
+use core::ffi::c_int;
+use core::fmt::{self, Write};
+
+use mdle_runtime::trace::Line;
+use mdle_runtime::{Machine, Plan, Transition, Turn, Watch};
+
+use crate::sensed::Sensed;
+use crate::system::{Printed, bytes};
+use crate::{Input, Output};
+
+/// Runs `plan` until it is over or no output is left, and prints two lines a turn: that of a trace, then the input as
+/// `u` and two whole numbers, in mm/s and mrad/s. Returns the exit status: 0 where all could be printed.
+pub fn run(plan: impl Plan<Output = Output, Input = Input>) -> c_int {
+    match turns(plan) {
+        Ok(()) => 0,
+        Err(fmt::Error) => 1,
+    }
+}
+
+fn turns(plan: impl Plan<Output = Output, Input = Input>) -> fmt::Result {
+    let mut next = bytes().map(|record| Sensed::read(&record));
+    let Some((t, y)) = &next else { return Ok(()) };
+    let mut machine = Machine::begin(plan, y, *t);
+    let mut turn: u64 = 0;
+    while let Some((t, y)) = next.filter(|_| !machine.is_over()) {
+        let mut transitions = Transitions::default();
+        let outcome = machine.turn(&y, t, &mut transitions);
+        let law = match outcome {
+            Turn::Law(_) => machine.atom().map(|atom| machine.plan().law(atom)),
+            Turn::Cut | Turn::Over => None,
+        };
+        let fired = transitions.made.iter().flatten().map(|transition| transition.fired(machine.plan()));
+        let Input { v, omega } = outcome.input();
+        writeln!(Printed, "{}", Line { turn, t, state: machine.state(), law, fired })?;
+        writeln!(Printed, "u {} {}", (v.0 * 1000.0) as i32, (omega.0 * 1000.0) as i32)?;
+        turn = turn.saturating_add(1);
+        next = bytes().map(|record| Sensed::read(&record));
+    }
+    Ok(())
+}
+
+/// The first transitions of a turn.
+#[derive(Default)]
+struct Transitions {
+    made: [Option<Transition>; 8],
+}
+
+impl Watch for Transitions {
+    fn transition(&mut self, transition: Transition) {
+        if let Some(free) = self.made.iter_mut().find(|place| place.is_none()) {
+            *free = Some(transition);
+        }
+    }
+}
