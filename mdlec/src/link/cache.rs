@@ -65,21 +65,38 @@ impl Cache {
     }
 }
 
-/// Writes `text` to `file` unless it is there already, and says whether it wrote; a reader sees the old or the new text.
-pub(super) fn write_if_changed(file: &Path, text: &str) -> Result<bool, LinkError> {
-    if fs::read(file).is_ok_and(|found| found == text.as_bytes()) {
+/// Writes `contents` to `file` unless they are there already, and says whether it wrote; a reader sees the old or the new.
+pub(super) fn write_if_changed(file: &Path, contents: &[u8]) -> Result<bool, LinkError> {
+    if fs::read(file).is_ok_and(|found| found == contents) {
         return Ok(false);
     }
-    replace(file, text).map_err(|error| LinkError::cache(file, error))?;
+    replace(file, contents).map_err(|error| LinkError::cache(file, error))?;
     Ok(true)
 }
 
 /// Writes beside `file` and renames.
-fn replace(file: &Path, text: &str) -> io::Result<()> {
+fn replace(file: &Path, contents: &[u8]) -> io::Result<()> {
     if let Some(folder) = file.parent() {
         fs::create_dir_all(folder)?;
     }
+    // Nothing can be renamed over a folder.
+    if file.is_dir() {
+        fs::remove_dir_all(file)?;
+    }
     let new = file.with_extension("new");
-    fs::write(&new, text)?;
+    fs::write(&new, contents)?;
     fs::rename(new, file)
+}
+
+/// Removes what is at `path`, be it a file or a folder with all that is in it.
+pub(super) fn remove(path: &Path) -> Result<(), LinkError> {
+    let removed = match fs::symlink_metadata(path) {
+        Ok(found) if found.is_dir() => fs::remove_dir_all(path),
+        Ok(_) => fs::remove_file(path),
+        Err(error) => Err(error),
+    };
+    match removed {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => Err(LinkError::cache(path, error)),
+        Ok(()) | Err(_) => Ok(()),
+    }
 }

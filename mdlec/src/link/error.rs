@@ -32,7 +32,8 @@ pub enum LinkError {
     NoCacheFolder,
     /// The cache cannot be written or read.
     #[error(
-        "the cache is no good at `{path}` ({error}): mend it, or name another folder with the variable MDLEC_CACHE"
+        "the cache cannot be used at `{path}` ({error}): make it writable or delete it, or name another folder with the \
+         variable MDLEC_CACHE"
     )]
     Cache {
         /// Where in the cache.

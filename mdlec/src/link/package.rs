@@ -24,7 +24,7 @@ impl PlanPackage {
     /// Keeps what was said for a report.
     pub(super) fn keep(&self, text: &str) -> Result<PathBuf, LinkError> {
         let log = self.folder.join("build.log");
-        write_if_changed(&log, text)?;
+        write_if_changed(&log, text.as_bytes())?;
         Ok(log)
     }
 }
@@ -37,11 +37,11 @@ pub(super) fn write(
 ) -> Result<PlanPackage, LinkError> {
     let name = name(package, &dependencies.identity);
     let folder = cache.folder().join("plans").join(&name);
-    write_if_changed(&folder.join("Cargo.toml"), &manifest(&name, dependencies)?)?;
-    write_if_changed(&folder.join("src/main.rs"), &main(package))?;
-    write_if_changed(&folder.join("src/plan.rs"), package.rust)?;
+    write_if_changed(&folder.join("Cargo.toml"), manifest(&name, dependencies)?.as_bytes())?;
+    write_if_changed(&folder.join("src/main.rs"), main(package).as_bytes())?;
+    write_if_changed(&folder.join("src/plan.rs"), package.rust.as_bytes())?;
     // Cargo adds the plan's own package to the lock file and drops what the plan does not need.
-    if write_if_changed(&folder.join("seed.lock"), &dependencies.lock)? {
+    if write_if_changed(&folder.join("seed.lock"), dependencies.lock.as_bytes())? {
         let lock = folder.join("Cargo.lock");
         fs::write(&lock, &dependencies.lock).map_err(|error| LinkError::cache(&lock, error))?;
     }

@@ -1,8 +1,8 @@
 //! The sources that executables are built from, as packed into mdlec, and their copy in the cache.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::cache::{remove, write_if_changed};
 use super::{Cache, LinkError};
 
 /// The packages that every plan is built on, with their folders.
@@ -51,32 +51,27 @@ pub(super) struct Sources {
 }
 
 impl Sources {
-    /// Writes the files that the cache lacks, and those that were cut short.
+    /// Writes the files that the cache lacks, and those that are not as they were packed.
     ///
     /// Files that are there keep their times, by which cargo knows what it has built. Call it with the cache locked.
     pub(super) fn unpack(cache: &Cache) -> Result<Self, LinkError> {
         let folder = cache.folder().join(format!("src-{}-{}", env!("CARGO_PKG_VERSION"), embedded::HASH));
-        for (name, contents) in embedded::FILES {
-            let file = folder.join(name);
-            if !is_whole(&file, contents) {
-                write(&file, contents).map_err(|error| LinkError::cache(&file, error))?;
+        match write(&folder) {
+            Ok(()) => {}
+            Err(full @ LinkError::DiskFull(_)) => return Err(full),
+            // Such as a file where a folder has to be.
+            Err(_) => {
+                remove(&folder)?;
+                write(&folder)?;
             }
         }
         Ok(Self { folder })
     }
 }
 
-/// Whether `file` is there in its length: a write that was cut short leaves less, and reading all of it would take time.
-fn is_whole(file: &Path, contents: &[u8]) -> bool {
-    fs::metadata(file).is_ok_and(|found| found.is_file() && found.len() == contents.len() as u64)
-}
-
-/// Writes `file` and the folders above it.
-fn write(file: &Path, contents: &[u8]) -> std::io::Result<()> {
-    if let Some(folder) = file.parent() {
-        fs::create_dir_all(folder)?;
-    }
-    fs::write(file, contents)
+/// Writes to `folder` what is not there yet.
+fn write(folder: &Path) -> Result<(), LinkError> {
+    embedded::FILES.iter().try_for_each(|(name, contents)| write_if_changed(&folder.join(name), contents).map(|_| ()))
 }
 
 /// The table that `build/sources.rs` makes.
@@ -88,6 +83,7 @@ mod embedded {
 mod tests {
     use std::fs;
 
+    use super::super::Cache;
     use super::super::tests::cache;
     use super::{Sources, alphabets, builtin, embedded, text};
 
@@ -118,11 +114,30 @@ mod tests {
         fs::remove_file(folder.join("atoms/Cargo.toml")).unwrap();
         fs::write(folder.join("runtime/core/src/lib.rs"), "cut").unwrap();
         fs::remove_dir_all(folder.join("runtime/host")).unwrap();
+        // Garbage of the right length, and a folder where a file has to be.
+        fs::write(folder.join("atoms/alphabet.mdle"), text("atoms/alphabet.mdle").replace(' ', "?")).unwrap();
+        fs::remove_file(folder.join("Cargo.lock")).unwrap();
+        fs::create_dir_all(folder.join("Cargo.lock/garbage")).unwrap();
+        assert_unpacked(&cache);
+        assert_eq!(time("Cargo.toml"), before);
+    }
 
-        Sources::unpack(&cache).unwrap();
+    #[test]
+    fn a_file_where_a_folder_has_to_be_gives_way() {
+        let cache = cache("in_the_way");
+        let folder = Sources::unpack(&cache).unwrap().folder;
+        fs::remove_dir_all(folder.join("atoms/src")).unwrap();
+        fs::write(folder.join("atoms/src"), "garbage").unwrap();
+        assert_unpacked(&cache);
+        fs::remove_dir_all(&folder).unwrap();
+        fs::write(&folder, "garbage").unwrap();
+        assert_unpacked(&cache);
+    }
+
+    fn assert_unpacked(cache: &Cache) {
+        let folder = Sources::unpack(cache).unwrap().folder;
         for (name, contents) in embedded::FILES {
             assert_eq!(fs::read(folder.join(name)).unwrap(), *contents, "{name}");
         }
-        assert_eq!(time("Cargo.toml"), before);
     }
 }
