@@ -60,8 +60,16 @@ pub fn run_mdlec_reading(folder: &Path, arguments: &[&str], input: &str) -> Outp
     output
 }
 
-fn command(folder: &Path, arguments: &[&str]) -> Command {
+/// `mdlec` with these arguments in `folder`, to be run as a test likes.
+#[must_use]
+pub fn command(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(mdlec());
-    command.args(arguments).current_dir(folder).env("MDLEC_CACHE", target().join("tmp/mdlec-cache"));
+    command.args(arguments).current_dir(folder).env("MDLEC_CACHE", cache());
     command
+}
+
+/// The cache that the tests share.
+#[must_use]
+pub fn cache() -> PathBuf {
+    target().join("tmp/mdlec-cache")
 }

@@ -16,6 +16,8 @@ use crate::{Compiled, compile, fsm, syntax};
 
 /// Does what the command line without a command asks for.
 pub(super) fn build(options: &Build) -> Result<(), Failure> {
+    link::leave_nothing_behind(Shown::wipe)
+        .map_err(|error| Failure::usage(format!("this system does not let signals be caught: {error}")))?;
     let Some(path) = options.plan.as_deref() else { return Err(Failure::usage("no plan was given")) };
     let (kind, file) = match &options.emit {
         None => (EmitKind::Exe, options.output.clone()),
@@ -185,7 +187,15 @@ impl Shown {
 
     fn close(&mut self) {
         if std::mem::take(&mut self.open) {
-            let _ = write!(io::stderr().lock(), "\r\x1b[K");
+            Self::wipe();
+        }
+    }
+
+    /// Empties the line that the cursor is in.
+    fn wipe() {
+        let mut out = io::stderr().lock();
+        if out.is_terminal() {
+            let _ = write!(out, "\r\x1b[K");
         }
     }
 }

@@ -48,6 +48,14 @@ impl Cache {
         &self.folder
     }
 
+    /// An empty folder for the temporary files of a build: a compiler that is killed leaves its own behind.
+    pub(super) fn scratch(&self) -> Result<PathBuf, LinkError> {
+        let folder = self.folder.join("tmp");
+        remove(&folder)?;
+        fs::create_dir(&folder).map_err(|error| LinkError::cache(&folder, error))?;
+        Ok(folder)
+    }
+
     /// Waits until no other mdlec uses the cache, and keeps others waiting as long as the result lives.
     pub(super) fn lock(&self, progress: &mut dyn FnMut(Progress)) -> Result<File, LinkError> {
         let path = self.folder.join("lock");

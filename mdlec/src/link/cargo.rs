@@ -7,7 +7,7 @@ use std::{env, io};
 
 use super::messages::{self, Run};
 use super::package::PlanPackage;
-use super::{Cache, LinkError, Progress};
+use super::{Cache, LinkError, Progress, stop};
 
 /// The oldest Rust that the packed sources are for.
 const NEEDED: &str = env!("CARGO_PKG_RUST_VERSION");
@@ -78,12 +78,13 @@ impl Job<'_> {
             .args(["build", "--release", "--message-format=json", "--target", &self.toolchain.host])
             .arg("--target-dir")
             .arg(self.cache.folder().join("target"))
-            .env("CARGO_ENCODED_RUSTFLAGS", self.flags());
+            .env("CARGO_ENCODED_RUSTFLAGS", self.flags())
+            .env("TMPDIR", self.cache.scratch()?);
         if !online {
             command.arg("--offline");
         }
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
-        let child = command.spawn().map_err(|error| unusable("cargo", &error))?;
+        let (child, _watched) = stop::spawn(&mut command).map_err(|error| unusable("cargo", &error))?;
         messages::follow(child, online, &self.plan.manifest(), progress).map_err(|error| unusable("cargo", &error))
     }
 

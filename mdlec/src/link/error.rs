@@ -42,7 +42,7 @@ pub enum LinkError {
         error: io::Error,
     },
     /// No space is left.
-    #[error("the disk is full at `{0}`: make room, then try again")]
+    #[error("there is no room left at `{0}` (a full disk, a quota, or `ulimit -f`): make room, then try again")]
     DiskFull(PathBuf),
 
     /// Rust is not installed, or not usable.
@@ -206,7 +206,8 @@ impl LinkError {
     }
 }
 
-/// Whether no space is left, on the disk or for the user.
+/// Whether no space is left, on the disk, for the user, or for the process.
 fn is_full(error: &io::Error) -> bool {
-    matches!(error.kind(), io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded)
+    use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
+    matches!(error.kind(), StorageFull | QuotaExceeded | FileTooLarge)
 }

@@ -7,6 +7,7 @@
 //! lock                    held while one mdlec works
 //! src-VERSION-HASH/       the unpacked sources
 //! target/                 what cargo has compiled, for all plans
+//! tmp/                    temporary files of the build under way
 //! plans/plan-NAME-HASH/   the package of a plan; HASH is of the plan file's path, the plan and the target
 //! ```
 //!
@@ -23,6 +24,7 @@ mod output;
 mod package;
 mod progress;
 mod sources;
+mod stop;
 mod target;
 
 use std::path::Path;
@@ -32,6 +34,7 @@ pub use error::LinkError;
 pub use output::write_whole;
 pub use progress::Progress;
 pub use sources::{Alphabet, alphabets};
+pub use stop::leave_nothing_behind;
 pub use target::TargetCrate;
 
 use cargo::{Job, Toolchain};

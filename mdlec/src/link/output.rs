@@ -2,12 +2,12 @@
 
 use std::ffi::OsString;
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use super::LinkError;
+use super::{LinkError, stop};
 
 /// Writes `bytes` to the file `output`, whole or not at all; into a device as it comes.
 ///
@@ -15,7 +15,7 @@ use super::LinkError;
 /// When `output` is a folder or cannot be written.
 pub fn write_whole(output: &Path, bytes: &[u8]) -> Result<(), LinkError> {
     match Destination::check(output, None) {
-        Ok(destination) => destination.put(|new| fs::write(new, bytes)),
+        Ok(destination) => destination.put(|new| new.write_all(bytes)),
         Err(LinkError::OutputIsSpecial(_)) => {
             fs::write(output, bytes).map_err(|error| LinkError::output(output, error))
         }
@@ -56,24 +56,30 @@ impl Destination {
         let destination = Self { shown, path };
         // Nothing stays behind: a signal in the build must not leave a file.
         let trial = destination.beside();
-        let tried = File::create_new(&trial).and_then(|_| fs::remove_file(&trial));
+        let tried = stop::create(&trial).and_then(|_watched| fs::remove_file(&trial));
         tried.map_err(|error| LinkError::output(&destination.shown, error))?;
         Ok(destination)
     }
 
     /// Puts a copy of `executable` there, with its permissions, and says how large it is.
     pub(super) fn copy(&self, executable: &Path) -> Result<u64, LinkError> {
-        self.put(|new| fs::copy(executable, new))
+        self.put(|new| {
+            let mut executable = File::open(executable)?;
+            new.set_permissions(executable.metadata()?.permissions())?;
+            io::copy(&mut executable, new)
+        })
     }
 
     /// Has `write` write a file beside it, and renames that.
-    fn put<T>(&self, write: impl FnOnce(&Path) -> io::Result<T>) -> Result<T, LinkError> {
+    fn put<T>(&self, write: impl FnOnce(&mut File) -> io::Result<T>) -> Result<T, LinkError> {
         let new = self.beside();
-        let written = write(&new).and_then(|written| fs::rename(&new, &self.path).map(|()| written));
+        let refused = |error| LinkError::output(&self.shown, error);
+        let (mut file, _watched) = stop::create(&new).map_err(refused)?;
+        let written = write(&mut file).and_then(|written| fs::rename(&new, &self.path).map(|()| written));
         written.map_err(|error| {
-            // It may not be there; the first error is the one that counts.
+            // The first error is the one that counts.
             let _ = fs::remove_file(&new);
-            LinkError::output(&self.shown, error)
+            refused(error)
         })
     }
 

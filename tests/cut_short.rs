@@ -1,0 +1,150 @@
+//! What `mdlec` does when it cannot go on: a signal, a reader that goes away, no room; through the real binary. Nothing is
+//! left behind, and the next build works.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::io::{BufRead, BufReader, Read};
+use std::os::unix::fs::PermissionsExt;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use mdle_tests::executable::{cache, command, folder, mdlec, run_mdlec};
+
+const PLAN: &str = "plan.mdle";
+
+/// A cargo that says so when it is at work, with a child of its own, and never ends by itself.
+const CARGO: &str = "#!/bin/sh\nexec 3> \"$AT_WORK\"\necho at work >&3\nsleep 120 &\nwait\necho survived >&3\n";
+
+fn with_plan(test: &str) -> PathBuf {
+    let folder = folder(test);
+    fs::write(folder.join(PLAN), "{ Rest (Atom (wait 0) stop) }\n").unwrap();
+    folder
+}
+
+fn listing(folder: &Path) -> Vec<OsString> {
+    let mut names: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    names.sort();
+    names
+}
+
+/// The exit status, and what stands on standard error, but for another test's build.
+fn told(output: &Output) -> (Option<i32>, String) {
+    let said = String::from_utf8(output.stderr.clone()).expect("UTF-8");
+    let said = said.replace("waiting for another mdlec to finish its build\n", "");
+    assert!(!said.contains("panicked"), "{said}");
+    (output.status.code(), said)
+}
+
+fn assert_builds(folder: &Path) {
+    let output = run_mdlec(folder, &[PLAN, "--target", "sim", "-o", "afterwards"]);
+    assert_eq!(output.status.code(), Some(0), "{}", told(&output).1);
+    let run = Command::new(folder.join("afterwards")).args(["--speed", "max"]).output().unwrap();
+    assert_eq!(run.stdout, b"plan over: wait 0 (atom 1)\n");
+}
+
+fn assert_signal_ends_all(signal: &str, status: i32) {
+    let folder = with_plan(&format!("signal_{signal}"));
+    let tools = folder.join("tools");
+    fs::create_dir(&tools).unwrap();
+    fs::write(tools.join("cargo"), CARGO).unwrap();
+    fs::set_permissions(tools.join("cargo"), fs::Permissions::from_mode(0o755)).unwrap();
+    let at_work = folder.join("at_work");
+    assert!(Command::new("mkfifo").arg(&at_work).status().unwrap().success());
+    let before = listing(&folder);
+
+    let path = std::env::var_os("PATH").unwrap();
+    let path = std::env::join_paths(std::iter::once(tools).chain(std::env::split_paths(&path))).unwrap();
+    let mut command = command(&folder, &[PLAN, "--target", "sim"]);
+    command.env("PATH", path).env("AT_WORK", &at_work).stdout(Stdio::null()).stderr(Stdio::piped());
+    let child = command.spawn().unwrap();
+    let mut heard = BufReader::new(File::open(at_work).unwrap());
+    let mut line = String::new();
+    heard.read_line(&mut line).unwrap();
+    assert_eq!(line, "at work\n");
+
+    let kill = format!("kill -{signal} {}", child.id());
+    assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(told(&output), (Some(status), String::new()), "{signal}");
+    // The end of it comes when nobody is left who could write: neither cargo nor its child.
+    let mut rest = String::new();
+    heard.read_to_string(&mut rest).unwrap();
+    assert_eq!(rest, "", "{signal}");
+    assert_eq!(listing(&folder), before, "{signal}");
+    assert_builds(&folder);
+}
+
+#[test]
+fn a_signal_ends_mdlec_and_its_cargo() {
+    for (signal, status) in [("INT", 130), ("TERM", 143), ("HUP", 129)] {
+        assert_signal_ends_all(signal, status);
+    }
+}
+
+/// `mdlec`, which may write files of this many blocks.
+fn limited(folder: &Path, blocks: usize, arguments: &[&str], cache: &Path) -> (Option<i32>, String) {
+    let script = format!("ulimit -f {blocks}; exec \"$0\" \"$@\"");
+    let mut command = Command::new("sh");
+    command.args(["-c", &script]).arg(mdlec()).args(arguments).current_dir(folder).env("MDLEC_CACHE", cache);
+    told(&command.output().unwrap())
+}
+
+fn no_room(path: &str) -> (Option<i32>, String) {
+    let why = "(a full disk, a quota, or `ulimit -f`): make room, then try again";
+    (Some(2), format!("error: there is no room left at `{path}` {why}\n"))
+}
+
+#[test]
+fn no_room_in_the_cache_is_told_and_the_next_build_works() {
+    let folder = with_plan("no_room_in_cache");
+    assert_builds(&folder);
+    // Room for the sources of another plan, not for what is compiled from them.
+    fs::write(folder.join(PLAN), "{ Rest (Atom (wait 0) (go 1 0)) }\n").unwrap();
+    let before = listing(&folder);
+    let shared = cache().canonicalize().unwrap();
+    assert_eq!(limited(&folder, 64, &[PLAN, "--target", "sim"], &shared), no_room(shared.to_str().unwrap()));
+    assert_eq!(listing(&folder), before);
+    let built = run_mdlec(&folder, &[PLAN, "--target", "sim", "-o", "afterwards"]);
+    assert_eq!(built.status.code(), Some(0), "{}", told(&built).1);
+
+    let (status, said) = limited(&folder, 0, &[PLAN, "--target", "sim"], &folder.join("cache"));
+    assert_eq!(status, Some(2), "{said}");
+    assert!(said.starts_with("error: there is no room left at `") && said.contains("/cache/src-"), "{said}");
+}
+
+#[test]
+fn no_room_for_the_output_leaves_what_was_there() {
+    let folder = with_plan("no_room_for_output");
+    assert_builds(&folder);
+    fs::write(folder.join("old"), "old").unwrap();
+    let before = listing(&folder);
+    for arguments in [&["--target", "sim", "-o", "old"][..], &["--target", "sim", "--emit", "rust=old"]] {
+        let limit = if arguments.contains(&"-o") { 1000 } else { 0 };
+        let arguments = [&[PLAN][..], arguments].concat();
+        assert_eq!(limited(&folder, limit, &arguments, &cache()), no_room("old"), "{arguments:?}");
+        assert_eq!((fs::read(folder.join("old")).unwrap().as_slice(), listing(&folder)), (&b"old"[..], before.clone()));
+    }
+}
+
+#[test]
+fn a_reader_that_went_away_is_no_error() {
+    let folder = with_plan("no_reader");
+    fs::write(folder.join("script"), "{\"t\": 0}\n").unwrap();
+    fs::write(folder.join("wrong.mdle"), "{ P (bumpr) (Atom (wait 1) stop) }\n").unwrap();
+    for (status, arguments) in [
+        (0, &["--help"][..]),
+        (0, &["targets"]),
+        (0, &["quarks"]),
+        (0, &[PLAN, "--emit", "fsm"]),
+        (0, &["trace", PLAN, "--script", "script"]),
+        (1, &["check", "wrong.mdle"]),
+        (2, &["--nonsense"]),
+        (0, &[PLAN, "--target", "sim"]),
+    ] {
+        // Nobody holds the other ends from the beginning.
+        let gone = || std::io::pipe().unwrap().1;
+        let ended = command(&folder, arguments).stdout(gone()).stderr(gone()).status().unwrap();
+        assert_eq!(ended.code(), Some(status), "{arguments:?}");
+    }
+}
