@@ -128,6 +128,25 @@ fn no_room_for_the_output_leaves_what_was_there() {
 }
 
 #[test]
+fn a_full_device_is_told() {
+    let folder = with_plan("full_device");
+    fs::write(folder.join("script"), "{\"t\": 0}\n").unwrap();
+    let full = || File::options().write(true).open("/dev/full").unwrap();
+    for arguments in
+        [&["targets"][..], &["quarks"], &["--help"], &[PLAN, "--emit", "plan"], &["trace", PLAN, "--script", "script"]]
+    {
+        let output = command(&folder, arguments).stdout(full()).output().unwrap();
+        let (status, said) = told(&output);
+        assert_eq!(status, Some(2), "{arguments:?}: {said}");
+        assert!(said.starts_with("error: standard output cannot be written (No space left"), "{arguments:?}: {said}");
+    }
+    assert_eq!(told(&run_mdlec(&folder, &[PLAN, "--emit", "tree=/dev/full"])), no_room("/dev/full"));
+    // Nobody can be told, and the status still says it.
+    let output = command(&folder, &["check", "missing.mdle"]).stderr(full()).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+}
+
+#[test]
 fn a_reader_that_went_away_is_no_error() {
     let folder = with_plan("no_reader");
     fs::write(folder.join("script"), "{\"t\": 0}\n").unwrap();

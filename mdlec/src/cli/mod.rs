@@ -187,14 +187,9 @@ impl Failure {
 /// Runs the command line of this process.
 #[must_use]
 pub fn main() -> ExitCode {
-    let cli = Cli::parse();
-    let done = match cli.command {
-        None => build::build(&cli.build),
-        Some(Command::Check(check)) => check::check(&check),
-        Some(Command::Trace(trace)) => trace::trace(&trace),
-        Some(Command::Targets) => input::print_targets(),
-        Some(Command::Bind(bind)) => bind::bind(&bind),
-        Some(Command::Quarks(quarks)) => input::print_quarks(quarks.target.as_deref()),
+    let done = match Cli::try_parse() {
+        Ok(cli) => run(cli),
+        Err(answer) => report::answer(&answer),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -204,5 +199,17 @@ pub fn main() -> ExitCode {
             }
             ExitCode::from(failure.status)
         }
+    }
+}
+
+/// Does what the command line asks for.
+fn run(cli: Cli) -> Result<(), Failure> {
+    match cli.command {
+        None => build::build(&cli.build),
+        Some(Command::Check(check)) => check::check(&check),
+        Some(Command::Trace(trace)) => trace::trace(&trace),
+        Some(Command::Targets) => input::print_targets(),
+        Some(Command::Bind(bind)) => bind::bind(&bind),
+        Some(Command::Quarks(quarks)) => input::print_quarks(quarks.target.as_deref()),
     }
 }

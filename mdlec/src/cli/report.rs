@@ -60,12 +60,23 @@ pub(super) fn note(message: impl Display) {
 /// Prints to standard output; a reader that went away is no error.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(Failure::usage(format!("cannot write to standard output: {error}")))
-        }
+    printed(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+}
+
+/// What came of printing to standard output.
+pub(super) fn printed(result: io::Result<()>) -> Result<(), Failure> {
+    match result {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::usage(format!(
+            "standard output cannot be written ({error}): make room where it goes, or send it elsewhere"
+        ))),
         Ok(()) | Err(_) => Ok(()),
     }
+}
+
+/// Gives the answer of the command line itself: help and version, which were asked for, or what is wrong with the usage.
+pub(super) fn answer(answer: &clap::Error) -> Result<(), Failure> {
+    let result = answer.print();
+    if answer.use_stderr() { Err(Failure { status: 2, message: None }) } else { printed(result) }
 }
 
 /// `1 error`, `2 errors`.

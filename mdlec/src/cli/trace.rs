@@ -2,7 +2,7 @@
 
 use std::io::{self, BufWriter, Write};
 
-use super::{Failure, Machine, Trace, input};
+use super::{Failure, Machine, Trace, input, report};
 use crate::trace::{Counted, Line, Script, Tree, run};
 
 /// Runs the plan and prints what it does, a line a turn.
@@ -24,11 +24,5 @@ pub(super) fn trace(options: &Trace) -> Result<(), Failure> {
 
 fn print<'p>(lines: impl Iterator<Item = Line<'p>>) -> Result<(), Failure> {
     let mut out = BufWriter::new(io::stdout().lock());
-    let written = lines.into_iter().try_for_each(|line| writeln!(out, "{line}")).and_then(|()| out.flush());
-    match written {
-        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
-            Err(Failure::usage(format!("cannot write the trace: {error}")))
-        }
-        Ok(()) | Err(_) => Ok(()),
-    }
+    report::printed(lines.into_iter().try_for_each(|line| writeln!(out, "{line}")).and_then(|()| out.flush()))
 }
