@@ -3,28 +3,14 @@
 //! All tests share a cache that outlives them: only the first run compiles the runtime.
 #![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "a test may, and files are what this is about")]
 
+#[path = "link/robot.rs"]
+mod robot;
+
 use std::fs;
-use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use mdlec::link::{Built, Cache, LinkError, Package, Progress, TargetCrate, build};
-
-const PLAN: &str = include_str!("link/plan.rs");
-
-const ROVER: &str = include_str!("link/rover.rs");
-
-const MANIFEST: &str = r#"# Not of the workspace around the folder that tests write to.
-[workspace]
-
-[package]
-name = "mdle-rover"
-version = "0.1.0"
-edition = "2024"
-
-[dependencies]
-mdle-runtime = "0.1"
-mdle-host = "0.1"
-"#;
+use mdlec::link::{Built, LinkError};
+use robot::{MANIFEST, PLAN, ROVER, Robot};
 
 #[test]
 fn the_executable_is_static_and_holds_no_path_of_this_machine() {
@@ -33,8 +19,8 @@ fn the_executable_is_static_and_holds_no_path_of_this_machine() {
     let bytes = fs::read(&output).unwrap();
     assert_eq!(built.size, bytes.len() as u64);
     assert!(!has_interpreter(&bytes));
-    let (cache, user) = (cache(), std::env::home_dir().unwrap());
-    for place in [cache.folder(), user.as_path()] {
+    let user = std::env::home_dir().unwrap();
+    for place in [robot.cache.folder(), user.as_path()] {
         let place = place.as_os_str().as_encoded_bytes();
         assert!(!bytes.windows(place.len()).any(|window| window == place), "{}", String::from_utf8_lossy(place));
     }
@@ -103,37 +89,6 @@ fn a_target_must_be_what_its_alphabet_says() {
     fs::remove_file(robot.folder.join("rover/Cargo.toml")).unwrap();
     let error = robot.build("nap.mdle", PLAN).unwrap_err();
     assert!(matches!(error, LinkError::NotACrate(_)), "{error:?}");
-}
-
-/// A target crate by path in a folder of its own.
-struct Robot {
-    folder: PathBuf,
-}
-
-impl Robot {
-    fn new(name: &str, manifest: &str, rust: &str) -> Self {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("link").join(name);
-        fs::create_dir_all(folder.join("rover/src")).unwrap();
-        fs::write(folder.join("rover/Cargo.toml"), manifest).unwrap();
-        fs::write(folder.join("rover/src/lib.rs"), rust).unwrap();
-        Self { folder }
-    }
-
-    /// Builds `rust`, as if emitted from `plan`; the executable is beside the plan.
-    fn build(&self, plan: &str, rust: &str) -> Result<(Built, PathBuf), LinkError> {
-        let plan_file = self.folder.join(plan);
-        fs::create_dir_all(plan_file.parent().unwrap()).unwrap();
-        fs::write(&plan_file, "{ Nap (bumper) (Atom (null) stop) }").unwrap();
-        let target = TargetCrate::Path { folder: &self.folder.join("rover"), crate_name: "mdle_rover" };
-        let package = Package { plan_name: "Nap", plan_file: &plan_file, plan_type: "Nap", rust, target: &target };
-        let output = plan_file.with_extension("");
-        let built = build(&cache(), &package, &output, &mut |_: Progress| {})?;
-        Ok((built, output))
-    }
-}
-
-fn cache() -> Cache {
-    Cache::at(&Path::new(env!("CARGO_TARGET_TMPDIR")).join("link/cache")).unwrap()
 }
 
 /// Whether an ELF file of 64 bits asks for a dynamic loader: whether it has a program header of type 3.

@@ -3,15 +3,10 @@
 use std::os::unix::process::ExitStatusExt;
 use std::path::PathBuf;
 
-use signal_hook::consts::SIGXFSZ;
-
 use super::cargo::Job;
 use super::messages::Run;
 use super::target::Dependencies;
 use super::{LinkError, TargetCrate};
-
-/// What the system says, through rustc or the linker, when a disk is full or a file would become too large.
-const FULL: [&str; 4] = ["No space left on device", "Disk quota exceeded", "File too large", "(signal: 25"];
 
 /// What rustc says when there is no linker, or when the linker fails.
 const LINKER: [&str; 2] = ["error: linker `", "error: linking with `"];
@@ -19,7 +14,7 @@ const LINKER: [&str; 2] = ["error: linker `", "error: linking with `"];
 /// The fault behind a run that made no executable.
 pub(super) fn fault(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>, dependencies: &Dependencies) -> LinkError {
     let text = run.text();
-    if run.status.signal() == Some(SIGXFSZ) || FULL.iter().any(|sign| text.contains(sign)) {
+    if run.lacks_room() {
         return LinkError::DiskFull(job.cache.folder().to_owned());
     }
     if let Some(signal) = run.status.signal() {

@@ -48,6 +48,11 @@ impl Cache {
         &self.folder
     }
 
+    /// The folder of what cargo has compiled.
+    pub(super) fn target(&self) -> PathBuf {
+        self.folder.join("target")
+    }
+
     /// An empty folder for the temporary files of a build: a compiler that is killed leaves its own behind.
     pub(super) fn scratch(&self) -> Result<PathBuf, LinkError> {
         let folder = self.folder.join("tmp");

@@ -72,12 +72,9 @@ impl Job<'_> {
 
     /// Builds; fetches what is missing if it may go `online`.
     fn attempt(&self, online: bool, progress: &mut dyn FnMut(Progress)) -> Result<Run, LinkError> {
-        let mut command = command("cargo", &self.plan.folder);
-        // With an explicit triple the flags are for the plan alone: a static procedural macro could not be loaded.
+        let mut command = self.command("build");
         command
-            .args(["build", "--release", "--message-format=json", "--target", &self.toolchain.host])
-            .arg("--target-dir")
-            .arg(self.cache.folder().join("target"))
+            .arg("--message-format=json")
             .env("CARGO_ENCODED_RUSTFLAGS", self.flags())
             .env("TMPDIR", self.cache.scratch()?);
         if !online {
@@ -86,6 +83,25 @@ impl Job<'_> {
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
         let (child, _watched) = stop::spawn(&mut command).map_err(|error| unusable("cargo", &error))?;
         messages::follow(child, online, &self.plan.manifest(), progress).map_err(|error| unusable("cargo", &error))
+    }
+
+    /// Removes what was built of the plan itself.
+    pub(super) fn clean(&self) -> Result<(), LinkError> {
+        let mut command = self.command("clean");
+        command.arg("--offline").arg("--package").arg(self.plan.name());
+        // Where this fails, the build that follows says why.
+        output(command, "cargo").map(|_| ())
+    }
+
+    /// Cargo's command `name` about the plan.
+    fn command(&self, name: &str) -> Command {
+        let mut command = command("cargo", &self.plan.folder);
+        // With an explicit triple the flags are for the plan alone: a static procedural macro could not be loaded.
+        command
+            .args([name, "--release", "--target", &self.toolchain.host])
+            .arg("--target-dir")
+            .arg(self.cache.target());
+        command
     }
 
     /// The flags of rustc: a static executable without a path of this machine in it.

@@ -1,13 +1,18 @@
 //! What cargo says while it builds, read line by line.
 
 use std::io::{self, BufRead, BufReader, Read};
+use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, ExitStatus};
 use std::thread;
 
 use serde::Deserialize;
+use signal_hook::consts::SIGXFSZ;
 
 use super::Progress;
+
+/// What the system says, through rustc or the linker, when a disk is full or a file would become too large.
+const FULL: [&str; 4] = ["No space left on device", "Disk quota exceeded", "File too large", "(signal: 25"];
 
 /// What came of a run of cargo.
 #[derive(Debug)]
@@ -18,6 +23,8 @@ pub(super) struct Run {
     pub(super) online: bool,
     /// Whether it came as far as to compile, or to see that all is compiled.
     pub(super) began: bool,
+    /// Whether it took anything from the cache that was compiled before.
+    pub(super) reused: bool,
     /// The plan's executable, if there is one.
     pub(super) executable: Option<Executable>,
     /// What rustc says, warnings included, in order.
@@ -51,6 +58,12 @@ impl Run {
         !self.status.success() && !self.began && self.stderr.contains("--offline")
     }
 
+    /// Whether it ended because there was no room for a file.
+    pub(super) fn lacks_room(&self) -> bool {
+        let text = self.text();
+        self.status.signal() == Some(SIGXFSZ) || FULL.iter().any(|sign| text.contains(sign))
+    }
+
     /// Everything that was said.
     pub(super) fn text(&self) -> String {
         let mut text: String = self.complaints.iter().map(|complaint| complaint.text.as_str()).collect();
@@ -74,7 +87,7 @@ pub(super) fn follow(
         let _ = stderr.map(|mut stderr| stderr.read_to_end(&mut said));
         String::from_utf8_lossy(&said).into_owned()
     });
-    let mut log = Log { plan, executable: None, complaints: Vec::new(), artifacts: 0, compiled: 0 };
+    let mut log = Log { plan, executable: None, complaints: Vec::new(), artifacts: 0, reused: false, compiled: 0 };
     for line in stdout.map(BufReader::new).into_iter().flat_map(|lines| lines.split(b'\n')) {
         let Ok(line) = line else { break };
         // A line that is no message, such as a compiler wrapper's, is none of ours.
@@ -85,7 +98,8 @@ pub(super) fn follow(
     let status = child.wait()?;
     let stderr = said.join().unwrap_or_default();
     let began = log.artifacts > 0 || !log.complaints.is_empty();
-    Ok(Run { status, online, began, executable: log.executable, complaints: log.complaints, stderr })
+    let Log { reused, executable, complaints, .. } = log;
+    Ok(Run { status, online, began, reused, executable, complaints, stderr })
 }
 
 /// What was read so far.
@@ -94,6 +108,7 @@ struct Log<'a> {
     executable: Option<Executable>,
     complaints: Vec<Complaint>,
     artifacts: usize,
+    reused: bool,
     compiled: usize,
 }
 
@@ -102,6 +117,7 @@ impl Log<'_> {
         match line {
             Line::Artifact { manifest_path, target, executable, fresh } => {
                 self.artifacts += 1;
+                self.reused |= fresh;
                 if manifest_path == self.plan {
                     self.executable = executable.map(|path| Executable { path, fresh });
                 } else if !fresh && !target.kind.iter().any(|kind| kind == "custom-build") {

@@ -11,6 +11,9 @@
 //! plans/plan-NAME-HASH/   the package of a plan; HASH is of the plan file's path, the plan and the target
 //! ```
 //!
+//! Damage in there mends: files of ours are compared to the last byte, an executable with the hash of what was built,
+//! and where libraries cannot be read, all are compiled anew.
+//!
 //! Versions are those of mdlec's own lock file, flags are set here whatever the environment says, and the paths of the
 //! cache, of cargo's home and of the user's home do not get into the executable.
 #![allow(clippy::disallowed_methods, reason = "what is done here is I/O")]
@@ -18,11 +21,13 @@
 mod blame;
 mod cache;
 mod cargo;
+mod damage;
 mod error;
 mod messages;
 mod output;
 mod package;
 mod progress;
+mod record;
 mod sources;
 mod stop;
 mod target;
@@ -38,8 +43,10 @@ pub use stop::leave_nothing_behind;
 pub use target::TargetCrate;
 
 use cargo::{Job, Toolchain};
+use messages::Run;
 use output::Destination;
 use sources::Sources;
+use target::Dependencies;
 
 /// A plan as Rust.
 #[derive(Debug, Clone, Copy)]
@@ -83,15 +90,36 @@ pub fn build(
     let dependencies = target::dependencies(package.target, &sources, cache)?;
     let plan = package::write(cache, package, &dependencies)?;
     let job = Job { cache, toolchain: &toolchain, plan: &plan };
-    let run = job.build(progress)?;
+    let run = run(&job, package.target, &dependencies, progress)?;
     let executable = match &run.executable {
         Some(executable) if run.status.success() => executable,
         Some(_) | None => return Err(blame::fault(&job, &run, package.target, &dependencies)),
     };
+    record::write(&plan, &executable.path)?;
     let size = destination.copy(&executable.path)?;
     // Until here: another build of this plan would write over the executable.
     drop(locked);
     Ok(Built { size, fresh: executable.fresh })
+}
+
+/// Runs cargo, again where damage in the cache may have spoilt it.
+fn run(
+    job: &Job<'_>,
+    target: &TargetCrate<'_>,
+    dependencies: &Dependencies,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Run, LinkError> {
+    let mut mended = Vec::new();
+    loop {
+        let run = job.build(progress)?;
+        match damage::found(job, &run, target, dependencies) {
+            Some(damage) if !mended.contains(&damage) => {
+                damage::clear(damage, job, progress)?;
+                mended.push(damage);
+            }
+            Some(_) | None => return Ok(run),
+        }
+    }
 }
 
 #[cfg(test)]

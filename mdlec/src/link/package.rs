@@ -1,21 +1,28 @@
 //! The cargo package around a plan's emitted Rust.
 
+use std::ffi::OsStr;
 use std::fmt::Write as _;
-use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::cache::write_if_changed;
+use super::cache::{remove, write_if_changed};
 use super::target::Dependencies;
-use super::{Cache, LinkError, Package};
+use super::{Cache, LinkError, Package, record};
 
 /// The package of a plan, as written.
 #[derive(Debug)]
 pub(super) struct PlanPackage {
     /// Its folder, whose name is also that of the package and of its executable.
     pub(super) folder: PathBuf,
+    /// The hash of everything that mdlec wrote there.
+    pub(super) hash: String,
 }
 
 impl PlanPackage {
+    /// What its package and its executable are called.
+    pub(super) fn name(&self) -> &OsStr {
+        self.folder.file_name().unwrap_or_default()
+    }
+
     /// Its manifest.
     pub(super) fn manifest(&self) -> PathBuf {
         self.folder.join("Cargo.toml")
@@ -37,15 +44,31 @@ pub(super) fn write(
 ) -> Result<PlanPackage, LinkError> {
     let name = name(package, &dependencies.identity);
     let folder = cache.folder().join("plans").join(&name);
-    write_if_changed(&folder.join("Cargo.toml"), manifest(&name, dependencies)?.as_bytes())?;
-    write_if_changed(&folder.join("src/main.rs"), main(package).as_bytes())?;
-    write_if_changed(&folder.join("src/plan.rs"), package.rust.as_bytes())?;
-    // Cargo adds the plan's own package to the lock file and drops what the plan does not need.
-    if write_if_changed(&folder.join("seed.lock"), dependencies.lock.as_bytes())? {
-        let lock = folder.join("Cargo.lock");
-        fs::write(&lock, &dependencies.lock).map_err(|error| LinkError::cache(&lock, error))?;
+    let (manifest, main, lock) = (manifest(&name, dependencies)?, main(package), dependencies.lock.as_str());
+    let files = [("Cargo.toml", &*manifest), ("src/main.rs", &main), ("src/plan.rs", package.rust)];
+    match write_files(&folder, &files, lock) {
+        Ok(()) => {}
+        Err(full @ LinkError::DiskFull(_)) => return Err(full),
+        // Such as a file where a folder has to be.
+        Err(_) => {
+            remove(&folder)?;
+            write_files(&folder, &files, lock)?;
+        }
     }
-    Ok(PlanPackage { folder })
+    let hash = record::hash([&manifest, &main, package.rust, lock].join("\0").as_bytes());
+    Ok(PlanPackage { folder, hash })
+}
+
+/// Writes `files` to `folder`, and `lock` for cargo to start from.
+fn write_files(folder: &Path, files: &[(&str, &str)], lock: &str) -> Result<(), LinkError> {
+    for (name, text) in files {
+        write_if_changed(&folder.join(name), text.as_bytes())?;
+    }
+    // Cargo adds the plan's own package to the lock file and drops what the plan does not need.
+    if write_if_changed(&folder.join("seed.lock"), lock.as_bytes())? || !record::has_lock(folder) {
+        write_if_changed(&folder.join("Cargo.lock"), lock.as_bytes())?;
+    }
+    Ok(())
 }
 
 /// A name that a person recognises and no other plan has: all executables are built in one folder.
@@ -109,7 +132,7 @@ mod tests {
     use std::path::{Path, PathBuf};
 
     use super::super::tests::cache;
-    use super::super::{Package, TargetCrate};
+    use super::super::{Package, TargetCrate, record};
     use super::{Dependencies, manifest, name, write};
 
     const TARGET: TargetCrate<'static> = TargetCrate::Builtin { name: "sim", crate_name: "mdle_sim" };
@@ -154,8 +177,23 @@ mod tests {
         let time = |name| fs::metadata(file(name)).unwrap().modified().unwrap();
         assert_eq!(time("src/plan.rs"), time("src/plan.rs"));
         assert_eq!(fs::read_to_string(file("src/plan.rs")).unwrap(), "mod a {}");
-        // Cargo's own lock file stays as long as it grows from the same one.
-        fs::write(file("Cargo.lock"), "grown").unwrap();
-        assert_eq!(fs::read_to_string(file("Cargo.lock")).unwrap(), "grown");
+    }
+
+    #[test]
+    fn a_lock_file_stays_as_cargo_left_it() {
+        let cache = cache("lock");
+        let write = || write(&cache, &package("nap.mdle", "mod a {}"), &dependencies()).unwrap();
+        let lock = write().folder.join("Cargo.lock");
+        let text = || fs::read_to_string(&lock).unwrap();
+        let package = write();
+        fs::write(&lock, "grown").unwrap();
+        record::write(&package, &lock).unwrap();
+        write();
+        assert_eq!(text(), "grown");
+        for damaged in ["garbage", ""] {
+            fs::write(&lock, damaged).unwrap();
+            write();
+            assert_eq!(text(), dependencies().lock);
+        }
     }
 }

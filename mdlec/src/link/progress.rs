@@ -9,6 +9,8 @@ pub enum Progress {
     Waiting,
     /// Libraries are not on this machine yet and are fetched.
     Fetching,
+    /// The libraries in the cache are damaged, or something in their place is, and all are compiled anew.
+    Mending,
     /// This many crates of what the plan is built on are compiled, counted from 1.
     Compiling(usize),
 }
@@ -18,7 +20,7 @@ impl Progress {
     #[must_use]
     pub fn is_first(&self) -> bool {
         match self {
-            Self::Waiting | Self::Fetching | Self::Compiling(1) => true,
+            Self::Waiting | Self::Fetching | Self::Mending | Self::Compiling(1) => true,
             Self::Compiling(_) => false,
         }
     }
@@ -29,6 +31,7 @@ impl fmt::Display for Progress {
         match self {
             Self::Waiting => f.write_str("waiting for another mdlec to finish its build"),
             Self::Fetching => f.write_str("fetching the libraries that plans are built on; only the first time"),
+            Self::Mending => f.write_str("the cache is damaged: all that plans are built on is compiled anew"),
             Self::Compiling(1) => f.write_str("compiling what the plan is built on; only the first time takes long"),
             Self::Compiling(done) => {
                 write!(f, "compiling what the plan is built on; only the first time takes long ({done} crates)")

@@ -1,0 +1,55 @@
+//! What a plan's package was when it was last built, and what came of it.
+//!
+//! Cargo goes by the times of files. They say nothing of a file that was cut short or overwritten, and they lie after a
+//! clock was set back.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::LinkError;
+use super::cache::write_if_changed;
+use super::package::PlanPackage;
+
+/// Notes that `executable` was built from `plan` as it is now.
+pub(super) fn write(plan: &PlanPackage, executable: &Path) -> Result<(), LinkError> {
+    let unreadable = |error| LinkError::cache(executable, error);
+    let executable = hash(&fs::read(executable).map_err(unreadable)?);
+    let lock = lock(&plan.folder).unwrap_or_default();
+    let text = format!("{}\n{lock}\n{executable}\n", plan.hash);
+    write_if_changed(&file(&plan.folder), text.as_bytes())?;
+    Ok(())
+}
+
+/// Whether `executable` is, to the last byte, what was built from `plan` as it is now.
+pub(super) fn fits(plan: &PlanPackage, executable: &Path) -> bool {
+    let executable = fs::read(executable).map(|bytes| hash(&bytes));
+    let noted = read(&plan.folder);
+    executable.is_ok_and(|executable| {
+        noted.is_some_and(|[package, _, built]| (package, built) == (plan.hash.clone(), executable))
+    })
+}
+
+/// Whether cargo's lock file in the package in `folder` is as cargo left it.
+pub(super) fn has_lock(folder: &Path) -> bool {
+    read(folder).is_some_and(|[_, noted, _]| lock(folder).is_some_and(|lock| lock == noted))
+}
+
+/// A short text that no other bytes have.
+pub(super) fn hash(bytes: &[u8]) -> String {
+    blake3::hash(bytes).to_hex().to_string()
+}
+
+/// The hashes of the package, of its lock file, and of the executable.
+fn read(folder: &Path) -> Option<[String; 3]> {
+    let text = fs::read_to_string(file(folder)).ok()?;
+    let lines: Vec<_> = text.lines().map(str::to_owned).collect();
+    lines.try_into().ok()
+}
+
+fn lock(folder: &Path) -> Option<String> {
+    fs::read(folder.join("Cargo.lock")).ok().map(|bytes| hash(&bytes))
+}
+
+fn file(folder: &Path) -> PathBuf {
+    folder.join("built")
+}

@@ -1,0 +1,137 @@
+//! A cache that is damaged mends: what comes out of it is what was built from the plan as it is now.
+#![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "a test may, and files are what this is about")]
+
+#[path = "link/robot.rs"]
+mod robot;
+
+use std::fs::{self, File};
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, SystemTime};
+
+use mdlec::link::{Cache, LinkError};
+use robot::{MANIFEST, PLAN, ROVER, Robot};
+
+/// The robot with its cache, and the right to damage it: one test after the other.
+fn robot() -> (Robot, MutexGuard<'static, ()>) {
+    static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+    // A test that failed is no reason for the next to fail.
+    let turn = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+    let robot = Robot::new("damaged", MANIFEST, ROVER);
+    // The cache that other tests share stays whole.
+    let cache = Cache::at(&robot.folder.join("cache")).unwrap();
+    (Robot { cache, ..robot }, turn)
+}
+
+/// Builds the plan that ends by this cause, and runs it.
+fn assert_builds(robot: &Robot, cause: &str) {
+    let (_, output) = robot.build("nap.mdle", &PLAN.replace("morning", cause)).unwrap();
+    let said = Command::new(output).output().unwrap();
+    assert!(String::from_utf8(said.stdout).unwrap().contains(&format!("plan over: {cause}")));
+}
+
+/// The files below `folder` of whose names this is true.
+fn files(folder: &Path, wanted: &dyn Fn(&str) -> bool) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(files(&path, wanted));
+        } else if wanted(path.file_name().unwrap().to_str().unwrap()) {
+            found.push(path);
+        }
+    }
+    found
+}
+
+/// Shortens each file to this many hundredths; where other names have links to it, these see it as well.
+fn cut(files: &[PathBuf], hundredths: u64) {
+    assert!(!files.is_empty());
+    for path in files {
+        let file = File::options().write(true).open(path).unwrap();
+        file.set_len(file.metadata().unwrap().len() * hundredths / 100).unwrap();
+    }
+}
+
+#[test]
+fn a_stored_executable_that_is_damaged_is_built_anew() {
+    let (robot, _turn) = robot();
+    assert_builds(&robot, "morning");
+    let libraries = fs::metadata(robot.cache.folder().join("target")).unwrap().ino();
+    let stored = || {
+        let stored = files(robot.cache.folder(), &|name| name.starts_with("plan-nap-") && !name.contains('.'));
+        assert_eq!(stored.len(), 1);
+        stored
+    };
+    cut(&stored(), 0);
+    assert_builds(&robot, "morning");
+    let mut bytes = fs::read(&stored()[0]).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    fs::write(&stored()[0], bytes).unwrap();
+    assert_builds(&robot, "morning");
+    fs::remove_file(&stored()[0]).unwrap();
+    assert_builds(&robot, "morning");
+    assert_eq!(fs::metadata(robot.cache.folder().join("target")).unwrap().ino(), libraries, "the rest stays");
+}
+
+#[test]
+fn libraries_that_are_damaged_are_built_anew() {
+    let (robot, _turn) = robot();
+    assert_builds(&robot, "morning");
+    let libraries = |ending: &str| files(&robot.cache.folder().join("target"), &|name| name.ends_with(ending));
+    cut(&libraries(".rlib"), 50);
+    assert_builds(&robot, "noon");
+    cut(&libraries(".rmeta"), 0);
+    assert_builds(&robot, "night");
+
+    fs::remove_dir_all(robot.cache.folder().join("target")).unwrap();
+    fs::write(robot.cache.folder().join("target"), "garbage").unwrap();
+    assert_builds(&robot, "morning");
+}
+
+#[test]
+fn a_fault_of_the_target_is_not_taken_for_damage() {
+    let (robot, _turn) = robot();
+    assert_builds(&robot, "morning");
+    let libraries = fs::metadata(robot.cache.folder().join("target")).unwrap().ino();
+    fs::write(robot.folder.join("rover/src/lib.rs"), ROVER.replace("Ok(Self)", "Ok(Rower)")).unwrap();
+    assert!(matches!(robot.build("nap.mdle", PLAN), Err(LinkError::TargetBroken { .. })));
+    fs::write(robot.folder.join("rover/src/lib.rs"), ROVER).unwrap();
+    assert!(matches!(robot.build("nap.mdle", "nonsense"), Err(LinkError::TargetMisfit { .. })));
+    assert_eq!(fs::metadata(robot.cache.folder().join("target")).unwrap().ino(), libraries);
+    assert_builds(&robot, "morning");
+}
+
+#[test]
+fn files_of_the_package_that_are_damaged_are_written_anew() {
+    let (robot, _turn) = robot();
+    assert_builds(&robot, "morning");
+    let package = fs::read_dir(robot.cache.folder().join("plans")).unwrap().next().unwrap().unwrap().path();
+    for name in ["Cargo.toml", "Cargo.lock", "seed.lock", "src/main.rs", "src/plan.rs", "built"] {
+        let text = fs::read(package.join(name)).unwrap();
+        for damage in [b"garbage\xFF", &text[..text.len() / 2]] {
+            fs::write(package.join(name), damage).unwrap();
+            assert_builds(&robot, "morning");
+        }
+    }
+    fs::remove_dir_all(package.join("src")).unwrap();
+    fs::write(package.join("src"), "garbage").unwrap();
+    assert_builds(&robot, "morning");
+    // A lock that nobody holds keeps nobody out, whatever it says.
+    fs::write(robot.cache.folder().join("lock"), "4711 garbage").unwrap();
+    assert_builds(&robot, "morning");
+}
+
+#[test]
+fn a_clock_that_was_set_back_does_not_bring_an_old_plan_back() {
+    let (robot, _turn) = robot();
+    assert_builds(&robot, "morning");
+    let tomorrow = SystemTime::now() + Duration::from_secs(24 * 60 * 60);
+    for file in files(&robot.cache.folder().join("target"), &|name| name.contains("plan")) {
+        File::options().append(true).open(file).unwrap().set_modified(tomorrow).unwrap();
+    }
+    assert_builds(&robot, "noon");
+}

@@ -1,0 +1,53 @@
+//! A robot of a third party, for tests of `link`, and what is built for it.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use mdlec::link::{Built, Cache, LinkError, Package, Progress, TargetCrate, build};
+
+pub(crate) const PLAN: &str = include_str!("plan.rs");
+
+pub(crate) const ROVER: &str = include_str!("rover.rs");
+
+pub(crate) const MANIFEST: &str = r#"# Not of the workspace around the folder that tests write to.
+[workspace]
+
+[package]
+name = "mdle-rover"
+version = "0.1.0"
+edition = "2024"
+
+[dependencies]
+mdle-runtime = "0.1"
+mdle-host = "0.1"
+"#;
+
+/// A target crate by path in a folder of its own.
+pub(crate) struct Robot {
+    pub(crate) folder: PathBuf,
+    /// Outlives the tests: only the first run compiles the runtime.
+    pub(crate) cache: Cache,
+}
+
+impl Robot {
+    pub(crate) fn new(name: &str, manifest: &str, rust: &str) -> Self {
+        let tests = Path::new(env!("CARGO_TARGET_TMPDIR")).join("link");
+        let folder = tests.join(name);
+        fs::create_dir_all(folder.join("rover/src")).unwrap();
+        fs::write(folder.join("rover/Cargo.toml"), manifest).unwrap();
+        fs::write(folder.join("rover/src/lib.rs"), rust).unwrap();
+        Self { folder, cache: Cache::at(&tests.join("cache")).unwrap() }
+    }
+
+    /// Builds `rust`, as if emitted from `plan`; the executable is beside the plan.
+    pub(crate) fn build(&self, plan: &str, rust: &str) -> Result<(Built, PathBuf), LinkError> {
+        let plan_file = self.folder.join(plan);
+        fs::create_dir_all(plan_file.parent().unwrap()).unwrap();
+        fs::write(&plan_file, "{ Nap (bumper) (Atom (null) stop) }").unwrap();
+        let target = TargetCrate::Path { folder: &self.folder.join("rover"), crate_name: "mdle_rover" };
+        let package = Package { plan_name: "Nap", plan_file: &plan_file, plan_type: "Nap", rust, target: &target };
+        let output = plan_file.with_extension("");
+        let built = build(&self.cache, &package, &output, &mut |_: Progress| {})?;
+        Ok((built, output))
+    }
+}
