@@ -8,6 +8,9 @@ use super::messages::Run;
 use super::target::Dependencies;
 use super::{LinkError, TargetCrate};
 
+/// What cargo says when it gets nowhere.
+const NETWORK: &str = "spurious network error";
+
 /// What rustc says when there is no linker, or when the linker fails.
 const LINKER: [&str; 2] = ["error: linker `", "error: linking with `"];
 
@@ -19,6 +22,10 @@ pub(super) fn fault(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>, dependen
     }
     if let Some(signal) = run.status.signal() {
         return LinkError::Stopped(u8::try_from(signal).unwrap_or(u8::MAX));
+    }
+    // Cargo names the option also where it has it from the user: it was not given.
+    if run.online && run.lacks_libraries() {
+        return LinkError::Offline;
     }
     let log = match job.plan.keep(&text) {
         Ok(log) => log,
@@ -55,6 +62,9 @@ fn others(
     is_ours: &dyn Fn(&PathBuf) -> bool,
 ) -> LinkError {
     match target {
+        TargetCrate::Builtin { .. } | TargetCrate::Path { .. } if !run.began && text.contains(NETWORK) => {
+            LinkError::NoLibraries { log }
+        }
         TargetCrate::Builtin { .. } if !run.began && run.online => LinkError::NoLibraries { log },
         TargetCrate::Builtin { .. } => LinkError::Cargo { log },
         TargetCrate::Path { crate_name, .. } if !run.began => {

@@ -79,6 +79,12 @@ pub enum LinkError {
         /// What was said.
         log: PathBuf,
     },
+    /// Libraries are missing and cargo is told not to fetch any.
+    #[error(
+        "the libraries that executables are built on are not on this machine yet, and cargo is told not to fetch them: \
+         unset CARGO_NET_OFFLINE, or `net.offline` in cargo's configuration, and try again with the network"
+    )]
+    Offline,
 
     /// The target's folder is not a crate.
     #[error("`{0}` has no Cargo.toml: a target is the folder of its crate, with its alphabet")]
@@ -183,6 +189,7 @@ impl LinkError {
             | Self::OldRust { .. }
             | Self::Linker { .. }
             | Self::NoLibraries { .. }
+            | Self::Offline
             | Self::NotACrate(_)
             | Self::OtherCrate { .. }
             | Self::TargetLacks { .. }

@@ -1,0 +1,152 @@
+//! `mdlec` and the folder that it keeps: several at once, one that is damaged or cannot be used, no network; through the
+//! real binary.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use mdle_tests::executable::{cache, command, folder, run_mdlec};
+
+const BUILD: [&str; 3] = ["plan.mdle", "--target", "sim"];
+
+/// An address at which nobody listens.
+const NOWHERE: &str = "http://127.0.0.1:1";
+
+/// A plan that is over after so many seconds.
+fn plan(seconds: usize) -> String {
+    format!("{{ Rest (Atom (wait {seconds}) stop) }}\n")
+}
+
+fn with_plan(test: &str, seconds: usize) -> PathBuf {
+    let folder = folder(test);
+    fs::write(folder.join("plan.mdle"), plan(seconds)).unwrap();
+    folder
+}
+
+fn assert_built(output: &Output) {
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// Runs the executable in `folder`, which has to be that of the plan of so many seconds.
+fn assert_rests(folder: &Path, seconds: usize) {
+    let run = Command::new(folder.join("plan")).args(["--speed", "max"]).output().unwrap();
+    assert_eq!(String::from_utf8(run.stdout).unwrap(), format!("plan over: wait {seconds} (atom 1)\n"));
+}
+
+/// What is said of a plan that does not become an executable.
+fn refused(command: &mut Command) -> String {
+    let output = command.output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(!said.contains("panicked"), "{said}");
+    said.replace("waiting for another mdlec to finish its build\n", "")
+}
+
+#[test]
+fn plans_of_one_name_at_once_each_get_their_own_executable() {
+    let left = with_plan("at_once/left", 0);
+    let right = with_plan("at_once/right", 0);
+    for round in 1..4 {
+        for (folder, seconds) in [(&left, round), (&right, 10 + round)] {
+            fs::write(folder.join("plan.mdle"), plan(seconds)).unwrap();
+        }
+        let folders = [&left, &right, &left, &right, &left];
+        let start = |folder: &&PathBuf| command(folder, &BUILD).stderr(Stdio::piped()).spawn().unwrap();
+        let children: Vec<_> = folders.iter().map(start).collect();
+        children.into_iter().for_each(|child| assert_built(&child.wait_with_output().unwrap()));
+        assert_rests(&left, round);
+        assert_rests(&right, 10 + round);
+    }
+    for folder in [left, right] {
+        assert_eq!(fs::read_dir(folder).unwrap().count(), 2, "the plan and its executable");
+    }
+}
+
+#[test]
+fn damage_is_mended_before_it_is_handed_out() {
+    let folder = with_plan("damaged", 3);
+    assert_built(&run_mdlec(&folder, &BUILD));
+    {
+        // Held as a running mdlec holds it: others of these tests are kept from seeing the damage.
+        let lock = File::options().append(true).open(cache().join("lock")).unwrap();
+        lock.lock().unwrap();
+        let (executables, sources) = (stored(&cache(), "plan-plan-"), stored(&cache(), "alphabet.rs"));
+        assert!(!executables.is_empty() && !sources.is_empty());
+        for executable in executables {
+            fs::write(executable, "garbage").unwrap();
+        }
+        for source in sources {
+            let length = fs::metadata(&source).unwrap().len();
+            fs::write(source, "?".repeat(length.try_into().unwrap())).unwrap();
+        }
+        fs::write(cache().join("lock"), "4711").unwrap();
+    }
+    assert_built(&run_mdlec(&folder, &BUILD));
+    assert_rests(&folder, 3);
+}
+
+/// The executables and sources below `folder` whose names begin so.
+fn stored(folder: &Path, start: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_str().unwrap();
+        if path.is_dir() {
+            if !["plans", ".fingerprint", "incremental", "build"].contains(&name) {
+                found.extend(stored(&path, start));
+            }
+        } else if name.starts_with(start) && !name.ends_with(".d") {
+            found.push(path);
+        }
+    }
+    found
+}
+
+#[test]
+fn a_place_that_cannot_be_a_cache_is_told() {
+    let folder = with_plan("no_cache", 0);
+    // Permissions do not bind a superuser; these bind everyone.
+    for place in ["plan.mdle", "plan.mdle/cache", "/proc/mdlec"] {
+        let said = refused(command(&folder, &BUILD).env("MDLEC_CACHE", place));
+        assert!(said.starts_with(&format!("error: the cache cannot be used at `{place}` (")), "{said}");
+        let advice = "): make it writable or delete it, or name another folder with the variable MDLEC_CACHE\n";
+        assert!(said.ends_with(advice), "{said}");
+    }
+    fs::create_dir_all(folder.join("cache/lock")).unwrap();
+    let said = refused(command(&folder, &BUILD).env("MDLEC_CACHE", "cache"));
+    assert!(said.contains("/cache/lock` (") && said.contains("delete it"), "{said}");
+}
+
+#[test]
+fn without_rust_it_says_what_to_install() {
+    let folder = with_plan("no_rust", 0);
+    let said = refused(command(&folder, &BUILD).env("PATH", &folder));
+    let advice = "install Rust from rustup.rs\n";
+    assert_eq!(said, format!("error: mdlec needs `rustc` to build an executable, and it is not there: {advice}"));
+}
+
+#[test]
+fn no_network_is_needed_when_all_was_fetched() {
+    let folder = with_plan("no_network", 4);
+    let output = command(&folder, &BUILD).env("CARGO_HTTP_PROXY", NOWHERE).output().unwrap();
+    assert_built(&output);
+    assert!(!String::from_utf8(output.stderr).unwrap().contains("fetching"));
+    assert_rests(&folder, 4);
+}
+
+#[test]
+fn libraries_that_cannot_be_fetched_are_told() {
+    let folder = with_plan("not_fetched", 0);
+    let nothing = |name: &str, value: &str| {
+        let mut command = command(&folder, &BUILD);
+        command.env("MDLEC_CACHE", "cache").env("CARGO_HOME", folder.join("cargo"));
+        // Cargo would wait between its attempts.
+        refused(command.env("CARGO_NET_RETRY", "1").env(name, value))
+    };
+    let missing = "error: the libraries that executables are built on are not on this machine yet, and ";
+    let said = nothing("CARGO_HTTP_PROXY", NOWHERE);
+    assert!(said.contains(&format!("{missing}they cannot be fetched: connect it to the network once")), "{said}");
+    let said = nothing("CARGO_NET_OFFLINE", "true");
+    assert!(said.contains(&format!("{missing}cargo is told not to fetch them: unset CARGO_NET_OFFLINE")), "{said}");
+}
