@@ -139,3 +139,25 @@ fn an_expanded_form_that_is_too_large_names_its_loop() {
     let folder = with_plan("large", "{ P ExecPlan 1000000 { (Atom (wait 1) stop) } }\n");
     insta::assert_snapshot!(said(&folder, &["plan.mdle", "--emit", "fsm"]));
 }
+
+#[test]
+fn brackets_without_end_are_one_error_that_names_the_limit() {
+    let folder = with_plan("brackets", format!("{{ P {} }}\n", "(".repeat(20_000)));
+    for arguments in [&["check", "plan.mdle"][..], &["plan.mdle", "--target", "sim"]] {
+        let said = said(&folder, arguments);
+        assert_eq!(said.matches("error[").count(), 1);
+        assert!(said.contains("error[E0106]: brackets nested more than 256 deep\n"), "{}", &said[..200]);
+        assert!(said.ends_with("error: 1 error\nexit status 1\n"));
+    }
+}
+
+#[test]
+fn more_passes_than_can_be_counted_are_an_error() {
+    let loops = (0..12).fold("(Atom (wait 1) stop)".to_owned(), |inside, _| format!("({inside})^1000"));
+    let folder = with_plan("passes", format!("{{ P {loops} }}\n"));
+    let build = ["plan.mdle", "--target", "sim"];
+    for arguments in [&["check", "plan.mdle"][..], &build, &["plan.mdle", "--emit", "fsm"]] {
+        let said = said(&folder, arguments);
+        assert!(said.contains("error[E0501]: ") && said.ends_with("error: 1 error\nexit status 1\n"), "{said}");
+    }
+}

@@ -1,0 +1,92 @@
+//! A target that did not come with `mdlec`: it serves like any other, and what is wrong with its crate is quoted whole, under
+//! one sentence that says whose fault it is; through the real binary.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use mdle_tests::executable::{folder, run_mdlec};
+use mdle_tests::repository::{files, root};
+
+/// The sentence over what rustc says.
+const SENTENCE: &str =
+    "error: the target crate `mdle_sim` does not compile; this is not a fault of your plan:\nerror[E0425]: ";
+
+/// The folder of a plan, with a copy of the simulator as a robot of one's own in `rover`.
+fn with_rover(test: &str) -> PathBuf {
+    let folder = folder(test);
+    fs::write(folder.join("plan.mdle"), "{ Rest (Atom (wait 0) stop) }\n").unwrap();
+    for file in files(&[""]) {
+        let Some(name) = file.path.strip_prefix("targets/sim/") else { continue };
+        let path = folder.join("rover").join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, file.text).unwrap();
+    }
+    // The workspace that the crate takes its versions from; the packages of the runtime stay in the repository.
+    let workspace = fs::read_to_string(root().join("Cargo.toml")).unwrap();
+    let members =
+        workspace.lines().map(|line| if line.starts_with("members") { "members = [\"rover\"]" } else { line });
+    let members = members.filter(|line| !line.starts_with("default-members"));
+    let elsewhere = format!("path = \"{}/", root().to_str().unwrap());
+    let workspace = members.collect::<Vec<_>>().join("\n").replace("path = \"", &elsewhere);
+    fs::write(folder.join("Cargo.toml"), workspace).unwrap();
+    fs::copy(root().join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
+    folder
+}
+
+/// What is said when a plan for the rover does not become an executable.
+fn refused(folder: &Path) -> String {
+    let output = run_mdlec(folder, &["plan.mdle", "--target", "rover"]);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!((output.status.code(), output.stdout.as_slice()), (Some(2), &b""[..]), "{said}");
+    assert!(!folder.join("plan").exists());
+    // Of this, only the first build of all says something.
+    said.lines()
+        .filter(|line| !line.starts_with("compiling what") && !line.starts_with("waiting for"))
+        .fold(String::new(), |text, line| text + line + "\n")
+}
+
+#[test]
+fn a_crate_that_does_not_compile_is_quoted_whole_and_serves_when_mended() {
+    let folder = with_rover("own_target");
+    let library = folder.join("rover/src/lib.rs");
+    let good = fs::read_to_string(&library).unwrap();
+    let bad = "\npub(crate) fn first() {\n    whistle();\n}\n\npub(crate) const SECOND: u8 = \"bell\";\n";
+    fs::write(&library, format!("{good}{bad}")).unwrap();
+    let said = refused(&folder);
+    assert!(said.starts_with(SENTENCE), "{said}");
+    for quoted in ["    whistle();\n", "error[E0308]: mismatched types", "pub(crate) const SECOND: u8 = \"bell\";\n"] {
+        assert!(said.contains(quoted), "{quoted:?} is missing in:\n{said}");
+    }
+    for other in ["Compiling", "could not compile", "internal error", "rustc --crate-name"] {
+        assert!(!said.contains(other), "{other:?} is in:\n{said}");
+    }
+
+    fs::write(&library, good).unwrap();
+    let output = run_mdlec(&folder, &["plan.mdle", "--target", "rover"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let run = Command::new(folder.join("plan")).args(["--speed", "max"]).output().unwrap();
+    assert_eq!(run.stdout, b"plan over: wait 0 (atom 1)\n");
+}
+
+#[test]
+fn a_build_script_that_fails_is_quoted() {
+    let folder = with_rover("own_build_script");
+    fs::write(folder.join("rover/build.rs"), "fn main() {\n    panic!(\"no library of the whistle\");\n}\n").unwrap();
+    let said = refused(&folder);
+    let (sentence, quoted) = said.split_once('\n').unwrap();
+    assert!(SENTENCE.starts_with(sentence), "{said}");
+    assert!(quoted.contains("no library of the whistle"), "{said}");
+}
+
+#[test]
+fn a_manifest_that_cargo_refuses_is_no_fault_of_the_plan() {
+    let folder = with_rover("own_manifest");
+    let manifest = folder.join("rover/Cargo.toml");
+    let good = fs::read_to_string(&manifest).unwrap();
+    fs::write(&manifest, format!("{good}\n[dependencies.whistle]\npath = \"../whistle\"\n")).unwrap();
+    let said = refused(&folder);
+    let sentence = "error: cargo cannot use the target crate `mdle_sim`; this is not a fault of your plan:\n";
+    assert!(said.starts_with(sentence) && said.contains("whistle"), "{said}");
+}
