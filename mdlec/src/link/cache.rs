@@ -53,6 +53,11 @@ impl Cache {
         self.folder.join("target")
     }
 
+    /// The folder of the packages of plans.
+    pub(super) fn plans(&self) -> PathBuf {
+        self.folder.join("plans")
+    }
+
     /// An empty folder for the temporary files of a build: a compiler that is killed leaves its own behind.
     pub(super) fn scratch(&self) -> Result<PathBuf, LinkError> {
         let folder = self.folder.join("tmp");

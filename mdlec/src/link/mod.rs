@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! lock                    held while one mdlec works
-//! src-VERSION-HASH/       the unpacked sources
+//! src-VERSION-HASH/       the unpacked sources; those of versions that nobody uses any more are removed
 //! target/                 what cargo has compiled, for all plans
 //! tmp/                    temporary files of the build under way
 //! plans/plan-NAME-HASH/   the package of a plan; HASH is of the plan file's path, the plan and the target

@@ -43,7 +43,7 @@ pub(super) fn write(
     dependencies: &Dependencies,
 ) -> Result<PlanPackage, LinkError> {
     let name = name(package, &dependencies.identity);
-    let folder = cache.folder().join("plans").join(&name);
+    let folder = cache.plans().join(&name);
     let (manifest, main, lock) = (manifest(&name, dependencies)?, main(package), dependencies.lock.as_str());
     let files = [("Cargo.toml", &*manifest), ("src/main.rs", &main), ("src/plan.rs", package.rust)];
     match write_files(&folder, &files, lock) {

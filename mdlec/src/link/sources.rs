@@ -1,6 +1,9 @@
 //! The sources that executables are built from, as packed into mdlec, and their copy in the cache.
 
+use std::fs::{self, DirEntry, File};
+use std::io;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, SystemTime};
 
 use super::cache::{remove, write_if_changed};
 use super::{Cache, LinkError};
@@ -8,6 +11,12 @@ use super::{Cache, LinkError};
 /// The packages that every plan is built on, with their folders.
 pub(super) const SHARED: [(&str, &str); 3] =
     [("mdle-runtime", "runtime/core"), ("mdle-host", "runtime/host"), ("mdle-atoms", "atoms")];
+
+/// How the names of the folders begin that sources are unpacked to.
+const PREFIX: &str = "src-";
+
+/// The time after which an unused version is forgotten.
+const FORGOTTEN: Duration = Duration::from_secs(30 * 24 * 60 * 60);
 
 /// The versions that everything was tested with.
 pub(super) const LOCK: &str = "Cargo.lock";
@@ -55,7 +64,10 @@ impl Sources {
     ///
     /// Files that are there keep their times, by which cargo knows what it has built. Call it with the cache locked.
     pub(super) fn unpack(cache: &Cache) -> Result<Self, LinkError> {
-        let folder = cache.folder().join(format!("src-{}-{}", env!("CARGO_PKG_VERSION"), embedded::HASH));
+        let folder = cache.folder().join(format!("{PREFIX}{}-{}", env!("CARGO_PKG_VERSION"), embedded::HASH));
+        if !folder.exists() {
+            forget_old_versions(cache)?;
+        }
         match write(&folder) {
             Ok(()) => {}
             Err(full @ LinkError::DiskFull(_)) => return Err(full),
@@ -65,8 +77,29 @@ impl Sources {
                 write(&folder)?;
             }
         }
+        // Where its time cannot be set, it is forgotten a little early, which costs no more than time.
+        let _ = File::open(&folder).and_then(|folder| folder.set_modified(SystemTime::now()));
         Ok(Self { folder })
     }
+}
+
+/// Removes the sources of versions that nobody has used for long, with all that was compiled: most of it is of theirs, and
+/// a version that is new to the cache has to compile its own in any case.
+fn forget_old_versions(cache: &Cache) -> Result<(), LinkError> {
+    let is_old = |found: &DirEntry| {
+        let used = found.metadata().and_then(|found| found.modified()).ok();
+        let age = used.and_then(|used| used.elapsed().ok());
+        found.file_name().as_encoded_bytes().starts_with(PREFIX.as_bytes()) && age.is_some_and(|age| age > FORGOTTEN)
+    };
+    let unreadable = |error| LinkError::cache(cache.folder(), error);
+    let found = fs::read_dir(cache.folder()).and_then(Iterator::collect::<io::Result<Vec<_>>>).map_err(unreadable)?;
+    let old: Vec<_> = found.iter().filter(|found| is_old(found)).map(DirEntry::path).collect();
+    if !old.is_empty() {
+        remove(&cache.target())?;
+        remove(&cache.plans())?;
+    }
+    // Last, so that what stops halfway goes on the next time.
+    old.iter().try_for_each(|old| remove(old))
 }
 
 /// Writes to `folder` what is not there yet.
@@ -81,11 +114,13 @@ mod embedded {
 
 #[cfg(test)]
 mod tests {
-    use std::fs;
+    use std::collections::BTreeSet;
+    use std::fs::{self, File};
+    use std::time::{Duration, SystemTime};
 
     use super::super::Cache;
     use super::super::tests::cache;
-    use super::{Sources, alphabets, builtin, embedded, text};
+    use super::{FORGOTTEN, Sources, alphabets, builtin, embedded, text};
 
     #[test]
     fn alphabets_come_with_names_that_can_be_shown() {
@@ -132,6 +167,43 @@ mod tests {
         fs::remove_dir_all(&folder).unwrap();
         fs::write(&folder, "garbage").unwrap();
         assert_unpacked(&cache);
+    }
+
+    #[test]
+    fn versions_that_nobody_uses_are_forgotten_when_a_new_one_comes() {
+        let cache = cache("versions");
+        let folder = |name: &str, days: u64| {
+            let folder = cache.folder().join(name);
+            fs::create_dir_all(folder.join("inside")).unwrap();
+            let time = SystemTime::now() - Duration::from_secs(days * 24 * 60 * 60);
+            File::open(folder).unwrap().set_modified(time).unwrap();
+        };
+        let names = || {
+            let names = fs::read_dir(cache.folder()).unwrap().map(|found| found.unwrap().file_name());
+            names.map(|name| name.into_string().unwrap()).collect::<BTreeSet<_>>()
+        };
+        let new = Sources::unpack(&cache).unwrap().folder;
+        let name = new.file_name().unwrap().to_str().unwrap();
+        let fill = || {
+            folder("src-0.0.1-0123456789ab", 31);
+            folder("src-0.0.2-0123456789ab", 29);
+            folder("target", 31);
+            folder("plans", 31);
+        };
+        fill();
+        folder(name, 31);
+        Sources::unpack(&cache).unwrap();
+        assert_eq!(names().len(), 5, "nothing goes while the same version is used");
+        assert!(fs::metadata(&new).unwrap().modified().unwrap().elapsed().unwrap() < FORGOTTEN);
+
+        fs::remove_dir_all(&new).unwrap();
+        Sources::unpack(&cache).unwrap();
+        assert_eq!(names(), BTreeSet::from(["src-0.0.2-0123456789ab".to_owned(), name.to_owned()]));
+        fill();
+        fs::remove_dir_all(cache.folder().join("src-0.0.1-0123456789ab")).unwrap();
+        fs::remove_dir_all(&new).unwrap();
+        Sources::unpack(&cache).unwrap();
+        assert_eq!(names().len(), 4, "what was compiled stays with a version that may be used");
     }
 
     fn assert_unpacked(cache: &Cache) {
