@@ -5,12 +5,13 @@ use std::os::unix::process::ExitStatusExt;
 use super::cache::remove;
 use super::cargo::Job;
 use super::messages::{Complaint, Run};
-use super::target::Dependencies;
+use super::package::PlanPackage;
 use super::{LinkError, Progress, TargetCrate, record};
 
 /// What rustc says of a library that it cannot read.
-const UNREADABLE: [&str; 4] = [
+const UNREADABLE: [&str; 5] = [
     "found invalid metadata files for crate",
+    "found possibly newer version of crate",
     "can't find crate for `mdle_",
     "error: linking with `",
     "error: internal compiler error",
@@ -29,7 +30,7 @@ pub(super) enum Damage {
 }
 
 /// What of the cache is damaged, judged by a run of cargo.
-pub(super) fn found(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>, dependencies: &Dependencies) -> Option<Damage> {
+pub(super) fn found(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>) -> Option<Damage> {
     if run.status.success() {
         let stored = run.executable.as_ref().filter(|executable| executable.fresh)?;
         return (!record::fits(job.plan, &stored.path)).then_some(Damage::Executable);
@@ -42,19 +43,19 @@ pub(super) fn found(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>, dependen
     // A compiler that fails without a word is shown with its command line, which names the folder as well.
     let refused = !run.began && names_folder && !run.stderr.contains("process didn't exit successfully");
     // What was compiled a moment ago is not damaged: whatever is wrong then will not mend by doing it again.
-    let spoilt = run.reused && run.complaints.iter().any(|complaint| is_of_damage(complaint, target, dependencies));
+    let spoilt = run.reused && run.complaints.iter().any(|complaint| is_of_damage(complaint, job.plan, target));
     (refused || spoilt).then_some(Damage::Libraries)
 }
 
 /// Whether an error can come of a library that is damaged.
-fn is_of_damage(complaint: &Complaint, target: &TargetCrate<'_>, dependencies: &Dependencies) -> bool {
+fn is_of_damage(complaint: &Complaint, plan: &PlanPackage, target: &TargetCrate<'_>) -> bool {
     let says = |signs: &[&str]| signs.iter().any(|sign| complaint.text.contains(sign));
-    let is_theirs = match target {
-        // No author of a target crate is at work: nothing that was tested here may fail.
-        TargetCrate::Builtin { .. } => false,
-        TargetCrate::Path { .. } => !complaint.manifest.starts_with(&dependencies.ours),
+    let is_tested = match target {
+        // What came with mdlec does not fail by itself, but what mdlec makes of a plan can be wrong.
+        TargetCrate::Builtin { .. } => complaint.manifest != plan.manifest(),
+        TargetCrate::Path { .. } => false,
     };
-    complaint.is_error && !says(&LACKING) && (!is_theirs || says(&UNREADABLE))
+    complaint.is_error && !says(&LACKING) && (is_tested || says(&UNREADABLE))
 }
 
 /// Removes what is damaged, so that the next run of cargo makes it anew.

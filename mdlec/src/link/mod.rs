@@ -46,7 +46,6 @@ use cargo::{Job, Toolchain};
 use messages::Run;
 use output::Destination;
 use sources::Sources;
-use target::Dependencies;
 
 /// A plan as Rust.
 #[derive(Debug, Clone, Copy)]
@@ -90,7 +89,7 @@ pub fn build(
     let dependencies = target::dependencies(package.target, &sources, cache)?;
     let plan = package::write(cache, package, &dependencies)?;
     let job = Job { cache, toolchain: &toolchain, plan: &plan };
-    let run = run(&job, package.target, &dependencies, progress)?;
+    let run = run(&job, package.target, progress)?;
     let executable = match &run.executable {
         Some(executable) if run.status.success() => executable,
         Some(_) | None => return Err(blame::fault(&job, &run, package.target, &dependencies)),
@@ -103,16 +102,11 @@ pub fn build(
 }
 
 /// Runs cargo, again where damage in the cache may have spoilt it.
-fn run(
-    job: &Job<'_>,
-    target: &TargetCrate<'_>,
-    dependencies: &Dependencies,
-    progress: &mut dyn FnMut(Progress),
-) -> Result<Run, LinkError> {
+fn run(job: &Job<'_>, target: &TargetCrate<'_>, progress: &mut dyn FnMut(Progress)) -> Result<Run, LinkError> {
     let mut mended = Vec::new();
     loop {
         let run = job.build(progress)?;
-        match damage::found(job, &run, target, dependencies) {
+        match damage::found(job, &run, target) {
             Some(damage) if !mended.contains(&damage) => {
                 damage::clear(damage, job, progress)?;
                 mended.push(damage);
