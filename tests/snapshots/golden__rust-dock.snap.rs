@@ -13,7 +13,7 @@ pub use machine::Dock;
 mod machine {
     use ::mdle_runtime as runtime;
     use ::mdle_runtime::fsm::{Atom, Bracket};
-    use ::mdle_runtime::{Begin, Cause, Cursor, Ending, Fsm, Nanos, Next};
+    use ::mdle_runtime::{Begin, Cursor, Fsm, Nanos, Next};
     use ::mdle_sim::alphabet::{self as robot, Input, Output};
     const _: () = assert!(
         robot::HASH == 0x18e7cb8d94f135d4,
@@ -110,7 +110,7 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Fired(1u16).into(),
+                            runtime::Cause::Fired(1u16).into(),
                             y,
                             begin,
                             direct,
@@ -125,7 +125,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Fired(2u16).then(runtime::Follows::new(2, 2, 3)),
+                            runtime::Cause::Fired(2u16)
+                                .then(runtime::Follows::new(2, 2, 3)),
                             y,
                             begin,
                             direct,
@@ -140,7 +141,7 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Completed(2u16).into(),
+                            runtime::Cause::Completed(2u16).into(),
                             y,
                             begin,
                             direct,
@@ -176,20 +177,24 @@ mod machine {
     }
 
     /// Dock (bumper), and the scopes around it first.
-    fn dock(cursor: &At, y: &Output, t: Nanos) -> Option<Ending> {
+    fn dock(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
         if runtime::Interrupt::fired(&BUMPER, y) {
-            return Some(Cause::Fired(0u16).then(runtime::Follows::new(3, 0, 0)));
+            return Some(
+                runtime::Cause::Fired(0u16).then(runtime::Follows::new(3, 0, 0)),
+            );
         }
         None
     }
 
     /// Shake (wait 15), and the scopes around it first.
-    fn shake(cursor: &At, y: &Output, t: Nanos) -> Option<Ending> {
+    fn shake(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
         if let Some(ending) = dock(cursor, y, t) {
             return Some(ending);
         }
         if cursor.since(1u16, t) >= Nanos(15000000000) {
-            return Some(Cause::Fired(1u16).then(runtime::Follows::new(3, 0, 0)));
+            return Some(
+                runtime::Cause::Fired(1u16).then(runtime::Follows::new(3, 0, 0)),
+            );
         }
         None
     }

@@ -13,7 +13,7 @@ pub use machine::LabTour;
 mod machine {
     use ::mdle_runtime as runtime;
     use ::mdle_runtime::fsm::{Atom, Bracket};
-    use ::mdle_runtime::{Begin, Cause, Cursor, Ending, Fsm, Nanos, Next};
+    use ::mdle_runtime::{Begin, Cursor, Fsm, Nanos, Next};
     use ::mdle_sim::alphabet::{self as robot, Input, Output};
     const _: () = assert!(
         robot::HASH == 0x18e7cb8d94f135d4,
@@ -240,7 +240,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Fired(2u16).then(runtime::Follows::new(1, 2, 3)),
+                            runtime::Cause::Fired(2u16)
+                                .then(runtime::Follows::new(1, 2, 3)),
                             y,
                             begin,
                             direct,
@@ -250,7 +251,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Completed(2u16).then(runtime::Follows::new(1, 2, 3)),
+                            runtime::Cause::Completed(2u16)
+                                .then(runtime::Follows::new(1, 2, 3)),
                             y,
                             begin,
                             direct,
@@ -265,7 +267,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Fired(2u16).then(runtime::Follows::new(2, 2, 3)),
+                            runtime::Cause::Fired(2u16)
+                                .then(runtime::Follows::new(2, 2, 3)),
                             y,
                             begin,
                             direct,
@@ -280,7 +283,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Completed(2u16).then(runtime::Follows::new(3, 2, 3)),
+                            runtime::Cause::Completed(2u16)
+                                .then(runtime::Follows::new(3, 2, 3)),
                             y,
                             begin,
                             direct,
@@ -295,7 +299,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Fired(2u16).then(runtime::Follows::new(4, 2, 3)),
+                            runtime::Cause::Fired(2u16)
+                                .then(runtime::Follows::new(4, 2, 3)),
                             y,
                             begin,
                             direct,
@@ -305,7 +310,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Completed(2u16).then(runtime::Follows::new(4, 2, 3)),
+                            runtime::Cause::Completed(2u16)
+                                .then(runtime::Follows::new(4, 2, 3)),
                             y,
                             begin,
                             direct,
@@ -320,7 +326,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Fired(2u16).then(runtime::Follows::new(5, 2, 3)),
+                            runtime::Cause::Fired(2u16)
+                                .then(runtime::Follows::new(5, 2, 3)),
                             y,
                             begin,
                             direct,
@@ -335,7 +342,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Completed(2u16).then(runtime::Follows::new(6, 2, 3)),
+                            runtime::Cause::Completed(2u16)
+                                .then(runtime::Follows::new(6, 2, 3)),
                             y,
                             begin,
                             direct,
@@ -350,7 +358,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Fired(2u16).then(runtime::Follows::new(7, 2, 3)),
+                            runtime::Cause::Fired(2u16)
+                                .then(runtime::Follows::new(7, 2, 3)),
                             y,
                             begin,
                             direct,
@@ -360,7 +369,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Completed(2u16).then(runtime::Follows::new(7, 2, 3)),
+                            runtime::Cause::Completed(2u16)
+                                .then(runtime::Follows::new(7, 2, 3)),
                             y,
                             begin,
                             direct,
@@ -375,7 +385,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Fired(2u16).then(runtime::Follows::new(8, 1, 3)),
+                            runtime::Cause::Fired(2u16)
+                                .then(runtime::Follows::new(8, 1, 3)),
                             y,
                             begin,
                             direct,
@@ -385,7 +396,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Completed(2u16).then(runtime::Follows::new(8, 1, 3)),
+                            runtime::Cause::Completed(2u16)
+                                .then(runtime::Follows::new(8, 1, 3)),
                             y,
                             begin,
                             direct,
@@ -400,7 +412,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Fired(2u16).then(runtime::Follows::new(9, 2, 3)),
+                            runtime::Cause::Fired(2u16)
+                                .then(runtime::Follows::new(9, 2, 3)),
                             y,
                             begin,
                             direct,
@@ -410,7 +423,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Completed(2u16).then(runtime::Follows::new(9, 2, 3)),
+                            runtime::Cause::Completed(2u16)
+                                .then(runtime::Follows::new(9, 2, 3)),
                             y,
                             begin,
                             direct,
@@ -425,7 +439,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Fired(2u16).then(runtime::Follows::new(10, 2, 3)),
+                            runtime::Cause::Fired(2u16)
+                                .then(runtime::Follows::new(10, 2, 3)),
                             y,
                             begin,
                             direct,
@@ -440,7 +455,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Completed(2u16).then(runtime::Follows::new(11, 2, 3)),
+                            runtime::Cause::Completed(2u16)
+                                .then(runtime::Follows::new(11, 2, 3)),
                             y,
                             begin,
                             direct,
@@ -455,7 +471,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Fired(2u16).then(runtime::Follows::new(12, 2, 3)),
+                            runtime::Cause::Fired(2u16)
+                                .then(runtime::Follows::new(12, 2, 3)),
                             y,
                             begin,
                             direct,
@@ -465,7 +482,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Completed(2u16).then(runtime::Follows::new(12, 2, 3)),
+                            runtime::Cause::Completed(2u16)
+                                .then(runtime::Follows::new(12, 2, 3)),
                             y,
                             begin,
                             direct,
@@ -480,7 +498,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Fired(2u16).then(runtime::Follows::new(13, 0, 0)),
+                            runtime::Cause::Fired(2u16)
+                                .then(runtime::Follows::new(13, 0, 0)),
                             y,
                             begin,
                             direct,
@@ -490,7 +509,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Completed(2u16).then(runtime::Follows::new(13, 0, 0)),
+                            runtime::Cause::Completed(2u16)
+                                .then(runtime::Follows::new(13, 0, 0)),
                             y,
                             begin,
                             direct,
@@ -536,17 +556,25 @@ mod machine {
     }
 
     /// Lab2ToLab1Plan (bumper), and the scopes around it first.
-    fn lab2_to_lab1_plan(cursor: &At, y: &Output, t: Nanos) -> Option<Ending> {
+    fn lab2_to_lab1_plan(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
         if runtime::Interrupt::fired(&BUMPER, y) {
-            return Some(Cause::Fired(1u16).then(runtime::Follows::new(8, 1, 3)));
+            return Some(
+                runtime::Cause::Fired(1u16).then(runtime::Follows::new(8, 1, 3)),
+            );
         }
         None
     }
 
     /// Lab1ToOfficePlan (bumper), and the scopes around it first.
-    fn lab1_to_office_plan(cursor: &At, y: &Output, t: Nanos) -> Option<Ending> {
+    fn lab1_to_office_plan(
+        cursor: &At,
+        y: &Output,
+        t: Nanos,
+    ) -> Option<runtime::Ending> {
         if runtime::Interrupt::fired(&BUMPER, y) {
-            return Some(Cause::Fired(1u16).then(runtime::Follows::new(13, 0, 0)));
+            return Some(
+                runtime::Cause::Fired(1u16).then(runtime::Follows::new(13, 0, 0)),
+            );
         }
         None
     }

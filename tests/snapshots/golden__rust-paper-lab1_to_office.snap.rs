@@ -13,7 +13,7 @@ pub use machine::Lab1ToOfficePlan;
 mod machine {
     use ::mdle_runtime as runtime;
     use ::mdle_runtime::fsm::{Atom, Bracket};
-    use ::mdle_runtime::{Begin, Cause, Cursor, Ending, Fsm, Nanos, Next};
+    use ::mdle_runtime::{Begin, Cursor, Fsm, Nanos, Next};
     use ::mdle_sim::alphabet::{self as robot, Input, Output};
     const _: () = assert!(
         robot::HASH == 0x18e7cb8d94f135d4,
@@ -142,7 +142,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Fired(1u16).then(runtime::Follows::new(1, 1, 2)),
+                            runtime::Cause::Fired(1u16)
+                                .then(runtime::Follows::new(1, 1, 2)),
                             y,
                             begin,
                             direct,
@@ -152,7 +153,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Completed(1u16).then(runtime::Follows::new(1, 1, 2)),
+                            runtime::Cause::Completed(1u16)
+                                .then(runtime::Follows::new(1, 1, 2)),
                             y,
                             begin,
                             direct,
@@ -167,7 +169,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Fired(1u16).then(runtime::Follows::new(2, 1, 2)),
+                            runtime::Cause::Fired(1u16)
+                                .then(runtime::Follows::new(2, 1, 2)),
                             y,
                             begin,
                             direct,
@@ -182,7 +185,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Completed(1u16).then(runtime::Follows::new(3, 1, 2)),
+                            runtime::Cause::Completed(1u16)
+                                .then(runtime::Follows::new(3, 1, 2)),
                             y,
                             begin,
                             direct,
@@ -197,7 +201,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Fired(1u16).then(runtime::Follows::new(4, 1, 2)),
+                            runtime::Cause::Fired(1u16)
+                                .then(runtime::Follows::new(4, 1, 2)),
                             y,
                             begin,
                             direct,
@@ -207,7 +212,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Completed(1u16).then(runtime::Follows::new(4, 1, 2)),
+                            runtime::Cause::Completed(1u16)
+                                .then(runtime::Follows::new(4, 1, 2)),
                             y,
                             begin,
                             direct,
@@ -222,7 +228,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Fired(1u16).then(runtime::Follows::new(5, 0, 0)),
+                            runtime::Cause::Fired(1u16)
+                                .then(runtime::Follows::new(5, 0, 0)),
                             y,
                             begin,
                             direct,
@@ -232,7 +239,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Completed(1u16).then(runtime::Follows::new(5, 0, 0)),
+                            runtime::Cause::Completed(1u16)
+                                .then(runtime::Follows::new(5, 0, 0)),
                             y,
                             begin,
                             direct,
@@ -270,9 +278,15 @@ mod machine {
     }
 
     /// Lab1ToOfficePlan (bumper), and the scopes around it first.
-    fn lab1_to_office_plan(cursor: &At, y: &Output, t: Nanos) -> Option<Ending> {
+    fn lab1_to_office_plan(
+        cursor: &At,
+        y: &Output,
+        t: Nanos,
+    ) -> Option<runtime::Ending> {
         if runtime::Interrupt::fired(&BUMPER, y) {
-            return Some(Cause::Fired(0u16).then(runtime::Follows::new(5, 0, 0)));
+            return Some(
+                runtime::Cause::Fired(0u16).then(runtime::Follows::new(5, 0, 0)),
+            );
         }
         None
     }

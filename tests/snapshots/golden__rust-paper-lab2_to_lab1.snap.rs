@@ -13,7 +13,7 @@ pub use machine::Lab2ToLab1Plan;
 mod machine {
     use ::mdle_runtime as runtime;
     use ::mdle_runtime::fsm::{Atom, Bracket};
-    use ::mdle_runtime::{Begin, Cause, Cursor, Ending, Fsm, Nanos, Next};
+    use ::mdle_runtime::{Begin, Cursor, Fsm, Nanos, Next};
     use ::mdle_sim::alphabet::{self as robot, Input, Output};
     const _: () = assert!(
         robot::HASH == 0x18e7cb8d94f135d4,
@@ -162,7 +162,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Fired(1u16).then(runtime::Follows::new(1, 1, 2)),
+                            runtime::Cause::Fired(1u16)
+                                .then(runtime::Follows::new(1, 1, 2)),
                             y,
                             begin,
                             direct,
@@ -172,7 +173,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Completed(1u16).then(runtime::Follows::new(1, 1, 2)),
+                            runtime::Cause::Completed(1u16)
+                                .then(runtime::Follows::new(1, 1, 2)),
                             y,
                             begin,
                             direct,
@@ -187,7 +189,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Fired(1u16).then(runtime::Follows::new(2, 1, 2)),
+                            runtime::Cause::Fired(1u16)
+                                .then(runtime::Follows::new(2, 1, 2)),
                             y,
                             begin,
                             direct,
@@ -202,7 +205,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Completed(1u16).then(runtime::Follows::new(3, 1, 2)),
+                            runtime::Cause::Completed(1u16)
+                                .then(runtime::Follows::new(3, 1, 2)),
                             y,
                             begin,
                             direct,
@@ -217,7 +221,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Fired(1u16).then(runtime::Follows::new(4, 1, 2)),
+                            runtime::Cause::Fired(1u16)
+                                .then(runtime::Follows::new(4, 1, 2)),
                             y,
                             begin,
                             direct,
@@ -227,7 +232,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Completed(1u16).then(runtime::Follows::new(4, 1, 2)),
+                            runtime::Cause::Completed(1u16)
+                                .then(runtime::Follows::new(4, 1, 2)),
                             y,
                             begin,
                             direct,
@@ -242,7 +248,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Fired(1u16).then(runtime::Follows::new(5, 1, 2)),
+                            runtime::Cause::Fired(1u16)
+                                .then(runtime::Follows::new(5, 1, 2)),
                             y,
                             begin,
                             direct,
@@ -257,7 +264,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Completed(1u16).then(runtime::Follows::new(6, 1, 2)),
+                            runtime::Cause::Completed(1u16)
+                                .then(runtime::Follows::new(6, 1, 2)),
                             y,
                             begin,
                             direct,
@@ -272,7 +280,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Fired(1u16).then(runtime::Follows::new(7, 1, 2)),
+                            runtime::Cause::Fired(1u16)
+                                .then(runtime::Follows::new(7, 1, 2)),
                             y,
                             begin,
                             direct,
@@ -282,7 +291,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Completed(1u16).then(runtime::Follows::new(7, 1, 2)),
+                            runtime::Cause::Completed(1u16)
+                                .then(runtime::Follows::new(7, 1, 2)),
                             y,
                             begin,
                             direct,
@@ -297,7 +307,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Fired(1u16).then(runtime::Follows::new(8, 0, 0)),
+                            runtime::Cause::Fired(1u16)
+                                .then(runtime::Follows::new(8, 0, 0)),
                             y,
                             begin,
                             direct,
@@ -307,7 +318,8 @@ mod machine {
                         return runtime::Plan::end(
                             self,
                             cursor,
-                            Cause::Completed(1u16).then(runtime::Follows::new(8, 0, 0)),
+                            runtime::Cause::Completed(1u16)
+                                .then(runtime::Follows::new(8, 0, 0)),
                             y,
                             begin,
                             direct,
@@ -348,9 +360,11 @@ mod machine {
     }
 
     /// Lab2ToLab1Plan (bumper), and the scopes around it first.
-    fn lab2_to_lab1_plan(cursor: &At, y: &Output, t: Nanos) -> Option<Ending> {
+    fn lab2_to_lab1_plan(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
         if runtime::Interrupt::fired(&BUMPER, y) {
-            return Some(Cause::Fired(0u16).then(runtime::Follows::new(8, 0, 0)));
+            return Some(
+                runtime::Cause::Fired(0u16).then(runtime::Follows::new(8, 0, 0)),
+            );
         }
         None
     }

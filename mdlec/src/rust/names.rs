@@ -7,8 +7,8 @@ use quote::format_ident;
 
 /// The types that a generated file uses, beside those of the robot, which it writes with their module.
 const TYPES: &[&str] = &[
-    "At", "Atom", "Begin", "Bracket", "Cursor", "Debug", "Default", "Fsm", "Input", "Nanos", "Next",
-    "None", "Option", "Output", "Plan", "Running", "Self", "Some",
+    "At", "Atom", "Begin", "Bracket", "Cursor", "Debug", "Default", "Fsm", "Input", "Nanos", "Next", "None", "Option",
+    "Output", "Plan", "Running", "Self", "Some",
 ];
 /// What a bound alphabet has beside its quarks, and what its text uses of Rust's own.
 const BOUND: &[&str] =
