@@ -37,8 +37,8 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// The most scopes, loops and atoms of a plan that becomes code: what rustc compiles in about a second.
-    const CODE: usize = 256;
+    /// The most scopes, loops and atoms of a plan that becomes code: what rustc compiles in half a second.
+    const CODE: usize = 64;
 
     /// The shape that a plan of this size is given.
     #[must_use]
