@@ -2,12 +2,14 @@
 
 #![allow(clippy::disallowed_methods, reason = "what is done here is I/O")]
 
+#[path = "build/parsers.rs"]
+mod parsers;
 #[path = "build/sources.rs"]
 mod sources;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Cargo watches the package by itself only as long as a build script names nothing, and `sources` does.
     println!("cargo::rerun-if-changed=src");
-    lalrpop::process_src()?;
+    parsers::make()?;
     sources::pack()
 }

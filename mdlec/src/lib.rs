@@ -42,7 +42,8 @@ pub fn compile(
     alphabet: &Alphabet,
     wanted: Option<&str>,
 ) -> (Vec<Compiled>, Vec<Diagnostic>) {
-    let (tree, mut found) = syntax::parse(source, text);
+    let arena = syntax::Arena::new();
+    let (tree, mut found) = syntax::parse(source, text, &arena);
     let (plans, names) = plan::resolve(&tree, alphabet, wanted);
     found.extend(names);
     let mut compiled = Vec::new();

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use mdlec::alphabet::{self, Alphabet};
 use mdlec::diagnostic::{SourceId, Sources};
 use mdlec::rust::{Header, emit};
-use mdlec::syntax::{outline::outline, parse};
+use mdlec::syntax::{Arena, outline::outline, parse};
 use mdlec::{Compiled, compile, fsm, link};
 
 use crate::repository::TextFile;
@@ -38,7 +38,7 @@ pub fn judge(file: &TextFile, target: Option<&str>) -> (Vec<Compiled>, String) {
 /// The tree of a file as an outline.
 #[must_use]
 pub fn tree(file: &TextFile) -> String {
-    outline(&parse(SourceId(0), &file.text).0)
+    outline(&parse(SourceId(0), &file.text, &Arena::new()).0)
 }
 
 /// The machine of a plan, a line for each interrupt: its matrix's columns, as runs.

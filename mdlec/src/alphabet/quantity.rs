@@ -133,6 +133,12 @@ impl Unit {
         Self::ALL.iter().copied().find(|unit| unit.name == name)
     }
 
+    /// Whether a unit is written so.
+    #[must_use]
+    pub fn is_name(name: &str) -> bool {
+        Self::ALL.iter().any(|unit| unit.name == name)
+    }
+
     /// How many SI units one of its family is: 1, or π/180 where the family counts degrees.
     #[must_use]
     pub fn family_to_si(self) -> f64 {

@@ -71,8 +71,9 @@ pub(super) fn compile_one(
 
 /// Exit status 2 if no plan of the file has this name.
 fn known_plan(input: &Input, name: &str) -> Result<(), Failure> {
-    let (tree, _) = syntax::parse(input.source, input.sources.text(input.source));
-    let names: Vec<_> = tree.plans.iter().map(|plan| plan.name.node.as_str()).collect();
+    let arena = syntax::Arena::new();
+    let (tree, _) = syntax::parse(input.source, input.sources.text(input.source), &arena);
+    let names: Vec<_> = tree.plans.iter().map(|plan| plan.name.node).collect();
     if names.contains(&name) || names.is_empty() {
         return Ok(());
     }
@@ -89,7 +90,8 @@ fn stage(options: &Build, path: &Path, kind: EmitKind) -> Result<String, Failure
     let target = input::target(options.target.as_deref())?;
     let input = input::read_plan(path, &target)?;
     if kind == EmitKind::Tree {
-        let (tree, found) = syntax::parse(input.source, input.sources.text(input.source));
+        let arena = syntax::Arena::new();
+        let (tree, found) = syntax::parse(input.source, input.sources.text(input.source), &arena);
         let good = report::diagnostics(&input.sources, &found, options.deny_warnings);
         return if good { Ok(outline::outline(&tree)) } else { Err(Failure::PLAN) };
     }

@@ -28,7 +28,7 @@ pub(super) fn fit(call: &Call, declaration: &Declaration, robot: &str) -> Result
         let fitted = match (call.args.get(index), &param.default) {
             (Some(arg), _) => fitting.argument(arg, param),
             (None, Some(digits)) => {
-                let number = Number { digits: digits.clone(), unit: None, span: call.span };
+                let number = Number::new(digits, u32::MAX, call.span);
                 fitting.argument(&Arg::Number(number), param)
             }
             (None, None) => continue,
@@ -97,9 +97,9 @@ impl Fitting<'_> {
                 let words = match arg {
                     Arg::Module(_) => format!("{} module", name.node),
                     Arg::String(_) => format!("\"{}\"", name.node),
-                    Arg::Name(_) | Arg::Number(_) | Arg::Infinity(_) => name.node.clone(),
+                    Arg::Name(_) | Arg::Number(_) | Arg::Infinity(_) => name.node.to_owned(),
                 };
-                Ok((Value::Name(param.kind, name.node.clone()), words))
+                Ok((Value::Name(param.kind, name.node.to_owned()), words))
             }
             (Arg::Name(name), Kind::Module) => Err(self
                 .mismatch(arg, param, format!("found the name `{}`", name.node))
@@ -122,9 +122,9 @@ impl Fitting<'_> {
     }
 
     fn quantity(&self, number: &Number, param: &Param) -> Fitted {
-        let Some(decimal) = Decimal::parse(&number.digits) else { return Err(not_a_number(number).into()) };
+        let Some(decimal) = Decimal::parse(number.digits()) else { return Err(not_a_number(number).into()) };
         let Some(default) = param.unit else {
-            return match &number.unit {
+            return match number.unit() {
                 Some(_) => Err(self.wrong_unit(number, param).into()),
                 None => {
                     self.in_range(number, param, decimal.to_f64())?;
@@ -133,7 +133,7 @@ impl Fitting<'_> {
                 }
             };
         };
-        let unit = match &number.unit {
+        let unit = match number.unit() {
             None => default,
             Some(name) => match Unit::from_name(name) {
                 Some(unit) if unit.kind == param.kind => unit,
@@ -148,11 +148,11 @@ impl Fitting<'_> {
     }
 
     fn whole(&self, number: &Number, param: &Param) -> Fitted {
-        if number.unit.is_some() {
+        if number.unit().is_some() {
             return Err(self.wrong_unit(number, param).into());
         }
-        let Some(decimal) = Decimal::parse(&number.digits).filter(Decimal::is_whole) else {
-            let message = format!("expected {}, found `{}`", param.kind.words(), number.digits);
+        let Some(decimal) = Decimal::parse(number.digits()).filter(Decimal::is_whole) else {
+            let message = format!("expected {}, found `{}`", param.kind.words(), number.digits());
             return Err(Diagnostic::new(Code::E0302, message, number.span, "not a whole number").into());
         };
         let text = decimal.to_string();
@@ -166,7 +166,7 @@ impl Fitting<'_> {
             -WHOLE..=WHOLE
         };
         let Some(whole) = text.parse::<i64>().ok().filter(|_| allowed.contains(&value)) else {
-            let message = format!("expected {}, found `{}`", param.kind.words(), number.digits);
+            let message = format!("expected {}, found `{}`", param.kind.words(), number.digits());
             let report = Diagnostic::new(Code::E0304, message, number.span, "out of range");
             let help = "sonar 0 looks ahead, 4 left, 8 back, 12 right";
             return Err(if is_sonar { report.help(help) } else { report }.into());
@@ -182,15 +182,15 @@ impl Fitting<'_> {
     fn in_range(&self, number: &Number, param: &Param, value: f64) -> Result<f64, Box<Diagnostic>> {
         let unit = param.unit.map(|unit| format!(" {}", unit.name)).unwrap_or_default();
         if !value.is_finite() {
-            let message = format!("`{}` is too large a number", number.digits);
+            let message = format!("`{}` is too large a number", number.digits());
             return Err(Diagnostic::new(Code::E0304, message, number.span, "no robot can do that").into());
         }
         let Some((least, most)) = param.range.filter(|(least, most)| value < *least || value > *most) else {
             return Ok(value);
         };
         let quark = &self.declaration.name;
-        let here = match number.unit {
-            None => format!("`{}` is {}{unit}", param.name, number.digits),
+        let here = match number.unit() {
+            None => format!("`{}` is {}{unit}", param.name, number.digits()),
             Some(_) => format!("`{}` is {value}{unit}", param.name),
         };
         if self.declaration.origin == Origin::Target {
@@ -205,7 +205,7 @@ impl Fitting<'_> {
     }
 
     fn wrong_unit(&self, number: &Number, param: &Param) -> Diagnostic {
-        let found = number.unit.as_deref().unwrap_or_default();
+        let found = number.unit().unwrap_or_default();
         let what = Unit::from_name(found).map_or_else(|| format!("`{found}`"), |unit| unit.kind.words());
         let message = format!("expected {}, found {what}", param.kind.words());
         let here = format!("`{}` of `{}` is {}", param.name, self.declaration.name, param.kind.words());
@@ -241,24 +241,29 @@ fn wrong_count(call: &Call, declaration: &Declaration, needed: usize) -> Diagnos
 }
 
 fn not_a_number(number: &Number) -> Diagnostic {
-    Diagnostic::new(Code::E0304, format!("`{}` is too large or too small a number", number.digits), number.span, "here")
+    Diagnostic::new(
+        Code::E0304,
+        format!("`{}` is too large or too small a number", number.digits()),
+        number.span,
+        "here",
+    )
 }
 
 fn bits(number: &Number, length: u32) -> Fitted {
-    let digits = number.digits.as_bytes();
+    let digits = number.digits().as_bytes();
     let all_bits = digits.iter().all(|digit| matches!(digit, b'0' | b'1'));
-    if number.unit.is_some() || !all_bits || digits.len() != length as usize {
-        let message = format!("expected {length} digits 0 or 1, found `{}`", number.digits);
+    if number.unit().is_some() || !all_bits || digits.len() != length as usize {
+        let message = format!("expected {length} digits 0 or 1, found `{}`", number.digits());
         let here = match digits.iter().find(|digit| !matches!(digit, b'0' | b'1')) {
             Some(digit) => format!("`{}` is not a bit", char::from(*digit)),
-            None if number.unit.is_some() => "bits have no unit".into(),
+            None if number.unit().is_some() => "bits have no unit".into(),
             None => format!("these are {}", digits.len()),
         };
         let report = Diagnostic::new(Code::E0302, message, number.span, here);
         return Err(report.help("the bits are front, left, back, right; 1 where an obstacle is near: `0100`").into());
     }
     let bits = digits.iter().map(|digit| *digit == b'1').collect();
-    Ok((Value::Bits(bits), number.digits.clone()))
+    Ok((Value::Bits(bits), number.digits().to_owned()))
 }
 
 /// An exact value of `from`'s family in the unit `to`, as the nearest `f64` to be had.

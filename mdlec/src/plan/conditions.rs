@@ -54,8 +54,8 @@ impl Resolving<'_, '_> {
             ConditionNode::Call(call) => return self.call(call),
             ConditionNode::Null | ConditionNode::Broken => return Condition::Null,
             ConditionNode::Rising(_) => "`RISING`",
-            ConditionNode::Comparison { .. } => "comparing signals",
-            ConditionNode::After { .. } => "`after`",
+            ConditionNode::Comparison(_) => "comparing signals",
+            ConditionNode::After(_) => "`after`",
         };
         self.found.push(not_yet(later, written.span));
         Condition::Null

@@ -16,7 +16,7 @@ const DEPTH: u32 = 512;
 #[derive(Debug)]
 pub(super) struct Definitions<'a> {
     /// In the order of the file.
-    pub(super) plans: Vec<&'a tree::Plan>,
+    pub(super) plans: Vec<&'a tree::Plan<'a>>,
     /// Their names.
     pub(super) names: Vec<&'a str>,
     by_name: BTreeMap<&'a str, usize>,
@@ -30,11 +30,11 @@ pub(super) struct Definitions<'a> {
 
 impl<'a> Definitions<'a> {
     /// Collects the plans of `file` and reports duplicates, recursion and explosion.
-    pub(super) fn collect(file: &'a tree::File, alphabet: &Alphabet) -> (Self, Vec<Diagnostic>) {
+    pub(super) fn collect(file: &'a tree::File<'a>, alphabet: &Alphabet) -> (Self, Vec<Diagnostic>) {
         let mut found = Vec::new();
         let mut by_name = BTreeMap::new();
         for (index, plan) in file.plans.iter().enumerate() {
-            let name = plan.name.node.as_str();
+            let name = plan.name.node;
             if let Some(first) = by_name.get(name).and_then(|first: &usize| file.plans.get(*first)) {
                 let message = format!("there are two plans called `{name}`");
                 found.push(
@@ -63,12 +63,12 @@ impl<'a> Definitions<'a> {
     }
 
     /// The plan of this name.
-    pub(super) fn get(&self, name: &str) -> Option<&'a tree::Plan> {
+    pub(super) fn get(&self, name: &str) -> Option<&'a tree::Plan<'a>> {
         self.by_name.get(name).and_then(|index| self.plans.get(*index)).copied()
     }
 
     /// The plans that no other refers to, in the order of the file.
-    pub(super) fn roots(&self) -> Vec<&'a tree::Plan> {
+    pub(super) fn roots(&self) -> Vec<&'a tree::Plan<'a>> {
         let referred: BTreeSet<usize> = self.refers.iter().flat_map(|refers| refers.keys().copied()).collect();
         let roots = self.by_name.values().filter(|index| !referred.contains(index));
         let mut roots: Vec<usize> = roots.copied().collect();
@@ -86,12 +86,12 @@ impl<'a> Definitions<'a> {
         let mut ready: Vec<usize> = (0..self.plans.len()).filter(|index| waits[*index] == 0).collect();
         let mut sizes = vec![Size { atoms: 0, depth: 0 }; self.plans.len()];
         // With nothing copied in yet, the sizes are those of the text.
-        self.written = self.plans.iter().map(|plan| self.size_of(&plan.elements, &sizes).atoms).sum();
+        self.written = self.plans.iter().map(|plan| self.size_of(plan.elements, &sizes).atoms).sum();
         let mut done = 0;
         while let Some(index) = ready.pop() {
             done += 1;
             let plan = self.plans[index];
-            sizes[index] = self.size_of(&plan.elements, &sizes).deeper();
+            sizes[index] = self.size_of(plan.elements, &sizes).deeper();
             self.judge(index, sizes[index], found);
             for user in &referred_by[index] {
                 waits[*user] -= 1;
@@ -130,19 +130,19 @@ impl<'a> Definitions<'a> {
         }
     }
 
-    fn size_of(&self, elements: &[Element], sizes: &[Size]) -> Size {
+    fn size_of(&self, elements: &[Element<'_>], sizes: &[Size]) -> Size {
         elements.iter().fold(Size { atoms: 0, depth: 0 }, |sum, element| {
             let size = match &element.primary {
-                Primary::Atom { .. } | Primary::Broken => Size { atoms: 1, depth: 1 },
-                Primary::Plan(plan) => self.size_of(&plan.elements, sizes).deeper(),
+                Primary::Atom(_) | Primary::Broken => Size { atoms: 1, depth: 1 },
+                Primary::Plan(plan) => self.size_of(plan.elements, sizes).deeper(),
                 Primary::Ref(call) => {
-                    self.by_name.get(call.name.node.as_str()).map_or(Size { atoms: 1, depth: 1 }, |index| sizes[*index])
+                    self.by_name.get(call.name).map_or(Size { atoms: 1, depth: 1 }, |index| sizes[*index])
                 }
-                Primary::Exec { body, .. } | Primary::String(body) | Primary::Formal { body, .. } => {
-                    self.size_of(body, sizes).deeper()
-                }
+                Primary::Exec(exec) => self.size_of(exec.body, sizes).deeper(),
+                Primary::String(body) => self.size_of(body, sizes).deeper(),
+                Primary::Formal(formal) => self.size_of(formal.body, sizes).deeper(),
             };
-            let size = if element.power.is_some() { size.deeper() } else { size };
+            let size = if element.power().is_some() { size.deeper() } else { size };
             Size { atoms: sum.atoms.saturating_add(size.atoms), depth: sum.depth.max(size.depth) }
         })
     }
@@ -168,7 +168,7 @@ impl<'a> Definitions<'a> {
     }
 
     fn cycle(&self, cycle: &[usize]) -> Diagnostic {
-        let name = |index: usize| self.plans[index].name.node.as_str();
+        let name = |index: usize| self.plans[index].name.node;
         let first = cycle[0];
         let names: Vec<_> = cycle.iter().chain([&first]).map(|index| format!("`{}`", name(*index))).collect();
         let place = |at: usize| {
@@ -201,16 +201,18 @@ fn references(plan: &tree::Plan, by_name: &BTreeMap<&str, usize>) -> BTreeMap<us
         for element in elements {
             match &element.primary {
                 Primary::Ref(call) => refer(call),
-                Primary::Plan(plan) => visit(&plan.elements, refer),
-                Primary::Exec { body, .. } | Primary::String(body) | Primary::Formal { body, .. } => visit(body, refer),
-                Primary::Atom { .. } | Primary::Broken => {}
+                Primary::Plan(plan) => visit(plan.elements, refer),
+                Primary::Exec(exec) => visit(exec.body, refer),
+                Primary::String(body) => visit(body, refer),
+                Primary::Formal(formal) => visit(formal.body, refer),
+                Primary::Atom(_) | Primary::Broken => {}
             }
         }
     }
     let mut references = BTreeMap::new();
-    visit(&plan.elements, &mut |call| {
-        if let Some(index) = by_name.get(call.name.node.as_str()) {
-            references.entry(*index).or_insert(call.name.span);
+    visit(plan.elements, &mut |call| {
+        if let Some(index) = by_name.get(call.name) {
+            references.entry(*index).or_insert(call.name_span());
         }
     });
     references

@@ -40,7 +40,7 @@ impl<'a> Quarks<'a> {
         kind: DeclarationKind,
         plans: &[&str],
     ) -> Result<QuarkId, Vec<Diagnostic>> {
-        let name = call.name.node.as_str();
+        let name = call.name;
         let declarations: Vec<&Declaration> = self.alphabet.declarations_of(name).collect();
         let of_kind = declarations.iter().copied().enumerate().filter(|(_, declaration)| declaration.kind == kind);
         let mut candidates: Vec<_> = of_kind.collect();
@@ -103,7 +103,7 @@ impl<'a> Quarks<'a> {
     }
 
     fn unknown(&self, call: &Call, kind: DeclarationKind, plans: &[&str]) -> Diagnostic {
-        let name = call.name.node.as_str();
+        let name = call.name;
         let what = match kind {
             DeclarationKind::Control => "law",
             DeclarationKind::Interrupt => "interrupt",
@@ -111,7 +111,7 @@ impl<'a> Quarks<'a> {
         };
         if plans.contains(&name) {
             let message = format!("`{name}` is a plan, but {} has to stand here", kind_words(kind));
-            let report = Diagnostic::new(Code::E0204, message, call.name.span, "a plan");
+            let report = Diagnostic::new(Code::E0204, message, call.name_span(), "a plan");
             return match kind {
                 DeclarationKind::Control => report.help(format!("a plan is an element by itself, without `Atom`: `{name}`")),
                 DeclarationKind::Interrupt | DeclarationKind::Signal => report.help(
@@ -120,7 +120,7 @@ impl<'a> Quarks<'a> {
             };
         }
         let message = format!("there is no {what} called `{name}`");
-        let report = Diagnostic::new(Code::E0201, message, call.name.span, "not in the alphabet");
+        let report = Diagnostic::new(Code::E0201, message, call.name_span(), "not in the alphabet");
         match self.alphabet.nearest(name, Some(kind)).and_then(|near| self.alphabet.declarations_of(near).next()) {
             Some(near) => report.help(format!("did you mean `{}`?", signature(near))),
             None => report.help(format!("these are known: {}", self.known(kind))),
@@ -146,9 +146,9 @@ fn is_meant(call: &Call, declaration: &Declaration) -> bool {
 }
 
 fn wrong_kind(call: &Call, found: DeclarationKind, expected: DeclarationKind) -> Diagnostic {
-    let name = &call.name.node;
+    let name = call.name;
     let message = format!("`{name}` is {}, but {} has to stand here", kind_words(found), kind_words(expected));
-    let report = Diagnostic::new(Code::E0204, message, call.name.span, kind_words(found));
+    let report = Diagnostic::new(Code::E0204, message, call.name_span(), kind_words(found));
     match (found, expected) {
         (DeclarationKind::Control, DeclarationKind::Interrupt) => report
             .help(format!("an atom is `(Atom (interrupt) law)`: the law comes last, as in `(Atom (wait 10) {name})`")),

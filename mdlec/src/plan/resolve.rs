@@ -84,15 +84,15 @@ impl<'r, 'a> Resolver<'r, 'a> {
             self.found.push(not_yet("a plan with parameters", param.name.span));
             // Its parameters are names that mean nothing yet.
             return Scope {
-                name: plan.name.node.clone(),
+                name: plan.name.node.to_owned(),
                 interrupt: Interrupt::none(plan.name.span),
                 body: Vec::new(),
                 span: plan.name.span,
             };
         }
         let interrupt = self.interrupt(plan.condition.as_ref(), plan.name.span);
-        let body = self.sequence(&plan.elements, frame);
-        Scope { name: plan.name.node.clone(), interrupt, body, span: plan.name.span }
+        let body = self.sequence(plan.elements, frame);
+        Scope { name: plan.name.node.to_owned(), interrupt, body, span: plan.name.span }
     }
 
     fn interrupt(&mut self, condition: Option<&tree::Condition>, scope: Span) -> Interrupt {
@@ -109,9 +109,9 @@ impl<'r, 'a> Resolver<'r, 'a> {
 
     fn element(&mut self, element: &Element, frame: f64, nodes: &mut Vec<Node>) {
         self.label(element);
-        let turned = element.frame.as_ref().map_or(0.0, |number| self.angle(number));
+        let turned = element.frame().map_or(0.0, |number| self.angle(number));
         let frame = frame + turned;
-        let Some(power) = &element.power else { return self.primary(element, frame, nodes) };
+        let Some(power) = element.power() else { return self.primary(element, frame, nodes) };
         let mut body = Vec::new();
         self.primary(element, frame, &mut body);
         let times = self.count(power);
@@ -120,9 +120,9 @@ impl<'r, 'a> Resolver<'r, 'a> {
 
     fn primary(&mut self, element: &Element, frame: f64, nodes: &mut Vec<Node>) {
         match &element.primary {
-            Primary::Atom { condition, control } => {
-                let interrupt = self.interrupt(Some(condition), element.span);
-                match self.quarks.resolve(control, DeclarationKind::Control, &self.definitions.names) {
+            Primary::Atom(atom) => {
+                let interrupt = self.interrupt(Some(&atom.condition), element.span);
+                match self.quarks.resolve(atom.control, DeclarationKind::Control, &self.definitions.names) {
                     Ok(law) => nodes.push(Node::Atom(Atom { law, interrupt, frame, span: element.span })),
                     Err(found) => self.found.extend(found),
                 }
@@ -132,25 +132,25 @@ impl<'r, 'a> Resolver<'r, 'a> {
                 let scope = self.reference(call, frame);
                 nodes.extend(scope.map(Node::Scope));
             }
-            Primary::Exec { count, body } => {
-                let times = self.count(count);
-                let body = self.sequence(body, frame);
+            Primary::Exec(exec) => {
+                let times = self.count(&exec.count);
+                let body = self.sequence(exec.body, frame);
                 nodes.push(Node::Loop(Loop { times, body, span: element.span }));
             }
             Primary::String(elements) => elements.iter().for_each(|inner| self.element(inner, frame, nodes)),
-            Primary::Formal { .. } => self.found.push(not_yet("formal notation", element.span)),
+            Primary::Formal(_) => self.found.push(not_yet("formal notation", element.span)),
             Primary::Broken => {}
         }
     }
 
     /// A copy of the plan that `call` names.
     fn reference(&mut self, call: &Call, frame: f64) -> Option<Scope> {
-        let name = call.name.node.as_str();
+        let name = call.name;
         let Some(plan) = self.definitions.get(name) else {
             self.found.push(self.unknown_plan(call));
             return None;
         };
-        if let (Some(arg), []) = (call.args.first(), plan.params.as_slice()) {
+        if let (Some(arg), []) = (call.args.first(), plan.params) {
             let message = format!("plan `{name}` takes no arguments, found {}", call.args.len());
             self.found.push(
                 Diagnostic::new(Code::E0301, message, arg.span(), "one too many")
@@ -164,8 +164,8 @@ impl<'r, 'a> Resolver<'r, 'a> {
     }
 
     fn unknown_plan(&self, call: &Call) -> Diagnostic {
-        let name = call.name.node.as_str();
-        let span = call.name.span;
+        let name = call.name;
+        let span = call.name_span();
         if let Some(quark) = self.quarks.alphabet().declarations_of(name).next() {
             let message = format!("`{name}` is {}, but an atom or a plan has to stand here", kind_words(quark.kind));
             let help = match quark.kind {
@@ -188,15 +188,15 @@ impl<'r, 'a> Resolver<'r, 'a> {
     }
 
     fn label(&mut self, element: &Element) {
-        let Some(label) = &element.label else { return };
-        if let Some(first) = self.labels.get(&label.node) {
+        let Some(label) = element.label() else { return };
+        if let Some(first) = self.labels.get(label.node) {
             let message = format!("there are two labels `{}` in this plan", label.node);
             self.found.push(
                 Diagnostic::new(Code::E0203, message, label.span, "the second one").also(*first, "the first one"),
             );
             return;
         }
-        self.labels.insert(label.node.clone(), label.span);
+        self.labels.insert(label.node.to_owned(), label.span);
     }
 
     /// A loop's passes: at least one, `None` for ever.
@@ -209,7 +209,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
             }
             Count::Number(number) => number,
         };
-        let whole = Decimal::parse(&number.digits).filter(Decimal::is_whole).filter(|_| number.unit.is_none());
+        let whole = Decimal::parse(number.digits()).filter(Decimal::is_whole).filter(|_| number.unit().is_none());
         let times = whole.map(|whole| {
             let positive = whole.to_f64() > 0.0;
             // Counts that no u64 holds are too many states, and reported as such where these are counted.
@@ -218,7 +218,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         if let Some(times) = times.filter(|times| *times > 0) {
             return Some(times);
         }
-        let written = format!("{}{}", number.digits, number.unit.as_deref().unwrap_or_default());
+        let written = format!("{}{}", number.digits(), number.unit().unwrap_or_default());
         let message = format!("a loop runs a whole number of times, at least once; found `{written}`");
         self.found.push(
             Diagnostic::new(Code::E0305, message, number.span, "not a count")
@@ -229,17 +229,17 @@ impl<'r, 'a> Resolver<'r, 'a> {
 
     /// The angle of a FRAME, in radians.
     fn angle(&mut self, number: &Number) -> f64 {
-        let unit = number.unit.as_deref().unwrap_or("deg");
-        let decimal = Decimal::parse(&number.digits);
+        let unit = number.unit().unwrap_or("deg");
+        let decimal = Decimal::parse(number.digits());
         match (Unit::from_name(unit).filter(|unit| unit.kind == Kind::Angle), decimal) {
             (Some(unit), Some(decimal)) if decimal.to_f64().abs() <= FRAME => decimal.to_f64() * unit.family_to_si(),
             (Some(_), Some(_)) => {
-                let message = format!("a frame is turned by an angle up to {FRAME}, found `{}`", number.digits);
+                let message = format!("a frame is turned by an angle up to {FRAME}, found `{}`", number.digits());
                 self.found.push(Diagnostic::new(Code::E0304, message, number.span, "out of range"));
                 0.0
             }
             _ => {
-                let message = format!("expected an angle, found `{}{unit}`", number.digits);
+                let message = format!("expected an angle, found `{}{unit}`", number.digits());
                 self.found.push(
                     Diagnostic::new(Code::E0303, message, number.span, "a frame is turned by an angle")
                         .help("its unit is deg or rad: `FRAME 180deg`"),

@@ -1,47 +1,61 @@
 //! Takes out of the tree what a defect has upset: where the parser has lost its way, it may have read names where none were meant,
 //! and later stages must not complain about those. What stands beside a defect stays.
 
+use bumpalo::Bump;
+
 use super::regions::Regions;
 use super::token::Token;
-use super::tree::{ConditionNode, Element, File, Plan, Primary};
+use super::tree::{Condition, ConditionNode, Element, Exec, File, Formal, Plan, Primary};
 use crate::diagnostic::Span;
 
 /// Takes out what stands where an error has been told, and plans without a name.
-pub(super) fn take_out(file: &mut File, tokens: &[Token<'_>], regions: &Regions) {
-    let defects = Defects { tokens, regions };
+pub(super) fn take_out<'s>(file: &mut File<'s>, arena: &'s Bump, tokens: &[Token<'_>], regions: &Regions) {
+    let defects = Defects { arena, tokens, regions };
     file.plans.retain(|plan| !plan.name.node.is_empty());
-    file.plans.iter_mut().for_each(|plan| defects.plan(plan));
+    file.plans.iter_mut().for_each(|plan| *plan = defects.plan(*plan));
 }
 
 struct Defects<'t, 's> {
-    tokens: &'t [Token<'s>],
+    arena: &'s Bump,
+    tokens: &'t [Token<'t>],
     regions: &'t Regions,
 }
 
-impl Defects<'_, '_> {
-    fn plan(&self, plan: &mut Plan) {
-        if let Some(condition) = plan.condition.as_mut().filter(|condition| self.are_at(condition.span)) {
-            condition.node = ConditionNode::Broken;
-        }
-        plan.elements.iter_mut().for_each(|element| self.element(element));
+impl<'s> Defects<'_, 's> {
+    fn plan(&self, plan: Plan<'s>) -> Plan<'s> {
+        let condition = plan.condition.map(|condition| match self.are_at(condition.span) {
+            true => Condition { node: ConditionNode::Broken, ..condition },
+            false => condition,
+        });
+        Plan { condition, elements: self.elements(plan.elements), ..plan }
     }
 
-    fn element(&self, element: &mut Element) {
+    fn elements(&self, elements: &[Element<'s>]) -> &'s [Element<'s>] {
+        self.arena.alloc_slice_fill_iter(elements.iter().map(|element| self.element(*element)))
+    }
+
+    fn element(&self, element: Element<'s>) -> Element<'s> {
         let spoiled = self.are_at(element.span);
-        match &mut element.primary {
-            Primary::Plan(plan) if !plan.name.node.is_empty() => self.plan(plan),
-            Primary::Exec { body, .. } => body.iter_mut().for_each(|element| self.element(element)),
-            Primary::String(body) | Primary::Formal { body, .. } if !spoiled => {
-                body.iter_mut().for_each(|element| self.element(element));
+        let primary = match element.primary {
+            Primary::Plan(plan) if !plan.name.node.is_empty() => Primary::Plan(self.arena.alloc(self.plan(*plan))),
+            Primary::Exec(exec) => {
+                let body = self.elements(exec.body);
+                Primary::Exec(self.arena.alloc(Exec { body, ..*exec }))
             }
-            Primary::Atom { .. } | Primary::Ref(_) if !spoiled => {}
-            broken @ (Primary::Plan(_)
+            Primary::String(body) if !spoiled => Primary::String(self.elements(body)),
+            Primary::Formal(formal) if !spoiled => {
+                let body = self.elements(formal.body);
+                Primary::Formal(self.arena.alloc(Formal { body, ..*formal }))
+            }
+            sound @ (Primary::Atom(_) | Primary::Ref(_)) if !spoiled => sound,
+            Primary::Plan(_)
             | Primary::String(_)
-            | Primary::Formal { .. }
-            | Primary::Atom { .. }
+            | Primary::Formal(_)
+            | Primary::Atom(_)
             | Primary::Ref(_)
-            | Primary::Broken) => *broken = Primary::Broken,
-        }
+            | Primary::Broken => Primary::Broken,
+        };
+        Element { primary, ..element }
     }
 
     /// Whether an error has been told in the region where this begins.

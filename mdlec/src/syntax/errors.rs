@@ -36,9 +36,9 @@ pub(super) fn told(
 /// Where the parser stopped, and what could have stood there.
 fn place_of(recovery: Recovery<'_>, end: usize) -> (usize, Vec<String>) {
     match recovery.error {
-        ParseError::UnrecognizedToken { token: (at, _, _), expected } => (at, expected),
-        ParseError::InvalidToken { location } => (location, Vec::new()),
-        ParseError::ExtraToken { token: (at, _, _) } => (at, Vec::new()),
+        ParseError::UnrecognizedToken { token: (at, _, _), expected } => (at.token as usize, expected),
+        ParseError::InvalidToken { location } => (location.token as usize, Vec::new()),
+        ParseError::ExtraToken { token: (at, _, _) } => (at.token as usize, Vec::new()),
         ParseError::UnrecognizedEof { expected, .. } => (end, expected),
         ParseError::User { error } => match error {},
     }

@@ -18,15 +18,37 @@ fn mark_header(tokens: &mut [Token<'_>], at: usize) {
         return;
     }
     let mut condition = at;
-    if is_name(tokens, at + 1) && is(tokens, at + 2, Tok::Colon) {
+    if has_parameters(behind(tokens, at)) {
         set(tokens, at, Tok::ParamParen);
         condition = end_of_group(tokens, at) + 1;
         if !is_parenthesis(tokens, condition) {
             return;
         }
     }
-    let kind = if is_element(tokens, condition) { Tok::LParen } else { Tok::ConditionParen };
+    let kind = if is_element(behind(tokens, condition)) { Tok::LParen } else { Tok::ConditionParen };
     set(tokens, condition, kind);
+}
+
+/// Whether parameters begin here, behind a parenthesis.
+pub(super) fn has_parameters<'s>(mut behind: impl Iterator<Item = Tok<'s>>) -> bool {
+    matches!((behind.next(), behind.next()), (Some(Tok::Name(_)), Some(Tok::Colon)))
+}
+
+/// Whether the group that begins here, behind its parenthesis, holds what no condition does.
+pub(super) fn is_element<'s>(behind: impl Iterator<Item = Tok<'s>>) -> bool {
+    let mut depth = 1_usize;
+    for token in behind {
+        #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens say nothing")]
+        match token {
+            Tok::LParen | Tok::TouchParen => depth += 1,
+            Tok::RParen if depth == 1 => return false,
+            Tok::RParen => depth -= 1,
+            Tok::Comma if depth == 1 => return true,
+            Tok::Atom | Tok::ExecPlan | Tok::LBrace | Tok::RBrace | Tok::Caret | Tok::Frame => return true,
+            _ => {}
+        }
+    }
+    false
 }
 
 /// Whether the brace belongs to an `ExecPlan`, whose first name is not its own.
@@ -37,23 +59,6 @@ fn is_loop(tokens: &[Token<'_>], brace: usize) -> bool {
         (Some(Tok::ExecPlan), Some(Tok::Number(_) | Tok::Infinity | Tok::Name(_))) => true,
         (_, Some(_) | None) => false,
     }
-}
-
-/// Whether the group that opens at `at` holds what no condition does.
-fn is_element(tokens: &[Token<'_>], at: usize) -> bool {
-    let mut depth = 0_usize;
-    for token in tokens.get(at..).unwrap_or(&[]) {
-        #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens say nothing")]
-        match token.kind {
-            Tok::LParen | Tok::TouchParen => depth += 1,
-            Tok::RParen if depth == 1 => return false,
-            Tok::RParen => depth -= 1,
-            Tok::Comma if depth == 1 => return true,
-            Tok::Atom | Tok::ExecPlan | Tok::LBrace | Tok::RBrace | Tok::Caret | Tok::Frame => return true,
-            _ => {}
-        }
-    }
-    false
 }
 
 /// Where the group that opens at `at` closes.
@@ -69,6 +74,11 @@ fn end_of_group(tokens: &[Token<'_>], at: usize) -> usize {
         }
     }
     tokens.len()
+}
+
+/// What stands behind the token at `at`.
+fn behind<'s>(tokens: &[Token<'s>], at: usize) -> impl Iterator<Item = Tok<'s>> {
+    tokens.get(at + 1..).unwrap_or(&[]).iter().map(|token| token.kind)
 }
 
 fn is(tokens: &[Token<'_>], at: usize, kind: Tok<'_>) -> bool {

@@ -92,7 +92,7 @@ pub(super) fn text(source: Source<'_>, place: Place) -> Diagnostic {
 
 /// A number that touches something other than a unit.
 pub(super) fn number(source: Source<'_>, digits: Digits<'_>, place: Place) -> Diagnostic {
-    let Digits { number, tail } = digits;
+    let (number, tail) = (digits.number(), digits.tail());
     let unit = tail.trim_start();
     let span = source.span(Place::new(place.end - unit.len(), place.end));
     if unit.len() < tail.len() {
@@ -126,7 +126,7 @@ pub(super) fn number(source: Source<'_>, digits: Digits<'_>, place: Place) -> Di
 
 /// A number with a dot too many, or without digits behind it.
 fn dot(digits: Digits<'_>, span: crate::diagnostic::Span) -> Diagnostic {
-    let Digits { number, tail } = digits;
+    let (number, tail) = (digits.number(), digits.tail());
     let diagnostic =
         Diagnostic::new(Code::E0104, format!("`{number}{tail}` is not a number"), span, "not part of a number");
     match tail.trim_start_matches('.') {

@@ -1,92 +1,131 @@
 //! Makes the nodes of the tree: one constructor for each action of the grammar.
+//!
+//! The parser's own stack holds small things that need no dropping, since it moves what it holds with every token: what is large is
+//! in the arena already, and what is to be in a list waits elsewhere until the list is complete.
 
+use std::cell::RefCell;
 use std::ops::Range;
 
+use bumpalo::Bump;
 use lalrpop_util::ErrorRecovery;
 
-use super::source::{Place, Source};
+use super::source::{Location, Source};
 use super::token::{Digits, Tok, Token, label};
 use super::tree::{
-    Arg, Call, Condition, ConditionNode, Count, Element, File, Name, Number, Param, Plan, Primary, Spanned,
+    Arg, Atom, Call, Condition, ConditionNode, Count, Element, Exec, File, Formal, Marks, Name, Number, Param, Plan,
+    Primary, Spanned,
 };
+use super::waiting::{First, Waiting, complete};
 use crate::diagnostic::{Code, Diagnostic, Span};
 
 /// An error that the parser has recovered from.
-pub(super) type Recovery<'s> = ErrorRecovery<usize, Tok<'s>, std::convert::Infallible>;
+pub(super) type Recovery<'s> = ErrorRecovery<Location, Tok<'s>, std::convert::Infallible>;
 
-/// What a file holds.
-pub(super) enum Item {
-    Use(Name),
-    Plan(Box<Plan>),
-    Broken,
+/// The doc comments read so far, each with the token that follows it.
+pub(super) type Docs<'s> = RefCell<Vec<(usize, &'s str)>>;
+
+/// What stands before the elements of a plan.
+#[derive(Default, Clone, Copy)]
+pub(super) struct Head<'s> {
+    pub(super) name: Option<Name<'s>>,
+    pub(super) params: &'s [Param<'s>],
+    pub(super) condition: Option<Condition<'s>>,
 }
 
 /// What the constructors know, and what they find out.
-pub(super) struct Nodes<'s> {
-    source: Source<'s>,
-    tokens: &'s [Token<'s>],
-    docs: &'s [(usize, &'s str)],
+pub(super) struct Nodes<'t, 's> {
+    pub(super) source: Source<'s>,
+    /// Where the tree stands.
+    arena: &'s Bump,
+    /// The tokens, for what is broken; without them there is nothing to say about that.
+    pub(super) tokens: &'t [Token<'s>],
+    docs: &'t Docs<'s>,
+    /// What waits for its list.
+    pub(super) waiting: Waiting<'s>,
+    /// The tree.
+    pub(super) file: File<'s>,
     /// The parser's errors, in the order of the text.
     pub(super) errors: Vec<Recovery<'s>>,
     /// The bodies that are empty, each with its tokens.
     pub(super) empty: Vec<(Range<usize>, Diagnostic)>,
 }
 
-impl<'s> Nodes<'s> {
+impl<'t, 's> Nodes<'t, 's> {
     /// Constructors for the tokens of a text.
-    pub(super) fn new(source: Source<'s>, tokens: &'s [Token<'s>], docs: &'s [(usize, &'s str)]) -> Self {
-        Self { source, tokens, docs, errors: Vec::new(), empty: Vec::new() }
+    pub(super) fn new(source: Source<'s>, arena: &'s Bump, tokens: &'t [Token<'s>], docs: &'t Docs<'s>) -> Self {
+        let (waiting, file) = (Waiting::default(), File::default());
+        Self { source, arena, tokens, docs, waiting, file, errors: Vec::new(), empty: Vec::new() }
+    }
+
+    /// A node in its place.
+    pub(super) fn put<T: Copy>(&self, node: T) -> &'s T {
+        self.arena.alloc(node)
     }
 
     // ---- Files and plans ----
 
-    pub(super) fn file(items: Vec<Item>) -> File {
-        let mut file = File::default();
-        for item in items {
-            match item {
-                Item::Use(text) => file.uses.push(text),
-                Item::Plan(plan) => file.plans.push(*plan),
-                Item::Broken => {}
-            }
-        }
-        file
+    pub(super) fn uses(&mut self, text: Name<'s>) {
+        self.file.uses.push(text);
+    }
+
+    pub(super) fn file_plan(&mut self, plan: &'s Plan<'s>) {
+        self.file.plans.push(*plan);
     }
 
     pub(super) fn plan(
         &mut self,
-        start: usize,
-        label: Option<Name>,
-        head: (Option<Name>, Vec<Param>, Option<Condition>),
-        elements: Vec<Element>,
-        end: usize,
-    ) -> Plan {
+        start: Location,
+        label: Option<Name<'s>>,
+        head: &'s Head<'s>,
+        first: Option<First>,
+        end: Location,
+    ) -> &'s Plan<'s> {
         let span = self.between(start, end);
-        let (name, params, condition) = head;
-        if let (true, Some(name)) = (elements.is_empty(), &name) {
+        let Head { name, params, condition } = *head;
+        if let (None, Some(name)) = (first, &name) {
             let message = format!("plan `{}` has nothing to run", name.node);
-            self.empty(start..end, message, name.span, "no element follows", "give it an atom: `(Atom (wait 5) stop)`");
+            let help = "give it an atom: `(Atom (wait 5) stop)`";
+            self.empty((start, end), message, name.span, "no element follows", help);
         }
-        let name = name.or_else(|| self.name_before(start)).unwrap_or_else(|| Spanned { node: String::new(), span });
-        Plan { docs: self.docs_of(start), label, name, params, condition, elements, span }
+        let name = name.or_else(|| self.name_before(start)).unwrap_or(Spanned { node: "", span });
+        let (docs, elements) = (self.docs_of(start), self.elements(first));
+        self.put(Plan { docs, label, name, params, condition, elements, span })
+    }
+
+    pub(super) fn head(&mut self, name: Name<'s>, condition: Option<Condition<'s>>) -> &'s Head<'s> {
+        let params = complete(&mut self.waiting.params, 0, self.arena);
+        self.put(Head { name: Some(name), params, condition })
+    }
+
+    pub(super) fn param(&mut self, name: Name<'s>, type_name: Name<'s>) {
+        self.waiting.params.push(Param { name, type_name });
     }
 
     /// The name before a brace, `A { … }`: reported already, but others may refer to it.
-    fn name_before(&self, brace: usize) -> Option<Name> {
-        let before = brace.checked_sub(1)?;
-        let Tok::Name(name) = self.tokens.get(before)?.kind else { return None };
-        Some(self.name(before, name))
+    fn name_before(&self, brace: Location) -> Option<Name<'s>> {
+        let before = self.tokens.get((brace.token as usize).checked_sub(1)?)?;
+        let Tok::Name(name) = before.kind else { return None };
+        Some(Spanned { node: name, span: self.source.span(before.place) })
     }
 
     /// The doc comment directly before a plan.
-    fn docs_of(&self, start: usize) -> Vec<String> {
-        let first = self.docs.partition_point(|(token, _)| *token < start);
-        let lines = self.docs.get(first..).unwrap_or(&[]).iter();
-        lines.take_while(|(token, _)| *token == start).map(|(_, line)| (*line).to_owned()).collect()
+    fn docs_of(&self, start: Location) -> &'s [&'s str] {
+        let (docs, start) = (self.docs.borrow(), start.token as usize);
+        let first = docs.partition_point(|(token, _)| *token < start);
+        let lines = docs.get(first..).unwrap_or(&[]).iter();
+        let lines: Vec<_> = lines.take_while(|(token, _)| *token == start).map(|(_, line)| *line).collect();
+        self.arena.alloc_slice_copy(&lines)
     }
 
-    pub(super) fn type_name(&self, start: usize, name: Name, length: Option<Number>, end: usize) -> Name {
+    pub(super) fn type_name(
+        &self,
+        start: Location,
+        name: Name<'s>,
+        length: Option<Number<'s>>,
+        end: Location,
+    ) -> Name<'s> {
         let node = match length {
-            Some(length) => format!("{}[{}]", name.node, length.digits),
+            Some(length) => self.arena.alloc_str(&format!("{}[{}]", name.node, length.digits())),
             None => name.node,
         };
         Spanned { node, span: self.between(start, end) }
@@ -95,200 +134,159 @@ impl<'s> Nodes<'s> {
     // ---- Elements ----
 
     pub(super) fn element(
-        &self,
-        start: usize,
-        label: Option<Name>,
-        frame: Option<Number>,
-        primary: Primary,
-        power: Option<Count>,
-        end: usize,
-    ) -> Element {
-        Element { label, frame, primary, power, span: self.between(start, end) }
+        &mut self,
+        start: Location,
+        label: Option<Name<'s>>,
+        frame: Option<Number<'s>>,
+        primary: Primary<'s>,
+        power: Option<Count<'s>>,
+        end: Location,
+    ) -> First {
+        let is_marked = label.is_some() || frame.is_some() || power.is_some();
+        let marks = is_marked.then(|| self.put(Marks { label, frame, power }));
+        let span = self.between(start, end);
+        self.waiting.element(Element { primary, marks, span })
     }
 
-    /// An element that is a call and nothing else.
-    pub(super) fn single(call: Call) -> Element {
-        let span = call.span;
-        Element { label: None, frame: None, primary: Primary::Ref(call), power: None, span }
+    /// The elements from the first of a list on.
+    fn elements(&mut self, first: Option<First>) -> &'s [Element<'s>] {
+        first.map_or(&[][..], |first| complete(&mut self.waiting.elements, first, self.arena))
     }
 
-    pub(super) fn atom(condition: Condition, control: Option<Call>) -> Primary {
-        match control {
-            Some(control) => Primary::Atom { condition, control },
-            None => Primary::Broken,
-        }
+    /// The law of an atom in formal notation, as the only element of a list.
+    pub(super) fn law(&mut self, start: Location, name: Name<'s>, first: First, end: Location) -> Option<First> {
+        let call = self.call(start, name, Some(first), end);
+        Some(self.waiting.element(single(call)))
     }
 
-    pub(super) fn exec(&mut self, start: usize, count: Count, body: Vec<Element>, end: usize) -> Primary {
-        if body.is_empty() {
+    pub(super) fn atom(&self, condition: Condition<'s>, control: Option<&'s Call<'s>>) -> Primary<'s> {
+        control.map_or(Primary::Broken, |control| Primary::Atom(self.put(Atom { condition, control })))
+    }
+
+    pub(super) fn exec(
+        &mut self,
+        start: Location,
+        count: Count<'s>,
+        first: Option<First>,
+        end: Location,
+    ) -> Primary<'s> {
+        if first.is_none() {
+            let (message, here) = ("this loop has nothing to run", "no element inside");
             let help = "put elements between its braces: `ExecPlan 3 { (Atom (wait 5) stop) }`";
-            self.empty(start..end, "this loop has nothing to run", self.between(start, end), "no element inside", help);
+            self.empty((start, end), message, self.between(start, end), here, help);
         }
-        Primary::Exec { count, body }
+        let body = self.elements(first);
+        Primary::Exec(self.put(Exec { count, body }))
     }
 
-    pub(super) fn exec_ref(count: Count, call: Call) -> Primary {
-        Primary::Exec { count, body: vec![Self::single(call)] }
+    pub(super) fn exec_ref(&self, count: Count<'s>, call: &'s Call<'s>) -> Primary<'s> {
+        let body = self.arena.alloc_slice_copy(&[single(call)]);
+        Primary::Exec(self.put(Exec { count, body }))
     }
 
-    pub(super) fn string(&mut self, start: usize, elements: Vec<Element>, end: usize) -> Primary {
-        if elements.is_empty() {
+    pub(super) fn string(&mut self, start: Location, first: Option<First>, end: Location) -> Primary<'s> {
+        if first.is_none() {
+            let (message, here) = ("these parentheses hold nothing to run", "no element inside");
             let help = "put elements between the parentheses, or take these out";
-            self.empty(
-                start..end,
-                "these parentheses hold nothing to run",
-                self.between(start, end),
-                "no element inside",
-                help,
-            );
+            self.empty((start, end), message, self.between(start, end), here, help);
         }
-        Primary::String(elements)
+        Primary::String(self.elements(first))
     }
 
     pub(super) fn formal(
         &mut self,
-        start: usize,
-        body: Vec<Element>,
-        condition: Condition,
-        time: Option<Arg>,
-        end: usize,
-    ) -> Primary {
-        if body.is_empty() {
+        start: Location,
+        first: Option<First>,
+        condition: Condition<'s>,
+        time: Option<Arg<'s>>,
+        end: Location,
+    ) -> Primary<'s> {
+        if first.is_none() {
+            let (message, here) = ("this scope has nothing to run", "nothing before the comma");
             let help = "a scope is written `(elements, condition)`, an atom `(law, condition)`";
-            self.empty(
-                start..end,
-                "this scope has nothing to run",
-                self.between(start, end),
-                "nothing before the comma",
-                help,
-            );
+            self.empty((start, end), message, self.between(start, end), here, help);
         }
-        Primary::Formal { body, condition, time }
+        let body = self.elements(first);
+        Primary::Formal(self.put(Formal { body, condition, time }))
     }
 
-    fn empty(&mut self, range: Range<usize>, message: impl Into<String>, span: Span, here: &str, help: &str) {
-        self.empty.push((range, Diagnostic::new(Code::E0108, message, span, here).help(help)));
+    fn empty(
+        &mut self,
+        (start, end): (Location, Location),
+        message: impl Into<String>,
+        span: Span,
+        here: &str,
+        help: &str,
+    ) {
+        let tokens = start.token as usize..end.token as usize;
+        self.empty.push((tokens, Diagnostic::new(Code::E0108, message, span, here).help(help)));
     }
 
     // ---- Conditions ----
 
-    pub(super) fn condition(&self, start: usize, node: ConditionNode, end: usize) -> Condition {
+    pub(super) fn condition(&self, start: Location, node: ConditionNode<'s>, end: Location) -> Condition<'s> {
         Condition { node, span: self.between(start, end) }
     }
 
-    pub(super) fn parenthesized(&self, start: usize, inner: Condition, end: usize) -> Condition {
+    pub(super) fn parenthesized(&self, start: Location, inner: Condition<'s>, end: Location) -> Condition<'s> {
         self.condition(start, inner.node, end)
     }
 
-    /// Several operands joined by one operator; a single one stays what it is.
+    pub(super) fn operand(&mut self, operand: Condition<'s>) -> First {
+        self.waiting.condition(operand)
+    }
+
+    /// Several operands joined by one operator: the first, and those from the first of the rest on.
     pub(super) fn joined(
-        first: Condition,
-        rest: Vec<Condition>,
-        join: fn(Vec<Condition>) -> ConditionNode,
-    ) -> Condition {
-        let Some(last) = rest.last() else { return first };
-        let span = first.span.to(last.span);
-        Condition { node: join(Self::first_and_rest(first, rest)), span }
+        &mut self,
+        first: Condition<'s>,
+        rest: First,
+        join: fn(&'s [Condition<'s>]) -> ConditionNode<'s>,
+    ) -> Condition<'s> {
+        self.waiting.conditions.insert(rest, first);
+        let operands = complete(&mut self.waiting.conditions, rest, self.arena);
+        let span = operands.last().map_or(first.span, |last| first.span.to(last.span));
+        Condition { node: join(operands), span }
     }
 
     // ---- Calls ----
 
-    pub(super) fn call(&self, start: usize, name: Name, args: Vec<Vec<Arg>>, end: usize) -> Call {
-        Call { name, args: Self::flattened(args), span: self.between(start, end) }
+    /// A call with the arguments from `first` on.
+    pub(super) fn call(
+        &mut self,
+        start: Location,
+        name: Name<'s>,
+        first: Option<First>,
+        end: Location,
+    ) -> &'s Call<'s> {
+        let args = first.map_or(&[][..], |first| complete(&mut self.waiting.args, first, self.arena));
+        self.put(Call { name: name.node, args, span: self.between(start, end) })
     }
 
-    pub(super) fn law_call(&self, start: usize, name: Name, first: Arg, rest: Vec<Vec<Arg>>, end: usize) -> Call {
-        let args = Self::first_and_rest(first, Self::flattened(rest));
-        Call { name, args, span: self.between(start, end) }
-    }
-
-    /// Parentheses around several arguments mean nothing.
-    pub(super) fn flattened(args: Vec<Vec<Arg>>) -> Vec<Arg> {
-        args.into_iter().flatten().collect()
-    }
-
-    pub(super) fn first_and_rest<T>(first: T, mut rest: Vec<T>) -> Vec<T> {
-        rest.insert(0, first);
-        rest
+    pub(super) fn arg(&mut self, arg: Arg<'s>) -> First {
+        self.waiting.arg(arg)
     }
 
     // ---- Tokens ----
 
-    pub(super) fn name(&self, at: usize, text: &str) -> Name {
-        Spanned { node: text.to_owned(), span: self.span(at) }
+    pub(super) fn name(&self, start: Location, text: &'s str, end: Location) -> Name<'s> {
+        Spanned { node: text, span: self.between(start, end) }
     }
 
-    pub(super) fn label(&self, at: usize, text: &str) -> Name {
-        Spanned { node: label(text), span: self.span(at) }
+    pub(super) fn label(&self, start: Location, text: &str, end: Location) -> Name<'s> {
+        Spanned { node: self.arena.alloc_str(&label(text)), span: self.between(start, end) }
     }
 
-    pub(super) fn number(&self, at: usize, digits: Digits<'_>) -> Number {
-        let unit = (!digits.tail.is_empty()).then(|| digits.tail.to_owned());
-        Number { digits: digits.number.to_owned(), unit, span: self.span(at) }
+    pub(super) fn number(&self, start: Location, digits: Digits<'s>, end: Location) -> Number<'s> {
+        Number::new(digits.text, digits.length, self.between(start, end))
     }
 
-    pub(super) fn span(&self, at: usize) -> Span {
-        self.between(at, at + 1)
+    pub(super) fn between(&self, start: Location, end: Location) -> Span {
+        self.source.between(start, end)
     }
+}
 
-    /// The stretch from one token to the one before another.
-    fn between(&self, start: usize, end: usize) -> Span {
-        let first = self.tokens.get(start).map_or(self.source.text.len(), |token| token.place.start);
-        let last = end.checked_sub(1).and_then(|last| self.tokens.get(last)).map_or(first, |token| token.place.end);
-        self.source.span(Place::new(first, last.max(first)))
-    }
-
-    // ---- What could not be read ----
-
-    pub(super) fn broken_item(&mut self, error: Recovery<'s>) -> Item {
-        self.errors.push(error);
-        Item::Broken
-    }
-
-    pub(super) fn broken_head(&mut self, error: Recovery<'s>) -> (Option<Name>, Vec<Param>, Option<Condition>) {
-        self.errors.push(error);
-        (None, Vec::new(), None)
-    }
-
-    pub(super) fn broken_list<T>(&mut self, error: Recovery<'s>) -> Vec<T> {
-        self.errors.push(error);
-        Vec::new()
-    }
-
-    pub(super) fn broken_params(&mut self, first: Param, rest: Vec<Param>, error: Recovery<'s>) -> Vec<Param> {
-        self.errors.push(error);
-        Self::first_and_rest(first, rest)
-    }
-
-    pub(super) fn broken_args(
-        &mut self,
-        start: usize,
-        name: Name,
-        args: Option<Vec<Vec<Arg>>>,
-        error: Recovery<'s>,
-        end: usize,
-    ) -> Call {
-        self.errors.push(error);
-        self.call(start, name, args.unwrap_or_default(), end)
-    }
-
-    pub(super) fn broken_condition(&mut self, start: usize, error: Recovery<'s>, end: usize) -> Condition {
-        self.errors.push(error);
-        self.condition(start, ConditionNode::Broken, end)
-    }
-
-    pub(super) fn broken_element(&mut self, start: usize, error: Recovery<'s>, end: usize) -> Element {
-        let primary = self.broken_primary(error);
-        self.element(start, None, None, primary, None, end)
-    }
-
-    pub(super) fn broken_primary(&mut self, error: Recovery<'s>) -> Primary {
-        self.errors.push(error);
-        Primary::Broken
-    }
-
-    pub(super) fn broken_call(&mut self, error: Recovery<'s>) -> Option<Call> {
-        self.errors.push(error);
-        None
-    }
+/// An element that is a call and nothing else.
+fn single<'s>(call: &'s Call<'s>) -> Element<'s> {
+    Element { primary: Primary::Ref(call), marks: None, span: call.span }
 }

@@ -6,7 +6,7 @@ use super::tree::{
 
 /// Writes the outline, two blanks deeper for each level.
 #[must_use]
-pub fn outline(file: &File) -> String {
+pub fn outline(file: &File<'_>) -> String {
     let mut outline = Outline { text: String::new(), depth: 0 };
     file.uses.iter().for_each(|used| outline.line(&format!("use {:?}", used.node)));
     file.plans.iter().for_each(|plan| outline.plan(plan));
@@ -23,30 +23,31 @@ impl Outline {
         self.text += &format!("{:indent$}{line}\n", "", indent = 2 * self.depth);
     }
 
-    fn plan(&mut self, plan: &Plan) {
+    fn plan(&mut self, plan: &Plan<'_>) {
         let label = plan.label.as_ref().map(|label| format!("{} = ", label.node)).unwrap_or_default();
         let params: Vec<_> = plan.params.iter().map(param).collect();
         let params = if params.is_empty() { String::new() } else { format!("({})", params.join(", ")) };
         let when = plan.condition.as_ref().map(|when| format!(" when {}", condition(when))).unwrap_or_default();
         plan.docs.iter().for_each(|doc| self.line(&format!("///{doc}")));
         self.line(&format!("plan {label}{}{params}{when}", plan.name.node));
-        self.elements(&plan.elements);
+        self.elements(plan.elements);
     }
 
-    fn elements(&mut self, elements: &[Element]) {
+    fn elements(&mut self, elements: &[Element<'_>]) {
         self.depth += 1;
         elements.iter().for_each(|element| self.element(element));
         self.depth -= 1;
     }
 
-    fn element(&mut self, element: &Element) {
-        let label = element.label.as_ref().map(|label| format!("{}: ", label.node)).unwrap_or_default();
-        let frame = element.frame.as_ref().map(|frame| format!("frame {} ", number(frame))).unwrap_or_default();
-        let power = element.power.as_ref().map(|power| format!(" ^ {}", count(power))).unwrap_or_default();
+    fn element(&mut self, element: &Element<'_>) {
+        let label = element.label().map(|label| format!("{}: ", label.node)).unwrap_or_default();
+        let frame = element.frame().map(|frame| format!("frame {} ", number(frame))).unwrap_or_default();
+        let power = element.power().map(|power| format!(" ^ {}", count(power))).unwrap_or_default();
         let head = format!("{label}{frame}");
         match &element.primary {
-            Primary::Atom { condition: when, control } => {
-                self.line(&format!("{head}atom when {} do {}{power}", condition(when), call(control)));
+            Primary::Atom(atom) => {
+                let (when, law) = (condition(&atom.condition), call(atom.control));
+                self.line(&format!("{head}atom when {when} do {law}{power}"));
             }
             Primary::Plan(plan) => {
                 if !head.is_empty() || !power.is_empty() {
@@ -55,30 +56,30 @@ impl Outline {
                 self.plan(plan);
             }
             Primary::Ref(plan) => self.line(&format!("{head}run {}{power}", call(plan))),
-            Primary::Exec { count: times, body } => {
-                self.line(&format!("{head}loop {}{power}", count(times)));
-                self.elements(body);
+            Primary::Exec(exec) => {
+                self.line(&format!("{head}loop {}{power}", count(&exec.count)));
+                self.elements(exec.body);
             }
             Primary::String(body) => {
                 self.line(&format!("{head}string{power}"));
                 self.elements(body);
             }
-            Primary::Formal { body, condition: when, time } => {
-                let time = time.as_ref().map(|time| format!(", {}", arg(time))).unwrap_or_default();
-                self.line(&format!("{head}formal when {}{time}{power}", condition(when)));
-                self.elements(body);
+            Primary::Formal(formal) => {
+                let time = formal.time.as_ref().map(|time| format!(", {}", arg(time))).unwrap_or_default();
+                self.line(&format!("{head}formal when {}{time}{power}", condition(&formal.condition)));
+                self.elements(formal.body);
             }
             Primary::Broken => self.line(&format!("{head}(could not be read){power}")),
         }
     }
 }
 
-fn param(param: &Param) -> String {
+fn param(param: &Param<'_>) -> String {
     format!("{}: {}", param.name.node, param.type_name.node)
 }
 
-fn condition(written: &Condition) -> String {
-    let all = |word: &str, operands: &[Condition]| {
+fn condition(written: &Condition<'_>) -> String {
+    let all = |word: &str, operands: &[Condition<'_>]| {
         let operands: Vec<_> = operands.iter().map(condition).collect();
         format!("({})", operands.join(word))
     };
@@ -88,17 +89,17 @@ fn condition(written: &Condition) -> String {
         ConditionNode::Not(operand) => format!("NOT {}", condition(operand)),
         ConditionNode::Rising(operand) => format!("RISING {}", condition(operand)),
         ConditionNode::Call(quark) => format!("({})", call(quark)),
-        ConditionNode::Comparison { left, operator, right } => {
-            let right = match right {
+        ConditionNode::Comparison(compared) => {
+            let right = match &compared.right {
                 Operand::Signal(signal) => call(signal),
                 Operand::Number(value) => number(value),
             };
-            format!("({} {} {right})", call(left), comparison(*operator))
+            format!("({} {} {right})", call(compared.left), comparison(compared.operator))
         }
         ConditionNode::Null => "null".into(),
-        ConditionNode::After { label, cause } => {
-            let cause = cause.as_ref().map(|cause| format!(" {}", condition(cause))).unwrap_or_default();
-            format!("(after {}{cause})", label.node)
+        ConditionNode::After(after) => {
+            let cause = after.cause.as_ref().map(|cause| format!(" {}", condition(cause))).unwrap_or_default();
+            format!("(after {}{cause})", after.label.node)
         }
         ConditionNode::Broken => "(could not be read)".into(),
     }
@@ -114,29 +115,29 @@ fn comparison(operator: Comparison) -> &'static str {
     }
 }
 
-fn call(written: &Call) -> String {
-    let words: Vec<_> = std::iter::once(written.name.node.clone()).chain(written.args.iter().map(arg)).collect();
+fn call(written: &Call<'_>) -> String {
+    let words: Vec<_> = std::iter::once(written.name.to_owned()).chain(written.args.iter().map(arg)).collect();
     words.join(" ")
 }
 
-fn arg(written: &Arg) -> String {
+fn arg(written: &Arg<'_>) -> String {
     match written {
         Arg::Number(value) => number(value),
         Arg::Infinity(_) => "inf".into(),
         Arg::String(text) => format!("{:?}", text.node),
-        Arg::Name(name) => name.node.clone(),
+        Arg::Name(name) => name.node.to_owned(),
         Arg::Module(name) => format!("{} module", name.node),
     }
 }
 
-fn number(written: &Number) -> String {
-    format!("{}{}", written.digits, written.unit.as_deref().unwrap_or_default())
+fn number(written: &Number<'_>) -> String {
+    format!("{}{}", written.digits(), written.unit().unwrap_or_default())
 }
 
-fn count(written: &Count) -> String {
+fn count(written: &Count<'_>) -> String {
     match written {
         Count::Number(value) => number(value),
         Count::Infinity(_) => "inf".into(),
-        Count::Name(name) => name.node.clone(),
+        Count::Name(name) => name.node.to_owned(),
     }
 }

@@ -20,6 +20,27 @@ pub(super) struct Place {
     pub(super) end: usize,
 }
 
+/// Where a token begins or the one before it ends: how many tokens and how many bytes are before that.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub(super) struct Location {
+    /// The number of tokens.
+    pub(super) token: u32,
+    /// The number of bytes.
+    pub(super) byte: u32,
+}
+
+impl Location {
+    /// The location before this token, which begins at `byte`, or behind the token before it, which ends there.
+    pub(super) fn new(token: usize, byte: usize) -> Self {
+        Self { token: offset(token), byte: offset(byte) }
+    }
+}
+
+/// As trees and diagnostics have it.
+fn offset(number: usize) -> u32 {
+    u32::try_from(number).unwrap_or(u32::MAX)
+}
+
 impl Place {
     /// The stretch between these two bytes.
     pub(super) fn new(start: usize, end: usize) -> Self {
@@ -35,8 +56,12 @@ impl Place {
 impl<'s> Source<'s> {
     /// The place as trees and diagnostics have it.
     pub(super) fn span(self, place: Place) -> Span {
-        let offset = |byte: usize| u32::try_from(byte).unwrap_or(u32::MAX);
         Span { source: self.id, start: offset(place.start), end: offset(place.end) }
+    }
+
+    /// The stretch between these two.
+    pub(super) fn between(self, start: Location, end: Location) -> Span {
+        Span { source: self.id, start: start.byte, end: end.byte.max(start.byte) }
     }
 
     /// What is written there.

@@ -6,7 +6,8 @@ mod mistakes;
 mod properties;
 
 use super::outline::outline;
-use super::parse;
+use super::source::Source;
+use super::{Arena, parse, recover};
 use crate::diagnostic::Sources;
 
 /// Compares the sources, each with its outline and its messages, with what is recorded.
@@ -20,7 +21,13 @@ fn check(name: &str, texts: &[&str]) {
 fn one(text: &str) -> String {
     let mut sources = Sources::default();
     let id = sources.add("plan.mdle", text);
-    let (file, diagnostics) = parse(id, text);
+    let arena = Arena::new();
+    let (file, diagnostics) = parse(id, text, &arena);
+    assert_eq!(
+        recover(Source { id, text }, &arena),
+        (file.clone(), diagnostics.clone()),
+        "with and without care: {text}"
+    );
     let messages: Vec<String> = diagnostics.iter().map(|diagnostic| sources.render(diagnostic)).collect();
     format!("{text}\n────────\n{}{}", outline(&file), messages.concat())
 }

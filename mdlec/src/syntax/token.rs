@@ -20,10 +20,27 @@ pub(super) struct Token<'s> {
 /// A number as written: its digits, and what touches them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Digits<'s> {
+    /// All of it.
+    pub(super) text: &'s str,
+    /// How many bytes the number itself is.
+    pub(super) length: u32,
+}
+
+impl<'s> Digits<'s> {
     /// Sign, digits, fraction, exponent.
-    pub(super) number: &'s str,
+    pub(super) fn number(self) -> &'s str {
+        self.text.get(..self.length as usize).unwrap_or(self.text)
+    }
+
     /// What touches it: a unit, or nothing, once the lexer is done.
-    pub(super) tail: &'s str,
+    pub(super) fn tail(self) -> &'s str {
+        self.text.get(self.length as usize..).unwrap_or("")
+    }
+
+    /// Whether a unit touches it, or nothing.
+    pub(super) fn is_sound(self) -> bool {
+        self.text.len() == self.length as usize || Unit::is_name(self.tail())
+    }
 }
 
 /// What a token is.
@@ -206,12 +223,11 @@ impl<'s> Reader<'s> {
 
     /// A number keeps its unit; whatever else touches it is reported and dropped.
     fn number(&mut self, digits: Digits<'s>, place: Place) {
-        let known = digits.tail.is_empty() || Unit::from_name(digits.tail).is_some();
-        if known {
+        if digits.is_sound() {
             self.push(Tok::Number(digits), place);
         } else {
             self.report(lexical::number(self.source, digits, place));
-            self.push(Tok::Number(Digits { tail: "", ..digits }), place);
+            self.push(Tok::Number(Digits { text: digits.number(), ..digits }), place);
         }
     }
 
@@ -274,37 +290,49 @@ fn text_end(text: &str, from: usize) -> Option<usize> {
 
 /// Takes what touches a number along with it.
 fn number<'s>(lexer: &mut Lexer<'s, Tok<'s>>) -> Digits<'s> {
-    let number = lexer.slice();
-    let mut rest = lexer.remainder().chars();
-    let mut length = 0;
-    while let Some(c) = rest.next() {
-        let next = rest.clone().next().unwrap_or(' ');
+    let (number, rest) = (lexer.slice(), lexer.remainder());
+    let tail = match rest.as_bytes() {
+        // Most numbers stand by themselves.
+        [] | [b')' | b',' | b'\n', ..] => 0,
+        [b' ' | b'\t', ..] => unit_apart(rest),
+        _ => touching(rest),
+    };
+    if tail > 0 {
+        lexer.bump(tail);
+    }
+    Digits { text: lexer.slice(), length: u32::try_from(number.len()).unwrap_or(u32::MAX) }
+}
+
+/// How long the text is that touches a number.
+fn touching(rest: &str) -> usize {
+    let mut chars = rest.chars();
+    while let Some(c) = chars.next() {
+        let next = || chars.clone().next().unwrap_or(' ');
         let belongs = match c {
-            '/' => next.is_alphabetic(),
-            '+' | '-' => next.is_ascii_digit(),
+            '/' => next().is_alphabetic(),
+            '+' | '-' => next().is_ascii_digit(),
             _ => c.is_alphanumeric() || matches!(c, '_' | '.' | '°'),
         };
         if !belongs {
-            break;
+            return rest.len() - chars.as_str().len() - c.len_utf8();
         }
-        length += c.len_utf8();
     }
-    if length == 0 {
-        length = unit_apart(lexer.remainder());
-    }
-    let tail = lexer.remainder().get(..length).unwrap_or("");
-    lexer.bump(length);
-    Digits { number, tail }
+    rest.len()
 }
 
 /// How long the blanks and the unit are that follow a number, if it is a unit with a `/`, which nothing else has.
 fn unit_apart(rest: &str) -> usize {
-    let behind = rest.trim_start_matches([' ', '\t']);
+    let blanks = rest.bytes().take_while(|byte| matches!(byte, b' ' | b'\t')).count();
+    let behind = rest.get(blanks..).unwrap_or("");
+    let letters = behind.bytes().take_while(u8::is_ascii_alphabetic).count();
+    if behind.as_bytes().get(letters) != Some(&b'/') {
+        return 0;
+    }
     let follows = |unit: &Unit| {
         let next = behind.strip_prefix(unit.name).map(|after| after.chars().next());
         unit.name.contains('/') && next.is_some_and(|next| !next.is_some_and(|c| c.is_alphanumeric() || c == '_'))
     };
-    Unit::ALL.iter().find(|unit| follows(unit)).map_or(0, |unit| rest.len() - behind.len() + unit.name.len())
+    Unit::ALL.iter().find(|unit| follows(unit)).map_or(0, |unit| blanks + unit.name.len())
 }
 
 /// The text between the quotes; one that does not end on its line takes what could be the name of a file.

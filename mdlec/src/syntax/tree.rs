@@ -1,9 +1,12 @@
 //! The tree of a plan file as it is written (language, section 3): every node with its span, nothing resolved.
+//!
+//! What is written is borrowed from the text, and the nodes stand in an arena, each once, where it stays: a parser that allocates
+//! and copies them spends most of its time on that.
 
 use crate::diagnostic::Span;
 
 /// Something with the place where it is written.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Spanned<T> {
     /// The thing.
     pub node: T,
@@ -12,147 +15,194 @@ pub struct Spanned<T> {
 }
 
 /// A name as written.
-pub type Name = Spanned<String>;
+pub type Name<'s> = Spanned<&'s str>;
 
 /// A file: `{ use | plan }`.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct File {
+pub struct File<'s> {
     /// The files it uses, as written between the quotes.
-    pub uses: Vec<Name>,
+    pub uses: Vec<Name<'s>>,
     /// Its plans, in order.
-    pub plans: Vec<Plan>,
+    pub plans: Vec<Plan<'s>>,
 }
 
 /// A plan or a behavior: a closed string in braces.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Plan {
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Plan<'s> {
     /// The doc comment before it, its lines without the slashes.
-    pub docs: Vec<String>,
+    pub docs: &'s [&'s str],
     /// `Γ_from^to`, normalized: `Γ_`, then the text without braces and typesetting marks.
-    pub label: Option<Name>,
+    pub label: Option<Name<'s>>,
     /// Its name.
-    pub name: Name,
+    pub name: Name<'s>,
     /// Its parameters.
-    pub params: Vec<Param>,
+    pub params: &'s [Param<'s>],
     /// Its interrupt; without one it has the null interrupt.
-    pub condition: Option<Condition>,
+    pub condition: Option<Condition<'s>>,
     /// Its elements, in order.
-    pub elements: Vec<Element>,
+    pub elements: &'s [Element<'s>],
     /// From its label or brace to its closing brace.
     pub span: Span,
 }
 
 /// A parameter of a plan: `NAME ":" TYPE`.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Param {
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Param<'s> {
     /// Its name.
-    pub name: Name,
+    pub name: Name<'s>,
     /// Its type as written, such as `speed` or `bits[4]`.
-    pub type_name: Name,
+    pub type_name: Name<'s>,
 }
 
 /// An element of a string: `[ NAME ":" ] [ "FRAME" NUMBER ] primary [ "^" count ]`.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Element {
-    /// Its label, for `after`.
-    pub label: Option<Name>,
-    /// The angle that its frame is turned by.
-    pub frame: Option<Number>,
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Element<'s> {
     /// What it is.
-    pub primary: Primary,
-    /// How often it is run.
-    pub power: Option<Count>,
+    pub primary: Primary<'s>,
+    /// What stands before and behind that; most elements have nothing there.
+    pub marks: Option<&'s Marks<'s>>,
     /// From its first token to its last.
     pub span: Span,
 }
 
+/// What an element may have besides what it is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Marks<'s> {
+    /// Its label, for `after`.
+    pub label: Option<Name<'s>>,
+    /// The angle that its frame is turned by.
+    pub frame: Option<Number<'s>>,
+    /// How often it is run.
+    pub power: Option<Count<'s>>,
+}
+
+impl<'s> Element<'s> {
+    /// Its label, for `after`.
+    #[must_use]
+    pub fn label(&self) -> Option<Name<'s>> {
+        self.marks?.label
+    }
+
+    /// The angle that its frame is turned by.
+    #[must_use]
+    pub fn frame(&self) -> Option<&'s Number<'s>> {
+        self.marks?.frame.as_ref()
+    }
+
+    /// How often it is run.
+    #[must_use]
+    pub fn power(&self) -> Option<&'s Count<'s>> {
+        self.marks?.power.as_ref()
+    }
+}
+
 /// What an element is.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Primary {
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Primary<'s> {
     /// `(Atom condition control)`.
-    Atom {
-        /// The atom's interrupt.
-        condition: Condition,
-        /// Its law.
-        control: Call,
-    },
+    Atom(&'s Atom<'s>),
     /// A behavior in place.
-    Plan(Box<Plan>),
+    Plan(&'s Plan<'s>),
     /// A plan by name, with arguments if it takes some.
-    Ref(Call),
+    Ref(&'s Call<'s>),
     /// `ExecPlan n { … }` or `ExecPlan n Name`.
-    Exec {
-        /// How often.
-        count: Count,
-        /// The body; a plan by name is a single element.
-        body: Vec<Element>,
-    },
+    Exec(&'s Exec<'s>),
     /// An open string in parentheses.
-    String(Vec<Element>),
+    String(&'s [Element<'s>]),
     /// Formal notation `(s, ξ, T)`, and `(u, ξ, T)` where `u` is one call.
-    Formal {
-        /// The string, or a single [`Primary::Ref`] that may be a law.
-        body: Vec<Element>,
-        /// Its interrupt.
-        condition: Condition,
-        /// Its timer.
-        time: Option<Arg>,
-    },
+    Formal(&'s Formal<'s>),
     /// What could not be read; a diagnostic says why.
     Broken,
 }
 
+/// `(Atom condition control)`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Atom<'s> {
+    /// The atom's interrupt.
+    pub condition: Condition<'s>,
+    /// Its law.
+    pub control: &'s Call<'s>,
+}
+
+/// A loop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Exec<'s> {
+    /// How often.
+    pub count: Count<'s>,
+    /// The body; a plan by name is a single element.
+    pub body: &'s [Element<'s>],
+}
+
+/// A scope or an atom in formal notation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Formal<'s> {
+    /// The string, or a single [`Primary::Ref`] that may be a law.
+    pub body: &'s [Element<'s>],
+    /// Its interrupt.
+    pub condition: Condition<'s>,
+    /// Its timer.
+    pub time: Option<Arg<'s>>,
+}
+
 /// A condition: quarks joined by AND, OR and NOT.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Condition {
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Condition<'s> {
     /// What it is.
-    pub node: ConditionNode,
+    pub node: ConditionNode<'s>,
     /// Its place, parentheses included where they are its own.
     pub span: Span,
 }
 
 /// What a condition is; OR and AND hold two operands or more.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum ConditionNode {
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ConditionNode<'s> {
     /// At least one has fired.
-    Or(Vec<Condition>),
+    Or(&'s [Condition<'s>]),
     /// All have fired.
-    And(Vec<Condition>),
+    And(&'s [Condition<'s>]),
     /// It has not fired.
-    Not(Box<Condition>),
+    Not(&'s Condition<'s>),
     /// It has fired, and once since the scope was entered it had not.
-    Rising(Box<Condition>),
+    Rising(&'s Condition<'s>),
     /// An interrupt quark.
-    Call(Call),
+    Call(&'s Call<'s>),
     /// A comparison of a signal.
-    Comparison {
-        /// The signal.
-        left: Call,
-        /// How it is compared.
-        operator: Comparison,
-        /// With what.
-        right: Operand,
-    },
+    Comparison(&'s Compared<'s>),
     /// `null`: never fires.
     Null,
     /// `after LABEL [cause]`.
-    After {
-        /// The label of the element that has to have ended.
-        label: Name,
-        /// The operand that has to be the cause.
-        cause: Option<Box<Condition>>,
-    },
+    After(&'s After<'s>),
     /// What could not be read; a diagnostic says why.
     Broken,
 }
 
+/// A comparison of a signal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Compared<'s> {
+    /// The signal.
+    pub left: &'s Call<'s>,
+    /// How it is compared.
+    pub operator: Comparison,
+    /// With what.
+    pub right: Operand<'s>,
+}
+
+/// `after LABEL [cause]`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct After<'s> {
+    /// The label of the element that has to have ended.
+    pub label: Name<'s>,
+    /// The operand that has to be the cause.
+    pub cause: Option<Condition<'s>>,
+}
+
 /// The right side of a comparison.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Operand {
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Operand<'s> {
     /// Another signal.
-    Signal(Call),
+    Signal(&'s Call<'s>),
     /// A value.
-    Number(Number),
+    Number(Number<'s>),
 }
 
 /// How a signal is compared.
@@ -171,32 +221,41 @@ pub enum Comparison {
 }
 
 /// A name with its arguments: a quark, a signal or a plan.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Call {
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Call<'s> {
     /// The name.
-    pub name: Name,
+    pub name: &'s str,
     /// The arguments, flattened: parentheses around several of them mean nothing.
-    pub args: Vec<Arg>,
+    pub args: &'s [Arg<'s>],
     /// From the name to the last argument or the closing parenthesis.
     pub span: Span,
 }
 
+impl Call<'_> {
+    /// The place of its name, which it begins with.
+    #[must_use]
+    pub fn name_span(&self) -> Span {
+        let length = u32::try_from(self.name.len()).unwrap_or(u32::MAX);
+        Span { end: self.span.start.saturating_add(length), ..self.span }
+    }
+}
+
 /// An argument.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Arg {
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Arg<'s> {
     /// A number, or bits where these are asked for.
-    Number(Number),
+    Number(Number<'s>),
     /// `inf` and its other spellings.
     Infinity(Span),
     /// A string in quotes, without them.
-    String(Name),
+    String(Name<'s>),
     /// A robot, a file, a parameter.
-    Name(Name),
+    Name(Name<'s>),
     /// `NAME module`.
-    Module(Name),
+    Module(Name<'s>),
 }
 
-impl Arg {
+impl Arg<'_> {
     /// Its place.
     #[must_use]
     pub fn span(&self) -> Span {
@@ -209,28 +268,48 @@ impl Arg {
 }
 
 /// A number as written: digits are kept, since `0100` may be four bits.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Number {
-    /// Sign, digits, fraction and exponent as written.
-    pub digits: String,
-    /// The unit that touches it.
-    pub unit: Option<String>,
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Number<'s> {
+    /// Its digits and its unit.
+    text: &'s str,
+    /// How many bytes the digits are.
+    digits: u32,
     /// Its place, unit included.
     pub span: Span,
 }
 
+impl<'s> Number<'s> {
+    /// The number of this text, which begins with so many bytes of digits.
+    #[must_use]
+    pub fn new(text: &'s str, digits: u32, span: Span) -> Self {
+        Self { text, digits, span }
+    }
+
+    /// Sign, digits, fraction and exponent as written.
+    #[must_use]
+    pub fn digits(&self) -> &'s str {
+        self.text.get(..self.digits as usize).unwrap_or(self.text)
+    }
+
+    /// The unit that touches it.
+    #[must_use]
+    pub fn unit(&self) -> Option<&'s str> {
+        self.text.get(self.digits as usize..).filter(|unit| !unit.is_empty())
+    }
+}
+
 /// A loop count.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Count {
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Count<'s> {
     /// Digits as written.
-    Number(Number),
+    Number(Number<'s>),
     /// For ever.
     Infinity(Span),
     /// A parameter.
-    Name(Name),
+    Name(Name<'s>),
 }
 
-impl Count {
+impl Count<'_> {
     /// Its place.
     #[must_use]
     pub fn span(&self) -> Span {

@@ -1,7 +1,7 @@
 //! What makes the comparison a fair one: both parsers read the same language.
 
 use mdlec::diagnostic::SourceId;
-use mdlec::syntax::parse;
+use mdlec::syntax::{Arena, parse};
 
 use crate::bare;
 use crate::front_end::{one_megabyte, plans};
@@ -11,7 +11,7 @@ fn both_parsers_accept_what_is_measured() {
     for (name, texts) in [plans(), one_megabyte()] {
         assert!(!texts.is_empty(), "{name}");
         for text in texts {
-            assert_eq!(parse(SourceId(0), &text).1, []);
+            assert_eq!(parse(SourceId(0), &text, &Arena::new()).1, []);
             assert!(bare::accepts(&text), "{text}");
         }
     }
@@ -33,7 +33,7 @@ fn both_parsers_tell_headers_from_elements() {
         "{ (bumper) A }",
         "{ A (B }",
     ] {
-        let good = parse(SourceId(0), text).1.is_empty();
+        let good = parse(SourceId(0), text, &Arena::new()).1.is_empty();
         // What is empty has a meaning for the grammar, and is refused behind it.
         assert!(good == bare::accepts(text) || text == "{ A }", "{text}");
     }

@@ -1,6 +1,6 @@
 //! The listings of section IV of the paper, exactly as printed there.
 
-use super::{check, parse};
+use super::{Arena, check, parse};
 use crate::diagnostic::SourceId;
 
 const SOUND_FOLLOW: &str = include_str!("../../../../plans/paper/sound_following.mdle");
@@ -16,10 +16,11 @@ fn the_papers_listings_are_read_as_printed() {
 
 #[test]
 fn the_papers_listings_are_read_from_one_file() {
-    let (file, diagnostics) =
-        parse(SourceId(0), &[SOUND_FOLLOW, LAB2_TO_LAB1, LAB1_TO_OFFICE, ROBOT1, ROBOT2].concat());
+    let text = [SOUND_FOLLOW, LAB2_TO_LAB1, LAB1_TO_OFFICE, ROBOT1, ROBOT2].concat();
+    let arena = Arena::new();
+    let (file, diagnostics) = parse(SourceId(0), &text, &arena);
     assert_eq!(diagnostics, []);
-    let names: Vec<_> = file.plans.iter().map(|plan| plan.name.node.as_str()).collect();
+    let names: Vec<_> = file.plans.iter().map(|plan| plan.name.node).collect();
     assert_eq!(
         names,
         ["SoundFollowingRobot", "Lab2ToLab1Plan", "Lab1ToOfficePlan", "FirstRobotPlan", "SecondRobotPlan"]

@@ -1,6 +1,6 @@
 //! What is said about defects: one message each, and something to type.
 
-use super::{check, one, parse};
+use super::{Arena, check, one, parse};
 use crate::diagnostic::{Code, SourceId};
 
 #[test]
@@ -96,8 +96,9 @@ fn brackets() {
 #[test]
 fn brackets_nest_256_deep() {
     let nested = |depth: usize| format!("{{ A (null) {}B{} }}", "(".repeat(depth - 1), ")".repeat(depth - 1));
-    assert_eq!(parse(SourceId(0), &nested(256)).1, []);
-    let (_, diagnostics) = parse(SourceId(0), &nested(257));
+    assert_eq!(parse(SourceId(0), &nested(256), &Arena::new()).1, []);
+    let arena = Arena::new();
+    let (_, diagnostics) = parse(SourceId(0), &nested(257), &arena);
     assert_eq!(diagnostics.iter().map(|found| found.code).collect::<Vec<_>>(), [Code::E0106]);
     check("mistakes_brackets_nest_256_deep", &[&nested(257)]);
 }
@@ -128,7 +129,8 @@ fn what_does_not_end() {
 #[test]
 fn all_defects_of_a_file_are_told_in_order() {
     let text = "{ A (Atom bumper stop)\n  (Atom (wait 5x) stop)\n  B,\n  ExecPlan { C }\n  (Atom (wait 5) stop }\n{ (Atom (b OR) u) }\n@";
-    let (_, diagnostics) = parse(SourceId(0), text);
+    let arena = Arena::new();
+    let (_, diagnostics) = parse(SourceId(0), text, &arena);
     let lines: Vec<_> = diagnostics
         .iter()
         .filter_map(|found| found.span())

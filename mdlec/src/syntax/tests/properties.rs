@@ -6,7 +6,7 @@ use proptest::test_runner::RngSeed;
 use super::super::brackets::{MAX_DEPTH, balance};
 use super::super::source::Source;
 use super::super::token::{Tok, lex};
-use super::{outline, parse};
+use super::{Arena, outline, parse, recover};
 use crate::diagnostic::{SourceId, Sources};
 
 /// The seed of all chance here: a run that fails, fails again. `PROPTEST_RNG_SEED` names another one.
@@ -98,8 +98,10 @@ fn config() -> ProptestConfig {
 fn reads(text: &str) {
     let mut sources = Sources::default();
     let id = sources.add("plan.mdle", text);
-    let (file, diagnostics) = parse(id, text);
+    let arena = Arena::new();
+    let (file, diagnostics) = parse(id, text, &arena);
     let _ = outline(&file);
+    assert_eq!(recover(Source { id, text }, &arena), (file.clone(), diagnostics.clone()));
     assert!(diagnostics.len() <= text.len() + 1);
     assert!(!file.plans.is_empty() || !diagnostics.is_empty());
     assert!(diagnostics.is_sorted_by_key(|found| found.span()));
@@ -160,7 +162,8 @@ proptest! {
         let mut atom = ["(Atom", "(", "wait 5", ")", "(go 5 0)", ")"].map(str::to_owned);
         atom[place].push_str(&format!(" {piece} "));
         let text = format!("{{ A (bumper) (Atom (b) u) {} (Atom (b) u) ExecPlan 2 {{ B }} }}", atom.concat());
-        let (file, diagnostics) = parse(SourceId(0), &text);
+        let arena = Arena::new();
+        let (file, diagnostics) = parse(SourceId(0), &text, &arena);
         prop_assert!(diagnostics.len() <= 1, "{}", super::one(&text));
         prop_assert!(file.plans.len() == 1 && file.plans[0].elements.len() >= 4);
     }
@@ -169,7 +172,8 @@ proptest! {
 #[test]
 fn a_hundred_thousand_elements_are_read() {
     let text = format!("{{ A (bumper) {} }}", "(Atom (wait 5) stop) ".repeat(100_000));
-    let (file, diagnostics) = parse(SourceId(0), &text);
+    let arena = Arena::new();
+    let (file, diagnostics) = parse(SourceId(0), &text, &arena);
     assert_eq!(diagnostics, []);
     assert_eq!(file.plans[0].elements.len(), 100_000);
 }

@@ -1,0 +1,73 @@
+//! What stands in the tree where the parser has dropped tokens: constructors for the alternatives of the grammar that recover.
+
+use super::nodes::{Head, Nodes, Recovery};
+use super::source::{Location, Place};
+use super::tree::{Call, Condition, ConditionNode, Element, Name, Primary};
+use super::waiting::First;
+use crate::diagnostic::Span;
+
+impl<'s> Nodes<'_, 's> {
+    /// What was read behind `start` and not finished is not part of any list.
+    pub(super) fn dropped(&mut self, start: Location, error: Recovery<'s>) {
+        self.errors.push(error);
+        self.waiting.forget(start.byte);
+    }
+
+    pub(super) fn broken_head(&mut self, start: Location, error: Recovery<'s>) -> &'s Head<'s> {
+        self.dropped(start, error);
+        self.put(Head::default())
+    }
+
+    /// The parameters that were read are kept.
+    pub(super) fn broken_params(&mut self, error: Recovery<'s>) {
+        self.errors.push(error);
+    }
+
+    /// Arguments in parentheses of their own: those that were read count for nothing.
+    pub(super) fn broken_group(&mut self, start: Location, error: Recovery<'s>) -> First {
+        self.dropped(start, error);
+        self.waiting.args.len()
+    }
+
+    /// The arguments that were read are kept.
+    pub(super) fn broken_args(
+        &mut self,
+        start: Location,
+        name: Name<'s>,
+        first: Option<First>,
+        error: Recovery<'s>,
+        end: Location,
+    ) -> &'s Call<'s> {
+        self.errors.push(error);
+        self.call(start, name, first, end)
+    }
+
+    pub(super) fn broken_condition(&mut self, start: Location, error: Recovery<'s>, end: Location) -> Condition<'s> {
+        self.dropped(start, error);
+        Condition { node: ConditionNode::Broken, span: self.around(start, end) }
+    }
+
+    pub(super) fn broken_element(&mut self, start: Location, error: Recovery<'s>, end: Location) -> First {
+        self.dropped(start, error);
+        let span = self.around(start, end);
+        self.waiting.element(Element { primary: Primary::Broken, marks: None, span })
+    }
+
+    pub(super) fn broken_primary(&mut self, start: Location, error: Recovery<'s>) -> Primary<'s> {
+        self.dropped(start, error);
+        Primary::Broken
+    }
+
+    pub(super) fn broken_call(&mut self, start: Location, error: Recovery<'s>) -> Option<&'s Call<'s>> {
+        self.dropped(start, error);
+        None
+    }
+
+    /// The stretch from one token to the one before another: what was dropped may begin and end between two tokens.
+    fn around(&self, start: Location, end: Location) -> Span {
+        let first = self.tokens.get(start.token as usize).map_or(self.source.text.len(), |token| token.place.start);
+        let last = (end.token as usize).checked_sub(1).and_then(|last| self.tokens.get(last));
+        let last = last.map_or(first, |token| token.place.end);
+        self.source.span(Place::new(first, last.max(first)))
+    }
+}
