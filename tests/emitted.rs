@@ -25,7 +25,8 @@ const SCRIPTS: u64 = 25;
 
 /// Names of plans, each of which a generated file may have a use of its own for.
 const ROOTS: &[&str] = &[
-    "Main", "Cursor", "Plan", "Output", "At", "Nanos", "Fsm", "Begin", "Cause", "atom", "Bracket", "Input", "Running",
+    "Main", "Cursor", "Plan", "Output", "At", "Nanos", "Fsm", "Begin", "Cause", "Next", "atom", "Bracket", "Input",
+    "Running",
 ];
 
 /// A plan with its scripts.
