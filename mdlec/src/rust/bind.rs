@@ -7,7 +7,8 @@ use quote::{format_ident, quote};
 
 use super::names::{Distinct, quark_type};
 use super::pretty;
-use crate::alphabet::{Alphabet, Capability, Declaration, DeclarationKind, Kind, Origin};
+use super::signatures::{argument_variant, signatures};
+use crate::alphabet::{Alphabet, Declaration, DeclarationKind, Kind, Origin};
 use crate::plan::signature;
 
 /// Writes `src/alphabet.rs` of the target: what its crate must have, and what plans need of it.
@@ -52,9 +53,9 @@ fn heading(alphabet: &Alphabet) -> String {
 }
 
 /// A quark that the robot can run, with the name of its type.
-struct Bound<'a> {
-    declaration: &'a Declaration,
-    kind: Ident,
+pub(super) struct Bound<'a> {
+    pub(super) declaration: &'a Declaration,
+    pub(super) kind: Ident,
 }
 
 impl<'a> Bound<'a> {
@@ -74,12 +75,12 @@ impl<'a> Bound<'a> {
         quarks
     }
 
-    fn doc(&self) -> String {
+    pub(super) fn doc(&self) -> String {
         format!(" `{}`: {}", signature(self.declaration), self.declaration.docs)
     }
 
     /// The names and types of its parameters.
-    fn parameters(&self) -> impl Iterator<Item = (Ident, Kind)> {
+    pub(super) fn parameters(&self) -> impl Iterator<Item = (Ident, Kind)> {
         let mut names = Distinct::parameters();
         self.declaration.params.iter().map(move |param| (names.parameter(&param.name), param.kind))
     }
@@ -132,71 +133,6 @@ pub(super) fn hash(alphabet: &Alphabet) -> TokenStream {
     let text = format!("0x{:016x}", alphabet.hash());
     // Sixteen digits at most, so it is a number.
     text.parse::<Literal>().map_or_else(|_| quote!(0), |literal| quote!(#literal))
-}
-
-/// `mod signatures`: what does not compile where a quark is not as the alphabet says.
-fn signatures(quarks: &[Bound<'_>], alphabet: &Alphabet) -> TokenStream {
-    let mut names = Distinct::functions();
-    let functions = quarks.iter().map(|quark| {
-        let (kind, doc) = (&quark.kind, quark.doc());
-        let function = names.scope_function(&kind.to_string());
-        let (arguments, types): (Vec<_>, Vec<_>) =
-            quark.parameters().map(|(name, kind)| (name, parameter_type(kind))).unzip();
-        quote! {
-            #[doc = #doc]
-            const fn #function(#(#arguments: #types),*) -> #kind { #kind::new(#(#arguments),*) }
-        }
-    });
-    let capabilities: Vec<_> = alphabet.capabilities.iter().filter_map(capability_trait).collect();
-    let capable = (!capabilities.is_empty()).then(|| {
-        quote! {
-            #[doc = " The output has what the capabilities need."]
-            const fn capable<Y: #(runtime::capability::#capabilities)+*>() {}
-            const _: () = capable::<Output>();
-        }
-    });
-    quote! {
-        #[doc = " The quarks as plans make them: a crate whose quarks are otherwise does not compile."]
-        #[allow(dead_code, reason = "what stands here is to be compiled, not called")]
-        mod signatures {
-            use super::*;
-            #capable
-            #(#functions)*
-        }
-    }
-}
-
-/// The trait of a capability; `None` for one that no trait of ours stands for.
-fn capability_trait(capability: &Capability) -> Option<Ident> {
-    let name = match capability.name.as_str() {
-        "odometry" => "Odometry",
-        "bumper" => "Bumpers",
-        "diff_drive" => "DiffDrive",
-        "sonar" => "SonarRing",
-        _ => return None,
-    };
-    Some(format_ident!("{name}"))
-}
-
-/// The type that a parameter of this kind has in `new`.
-fn parameter_type(kind: Kind) -> TokenStream {
-    match kind {
-        Kind::Length => quote!(runtime::Meters),
-        Kind::Speed => quote!(runtime::MetersPerSecond),
-        Kind::Angle => quote!(runtime::Radians),
-        Kind::AngularRate => quote!(runtime::RadiansPerSecond),
-        Kind::Time => quote!(runtime::Nanos),
-        Kind::Voltage => quote!(runtime::Volts),
-        Kind::Frequency | Kind::Number => quote!(f64),
-        Kind::Integer => quote!(i64),
-        Kind::Count => quote!(u64),
-        Kind::Bits(length) => {
-            let length = Literal::u32_unsuffixed(length);
-            quote!(runtime::Bits<#length>)
-        }
-        Kind::Sonar => quote!(runtime::SonarId),
-        Kind::Robot | Kind::Module | Kind::File => quote!(&'static str),
-    }
 }
 
 /// `enum AnyInterrupt`, which fires when the one that it holds does.
@@ -309,23 +245,4 @@ fn by_name(quark: &Bound<'_>, any: &Ident) -> TokenStream {
         })
         .unzip();
     quote!((#name, &[#(#patterns),*]) => #any::#kind(#kind::new(#(#arguments),*)),)
-}
-
-/// The variant of `Argument` that a parameter of this kind takes.
-fn argument_variant(kind: Kind) -> Ident {
-    let name = match kind {
-        Kind::Length => "Length",
-        Kind::Speed => "Speed",
-        Kind::Angle => "Angle",
-        Kind::AngularRate => "AngularRate",
-        Kind::Time => "Time",
-        Kind::Voltage => "Voltage",
-        Kind::Frequency | Kind::Number => "Number",
-        Kind::Integer => "Integer",
-        Kind::Count => "Count",
-        Kind::Bits(_) => "Bits",
-        Kind::Sonar => "Sonar",
-        Kind::Robot | Kind::Module | Kind::File => "Name",
-    };
-    format_ident!("{name}")
 }

@@ -1,13 +1,12 @@
 //! A plan as code: quarks as constants, laws as variants, interrupts as functions that ask the scopes around them first.
 
 use proc_macro2::{Ident, Literal, TokenStream};
-use quote::{format_ident, quote};
+use quote::quote;
 
 use super::arguments::{angle, made};
 use super::names::{Distinct, atom_variant, quark_type};
-use super::tables::{follows, level};
 use crate::fsm::{LawMeaning, Lowered};
-use crate::plan::{Condition, Quark, QuarkId, frame_text};
+use crate::plan::{Condition, Quark, frame_text};
 
 /// The plan's type and its implementation.
 pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered) -> TokenStream {
@@ -72,11 +71,11 @@ fn implementation(plan: &Ident, lowered: &Lowered, meaning: &Meaning<'_>) -> Tok
 
 /// A plan's meaning with the names that its constants and functions have.
 pub(super) struct Meaning<'a> {
-    lowered: &'a Lowered,
+    pub(super) lowered: &'a Lowered,
     /// The constant of each quark.
-    constants: Vec<Ident>,
+    pub(super) constants: Vec<Ident>,
     /// The function of each bracket that is a scope with atoms inside and an interrupt that can fire.
-    functions: Vec<Option<Ident>>,
+    pub(super) functions: Vec<Option<Ident>>,
 }
 
 impl<'a> Meaning<'a> {
@@ -198,82 +197,6 @@ impl<'a> Meaning<'a> {
         }
     }
 
-    /// For each scope with an interrupt: `fn shake(cursor, y, t) -> Option<runtime::Ending>`.
-    pub(super) fn scope_functions(&self) -> TokenStream {
-        let functions = self.functions.iter().zip(0_u32..).filter_map(|(function, bracket)| {
-            let function = function.as_ref()?;
-            let scope = self.lowered.scopes[bracket as usize].as_ref()?;
-            let ending = self.ending(bracket, "Fired");
-            let fired = self.condition(bracket).map(|fired| quote!(if #fired { return Some(#ending); }));
-            let around = self.around(bracket).map(|function| {
-                quote! {
-                    if let Some(ending) = #function(cursor, y, t) { return Some(ending); }
-                }
-            });
-            let doc = format!(" {} ({}), and the scopes around it first.", scope.name, scope.interrupt.text);
-            Some(quote! {
-                #[doc = #doc]
-                fn #function(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> { #around #fired None }
-            })
-        });
-        quote!(#(#functions)*)
-    }
-
-    /// The function of the nearest scope around this bracket that has an interrupt.
-    fn around(&self, bracket: u32) -> Option<&Ident> {
-        let mut here = bracket;
-        while here != 0 {
-            here = self.lowered.brackets[here as usize].parent;
-            if let Some(function) = &self.functions[here as usize] {
-                return Some(function);
-            }
-        }
-        None
-    }
-
-    /// `Cause::Fired(level).then(…)`, or without what follows where that depends on a loop's count.
-    fn ending(&self, bracket: u32, cause: &str) -> TokenStream {
-        let (cause, level) = (format_ident!("{cause}"), self.level(bracket));
-        match self.lowered.tables().follows(bracket).map(follows) {
-            Some(follows) => quote!(runtime::Cause::#cause(#level).then(#follows)),
-            None => quote!(runtime::Cause::#cause(#level).into()),
-        }
-    }
-
-    /// Whether the interrupt of this scope has fired; `None` where it never does.
-    fn condition(&self, bracket: u32) -> Option<TokenStream> {
-        let scope = self.lowered.scopes[bracket as usize].as_ref()?;
-        let condition = &scope.interrupt.condition;
-        (*condition != Condition::Null).then(|| self.expression(condition, self.level(bracket)))
-    }
-
-    fn expression(&self, condition: &Condition, level: u16) -> TokenStream {
-        let operand = |operand: &Condition| {
-            let inner = self.expression(operand, level);
-            match operand {
-                Condition::Or(_) | Condition::And(_) | Condition::Wait { .. } => quote!((#inner)),
-                Condition::Null | Condition::Quark(_) | Condition::Not(_) => inner,
-            }
-        };
-        match condition {
-            Condition::Null => quote!(false),
-            Condition::Quark(QuarkId(id)) => {
-                let constant = &self.constants[*id as usize];
-                quote!(runtime::Interrupt::fired(&#constant, y))
-            }
-            Condition::Wait { nanos, .. } => {
-                let nanos = Literal::u64_unsuffixed(*nanos);
-                quote!(cursor.since(#level, t) >= Nanos(#nanos))
-            }
-            Condition::Or(operands) => joined(operands.iter().map(operand).collect(), &quote!(|)),
-            Condition::And(operands) => joined(operands.iter().map(operand).collect(), &quote!(&)),
-            Condition::Not(inner) => {
-                let inner = operand(inner);
-                quote!(!#inner)
-            }
-        }
-    }
-
     /// The atoms as written: number from 0, meaning, law.
     fn atoms(&self) -> impl Iterator<Item = (usize, &LawMeaning, &Quark)> {
         self.lowered.laws.iter().enumerate().map(|(atom, law)| (atom, law, self.lowered.quark(law.quark)))
@@ -287,33 +210,10 @@ impl<'a> Meaning<'a> {
         format!("`{frame}(Atom ({condition}) {})`", quark.text)
     }
 
-    fn level(&self, bracket: u32) -> u16 {
-        level(self.lowered.brackets[bracket as usize].kind)
-    }
-
     fn is_atom(lowered: &Lowered, bracket: usize) -> bool {
         let first = lowered.brackets[bracket].first as usize;
         lowered.atoms.get(first).is_some_and(|atom| atom.scope as usize == bracket)
     }
-}
-
-/// Operands with an operator between them, in groups where there are many: Rust's syntax nests operators to the left, and
-/// compilers follow it down.
-fn joined(operands: Vec<TokenStream>, operator: &TokenStream) -> TokenStream {
-    const GROUP: usize = 64;
-    let join = |operands: &[TokenStream]| {
-        let (first, others) = operands.split_first().map_or((None, operands), |(first, others)| (Some(first), others));
-        quote!(#first #(#operator #others)*)
-    };
-    if operands.len() <= GROUP {
-        return join(&operands);
-    }
-    let size = operands.len().div_ceil(GROUP).max(GROUP);
-    let groups = operands.chunks(size).map(|group| {
-        let group = joined(group.to_vec(), operator);
-        quote!((#group))
-    });
-    join(&groups.collect::<Vec<_>>())
 }
 
 /// `begin`, or `begin` in a frame that is turned.

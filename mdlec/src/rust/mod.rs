@@ -8,6 +8,8 @@ mod bind;
 mod code;
 mod names;
 mod rows;
+mod scopes;
+mod signatures;
 mod tables;
 
 use proc_macro2::TokenStream;

@@ -2,63 +2,7 @@
 //! (semantics, sections 5 and 6; the paper's third type of transition with its counter c(t)).
 
 use crate::fsm::{Bracket, Kind};
-use crate::{Fsm, Nanos};
-
-/// What follows when a scope ends, where no loop has a say in it: known before the plan runs.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Follows {
-    /// The atom that becomes current; the number of atoms when the plan is over.
-    pub atom: u32,
-    /// The scopes that are entered with it: from this level ...
-    pub from: u16,
-    /// ... to below this one. None are when the plan is over.
-    pub to: u16,
-}
-
-impl Follows {
-    /// The atom that becomes current, and the scopes that are entered with it: of levels `from..to`.
-    #[must_use]
-    pub const fn new(atom: u32, from: u16, to: u16) -> Self {
-        Self { atom, from, to }
-    }
-
-    /// Whether it is the end of the plan: an atom enters its own scope at least.
-    pub(crate) const fn is_over(self) -> bool {
-        self.from >= self.to
-    }
-}
-
-impl Fsm<'_> {
-    /// What follows when this scope ends; `None` where a loop ends with it or begins behind it, for that counts passes.
-    #[must_use]
-    pub fn follows(self, scope: u32) -> Option<Follows> {
-        let mut outwards = self.outwards(scope);
-        let (_, ended) = outwards.next()?;
-        let (mut holder, mut is_over) = (scope, true);
-        for (number, around) in outwards {
-            holder = number;
-            is_over = around.last == ended.last;
-            if !is_over {
-                break;
-            }
-            if matches!(around.kind, Kind::Loop { .. }) {
-                return None;
-            }
-        }
-        if is_over {
-            return Some(Follows::new(u32::try_from(self.atoms.len()).ok()?, 0, 0));
-        }
-        let atom = ended.last.checked_add(1)?;
-        let own = self.atoms.get(atom as usize)?.scope;
-        let (mut from, mut to) = (u16::MAX, 0);
-        for (_, bracket) in self.outwards(own).take_while(|(here, _)| *here != holder) {
-            let Kind::Scope { level } = bracket.kind else { return None };
-            from = from.min(level);
-            to = to.max(level.checked_add(1)?);
-        }
-        Some(Follows::new(atom, from, to))
-    }
-}
+use crate::{Follows, Fsm, Nanos};
 
 /// Storage for one value a level or loop: an array in generated code, a boxed slice for a plan loaded at run time.
 pub trait Slots<T>: AsRef<[T]> + AsMut<[T]> {}

@@ -1,0 +1,124 @@
+//! What a plan answers the machine: which scope around the current atom ends, and why (semantics, section 5).
+
+use crate::{Begin, Cursor, Follows, Fsm, Nanos, Output, Slots};
+
+/// What the atoms and the scopes of a plan mean on one robot: `mdlec` emits it, or it is loaded from text.
+///
+/// What runs next is not its business: [`Cursor`] decides that, or [`Fsm::follows`] has done so beforehand.
+pub trait Plan {
+    /// The robot's output.
+    type Output: Output;
+    /// The robot's input; its default is the null input.
+    type Input: Default;
+    /// A place for the entry time of each level of scopes.
+    type Entered: Slots<Nanos>;
+    /// A place for the counter of each level of loops.
+    type Left: Slots<u64>;
+
+    /// The machine's tables.
+    fn fsm(&self) -> Fsm<'_>;
+    /// Storage for a cursor; values do not matter.
+    fn slots(&self) -> (Self::Entered, Self::Left);
+    /// Makes the law of `atom`, which is now the current one; called once for each atom entered.
+    fn enter(&mut self, atom: u32, y: &Self::Output, begin: Begin);
+    /// Asks the interrupts around the current atom, the outermost first, and the law's completion last. The first that
+    /// has fired is what the answer is about; with `direct` the plan may leave its scope at once, by [`Plan::end`].
+    fn next(
+        &mut self,
+        cursor: &mut Cursor<Self::Entered, Self::Left>,
+        y: &Self::Output,
+        begin: Begin,
+        direct: bool,
+    ) -> Next;
+    /// What [`Plan::next`] answers where a scope ends: with `direct`, and where it is known what follows, that has begun.
+    ///
+    /// Inlined, so that a plan whose code names the ending needs neither table nor match to make the transition.
+    #[inline(always)]
+    fn end(
+        &mut self,
+        cursor: &mut Cursor<Self::Entered, Self::Left>,
+        ending: Ending,
+        y: &Self::Output,
+        begin: Begin,
+        direct: bool,
+    ) -> Next {
+        let Some(follows) = ending.follows.filter(|_| direct) else { return Next::Ends(ending) };
+        cursor.follow(follows, begin.now);
+        if follows.is_over() {
+            return Next::Over;
+        }
+        self.enter(cursor.atom(), y, begin);
+        Next::Moved
+    }
+
+    /// The input that the current atom's law computes.
+    fn input(&mut self, y: &Self::Output, t: Nanos) -> Self::Input;
+
+    /// The quark text of an atom's law.
+    fn law(&self, atom: u32) -> &str;
+    /// The condition text of a scope's interrupt, by its bracket.
+    fn condition(&self, scope: u32) -> &str;
+    /// The name of a scope, by its bracket; empty for an atom.
+    fn name(&self, scope: u32) -> &str;
+}
+
+/// Why a scope ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cause {
+    /// The interrupt of the scope of this level has fired.
+    Fired(u16),
+    /// The law of the atom, whose scope is of this level, is done, and no interrupt around it has fired.
+    Completed(u16),
+}
+
+impl Cause {
+    /// The level of the scope that ends: 0 is the plan.
+    #[must_use]
+    pub const fn level(self) -> u16 {
+        match self {
+            Self::Fired(level) | Self::Completed(level) => level,
+        }
+    }
+}
+
+/// A scope that ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Ending {
+    /// Which scope around the current atom, and why.
+    pub cause: Cause,
+    /// What follows, if the plan knows it beforehand; the cursor finds it out otherwise.
+    pub follows: Option<Follows>,
+}
+
+/// What the interrupts around the current atom ask for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Next {
+    /// Nothing: none has fired.
+    Stays,
+    /// This scope is to end.
+    Ends(Ending),
+    /// A scope has ended, and what follows has begun.
+    Moved,
+    /// A scope has ended, and with it the plan.
+    Over,
+}
+
+impl From<Option<Ending>> for Next {
+    fn from(ending: Option<Ending>) -> Self {
+        ending.map_or(Self::Stays, Self::Ends)
+    }
+}
+
+impl From<Cause> for Ending {
+    fn from(cause: Cause) -> Self {
+        Self { cause, follows: None }
+    }
+}
+
+impl Cause {
+    /// The ending of a scope behind which this follows.
+    #[must_use]
+    pub const fn then(self, follows: Follows) -> Ending {
+        Ending { cause: self, follows: Some(follows) }
+    }
+}
