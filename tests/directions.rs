@@ -19,6 +19,7 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("tests/benchmarks", &["mdle-tests", "mdlec"]),
     ("tests/benchmarks/turn", &["mdle-runtime", "mdlec"]),
     ("tests/bare", &["mdle-runtime", "mdle-atoms"]),
+    ("tests/mutants", &[]),
 ];
 
 /// What each room of the compiler may use of the others. `crate` is what `lib.rs` itself holds.

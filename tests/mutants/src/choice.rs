@@ -1,0 +1,80 @@
+//! Which mutants are tried, by a seed, and from which files they come.
+
+use std::fs;
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use crate::checkout::{git, root};
+use crate::mutant::{Mutant, mutants};
+
+/// What is mutated: files and folders. A few mutants are taken from each area in turn, however large it is.
+const AREAS: &[&[&str]] = &[
+    &["runtime/core/src/cursor.rs", "runtime/core/src/machine.rs"],
+    &["mdlec/src/plan/nondegenerate.rs"],
+    &["mdlec/src/fsm/mod.rs"],
+    &["mdlec/src/rust"],
+];
+
+/// A file that is mutated.
+#[derive(Debug)]
+pub(crate) struct Source {
+    pub(crate) area: usize,
+    pub(crate) file: String,
+    pub(crate) text: String,
+}
+
+/// The files of all areas.
+pub(crate) fn sources() -> Vec<Source> {
+    let mut sources = Vec::new();
+    for (area, paths) in AREAS.iter().enumerate() {
+        let names = paths.iter().flat_map(|path| {
+            let path = path.to_owned();
+            if root().join(path).is_dir() { in_folder(path) } else { vec![path.to_owned()] }
+        });
+        sources.extend(names.map(|file| {
+            let text = fs::read_to_string(root().join(&file)).unwrap_or_else(|error| panic!("{file}: {error}"));
+            Source { area, file, text }
+        }));
+    }
+    sources
+}
+
+/// The Rust files in a folder, tests aside.
+fn in_folder(folder: &str) -> Vec<String> {
+    let names = fs::read_dir(root().join(folder)).expect("a folder").map(|entry| entry.expect("an entry").file_name());
+    let names = names.map(|name| name.into_string().expect("a name in UTF-8"));
+    let mut files: Vec<_> = names.filter(|name| name.ends_with(".rs") && name != "tests.rs").collect();
+    files.sort();
+    files.into_iter().map(|name| format!("{folder}/{name}")).collect()
+}
+
+/// All mutants of these files.
+pub(crate) fn all(sources: &[Source]) -> Vec<Mutant> {
+    let found = sources.iter().map(|Source { area, file, text }| {
+        mutants(*area, file, text).unwrap_or_else(|error| panic!("{file}: {error}"))
+    });
+    found.flatten().collect()
+}
+
+/// The mutants in the order in which this seed tries them, one of each area at a time.
+pub(crate) fn shuffled(mutants: &[Mutant], seed: u64) -> Vec<&Mutant> {
+    let mut chance = ChaCha8Rng::seed_from_u64(seed);
+    let mut areas: Vec<Vec<(u64, &Mutant)>> = vec![Vec::new(); AREAS.len()];
+    for mutant in mutants {
+        areas[mutant.area].push((chance.next_u64(), mutant));
+    }
+    let mut ranked = Vec::new();
+    for area in &mut areas {
+        area.sort_by_key(|(chance, _)| *chance);
+        ranked.extend(area.iter().enumerate().map(|(rank, (chance, mutant))| ((rank, *chance), *mutant)));
+    }
+    ranked.sort_by_key(|(key, _)| *key);
+    ranked.into_iter().map(|(_, mutant)| mutant).collect()
+}
+
+/// A seed that is another one in every commit.
+pub(crate) fn seed_of_commit() -> u64 {
+    let commit = git(&["rev-parse", "HEAD"]);
+    commit.get(..15).and_then(|start| u64::from_str_radix(start, 16).ok()).expect("the hash of a commit")
+}

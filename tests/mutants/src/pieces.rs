@@ -1,0 +1,39 @@
+//! Which pieces of syntax can be exchanged for each other, and which can be deleted.
+
+use syn::{Attribute, Expr, Ident, Lit, Stmt};
+
+/// Whether two expressions are of one simple kind, and so may be of one type: names, numbers, references to either.
+pub(crate) fn is_alike(one: &Expr, other: &Expr) -> bool {
+    let is_variable = |expression: &Expr| match expression {
+        Expr::Path(path) => path.path.get_ident().is_some_and(|name| !name.to_string().starts_with(char::is_uppercase)),
+        Expr::Field(_) => true,
+        _ => false,
+    };
+    match (one, other) {
+        (Expr::Lit(one), Expr::Lit(other)) => !matches!((&one.lit, &other.lit), (Lit::Str(_), _) | (_, Lit::Str(_))),
+        (Expr::Reference(one), Expr::Reference(other)) => is_alike(&one.expr, &other.expr),
+        _ => is_variable(one) && is_variable(other),
+    }
+}
+
+/// Whether a statement does something by itself. Of those that hold others, which are deleted one by one, only an `if`
+/// that leaves, as what it holds can seldom be missing.
+pub(crate) fn can_be_deleted(statement: &Stmt) -> bool {
+    let Stmt::Expr(expression, end) = statement else { return false };
+    match expression {
+        Expr::MethodCall(_) | Expr::Call(_) | Expr::Assign(_) | Expr::Binary(_) | Expr::Try(_) => end.is_some(),
+        Expr::Return(_) | Expr::Break(_) | Expr::Continue(_) => true,
+        Expr::If(branch) => branch.else_branch.is_none() && branch.then_branch.stmts.last().is_some_and(leaves),
+        _ => false,
+    }
+}
+
+/// Whether a statement leaves the function or the loop.
+pub(crate) fn leaves(statement: &Stmt) -> bool {
+    matches!(statement, Stmt::Expr(Expr::Return(_) | Expr::Break(_) | Expr::Continue(_), _))
+}
+
+/// Whether it is for tests only what has this attribute.
+pub(crate) fn is_test(attribute: &Attribute) -> bool {
+    attribute.path().is_ident("cfg") && attribute.parse_args::<Ident>().is_ok_and(|condition| condition == "test")
+}

@@ -1,0 +1,90 @@
+//! What came of the mutants, counted by file and by the test that caught them.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use crate::equivalent::Equivalent;
+use crate::mutant::Mutant;
+use crate::trial::{self, Outcome};
+
+/// The counts, and what is not as it should be.
+#[derive(Debug, Default)]
+pub(crate) struct Report {
+    files: BTreeMap<String, Counts>,
+    tests: BTreeMap<usize, usize>,
+    complaints: Vec<String>,
+}
+
+/// The mutants of a file.
+#[derive(Debug, Default)]
+struct Counts {
+    not_compiled: usize,
+    caught: usize,
+    hanging: usize,
+    equivalent: usize,
+    survived: usize,
+}
+
+impl Report {
+    /// Counts a mutant; `listed` says whether it is said to change nothing.
+    pub(crate) fn add(&mut self, mutant: &Mutant, outcome: Outcome, listed: bool) {
+        let counts = self.files.entry(mutant.file.clone()).or_default();
+        match outcome {
+            Outcome::DoesNotCompile => counts.not_compiled += 1,
+            Outcome::Caught(_) => counts.caught += 1,
+            Outcome::Hangs(_) => counts.hanging += 1,
+            Outcome::Survived if listed => counts.equivalent += 1,
+            Outcome::Survived => counts.survived += 1,
+        }
+        if let Outcome::Caught(test) | Outcome::Hangs(test) = outcome {
+            *self.tests.entry(test).or_default() += 1;
+        }
+        match (outcome, listed) {
+            (Outcome::Survived, false) => self.complaints.push(format!("survived: {mutant}")),
+            (Outcome::Survived, true) | (_, false) => {}
+            (_, true) => self.complaints.push(format!("listed in equivalent.toml, but {}: {mutant}", said(outcome))),
+        }
+    }
+
+    /// How many could be tested.
+    pub(crate) fn compiled(&self) -> usize {
+        self.files.values().map(|counts| counts.caught + counts.hanging + counts.equivalent + counts.survived).sum()
+    }
+
+    /// Whether each was caught, or is listed and rightly so.
+    pub(crate) fn is_good(&self) -> bool {
+        self.complaints.is_empty()
+    }
+}
+
+impl fmt::Display for Report {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "\ncaught, hanging (caught as well), equivalent, survived; not compiled (not counted)")?;
+        for (file, Counts { not_compiled, caught, hanging, equivalent, survived }) in &self.files {
+            writeln!(f, "{caught:4} {hanging:4} {equivalent:4} {survived:4}; {not_compiled:4}  {file}")?;
+        }
+        for (test, count) in &self.tests {
+            writeln!(f, "{count:4} by {}", trial::name(*test))?;
+        }
+        for complaint in &self.complaints {
+            writeln!(f, "{complaint}")?;
+        }
+        let verdict = if self.is_good() { "none survived without a reason" } else { "NOT ALL WELL" };
+        write!(f, "{} mutants: {verdict}", self.compiled())
+    }
+}
+
+/// An outcome in words.
+pub(crate) fn said(outcome: Outcome) -> String {
+    match outcome {
+        Outcome::DoesNotCompile => "does not compile".to_owned(),
+        Outcome::Caught(test) => format!("caught by {}", trial::name(test)),
+        Outcome::Hangs(test) => format!("caught, as it does not end, by {}", trial::name(test)),
+        Outcome::Survived => "SURVIVED".to_owned(),
+    }
+}
+
+/// An entry as a mutant is printed.
+pub(crate) fn name(entry: &Equivalent) -> String {
+    format!("{} {}: {}", entry.file, entry.function, entry.change)
+}

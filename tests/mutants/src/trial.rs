@@ -1,0 +1,132 @@
+//! A mutant before the tests: they run from fast to slow, and the first that fails ends the trial.
+
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::checkout::Checkout;
+use crate::mutant::Mutant;
+
+/// Packages that are built together, as what cargo builds of one depends on which others it is asked for.
+type Packages = &'static [&'static str];
+const RUNTIME: Packages = &["--package", "mdle-runtime"];
+const COMPILER: Packages = &["--package", "mdlec", "--package", "mdle-tests"];
+
+/// The tests, as `cargo test` takes them.
+const TESTS: &[(Packages, &[&str])] = &[
+    (RUNTIME, &["--lib"]),
+    (COMPILER, &["--test", "rules", "--test", "rules_of_loops"]),
+    (COMPILER, &["--test", "golden", "--test", "fsm_files", "--test", "paper"]),
+    (COMPILER, &["--test", "emitted"]),
+    (COMPILER, &["--test", "differential"]),
+    (COMPILER, &["--lib"]),
+];
+
+/// The command line of a test.
+pub(crate) fn name(test: usize) -> String {
+    let (packages, targets) = TESTS[test];
+    format!("cargo test {}", [packages, targets].concat().join(" "))
+}
+
+/// A test that takes longer than this and three times what it takes without a fault hangs.
+const PATIENCE: Duration = Duration::from_secs(30);
+/// A build that takes longer hangs.
+const BUILD: Duration = Duration::from_secs(600);
+/// The most memory of a process, in KiB: a fault may fill all there is.
+const MEMORY: &str = "8388608";
+
+/// What came of a mutant.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Outcome {
+    /// It is no program, so nobody has to find it.
+    DoesNotCompile,
+    /// This test failed.
+    Caught(usize),
+    /// This test did not end.
+    Hangs(usize),
+    /// No test noticed.
+    Survived,
+}
+
+/// What runs the trials.
+#[derive(Debug)]
+pub(crate) struct Trials {
+    checkout: Checkout,
+    /// How long each test may take.
+    limits: Vec<Duration>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Ended {
+    Well,
+    Badly,
+    NotAtAll,
+}
+
+impl Trials {
+    /// Builds everything and runs every test without a fault.
+    pub(crate) fn prepare(checkout: Checkout) -> Self {
+        let mut trials = Self { checkout, limits: Vec::new() };
+        for (number, (packages, targets)) in TESTS.iter().enumerate() {
+            trials.cargo(&[&["test", "--no-run"], packages, targets], BUILD);
+            let start = Instant::now();
+            let ended = trials.cargo(&[&["test"], packages, targets], BUILD);
+            assert_eq!(ended, Ended::Well, "without a fault: {}", name(number));
+            trials.limits.push(PATIENCE + 3 * start.elapsed());
+        }
+        trials
+    }
+
+    /// Tries a mutant of the file with this text.
+    pub(crate) fn run(&self, mutant: &Mutant, text: &str) -> Outcome {
+        let packages = if mutant.file.starts_with("runtime/") { RUNTIME } else { COMPILER };
+        self.checkout.write(&mutant.file, &mutant.apply(text));
+        let is_built = self.cargo(&[&["build", "--lib"], packages], BUILD) == Ended::Well;
+        let outcome = if is_built { self.tested() } else { Outcome::DoesNotCompile };
+        self.checkout.write(&mutant.file, text);
+        outcome
+    }
+
+    /// What the tests say of the copy as it is.
+    fn tested(&self) -> Outcome {
+        for (number, ((packages, targets), limit)) in TESTS.iter().zip(&self.limits).enumerate() {
+            // A test that cannot be built any more has noticed as well.
+            let built = self.cargo(&[&["test", "--no-run"], packages, targets], BUILD);
+            let ended = if built == Ended::Well { self.cargo(&[&["test"], packages, targets], *limit) } else { built };
+            match ended {
+                Ended::Well => {}
+                Ended::Badly => return Outcome::Caught(number),
+                Ended::NotAtAll => return Outcome::Hangs(number),
+            }
+        }
+        Outcome::Survived
+    }
+
+    /// Runs cargo in the copy. What it starts dies with it when its time is up.
+    fn cargo(&self, arguments: &[&[&str]], limit: Duration) -> Ended {
+        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+        let status = Command::new("sh")
+            .args(["-c", "ulimit -v $0 && exec timeout --signal=KILL \"$@\"", MEMORY])
+            .arg(limit.as_secs().to_string())
+            .arg(cargo)
+            .args(arguments.concat())
+            .current_dir(self.checkout.sources())
+            .env("CARGO_TARGET_DIR", self.checkout.target())
+            .env("CARGO_INCREMENTAL", "1")
+            // Nobody debugs what is built here, and without its tables that is faster.
+            .env("CARGO_PROFILE_DEV_DEBUG", "false")
+            .env("INSTA_UPDATE", "no")
+            .env("PROPTEST_DISABLE_FAILURE_PERSISTENCE", "true")
+            .env("PROPTEST_RNG_SEED", "0")
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .status()
+            .expect("a shell");
+        match status.code() {
+            Some(0) => Ended::Well,
+            // 128 and the number of the signal: `timeout` dies of what it sends.
+            Some(137) | None => Ended::NotAtAll,
+            Some(_) => Ended::Badly,
+        }
+    }
+}
