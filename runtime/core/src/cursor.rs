@@ -37,7 +37,8 @@ impl<E: Slots<Nanos>, P: Slots<u64>> Cursor<E, P> {
         t.since(self.entered.as_ref().get(usize::from(level)).copied().unwrap_or(t))
     }
 
-    /// The bracket of the scope of this level around the current atom; the atom's own if there is none.
+    /// The bracket of the scope of this level around the current atom; the atom's own if there is none, and the plan's
+    /// when it is over.
     pub fn scope(&self, fsm: Fsm<'_>, level: u16) -> u32 {
         let own = fsm.atoms.get(self.atom as usize).map_or(0, |atom| atom.scope);
         let mut outwards = fsm.outwards(own);

@@ -94,6 +94,7 @@ fn the_end_of_the_plan_is_the_termination_state() {
     let mut cursor = start(LOOP_IN_SCOPE);
     assert!(!cursor.end(LOOP_IN_SCOPE, 0, Nanos(100)));
     assert_eq!((cursor.atom(), cursor.state(LOOP_IN_SCOPE)), (2, 4));
+    assert_eq!([0, 1, 2].map(|level| cursor.scope(LOOP_IN_SCOPE, level)), [0; 3], "no scope but the plan's is left");
 }
 
 #[test]
@@ -154,6 +155,7 @@ fn tables_that_hold_too_little_are_no_reason_to_panic() {
     assert_eq!(states(Fsm { brackets: &[Bracket::scope(0, 0, 0, 7)], atoms: &atoms, termination: 2 }, 0, 9), [1]);
     let mut cursor = Cursor::start(SCOPE_IN_LOOP, [], [], Nanos(100));
     assert_eq!(cursor.since(1, Nanos(150)), Nanos::ZERO);
+    assert_eq!(cursor.state(SCOPE_IN_LOOP), 2, "a loop without a counter is in its last pass");
     assert!(cursor.end(SCOPE_IN_LOOP, 1, Nanos(100)));
     assert_eq!(cursor.atom(), 1, "a loop without a counter is left");
 }
