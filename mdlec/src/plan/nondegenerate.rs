@@ -63,13 +63,13 @@ struct Removal<'a> {
 
 impl Removal<'_> {
     fn scope(&mut self, scope: &mut Scope) {
+        // New, or it would have been removed.
         let normal = self.interrupt(&mut scope.interrupt, None);
-        let fresh = normal.filter(|normal| !self.around.contains_key(normal));
-        if let Some(normal) = &fresh {
+        if let Some(normal) = &normal {
             self.around.insert(normal.clone(), (scope.name.clone(), scope.interrupt.span));
         }
         self.sequence(&mut scope.body);
-        if let Some(normal) = &fresh {
+        if let Some(normal) = &normal {
             self.around.remove(normal);
         }
     }

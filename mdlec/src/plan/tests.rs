@@ -227,6 +227,7 @@ fn what_is_not_the_same_function_is_not_repeated() {
   (Atom (NOT wait 5) stop)
   { Turned (rendezvous ada) (Atom (rendezvous ada) stop) }
   { Once (wait inf) (Atom (null) stop) }
+  { Either (bumper OR NOT wait 5) (Atom (NOT wait 5 OR bumper) stop) }
 }"
     );
 }
