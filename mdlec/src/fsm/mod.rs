@@ -4,6 +4,8 @@
 
 mod expand;
 mod file;
+#[cfg(test)]
+mod tests;
 
 pub use expand::expand;
 pub use file::{FsmFile, InterruptEntry, Moves, ScopeEntry, fsm_file};
