@@ -1,0 +1,133 @@
+//! What an emitted file says: names, arguments and conditions as their rules have them (`emitted.rs` says what it does).
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use mdle_tests::pipeline::{compile, scripted};
+use mdlec::rust::{Header, emit, plan_type};
+
+fn emitted(plan: &str) -> String {
+    let compiled = compile(plan).unwrap_or_else(|report| panic!("{report}"));
+    emit(&compiled.lowered, Header { file: "plan.mdle", plan: "Main" }, scripted())
+}
+
+/// The same as if it were one line: without white space, and without a comma behind the last argument.
+fn dense(plan: &str) -> String {
+    emitted(plan).split_whitespace().collect::<String>().replace(",)", ")")
+}
+
+#[test]
+fn an_atom_is_described_without_its_removed_interrupt() {
+    let rust = emitted("{ Main (a) (Atom (a) seek) (Atom (b) idle) }");
+    assert!(rust.contains("/// `(Atom (null) seek)`") && rust.contains("/// `(Atom (b) idle)`"), "{rust}");
+}
+
+#[test]
+fn arguments_are_what_their_texts_say() {
+    let laws = "(Atom (a) wander(1 inf)) (Atom (a) wander(1m, 2.5s)) (Atom (a) veer -90) (Atom (a) veer 1rad)";
+    let interrupts = "(Atom (beyond -0.5 0) idle) (Atom (beyond 2 -3) idle) (Atom (beyond 2 1) idle)";
+    let rust = dense(&format!("{{ Main {laws} {interrupts} }}"));
+    for argument in [
+        "Wander::new(::mdle_runtime::Meters(1.0),::mdle_runtime::Nanos::MAX)",
+        "Wander::new(::mdle_runtime::Meters(1.0),::mdle_runtime::Nanos(2500000000))",
+        "Veer::new(::mdle_runtime::Radians::from_degrees(-90.0))",
+        "Veer::new(::mdle_runtime::Radians(1.0))",
+        "Beyond::new(-0.5,0)",
+        "Beyond::new(2.0,-3)",
+        "Beyond::new(2.0,1)",
+    ] {
+        assert!(rust.contains(argument), "{argument} in {rust}");
+    }
+}
+
+#[test]
+fn names_keep_their_words_and_are_always_names() {
+    assert_eq!(["leg_2", "a_leg", "_leg", "2"].map(plan_type), ["Leg2", "ALeg", "Leg", "P2"]);
+    let rust = emitted(
+        "{ Main (a) { leg2 (b) (Atom (c) idle) } { _Leg (b) (Atom (c) idle) } { Ändern (b) (Atom (c) idle) } }",
+    );
+    for function in ["fn leg2(", "fn leg(", "fn uc4ndern("] {
+        assert!(rust.contains(function), "{function} in {rust}");
+    }
+}
+
+/// Every name that a file gives to a function of its own, an argument or a variable, as far as a scope could have it.
+fn names_of_its_own(rust: &str) -> Vec<&str> {
+    let mut names = Vec::new();
+    for line in rust.lines() {
+        // Those further in are methods, which hide nothing.
+        names.extend(line.strip_prefix("    fn ").and_then(|function| function.split('(').next()));
+        let arguments = line.split("fn ").nth(1).map_or("", |line| line.split_once('(').map_or("", |(_, rest)| rest));
+        names.extend(arguments.split(", ").filter_map(|argument| Some(argument.split_once(": ")?.0)));
+    }
+    let laws = rust.split("Running::Atom").skip(1);
+    names.extend(laws.filter_map(|arm| arm.split_once('(')?.1.split(')').next()));
+    names.retain(|name| name.starts_with(|letter: char| letter.is_ascii_lowercase()));
+    names.sort();
+    names.dedup();
+    names
+}
+
+#[test]
+fn a_scope_may_be_called_as_anything_in_its_file_is() {
+    let rust = emitted("{ Main (Atom (a) seek) (Atom (b) idle) }");
+    let own = names_of_its_own(&rust);
+    for name in ["begin", "cursor", "law", "scope", "t", "text", "texts", "y"] {
+        assert!(own.contains(&name), "{name} is one of {own:?}");
+    }
+    for name in own.into_iter().chain(["gen", "fn"]) {
+        let rust = emitted(&format!("{{ Main (Atom (a) seek) {{ {name} (b) (Atom (c) idle) }} }}"));
+        assert!(!rust.contains(&format!("fn {name}(cursor")), "{name} in {rust}");
+    }
+}
+
+#[test]
+fn a_plan_may_be_called_as_any_type_that_its_file_uses() {
+    let rust = emitted("{ Main (Atom (a) seek)^2 }");
+    let lines = rust.lines().filter(|line| !line.trim_start().starts_with("//"));
+    let code = lines.collect::<Vec<_>>().join("\n");
+    // Variants are written with their enum everywhere else.
+    let (start, rest) = code.split_once("enum Running {").expect("the laws");
+    let code = format!("{start} Running {}", rest.split_once('}').expect("their end").1);
+    let is_part = |letter: char| letter.is_alphanumeric() || letter == '_';
+    // What is written large is a constant.
+    let is_type = |word: &str| {
+        word.starts_with(|letter: char| letter.is_ascii_uppercase())
+            && word.contains(|letter: char| letter.is_lowercase())
+    };
+    for name in code.split(|letter| !is_part(letter)).filter(|word| is_type(word) && *word != "Main") {
+        let places = code.match_indices(name).map(|(place, _)| (&code[..place], &code[place + name.len()..]));
+        let mut alone = places.filter(|(before, behind)| !before.ends_with(is_part) && !behind.starts_with(is_part));
+        // Where it is looked for is said before it, or it is a type of the trait's.
+        let is_found_elsewhere = alone.all(|(before, _)| before.ends_with("::") || before.ends_with("type "));
+        assert!(is_found_elsewhere || plan_type(name) != name, "{name}");
+    }
+}
+
+#[test]
+fn a_condition_of_many_operands_has_few_at_each_depth() {
+    for operands in [64, 65, 5_000] {
+        let waits: Vec<_> = (1..=operands).map(|seconds| format!("wait {seconds}")).collect();
+        let rust = dense(&format!("{{ Main (Atom ({}) idle) }}", waits.join(" OR ")));
+        let condition = rust.split("Running::Atom1(_)=>").nth(1).expect("the atom's arm");
+        assert!(operands_at_one_depth(condition) <= 64, "{operands} operands: {condition}");
+        assert_eq!(rust.matches("cursor.since(").count(), operands);
+    }
+}
+
+/// The most operands of `|` between two parentheses.
+fn operands_at_one_depth(text: &str) -> usize {
+    let mut open = vec![1];
+    let mut most = 1;
+    for letter in text.chars() {
+        match letter {
+            '(' => open.push(1),
+            ')' => {
+                open.pop();
+            }
+            '|' => *open.last_mut().expect("as many open as are closed") += 1,
+            _ => {}
+        }
+        most = most.max(open.last().copied().unwrap_or(1));
+    }
+    most
+}
