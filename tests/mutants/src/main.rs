@@ -39,9 +39,9 @@ struct Options {
     /// What decides which; the hash of the commit if it is not given.
     #[arg(long)]
     seed: Option<u64>,
-    /// Only files whose paths contain this.
+    /// Only mutants whose lines, as they are printed, contain this.
     #[arg(long, default_value = "")]
-    file: String,
+    only: String,
     /// Print the mutants and try none.
     #[arg(long)]
     list: bool,
@@ -60,13 +60,14 @@ fn main() -> ExitCode {
         return ExitCode::FAILURE;
     }
     let seed = options.seed.unwrap_or_else(choice::seed_of_commit);
-    let chosen = choice::shuffled(&mutants, seed).into_iter().filter(|mutant| mutant.file.contains(&options.file));
+    let mut chosen = choice::shuffled(&mutants, seed);
+    chosen.retain(|mutant| mutant.to_string().contains(&options.only));
     if options.list {
-        chosen.for_each(|mutant| println!("{mutant}"));
+        chosen.iter().for_each(|mutant| println!("{mutant}"));
         return ExitCode::SUCCESS;
     }
     println!("{} mutants, seed {seed}", mutants.len());
-    let chosen: Vec<_> = chosen.filter(|mutant| options.all || equivalents.find(mutant).is_none()).collect();
+    chosen.retain(|mutant| options.all || equivalents.find(mutant).is_none());
     let count = if options.all { usize::MAX } else { options.count };
     let report = try_all(&chosen, count, &sources, &equivalents);
     println!("{report}");

@@ -20,14 +20,14 @@ pub(crate) fn changes(text: &str, tokens: TokenStream, change: &mut impl FnMut(R
 
 /// The places of all interpolated values.
 fn interpolated(tokens: TokenStream, values: &mut Vec<Range<usize>>) {
-    let mut after_hash = false;
+    let mut hash = None;
     for token in tokens {
-        match &token {
-            TokenTree::Group(group) => interpolated(group.stream(), values),
-            TokenTree::Ident(_) if after_hash => values.push(range(&token)),
-            TokenTree::Ident(_) | TokenTree::Literal(_) | TokenTree::Punct(_) => {}
+        match (&token, hash) {
+            (TokenTree::Group(group), _) => interpolated(group.stream(), values),
+            (TokenTree::Ident(_), Some(start)) => values.push(start..range(&token).end),
+            (TokenTree::Ident(_) | TokenTree::Literal(_) | TokenTree::Punct(_), _) => {}
         }
-        after_hash = is(&token, '#');
+        hash = is(&token, '#').then_some(range(&token).start);
     }
 }
 

@@ -15,10 +15,10 @@ const COMPILER: Packages = &["--package", "mdlec", "--package", "mdle-tests"];
 const TESTS: &[(Packages, &[&str])] = &[
     (RUNTIME, &["--lib"]),
     (COMPILER, &["--test", "rules", "--test", "rules_of_loops"]),
-    (COMPILER, &["--test", "golden", "--test", "fsm_files", "--test", "paper"]),
+    (COMPILER, &["--test", "golden", "--test", "emitted_text", "--test", "fsm_files"]),
+    (COMPILER, &["--lib"]),
     (COMPILER, &["--test", "emitted"]),
     (COMPILER, &["--test", "differential"]),
-    (COMPILER, &["--lib"]),
 ];
 
 /// The command line of a test.
