@@ -1,5 +1,7 @@
 //! Names, arguments, plans by name and degeneracy: what comes out, and what is said where nothing can.
 
+mod degeneracy;
+
 use crate::samples::{compiled, judged};
 
 /// One snapshot: the text, what is said of it for a robot that has everything, and the plan.
@@ -215,6 +217,7 @@ fn repeated_interrupts_are_removed() {
     (Atom (bumper OR wait 5000ms) stop)
     { Same (NOT (NOT bumper)) (Atom (bumper AND bumper) stop) }
   }
+  { Never (wait inf OR bumper) (Atom (bumper OR wait inf) stop) }
   (Atom (bumper AND wait 5) stop)
 }"
     );

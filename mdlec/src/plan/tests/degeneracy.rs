@@ -1,0 +1,43 @@
+//! What degeneracy removal leaves behind (semantics, section 7): traces cannot tell, for the outer interrupt always wins.
+
+use crate::alphabet;
+use crate::diagnostic::SourceId;
+use crate::plan::{Condition, Interrupt, Node};
+use crate::samples::compiled;
+use crate::{Compiled, compile};
+
+/// The interrupt of the plan's first atom.
+fn of_first_atom(compiled: &Compiled) -> &Interrupt {
+    match &compiled.nondegenerate.plan().root.body[0] {
+        Node::Atom(atom) => &atom.interrupt,
+        other @ (Node::Scope(_) | Node::Loop(_)) => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn a_removed_interrupt_is_null_and_keeps_its_text() {
+    let compiled = compiled("{ P (bumper OR wait 5) (Atom (wait 5 OR bumper) rotate 90) }");
+    let interrupt = of_first_atom(&compiled[0]);
+    assert_eq!((&interrupt.condition, interrupt.removed), (&Condition::Null, true));
+    assert_eq!(interrupt.text, "wait 5 OR bumper");
+}
+
+#[test]
+fn an_interrupt_that_is_not_repeated_stays_as_it_is() {
+    let compiled = compiled("{ P (bumper) (Atom (NOT bumper) stop) }");
+    let interrupt = of_first_atom(&compiled[0]);
+    assert!(matches!(interrupt.condition, Condition::Not(_)) && !interrupt.removed);
+}
+
+#[test]
+fn a_file_is_the_same_with_and_without_quotes() {
+    let text = "target t : crate t, period 1s; interrupt played(tune: file); control stop;";
+    let (alphabet, found) = alphabet::combine(alphabet::read(SourceId(0), text).0.expect("an alphabet"), &[]);
+    assert_eq!(found, []);
+    let removed = |plan: &str| {
+        let (compiled, found) = compile(SourceId(0), plan, &alphabet, None);
+        of_first_atom(compiled.first().unwrap_or_else(|| panic!("{found:?}"))).removed
+    };
+    assert!(removed("{ P (played \"a\") (Atom (played a) stop) }"));
+    assert!(!removed("{ P (played \"a\") (Atom (played b) stop) }"));
+}
