@@ -113,7 +113,6 @@ impl Lowering {
     fn scope(&mut self, scope: &Scope, place: Place) -> Result<u64, Diagnostic> {
         let meaning = ScopeMeaning { name: scope.name.clone(), interrupt: scope.interrupt.clone() };
         let bracket = self.bracket(Kind::Scope { level: place.level }, place.parent, Some(meaning));
-        self.lowered.levels = self.lowered.levels.max(usize::from(place.level) + 1);
         let inside = Place { parent: bracket, level: place.level.saturating_add(1), ..place };
         let states = self.sequence(&scope.body, inside, scope.span)?;
         self.close(bracket);
