@@ -59,7 +59,7 @@ pub fn emit(lowered: &Lowered, header: Header<'_>, alphabet: &Alphabet) -> Strin
 /// Writes the file in this shape.
 #[must_use]
 pub fn emit_as(shape: Shape, lowered: &Lowered, header: Header<'_>, alphabet: &Alphabet) -> String {
-    let target = format_ident!("{}", alphabet.crate_name.replace('-', "_"));
+    let target = format_ident!("{}", alphabet.crate_name);
     let plan = format_ident!("{}", plan_type(header.plan));
     let doc = format!(" The plan `{}`.", header.plan);
     let machine = match shape {
