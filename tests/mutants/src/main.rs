@@ -51,6 +51,13 @@ fn main() -> ExitCode {
     let options = Options::parse();
     let sources = choice::sources();
     let mutants = choice::all(&sources);
+    let seed = options.seed.unwrap_or_else(choice::seed_of_commit);
+    let mut chosen = choice::shuffled(&mutants, seed);
+    chosen.retain(|mutant| mutant.to_string().contains(&options.only));
+    if options.list {
+        chosen.iter().for_each(|mutant| println!("{mutant}"));
+        return ExitCode::SUCCESS;
+    }
     let equivalents = Equivalents::read();
     let stale: Vec<_> = equivalents.stale(&mutants).collect();
     for entry in &stale {
@@ -58,13 +65,6 @@ fn main() -> ExitCode {
     }
     if !stale.is_empty() {
         return ExitCode::FAILURE;
-    }
-    let seed = options.seed.unwrap_or_else(choice::seed_of_commit);
-    let mut chosen = choice::shuffled(&mutants, seed);
-    chosen.retain(|mutant| mutant.to_string().contains(&options.only));
-    if options.list {
-        chosen.iter().for_each(|mutant| println!("{mutant}"));
-        return ExitCode::SUCCESS;
     }
     println!("{} mutants, seed {seed}", mutants.len());
     chosen.retain(|mutant| options.all || equivalents.find(mutant).is_none());

@@ -70,8 +70,8 @@ fn short(text: &str) -> String {
     if letters.len() <= 2 * ENDS {
         return text;
     }
-    let (start, end) = (&letters[..ENDS], &letters[letters.len() - ENDS..]);
-    start.iter().chain(&[' ', '…', ' ']).chain(end).collect()
+    let ends = [&letters[..ENDS], &letters[letters.len() - ENDS..]].map(|end| end.iter().collect::<String>());
+    ends.map(|end| end.trim().to_owned()).join(" … ")
 }
 
 #[cfg(test)]
