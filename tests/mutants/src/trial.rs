@@ -1,4 +1,4 @@
-//! A mutant before the tests: they run from fast to slow, and the first that fails ends the trial.
+//! A mutant before the tests: they run one after another, and the first that fails ends the trial.
 
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -11,11 +11,11 @@ type Packages = &'static [&'static str];
 const RUNTIME: Packages = &["--package", "mdle-runtime"];
 const COMPILER: Packages = &["--package", "mdlec", "--package", "mdle-tests"];
 
-/// The tests, as `cargo test` takes them.
+/// The tests, as `cargo test` takes them: those first that catch much and are fast.
 const TESTS: &[(Packages, &[&str])] = &[
     (RUNTIME, &["--lib"]),
-    (COMPILER, &["--test", "rules", "--test", "rules_of_loops"]),
     (COMPILER, &["--test", "golden", "--test", "emitted_text", "--test", "fsm_files"]),
+    (COMPILER, &["--test", "rules", "--test", "rules_of_loops"]),
     (COMPILER, &["--lib"]),
     (COMPILER, &["--test", "emitted"]),
     (COMPILER, &["--test", "differential"]),
@@ -70,7 +70,8 @@ impl Trials {
             trials.cargo(&[&["test", "--no-run"], packages, targets], BUILD);
             let start = Instant::now();
             let ended = trials.cargo(&[&["test"], packages, targets], BUILD);
-            assert_eq!(ended, Ended::Well, "without a fault: {}", name(number));
+            let folder = trials.checkout.sources();
+            assert_eq!(ended, Ended::Well, "without a fault, in {}: {}", folder.display(), name(number));
             trials.limits.push(PATIENCE + 3 * start.elapsed());
         }
         trials
