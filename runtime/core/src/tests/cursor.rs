@@ -78,6 +78,12 @@ fn a_level_is_the_scope_around_the_current_atom() {
 }
 
 #[test]
+fn a_walk_outwards_ends_at_the_plan() {
+    let outwards = |bracket| LOOP_IN_SCOPE.outwards(bracket).map(|(number, _)| number).collect::<Vec<_>>();
+    assert_eq!((outwards(3), outwards(0)), (std::vec![3, 2, 1, 0], std::vec![0]));
+}
+
+#[test]
 fn an_interrupt_around_a_loop_leaves_it() {
     assert_eq!(states(LOOP_IN_SCOPE, 1, 9), [1, 3]);
     assert_eq!(states(LOOP_IN_SCOPE, 2, 9), [1, 2, 3], "that of its body begins the next pass");
