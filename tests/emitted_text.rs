@@ -2,12 +2,27 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
-use mdle_tests::pipeline::{compile, scripted};
+use mdle_tests::pipeline::scripted;
+use mdlec::alphabet::{Alphabet, combine, read};
+use mdlec::diagnostic::SourceId;
 use mdlec::rust::{Header, emit, plan_type};
 
 fn emitted(plan: &str) -> String {
-    let compiled = compile(plan).unwrap_or_else(|report| panic!("{report}"));
-    emit(&compiled.lowered, Header { file: "plan.mdle", plan: "Main" }, scripted())
+    emitted_for(scripted(), plan)
+}
+
+fn emitted_for(alphabet: &Alphabet, plan: &str) -> String {
+    let (compiled, found) = mdlec::compile(SourceId(0), plan, alphabet, Some("Main"));
+    let compiled = compiled.first().unwrap_or_else(|| panic!("{plan}: {found:?}"));
+    emit(&compiled.lowered, Header { file: "plan.mdle", plan: "Main" }, alphabet)
+}
+
+/// The alphabet of a robot that has these quarks.
+fn alphabet(declarations: &str) -> Alphabet {
+    let text = format!("target t : crate t, period 1s; {declarations}");
+    let (alphabet, found) = combine(read(SourceId(0), &text).0.expect("an alphabet"), &[]);
+    assert_eq!(found, []);
+    alphabet
 }
 
 /// The same as if it were one line: without white space, and without a comma behind the last argument.
@@ -48,6 +63,37 @@ fn names_keep_their_words_and_are_always_names() {
     for function in ["fn leg2(", "fn leg(", "fn uc4ndern("] {
         assert!(rust.contains(function), "{function} in {rust}");
     }
+}
+
+#[test]
+fn declarations_of_one_name_are_numbered_from_two() {
+    let alphabet = alphabet(
+        "interrupt a; control go(to: length m); control go(to: module); control go(v: length m, w: length m);",
+    );
+    let rust = emitted_for(&alphabet, "{ Main (Atom (a) go 1) (Atom (a) go(x module)) (Atom (a) go 1 2) }");
+    for constant in ["GO_1: robot::Go =", "GO_X_MODULE: robot::Go2 =", "GO_1_2: robot::Go3 ="] {
+        assert!(rust.contains(constant), "{constant} in {rust}");
+    }
+}
+
+#[test]
+fn a_quark_may_be_called_as_any_constant_of_the_file_is() {
+    let constants = |rust: &str| {
+        let declared = rust.split(" const ").skip(1).filter_map(|constant| constant.split_once(": "));
+        let names = declared.map(|(name, _)| name.to_owned());
+        // `const fn` is none.
+        names.filter(|name| !name.contains('(')).collect::<Vec<_>>()
+    };
+    let own = constants(&emitted("{ Main (Atom (wait 1) idle) }"));
+    let own: Vec<_> = own.into_iter().filter(|name| name != "IDLE").map(|name| name.to_lowercase()).collect();
+    assert!(["fsm", "laws", "conditions", "names"].iter().all(|name| own.iter().any(|own| own == name)), "{own:?}");
+    let declarations: String = own.iter().map(|name| format!("interrupt {name}; ")).collect();
+    let alphabet = alphabet(&format!("{declarations} control stop;"));
+    let mut all = constants(&emitted_for(&alphabet, &format!("{{ Main (Atom ({}) stop) }}", own.join(" OR "))));
+    assert_eq!(all.len(), 2 * own.len() + 1);
+    all.sort();
+    all.dedup();
+    assert_eq!(all.len(), 2 * own.len() + 1, "{all:?}");
 }
 
 /// Every name that a file gives to a function of its own, an argument or a variable, as far as a scope could have it.
