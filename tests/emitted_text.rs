@@ -42,10 +42,10 @@ fn arguments_are_what_their_texts_say() {
     let interrupts = "(Atom (beyond -0.5 0) idle) (Atom (beyond 2 -3) idle) (Atom (beyond 2 1) idle)";
     let rust = dense(&format!("{{ Main {laws} {interrupts} }}"));
     for argument in [
-        "Wander::new(::mdle_runtime::Meters(1.0),::mdle_runtime::Nanos::MAX)",
-        "Wander::new(::mdle_runtime::Meters(1.0),::mdle_runtime::Nanos(2500000000))",
-        "Veer::new(::mdle_runtime::Radians::from_degrees(-90.0))",
-        "Veer::new(::mdle_runtime::Radians(1.0))",
+        "Wander::new(runtime::Meters(1.0),runtime::Nanos::MAX)",
+        "Wander::new(runtime::Meters(1.0),runtime::Nanos(2500000000))",
+        "Veer::new(runtime::Radians::from_degrees(-90.0))",
+        "Veer::new(runtime::Radians(1.0))",
         "Beyond::new(-0.5,0)",
         "Beyond::new(2.0,-3)",
         "Beyond::new(2.0,1)",
@@ -98,16 +98,14 @@ fn a_quark_may_be_called_as_any_constant_of_the_file_is() {
 
 /// Every name that a file gives to a function of its own, an argument or a variable, as far as a scope could have it.
 fn names_of_its_own(rust: &str) -> Vec<&str> {
-    let mut names = Vec::new();
-    for line in rust.lines() {
-        // Those further in are methods, which hide nothing.
-        names.extend(line.strip_prefix("    fn ").and_then(|function| function.split('(').next()));
-        let arguments = line.split("fn ").nth(1).map_or("", |line| line.split_once('(').map_or("", |(_, rest)| rest));
-        names.extend(arguments.split(", ").filter_map(|argument| Some(argument.split_once(": ")?.0)));
-    }
-    let laws = rust.split("Running::Atom").skip(1);
-    names.extend(laws.filter_map(|arm| arm.split_once('(')?.1.split(')').next()));
-    names.retain(|name| name.starts_with(|letter: char| letter.is_ascii_lowercase()));
+    // Functions further in are methods, which hide nothing.
+    let functions = rust.lines().filter_map(|line| line.strip_prefix("    fn ")?.split('(').next());
+    let arguments = rust.split("fn ").skip(1).filter_map(|function| function.split_once('(')?.1.split(')').next());
+    let arguments =
+        arguments.flat_map(|arguments| arguments.split(',')).filter_map(|argument| argument.split_once(": "));
+    let laws = rust.split("Running::Atom").skip(1).filter_map(|arm| arm.split_once('(')?.1.split(')').next());
+    let names = functions.chain(arguments.map(|(name, _)| name.trim())).chain(laws);
+    let mut names: Vec<_> = names.filter(|name| name.chars().all(|letter| letter.is_ascii_lowercase())).collect();
     names.sort();
     names.dedup();
     names
@@ -117,7 +115,7 @@ fn names_of_its_own(rust: &str) -> Vec<&str> {
 fn a_scope_may_be_called_as_anything_in_its_file_is() {
     let rust = emitted("{ Main (Atom (a) seek) (Atom (b) idle) }");
     let own = names_of_its_own(&rust);
-    for name in ["begin", "cursor", "law", "scope", "t", "text", "texts", "y"] {
+    for name in ["begin", "cursor", "direct", "law", "scope", "t", "text", "texts", "y"] {
         assert!(own.contains(&name), "{name} is one of {own:?}");
     }
     for name in own.into_iter().chain(["gen", "fn"]) {

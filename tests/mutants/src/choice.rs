@@ -10,7 +10,14 @@ use crate::mutant::{Mutant, mutants};
 
 /// What is mutated: files and folders. A few mutants are taken from each area in turn, however large it is.
 const AREAS: &[&[&str]] = &[
-    &["runtime/core/src/cursor.rs", "runtime/core/src/fsm.rs", "runtime/core/src/machine.rs"],
+    &[
+        "runtime/core/src/cursor.rs",
+        "runtime/core/src/follows.rs",
+        "runtime/core/src/fsm.rs",
+        "runtime/core/src/machine.rs",
+        "runtime/core/src/plan.rs",
+        "runtime/core/src/rows.rs",
+    ],
     &["mdlec/src/plan/nondegenerate.rs"],
     &["mdlec/src/fsm/mod.rs"],
     &["mdlec/src/rust"],
