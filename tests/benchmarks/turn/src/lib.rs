@@ -1,8 +1,13 @@
-//! The robot of workload T(N): one measurement, one switch, two numbers to write.
+//! The robot of workload T(N): one measurement, one switch, two numbers to write; and the machines that are compared on it.
 #![no_std]
 #![forbid(unsafe_code)]
 
+// What mdlec emits names this crate as any other package would.
+extern crate self as mdle_workload;
+
 pub mod alphabet;
+pub mod cases;
+pub mod machines;
 pub mod quarks;
 
 /// What a turn reads.

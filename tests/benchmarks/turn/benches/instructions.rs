@@ -1,0 +1,48 @@
+//! Instructions for 10,000 turns, in each of the three cases, of each machine: the same on every run.
+
+use gungraun::prelude::*;
+use mdle_workload::cases::{Case, run};
+use mdle_workload::machines::Nothing;
+use mdle_workload::machines::by_hand::{Match8, Match1000, NestedMatch8, Table};
+use mdle_workload::machines::plan::{Plan8, Plan1000, Plan100000};
+use mdle_workload::machines::smlang::{Smlang8, Smlang1000};
+use mdle_workload::machines::statig::{Statig8, Statig1000};
+
+/// A whole number of passes through 8 and through 1,000 atoms.
+const TURNS: u32 = 10_000;
+
+/// A benchmark for each machine.
+macro_rules! machines {
+    ($($name:ident: $machine:ty),+ $(,)?) => {
+        $(
+            #[library_benchmark]
+            #[bench::steady(Case::Steady)]
+            #[bench::each(Case::Each)]
+            #[bench::halt(Case::Halt)]
+            fn $name(case: Case) -> f64 {
+                run::<$machine>(std::hint::black_box(case), TURNS)
+            }
+        )+
+
+        library_benchmark_group!(name = turns, benchmarks = [$($name),+]);
+    };
+}
+
+machines! {
+    nothing: Nothing,
+    plan_8: Plan8,
+    match_8: Match8,
+    nested_match_8: NestedMatch8,
+    table_8: Table<8>,
+    statig_8: Statig8,
+    smlang_8: Smlang8,
+    plan_1000: Plan1000,
+    match_1000: Match1000,
+    table_1000: Table<1_000>,
+    statig_1000: Statig1000,
+    smlang_1000: Smlang1000,
+    plan_100000: Plan100000,
+    table_100000: Table<100_000>,
+}
+
+main!(library_benchmark_groups = turns);

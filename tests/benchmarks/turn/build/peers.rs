@@ -1,0 +1,107 @@
+//! The peers of T(N) as source: what a person would write by hand, a line or a few for each atom.
+
+/// One text after the other, for each atom.
+fn each(atoms: u32, text: impl Fn(u32) -> String) -> String {
+    (0..atoms).map(text).collect()
+}
+
+/// The numbers of an atom's law, as a literal.
+fn law(atom: u32) -> String {
+    format!("Input {{ left: {}.25, right: {atom}.5 }}", atom + 1)
+}
+
+/// A `match` over the number of the current atom.
+pub fn matching(atoms: u32) -> String {
+    let arms = each(atoms, |atom| {
+        format!(
+            "                {atom} => if y.measured >= {}.0 {{ self.state = {} }} else {{ return Turn::Law({}) }},\n",
+            atom + 1,
+            atom + 1,
+            law(atom)
+        )
+    });
+    format!(
+        "#[derive(Debug)]
+pub struct Match {{ state: u32 }}
+impl Robot for Match {{
+    fn begin(_: &Output, _: Nanos) -> Self {{ Self {{ state: 0 }} }}
+    #[inline(never)]
+    fn turn(&mut self, y: &Output, _: Nanos) -> Turn<Input> {{
+        if self.state == {atoms} || y.halt {{ self.state = {atoms}; return Turn::Over }}
+        loop {{
+            match self.state {{
+{arms}                _ => return Turn::Over,
+            }}
+        }}
+    }}
+}}
+"
+    )
+}
+
+/// States of the crate statig: its macro makes the machine from a function for each state.
+pub fn statig(atoms: u32) -> String {
+    let states = each(atoms, |atom| {
+        let next = if atom + 1 == atoms { "over".to_owned() } else { format!("atom_{}", atom + 1) };
+        format!(
+            "    #[state]
+    fn atom_{atom}(context: &mut Option<Turn<Input>>, event: &Output) -> Outcome<State> {{
+        if event.halt {{ return Transition(State::over()) }}
+        if event.measured >= {}.0 {{ return Transition(State::{next}()) }}
+        *context = Some(Turn::Law({}));
+        Handled
+    }}
+",
+            atom + 1,
+            law(atom)
+        )
+    });
+    format!(
+        "#[derive(Debug, Default)]
+pub struct Chart;
+#[state_machine(initial = \"State::atom_0()\", state(derive(Debug)))]
+impl Chart {{
+{states}    #[state]
+    fn over(context: &mut Option<Turn<Input>>) -> Outcome<State> {{
+        *context = Some(Turn::Over);
+        Handled
+    }}
+}}
+"
+    )
+}
+
+/// Transitions of the crate smlang, and the guards and actions that they name.
+pub fn smlang(atoms: u32) -> String {
+    let transitions = each(atoms, |atom| {
+        let (start, state) = (if atom == 0 { "*" } else { "" }, format!("Atom{atom} + Turn(&'a Output)"));
+        let next = if atom + 1 == atoms { "/ end = Over".to_owned() } else { format!("= Atom{}", atom + 1) };
+        format!(
+            "        {start}{state} [halted] / end = Over,
+        {state} [reached_{atom}] {next},
+        {state} / write_{atom} = Atom{atom},
+"
+        )
+    });
+    let functions = each(atoms, |atom| {
+        format!(
+            "    fn reached_{atom}(&self, y: &Output) -> Result<bool, ()> {{ Ok(y.measured >= {}.0) }}
+    fn write_{atom}(&mut self, _: &Output) -> Result<(), ()> {{ self.said = Some(Said::Law({})); Ok(()) }}
+",
+            atom + 1,
+            law(atom)
+        )
+    });
+    format!(
+        "statemachine! {{
+    transitions: {{
+{transitions}        Over + Turn(&'a Output) / end = Over,
+    }},
+}}
+impl StateMachineContext for Context {{
+    fn halted(&self, y: &Output) -> Result<bool, ()> {{ Ok(y.halt) }}
+    fn end(&mut self, _: &Output) -> Result<(), ()> {{ self.said = Some(Said::Over); Ok(()) }}
+{functions}}}
+"
+    )
+}

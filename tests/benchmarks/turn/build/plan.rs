@@ -1,0 +1,46 @@
+//! From the text of a plan for the workload's robot to the Rust that mdlec emits for it.
+
+use std::fmt::Write;
+
+use mdlec::alphabet::{self, Alphabet};
+use mdlec::diagnostic::Sources;
+use mdlec::rust::{Header, emit};
+
+const ALPHABET: &str = include_str!("../alphabet.mdle");
+
+/// The text of T(N): a plan-level interrupt over N atoms, each with an end condition and a law that writes two numbers.
+pub fn written_out(atoms: u32) -> String {
+    format!("{{ T (halt)\n{}}}\n", lines(0..atoms))
+}
+
+/// The text of a plan that passes `passes` times through two atoms.
+pub fn looped(passes: u64) -> String {
+    format!("{{ T (halt)\nExecPlan {passes} {{\n{}}}\n}}\n", lines(0..2))
+}
+
+fn lines(atoms: std::ops::Range<u32>) -> String {
+    atoms.fold(String::new(), |mut text, atom| {
+        writeln!(text, "  (Atom (reached {}) write {}.25 {atom}.5)", atom + 1, atom + 1).expect("a text takes all");
+        text
+    })
+}
+
+fn robot() -> Alphabet {
+    let (file, found) = alphabet::read(Sources::default().add("", ""), ALPHABET);
+    assert_eq!(found, [], "the workload's alphabet");
+    let (alphabet, found) = alphabet::combine(file.expect("an alphabet"), &[]);
+    assert_eq!(found, [], "the workload's alphabet");
+    alphabet
+}
+
+/// The Rust of plan T of this text.
+pub fn emitted(text: &str) -> String {
+    let robot = robot();
+    let mut sources = Sources::default();
+    sources.add("alphabet.mdle", ALPHABET);
+    let source = sources.add("T.mdle", text);
+    let (compiled, found) = mdlec::compile(source, text, &robot, Some("T"));
+    let said: String = found.iter().map(|diagnostic| sources.render(diagnostic)).collect();
+    let compiled = compiled.first().unwrap_or_else(|| panic!("{said}"));
+    emit(&compiled.lowered, Header { file: "T.mdle", plan: "T" }, &robot)
+}

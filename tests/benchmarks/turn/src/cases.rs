@@ -1,0 +1,57 @@
+//! The three cases that are measured, and the loop that makes the turns.
+
+use core::hint::black_box;
+
+use mdle_runtime::{Nanos, Turn};
+
+use crate::Output;
+use crate::machines::Robot;
+
+/// What the robot meets.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Case {
+    /// No condition fires: the first atom's law writes, turn after turn.
+    Steady,
+    /// In each turn the current atom ends and the next one writes; after the last the plan begins again.
+    Each,
+    /// In each turn the plan's own interrupt ends the plan, which then begins again.
+    Halt,
+}
+
+impl Case {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Steady, Self::Each, Self::Halt];
+
+    /// What the first turn reads, and by how much the measurement grows from turn to turn.
+    fn outputs(self) -> (Output, f64) {
+        match self {
+            Self::Steady => (Output { measured: 0.5, halt: false }, 0.0),
+            Self::Each => (Output { measured: 1.0, halt: false }, 1.0),
+            Self::Halt => (Output { measured: 0.5, halt: true }, 0.0),
+        }
+    }
+}
+
+/// Makes `turns` turns, and begins the plan again whenever it is over. Returns the sum of all that was written.
+///
+/// The loop knows nothing of the cases but two numbers, so that it costs the same in all of them.
+pub fn run<M: Robot>(case: Case, turns: u32) -> f64 {
+    let (first, step) = case.outputs();
+    let (mut y, mut sum) = (first, 0.0);
+    let mut machine = M::begin(&y, Nanos(0));
+    for turn in 0..turns {
+        let t = Nanos(u64::from(turn));
+        match machine.turn(black_box(&y), t) {
+            Turn::Law(input) => {
+                sum += input.left + input.right;
+                y.measured += step;
+            }
+            Turn::Cut => {}
+            Turn::Over => {
+                y = first;
+                machine = M::begin(&y, t);
+            }
+        }
+    }
+    sum
+}

@@ -1,0 +1,33 @@
+//! T(N) in several hands: each machine does the same job, which `tests/same.rs` holds.
+
+pub mod by_hand;
+pub mod plan;
+pub mod smlang;
+pub mod statig;
+
+use mdle_runtime::{Nanos, Turn};
+
+use crate::{Input, Output};
+
+/// A machine that runs T(N). Its turn is not inlined into the loop around it, as a robot's driver would not be.
+pub trait Robot {
+    /// The plan at its first atom.
+    fn begin(y: &Output, t: Nanos) -> Self;
+    /// Makes transitions, the plan's own interrupt first, until no condition fires; then the current atom's law writes.
+    fn turn(&mut self, y: &Output, t: Nanos) -> Turn<Input>;
+}
+
+/// Does nothing: what the loop around a machine costs.
+#[derive(Debug)]
+pub struct Nothing;
+
+impl Robot for Nothing {
+    fn begin(_: &Output, _: Nanos) -> Self {
+        Self
+    }
+
+    #[inline(never)]
+    fn turn(&mut self, y: &Output, _: Nanos) -> Turn<Input> {
+        if y.halt { Turn::Over } else { Turn::Law(Input { left: 1.25, right: 0.5 }) }
+    }
+}

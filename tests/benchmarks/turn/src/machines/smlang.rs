@@ -1,0 +1,53 @@
+//! T(N) as transitions of the crate smlang. An event is a look at the output, the context is what an action has written.
+
+use mdle_runtime::{Nanos, Turn};
+
+use super::Robot;
+use crate::{Input, Output};
+
+/// What an action has written.
+#[derive(Debug, Default)]
+pub struct Context {
+    said: Option<Turn<Input>>,
+}
+
+/// Each generated machine in a module of its own, with the turn around it.
+macro_rules! machines {
+    ($($module:ident $machine:ident $file:literal),+) => {$(
+        #[allow(missing_docs, clippy::result_unit_err, reason = "as smlang has it")]
+        mod $module {
+            use mdle_runtime::Turn as Said;
+            use smlang::statemachine;
+
+            use super::{Context, Input, Output};
+
+            include!(concat!(env!("OUT_DIR"), $file));
+        }
+
+        /// A machine that gets its event until one of its actions has written something.
+        #[allow(missing_debug_implementations, reason = "smlang's machine has none")]
+        pub struct $machine($module::StateMachine<Context>);
+
+        impl Robot for $machine {
+            fn begin(_: &Output, _: Nanos) -> Self {
+                Self($module::StateMachine::new(Context::default()))
+            }
+
+            #[inline(never)]
+            fn turn(&mut self, y: &Output, _: Nanos) -> Turn<Input> {
+                self.0.context_mut().said = None;
+                loop {
+                    // Never an error: some transition of each state has no guard.
+                    let _ = self.0.process_event($module::Events::Turn(y));
+                    if let Some(turn) = self.0.context().said {
+                        return turn;
+                    }
+                }
+            }
+        }
+    )+};
+}
+
+machines!(eight Smlang8 "/smlang_8.rs");
+#[cfg(feature = "thousands")]
+machines!(thousand Smlang1000 "/smlang_1000.rs");

@@ -1,0 +1,44 @@
+//! T(N) as states of the crate statig. An event is a look at the output, the context is what a state has written.
+
+use mdle_runtime::{Nanos, Turn};
+use statig::blocking::InitializedStateMachine;
+use statig::prelude::*;
+
+use super::Robot;
+use crate::{Input, Output};
+
+/// Each generated chart in a module of its own, with the turn around it.
+macro_rules! charts {
+    ($($module:ident $machine:ident $file:literal),+) => {$(
+        mod $module {
+            use super::*;
+
+            include!(concat!(env!("OUT_DIR"), $file));
+        }
+
+        /// A chart that is looked at until one of its states has something to write.
+        #[allow(missing_debug_implementations, reason = "statig's machine has none")]
+        pub struct $machine(InitializedStateMachine<$module::Chart>);
+
+        impl Robot for $machine {
+            fn begin(_: &Output, _: Nanos) -> Self {
+                Self($module::Chart.uninitialized_state_machine().init_with_context(&mut None))
+            }
+
+            #[inline(never)]
+            fn turn(&mut self, y: &Output, _: Nanos) -> Turn<Input> {
+                let mut said = None;
+                loop {
+                    self.0.handle_with_context(y, &mut said);
+                    if let Some(turn) = said {
+                        return turn;
+                    }
+                }
+            }
+        }
+    )+};
+}
+
+charts!(eight Statig8 "/statig_8.rs");
+#[cfg(feature = "thousands")]
+charts!(thousand Statig1000 "/statig_1000.rs");

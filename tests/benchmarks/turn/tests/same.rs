@@ -1,0 +1,80 @@
+//! All machines of a size write the same, turn by turn: else comparing them would say nothing.
+
+use mdle_runtime::{Nanos, Turn};
+use mdle_workload::machines::Robot;
+use mdle_workload::machines::by_hand::{Match8, NestedMatch8, Table};
+use mdle_workload::machines::plan::Plan8;
+use mdle_workload::machines::smlang::Smlang8;
+use mdle_workload::machines::statig::Statig8;
+use mdle_workload::{Input, Output};
+
+/// Outputs on which conditions fire or not, several in a turn too, and the plan ends by itself or by the switch.
+///
+/// The measurement goes back every so often, and from one output to the next it grows by less than `leap`.
+fn script(leap: u32) -> Vec<Output> {
+    let (mut seed, mut measured) = (1_u32, 0.0);
+    let mut draw = |below: u32| {
+        seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (seed >> 8) % below
+    };
+    (0..5_000)
+        .map(|turn| {
+            measured = if turn % 997 == 0 { 0.5 } else { measured + f64::from(draw(2 * leap)) / 2.0 };
+            Output { measured, halt: draw(501) == 0 }
+        })
+        .collect()
+}
+
+/// What a machine says to each output; it begins again when it is over.
+fn said<M: Robot>(script: &[Output]) -> Vec<Turn<Input>> {
+    let mut machine = M::begin(&Output::default(), Nanos(0));
+    let turn = |(t, y): (u64, &Output)| {
+        let turn = machine.turn(y, Nanos(t));
+        if turn == Turn::Over {
+            machine = M::begin(y, Nanos(t));
+        }
+        turn
+    };
+    (0..).zip(script).map(turn).collect()
+}
+
+/// Whether a machine says the same as the table, whose words cover all that can happen.
+fn assert_same<M: Robot, const N: usize>(leap: u32) {
+    let script = script(leap);
+    let expected = said::<Table<N>>(&script);
+    assert!(expected.contains(&Turn::Over), "it ends");
+    assert!(expected.iter().any(|turn| matches!(turn, Turn::Law(input) if input.left > 2.0)), "it goes on");
+    assert!(said::<M>(&script) == expected, "{}", std::any::type_name::<M>());
+}
+
+#[test]
+fn machines_of_8_atoms_write_the_same() {
+    assert_same::<Match8, 8>(2);
+    assert_same::<NestedMatch8, 8>(2);
+    assert_same::<Plan8, 8>(2);
+    assert_same::<Statig8, 8>(2);
+    assert_same::<Smlang8, 8>(2);
+}
+
+#[cfg(feature = "thousands")]
+mod thousands {
+    use mdle_workload::machines::by_hand::Match1000;
+    use mdle_workload::machines::plan::{Plan1000, Plan100000};
+    use mdle_workload::machines::smlang::Smlang1000;
+    use mdle_workload::machines::statig::Statig1000;
+
+    use super::assert_same;
+
+    #[test]
+    fn machines_of_1000_atoms_write_the_same() {
+        assert_same::<Match1000, 1_000>(8);
+        assert_same::<Plan1000, 1_000>(8);
+        assert_same::<Statig1000, 1_000>(8);
+        assert_same::<Smlang1000, 1_000>(8);
+    }
+
+    #[test]
+    fn machines_of_100000_atoms_write_the_same() {
+        assert_same::<Plan100000, 100_000>(2_000);
+    }
+}
