@@ -8,30 +8,28 @@ use mdle_workload::machines::smlang::Smlang8;
 use mdle_workload::machines::statig::Statig8;
 use mdle_workload::{Input, Output};
 
-/// Outputs on which conditions fire or not, several in a turn too, and the plan ends by itself or by the switch.
-///
-/// The measurement goes back every so often, and from one output to the next it grows by less than `leap`.
-fn script(leap: u32) -> Vec<Output> {
-    let (mut seed, mut measured) = (1_u32, 0.0);
+/// By how much the measurement grows, always by less than `leap`, and the switch: conditions fire or not, several in a
+/// turn too, and the plan ends by itself or by the switch.
+fn script(leap: u32) -> Vec<(f64, bool)> {
+    let mut seed = 1_u32;
     let mut draw = |below: u32| {
         seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         (seed >> 8) % below
     };
-    (0..5_000)
-        .map(|turn| {
-            measured = if turn % 997 == 0 { 0.5 } else { measured + f64::from(draw(2 * leap)) / 2.0 };
-            Output { measured, halt: draw(501) == 0 }
-        })
-        .collect()
+    (0..5_000).map(|_| (f64::from(draw(2 * leap)) / 2.0, draw(501) == 0)).collect()
 }
 
-/// What a machine says to each output; it begins again when it is over.
-fn said<M: Robot>(script: &[Output]) -> Vec<Turn<Input>> {
-    let mut machine = M::begin(&Output::default(), Nanos(0));
-    let turn = |(t, y): (u64, &Output)| {
-        let turn = machine.turn(y, Nanos(t));
+/// What a machine says in each turn. When it is over it begins again, and so does the measurement: a plan does not make
+/// more than so many transitions in a turn, which its peers know nothing of.
+fn said<M: Robot>(script: &[(f64, bool)]) -> Vec<Turn<Input>> {
+    let mut y = Output::default();
+    let mut machine = M::begin(&y, Nanos(0));
+    let turn = |(t, (growth, halt)): (u64, &(f64, bool))| {
+        y = Output { measured: y.measured + growth, halt: *halt };
+        let turn = machine.turn(&y, Nanos(t));
         if turn == Turn::Over {
-            machine = M::begin(y, Nanos(t));
+            y = Output::default();
+            machine = M::begin(&y, Nanos(t));
         }
         turn
     };
