@@ -35,7 +35,7 @@ fn main() {
     fs::create_dir_all(&folder).expect("a folder to write to");
     let libraries = libraries();
     println!("{:<32}{:>10}{:>10}", "", "wall, ms", "user, ms");
-    let mut show = |what: &str, text: &str| {
+    let show = |what: &str, text: &str| {
         let source = folder.join("source.rs");
         fs::write(&source, text).expect("a folder to write to");
         let times = (0..RUNS).map(|_| compile(&source, &folder, &libraries));

@@ -1,6 +1,7 @@
 //! Instructions for 10,000 turns, in each of the three cases, of each machine: the same on every run.
 
 use gungraun::prelude::*;
+use gungraun::{Callgrind, EntryPoint};
 use mdle_workload::cases::{Case, run};
 use mdle_workload::machines::Nothing;
 use mdle_workload::machines::by_hand::{Match8, Match1000, NestedMatch8, Table};
@@ -25,6 +26,7 @@ macro_rules! machines {
         )+
 
         library_benchmark_group!(name = turns, benchmarks = [$($name),+]);
+        library_benchmark_group!(name = turns_alone, config = turn_alone(), benchmarks = [$($name),+]);
     };
 }
 
@@ -45,4 +47,10 @@ machines! {
     table_100000: Table<100_000>,
 }
 
-main!(library_benchmark_groups = turns);
+/// Counts what is done in a machine's turn, and neither the loop around it nor the machine's beginning.
+fn turn_alone() -> LibraryBenchmarkConfig {
+    let turn = EntryPoint::Custom("*as mdle_workload::machines::Robot>::turn".to_owned());
+    LibraryBenchmarkConfig::default().tool(Callgrind::default().entry_point(turn)).clone()
+}
+
+main!(library_benchmark_groups = [turns, turns_alone]);
