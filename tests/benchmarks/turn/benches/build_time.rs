@@ -19,7 +19,7 @@ const PLANS: &[(&str, &str)] = &[
     ("looped_1000000000.rs", "10^9 passes through 2 atoms"),
 ];
 
-/// What makes a library of an emitted file that holds a machine's code too: a generic turn is compiled where it is used.
+/// What stands behind an emitted file: a generic turn is compiled where it is used, and so the time for it counts too.
 const TURN: &str = "
 pub fn turn(
     machine: &mut ::mdle_runtime::Machine<T>,
@@ -87,7 +87,7 @@ fn compile(source: &Path, folder: &Path, libraries: &[(&str, PathBuf)]) -> (f64,
     (start.elapsed().as_secs_f64() * 1e3, used_by_children() - used)
 }
 
-/// The user time of all children so far, in milliseconds: the 16th number of `/proc/self/stat`, in hundredths of a second.
+/// The user time of all children so far, in milliseconds; field 16 of `/proc/self/stat`, in hundredths of a second.
 fn used_by_children() -> f64 {
     let stat = fs::read_to_string("/proc/self/stat").expect("Linux");
     let after_name = stat.rsplit(')').next().expect("a name in brackets");

@@ -1,4 +1,4 @@
-//! The robot of workload T(N): one measurement, one switch, two numbers to write; and the machines that are compared on it.
+//! The robot of workload T(N), one measurement, one switch, two numbers to write, and the machines compared on it.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! T(N) as transitions of the crate smlang. An event is a look at the output, the context is what an action has written.
+//! T(N) as transitions of the crate smlang: an event is a look at the output, the context what an action has written.
 
 use mdle_runtime::{Nanos, Turn};
 
