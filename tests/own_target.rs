@@ -25,11 +25,10 @@ fn with_rover(test: &str) -> PathBuf {
     }
     // The workspace that the crate takes its versions from; the packages of the runtime stay in the repository.
     let workspace = fs::read_to_string(root().join("Cargo.toml")).unwrap();
-    let members =
-        workspace.lines().map(|line| if line.starts_with("members") { "members = [\"rover\"]" } else { line });
-    let members = members.filter(|line| !line.starts_with("default-members"));
+    let (before, behind) = workspace.split_once("members = [").unwrap();
+    let (_, behind) = behind.split_once("]\ndefault-members = [\"mdlec\"]\n").unwrap();
     let elsewhere = format!("path = \"{}/", root().to_str().unwrap());
-    let workspace = members.collect::<Vec<_>>().join("\n").replace("path = \"", &elsewhere);
+    let workspace = format!("{before}members = [\"rover\"]\n{}", behind.replace("path = \"", &elsewhere));
     fs::write(folder.join("Cargo.toml"), workspace).unwrap();
     fs::copy(root().join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
     folder
