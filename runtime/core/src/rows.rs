@@ -204,3 +204,29 @@ impl<A: Alphabet, E: Slots<Nanos> + Clone, P: Slots<u64> + Clone> Plan for InRow
 fn text<'a>(texts: &[&'a str], index: u32) -> &'a str {
     texts.get(index as usize).copied().unwrap_or("")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Condition;
+    use crate::{Interrupt, Nanos};
+
+    struct Always;
+
+    impl Interrupt<()> for Always {
+        fn fired(&self, (): &()) -> bool {
+            true
+        }
+    }
+
+    #[test]
+    fn a_condition_that_is_its_own_operand_holds_nobody_up() {
+        for operand in [Condition::Not(0), Condition::Or(0, 1), Condition::And(0, 1)] {
+            let operands: [Condition<Always>; 1] = [operand];
+            let fired = |condition: Condition<Always>| condition.fired(&(), Nanos::ZERO, &operands, 0);
+            // What refers to itself or back is as if it were not there, and so has not fired.
+            assert_eq!(fired(Condition::Or(0, 1)), matches!(operands[0], Condition::Not(_)));
+        }
+        assert!(Condition::Or(0, 1).fired(&(), Nanos::ZERO, &[Condition::Quark(Always)], 0));
+        assert!(!Condition::Or(0, 1).fired(&(), Nanos::ZERO, &[Condition::Quark(Always)], 1));
+    }
+}
