@@ -4,8 +4,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use mdle_runtime::Plan;
-use mdle_tests::golden::{judge, machine, rust, tree};
-use mdle_tests::repository::{TextFile, files};
+use mdle_tests::golden::{alphabet, judge, machine, rust, tree};
+use mdle_tests::pipeline::scripted;
+use mdle_tests::repository::{TextFile, files, root};
 
 /// The recorded Rust, compiled as it is under the lints of this workspace.
 mod recorded {
@@ -84,4 +85,11 @@ fn recorded_rust_compiles_and_has_the_tables_of_its_plan() {
     let office = recorded::lab1_to_office::Lab1ToOfficePlan::new();
     assert_eq!(office.fsm(), tables("paper-lab1_to_office").tables());
     assert_eq!([plan.law(2), plan.condition(0), plan.name(0)], ["align 7 9", "bumper", "Lab2ToLab1Plan"]);
+}
+
+#[test]
+fn bound_alphabets_are_as_they_are_committed() {
+    let committed = |target: &str| std::fs::read_to_string(root().join(target).join("src/alphabet.rs")).unwrap();
+    assert!(mdlec::rust::bind(&alphabet(Some("sim"))) == committed("targets/sim"), "`mdlec bind` says what differs");
+    assert!(mdlec::rust::bind(scripted()) == committed("tests/scripted"), "`mdlec bind` says what differs");
 }
