@@ -133,7 +133,7 @@ fn pretty(tokens: TokenStream) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Header, emit};
+    use super::{Header, Shape, emit};
     use crate::samples::{alphabet, compiled};
 
     fn rust(text: &str, file: &str) -> String {
@@ -148,6 +148,14 @@ mod tests {
         assert!(syn::parse_file(&rust).is_ok());
         let dense: String = rust.split_whitespace().collect();
         assert_eq!(dense.matches("cursor.since(").count(), 5_000);
+    }
+
+    #[test]
+    fn a_plan_of_more_than_sixty_four_brackets_is_rows() {
+        let shape = |atoms: usize| {
+            Shape::of(&compiled(&format!("{{ P {} }}", "(Atom (wait 1) stop)".repeat(atoms)))[0].lowered)
+        };
+        assert_eq!([63, 64].map(shape), [Shape::Code, Shape::Rows]);
     }
 
     #[test]
