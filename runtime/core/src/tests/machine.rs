@@ -249,3 +249,22 @@ fn what_follows_is_known_where_no_loop_has_a_say() {
         [Some(Follows::new(2, 0, 0)), None, Some(Follows::new(2, 0, 0))]
     );
 }
+
+#[test]
+fn a_way_without_loops_is_cut_as_well() {
+    const ATOMS: u32 = 5000;
+    let long = || {
+        let plan = [Bracket::scope(0, 0, ATOMS - 1, 0)];
+        let brackets: Vec<_> =
+            plan.into_iter().chain((0..ATOMS).map(|atom| Bracket::scope(1, atom, atom, 0))).collect();
+        let atoms: Vec<_> = (1..=ATOMS).map(|atom| Atom::new(atom, u64::from(atom))).collect();
+        begin(Toy::new(brackets, atoms, u64::from(ATOMS) + 1))
+    };
+    let every_atom = Sensed((1..=ATOMS).collect::<Vec<_>>().leak(), false);
+    let (mut watched, mut unwatched) = (long(), long());
+    for (outcome, state) in [(Turn::Cut, 4097), (Turn::Over, 5001)] {
+        assert_eq!(unwatched.turn(&every_atom, Nanos::ZERO, &mut ()), outcome);
+        assert_eq!(watched.turn(&every_atom, Nanos::ZERO, &mut Watched::default()), outcome);
+        assert_eq!((unwatched.state(), watched.state()), (state, state));
+    }
+}
