@@ -19,8 +19,9 @@ use mdlec::trace::{Reports, Script, Tree, run};
 use mdlec::{Compiled, compile, link};
 
 /// The executables: what each is called, its plan, and the plan's shape.
-const EXECUTABLES: [(&str, &str, Shape); 3] = [
+const EXECUTABLES: [(&str, &str, Shape); 4] = [
     ("round_as_code", "Round", Shape::Code),
+    ("round_as_shared_code", "Round", Shape::Shared),
     ("round_as_rows", "Round", Shape::Rows),
     ("every_quark", "EveryQuark", Shape::Code),
 ];
@@ -179,10 +180,10 @@ fn traced(executable: &str, plan: &str, script: &str) -> String {
 }
 
 #[test]
-fn conditions_and_nesting_of_every_form_link_and_run_in_both_shapes() {
+fn conditions_and_nesting_of_every_form_link_and_run_in_every_shape() {
     let turns = |executable| traced(executable, "Round", ROUND) + &traced(executable, "Round", ROUND_IN_TIME);
-    let (turns, rows) = (turns("round_as_code"), turns("round_as_rows"));
-    assert_eq!(turns, rows);
+    let [turns, shared, rows] = ["round_as_code", "round_as_shared_code", "round_as_rows"].map(turns);
+    assert_eq!([&turns, &turns], [&shared, &rows]);
     let (Compiled { lowered, .. }, _) = compiled("Round");
     let conditions: BTreeSet<_> = lowered.scopes.iter().flatten().map(|scope| &scope.interrupt.text).collect();
     let never: Vec<_> = conditions.into_iter().filter(|text| !turns.contains(&format!("\"by\":\"{text}\""))).collect();

@@ -9,6 +9,7 @@ use std::process::Output;
 use mdle_tests::executable::{folder, run_mdlec, run_mdlec_reading};
 use mdle_tests::golden::{judge, rust};
 use mdle_tests::repository::{TextFile, root};
+use mdlec::rust::Shape;
 use serde_json::Value;
 
 /// A plan in which each stage differs from the one before it: a unit, a plan by name, a repeated interrupt, a loop.
@@ -116,7 +117,7 @@ fn the_rust_that_is_printed_is_what_is_compiled() {
     let folder = with_plan("stage_rust", PLAN);
     let file = TextFile { path: "plan.mdle".into(), text: PLAN.into() };
     let (compiled, _) = judge(&file, Some("sim"));
-    assert_eq!(emitted(&folder, "rust"), rust(&file, &compiled[0]));
+    assert_eq!(emitted(&folder, "rust"), rust(&file, &compiled[0], Shape::Code));
 }
 
 #[test]

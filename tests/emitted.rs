@@ -1,6 +1,6 @@
 //! Emitted Rust, compiled: it does what the machines of the compiler do (semantics, section 9).
 //!
-//! Every plan is emitted in both shapes. Each shape is one package, which is compiled once and run once.
+//! Every plan is emitted in every shape. Each shape is one package, which is compiled once and run once.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -39,6 +39,11 @@ struct Case {
 #[test]
 fn plans_as_code_do_what_the_other_machines_do() {
     compare(Shape::Code);
+}
+
+#[test]
+fn plans_that_share_code_do_what_the_other_machines_do() {
+    compare(Shape::Shared);
 }
 
 #[test]

@@ -7,11 +7,15 @@ use mdle_runtime::Plan;
 use mdle_tests::golden::{alphabet, judge, machine, rust, tree};
 use mdle_tests::pipeline::scripted;
 use mdle_tests::repository::{TextFile, files, root};
+use mdlec::rust::Shape;
 
 /// The recorded Rust, compiled as it is under the lints of this workspace.
 mod recorded {
     pub(crate) mod lab_tour {
         include!("snapshots/golden__rust-lab_tour.snap.rs");
+    }
+    pub(crate) mod shared_lab_tour {
+        include!("snapshots/golden__rust-shared-lab_tour.snap.rs");
     }
     pub(crate) mod dock {
         include!("snapshots/golden__rust-dock.snap.rs");
@@ -67,9 +71,17 @@ fn machines_of_what_the_simulator_runs_and_why_it_does_not_run_the_rest() {
 fn rust_for_the_simulator() {
     for file in plans() {
         for compiled in judge(&file, Some("sim")).0 {
-            insta::assert_binary_snapshot!(&format!("rust-{}.rs", name(&file)), rust(&file, &compiled).into_bytes());
+            let text = rust(&file, &compiled, Shape::of(&compiled.lowered));
+            insta::assert_binary_snapshot!(&format!("rust-{}.rs", name(&file)), text.into_bytes());
         }
     }
+}
+
+#[test]
+fn rust_that_alike_atoms_share() {
+    let file = plans().into_iter().find(|plan| name(plan) == "lab_tour").unwrap();
+    let text = rust(&file, &judge(&file, Some("sim")).0.swap_remove(0), Shape::Shared);
+    insta::assert_binary_snapshot!("rust-shared-lab_tour.rs", text.into_bytes());
 }
 
 #[test]
@@ -79,6 +91,7 @@ fn recorded_rust_compiles_and_has_the_tables_of_its_plan() {
         judge(&file, Some("sim")).0.swap_remove(0).lowered
     };
     assert_eq!(recorded::lab_tour::LabTour::new().fsm(), tables("lab_tour").tables());
+    assert_eq!(recorded::shared_lab_tour::LabTour::new().fsm(), tables("lab_tour").tables());
     assert_eq!(recorded::dock::Dock::new().fsm(), tables("dock").tables());
     let plan = recorded::lab2_to_lab1::Lab2ToLab1Plan::new();
     assert_eq!(plan.fsm(), tables("paper-lab2_to_lab1").tables());

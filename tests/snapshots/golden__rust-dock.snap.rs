@@ -98,12 +98,12 @@ mod machine {
             direct: bool,
         ) -> Next {
             let t = begin.now;
+            if let Some(ending) = dock(cursor, y, t) {
+                return Next::Ends(ending);
+            }
             match &self.running {
                 Running::Idle => {}
                 Running::Atom1(_) => {
-                    if let Some(ending) = dock(cursor, y, t) {
-                        return Next::Ends(ending);
-                    }
                     if runtime::Interrupt::fired(&AT_ISECTION_1000, y)
                         | (cursor.since(1u16, t) >= Nanos(20000000000))
                     {
@@ -176,7 +176,7 @@ mod machine {
         texts.get(index as usize).copied().unwrap_or("")
     }
 
-    /// Dock (bumper), and the scopes around it first.
+    /// Dock (bumper).
     fn dock(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
         if runtime::Interrupt::fired(&BUMPER, y) {
             return Some(
@@ -186,11 +186,8 @@ mod machine {
         None
     }
 
-    /// Shake (wait 15), and the scopes around it first.
+    /// Shake (wait 15).
     fn shake(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
-        if let Some(ending) = dock(cursor, y, t) {
-            return Some(ending);
-        }
         if cursor.since(1u16, t) >= Nanos(15000000000) {
             return Some(
                 runtime::Cause::Fired(1u16).then(runtime::Follows::new(3, 0, 0)),

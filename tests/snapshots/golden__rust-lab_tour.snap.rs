@@ -555,7 +555,7 @@ mod machine {
         texts.get(index as usize).copied().unwrap_or("")
     }
 
-    /// Lab2ToLab1Plan (bumper), and the scopes around it first.
+    /// Lab2ToLab1Plan (bumper).
     fn lab2_to_lab1_plan(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
         if runtime::Interrupt::fired(&BUMPER, y) {
             return Some(
@@ -565,7 +565,7 @@ mod machine {
         None
     }
 
-    /// Lab1ToOfficePlan (bumper), and the scopes around it first.
+    /// Lab1ToOfficePlan (bumper).
     fn lab1_to_office_plan(
         cursor: &At,
         y: &Output,

@@ -132,12 +132,12 @@ mod machine {
             direct: bool,
         ) -> Next {
             let t = begin.now;
+            if let Some(ending) = lab1_to_office_plan(cursor, y, t) {
+                return Next::Ends(ending);
+            }
             match &self.running {
                 Running::Idle => {}
                 Running::Atom1(law) => {
-                    if let Some(ending) = lab1_to_office_plan(cursor, y, t) {
-                        return Next::Ends(ending);
-                    }
                     if runtime::Interrupt::fired(&AT_ISECTION_1001, y) {
                         return runtime::Plan::end(
                             self,
@@ -162,9 +162,6 @@ mod machine {
                     }
                 }
                 Running::Atom2(_) => {
-                    if let Some(ending) = lab1_to_office_plan(cursor, y, t) {
-                        return Next::Ends(ending);
-                    }
                     if runtime::Interrupt::fired(&AT_ISECTION_0011, y) {
                         return runtime::Plan::end(
                             self,
@@ -178,9 +175,6 @@ mod machine {
                     }
                 }
                 Running::Atom3(law) => {
-                    if let Some(ending) = lab1_to_office_plan(cursor, y, t) {
-                        return Next::Ends(ending);
-                    }
                     if runtime::Completes::completed(law, y, t) {
                         return runtime::Plan::end(
                             self,
@@ -194,9 +188,6 @@ mod machine {
                     }
                 }
                 Running::Atom4(law) => {
-                    if let Some(ending) = lab1_to_office_plan(cursor, y, t) {
-                        return Next::Ends(ending);
-                    }
                     if runtime::Interrupt::fired(&AT_ISECTION_0100, y) {
                         return runtime::Plan::end(
                             self,
@@ -221,9 +212,6 @@ mod machine {
                     }
                 }
                 Running::Atom5(law) => {
-                    if let Some(ending) = lab1_to_office_plan(cursor, y, t) {
-                        return Next::Ends(ending);
-                    }
                     if cursor.since(1u16, t) >= Nanos(10000000000) {
                         return runtime::Plan::end(
                             self,
@@ -277,7 +265,7 @@ mod machine {
         texts.get(index as usize).copied().unwrap_or("")
     }
 
-    /// Lab1ToOfficePlan (bumper), and the scopes around it first.
+    /// Lab1ToOfficePlan (bumper).
     fn lab1_to_office_plan(
         cursor: &At,
         y: &Output,

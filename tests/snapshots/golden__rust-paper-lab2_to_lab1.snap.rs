@@ -152,12 +152,12 @@ mod machine {
             direct: bool,
         ) -> Next {
             let t = begin.now;
+            if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
+                return Next::Ends(ending);
+            }
             match &self.running {
                 Running::Idle => {}
                 Running::Atom1(law) => {
-                    if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
-                        return Next::Ends(ending);
-                    }
                     if runtime::Interrupt::fired(&AT_ISECTION_0100, y) {
                         return runtime::Plan::end(
                             self,
@@ -182,9 +182,6 @@ mod machine {
                     }
                 }
                 Running::Atom2(_) => {
-                    if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
-                        return Next::Ends(ending);
-                    }
                     if runtime::Interrupt::fired(&AT_ISECTION_0010, y) {
                         return runtime::Plan::end(
                             self,
@@ -198,9 +195,6 @@ mod machine {
                     }
                 }
                 Running::Atom3(law) => {
-                    if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
-                        return Next::Ends(ending);
-                    }
                     if runtime::Completes::completed(law, y, t) {
                         return runtime::Plan::end(
                             self,
@@ -214,9 +208,6 @@ mod machine {
                     }
                 }
                 Running::Atom4(law) => {
-                    if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
-                        return Next::Ends(ending);
-                    }
                     if runtime::Interrupt::fired(&AT_ISECTION_1000, y) {
                         return runtime::Plan::end(
                             self,
@@ -241,9 +232,6 @@ mod machine {
                     }
                 }
                 Running::Atom5(_) => {
-                    if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
-                        return Next::Ends(ending);
-                    }
                     if runtime::Interrupt::fired(&AT_ISECTION_0100, y) {
                         return runtime::Plan::end(
                             self,
@@ -257,9 +245,6 @@ mod machine {
                     }
                 }
                 Running::Atom6(law) => {
-                    if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
-                        return Next::Ends(ending);
-                    }
                     if runtime::Completes::completed(law, y, t) {
                         return runtime::Plan::end(
                             self,
@@ -273,9 +258,6 @@ mod machine {
                     }
                 }
                 Running::Atom7(law) => {
-                    if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
-                        return Next::Ends(ending);
-                    }
                     if cursor.since(1u16, t) >= Nanos(7000000000) {
                         return runtime::Plan::end(
                             self,
@@ -300,9 +282,6 @@ mod machine {
                     }
                 }
                 Running::Atom8(law) => {
-                    if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
-                        return Next::Ends(ending);
-                    }
                     if runtime::Interrupt::fired(&AT_ISECTION_1000, y) {
                         return runtime::Plan::end(
                             self,
@@ -359,7 +338,7 @@ mod machine {
         texts.get(index as usize).copied().unwrap_or("")
     }
 
-    /// Lab2ToLab1Plan (bumper), and the scopes around it first.
+    /// Lab2ToLab1Plan (bumper).
     fn lab2_to_lab1_plan(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
         if runtime::Interrupt::fired(&BUMPER, y) {
             return Some(

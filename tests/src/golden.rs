@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use mdlec::alphabet::{self, Alphabet};
 use mdlec::diagnostic::{SourceId, Sources};
-use mdlec::rust::{Header, emit};
+use mdlec::rust::{Header, Shape, emit_as};
 use mdlec::syntax::{Arena, outline::outline, parse};
 use mdlec::{Compiled, compile, fsm, link};
 
@@ -59,7 +59,7 @@ pub fn machine(compiled: &Compiled) -> String {
 
 /// The Rust that is emitted for a plan on the simulator.
 #[must_use]
-pub fn rust(file: &TextFile, compiled: &Compiled) -> String {
+pub fn rust(file: &TextFile, compiled: &Compiled, shape: Shape) -> String {
     let name = file.path.rsplit('/').next().unwrap();
-    emit(&compiled.lowered, Header { file: name, plan: &compiled.plan.root.name }, &alphabet(Some("sim")))
+    emit_as(shape, &compiled.lowered, Header { file: name, plan: &compiled.plan.root.name }, &alphabet(Some("sim")))
 }

@@ -34,7 +34,7 @@ pub struct Lowered {
     pub laws: Vec<LawMeaning>,
     /// Every quark with its arguments.
     pub quarks: Vec<Quark>,
-    /// How many scopes are around an atom at most, its own included.
+    /// How many levels of scopes there are down to the last one that has a `wait`: those below need no entry time.
     pub levels: usize,
     /// How many loops are around an atom at most.
     pub slots: usize,
@@ -138,7 +138,6 @@ impl Lowering {
     fn atom(&mut self, atom: &plan::Atom, place: Place) -> u64 {
         let meaning = ScopeMeaning { name: String::new(), interrupt: atom.interrupt.clone() };
         let scope = self.bracket(Kind::Scope { level: place.level }, place.parent, Some(meaning));
-        self.lowered.levels = self.lowered.levels.max(usize::from(place.level) + 1);
         self.lowered.atoms.push(Atom { scope, state: place.state });
         self.lowered.laws.push(LawMeaning { quark: atom.law, frame: atom.frame });
         1
@@ -162,6 +161,11 @@ impl Lowering {
 
     /// Opens a bracket at the next atom; [`Lowering::close`] tells its last one.
     fn bracket(&mut self, kind: Kind, parent: u32, meaning: Option<ScopeMeaning>) -> u32 {
+        if let (Kind::Scope { level }, Some(meaning)) = (kind, &meaning)
+            && meaning.interrupt.condition.waits()
+        {
+            self.lowered.levels = self.lowered.levels.max(usize::from(level) + 1);
+        }
         let number = u32::try_from(self.lowered.brackets.len()).unwrap_or(u32::MAX);
         let first = u32::try_from(self.lowered.atoms.len()).unwrap_or(u32::MAX);
         self.lowered.brackets.push(Bracket { kind, first, last: first, parent });

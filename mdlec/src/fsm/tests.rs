@@ -43,6 +43,14 @@ fn a_plan_without_loops_has_no_place_for_a_counter() {
 }
 
 #[test]
+fn entry_times_have_places_down_to_the_last_level_that_has_a_wait() {
+    let levels = |text: &str| compiled(text)[0].lowered.levels;
+    assert_eq!(levels("{ P (bumper) (Atom (bumper) stop) }"), 0);
+    assert_eq!(levels("{ P (wait 1) { Q (Atom (bumper) stop) } }"), 1);
+    assert_eq!(levels("{ P { Q (NOT (bumper AND wait 1)) (Atom (bumper) stop) } (Atom (bumper) stop) }"), 2);
+}
+
+#[test]
 fn a_plan_of_more_than_two_to_the_53_states_is_refused() {
     let most = "ExecPlan 9007199254740991 { (Atom (wait 1) stop) }";
     let termination = |body: &str| compiled(&format!("{{ P {body} }}"))[0].lowered.termination;

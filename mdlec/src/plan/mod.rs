@@ -175,6 +175,17 @@ pub enum Condition {
 }
 
 impl Condition {
+    /// Whether it has a `wait` in it, and so asks when its scope was entered.
+    #[must_use]
+    pub fn waits(&self) -> bool {
+        match self {
+            Self::Null | Self::Quark(_) => false,
+            Self::Wait { .. } => true,
+            Self::Or(operands) | Self::And(operands) => operands.iter().any(Self::waits),
+            Self::Not(operand) => operand.waits(),
+        }
+    }
+
     /// Its value, given what each quark says and whether a `wait` of so many nanoseconds is over. Reads every operand.
     pub fn fired(&self, quark: &impl Fn(QuarkId) -> bool, wait: &impl Fn(u64) -> bool) -> bool {
         match self {

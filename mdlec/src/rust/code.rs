@@ -8,63 +8,88 @@ use super::names::{Distinct, atom_variant, quark_type};
 use crate::fsm::{LawMeaning, Lowered};
 use crate::plan::{Condition, Quark, frame_text};
 
-/// The plan's type and its implementation.
+/// The plan's type and its implementation, with an arm for each atom.
 pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered) -> TokenStream {
     let meaning = Meaning::new(lowered);
     let constants = meaning.constants();
     let running = meaning.running();
-    let implementation = implementation(plan, lowered, &meaning);
-    let scopes = meaning.scope_functions();
-    quote! {
-        #[doc = #doc]
-        #[derive(Debug)]
-        pub struct #plan { running: Running }
-
-        impl #plan {
-            #[doc = " The plan before it begins."]
-            #[must_use]
-            pub const fn new() -> Self { Self { running: Running::Idle } }
-        }
-
-        impl Default for #plan {
-            fn default() -> Self { Self::new() }
-        }
-
-        #constants
-        #running
-        #implementation
-        #scopes
-    }
+    let parts = Parts {
+        before: quote!(#constants #running),
+        enter: meaning.enter(),
+        next: meaning.next(),
+        input: meaning.input(),
+        behind: meaning.scope_functions(),
+    };
+    parts.machine(plan, doc, lowered)
 }
 
-/// `impl Plan for LabTour`: what the machine asks of a plan.
-fn implementation(plan: &Ident, lowered: &Lowered, meaning: &Meaning<'_>) -> TokenStream {
-    let [levels, slots] = [lowered.levels, lowered.slots].map(Literal::usize_unsuffixed);
-    let enter = meaning.enter();
-    let next = meaning.next();
-    let input = meaning.input();
-    quote! {
-        impl runtime::Plan for #plan {
-            type Output = Output;
-            type Input = Input;
-            type Entered = [Nanos; #levels];
-            type Left = [u64; #slots];
+/// What differs from plan to plan in code.
+pub(super) struct Parts {
+    /// What stands in front of the implementation: constants, `enum Running`.
+    pub(super) before: TokenStream,
+    /// `fn enter`.
+    pub(super) enter: TokenStream,
+    /// `fn next`.
+    pub(super) next: TokenStream,
+    /// `fn input`.
+    pub(super) input: TokenStream,
+    /// What stands behind it: functions, tables.
+    pub(super) behind: TokenStream,
+}
 
-            fn fsm(&self) -> Fsm<'_> { FSM }
-            fn slots(&self) -> (Self::Entered, Self::Left) { ([Nanos::ZERO; #levels], [0; #slots]) }
-            #enter
-            #next
-            #input
-            fn law(&self, atom: u32) -> &str { text(LAWS, atom) }
-            fn condition(&self, scope: u32) -> &str { text(CONDITIONS, scope) }
-            fn name(&self, scope: u32) -> &str { text(NAMES, scope) }
+impl Parts {
+    /// The plan's type and its implementation.
+    pub(super) fn machine(&self, plan: &Ident, doc: &str, lowered: &Lowered) -> TokenStream {
+        let Self { before, behind, .. } = self;
+        let implementation = self.implementation(plan, lowered);
+        quote! {
+            #[doc = #doc]
+            #[derive(Debug)]
+            pub struct #plan { running: Running }
+
+            impl #plan {
+                #[doc = " The plan before it begins."]
+                #[must_use]
+                pub const fn new() -> Self { Self { running: Running::Idle } }
+            }
+
+            impl Default for #plan {
+                fn default() -> Self { Self::new() }
+            }
+
+            #before
+            #implementation
+            #behind
         }
+    }
 
-        #[doc = " The cursor of this plan: its levels of scopes and of loops are known."]
-        type At = Cursor<[Nanos; #levels], [u64; #slots]>;
+    /// `impl Plan for LabTour`: what the machine asks of a plan.
+    fn implementation(&self, plan: &Ident, lowered: &Lowered) -> TokenStream {
+        let [levels, slots] = [lowered.levels, lowered.slots].map(Literal::usize_unsuffixed);
+        let Self { enter, next, input, .. } = self;
+        quote! {
+            impl runtime::Plan for #plan {
+                type Output = Output;
+                type Input = Input;
+                type Entered = [Nanos; #levels];
+                type Left = [u64; #slots];
 
-        fn text(texts: &'static [&'static str], index: u32) -> &'static str {
-            texts.get(index as usize).copied().unwrap_or("")
+                fn fsm(&self) -> Fsm<'_> { FSM }
+                fn slots(&self) -> (Self::Entered, Self::Left) { ([Nanos::ZERO; #levels], [0; #slots]) }
+                #enter
+                #next
+                #input
+                fn law(&self, atom: u32) -> &str { text(LAWS, atom) }
+                fn condition(&self, scope: u32) -> &str { text(CONDITIONS, scope) }
+                fn name(&self, scope: u32) -> &str { text(NAMES, scope) }
+            }
+
+            #[doc = " The cursor of this plan: its levels of scopes and of loops are known."]
+            type At = Cursor<[Nanos; #levels], [u64; #slots]>;
+
+            fn text(texts: &'static [&'static str], index: u32) -> &'static str {
+                texts.get(index as usize).copied().unwrap_or("")
+            }
         }
     }
 }
@@ -112,10 +137,10 @@ impl<'a> Meaning<'a> {
 
     /// `enum Running`: the law of the current atom with its state.
     pub(super) fn running(&self) -> TokenStream {
-        let variants = self.atoms().map(|(atom, law, quark)| {
+        let variants = self.atoms().map(|(atom, _, quark)| {
             let kind = quark_type(&quark.name, quark.overload);
             let variant = atom_variant(atom);
-            let doc = format!(" {}", self.atom_text(atom, law, quark));
+            let doc = format!(" `{}`", atom_text(self.lowered, atom));
             quote! {
                 #[doc = #doc]
                 #variant(<robot::#kind as runtime::Control<Output>>::Law)
@@ -151,30 +176,29 @@ impl<'a> Meaning<'a> {
         }
     }
 
-    /// `fn next`: an arm for each atom, which asks the scope around it first and itself last.
+    /// `fn next`: asks the plan's own interrupt, then has an arm for each atom, which asks the scope around it first and
+    /// itself last.
     pub(super) fn next(&self) -> TokenStream {
         let arms = self.atoms().map(|(atom, _, quark)| {
             let variant = atom_variant(atom);
             let bracket = self.lowered.atoms[atom].scope;
-            let around = self.around(bracket).map(|function| {
-                quote! {
-                    if let Some(ending) = #function(cursor, y, t) { return Next::Ends(ending); }
-                }
-            });
-            let asked = |question: &TokenStream, cause| {
-                let ending = self.ending(bracket, cause);
+            let around = self.around(bracket).map(asked_first);
+            let asked = |question: &TokenStream, cause: TokenStream| {
+                let ending = self.ending(bracket, &cause);
                 quote!(if #question { return runtime::Plan::end(self, cursor, #ending, y, begin, direct); })
             };
-            let interrupt = self.condition(bracket).map(|fired| asked(&fired, "Fired"));
+            let interrupt = self.condition(bracket).map(|fired| asked(&fired, quote!(Fired)));
             let completion =
-                quark.completes.then(|| asked(&quote!(runtime::Completes::completed(law, y, t)), "Completed"));
+                quark.completes.then(|| asked(&quote!(runtime::Completes::completed(law, y, t)), quote!(Completed)));
             let law = if quark.completes { quote!(law) } else { quote!(_) };
             quote!(Running::#variant(#law) => { #around #interrupt #completion })
         });
+        let plan = self.functions.first().and_then(Option::as_ref).map(asked_first);
         quote! {
             #[inline(always)]
             fn next(&mut self, cursor: &mut At, y: &Output, begin: Begin, direct: bool) -> Next {
                 let t = begin.now;
+                #plan
                 match &self.running {
                     Running::Idle => {}
                     #(#arms)*
@@ -202,17 +226,24 @@ impl<'a> Meaning<'a> {
         self.lowered.laws.iter().enumerate().map(|(atom, law)| (atom, law, self.lowered.quark(law.quark)))
     }
 
-    fn atom_text(&self, atom: usize, law: &LawMeaning, quark: &Quark) -> String {
-        let bracket = self.lowered.atoms[atom].scope as usize;
-        let interrupt = self.lowered.scopes[bracket].as_ref().map(|scope| &scope.interrupt);
-        let condition = interrupt.filter(|interrupt| !interrupt.removed).map_or("null", |interrupt| &interrupt.text);
-        let frame = frame_text(law.frame);
-        format!("`{frame}(Atom ({condition}) {})`", quark.text)
-    }
-
     fn is_atom(lowered: &Lowered, bracket: usize) -> bool {
         let first = lowered.brackets[bracket].first as usize;
         lowered.atoms.get(first).is_some_and(|atom| atom.scope as usize == bracket)
+    }
+}
+
+/// `FRAME 90 (Atom (bumper) stop)`: an atom as written.
+pub(super) fn atom_text(lowered: &Lowered, atom: usize) -> String {
+    let (law, bracket) = (&lowered.laws[atom], lowered.atoms[atom].scope as usize);
+    let interrupt = lowered.scopes[bracket].as_ref().map(|scope| &scope.interrupt);
+    let condition = interrupt.filter(|interrupt| !interrupt.removed).map_or("null", |interrupt| &interrupt.text);
+    format!("{}(Atom ({condition}) {})", frame_text(law.frame), lowered.quark(law.quark).text)
+}
+
+/// Ends the scopes that this function asks for, before anything further inside is asked.
+fn asked_first(function: &Ident) -> TokenStream {
+    quote! {
+        if let Some(ending) = #function(cursor, y, t) { return Next::Ends(ending); }
     }
 }
 

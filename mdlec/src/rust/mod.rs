@@ -6,9 +6,11 @@
 mod arguments;
 mod bind;
 mod code;
+mod kinds;
 mod names;
 mod rows;
 mod scopes;
+mod shared;
 mod signatures;
 mod tables;
 
@@ -18,6 +20,7 @@ use quote::{format_ident, quote};
 use crate::alphabet::Alphabet;
 use crate::fsm::Lowered;
 pub use bind::bind;
+use kinds::Atoms;
 pub use names::plan_type;
 
 /// What the head of the file says and the code refers to.
@@ -34,6 +37,8 @@ pub struct Header<'a> {
 pub enum Shape {
     /// Code for each atom and scope: the fastest turn, and pleasant to read.
     Code,
+    /// Code for each kind of atom, and tables of what tells the atoms of a kind apart: as fast, for long plans.
+    Shared,
     /// Rows of tables: rustc compiles them in no time, and a turn looks them up.
     Rows,
 }
@@ -41,11 +46,21 @@ pub enum Shape {
 impl Shape {
     /// The most scopes, loops and atoms of a plan that becomes code: what rustc compiles in half a second.
     const CODE: usize = 64;
+    /// The most parts that the arms of shared code have in all: what rustc compiles in as much.
+    const SHARED: usize = 512;
+    /// The most parts of one atom, so that tables do not grow with the depth of the plan.
+    const WIDEST: usize = 32;
 
-    /// The shape that a plan of this size is given.
+    /// The shape that suits a plan.
     #[must_use]
     pub fn of(lowered: &Lowered) -> Self {
-        if lowered.brackets.len() <= Self::CODE { Self::Code } else { Self::Rows }
+        if lowered.brackets.len() <= Self::CODE {
+            Self::Code
+        } else if Atoms::new(lowered).kinds(Self::SHARED, Self::WIDEST).is_some() {
+            Self::Shared
+        } else {
+            Self::Rows
+        }
     }
 }
 
@@ -64,6 +79,7 @@ pub fn emit_as(shape: Shape, lowered: &Lowered, header: Header<'_>, alphabet: &A
     let doc = format!(" The plan `{}`.", header.plan);
     let machine = match shape {
         Shape::Code => code::machine(&plan, &doc, lowered),
+        Shape::Shared => shared::machine(&plan, &doc, lowered),
         Shape::Rows => rows::machine(&plan, &doc, lowered),
     };
     let same_alphabet = same_alphabet(alphabet);
@@ -151,11 +167,16 @@ mod tests {
     }
 
     #[test]
-    fn a_plan_of_more_than_sixty_four_brackets_is_rows() {
-        let shape = |atoms: usize| {
-            Shape::of(&compiled(&format!("{{ P {} }}", "(Atom (wait 1) stop)".repeat(atoms)))[0].lowered)
-        };
-        assert_eq!([63, 64].map(shape), [Shape::Code, Shape::Rows]);
+    fn a_plan_of_more_than_sixty_four_brackets_shares_code_if_its_atoms_are_alike() {
+        let shape = |atoms: &str| Shape::of(&compiled(&format!("{{ P {atoms} }}"))[0].lowered);
+        let alike = |atoms: usize| shape(&"(Atom (wait 1) stop)".repeat(atoms));
+        assert_eq!([63, 64].map(alike), [Shape::Code, Shape::Shared]);
+        // No two of these have as many operands.
+        let differ = (1..64).map(|count| format!("(Atom ({}) stop)", vec!["wait 1"; count].join(" AND ")));
+        assert_eq!(shape(&format!("{} (Atom (wait 1) stop)", differ.collect::<String>())), Shape::Rows);
+        // And this is one kind, but too wide for a row.
+        let wide = format!("(Atom ({}) stop)", vec!["wait 1"; 32].join(" AND "));
+        assert_eq!(shape(&wide.repeat(64)), Shape::Rows);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! When scopes end, as code: interrupts as expressions, and a function for each scope that asks the one around it first.
 
 use proc_macro2::{Ident, Literal, TokenStream};
-use quote::{format_ident, quote};
+use quote::quote;
 
 use super::code::Meaning;
 use super::tables::{follows, level};
@@ -13,14 +13,15 @@ impl Meaning<'_> {
         let functions = self.functions.iter().zip(0_u32..).filter_map(|(function, bracket)| {
             let function = function.as_ref()?;
             let scope = self.lowered.scopes[bracket as usize].as_ref()?;
-            let ending = self.ending(bracket, "Fired");
+            let ending = self.ending(bracket, &quote!(Fired));
             let fired = self.condition(bracket).map(|fired| quote!(if #fired { return Some(#ending); }));
             let around = self.around(bracket).map(|function| {
                 quote! {
                     if let Some(ending) = #function(cursor, y, t) { return Some(ending); }
                 }
             });
-            let doc = format!(" {} ({}), and the scopes around it first.", scope.name, scope.interrupt.text);
+            let order = if around.is_some() { ", and the scopes around it first" } else { "" };
+            let doc = format!(" {} ({}){order}.", scope.name, scope.interrupt.text);
             Some(quote! {
                 #[doc = #doc]
                 fn #function(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> { #around #fired None }
@@ -29,25 +30,22 @@ impl Meaning<'_> {
         quote!(#(#functions)*)
     }
 
-    /// The function of the nearest scope around this bracket that has an interrupt.
+    /// The function of the nearest scope around this bracket that has an interrupt; not the plan's, which is asked
+    /// before all others.
     pub(super) fn around(&self, bracket: u32) -> Option<&Ident> {
-        let mut here = bracket;
+        let mut here = self.lowered.brackets[bracket as usize].parent;
         while here != 0 {
-            here = self.lowered.brackets[here as usize].parent;
             if let Some(function) = &self.functions[here as usize] {
                 return Some(function);
             }
+            here = self.lowered.brackets[here as usize].parent;
         }
         None
     }
 
-    /// `Cause::Fired(level).then(…)`, or without what follows where that depends on a loop's count.
-    pub(super) fn ending(&self, bracket: u32, cause: &str) -> TokenStream {
-        let (cause, level) = (format_ident!("{cause}"), self.level(bracket));
-        match self.lowered.tables().follows(bracket).map(follows) {
-            Some(follows) => quote!(runtime::Cause::#cause(#level).then(#follows)),
-            None => quote!(runtime::Cause::#cause(#level).into()),
-        }
+    /// What the scope of this bracket answers when it ends.
+    pub(super) fn ending(&self, bracket: u32, cause: &TokenStream) -> TokenStream {
+        ending(cause, self.level(bracket), self.lowered.tables().follows(bracket).map(follows))
     }
 
     fn level(&self, bracket: u32) -> u16 {
@@ -58,33 +56,69 @@ impl Meaning<'_> {
     pub(super) fn condition(&self, bracket: u32) -> Option<TokenStream> {
         let scope = self.lowered.scopes[bracket as usize].as_ref()?;
         let condition = &scope.interrupt.condition;
-        (*condition != Condition::Null).then(|| self.expression(condition, self.level(bracket)))
-    }
-
-    fn expression(&self, condition: &Condition, level: u16) -> TokenStream {
-        let operand = |operand: &Condition| {
-            let inner = self.expression(operand, level);
-            match operand {
-                Condition::Or(_) | Condition::And(_) | Condition::Wait { .. } => quote!((#inner)),
-                Condition::Null | Condition::Quark(_) | Condition::Not(_) => inner,
+        let mut constant = |constant: Constant| match constant {
+            Constant::Quark(QuarkId(id)) => {
+                let constant = &self.constants[id as usize];
+                quote!(#constant)
             }
+            Constant::Wait(nanos) => nanoseconds(nanos),
         };
-        match condition {
-            Condition::Null => quote!(false),
-            Condition::Quark(QuarkId(id)) => {
-                let constant = &self.constants[*id as usize];
-                quote!(runtime::Interrupt::fired(&#constant, y))
-            }
-            Condition::Wait { nanos, .. } => {
-                let nanos = Literal::u64_unsuffixed(*nanos);
-                quote!(cursor.since(#level, t) >= Nanos(#nanos))
-            }
-            Condition::Or(operands) => joined(operands.iter().map(operand).collect(), &quote!(|)),
-            Condition::And(operands) => joined(operands.iter().map(operand).collect(), &quote!(&)),
-            Condition::Not(inner) => {
-                let inner = operand(inner);
-                quote!(!#inner)
-            }
+        (*condition != Condition::Null).then(|| expression(condition, self.level(bracket), &mut constant))
+    }
+}
+
+/// `Cause::Fired(level).then(…)`, or without what follows where that depends on a loop's count.
+pub(super) fn ending(cause: &TokenStream, level: u16, follows: Option<TokenStream>) -> TokenStream {
+    match follows {
+        Some(follows) => quote!(runtime::Cause::#cause(#level).then(#follows)),
+        None => quote!(runtime::Cause::#cause(#level).into()),
+    }
+}
+
+/// What a condition is made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Constant {
+    /// A quark with its arguments.
+    Quark(QuarkId),
+    /// The nanoseconds of a `wait`.
+    Wait(u64),
+}
+
+/// `Nanos(500)`.
+pub(super) fn nanoseconds(nanos: u64) -> TokenStream {
+    let nanos = Literal::u64_unsuffixed(nanos);
+    quote!(Nanos(#nanos))
+}
+
+/// Whether a condition of a scope of this level has fired. `constant` says, from left to right, how each constant in it
+/// is written.
+pub(super) fn expression(
+    condition: &Condition,
+    level: u16,
+    constant: &mut impl FnMut(Constant) -> TokenStream,
+) -> TokenStream {
+    let mut operand = |operand: &Condition| {
+        let inner = expression(operand, level, constant);
+        match operand {
+            Condition::Or(_) | Condition::And(_) | Condition::Wait { .. } => quote!((#inner)),
+            Condition::Null | Condition::Quark(_) | Condition::Not(_) => inner,
+        }
+    };
+    match condition {
+        Condition::Null => quote!(false),
+        Condition::Quark(id) => {
+            let quark = constant(Constant::Quark(*id));
+            quote!(runtime::Interrupt::fired(&#quark, y))
+        }
+        Condition::Wait { nanos, .. } => {
+            let nanos = constant(Constant::Wait(*nanos));
+            quote!(cursor.since(#level, t) >= #nanos)
+        }
+        Condition::Or(operands) => joined(operands.iter().map(operand).collect(), &quote!(|)),
+        Condition::And(operands) => joined(operands.iter().map(operand).collect(), &quote!(&)),
+        Condition::Not(inner) => {
+            let inner = operand(inner);
+            quote!(!#inner)
         }
     }
 }

@@ -20,7 +20,8 @@ pub struct Cursor<E, P> {
 impl<E: Slots<Nanos>, P: Slots<u64>> Cursor<E, P> {
     /// A cursor at the first atom of `fsm`, everything entered at `t`.
     ///
-    /// `entered` needs a place for each level of scopes and `left` one for each level of loops; values do not matter.
+    /// `entered` needs a place for each level of scopes whose [`Cursor::since`] is asked, and `left` one for each level
+    /// of loops; values do not matter.
     pub fn start(fsm: Fsm<'_>, entered: E, left: P, t: Nanos) -> Self {
         let mut cursor = Self { atom: 0, entered, left };
         cursor.open(fsm, 0, None, t);
@@ -116,6 +117,10 @@ impl<E: Slots<Nanos>, P: Slots<u64>> Cursor<E, P> {
     /// Makes `atom` current and starts afresh every bracket around it that lies inside `kept`, all of them without one.
     fn open(&mut self, fsm: Fsm<'_>, atom: u32, kept: Option<u32>, t: Nanos) {
         self.atom = atom;
+        // Known when the plan is compiled, and then nobody looks at the tables.
+        if self.entered.as_ref().is_empty() && self.left.as_ref().is_empty() {
+            return;
+        }
         let Some(own) = fsm.atoms.get(atom as usize) else { return };
         for (_, bracket) in fsm.outwards(own.scope).take_while(|(here, _)| kept != Some(*here)) {
             match bracket.kind {

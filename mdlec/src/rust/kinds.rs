@@ -1,0 +1,175 @@
+//! The kinds of a plan's atoms: those of one kind mean the same but for the constants in it, and so can share code.
+
+use std::collections::BTreeMap;
+
+use mdle_runtime::Follows;
+
+use super::tables::level;
+use crate::fsm::Lowered;
+use crate::plan::{Condition, QuarkId};
+
+/// Atoms that mean the same but for their constants.
+pub(super) struct Kind {
+    /// Their numbers as written, from 0.
+    pub(super) atoms: Vec<usize>,
+}
+
+/// A part of what an atom means, in the order in which an arm of code asks for it: the scopes around the atom inwards,
+/// each with its condition and with what follows it, the law last. The plan's own scope is around all atoms, and no part.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Part {
+    /// A scope with an interrupt, or the atom's own.
+    Scope {
+        /// How many scopes are around it.
+        level: u16,
+    },
+    /// Part of its condition.
+    Null,
+    /// Part of its condition.
+    Quark(QuarkId),
+    /// Part of its condition: the nanoseconds.
+    Wait(u64),
+    /// Part of its condition: the number of operands.
+    Or(usize),
+    /// Part of its condition: the number of operands.
+    And(usize),
+    /// Part of its condition.
+    Not,
+    /// What follows when the scope ends, if that is known.
+    Follows(Option<Follows>),
+    /// The law.
+    Law(QuarkId),
+    /// The angle by which the law's frame is turned.
+    Frame(f64),
+}
+
+/// What atoms of one kind have in common in a part: all but its constant.
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
+enum Mark {
+    Scope(u16),
+    Null,
+    Quark(u32),
+    Wait,
+    Or(usize),
+    And(usize),
+    Not,
+    Follows(Option<(u16, u16)>),
+    Law(u32),
+    Frame(bool),
+}
+
+/// What the atoms of a plan mean, part by part.
+pub(super) struct Atoms<'l> {
+    lowered: &'l Lowered,
+    /// What follows each bracket.
+    follows: Vec<Option<Follows>>,
+    /// The declaration of each quark, as the number of the first quark that has it.
+    declarations: Vec<u32>,
+}
+
+impl<'l> Atoms<'l> {
+    pub(super) fn new(lowered: &'l Lowered) -> Self {
+        let tables = lowered.tables();
+        let follows = (0_u32..).zip(&lowered.brackets).map(|(number, _)| tables.follows(number)).collect();
+        let mut known = BTreeMap::new();
+        let declarations = (0_u32..).zip(&lowered.quarks);
+        let declarations =
+            declarations.map(|(id, quark)| *known.entry((&*quark.name, quark.overload)).or_insert(id)).collect();
+        Self { lowered, follows, declarations }
+    }
+
+    /// The atoms by kind, in order of first appearance; `None` if their arms, together, would have more than `most`
+    /// parts, or an atom's row more than `widest`.
+    pub(super) fn kinds(&self, most: usize, widest: usize) -> Option<Vec<Kind>> {
+        let (mut kinds, mut known, mut size) = (Vec::<Kind>::new(), BTreeMap::new(), 0_usize);
+        for atom in 0..self.lowered.atoms.len() {
+            let parts = self.parts(atom, widest)?;
+            let marks: Vec<_> = parts.iter().map(|part| self.mark(*part)).collect();
+            let kind = *known.entry(marks).or_insert_with(|| {
+                size = size.saturating_add(parts.len());
+                kinds.push(Kind { atoms: Vec::new() });
+                kinds.len() - 1
+            });
+            if size > most {
+                return None;
+            }
+            kinds[kind].atoms.push(atom);
+        }
+        Some(kinds)
+    }
+
+    /// The parts of an atom; `None` if there are more than `most`.
+    pub(super) fn parts(&self, atom: usize, most: usize) -> Option<Vec<Part>> {
+        let law = &self.lowered.laws[atom];
+        let mut parts = Vec::new();
+        for bracket in self.scopes(atom).into_iter().rev() {
+            let condition = self.condition(bracket);
+            parts.push(Part::Scope { level: level(self.lowered.brackets[bracket as usize].kind) });
+            conditions(condition, &mut parts);
+            parts.push(Part::Follows(self.follows[bracket as usize]));
+            if parts.len() > most {
+                return None;
+            }
+        }
+        parts.extend([Part::Law(law.quark), Part::Frame(law.frame)]);
+        Some(parts)
+    }
+
+    /// The scopes around an atom that can end, from its own outwards, without the plan's.
+    pub(super) fn scopes(&self, atom: usize) -> Vec<u32> {
+        let own = self.lowered.atoms[atom].scope;
+        let completes = self.lowered.quark(self.lowered.laws[atom].quark).completes;
+        let (mut scopes, mut here) = (Vec::new(), own);
+        while here != 0 {
+            if *self.condition(here) != Condition::Null || (here == own && completes) {
+                scopes.push(here);
+            }
+            here = self.lowered.brackets[here as usize].parent;
+        }
+        scopes
+    }
+
+    /// The condition of a bracket.
+    pub(super) fn condition(&self, bracket: u32) -> &'l Condition {
+        let scope = self.lowered.scopes[bracket as usize].as_ref();
+        scope.map_or(&Condition::Null, |scope| &scope.interrupt.condition)
+    }
+
+    /// What follows a bracket, if that is known.
+    pub(super) fn follows(&self, bracket: u32) -> Option<Follows> {
+        self.follows[bracket as usize]
+    }
+
+    fn mark(&self, part: Part) -> Mark {
+        match part {
+            Part::Scope { level } => Mark::Scope(level),
+            Part::Null => Mark::Null,
+            Part::Quark(QuarkId(id)) => Mark::Quark(self.declarations[id as usize]),
+            Part::Wait(_) => Mark::Wait,
+            Part::Or(count) => Mark::Or(count),
+            Part::And(count) => Mark::And(count),
+            Part::Not => Mark::Not,
+            Part::Follows(follows) => Mark::Follows(follows.map(|follows| (follows.from, follows.to))),
+            Part::Law(QuarkId(id)) => Mark::Law(self.declarations[id as usize]),
+            Part::Frame(angle) => Mark::Frame(angle != 0.0),
+        }
+    }
+}
+
+/// The parts of a condition, each operator before its operands.
+fn conditions(condition: &Condition, parts: &mut Vec<Part>) {
+    match condition {
+        Condition::Null => parts.push(Part::Null),
+        Condition::Quark(id) => parts.push(Part::Quark(*id)),
+        Condition::Wait { nanos, .. } => parts.push(Part::Wait(*nanos)),
+        Condition::Or(operands) | Condition::And(operands) => {
+            let count = operands.len();
+            parts.push(if matches!(condition, Condition::Or(_)) { Part::Or(count) } else { Part::And(count) });
+            operands.iter().for_each(|operand| conditions(operand, parts));
+        }
+        Condition::Not(operand) => {
+            parts.push(Part::Not);
+            conditions(operand, parts);
+        }
+    }
+}
