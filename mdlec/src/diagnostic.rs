@@ -1,20 +1,19 @@
 //! Diagnostics: a code, what is wrong, where, and what to type instead; rendered with codespan-reporting.
 
 use std::fmt;
+use std::ops::Range;
 
 use codespan_reporting::diagnostic as report;
 use codespan_reporting::files::{Error as FilesError, Files, SimpleFile};
 use codespan_reporting::term;
 
-/// A file that was read.
+/// A file that was read: where it begins if all files stand one behind the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SourceId(pub u32);
 
-/// A stretch of a source, in bytes.
+/// A stretch of a source, in bytes of all files one behind the other: trees are half spans, and are read as fast as they are small.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Span {
-    /// The file.
-    pub source: SourceId,
     /// The first byte.
     pub start: u32,
     /// The byte behind the last.
@@ -22,6 +21,20 @@ pub struct Span {
 }
 
 impl Span {
+    /// The stretch between these two bytes of a file.
+    #[must_use]
+    pub fn new(source: SourceId, start: usize, end: usize) -> Self {
+        let among_all = |byte| source.0.saturating_add(u32::try_from(byte).unwrap_or(u32::MAX));
+        Self { start: among_all(start), end: among_all(end) }
+    }
+
+    /// The bytes of this file that it is.
+    #[must_use]
+    pub fn within(self, source: SourceId) -> Range<usize> {
+        let in_file = |byte: u32| byte.saturating_sub(source.0) as usize;
+        in_file(self.start)..in_file(self.end)
+    }
+
     /// The stretch from the start of this one to the end of `last`, of the same source.
     #[must_use]
     pub fn to(self, last: Self) -> Self {
@@ -172,26 +185,35 @@ pub fn sort(diagnostics: &mut [Diagnostic]) {
 /// The files that spans point into.
 #[derive(Debug, Default)]
 pub struct Sources {
-    files: Vec<SimpleFile<String, String>>,
+    /// In the order in which they begin.
+    files: Vec<(SourceId, SimpleFile<String, String>)>,
 }
 
 impl Sources {
     /// Takes in a file: the name that messages show, and its text.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> SourceId {
-        self.files.push(SimpleFile::new(name.into(), text.into()));
-        SourceId(u32::try_from(self.files.len() - 1).unwrap_or(u32::MAX))
+        // One byte between two files: what stands at the end of one is not in the next.
+        let id = self.files.last().map_or(0, |(last, file)| Span::new(*last, 0, file.source().len() + 1).end);
+        self.files.push((SourceId(id), SimpleFile::new(name.into(), text.into())));
+        SourceId(id)
+    }
+
+    /// The file that holds this byte.
+    fn file(&self, byte: u32) -> Option<&(SourceId, SimpleFile<String, String>)> {
+        let behind = self.files.partition_point(|(id, _)| id.0 <= byte);
+        self.files.get(behind.checked_sub(1)?)
     }
 
     /// The text of a file.
     #[must_use]
     pub fn text(&self, source: SourceId) -> &str {
-        self.files.get(source.0 as usize).map_or("", |file| file.source().as_str())
+        self.file(source.0).map_or("", |(_, file)| file.source().as_str())
     }
 
     /// The name of a file.
     #[must_use]
     pub fn name(&self, source: SourceId) -> &str {
-        self.files.get(source.0 as usize).map_or("", |file| file.name().as_str())
+        self.file(source.0).map_or("", |(_, file)| file.name().as_str())
     }
 
     /// The diagnostic as plain text, as a terminal without colours shows it.
@@ -210,8 +232,8 @@ impl Sources {
         };
         let labels = diagnostic.labels.iter().map(|label| {
             let style = if label.primary { report::LabelStyle::Primary } else { report::LabelStyle::Secondary };
-            let range = label.span.start as usize..label.span.end as usize;
-            report::Label::new(style, label.span.source, range).with_message(&label.text)
+            let source = self.file(label.span.start).map_or(SourceId(0), |(id, _)| *id);
+            report::Label::new(style, source, label.span.within(source)).with_message(&label.text)
         });
         report::Diagnostic::new(severity)
             .with_code(diagnostic.code.name())
@@ -227,18 +249,18 @@ impl<'a> Files<'a> for Sources {
     type Source = &'a str;
 
     fn name(&'a self, id: SourceId) -> Result<&'a str, FilesError> {
-        self.files.get(id.0 as usize).map(|file| file.name().as_str()).ok_or(FilesError::FileMissing)
+        self.file(id.0).map(|(_, file)| file.name().as_str()).ok_or(FilesError::FileMissing)
     }
 
     fn source(&'a self, id: SourceId) -> Result<&'a str, FilesError> {
-        self.files.get(id.0 as usize).map(|file| file.source().as_str()).ok_or(FilesError::FileMissing)
+        self.file(id.0).map(|(_, file)| file.source().as_str()).ok_or(FilesError::FileMissing)
     }
 
     fn line_index(&'a self, id: SourceId, byte: usize) -> Result<usize, FilesError> {
-        self.files.get(id.0 as usize).ok_or(FilesError::FileMissing)?.line_index((), byte)
+        self.file(id.0).ok_or(FilesError::FileMissing)?.1.line_index((), byte)
     }
 
     fn line_range(&'a self, id: SourceId, line: usize) -> Result<std::ops::Range<usize>, FilesError> {
-        self.files.get(id.0 as usize).ok_or(FilesError::FileMissing)?.line_range((), line)
+        self.file(id.0).ok_or(FilesError::FileMissing)?.1.line_range((), line)
     }
 }

@@ -42,7 +42,7 @@ pub fn compile(
     alphabet: &Alphabet,
     wanted: Option<&str>,
 ) -> (Vec<Compiled>, Vec<Diagnostic>) {
-    let arena = syntax::Arena::new();
+    let arena = syntax::arena_for(text);
     let (tree, mut found) = syntax::parse(source, text, &arena);
     let (plans, names) = plan::resolve(&tree, alphabet, wanted);
     found.extend(names);

@@ -6,12 +6,14 @@ use crate::{Compiled, compile, link};
 
 /// The alphabet of a built-in target, or of a robot that has everything; its places are in [`sources`].
 pub(crate) fn alphabet(target: Option<&str>) -> Alphabet {
-    let read = |(source, file): (u32, &link::Alphabet)| -> AlphabetFile {
-        let (alphabet, found) = alphabet::read(SourceId(source), file.text);
+    let mut sources = Sources::default();
+    let read = |(source, file): (SourceId, &link::Alphabet)| -> AlphabetFile {
+        let (alphabet, found) = alphabet::read(source, file.text);
         assert_eq!(found, [], "{}", file.file);
         alphabet.expect("an alphabet has a head")
     };
-    let (targets, shared): (Vec<_>, Vec<_>) = (0..).zip(link::alphabets()).partition(|(_, file)| file.target);
+    let placed = link::alphabets().iter().map(|file| (sources.add(file.file, file.text), file));
+    let (targets, shared): (Vec<_>, Vec<_>) = placed.partition(|(_, file)| file.target);
     let shared: Vec<_> = shared.into_iter().map(read).collect();
     match target {
         None => Alphabet::shared(shared[0].clone()),

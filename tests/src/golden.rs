@@ -13,8 +13,10 @@ use crate::repository::TextFile;
 /// The alphabet of a built-in target, or of a robot that has everything.
 #[must_use]
 pub fn alphabet(target: Option<&str>) -> Alphabet {
-    let read = |(source, file): (u32, &link::Alphabet)| alphabet::read(SourceId(source), file.text).0.expect(file.file);
-    let (targets, shared): (Vec<_>, Vec<_>) = (0..).zip(link::alphabets()).partition(|(_, file)| file.target);
+    let mut sources = Sources::default();
+    let placed = link::alphabets().iter().map(|file| (sources.add(file.file, file.text), file));
+    let read = |(source, file): (SourceId, &link::Alphabet)| alphabet::read(source, file.text).0.expect(file.file);
+    let (targets, shared): (Vec<_>, Vec<_>) = placed.partition(|(_, file)| file.target);
     let mut shared: Vec<_> = shared.into_iter().map(read).collect();
     match target.map(|name| targets.into_iter().find(|(_, file)| file.name == name).expect(name)) {
         None => Alphabet::shared(shared.swap_remove(0)),

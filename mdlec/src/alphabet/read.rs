@@ -37,8 +37,7 @@ struct Reader<'t> {
 impl<'t> Reader<'t> {
     fn lex(&mut self) {
         for (token, range) in Token::lexer(self.text).spanned() {
-            let [start, end] = [range.start, range.end].map(|at| u32::try_from(at).unwrap_or(u32::MAX));
-            let span = Span { source: self.source, start, end };
+            let span = Span::new(self.source, range.start, range.end);
             match token {
                 Ok(token) => self.tokens.push((token, span)),
                 Err(()) => {
@@ -306,14 +305,14 @@ impl<'t> Reader<'t> {
     }
 
     fn slice(&self, span: Span) -> &'t str {
-        self.text.get(span.start as usize..span.end as usize).unwrap_or("")
+        self.text.get(span.within(self.source)).unwrap_or("")
     }
 
     fn unexpected<T>(&mut self, expected: &str) -> Read<T> {
-        let end = u32::try_from(self.text.len()).unwrap_or(u32::MAX);
+        let end = self.text.len();
         let (span, found) = match self.tokens.get(self.at) {
             Some((_, span)) => (*span, format!("`{}`", self.slice(*span))),
-            None => (Span { source: self.source, start: end, end }, "the end of the file".to_owned()),
+            None => (Span::new(self.source, end, end), "the end of the file".to_owned()),
         };
         self.found.push(Diagnostic::new(Code::E0601, format!("expected {expected}, found {found}"), span, "here"));
         Err(Defect)

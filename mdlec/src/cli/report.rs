@@ -7,7 +7,7 @@ use codespan_reporting::term;
 use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
 
 use super::Failure;
-use crate::diagnostic::{Code, Diagnostic, Severity, Sources};
+use crate::diagnostic::{Code, Diagnostic, Severity, Sources, Span};
 
 /// The most diagnostics that are shown at once: nobody reads more, and each shows its whole line of the source.
 const SHOWN: usize = 100;
@@ -39,9 +39,8 @@ pub(super) fn diagnostics(sources: &Sources, found: &[Diagnostic], deny_warnings
 pub(super) fn not_utf8(name: &str, bytes: &[u8], valid: usize) -> (Sources, Diagnostic) {
     let mut sources = Sources::default();
     let source = sources.add(name, String::from_utf8_lossy(bytes));
-    let start = u32::try_from(valid).unwrap_or(u32::MAX);
     // The replacement character that stands there now is three bytes long.
-    let span = crate::diagnostic::Span { source, start, end: start.saturating_add(3) };
+    let span = Span::new(source, valid, valid + 3);
     let found = Diagnostic::new(Code::E0109, "this file is not UTF-8 text", span, "no character of UTF-8")
         .help("save it as UTF-8 in your editor, or convert it: `iconv -f latin1 -t utf-8`");
     (sources, found)

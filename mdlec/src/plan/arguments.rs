@@ -28,7 +28,7 @@ pub(super) fn fit(call: &Call, declaration: &Declaration, robot: &str) -> Result
         let fitted = match (call.args.get(index), &param.default) {
             (Some(arg), _) => fitting.argument(arg, param),
             (None, Some(digits)) => {
-                let number = Number::new(digits, u32::MAX, call.span);
+                let number = Number::new(digits, call.span);
                 fitting.argument(&Arg::Number(number), param)
             }
             (None, None) => continue,

@@ -2,7 +2,7 @@
 
 mod degeneracy;
 
-use crate::samples::{compiled, judged};
+use crate::samples::{compiled, judged, sources};
 
 /// One snapshot: the text, what is said of it for a robot that has everything, and the plan.
 macro_rules! assert_judged {
@@ -274,7 +274,8 @@ fn one_letter_is_not_similar_to_another() {
 fn the_loop_that_makes_most_states_is_named() {
     let text = "{ P ExecPlan 2000 { (Atom (wait 1) stop) } ExecPlan 1000 { ((Atom (wait 1) stop))^500 } }";
     let too_large = crate::fsm::expand(&compiled(text)[0].nondegenerate).expect_err("502001 states");
-    let span = too_large.span().expect("a place");
-    assert!(text[span.start as usize..].starts_with("ExecPlan 1000"));
+    let source = sources().add("plan.mdle", text);
+    let range = too_large.span().expect("a place").within(source);
+    assert!(text[range].starts_with("ExecPlan 1000"));
     assert!(too_large.labels[0].text.contains("500000"), "{too_large:?}");
 }

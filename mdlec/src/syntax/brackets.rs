@@ -147,7 +147,7 @@ impl<'s> Pass<'_, 's> {
     }
 
     fn lexical(&mut self, diagnostic: Diagnostic) {
-        self.reach(diagnostic.span().map_or(0, |span| span.start as usize));
+        self.reach(diagnostic.span().map_or(0, |span| span.within(self.source.id).start));
         self.spoil(diagnostic);
     }
 

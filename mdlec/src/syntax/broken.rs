@@ -4,18 +4,26 @@
 use bumpalo::Bump;
 
 use super::regions::Regions;
+use super::source::Source;
 use super::token::Token;
 use super::tree::{Condition, ConditionNode, Element, Exec, File, Formal, Plan, Primary};
 use crate::diagnostic::Span;
 
 /// Takes out what stands where an error has been told, and plans without a name.
-pub(super) fn take_out<'s>(file: &mut File<'s>, arena: &'s Bump, tokens: &[Token<'_>], regions: &Regions) {
-    let defects = Defects { arena, tokens, regions };
+pub(super) fn take_out<'s>(
+    file: &mut File<'s>,
+    source: Source<'s>,
+    arena: &'s Bump,
+    tokens: &[Token<'_>],
+    regions: &Regions,
+) {
+    let defects = Defects { source, arena, tokens, regions };
     file.plans.retain(|plan| !plan.name.node.is_empty());
     file.plans.iter_mut().for_each(|plan| *plan = defects.plan(*plan));
 }
 
 struct Defects<'t, 's> {
+    source: Source<'s>,
     arena: &'s Bump,
     tokens: &'t [Token<'t>],
     regions: &'t Regions,
@@ -42,7 +50,7 @@ impl<'s> Defects<'_, 's> {
                 let body = self.elements(exec.body);
                 Primary::Exec(self.arena.alloc(Exec { body, ..*exec }))
             }
-            Primary::String(body) if !spoiled => Primary::String(self.elements(body)),
+            Primary::String(body) if !spoiled => Primary::String(self.arena.alloc(self.elements(body))),
             Primary::Formal(formal) if !spoiled => {
                 let body = self.elements(formal.body);
                 Primary::Formal(self.arena.alloc(Formal { body, ..*formal }))
@@ -60,7 +68,7 @@ impl<'s> Defects<'_, 's> {
 
     /// Whether an error has been told in the region where this begins.
     fn are_at(&self, span: Span) -> bool {
-        let start = span.start as usize;
+        let start = span.within(self.source.id).start;
         self.regions.is_spoiled(self.tokens.partition_point(|token| token.place.start < start))
     }
 }

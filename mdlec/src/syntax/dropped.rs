@@ -10,7 +10,7 @@ impl<'s> Nodes<'_, 's> {
     /// What was read behind `start` and not finished is not part of any list.
     pub(super) fn dropped(&mut self, start: Location, error: Recovery<'s>) {
         self.errors.push(error);
-        self.waiting.forget(start.byte);
+        self.waiting.forget(self.between(start, start));
     }
 
     pub(super) fn broken_head(&mut self, start: Location, error: Recovery<'s>) -> &'s Head<'s> {

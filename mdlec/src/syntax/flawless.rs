@@ -16,8 +16,8 @@ use super::without_recovery;
 
 /// The tree of a text, if nothing is wrong with that.
 pub(super) fn read<'s>(source: Source<'s>, arena: &'s Bump) -> Option<File<'s>> {
-    // Then every number of bytes or tokens in it is one of 32 bits.
-    u32::try_from(source.text.len()).ok()?;
+    // Then every place in it, and every number of tokens, is one of 32 bits.
+    source.id.0.checked_add(u32::try_from(source.text.len()).ok()?)?;
     let docs = Docs::default();
     let mut tokens = Tokens::new(source.text, &docs);
     let mut nodes = Nodes::new(source, arena, &[], &docs);
@@ -76,7 +76,6 @@ impl<'t, 's> Tokens<'t, 's> {
     fn is_sound(&mut self, token: &mut Tok<'s>) -> bool {
         #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are sound by themselves")]
         match token {
-            Tok::Number(digits) => digits.is_sound(),
             Tok::Str(text) => self.lexer.slice().len() == text.len() + 2,
             // Typesetting that goes together with a brace is rare, and not worth the trouble.
             Tok::Text | Tok::Command | Tok::Comment => false,

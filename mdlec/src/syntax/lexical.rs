@@ -1,7 +1,6 @@
 //! What is said about text that is no token: unexpected characters, numbers that touch something, and what does not end.
 
 use super::source::{Place, Source};
-use super::token::Digits;
 use crate::alphabet::Unit;
 use crate::diagnostic::{Code, Diagnostic};
 
@@ -91,8 +90,7 @@ pub(super) fn text(source: Source<'_>, place: Place) -> Diagnostic {
 }
 
 /// A number that touches something other than a unit.
-pub(super) fn number(source: Source<'_>, digits: Digits<'_>, place: Place) -> Diagnostic {
-    let (number, tail) = (digits.number(), digits.tail());
+pub(super) fn number(source: Source<'_>, number: &str, tail: &str, place: Place) -> Diagnostic {
     let unit = tail.trim_start();
     let span = source.span(Place::new(place.end - unit.len(), place.end));
     if unit.len() < tail.len() {
@@ -101,7 +99,7 @@ pub(super) fn number(source: Source<'_>, digits: Digits<'_>, place: Place) -> Di
             .help(format!("write `{number}{unit}`"));
     }
     if tail.starts_with('.') {
-        return dot(digits, span);
+        return dot(number, tail, span);
     }
     if tail.starts_with(['+', '-']) {
         let message = format!("`{tail}` touches the number before it");
@@ -125,8 +123,7 @@ pub(super) fn number(source: Source<'_>, digits: Digits<'_>, place: Place) -> Di
 }
 
 /// A number with a dot too many, or without digits behind it.
-fn dot(digits: Digits<'_>, span: crate::diagnostic::Span) -> Diagnostic {
-    let (number, tail) = (digits.number(), digits.tail());
+fn dot(number: &str, tail: &str, span: crate::diagnostic::Span) -> Diagnostic {
     let diagnostic =
         Diagnostic::new(Code::E0104, format!("`{number}{tail}` is not a number"), span, "not part of a number");
     match tail.trim_start_matches('.') {

@@ -1,7 +1,7 @@
 //! The usual mistakes, each with a message of its own and something to type instead.
 
 use super::errors::Site;
-use super::token::Tok;
+use super::token::{Tok, split};
 use crate::alphabet::Unit;
 use crate::diagnostic::Diagnostic;
 
@@ -226,7 +226,7 @@ fn loop_count(site: &Site<'_, '_>) -> Option<Diagnostic> {
     );
     Some(match (site.before(1), site.found()) {
         (Some(Tok::Name(name)), Some(Tok::Number(count))) => {
-            diagnostic.help(format!("the count comes first: `ExecPlan {} {name}`", count.number()))
+            diagnostic.help(format!("the count comes first: `ExecPlan {} {name}`", split(count).0))
         }
         (Some(Tok::Name(name)), _) => {
             diagnostic.help(format!("`{name}` stands where the count is; the count comes first: `ExecPlan 3 {name}`"))
@@ -279,12 +279,11 @@ fn keyword_argument(site: &Site<'_, '_>) -> Option<Diagnostic> {
 
 /// `0.5 m`: a unit that does not touch its number.
 fn unit_apart(site: &Site<'_, '_>) -> Option<Diagnostic> {
-    let (Some(Tok::Name(name)), Some(Tok::Number(digits))) = (site.found(), site.before(1)) else { return None };
-    if !digits.tail().is_empty() {
+    let (Some(Tok::Name(name)), Some(Tok::Number(number))) = (site.found(), site.before(1)) else { return None };
+    if !split(number).1.is_empty() {
         return None;
     }
     Unit::from_name(name)?;
-    let number = digits.number();
     let diagnostic =
         site.about(site.at, format!("the unit `{name}` does not touch its number"), "a blank too many before this");
     Some(diagnostic.help(format!("write `{number}{name}`")))

@@ -49,6 +49,12 @@ use source::{Location, Place, Source};
 /// Where trees stand.
 pub type Arena = bumpalo::Bump;
 
+/// An arena with room for the tree of this text: most trees are shorter than that, and get all of it at once.
+#[must_use]
+pub fn arena_for(text: &str) -> Arena {
+    Arena::with_capacity(6 * text.len())
+}
+
 /// The tree of a text, and all that is wrong with it, in the order of the text.
 #[must_use]
 pub fn parse<'s>(source: SourceId, text: &'s str, arena: &'s Arena) -> (tree::File<'s>, Vec<Diagnostic>) {
@@ -85,7 +91,7 @@ fn recover<'s>(source: Source<'s>, arena: &'s Arena) -> (tree::File<'s>, Vec<Dia
         diagnostics.push(no_plan(source));
     }
     if !diagnostics.is_empty() {
-        broken::take_out(&mut file, arena, &balanced.tokens, &balanced.regions);
+        broken::take_out(&mut file, source, arena, &balanced.tokens, &balanced.regions);
     }
     sort(&mut diagnostics);
     (file, diagnostics)

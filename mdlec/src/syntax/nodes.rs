@@ -10,7 +10,7 @@ use bumpalo::Bump;
 use lalrpop_util::ErrorRecovery;
 
 use super::source::{Location, Source};
-use super::token::{Digits, Tok, Token, label};
+use super::token::{Tok, Token, label};
 use super::tree::{
     Arg, Atom, Call, Condition, ConditionNode, Count, Element, Exec, File, Formal, Marks, Name, Number, Param, Plan,
     Primary, Spanned,
@@ -53,7 +53,7 @@ pub(super) struct Nodes<'t, 's> {
 impl<'t, 's> Nodes<'t, 's> {
     /// Constructors for the tokens of a text.
     pub(super) fn new(source: Source<'s>, arena: &'s Bump, tokens: &'t [Token<'s>], docs: &'t Docs<'s>) -> Self {
-        let (waiting, file) = (Waiting::default(), File::default());
+        let (waiting, file) = (Waiting::new(), File::default());
         Self { source, arena, tokens, docs, waiting, file, errors: Vec::new(), empty: Vec::new() }
     }
 
@@ -139,11 +139,11 @@ impl<'t, 's> Nodes<'t, 's> {
         label: Option<Name<'s>>,
         frame: Option<Number<'s>>,
         primary: Primary<'s>,
-        power: Option<Count<'s>>,
+        power: Option<&'s Count<'s>>,
         end: Location,
     ) -> First {
         let is_marked = label.is_some() || frame.is_some() || power.is_some();
-        let marks = is_marked.then(|| self.put(Marks { label, frame, power }));
+        let marks = is_marked.then(|| self.put(Marks { label, frame, power: power.copied() }));
         let span = self.between(start, end);
         self.waiting.element(Element { primary, marks, span })
     }
@@ -166,7 +166,7 @@ impl<'t, 's> Nodes<'t, 's> {
     pub(super) fn exec(
         &mut self,
         start: Location,
-        count: Count<'s>,
+        count: &'s Count<'s>,
         first: Option<First>,
         end: Location,
     ) -> Primary<'s> {
@@ -176,12 +176,12 @@ impl<'t, 's> Nodes<'t, 's> {
             self.empty((start, end), message, self.between(start, end), here, help);
         }
         let body = self.elements(first);
-        Primary::Exec(self.put(Exec { count, body }))
+        Primary::Exec(self.put(Exec { count: *count, body }))
     }
 
-    pub(super) fn exec_ref(&self, count: Count<'s>, call: &'s Call<'s>) -> Primary<'s> {
+    pub(super) fn exec_ref(&self, count: &'s Count<'s>, call: &'s Call<'s>) -> Primary<'s> {
         let body = self.arena.alloc_slice_copy(&[single(call)]);
-        Primary::Exec(self.put(Exec { count, body }))
+        Primary::Exec(self.put(Exec { count: *count, body }))
     }
 
     pub(super) fn string(&mut self, start: Location, first: Option<First>, end: Location) -> Primary<'s> {
@@ -190,7 +190,8 @@ impl<'t, 's> Nodes<'t, 's> {
             let help = "put elements between the parentheses, or take these out";
             self.empty((start, end), message, self.between(start, end), here, help);
         }
-        Primary::String(self.elements(first))
+        let body = self.elements(first);
+        Primary::String(self.put(body))
     }
 
     pub(super) fn formal(
@@ -198,7 +199,7 @@ impl<'t, 's> Nodes<'t, 's> {
         start: Location,
         first: Option<First>,
         condition: Condition<'s>,
-        time: Option<Arg<'s>>,
+        time: Option<&'s Arg<'s>>,
         end: Location,
     ) -> Primary<'s> {
         if first.is_none() {
@@ -207,7 +208,7 @@ impl<'t, 's> Nodes<'t, 's> {
             self.empty((start, end), message, self.between(start, end), here, help);
         }
         let body = self.elements(first);
-        Primary::Formal(self.put(Formal { body, condition, time }))
+        Primary::Formal(self.put(Formal { body, condition, time: time.copied() }))
     }
 
     fn empty(
@@ -241,12 +242,12 @@ impl<'t, 's> Nodes<'t, 's> {
         &mut self,
         first: Condition<'s>,
         rest: First,
-        join: fn(&'s [Condition<'s>]) -> ConditionNode<'s>,
+        join: fn(&'s &'s [Condition<'s>]) -> ConditionNode<'s>,
     ) -> Condition<'s> {
         self.waiting.conditions.insert(rest, first);
         let operands = complete(&mut self.waiting.conditions, rest, self.arena);
         let span = operands.last().map_or(first.span, |last| first.span.to(last.span));
-        Condition { node: join(operands), span }
+        Condition { node: join(self.put(operands)), span }
     }
 
     // ---- Calls ----
@@ -277,8 +278,8 @@ impl<'t, 's> Nodes<'t, 's> {
         Spanned { node: self.arena.alloc_str(&label(text)), span: self.between(start, end) }
     }
 
-    pub(super) fn number(&self, start: Location, digits: Digits<'s>, end: Location) -> Number<'s> {
-        Number::new(digits.text, digits.length, self.between(start, end))
+    pub(super) fn number(&self, start: Location, text: &'s str, end: Location) -> Number<'s> {
+        Number::new(text, self.between(start, end))
     }
 
     pub(super) fn between(&self, start: Location, end: Location) -> Span {

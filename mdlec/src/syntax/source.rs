@@ -56,12 +56,13 @@ impl Place {
 impl<'s> Source<'s> {
     /// The place as trees and diagnostics have it.
     pub(super) fn span(self, place: Place) -> Span {
-        Span { source: self.id, start: offset(place.start), end: offset(place.end) }
+        Span::new(self.id, place.start, place.end)
     }
 
     /// The stretch between these two.
     pub(super) fn between(self, start: Location, end: Location) -> Span {
-        Span { source: self.id, start: start.byte, end: end.byte.max(start.byte) }
+        let first = self.id.0;
+        Span { start: first.saturating_add(start.byte), end: first.saturating_add(end.byte.max(start.byte)) }
     }
 
     /// What is written there.

@@ -20,6 +20,7 @@ fn check(name: &str, texts: &[&str]) {
 
 fn one(text: &str) -> String {
     let mut sources = Sources::default();
+    sources.add("before.mdle", "Γ");
     let id = sources.add("plan.mdle", text);
     let arena = Arena::new();
     let (file, diagnostics) = parse(id, text, &arena);

@@ -17,32 +17,6 @@ pub(super) struct Token<'s> {
     pub(super) place: Place,
 }
 
-/// A number as written: its digits, and what touches them.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Digits<'s> {
-    /// All of it.
-    pub(super) text: &'s str,
-    /// How many bytes the number itself is.
-    pub(super) length: u32,
-}
-
-impl<'s> Digits<'s> {
-    /// Sign, digits, fraction, exponent.
-    pub(super) fn number(self) -> &'s str {
-        self.text.get(..self.length as usize).unwrap_or(self.text)
-    }
-
-    /// What touches it: a unit, or nothing, once the lexer is done.
-    pub(super) fn tail(self) -> &'s str {
-        self.text.get(self.length as usize..).unwrap_or("")
-    }
-
-    /// Whether a unit touches it, or nothing.
-    pub(super) fn is_sound(self) -> bool {
-        self.text.len() == self.length as usize || Unit::is_name(self.tail())
-    }
-}
-
 /// What a token is.
 #[derive(Logos, Debug, Clone, Copy, PartialEq)]
 #[logos(skip(r"[\s;$\u{feff}]+"))]
@@ -84,7 +58,7 @@ pub(super) enum Tok<'s> {
     #[regex(r"(Γ|\\?Gamma)_([\p{L}\p{M}\p{Nd}_]+|\{\s*(\\text\{)?[\s\p{L}\p{M}\p{Nd}_]+\}?\s*\})(\^([\p{L}\p{M}\p{Nd}_]+|\{\s*(\\text\{)?[\s\p{L}\p{M}\p{Nd}_]+\}?\s*\}))?", priority = 40)]
     Label(&'s str),
     #[regex(r"[+-]?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?", number)]
-    Number(Digits<'s>),
+    Number(&'s str),
     #[token("inf")]
     #[token("infinity")]
     #[token("∞")]
@@ -166,7 +140,10 @@ pub(super) fn lex(source: Source<'_>) -> Lexed<'_> {
         let place = Place::new(range.start, range.end);
         match token {
             Ok(kind) => reader.token(Token { kind, place }),
-            Err(()) => reader.character(place),
+            Err(()) => match split(source.slice(place)) {
+                ("", _) => reader.character(place),
+                (number, tail) => reader.number(number, tail, place),
+            },
         }
     }
     reader.end_run();
@@ -197,7 +174,6 @@ impl<'s> Reader<'s> {
             Tok::Command => self.report(lexical::command(self.source, token.place)),
             Tok::Comment => self.report(lexical::comment(self.source, token.place)),
             Tok::LParen if start == self.touches && self.after_name() => self.push(Tok::TouchParen, token.place),
-            Tok::Number(digits) => self.number(digits, token.place),
             Tok::Str(text) => {
                 if end - start != text.len() + 2 {
                     self.report(lexical::string(self.source, token.place));
@@ -221,14 +197,11 @@ impl<'s> Reader<'s> {
         matches!(self.lexed.tokens.last(), Some(Token { kind: Tok::Name(_), .. }))
     }
 
-    /// A number keeps its unit; whatever else touches it is reported and dropped.
-    fn number(&mut self, digits: Digits<'s>, place: Place) {
-        if digits.is_sound() {
-            self.push(Tok::Number(digits), place);
-        } else {
-            self.report(lexical::number(self.source, digits, place));
-            self.push(Tok::Number(Digits { text: digits.number(), ..digits }), place);
-        }
+    /// What touches a number and is no unit is reported and dropped.
+    fn number(&mut self, number: &'s str, tail: &'s str, place: Place) {
+        self.end_run();
+        self.report(lexical::number(self.source, number, tail, place));
+        self.push(Tok::Number(number), place);
     }
 
     /// The braces of `\text{…}` vanish, and do not come between a name and its parenthesis.
@@ -288,19 +261,39 @@ fn text_end(text: &str, from: usize) -> Option<usize> {
     None
 }
 
-/// Takes what touches a number along with it.
-fn number<'s>(lexer: &mut Lexer<'s, Tok<'s>>) -> Digits<'s> {
-    let (number, rest) = (lexer.slice(), lexer.remainder());
+/// A number with what touches it, if that is a unit.
+fn number<'s>(lexer: &mut Lexer<'s, Tok<'s>>) -> Result<&'s str, ()> {
+    let rest = lexer.remainder();
     let tail = match rest.as_bytes() {
         // Most numbers stand by themselves.
-        [] | [b')' | b',' | b'\n', ..] => 0,
+        [] | [b')' | b',' | b'\n', ..] => return Ok(lexer.slice()),
         [b' ' | b'\t', ..] => unit_apart(rest),
         _ => touching(rest),
     };
-    if tail > 0 {
-        lexer.bump(tail);
+    let is_sound = tail == 0 || rest.get(..tail).is_some_and(Unit::is_name);
+    lexer.bump(tail);
+    if is_sound { Ok(lexer.slice()) } else { Err(()) }
+}
+
+/// The number that a text begins with, empty if it begins with none, and what touches that.
+pub(super) fn split(text: &str) -> (&str, &str) {
+    let digits = |from: usize| text.bytes().skip(from).take_while(u8::is_ascii_digit).count();
+    let is = |at: usize, any: &[u8]| text.as_bytes().get(at).is_some_and(|byte| any.contains(byte));
+    let sign = usize::from(is(0, b"+-"));
+    let mut end = sign + digits(sign);
+    if end == sign {
+        return ("", text);
     }
-    Digits { text: lexer.slice(), length: u32::try_from(number.len()).unwrap_or(u32::MAX) }
+    if is(end, b".") && digits(end + 1) > 0 {
+        end += 1 + digits(end + 1);
+    }
+    if is(end, b"eE") {
+        let first = end + 1 + usize::from(is(end + 1, b"+-"));
+        if digits(first) > 0 {
+            end = first + digits(first);
+        }
+    }
+    text.split_at_checked(end).unwrap_or((text, ""))
 }
 
 /// How long the text is that touches a number.

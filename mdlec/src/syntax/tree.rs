@@ -96,7 +96,7 @@ impl<'s> Element<'s> {
     }
 }
 
-/// What an element is.
+/// What an element is: a reference, so that a list of elements is short.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Primary<'s> {
     /// `(Atom condition control)`.
@@ -108,7 +108,7 @@ pub enum Primary<'s> {
     /// `ExecPlan n { … }` or `ExecPlan n Name`.
     Exec(&'s Exec<'s>),
     /// An open string in parentheses.
-    String(&'s [Element<'s>]),
+    String(&'s &'s [Element<'s>]),
     /// Formal notation `(s, ξ, T)`, and `(u, ξ, T)` where `u` is one call.
     Formal(&'s Formal<'s>),
     /// What could not be read; a diagnostic says why.
@@ -157,9 +157,9 @@ pub struct Condition<'s> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ConditionNode<'s> {
     /// At least one has fired.
-    Or(&'s [Condition<'s>]),
+    Or(&'s &'s [Condition<'s>]),
     /// All have fired.
-    And(&'s [Condition<'s>]),
+    And(&'s &'s [Condition<'s>]),
     /// It has not fired.
     Not(&'s Condition<'s>),
     /// It has fired, and once since the scope was entered it had not.
@@ -272,29 +272,28 @@ impl Arg<'_> {
 pub struct Number<'s> {
     /// Its digits and its unit.
     text: &'s str,
-    /// How many bytes the digits are.
-    digits: u32,
     /// Its place, unit included.
     pub span: Span,
 }
 
 impl<'s> Number<'s> {
-    /// The number of this text, which begins with so many bytes of digits.
+    /// The number of this text: digits, and perhaps a unit.
     #[must_use]
-    pub fn new(text: &'s str, digits: u32, span: Span) -> Self {
-        Self { text, digits, span }
+    pub fn new(text: &'s str, span: Span) -> Self {
+        Self { text, span }
     }
 
     /// Sign, digits, fraction and exponent as written.
     #[must_use]
     pub fn digits(&self) -> &'s str {
-        self.text.get(..self.digits as usize).unwrap_or(self.text)
+        // A unit is letters, and a number ends with a digit.
+        self.text.trim_end_matches(|c: char| !c.is_ascii_digit())
     }
 
     /// The unit that touches it.
     #[must_use]
     pub fn unit(&self) -> Option<&'s str> {
-        self.text.get(self.digits as usize..).filter(|unit| !unit.is_empty())
+        self.text.get(self.digits().len()..).filter(|unit| !unit.is_empty())
     }
 }
 

@@ -9,7 +9,6 @@ use crate::diagnostic::Span;
 pub(super) type First = usize;
 
 /// The nodes that wait, in the order of the text: a list that is inside another one is complete before that is.
-#[derive(Default)]
 pub(super) struct Waiting<'s> {
     pub(super) args: Vec<Arg<'s>>,
     pub(super) conditions: Vec<Condition<'s>>,
@@ -25,6 +24,16 @@ pub(super) fn complete<'s, T: Copy>(waiting: &mut Vec<T>, first: First, arena: &
 }
 
 impl<'s> Waiting<'s> {
+    /// Nothing yet, with room for as much as waits in most plans.
+    pub(super) fn new() -> Self {
+        Self {
+            args: Vec::with_capacity(8),
+            conditions: Vec::with_capacity(8),
+            elements: Vec::with_capacity(32),
+            params: Vec::new(),
+        }
+    }
+
     pub(super) fn arg(&mut self, arg: Arg<'s>) -> First {
         self.args.push(arg);
         self.args.len() - 1
@@ -40,17 +49,17 @@ impl<'s> Waiting<'s> {
         self.elements.len() - 1
     }
 
-    /// Forgets what begins at this byte or behind it. What is empty there ends there as well, and stays.
-    pub(super) fn forget(&mut self, byte: u32) {
-        forget(&mut self.args, byte, Arg::span);
-        forget(&mut self.conditions, byte, |condition| condition.span);
-        forget(&mut self.elements, byte, |element| element.span);
-        forget(&mut self.params, byte, |param| param.name.span);
+    /// Forgets what begins at this empty place or behind it. What is empty there ends there as well, and stays.
+    pub(super) fn forget(&mut self, at: Span) {
+        forget(&mut self.args, at, Arg::span);
+        forget(&mut self.conditions, at, |condition| condition.span);
+        forget(&mut self.elements, at, |element| element.span);
+        forget(&mut self.params, at, |param| param.name.span);
     }
 }
 
-fn forget<T>(waiting: &mut Vec<T>, byte: u32, span: impl Fn(&T) -> Span) {
-    while waiting.last().map(&span).is_some_and(|last| (last.start, last.end) > (byte, byte)) {
+fn forget<T>(waiting: &mut Vec<T>, at: Span, span: impl Fn(&T) -> Span) {
+    while waiting.last().map(&span).is_some_and(|last| last > at) {
         waiting.pop();
     }
 }

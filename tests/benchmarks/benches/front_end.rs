@@ -9,7 +9,7 @@ use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, 
 use mdle_benchmarks::bare;
 use mdle_benchmarks::front_end::{one_megabyte, plans, ten_megabytes};
 use mdlec::diagnostic::SourceId;
-use mdlec::syntax::{Arena, parse};
+use mdlec::syntax::{Arena, arena_for, parse};
 
 /// Reads a text; whether it had no fault.
 fn reads(text: &str, arena: &Arena) -> bool {
@@ -38,7 +38,7 @@ fn front_end(criterion: &mut Criterion) {
         });
         group.bench_function(BenchmarkId::new("mdlec, first", name), |bencher| {
             let read = |arenas: &mut Vec<Arena>| texts.iter().zip(arenas).all(|(text, arena)| reads(text, arena));
-            let arenas = || texts.iter().map(|_| Arena::new()).collect::<Vec<_>>();
+            let arenas = || texts.iter().map(|text| arena_for(text)).collect::<Vec<_>>();
             bencher.iter_batched_ref(arenas, read, BatchSize::PerIteration);
         });
     }

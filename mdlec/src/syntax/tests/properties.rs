@@ -97,6 +97,7 @@ fn config() -> ProptestConfig {
 /// Reads a text, renders all that is said, and looks whether it makes sense.
 fn reads(text: &str) {
     let mut sources = Sources::default();
+    sources.add("before.mdle", "Γ");
     let id = sources.add("plan.mdle", text);
     let arena = Arena::new();
     let (file, diagnostics) = parse(id, text, &arena);
@@ -108,8 +109,7 @@ fn reads(text: &str) {
     for found in &diagnostics {
         assert!(!found.message.is_empty());
         for label in &found.labels {
-            let range = label.span.start as usize..label.span.end as usize;
-            assert!(text.get(range).is_some(), "{found:?}");
+            assert!(text.get(label.span.within(id)).is_some(), "{found:?}");
         }
         let _ = sources.render(found);
     }
