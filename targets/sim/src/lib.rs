@@ -1,7 +1,7 @@
 //! The simulated robot as a target: a differential drive with bumper, odometry and sixteen sonars in a flat world.
 //!
 //! For generated code: [`Target`], which the host runs a plan on, and [`alphabet`], the quarks this robot has.
-//! For tests and tools: [`World`], [`Simulated`] and [`Sensed`].
+//! For tests and tools: [`World`], [`Simulated`], [`Observed`] and [`Sensed`].
 //!
 //! Nothing here depends on the machine it runs on: no wall clock, no platform trigonometry, no unordered maps. Two
 //! runs with the same options give the same bytes.
@@ -9,6 +9,9 @@
 
 pub mod alphabet;
 mod body;
+mod frames;
+mod goal;
+mod observed;
 mod options;
 mod output;
 mod plot;
@@ -23,8 +26,10 @@ mod whole_file;
 mod world;
 mod world_file;
 
+pub use goal::Goal;
 /// The robot's input.
 pub use mdle_runtime::Twist as Input;
+pub use observed::Observed;
 pub use output::Sensed;
 /// Its output.
 pub use output::Sensed as Output;

@@ -34,7 +34,12 @@ pub(crate) fn arguments(command: Command) -> Command {
         )
         .arg(
             option("plot", "FILE.svg")
-                .help("Draw the floor, the way driven and where each atom began")
+                .help("Draw the floor, the way driven, where each atom began, and what was heard and touched")
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(
+            option("record", "FILE.svg")
+                .help("Make a moving picture of the run, for a browser")
                 .value_parser(value_parser!(PathBuf)),
         )
         .arg(
@@ -94,7 +99,7 @@ pub(crate) fn seed(matches: &ArgMatches) -> Option<u64> {
     matches.get_one("seed").copied()
 }
 
-/// The path of `--plot` or `--trail`.
+/// The path of `--plot`, `--record` or `--trail`.
 pub(crate) fn file<'m>(matches: &'m ArgMatches, option: &str) -> Option<&'m Path> {
     matches.get_one::<PathBuf>(option).map(PathBuf::as_path)
 }

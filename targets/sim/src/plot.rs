@@ -1,7 +1,16 @@
-//! The picture of `--plot`: the floor, the way driven, and where each atom began.
+//! The pictures of a run: of `--plot`, the floor, the way driven and where each atom began; of `--record`, one that moves.
 
+mod colours;
 mod drawing;
+mod film;
+mod floor;
 mod labels;
 mod layout;
+mod legend;
+mod record;
+mod shapes;
+#[cfg(test)]
+mod tests;
 
 pub(crate) use drawing::svg;
+pub(crate) use record::animated;

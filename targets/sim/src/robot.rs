@@ -3,17 +3,13 @@
 use std::fmt;
 use std::time::Duration;
 
-use mdle_host::Hosted;
 use mdle_runtime::{Nanos, Pose, Robot, Twist};
 
 use crate::body::Body;
 use crate::output::Sensed;
-use crate::plot;
 use crate::sonar::Ring;
 use crate::start::{self, StartError};
-use crate::trail::Trail;
 use crate::walls::Walls;
-use crate::whole_file::WholeFile;
 use crate::world::World;
 
 /// A robot in a world.
@@ -24,28 +20,6 @@ pub struct Simulated {
     period: Duration,
     /// Exchanges so far; the first is at time 0.
     exchanges: u64,
-    drawing: Option<Drawing>,
-    table: Option<Table>,
-}
-
-/// What a plot is made of in the end.
-struct Drawing {
-    file: WholeFile,
-    world: World,
-    trail: Trail,
-}
-
-/// Where the robot was in each turn: a line of commas for each exchange.
-struct Table {
-    file: WholeFile,
-    lines: String,
-}
-
-impl Table {
-    fn went(&mut self, t: Nanos, pose: &Pose) {
-        let Pose { x, y, theta } = pose;
-        self.lines += &format!("{},{},{},{}\n", t.seconds(), x.0, y.0, theta.degrees());
-    }
 }
 
 /// Why an exchange failed.
@@ -73,15 +47,7 @@ impl Simulated {
     pub fn new(world: &World, start: Pose, seed: Option<u64>, period: Duration) -> Result<Self, StartError> {
         let walls = Walls::of(world);
         start::check(&start, world, &walls)?;
-        Ok(Self {
-            walls,
-            body: Body::at(start),
-            ring: Ring::new(seed),
-            period,
-            exchanges: 0,
-            drawing: None,
-            table: None,
-        })
+        Ok(Self { walls, body: Body::at(start), ring: Ring::new(seed), period, exchanges: 0 })
     }
 
     /// Where it is on the floor, which only the simulator knows.
@@ -90,20 +56,8 @@ impl Simulated {
         self.body.pose
     }
 
-    /// Has its way drawn when the run is finished.
-    pub(crate) fn drawn(mut self, file: WholeFile, world: World) -> Self {
-        let trail = Trail::from(&self.body.pose);
-        self.drawing = Some(Drawing { file, world, trail });
-        self
-    }
-
-    /// Has its way written down when the run is finished: `t,x,y,heading` in seconds, metres and degrees.
-    pub(crate) fn written_down(mut self, file: WholeFile) -> Self {
-        self.table = Some(Table { file, lines: "t,x,y,heading\n".into() });
-        self
-    }
-
-    fn now(&self) -> Nanos {
+    /// The time of the next exchange.
+    pub(crate) fn now(&self) -> Nanos {
         let period = u64::try_from(self.period.as_nanos()).unwrap_or(u64::MAX);
         Nanos(self.exchanges.saturating_mul(period))
     }
@@ -122,13 +76,7 @@ impl Robot for Simulated {
         let Body { pose, odometry, .. } = self.body;
         let now = self.now();
         self.ring.ping(&pose, odometry, now, &self.walls);
-        if let Some(table) = &mut self.table {
-            table.went(now, &pose);
-        }
         self.exchanges = self.exchanges.saturating_add(1);
-        if let Some(drawing) = &mut self.drawing {
-            drawing.trail.went(&pose);
-        }
         Ok(Sensed {
             odometry,
             velocity: self.body.velocity(),
@@ -139,28 +87,6 @@ impl Robot for Simulated {
 
     fn stop(&mut self) -> Result<(), Fault> {
         self.body.brake(&self.walls);
-        if let Some(drawing) = &mut self.drawing {
-            drawing.trail.went(&self.body.pose);
-        }
-        Ok(())
-    }
-}
-
-impl Hosted for Simulated {
-    fn began(&mut self, state: u64, law: &str, t: Nanos) {
-        if let Some(drawing) = &mut self.drawing {
-            drawing.trail.began(state, law, t);
-        }
-    }
-
-    fn finish(&mut self) -> Result<(), String> {
-        if let Some(Table { file, lines }) = &self.table {
-            file.write("trail", lines)?;
-        }
-        if let Some(Drawing { file, world, trail }) = &self.drawing {
-            let svg = plot::svg(world, trail).map_err(|error| format!("the plot cannot be drawn: {error}"))?;
-            file.write("plot", &svg)?;
-        }
         Ok(())
     }
 }

@@ -6,6 +6,7 @@ use mdle_host::clap::{ArgMatches, Command};
 use mdle_host::{Refusal, Target, Time};
 use mdle_runtime::Pose;
 
+use crate::observed::Observed;
 use crate::robot::Simulated;
 use crate::start::Start;
 use crate::whole_file::WholeFile;
@@ -18,7 +19,7 @@ pub struct Sim;
 impl Target for Sim {
     const NAME: &'static str = alphabet::NAME;
     const PERIOD: Duration = Duration::from_nanos(alphabet::PERIOD.0);
-    type Robot = Simulated;
+    type Robot = Observed;
 
     fn arguments(command: Command) -> Command {
         options::arguments(command)
@@ -28,13 +29,13 @@ impl Target for Sim {
         options::time(matches)
     }
 
-    fn connect(matches: &ArgMatches, period: Duration) -> Result<Simulated, Refusal> {
+    fn connect(matches: &ArgMatches, period: Duration) -> Result<Observed, Refusal> {
         robot(matches, period).map_err(Refusal::Usage)
     }
 }
 
 /// The robot that the options describe; everything that can be refused is refused here, before anything moves.
-fn robot(matches: &ArgMatches, period: Duration) -> Result<Simulated, String> {
+fn robot(matches: &ArgMatches, period: Duration) -> Result<Observed, String> {
     let world = options::world(matches)?;
     let given = options::start(matches)?;
     let Start(pose) = given.map_or(Start(world.start), |(_, start)| start);
@@ -42,14 +43,9 @@ fn robot(matches: &ArgMatches, period: Duration) -> Result<Simulated, String> {
         Some((text, _)) => format!("--start {text}: {error}; {}", hint(&world.start)),
         None => format!("the world's own start pose: {error}; give another, as in `--start 1,2,90`"),
     })?;
-    let robot = match options::file(matches, "trail") {
-        Some(path) => robot.written_down(WholeFile::at("trail", path)?),
-        None => robot,
-    };
-    match options::file(matches, "plot") {
-        Some(path) => Ok(robot.drawn(WholeFile::at("plot", path)?, world)),
-        None => Ok(robot),
-    }
+    let file = |option| options::file(matches, option).map(|path| WholeFile::at(option, path)).transpose();
+    let robot = Observed::from(robot).written_down(file("trail")?);
+    Ok(robot.drawn(file("plot")?, file("record")?, &world))
 }
 
 /// What can be typed instead.

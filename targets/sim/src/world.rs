@@ -4,6 +4,7 @@ use std::fmt;
 
 use mdle_runtime::{Meters, Pose};
 
+use crate::goal::Goal;
 use crate::world_file::{self, WorldError};
 
 /// The floor of the paper's tour, box in the hallway included.
@@ -16,6 +17,8 @@ pub struct World {
     pub outlines: Vec<Outline>,
     /// The start pose unless an option says otherwise.
     pub start: Pose,
+    /// Where a plan is to leave the robot, if the world says so.
+    pub goal: Option<Goal>,
 }
 
 /// A wall or a box, as the line around it.

@@ -10,6 +10,7 @@ use serde::de::{MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 
+use crate::goal::Goal;
 use crate::world::{Outline, Place, World};
 
 /// The furthest coordinate, in metres: beyond it millimetres would begin to blur.
@@ -44,6 +45,7 @@ type Coordinates = Spanned<Vec<Spanned<f64>>>;
 struct WorldText {
     #[serde(default)]
     start: Table<StartText>,
+    goal: Option<Spanned<Table<GoalText>>>,
     #[serde(default, rename = "wall")]
     walls: Vec<Table<WallText>>,
     #[serde(default, rename = "box")]
@@ -56,6 +58,15 @@ struct StartText {
     x: Option<Spanned<f64>>,
     y: Option<Spanned<f64>>,
     heading: Option<Spanned<f64>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct GoalText {
+    min: Coordinates,
+    max: Coordinates,
+    heading: Option<Spanned<f64>>,
+    tolerance: Option<Spanned<f64>>,
 }
 
 #[derive(Deserialize)]
@@ -124,9 +135,10 @@ fn read(text: &str) -> Result<World, Wrong> {
         Wrong(error.span(), what)
     })?;
     let start = start(&written.start.0)?;
+    let goal = written.goal.as_ref().map(goal).transpose()?;
     let walls = (1..).zip(&written.walls).map(|(number, wall)| outline_of_wall(number, &wall.0));
     let boxes = (1..).zip(&written.boxes).map(|(number, text)| outline_of_box(number, text));
-    Ok(World { outlines: walls.chain(boxes).collect::<Result<_, _>>()?, start })
+    Ok(World { outlines: walls.chain(boxes).collect::<Result<_, _>>()?, start, goal })
 }
 
 fn start(text: &StartText) -> Result<Pose, Wrong> {
@@ -136,6 +148,28 @@ fn start(text: &StartText) -> Result<Pose, Wrong> {
         y: Meters(value(&text.y)?),
         theta: Radians::from_degrees(value(&text.heading)?).wrapped(),
     })
+}
+
+fn goal(text: &Spanned<Table<GoalText>>) -> Result<Goal, Wrong> {
+    let Table(written) = text.get_ref();
+    let (min, max) = (pair(&written.min, "`min`")?, pair(&written.max, "`max`")?);
+    if min.x >= max.x || min.y >= max.y {
+        return Err(Wrong::at(&written.max, format!("a goal without an inside: it would reach from {min} to {max}")));
+    }
+    let heading = match (&written.heading, &written.tolerance) {
+        (Some(heading), Some(tolerance)) if (0.0..=180.0).contains(tolerance.get_ref()) => {
+            let tolerance = Radians::from_degrees(*tolerance.get_ref());
+            Some((Radians::from_degrees(coordinate(heading)?).wrapped(), tolerance))
+        }
+        (None, None) => None,
+        (Some(_), Some(tolerance)) => return Err(Wrong::at(tolerance, "a tolerance is from 0 to 180 degrees")),
+        (Some(_), None) | (None, Some(_)) => {
+            let what =
+                "a goal's `heading` needs a `tolerance` and the other way round, as in `heading = 90, tolerance = 15`";
+            return Err(Wrong::at(text, what));
+        }
+    };
+    Ok(Goal { min, max, heading })
 }
 
 fn outline_of_wall(number: usize, text: &WallText) -> Result<Outline, Wrong> {

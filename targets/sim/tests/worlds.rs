@@ -50,11 +50,15 @@ fn faults_are_told_with_their_place() {
         "start = { heading = inf }",
         "start = [0, 0, 0, 4]",
         "wall = 3",
+        "goal = { min = [0, 0] }",
+        "goal = { min = [0, 0], max = [0, 1] }",
+        "goal = { min = [0, 0], max = [1, 1], heading = 90 }",
+        "goal = { min = [0, 0], max = [1, 1], heading = 90, tolerance = -1 }",
     ]
     .map(fault);
     insta::assert_snapshot!(faults.join("\n"), @r#"
     room.toml:3:1: missing comma between array elements, expected `,`
-    room.toml:1:3: unknown field `wal`, expected one of `start`, `wall`, `box`
+    room.toml:1:3: unknown field `wal`, expected one of `start`, `goal`, `wall`, `box`
     room.toml:2:1: unknown field `nmae`, expected `name` or `points`
     room.toml:1:1: missing field `points`
     room.toml:2:10: a wall needs at least two points, as in `points = [[0, 0], [2.5, 0]]`
@@ -73,5 +77,9 @@ fn faults_are_told_with_their_place() {
     room.toml:1:21: inf is no coordinate: expected a number, at most 1000 km
     room.toml:1:9: invalid type: sequence, expected a table
     room.toml:1:8: invalid type: integer `3`, expected a sequence
+    room.toml:1:8: missing field `max`
+    room.toml:1:30: a goal without an inside: it would reach from (0, 0) to (0, 1)
+    room.toml:1:8: a goal's `heading` needs a `tolerance` and the other way round, as in `heading = 90, tolerance = 15`
+    room.toml:1:64: a tolerance is from 0 to 180 degrees
     "#);
 }

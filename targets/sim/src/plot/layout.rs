@@ -1,7 +1,8 @@
 //! How large a plot is and where its parts lie, in pixels; both axes have one scale.
 
+use super::shapes::Pixel;
 use crate::trail::Trail;
-use crate::world::World;
+use crate::world::{Place, World};
 
 /// The most that the floor may take up, in pixels.
 const FLOOR_MOST: (f64, f64) = (1080.0, 860.0);
@@ -12,41 +13,45 @@ const SCALE_MOST: f64 = 220.0;
 /// Kept free around what is drawn, in metres.
 const AROUND: f64 = 0.4;
 /// Around the whole plot.
-pub(crate) const MARGIN: u32 = 18;
+pub(super) const MARGIN: f64 = 18.0;
 /// For the numbers below the floor.
-pub(crate) const BELOW: u32 = 44;
+pub(super) const BELOW: f64 = 44.0;
 /// For the numbers to the left of the floor.
-pub(crate) const LEFT: u32 = 52;
+pub(super) const LEFT: f64 = 52.0;
 /// The height of a line of the legend.
-pub(crate) const LINE: u32 = 22;
+pub(super) const LINE: f64 = 22.0;
 /// The size of letters in the legend.
-pub(crate) const LETTERS: u32 = 14;
+pub(super) const LETTERS: u32 = 14;
+/// The lines below the atoms of the legend: a free one, what the signs mean, and the scale.
+pub(super) const KEY: usize = 7;
+/// The least width of a legend: that of its signs.
+const LEGEND_LEAST: f64 = 170.0;
 /// The most atoms that are marked and listed.
-pub(crate) const MARKS_MOST: usize = 40;
+pub(super) const MARKS_MOST: usize = 40;
 /// The most letters of a law that are shown.
 const LAW_MOST: usize = 44;
 
 /// The sizes of a plot.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Layout {
+pub(super) struct Layout {
     /// What is shown, in metres.
-    pub(crate) x: (f64, f64),
+    pub(super) x: (f64, f64),
     /// What is shown, in metres.
-    pub(crate) y: (f64, f64),
+    pub(super) y: (f64, f64),
     /// The pixels of a metre.
-    pub(crate) scale: f64,
+    pub(super) scale: f64,
     /// The width of the part that holds the floor, axes included.
-    pub(crate) chart: u32,
+    pub(super) chart: f64,
     /// The width of the legend.
-    pub(crate) legend: u32,
-    pub(crate) height: u32,
+    pub(super) legend: f64,
+    pub(super) height: f64,
     /// Each atom that began, as the legend tells it: its number, its law and when.
-    pub(crate) lines: Vec<(String, String, String)>,
+    pub(super) lines: Vec<(String, String, String)>,
 }
 
 impl Layout {
     /// The layout that shows all walls and the whole way.
-    pub(crate) fn of(world: &World, trail: &Trail) -> Self {
+    pub(super) fn of(world: &World, trail: &Trail) -> Self {
         let places = || world.outlines.iter().flat_map(|outline| outline.points.iter().copied()).chain(trail.places());
         let x = range(places().map(|place| place.x));
         let y = range(places().map(|place| place.y));
@@ -55,13 +60,38 @@ impl Layout {
         let (y, high) = shown(y, scale);
         let lines = lines(trail);
         let letters = lines.iter().map(|(_, law, t)| law.chars().count() + t.len()).max().unwrap_or(0);
-        // Sans-serif letters are about half as wide as they are high.
-        let legend = if lines.is_empty() { 0 } else { 84 + u32::try_from(letters).unwrap_or(0) * (LETTERS * 11 / 20) };
-        let listed = u32::try_from(lines.len()).unwrap_or(0);
-        let height = (high + 2 * MARGIN + BELOW).max(2 * MARGIN + (listed + 2) * LINE);
+        // Sans-serif letters are less than six tenths as wide as they are high, on the whole.
+        let legend = (84.0 + letters as f64 * f64::from(LETTERS) * 0.56).max(LEGEND_LEAST);
+        let listed = (lines.len() + KEY) as f64;
+        let height = (high + 2.0 * MARGIN + BELOW).max(2.0 * MARGIN + (listed + 1.0) * LINE);
         // A legend that is higher than the floor must not stretch it.
-        let y = (y.0, y.0 + f64::from(height - 2 * MARGIN - BELOW) / scale);
-        Self { x, y, scale, chart: wide + 2 * MARGIN + LEFT, legend, height, lines }
+        let y = (y.0, y.0 + (height - 2.0 * MARGIN - BELOW) / scale);
+        Self { x, y, scale, chart: wide + 2.0 * MARGIN + LEFT, legend: libm::ceil(legend), height, lines }
+    }
+
+    /// Where a place of the floor is in the drawing.
+    pub(super) fn at(&self, place: Place) -> Pixel {
+        (MARGIN + LEFT + (place.x - self.x.0) * self.scale, MARGIN + (self.y.1 - place.y) * self.scale)
+    }
+
+    /// Whether a place lies on what is shown of the floor.
+    pub(super) fn shows(&self, place: Place) -> bool {
+        (self.x.0..=self.x.1).contains(&place.x) && (self.y.0..=self.y.1).contains(&place.y)
+    }
+
+    /// The whole width.
+    pub(super) fn width(&self) -> f64 {
+        self.chart + self.legend
+    }
+
+    /// Where the floor ends below, and the axis is.
+    pub(super) fn bottom(&self) -> f64 {
+        self.height - MARGIN - BELOW
+    }
+
+    /// The middle of a line of the legend, from 0.
+    pub(super) fn line(&self, number: usize) -> f64 {
+        MARGIN + LINE * (number as f64 + 1.0)
     }
 }
 
@@ -74,22 +104,79 @@ fn range(coordinates: impl Iterator<Item = f64>) -> (f64, f64) {
 }
 
 /// What is shown of a range, and in how many pixels: at least the least, then more of the floor around it.
-fn shown((least, most): (f64, f64), scale: f64) -> ((f64, f64), u32) {
+fn shown((least, most): (f64, f64), scale: f64) -> ((f64, f64), f64) {
     let pixels = libm::ceil(((most - least) * scale).max(FLOOR_LEAST));
     let more = (pixels / scale - (most - least)) / 2.0;
-    ((least - more, most + more), pixels as u32)
+    ((least - more, most + more), pixels)
 }
 
 fn lines(trail: &Trail) -> Vec<(String, String, String)> {
-    let listed = trail.marks.iter().take(MARKS_MOST).map(|mark| {
-        let law: String = if mark.law.chars().count() <= LAW_MOST {
-            mark.law.clone()
-        } else {
-            mark.law.chars().take(LAW_MOST - 1).chain(['…']).collect()
-        };
-        (mark.state.to_string(), law, format!("{:.1} s", mark.t.seconds()))
-    });
+    let listed = trail
+        .marks
+        .iter()
+        .take(MARKS_MOST)
+        .map(|mark| (mark.state.to_string(), shortened(&mark.law), format!("{:.1} s", mark.t.seconds())));
     let left = trail.marks.len().saturating_sub(MARKS_MOST);
     let more = (left > 0).then(|| (String::new(), format!("and {left} more"), String::new()));
     listed.chain(more).collect()
+}
+
+/// A law as long as there is room for.
+pub(super) fn shortened(law: &str) -> String {
+    if law.chars().count() <= LAW_MOST {
+        law.to_owned()
+    } else {
+        law.chars().take(LAW_MOST - 1).chain(['…']).collect()
+    }
+}
+
+/// The step between the numbers of an axis: one, two or five times a power of ten, at least `least`.
+pub(super) fn round_step(least: f64) -> f64 {
+    let power = libm::pow(10.0, libm::floor(libm::log10(least)));
+    let step = [1.0, 2.0, 5.0].into_iter().map(|digit| digit * power).find(|step| *step >= least * (1.0 - 1e-9));
+    step.unwrap_or(10.0 * power)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mdle_runtime::{Nanos, Pose};
+
+    fn layout(world: &str, marks: usize) -> Layout {
+        let mut trail = Trail::from(&Pose::ORIGIN);
+        for number in 0..marks {
+            trail.began(number as u64 + 1, &"goAvoid 90 40 20 ".repeat(number % 5 + 1), Nanos(number as u64));
+        }
+        Layout::of(&World::parse("a world", world).expect("a good world"), &trail)
+    }
+
+    #[test]
+    fn steps_are_round_and_never_too_small() {
+        for (least, step) in [(0.07, 0.1), (0.1, 0.1), (0.11, 0.2), (0.3, 0.5), (0.6, 1.0), (1.0, 1.0), (30.0, 50.0)] {
+            assert!((round_step(least) - step).abs() < 1e-9 * step, "{least}: {}", round_step(least));
+        }
+        assert!(round_step(1e9) >= 1e9 && round_step(1e-9) >= 1e-9);
+    }
+
+    #[test]
+    fn everything_lies_inside_whatever_the_size() {
+        for (world, marks) in [
+            ("", 0),
+            ("", 100),
+            ("[[wall]]\npoints = [[-1000000, 0], [1000000, 1]]", 3),
+            ("[[wall]]\npoints = [[0, -1000], [0.001, 1000]]", 60),
+            ("[[box]]\ncentre = [0.5, 0.5]\nsize = [0.1, 0.1]", 13),
+        ] {
+            let layout = layout(world, marks);
+            assert!(layout.height.is_finite() && layout.height < 1150.0, "{layout:?}");
+            assert!(layout.width() < 1700.0, "{layout:?}");
+            for place in [Place { x: layout.x.0, y: layout.y.0 }, Place { x: layout.x.1, y: layout.y.1 }] {
+                let (x, y) = layout.at(place);
+                assert!((MARGIN + LEFT - 0.1..=layout.chart - MARGIN + 0.1).contains(&x), "{x} in {layout:?}");
+                assert!((MARGIN - 0.1..=layout.bottom() + 0.1).contains(&y), "{y} in {layout:?}");
+            }
+            let last = layout.line(layout.lines.len() + KEY - 1);
+            assert!(last + LINE / 2.0 <= layout.height, "{last} in {layout:?}");
+        }
+    }
 }

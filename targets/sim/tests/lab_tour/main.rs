@@ -10,7 +10,7 @@ use std::time::Duration;
 use mdle_host::clap::Command;
 use mdle_host::{Hosted, Target};
 use mdle_runtime::{Machine, Meters, Nanos, Plan, Pose, Radians, Robot, Transition, Turn, Twist, Watch};
-use mdle_sim::{Sim, Simulated, World};
+use mdle_sim::{Observed, Sim, Simulated, World};
 use plan::Tour;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -49,7 +49,7 @@ impl Watch for Watched {
 }
 
 /// Runs the tour; how each atom ended.
-fn run(robot: &mut Simulated) -> Vec<End> {
+fn run(robot: &mut Observed) -> Vec<End> {
     let mut input = Twist::default();
     let mut machine = None;
     let mut ends = Vec::new();
@@ -80,11 +80,11 @@ fn run(robot: &mut Simulated) -> Vec<End> {
 
 fn tour(start: Pose, seed: Option<u64>) -> Vec<End> {
     let world = World::office().expect("our own floor");
-    run(&mut Simulated::new(&world, start, seed, PERIOD).expect("a start on the floor"))
+    run(&mut Simulated::new(&world, start, seed, PERIOD).expect("a start on the floor").into())
 }
 
 /// The robot that an executable with these options drives.
-fn connected(options: &[&str]) -> Simulated {
+fn connected(options: &[&str]) -> Observed {
     let matches = Sim::arguments(Command::new("tour").no_binary_name(true)).get_matches_from(options);
     Sim::connect(&matches, PERIOD).expect("good options")
 }

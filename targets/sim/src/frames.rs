@@ -1,0 +1,81 @@
+//! The moments of a run for a picture that moves: always a bounded number, evenly spread, however long the run.
+
+use mdle_runtime::{Nanos, Pose, SONARS};
+
+use crate::world::Place;
+
+/// The most moments kept; when there are as many, every second one goes.
+pub(crate) const FRAMES_MOST: usize = 800;
+
+/// A moment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Frame {
+    pub(crate) t: Nanos,
+    pub(crate) pose: Pose,
+    /// Where each sonar had an echo just now.
+    pub(crate) echoes: [Option<Place>; SONARS],
+}
+
+/// The moments kept.
+#[derive(Debug, Clone)]
+pub(crate) struct Frames {
+    kept: Vec<Frame>,
+    /// The last one of all, kept or not: the run ends there.
+    last: Option<Frame>,
+    /// One of so many is kept.
+    stride: u64,
+    seen: u64,
+}
+
+impl Frames {
+    /// None yet.
+    pub(crate) fn new() -> Self {
+        Self { kept: Vec::new(), last: None, stride: 1, seen: 0 }
+    }
+
+    /// The next moment.
+    pub(crate) fn push(&mut self, t: Nanos, pose: &Pose, echoes: &[Option<Place>; SONARS]) {
+        let frame = Frame { t, pose: *pose, echoes: *echoes };
+        if self.seen.is_multiple_of(self.stride) {
+            self.kept.push(frame);
+        }
+        if self.kept.len() >= FRAMES_MOST {
+            let mut number = 0_usize;
+            self.kept.retain(|_| {
+                number += 1;
+                number % 2 == 1
+            });
+            self.stride = self.stride.saturating_mul(2);
+        }
+        self.last = Some(frame);
+        self.seen = self.seen.saturating_add(1);
+    }
+
+    /// The moments kept, in order, the last one among them.
+    pub(crate) fn all(&self) -> Vec<Frame> {
+        let last = self.last.filter(|last| self.kept.last() != Some(last));
+        self.kept.iter().copied().chain(last).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_run_is_thinned_evenly_and_keeps_its_ends() {
+        for turns in [1_u64, 2, 799, 800, 801, 5_000, 100_001] {
+            let mut frames = Frames::new();
+            for turn in 0..turns {
+                frames.push(Nanos(turn), &Pose::ORIGIN, &[None; SONARS]);
+            }
+            let times: Vec<u64> = frames.all().iter().map(|frame| frame.t.0).collect();
+            assert!(times.len() <= FRAMES_MOST && (times.len() as u64) >= turns.min(FRAMES_MOST as u64 / 2));
+            assert_eq!((times.first(), times.last()), (Some(&0), Some(&(turns - 1))));
+            let steps: Vec<u64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+            let even =
+                steps.split_last().is_none_or(|(last, rest)| rest.iter().all(|step| step == &steps[0] && last <= step));
+            assert!(even, "{turns}: {steps:?}");
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! How a run becomes a film: how fast it is shown, which atom runs when, and the animations that all repeat together.
+
+use mdle_runtime::Nanos;
+use svg::node::element::{Animate, AnimateTransform};
+
+use super::layout::round_step;
+use crate::frames::Frame;
+use crate::trail::Trail;
+
+/// The longest film, in seconds, before the rest.
+const SHOWN_MOST: f64 = 20.0;
+/// The rest at the end, in seconds.
+const REST: f64 = 2.5;
+
+/// A film of a run.
+pub(super) struct Film<'f> {
+    /// Its moments.
+    pub(super) frames: &'f [Frame],
+    /// The atoms that run in it, in order; those that begin and end between two moments are left out.
+    pub(super) acts: Vec<Act>,
+    /// How many times as fast as it happened it is shown.
+    pub(super) times: f64,
+}
+
+/// An atom that runs for a while.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Act {
+    /// Its number among those that began; `None` before the first.
+    pub(super) mark: Option<usize>,
+    pub(super) from: Nanos,
+    pub(super) to: Nanos,
+    /// Its moments, and the first of the next.
+    first: usize,
+    last: usize,
+}
+
+impl<'f> Film<'f> {
+    /// The film of these moments of a trail.
+    pub(super) fn of(frames: &'f [Frame], trail: &Trail) -> Self {
+        let mut acts: Vec<Act> = Vec::new();
+        let mut begun = 0;
+        for (number, frame) in frames.iter().enumerate() {
+            while trail.marks.get(begun).is_some_and(|mark| mark.t <= frame.t) {
+                begun += 1;
+            }
+            let mark = begun.checked_sub(1);
+            match acts.last_mut() {
+                Some(act) if act.mark == mark => (act.to, act.last) = (frame.t, number),
+                previous => {
+                    let from = mark.and_then(|mark| trail.marks.get(mark)).map_or(frame.t, |mark| mark.t);
+                    if let Some(act) = previous {
+                        (act.to, act.last) = (from, number);
+                    }
+                    acts.push(Act { mark, from, to: frame.t, first: number, last: number });
+                }
+            }
+        }
+        let seconds = frames.last().map_or(0.0, |frame| frame.t.seconds());
+        Self { frames, acts, times: round_step((seconds / SHOWN_MOST).max(1.0)) }
+    }
+
+    /// The moments of an act.
+    pub(super) fn of_act(&self, act: &Act) -> &'f [Frame] {
+        self.frames.get(act.first..=act.last).unwrap_or_default()
+    }
+
+    /// When it ends, in the run's time.
+    pub(super) fn end(&self) -> Nanos {
+        self.frames.last().map_or(Nanos::ZERO, |frame| frame.t)
+    }
+
+    /// How much of the run has passed at `t`, from 0 to 1.
+    pub(super) fn part(&self, t: Nanos) -> f64 {
+        let end = self.end().seconds();
+        if end > 0.0 { (t.seconds() / end).min(1.0) } else { 1.0 }
+    }
+
+    /// How long it takes to be shown, with the rest, in seconds.
+    fn duration(&self) -> f64 {
+        self.end().seconds() / self.times + REST
+    }
+
+    /// Where in a repetition the run's time `t` is, from 0 to 1, to a hundred-thousandth.
+    fn key(&self, t: Nanos) -> f64 {
+        let shown = t.min(self.end()).seconds() / self.times;
+        libm::round(shown / self.duration() * 1e5) / 1e5
+    }
+
+    /// An attribute that goes smoothly through these values.
+    pub(super) fn animate(&self, attribute: &str, values: impl Iterator<Item = (Nanos, String)>) -> Animate {
+        let attributes = self.smooth(values).into_iter();
+        attributes
+            .fold(Animate::new().set("attributeName", attribute), |animate, (name, value)| animate.set(name, value))
+    }
+
+    /// A movement that goes smoothly through these values.
+    pub(super) fn transform(&self, kind: &str, values: impl Iterator<Item = (Nanos, String)>) -> AnimateTransform {
+        let animate = AnimateTransform::new().set("attributeName", "transform").set("type", kind);
+        self.smooth(values).into_iter().fold(animate, |animate, (name, value)| animate.set(name, value))
+    }
+
+    /// An attribute that has each of these values from its time on, and the first also before.
+    pub(super) fn switch(&self, attribute: &str, values: impl Iterator<Item = (Nanos, String)>) -> Animate {
+        let mut keyed: Vec<(f64, String)> = values.map(|(t, value)| (self.key(t), value)).collect();
+        if let Some(first) = keyed.first_mut() {
+            first.0 = 0.0;
+        }
+        let animate = Animate::new().set("attributeName", attribute).set("calcMode", "discrete");
+        self.attributes(&keyed).into_iter().fold(animate, |animate, (name, value)| animate.set(name, value))
+    }
+
+    /// What is seen from a time on, and until another.
+    pub(super) fn visible(&self, from: Nanos, to: Option<Nanos>) -> Animate {
+        let before = (self.key(from) > 0.0).then(|| (Nanos::ZERO, "hidden".to_owned()));
+        let behind = to.map(|to| (to, "hidden".to_owned()));
+        self.switch("visibility", before.into_iter().chain([(from, "visible".to_owned())]).chain(behind))
+    }
+
+    fn smooth(&self, values: impl Iterator<Item = (Nanos, String)>) -> [(&'static str, String); 4] {
+        let mut keyed: Vec<(f64, String)> = values.map(|(t, value)| (self.key(t), value)).collect();
+        // At rest before the first of them and after the last.
+        if let (Some((_, first)), Some((_, last))) = (keyed.first().cloned(), keyed.last().cloned()) {
+            keyed.insert(0, (0.0, first));
+            keyed.push((1.0, last));
+        }
+        self.attributes(&keyed)
+    }
+
+    fn attributes(&self, keyed: &[(f64, String)]) -> [(&'static str, String); 4] {
+        let (mut times, mut values) = (String::new(), String::new());
+        for (number, (key, value)) in keyed.iter().enumerate() {
+            let between = if number == 0 { "" } else { ";" };
+            times += &format!("{between}{key}");
+            values += between;
+            values += value;
+        }
+        let dur = format!("{}s", libm::round(self.duration() * 1e3) / 1e3);
+        [("keyTimes", times), ("values", values), ("dur", dur), ("repeatCount", "indefinite".to_owned())]
+    }
+}

@@ -1,0 +1,78 @@
+//! The floor of a plot: axes in metres, walls and boxes, and the zone in which a run is to end.
+
+use svg::node::element::{Group, Path, Rectangle};
+
+use super::colours::{BOX, FAINT, GOAL, GRID, INK, WHITE};
+use super::layout::{LEFT, Layout, MARGIN, round_step};
+use super::shapes::{line, polyline, tenths, text, through};
+use crate::world::{Place, World};
+
+/// Between two numbers of an axis, in pixels.
+const APART: f64 = 50.0;
+
+/// The floor on white.
+pub(super) fn drawn(layout: &Layout, world: &World, height: f64) -> Group {
+    let background = Rectangle::new().set("width", layout.width()).set("height", height).set("fill", WHITE);
+    Group::new().add(background).add(axes(layout)).add(walls(layout, world))
+}
+
+fn axes(layout: &Layout) -> Group {
+    let (left, right, bottom) = (MARGIN + LEFT, layout.chart - MARGIN, layout.bottom());
+    let step = round_step(APART / layout.scale);
+    let mut grid = Group::new().set("stroke", GRID);
+    let mut numbers = Group::new().set("font-size", 12);
+    for x in multiples(layout.x, step) {
+        let (at, _) = layout.at(Place { x, y: 0.0 });
+        grid = grid.add(line((at, MARGIN), (at, bottom)));
+        numbers = numbers.add(text(&number(x, step), (at, bottom + 13.0), "middle"));
+    }
+    for y in multiples(layout.y, step) {
+        let (_, at) = layout.at(Place { x: 0.0, y });
+        grid = grid.add(line((left, at), (right, at)));
+        numbers = numbers.add(text(&number(y, step), (left - 8.0, at), "end"));
+    }
+    let middle = ((left + right) / 2.0, (MARGIN + bottom) / 2.0);
+    let turned = format!("rotate(-90 {} {})", tenths(MARGIN - 4.0), tenths(middle.1));
+    let names = Group::new()
+        .set("font-size", 13)
+        .add(text("x in m", (middle.0, bottom + 34.0), "middle"))
+        .add(text("y in m", (MARGIN - 4.0, middle.1), "middle").set("transform", turned));
+    let axis = polyline([(left, MARGIN), (left, bottom), (right, bottom)]).set("stroke", FAINT);
+    Group::new().set("fill", INK).add(grid).add(axis).add(numbers).add(names)
+}
+
+/// The multiples of `step` in a range.
+fn multiples((least, most): (f64, f64), step: f64) -> impl Iterator<Item = f64> {
+    let first = libm::ceil(least / step) as i64;
+    let last = libm::floor(most / step) as i64;
+    (first..=last).map(move |times| times as f64 * step)
+}
+
+/// A number of an axis, without zeros that say nothing.
+fn number(value: f64, step: f64) -> String {
+    let places = (-libm::floor(libm::log10(step * (1.0 + 1e-9)))).clamp(0.0, 9.0) as usize;
+    // Adding zero makes a negative zero positive.
+    format!("{:.places$}", libm::round(value / step) * step + 0.0)
+}
+
+fn walls(layout: &Layout, world: &World) -> Group {
+    let mut group = Group::new();
+    if let Some(zone) = &world.goal {
+        let (left, top) = layout.at(Place { x: zone.min.x, y: zone.max.y });
+        let (right, bottom) = layout.at(Place { x: zone.max.x, y: zone.min.y });
+        let zone = Rectangle::new().set("x", tenths(left)).set("y", tenths(top));
+        let zone = zone.set("width", tenths(right - left)).set("height", tenths(bottom - top));
+        group = group.add(zone.set("fill", GOAL));
+    }
+    // Two paths for all outlines: a map has many, and viewers draw few long paths faster than many short ones.
+    for solid in [true, false] {
+        let outlines = world.outlines.iter().filter(|outline| outline.solid == solid);
+        let data: String =
+            outlines.map(|outline| through(outline.points.iter().map(|place| layout.at(*place)))).collect();
+        if !data.is_empty() {
+            let path = Path::new().set("d", data).set("stroke", INK).set("stroke-width", 3);
+            group = group.add(path.set("fill", if solid { BOX } else { "none" }).set("stroke-linecap", "square"));
+        }
+    }
+    group
+}

@@ -1,0 +1,65 @@
+//! The legend of a plot: each atom with its number, its law and when it began, and what the other signs mean.
+
+use svg::node::element::{Group, Path, Rectangle};
+
+use super::colours::{ECHO, FAINT, GOAL, INK};
+use super::labels::RADIUS;
+use super::layout::{LETTERS, Layout, MARGIN, round_step};
+use super::shapes::{badge, circle, cross, dots, polyline, text};
+use crate::trail::Trail;
+use crate::world::World;
+
+/// The longest scale bar, in pixels.
+const BAR_MOST: f64 = 100.0;
+
+/// The legend of a run.
+pub(super) fn drawn(layout: &Layout, world: &World, trail: &Trail) -> Group {
+    let (left, right) = (layout.chart, layout.width() - MARGIN);
+    let indented = left + 2.0 * RADIUS + 10.0;
+    let mut legend = Group::new().set("font-size", LETTERS).set("fill", INK);
+    for (number, (state, law, t)) in layout.lines.iter().enumerate() {
+        let y = layout.line(number);
+        if !state.is_empty() {
+            legend = legend.add(badge((left + RADIUS, y), state, number));
+        }
+        legend = legend.add(text(law, (indented, y), "start")).add(text(t, (right, y), "end"));
+    }
+    let signs = signs(left + RADIUS, world, trail);
+    // A free line above them, if there is something to be free of.
+    let first = layout.lines.len() + usize::from(!layout.lines.is_empty());
+    for (number, (sign, said)) in (first..).zip(signs) {
+        let y = layout.line(number);
+        let sign = sign.set("transform", format!("translate(0 {y})"));
+        legend = legend.add(sign).add(text(said, (indented, y), "start"));
+    }
+    legend.add(scale_bar(layout))
+}
+
+/// The signs that occur, drawn around height 0, and what they mean.
+fn signs(x: f64, world: &World, trail: &Trail) -> Vec<(Group, &'static str)> {
+    let body = |colour| Group::new().add(circle((x, 0.0), 7.0).set("fill", "none").set("stroke", colour));
+    let mut signs = vec![(body(FAINT), "start"), (body(INK), "end")];
+    if !trail.echoes.is_empty() {
+        let echoes = dots([(x - 6.0, 2.0), (x, -2.0), (x + 6.0, 1.0)]);
+        let echoes = Path::new().set("d", echoes).set("stroke", ECHO);
+        signs.push((Group::new().add(echoes.set("stroke-width", 2.4).set("stroke-linecap", "round")), "sonar echo"));
+    }
+    if !trail.contacts.is_empty() {
+        signs.push((Group::new().add(cross((x, 0.0))), "contact"));
+    }
+    if world.goal.is_some() {
+        let zone = Rectangle::new().set("x", x - 9.0).set("y", -7).set("width", 18).set("height", 14);
+        signs.push((Group::new().add(zone.set("fill", GOAL).set("stroke", FAINT).set("stroke-width", 0.5)), "goal"));
+    }
+    signs
+}
+
+/// A bar as long as the round number of metres beside it.
+fn scale_bar(layout: &Layout) -> Group {
+    let metres = round_step(BAR_MOST / layout.scale * 0.4);
+    let (left, y) = (layout.chart, layout.height - MARGIN - 10.0);
+    let right = left + metres * layout.scale;
+    let bar = polyline([(left, y - 4.0), (left, y + 4.0), (left, y), (right, y), (right, y - 4.0), (right, y + 4.0)]);
+    let label = text(&format!("{metres} m"), (right + 8.0, y), "start");
+    Group::new().add(bar.set("stroke", INK).set("stroke-width", 1.5)).add(label)
+}

@@ -1,0 +1,115 @@
+//! Elements of SVG as the plots need them, with coordinates in tenths of a pixel.
+
+use svg::node::element::{Circle, Group, Line, Path, Text};
+
+use super::{colours, labels};
+
+/// A place in a drawing, in pixels.
+pub(super) type Pixel = (f64, f64);
+
+/// To a tenth of a pixel; never a negative zero.
+pub(super) fn tenths(pixels: f64) -> f64 {
+    libm::round(pixels * 10.0) / 10.0 + 0.0
+}
+
+pub(super) fn circle((x, y): Pixel, radius: f64) -> Circle {
+    Circle::new().set("cx", tenths(x)).set("cy", tenths(y)).set("r", tenths(radius))
+}
+
+pub(super) fn line((x1, y1): Pixel, (x2, y2): Pixel) -> Line {
+    Line::new().set("x1", tenths(x1)).set("y1", tenths(y1)).set("x2", tenths(x2)).set("y2", tenths(y2))
+}
+
+/// A line of text whose middle is at this height; `anchor` is `start`, `middle` or `end`.
+pub(super) fn text(content: &str, (x, y): Pixel, anchor: &str) -> Text {
+    let text = Text::new(content).set("x", tenths(x)).set("y", tenths(y)).set("dy", "0.35em");
+    if anchor == "start" { text } else { text.set("text-anchor", anchor) }
+}
+
+/// An open line through these places.
+pub(super) fn polyline(pixels: impl IntoIterator<Item = Pixel>) -> Path {
+    Path::new().set("d", through(pixels)).set("fill", "none")
+}
+
+/// The data of a line through these places: where it begins, then steps.
+pub(super) fn through(pixels: impl IntoIterator<Item = Pixel>) -> String {
+    let mut data = String::new();
+    let mut last: Option<(i64, i64)> = None;
+    for pixel in pixels {
+        let here = whole(pixel);
+        match last {
+            None => data += &format!("M{}", pair(here)),
+            Some(last) if last == here => continue,
+            Some(last) => data += &format!("l{}", pair((here.0 - last.0, here.1 - last.1))),
+        }
+        last = Some(here);
+    }
+    data
+}
+
+/// The data of a dot at each of these places, where lines have round ends.
+pub(super) fn dots(pixels: impl IntoIterator<Item = Pixel>) -> String {
+    let mut data = String::new();
+    let mut last = (0, 0);
+    for pixel in pixels {
+        let here = whole(pixel);
+        data += &format!("m{}h0", pair((here.0 - last.0, here.1 - last.1)));
+        last = here;
+    }
+    data
+}
+
+fn whole((x, y): Pixel) -> (i64, i64) {
+    (libm::round(x * 10.0) as i64, libm::round(y * 10.0) as i64)
+}
+
+/// Two numbers of tenths; a minus sign keeps them apart as well as a blank does.
+fn pair((x, y): (i64, i64)) -> String {
+    let (x, y) = (x as f64 / 10.0, y as f64 / 10.0);
+    if y < 0.0 { format!("{x}{y}") } else { format!("{x} {y}") }
+}
+
+/// The number of the state of an atom in a disc of the colour of the `number`th atom.
+pub(super) fn badge(at: Pixel, state: &str, number: usize) -> Group {
+    // Long numbers in smaller letters.
+    let size = match state.len() {
+        0..=2 => 12,
+        3 => 9,
+        _ => 7,
+    };
+    let disc = circle(at, labels::RADIUS).set("fill", colours::of(number));
+    let text = text(state, at, "middle").set("fill", colours::on(number)).set("font-size", size);
+    Group::new().add(disc).add(text)
+}
+
+/// A cross that marks a contact.
+pub(super) fn cross((x, y): Pixel) -> Path {
+    let data = format!("M{} {}l8 8m0-8l-8 8", tenths(x - 4.0), tenths(y - 4.0));
+    Path::new().set("d", data).set("fill", "none").set("stroke", colours::CONTACT).set("stroke-width", 2.5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn steps_add_up_to_the_places_they_came_from() {
+        let pixels = (0..500).map(|number| (f64::from(number) * 0.137, f64::from(number) * -0.261));
+        let data = through(pixels.clone());
+        let mut at = (0.0, 0.0);
+        for step in data[1..].split('l') {
+            let cut = step[1..].find(['-', ' ']).unwrap() + 1;
+            let (x, y) = step.split_at(cut);
+            at.0 += x.parse::<f64>().unwrap();
+            at.1 += y.trim().parse::<f64>().unwrap();
+        }
+        let end = pixels.max_by(|one, other| one.0.total_cmp(&other.0)).unwrap();
+        assert!((at.0 - end.0).abs() < 0.051 && (at.1 - end.1).abs() < 0.051, "{at:?} {end:?}");
+    }
+
+    #[test]
+    fn a_place_where_nothing_moves_is_one_place() {
+        assert_eq!(through([(1.0, 2.0), (1.01, 2.0), (1.02, 1.98)]), "M1 2");
+        assert_eq!(dots([(1.0, 2.0), (0.5, 2.0)]), "m1 2h0m-0.5 0h0");
+    }
+}

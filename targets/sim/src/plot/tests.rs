@@ -1,0 +1,122 @@
+//! Pictures of runs of all sorts: well-formed, everything inside, the same bytes again, and small.
+
+use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS};
+use svg::parser::Event;
+
+use super::{animated, svg};
+use crate::frames::Frames;
+use crate::trail::Trail;
+use crate::world::{Place, World};
+
+/// A run of this many turns in circles, in which an atom begins every so many turns.
+fn run(turns: u64, an_atom_every: u64, law: &str) -> Trail {
+    let mut trail = Trail::from(&Pose::ORIGIN);
+    trail.frames = Some(Frames::new());
+    for turn in 0..turns {
+        let (t, angle) = (Nanos(turn * 100_000_000), turn as f64 * 0.05);
+        let (x, y) = (Meters(2.0 * libm::sin(angle)), Meters(2.0 - 2.0 * libm::cos(angle)));
+        trail.went(&Pose { x, y, theta: Radians(angle).wrapped() });
+        let echo = Place { x: x.0 * 1.5, y: y.0 * 1.5 };
+        let mut echoes = [None; SONARS];
+        echoes[0] = Some(echo);
+        trail.echoes.push(echo);
+        trail.frames.as_mut().unwrap().push(t, &trail.here, &echoes);
+        if turn % an_atom_every == 0 {
+            trail.began(turn / an_atom_every + 1, law, t);
+        }
+        if turn % 700 == 500 {
+            trail.contacts.push((Place::of(&trail.here), t));
+        }
+    }
+    trail
+}
+
+/// Checks that a picture is a tree of elements; its tags, and all its text.
+fn read(picture: &str) -> (Vec<String>, String) {
+    let (mut open, mut tags, mut text) = (Vec::new(), Vec::new(), String::new());
+    for event in svg::read(picture).unwrap() {
+        match event {
+            Event::Tag(name, kind, attributes) => {
+                match kind {
+                    svg::node::element::tag::Type::Start => open.push(name.to_owned()),
+                    svg::node::element::tag::Type::End => assert_eq!(open.pop().as_deref(), Some(name)),
+                    svg::node::element::tag::Type::Empty => {}
+                }
+                for (key, value) in attributes.iter() {
+                    assert!(
+                        !value.contains("NaN") && !value.contains("inf") || &**value == "indefinite",
+                        "{key}={value:?}"
+                    );
+                }
+                tags.push(name.to_owned());
+            }
+            Event::Text(words) => text += words,
+            Event::Error(error) => panic!("{error}"),
+            Event::Comment(_) | Event::Declaration(_) | Event::Instruction(_) => {}
+        }
+    }
+    assert_eq!(open, [""; 0]);
+    (tags, text)
+}
+
+#[test]
+fn pictures_of_every_run_are_well_formed_and_say_what_ran() {
+    let office = World::office().unwrap();
+    let empty = World::parse("empty", "").unwrap();
+    for (world, turns, every) in
+        [(&office, 1400, 100), (&office, 1, 1), (&empty, 0, 1), (&empty, 30, 1), (&office, 90_000, 1)]
+    {
+        let trail = run(turns, every, "goAvoid 90 40 20 \"<&>\"");
+        let (plot, record) = (svg(world, &trail), animated(world, &trail));
+        for picture in [&plot, &record] {
+            let (tags, text) = read(picture);
+            assert_eq!(tags.first().map(String::as_str), Some("svg"));
+            assert_eq!(text.contains("goAvoid 90 40 20 \"&lt;&amp;&gt;\""), turns > 0);
+        }
+        assert_eq!((plot, record), (svg(world, &trail), animated(world, &trail)));
+    }
+}
+
+#[test]
+fn a_record_is_small_however_long_the_run() {
+    let office = World::office().unwrap();
+    for (turns, every) in [(1400, 100), (100_000, 1), (100_000, 50_000)] {
+        let size = animated(&office, &run(turns, every, "goAvoid 90 40 20")).len();
+        assert!(size < 1_000_000, "{turns} turns, an atom every {every}: {size} bytes");
+    }
+}
+
+/// The values of an attribute of all elements of this name.
+fn values(picture: &str, tag: &str, attribute: &str) -> Vec<String> {
+    let elements = svg::read(picture).unwrap().filter_map(|event| {
+        let Event::Tag(name, _, attributes) = event else { return None };
+        (name == tag).then(|| attributes.get(attribute).map(|value| value.to_string()))?
+    });
+    elements.collect()
+}
+
+#[test]
+fn all_animations_repeat_together_and_their_times_are_in_order() {
+    let picture = animated(&World::office().unwrap(), &run(1400, 100, "stop"));
+    for tag in ["animate", "animateTransform"] {
+        let (times, listed) = (values(&picture, tag, "keyTimes"), values(&picture, tag, "values"));
+        assert!(!times.is_empty());
+        assert!(values(&picture, tag, "dur").iter().all(|dur| dur == "16.49s"));
+        for (times, listed) in times.iter().zip(&listed) {
+            let times: Vec<f64> = times.split(';').map(|time| time.parse().unwrap()).collect();
+            assert!(times.is_sorted() && times[0] == 0.0 && times[times.len() - 1] <= 1.0, "{times:?}");
+            assert_eq!(times.len(), listed.split(';').count());
+        }
+    }
+}
+
+#[test]
+fn a_contact_is_marked_at_the_wall_that_was_touched() {
+    let world = World::parse("a wall", "[[wall]]\npoints = [[1, -1], [1, 1]]").unwrap();
+    let mut trail = Trail::from(&Pose::ORIGIN);
+    trail.contacts = vec![(Place { x: 0.795, y: 0.25 }, Nanos::ZERO), (Place { x: -1.0, y: 0.0 }, Nanos::ZERO)];
+    let touched = |number: usize| super::drawing::touched(&world, trail.contacts[number].0);
+    assert_eq!((touched(0), touched(1)), (Place { x: 1.0, y: 0.25 }, Place { x: -1.0, y: 0.0 }));
+    let (_, text) = read(&svg(&world, &trail));
+    assert!(text.contains("contact"));
+}
