@@ -111,7 +111,7 @@ fn main(package: &Package<'_>) -> String {
          #[forbid(unsafe_code)]\n\
          mod plan {{\n    include!(\"plan.rs\");\n}}\n\n\
          fn main() -> ::std::process::ExitCode {{\n    \
-             ::mdle_host::run::<::{target}::Target, _>({name:?}, plan::{plan}::new())\n\
+             ::mdle_host::run::<::{target}::Target, _>({name:?}, plan::{plan}::new)\n\
          }}\n"
     )
 }

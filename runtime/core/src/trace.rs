@@ -75,7 +75,8 @@ impl<'a, F: IntoIterator<Item = Fired<'a>> + Clone> fmt::Display for Line<'_, F>
 }
 
 /// A time as a JSON number of seconds: exact, which an `f64` is not after some months, with at least one decimal.
-struct Seconds(Nanos);
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Seconds(pub Nanos);
 
 impl fmt::Display for Seconds {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -95,7 +96,8 @@ impl fmt::Display for Seconds {
 }
 
 /// A text as a JSON string.
-struct Json<'a>(&'a str);
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Json<'a>(pub &'a str);
 
 impl fmt::Display for Json<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -12,7 +12,7 @@ use mdle_runtime::fsm::{Atom, Bracket};
 use mdle_runtime::{Begin, Cause, Cursor, Fsm, Meters, MetersPerSecond, Nanos, Next, Output, Plan, Robot};
 
 fn main() -> ExitCode {
-    run::<CartTarget, _>("shuttle", Shuttle { forward: true })
+    run::<CartTarget, _>("shuttle", || Shuttle { forward: true })
 }
 
 /// What the cart senses.

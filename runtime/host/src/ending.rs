@@ -9,6 +9,8 @@ use crate::signals::Signal;
 
 /// Exit status: the plan is over, whatever ended it.
 pub(crate) const OVER: u8 = 0;
+/// Exit status: of several runs, not all arrived.
+pub(crate) const MISSED: u8 = 1;
 /// Exit status: a bad option, world or start pose.
 pub(crate) const USAGE: u8 = 2;
 /// Exit status: a fault stopped the robot.

@@ -4,14 +4,17 @@ use std::ffi::OsString;
 use std::fs::File;
 use std::io::{self, Write};
 use std::path::Path;
+use std::time::Duration;
 
 use clap::ArgMatches;
 use mdle_runtime::{Plan, Robot};
 
 use crate::arguments::{self, Options};
+use crate::batch::{self, Batch, Terms};
 use crate::clock::{Clock, Instants};
 use crate::ending::{self, Ending, Fault, say};
 use crate::log::{Log, Untouched};
+use crate::progress::Progress;
 use crate::report::Report;
 use crate::safety::{Panicked, shielded};
 use crate::signals::Signals;
@@ -28,13 +31,15 @@ pub(crate) struct Surroundings<'e, I, O> {
     pub(crate) out: O,
     /// Standard error.
     pub(crate) err: &'e mut dyn Write,
+    /// Where standard error is a terminal, the clock of the line that shows that a fast run goes on.
+    pub(crate) seen: Option<Box<dyn FnMut() -> Duration + 'e>>,
 }
 
-/// Runs `plan` on the robot of target `T` with these arguments, the program's own name first; the exit status.
+/// Runs what `plan` makes on the robot of target `T` with these arguments, the program's own name first; the exit status.
 pub(crate) fn session<'o, T: Target, P, I, O>(
     name: &str,
     arguments: impl IntoIterator<Item = OsString>,
-    plan: P,
+    plan: &(impl Fn() -> P + Sync),
     surroundings: Surroundings<'_, I, O>,
 ) -> u8
 where
@@ -42,12 +47,24 @@ where
     I: Instants,
     O: FnOnce(Option<Time>) -> Box<dyn Write + 'o>,
 {
-    let Surroundings { instants, signals, out, err } = surroundings;
-    let matches = match arguments::command::<T>(name).try_get_matches_from(arguments) {
+    let Surroundings { instants, signals, out, err, seen } = surroundings;
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let matches = match arguments::command::<T>(name).try_get_matches_from(&arguments) {
         Ok(matches) => matches,
         Err(error) => return unparsed(&error, || out(None), err),
     };
     let options = arguments::options::<T>(&matches);
+    let limits = Limits { timeout: options.timeout, turns: options.turns };
+    match batch::<T>(&matches, &options) {
+        Err(refusal) => return refusal.tell(err),
+        Ok(Some(batch)) => {
+            signals.robot_runs();
+            let program = arguments.first().map_or_else(|| name.into(), |program| program.to_string_lossy());
+            let terms = Terms { period: options.period, limits, signals: &signals, program: &program };
+            return several(&batch, plan, &terms, &mut *out(None), err, seen);
+        }
+        Ok(None) => {}
+    }
     let Ready { mut robot, time, mut log } = match ready::<T>(&matches, &options) {
         Ok(ready) => ready,
         Err(refusal) => return refusal.tell(err),
@@ -55,17 +72,51 @@ where
     signals.robot_runs();
     let mut out = out(Some(time));
     let mut report = Report::new(&mut *out, is_watched(time));
-    let limits = Limits { timeout: options.timeout, turns: options.turns };
     let ending = shielded(|| {
         let mut clock = Clock::begin(instants, time, options.period);
-        let mut witnesses = Witnesses { report: &mut report, log: log.as_mut() };
-        turns::run(&mut robot, plan, limits, &mut clock, &signals, &mut witnesses)
+        let seen = seen.filter(|_| !is_watched(time));
+        let progress = seen.map(|now| Progress::new(&mut *err, now));
+        let mut witnesses = Witnesses { report: &mut report, log: log.as_mut(), progress };
+        turns::run(&mut robot, plan(), limits, &mut clock, &signals, &mut witnesses)
     });
     let status = way_out(&mut robot, ending.unwrap_or_else(bug), &mut report, log, err);
     // It stands, and all is said; even code that panics while it tidies up must not change the status.
     let _ = shielded(move || drop(robot));
     signals.robot_stands();
     if let Err(error) = report.close() {
+        say(err, format_args!("warning: standard output could not be written: {error}"));
+    }
+    status
+}
+
+/// The runs of a batch, if these options ask for several.
+fn batch<T: Target>(matches: &ArgMatches, options: &Options) -> Result<Option<Batch<T::Robot>>, Refusal> {
+    let batch = shielded(|| T::batch(matches, options.period)).unwrap_or_else(bug_before)?;
+    if batch.is_some() && options.log.is_some() {
+        let sentence = "--log writes down one run, and there are to be several: leave it out, or run one seed alone";
+        return Err(Refusal::Usage(sentence.to_owned()));
+    }
+    Ok(batch)
+}
+
+/// Makes the runs of a batch and tells of them; the exit status.
+fn several<'e, R: Hosted, P>(
+    batch: &Batch<R>,
+    plan: &(impl Fn() -> P + Sync),
+    terms: &Terms<'_>,
+    out: &mut dyn Write,
+    err: &'e mut dyn Write,
+    seen: Option<Box<dyn FnMut() -> Duration + 'e>>,
+) -> u8
+where
+    P: Plan<Output = R::Output, Input = R::Input>,
+{
+    let progress = seen.map(|now| Progress::new(&mut *err, now));
+    let (status, unwritten) = batch::run(batch, plan, terms, out, progress);
+    if let Some(signal) = terms.signals.caught() {
+        Ending::Signal(signal).tell(err);
+    }
+    if let Some(error) = unwritten.filter(|error| error.kind() != io::ErrorKind::BrokenPipe) {
         say(err, format_args!("warning: standard output could not be written: {error}"));
     }
     status
@@ -105,9 +156,12 @@ fn ready<T: Target>(matches: &ArgMatches, options: &Options) -> Result<Ready<T::
         };
         Ok(Ready { robot, time, log })
     });
-    opened.unwrap_or_else(|Panicked(message)| {
-        Err(Refusal::Fault(format!("the robot's code panicked before it ran, which is a bug: {message}")))
-    })
+    opened.unwrap_or_else(bug_before)
+}
+
+/// A panic before anything ran.
+fn bug_before<T>(Panicked(message): Panicked) -> Result<T, Refusal> {
+    Err(Refusal::Fault(format!("the robot's code panicked before it ran, which is a bug: {message}")))
 }
 
 /// Why there is no run log at `path`.

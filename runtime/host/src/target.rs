@@ -5,6 +5,8 @@ use std::time::Duration;
 use clap::{ArgMatches, Command};
 use mdle_runtime::{Nanos, Robot};
 
+use crate::Batch;
+
 /// A robot that executables are built for; implemented once in each target crate.
 pub trait Target {
     /// The name of the target, as `mdlec --target` takes it.
@@ -28,6 +30,15 @@ pub trait Target {
     /// # Errors
     /// Why there is no robot: a bad option (exit status 2) or a fault (exit status 3).
     fn connect(matches: &ArgMatches, period: Duration) -> Result<Self::Robot, Refusal>;
+
+    /// The runs to be made instead of one, if these options ask for several: only robots that can be started over have
+    /// such options. No run has begun yet.
+    ///
+    /// # Errors
+    /// Why there are no such runs: a bad option (exit status 2) or a fault (exit status 3).
+    fn batch(_matches: &ArgMatches, _period: Duration) -> Result<Option<Batch<Self::Robot>>, Refusal> {
+        Ok(None)
+    }
 }
 
 /// How time passes.
@@ -57,10 +68,31 @@ pub enum Refusal {
     Fault(String),
 }
 
+/// How a run has gone whose plan is over.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Judgement {
+    /// The robot is where it was to come to, or nothing was said about that.
+    Arrived,
+    /// Its plan was over because it had run into something, or anyhow while it touched it.
+    Bumped,
+    /// It is somewhere else; a few words that say where.
+    Astray(String),
+}
+
 /// A robot that an executable drives: besides the exchange it may follow what the plan does.
 pub trait Hosted: Robot {
     /// The atom of state `state`, with this law, is the one that the turn at time `t` left standing, and was not before.
     fn began(&mut self, _state: u64, _law: &str, _t: Nanos) {}
+
+    /// How a run has gone whose plan is over; asked after the robot was stopped.
+    fn judged(&self) -> Judgement {
+        Judgement::Arrived
+    }
+
+    /// How often the robot has come into contact with something so far.
+    fn contacts(&self) -> u64 {
+        0
+    }
 
     /// Called once after the robot was stopped, on every orderly way out: write what was asked for, such as a plot.
     ///

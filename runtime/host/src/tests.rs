@@ -4,4 +4,5 @@ mod limits;
 mod order;
 mod output;
 mod plan;
+mod several;
 mod toy;

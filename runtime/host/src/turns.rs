@@ -10,6 +10,7 @@ use crate::Hosted;
 use crate::clock::{Clock, Instants, nanos};
 use crate::ending::Ending;
 use crate::log::{Entry, Log};
+use crate::progress::Progress;
 use crate::report::Report;
 use crate::signals::Signals;
 
@@ -28,6 +29,8 @@ pub(crate) struct Witnesses<'a, 'o> {
     pub(crate) report: &'a mut Report<'o>,
     /// The run log, if one was asked for.
     pub(crate) log: Option<&'a mut Log<File>>,
+    /// The line that shows that a fast run goes on, where somebody sees it.
+    pub(crate) progress: Option<Progress<'a>>,
 }
 
 /// Runs `plan` on `robot`, from the exchange of turn 0 until something ends it.
@@ -112,6 +115,10 @@ impl Witnesses<'_, '_> {
     ) -> io::Result<()> {
         let plan = machine.plan();
         self.report.turn(plan, t, transitions);
+        if let Some(progress) = &mut self.progress {
+            let law = machine.atom().map_or("", |atom| plan.law(atom));
+            progress.run(t, machine.state(), law, self.report);
+        }
         let Some(log) = self.log.as_mut() else { return Ok(()) };
         let applied = match turn {
             Turn::Law(_) => machine.atom(),

@@ -1,9 +1,11 @@
 //! The simulated robot with whoever looks on: its pictures, and the table of where it was.
 
-use mdle_host::Hosted;
+use mdle_host::{Hosted, Judgement};
+use mdle_runtime::capability::Bumpers as _;
 use mdle_runtime::{Nanos, Pose, Robot, Twist};
 
 use crate::frames::Frames;
+use crate::goal::Goal;
 use crate::output::Sensed;
 use crate::plot;
 use crate::robot::{Fault, Simulated};
@@ -14,6 +16,9 @@ use crate::world::World;
 /// A simulated robot and what is made of its run; it drives as it would unobserved.
 pub struct Observed {
     robot: Simulated,
+    goal: Option<Goal>,
+    touches: bool,
+    contacts: u64,
     pictures: Option<Pictures>,
     table: Option<Table>,
 }
@@ -42,7 +47,7 @@ impl Table {
 impl From<Simulated> for Observed {
     /// The robot with nobody looking on.
     fn from(robot: Simulated) -> Self {
-        Self { robot, pictures: None, table: None }
+        Self { robot, goal: None, touches: false, contacts: 0, pictures: None, table: None }
     }
 }
 
@@ -51,6 +56,11 @@ impl Observed {
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.robot.pose()
+    }
+
+    /// Has its run judged by where it ends.
+    pub(crate) fn judged_by(self, goal: Option<Goal>) -> Self {
+        Self { goal, ..self }
     }
 
     /// Has its way drawn when the run is finished: as a picture, and as one that moves.
@@ -78,6 +88,8 @@ impl Robot for Observed {
     fn exchange(&mut self, input: &Twist) -> Result<Sensed, Fault> {
         let now = self.robot.now();
         let sensed = self.robot.exchange(input)?;
+        self.contacts += u64::from(sensed.pressed() && !self.touches);
+        self.touches = sensed.pressed();
         let pose = self.robot.pose();
         if let Some(table) = &mut self.table {
             table.went(now, &pose);
@@ -103,6 +115,22 @@ impl Hosted for Observed {
         if let Some(Pictures { trail, .. }) = &mut self.pictures {
             trail.began(state, law, t);
         }
+    }
+
+    fn judged(&self) -> Judgement {
+        let pose = self.robot.pose();
+        if self.touches {
+            Judgement::Bumped
+        } else if self.goal.is_none_or(|goal| goal.holds(&pose)) {
+            Judgement::Arrived
+        } else {
+            let (x, y, heading) = (pose.x.0, pose.y.0, pose.theta.degrees());
+            Judgement::Astray(format!("({x:.2}, {y:.2}) heading {:.0}", libm::round(heading) + 0.0))
+        }
+    }
+
+    fn contacts(&self) -> u64 {
+        self.contacts
     }
 
     fn finish(&mut self) -> Result<(), String> {

@@ -1,15 +1,22 @@
-//! The options of this target: `--world`, `--start`, `--seed`, `--speed`, `--plot` and `--trail`.
+//! The options of this target: of its world, of how a run is shown and written down, and of several runs.
 
+use std::num::{NonZeroU64, NonZeroUsize};
 use std::path::{Path, PathBuf};
 
-use mdle_host::clap::{Arg, ArgMatches, Command, value_parser};
+use mdle_host::clap::parser::ValueSource;
+use mdle_host::clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use mdle_host::{Pace, Time};
 
 use crate::start::Start;
+use crate::start_noise::StartNoise;
 use crate::world::World;
 
 /// Adds the options to the executable's.
 pub(crate) fn arguments(command: Command) -> Command {
+    of_runs(of_outputs(of_the_world(command)))
+}
+
+fn of_the_world(command: Command) -> Command {
     command
         .arg(
             option("world", "FILE")
@@ -19,6 +26,13 @@ pub(crate) fn arguments(command: Command) -> Command {
         .arg(
             option("start", "X,Y,DEG")
                 .help("Where the robot starts, in metres and degrees [default: as the world says]")
+                .allow_hyphen_values(true),
+        )
+        .arg(
+            option("start-noise", "M,DEG")
+                .help(
+                    "Start off that pose by chance: by up to so many metres along each axis, and degrees; needs a seed",
+                )
                 .allow_hyphen_values(true),
         )
         .arg(
@@ -32,6 +46,10 @@ pub(crate) fn arguments(command: Command) -> Command {
                 .help("How fast time passes: as outside, as fast as possible, or N times as fast [default: real]")
                 .allow_negative_numbers(true),
         )
+}
+
+fn of_outputs(command: Command) -> Command {
+    command
         .arg(
             option("plot", "FILE.svg")
                 .help("Draw the floor, the way driven, where each atom began, and what was heard and touched")
@@ -48,6 +66,36 @@ pub(crate) fn arguments(command: Command) -> Command {
                 .value_parser(value_parser!(PathBuf)),
         )
 }
+
+fn of_runs(command: Command) -> Command {
+    command
+        .arg(
+            option("runs", "N")
+                .help(
+                    "Run the plan N times, with a seed each from --seed on [default: 1], and say how many arrived; exit \
+                     status 0 if all did, 1 if not",
+                )
+                .allow_negative_numbers(true)
+                .value_parser(value_parser!(u64).range(1..))
+                .conflicts_with_all(ONE_RUN),
+        )
+        .arg(
+            option("jobs", "N")
+                .help("How many runs are made at the same time; what comes out is the same [default: one a processor]")
+                .allow_negative_numbers(true)
+                .value_parser(value_parser!(u64).range(1..=1024))
+                .requires("runs"),
+        )
+        .arg(
+            Arg::new("json").long("json").action(ArgAction::SetTrue).help("Say it as JSON, each run told").requires("runs"),
+        )
+}
+
+/// What shows or writes down one run.
+const ONE_RUN: [&str; 3] = ["plot", "record", "trail"];
+
+/// What a run of several is not told when it is made alone.
+const OF_SEVERAL: [&str; 5] = ["runs", "jobs", "json", "seed", "speed"];
 
 /// A long option with a value.
 fn option(name: &'static str, value: &'static str) -> Arg {
@@ -97,6 +145,51 @@ pub(crate) fn start(matches: &ArgMatches) -> Result<Option<(&str, Start)>, Strin
 /// The seed of `--seed`.
 pub(crate) fn seed(matches: &ArgMatches) -> Option<u64> {
     matches.get_one("seed").copied()
+}
+
+/// The start noise of `--start-noise`.
+pub(crate) fn start_noise(matches: &ArgMatches) -> Result<Option<StartNoise>, String> {
+    let Some(text) = matches.get_one::<String>("start-noise") else { return Ok(None) };
+    let sentence = "expected metres,degrees: up to 100 and 180, as in `0.1,5`";
+    StartNoise::read(text).map(Some).ok_or_else(|| format!("--start-noise {text}: {sentence}"))
+}
+
+/// The number of `--runs`.
+pub(crate) fn runs(matches: &ArgMatches) -> Option<NonZeroU64> {
+    matches.get_one("runs").copied().and_then(NonZeroU64::new)
+}
+
+/// The number of `--jobs`.
+pub(crate) fn jobs(matches: &ArgMatches) -> Option<NonZeroUsize> {
+    let jobs: u64 = matches.get_one("jobs").copied()?;
+    usize::try_from(jobs).ok().and_then(NonZeroUsize::new)
+}
+
+/// Whether the other options make sense where there are several runs.
+pub(crate) fn agree(matches: &ArgMatches) -> Result<(), String> {
+    match time(matches)? {
+        Time::Stepped(Pace::Times(times)) if matches.contains_id("speed") => Err(format!(
+            "--speed {times}: several runs are made as fast as possible; leave --speed out, or run one seed alone"
+        )),
+        Time::Stepped(Pace::Times(_) | Pace::Max) | Time::Wall => Ok(()),
+    }
+}
+
+/// The options given that any one of several runs is made with, as words.
+pub(crate) fn given(matches: &ArgMatches) -> Vec<String> {
+    let names = matches.ids().map(|id| id.as_str()).filter(|name| !OF_SEVERAL.contains(name));
+    let given = names.filter(|name| matches.value_source(name) == Some(ValueSource::CommandLine));
+    let words = given.flat_map(|name| {
+        let values = matches.get_raw(name).into_iter().flatten();
+        values.map(move |value| (name, value.to_string_lossy())).flat_map(|(name, value)| {
+            if value.starts_with('-') {
+                vec![format!("--{name}={value}")]
+            } else {
+                vec![format!("--{name}"), value.into_owned()]
+            }
+        })
+    });
+    words.collect()
 }
 
 /// The path of `--plot`, `--record` or `--trail`.

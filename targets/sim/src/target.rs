@@ -3,14 +3,10 @@
 use std::time::Duration;
 
 use mdle_host::clap::{ArgMatches, Command};
-use mdle_host::{Refusal, Target, Time};
-use mdle_runtime::Pose;
+use mdle_host::{Batch, Refusal, Target, Time};
 
 use crate::observed::Observed;
-use crate::robot::Simulated;
-use crate::start::Start;
-use crate::whole_file::WholeFile;
-use crate::{alphabet, options};
+use crate::{alphabet, options, setup};
 
 /// The target `sim`.
 #[derive(Debug, Clone, Copy)]
@@ -30,27 +26,10 @@ impl Target for Sim {
     }
 
     fn connect(matches: &ArgMatches, period: Duration) -> Result<Observed, Refusal> {
-        robot(matches, period).map_err(Refusal::Usage)
+        setup::robot(matches, period).map_err(Refusal::Usage)
     }
-}
 
-/// The robot that the options describe; everything that can be refused is refused here, before anything moves.
-fn robot(matches: &ArgMatches, period: Duration) -> Result<Observed, String> {
-    let world = options::world(matches)?;
-    let given = options::start(matches)?;
-    let Start(pose) = given.map_or(Start(world.start), |(_, start)| start);
-    let robot = Simulated::new(&world, pose, options::seed(matches), period).map_err(|error| match given {
-        Some((text, _)) => format!("--start {text}: {error}; {}", hint(&world.start)),
-        None => format!("the world's own start pose: {error}; give another, as in `--start 1,2,90`"),
-    })?;
-    let file = |option| options::file(matches, option).map(|path| WholeFile::at(option, path)).transpose();
-    let robot = Observed::from(robot).written_down(file("trail")?);
-    Ok(robot.drawn(file("plot")?, file("record")?, &world))
-}
-
-/// What can be typed instead.
-fn hint(start: &Pose) -> String {
-    // Degrees that were read from a file come back with a last digit of their own.
-    let degrees = libm::round(start.theta.degrees() * 1e6) / 1e6;
-    format!("the world's own start is `--start {},{},{degrees}`", start.x.0, start.y.0)
+    fn batch(matches: &ArgMatches, period: Duration) -> Result<Option<Batch<Observed>>, Refusal> {
+        setup::batch(matches, period).map_err(Refusal::Usage)
+    }
 }

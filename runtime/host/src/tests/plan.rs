@@ -6,7 +6,7 @@ use mdle_runtime::{Begin, Cause, Cursor, Ending, Fsm, Nanos, Next, Plan};
 use super::toy::Sensed;
 
 /// A plan by hand. The input of its atom number `a`, as written and from 0, is `a + 1`.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct ToyPlan {
     brackets: Vec<Bracket>,
     atoms: Vec<Atom>,

@@ -107,9 +107,10 @@ impl Stage {
             signals,
             out: |_| Box::new(Shared(Rc::clone(&out))) as Box<dyn Write>,
             err: &mut err,
+            seen: None,
         };
         let arguments = [&self.program].into_iter().chain(arguments).map(OsString::from);
-        let status = session::<ToyTarget, _, _, _>("Lab", arguments, self.plan, surroundings);
+        let status = session::<ToyTarget, _, _, _>("Lab", arguments, &|| self.plan.clone(), surroundings);
         let text = out.borrow().text();
         let journal = journal.borrow().join(", ");
         Run { status, out: text, err: String::from_utf8(err).unwrap(), journal, slept: slept.get() }

@@ -1,0 +1,253 @@
+//! Several runs of one plan, by robots that differ in a seed: made by several threads, told in the order of the seeds.
+//!
+//! A run is the same whoever makes it and whatever else runs: each has a robot, a clock and a plan of its own.
+
+use std::fmt;
+use std::io::Write;
+use std::num::{NonZeroU64, NonZeroUsize};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Sender, channel};
+use std::thread;
+use std::time::Duration;
+
+use mdle_runtime::{Nanos, Plan};
+
+use crate::clock::{Clock, Instants};
+use crate::ending::Ending;
+use crate::progress::Progress;
+use crate::report::Report;
+use crate::safety::{Panicked, shielded};
+use crate::signals::Signals;
+use crate::summary::Summary;
+use crate::turns::{self, Limits, Witnesses};
+use crate::{Hosted, Judgement, Pace, Time};
+
+/// When a run is given up that no option limits: no batch shall go on for ever.
+const TIMEOUT: Duration = Duration::from_secs(3600);
+
+/// Runs to be made of one plan.
+pub struct Batch<R> {
+    /// The seed of the first run; each run's is one more than that of the run before.
+    pub first: u64,
+    /// How many runs.
+    pub runs: NonZeroU64,
+    /// How many of them are made at the same time.
+    pub jobs: NonZeroUsize,
+    /// Whether the summary is to be JSON.
+    pub json: bool,
+    /// Makes the robot of a seed, or says why there is none.
+    pub robot: Box<dyn Fn(u64) -> Result<R, String> + Send + Sync>,
+    /// The options with which the run of a seed is made alone.
+    pub alone: Box<dyn Fn(u64) -> Vec<String> + Send + Sync>,
+}
+
+impl<R> fmt::Debug for Batch<R> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { first, runs, jobs, json, .. } = self;
+        write!(f, "Batch {{ first: {first}, runs: {runs}, jobs: {jobs}, json: {json} }}")
+    }
+}
+
+/// How a run has gone.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum Outcome {
+    /// The plan is over, and the robot where it was to come to.
+    Arrived,
+    /// The plan was over in contact with something.
+    Bumped,
+    /// The plan is over, and the robot elsewhere.
+    Astray(String),
+    /// The plan was given up.
+    TimedOut,
+    /// There was no such run, or a fault stopped it: why.
+    Failed(String),
+}
+
+/// A run behind us.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Done {
+    pub(crate) seed: u64,
+    pub(crate) outcome: Outcome,
+    /// The plan's time at which it ended.
+    pub(crate) t: Nanos,
+    /// What ended the plan; empty if nothing did.
+    pub(crate) by: String,
+    pub(crate) contacts: u64,
+}
+
+/// What all runs have in common.
+pub(crate) struct Terms<'a> {
+    pub(crate) period: Duration,
+    pub(crate) limits: Limits,
+    pub(crate) signals: &'a Signals,
+    /// What the executable was called as.
+    pub(crate) program: &'a str,
+}
+
+impl Terms<'_> {
+    /// The timeout of runs that no option limits.
+    fn by_default(&self) -> Option<Duration> {
+        (self.limits.timeout.is_none() && self.limits.turns.is_none()).then_some(TIMEOUT)
+    }
+}
+
+/// Makes the runs and tells of them; the exit status, and why `out` could not be written.
+pub(crate) fn run<R: Hosted, P>(
+    batch: &Batch<R>,
+    plan: &(impl Fn() -> P + Sync),
+    terms: &Terms<'_>,
+    out: &mut dyn Write,
+    mut progress: Option<Progress<'_>>,
+) -> (u8, Option<std::io::Error>)
+where
+    P: Plan<Output = R::Output, Input = R::Input>,
+{
+    let mut runs = Vec::new();
+    let next = AtomicU64::new(0);
+    thread::scope(|scope| {
+        let (sender, done) = channel();
+        let jobs = batch.jobs.get().min(usize::try_from(batch.runs.get()).unwrap_or(usize::MAX));
+        for _ in 0..jobs {
+            let sender = sender.clone();
+            scope.spawn(|| work(batch, plan, terms, &next, sender));
+        }
+        drop(sender);
+        for run in done {
+            runs.push(run);
+            if let Some(progress) = &mut progress {
+                progress.runs(runs.len() as u64, batch.runs.get());
+            }
+        }
+    });
+    drop(progress);
+    runs.sort_by_key(|run: &Done| run.seed.wrapping_sub(batch.first));
+    let summary = Summary {
+        runs: &runs,
+        asked: batch.runs.get(),
+        first: batch.first,
+        alone: &*batch.alone,
+        timeout: terms.by_default(),
+        program: terms.program,
+    };
+    let written = if batch.json { writeln!(out, "{}", summary.json()) } else { write!(out, "{summary}") };
+    let status = match terms.signals.caught() {
+        Some(signal) => 128 + signal.number(),
+        None => summary.status(),
+    };
+    (status, written.and_then(|()| out.flush()).err())
+}
+
+/// Makes runs as long as there are some to be made, and no signal comes.
+fn work<R: Hosted, P>(
+    batch: &Batch<R>,
+    plan: &(impl Fn() -> P + Sync),
+    terms: &Terms<'_>,
+    next: &AtomicU64,
+    done: Sender<Done>,
+) where
+    P: Plan<Output = R::Output, Input = R::Input>,
+{
+    loop {
+        let number = next.fetch_add(1, Ordering::Relaxed);
+        if number >= batch.runs.get() || terms.signals.caught().is_some() {
+            return;
+        }
+        let seed = batch.first.wrapping_add(number);
+        // The batch listens until all threads have ended.
+        let Some(run) = one(batch, seed, plan, terms) else { return };
+        let _ = done.send(run);
+    }
+}
+
+/// Makes the run of a seed; `None` if a signal cut it short.
+fn one<R: Hosted, P>(batch: &Batch<R>, seed: u64, plan: &impl Fn() -> P, terms: &Terms<'_>) -> Option<Done>
+where
+    P: Plan<Output = R::Output, Input = R::Input>,
+{
+    let mut run = Done { seed, outcome: Outcome::Arrived, t: Nanos::ZERO, by: String::new(), contacts: 0 };
+    let mut robot = match shielded(|| (batch.robot)(seed)).unwrap_or_else(panicked) {
+        Ok(robot) => robot,
+        Err(sentence) => return Some(Done { outcome: Outcome::Failed(sentence), ..run }),
+    };
+    let mut clock = Clock::begin(Standing, Time::Stepped(Pace::Max), terms.period);
+    let mut said = LastLine::default();
+    let limits = Limits { timeout: terms.limits.timeout.or(terms.by_default()), ..terms.limits };
+    let ending = shielded(|| {
+        let mut report = Report::new(&mut said, false);
+        let mut witnesses = Witnesses { report: &mut report, log: None, progress: None };
+        turns::run(&mut robot, plan(), limits, &mut clock, terms.signals, &mut witnesses)
+    });
+    run.t = clock.taken();
+    let stopped = shielded(|| {
+        if ending.as_ref().is_ok_and(Ending::robot_listens) {
+            let _ = robot.exchange(&R::Input::default());
+        }
+        robot.stop().map_err(|fault| fault.to_string())
+    });
+    let failure = stopped.unwrap_or_else(panicked).err();
+    run.outcome = match ending {
+        Ok(Ending::Signal(_)) => return None,
+        Err(panic) => Outcome::Failed(panicked::<()>(panic).err().unwrap_or_default()),
+        Ok(Ending::Robot(fault) | Ending::Log(fault) | Ending::Bug(fault)) => Outcome::Failed(fault),
+        Ok(_) if failure.is_some() => Outcome::Failed(failure.unwrap_or_default()),
+        Ok(Ending::Timeout(_) | Ending::Turns(_)) => Outcome::TimedOut,
+        Ok(Ending::Over) => {
+            run.by = said.line().trim_start_matches("plan over: ").to_owned();
+            match robot.judged() {
+                Judgement::Arrived => Outcome::Arrived,
+                Judgement::Bumped => Outcome::Bumped,
+                Judgement::Astray(place) => Outcome::Astray(place),
+            }
+        }
+    };
+    run.contacts = robot.contacts();
+    Some(run)
+}
+
+fn panicked<T>(Panicked(message): Panicked) -> Result<T, String> {
+    Err(format!("a panic, which is a bug: {message}"))
+}
+
+/// Time that nobody looks at: runs of a batch are made as fast as possible.
+#[derive(Debug)]
+struct Standing;
+
+impl Instants for Standing {
+    fn now(&mut self) -> Duration {
+        Duration::ZERO
+    }
+
+    fn sleep(&mut self, _: Duration) {}
+}
+
+/// Keeps the last line of what is written.
+#[derive(Debug, Default)]
+struct LastLine {
+    line: Vec<u8>,
+    complete: bool,
+}
+
+impl LastLine {
+    fn line(&self) -> String {
+        String::from_utf8_lossy(&self.line).into_owned()
+    }
+}
+
+impl Write for LastLine {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        for byte in bytes {
+            if std::mem::take(&mut self.complete) {
+                self.line.clear();
+            }
+            match byte {
+                b'\n' => self.complete = true,
+                byte => self.line.push(*byte),
+            }
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        Ok(())
+    }
+}

@@ -1,0 +1,93 @@
+//! What the options say about a run, read and checked before anything moves: one run, or several that differ by a seed.
+
+use std::num::NonZeroUsize;
+use std::thread::available_parallelism;
+use std::time::Duration;
+
+use mdle_host::Batch;
+use mdle_host::clap::ArgMatches;
+use mdle_runtime::Pose;
+
+use crate::observed::Observed;
+use crate::options;
+use crate::robot::Simulated;
+use crate::start::{self, Start, StartError};
+use crate::start_noise::StartNoise;
+use crate::walls::Walls;
+use crate::whole_file::WholeFile;
+use crate::world::World;
+
+/// A world, and where a robot starts in it.
+struct Setup {
+    world: World,
+    walls: Walls,
+    start: Pose,
+    noise: Option<StartNoise>,
+    period: Duration,
+}
+
+/// The robot that the options describe; everything that can be refused is refused here, before anything moves.
+pub(crate) fn robot(matches: &ArgMatches, period: Duration) -> Result<Observed, String> {
+    let setup = Setup::of(matches, period)?;
+    let robot = setup.robot(options::seed(matches))?;
+    let file = |option| options::file(matches, option).map(|path| WholeFile::at(option, path)).transpose();
+    let robot = robot.written_down(file("trail")?);
+    Ok(robot.drawn(file("plot")?, file("record")?, &setup.world))
+}
+
+/// The runs that the options ask for, if they ask for several.
+pub(crate) fn batch(matches: &ArgMatches, period: Duration) -> Result<Option<Batch<Observed>>, String> {
+    let Some(runs) = options::runs(matches) else { return Ok(None) };
+    options::agree(matches)?;
+    let first = options::seed(matches).unwrap_or(1);
+    if first.checked_add(runs.get() - 1).is_none() {
+        return Err(format!("--seed {first}: there are not so many seeds; the last is {}", u64::MAX));
+    }
+    let setup = Setup::of(matches, period)?;
+    let given = options::given(matches);
+    Ok(Some(Batch {
+        first,
+        runs,
+        jobs: options::jobs(matches).or_else(|| available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN),
+        json: matches.get_flag("json"),
+        robot: Box::new(move |seed| setup.robot(Some(seed))),
+        alone: Box::new(move |seed| {
+            let seed = ["--seed".to_owned(), seed.to_string(), "--speed".to_owned(), "max".to_owned()];
+            given.iter().cloned().chain(seed).collect()
+        }),
+    }))
+}
+
+impl Setup {
+    fn of(matches: &ArgMatches, period: Duration) -> Result<Self, String> {
+        let world = options::world(matches)?;
+        let walls = Walls::of(&world);
+        let given = options::start(matches)?;
+        let Start(start) = given.map_or(Start(world.start), |(_, start)| start);
+        let said = |error: StartError| match given {
+            Some((text, _)) => format!("--start {text}: {error}; {}", hint(&world.start)),
+            None => format!("the world's own start pose: {error}; give another, as in `--start 1,2,90`"),
+        };
+        start::check(&start, &world, &walls).map_err(said)?;
+        let noise = options::start_noise(matches)?;
+        Ok(Self { world, walls, start, noise, period })
+    }
+
+    fn robot(&self, seed: Option<u64>) -> Result<Observed, String> {
+        let start = match (self.noise, seed) {
+            (Some(noise), Some(seed)) => noise.pose(&self.start, seed, &self.world, &self.walls),
+            (Some(_), None) => return Err("--start-noise: by which chance? Give a seed, as in `--seed 1`".to_owned()),
+            (None, _) => Ok(self.start),
+        };
+        let robot = start.and_then(|start| Simulated::new(&self.world, start, seed, self.period));
+        let robot = robot.map_err(|error| format!("no start could be found by chance: {error}"))?;
+        Ok(Observed::from(robot).judged_by(self.world.goal))
+    }
+}
+
+/// What can be typed instead.
+fn hint(start: &Pose) -> String {
+    // Degrees that were read from a file come back with a last digit of their own.
+    let degrees = libm::round(start.theta.degrees() * 1e6) / 1e6;
+    format!("the world's own start is `--start {},{},{degrees}`", start.x.0, start.y.0)
+}
