@@ -10,6 +10,7 @@ mod arguments;
 mod batch;
 mod clock;
 mod ending;
+mod held;
 mod log;
 mod outlet;
 mod progress;
@@ -29,7 +30,7 @@ use std::process::ExitCode;
 pub use batch::Batch;
 pub use clap;
 use mdle_runtime::{Plan, Robot};
-pub use target::{Hosted, Judgement, Pace, Refusal, Target, Time};
+pub use target::{Around, Hosted, Judgement, Pace, Refusal, Standing, Target, Time};
 
 /// Runs the plan that `plan` makes on the robot of the target `T`, with the arguments of this process: what the `main` of an executable
 /// that mdlec builds calls. `name` is the plan's, for `--help`; its usage names the executable as it was called.

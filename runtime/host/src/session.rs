@@ -13,6 +13,7 @@ use crate::arguments::{self, Options};
 use crate::batch::{self, Batch, Terms};
 use crate::clock::{Clock, Instants};
 use crate::ending::{self, Ending, Fault, say};
+use crate::held::Held;
 use crate::log::{Log, Untouched};
 use crate::progress::Progress;
 use crate::report::Report;
@@ -70,11 +71,15 @@ where
         Err(refusal) => return refusal.tell(err),
     };
     signals.robot_runs();
+    let screen = T::screen(&matches);
     let mut out = out(Some(time));
-    let mut report = Report::new(&mut *out, is_watched(time));
+    if screen {
+        out = Box::new(Held::new(out));
+    }
+    let mut report = Report::new(&mut *out, is_watched(time) && !screen);
     let ending = shielded(|| {
         let mut clock = Clock::begin(instants, time, options.period);
-        let seen = seen.filter(|_| !is_watched(time));
+        let seen = seen.filter(|_| !screen && !is_watched(time));
         let progress = seen.map(|now| Progress::new(&mut *err, now));
         let mut witnesses = Witnesses { report: &mut report, log: log.as_mut(), progress };
         turns::run(&mut robot, plan(), limits, &mut clock, &signals, &mut witnesses)

@@ -31,6 +31,12 @@ pub trait Target {
     /// Why there is no robot: a bad option (exit status 2) or a fault (exit status 3).
     fn connect(matches: &ArgMatches, period: Duration) -> Result<Self::Robot, Refusal>;
 
+    /// Whether the robot shows its run on standard output itself, as with a live view: then the report waits until the
+    /// robot is stopped, and the robot leaves the screen when it is.
+    fn screen(_matches: &ArgMatches) -> bool {
+        false
+    }
+
     /// The runs to be made instead of one, if these options ask for several: only robots that can be started over have
     /// such options. No run has begun yet.
     ///
@@ -68,6 +74,30 @@ pub enum Refusal {
     Fault(String),
 }
 
+/// Where a plan stands after a turn in which it was not over.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Standing<'a> {
+    /// The time of the turn.
+    pub t: Nanos,
+    /// The number of the current atom's state.
+    pub state: u64,
+    /// The quark text of its law.
+    pub law: &'a str,
+    /// The scopes around it, the plan first and the atom last.
+    pub scopes: Vec<Around<'a>>,
+}
+
+/// A scope around the current atom.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Around<'a> {
+    /// Its name; empty for an atom.
+    pub name: &'a str,
+    /// The condition text of its interrupt.
+    pub condition: &'a str,
+    /// How long ago it was entered.
+    pub since: Nanos,
+}
+
 /// How a run has gone whose plan is over.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Judgement {
@@ -83,6 +113,14 @@ pub enum Judgement {
 pub trait Hosted: Robot {
     /// The atom of state `state`, with this law, is the one that the turn at time `t` left standing, and was not before.
     fn began(&mut self, _state: u64, _law: &str, _t: Nanos) {}
+
+    /// Whether [`Hosted::turned`] is to be called.
+    fn looks(&self) -> bool {
+        false
+    }
+
+    /// A turn was made, and this is where the plan stands.
+    fn turned(&mut self, _standing: &Standing<'_>) {}
 
     /// How a run has gone whose plan is over; asked after the robot was stopped.
     fn judged(&self) -> Judgement {

@@ -4,15 +4,16 @@ use std::fs::File;
 use std::io;
 use std::time::Duration;
 
+use mdle_runtime::fsm::Kind;
 use mdle_runtime::{Machine, Nanos, Plan, Robot, Transition, Turn, Watch};
 
-use crate::Hosted;
 use crate::clock::{Clock, Instants, nanos};
 use crate::ending::Ending;
 use crate::log::{Entry, Log};
 use crate::progress::Progress;
 use crate::report::Report;
 use crate::signals::Signals;
+use crate::{Around, Hosted, Standing};
 
 /// When a plan that is not over is given up.
 #[derive(Debug, Clone, Copy)]
@@ -75,6 +76,9 @@ where
             Turn::Law(_) | Turn::Cut => {}
             Turn::Over => return Ending::Over,
         }
+        if robot.looks() {
+            robot.turned(&standing(&machine, t));
+        }
         number = number.saturating_add(1);
         if let Some(ending) = limits.reached(number, t) {
             return ending;
@@ -88,6 +92,23 @@ where
         };
         t = clock.taken();
     }
+}
+
+/// Where a plan stands that is not over.
+fn standing<P: Plan>(machine: &Machine<P>, t: Nanos) -> Standing<'_> {
+    let (plan, fsm) = (machine.plan(), machine.plan().fsm());
+    let atom = machine.atom().and_then(|atom| fsm.atoms.get(atom as usize));
+    let own = atom.and_then(|atom| fsm.brackets.get(atom.scope as usize)).map(|bracket| bracket.kind);
+    let levels = match own {
+        Some(Kind::Scope { level }) => 0..=level,
+        Some(Kind::Loop { .. }) | None => 0..=0,
+    };
+    let scopes = levels.map(|level| {
+        let scope = machine.cursor().scope(fsm, level);
+        Around { name: plan.name(scope), condition: plan.condition(scope), since: machine.cursor().since(level, t) }
+    });
+    let law = machine.atom().map_or("", |atom| plan.law(atom));
+    Standing { t, state: machine.state(), law, scopes: scopes.collect() }
 }
 
 /// Exchanges an input for the output that follows it.

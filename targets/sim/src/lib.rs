@@ -24,6 +24,7 @@ mod start_noise;
 mod target;
 mod trail;
 mod walls;
+mod watch;
 mod whole_file;
 mod world;
 mod world_file;

@@ -1,6 +1,6 @@
 //! The simulated robot with whoever looks on: its pictures, and the table of where it was.
 
-use mdle_host::{Hosted, Judgement};
+use mdle_host::{Hosted, Judgement, Standing};
 use mdle_runtime::capability::Bumpers as _;
 use mdle_runtime::{Nanos, Pose, Robot, Twist};
 
@@ -10,6 +10,7 @@ use crate::output::Sensed;
 use crate::plot;
 use crate::robot::{Fault, Simulated};
 use crate::trail::Trail;
+use crate::watch::Watch;
 use crate::whole_file::WholeFile;
 use crate::world::World;
 
@@ -21,6 +22,7 @@ pub struct Observed {
     contacts: u64,
     pictures: Option<Pictures>,
     table: Option<Table>,
+    watch: Option<Watch>,
 }
 
 /// What is drawn in the end, and of what.
@@ -47,7 +49,7 @@ impl Table {
 impl From<Simulated> for Observed {
     /// The robot with nobody looking on.
     fn from(robot: Simulated) -> Self {
-        Self { robot, goal: None, touches: false, contacts: 0, pictures: None, table: None }
+        Self { robot, goal: None, touches: false, contacts: 0, pictures: None, table: None, watch: None }
     }
 }
 
@@ -71,6 +73,11 @@ impl Observed {
             self.pictures = Some(Pictures { plot, record, world: world.clone(), trail });
         }
         self
+    }
+
+    /// Has its run shown as it goes.
+    pub(crate) fn watched(self, watch: Option<Watch>) -> Self {
+        Self { watch, ..self }
     }
 
     /// Has its way written down when the run is finished: `t,x,y,heading` in seconds, metres and degrees.
@@ -98,11 +105,17 @@ impl Robot for Observed {
             trail.went(&pose);
             trail.sensed(&sensed, now);
         }
+        if let Some(watch) = &mut self.watch {
+            watch.sensed(&pose, &sensed, now, self.touches, self.contacts);
+        }
         Ok(sensed)
     }
 
     fn stop(&mut self) -> Result<(), Fault> {
         let stopped = self.robot.stop();
+        if let Some(watch) = &mut self.watch {
+            watch.leave();
+        }
         if let Some(Pictures { trail, .. }) = &mut self.pictures {
             trail.went(&self.robot.pose());
         }
@@ -114,6 +127,16 @@ impl Hosted for Observed {
     fn began(&mut self, state: u64, law: &str, t: Nanos) {
         if let Some(Pictures { trail, .. }) = &mut self.pictures {
             trail.began(state, law, t);
+        }
+    }
+
+    fn looks(&self) -> bool {
+        self.watch.is_some()
+    }
+
+    fn turned(&mut self, standing: &Standing<'_>) {
+        if let Some(watch) = &mut self.watch {
+            watch.turned(standing);
         }
     }
 

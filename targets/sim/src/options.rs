@@ -51,6 +51,12 @@ fn of_the_world(command: Command) -> Command {
 fn of_outputs(command: Command) -> Command {
     command
         .arg(
+            Arg::new("watch")
+                .long("watch")
+                .action(ArgAction::SetTrue)
+                .help("Show the floor, the robot, the running atom and the timers while it runs, in this terminal"),
+        )
+        .arg(
             option("plot", "FILE.svg")
                 .help("Draw the floor, the way driven, where each atom began, and what was heard and touched")
                 .value_parser(value_parser!(PathBuf)),
@@ -92,7 +98,7 @@ fn of_runs(command: Command) -> Command {
 }
 
 /// What shows or writes down one run.
-const ONE_RUN: [&str; 3] = ["plot", "record", "trail"];
+const ONE_RUN: [&str; 4] = ["watch", "plot", "record", "trail"];
 
 /// What a run of several is not told when it is made alone.
 const OF_SEVERAL: [&str; 5] = ["runs", "jobs", "json", "seed", "speed"];
@@ -145,6 +151,11 @@ pub(crate) fn start(matches: &ArgMatches) -> Result<Option<(&str, Start)>, Strin
 /// The seed of `--seed`.
 pub(crate) fn seed(matches: &ArgMatches) -> Option<u64> {
     matches.get_one("seed").copied()
+}
+
+/// Whether the run is to be shown as it goes.
+pub(crate) fn watch(matches: &ArgMatches) -> bool {
+    matches.get_flag("watch")
 }
 
 /// The start noise of `--start-noise`.

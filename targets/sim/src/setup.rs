@@ -14,6 +14,7 @@ use crate::robot::Simulated;
 use crate::start::{self, Start, StartError};
 use crate::start_noise::StartNoise;
 use crate::walls::Walls;
+use crate::watch::Watch;
 use crate::whole_file::WholeFile;
 use crate::world::World;
 
@@ -31,7 +32,8 @@ pub(crate) fn robot(matches: &ArgMatches, period: Duration) -> Result<Observed, 
     let setup = Setup::of(matches, period)?;
     let robot = setup.robot(options::seed(matches))?;
     let file = |option| options::file(matches, option).map(|path| WholeFile::at(option, path)).transpose();
-    let robot = robot.written_down(file("trail")?);
+    let watch = options::watch(matches).then(|| Watch::of(&setup.world)).transpose()?;
+    let robot = robot.written_down(file("trail")?).watched(watch);
     Ok(robot.drawn(file("plot")?, file("record")?, &setup.world))
 }
 

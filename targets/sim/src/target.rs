@@ -29,6 +29,10 @@ impl Target for Sim {
         setup::robot(matches, period).map_err(Refusal::Usage)
     }
 
+    fn screen(matches: &ArgMatches) -> bool {
+        options::watch(matches)
+    }
+
     fn batch(matches: &ArgMatches, period: Duration) -> Result<Option<Batch<Observed>>, Refusal> {
         setup::batch(matches, period).map_err(Refusal::Usage)
     }

@@ -1,0 +1,63 @@
+//! A report that waits until the robot has left the screen; of a very long one, the last part.
+
+use std::io::{self, Write};
+
+/// The most that is held, in bytes: when there is more, the first half goes.
+const MOST: usize = 1 << 20;
+
+/// A writer that passes everything on when it is flushed, and not before.
+pub(crate) struct Held<W> {
+    to: W,
+    text: Vec<u8>,
+    cut: bool,
+}
+
+impl<W: Write> Held<W> {
+    /// Nothing yet for `to`.
+    pub(crate) fn new(to: W) -> Self {
+        Self { to, text: Vec::new(), cut: false }
+    }
+}
+
+impl<W: Write> Write for Held<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.text.extend_from_slice(bytes);
+        if self.text.len() > MOST {
+            let line_end = self.text.iter().skip(MOST / 2).position(|byte| *byte == b'\n');
+            self.text.drain(..line_end.map_or(0, |end| MOST / 2 + end + 1));
+            self.cut = true;
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        if std::mem::take(&mut self.cut) {
+            self.to.write_all(b"(lines are missing here: there were too many)\n")?;
+        }
+        self.to.write_all(&std::mem::take(&mut self.text))?;
+        self.to.flush()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn everything_comes_at_the_end_and_the_last_of_too_much() {
+        let mut held = Held::new(Vec::new());
+        held.write_all(b"one\n").unwrap();
+        assert_eq!(held.to, b"");
+        held.flush().unwrap();
+        assert_eq!(held.to, b"one\n");
+        held.to.clear();
+        let lines: Vec<String> = (0..300_000).map(|number| format!("line {number}\n")).collect();
+        lines.iter().for_each(|line| held.write_all(line.as_bytes()).unwrap());
+        assert!(held.text.len() <= MOST);
+        held.flush().unwrap();
+        let text = String::from_utf8(held.to).unwrap();
+        let (first, rest) = text.split_once('\n').unwrap();
+        assert_eq!(first, "(lines are missing here: there were too many)");
+        assert!(lines.concat().ends_with(rest) && rest.starts_with("line ") && rest.len() > MOST / 2);
+    }
+}

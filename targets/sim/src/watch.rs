@@ -1,0 +1,94 @@
+//! The live view of `--watch`: the floor with the robot on it, the running atom, and how long each scope has run.
+
+mod canvas;
+mod map;
+mod screen;
+mod view;
+
+use std::time::{Duration, Instant};
+
+use mdle_host::Standing;
+use mdle_runtime::{Nanos, Pose};
+
+use crate::output::Sensed;
+use crate::trail;
+use crate::world::{Place, World};
+use map::Map;
+use screen::Screen;
+
+/// From one picture to the next, at least: faster than that nobody sees.
+const EVERY: Duration = Duration::from_millis(50);
+
+/// A live view.
+pub(crate) struct Watch {
+    screen: Option<Screen>,
+    world: World,
+    map: Option<Map>,
+    /// The way so far, not denser than a centimetre.
+    way: Vec<Place>,
+    echoes: Vec<Place>,
+    now: view::Now,
+    shown: Option<Instant>,
+}
+
+impl Watch {
+    /// A view of `world` on standard output; it takes the screen when the first turn is made.
+    ///
+    /// # Errors
+    /// When standard output is no terminal.
+    pub(crate) fn of(world: &World) -> Result<Self, String> {
+        if !screen::is_there() {
+            let hint = "run it in a terminal, or make a picture with --plot or --record";
+            return Err(format!("--watch: standard output is not a terminal; {hint}"));
+        }
+        Ok(Self {
+            screen: None,
+            world: world.clone(),
+            map: None,
+            way: Vec::new(),
+            echoes: Vec::new(),
+            now: view::Now::default(),
+            shown: None,
+        })
+    }
+
+    /// The robot has come to `pose` and senses this.
+    pub(crate) fn sensed(&mut self, pose: &Pose, sensed: &Sensed, t: Nanos, touches: bool, contacts: u64) {
+        let place = Place::of(pose);
+        if self.way.last().is_none_or(|last| libm::hypot(last.x - place.x, last.y - place.y) >= 0.01) {
+            self.way.push(place);
+        }
+        self.echoes.clear();
+        self.echoes.extend(trail::echoes(pose, sensed, t).into_iter().flatten());
+        (self.now.pose, self.now.touches, self.now.contacts) = (*pose, touches, contacts);
+    }
+
+    /// A turn was made: shows it, if it is time to show anything.
+    pub(crate) fn turned(&mut self, standing: &Standing<'_>) {
+        if self.shown.is_some_and(|shown| shown.elapsed() < EVERY) {
+            return;
+        }
+        self.shown = Some(Instant::now());
+        self.now.stands(standing);
+        let screen = self.screen.get_or_insert_with(Screen::enter);
+        let (columns, rows) = screen::size();
+        let below = self.now.below(columns);
+        let (wide, high) = (columns, rows.saturating_sub(below.len() + 1));
+        let fits = |map: &Map| map.is_of(wide, high) && map.shows(Place::of(&self.now.pose));
+        if !self.map.as_ref().is_some_and(fits) {
+            self.map = Some(Map::of(&self.world, &self.way, wide, high));
+        }
+        let Some(map) = &mut self.map else { return };
+        map.went(&self.way);
+        let mut lines = vec![self.now.above(columns)];
+        lines.extend(map.drawn(&self.now.pose, &self.echoes, self.now.touches));
+        lines.extend(below);
+        lines.truncate(rows);
+        screen.show(&lines);
+    }
+
+    /// Gives the screen back.
+    pub(crate) fn leave(&mut self) {
+        self.screen = None;
+    }
+}

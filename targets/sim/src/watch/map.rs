@@ -1,0 +1,150 @@
+//! The floor as dots: walls and goal once, the way as it grows, and over them the robot and what it hears.
+
+use mdle_runtime::Pose;
+
+use super::canvas::{Canvas, Ink};
+use crate::world::{Place, World};
+
+/// Kept free around what is drawn, in metres.
+const AROUND: f64 = 0.3;
+/// Eight directions of a robot, from the first axis counter-clockwise.
+const ARROWS: [char; 8] = ['→', '↗', '↑', '↖', '←', '↙', '↓', '↘'];
+
+/// A map for one size of the terminal.
+#[derive(Debug, Clone)]
+pub(super) struct Map {
+    canvas: Canvas,
+    /// The upper left corner, in metres.
+    corner: Place,
+    /// The dots of a metre.
+    scale: f64,
+    /// How much of the way is drawn.
+    went: usize,
+}
+
+impl Map {
+    /// The map of a floor, and of the places in `way`, in so many columns and rows.
+    pub(super) fn of(world: &World, way: &[Place], columns: usize, rows: usize) -> Self {
+        let places = || world.outlines.iter().flat_map(|outline| &outline.points).chain(way);
+        let range = |of: fn(&Place) -> f64| {
+            let least = places().map(of).fold(f64::INFINITY, f64::min);
+            let most = places().map(of).fold(f64::NEG_INFINITY, f64::max);
+            (least - AROUND, most + AROUND)
+        };
+        let ((left, right), (low, high)) = (range(|place| place.x), range(|place| place.y));
+        let (wide, tall) = (2.0 * columns as f64, 4.0 * rows as f64);
+        let scale = (wide / (right - left)).min(tall / (high - low));
+        // In the middle.
+        let corner = Place { x: (left + right) / 2.0 - wide / scale / 2.0, y: (low + high) / 2.0 + tall / scale / 2.0 };
+        let mut map = Self { canvas: Canvas::new(columns, rows), corner, scale, went: 0 };
+        if let Some(goal) = &world.goal {
+            map.goal(goal.min, goal.max);
+        }
+        for (_, from, to) in world.segments() {
+            map.line(from, to, Ink::Wall);
+        }
+        map
+    }
+
+    /// Whether it is a map of this size.
+    pub(super) fn is_of(&self, columns: usize, rows: usize) -> bool {
+        (self.canvas.columns, self.canvas.rows) == (columns, rows)
+    }
+
+    /// Whether a place is on it.
+    pub(super) fn shows(&self, place: Place) -> bool {
+        let (x, y) = self.at(place);
+        (0.0..2.0 * self.canvas.columns as f64).contains(&x) && (0.0..4.0 * self.canvas.rows as f64).contains(&y)
+    }
+
+    /// Draws what is new of the way.
+    pub(super) fn went(&mut self, way: &[Place]) {
+        for place in way.iter().skip(self.went) {
+            self.dot(*place, Ink::Way);
+        }
+        self.went = way.len();
+    }
+
+    /// The rows of the map with the robot on it, and what it hears.
+    pub(super) fn drawn(&self, pose: &Pose, echoes: &[Place], touches: bool) -> Vec<String> {
+        let mut map = self.clone();
+        for echo in echoes {
+            map.dot(*echo, Ink::Echo);
+        }
+        let eighths = libm::round(pose.theta.degrees() / 45.0) as i64;
+        let arrow = usize::try_from(eighths.rem_euclid(8)).ok().and_then(|eighth| ARROWS.get(eighth)).unwrap_or(&'?');
+        // Red where it touches something.
+        let sign = format!("\x1b[0;1;97;{}m{arrow}", if touches { 41 } else { 44 });
+        let (x, y) = self.at(Place::of(pose));
+        map.canvas.text(Some((((x / 2.0).max(0.0) as usize, (y / 4.0).max(0.0) as usize), &sign)))
+    }
+
+    /// A place in dots.
+    fn at(&self, place: Place) -> (f64, f64) {
+        ((place.x - self.corner.x) * self.scale, (self.corner.y - place.y) * self.scale)
+    }
+
+    fn dot(&mut self, place: Place, ink: Ink) {
+        let (x, y) = self.at(place);
+        self.canvas.dot(libm::floor(x) as i64, libm::floor(y) as i64, ink);
+    }
+
+    fn line(&mut self, from: Place, to: Place, ink: Ink) {
+        let ((x1, y1), (x2, y2)) = (self.at(from), self.at(to));
+        let steps = libm::ceil((x2 - x1).abs().max((y2 - y1).abs())).max(1.0);
+        for step in 0..=steps as u32 {
+            let part = f64::from(step) / steps;
+            let (x, y) = (x1 + (x2 - x1) * part, y1 + (y2 - y1) * part);
+            self.canvas.dot(libm::floor(x) as i64, libm::floor(y) as i64, ink);
+        }
+    }
+
+    /// Every other dot of the goal's edge.
+    fn goal(&mut self, min: Place, max: Place) {
+        let ((left, low), (right, high)) = (self.at(min), self.at(max));
+        let within = |value: f64, most: usize| value.clamp(0.0, most as f64) as i64;
+        let (left, right) = (within(left, 2 * self.canvas.columns), within(right, 2 * self.canvas.columns));
+        let (high, low) = (within(high, 4 * self.canvas.rows), within(low, 4 * self.canvas.rows));
+        for x in (left..=right).step_by(2) {
+            self.canvas.dot(x, high, Ink::Goal);
+            self.canvas.dot(x, low, Ink::Goal);
+        }
+        for y in (high..=low).step_by(2) {
+            self.canvas.dot(left, y, Ink::Goal);
+            self.canvas.dot(right, y, Ink::Goal);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mdle_runtime::{Meters, Radians};
+
+    fn shown(columns: usize, rows: usize) -> String {
+        let world = World::office().unwrap();
+        let way: Vec<Place> = (0..430).map(|step| Place { x: 0.0, y: f64::from(step) * 0.01 }).collect();
+        let mut map = Map::of(&world, &way, columns, rows);
+        map.went(&way);
+        let pose = Pose { x: Meters(0.0), y: Meters(4.3), theta: Radians::from_degrees(90.0) };
+        assert!(map.shows(Place::of(&pose)) && map.is_of(columns, rows));
+        let text = map.drawn(&pose, &[Place { x: 0.0, y: 8.0 }], false).join("\n");
+        // Colours aside.
+        let mut plain = text.split('\x1b').map(|part| part.split_once('m').map_or(part, |(_, rest)| rest));
+        plain.by_ref().collect()
+    }
+
+    #[test]
+    fn the_office_is_seen_whole() {
+        insta::assert_snapshot!(shown(78, 20));
+    }
+
+    #[test]
+    fn every_size_will_do() {
+        for (columns, rows) in [(1, 1), (2, 50), (300, 1), (200, 100)] {
+            assert!(shown(columns, rows).contains('↑'), "{columns} {rows}");
+        }
+        let nothing = Map::of(&World::parse("empty", "").unwrap(), &[], 0, 0);
+        assert!(nothing.drawn(&Pose::ORIGIN, &[], true).is_empty());
+    }
+}

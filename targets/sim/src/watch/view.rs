@@ -1,0 +1,155 @@
+//! The words around the map: time and place above it, the running atom and the scopes around it below.
+
+use mdle_host::{Around, Standing};
+use mdle_runtime::Pose;
+
+/// The most scopes that are shown: the outermost and the innermost count most.
+const SCOPES_MOST: usize = 4;
+/// The letters of a bar.
+const BAR: usize = 20;
+
+/// What is told of a moment.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Now {
+    pub(super) pose: Pose,
+    pub(super) touches: bool,
+    pub(super) contacts: u64,
+    seconds: f64,
+    atom: String,
+    scopes: Vec<Scope>,
+}
+
+/// A scope as it is told.
+#[derive(Debug, Clone, PartialEq)]
+struct Scope {
+    said: String,
+    seconds: f64,
+    /// How long it waits at most, if it says so.
+    wait: Option<f64>,
+}
+
+impl Now {
+    /// The plan stands here.
+    pub(super) fn stands(&mut self, standing: &Standing<'_>) {
+        self.seconds = standing.t.seconds();
+        self.atom = format!("atom {}  {}", standing.state, standing.law);
+        self.scopes = standing.scopes.iter().map(Scope::of).collect();
+        let middle = 1..self.scopes.len().saturating_sub(SCOPES_MOST - 2).max(1);
+        if self.scopes.len() > SCOPES_MOST {
+            let said = format!("… {} more …", middle.len());
+            let seconds = self.scopes.get(1).map_or(0.0, |scope| scope.seconds);
+            self.scopes.splice(middle, [Scope { said, seconds, wait: None }]);
+        }
+    }
+
+    /// The line above the map.
+    pub(super) fn above(&self, columns: usize) -> String {
+        let (x, y) = (self.pose.x.0, self.pose.y.0);
+        let heading = libm::round(self.pose.theta.degrees()) + 0.0;
+        let touches = match (self.touches, self.contacts) {
+            (true, _) => "  contact!".to_owned(),
+            (false, 0) => String::new(),
+            (false, contacts) => format!("  contacts: {contacts}"),
+        };
+        let text = format!(" {:.1} s  at ({x:.2}, {y:.2}) heading {heading}{touches}", self.seconds);
+        format!("\x1b[7m{:<columns$}", cut(&text, columns))
+    }
+
+    /// The lines below it.
+    pub(super) fn below(&self, columns: usize) -> Vec<String> {
+        let mut lines = vec![format!("\x1b[1m{}", cut(&self.atom, columns))];
+        let widest = self.scopes.iter().map(|scope| scope.said.chars().count()).max().unwrap_or(0);
+        let room = columns.saturating_sub(BAR + 26).max(8).min(widest);
+        lines.extend(self.scopes.iter().map(|scope| scope.line(room, columns)));
+        lines.push(format!("\x1b[2m{}", cut("Ctrl-C stops the robot", columns)));
+        lines
+    }
+}
+
+impl Scope {
+    fn of(around: &Around<'_>) -> Self {
+        let said = match (around.name, around.condition) {
+            ("", "") => "atom".to_owned(),
+            ("", condition) => format!("until {condition}"),
+            (name, "") => name.to_owned(),
+            (name, condition) => format!("{name} until {condition}"),
+        };
+        Self { said, seconds: around.since.seconds(), wait: wait(around.condition) }
+    }
+
+    fn line(&self, room: usize, columns: usize) -> String {
+        let bar = self.wait.map_or_else(String::new, |wait| {
+            let part = if wait > 0.0 { (self.seconds / wait).clamp(0.0, 1.0) } else { 1.0 };
+            let full = libm::round(part * BAR as f64) as usize;
+            format!("  {}{}  of {wait} s", "█".repeat(full), "░".repeat(BAR - full))
+        });
+        cut(&format!("  {:<room$} {:>8.1} s{bar}", cut(&self.said, room), self.seconds), columns)
+    }
+}
+
+/// The seconds of the first `wait` of a condition text, where it is a number.
+fn wait(condition: &str) -> Option<f64> {
+    let words: Vec<&str> = condition.split([' ', '(', ')']).filter(|word| !word.is_empty()).collect();
+    let at = words.iter().position(|word| *word == "wait")?;
+    words.get(at + 1)?.parse().ok().filter(|seconds: &f64| seconds.is_finite())
+}
+
+/// As much of a text as there is room for.
+fn cut(text: &str, room: usize) -> String {
+    if text.chars().count() <= room {
+        text.to_owned()
+    } else {
+        text.chars().take(room.saturating_sub(1)).chain(['…']).take(room).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mdle_runtime::Nanos;
+
+    fn now(scopes: usize) -> Now {
+        let around = |number: usize| Around {
+            name: if number == 0 {
+                "LabTour"
+            } else if number + 1 == scopes {
+                ""
+            } else {
+                "Lab2ToLab1Plan"
+            },
+            condition: ["", "bumper", "atIsection 0100 OR wait 7.5"][number.min(2)],
+            since: Nanos(1_500_000_000 * (scopes - number) as u64),
+        };
+        let scopes = (0..scopes).map(around).collect();
+        let mut now = Now { contacts: 2, ..Now::default() };
+        now.stands(&Standing { t: Nanos(73_800_000_000), state: 5, law: "go 0 0.36", scopes });
+        now
+    }
+
+    #[test]
+    fn the_words_tell_what_runs_and_how_long() {
+        let now = now(3);
+        let text = format!("{}\n{}", now.above(60), now.below(78).join("\n"));
+        insta::assert_snapshot!(text.replace('\x1b', "^"));
+    }
+
+    #[test]
+    fn many_scopes_and_narrow_screens_are_cut() {
+        let all = now(30);
+        assert_eq!(all.scopes.len(), SCOPES_MOST);
+        assert!(all.scopes[1].said.contains("27 more"), "{:?}", all.scopes);
+        for columns in [0, 1, 5, 20, 60, 200] {
+            for line in all.below(columns).iter().chain([&all.above(columns)]) {
+                let plain = line.split('m').skip(usize::from(line.starts_with('\x1b'))).collect::<Vec<_>>().join("m");
+                assert!(plain.chars().count() <= columns, "{columns}: {line:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_wait_is_found_in_its_condition() {
+        assert_eq!(wait("wait 7"), Some(7.0));
+        assert_eq!(wait("(atIsection 1000 OR wait 0.5) AND bumper"), Some(0.5));
+        assert_eq!([wait("wait inf"), wait("bumper"), wait("wait")], [None; 3]);
+    }
+}

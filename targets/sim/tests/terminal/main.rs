@@ -1,0 +1,97 @@
+//! What is shown in a terminal, in a real pseudo-terminal: the live view, the line of progress, and that nothing stays.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+mod pseudo;
+
+use std::process::Command;
+
+use pseudo::Terminal;
+
+const ENTER: &str = "\x1b[?1049h\x1b[?25l";
+const LEAVE: &str = "\x1b[0m\x1b[?25h\x1b[?1049l";
+
+/// The example `tour`, which `cargo test` builds before it runs this.
+fn tour(options: &[&str]) -> Command {
+    let mut path = std::env::current_exe().unwrap();
+    path.pop();
+    path.pop();
+    path.extend(["examples", &format!("tour{}", std::env::consts::EXE_SUFFIX)]);
+    assert!(path.exists(), "build it with `cargo build -p mdle-sim --example tour`");
+    let mut command = Command::new(path);
+    command.args(options).env("RUST_BACKTRACE", "0");
+    command
+}
+
+/// What came after the screen was given back, which it was once.
+fn behind_the_screen(seen: &str) -> &str {
+    let (before, behind) = seen.split_once(LEAVE).unwrap();
+    assert!(before.contains(ENTER), "{seen:?}");
+    assert!(!behind.contains('\x1b'), "{behind:?}");
+    behind
+}
+
+#[test]
+fn a_run_is_watched_to_its_limit_and_reported_behind_the_screen() {
+    let terminal = Terminal::start(tour(&["--watch", "--speed", "max", "--turns", "500"]), false);
+    let (seen, status) = terminal.end();
+    assert_eq!(status.code(), Some(4));
+    for shown in ["atom 1  goAvoid 90 40 20", "until atIsection 0100", "heading 0", "Ctrl-C stops the robot", "⡇"] {
+        assert!(seen.contains(shown), "{shown}: {seen}");
+    }
+    let behind = behind_the_screen(&seen);
+    assert!(behind.starts_with("23.200 s  atom 2 go 0 0.36  <- atIsection 0100 (atom 1)\r\n"), "{behind}");
+    assert!(behind.ends_with("stopped by --turns: the plan was not over after 500 turns\r\n"), "{behind}");
+}
+
+#[test]
+fn a_signal_gives_the_terminal_back() {
+    let mut terminal = Terminal::start(tour(&["--watch"]), false);
+    terminal.wait_for("Ctrl-C stops the robot");
+    assert!(!terminal.echoes(), "keys would be drawn over the map");
+    terminal.interrupt();
+    terminal.wait_for("stopped by SIGINT");
+    assert!(terminal.echoes());
+    let (seen, status) = terminal.end();
+    assert_eq!((behind_the_screen(&seen), status.code()), ("stopped by SIGINT\r\n", Some(130)));
+}
+
+#[test]
+fn a_panic_gives_the_terminal_back_before_it_tells() {
+    let mut terminal = Terminal::start(tour(&["--watch", "--speed", "max", "--panic-at", "5"]), false);
+    terminal.wait_for("which is a bug");
+    assert!(terminal.echoes());
+    let (seen, status) = terminal.end();
+    let behind = behind_the_screen(&seen);
+    assert_eq!(status.code(), Some(3));
+    assert!(behind.contains("panicked at") && behind.contains("the robot fell apart"), "{behind}");
+}
+
+#[test]
+fn without_a_terminal_there_is_nothing_to_watch() {
+    let output = tour(&["--watch"]).output().unwrap();
+    assert_eq!((output.status.code(), output.stdout.as_slice()), (Some(2), &b""[..]));
+    insta::assert_snapshot!(String::from_utf8(output.stderr).unwrap(), @"error: --watch: standard output is not a terminal; run it in a terminal, or make a picture with --plot or --record");
+}
+
+#[test]
+fn a_fast_run_shows_that_it_goes_on_and_leaves_no_trace_of_it() {
+    // A period so short that the tour takes a million turns.
+    let mut terminal = Terminal::start(tour(&["--speed", "max", "--period", "0.0001"]), true);
+    terminal.wait_for(" times as fast as real  atom 1 goAvoid 90 40 20\x1b[K\r");
+    terminal.interrupt();
+    let (seen, status) = terminal.end();
+    assert_eq!(status.code(), Some(130));
+    assert!(seen.ends_with("\x1b[K\r\x1b[Kstopped by SIGINT\r\n"), "{seen:?}");
+}
+
+#[test]
+fn a_batch_that_is_interrupted_says_what_was_done() {
+    let mut terminal = Terminal::start(tour(&["--runs", "100000", "--jobs", "2", "--start-noise", "0.1,5"]), false);
+    terminal.wait_for(" of 100000 runs, ");
+    terminal.interrupt();
+    let (seen, status) = terminal.end();
+    assert_eq!(status.code(), Some(130));
+    let (_, behind) = seen.rsplit_once("\x1b[K").unwrap();
+    assert!(behind.contains(" of 100000 runs, seeds 1 to 100000: "), "{behind:?}");
+    assert!(behind.ends_with("stopped by SIGINT\r\n"), "{behind:?}");
+}

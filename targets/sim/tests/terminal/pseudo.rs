@@ -1,0 +1,74 @@
+//! A pseudo-terminal with a program in it.
+
+use std::fs::File;
+use std::io::Read;
+use std::process::{Child, Command, ExitStatus, Stdio};
+
+use rustix::fs::{Mode, OFlags, open};
+use rustix::process::{Pid, Signal, kill_process};
+use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+use rustix::termios::{LocalModes, Winsize, tcgetattr, tcsetwinsize};
+
+/// A program and the terminal that it runs in.
+pub(crate) struct Terminal {
+    child: Child,
+    controller: File,
+    modes: LocalModes,
+    /// What it has written so far.
+    pub(crate) seen: String,
+}
+
+impl Terminal {
+    /// Starts the program in a terminal of 100 columns and 30 rows; its standard output goes elsewhere if `piped`.
+    pub(crate) fn start(mut command: Command, piped: bool) -> Self {
+        let controller = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
+        grantpt(&controller).unwrap();
+        unlockpt(&controller).unwrap();
+        let size = Winsize { ws_row: 30, ws_col: 100, ws_xpixel: 0, ws_ypixel: 0 };
+        tcsetwinsize(&controller, size).unwrap();
+        let name = ptsname(&controller, Vec::new()).unwrap();
+        let terminal = open(name.as_c_str(), OFlags::RDWR | OFlags::NOCTTY, Mode::empty()).unwrap();
+        let side = || Stdio::from(terminal.try_clone().unwrap());
+        let out = if piped { Stdio::null() } else { side() };
+        let child = command.stdin(side()).stdout(out).stderr(side()).spawn().unwrap();
+        let controller = File::from(controller);
+        let modes = tcgetattr(&controller).unwrap().local_modes;
+        Self { child, controller, modes, seen: String::new() }
+    }
+
+    /// Reads until this text has been written; it must be before the program ends.
+    pub(crate) fn wait_for(&mut self, text: &str) {
+        while !self.seen.contains(text) {
+            assert!(self.read(), "{text:?} never came: {:?}", self.seen);
+        }
+    }
+
+    /// Sends Ctrl-C's signal.
+    pub(crate) fn interrupt(&self) {
+        kill_process(Pid::from_child(&self.child), Signal::INT).unwrap();
+    }
+
+    /// Waits for the end; all that was written, and the exit status. The terminal is as it was.
+    pub(crate) fn end(mut self) -> (String, ExitStatus) {
+        while self.read() {}
+        let status = self.child.wait().unwrap();
+        (self.seen, status)
+    }
+
+    /// Whether keys are echoed, as they were at first.
+    pub(crate) fn echoes(&self) -> bool {
+        tcgetattr(&self.controller).unwrap().local_modes.contains(self.modes & (LocalModes::ECHO | LocalModes::ICANON))
+    }
+
+    /// Reads some more; not when the program has ended and its terminal is closed.
+    fn read(&mut self) -> bool {
+        let mut bytes = [0; 4096];
+        match self.controller.read(&mut bytes) {
+            Ok(0) | Err(_) => false,
+            Ok(count) => {
+                self.seen += &String::from_utf8_lossy(&bytes[..count]);
+                true
+            }
+        }
+    }
+}
