@@ -87,7 +87,8 @@ fn assert_in_zone(atom: usize, place: Place) {
 #[test]
 fn it_goes_from_lab_2_past_lab_1_to_the_office() {
     let folder = folder("lab_tour_run");
-    let output = run(&folder, &["--speed", "max", "--plot", "tour.svg", "--trail", "tour.csv"]);
+    let options = ["--speed", "max", "--plot", "tour.svg", "--record", "record.svg", "--trail", "tour.csv"];
+    let output = run(&folder, &options);
     let said = String::from_utf8(output.stdout).unwrap();
     assert_eq!((output.status.code(), output.stderr.as_slice()), (Some(0), &b""[..]), "{said}");
     let trail = places(&fs::read_to_string(folder.join("tour.csv")).unwrap());
@@ -104,6 +105,8 @@ fn it_goes_from_lab_2_past_lab_1_to_the_office() {
     assert_eq!(atoms, 12, "{said}");
     assert!(["plan over: completed (atom 13)", "plan over: wait 10 (atom 13)"].contains(&over), "{over}");
     assert_in_zone(13, trail.last().unwrap().1);
+    let record = fs::read_to_string(folder.join("record.svg")).unwrap();
+    assert!(record.len() < 1_000_000 && record.contains("goAvoid 180 40 20"), "{} bytes", record.len());
     let picture = fs::read(folder.join("tour.svg")).unwrap();
     let shown = fs::read(root().join("docs/lab_tour.svg")).unwrap();
     assert!(
@@ -118,12 +121,13 @@ fn it_gives_the_same_bytes_on_every_processor() {
         let folder = folder(name);
         let mut command = Command::new(tour());
         command.args(["--speed", "max", "--seed", "4", "--plot", "tour.svg", "--trail", "tour.csv", "--log", "log"]);
+        command.args(["--record", "record.svg"]);
         if let Some(tunables) = tunables {
             command.env("GLIBC_TUNABLES", tunables);
         }
         let output = command.current_dir(&folder).output().unwrap();
         assert!(output.status.success());
-        let written = ["tour.svg", "tour.csv", "log"].map(|file| fs::read(folder.join(file)).unwrap());
+        let written = ["tour.svg", "record.svg", "tour.csv", "log"].map(|file| fs::read(folder.join(file)).unwrap());
         (output.stdout, written)
     };
     let once = files("bytes_once", None);

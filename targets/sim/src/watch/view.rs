@@ -68,7 +68,9 @@ impl Now {
 
 impl Scope {
     fn of(around: &Around<'_>) -> Self {
-        let said = match (around.name, around.condition) {
+        // `null` never fires.
+        let condition = if around.condition == "null" { "" } else { around.condition };
+        let said = match (around.name, condition) {
             ("", "") => "atom".to_owned(),
             ("", condition) => format!("until {condition}"),
             (name, "") => name.to_owned(),
@@ -117,7 +119,7 @@ mod tests {
             } else {
                 "Lab2ToLab1Plan"
             },
-            condition: ["", "bumper", "atIsection 0100 OR wait 7.5"][number.min(2)],
+            condition: ["null", "bumper", "atIsection 0100 OR wait 7.5"][number.min(2)],
             since: Nanos(1_500_000_000 * (scopes - number) as u64),
         };
         let scopes = (0..scopes).map(around).collect();
