@@ -13,6 +13,7 @@ use mdle_scripted::{INTERRUPTS, LAWS};
 use mdle_tests::chance::Chance;
 use mdle_tests::outputs::outputs;
 use mdle_tests::pipeline::{Machines, compile_plan, scripted};
+use mdle_tests::random_condition::Forms;
 use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::random_script::script;
 use mdle_tests::repository::root;
@@ -76,7 +77,8 @@ fn compare(shape: Shape) {
 fn random(seed: u64) -> Case {
     let mut chance = Chance::new(1_000_000 + seed);
     let root = ROOTS[seed as usize % ROOTS.len()];
-    let text = RandomPlan::new(&mut chance, 4 + seed as usize / 10, seed % 40 == 39).named(root).to_string();
+    let text =
+        RandomPlan::new(&mut chance, Forms::Emitted, 4 + seed as usize / 10, seed % 40 == 39).named(root).to_string();
     let scripts = (0..SCRIPTS).map(|_| script(&mut chance, 12)).collect();
     Case { root, text, scripts }
 }

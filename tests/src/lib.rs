@@ -13,3 +13,4 @@ pub mod random_condition;
 pub mod random_plan;
 pub mod random_script;
 pub mod repository;
+pub mod signals;

@@ -74,6 +74,9 @@ impl<'l> Loaded<'l> {
                 Condition::Quark(by_name(self.lowered.quark(*id), scripted::Alphabet::interrupt))
             }
             plan::Condition::Wait { nanos, .. } => Condition::Wait(Nanos(*nanos)),
+            plan::Condition::Elapsed { from, until, .. } => {
+                Condition::Elapsed(Nanos(*from), Nanos(until.unwrap_or(u64::MAX)))
+            }
             plan::Condition::Or(operands) => {
                 let (first, count) = self.operands(operands);
                 Condition::Or(first, count)

@@ -1,6 +1,7 @@
 //! Random conditions and laws, in the spellings that plans may use.
 
 use crate::chance::Chance;
+use crate::signals::comparison;
 
 /// The interrupts of the target `scripted`; arguments in every unit and notation, each of them among its texts.
 const INTERRUPTS: &[&str] = &[
@@ -55,38 +56,50 @@ pub fn law(chance: &mut Chance) -> String {
     chance.pick(LAWS).to_owned()
 }
 
+/// Which forms random plans have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Forms {
+    /// Those that can be emitted.
+    Emitted,
+    /// All.
+    All,
+}
+
 /// A condition, as it stands between parentheses.
-pub fn condition(chance: &mut Chance) -> String {
+pub fn condition(chance: &mut Chance, forms: Forms) -> String {
     match chance.below(10) {
         0 => "null".into(),
-        1..=4 => quark(chance),
+        1..=4 => quark(chance, forms),
         5 | 6 => chance.pick(TIMERS).to_owned(),
-        _ => or(chance, 2),
+        _ => or(chance, forms, 2),
     }
 }
 
 /// A quark, more often one of a few, so that scopes repeat each other's interrupts.
-fn quark(chance: &mut Chance) -> String {
+fn quark(chance: &mut Chance, forms: Forms) -> String {
+    if forms == Forms::All && chance.percent(15) {
+        return comparison(chance);
+    }
     if chance.percent(60) { chance.pick(&INTERRUPTS[..3]).to_owned() } else { chance.pick(INTERRUPTS).to_owned() }
 }
 
-fn or(chance: &mut Chance, depth: usize) -> String {
-    let operands: Vec<_> = (0..=chance.below(3)).map(|_| and(chance, depth)).collect();
+fn or(chance: &mut Chance, forms: Forms, depth: usize) -> String {
+    let operands: Vec<_> = (0..=chance.below(3)).map(|_| and(chance, forms, depth)).collect();
     operands.join(if chance.percent(80) { " OR " } else { " or " })
 }
 
-fn and(chance: &mut Chance, depth: usize) -> String {
+fn and(chance: &mut Chance, forms: Forms, depth: usize) -> String {
     let more = usize::from(chance.percent(40));
-    let operands: Vec<_> = (0..=more).map(|_| not(chance, depth)).collect();
+    let operands: Vec<_> = (0..=more).map(|_| not(chance, forms, depth)).collect();
     operands.join(" AND ")
 }
 
-fn not(chance: &mut Chance, depth: usize) -> String {
+fn not(chance: &mut Chance, forms: Forms, depth: usize) -> String {
     let test = match chance.below(8) {
         0 => chance.pick(TIMERS).to_owned(),
         1 if chance.percent(20) => "null".into(),
-        2 | 3 if depth > 0 => format!("({})", or(chance, depth - 1)),
-        _ => quark(chance),
+        2 | 3 if depth > 0 => format!("({})", or(chance, forms, depth - 1)),
+        _ => quark(chance, forms),
     };
     if chance.percent(20) { format!("NOT {test}") } else { test }
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::chance::Chance;
-use crate::random_condition::{condition, law};
+use crate::random_condition::{Forms, condition, law};
 
 /// A file with a plan `Main`, and perhaps one that it refers to.
 #[derive(Debug, Clone)]
@@ -50,6 +50,7 @@ const TIMES: &[&str] = &["1", "1", "2", "2", "2", "2", "3", "3", "3", "3", "5", 
 /// What a plan may still grow to.
 struct Growth<'c> {
     chance: &'c mut Chance,
+    forms: Forms,
     atoms: usize,
     /// Whether loops may have thousands of passes.
     long: bool,
@@ -58,15 +59,15 @@ struct Growth<'c> {
 
 impl RandomPlan {
     /// The plan that this source of chance grows. `atoms` is about how many it may have; `long` allows long searches.
-    pub fn new(chance: &mut Chance, atoms: usize, long: bool) -> Self {
+    pub fn new(chance: &mut Chance, forms: Forms, atoms: usize, long: bool) -> Self {
         let mut definitions = Vec::new();
         let other = chance.percent(25).then_some("Other");
         if let Some(name) = other {
-            let mut growth = Growth { chance, atoms: atoms / 2, long: false, other: None };
+            let mut growth = Growth { chance, forms, atoms: atoms / 2, long: false, other: None };
             let scope = growth.scope(3);
             definitions.push((name, scope));
         }
-        let mut growth = Growth { chance, atoms, long, other };
+        let mut growth = Growth { chance, forms, atoms, long, other };
         let scope = growth.scope(5);
         definitions.push(("Main", scope));
         if growth.chance.percent(50) {
@@ -90,7 +91,7 @@ impl RandomPlan {
 impl Growth<'_> {
     fn scope(&mut self, depth: usize) -> Scope {
         let name = self.chance.pick(NAMES);
-        let condition = self.chance.percent(85).then(|| condition(self.chance));
+        let condition = self.chance.percent(85).then(|| condition(self.chance, self.forms));
         Scope { name, condition, body: self.body(depth) }
     }
 
@@ -101,7 +102,7 @@ impl Growth<'_> {
     fn element(&mut self, depth: usize) -> Element {
         if depth == 0 || self.atoms == 0 || self.chance.percent(35) {
             self.atoms = self.atoms.saturating_sub(1);
-            return Element::Atom { condition: condition(self.chance), law: law(self.chance) };
+            return Element::Atom { condition: condition(self.chance, self.forms), law: law(self.chance) };
         }
         match (self.chance.below(10), self.other) {
             (0 | 1, Some(name)) => Element::Reference(name),

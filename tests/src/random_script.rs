@@ -5,6 +5,7 @@ use std::fmt::Write;
 use mdle_scripted::{INTERRUPTS, LAWS};
 
 use crate::chance::Chance;
+use crate::signals::Values;
 
 /// Steps between turns in seconds: none at all, timers' own lengths, and one nanosecond more or less than these.
 const STEPS: &[&str] =
@@ -21,11 +22,17 @@ pub fn script(chance: &mut Chance, turns: usize) -> String {
     let often = [2, 5, 10, 20, 40, 70][chance.below(6)];
     let done = [2, 5, 20, 60][chance.below(4)];
     let restless = [10, 50, 100][chance.below(3)];
+    let mut values = Values::new(chance);
     for _ in 0..turns {
         change(chance, &mut fired, often, restless);
+        if chance.percent(restless) {
+            values = Values::new(chance);
+        }
         change(chance, &mut completed, done, restless);
         let (seconds, fraction) = (nanos / 1_000_000_000, nanos % 1_000_000_000);
+        let compared: String = values.texts().iter().map(|text| format!("{text:?}, ")).collect();
         let (fired, completed) = (quoted(INTERRUPTS, &fired), quoted(LAWS, &completed));
+        let fired = if fired.is_empty() { compared.trim_end_matches(", ").to_owned() } else { compared + &fired };
         writeln!(text, "{{\"t\": {seconds}.{fraction:09}, \"fired\": [{fired}], \"completed\": [{completed}]}}")
             .unwrap();
         let step: f64 = chance.pick(STEPS).parse().unwrap();

@@ -33,6 +33,12 @@ impl Decimal {
         Some(Self { negative, digits, exponent }.normalized())
     }
 
+    /// Nothing.
+    #[must_use]
+    pub fn zero() -> Self {
+        Self { negative: false, digits: Vec::new(), exponent: 0 }
+    }
+
     /// This number times `factor` times ten to the power `exponent`, exactly.
     #[must_use]
     pub fn scaled(&self, factor: u32, exponent: i32) -> Self {

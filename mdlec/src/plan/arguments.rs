@@ -73,7 +73,17 @@ pub fn signature(declaration: &Declaration) -> String {
     text
 }
 
-type Fitted = Result<(Value, String), Box<Diagnostic>>;
+/// A number as a value of this unit's kind, with its text in this unit; what is wrong with it is told of `declaration`.
+pub(super) fn value(number: &Number, unit: Unit, declaration: &Declaration) -> Fitted {
+    let param = Param { name: String::new(), kind: unit.kind, unit: Some(unit), default: None, range: None };
+    let here = format!("`{}` is {}", declaration.name, unit.kind.words());
+    Fitting { declaration, robot: "" }.quantity(number, &param).map_err(|mut found| {
+        found.labels.iter_mut().for_each(|label| label.text.clone_from(&here));
+        found
+    })
+}
+
+pub(super) type Fitted = Result<(Value, String), Box<Diagnostic>>;
 
 struct Fitting<'a> {
     declaration: &'a Declaration,

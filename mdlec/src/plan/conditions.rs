@@ -2,10 +2,10 @@
 
 use super::quarks::Quarks;
 use super::resolve::not_yet;
-use super::{Condition, Interrupt, Value};
+use super::{Condition, Interrupt, Value, comparisons};
 use crate::alphabet::DeclarationKind;
 use crate::diagnostic::{Diagnostic, Span};
-use crate::syntax::tree::{self, Call, ConditionNode};
+use crate::syntax::tree::{self, Call, Compared, ConditionNode};
 
 /// Resolves the condition of a scope at `scope`; without one it is the null interrupt.
 /// What cannot be resolved is reported and counts as null.
@@ -35,7 +35,7 @@ fn without_infinite_waits(condition: Condition) -> Condition {
         Condition::Or(operands) => Condition::Or(all(operands)),
         Condition::And(operands) => Condition::And(all(operands)),
         Condition::Not(operand) => Condition::Not(Box::new(without_infinite_waits(*operand))),
-        other @ (Condition::Null | Condition::Quark(_) | Condition::Wait { .. }) => other,
+        other @ (Condition::Null | Condition::Quark(_) | Condition::Wait { .. } | Condition::Elapsed { .. }) => other,
     }
 }
 
@@ -52,13 +52,20 @@ impl Resolving<'_, '_> {
             ConditionNode::And(operands) => return Condition::And(self.all(operands)),
             ConditionNode::Not(operand) => return Condition::Not(Box::new(self.condition(operand))),
             ConditionNode::Call(call) => return self.call(call),
+            ConditionNode::Comparison(compared) => return self.comparison(compared, written.span),
             ConditionNode::Null | ConditionNode::Broken => return Condition::Null,
             ConditionNode::Rising(_) => "`RISING`",
-            ConditionNode::Comparison(_) => "comparing signals",
             ConditionNode::After(_) => "`after`",
         };
         self.found.push(not_yet(later, written.span));
         Condition::Null
+    }
+
+    fn comparison(&mut self, compared: &Compared, span: Span) -> Condition {
+        comparisons::resolve(compared, span, self.quarks, self.plans).unwrap_or_else(|found| {
+            self.found.extend(found);
+            Condition::Null
+        })
     }
 
     fn all(&mut self, operands: &[tree::Condition]) -> Vec<Condition> {
@@ -99,7 +106,7 @@ fn text(condition: &Condition, quarks: &Quarks<'_>, around: Precedence) -> Strin
     };
     let (text, precedence) = match condition {
         Condition::Null => ("null".to_owned(), Precedence::Test),
-        Condition::Quark(id) | Condition::Wait { quark: id, .. } => {
+        Condition::Quark(id) | Condition::Wait { quark: id, .. } | Condition::Elapsed { quark: id, .. } => {
             (quarks.get(*id).map(|quark| quark.text.clone()).unwrap_or_default(), Precedence::Test)
         }
         // An OR inside an OR needs no parentheses: the text is flattened, the condition stays as written.

@@ -4,6 +4,7 @@
 
 mod angle;
 mod arguments;
+mod comparisons;
 mod conditions;
 mod definitions;
 mod nondegenerate;
@@ -13,6 +14,7 @@ mod resolve;
 #[cfg(test)]
 mod tests;
 
+pub use crate::syntax::tree::Comparison as Operator;
 pub use angle::{frame_text, in_degrees};
 pub use arguments::signature;
 pub use nondegenerate::{Nondegenerate, remove_degeneracy};
@@ -55,8 +57,32 @@ pub struct Quark {
     pub completes: bool,
     /// Whether it has a memory of its own, so that it is never the same function in two scopes.
     pub remembers: bool,
+    /// For a comparison of signals: what it compares. Its name is then the operator.
+    pub comparison: Option<Comparison>,
     /// Its quark text (language, section 7).
     pub text: String,
+}
+
+/// A comparison of a signal: an interrupt quark that has fired while it holds.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Comparison {
+    /// The signal.
+    pub signal: QuarkId,
+    /// How it is compared.
+    pub operator: Operator,
+    /// With what.
+    pub with: Compared,
+    /// How far apart equal values may be.
+    pub tolerance: Value,
+}
+
+/// What a signal is compared with.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Compared {
+    /// Another signal, of the same kind.
+    Signal(QuarkId),
+    /// A value of its kind.
+    Value(Value),
 }
 
 /// An argument; equal arguments are the same to the last digit.
@@ -166,6 +192,15 @@ pub enum Condition {
         /// The quark, for its text and its exact value.
         quark: QuarkId,
     },
+    /// Fires while the time since the scope of the interrupt was entered is in this interval: a comparison of `t`.
+    Elapsed {
+        /// From so many nanoseconds on ...
+        from: u64,
+        /// ... and until so many have passed.
+        until: Option<u64>,
+        /// The comparison, for its text.
+        quark: QuarkId,
+    },
     /// At least one of these, two or more.
     Or(Vec<Condition>),
     /// All of these, two or more.
@@ -180,10 +215,20 @@ impl Condition {
     pub fn waits(&self) -> bool {
         match self {
             Self::Null | Self::Quark(_) => false,
-            Self::Wait { .. } => true,
+            Self::Wait { .. } | Self::Elapsed { .. } => true,
             Self::Or(operands) | Self::And(operands) => operands.iter().any(Self::waits),
             Self::Not(operand) => operand.waits(),
         }
+    }
+
+    /// Whether this is so of the condition or any of its operands.
+    pub fn any(&self, is_so: &impl Fn(&Self) -> bool) -> bool {
+        is_so(self)
+            || match self {
+                Self::Null | Self::Quark(_) | Self::Wait { .. } | Self::Elapsed { .. } => false,
+                Self::Or(operands) | Self::And(operands) => operands.iter().any(|operand| operand.any(is_so)),
+                Self::Not(operand) => operand.any(is_so),
+            }
     }
 
     /// Its value, given what each quark says and whether a `wait` of so many nanoseconds is over. Reads every operand.
@@ -192,6 +237,7 @@ impl Condition {
             Self::Null => false,
             Self::Quark(id) => quark(*id),
             Self::Wait { nanos, .. } => wait(*nanos),
+            Self::Elapsed { from, until, .. } => wait(*from) & !until.is_some_and(wait),
             Self::Or(operands) => operands.iter().fold(false, |fired, operand| fired | operand.fired(quark, wait)),
             Self::And(operands) => operands.iter().fold(true, |fired, operand| fired & operand.fired(quark, wait)),
             Self::Not(operand) => !operand.fired(quark, wait),

@@ -48,7 +48,8 @@ enum Normal {
 fn same_functions(quarks: &[Quark]) -> Vec<QuarkId> {
     let mut first = BTreeMap::new();
     let ids = quarks.iter().zip((0..).map(QuarkId));
-    ids.map(|(quark, id)| *first.entry((&quark.name, quark.overload, &quark.args)).or_insert(id)).collect()
+    ids.map(|(quark, id)| *first.entry((&quark.name, quark.overload, &quark.args, &quark.comparison)).or_insert(id))
+        .collect()
 }
 
 /// The interrupts of the scopes around the place where the removal is, each with its scope's name and its own place.
@@ -110,6 +111,7 @@ impl Removal<'_> {
             Condition::Null => true,
             Condition::Quark(id) => self.quarks.get(id.0 as usize).is_some_and(|quark| !quark.remembers),
             Condition::Wait { .. } => !under_not,
+            Condition::Elapsed { .. } => false,
             Condition::Or(operands) | Condition::And(operands) => {
                 operands.iter().all(|operand| self.can_be_repeated(operand, under_not))
             }
@@ -120,7 +122,7 @@ impl Removal<'_> {
     fn normal(&self, condition: &Condition) -> Normal {
         match condition {
             Condition::Null => Normal::Null,
-            Condition::Quark(id) | Condition::Wait { quark: id, .. } => {
+            Condition::Quark(id) | Condition::Wait { quark: id, .. } | Condition::Elapsed { quark: id, .. } => {
                 Normal::Quark(self.same.get(id.0 as usize).copied().unwrap_or(*id))
             }
             Condition::Or(operands) => {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::arguments::{Arguments, fit, kind_words, signature};
-use super::{Quark, QuarkId};
+use super::{Quark, QuarkId, Value};
 use crate::alphabet::{Alphabet, Declaration, DeclarationKind};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::tree::{Arg, Call};
@@ -67,15 +67,24 @@ impl<'a> Quarks<'a> {
     }
 
     fn intern(&mut self, declaration: &Declaration, overload: usize, arguments: Arguments) -> QuarkId {
-        let text = [declaration.name.clone()].into_iter().chain(arguments.words).collect::<Vec<_>>().join(" ");
-        let quark = Quark {
+        // The paper writes the range of a sonar as one word.
+        let is_indexed =
+            declaration.kind == DeclarationKind::Signal && matches!(arguments.values[..], [Value::Sonar(_)]);
+        let blank = if is_indexed { "" } else { " " };
+        let text = [declaration.name.clone()].into_iter().chain(arguments.words).collect::<Vec<_>>().join(blank);
+        self.add(Quark {
             name: declaration.name.clone(),
             overload,
             args: arguments.values,
             completes: declaration.completes,
             remembers: declaration.remembers,
+            comparison: None,
             text,
-        };
+        })
+    }
+
+    /// The id of a quark, which may have been met before.
+    pub(super) fn add(&mut self, quark: Quark) -> QuarkId {
         if let Some(id) = self.ids.get(&quark) {
             return *id;
         }

@@ -157,12 +157,49 @@ fn forms_of_a_later_version() {
     assert_judged!(
         "use \"corridors.mdle\"
 { P(v: speed) (RISING bumper)
-  L: (Atom (r_3 == r_5) go 1 0)
+  L: (Atom (bumper) go 1 0)
   (Atom (after L) stop)
   (stop, bumper, 3s)
   ExecPlan n { (Atom (wait 1) stop) }
 }"
     );
+}
+
+#[test]
+fn signals_are_compared_in_their_units() {
+    assert_judged!(
+        "{ P (r_3(t) == r_5)
+  (Atom (r 0 < 50cm OR x(t) ≥ -1.50 AND theta == 1rad) stop)
+  { Q (t > 500ms OR NOT v \\leq 0.2m/s) (Atom (r3 == r5) align 3 5) (Atom (t > 0.5 OR NOT v <= 20) stop) }
+}"
+    );
+}
+
+#[test]
+fn comparisons_that_make_no_sense() {
+    assert_judged!(
+        "{ P (r17 < 1)
+  (Atom (bumper > 1) stop)
+  (Atom (q > 1) stop)
+  (Atom (x > 90deg) stop)
+  (Atom (x > theta) stop)
+  (Atom (x(3) > 1) stop)
+  (Atom (t < x) stop)
+  (Atom (t > -1s) stop)
+  (Atom (go == stop) stop)
+  (Atom (r < 1) stop)
+}"
+    );
+}
+
+#[test]
+fn signals_that_a_robot_lacks() {
+    let text = "target t : crate t; capability odometry; use atoms; control go;";
+    let atoms = crate::link::alphabets().iter().find(|file| !file.target).expect("atoms");
+    let read = |text: &str| crate::alphabet::read(crate::diagnostic::SourceId(0), text).0.expect("an alphabet");
+    let (alphabet, _) = crate::alphabet::combine(read(text), &[read(atoms.text)]);
+    let (_, found) = crate::compile(crate::diagnostic::SourceId(0), "{ P (Atom (r3 < x) go) }", &alphabet, None);
+    assert_eq!(found.iter().map(|found| found.code).collect::<Vec<_>>(), [crate::diagnostic::Code::E0401]);
 }
 
 #[test]

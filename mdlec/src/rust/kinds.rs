@@ -29,6 +29,8 @@ pub(super) enum Part {
     Quark(QuarkId),
     /// Part of its condition: the nanoseconds.
     Wait(u64),
+    /// Part of its condition: an interval of time, whose ends follow.
+    Elapsed,
     /// Part of its condition: the number of operands.
     Or(usize),
     /// Part of its condition: the number of operands.
@@ -50,6 +52,7 @@ enum Mark {
     Null,
     Quark(u32),
     Wait,
+    Elapsed,
     Or(usize),
     And(usize),
     Not,
@@ -146,6 +149,7 @@ impl<'l> Atoms<'l> {
             Part::Null => Mark::Null,
             Part::Quark(QuarkId(id)) => Mark::Quark(self.declarations[id as usize]),
             Part::Wait(_) => Mark::Wait,
+            Part::Elapsed => Mark::Elapsed,
             Part::Or(count) => Mark::Or(count),
             Part::And(count) => Mark::And(count),
             Part::Not => Mark::Not,
@@ -162,6 +166,9 @@ fn conditions(condition: &Condition, parts: &mut Vec<Part>) {
         Condition::Null => parts.push(Part::Null),
         Condition::Quark(id) => parts.push(Part::Quark(*id)),
         Condition::Wait { nanos, .. } => parts.push(Part::Wait(*nanos)),
+        Condition::Elapsed { from, until, .. } => {
+            parts.extend([Part::Elapsed, Part::Wait(*from), Part::Wait(until.unwrap_or(u64::MAX))]);
+        }
         Condition::Or(operands) | Condition::And(operands) => {
             let count = operands.len();
             parts.push(if matches!(condition, Condition::Or(_)) { Part::Or(count) } else { Part::And(count) });

@@ -18,7 +18,9 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 use crate::alphabet::Alphabet;
+use crate::diagnostic::{Code, Diagnostic};
 use crate::fsm::Lowered;
+use crate::plan::Condition;
 pub use bind::bind;
 use kinds::Atoms;
 pub use names::plan_type;
@@ -62,6 +64,20 @@ impl Shape {
             Self::Rows
         }
     }
+}
+
+/// The forms of a plan that cannot be emitted yet, each as an error.
+#[must_use]
+pub fn not_yet(lowered: &Lowered) -> Vec<Diagnostic> {
+    let has_comparison = |condition: &Condition| {
+        condition.any(&|part| matches!(part, Condition::Quark(id) if lowered.quark(*id).comparison.is_some()))
+    };
+    let interrupts = lowered.scopes.iter().flatten().map(|scope| &scope.interrupt);
+    let found = interrupts.filter(|interrupt| has_comparison(&interrupt.condition)).map(|interrupt| {
+        let message = "comparisons of signals cannot be compiled for a robot yet";
+        Diagnostic::new(Code::E0199, message, interrupt.span, "for a later version").help("`mdlec trace` runs them")
+    });
+    found.collect()
 }
 
 /// Writes the file in the shape that suits its size. Its text depends on nothing but the arguments and the version of

@@ -139,6 +139,10 @@ impl<'l> Operands<'l> {
                 let nanos = Literal::u64_unsuffixed(*nanos);
                 quote!(Wait(Nanos(#nanos)))
             }
+            Condition::Elapsed { from, until, .. } => {
+                let [from, until] = [*from, until.unwrap_or(u64::MAX)].map(Literal::u64_unsuffixed);
+                quote!(Elapsed(Nanos(#from), Nanos(#until)))
+            }
             Condition::Or(operands) | Condition::And(operands) => {
                 self.waiting.extend(operands);
                 self.count += operands.len();

@@ -100,7 +100,9 @@ pub(super) fn expression(
     let mut operand = |operand: &Condition| {
         let inner = expression(operand, level, constant);
         match operand {
-            Condition::Or(_) | Condition::And(_) | Condition::Wait { .. } => quote!((#inner)),
+            Condition::Or(_) | Condition::And(_) | Condition::Wait { .. } | Condition::Elapsed { .. } => {
+                quote!((#inner))
+            }
             Condition::Null | Condition::Quark(_) | Condition::Not(_) => inner,
         }
     };
@@ -113,6 +115,10 @@ pub(super) fn expression(
         Condition::Wait { nanos, .. } => {
             let nanos = constant(Constant::Wait(*nanos));
             quote!(cursor.since(#level, t) >= #nanos)
+        }
+        Condition::Elapsed { from, until, .. } => {
+            let [from, until] = [*from, until.unwrap_or(u64::MAX)].map(|nanos| constant(Constant::Wait(nanos)));
+            quote!((#from..#until).contains(&cursor.since(#level, t)))
         }
         Condition::Or(operands) => joined(operands.iter().map(operand).collect(), &quote!(|)),
         Condition::And(operands) => joined(operands.iter().map(operand).collect(), &quote!(&)),

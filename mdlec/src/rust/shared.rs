@@ -94,7 +94,8 @@ impl<'l> Shared<'l> {
         parts.retain(|part| match part {
             Part::Quark(_) | Part::Wait(_) | Part::Follows(Some(_)) | Part::Law(_) => true,
             Part::Frame(angle) => *angle != 0.0,
-            Part::Scope { .. } | Part::Null | Part::Or(_) | Part::And(_) | Part::Not | Part::Follows(None) => false,
+            Part::Scope { .. } | Part::Null | Part::Elapsed | Part::Or(_) | Part::And(_) | Part::Not => false,
+            Part::Follows(None) => false,
         });
         parts
     }
@@ -113,7 +114,7 @@ impl<'l> Shared<'l> {
                 ("next", quote!(u32), quote!(#atom))
             }
             Part::Frame(radians) => ("frame", quote!(runtime::Radians), angle(radians)),
-            Part::Scope { .. } | Part::Null | Part::Or(_) | Part::And(_) | Part::Not => {
+            Part::Scope { .. } | Part::Null | Part::Elapsed | Part::Or(_) | Part::And(_) | Part::Not => {
                 unreachable!("what has no constant is left out")
             }
         }

@@ -1,8 +1,6 @@
 //! The tree of a file as an outline: a line for each node, as written, nothing resolved.
 
-use super::tree::{
-    Arg, Call, Comparison, Condition, ConditionNode, Count, Element, File, Number, Operand, Param, Plan, Primary,
-};
+use super::tree::{Arg, Call, Condition, ConditionNode, Count, Element, File, Number, Operand, Param, Plan, Primary};
 
 /// Writes the outline, two blanks deeper for each level.
 #[must_use]
@@ -94,7 +92,7 @@ fn condition(written: &Condition<'_>) -> String {
                 Operand::Signal(signal) => call(signal),
                 Operand::Number(value) => number(value),
             };
-            format!("({} {} {right})", call(compared.left), comparison(compared.operator))
+            format!("({} {} {right})", call(compared.left), compared.operator.symbol())
         }
         ConditionNode::Null => "null".into(),
         ConditionNode::After(after) => {
@@ -102,16 +100,6 @@ fn condition(written: &Condition<'_>) -> String {
             format!("(after {}{cause})", after.label.node)
         }
         ConditionNode::Broken => "(could not be read)".into(),
-    }
-}
-
-fn comparison(operator: Comparison) -> &'static str {
-    match operator {
-        Comparison::Equal => "==",
-        Comparison::Less => "<",
-        Comparison::LessOrEqual => "<=",
-        Comparison::Greater => ">",
-        Comparison::GreaterOrEqual => ">=",
     }
 }
 

@@ -206,7 +206,7 @@ pub enum Operand<'s> {
 }
 
 /// How a signal is compared.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Comparison {
     /// `==`, within the signal's tolerance.
     Equal,
@@ -218,6 +218,20 @@ pub enum Comparison {
     Greater,
     /// `>=`, `≥`.
     GreaterOrEqual,
+}
+
+impl Comparison {
+    /// As it is written.
+    #[must_use]
+    pub fn symbol(self) -> &'static str {
+        match self {
+            Self::Equal => "==",
+            Self::Less => "<",
+            Self::LessOrEqual => "<=",
+            Self::Greater => ">",
+            Self::GreaterOrEqual => ">=",
+        }
+    }
 }
 
 /// A name with its arguments: a quark, a signal or a plan.

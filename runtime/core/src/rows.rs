@@ -44,6 +44,8 @@ pub enum Condition<I> {
     Quark(I),
     /// Fires once this much time has passed since its scope was entered.
     Wait(Nanos),
+    /// Fires from this time since its scope was entered until that one.
+    Elapsed(Nanos, Nanos),
     /// Fires when one of its operands does: the number of the first, and how many there are.
     Or(u32, u32),
     /// Fires when all of its operands do.
@@ -68,6 +70,7 @@ impl<I> Condition<I> {
             Self::Null => false,
             Self::Quark(interrupt) => interrupt.fired(y),
             Self::Wait(time) => since >= *time,
+            Self::Elapsed(from, until) => (*from..*until).contains(&since),
             Self::Or(first, count) => all(*first, *count).fold(false, |fired, operand| fired | operand),
             Self::And(first, count) => all(*first, *count).fold(true, |fired, operand| fired & operand),
             Self::Not(number) => !operand(*number),
@@ -121,7 +124,9 @@ impl<'a, A: Alphabet, E: Slots<Nanos>, P: Slots<u64>> InRows<'a, A, E, P> {
                 Condition::Null => false,
                 Condition::Quark(interrupt) => interrupt.fired(y),
                 Condition::Wait(time) => cursor.since(guard.level, t) >= *time,
-                Condition::Or(..) | Condition::And(..) | Condition::Not(_) => self.compound(guard, cursor, y, t),
+                Condition::Elapsed(..) | Condition::Or(..) | Condition::And(..) | Condition::Not(_) => {
+                    self.compound(guard, cursor, y, t)
+                }
             };
             if fired {
                 found = Some(guard);

@@ -1,0 +1,173 @@
+//! Comparisons of signals: which signals, in which unit, and `t`, the time since the scope was entered (language, section 3).
+
+use super::arguments::value;
+use super::quarks::Quarks;
+use super::{Compared, Comparison, Condition, Operator, Quark, QuarkId, Value};
+use crate::alphabet::{Decimal, Declaration, DeclarationKind, Kind, Unit, family_to_si};
+use crate::diagnostic::{Code, Diagnostic, Span};
+use crate::syntax::tree::{self, Arg, Call, Number, Operand};
+
+/// The signal that is time.
+const TIME: &str = "t";
+
+type Resolved<T> = Result<T, Vec<Diagnostic>>;
+
+/// A signal with its arguments.
+#[derive(Clone, Copy)]
+struct Signal<'a> {
+    quark: QuarkId,
+    declaration: &'a Declaration,
+    unit: Unit,
+    /// Of `==`, in that unit.
+    tolerance: f64,
+}
+
+impl Signal<'_> {
+    fn is_time(&self) -> bool {
+        self.declaration.name == TIME && self.unit.kind == Kind::Time && self.declaration.params.is_empty()
+    }
+
+    /// The tolerance as an exact value.
+    fn tolerance(&self) -> Value {
+        let exact = Decimal::parse(&self.tolerance.to_string()).unwrap_or_else(Decimal::zero);
+        let exact = exact.scaled(self.unit.factor, self.unit.exponent);
+        Value::Quantity { kind: self.unit.kind, exact, family: self.unit.family }
+    }
+}
+
+/// The condition that a comparison is.
+pub(super) fn resolve(
+    written: &tree::Compared,
+    span: Span,
+    quarks: &mut Quarks<'_>,
+    plans: &[&str],
+) -> Resolved<Condition> {
+    let signal = signal(written.left, quarks, plans);
+    // What is wrong with either side is told at once.
+    let right = match &written.right {
+        Operand::Signal(call) => Some(self::signal(call, quarks, plans)),
+        Operand::Number(_) => None,
+    };
+    let (signal, right) = match (signal, right.transpose()) {
+        (Ok(signal), Ok(right)) => (signal, right),
+        (Err(mut found), Err(more)) => {
+            found.extend(more);
+            return Err(found);
+        }
+        (Err(found), _) | (_, Err(found)) => return Err(found),
+    };
+    let (with, text, tolerance) = match (right, &written.right) {
+        (Some(other), _) => {
+            let text = quarks.get(other.quark).map(|quark| quark.text.clone()).unwrap_or_default();
+            (Compared::Signal(other.quark), text, same_kind(signal, other, span)?)
+        }
+        (None, Operand::Number(number)) => {
+            let (value, text) = value(number, signal.unit, signal.declaration).map_err(|found| vec![*found])?;
+            (Compared::Value(value), text, signal.tolerance())
+        }
+        (None, Operand::Signal(_)) => return Err(Vec::new()),
+    };
+    let operator = written.operator;
+    let left = quarks.get(signal.quark).map(|quark| quark.text.as_str()).unwrap_or_default();
+    let text = format!("{left} {} {text}", operator.symbol());
+    let comparison = Comparison { signal: signal.quark, operator, with, tolerance };
+    let elapsed = if signal.is_time() { Some(elapsed(&comparison, span)?) } else { None };
+    let quark = quarks.add(Quark {
+        name: operator.symbol().to_owned(),
+        overload: 0,
+        args: Vec::new(),
+        completes: false,
+        remembers: false,
+        comparison: Some(comparison),
+        text,
+    });
+    Ok(match elapsed {
+        Some((from, until)) => Condition::Elapsed { from, until, quark },
+        None => Condition::Quark(quark),
+    })
+}
+
+/// The tolerance of two signals that are compared: the larger one.
+fn same_kind(one: Signal<'_>, other: Signal<'_>, span: Span) -> Resolved<Value> {
+    let refused = |message: String, help: &str| {
+        let [here, there] =
+            [one, other].map(|signal| format!("`{}` is {}", signal.declaration.name, signal.unit.kind.words()));
+        let found = Diagnostic::new(Code::E0302, message, span, format!("{here}, {there}"));
+        vec![if help.is_empty() { found } else { found.help(help) }]
+    };
+    if one.is_time() || other.is_time() {
+        let message = "`t`, the time since the scope was entered, is compared with a number".to_owned();
+        return Err(refused(message, "as in `t > 5s`"));
+    }
+    if one.unit.kind != other.unit.kind {
+        let message = format!("{} cannot be compared with {}", one.unit.kind.words(), other.unit.kind.words());
+        return Err(refused(message, ""));
+    }
+    let si = |signal: Signal<'_>| match signal.tolerance() {
+        Value::Quantity { exact, family, .. } => exact.to_f64() * family_to_si(family),
+        Value::Infinity(_) | Value::Bits(_) | Value::Integer(_) | Value::Sonar(_) | Value::Name(..) => 0.0,
+    };
+    Ok(if si(one) >= si(other) { one.tolerance() } else { other.tolerance() })
+}
+
+/// The nanoseconds from which on, and until which, a comparison of `t` holds.
+fn elapsed(comparison: &Comparison, span: Span) -> Resolved<(u64, Option<u64>)> {
+    let nanos = |value: &Value| match value {
+        Value::Quantity { exact, .. } => exact.to_nanos(),
+        Value::Infinity(_) | Value::Bits(_) | Value::Integer(_) | Value::Sonar(_) | Value::Name(..) => None,
+    };
+    let time = match &comparison.with {
+        Compared::Value(value) => nanos(value),
+        Compared::Signal(_) => None,
+    };
+    let (Some(time), Some(tolerance)) = (time, nanos(&comparison.tolerance)) else {
+        let message = "`t` is the time since the scope was entered: from 0 to some hundred years";
+        return Err(vec![Diagnostic::new(Code::E0304, message, span, "out of range")]);
+    };
+    let behind = |time: u64| time.saturating_add(1);
+    Ok(match comparison.operator {
+        Operator::Equal => (time.saturating_sub(tolerance), Some(behind(time.saturating_add(tolerance)))),
+        Operator::Less => (0, Some(time)),
+        Operator::LessOrEqual => (0, Some(behind(time))),
+        Operator::Greater => (behind(time), None),
+        Operator::GreaterOrEqual => (time, None),
+    })
+}
+
+/// The signal that `call` means: `x`, also `x(t)`; `r 3`, also `r3`, `r_3` and `r_3(t)`.
+fn signal<'a>(call: &Call, quarks: &mut Quarks<'a>, plans: &[&str]) -> Resolved<Signal<'a>> {
+    let args = match call.args {
+        [args @ .., Arg::Name(name)] if name.node == TIME => args,
+        args => args,
+    };
+    let (name, index) = if is_signal(call.name, quarks) { (call.name, None) } else { indexed(call, quarks) };
+    let index: Vec<Arg> = index.into_iter().map(Arg::Number).collect();
+    let args = if index.is_empty() { args } else { index.as_slice() };
+    let quark = quarks.resolve(&Call { name, args, span: call.span }, DeclarationKind::Signal, plans)?;
+    let overload = quarks.get(quark).map_or(0, |quark| quark.overload);
+    let declaration = quarks.alphabet().declarations_of(name).nth(overload);
+    match declaration.and_then(|declaration| Some((declaration, declaration.unit?))) {
+        Some((declaration, (unit, tolerance))) => Ok(Signal { quark, declaration, unit, tolerance }),
+        // The alphabet was refused for that.
+        None => Err(Vec::new()),
+    }
+}
+
+fn is_signal(name: &str, quarks: &Quarks<'_>) -> bool {
+    quarks.alphabet().declarations_of(name).any(|declaration| declaration.kind == DeclarationKind::Signal)
+}
+
+/// `r_3` as the signal `r` with its number, if there is such a signal of one sonar.
+fn indexed<'s>(call: &Call<'s>, quarks: &Quarks<'_>) -> (&'s str, Option<Number<'s>>) {
+    let base = call.name.trim_end_matches(|letter: char| letter.is_ascii_digit());
+    let digits = &call.name[base.len()..];
+    let name = base.strip_suffix('_').unwrap_or(base);
+    let of_sonar = |declaration: &Declaration| {
+        declaration.kind == DeclarationKind::Signal
+            && matches!(declaration.params.as_slice(), [only] if only.kind == Kind::Sonar)
+    };
+    if digits.is_empty() || !quarks.alphabet().declarations_of(name).any(of_sonar) {
+        return (call.name, None);
+    }
+    (name, Some(Number::new(digits, u32::MAX, call.name_span())))
+}

@@ -1,0 +1,76 @@
+//! The signals of the target `scripted`: the values that a script gives them, and comparisons, which these decide.
+
+use crate::chance::Chance;
+
+/// A comparison as it may be spelled, its text, and whether it holds.
+type Comparison = (&'static [&'static str], &'static str, fn(&Values) -> bool);
+
+/// The values of the signals in a turn: numbers of those in the lists below, so that a text says each.
+#[derive(Debug, Clone, Copy)]
+pub struct Values {
+    /// The ranges of sonars 3 and 5, in metres.
+    pub r3: f64,
+    /// See `r3`.
+    pub r5: f64,
+    /// Metres.
+    pub x: f64,
+    /// Degrees.
+    pub theta: f64,
+    /// Centimetres a second.
+    pub v: f64,
+}
+
+const RANGES: &[f64] = &[0.5, 1.0, 1.02, 2.0];
+const PLACES: &[f64] = &[-1.0, 0.0, 0.4, 3.0];
+const HEADINGS: &[f64] = &[-179.5, 0.0, 90.5, 179.75];
+const SPEEDS: &[f64] = &[-20.0, 0.0, 20.5];
+
+/// What random conditions compare.
+const COMPARISONS: &[Comparison] = &[
+    (&["r3 == r5", "r_3 == r_5(t)", "r 3 == r(5)"], "r3 == r5", |s| (s.r3 - s.r5).abs() <= 0.026),
+    (&["r3 < r5"], "r3 < r5", |s| s.r3 < s.r5),
+    (&["r_5 >= 100cm", "r5 ≥ 1"], "r5 >= 1", |s| s.r5 >= 1.0),
+    (&["x > 0.1m", "x(t) > 10cm"], "x > 0.1", |s| s.x > 0.1),
+    (&["x == -1.009"], "x == -1.009", |s| (s.x + 1.009).abs() <= 0.01),
+    (&["theta == 180", "theta == 180deg"], "theta == 180", |s| s.theta.abs() >= 179.0),
+    (&["theta <= 0"], "theta <= 0", |s| s.theta <= 0.0),
+    (&["v > 0.2m/s", "v > 20"], "v > 20", |s| s.v > 20.0),
+    (&["v \\leq 0"], "v <= 0", |s| s.v <= 0.0),
+];
+
+/// Comparisons of `t`; among them the timers' own lengths.
+const TIMES: &[&str] = &["t >= 0.25", "t > 100ms", "t < 0.3s", "t <= 0.05", "t == 0.1", "t(t) > 1", "t > 0", "t ≤ 0.2"];
+
+/// A comparison, as it stands in a condition.
+pub fn comparison(chance: &mut Chance) -> String {
+    if chance.percent(40) {
+        return chance.pick(TIMES).to_owned();
+    }
+    let (spellings, ..) = COMPARISONS[chance.below(COMPARISONS.len())];
+    chance.pick(spellings).to_owned()
+}
+
+impl Values {
+    /// Values of one turn.
+    pub fn new(chance: &mut Chance) -> Self {
+        let mut one = |values: &[f64]| values[chance.below(values.len())];
+        Self { r3: one(RANGES), r5: one(RANGES), x: one(PLACES), theta: one(HEADINGS), v: one(SPEEDS) }
+    }
+
+    /// The texts of the comparisons that hold, and those that say what the values are.
+    pub fn texts(&self) -> Vec<String> {
+        let hold = COMPARISONS.iter().filter(|(.., holds)| holds(self)).map(|(_, text, _)| (*text).to_owned());
+        hold.chain(self.said()).collect()
+    }
+
+    fn said(&self) -> [String; 5] {
+        let Self { r3, r5, x, theta, v } = self;
+        [
+            format!("r3 == {r3}"),
+            format!("r5 == {r5}"),
+            format!("x == {x}"),
+            format!("theta == {theta}"),
+            format!("v == {v}"),
+        ]
+    }
+}
