@@ -36,7 +36,24 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// The kind of this name in an alphabet; `bits` is not among them, since it needs its length.
+    /// The names of the kinds in an alphabet; `bits` is not among them, since it needs its length.
+    pub const NAMES: &[&str] = &[
+        "length",
+        "speed",
+        "angle",
+        "angular_rate",
+        "time",
+        "voltage",
+        "number",
+        "integer",
+        "count",
+        "sonar",
+        "robot",
+        "module",
+        "file",
+    ];
+
+    /// The kind of this name in an alphabet, if it is among [`Kind::NAMES`].
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Some(match name {

@@ -1,5 +1,6 @@
 //! Arguments against a signature: count, type, unit, range (language, section 5, E03xx and E0402).
 
+use super::parameters::Parameters;
 use super::{Decimal, Value};
 use crate::alphabet::{Declaration, DeclarationKind, Kind, Origin, Param, Unit};
 use crate::diagnostic::{Code, Diagnostic};
@@ -15,7 +16,12 @@ pub(super) struct Arguments {
 }
 
 /// Fits the arguments of `call` to `declaration`.
-pub(super) fn fit(call: &Call, declaration: &Declaration, robot: &str) -> Result<Arguments, Vec<Diagnostic>> {
+pub(super) fn fit(
+    call: &Call,
+    declaration: &Declaration,
+    robot: &str,
+    parameters: &Parameters<'_>,
+) -> Result<Arguments, Vec<Diagnostic>> {
     let params = &declaration.params;
     let needed = params.iter().filter(|param| param.default.is_none()).count();
     if call.args.len() < needed || call.args.len() > params.len() {
@@ -24,12 +30,13 @@ pub(super) fn fit(call: &Call, declaration: &Declaration, robot: &str) -> Result
     let mut arguments = Arguments { values: Vec::new(), words: Vec::new() };
     let mut found = Vec::new();
     let fitting = Fitting { declaration, robot };
+    let none = Parameters::default();
     for (index, param) in params.iter().enumerate() {
         let fitted = match (call.args.get(index), &param.default) {
-            (Some(arg), _) => fitting.argument(arg, param),
+            (Some(arg), _) => fitting.given(arg, param, parameters),
             (None, Some(digits)) => {
                 let number = Number::new(digits, call.span);
-                fitting.argument(&Arg::Number(number), param)
+                fitting.given(&Arg::Number(number), param, &none)
             }
             (None, None) => continue,
         };
@@ -74,10 +81,11 @@ pub fn signature(declaration: &Declaration) -> String {
 }
 
 /// A number as a value of this unit's kind, with its text in this unit; what is wrong with it is told of `declaration`.
-pub(super) fn value(number: &Number, unit: Unit, declaration: &Declaration) -> Fitted {
+/// A number without a unit has the unit `bare`.
+pub(super) fn value(number: &Number, bare: Unit, unit: Unit, declaration: &Declaration) -> Fitted {
     let param = Param { name: String::new(), kind: unit.kind, unit: Some(unit), default: None, range: None };
     let here = format!("`{}` is {}", declaration.name, unit.kind.words());
-    Fitting { declaration, robot: "" }.quantity(number, &param).map_err(|mut found| {
+    Fitting { declaration, robot: "" }.quantity(number, &param, Some(bare)).map_err(|mut found| {
         found.labels.iter_mut().for_each(|label| label.text.clone_from(&here));
         found
     })
@@ -91,14 +99,28 @@ struct Fitting<'a> {
 }
 
 impl Fitting<'_> {
-    fn argument(&self, arg: &Arg, param: &Param) -> Fitted {
+    /// An argument, or what the parameter stands for that it is.
+    fn given(&self, arg: &Arg, param: &Param, parameters: &Parameters<'_>) -> Fitted {
+        let Some(parameter) = parameters.of(arg) else { return self.argument(arg, param, param.unit) };
+        if parameter.kind != param.kind {
+            return Err(parameter.mismatch(param.kind, arg.span()).into());
+        }
+        match &parameter.given {
+            Some(given) => self.argument(given, param, parameter.unit()),
+            // It stands for itself, until the plan is used.
+            None => Ok((Value::Name(param.kind, parameter.name.node.to_owned()), parameter.name.node.to_owned())),
+        }
+    }
+
+    /// An argument; `bare` is the unit of a number without one.
+    fn argument(&self, arg: &Arg, param: &Param, bare: Option<Unit>) -> Fitted {
         match (arg, param.kind) {
             (Arg::Number(number), Kind::Bits(length)) => bits(number, length),
             (
                 Arg::Number(number),
                 Kind::Length | Kind::Speed | Kind::Angle | Kind::AngularRate | Kind::Time | Kind::Voltage,
             )
-            | (Arg::Number(number), Kind::Frequency | Kind::Number) => self.quantity(number, param),
+            | (Arg::Number(number), Kind::Frequency | Kind::Number) => self.quantity(number, param, bare),
             (Arg::Number(number), Kind::Integer | Kind::Count | Kind::Sonar) => self.whole(number, param),
             (Arg::Infinity(_), Kind::Time | Kind::Count) => Ok((Value::Infinity(param.kind), "inf".into())),
             (Arg::Name(name), Kind::Robot | Kind::File)
@@ -131,7 +153,7 @@ impl Fitting<'_> {
         Diagnostic::new(Code::E0302, message, arg.span(), here)
     }
 
-    fn quantity(&self, number: &Number, param: &Param) -> Fitted {
+    fn quantity(&self, number: &Number, param: &Param, bare: Option<Unit>) -> Fitted {
         let Some(decimal) = Decimal::parse(number.digits()) else { return Err(not_a_number(number).into()) };
         let Some(default) = param.unit else {
             return match number.unit() {
@@ -144,7 +166,7 @@ impl Fitting<'_> {
             };
         };
         let unit = match number.unit() {
-            None => default,
+            None => bare.unwrap_or(default),
             Some(name) => match Unit::from_name(name) {
                 Some(unit) if unit.kind == param.kind => unit,
                 Some(_) | None => return Err(self.wrong_unit(number, param).into()),
@@ -200,8 +222,8 @@ impl Fitting<'_> {
         };
         let quark = &self.declaration.name;
         let here = match number.unit() {
-            None => format!("`{}` is {}{unit}", param.name, number.digits()),
-            Some(_) => format!("`{}` is {value}{unit}", param.name),
+            None if number.digits().parse() == Ok(value) => format!("`{}` is {}{unit}", param.name, number.digits()),
+            None | Some(_) => format!("`{}` is {value}{unit}", param.name),
         };
         if self.declaration.origin == Origin::Target {
             let message = format!(

@@ -1,6 +1,7 @@
 //! Comparisons of signals: which signals, in which unit, and `t`, the time since the scope was entered (language, section 3).
 
-use super::arguments::value;
+use super::arguments::{Fitted, value};
+use super::parameters::{Names, Parameter};
 use super::quarks::Quarks;
 use super::{Compared, Comparison, Condition, Operator, Quark, QuarkId, Value};
 use crate::alphabet::{Decimal, Declaration, DeclarationKind, Kind, Unit, family_to_si};
@@ -40,13 +41,17 @@ pub(super) fn resolve(
     written: &tree::Compared,
     span: Span,
     quarks: &mut Quarks<'_>,
-    plans: &[&str],
+    names: Names<'_, '_>,
 ) -> Resolved<Condition> {
-    let signal = signal(written.left, quarks, plans);
+    let signal = signal(written.left, quarks, names);
+    let parameter = match &written.right {
+        Operand::Signal(call) if call.args.is_empty() => names.parameters.get(call.name),
+        Operand::Signal(_) | Operand::Number(_) => None,
+    };
     // What is wrong with either side is told at once.
-    let right = match &written.right {
-        Operand::Signal(call) => Some(self::signal(call, quarks, plans)),
-        Operand::Number(_) => None,
+    let right = match (&written.right, parameter) {
+        (Operand::Signal(call), None) => Some(self::signal(call, quarks, names)),
+        (Operand::Signal(_), Some(_)) | (Operand::Number(_), _) => None,
     };
     let (signal, right) = match (signal, right.transpose()) {
         (Ok(signal), Ok(right)) => (signal, right),
@@ -61,11 +66,15 @@ pub(super) fn resolve(
             let text = quarks.get(other.quark).map(|quark| quark.text.clone()).unwrap_or_default();
             (Compared::Signal(other.quark), text, same_kind(signal, other, span)?)
         }
-        (None, Operand::Number(number)) => {
-            let (value, text) = value(number, signal.unit, signal.declaration).map_err(|found| vec![*found])?;
+        (None, right) => {
+            let fitted = match (*right, parameter) {
+                (Operand::Number(number), _) => value(&number, signal.unit, signal.unit, signal.declaration),
+                (Operand::Signal(call), Some(parameter)) => given(parameter, call.span, signal),
+                (Operand::Signal(_), None) => return Err(Vec::new()),
+            };
+            let (value, text) = fitted.map_err(|found| vec![*found])?;
             (Compared::Value(value), text, signal.tolerance())
         }
-        (None, Operand::Signal(_)) => return Err(Vec::new()),
     };
     let operator = written.operator;
     let left = quarks.get(signal.quark).map(|quark| quark.text.as_str()).unwrap_or_default();
@@ -85,6 +94,23 @@ pub(super) fn resolve(
         Some((from, until)) => Condition::Elapsed { from, until, quark },
         None => Condition::Quark(quark),
     })
+}
+
+/// What a parameter stands for, as a value that a signal is compared with.
+fn given(parameter: &Parameter<'_>, at: Span, signal: Signal<'_>) -> Fitted {
+    let Signal { unit, declaration, .. } = signal;
+    if parameter.kind != unit.kind {
+        return Err(parameter.mismatch(unit.kind, at).into());
+    }
+    match parameter.given {
+        Some(Arg::Number(number)) => value(&number, parameter.unit().unwrap_or(unit), unit, declaration),
+        Some(Arg::Infinity(_)) => Ok((Value::Infinity(unit.kind), "inf".into())),
+        // It stands for itself, until the plan is used.
+        Some(Arg::String(_) | Arg::Name(_) | Arg::Module(_)) | None => {
+            let name = parameter.name.node.to_owned();
+            Ok((Value::Name(unit.kind, name.clone()), name))
+        }
+    }
 }
 
 /// The tolerance of two signals that are compared: the larger one.
@@ -114,9 +140,12 @@ fn same_kind(one: Signal<'_>, other: Signal<'_>, span: Span) -> Resolved<Value> 
 fn elapsed(comparison: &Comparison, span: Span) -> Resolved<(u64, Option<u64>)> {
     let nanos = |value: &Value| match value {
         Value::Quantity { exact, .. } => exact.to_nanos(),
-        Value::Infinity(_) | Value::Bits(_) | Value::Integer(_) | Value::Sonar(_) | Value::Name(..) => None,
+        Value::Infinity(_) => Some(u64::MAX),
+        Value::Bits(_) | Value::Integer(_) | Value::Sonar(_) | Value::Name(..) => None,
     };
     let time = match &comparison.with {
+        // A parameter that stands for nothing yet.
+        Compared::Value(Value::Name(..)) => Some(0),
         Compared::Value(value) => nanos(value),
         Compared::Signal(_) => None,
     };
@@ -135,7 +164,7 @@ fn elapsed(comparison: &Comparison, span: Span) -> Resolved<(u64, Option<u64>)> 
 }
 
 /// The signal that `call` means: `x`, also `x(t)`; `r 3`, also `r3`, `r_3` and `r_3(t)`.
-fn signal<'a>(call: &Call, quarks: &mut Quarks<'a>, plans: &[&str]) -> Resolved<Signal<'a>> {
+fn signal<'a>(call: &Call, quarks: &mut Quarks<'a>, names: Names<'_, '_>) -> Resolved<Signal<'a>> {
     let args = match call.args {
         [args @ .., Arg::Name(name)] if name.node == TIME => args,
         args => args,
@@ -143,7 +172,7 @@ fn signal<'a>(call: &Call, quarks: &mut Quarks<'a>, plans: &[&str]) -> Resolved<
     let (name, index) = if is_signal(call.name, quarks) { (call.name, None) } else { indexed(call, quarks) };
     let index: Vec<Arg> = index.into_iter().map(Arg::Number).collect();
     let args = if index.is_empty() { args } else { index.as_slice() };
-    let quark = quarks.resolve(&Call { name, args, span: call.span }, DeclarationKind::Signal, plans)?;
+    let quark = quarks.resolve(&Call { name, args, span: call.span }, DeclarationKind::Signal, names)?;
     let overload = quarks.get(quark).map_or(0, |quark| quark.overload);
     let declaration = quarks.alphabet().declarations_of(name).nth(overload);
     match declaration.and_then(|declaration| Some((declaration, declaration.unit?))) {

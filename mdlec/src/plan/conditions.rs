@@ -1,5 +1,6 @@
 //! Conditions: quarks joined by AND, OR and NOT, and their text (semantics, section 2; language, section 7).
 
+use super::parameters::Names;
 use super::quarks::Quarks;
 use super::resolve::not_yet;
 use super::{Condition, Interrupt, Value, comparisons};
@@ -13,13 +14,13 @@ pub(super) fn interrupt(
     condition: Option<&tree::Condition>,
     scope: Span,
     quarks: &mut Quarks<'_>,
-    plans: &[&str],
+    names: Names<'_, '_>,
     found: &mut Vec<Diagnostic>,
 ) -> Interrupt {
     let Some(written) = condition else {
         return Interrupt::none(scope);
     };
-    let condition = Resolving { quarks, plans, found }.condition(written);
+    let condition = Resolving { quarks, names, found }.condition(written);
     let text = text(&condition, quarks, Precedence::Or);
     Interrupt { condition: without_infinite_waits(condition), text, removed: false, span: written.span }
 }
@@ -41,7 +42,7 @@ fn without_infinite_waits(condition: Condition) -> Condition {
 
 struct Resolving<'r, 'a> {
     quarks: &'r mut Quarks<'a>,
-    plans: &'r [&'r str],
+    names: Names<'r, 'r>,
     found: &'r mut Vec<Diagnostic>,
 }
 
@@ -62,7 +63,7 @@ impl Resolving<'_, '_> {
     }
 
     fn comparison(&mut self, compared: &Compared, span: Span) -> Condition {
-        comparisons::resolve(compared, span, self.quarks, self.plans).unwrap_or_else(|found| {
+        comparisons::resolve(compared, span, self.quarks, self.names).unwrap_or_else(|found| {
             self.found.extend(found);
             Condition::Null
         })
@@ -73,7 +74,7 @@ impl Resolving<'_, '_> {
     }
 
     fn call(&mut self, call: &Call) -> Condition {
-        match self.quarks.resolve(call, DeclarationKind::Interrupt, self.plans) {
+        match self.quarks.resolve(call, DeclarationKind::Interrupt, self.names) {
             Ok(id) => match self.quarks.get(id) {
                 Some(quark) if quark.name == "wait" => match quark.args.first() {
                     Some(Value::Quantity { exact, .. }) => {

@@ -8,6 +8,7 @@ mod comparisons;
 mod conditions;
 mod definitions;
 mod nondegenerate;
+mod parameters;
 mod print;
 mod quarks;
 mod resolve;

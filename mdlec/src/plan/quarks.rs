@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::arguments::{Arguments, fit, kind_words, signature};
+use super::parameters::Names;
 use super::{Quark, QuarkId, Value};
 use crate::alphabet::{Alphabet, Declaration, DeclarationKind};
 use crate::diagnostic::{Code, Diagnostic};
@@ -38,7 +39,7 @@ impl<'a> Quarks<'a> {
         &mut self,
         call: &Call,
         kind: DeclarationKind,
-        plans: &[&str],
+        names: Names<'_, '_>,
     ) -> Result<QuarkId, Vec<Diagnostic>> {
         let name = call.name;
         let declarations: Vec<&Declaration> = self.alphabet.declarations_of(name).collect();
@@ -47,7 +48,7 @@ impl<'a> Quarks<'a> {
         if candidates.is_empty() {
             return Err(vec![match declarations.first() {
                 Some(other) => wrong_kind(call, other.kind, kind),
-                None => self.unknown(call, kind, plans),
+                None => self.unknown(call, kind, names.plans),
             }]);
         }
         // Declarations of one name differ in the kinds of their arguments; if none fits, what is wrong is told of the
@@ -55,7 +56,7 @@ impl<'a> Quarks<'a> {
         candidates.sort_by_key(|(_, declaration)| !is_meant(call, declaration));
         let mut wrong = None;
         for (overload, declaration) in candidates {
-            let fitted = fit(call, declaration, &self.alphabet.name);
+            let fitted = fit(call, declaration, &self.alphabet.name, names.parameters);
             match fitted.and_then(|arguments| self.available(call, declaration).map(|()| arguments)) {
                 Ok(arguments) => return Ok(self.intern(declaration, overload, arguments)),
                 Err(found) => wrong = wrong.or(Some((declaration, found))),

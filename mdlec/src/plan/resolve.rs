@@ -4,11 +4,12 @@ use std::collections::BTreeMap;
 
 use super::arguments::kind_words;
 use super::definitions::Definitions;
+use super::parameters::{self, Names, Parameter, Parameters};
 use super::quarks::Quarks;
 use super::{Atom, Decimal, Interrupt, Loop, Node, Plan, Scope, conditions};
 use crate::alphabet::{self, Alphabet, DeclarationKind, Kind, Unit};
 use crate::diagnostic::{Code, Diagnostic, Span, has_errors};
-use crate::syntax::tree::{self, Call, Count, Element, Number, Primary};
+use crate::syntax::tree::{self, Arg, Call, Count, Element, Number, Primary};
 
 /// The largest angle of a FRAME, in its unit: far beyond a full circle, and sums of it are still exact enough.
 const FRAME: f64 = 100_000.0;
@@ -22,23 +23,35 @@ pub fn resolve(file: &tree::File, alphabet: &Alphabet, wanted: Option<&str>) -> 
     found.extend(file.uses.iter().map(|used| not_yet("`use`", used.span)));
     // Each plan by itself: what is wrong with it is said once, however often it is used.
     for plan in &definitions.plans {
+        let parameters = Parameters::declared(plan, &mut found);
         let mut resolver = Resolver::new(&definitions, alphabet, Uses::Check);
-        resolver.plan(plan, 0.0);
+        resolver.plan(plan, parameters, 0.0);
         found.append(&mut resolver.found);
     }
     if has_errors(&found) {
         return (Vec::new(), found);
     }
-    let roots = match wanted {
-        None => definitions.roots(),
-        Some(name) => definitions.get(name).into_iter().collect(),
+    let wanted = match wanted {
+        None => None,
+        Some(name) => Some(definitions.get(name).into_iter().collect::<Vec<_>>()),
     };
-    let copied = roots.into_iter().map(|plan| {
+    if let Some(plan) = wanted.iter().flatten().find(|plan| !plan.params.is_empty()) {
+        found.push(parameters::missing(plan, "it is the one that was asked for"));
+        return (Vec::new(), found);
+    }
+    let copy = |plan: &&tree::Plan| {
         let mut resolver = Resolver::new(&definitions, alphabet, Uses::Copy);
-        let root = resolver.plan(plan, 0.0);
-        Plan { root, quarks: resolver.quarks.into_vec() }
-    });
-    (copied.collect(), found)
+        let root = resolver.plan(plan, Parameters::default(), 0.0);
+        (Plan { root, quarks: resolver.quarks.into_vec() }, resolver.found)
+    };
+    let roots = || definitions.roots().into_iter().filter(|plan| plan.params.is_empty());
+    let (plans, more): (Vec<_>, Vec<_>) = wanted.clone().unwrap_or_else(|| roots().collect()).iter().map(copy).unzip();
+    found.extend(more.into_iter().flatten());
+    if wanted.is_some() && definitions.plans.iter().any(|plan| !plan.params.is_empty()) {
+        // What is given to parameters may be out of range, and only a copy tells.
+        found.extend(roots().flat_map(|plan| copy(&plan).1));
+    }
+    if has_errors(&found) { (Vec::new(), found) } else { (plans, found) }
 }
 
 /// E0199: a form of the language that this version reads but cannot run.
@@ -60,7 +73,9 @@ struct Resolver<'r, 'a> {
     definitions: &'r Definitions<'a>,
     quarks: Quarks<'r>,
     uses: Uses,
-    /// The labels of the definition that is being resolved, with their places.
+    /// The parameters of the definition that is being resolved.
+    parameters: Parameters<'a>,
+    /// Its labels, with their places.
     labels: BTreeMap<String, Span>,
     found: Vec<Diagnostic>,
 }
@@ -68,38 +83,41 @@ struct Resolver<'r, 'a> {
 impl<'r, 'a> Resolver<'r, 'a> {
     fn new(definitions: &'r Definitions<'a>, alphabet: &'r Alphabet, uses: Uses) -> Self {
         let quarks = Quarks::new(alphabet);
-        Self { definitions, quarks, uses, labels: BTreeMap::new(), found: Vec::new() }
+        let (parameters, labels) = (Parameters::default(), BTreeMap::new());
+        Self { definitions, quarks, uses, parameters, labels, found: Vec::new() }
     }
 
-    /// A plan of the file, with labels of its own.
-    fn plan(&mut self, plan: &tree::Plan, frame: f64) -> Scope {
-        let around = std::mem::take(&mut self.labels);
+    /// A plan of the file, with labels and parameters of its own.
+    fn plan(&mut self, plan: &tree::Plan<'a>, parameters: Parameters<'a>, frame: f64) -> Scope {
+        let labels = std::mem::take(&mut self.labels);
+        let parameters = std::mem::replace(&mut self.parameters, parameters);
         let scope = self.scope(plan, frame);
-        self.labels = around;
+        (self.labels, self.parameters) = (labels, parameters);
         scope
     }
 
-    fn scope(&mut self, plan: &tree::Plan, frame: f64) -> Scope {
-        if let Some(param) = plan.params.first() {
-            self.found.push(not_yet("a plan with parameters", param.name.span));
-            // Its parameters are names that mean nothing yet.
-            return Scope {
-                name: plan.name.node.to_owned(),
-                interrupt: Interrupt::none(plan.name.span),
-                body: Vec::new(),
-                span: plan.name.span,
-            };
+    /// A behavior in place.
+    fn behavior(&mut self, plan: &tree::Plan<'a>, frame: f64) -> Scope {
+        if !plan.params.is_empty() {
+            self.found.push(parameters::missing(plan, "it is written in place"));
+            let own = Parameters::declared(plan, &mut self.found);
+            self.parameters.extend(own);
         }
+        self.scope(plan, frame)
+    }
+
+    fn scope(&mut self, plan: &tree::Plan<'a>, frame: f64) -> Scope {
         let interrupt = self.interrupt(plan.condition.as_ref(), plan.name.span);
         let body = self.sequence(plan.elements, frame);
         Scope { name: plan.name.node.to_owned(), interrupt, body, span: plan.name.span }
     }
 
-    fn interrupt(&mut self, condition: Option<&tree::Condition>, scope: Span) -> Interrupt {
-        conditions::interrupt(condition, scope, &mut self.quarks, &self.definitions.names, &mut self.found)
+    fn interrupt(&mut self, condition: Option<&tree::Condition<'a>>, scope: Span) -> Interrupt {
+        let names = Names { plans: &self.definitions.names, parameters: &self.parameters };
+        conditions::interrupt(condition, scope, &mut self.quarks, names, &mut self.found)
     }
 
-    fn sequence(&mut self, elements: &[Element], frame: f64) -> Vec<Node> {
+    fn sequence(&mut self, elements: &[Element<'a>], frame: f64) -> Vec<Node> {
         let mut nodes = Vec::with_capacity(elements.len());
         for element in elements {
             self.element(element, frame, &mut nodes);
@@ -107,7 +125,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         nodes
     }
 
-    fn element(&mut self, element: &Element, frame: f64, nodes: &mut Vec<Node>) {
+    fn element(&mut self, element: &Element<'a>, frame: f64, nodes: &mut Vec<Node>) {
         self.label(element);
         let turned = element.frame().map_or(0.0, |number| self.angle(number));
         let frame = frame + turned;
@@ -118,16 +136,17 @@ impl<'r, 'a> Resolver<'r, 'a> {
         nodes.push(Node::Loop(Loop { times, body, span: element.span }));
     }
 
-    fn primary(&mut self, element: &Element, frame: f64, nodes: &mut Vec<Node>) {
+    fn primary(&mut self, element: &Element<'a>, frame: f64, nodes: &mut Vec<Node>) {
         match &element.primary {
             Primary::Atom(atom) => {
                 let interrupt = self.interrupt(Some(&atom.condition), element.span);
-                match self.quarks.resolve(atom.control, DeclarationKind::Control, &self.definitions.names) {
+                let names = Names { plans: &self.definitions.names, parameters: &self.parameters };
+                match self.quarks.resolve(atom.control, DeclarationKind::Control, names) {
                     Ok(law) => nodes.push(Node::Atom(Atom { law, interrupt, frame, span: element.span })),
                     Err(found) => self.found.extend(found),
                 }
             }
-            Primary::Plan(plan) => nodes.push(Node::Scope(self.scope(plan, frame))),
+            Primary::Plan(plan) => nodes.push(Node::Scope(self.behavior(plan, frame))),
             Primary::Ref(call) => {
                 let scope = self.reference(call, frame);
                 nodes.extend(scope.map(Node::Scope));
@@ -144,22 +163,19 @@ impl<'r, 'a> Resolver<'r, 'a> {
     }
 
     /// A copy of the plan that `call` names.
-    fn reference(&mut self, call: &Call, frame: f64) -> Option<Scope> {
+    fn reference(&mut self, call: &Call<'a>, frame: f64) -> Option<Scope> {
         let name = call.name;
         let Some(plan) = self.definitions.get(name) else {
             self.found.push(self.unknown_plan(call));
             return None;
         };
-        if let (Some(arg), []) = (call.args.first(), plan.params) {
-            let message = format!("plan `{name}` takes no arguments, found {}", call.args.len());
-            self.found.push(
-                Diagnostic::new(Code::E0301, message, arg.span(), "one too many")
-                    .also(plan.name.span, format!("`{name}` is written here, without parameters")),
-            );
-        }
-        match self.uses {
-            Uses::Check => None,
-            Uses::Copy => Some(self.plan(plan, frame)),
+        match (Parameters::given(plan, call, &self.parameters), self.uses) {
+            (Ok(parameters), Uses::Copy) => Some(self.plan(plan, parameters, frame)),
+            (Ok(_), Uses::Check) => None,
+            (Err(found), _) => {
+                self.found.extend(found);
+                None
+            }
         }
     }
 
@@ -203,10 +219,16 @@ impl<'r, 'a> Resolver<'r, 'a> {
     fn count(&mut self, count: &Count) -> Option<u64> {
         let number = match count {
             Count::Infinity(_) => return None,
-            Count::Name(name) => {
-                self.found.push(not_yet("a count by name", name.span));
-                return Some(1);
-            }
+            Count::Name(name) => match self.parameters.get(name.node).filter(|found| found.kind == Kind::Count) {
+                Some(Parameter { given: Some(Arg::Number(number)), .. }) => number,
+                Some(Parameter { given: Some(Arg::Infinity(_)), .. }) => return None,
+                // It stands for itself, until the plan is used.
+                Some(_) => return Some(1),
+                None => {
+                    self.found.push(parameters::no_count(*name, &self.parameters));
+                    return Some(1);
+                }
+            },
             Count::Number(number) => number,
         };
         let whole = Decimal::parse(number.digits()).filter(Decimal::is_whole).filter(|_| number.unit().is_none());

@@ -156,11 +156,10 @@ fn what_a_robot_lacks_and_what_it_cannot_do() {
 fn forms_of_a_later_version() {
     assert_judged!(
         "use \"corridors.mdle\"
-{ P(v: speed) (RISING bumper)
+{ P (RISING bumper)
   L: (Atom (bumper) go 1 0)
   (Atom (after L) stop)
   (stop, bumper, 3s)
-  ExecPlan n { (Atom (wait 1) stop) }
 }"
     );
 }
@@ -298,8 +297,52 @@ fn a_string_behind_a_plans_name_is_told_how_to_be_one() {
 }
 
 #[test]
-fn parameters_bring_no_other_errors() {
-    assert_judged!("{ P (v: speed) (Atom (wait 1) go v 0) }\n{ R P(15cm/s) }");
+fn a_plan_with_parameters_is_copied_with_what_is_given() {
+    assert_judged!(
+        "{ Main Twice(3, 15cm/s) Leg(20, 90, 0.5rad, 0100, 7, ada, 1.5, inf, heading module) Twice(inf, 0.1m/s) }
+{ Twice (n: count, v: speed) ExecPlan n { Pair(v, n) } }
+{ Pair (v: speed, again: count) ((Atom (wait 1) go v 0) (Atom (wait 1) go(v -1)))^again }
+{ Leg (v: speed, far: length, by: angle, b: bits[4], s: sonar, who: robot, d: time, T: time, m: module) (x > far OR wait T)
+  (Atom (atIsection b OR t < T) goAvoid by far v)
+  { Inner (t >= d OR v > v) (Atom (sync who OR wait d) align s 3) (Atom (wait inf) goAvoid(m)) }
+}"
+    );
+}
+
+#[test]
+fn what_is_given_is_not_what_a_parameter_is() {
+    assert_judged!(
+        "{ Main Leg(5) Leg(90deg, 3) Leg(1, 1.5) Leg(1, 2, 3) Leg Rest(5) Leg(w, 2) }
+{ Leg (v: speed, n: count) (Atom (wait v) go v n) (Atom (x > v) go v 0)^v ExecPlan m { (Atom (wait 1) stop) } }
+{ Rest (Atom (wait 1) stop) }
+{ Odd (v: spead, v: speed, v: time, w: bits) { Inner (u: length) (Atom (x > u) go v 0) } }"
+    );
+}
+
+#[test]
+fn a_value_that_is_out_of_range_is_shown_where_it_is_given() {
+    assert_judged!(
+        "{ Main Leg(5m/s) Leg(20) }\n{ Leg (v: speed) (Atom (wait 1) go v 0) (Atom (wait 1) go v 0) }",
+        "sim"
+    );
+}
+
+#[test]
+fn a_plan_that_nothing_gives_its_parameters() {
+    assert_judged!("{ Leg (v: speed) (Atom (wait 1) go v 0) }");
+    let sample = crate::samples::alphabet(None);
+    let text = "{ Leg (v: speed) (Atom (wait 1) go v 0) }";
+    let (_, found) = crate::compile(crate::diagnostic::SourceId(0), text, &sample, Some("Leg"));
+    assert_eq!(found.iter().map(|found| found.code).collect::<Vec<_>>(), [crate::diagnostic::Code::E0301]);
+}
+
+#[test]
+fn a_label_behind_a_plans_name_is_no_parameter() {
+    assert_judged!(
+        "{ P (s1: (Atom (bumper) stop) s2: Q)^3 }
+{ Q (s1: R (s2: R)) }
+{ R (null) (one: { S (Atom (bumper) stop) }) }"
+    );
 }
 
 #[test]

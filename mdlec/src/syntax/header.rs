@@ -2,6 +2,7 @@
 //! The grammar could not know before the end of it.
 
 use super::token::{Tok, Token};
+use crate::alphabet::Kind;
 
 /// Marks the parentheses in the headers of plans; brackets must match.
 pub(super) fn mark(tokens: &mut [Token<'_>]) {
@@ -29,9 +30,22 @@ fn mark_header(tokens: &mut [Token<'_>], at: usize) {
     set(tokens, condition, kind);
 }
 
-/// Whether parameters begin here, behind a parenthesis.
+/// Whether parameters begin here, behind a parenthesis, and not a string whose first element has a label: a type follows the
+/// name, or what has to be one.
 pub(super) fn has_parameters<'s>(mut behind: impl Iterator<Item = Tok<'s>>) -> bool {
-    matches!((behind.next(), behind.next()), (Some(Tok::Name(_)), Some(Tok::Colon)))
+    if !matches!((behind.next(), behind.next()), (Some(Tok::Name(_)), Some(Tok::Colon))) {
+        return false;
+    }
+    #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens cannot begin an element")]
+    match behind.next() {
+        Some(Tok::Name(name)) if name == "bits" || Kind::NAMES.contains(&name) => true,
+        Some(Tok::Name(_)) => {
+            let next = [behind.next(), behind.next(), behind.next()];
+            matches!(next, [Some(Tok::LBracket), ..] | [Some(Tok::Comma), Some(Tok::Name(_)), Some(Tok::Colon)])
+        }
+        Some(Tok::LParen | Tok::LBrace | Tok::ExecPlan | Tok::Frame | Tok::Label(_)) => false,
+        _ => true,
+    }
 }
 
 /// Whether the group that begins here, behind its parenthesis, holds what no condition does.
@@ -43,7 +57,7 @@ pub(super) fn is_element<'s>(behind: impl Iterator<Item = Tok<'s>>) -> bool {
             Tok::LParen | Tok::TouchParen => depth += 1,
             Tok::RParen if depth == 1 => return false,
             Tok::RParen => depth -= 1,
-            Tok::Comma if depth == 1 => return true,
+            Tok::Comma | Tok::Colon if depth == 1 => return true,
             Tok::Atom | Tok::ExecPlan | Tok::LBrace | Tok::RBrace | Tok::Caret | Tok::Frame => return true,
             _ => {}
         }
