@@ -92,6 +92,8 @@ codes! {
     E0202 "a plan that contains itself",
     E0203 "a name that stands for two things",
     E0204 "a quark of the other kind",
+    E0205 "a file that cannot be used",
+    E0206 "files that use each other",
     E0301 "the wrong number of arguments",
     E0302 "an argument of the wrong type",
     E0303 "a unit of the wrong kind",

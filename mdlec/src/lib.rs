@@ -42,9 +42,21 @@ pub fn compile(
     alphabet: &Alphabet,
     wanted: Option<&str>,
 ) -> (Vec<Compiled>, Vec<Diagnostic>) {
+    compile_with(source, text, alphabet, wanted, &mut syntax::NoFiles)
+}
+
+/// The same for a file that may use others, which `loader` gets.
+#[must_use]
+pub fn compile_with(
+    source: SourceId,
+    text: &str,
+    alphabet: &Alphabet,
+    wanted: Option<&str>,
+    loader: &mut dyn syntax::Loader,
+) -> (Vec<Compiled>, Vec<Diagnostic>) {
     let arena = syntax::arena_for(text);
-    let (tree, mut found) = syntax::parse(source, text, &arena);
-    let (plans, names) = plan::resolve(&tree, alphabet, wanted);
+    let (files, mut found) = syntax::parse_with(source, text, &arena, loader);
+    let (plans, names) = plan::resolve(&files, alphabet, wanted);
     found.extend(names);
     let mut compiled = Vec::new();
     if !diagnostic::has_errors(&found) {

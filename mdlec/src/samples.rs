@@ -2,7 +2,8 @@
 
 use crate::alphabet::{self, Alphabet, AlphabetFile};
 use crate::diagnostic::{SourceId, Sources};
-use crate::{Compiled, compile, link};
+use crate::syntax::Loader;
+use crate::{Compiled, compile, compile_with, link};
 
 /// The alphabet of a built-in target, or of a robot that has everything; its places are in [`sources`].
 pub(crate) fn alphabet(target: Option<&str>) -> Alphabet {
@@ -47,6 +48,32 @@ pub(crate) fn judged(text: &str, target: Option<&str>) -> String {
     let (compiled, said) = said(text, target);
     let plans: Vec<_> = compiled.iter().map(|compiled| compiled.nondegenerate.plan().to_string()).collect();
     format!("{}\n----\n{said}{}", text.trim_end(), plans.join(""))
+}
+
+/// The first of these files with what the compiler says of it, and the plan, where it may use the others by their names.
+pub(crate) fn judged_files(files: &[(&str, &str)]) -> String {
+    struct Given(Sources, Vec<(String, SourceId)>);
+    impl Loader for Given {
+        fn find(&mut self, _: SourceId, path: &str) -> Result<SourceId, String> {
+            let found = self.1.iter().find(|(name, _)| name == path.trim_start_matches("./"));
+            found.map(|(_, source)| *source).ok_or_else(|| format!("there is no file `{path}`"))
+        }
+
+        fn text(&self, source: SourceId) -> &str {
+            self.0.text(source)
+        }
+    }
+    let mut given = Given(sources(), Vec::new());
+    for (name, text) in files {
+        let source = given.0.add(*name, *text);
+        given.1.push(((*name).to_owned(), source));
+    }
+    let (source, text) = (given.1[0].1, files[0].1);
+    let (compiled, found) = compile_with(source, text, &alphabet(None), None, &mut given);
+    let said: String = found.iter().map(|diagnostic| given.0.render(diagnostic)).collect();
+    let plans: Vec<_> = compiled.iter().map(|compiled| compiled.nondegenerate.plan().to_string()).collect();
+    let texts: Vec<_> = files.iter().map(|(name, text)| format!("{name}\n{}\n", text.trim_end())).collect();
+    format!("{}----\n{said}{}", texts.concat(), plans.concat())
 }
 
 fn said(text: &str, target: Option<&str>) -> (Vec<Compiled>, String) {

@@ -12,7 +12,7 @@ use super::{Build, Emit, EmitKind, Failure, report};
 use crate::link::{self, Cache, LinkError, Package, Progress, TargetCrate};
 use crate::rust::{self, Header};
 use crate::syntax::outline;
-use crate::{Compiled, compile, fsm, syntax};
+use crate::{Compiled, fsm, syntax};
 
 /// Does what the command line without a command asks for.
 pub(super) fn build(options: &Build) -> Result<(), Failure> {
@@ -41,21 +41,25 @@ pub(super) fn build(options: &Build) -> Result<(), Failure> {
 
 /// Compiles the one plan that is to be run; messages go to standard error.
 pub(super) fn compile_one(
-    input: &Input,
+    input: &mut Input,
     target: &Target,
     name: Option<&str>,
     deny_warnings: bool,
 ) -> Result<Compiled, Failure> {
-    let text = input.sources.text(input.source);
     if let Some(name) = name {
         known_plan(input, name)?;
     }
-    let (mut compiled, found) = compile(input.source, text, &target.alphabet, name);
+    let (mut compiled, found) = input.compile(&target.alphabet, name);
     if !report::diagnostics(&input.sources, &found, deny_warnings) {
         return Err(Failure::PLAN);
     }
     match (compiled.pop(), compiled.len()) {
         (Some(only), 0) => Ok(only),
+        (None, _) => Err(Failure::usage(format!(
+            "every plan of `{}` is used by another or takes parameters\nhelp: say which one, as in `--plan NAME`, or \
+             write one that uses it",
+            input.sources.name(input.source),
+        ))),
         (last, _) => {
             let names = compiled.iter().chain(&last).map(|compiled| compiled.plan.root.name.as_str());
             let names: Vec<_> = names.collect();
@@ -70,10 +74,9 @@ pub(super) fn compile_one(
 }
 
 /// Exit status 2 if no plan of the file has this name.
-fn known_plan(input: &Input, name: &str) -> Result<(), Failure> {
-    let arena = syntax::Arena::new();
-    let (tree, _) = syntax::parse(input.source, input.sources.text(input.source), &arena);
-    let names: Vec<_> = tree.plans.iter().map(|plan| plan.name.node).collect();
+fn known_plan(input: &mut Input, name: &str) -> Result<(), Failure> {
+    let names = input.plan_names();
+    let names: Vec<_> = names.iter().map(String::as_str).collect();
     if names.contains(&name) || names.is_empty() {
         return Ok(());
     }
@@ -88,14 +91,14 @@ fn known_plan(input: &Input, name: &str) -> Result<(), Failure> {
 /// A stage as text.
 fn stage(options: &Build, path: &Path, kind: EmitKind) -> Result<String, Failure> {
     let target = input::target(options.target.as_deref())?;
-    let input = input::read_plan(path, &target)?;
+    let mut input = input::read_plan(path, &target)?;
     if kind == EmitKind::Tree {
         let arena = syntax::Arena::new();
         let (tree, found) = syntax::parse(input.source, input.sources.text(input.source), &arena);
         let good = report::diagnostics(&input.sources, &found, options.deny_warnings);
         return if good { Ok(outline::outline(&tree)) } else { Err(Failure::PLAN) };
     }
-    let compiled = compile_one(&input, &target, options.name.as_deref(), options.deny_warnings)?;
+    let compiled = compile_one(&mut input, &target, options.name.as_deref(), options.deny_warnings)?;
     let nondegenerate = &compiled.nondegenerate;
     let text = match kind {
         EmitKind::Plan => Ok(compiled.plan.to_string()),
@@ -132,8 +135,8 @@ fn executable(options: &Build, path: &Path, output: Option<PathBuf>) -> Result<(
     let started = Instant::now();
     needs_target(options)?;
     let target = input::target(options.target.as_deref())?;
-    let input = input::read_plan(path, &target)?;
-    let compiled = compile_one(&input, &target, options.name.as_deref(), options.deny_warnings)?;
+    let mut input = input::read_plan(path, &target)?;
+    let compiled = compile_one(&mut input, &target, options.name.as_deref(), options.deny_warnings)?;
     if let Some(folder) = &target.folder {
         bind::must_be_bound(folder, &target.alphabet)?;
     }

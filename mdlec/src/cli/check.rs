@@ -1,7 +1,6 @@
 //! `mdlec check`: diagnostics only.
 
 use super::{Check, Failure, input, report};
-use crate::compile;
 use crate::diagnostic::has_errors;
 
 /// Checks each plan file and says what is wrong with it.
@@ -9,8 +8,8 @@ pub(super) fn check(options: &Check) -> Result<(), Failure> {
     let target = input::target(options.target.as_deref())?;
     let mut failed = None;
     for path in &options.plans {
-        let checked = input::read_plan(path, &target).and_then(|input| {
-            let (_, found) = compile(input.source, input.sources.text(input.source), &target.alphabet, None);
+        let checked = input::read_plan(path, &target).and_then(|mut input| {
+            let (_, found) = input.compile(&target.alphabet, None);
             let good = report::diagnostics(&input.sources, &found, options.deny_warnings);
             if good && !has_errors(&found) { Ok(()) } else { Err(Failure::PLAN) }
         });

@@ -1,14 +1,15 @@
 //! Reads plans and alphabets: the files a command works on.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use super::{Failure, report};
 use crate::alphabet::{self, Alphabet, AlphabetFile, Declaration, DeclarationKind};
-use crate::diagnostic::{SourceId, Sources, has_errors};
-use crate::link;
+use crate::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
 use crate::plan::signature;
+use crate::{Compiled, compile_with, link, syntax};
 
 /// The robot that plans are checked against.
 pub(super) struct Target {
@@ -20,10 +21,66 @@ pub(super) struct Target {
     sources: Vec<(String, String)>,
 }
 
-/// A plan file, with the alphabet's files beside it.
+/// A plan file, with the alphabet's files and those that it uses beside it.
 pub(super) struct Input {
     pub(super) sources: Sources,
     pub(super) source: SourceId,
+    /// Where the files are whose plans use others.
+    paths: BTreeMap<SourceId, PathBuf>,
+    /// What was read, by its one true path.
+    read: BTreeMap<PathBuf, SourceId>,
+}
+
+impl Input {
+    /// Compiles what stands in it, or its plan `wanted`.
+    pub(super) fn compile(&mut self, alphabet: &Alphabet, wanted: Option<&str>) -> (Vec<Compiled>, Vec<Diagnostic>) {
+        let text = self.sources.text(self.source).to_owned();
+        compile_with(self.source, &text, alphabet, wanted, self)
+    }
+
+    /// The names of its plans, those of the files that it uses included.
+    pub(super) fn plan_names(&mut self) -> Vec<String> {
+        let (arena, text) = (syntax::Arena::new(), self.sources.text(self.source).to_owned());
+        let (files, _) = syntax::parse_with(self.source, &text, &arena, self);
+        files.plans.iter().map(|plan| plan.name.node.to_owned()).collect()
+    }
+}
+
+impl syntax::Loader for Input {
+    fn find(&mut self, from: SourceId, path: &str) -> Result<SourceId, String> {
+        let folder = self.paths.get(&from).and_then(|path| path.parent()).unwrap_or(Path::new(""));
+        let file = folder.join(path);
+        let name = file.display().to_string();
+        let refused = |error: io::Error| match error.kind() {
+            io::ErrorKind::NotFound => format!("there is no file `{name}`"),
+            _ => format!("`{name}` cannot be read: {error}"),
+        };
+        let place = file.canonicalize().map_err(refused)?;
+        if let Some(source) = self.read.get(&place) {
+            return Ok(*source);
+        }
+        if place.is_dir() {
+            return Err(format!("`{name}` is a folder, and a file has to stand here"));
+        }
+        let bytes = fs::read(&place).map_err(refused)?;
+        if u32::try_from(bytes.len()).is_err() {
+            return Err(format!("`{name}` is larger than 4 GB"));
+        }
+        let text = String::from_utf8(without_mark(bytes)).map_err(|_| format!("`{name}` is not UTF-8 text"))?;
+        let source = self.sources.add(name, text);
+        self.paths.insert(source, file);
+        self.read.insert(place, source);
+        Ok(source)
+    }
+
+    fn text(&self, source: SourceId) -> &str {
+        self.sources.text(source)
+    }
+}
+
+/// A byte order mark is an editor's, and no part of a plan.
+fn without_mark(bytes: Vec<u8>) -> Vec<u8> {
+    bytes.strip_prefix(b"\xEF\xBB\xBF").map(<[u8]>::to_vec).unwrap_or(bytes)
 }
 
 /// The target that an option names; without one a robot that has everything.
@@ -59,7 +116,9 @@ pub(super) fn read_plan(path: &Path, target: &Target) -> Result<Input, Failure> 
     }
     let name = if path == Path::new("-") { "standard input".into() } else { path.display().to_string() };
     let source = sources.add(name, text);
-    Ok(Input { sources, source })
+    let paths = BTreeMap::from([(source, path.to_owned())]);
+    let read = path.canonicalize().map(|place| (place, source)).into_iter().collect();
+    Ok(Input { sources, source, paths, read })
 }
 
 /// Reads a text file, or standard input for `-`.
@@ -83,9 +142,7 @@ pub(super) fn read_text(path: &Path) -> Result<String, Failure> {
     if u32::try_from(bytes.len()).is_err() {
         return Err(Failure::usage(format!("`{name}` is larger than 4 GB")));
     }
-    // A byte order mark is an editor's, and no part of the plan.
-    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").map(<[u8]>::to_vec).unwrap_or(bytes);
-    String::from_utf8(bytes).map_err(|error| {
+    String::from_utf8(without_mark(bytes)).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let (sources, found) = report::not_utf8(&name.to_string(), error.as_bytes(), valid);
         report::diagnostics(&sources, &[found], false);
@@ -157,7 +214,7 @@ fn read_alphabets(own: Option<(String, String)>, name: &str) -> Result<Target, F
 struct Reading {
     sources: Sources,
     files: Vec<(String, String)>,
-    found: Vec<crate::diagnostic::Diagnostic>,
+    found: Vec<Diagnostic>,
 }
 
 impl Reading {

@@ -11,8 +11,8 @@ pub(super) fn trace(options: &Trace) -> Result<(), Failure> {
         return Err(Failure::usage("standard input can be the plan or the script, but not both"));
     }
     let target = input::target(options.target.as_deref())?;
-    let input = input::read_plan(&options.plan, &target)?;
-    let compiled = super::build::compile_one(&input, &target, options.name.as_deref(), false)?;
+    let mut input = input::read_plan(&options.plan, &target)?;
+    let compiled = super::build::compile_one(&mut input, &target, options.name.as_deref(), false)?;
     let text = input::read_text(&options.script)?;
     let script = Script::read(&text)
         .map_err(|error| Failure::usage(format!("{}:{}: {}", options.script.display(), error.line, error.message)))?;

@@ -198,5 +198,5 @@ fn indexed<'s>(call: &Call<'s>, quarks: &Quarks<'_>) -> (&'s str, Option<Number<
     if digits.is_empty() || !quarks.alphabet().declarations_of(name).any(of_sonar) {
         return (call.name, None);
     }
-    (name, Some(Number::new(digits, u32::MAX, call.name_span())))
+    (name, Some(Number::new(digits, call.name_span())))
 }

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::alphabet::{Alphabet, DeclarationKind};
 use crate::diagnostic::{Code, Diagnostic, Span};
+use crate::syntax::Files;
 use crate::syntax::tree::{self, Call, Element, Primary};
 
 /// The most atoms a plan may have once every plan by name is copied in, unless the file has more; loops are not expanded
@@ -12,10 +13,10 @@ const ATOMS: u64 = 1 << 19;
 /// The deepest nesting once every plan by name is copied in.
 const DEPTH: u32 = 512;
 
-/// The plans of a file.
+/// The plans of a file and of those that it uses.
 #[derive(Debug)]
 pub(super) struct Definitions<'a> {
-    /// In the order of the file.
+    /// The file's own first, in its order.
     pub(super) plans: Vec<&'a tree::Plan<'a>>,
     /// Their names.
     pub(super) names: Vec<&'a str>,
@@ -24,18 +25,22 @@ pub(super) struct Definitions<'a> {
     refers: Vec<BTreeMap<usize, Span>>,
     /// The plans that are too large, or refer to one that is: the first is reported, those around it are not.
     too_large: BTreeSet<usize>,
-    /// The atoms of the file, as written.
+    /// How many are of the file itself, not of one that it uses.
+    own: usize,
+    /// Whether a file is missing that may have more of them.
+    pub(super) is_incomplete: bool,
+    /// The atoms of the files, as written.
     written: u64,
 }
 
 impl<'a> Definitions<'a> {
-    /// Collects the plans of `file` and reports duplicates, recursion and explosion.
-    pub(super) fn collect(file: &'a tree::File<'a>, alphabet: &Alphabet) -> (Self, Vec<Diagnostic>) {
+    /// Collects the plans of `files` and reports duplicates, recursion and explosion.
+    pub(super) fn collect(files: &'a Files<'a>, alphabet: &Alphabet) -> (Self, Vec<Diagnostic>) {
         let mut found = Vec::new();
         let mut by_name = BTreeMap::new();
-        for (index, plan) in file.plans.iter().enumerate() {
+        for (index, plan) in files.plans.iter().enumerate() {
             let name = plan.name.node;
-            if let Some(first) = by_name.get(name).and_then(|first: &usize| file.plans.get(*first)) {
+            if let Some(first) = by_name.get(name).and_then(|first: &usize| files.plans.get(*first)) {
                 let message = format!("there are two plans called `{name}`");
                 found.push(
                     Diagnostic::new(Code::E0203, message, plan.name.span, "the second one")
@@ -54,10 +59,19 @@ impl<'a> Definitions<'a> {
             }
             by_name.insert(name, index);
         }
-        let plans: Vec<_> = file.plans.iter().collect();
+        let plans: Vec<_> = files.plans.iter().collect();
         let refers = plans.iter().map(|plan| references(plan, &by_name)).collect();
         let names = by_name.keys().copied().collect();
-        let mut definitions = Self { plans, names, by_name, refers, too_large: BTreeSet::new(), written: 0 };
+        let mut definitions = Self {
+            plans,
+            names,
+            by_name,
+            refers,
+            too_large: BTreeSet::new(),
+            own: files.own,
+            is_incomplete: files.is_incomplete,
+            written: 0,
+        };
         definitions.measure(&mut found);
         (definitions, found)
     }
@@ -67,10 +81,10 @@ impl<'a> Definitions<'a> {
         self.by_name.get(name).and_then(|index| self.plans.get(*index)).copied()
     }
 
-    /// The plans that no other refers to, in the order of the file.
+    /// The plans of the file itself that no other refers to, in its order.
     pub(super) fn roots(&self) -> Vec<&'a tree::Plan<'a>> {
         let referred: BTreeSet<usize> = self.refers.iter().flat_map(|refers| refers.keys().copied()).collect();
-        let roots = self.by_name.values().filter(|index| !referred.contains(index));
+        let roots = self.by_name.values().filter(|index| **index < self.own && !referred.contains(index));
         let mut roots: Vec<usize> = roots.copied().collect();
         roots.sort_unstable();
         roots.into_iter().filter_map(|index| self.plans.get(index).copied()).collect()

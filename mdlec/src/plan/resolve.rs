@@ -9,18 +9,18 @@ use super::quarks::Quarks;
 use super::{Atom, Decimal, Interrupt, Loop, Node, Plan, Scope, conditions};
 use crate::alphabet::{self, Alphabet, DeclarationKind, Kind, Unit};
 use crate::diagnostic::{Code, Diagnostic, Span, has_errors};
+use crate::syntax::Files;
 use crate::syntax::tree::{self, Arg, Call, Count, Element, Number, Primary};
 
 /// The largest angle of a FRAME, in its unit: far beyond a full circle, and sums of it are still exact enough.
 const FRAME: f64 = 100_000.0;
 
-/// Resolves the plans of a file: those that no other refers to, or the one that is `wanted`.
+/// Resolves the plans of a file and of those that it uses: its own that no other refers to, or the one that is `wanted`.
 ///
 /// Every plan is checked, whether it is wanted or not; no plan comes out if one has an error.
 #[must_use]
-pub fn resolve(file: &tree::File, alphabet: &Alphabet, wanted: Option<&str>) -> (Vec<Plan>, Vec<Diagnostic>) {
-    let (definitions, mut found) = Definitions::collect(file, alphabet);
-    found.extend(file.uses.iter().map(|used| not_yet("`use`", used.span)));
+pub fn resolve(files: &Files, alphabet: &Alphabet, wanted: Option<&str>) -> (Vec<Plan>, Vec<Diagnostic>) {
+    let (definitions, mut found) = Definitions::collect(files, alphabet);
     // Each plan by itself: what is wrong with it is said once, however often it is used.
     for plan in &definitions.plans {
         let parameters = Parameters::declared(plan, &mut found);
@@ -166,7 +166,11 @@ impl<'r, 'a> Resolver<'r, 'a> {
     fn reference(&mut self, call: &Call<'a>, frame: f64) -> Option<Scope> {
         let name = call.name;
         let Some(plan) = self.definitions.get(name) else {
-            self.found.push(self.unknown_plan(call));
+            let unknown = self.unknown_plan(call);
+            // It may stand in a file that was reported missing.
+            if unknown.code != Code::E0201 || !self.definitions.is_incomplete {
+                self.found.push(unknown);
+            }
             return None;
         };
         match (Parameters::given(plan, call, &self.parameters), self.uses) {
@@ -193,7 +197,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
             return Diagnostic::new(Code::E0204, message, span, "a quark runs in an atom").help(help);
         }
         let message = format!("there is no plan called `{name}`");
-        let report = Diagnostic::new(Code::E0201, message, span, "not in this file");
+        let report = Diagnostic::new(Code::E0201, message, span, "no plan of this name");
         if let Some(keyword) = ["Atom", "ExecPlan", "FRAME"].iter().find(|keyword| name.eq_ignore_ascii_case(keyword)) {
             return report.help(format!("the keyword is spelled `{keyword}`"));
         }

@@ -1,6 +1,7 @@
 //! Names, arguments, plans by name and degeneracy: what comes out, and what is said where nothing can.
 
 mod degeneracy;
+mod files;
 
 use crate::samples::{compiled, judged, sources};
 
@@ -155,8 +156,7 @@ fn what_a_robot_lacks_and_what_it_cannot_do() {
 #[test]
 fn forms_of_a_later_version() {
     assert_judged!(
-        "use \"corridors.mdle\"
-{ P (RISING bumper)
+        "{ P (RISING bumper)
   L: (Atom (bumper) go 1 0)
   (Atom (after L) stop)
   (stop, bumper, 3s)

@@ -4,6 +4,7 @@ mod brackets;
 mod broken;
 mod dropped;
 mod errors;
+mod files;
 mod flawless;
 mod header;
 mod lexical;
@@ -43,6 +44,7 @@ parser!(without_recovery, "/without_recovery.rs");
 use std::ops::Range;
 
 use crate::diagnostic::{Code, Diagnostic, SourceId, sort};
+pub use files::{Files, Loader, NoFiles, parse_with};
 use nodes::Nodes;
 use source::{Location, Place, Source};
 

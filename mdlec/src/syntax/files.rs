@@ -1,0 +1,105 @@
+//! A file of plans together with those that it uses, each read once (language, section 3: `use`).
+
+use std::collections::BTreeSet;
+
+use super::tree::{Name, Plan};
+use super::{Arena, parse};
+use crate::diagnostic::{Code, Diagnostic, SourceId, sort};
+
+/// Gets the files that plans use: a stage of the compiler reads none itself.
+pub trait Loader {
+    /// The file that `path` means in the file `from`; a file has one number, however it is reached.
+    ///
+    /// # Errors
+    /// Why it cannot be read, in one line without a full stop.
+    fn find(&mut self, from: SourceId, path: &str) -> Result<SourceId, String>;
+
+    /// The text of a file that was found.
+    fn text(&self, source: SourceId) -> &str;
+}
+
+/// There are no files: a text stands by itself.
+#[derive(Debug, Clone, Copy)]
+pub struct NoFiles;
+
+impl Loader for NoFiles {
+    fn find(&mut self, _: SourceId, path: &str) -> Result<SourceId, String> {
+        Err(format!("`{path}` cannot be used, since this text is in no file"))
+    }
+
+    fn text(&self, _: SourceId) -> &'static str {
+        ""
+    }
+}
+
+/// The plans of a file and of those that it uses.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Files<'s> {
+    /// Its own first, in order.
+    pub plans: Vec<Plan<'s>>,
+    /// How many are its own.
+    pub own: usize,
+    /// Whether a file that is used could not be read, so that plans may be missing.
+    pub is_incomplete: bool,
+}
+
+/// A file whose uses are being looked at.
+struct Open<'s> {
+    source: SourceId,
+    uses: Vec<Name<'s>>,
+    /// How many of them have been looked at.
+    done: usize,
+}
+
+/// The trees of a text and of all files that it uses, and all that is wrong with them.
+#[must_use]
+pub fn parse_with<'s>(
+    source: SourceId,
+    text: &'s str,
+    arena: &'s Arena,
+    loader: &mut dyn Loader,
+) -> (Files<'s>, Vec<Diagnostic>) {
+    let (file, mut found) = parse(source, text, arena);
+    let mut files = Files { own: file.plans.len(), plans: file.plans, is_incomplete: false };
+    let mut met = BTreeSet::from([source]);
+    let mut open = vec![Open { source, uses: file.uses, done: 0 }];
+    while let Some(here) = open.last_mut() {
+        let Some(used) = here.uses.get(here.done).copied() else {
+            open.pop();
+            continue;
+        };
+        here.done += 1;
+        match loader.find(here.source, used.node) {
+            Err(reason) => {
+                files.is_incomplete = true;
+                found.push(unusable(used, reason));
+            }
+            Ok(source) if met.insert(source) => {
+                let (file, more) = parse(source, arena.alloc_str(loader.text(source)), arena);
+                files.plans.extend(file.plans);
+                found.extend(more);
+                open.push(Open { source, uses: file.uses, done: 0 });
+            }
+            Ok(source) => found.extend(cycle(&open, source)),
+        }
+    }
+    sort(&mut found);
+    (files, found)
+}
+
+fn unusable(used: Name<'_>, reason: String) -> Diagnostic {
+    Diagnostic::new(Code::E0205, reason, used.span, "used here")
+        .help("a path is looked up from the folder of the file that uses it")
+}
+
+/// What is wrong where the last file that is open uses `source`, if that is open as well.
+fn cycle(open: &[Open<'_>], source: SourceId) -> Option<Diagnostic> {
+    let from = open.iter().position(|file| file.source == source)?;
+    let cycle = open.get(from..)?;
+    let mut uses = cycle.iter().filter_map(|file| file.uses.get(file.done.checked_sub(1)?));
+    let closing = uses.next_back()?;
+    let message = if cycle.len() == 1 { "this file uses itself" } else { "these files use each other" };
+    let found = Diagnostic::new(Code::E0206, message, closing.span, "which is the file that this begins with");
+    let found = uses.fold(found, |found, used| found.also(used.span, format!("`{}` is used here", used.node)));
+    Some(found.help("every file sees the plans of all that are used: leave one of these out"))
+}
