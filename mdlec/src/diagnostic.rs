@@ -94,6 +94,7 @@ codes! {
     E0204 "a quark of the other kind",
     E0205 "a file that cannot be used",
     E0206 "files that use each other",
+    E0207 "a cause that is none",
     E0301 "the wrong number of arguments",
     E0302 "an argument of the wrong type",
     E0303 "a unit of the wrong kind",

@@ -77,6 +77,7 @@ impl<'l> Loaded<'l> {
             plan::Condition::Elapsed { from, until, .. } => {
                 Condition::Elapsed(Nanos(*from), Nanos(until.unwrap_or(u64::MAX)))
             }
+            plan::Condition::Rising { .. } | plan::Condition::After(_) => panic!("no plan is loaded with these yet"),
             plan::Condition::Or(operands) => {
                 let (first, count) = self.operands(operands);
                 Condition::Or(first, count)

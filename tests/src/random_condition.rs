@@ -65,6 +65,30 @@ pub enum Forms {
     All,
 }
 
+/// Stands for an `after` until the labels of the definition are known; parentheses may stand around it.
+pub const AFTER: &str = "AFTER";
+
+/// The operands of the outermost OR of a condition, as they are written.
+pub fn operands(condition: &str) -> Vec<&str> {
+    let (mut operands, mut depth, mut from) = (Vec::new(), 0_usize, 0);
+    for (at, letter) in condition.char_indices() {
+        match letter {
+            '(' => depth += 1,
+            ')' => depth -= 1,
+            ' ' if depth == 0 => {
+                let rest = &condition[at..];
+                if rest.starts_with(" OR ") || rest.starts_with(" or ") {
+                    operands.push(&condition[from..at]);
+                    from = at + 4;
+                }
+            }
+            _ => {}
+        }
+    }
+    operands.push(&condition[from..]);
+    operands
+}
+
 /// A condition, as it stands between parentheses.
 pub fn condition(chance: &mut Chance, forms: Forms) -> String {
     match chance.below(10) {
@@ -79,6 +103,9 @@ pub fn condition(chance: &mut Chance, forms: Forms) -> String {
 fn quark(chance: &mut Chance, forms: Forms) -> String {
     if forms == Forms::All && chance.percent(15) {
         return comparison(chance);
+    }
+    if forms == Forms::All && chance.percent(10) {
+        return AFTER.to_owned();
     }
     if chance.percent(60) { chance.pick(&INTERRUPTS[..3]).to_owned() } else { chance.pick(INTERRUPTS).to_owned() }
 }
@@ -101,5 +128,8 @@ fn not(chance: &mut Chance, forms: Forms, depth: usize) -> String {
         2 | 3 if depth > 0 => format!("({})", or(chance, forms, depth - 1)),
         _ => quark(chance, forms),
     };
+    if forms == Forms::All && chance.percent(15) {
+        return if chance.percent(30) { format!("NOT (RISING {test})") } else { format!("RISING {test}") };
+    }
     if chance.percent(20) { format!("NOT {test}") } else { test }
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::chance::Chance;
-use crate::random_condition::{Forms, condition, law};
+use crate::random_condition::{AFTER, Forms, condition, law, operands};
 
 /// A file with a plan `Main`, and perhaps one that it refers to.
 #[derive(Debug, Clone)]
@@ -25,6 +25,8 @@ struct Scope {
 /// What stands in a string.
 #[derive(Debug, Clone)]
 enum Element {
+    /// An element with a label.
+    Labelled(String, Box<Element>),
     Atom {
         condition: String,
         law: String,
@@ -70,6 +72,8 @@ struct Growth<'c> {
     given: bool,
     /// Whether this one has.
     own: bool,
+    /// How many labels there are.
+    labels: usize,
 }
 
 impl RandomPlan {
@@ -79,12 +83,15 @@ impl RandomPlan {
         let other = chance.percent(25).then_some("Other");
         let given = chance.percent(50);
         if let Some(name) = other {
-            let mut growth = Growth { chance, forms, atoms: atoms / 2, long: false, other: None, given, own: given };
-            let scope = growth.scope(3);
+            let mut growth =
+                Growth { chance, forms, atoms: atoms / 2, long: false, other: None, given, own: given, labels: 0 };
+            let mut scope = growth.scope(3);
+            scope.ask(growth.chance);
             definitions.push((name, scope));
         }
-        let mut growth = Growth { chance, forms, atoms, long, other, given, own: false };
-        let scope = growth.scope(5);
+        let mut growth = Growth { chance, forms, atoms, long, other, given, own: false, labels: 0 };
+        let mut scope = growth.scope(5);
+        scope.ask(growth.chance);
         definitions.push(("Main", scope));
         if growth.chance.percent(50) {
             definitions.reverse();
@@ -131,6 +138,15 @@ impl Growth<'_> {
     }
 
     fn element(&mut self, depth: usize) -> Element {
+        if self.forms == Forms::All && self.chance.percent(25) {
+            self.labels += 1;
+            let label = format!("s{}", self.labels);
+            return Element::Labelled(label, Box::new(self.unlabelled(depth)));
+        }
+        self.unlabelled(depth)
+    }
+
+    fn unlabelled(&mut self, depth: usize) -> Element {
         if depth == 0 || self.atoms == 0 || self.chance.percent(35) {
             self.atoms = self.atoms.saturating_sub(1);
             return Element::Atom { condition: self.condition(), law: self.law() };
@@ -158,6 +174,76 @@ impl Growth<'_> {
     }
 }
 
+/// Labels with the conditions of their elements, where these have one.
+type Labels = Vec<(String, Option<String>)>;
+
+impl Scope {
+    /// Makes every [`AFTER`] ask one of the labels of this definition.
+    fn ask(&mut self, chance: &mut Chance) {
+        let mut labels = Labels::new();
+        self.body.iter().for_each(|element| element.labels(&mut labels));
+        self.fill(chance, &labels);
+    }
+
+    fn fill(&mut self, chance: &mut Chance, labels: &Labels) {
+        self.condition.iter_mut().for_each(|condition| fill(condition, chance, labels));
+        self.body.iter_mut().for_each(|element| element.fill(chance, labels));
+    }
+}
+
+impl Element {
+    fn labels(&self, labels: &mut Labels) {
+        match self {
+            Self::Labelled(label, element) => {
+                let condition = match &**element {
+                    Self::Atom { condition, .. } => Some(condition.clone()),
+                    Self::Scope(scope) => scope.condition.clone(),
+                    Self::Labelled(..) | Self::Loop { .. } | Self::String(_) | Self::Reference(..) => None,
+                };
+                labels.push((label.clone(), condition));
+                element.labels(labels);
+            }
+            Self::Scope(Scope { body, .. }) | Self::Loop { body, .. } | Self::String(body) => {
+                body.iter().for_each(|element| element.labels(labels));
+            }
+            Self::Atom { .. } | Self::Reference(..) => {}
+        }
+    }
+
+    fn fill(&mut self, chance: &mut Chance, labels: &Labels) {
+        match self {
+            Self::Labelled(_, element) => element.fill(chance, labels),
+            Self::Atom { condition, .. } => fill(condition, chance, labels),
+            Self::Scope(scope) => scope.fill(chance, labels),
+            Self::Loop { body, .. } | Self::String(body) => {
+                body.iter_mut().for_each(|element| element.fill(chance, labels));
+            }
+            Self::Reference(..) => {}
+        }
+    }
+}
+
+/// Makes every [`AFTER`] of a condition ask one of these labels, with or without a cause.
+fn fill(condition: &mut String, chance: &mut Chance, labels: &Labels) {
+    while let Some(at) = condition.find(AFTER) {
+        let after = if labels.is_empty() { "a".to_owned() } else { asked(chance, labels) };
+        condition.replace_range(at..at + AFTER.len(), &after);
+    }
+}
+
+fn asked(chance: &mut Chance, labels: &Labels) -> String {
+    let (label, condition) = &labels[chance.below(labels.len())];
+    let mut operands = condition.as_deref().map(operands).unwrap_or_default();
+    // Parentheses around the whole of it are none of an operand.
+    operands.retain(|operand| !(operand.starts_with('(') && Some(*operand) == condition.as_deref()));
+    // An operand that asks a label itself is not written out yet.
+    let operands: Vec<_> = operands.into_iter().filter(|operand| !operand.contains(AFTER)).collect();
+    if operands.is_empty() || chance.percent(40) {
+        return format!("(after {label})");
+    }
+    format!("(after {label} ({}))", operands[chance.below(operands.len())])
+}
+
 impl fmt::Display for RandomPlan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (name, scope) in &self.definitions {
@@ -176,7 +262,10 @@ impl Scope {
             (Some(condition), _) => write!(f, " ({condition})")?,
             (None, Some(Element::Atom { .. } | Element::Scope(_)) | None) => {}
             // An open string there would be read as the condition.
-            (None, Some(Element::Loop { .. } | Element::String(_) | Element::Reference(..))) => write!(f, " (null)")?,
+            (
+                None,
+                Some(Element::Labelled(..) | Element::Loop { .. } | Element::String(_) | Element::Reference(..)),
+            ) => write!(f, " (null)")?,
         }
         write_all(&self.body, f)?;
         f.write_str(" }")
@@ -190,6 +279,7 @@ fn write_all(elements: &[Element], f: &mut fmt::Formatter<'_>) -> fmt::Result {
 impl fmt::Display for Element {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Labelled(label, element) => write!(f, "{label}: {element}"),
             Self::Atom { condition, law } => write!(f, "(Atom ({condition}) {law})"),
             Self::Scope(scope) => scope.write(scope.name, "", f),
             Self::Reference(name, None) => f.write_str(name),

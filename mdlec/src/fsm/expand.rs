@@ -29,11 +29,18 @@ fn expand_sequence(body: &[Node]) -> Vec<Node> {
         match node {
             Node::Atom(atom) => expanded.push(Node::Atom(atom.clone())),
             Node::Scope(scope) => expanded.push(Node::Scope(expand_scope(scope))),
-            Node::Loop(Loop { times, body, span }) => {
+            Node::Loop(Loop { times, body, marks, span }) => {
                 let body = expand_sequence(body);
+                let (marks, span) = (marks.clone(), *span);
                 match times {
-                    Some(times) => (0..*times).for_each(|_| expanded.extend(body.iter().cloned())),
-                    None => expanded.push(Node::Loop(Loop { times: None, body, span: *span })),
+                    Some(times) => {
+                        (0..*times).for_each(|_| expanded.extend(body.iter().cloned()));
+                        // The loop ends with the last element of its last pass.
+                        if let Some(last) = expanded.last_mut() {
+                            last.marks_mut().extend(marks);
+                        }
+                    }
+                    None => expanded.push(Node::Loop(Loop { times: None, body, marks, span })),
                 }
             }
         }
@@ -64,7 +71,7 @@ fn largest_loop(body: &[Node]) -> (u64, Option<(u64, Span)>) {
         let (states, inside) = match node {
             Node::Atom(_) => (1, None),
             Node::Scope(scope) => largest_loop(&scope.body),
-            Node::Loop(Loop { times, body, span }) => {
+            Node::Loop(Loop { times, body, span, .. }) => {
                 let (pass, inside) = largest_loop(body);
                 let states = pass.saturating_mul(times.unwrap_or(1));
                 (states, if times.is_some_and(|times| times > 1) { Some((states, *span)) } else { inside })

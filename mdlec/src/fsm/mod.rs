@@ -10,11 +10,13 @@ mod tests;
 pub use expand::expand;
 pub use file::{FsmFile, InterruptEntry, Moves, ScopeEntry, fsm_file};
 
+use std::collections::BTreeMap;
+
 use mdle_runtime::Fsm;
 use mdle_runtime::fsm::{Atom, Bracket, Kind};
 
 use crate::diagnostic::{Code, Diagnostic, Span};
-use crate::plan::{self, Interrupt, Node, Nondegenerate, Quark, QuarkId, Scope};
+use crate::plan::{self, Interrupt, Mark, Node, Nondegenerate, Quark, QuarkId, Record, RecordId, Scope};
 
 /// The most states a plan may have: numbers up to here are exact in JSON as well.
 pub const STATES: u64 = 1 << 53;
@@ -32,6 +34,13 @@ pub struct Lowered {
     pub scopes: Vec<Option<ScopeMeaning>>,
     /// What each atom means.
     pub laws: Vec<LawMeaning>,
+    /// The labels of what ends with a bracket, where there are any.
+    pub marks: BTreeMap<u32, Vec<Mark>>,
+    /// Where the record of each use of a definition is kept that `after` asks.
+    pub records: BTreeMap<RecordId, RecordPlace>,
+    /// How many memories a level of scopes has at most: those of RISING in the scope's interrupt, and behind them the
+    /// facts of its record. All are empty when the scope is entered.
+    pub memories: usize,
     /// Every quark with its arguments.
     pub quarks: Vec<Quark>,
     /// How many levels of scopes there are down to the last one that has a `wait`: those below need no entry time.
@@ -56,6 +65,17 @@ pub struct LawMeaning {
     pub quark: QuarkId,
     /// The angle by which its frame is turned, in radians.
     pub frame: f64,
+}
+
+/// Where a record is kept: which memories of which level of scopes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RecordPlace {
+    /// The level of the outermost scope of the definition.
+    pub level: u16,
+    /// The first of its memories.
+    pub first: u32,
+    /// How many there are.
+    pub facts: u32,
 }
 
 impl Lowered {
@@ -85,6 +105,9 @@ pub fn algorithm1(plan: &Nondegenerate) -> Result<Lowered, Diagnostic> {
             termination: 0,
             scopes: Vec::new(),
             laws: Vec::new(),
+            marks: BTreeMap::new(),
+            records: BTreeMap::new(),
+            memories: 0,
             quarks: plan.quarks.clone(),
             levels: 0,
             slots: 0,
@@ -112,7 +135,12 @@ impl Lowering {
     /// Lowers a scope and returns the number of its states.
     fn scope(&mut self, scope: &Scope, place: Place) -> Result<u64, Diagnostic> {
         let meaning = ScopeMeaning { name: scope.name.clone(), interrupt: scope.interrupt.clone() };
-        let bracket = self.bracket(Kind::Scope { level: place.level }, place.parent, Some(meaning));
+        let bracket = self.bracket(Kind::Scope { level: place.level }, place.parent, Some(meaning), &scope.marks);
+        if let Some(Record { id, facts }) = scope.record {
+            let first = scope.interrupt.memories;
+            self.lowered.records.insert(id, RecordPlace { level: place.level, first, facts });
+            self.memories(first.saturating_add(facts));
+        }
         let inside = Place { parent: bracket, level: place.level.saturating_add(1), ..place };
         let states = self.sequence(&scope.body, inside, scope.span)?;
         self.close(bracket);
@@ -137,7 +165,7 @@ impl Lowering {
 
     fn atom(&mut self, atom: &plan::Atom, place: Place) -> u64 {
         let meaning = ScopeMeaning { name: String::new(), interrupt: atom.interrupt.clone() };
-        let scope = self.bracket(Kind::Scope { level: place.level }, place.parent, Some(meaning));
+        let scope = self.bracket(Kind::Scope { level: place.level }, place.parent, Some(meaning), &atom.marks);
         self.lowered.atoms.push(Atom { scope, state: place.state });
         self.lowered.laws.push(LawMeaning { quark: atom.law, frame: atom.frame });
         1
@@ -145,7 +173,8 @@ impl Lowering {
 
     fn repeated(&mut self, repeated: &plan::Loop, place: Place) -> Result<u64, Diagnostic> {
         let times = repeated.times.unwrap_or(0);
-        let bracket = self.bracket(Kind::Loop { times, slot: place.slot, stride: 0 }, place.parent, None);
+        let bracket =
+            self.bracket(Kind::Loop { times, slot: place.slot, stride: 0 }, place.parent, None, &repeated.marks);
         self.lowered.slots = self.lowered.slots.max(usize::from(place.slot) + 1);
         let inside = Place { parent: bracket, slot: place.slot.saturating_add(1), ..place };
         let pass = self.sequence(&repeated.body, inside, repeated.span)?;
@@ -160,7 +189,8 @@ impl Lowering {
     }
 
     /// Opens a bracket at the next atom; [`Lowering::close`] tells its last one.
-    fn bracket(&mut self, kind: Kind, parent: u32, meaning: Option<ScopeMeaning>) -> u32 {
+    fn bracket(&mut self, kind: Kind, parent: u32, meaning: Option<ScopeMeaning>, marks: &[Mark]) -> u32 {
+        self.memories(meaning.as_ref().map_or(0, |meaning| meaning.interrupt.memories));
         if let (Kind::Scope { level }, Some(meaning)) = (kind, &meaning)
             && meaning.interrupt.condition.waits()
         {
@@ -170,7 +200,15 @@ impl Lowering {
         let first = u32::try_from(self.lowered.atoms.len()).unwrap_or(u32::MAX);
         self.lowered.brackets.push(Bracket { kind, first, last: first, parent });
         self.lowered.scopes.push(meaning);
+        if !marks.is_empty() {
+            self.lowered.marks.insert(number, marks.to_vec());
+        }
         number
+    }
+
+    /// Makes room for so many memories a level.
+    fn memories(&mut self, memories: u32) {
+        self.lowered.memories = self.lowered.memories.max(memories as usize);
     }
 
     fn close(&mut self, bracket: u32) {

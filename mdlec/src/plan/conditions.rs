@@ -1,28 +1,43 @@
 //! Conditions: quarks joined by AND, OR and NOT, and their text (semantics, section 2; language, section 7).
 
+use super::labels::Labels;
 use super::parameters::Names;
 use super::quarks::Quarks;
-use super::resolve::not_yet;
-use super::{Condition, Interrupt, Value, comparisons};
+use super::{After, Condition, Interrupt, Value, comparisons};
 use crate::alphabet::DeclarationKind;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::syntax::tree::{self, Call, Compared, ConditionNode};
 
-/// Resolves the condition of a scope at `scope`; without one it is the null interrupt.
-/// What cannot be resolved is reported and counts as null.
+/// What conditions are resolved with.
+pub(super) struct Around<'r, 'a, 'n> {
+    pub(super) quarks: &'r mut Quarks<'a>,
+    pub(super) names: Names<'r, 'n>,
+    /// The labels of the definition that the condition stands in.
+    pub(super) labels: &'r mut Labels,
+    pub(super) found: &'r mut Vec<Diagnostic>,
+}
+
+/// Resolves the condition of a scope at `scope`, with the text of each operand of its outermost OR; without one it is the
+/// null interrupt. What cannot be resolved is reported and counts as null.
 pub(super) fn interrupt(
     condition: Option<&tree::Condition>,
     scope: Span,
-    quarks: &mut Quarks<'_>,
-    names: Names<'_, '_>,
-    found: &mut Vec<Diagnostic>,
-) -> Interrupt {
+    around: Around<'_, '_, '_>,
+) -> (Interrupt, Vec<String>) {
     let Some(written) = condition else {
-        return Interrupt::none(scope);
+        return (Interrupt::none(scope), vec!["null".to_owned()]);
     };
-    let condition = Resolving { quarks, names, found }.condition(written);
+    let mut resolving = Resolving { around, memories: 0 };
+    let condition = resolving.condition(written);
+    let Resolving { around: Around { quarks, .. }, memories } = resolving;
+    let operands = match &condition {
+        Condition::Or(operands) => operands.as_slice(),
+        other => std::slice::from_ref(other),
+    };
+    let operands = operands.iter().map(|operand| text(operand, quarks, Precedence::Or)).collect();
     let text = text(&condition, quarks, Precedence::Or);
-    Interrupt { condition: without_infinite_waits(condition), text, removed: false, span: written.span }
+    let condition = without_infinite_waits(condition);
+    (Interrupt { condition, text, memories, removed: false, span: written.span }, operands)
 }
 
 /// The nanoseconds of `wait inf`; no other wait may be as long.
@@ -36,35 +51,61 @@ fn without_infinite_waits(condition: Condition) -> Condition {
         Condition::Or(operands) => Condition::Or(all(operands)),
         Condition::And(operands) => Condition::And(all(operands)),
         Condition::Not(operand) => Condition::Not(Box::new(without_infinite_waits(*operand))),
-        other @ (Condition::Null | Condition::Quark(_) | Condition::Wait { .. } | Condition::Elapsed { .. }) => other,
+        Condition::Rising { memory, operand } => {
+            Condition::Rising { memory, operand: Box::new(without_infinite_waits(*operand)) }
+        }
+        other @ (Condition::Null | Condition::Quark(_) | Condition::Wait { .. } | Condition::Elapsed { .. })
+        | other @ Condition::After(_) => other,
     }
 }
 
-struct Resolving<'r, 'a> {
-    quarks: &'r mut Quarks<'a>,
-    names: Names<'r, 'r>,
-    found: &'r mut Vec<Diagnostic>,
+struct Resolving<'r, 'a, 'n> {
+    around: Around<'r, 'a, 'n>,
+    /// How many RISINGs there have been in this condition.
+    memories: u32,
 }
 
-impl Resolving<'_, '_> {
+impl Resolving<'_, '_, '_> {
     fn condition(&mut self, written: &tree::Condition) -> Condition {
-        let later = match &written.node {
-            ConditionNode::Or(operands) => return Condition::Or(self.all(operands)),
-            ConditionNode::And(operands) => return Condition::And(self.all(operands)),
-            ConditionNode::Not(operand) => return Condition::Not(Box::new(self.condition(operand))),
-            ConditionNode::Call(call) => return self.call(call),
-            ConditionNode::Comparison(compared) => return self.comparison(compared, written.span),
-            ConditionNode::Null | ConditionNode::Broken => return Condition::Null,
-            ConditionNode::Rising(_) => "`RISING`",
-            ConditionNode::After(_) => "`after`",
+        match &written.node {
+            ConditionNode::Or(operands) => Condition::Or(self.all(operands)),
+            ConditionNode::And(operands) => Condition::And(self.all(operands)),
+            ConditionNode::Not(operand) => Condition::Not(Box::new(self.condition(operand))),
+            ConditionNode::Rising(operand) => {
+                let memory = self.memories;
+                self.memories += 1;
+                Condition::Rising { memory, operand: Box::new(self.condition(operand)) }
+            }
+            ConditionNode::Call(call) => self.call(call),
+            ConditionNode::Comparison(compared) => self.comparison(compared, written.span),
+            ConditionNode::After(after) => self.after(after),
+            ConditionNode::Null | ConditionNode::Broken => Condition::Null,
+        }
+    }
+
+    fn after(&mut self, after: &tree::After) -> Condition {
+        // Only its text tells which operand of the label's interrupt it is, so the memories in it are not its own.
+        let memories = self.memories;
+        let cause = after.cause.as_ref().map(|cause| (self.condition(cause), cause));
+        self.memories = memories;
+        let cause = cause.map(|(cause, written)| {
+            let words = text(&cause, self.around.quarks, Precedence::Or);
+            let stands_alone = matches!(written.node, ConditionNode::Call(_));
+            (written.span, words, stands_alone)
+        });
+        let label = after.label;
+        let words = match &cause {
+            None => format!("after {}", label.node),
+            Some((_, words, true)) => format!("after {} {words}", label.node),
+            Some((_, words, false)) => format!("after {} ({words})", label.node),
         };
-        self.found.push(not_yet(later, written.span));
-        Condition::Null
+        let (record, fact) = self.around.labels.asked(label, cause.map(|(span, words, _)| (words, span)));
+        Condition::After(After { record, fact, text: words })
     }
 
     fn comparison(&mut self, compared: &Compared, span: Span) -> Condition {
-        comparisons::resolve(compared, span, self.quarks, self.names).unwrap_or_else(|found| {
-            self.found.extend(found);
+        comparisons::resolve(compared, span, self.around.quarks, self.around.names).unwrap_or_else(|found| {
+            self.around.found.extend(found);
             Condition::Null
         })
     }
@@ -74,8 +115,8 @@ impl Resolving<'_, '_> {
     }
 
     fn call(&mut self, call: &Call) -> Condition {
-        match self.quarks.resolve(call, DeclarationKind::Interrupt, self.names) {
-            Ok(id) => match self.quarks.get(id) {
+        match self.around.quarks.resolve(call, DeclarationKind::Interrupt, self.around.names) {
+            Ok(id) => match self.around.quarks.get(id) {
                 Some(quark) if quark.name == "wait" => match quark.args.first() {
                     Some(Value::Quantity { exact, .. }) => {
                         Condition::Wait { nanos: exact.to_nanos().unwrap_or(u64::MAX), quark: id }
@@ -85,7 +126,7 @@ impl Resolving<'_, '_> {
                 Some(_) | None => Condition::Quark(id),
             },
             Err(found) => {
-                self.found.extend(found);
+                self.around.found.extend(found);
                 Condition::Null
             }
         }
@@ -114,6 +155,10 @@ fn text(condition: &Condition, quarks: &Quarks<'_>, around: Precedence) -> Strin
         Condition::Or(operands) => (join(operands, " OR ", Precedence::Or), Precedence::Or),
         Condition::And(operands) => (join(operands, " AND ", Precedence::And), Precedence::And),
         Condition::Not(operand) => (format!("NOT {}", text(operand, quarks, Precedence::Test)), Precedence::And),
+        Condition::Rising { operand, .. } => {
+            (format!("RISING {}", text(operand, quarks, Precedence::Test)), Precedence::And)
+        }
+        Condition::After(after) => (after.text.clone(), Precedence::Test),
     };
     if precedence < around { format!("({text})") } else { text }
 }

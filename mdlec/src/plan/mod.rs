@@ -5,8 +5,10 @@
 mod angle;
 mod arguments;
 mod comparisons;
+mod condition;
 mod conditions;
 mod definitions;
+mod labels;
 mod nondegenerate;
 mod parameters;
 mod print;
@@ -18,6 +20,7 @@ mod tests;
 pub use crate::syntax::tree::Comparison as Operator;
 pub use angle::{frame_text, in_degrees};
 pub use arguments::signature;
+pub use condition::{After, Condition, Situation};
 pub use nondegenerate::{Nondegenerate, remove_degeneracy};
 pub use resolve::resolve;
 
@@ -119,6 +122,10 @@ pub struct Scope {
     pub interrupt: Interrupt,
     /// What it runs, in order; never empty.
     pub body: Vec<Node>,
+    /// For the outermost scope of a plan in which `after` stands: the record of this use of it.
+    pub record: Option<Record>,
+    /// The labels of what ends with it.
+    pub marks: Vec<Mark>,
     /// Where its definition is.
     pub span: Span,
 }
@@ -143,6 +150,8 @@ pub struct Atom {
     pub interrupt: Interrupt,
     /// The angle by which its frame is turned, in radians, counter-clockwise.
     pub frame: f64,
+    /// The labels of what ends with it.
+    pub marks: Vec<Mark>,
     /// Where it is.
     pub span: Span,
 }
@@ -154,8 +163,62 @@ pub struct Loop {
     pub times: Option<u64>,
     /// What it runs, in order; never empty.
     pub body: Vec<Node>,
+    /// The labels of what ends with its last pass.
+    pub marks: Vec<Mark>,
     /// Where it is.
     pub span: Span,
+}
+
+impl Node {
+    /// The labels of what ends with it.
+    pub(crate) fn marks_mut(&mut self) -> &mut Vec<Mark> {
+        match self {
+            Self::Atom(atom) => &mut atom.marks,
+            Self::Scope(scope) => &mut scope.marks,
+            Self::Loop(repeated) => &mut repeated.marks,
+        }
+    }
+}
+
+/// One use of the definition of a plan, whose record `after` asks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct RecordId(pub u32);
+
+/// The record of labelled elements that ended last, in one use of a definition.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Record {
+    /// Which use.
+    pub id: RecordId,
+    /// How many different things `after` asks of it.
+    pub facts: u32,
+}
+
+/// A label of what ends with a node.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Mark {
+    /// The use of the definition that the label stands in.
+    pub record: RecordId,
+    /// The label.
+    pub label: String,
+    /// What `after` asks about it.
+    pub facts: Vec<Fact>,
+}
+
+/// Something that `after` asks of a record.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Fact {
+    /// Its number in the record.
+    pub number: u32,
+    /// The operand of the node's interrupt that has to be the cause; none if any cause will do.
+    pub operand: Option<u32>,
+}
+
+impl Fact {
+    /// Whether it is so once the node has ended by this operand of its interrupt, or by something else.
+    #[must_use]
+    pub fn holds(&self, operand: Option<u32>) -> bool {
+        self.operand.is_none() || self.operand == operand
+    }
 }
 
 /// The interrupt of a scope.
@@ -165,6 +228,8 @@ pub struct Interrupt {
     pub condition: Condition,
     /// Its condition text, also where it was removed.
     pub text: String,
+    /// How many memories of RISING it has in each scope entered.
+    pub memories: u32,
     /// Whether an outer scope repeats it, so that it was replaced by the null interrupt.
     pub removed: bool,
     /// Where it is; the scope's own place if it has none.
@@ -175,73 +240,6 @@ impl Interrupt {
     /// The interrupt of a scope at `scope` that has none: it never fires.
     #[must_use]
     pub fn none(scope: Span) -> Self {
-        Self { condition: Condition::Null, text: "null".into(), removed: false, span: scope }
-    }
-}
-
-/// A condition; `true` is "has fired".
-#[derive(Debug, Clone, PartialEq)]
-pub enum Condition {
-    /// Never fires: `null`, `wait inf`, or what degeneracy removal left.
-    Null,
-    /// An interrupt quark.
-    Quark(QuarkId),
-    /// Fires once this many nanoseconds have passed since the scope of the interrupt was entered.
-    Wait {
-        /// The nanoseconds.
-        nanos: u64,
-        /// The quark, for its text and its exact value.
-        quark: QuarkId,
-    },
-    /// Fires while the time since the scope of the interrupt was entered is in this interval: a comparison of `t`.
-    Elapsed {
-        /// From so many nanoseconds on ...
-        from: u64,
-        /// ... and until so many have passed.
-        until: Option<u64>,
-        /// The comparison, for its text.
-        quark: QuarkId,
-    },
-    /// At least one of these, two or more.
-    Or(Vec<Condition>),
-    /// All of these, two or more.
-    And(Vec<Condition>),
-    /// Not this.
-    Not(Box<Condition>),
-}
-
-impl Condition {
-    /// Whether it has a `wait` in it, and so asks when its scope was entered.
-    #[must_use]
-    pub fn waits(&self) -> bool {
-        match self {
-            Self::Null | Self::Quark(_) => false,
-            Self::Wait { .. } | Self::Elapsed { .. } => true,
-            Self::Or(operands) | Self::And(operands) => operands.iter().any(Self::waits),
-            Self::Not(operand) => operand.waits(),
-        }
-    }
-
-    /// Whether this is so of the condition or any of its operands.
-    pub fn any(&self, is_so: &impl Fn(&Self) -> bool) -> bool {
-        is_so(self)
-            || match self {
-                Self::Null | Self::Quark(_) | Self::Wait { .. } | Self::Elapsed { .. } => false,
-                Self::Or(operands) | Self::And(operands) => operands.iter().any(|operand| operand.any(is_so)),
-                Self::Not(operand) => operand.any(is_so),
-            }
-    }
-
-    /// Its value, given what each quark says and whether a `wait` of so many nanoseconds is over. Reads every operand.
-    pub fn fired(&self, quark: &impl Fn(QuarkId) -> bool, wait: &impl Fn(u64) -> bool) -> bool {
-        match self {
-            Self::Null => false,
-            Self::Quark(id) => quark(*id),
-            Self::Wait { nanos, .. } => wait(*nanos),
-            Self::Elapsed { from, until, .. } => wait(*from) & !until.is_some_and(wait),
-            Self::Or(operands) => operands.iter().fold(false, |fired, operand| fired | operand.fired(quark, wait)),
-            Self::And(operands) => operands.iter().fold(true, |fired, operand| fired & operand.fired(quark, wait)),
-            Self::Not(operand) => !operand.fired(quark, wait),
-        }
+        Self { condition: Condition::Null, text: "null".into(), memories: 0, removed: false, span: scope }
     }
 }

@@ -4,7 +4,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{Atom, Condition, Interrupt, Node, Plan, Quark, QuarkId, Scope};
+use super::{Atom, Condition, Interrupt, Node, Plan, Quark, QuarkId, RecordId, Scope};
 use crate::diagnostic::{Code, Diagnostic, Span};
 
 /// A plan without degeneracy; only [`remove_degeneracy`] makes one.
@@ -42,6 +42,8 @@ enum Normal {
     Or(BTreeSet<Normal>),
     And(BTreeSet<Normal>),
     Not(Box<Normal>),
+    Rising(Box<Normal>),
+    After(RecordId, u32),
 }
 
 /// For each quark the first one that is the same function.
@@ -111,7 +113,9 @@ impl Removal<'_> {
             Condition::Null => true,
             Condition::Quark(id) => self.quarks.get(id.0 as usize).is_some_and(|quark| !quark.remembers),
             Condition::Wait { .. } => !under_not,
-            Condition::Elapsed { .. } => false,
+            Condition::Elapsed { .. } | Condition::Rising { .. } => false,
+            // It is the same label of the same use of a plan, or it is another one.
+            Condition::After(_) => true,
             Condition::Or(operands) | Condition::And(operands) => {
                 operands.iter().all(|operand| self.can_be_repeated(operand, under_not))
             }
@@ -130,7 +134,8 @@ impl Removal<'_> {
                 for operand in operands {
                     match self.normal(operand) {
                         Normal::Or(inner) => all.extend(inner),
-                        other @ (Normal::Null | Normal::Quark(_) | Normal::And(_) | Normal::Not(_)) => {
+                        other @ (Normal::Null | Normal::Quark(_) | Normal::And(_) | Normal::Not(_))
+                        | other @ (Normal::Rising(_) | Normal::After(..)) => {
                             all.insert(other);
                         }
                     }
@@ -142,7 +147,8 @@ impl Removal<'_> {
                 for operand in operands {
                     match self.normal(operand) {
                         Normal::And(inner) => all.extend(inner),
-                        other @ (Normal::Null | Normal::Quark(_) | Normal::Or(_) | Normal::Not(_)) => {
+                        other @ (Normal::Null | Normal::Quark(_) | Normal::Or(_) | Normal::Not(_))
+                        | other @ (Normal::Rising(_) | Normal::After(..)) => {
                             all.insert(other);
                         }
                     }
@@ -151,10 +157,11 @@ impl Removal<'_> {
             }
             Condition::Not(operand) => match self.normal(operand) {
                 Normal::Not(inner) => *inner,
-                other @ (Normal::Null | Normal::Quark(_) | Normal::Or(_) | Normal::And(_)) => {
-                    Normal::Not(Box::new(other))
-                }
+                other @ (Normal::Null | Normal::Quark(_) | Normal::Or(_) | Normal::And(_))
+                | other @ (Normal::Rising(_) | Normal::After(..)) => Normal::Not(Box::new(other)),
             },
+            Condition::Rising { operand, .. } => Normal::Rising(Box::new(self.normal(operand))),
+            Condition::After(after) => Normal::After(after.record, after.fact),
         }
     }
 

@@ -1,12 +1,12 @@
 //! Tree to plan: every name, argument, unit and plan by name resolved, each use of a plan a copy of its own.
 
-use std::collections::BTreeMap;
-
 use super::arguments::kind_words;
+use super::conditions::{self, Around};
 use super::definitions::Definitions;
+use super::labels::{Ends, Labels};
 use super::parameters::{self, Names, Parameter, Parameters};
 use super::quarks::Quarks;
-use super::{Atom, Decimal, Interrupt, Loop, Node, Plan, Scope, conditions};
+use super::{Atom, Decimal, Interrupt, Loop, Node, Plan, RecordId, Scope};
 use crate::alphabet::{self, Alphabet, DeclarationKind, Kind, Unit};
 use crate::diagnostic::{Code, Diagnostic, Span, has_errors};
 use crate::syntax::Files;
@@ -41,7 +41,7 @@ pub fn resolve(files: &Files, alphabet: &Alphabet, wanted: Option<&str>) -> (Vec
     }
     let copy = |plan: &&tree::Plan| {
         let mut resolver = Resolver::new(&definitions, alphabet, Uses::Copy);
-        let root = resolver.plan(plan, Parameters::default(), 0.0);
+        let (root, _) = resolver.plan(plan, Parameters::default(), 0.0);
         (Plan { root, quarks: resolver.quarks.into_vec() }, resolver.found)
     };
     let roots = || definitions.roots().into_iter().filter(|plan| plan.params.is_empty());
@@ -75,29 +75,33 @@ struct Resolver<'r, 'a> {
     uses: Uses,
     /// The parameters of the definition that is being resolved.
     parameters: Parameters<'a>,
-    /// Its labels, with their places.
-    labels: BTreeMap<String, Span>,
+    /// Its labels.
+    labels: Labels,
+    /// How many definitions have been begun.
+    begun: u32,
     found: Vec<Diagnostic>,
 }
 
 impl<'r, 'a> Resolver<'r, 'a> {
     fn new(definitions: &'r Definitions<'a>, alphabet: &'r Alphabet, uses: Uses) -> Self {
         let quarks = Quarks::new(alphabet);
-        let (parameters, labels) = (Parameters::default(), BTreeMap::new());
-        Self { definitions, quarks, uses, parameters, labels, found: Vec::new() }
+        let (parameters, labels) = (Parameters::default(), Labels::new(RecordId(0)));
+        Self { definitions, quarks, uses, parameters, labels, begun: 0, found: Vec::new() }
     }
 
     /// A plan of the file, with labels and parameters of its own.
-    fn plan(&mut self, plan: &tree::Plan<'a>, parameters: Parameters<'a>, frame: f64) -> Scope {
-        let labels = std::mem::take(&mut self.labels);
+    fn plan(&mut self, plan: &tree::Plan<'a>, parameters: Parameters<'a>, frame: f64) -> (Scope, Ends) {
+        let labels = std::mem::replace(&mut self.labels, Labels::new(RecordId(self.begun)));
+        self.begun = self.begun.saturating_add(1);
         let parameters = std::mem::replace(&mut self.parameters, parameters);
-        let scope = self.scope(plan, frame);
-        (self.labels, self.parameters) = (labels, parameters);
-        scope
+        let (mut scope, ends) = self.scope(plan, frame);
+        self.parameters = parameters;
+        std::mem::replace(&mut self.labels, labels).finish(&mut scope, &mut self.found);
+        (scope, ends)
     }
 
     /// A behavior in place.
-    fn behavior(&mut self, plan: &tree::Plan<'a>, frame: f64) -> Scope {
+    fn behavior(&mut self, plan: &tree::Plan<'a>, frame: f64) -> (Scope, Ends) {
         if !plan.params.is_empty() {
             self.found.push(parameters::missing(plan, "it is written in place"));
             let own = Parameters::declared(plan, &mut self.found);
@@ -106,15 +110,18 @@ impl<'r, 'a> Resolver<'r, 'a> {
         self.scope(plan, frame)
     }
 
-    fn scope(&mut self, plan: &tree::Plan<'a>, frame: f64) -> Scope {
-        let interrupt = self.interrupt(plan.condition.as_ref(), plan.name.span);
+    fn scope(&mut self, plan: &tree::Plan<'a>, frame: f64) -> (Scope, Ends) {
+        let (interrupt, ends) = self.interrupt(plan.condition.as_ref(), plan.name.span);
         let body = self.sequence(plan.elements, frame);
-        Scope { name: plan.name.node.to_owned(), interrupt, body, span: plan.name.span }
+        let (name, span) = (plan.name.node.to_owned(), plan.name.span);
+        (Scope { name, interrupt, body, record: None, marks: Vec::new(), span }, ends)
     }
 
-    fn interrupt(&mut self, condition: Option<&tree::Condition<'a>>, scope: Span) -> Interrupt {
+    fn interrupt(&mut self, condition: Option<&tree::Condition<'a>>, scope: Span) -> (Interrupt, Ends) {
         let names = Names { plans: &self.definitions.names, parameters: &self.parameters };
-        conditions::interrupt(condition, scope, &mut self.quarks, names, &mut self.found)
+        let around = Around { quarks: &mut self.quarks, names, labels: &mut self.labels, found: &mut self.found };
+        let (interrupt, operands) = conditions::interrupt(condition, scope, around);
+        (interrupt, Ends::Operands(operands))
     }
 
     fn sequence(&mut self, elements: &[Element<'a>], frame: f64) -> Vec<Node> {
@@ -126,44 +133,77 @@ impl<'r, 'a> Resolver<'r, 'a> {
     }
 
     fn element(&mut self, element: &Element<'a>, frame: f64, nodes: &mut Vec<Node>) {
-        self.label(element);
+        let first = nodes.len();
+        if let Some(label) = element.label() {
+            self.labels.add(label, &mut self.found);
+        }
         let turned = element.frame().map_or(0.0, |number| self.angle(number));
         let frame = frame + turned;
-        let Some(power) = element.power() else { return self.primary(element, frame, nodes) };
-        let mut body = Vec::new();
-        self.primary(element, frame, &mut body);
-        let times = self.count(power);
-        nodes.push(Node::Loop(Loop { times, body, span: element.span }));
+        let ends = match element.power() {
+            None => self.primary(element, frame, nodes),
+            Some(power) => {
+                let mut body = Vec::new();
+                self.primary(element, frame, &mut body);
+                let times = self.count(power);
+                nodes.push(Node::Loop(Loop { times, body, marks: Vec::new(), span: element.span }));
+                Ends::WithItsLast
+            }
+        };
+        if let Some(label) = element.label() {
+            self.labels.ends(label.node, ends);
+            // An open string ends with its last element.
+            if let Some(last) = nodes.get_mut(first..).and_then(<[Node]>::last_mut) {
+                last.marks_mut().push(self.labels.mark(label.node));
+            }
+        }
     }
 
-    fn primary(&mut self, element: &Element<'a>, frame: f64, nodes: &mut Vec<Node>) {
+    fn primary(&mut self, element: &Element<'a>, frame: f64, nodes: &mut Vec<Node>) -> Ends {
         match &element.primary {
             Primary::Atom(atom) => {
-                let interrupt = self.interrupt(Some(&atom.condition), element.span);
+                let (interrupt, ends) = self.interrupt(Some(&atom.condition), element.span);
                 let names = Names { plans: &self.definitions.names, parameters: &self.parameters };
                 match self.quarks.resolve(atom.control, DeclarationKind::Control, names) {
-                    Ok(law) => nodes.push(Node::Atom(Atom { law, interrupt, frame, span: element.span })),
+                    Ok(law) => {
+                        let (marks, span) = (Vec::new(), element.span);
+                        nodes.push(Node::Atom(Atom { law, interrupt, frame, marks, span }));
+                    }
                     Err(found) => self.found.extend(found),
                 }
+                ends
             }
-            Primary::Plan(plan) => nodes.push(Node::Scope(self.behavior(plan, frame))),
-            Primary::Ref(call) => {
-                let scope = self.reference(call, frame);
-                nodes.extend(scope.map(Node::Scope));
+            Primary::Plan(plan) => {
+                let (scope, ends) = self.behavior(plan, frame);
+                nodes.push(Node::Scope(scope));
+                ends
             }
+            Primary::Ref(call) => match self.reference(call, frame) {
+                Some((scope, ends)) => {
+                    nodes.push(Node::Scope(scope));
+                    ends
+                }
+                None => Ends::Unknown,
+            },
             Primary::Exec(exec) => {
                 let times = self.count(&exec.count);
                 let body = self.sequence(exec.body, frame);
-                nodes.push(Node::Loop(Loop { times, body, span: element.span }));
+                nodes.push(Node::Loop(Loop { times, body, marks: Vec::new(), span: element.span }));
+                Ends::WithItsLast
             }
-            Primary::String(elements) => elements.iter().for_each(|inner| self.element(inner, frame, nodes)),
-            Primary::Formal(_) => self.found.push(not_yet("formal notation", element.span)),
-            Primary::Broken => {}
+            Primary::String(elements) => {
+                elements.iter().for_each(|inner| self.element(inner, frame, nodes));
+                Ends::WithItsLast
+            }
+            Primary::Formal(_) => {
+                self.found.push(not_yet("formal notation", element.span));
+                Ends::Unknown
+            }
+            Primary::Broken => Ends::Unknown,
         }
     }
 
     /// A copy of the plan that `call` names.
-    fn reference(&mut self, call: &Call<'a>, frame: f64) -> Option<Scope> {
+    fn reference(&mut self, call: &Call<'a>, frame: f64) -> Option<(Scope, Ends)> {
         let name = call.name;
         let Some(plan) = self.definitions.get(name) else {
             let unknown = self.unknown_plan(call);
@@ -205,18 +245,6 @@ impl<'r, 'a> Resolver<'r, 'a> {
             Some(near) => report.help(format!("did you mean `{near}`?")),
             None => report.help(format!("write it: `{{ {name} (Atom (wait 10) stop) }}`")),
         }
-    }
-
-    fn label(&mut self, element: &Element) {
-        let Some(label) = element.label() else { return };
-        if let Some(first) = self.labels.get(label.node) {
-            let message = format!("there are two labels `{}` in this plan", label.node);
-            self.found.push(
-                Diagnostic::new(Code::E0203, message, label.span, "the second one").also(*first, "the first one"),
-            );
-            return;
-        }
-        self.labels.insert(label.node.to_owned(), label.span);
     }
 
     /// A loop's passes: at least one, `None` for ever.

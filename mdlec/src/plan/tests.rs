@@ -155,12 +155,35 @@ fn what_a_robot_lacks_and_what_it_cannot_do() {
 
 #[test]
 fn forms_of_a_later_version() {
+    assert_judged!("{ P (stop, bumper, 3s) }");
+}
+
+#[test]
+fn rising_and_after_keep_their_texts() {
     assert_judged!(
-        "{ P (RISING bumper)
-  L: (Atom (bumper) go 1 0)
-  (Atom (after L) stop)
-  (stop, bumper, 3s)
-}"
+        "{ P (RISING bumper OR NOT (RISING (bumper AND wait 5)))
+  s1: (Atom (bumper or (wait 500ms OR r3 < 1) OR r_3 < 2m) stop)
+  (Atom (after s1 bumper OR after s1 (wait 0.5s OR r3 < 100cm) OR NOT (after s1 (r3 < 2))) stop)
+  { Q (after s1) (Atom (after s1) stop) Leg Leg (Atom (RISING bumper) stop) }
+  s2: { R (RISING bumper) (Atom (RISING bumper OR after s2 (RISING bumper)) stop) }
+}
+{ Leg (after s1) s1: (Atom (after s1) stop) }"
+    );
+}
+
+#[test]
+fn labels_and_causes_that_are_none() {
+    assert_judged!(
+        "{ P (after s OR after s3 OR after Leg)
+  s1: (Atom (bumper OR wait 1 AND r3 < 1) stop)
+  s2: ((Atom (bumper) stop))^2
+  (Atom (after s1 (wait 1)) stop) (Atom (after s1 (wait 1 OR bumper)) stop) (Atom (after s2 bumper) stop)
+  s4: Leg (Atom (after s4 bumper OR after s4 (r3 > 1)) stop)
+}
+{ Leg (bumper) s3: (Atom (wait 1) stop) }"
+    );
+    assert_judged!(
+        "{ P s4: Leg (Atom (after s4 bumper OR after s4 (r3 > 1)) stop) } { Leg (bumper) (Atom (wait 1) stop) }"
     );
 }
 

@@ -163,7 +163,8 @@ impl<'l> Atoms<'l> {
 /// The parts of a condition, each operator before its operands.
 fn conditions(condition: &Condition, parts: &mut Vec<Part>) {
     match condition {
-        Condition::Null => parts.push(Part::Null),
+        // What cannot be emitted was refused.
+        Condition::Null | Condition::Rising { .. } | Condition::After(_) => parts.push(Part::Null),
         Condition::Quark(id) => parts.push(Part::Quark(*id)),
         Condition::Wait { nanos, .. } => parts.push(Part::Wait(*nanos)),
         Condition::Elapsed { from, until, .. } => {

@@ -69,13 +69,21 @@ impl Shape {
 /// The forms of a plan that cannot be emitted yet, each as an error.
 #[must_use]
 pub fn not_yet(lowered: &Lowered) -> Vec<Diagnostic> {
-    let has_comparison = |condition: &Condition| {
-        condition.any(&|part| matches!(part, Condition::Quark(id) if lowered.quark(*id).comparison.is_some()))
+    let form = |condition: &Condition| {
+        let has = |is_so: &dyn Fn(&Condition) -> bool| condition.any(&|part| is_so(part));
+        if has(&|part| matches!(part, Condition::Quark(id) if lowered.quark(*id).comparison.is_some())) {
+            return Some("a comparison of signals");
+        }
+        if has(&|part| matches!(part, Condition::Rising { .. })) {
+            return Some("`RISING`");
+        }
+        has(&|part| matches!(part, Condition::After(_))).then_some("`after`")
     };
     let interrupts = lowered.scopes.iter().flatten().map(|scope| &scope.interrupt);
-    let found = interrupts.filter(|interrupt| has_comparison(&interrupt.condition)).map(|interrupt| {
-        let message = "comparisons of signals cannot be compiled for a robot yet";
-        Diagnostic::new(Code::E0199, message, interrupt.span, "for a later version").help("`mdlec trace` runs them")
+    let found = interrupts.filter_map(|interrupt| {
+        let message = format!("{} cannot be compiled for a robot yet", form(&interrupt.condition)?);
+        let found = Diagnostic::new(Code::E0199, message, interrupt.span, "for a later version");
+        Some(found.help("`mdlec trace` runs it"))
     });
     found.collect()
 }

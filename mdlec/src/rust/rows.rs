@@ -130,7 +130,8 @@ impl<'l> Operands<'l> {
     fn row(&mut self, condition: &'l Condition) -> TokenStream {
         let first = Literal::usize_unsuffixed(self.count);
         match condition {
-            Condition::Null => quote!(Null),
+            // What cannot be emitted was refused.
+            Condition::Null | Condition::Rising { .. } | Condition::After(_) => quote!(Null),
             Condition::Quark(id) => {
                 let interrupt = variant("AnyInterrupt", self.lowered.quark(*id));
                 quote!(Quark(#interrupt))

@@ -104,10 +104,12 @@ pub(super) fn expression(
                 quote!((#inner))
             }
             Condition::Null | Condition::Quark(_) | Condition::Not(_) => inner,
+            Condition::Rising { .. } | Condition::After(_) => inner,
         }
     };
     match condition {
-        Condition::Null => quote!(false),
+        // What cannot be emitted was refused.
+        Condition::Null | Condition::Rising { .. } | Condition::After(_) => quote!(false),
         Condition::Quark(id) => {
             let quark = constant(Constant::Quark(*id));
             quote!(runtime::Interrupt::fired(&#quark, y))

@@ -1,11 +1,12 @@
 //! The machine `counted`: the run-time system's own machine on a lowered plan, loops as the paper's counters
 //! (semantics, section 9). It is what robots run, with a script in place of the robot.
 
+use mdle_runtime::fsm::Kind;
 use mdle_runtime::{Begin, Cause, Cursor, Ending, Fsm, Nanos, Next, Transition, Turn, Watch};
 
 use super::{Applied, Fired, Machine, Outcome, Reports};
 use crate::fsm::Lowered;
-use crate::plan::Quark;
+use crate::plan::{Interrupt, Quark, QuarkId, RecordId, Situation};
 
 /// A lowered plan that is run.
 #[derive(Debug)]
@@ -26,7 +27,7 @@ impl<'p> Counted<'p> {
 impl<'p> Machine<'p> for Counted<'p> {
     fn turn(&mut self, reports: &Reports) -> Outcome<'p> {
         let lowered = self.lowered;
-        let begin = || mdle_runtime::Machine::begin(Scripted(lowered), reports, reports.t);
+        let begin = || mdle_runtime::Machine::begin(Scripted::new(lowered), reports, reports.t);
         let machine = self.machine.get_or_insert_with(begin);
         let mut transitions = Transitions { lowered, fired: Vec::new() };
         let turn = machine.turn(reports, reports.t, &mut transitions);
@@ -56,30 +57,112 @@ impl mdle_runtime::Output for Reports {}
 
 /// What a lowered plan means where a script is the robot.
 #[derive(Debug)]
-struct Scripted<'p>(&'p Lowered);
+struct Scripted<'p> {
+    lowered: &'p Lowered,
+    /// The memories of every level of scopes, those of one level side by side.
+    memories: Vec<bool>,
+}
 
-impl Scripted<'_> {
+type At = Cursor<Box<[Nanos]>, Box<[u64]>>;
+
+/// Where a condition is read.
+struct Read<'r, 'p> {
+    scripted: &'r Scripted<'p>,
+    cursor: &'r At,
+    level: u16,
+    y: &'r Reports,
+}
+
+impl Situation for Read<'_, '_> {
+    fn quark(&self, quark: QuarkId) -> bool {
+        self.y.fired.contains(&self.scripted.lowered.quark(quark).text)
+    }
+
+    fn waited(&self, nanos: u64) -> bool {
+        self.cursor.since(self.level, self.y.t) >= Nanos(nanos)
+    }
+
+    fn remembers(&self, memory: u32) -> bool {
+        self.scripted.memories[self.scripted.place(self.level, memory)]
+    }
+
+    fn recorded(&self, record: RecordId, fact: u32) -> bool {
+        let Some(record) = self.scripted.lowered.records.get(&record) else { return false };
+        self.scripted.memories[self.scripted.place(record.level, record.first + fact)]
+    }
+}
+
+impl<'p> Scripted<'p> {
+    fn new(lowered: &'p Lowered) -> Self {
+        let levels = lowered.brackets.iter().map(|bracket| match bracket.kind {
+            Kind::Scope { level } => usize::from(level) + 1,
+            Kind::Loop { .. } => 0,
+        });
+        let levels = if lowered.memories == 0 { 0 } else { levels.max().unwrap_or(0) };
+        Self { lowered, memories: vec![false; levels * lowered.memories] }
+    }
+
+    fn place(&self, level: u16, memory: u32) -> usize {
+        usize::from(level) * self.lowered.memories + memory as usize
+    }
+
+    /// The scopes around the current atom, from its own outwards: level and interrupt.
+    fn scopes(&self, cursor: &At) -> impl Iterator<Item = (u16, &'p Interrupt)> + use<'p> {
+        let lowered = self.lowered;
+        let own = lowered.atoms.get(cursor.atom() as usize).map(|atom| atom.scope);
+        let outwards = std::iter::successors(own, |here| {
+            let parent = lowered.brackets.get(*here as usize)?.parent;
+            (parent != *here).then_some(parent)
+        });
+        outwards.filter_map(|here| {
+            match (lowered.brackets.get(here as usize)?.kind, lowered.scopes.get(here as usize)?) {
+                (Kind::Scope { level }, Some(scope)) => Some((level, &scope.interrupt)),
+                (Kind::Scope { .. } | Kind::Loop { .. }, _) => None,
+            }
+        })
+    }
+
     /// Which scope around the current atom ends, and why.
-    fn ending(&self, cursor: &Cursor<Box<[Nanos]>, Box<[u64]>>, y: &Reports, t: Nanos) -> Option<Cause> {
-        let own = self.0.atoms.get(cursor.atom() as usize)?.scope;
-        let quark = |id| y.fired.contains(&self.0.quark(id).text);
-        let mut outermost = None;
-        let mut here = own;
+    fn ending(&self, cursor: &At, y: &Reports) -> Option<Cause> {
+        let fired = |(level, interrupt): &(u16, &Interrupt)| {
+            interrupt.condition.fired(&Read { scripted: self, cursor, level: *level, y })
+        };
         // Outwards, so that the last one found is the outermost.
-        while let (Some(bracket), Some(meaning)) =
-            (self.0.brackets.get(here as usize), self.0.scopes.get(here as usize))
-        {
-            if let (mdle_runtime::fsm::Kind::Scope { level }, Some(scope)) = (bracket.kind, meaning)
-                && scope.interrupt.condition.fired(&quark, &|nanos| cursor.since(level, t) >= Nanos(nanos))
-            {
-                outermost = Some(Cause::Fired(level));
+        let outermost = self.scopes(cursor).filter(fired).last().map(|(level, _)| Cause::Fired(level));
+        outermost.or_else(|| self.lowered.completed(cursor.atom(), y))
+    }
+
+    /// Writes down what ends when the scope that has this cause ends; what was inside is forgotten.
+    fn record(&mut self, cursor: &At, cause: Cause, y: &Reports) {
+        let level = cause.level();
+        let operand = match cause {
+            Cause::Completed(_) => None,
+            Cause::Fired(_) => self
+                .scopes(cursor)
+                .find(|(here, _)| *here == level)
+                .map(|(_, interrupt)| interrupt.condition.cause(&Read { scripted: self, cursor, level, y })),
+        };
+        let mut outermost = level;
+        let (mut records, mut facts) = (Vec::new(), Vec::new());
+        for (place, (number, bracket)) in cursor.ending(self.lowered.tables(), level).enumerate() {
+            if let Kind::Scope { level } = bracket.kind {
+                outermost = level;
             }
-            if bracket.parent == here {
-                break;
+            for mark in self.lowered.marks.get(&number).into_iter().flatten() {
+                let Some(record) = self.lowered.records.get(&mark.record) else { continue };
+                records.push(*record);
+                let operand = operand.filter(|_| place == 0);
+                let hold = mark.facts.iter().filter(|fact| fact.holds(operand));
+                facts.extend(hold.map(|fact| self.place(record.level, record.first + fact.number)));
             }
-            here = bracket.parent;
         }
-        outermost.or_else(|| self.0.completed(cursor.atom(), y))
+        for record in records {
+            let first = self.place(record.level, record.first);
+            self.memories[first..first + record.facts as usize].fill(false);
+        }
+        facts.into_iter().for_each(|fact| self.memories[fact] = true);
+        let inside = self.place(outermost, 0);
+        self.memories[inside..].fill(false);
     }
 }
 
@@ -90,31 +173,53 @@ impl mdle_runtime::Plan for Scripted<'_> {
     type Left = Box<[u64]>;
 
     fn fsm(&self) -> Fsm<'_> {
-        self.0.tables()
+        self.lowered.tables()
     }
 
     fn slots(&self) -> (Self::Entered, Self::Left) {
-        (vec![Nanos::ZERO; self.0.levels].into(), vec![0; self.0.slots].into())
+        (vec![Nanos::ZERO; self.lowered.levels].into(), vec![0; self.lowered.slots].into())
     }
 
     fn enter(&mut self, _: u32, _: &Reports, _: Begin) {}
 
-    fn next(&mut self, cursor: &mut Cursor<Self::Entered, Self::Left>, y: &Reports, begin: Begin, _: bool) -> Next {
-        self.ending(cursor, y, begin.now).map(Ending::from).into()
+    fn next(&mut self, cursor: &mut At, y: &Reports, _: Begin, _: bool) -> Next {
+        self.ending(cursor, y).map(Ending::from).into()
+    }
+
+    fn leave(&mut self, cursor: &At, cause: Cause, y: &Reports, _: Nanos) {
+        if self.lowered.memories > 0 {
+            self.record(cursor, cause, y);
+        }
+    }
+
+    fn settle(&mut self, cursor: &At, y: &Reports, _: Nanos) {
+        if self.lowered.memories == 0 {
+            return;
+        }
+        let mut set = Vec::new();
+        for (level, interrupt) in self.scopes(cursor) {
+            let read = Read { scripted: self, cursor, level, y };
+            interrupt.condition.each_rising(&mut |memory, operand| {
+                if !operand.fired(&read) {
+                    set.push(self.place(level, memory));
+                }
+            });
+        }
+        set.into_iter().for_each(|memory| self.memories[memory] = true);
     }
 
     fn input(&mut self, _: &Reports, _: Nanos) {}
 
     fn law(&self, atom: u32) -> &str {
-        &self.0.law(atom).text
+        &self.lowered.law(atom).text
     }
 
     fn condition(&self, scope: u32) -> &str {
-        self.0.condition(scope)
+        self.lowered.condition(scope)
     }
 
     fn name(&self, scope: u32) -> &str {
-        self.0.scopes.get(scope as usize).and_then(Option::as_ref).map_or("", |scope| &scope.name)
+        self.lowered.scopes.get(scope as usize).and_then(Option::as_ref).map_or("", |scope| &scope.name)
     }
 }
 
@@ -130,7 +235,7 @@ impl Lowered {
     fn completed(&self, atom: u32, y: &Reports) -> Option<Cause> {
         let law = self.law(atom);
         let bracket = self.brackets.get(self.atoms.get(atom as usize)?.scope as usize)?;
-        let mdle_runtime::fsm::Kind::Scope { level } = bracket.kind else { return None };
+        let Kind::Scope { level } = bracket.kind else { return None };
         (law.completes && y.completed.contains(&law.text)).then_some(Cause::Completed(level))
     }
 }

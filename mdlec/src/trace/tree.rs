@@ -4,7 +4,7 @@
 use mdle_runtime::{Nanos, TRANSITIONS_PER_TURN};
 
 use super::{Applied, Fired, Machine, Outcome, Reports};
-use crate::plan::{Atom, Interrupt, Loop, Node, Plan, Scope};
+use crate::plan::{Atom, Interrupt, Loop, Mark, Node, Plan, QuarkId, RecordId, Scope, Situation};
 
 /// A plan that is walked.
 #[derive(Debug)]
@@ -47,6 +47,47 @@ struct Open {
     /// The number of the first state of this pass, and of what stands at `index`.
     first: u64,
     here: u64,
+    /// The memories of RISING in its interrupt.
+    memories: Vec<bool>,
+    /// For the outermost scope of a definition: what is so of the record.
+    facts: Vec<bool>,
+}
+
+/// A scope that ends.
+struct Ending<'p> {
+    /// Its place among those that are open.
+    place: usize,
+    level: usize,
+    /// What a trace says of it.
+    by: &'p str,
+    /// The operand of its interrupt that was the cause; none where it was its law's completion.
+    operand: Option<u32>,
+}
+
+/// Where a condition is read.
+struct Read<'t, 'p> {
+    tree: &'t Tree<'p>,
+    open: &'t Open,
+    reports: &'t Reports,
+}
+
+impl Situation for Read<'_, '_> {
+    fn quark(&self, quark: QuarkId) -> bool {
+        self.reports.fired.contains(&self.tree.plan.quark(quark).text)
+    }
+
+    fn waited(&self, nanos: u64) -> bool {
+        self.reports.t.since(self.open.entered) >= Nanos(nanos)
+    }
+
+    fn remembers(&self, memory: u32) -> bool {
+        self.open.memories[memory as usize]
+    }
+
+    fn recorded(&self, record: RecordId, fact: u32) -> bool {
+        let kept = self.tree.open.iter().find(|open| self.tree.elements[open.element].record() == Some(record));
+        kept.is_some_and(|open| open.facts[fact as usize])
+    }
 }
 
 impl<'p> Tree<'p> {
@@ -62,35 +103,49 @@ impl<'p> Tree<'p> {
     fn enter(&mut self, element: usize, first: u64, t: Nanos) {
         let mut next = Some(element);
         while let Some(element) = next {
-            self.open.push(Open { element, entered: t, index: 0, pass: 1, first, here: first });
-            let Element { body, held, .. } = self.elements[element];
+            let Element { kind, body, held, .. } = self.elements[element];
+            let memories = kind.interrupt().map_or(0, |interrupt| interrupt.memories as usize);
+            let facts = match kind {
+                Kind::Scope(Scope { record: Some(record), .. }) => record.facts as usize,
+                Kind::Scope(_) | Kind::Loop(_) | Kind::Atom(_) => 0,
+            };
+            let (memories, facts) = (vec![false; memories], vec![false; facts]);
+            self.open.push(Open { element, entered: t, index: 0, pass: 1, first, here: first, memories, facts });
             next = (!body.is_empty()).then_some(held);
         }
     }
 
-    /// The outermost scope whose interrupt has fired, the completion of the atom's law last: its place among those
-    /// that are open, its level and the cause.
-    fn fired(&self, reports: &Reports) -> Option<(usize, usize, &'p str)> {
+    /// The outermost scope whose interrupt has fired, the completion of the atom's law last.
+    fn fired(&self, reports: &Reports) -> Option<Ending<'p>> {
         let mut level = 0;
         for (place, open) in self.open.iter().enumerate() {
-            let interrupt = match self.elements[open.element].kind {
-                Kind::Scope(scope) => &scope.interrupt,
-                Kind::Atom(atom) => &atom.interrupt,
-                Kind::Loop(_) => continue,
-            };
-            if self.has_fired(interrupt, open.entered, reports) {
-                return Some((place, level, &interrupt.text));
+            let Some(interrupt) = self.elements[open.element].kind.interrupt() else { continue };
+            let read = Read { tree: self, open, reports };
+            if interrupt.condition.fired(&read) {
+                let operand = Some(interrupt.condition.cause(&read));
+                return Some(Ending { place, level, by: &interrupt.text, operand });
             }
             level += 1;
         }
         let done = self.law().is_some_and(|law| law.completes && reports.completed.contains(&law.text));
-        done.then(|| (self.open.len() - 1, level - 1, Fired::COMPLETED))
+        done.then(|| Ending { place: self.open.len() - 1, level: level - 1, by: Fired::COMPLETED, operand: None })
     }
 
-    fn has_fired(&self, interrupt: &Interrupt, entered: Nanos, reports: &Reports) -> bool {
-        let quark = |id| reports.fired.contains(&self.plan.quark(id).text);
-        let wait = |nanos| reports.t.since(entered) >= Nanos(nanos);
-        interrupt.condition.fired(&quark, &wait)
+    /// Sets the memory of every RISING around the current atom whose operand has not fired.
+    fn settle(&mut self, reports: &Reports) {
+        for place in 0..self.open.len() {
+            let open = &self.open[place];
+            let mut low = Vec::new();
+            if let Some(interrupt) = self.elements[open.element].kind.interrupt() {
+                let read = Read { tree: self, open, reports };
+                interrupt.condition.each_rising(&mut |memory, operand| {
+                    if !operand.fired(&read) {
+                        low.push(memory as usize);
+                    }
+                });
+            }
+            low.into_iter().for_each(|memory| self.open[place].memories[memory] = true);
+        }
     }
 
     fn law(&self) -> Option<&'p crate::plan::Quark> {
@@ -108,9 +163,12 @@ impl<'p> Tree<'p> {
         }
     }
 
-    /// Ends the scope at this place and goes outward to the first element that has a successor.
-    fn leave(&mut self, place: usize, t: Nanos) {
-        self.open.truncate(place);
+    /// Ends a scope and goes outward to the first element that has a successor.
+    fn leave(&mut self, ending: &Ending<'p>, t: Nanos) {
+        let mut ended = Vec::new();
+        let first = self.elements[self.open[ending.place].element].kind;
+        ended.push((first.marks(), ending.operand));
+        self.open.truncate(ending.place);
         while let Some(open) = self.open.last_mut() {
             let Element { kind, body, held, states } = self.elements[open.element];
             if open.index + 1 < body.len() {
@@ -125,11 +183,34 @@ impl<'p> Tree<'p> {
                 open.first = open.first.saturating_add(if repeated.times.is_some() { states } else { 0 });
                 open.here = open.first;
             } else {
+                // It has ended because its last element has.
+                ended.push((kind.marks(), None));
                 self.open.pop();
                 continue;
             }
             let (next, first) = (held + open.index, open.here);
+            self.record(&ended);
             return self.enter(next, first, t);
+        }
+    }
+
+    /// Replaces the record of each definition of which labelled elements have ended, each with the operand that was its
+    /// cause.
+    fn record(&mut self, ended: &[(&[Mark], Option<u32>)]) {
+        let marks = || ended.iter().flat_map(|(marks, operand)| marks.iter().map(move |mark| (mark, *operand)));
+        for open in &mut self.open {
+            let Some(record) = self.elements[open.element].record() else { continue };
+            let of_this = || marks().filter(|(mark, _)| mark.record == record);
+            if of_this().next().is_none() {
+                continue;
+            }
+            open.facts.fill(false);
+            for (mark, operand) in of_this() {
+                mark.facts
+                    .iter()
+                    .filter(|fact| fact.holds(operand))
+                    .for_each(|fact| open.facts[fact.number as usize] = true);
+            }
         }
     }
 }
@@ -137,19 +218,49 @@ impl<'p> Tree<'p> {
 impl<'p> Machine<'p> for Tree<'p> {
     fn turn(&mut self, reports: &Reports) -> Outcome<'p> {
         let mut fired = Vec::new();
-        while let Some((place, level, by)) = self.fired(reports) {
+        while let Some(ending) = self.fired(reports) {
             if fired.len() == TRANSITIONS_PER_TURN as usize {
+                self.settle(reports);
                 return Outcome { state: self.state(), applied: Applied::Cut, fired };
             }
-            fired.push(Fired { from: self.state(), level, by });
-            self.leave(place, reports.t);
+            fired.push(Fired { from: self.state(), level: ending.level, by: ending.by });
+            self.leave(&ending, reports.t);
         }
+        self.settle(reports);
         let applied = self.law().map_or(Applied::Over, |law| Applied::Law(&law.text));
         Outcome { state: self.state(), applied, fired }
     }
 }
 
+impl<'p> Kind<'p> {
+    /// Its interrupt, unless it is a loop.
+    fn interrupt(self) -> Option<&'p Interrupt> {
+        match self {
+            Self::Scope(scope) => Some(&scope.interrupt),
+            Self::Atom(atom) => Some(&atom.interrupt),
+            Self::Loop(_) => None,
+        }
+    }
+
+    /// The labels of what ends with it.
+    fn marks(self) -> &'p [Mark] {
+        match self {
+            Self::Scope(scope) => &scope.marks,
+            Self::Atom(atom) => &atom.marks,
+            Self::Loop(repeated) => &repeated.marks,
+        }
+    }
+}
+
 impl Element<'_> {
+    /// The record that is kept with it.
+    fn record(&self) -> Option<RecordId> {
+        match self.kind {
+            Kind::Scope(scope) => scope.record.map(|record| record.id),
+            Kind::Loop(_) | Kind::Atom(_) => None,
+        }
+    }
+
     /// Its states in the expanded plan, all passes of a finite loop together.
     fn all_states(&self) -> u64 {
         match self.kind {

@@ -63,6 +63,22 @@ impl<E: Slots<Nanos>, P: Slots<u64>> Cursor<E, P> {
         })
     }
 
+    /// The brackets that end when the scope of this level around the current atom ends: that scope first, then those
+    /// around it whose last element has ended, a loop with its last pass.
+    pub fn ending<'f>(&self, fsm: Fsm<'f>, level: u16) -> impl Iterator<Item = (u32, &'f Bracket)> {
+        let mut outwards = fsm.outwards(self.scope(fsm, level));
+        let ended = outwards.next();
+        let last = ended.map_or(0, |(_, bracket)| bracket.last);
+        let around = outwards.take_while(move |(_, around)| around.last == last && !self.has_pass(around));
+        ended.into_iter().chain(around)
+    }
+
+    /// Whether `bracket` is a loop that has a pass left.
+    fn has_pass(&self, bracket: &Bracket) -> bool {
+        let Kind::Loop { times, slot, .. } = bracket.kind else { return false };
+        times == 0 || self.left.as_ref().get(usize::from(slot)).is_some_and(|left| *left > 0)
+    }
+
     /// Ends the scope of this level around the current atom, at time `t`, and moves to what follows it.
     /// Returns whether there is such an atom: if not, the plan is over.
     pub fn end(&mut self, fsm: Fsm<'_>, level: u16, t: Nanos) -> bool {

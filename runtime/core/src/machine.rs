@@ -82,7 +82,7 @@ impl<P: Plan> Machine<P> {
         }
         let begin = Begin { now: t, frame: self.frame };
         match self.plan.next(&mut self.cursor, y, begin, !W::LOOKS) {
-            Next::Stays => Turn::Law(self.plan.input(y, t)),
+            Next::Stays => self.law(y, t),
             Next::Moved => self.go_on(y, t, watch),
             Next::Over => Turn::Over,
             Next::Ends(Ending { follows: Some(follows), .. }) if !W::LOOKS && follows.is_over() => {
@@ -101,7 +101,7 @@ impl<P: Plan> Machine<P> {
         let mut made: u32 = 1;
         loop {
             match self.plan.next(&mut self.cursor, y, begin, made < TRANSITIONS_PER_TURN) {
-                Next::Stays => return Turn::Law(self.plan.input(y, t)),
+                Next::Stays => return self.law(y, t),
                 Next::Moved => made = made.saturating_add(1),
                 Next::Over => return Turn::Over,
                 Next::Ends(_) => return self.search(made, y, t, watch),
@@ -115,12 +115,15 @@ impl<P: Plan> Machine<P> {
         let begin = Begin { now: t, frame: self.frame };
         loop {
             let ending = match self.plan.next(&mut self.cursor, y, begin, false) {
-                Next::Stays | Next::Moved => return Turn::Law(self.plan.input(y, t)),
+                Next::Stays | Next::Moved => return self.law(y, t),
                 Next::Over => return Turn::Over,
-                Next::Ends(_) if made == TRANSITIONS_PER_TURN => return Turn::Cut,
+                Next::Ends(_) if made == TRANSITIONS_PER_TURN => {
+                    self.plan.settle(&self.cursor, y, t);
+                    return Turn::Cut;
+                }
                 Next::Ends(ending) => ending,
             };
-            self.step(ending, t, watch);
+            self.step(ending, y, t, watch);
             if self.is_over() {
                 return Turn::Over;
             }
@@ -129,8 +132,16 @@ impl<P: Plan> Machine<P> {
         }
     }
 
+    /// Applies the law of the atom that is left standing.
+    #[inline(always)]
+    fn law(&mut self, y: &P::Output, t: Nanos) -> Turn<P::Input> {
+        self.plan.settle(&self.cursor, y, t);
+        Turn::Law(self.plan.input(y, t))
+    }
+
     /// Makes the transition that `ending` asks for.
-    fn step<W: Watch>(&mut self, ending: Ending, t: Nanos, watch: &mut W) {
+    fn step<W: Watch>(&mut self, ending: Ending, y: &P::Output, t: Nanos, watch: &mut W) {
+        self.plan.leave(&self.cursor, ending.cause, y, t);
         let (fsm, level) = (self.plan.fsm(), ending.cause.level());
         let looked = W::LOOKS.then(|| (self.cursor.state(fsm), self.cursor.scope(fsm, level)));
         match ending.follows {

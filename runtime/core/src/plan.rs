@@ -43,6 +43,7 @@ pub trait Plan {
         direct: bool,
     ) -> Next {
         let Some(follows) = ending.follows.filter(|_| direct) else { return Next::Ends(ending) };
+        self.leave(cursor, ending.cause, y, begin.now);
         cursor.follow(follows, begin.now);
         if follows.is_over() {
             return Next::Over;
@@ -50,6 +51,16 @@ pub trait Plan {
         self.enter(cursor.atom(), y, begin);
         Next::Moved
     }
+
+    /// Told before the cursor leaves a scope: a plan that remembers what has ended writes that down, and forgets what was
+    /// inside. [`Cursor::ending`] says what ends.
+    #[inline(always)]
+    fn leave(&mut self, _cursor: &Cursor<Self::Entered, Self::Left>, _cause: Cause, _y: &Self::Output, _t: Nanos) {}
+
+    /// Told when the atom of a turn is found, before its law is applied: a plan that remembers what has not fired writes
+    /// that down.
+    #[inline(always)]
+    fn settle(&mut self, _cursor: &Cursor<Self::Entered, Self::Left>, _y: &Self::Output, _t: Nanos) {}
 
     /// The input that the current atom's law computes.
     fn input(&mut self, y: &Self::Output, t: Nanos) -> Self::Input;

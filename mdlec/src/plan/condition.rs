@@ -1,0 +1,123 @@
+//! Conditions as a machine reads them (semantics, section 2): what they are made of, and their value in a situation.
+
+use super::{QuarkId, RecordId};
+
+/// A condition; `true` is "has fired".
+#[derive(Debug, Clone, PartialEq)]
+pub enum Condition {
+    /// Never fires: `null`, `wait inf`, or what degeneracy removal left.
+    Null,
+    /// An interrupt quark.
+    Quark(QuarkId),
+    /// Fires once this many nanoseconds have passed since the scope of the interrupt was entered.
+    Wait {
+        /// The nanoseconds.
+        nanos: u64,
+        /// The quark, for its text and its exact value.
+        quark: QuarkId,
+    },
+    /// Fires while the time since the scope of the interrupt was entered is in this interval: a comparison of `t`.
+    Elapsed {
+        /// From so many nanoseconds on ...
+        from: u64,
+        /// ... and until so many have passed.
+        until: Option<u64>,
+        /// The comparison, for its text.
+        quark: QuarkId,
+    },
+    /// At least one of these, two or more.
+    Or(Vec<Condition>),
+    /// All of these, two or more.
+    And(Vec<Condition>),
+    /// Not this.
+    Not(Box<Condition>),
+    /// This, and the memory is set that it had once not fired.
+    Rising {
+        /// The number of the memory among those of the interrupt.
+        memory: u32,
+        /// This.
+        operand: Box<Condition>,
+    },
+    /// A labelled element has ended last.
+    After(After),
+}
+
+/// `after L`, or `after L c`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct After {
+    /// Whose record it asks.
+    pub record: RecordId,
+    /// What it asks of it.
+    pub fact: u32,
+    /// Its text.
+    pub text: String,
+}
+
+/// What a condition asks of the machine that runs the plan, about one scope.
+pub trait Situation {
+    /// Whether a quark has fired.
+    fn quark(&self, quark: QuarkId) -> bool;
+    /// Whether so many nanoseconds have passed since the scope was entered.
+    fn waited(&self, nanos: u64) -> bool;
+    /// Whether a memory of the scope's interrupt is set.
+    fn remembers(&self, memory: u32) -> bool;
+    /// Whether this is so of a record.
+    fn recorded(&self, record: RecordId, fact: u32) -> bool;
+}
+
+impl Condition {
+    /// Its value in a situation. Reads every operand.
+    pub fn fired(&self, at: &impl Situation) -> bool {
+        match self {
+            Self::Null => false,
+            Self::Quark(id) => at.quark(*id),
+            Self::Wait { nanos, .. } => at.waited(*nanos),
+            Self::Elapsed { from, until, .. } => at.waited(*from) & !until.is_some_and(|until| at.waited(until)),
+            Self::Or(operands) => operands.iter().fold(false, |fired, operand| fired | operand.fired(at)),
+            Self::And(operands) => operands.iter().fold(true, |fired, operand| fired & operand.fired(at)),
+            Self::Not(operand) => !operand.fired(at),
+            Self::Rising { memory, operand } => at.remembers(*memory) & operand.fired(at),
+            Self::After(after) => at.recorded(after.record, after.fact),
+        }
+    }
+
+    /// The first operand of its outermost OR that has fired, as written; the first and only one where it is no OR.
+    pub fn cause(&self, at: &impl Situation) -> u32 {
+        let operands = match self {
+            Self::Or(operands) => operands.as_slice(),
+            other => std::slice::from_ref(other),
+        };
+        (0..).zip(operands).find(|(_, operand)| operand.fired(at)).map_or(0, |(number, _)| number)
+    }
+
+    /// Whether it asks when its scope was entered.
+    #[must_use]
+    pub fn waits(&self) -> bool {
+        self.any(&|part| matches!(part, Self::Wait { .. } | Self::Elapsed { .. }))
+    }
+
+    /// Visits every RISING in it: the number of its memory, and its operand.
+    pub fn each_rising(&self, visit: &mut impl FnMut(u32, &Self)) {
+        match self {
+            Self::Null | Self::Quark(_) | Self::Wait { .. } | Self::Elapsed { .. } | Self::After(_) => {}
+            Self::Or(operands) | Self::And(operands) => {
+                operands.iter().for_each(|operand| operand.each_rising(visit));
+            }
+            Self::Not(operand) => operand.each_rising(visit),
+            Self::Rising { memory, operand } => {
+                visit(*memory, operand);
+                operand.each_rising(visit);
+            }
+        }
+    }
+
+    /// Whether this is so of the condition or any of its operands.
+    pub fn any(&self, is_so: &impl Fn(&Self) -> bool) -> bool {
+        is_so(self)
+            || match self {
+                Self::Null | Self::Quark(_) | Self::Wait { .. } | Self::Elapsed { .. } | Self::After(_) => false,
+                Self::Or(operands) | Self::And(operands) => operands.iter().any(|operand| operand.any(is_so)),
+                Self::Not(operand) | Self::Rising { operand, .. } => operand.any(is_so),
+            }
+    }
+}

@@ -1,0 +1,158 @@
+//! The labels of one use of a definition, and what `after` asks about them (language, section 3).
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{Fact, Mark, Node, Record, RecordId, Scope};
+use crate::alphabet;
+use crate::diagnostic::{Code, Diagnostic, Span};
+use crate::syntax::tree::Name;
+
+/// The labels of one use of a definition.
+#[derive(Debug, Clone)]
+pub(super) struct Labels {
+    record: RecordId,
+    labels: BTreeMap<String, Label>,
+    /// What is asked, by label and cause, with its number and its place.
+    asked: BTreeMap<(String, Option<String>), Asked>,
+}
+
+/// A label with what ends the element.
+#[derive(Debug, Clone)]
+struct Label {
+    span: Span,
+    ends: Ends,
+}
+
+/// What can be the cause that an element ends.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Ends {
+    /// These operands of its interrupt.
+    Operands(Vec<String>),
+    /// None: it has no interrupt of its own.
+    WithItsLast,
+    /// Not known, since what is there is used by name and not copied yet.
+    Unknown,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Asked {
+    number: u32,
+    label: Span,
+    cause: Option<Span>,
+}
+
+impl Labels {
+    /// Those of a use that begins, whose record has this number.
+    pub(super) fn new(record: RecordId) -> Self {
+        Self { record, labels: BTreeMap::new(), asked: BTreeMap::new() }
+    }
+
+    /// Notes a label, or says where it stands already.
+    pub(super) fn add(&mut self, label: Name<'_>, found: &mut Vec<Diagnostic>) {
+        if let Some(first) = self.labels.get(label.node) {
+            let message = format!("there are two labels `{}` in this plan", label.node);
+            found.push(
+                Diagnostic::new(Code::E0203, message, label.span, "the second one").also(first.span, "the first one"),
+            );
+            return;
+        }
+        self.labels.insert(label.node.to_owned(), Label { span: label.span, ends: Ends::WithItsLast });
+    }
+
+    /// Notes what ends the element of a label.
+    pub(super) fn ends(&mut self, label: &str, ends: Ends) {
+        if let Some(label) = self.labels.get_mut(label) {
+            label.ends = ends;
+        }
+    }
+
+    /// A mark for the node that the element of a label ends with.
+    pub(super) fn mark(&self, label: &str) -> Mark {
+        Mark { record: self.record, label: label.to_owned(), facts: Vec::new() }
+    }
+
+    /// The number of what is asked.
+    pub(super) fn asked(&mut self, label: Name<'_>, cause: Option<(String, Span)>) -> (RecordId, u32) {
+        let (words, span) = cause.unzip();
+        let number = u32::try_from(self.asked.len()).unwrap_or(u32::MAX);
+        let asked = Asked { number, label: label.span, cause: span };
+        let asked = self.asked.entry((label.node.to_owned(), words)).or_insert(asked);
+        (self.record, asked.number)
+    }
+
+    /// Ends the use whose outermost scope this is: marks know what is asked of them, and are gone where nothing is.
+    pub(super) fn finish(self, scope: &mut Scope, found: &mut Vec<Diagnostic>) {
+        let mut facts: BTreeMap<&str, Vec<Fact>> = BTreeMap::new();
+        for ((label, cause), asked) in &self.asked {
+            match self.operand(label, cause.as_deref(), *asked) {
+                Ok(operand) => {
+                    facts.entry(label.as_str()).or_default().push(Fact { number: asked.number, operand });
+                }
+                Err(wrong) => found.push(*wrong),
+            }
+        }
+        if !self.asked.is_empty() {
+            scope.record = Some(Record { id: self.record, facts: u32::try_from(self.asked.len()).unwrap_or(u32::MAX) });
+        }
+        let is_asked = !self.asked.is_empty();
+        if !self.labels.is_empty() {
+            visit(&mut scope.body, &mut |marks| {
+                for mark in marks.iter_mut().filter(|mark| mark.record == self.record) {
+                    mark.facts = facts.get(mark.label.as_str()).cloned().unwrap_or_default();
+                }
+                marks.retain(|mark| mark.record != self.record || is_asked);
+            });
+        }
+    }
+
+    /// The operand that has to be the cause, if any has to be.
+    fn operand(&self, label: &str, cause: Option<&str>, asked: Asked) -> Result<Option<u32>, Box<Diagnostic>> {
+        let Some(known) = self.labels.get(label) else { return Err(self.unknown(label, asked.label).into()) };
+        let (Some(cause), Some(span)) = (cause, asked.cause) else { return Ok(None) };
+        let here = |text: &str| Diagnostic::new(Code::E0207, text, span, "not a cause").also(known.span, "the label");
+        match &known.ends {
+            Ends::Unknown => Ok(None),
+            Ends::WithItsLast => {
+                let message = format!("`{label}` has no interrupt of its own, so nothing but its last element ends it");
+                Err(here(&message).help(format!("leave the cause out: `after {label}`")).into())
+            }
+            Ends::Operands(operands) => {
+                let place = (0..).zip(operands).find(|(_, operand)| *operand == cause).map(|(place, _)| place);
+                place.map(Some).ok_or_else(|| {
+                    let message = format!("`{cause}` is no operand of the interrupt of `{label}`");
+                    let meant: BTreeSet<_> = operands.iter().map(|operand| cause_of(label, operand)).collect();
+                    let meant: Vec<_> = meant.into_iter().collect();
+                    here(&message).help(format!("write {}, or `after {label}`", meant.join(" or "))).into()
+                })
+            }
+        }
+    }
+
+    fn unknown(&self, label: &str, span: Span) -> Diagnostic {
+        let message = format!("there is no label `{label}` in this plan");
+        let found = Diagnostic::new(Code::E0201, message, span, "not a label");
+        match alphabet::nearest(label, self.labels.keys().map(String::as_str)) {
+            Some(near) => found.help(format!("did you mean `{near}`?")),
+            None => found.help(format!("a label stands before an element of the same plan: `{label}: (Atom …)`")),
+        }
+    }
+}
+
+/// `after s1 bumper`, with parentheses where the operand is more than a quark.
+fn cause_of(label: &str, operand: &str) -> String {
+    let is_more =
+        [" OR ", " AND ", "NOT ", "RISING ", "after ", "<", ">", "=="].iter().any(|word| operand.contains(word));
+    if is_more { format!("`after {label} ({operand})`") } else { format!("`after {label} {operand}`") }
+}
+
+/// Visits the marks of all nodes.
+fn visit(body: &mut [Node], each: &mut impl FnMut(&mut Vec<Mark>)) {
+    for node in body {
+        each(node.marks_mut());
+        match node {
+            Node::Atom(_) => {}
+            Node::Scope(scope) => visit(&mut scope.body, each),
+            Node::Loop(repeated) => visit(&mut repeated.body, each),
+        }
+    }
+}
