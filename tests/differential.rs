@@ -27,6 +27,10 @@ struct Seen {
     chains: usize,
     completions: usize,
     repeated: usize,
+    /// Turns in which a condition with RISING, with `after`, or with a comparison ended something.
+    rising: usize,
+    after: usize,
+    compared: usize,
 }
 
 #[test]
@@ -43,7 +47,16 @@ fn every_machine_prints_the_same_trace() {
     }
     println!("{seen:?}");
     assert!(seen.refused < seen.plans / 50, "{seen:?}");
-    let rare = [seen.over, seen.cut * 10, seen.chains, seen.completions, seen.repeated];
+    let rare = [
+        seen.over,
+        seen.cut * 10,
+        seen.chains,
+        seen.completions,
+        seen.repeated,
+        seen.rising,
+        seen.after,
+        seen.compared,
+    ];
     assert!(rare.iter().all(|count| *count > seen.plans / 10), "{seen:?}");
 }
 
@@ -81,6 +94,10 @@ fn compare(seed: u64, forms: Forms, text: &str, script: &str, seen: &mut Seen) {
         seen.over += usize::from(*applied == Applied::Over);
         seen.cut += usize::from(*applied == Applied::Cut);
         seen.chains += usize::from(fired.len() > 1);
+        let by = |word: &str| usize::from(fired.iter().any(|transition| transition.by.contains(word)));
+        seen.rising += by("RISING");
+        seen.after += by("after s");
+        seen.compared += by(" > ");
         seen.completions += usize::from(fired.iter().any(|transition| transition.by == Fired::COMPLETED));
     }
 }

@@ -19,6 +19,8 @@ struct Scope {
     name: &'static str,
     /// Its condition as text; `None` if it has none.
     condition: Option<String>,
+    /// Its timer, if it is written in formal notation, which has no name.
+    formal: Option<&'static str>,
     body: Vec<Element>,
 }
 
@@ -30,6 +32,8 @@ enum Element {
     Atom {
         condition: String,
         law: String,
+        /// As for a scope.
+        formal: Option<&'static str>,
     },
     Scope(Scope),
     Loop {
@@ -115,7 +119,7 @@ impl Growth<'_> {
     fn scope(&mut self, depth: usize) -> Scope {
         let name = self.chance.pick(NAMES);
         let condition = self.chance.percent(85).then(|| self.condition());
-        Scope { name, condition, body: self.body(depth) }
+        Scope { name, condition, formal: None, body: self.body(depth) }
     }
 
     fn condition(&mut self) -> String {
@@ -125,8 +129,13 @@ impl Growth<'_> {
         condition(self.chance, self.forms)
     }
 
+    /// Whether an element is written in formal notation, and with which timer.
+    fn formal(&mut self) -> Option<&'static str> {
+        self.chance.percent(20).then(|| self.chance.pick(&["", ", 0.25", ", 100ms", ", 1s", ", inf"]))
+    }
+
     fn law(&mut self) -> String {
-        if self.own && self.chance.percent(20) { "drive v".to_owned() } else { law(self.chance) }
+        if self.own && self.chance.percent(20) { "drive(v)".to_owned() } else { law(self.chance) }
     }
 
     fn arguments(&mut self) -> String {
@@ -149,12 +158,12 @@ impl Growth<'_> {
     fn unlabelled(&mut self, depth: usize) -> Element {
         if depth == 0 || self.atoms == 0 || self.chance.percent(35) {
             self.atoms = self.atoms.saturating_sub(1);
-            return Element::Atom { condition: self.condition(), law: self.law() };
+            return Element::Atom { condition: self.condition(), law: self.law(), formal: self.formal() };
         }
         match (self.chance.below(10), self.other) {
             (0 | 1, Some(name)) => Element::Reference(name, self.given.then(|| self.arguments())),
             (2, _) => Element::String(self.body(depth - 1)),
-            (0..=5, _) => Element::Scope(self.scope(depth - 1)),
+            (0..=5, _) => Element::Scope(Scope { formal: self.formal(), ..self.scope(depth - 1) }),
             _ => self.repeated(depth),
         }
     }
@@ -235,7 +244,8 @@ fn asked(chance: &mut Chance, labels: &Labels) -> String {
     let (label, condition) = &labels[chance.below(labels.len())];
     let mut operands = condition.as_deref().map(operands).unwrap_or_default();
     // Parentheses around the whole of it are none of an operand.
-    operands.retain(|operand| !(operand.starts_with('(') && Some(*operand) == condition.as_deref()));
+    operands
+        .retain(|operand| *operand != "null" && !(operand.starts_with('(') && Some(*operand) == condition.as_deref()));
     // An operand that asks a label itself is not written out yet.
     let operands: Vec<_> = operands.into_iter().filter(|operand| !operand.contains(AFTER)).collect();
     if operands.is_empty() || chance.percent(40) {
@@ -256,6 +266,12 @@ impl fmt::Display for RandomPlan {
 }
 
 impl Scope {
+    fn write_formally(&self, time: &str, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("(")?;
+        write_all(&self.body, f)?;
+        write!(f, ", {}{time})", self.condition.as_deref().unwrap_or("null"))
+    }
+
     fn write(&self, name: &str, parameters: &str, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{{ {name}{parameters}")?;
         match (&self.condition, self.body.first()) {
@@ -272,6 +288,11 @@ impl Scope {
     }
 }
 
+/// A law without parentheses around it.
+fn bare(law: &str) -> &str {
+    law.strip_prefix('(').map_or(law, |law| law.trim_end_matches(')'))
+}
+
 fn write_all(elements: &[Element], f: &mut fmt::Formatter<'_>) -> fmt::Result {
     elements.iter().try_for_each(|element| write!(f, " {element}"))
 }
@@ -280,7 +301,11 @@ impl fmt::Display for Element {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Labelled(label, element) => write!(f, "{label}: {element}"),
-            Self::Atom { condition, law } => write!(f, "(Atom ({condition}) {law})"),
+            Self::Atom { condition, law, formal: Some(time) } => {
+                write!(f, "({}, {condition}{time})", bare(law))
+            }
+            Self::Atom { condition, law, formal: None } => write!(f, "(Atom ({condition}) {law})"),
+            Self::Scope(scope @ Scope { formal: Some(time), .. }) => scope.write_formally(time, f),
             Self::Scope(scope) => scope.write(scope.name, "", f),
             Self::Reference(name, None) => f.write_str(name),
             Self::Reference(name, Some(arguments)) => write!(f, "{name}({arguments})"),

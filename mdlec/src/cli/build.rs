@@ -102,6 +102,7 @@ fn stage(options: &Build, path: &Path, kind: EmitKind) -> Result<String, Failure
     let nondegenerate = &compiled.nondegenerate;
     let text = match kind {
         EmitKind::Plan => Ok(compiled.plan.to_string()),
+        EmitKind::Formal => Ok(compiled.plan.formal()),
         EmitKind::Nondegenerate => Ok(nondegenerate.plan().to_string()),
         EmitKind::Expanded => fsm::expand(nondegenerate).map(|expanded| expanded.plan().numbered()),
         EmitKind::Fsm => fsm::fsm_file(nondegenerate).map(|file| file.to_json()),

@@ -90,6 +90,8 @@ enum EmitKind {
     Expanded,
     /// The finite state machine, as JSON
     Fsm,
+    /// The plan in the paper's formal notation
+    Formal,
     /// The Rust that is compiled
     Rust,
     /// The executable

@@ -8,6 +8,7 @@ mod comparisons;
 mod condition;
 mod conditions;
 mod definitions;
+mod formal;
 mod labels;
 mod nondegenerate;
 mod parameters;

@@ -10,7 +10,7 @@ use super::{Atom, Decimal, Interrupt, Loop, Node, Plan, RecordId, Scope};
 use crate::alphabet::{self, Alphabet, DeclarationKind, Kind, Unit};
 use crate::diagnostic::{Code, Diagnostic, Span, has_errors};
 use crate::syntax::Files;
-use crate::syntax::tree::{self, Arg, Call, Count, Element, Number, Primary};
+use crate::syntax::tree::{self, Arg, Call, ConditionNode, Count, Element, Formal, Number, Primary};
 
 /// The largest angle of a FRAME, in its unit: far beyond a full circle, and sums of it are still exact enough.
 const FRAME: f64 = 100_000.0;
@@ -52,12 +52,6 @@ pub fn resolve(files: &Files, alphabet: &Alphabet, wanted: Option<&str>) -> (Vec
         found.extend(roots().flat_map(|plan| copy(&plan).1));
     }
     if has_errors(&found) { (Vec::new(), found) } else { (plans, found) }
-}
-
-/// E0199: a form of the language that this version reads but cannot run.
-pub(super) fn not_yet(what: &str, span: Span) -> Diagnostic {
-    let message = format!("{what}: not yet, this version reads it but cannot run it");
-    Diagnostic::new(Code::E0199, message, span, "for a later version")
 }
 
 /// What to do where a plan is used by name.
@@ -117,7 +111,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         (Scope { name, interrupt, body, record: None, marks: Vec::new(), span }, ends)
     }
 
-    fn interrupt(&mut self, condition: Option<&tree::Condition<'a>>, scope: Span) -> (Interrupt, Ends) {
+    fn interrupt(&mut self, condition: Option<&tree::Condition<'_>>, scope: Span) -> (Interrupt, Ends) {
         let names = Names { plans: &self.definitions.names, parameters: &self.parameters };
         let around = Around { quarks: &mut self.quarks, names, labels: &mut self.labels, found: &mut self.found };
         let (interrupt, operands) = conditions::interrupt(condition, scope, around);
@@ -162,14 +156,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         match &element.primary {
             Primary::Atom(atom) => {
                 let (interrupt, ends) = self.interrupt(Some(&atom.condition), element.span);
-                let names = Names { plans: &self.definitions.names, parameters: &self.parameters };
-                match self.quarks.resolve(atom.control, DeclarationKind::Control, names) {
-                    Ok(law) => {
-                        let (marks, span) = (Vec::new(), element.span);
-                        nodes.push(Node::Atom(Atom { law, interrupt, frame, marks, span }));
-                    }
-                    Err(found) => self.found.extend(found),
-                }
+                self.atom(atom.control, interrupt, frame, element.span, nodes);
                 ends
             }
             Primary::Plan(plan) => {
@@ -194,12 +181,61 @@ impl<'r, 'a> Resolver<'r, 'a> {
                 elements.iter().for_each(|inner| self.element(inner, frame, nodes));
                 Ends::WithItsLast
             }
-            Primary::Formal(_) => {
-                self.found.push(not_yet("formal notation", element.span));
-                Ends::Unknown
-            }
+            Primary::Formal(formal) => self.formal(formal, element.span, frame, nodes),
             Primary::Broken => Ends::Unknown,
         }
+    }
+
+    fn atom(&mut self, law: &Call<'a>, interrupt: Interrupt, frame: f64, span: Span, nodes: &mut Vec<Node>) {
+        let names = Names { plans: &self.definitions.names, parameters: &self.parameters };
+        match self.quarks.resolve(law, DeclarationKind::Control, names) {
+            Ok(law) => nodes.push(Node::Atom(Atom { law, interrupt, frame, marks: Vec::new(), span })),
+            Err(found) => self.found.extend(found),
+        }
+    }
+
+    /// `(u, ξ, T)` or `(s, ξ, T)`: an atom if what it runs is one law, else a scope without a name.
+    fn formal(&mut self, formal: &Formal<'a>, span: Span, frame: f64, nodes: &mut Vec<Node>) -> Ends {
+        let (interrupt, ends) = self.timed(formal, span);
+        match formal.body {
+            [Element { primary: Primary::Ref(law), marks: None, .. }] if self.is_law(law) => {
+                self.atom(law, interrupt, frame, span, nodes);
+            }
+            elements => {
+                let (name, body) = (String::new(), self.sequence(elements, frame));
+                nodes.push(Node::Scope(Scope { name, interrupt, body, record: None, marks: Vec::new(), span }));
+            }
+        }
+        ends
+    }
+
+    /// Whether a name in the place of a law or a plan is no plan: laws have arguments without parentheses, too.
+    fn is_law(&self, call: &Call<'a>) -> bool {
+        let mut declarations = self.quarks.alphabet().declarations_of(call.name);
+        let is_bare = !call.args.is_empty() && self.definitions.get(call.name).is_none();
+        is_bare || declarations.any(|declaration| declaration.kind == DeclarationKind::Control)
+    }
+
+    /// The interrupt of a scope in formal notation: `ξ OR wait T`.
+    fn timed(&mut self, formal: &Formal<'a>, span: Span) -> (Interrupt, Ends) {
+        let Some(time) = formal.time else { return self.interrupt(Some(&formal.condition), span) };
+        let (args, here) = ([time], time.span());
+        let wait = Call { name: "wait", args: &args, span: here };
+        let wait = tree::Condition { node: ConditionNode::Call(&wait), span: here };
+        let whole = |node| tree::Condition { node, span: formal.condition.span.to(here) };
+        let operands = match formal.condition.node {
+            ConditionNode::Null => return self.interrupt(Some(&whole(wait.node)), span),
+            ConditionNode::Or(operands) => operands,
+            ConditionNode::And(_)
+            | ConditionNode::Not(_)
+            | ConditionNode::Rising(_)
+            | ConditionNode::Call(_)
+            | ConditionNode::Comparison(_)
+            | ConditionNode::After(_)
+            | ConditionNode::Broken => std::slice::from_ref(&formal.condition),
+        };
+        let operands: Vec<_> = operands.iter().copied().chain([wait]).collect();
+        self.interrupt(Some(&whole(ConditionNode::Or(&operands))), span)
     }
 
     /// A copy of the plan that `call` names.

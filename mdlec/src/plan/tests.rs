@@ -154,8 +154,42 @@ fn what_a_robot_lacks_and_what_it_cannot_do() {
 }
 
 #[test]
-fn forms_of_a_later_version() {
-    assert_judged!("{ P (stop, bumper, 3s) }");
+fn formal_notation_is_read() {
+    assert_judged!(
+        "{ P (stop, bumper, 3s)
+  ((go 20 0, wait 5)(goAvoid(heading module), bumper OR r3 < 1, 500ms), sync ada, 10)^3
+  (stop, null, 1min) (P2 (turn 90, null), wait 3, inf) (P2, (bumper OR wait 1), 2) FRAME 90deg (P3(7s, 2), null)
+}
+{ P2 (null) (rotate(90), RISING bumper, inf) }
+{ P3 (T: time, n: count) (stop, bumper, T)^n }"
+    );
+}
+
+#[test]
+fn formal_notation_that_makes_no_sense() {
+    assert_judged!(
+        "{ P (bumper, bumper)
+  (zigzag 3, bumper) (nowhere, bumper) (go 20, bumper) (stop, go 20 0) (stop, bumper, 3m) (stop, bumper, T) (stop, bumper, -1)
+  (L: stop, bumper)
+}"
+    );
+}
+
+#[test]
+fn a_plan_in_formal_notation_is_the_same_plan() {
+    let text = "{ P (bumper OR wait 90)
+  s1: (Atom (bumper OR wait 500ms) go 5 0)
+  s2: ((Atom (NOT (bumper OR wait 5)) goAvoid(heading module))
+      s3: { Q (after s1 (wait 0.5) OR after s2) FRAME 30deg (Atom (wait 1.5) path \"a b\") (Atom (null) stop) })
+  ExecPlan 3 { { R (wait inf) ((Atom (wait inf) rotate 90))^inf } }
+  ((Atom (r3 < 1 AND t > 5 OR RISING (bumper OR sync ada)) goAvoid 90 40) (Atom (bumper) goAvoid 90 40) (Atom (after s3) stop))^7
+}";
+    let plan = &compiled(text)[0].plan;
+    let formal = plan.formal();
+    insta::assert_snapshot!(formal);
+    assert_eq!(compiled(&formal)[0].plan.formal(), formal);
+    let nameless = |text: &str| text.replace("{ Q", "{ _").replace("{ R", "{ _");
+    assert_eq!(nameless(&compiled(&formal)[0].plan.to_string()), nameless(&plan.to_string()));
 }
 
 #[test]
