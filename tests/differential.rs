@@ -5,10 +5,9 @@
 
 use mdle_scripted::drive;
 use mdle_tests::chance::Chance;
-use mdle_tests::loaded::Loaded;
+use mdle_tests::loaded::{Loaded, marks};
 use mdle_tests::outputs::outputs;
 use mdle_tests::pipeline::{Machines, compile};
-use mdle_tests::random_condition::Forms;
 use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::random_script::script;
 use mdlec::trace::{Applied, Fired, Line, Outcome, Script};
@@ -38,12 +37,11 @@ fn every_machine_prints_the_same_trace() {
     let mut seen = Seen::default();
     for seed in 0..PLANS {
         let mut chance = Chance::new(seed);
-        let forms = if seed % 2 == 0 { Forms::Emitted } else { Forms::All };
         // Small plans first, so that the first seed to fail is easy to read; a long search takes its time.
         let long = seed % 200 == 199;
-        let text = RandomPlan::new(&mut chance, forms, 2 + (seed as usize) * 20 / (PLANS as usize), long).to_string();
+        let text = RandomPlan::new(&mut chance, 2 + (seed as usize) * 20 / (PLANS as usize), long).to_string();
         let turns = if long { 4 } else { 12 };
-        compare(seed, forms, &text, &script(&mut chance, turns), &mut seen);
+        compare(seed, &text, &script(&mut chance, turns), &mut seen);
     }
     println!("{seen:?}");
     assert!(seen.refused < seen.plans / 50, "{seen:?}");
@@ -60,7 +58,7 @@ fn every_machine_prints_the_same_trace() {
     assert!(rare.iter().all(|count| *count > seen.plans / 10), "{seen:?}");
 }
 
-fn compare(seed: u64, forms: Forms, text: &str, script: &str, seen: &mut Seen) {
+fn compare(seed: u64, text: &str, script: &str, seen: &mut Seen) {
     let compiled = match compile(text) {
         Ok(compiled) => compiled,
         // Loops in loops in loops can make too many states.
@@ -80,11 +78,12 @@ fn compare(seed: u64, forms: Forms, text: &str, script: &str, seen: &mut Seen) {
         }
     }
     let expected: String = tree.iter().map(|line| format!("{line}\n")).collect();
-    for foresight in [true, false].into_iter().filter(|_| forms == Forms::Emitted) {
+    for foresight in [true, false] {
         let loaded = Loaded::new(&compiled.lowered, foresight);
-        let rows = loaded.rows();
+        let (rows, facts) = (loaded.rows(), loaded.facts());
+        let marks = marks(&facts);
         let mut printed = String::new();
-        drive(|| loaded.plan(&rows), &outputs(&turns), &mut printed).expect("room for the trace");
+        drive(|| loaded.plan(&rows, &marks), &outputs(&turns), &mut printed).expect("room for the trace");
         assert!(printed == expected, "seed {seed}\n{reference}:\n{expected}loaded:\n{printed}{text}\n{script}");
     }
     seen.plans += 1;

@@ -17,6 +17,7 @@ mod go;
 mod go_avoid;
 mod heading;
 mod rotate;
+mod signals;
 mod stop;
 mod tangent;
 #[cfg(test)]
@@ -29,5 +30,6 @@ pub use bumper::Bumper;
 pub use go::Go;
 pub use go_avoid::{GoAvoid, GoingRound};
 pub use rotate::{Rotate, Rotating};
+pub use signals::{Omega, R, Theta, V, X, Y};
 pub use stop::Stop;
 pub use turn::{Turn, Turning};

@@ -87,7 +87,6 @@ codes! {
     E0107 "a file without a plan",
     E0108 "nothing to run",
     E0109 "text that is not UTF-8",
-    E0199 "a form that this version does not know yet",
     E0201 "an unknown name",
     E0202 "a plan that contains itself",
     E0203 "a name that stands for two things",

@@ -2,13 +2,13 @@
 
 use mdle_runtime::fsm::Kind;
 use mdle_runtime::{
-    Alphabet, Argument, Condition, Guard, InRows, LawRow, Meters, MetersPerSecond, Nanos, Radians, RadiansPerSecond,
-    Rows, SonarId, Texts, Volts,
+    Alphabet, Argument, Comparison, Condition, Guard, InRows, LawRow, MarkRow, Memories, Meters, MetersPerSecond,
+    Nanos, Operand, Operator, Radians, RadiansPerSecond, Rows, SonarId, Texts, Volts,
 };
 use mdle_scripted::alphabet::{self as scripted, AnyControl, AnyInterrupt};
 use mdlec::alphabet::{self, family_to_si};
-use mdlec::fsm::Lowered;
-use mdlec::plan::{self, Quark, Value};
+use mdlec::fsm::{Lowered, RecordPlace};
+use mdlec::plan::{self, Compared, Quark, Value};
 
 /// A plan's rows, owned.
 pub struct Loaded<'l> {
@@ -19,8 +19,21 @@ pub struct Loaded<'l> {
     texts: [Vec<&'l str>; 3],
 }
 
+/// Labels with their facts, as a plan takes them.
+#[must_use]
+pub fn marks<'f>(facts: &'f [(u32, RecordPlace, Vec<(u32, Option<u32>)>)]) -> Vec<MarkRow<'f>> {
+    let mark = |(bracket, record, facts): &'f (u32, RecordPlace, Vec<_>)| MarkRow {
+        bracket: *bracket,
+        level: record.level,
+        first: record.first,
+        count: record.facts,
+        facts,
+    };
+    facts.iter().map(mark).collect()
+}
+
 /// A plan that borrows them: storage for levels and loops is made when its size is known.
-pub type LoadedPlan<'l> = InRows<'l, scripted::Alphabet, Box<[Nanos]>, Box<[u64]>>;
+pub type LoadedPlan<'l> = InRows<'l, scripted::Alphabet, Box<[Nanos]>, Box<[u64]>, Memories<'l, Box<[bool]>>>;
 
 impl<'l> Loaded<'l> {
     /// Makes the rows of a plan. Without `foresight` they do not say what follows when a scope ends.
@@ -59,25 +72,45 @@ impl<'l> Loaded<'l> {
         Rows { fsm: self.lowered.tables(), guards: &self.guards, operands: &self.operands, laws: &self.laws, texts }
     }
 
+    /// What ends with which bracket, with the facts of each label.
+    #[must_use]
+    pub fn facts(&self) -> Vec<(u32, RecordPlace, Vec<(u32, Option<u32>)>)> {
+        let marks =
+            self.lowered.marks.iter().flat_map(|(bracket, marks)| marks.iter().map(move |mark| (bracket, mark)));
+        let facts = marks.filter_map(|(bracket, mark)| {
+            let record = *self.lowered.records.get(&mark.record)?;
+            let facts = mark.facts.iter().map(|fact| (record.first + fact.number, fact.operand));
+            Some((*bracket, record, facts.collect()))
+        });
+        facts.collect()
+    }
+
     /// The plan of these rows before it begins.
     #[must_use]
-    pub fn plan<'r>(&self, rows: &'r Rows<'r, scripted::Alphabet>) -> LoadedPlan<'r> {
+    pub fn plan<'r>(&self, rows: &'r Rows<'r, scripted::Alphabet>, marks: &'r [MarkRow<'r>]) -> LoadedPlan<'r> {
         let (levels, slots) = (self.lowered.levels, self.lowered.slots);
-        InRows::new(rows, vec![Nanos::ZERO; levels].into(), vec![0; slots].into())
+        // No plan has more levels than brackets.
+        let memories = vec![false; self.lowered.brackets.len() * self.lowered.memories];
+        let memory = Memories::new(u32::try_from(self.lowered.memories).unwrap(), marks, memories.into());
+        InRows::remembering(rows, vec![Nanos::ZERO; levels].into(), vec![0; slots].into(), memory)
     }
 
     /// A condition; its operands go behind all operands that there are so far, and theirs behind them.
     fn condition(&mut self, written: &plan::Condition) -> Condition<AnyInterrupt> {
         match written {
             plan::Condition::Null => Condition::Null,
-            plan::Condition::Quark(id) => {
-                Condition::Quark(by_name(self.lowered.quark(*id), scripted::Alphabet::interrupt))
-            }
+            plan::Condition::Quark(id) => Condition::Quark(self.interrupt(self.lowered.quark(*id))),
             plan::Condition::Wait { nanos, .. } => Condition::Wait(Nanos(*nanos)),
             plan::Condition::Elapsed { from, until, .. } => {
                 Condition::Elapsed(Nanos(*from), Nanos(until.unwrap_or(u64::MAX)))
             }
-            plan::Condition::Rising { .. } | plan::Condition::After(_) => panic!("no plan is loaded with these yet"),
+            plan::Condition::Rising { memory, operand } => {
+                Condition::Rising(*memory, self.operands(std::slice::from_ref(&**operand)).0)
+            }
+            plan::Condition::After(after) => {
+                let record = self.lowered.records[&after.record];
+                Condition::After(record.level, record.first + after.fact)
+            }
             plan::Condition::Or(operands) => {
                 let (first, count) = self.operands(operands);
                 Condition::Or(first, count)
@@ -88,6 +121,31 @@ impl<'l> Loaded<'l> {
             }
             plan::Condition::Not(operand) => Condition::Not(self.operands(std::slice::from_ref(&**operand)).0),
         }
+    }
+
+    fn interrupt(&self, quark: &Quark) -> AnyInterrupt {
+        let Some(comparison) = &quark.comparison else { return by_name(quark, scripted::Alphabet::interrupt) };
+        let signal = |id| by_name(self.lowered.quark(id), scripted::Alphabet::signal);
+        let si = |value: &Value| match value {
+            Value::Quantity { exact, family, .. } => exact.to_f64() * family_to_si(family),
+            other => panic!("{other:?} is compared with a signal"),
+        };
+        let tolerance = si(&comparison.tolerance);
+        let is_angle = matches!(comparison.tolerance, Value::Quantity { kind: alphabet::Kind::Angle, .. });
+        let operator = match comparison.operator {
+            plan::Operator::Equal if is_angle => Operator::SameDirection(tolerance),
+            plan::Operator::Equal => Operator::Equal(tolerance),
+            plan::Operator::Less => Operator::Less,
+            plan::Operator::LessOrEqual => Operator::LessOrEqual,
+            plan::Operator::Greater => Operator::Greater,
+            plan::Operator::GreaterOrEqual => Operator::GreaterOrEqual,
+        };
+        let with = match &comparison.with {
+            Compared::Signal(other) => Operand::Signal(signal(*other)),
+            Compared::Value(value) => Operand::Value(si(value)),
+        };
+        let comparison = Comparison::new(signal(comparison.signal), operator, with);
+        scripted::Alphabet::comparison(comparison).expect("a robot with signals")
     }
 
     fn operands(&mut self, written: &[plan::Condition]) -> (u32, u32) {

@@ -6,13 +6,16 @@ use mdle_runtime::Nanos;
 use mdle_scripted::{INTERRUPTS, LAWS, Output};
 use mdlec::trace::Script;
 
+use crate::signals::values;
+
 /// The times and outputs of a script's turns.
 #[must_use]
 pub fn outputs(script: &Script) -> Vec<(Nanos, Output)> {
     let turns = script.turns().iter();
     turns
         .map(|reports| {
-            let output = Output { fired: bits(INTERRUPTS, &reports.fired), completed: bits(LAWS, &reports.completed) };
+            let (fired, completed) = (bits(INTERRUPTS, &reports.fired), bits(LAWS, &reports.completed));
+            let output = Output { fired, completed, signals: values(&reports.fired) };
             (reports.t, output)
         })
         .collect()

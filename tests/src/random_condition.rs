@@ -56,15 +56,6 @@ pub fn law(chance: &mut Chance) -> String {
     chance.pick(LAWS).to_owned()
 }
 
-/// Which forms random plans have.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Forms {
-    /// Those that can be emitted.
-    Emitted,
-    /// All.
-    All,
-}
-
 /// Stands for an `after` until the labels of the definition are known; parentheses may stand around it.
 pub const AFTER: &str = "AFTER";
 
@@ -90,45 +81,45 @@ pub fn operands(condition: &str) -> Vec<&str> {
 }
 
 /// A condition, as it stands between parentheses.
-pub fn condition(chance: &mut Chance, forms: Forms) -> String {
+pub fn condition(chance: &mut Chance) -> String {
     match chance.below(10) {
         0 => "null".into(),
-        1..=4 => quark(chance, forms),
+        1..=4 => quark(chance),
         5 | 6 => chance.pick(TIMERS).to_owned(),
-        _ => or(chance, forms, 2),
+        _ => or(chance, 2),
     }
 }
 
 /// A quark, more often one of a few, so that scopes repeat each other's interrupts.
-fn quark(chance: &mut Chance, forms: Forms) -> String {
-    if forms == Forms::All && chance.percent(15) {
+fn quark(chance: &mut Chance) -> String {
+    if chance.percent(15) {
         return comparison(chance);
     }
-    if forms == Forms::All && chance.percent(10) {
+    if chance.percent(10) {
         return AFTER.to_owned();
     }
     if chance.percent(60) { chance.pick(&INTERRUPTS[..3]).to_owned() } else { chance.pick(INTERRUPTS).to_owned() }
 }
 
-fn or(chance: &mut Chance, forms: Forms, depth: usize) -> String {
-    let operands: Vec<_> = (0..=chance.below(3)).map(|_| and(chance, forms, depth)).collect();
+fn or(chance: &mut Chance, depth: usize) -> String {
+    let operands: Vec<_> = (0..=chance.below(3)).map(|_| and(chance, depth)).collect();
     operands.join(if chance.percent(80) { " OR " } else { " or " })
 }
 
-fn and(chance: &mut Chance, forms: Forms, depth: usize) -> String {
+fn and(chance: &mut Chance, depth: usize) -> String {
     let more = usize::from(chance.percent(40));
-    let operands: Vec<_> = (0..=more).map(|_| not(chance, forms, depth)).collect();
+    let operands: Vec<_> = (0..=more).map(|_| not(chance, depth)).collect();
     operands.join(" AND ")
 }
 
-fn not(chance: &mut Chance, forms: Forms, depth: usize) -> String {
+fn not(chance: &mut Chance, depth: usize) -> String {
     let test = match chance.below(8) {
         0 => chance.pick(TIMERS).to_owned(),
         1 if chance.percent(20) => "null".into(),
-        2 | 3 if depth > 0 => format!("({})", or(chance, forms, depth - 1)),
-        _ => quark(chance, forms),
+        2 | 3 if depth > 0 => format!("({})", or(chance, depth - 1)),
+        _ => quark(chance),
     };
-    if forms == Forms::All && chance.percent(15) {
+    if chance.percent(15) {
         return if chance.percent(30) { format!("NOT (RISING {test})") } else { format!("RISING {test}") };
     }
     if chance.percent(20) { format!("NOT {test}") } else { test }

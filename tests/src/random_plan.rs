@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::chance::Chance;
-use crate::random_condition::{AFTER, Forms, condition, law, operands};
+use crate::random_condition::{AFTER, condition, law, operands};
 
 /// A file with a plan `Main`, and perhaps one that it refers to.
 #[derive(Debug, Clone)]
@@ -67,7 +67,6 @@ const OF_PARAMETERS: &[&str] = &["wait T", "farOff far", "farOff(far) OR wait T"
 /// What a plan may still grow to.
 struct Growth<'c> {
     chance: &'c mut Chance,
-    forms: Forms,
     atoms: usize,
     /// Whether loops may have thousands of passes.
     long: bool,
@@ -82,18 +81,18 @@ struct Growth<'c> {
 
 impl RandomPlan {
     /// The plan that this source of chance grows. `atoms` is about how many it may have; `long` allows long searches.
-    pub fn new(chance: &mut Chance, forms: Forms, atoms: usize, long: bool) -> Self {
+    pub fn new(chance: &mut Chance, atoms: usize, long: bool) -> Self {
         let mut definitions = Vec::new();
         let other = chance.percent(25).then_some("Other");
         let given = chance.percent(50);
         if let Some(name) = other {
             let mut growth =
-                Growth { chance, forms, atoms: atoms / 2, long: false, other: None, given, own: given, labels: 0 };
+                Growth { chance, atoms: atoms / 2, long: false, other: None, given, own: given, labels: 0 };
             let mut scope = growth.scope(3);
             scope.ask(growth.chance);
             definitions.push((name, scope));
         }
-        let mut growth = Growth { chance, forms, atoms, long, other, given, own: false, labels: 0 };
+        let mut growth = Growth { chance, atoms, long, other, given, own: false, labels: 0 };
         let mut scope = growth.scope(5);
         scope.ask(growth.chance);
         definitions.push(("Main", scope));
@@ -126,7 +125,7 @@ impl Growth<'_> {
         if self.own && self.chance.percent(30) {
             return self.chance.pick(OF_PARAMETERS).to_owned();
         }
-        condition(self.chance, self.forms)
+        condition(self.chance)
     }
 
     /// Whether an element is written in formal notation, and with which timer.
@@ -147,7 +146,7 @@ impl Growth<'_> {
     }
 
     fn element(&mut self, depth: usize) -> Element {
-        if self.forms == Forms::All && self.chance.percent(25) {
+        if self.chance.percent(25) {
             self.labels += 1;
             let label = format!("s{}", self.labels);
             return Element::Labelled(label, Box::new(self.unlabelled(depth)));

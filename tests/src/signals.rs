@@ -1,5 +1,7 @@
 //! The signals of the target `scripted`: the values that a script gives them, and comparisons, which these decide.
 
+use std::collections::BTreeSet;
+
 use crate::chance::Chance;
 
 /// A comparison as it may be spelled, its text, and whether it holds.
@@ -48,6 +50,21 @@ pub fn comparison(chance: &mut Chance) -> String {
     }
     let (spellings, ..) = COMPARISONS[chance.below(COMPARISONS.len())];
     chance.pick(spellings).to_owned()
+}
+
+/// The values of the signals in SI units, as a script says them; infinite where it does not.
+pub fn values(said: &BTreeSet<String>) -> [f64; 5] {
+    let value = |name: &str, values: &[f64], unit: f64| {
+        let value = values.iter().find(|value| said.contains(&format!("{name} == {value}")));
+        value.map_or(f64::INFINITY, |value| value * unit)
+    };
+    [
+        value("r3", RANGES, 1.0),
+        value("r5", RANGES, 1.0),
+        value("x", PLACES, 1.0),
+        value("theta", HEADINGS, std::f64::consts::PI / 180.0),
+        value("v", SPEEDS, 0.01),
+    ]
 }
 
 impl Values {

@@ -108,7 +108,7 @@ fn stage(options: &Build, path: &Path, kind: EmitKind) -> Result<String, Failure
         EmitKind::Fsm => fsm::fsm_file(nondegenerate).map(|file| file.to_json()),
         EmitKind::Tree | EmitKind::Rust | EmitKind::Exe => {
             needs_target(options)?;
-            Ok(rust_of(&compiled, &input, path, &target)?)
+            Ok(rust_of(&compiled, path, &target))
         }
     };
     text.map_err(|too_large| {
@@ -123,13 +123,10 @@ fn needs_target(options: &Build) -> Result<(), Failure> {
     options.target.as_ref().map(|_| ()).ok_or_else(|| Failure::usage(question))
 }
 
-fn rust_of(compiled: &Compiled, input: &Input, path: &Path, target: &Target) -> Result<String, Failure> {
-    if !report::diagnostics(&input.sources, &rust::not_yet(&compiled.lowered), false) {
-        return Err(Failure::PLAN);
-    }
+fn rust_of(compiled: &Compiled, path: &Path, target: &Target) -> String {
     let file = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
     let header = Header { file: &file, plan: &compiled.plan.root.name };
-    Ok(rust::emit(&compiled.lowered, header, &target.alphabet))
+    rust::emit(&compiled.lowered, header, &target.alphabet)
 }
 
 fn executable(options: &Build, path: &Path, output: Option<PathBuf>) -> Result<(), Failure> {
@@ -141,7 +138,7 @@ fn executable(options: &Build, path: &Path, output: Option<PathBuf>) -> Result<(
     if let Some(folder) = &target.folder {
         bind::must_be_bound(folder, &target.alphabet)?;
     }
-    let rust = rust_of(&compiled, &input, path, &target)?;
+    let rust = rust_of(&compiled, path, &target);
     let plan_name = compiled.plan.root.name.as_str();
     // Standard input has no name of its own.
     let stem = path.file_stem().filter(|stem| *stem != "-").map_or_else(|| PathBuf::from(plan_name), PathBuf::from);

@@ -24,16 +24,20 @@ struct Signal<'a> {
 }
 
 impl Signal<'_> {
-    fn is_time(&self) -> bool {
-        self.declaration.name == TIME && self.unit.kind == Kind::Time && self.declaration.params.is_empty()
-    }
-
     /// The tolerance as an exact value.
     fn tolerance(&self) -> Value {
         let exact = Decimal::parse(&self.tolerance.to_string()).unwrap_or_else(Decimal::zero);
         let exact = exact.scaled(self.unit.factor, self.unit.exponent);
         Value::Quantity { kind: self.unit.kind, exact, family: self.unit.family }
     }
+}
+
+/// Whether a declaration is the signal `t`, the time since a scope was entered.
+#[must_use]
+pub fn is_time(declaration: &Declaration) -> bool {
+    declaration.name == TIME
+        && declaration.params.is_empty()
+        && declaration.unit.is_some_and(|(unit, _)| unit.kind == Kind::Time)
 }
 
 /// The condition that a comparison is.
@@ -80,7 +84,7 @@ pub(super) fn resolve(
     let left = quarks.get(signal.quark).map(|quark| quark.text.as_str()).unwrap_or_default();
     let text = format!("{left} {} {text}", operator.symbol());
     let comparison = Comparison { signal: signal.quark, operator, with, tolerance };
-    let elapsed = if signal.is_time() { Some(elapsed(&comparison, span)?) } else { None };
+    let elapsed = if is_time(signal.declaration) { Some(elapsed(&comparison, span)?) } else { None };
     let quark = quarks.add(Quark {
         name: operator.symbol().to_owned(),
         overload: 0,
@@ -121,7 +125,7 @@ fn same_kind(one: Signal<'_>, other: Signal<'_>, span: Span) -> Resolved<Value> 
         let found = Diagnostic::new(Code::E0302, message, span, format!("{here}, {there}"));
         vec![if help.is_empty() { found } else { found.help(help) }]
     };
-    if one.is_time() || other.is_time() {
+    if is_time(one.declaration) || is_time(other.declaration) {
         let message = "`t`, the time since the scope was entered, is compared with a number".to_owned();
         return Err(refused(message, "as in `t > 5s`"));
     }

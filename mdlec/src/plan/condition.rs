@@ -111,6 +111,16 @@ impl Condition {
         }
     }
 
+    /// Visits every quark in it; timers are none.
+    pub fn each_quark(&self, visit: &mut impl FnMut(QuarkId)) {
+        match self {
+            Self::Null | Self::Wait { .. } | Self::Elapsed { .. } | Self::After(_) => {}
+            Self::Quark(id) => visit(*id),
+            Self::Or(operands) | Self::And(operands) => operands.iter().for_each(|operand| operand.each_quark(visit)),
+            Self::Not(operand) | Self::Rising { operand, .. } => operand.each_quark(visit),
+        }
+    }
+
     /// Whether this is so of the condition or any of its operands.
     pub fn any(&self, is_so: &impl Fn(&Self) -> bool) -> bool {
         is_so(self)

@@ -21,6 +21,7 @@ mod tests;
 pub use crate::syntax::tree::Comparison as Operator;
 pub use angle::{frame_text, in_degrees};
 pub use arguments::signature;
+pub use comparisons::is_time;
 pub use condition::{After, Condition, Situation};
 pub use nondegenerate::{Nondegenerate, remove_degeneracy};
 pub use resolve::resolve;

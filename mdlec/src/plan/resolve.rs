@@ -235,6 +235,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
             | ConditionNode::Broken => std::slice::from_ref(&formal.condition),
         };
         let operands: Vec<_> = operands.iter().copied().chain([wait]).collect();
+        let operands = operands.as_slice();
         self.interrupt(Some(&whole(ConditionNode::Or(&operands))), span)
     }
 

@@ -5,10 +5,61 @@ use quote::quote;
 
 use super::names::quark_type;
 use crate::alphabet::{Kind, family_to_si};
-use crate::plan::{Quark, Value, in_degrees};
+use crate::plan::{Compared, Comparison, Operator, Quark, QuarkId, Value, in_degrees};
 
-/// `robot::Go::new(…)`: a quark made of its arguments, for a constant.
-pub(super) fn made(quark: &Quark) -> TokenStream {
+/// `robot::Go`, or for a comparison `runtime::Comparison<robot::R, robot::X>`: the type of a quark among `quarks`.
+pub(super) fn type_of(quark: &Quark, quarks: &[Quark]) -> TokenStream {
+    let Some(comparison) = &quark.comparison else {
+        let kind = quark_type(&quark.name, quark.overload);
+        return quote!(robot::#kind);
+    };
+    let signal = type_of(&quarks[comparison.signal.0 as usize], quarks);
+    let with = match comparison.with {
+        Compared::Signal(other) => type_of(&quarks[other.0 as usize], quarks),
+        Compared::Value(_) => quote!(runtime::NoSignal),
+    };
+    quote!(runtime::Comparison<#signal, #with>)
+}
+
+/// `runtime::Comparison::new(…)`, with its signals as `signal` writes them.
+pub(super) fn compared(comparison: &Comparison, signal: impl Fn(QuarkId) -> TokenStream) -> TokenStream {
+    let left = signal(comparison.signal);
+    let tolerance = number(in_si(&comparison.tolerance));
+    let operator = match (comparison.operator, &comparison.tolerance) {
+        (Operator::Equal, Value::Quantity { kind: Kind::Angle, .. }) => quote!(SameDirection(#tolerance)),
+        (Operator::Equal, _) => quote!(Equal(#tolerance)),
+        (Operator::Less, _) => quote!(Less),
+        (Operator::LessOrEqual, _) => quote!(LessOrEqual),
+        (Operator::Greater, _) => quote!(Greater),
+        (Operator::GreaterOrEqual, _) => quote!(GreaterOrEqual),
+    };
+    let with = match &comparison.with {
+        Compared::Signal(other) => {
+            let other = signal(*other);
+            quote!(Signal(#other))
+        }
+        Compared::Value(value) => {
+            let value = number(in_si(value));
+            quote!(Value(#value))
+        }
+    };
+    quote!(runtime::Comparison::new(#left, runtime::Operator::#operator, runtime::Operand::#with))
+}
+
+/// The SI value of a quantity, which is all that signals are compared with.
+fn in_si(value: &Value) -> f64 {
+    match value {
+        Value::Quantity { exact, family, .. } => exact.to_f64() * family_to_si(family),
+        Value::Infinity(_) => f64::MAX,
+        Value::Bits(_) | Value::Integer(_) | Value::Sonar(_) | Value::Name(..) => 0.0,
+    }
+}
+
+/// `robot::Go::new(…)`: a quark among `quarks`, made of its arguments, for a constant.
+pub(super) fn made(quark: &Quark, quarks: &[Quark]) -> TokenStream {
+    if let Some(comparison) = &quark.comparison {
+        return compared(comparison, |signal| made(&quarks[signal.0 as usize], quarks));
+    }
     let kind = quark_type(&quark.name, quark.overload);
     let arguments = quark.args.iter().map(argument);
     quote!(robot::#kind::new(#(#arguments),*))

@@ -9,7 +9,7 @@ use super::names::{Distinct, quark_type};
 use super::pretty;
 use super::signatures::{argument_variant, signatures};
 use crate::alphabet::{Alphabet, Declaration, DeclarationKind, Kind, Origin};
-use crate::plan::signature;
+use crate::plan::{is_time, signature};
 
 /// Writes `src/alphabet.rs` of the target: what its crate must have, and what plans need of it.
 ///
@@ -18,16 +18,18 @@ use crate::plan::signature;
 #[must_use]
 pub fn bind(alphabet: &Alphabet) -> String {
     let quarks = Bound::all(alphabet);
-    let [interrupts, controls] = [DeclarationKind::Interrupt, DeclarationKind::Control]
-        .map(|kind| quarks.iter().filter(|quark| quark.declaration.kind == kind).collect::<Vec<_>>());
+    let [interrupts, signals, controls] =
+        [DeclarationKind::Interrupt, DeclarationKind::Signal, DeclarationKind::Control]
+            .map(|kind| quarks.iter().filter(|quark| quark.declaration.kind == kind).collect::<Vec<_>>());
     // The target's crate, not this one.
     let home = quote!(crate);
     let imports = imports(&quarks, &home);
     let constants = constants(alphabet);
     let signatures = signatures(&quarks, alphabet);
-    let interrupt_types = interrupt_types(&interrupts);
+    let interrupt_types = interrupt_types(&interrupts, !signals.is_empty());
+    let signal_types = signal_types(&signals);
     let control_types = control_types(&controls);
-    let implementation = implementation(&interrupts, &controls);
+    let implementation = implementation(&interrupts, &signals, &controls);
     let text = pretty(quote! {
         pub use #home::{Input, Output};
         #imports
@@ -36,6 +38,7 @@ pub fn bind(alphabet: &Alphabet) -> String {
         #constants
         #signatures
         #interrupt_types
+        #signal_types
         #control_types
         #implementation
     });
@@ -59,7 +62,7 @@ pub(super) struct Bound<'a> {
 }
 
 impl<'a> Bound<'a> {
-    /// All of them: `wait` is the machine's business, and a quark whose capability the robot lacks needs no code.
+    /// All of them: `wait` and `t` are the machine's business, and a quark whose capability the robot lacks needs no code.
     fn all(alphabet: &'a Alphabet) -> Vec<Self> {
         let mut overloads = BTreeMap::<&str, usize>::new();
         let mut quarks = Vec::new();
@@ -67,8 +70,12 @@ impl<'a> Bound<'a> {
             let overload = overloads.entry(&declaration.name).or_default();
             let kind = quark_type(&declaration.name, *overload);
             *overload += 1;
-            let is_quark = declaration.kind != DeclarationKind::Signal && declaration.name != "wait";
-            if is_quark && declaration.needs.iter().all(|need| alphabet.has(need)) {
+            let is_time = match declaration.kind {
+                DeclarationKind::Interrupt => declaration.name == "wait",
+                DeclarationKind::Signal => is_time(declaration),
+                DeclarationKind::Control => false,
+            };
+            if !is_time && declaration.needs.iter().all(|need| alphabet.has(need)) {
                 quarks.push(Self { declaration, kind });
             }
         }
@@ -135,24 +142,50 @@ pub(super) fn hash(alphabet: &Alphabet) -> TokenStream {
     text.parse::<Literal>().map_or_else(|_| quote!(0), |literal| quote!(#literal))
 }
 
-/// `enum AnyInterrupt`, which fires when the one that it holds does.
-fn interrupt_types(interrupts: &[&Bound<'_>]) -> TokenStream {
+/// `enum AnyInterrupt`, which fires when the one that it holds does; where there are signals, comparisons are among them.
+fn interrupt_types(interrupts: &[&Bound<'_>], compares: bool) -> TokenStream {
     let kinds: Vec<_> = interrupts.iter().map(|quark| &quark.kind).collect();
     let docs = interrupts.iter().map(|quark| quark.doc());
+    let compared = compares.then(|| quote!(Self::Comparison(comparison) => runtime::Interrupt::fired(comparison, y),));
+    let comparison = compares.then(|| {
+        quote! {
+            #[doc = " A comparison of signals."]
+            Comparison(runtime::Comparison<AnySignal, AnySignal>),
+        }
+    });
     let fired = each(
         &quote!(self),
-        quote!(#(Self::#kinds(interrupt) => runtime::Interrupt::fired(interrupt, y),)*),
-        kinds.is_empty(),
+        quote!(#(Self::#kinds(interrupt) => runtime::Interrupt::fired(interrupt, y),)* #compared),
+        kinds.is_empty() && !compares,
     );
     quote! {
         #[doc = " Any interrupt of this robot with its arguments."]
         #[derive(Debug)]
-        pub enum AnyInterrupt { #(#[doc = #docs] #kinds(#kinds),)* }
+        pub enum AnyInterrupt { #(#[doc = #docs] #kinds(#kinds),)* #comparison }
 
         impl runtime::Interrupt<Output> for AnyInterrupt {
             fn fired(&self, y: &Output) -> bool { #fired }
         }
     }
+}
+
+/// `enum AnySignal`, which has the value of the one that it holds; nothing where there are no signals.
+fn signal_types(signals: &[&Bound<'_>]) -> Option<TokenStream> {
+    let kinds: Vec<_> = signals.iter().map(|signal| &signal.kind).collect();
+    let docs = signals.iter().map(|signal| signal.doc());
+    (!kinds.is_empty()).then(|| {
+        quote! {
+            #[doc = " Any signal of this robot with its arguments."]
+            #[derive(Debug)]
+            pub enum AnySignal { #(#[doc = #docs] #kinds(#kinds),)* }
+
+            impl runtime::Signal<Output> for AnySignal {
+                fn value(&self, y: &Output) -> f64 {
+                    match self { #(Self::#kinds(signal) => runtime::Signal::value(signal, y),)* }
+                }
+            }
+        }
+    })
 }
 
 /// `enum AnyControl` and `enum AnyLaw`, which is the law of whichever it is.
@@ -206,7 +239,7 @@ fn each(value: &TokenStream, arms: TokenStream, none: bool) -> TokenStream {
 }
 
 /// `impl Alphabet`, with the tables that make a quark of its name and arguments.
-fn implementation(interrupts: &[&Bound<'_>], controls: &[&Bound<'_>]) -> TokenStream {
+fn implementation(interrupts: &[&Bound<'_>], signals: &[&Bound<'_>], controls: &[&Bound<'_>]) -> TokenStream {
     let table = |quarks: &[&Bound<'_>], any: &Ident| -> TokenStream {
         let arms: Vec<_> = quarks.iter().map(|quark| by_name(quark, any)).collect();
         quote!(match (name, arguments) { #(#arms)* _ => return None })
@@ -214,6 +247,13 @@ fn implementation(interrupts: &[&Bound<'_>], controls: &[&Bound<'_>]) -> TokenSt
     let (any_interrupt, any_control) = (format_ident!("AnyInterrupt"), format_ident!("AnyControl"));
     let by_interrupt = table(interrupts, &any_interrupt);
     let by_control = table(controls, &any_control);
+    let any_signal = format_ident!("AnySignal");
+    let by_signal = table(signals, &any_signal);
+    let (signal, by_signal, comparison) = if signals.is_empty() {
+        (quote!(runtime::NoSignal), quote!(None), quote!(None))
+    } else {
+        (quote!(AnySignal), quote!(Some(#by_signal)), quote!(Some(AnyInterrupt::Comparison(comparison))))
+    };
     quote! {
         #[doc = " The quarks of this robot by their names."]
         #[derive(Debug)]
@@ -223,10 +263,13 @@ fn implementation(interrupts: &[&Bound<'_>], controls: &[&Bound<'_>]) -> TokenSt
             type Output = Output;
             type Input = Input;
             type Interrupt = AnyInterrupt;
+            type Signal = #signal;
             type Control = AnyControl;
             type Law = AnyLaw;
 
             fn interrupt(name: &str, arguments: &[runtime::Argument<'_>]) -> Option<AnyInterrupt> { Some(#by_interrupt) }
+            fn signal(name: &str, arguments: &[runtime::Argument<'_>]) -> Option<#signal> { #by_signal }
+            fn comparison(comparison: runtime::Comparison<#signal, #signal>) -> Option<AnyInterrupt> { #comparison }
             fn control(name: &str, arguments: &[runtime::Argument<'_>]) -> Option<AnyControl> { Some(#by_control) }
         }
     }

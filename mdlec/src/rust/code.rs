@@ -1,12 +1,14 @@
 //! A plan as code: quarks as constants, laws as variants, interrupts as functions that ask the scopes around them first.
 
+use std::collections::BTreeSet;
+
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
-use super::arguments::{angle, made};
+use super::arguments::{angle, made, type_of};
 use super::names::{Distinct, atom_variant, quark_type};
 use crate::fsm::{LawMeaning, Lowered};
-use crate::plan::{Condition, Quark, frame_text};
+use crate::plan::{Compared, Condition, Quark, QuarkId, frame_text};
 
 /// The plan's type and its implementation, with an arm for each atom.
 pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered) -> TokenStream {
@@ -122,17 +124,41 @@ impl<'a> Meaning<'a> {
 
     /// `const GO_20_0: robot::Go = robot::Go::new(…);` for each quark that is not a `wait`.
     pub(super) fn constants(&self) -> TokenStream {
-        let quarks = self.lowered.quarks.iter().zip(&self.constants).filter(|(quark, _)| quark.name != "wait");
-        let constants = quarks.map(|(quark, constant)| {
-            let kind = quark_type(&quark.name, quark.overload);
-            let value = made(quark);
+        let signals = self.signals();
+        let quarks = (0..).map(QuarkId).zip(&self.lowered.quarks).zip(&self.constants);
+        let quarks = quarks.filter(|((id, quark), _)| quark.name != "wait" && !signals.contains(id));
+        let constants = quarks.map(|((_, quark), constant)| {
+            let kind = type_of(quark, &self.lowered.quarks);
+            let value = made(quark, &self.lowered.quarks);
             let doc = format!(" `{}`", quark.text);
             quote! {
                 #[doc = #doc]
-                const #constant: robot::#kind = #value;
+                const #constant: #kind = #value;
             }
         });
         quote!(#(#constants)*)
+    }
+
+    /// The quarks that are no constants by themselves: signals, and comparisons of `t`, which the machine makes.
+    fn signals(&self) -> BTreeSet<QuarkId> {
+        let mut signals = BTreeSet::new();
+        let mut used = BTreeSet::new();
+        for scope in self.lowered.scopes.iter().flatten() {
+            scope.interrupt.condition.each_quark(&mut |quark| {
+                used.insert(quark);
+            });
+        }
+        for (id, quark) in (0..).map(QuarkId).zip(&self.lowered.quarks) {
+            let Some(comparison) = &quark.comparison else { continue };
+            signals.insert(comparison.signal);
+            if let Compared::Signal(other) = comparison.with {
+                signals.insert(other);
+            }
+            if !used.contains(&id) {
+                signals.insert(id);
+            }
+        }
+        signals
     }
 
     /// `enum Running`: the law of the current atom with its state.

@@ -6,7 +6,7 @@ use mdle_runtime::Follows;
 
 use super::tables::level;
 use crate::fsm::Lowered;
-use crate::plan::{Condition, QuarkId};
+use crate::plan::{Compared, Condition, Quark, QuarkId};
 
 /// Atoms that mean the same but for their constants.
 pub(super) struct Kind {
@@ -77,7 +77,7 @@ impl<'l> Atoms<'l> {
         let mut known = BTreeMap::new();
         let declarations = (0_u32..).zip(&lowered.quarks);
         let declarations =
-            declarations.map(|(id, quark)| *known.entry((&*quark.name, quark.overload)).or_insert(id)).collect();
+            declarations.map(|(id, quark)| *known.entry(declaration(quark, &lowered.quarks)).or_insert(id)).collect();
         Self { lowered, follows, declarations }
     }
 
@@ -160,10 +160,21 @@ impl<'l> Atoms<'l> {
     }
 }
 
+/// The declarations that a quark is made of: one, or for a comparison those of its signals, of which a number has none.
+fn declaration<'l>(quark: &'l Quark, quarks: &'l [Quark]) -> Vec<Option<(&'l str, usize)>> {
+    let of = |quark: &'l Quark| Some((quark.name.as_str(), quark.overload));
+    let Some(comparison) = &quark.comparison else { return vec![of(quark)] };
+    let with = match comparison.with {
+        Compared::Signal(other) => of(&quarks[other.0 as usize]),
+        Compared::Value(_) => None,
+    };
+    vec![of(&quarks[comparison.signal.0 as usize]), with]
+}
+
 /// The parts of a condition, each operator before its operands.
 fn conditions(condition: &Condition, parts: &mut Vec<Part>) {
     match condition {
-        // What cannot be emitted was refused.
+        // A plan with these is rows.
         Condition::Null | Condition::Rising { .. } | Condition::After(_) => parts.push(Part::Null),
         Condition::Quark(id) => parts.push(Part::Quark(*id)),
         Condition::Wait { nanos, .. } => parts.push(Part::Wait(*nanos)),

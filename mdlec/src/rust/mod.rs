@@ -18,9 +18,7 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 use crate::alphabet::Alphabet;
-use crate::diagnostic::{Code, Diagnostic};
 use crate::fsm::Lowered;
-use crate::plan::Condition;
 pub use bind::bind;
 use kinds::Atoms;
 pub use names::plan_type;
@@ -56,7 +54,9 @@ impl Shape {
     /// The shape that suits a plan.
     #[must_use]
     pub fn of(lowered: &Lowered) -> Self {
-        if lowered.brackets.len() <= Self::CODE {
+        if lowered.memories > 0 {
+            Self::Rows
+        } else if lowered.brackets.len() <= Self::CODE {
             Self::Code
         } else if Atoms::new(lowered).kinds(Self::SHARED, Self::WIDEST).is_some() {
             Self::Shared
@@ -64,28 +64,6 @@ impl Shape {
             Self::Rows
         }
     }
-}
-
-/// The forms of a plan that cannot be emitted yet, each as an error.
-#[must_use]
-pub fn not_yet(lowered: &Lowered) -> Vec<Diagnostic> {
-    let form = |condition: &Condition| {
-        let has = |is_so: &dyn Fn(&Condition) -> bool| condition.any(&|part| is_so(part));
-        if has(&|part| matches!(part, Condition::Quark(id) if lowered.quark(*id).comparison.is_some())) {
-            return Some("a comparison of signals");
-        }
-        if has(&|part| matches!(part, Condition::Rising { .. })) {
-            return Some("`RISING`");
-        }
-        has(&|part| matches!(part, Condition::After(_))).then_some("`after`")
-    };
-    let interrupts = lowered.scopes.iter().flatten().map(|scope| &scope.interrupt);
-    let found = interrupts.filter_map(|interrupt| {
-        let message = format!("{} cannot be compiled for a robot yet", form(&interrupt.condition)?);
-        let found = Diagnostic::new(Code::E0199, message, interrupt.span, "for a later version");
-        Some(found.help("`mdlec trace` runs it"))
-    });
-    found.collect()
 }
 
 /// Writes the file in the shape that suits its size. Its text depends on nothing but the arguments and the version of
@@ -101,7 +79,8 @@ pub fn emit_as(shape: Shape, lowered: &Lowered, header: Header<'_>, alphabet: &A
     let target = format_ident!("{}", alphabet.crate_name);
     let plan = format_ident!("{}", plan_type(header.plan));
     let doc = format!(" The plan `{}`.", header.plan);
-    let machine = match shape {
+    // What a plan remembers is in rows, whatever is asked for.
+    let machine = match if lowered.memories > 0 { Shape::Rows } else { shape } {
         Shape::Code => code::machine(&plan, &doc, lowered),
         Shape::Shared => shared::machine(&plan, &doc, lowered),
         Shape::Rows => rows::machine(&plan, &doc, lowered),

@@ -11,8 +11,21 @@ const TYPES: &[&str] = &[
     "Output", "Plan", "Running", "Self", "Some",
 ];
 /// What a bound alphabet has beside its quarks, and what its text uses of Rust's own.
-const BOUND: &[&str] =
-    &["Input", "Output", "Alphabet", "AnyInterrupt", "AnyControl", "AnyLaw", "Debug", "None", "Option", "Self", "Some"];
+const BOUND: &[&str] = &[
+    "Input",
+    "Output",
+    "Alphabet",
+    "AnyInterrupt",
+    "AnySignal",
+    "AnyControl",
+    "AnyLaw",
+    "Comparison",
+    "Debug",
+    "None",
+    "Option",
+    "Self",
+    "Some",
+];
 /// The constants that it has in any case.
 const CONSTANTS: &[&str] = &["FSM", "LAWS", "CONDITIONS", "NAMES"];
 /// Its other function, the names of arguments and variables, which would hide a function, and the keyword that syn does

@@ -5,24 +5,26 @@ use std::collections::VecDeque;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
-use super::arguments::{angle, made};
+use super::arguments::{angle, compared, made};
 use super::names::quark_type;
 use super::tables::{follows, level};
 use crate::fsm::Lowered;
-use crate::plan::{Condition, Quark};
+use crate::plan::{Condition, Quark, QuarkId};
 
 /// The plan's type, which hands everything on to the runtime's, and its rows.
 pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered) -> TokenStream {
     let [levels, slots] = [lowered.levels, lowered.slots].map(Literal::usize_unsuffixed);
     let rows = rows(lowered);
+    let (memory, new, marks) = memory(lowered);
+    let told = told(lowered);
     quote! {
         #[doc = #doc]
-        pub struct #plan(runtime::InRows<'static, robot::Alphabet, [Nanos; #levels], [u64; #slots]>);
+        pub struct #plan(runtime::InRows<'static, robot::Alphabet, [Nanos; #levels], [u64; #slots] #memory>);
 
         impl #plan {
             #[doc = " The plan before it begins."]
             #[must_use]
-            pub const fn new() -> Self { Self(runtime::InRows::new(&ROWS, [Nanos::ZERO; #levels], [0; #slots])) }
+            pub const fn new() -> Self { Self(#new) }
         }
 
         impl Default for #plan {
@@ -48,6 +50,7 @@ pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered) -> TokenStream
             ) -> Next {
                 runtime::Plan::next(&mut self.0, cursor, y, begin, direct)
             }
+            #told
             fn input(&mut self, y: &Output, t: Nanos) -> Input { runtime::Plan::input(&mut self.0, y, t) }
             fn law(&self, atom: u32) -> &str { runtime::Plan::law(&self.0, atom) }
             fn condition(&self, scope: u32) -> &str { runtime::Plan::condition(&self.0, scope) }
@@ -55,7 +58,67 @@ pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered) -> TokenStream
         }
 
         #rows
+        #marks
     }
+}
+
+/// What the plan is told so that it can remember.
+fn told(lowered: &Lowered) -> Option<TokenStream> {
+    (lowered.memories > 0).then(|| {
+        quote! {
+            fn leave(
+                &mut self,
+                cursor: &Cursor<Self::Entered, Self::Left>,
+                cause: runtime::Cause,
+                y: &Output,
+                t: Nanos,
+            ) {
+                runtime::Plan::leave(&mut self.0, cursor, cause, y, t);
+            }
+            fn settle(&mut self, cursor: &Cursor<Self::Entered, Self::Left>, y: &Output, t: Nanos) {
+                runtime::Plan::settle(&mut self.0, cursor, y, t);
+            }
+        }
+    })
+}
+
+/// The type of the plan's memory, how the plan is made, and `static MARKS`: nothing of it for a plan that remembers nothing.
+fn memory(lowered: &Lowered) -> (Option<TokenStream>, TokenStream, Option<TokenStream>) {
+    let [levels, slots] = [lowered.levels, lowered.slots].map(Literal::usize_unsuffixed);
+    let slots = quote!([Nanos::ZERO; #levels], [0; #slots]);
+    if lowered.memories == 0 {
+        return (None, quote!(runtime::InRows::new(&ROWS, #slots)), None);
+    }
+    let scopes = lowered.brackets.iter().map(|bracket| usize::from(level(bracket.kind)) + 1).max().unwrap_or(0);
+    let size = Literal::usize_unsuffixed(scopes * lowered.memories);
+    let width = Literal::usize_unsuffixed(lowered.memories);
+    let marks = lowered.marks.iter().flat_map(|(bracket, marks)| marks.iter().map(move |mark| (bracket, mark)));
+    let marks = marks.filter_map(|(bracket, mark)| {
+        let record = lowered.records.get(&mark.record)?;
+        let facts = mark.facts.iter().map(|fact| {
+            let memory = Literal::u32_unsuffixed(record.first.saturating_add(fact.number));
+            let operand = match fact.operand.map(Literal::u32_unsuffixed) {
+                Some(operand) => quote!(Some(#operand)),
+                None => quote!(None),
+            };
+            quote!((#memory, #operand))
+        });
+        let [bracket, first, count] = [*bracket, record.first, record.facts].map(Literal::u32_unsuffixed);
+        let level = Literal::u16_unsuffixed(record.level);
+        Some(quote! {
+            runtime::MarkRow {
+                bracket: #bracket, level: #level, first: #first, count: #count, facts: &[#(#facts),*],
+            }
+        })
+    });
+    let marks = quote! {
+        #[doc = " The labels of what ends with a bracket, for `after`."]
+        static MARKS: &[runtime::MarkRow<'static>] = &[#(#marks),*];
+    };
+    let new = quote! {
+        runtime::InRows::remembering(&ROWS, #slots, runtime::Memories::new(#width, MARKS, [false; #size]))
+    };
+    (Some(quote!(, runtime::Memories<'static, [bool; #size]>)), new, Some(marks))
 }
 
 /// `static ROWS`: when each bracket ends, the operands of their conditions, the law of each atom.
@@ -77,7 +140,7 @@ fn rows(lowered: &Lowered) -> TokenStream {
         .collect();
     let operands = operands.rows();
     let laws = lowered.laws.iter().map(|law| {
-        let control = variant("AnyControl", lowered.quark(law.quark));
+        let control = variant("AnyControl", lowered.quark(law.quark), &lowered.quarks);
         let frame = angle(law.frame);
         quote!(runtime::LawRow { control: #control, frame: #frame })
     });
@@ -130,10 +193,23 @@ impl<'l> Operands<'l> {
     fn row(&mut self, condition: &'l Condition) -> TokenStream {
         let first = Literal::usize_unsuffixed(self.count);
         match condition {
-            // What cannot be emitted was refused.
-            Condition::Null | Condition::Rising { .. } | Condition::After(_) => quote!(Null),
+            Condition::Null => quote!(Null),
+            Condition::Rising { memory, operand } => {
+                self.waiting.push_back(operand);
+                self.count += 1;
+                let memory = Literal::u32_unsuffixed(*memory);
+                quote!(Rising(#memory, #first))
+            }
+            Condition::After(after) => match self.lowered.records.get(&after.record) {
+                Some(record) => {
+                    let level = Literal::u16_unsuffixed(record.level);
+                    let memory = Literal::u32_unsuffixed(record.first.saturating_add(after.fact));
+                    quote!(After(#level, #memory))
+                }
+                None => quote!(Null),
+            },
             Condition::Quark(id) => {
-                let interrupt = variant("AnyInterrupt", self.lowered.quark(*id));
+                let interrupt = interrupt(*id, &self.lowered.quarks);
                 quote!(Quark(#interrupt))
             }
             Condition::Wait { nanos, .. } => {
@@ -172,10 +248,18 @@ impl<'l> Operands<'l> {
     }
 }
 
+/// An interrupt as one of its alphabet's.
+fn interrupt(id: QuarkId, quarks: &[Quark]) -> TokenStream {
+    let quark = &quarks[id.0 as usize];
+    let Some(comparison) = &quark.comparison else { return variant("AnyInterrupt", quark, quarks) };
+    let comparison = compared(comparison, |signal| variant("AnySignal", &quarks[signal.0 as usize], quarks));
+    quote!(robot::AnyInterrupt::Comparison(#comparison))
+}
+
 /// `robot::AnyControl::Go(robot::Go::new(…))`: a quark as one of its alphabet's.
-fn variant(any: &str, quark: &Quark) -> TokenStream {
+fn variant(any: &str, quark: &Quark, quarks: &[Quark]) -> TokenStream {
     let any = quote::format_ident!("{any}");
     let kind = quark_type(&quark.name, quark.overload);
-    let value = made(quark);
+    let value = made(quark, quarks);
     quote!(robot::#any::#kind(#value))
 }

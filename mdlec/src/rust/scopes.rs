@@ -108,7 +108,7 @@ pub(super) fn expression(
         }
     };
     match condition {
-        // What cannot be emitted was refused.
+        // A plan with these is rows.
         Condition::Null | Condition::Rising { .. } | Condition::After(_) => quote!(false),
         Condition::Quark(id) => {
             let quark = constant(Constant::Quark(*id));

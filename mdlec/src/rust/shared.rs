@@ -4,7 +4,7 @@
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
-use super::arguments::{angle, made};
+use super::arguments::{angle, made, type_of};
 use super::code::{Parts, atom_text};
 use super::kinds::{Atoms, Kind, Part};
 use super::names::{Distinct, kind_table, kind_variant, quark_type};
@@ -104,9 +104,9 @@ impl<'l> Shared<'l> {
     fn constant(&self, part: Part) -> (&str, TokenStream, TokenStream) {
         match part {
             Part::Quark(id) | Part::Law(id) => {
-                let quark = self.lowered.quark(id);
-                let kind = quark_type(&quark.name, quark.overload);
-                (&quark.name, quote!(robot::#kind), made(quark))
+                let (quark, quarks) = (self.lowered.quark(id), &self.lowered.quarks);
+                let name = if quark.comparison.is_some() { "compared" } else { quark.name.as_str() };
+                (name, type_of(quark, quarks), made(quark, quarks))
             }
             Part::Wait(nanos) => ("wait", quote!(Nanos), nanoseconds(nanos)),
             Part::Follows(follows) => {
@@ -257,7 +257,7 @@ impl<'l> Shared<'l> {
     fn plan(&self) -> Option<TokenStream> {
         let condition = self.atoms.condition(0);
         let mut constant = |constant: Constant| match constant {
-            Constant::Quark(id) => made(self.lowered.quark(id)),
+            Constant::Quark(id) => made(self.lowered.quark(id), &self.lowered.quarks),
             Constant::Wait(nanos) => nanoseconds(nanos),
         };
         let fired = (*condition != Condition::Null).then(|| expression(condition, 0, &mut constant))?;

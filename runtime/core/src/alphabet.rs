@@ -1,8 +1,8 @@
 //! A robot's alphabet 𝒜 = U ∪ B′ as types, for plans whose quarks are known by name only (paper, Definition 1).
 
 use crate::{
-    Bits, Completes, Control, Interrupt, Law, Meters, MetersPerSecond, Nanos, Output, Radians, RadiansPerSecond,
-    SonarId, Volts,
+    Bits, Comparison, Completes, Control, Interrupt, Law, Meters, MetersPerSecond, Nanos, Output, Radians,
+    RadiansPerSecond, Signal, SonarId, Volts,
 };
 
 /// The quarks of one robot, each kind as one type; `mdlec bind` writes it from the robot's `alphabet.mdle`.
@@ -15,6 +15,8 @@ pub trait Alphabet {
     type Input: Default;
     /// Any of its interrupts, with its arguments.
     type Interrupt: Interrupt<Self::Output>;
+    /// Any of its signals, with its arguments.
+    type Signal: Signal<Self::Output>;
     /// Any of its laws, with its arguments.
     type Control: Control<Self::Output, Law = Self::Law>;
     /// Any of its laws as it runs; one that never completes says so by never being done.
@@ -22,6 +24,10 @@ pub trait Alphabet {
 
     /// The interrupt of this name with these arguments; `None` if the alphabet has no such signature.
     fn interrupt(name: &str, arguments: &[Argument<'_>]) -> Option<Self::Interrupt>;
+    /// The signal of this name with these arguments; `None` if the alphabet has no such signature.
+    fn signal(name: &str, arguments: &[Argument<'_>]) -> Option<Self::Signal>;
+    /// A comparison of its signals as one of its interrupts; `None` if it has no signals.
+    fn comparison(comparison: Comparison<Self::Signal, Self::Signal>) -> Option<Self::Interrupt>;
     /// The law of this name with these arguments; `None` if the alphabet has no such signature.
     fn control(name: &str, arguments: &[Argument<'_>]) -> Option<Self::Control>;
 }

@@ -3,9 +3,10 @@
 //! `mdlec` emits this for plans that are too long to be code of their own, and a plan loaded at run time is this. A row
 //! costs rustc next to nothing, and a turn looks at as many of them as there are scopes around the current atom.
 
+use crate::fsm::Kind;
 use crate::{
-    Alphabet, Begin, Cause, Completes, Control, Cursor, Ending, Follows, Fsm, Interrupt, Law, Nanos, Next, Plan,
-    Radians, Slots,
+    Alphabet, Begin, Cause, Completes, Control, Cursor, Ending, Follows, Fsm, Interrupt, Law, Memory, Nanos, Next,
+    Plan, Radians, Slots,
 };
 
 /// What the brackets and atoms of a plan mean.
@@ -52,28 +53,79 @@ pub enum Condition<I> {
     And(u32, u32),
     /// Fires when its operand, of this number, does not.
     Not(u32),
+    /// Fires when its operand does and the memory is set that it once did not: the memory of the scope, and the operand.
+    Rising(u32, u32),
+    /// Fires while this memory of the scope of this level is set: something has ended last.
+    After(u16, u32),
+}
+
+/// What a condition is read with.
+struct Reading<'r, I, Y, M> {
+    y: &'r Y,
+    /// The time since its scope was entered, and how many scopes are around that.
+    since: Nanos,
+    level: u16,
+    operands: &'r [Condition<I>],
+    memory: &'r M,
 }
 
 impl<I> Condition<I> {
-    /// Whether it has fired, `since` its scope was entered; reads every operand, which stand in `operands` from number
-    /// `from` on. It calls itself as deep as the text's parentheses go.
-    fn fired<Y>(&self, y: &Y, since: Nanos, operands: &[Self], from: u32) -> bool
+    /// Whether it has fired; reads every operand, which stand from number `from` on. It calls itself as deep as the text's
+    /// parentheses go.
+    fn fired<'m, Y, M: Memory<'m>>(&self, at: &Reading<'_, I, Y, M>, from: u32) -> bool
     where
         I: Interrupt<Y>,
     {
         let operand = |number: u32| {
-            let operand = operands.get(number as usize).filter(|_| number >= from);
-            operand.is_some_and(|operand| operand.fired(y, since, operands, number.saturating_add(1)))
+            let operand = at.operands.get(number as usize).filter(|_| number >= from);
+            operand.is_some_and(|operand| operand.fired(at, number.saturating_add(1)))
         };
         let all = |first: u32, count: u32| (first..first.saturating_add(count)).map(operand);
         match self {
             Self::Null => false,
-            Self::Quark(interrupt) => interrupt.fired(y),
-            Self::Wait(time) => since >= *time,
-            Self::Elapsed(from, until) => (*from..*until).contains(&since),
+            Self::Quark(interrupt) => interrupt.fired(at.y),
+            Self::Wait(time) => at.since >= *time,
+            Self::Elapsed(from, until) => (*from..*until).contains(&at.since),
             Self::Or(first, count) => all(*first, *count).fold(false, |fired, operand| fired | operand),
             Self::And(first, count) => all(*first, *count).fold(true, |fired, operand| fired & operand),
             Self::Not(number) => !operand(*number),
+            Self::Rising(memory, number) => at.memory.is_set(at.level, *memory) & operand(*number),
+            Self::After(level, memory) => at.memory.is_set(*level, *memory),
+        }
+    }
+
+    /// The first operand of its OR that has fired; the first where it is none.
+    fn cause<'m, Y, M: Memory<'m>>(&self, at: &Reading<'_, I, Y, M>) -> u32
+    where
+        I: Interrupt<Y>,
+    {
+        let Self::Or(first, count) = self else { return 0 };
+        let mut operands = (0..*count).zip(*first..).filter_map(|(place, number)| {
+            let operand = at.operands.get(number as usize)?;
+            operand.fired(at, number.saturating_add(1)).then_some(place)
+        });
+        operands.next().unwrap_or(0)
+    }
+
+    /// Tells the memory of every RISING in it whose operand has not fired.
+    fn low<'m, Y, M: Memory<'m>>(&self, at: &Reading<'_, I, Y, M>, from: u32, tell: &mut impl FnMut(u32))
+    where
+        I: Interrupt<Y>,
+    {
+        let inside = match self {
+            Self::Null | Self::Quark(_) | Self::Wait(_) | Self::Elapsed(..) | Self::After(..) => return,
+            Self::Or(first, count) | Self::And(first, count) => *first..first.saturating_add(*count),
+            Self::Not(number) | Self::Rising(_, number) => *number..number.saturating_add(1),
+        };
+        for number in inside {
+            let Some(operand) = at.operands.get(number as usize).filter(|_| number >= from) else { continue };
+            let behind = number.saturating_add(1);
+            if let Self::Rising(memory, _) = self
+                && !operand.fired(at, behind)
+            {
+                tell(*memory);
+            }
+            operand.low(at, behind, tell);
         }
     }
 }
@@ -99,9 +151,10 @@ pub struct Texts<'a> {
 }
 
 /// A plan in rows that a [`Machine`](crate::Machine) runs.
-pub struct InRows<'a, A: Alphabet, E, P> {
+pub struct InRows<'a, A: Alphabet, E, P, M = ()> {
     rows: &'a Rows<'a, A>,
     slots: (E, P),
+    memory: M,
     running: Option<A::Law>,
     /// The bracket of the current atom.
     own: u32,
@@ -111,7 +164,15 @@ impl<'a, A: Alphabet, E: Slots<Nanos>, P: Slots<u64>> InRows<'a, A, E, P> {
     /// The plan before it begins, with a place for each level of scopes and of loops; values do not matter.
     #[must_use]
     pub const fn new(rows: &'a Rows<'a, A>, entered: E, left: P) -> Self {
-        Self { rows, slots: (entered, left), running: None, own: 0 }
+        Self { rows, slots: (entered, left), memory: (), running: None, own: 0 }
+    }
+}
+
+impl<'a, A: Alphabet, E: Slots<Nanos>, P: Slots<u64>, M: Memory<'a>> InRows<'a, A, E, P, M> {
+    /// The same for a plan that remembers; its memories are empty.
+    #[must_use]
+    pub const fn remembering(rows: &'a Rows<'a, A>, entered: E, left: P, memory: M) -> Self {
+        Self { rows, slots: (entered, left), memory, running: None, own: 0 }
     }
 
     /// The outermost scope around the current atom whose interrupt has fired.
@@ -124,9 +185,12 @@ impl<'a, A: Alphabet, E: Slots<Nanos>, P: Slots<u64>> InRows<'a, A, E, P> {
                 Condition::Null => false,
                 Condition::Quark(interrupt) => interrupt.fired(y),
                 Condition::Wait(time) => cursor.since(guard.level, t) >= *time,
-                Condition::Elapsed(..) | Condition::Or(..) | Condition::And(..) | Condition::Not(_) => {
-                    self.compound(guard, cursor, y, t)
-                }
+                Condition::Elapsed(..)
+                | Condition::Or(..)
+                | Condition::And(..)
+                | Condition::Not(_)
+                | Condition::Rising(..)
+                | Condition::After(..) => self.compound(guard, cursor, y, t),
             };
             if fired {
                 found = Some(guard);
@@ -143,11 +207,85 @@ impl<'a, A: Alphabet, E: Slots<Nanos>, P: Slots<u64>> InRows<'a, A, E, P> {
     #[cold]
     #[inline(never)]
     fn compound(&self, guard: &Guard<A::Interrupt>, cursor: &Cursor<E, P>, y: &A::Output, t: Nanos) -> bool {
-        guard.condition.fired(y, cursor.since(guard.level, t), self.rows.operands, 0)
+        guard.condition.fired(&self.reading(guard, cursor, y, t), 0)
+    }
+
+    fn reading<'r>(
+        &'r self,
+        guard: &Guard<A::Interrupt>,
+        cursor: &Cursor<E, P>,
+        y: &'r A::Output,
+        t: Nanos,
+    ) -> Reading<'r, A::Interrupt, A::Output, M> {
+        let since = cursor.since(guard.level, t);
+        Reading { y, since, level: guard.level, operands: self.rows.operands, memory: &self.memory }
+    }
+
+    /// Writes down what ends with the scope that has this cause, and forgets what was inside.
+    fn record(&mut self, cursor: &Cursor<E, P>, cause: Cause, y: &A::Output, t: Nanos) {
+        let fsm = self.rows.fsm;
+        let ended = self.rows.guards.get(cursor.scope(fsm, cause.level()) as usize);
+        let operand = match (cause, ended) {
+            (Cause::Fired(_), Some(guard)) => Some(guard.condition.cause(&self.reading(guard, cursor, y, t))),
+            (Cause::Completed(_), _) | (_, None) => None,
+        };
+        let mut outermost = cause.level();
+        for (number, bracket) in cursor.ending(fsm, cause.level()) {
+            if let Kind::Scope { level } = bracket.kind {
+                outermost = level;
+            }
+            for mark in self.memory.marks(number) {
+                let record = mark.first..mark.first.saturating_add(mark.count);
+                record.for_each(|memory| self.memory.set(mark.level, memory, false));
+            }
+        }
+        for (place, (number, _)) in cursor.ending(fsm, cause.level()).enumerate() {
+            let operand = operand.filter(|_| place == 0);
+            for mark in self.memory.marks(number) {
+                let hold = mark.facts.iter().filter(|(_, cause)| cause.is_none() || *cause == operand);
+                hold.for_each(|(memory, _)| self.memory.set(mark.level, *memory, true));
+            }
+        }
+        self.memory.forget(outermost);
+    }
+
+    /// Sets the memory of every RISING around the current atom whose operand has not fired.
+    fn remember(&mut self, cursor: &Cursor<E, P>, y: &A::Output, t: Nanos) {
+        let (rows, mut here) = (self.rows, self.own);
+        while let Some(guard) = rows.guards.get(here as usize) {
+            let mut memory = 0;
+            // One after the other: a memory that is set changes nothing about those that are still to be.
+            while let Some(low) = self.low(guard, cursor, y, t, memory) {
+                self.memory.set(guard.level, low, true);
+                memory = low.saturating_add(1);
+            }
+            if guard.around >= here {
+                break;
+            }
+            here = guard.around;
+        }
+    }
+
+    /// The first RISING of a scope, from this memory on, whose operand has not fired.
+    fn low(
+        &self,
+        guard: &Guard<A::Interrupt>,
+        cursor: &Cursor<E, P>,
+        y: &A::Output,
+        t: Nanos,
+        from: u32,
+    ) -> Option<u32> {
+        let mut first: Option<u32> = None;
+        guard.condition.low(&self.reading(guard, cursor, y, t), 0, &mut |memory| {
+            if memory >= from && first.is_none_or(|first| memory < first) {
+                first = Some(memory);
+            }
+        });
+        first
     }
 }
 
-impl<A: Alphabet, E: Slots<Nanos> + Clone, P: Slots<u64> + Clone> Plan for InRows<'_, A, E, P> {
+impl<'a, A: Alphabet, E: Slots<Nanos> + Clone, P: Slots<u64> + Clone, M: Memory<'a>> Plan for InRows<'a, A, E, P, M> {
     type Output = A::Output;
     type Input = A::Input;
     type Entered = E;
@@ -189,6 +327,20 @@ impl<A: Alphabet, E: Slots<Nanos> + Clone, P: Slots<u64> + Clone> Plan for InRow
         }
     }
 
+    #[inline(always)]
+    fn leave(&mut self, cursor: &Cursor<E, P>, cause: Cause, y: &A::Output, t: Nanos) {
+        if M::KEEPS {
+            self.record(cursor, cause, y, t);
+        }
+    }
+
+    #[inline(always)]
+    fn settle(&mut self, cursor: &Cursor<E, P>, y: &A::Output, t: Nanos) {
+        if M::KEEPS {
+            self.remember(cursor, y, t);
+        }
+    }
+
     fn input(&mut self, y: &A::Output, t: Nanos) -> A::Input {
         self.running.as_mut().map_or_else(A::Input::default, |law| law.input(y, t))
     }
@@ -212,7 +364,7 @@ fn text<'a>(texts: &[&'a str], index: u32) -> &'a str {
 
 #[cfg(test)]
 mod tests {
-    use super::Condition;
+    use super::{Condition, Reading};
     use crate::{Interrupt, Nanos};
 
     struct Always;
@@ -223,15 +375,19 @@ mod tests {
         }
     }
 
+    fn at(operands: &[Condition<Always>]) -> Reading<'_, Always, (), ()> {
+        Reading { y: &(), since: Nanos::ZERO, level: 0, operands, memory: &() }
+    }
+
     #[test]
     fn a_condition_that_is_its_own_operand_holds_nobody_up() {
         for operand in [Condition::Not(0), Condition::Or(0, 1), Condition::And(0, 1)] {
             let operands: [Condition<Always>; 1] = [operand];
-            let fired = |condition: Condition<Always>| condition.fired(&(), Nanos::ZERO, &operands, 0);
+            let fired = |condition: Condition<Always>| condition.fired(&at(&operands), 0);
             // What refers to itself or back is as if it were not there, and so has not fired.
             assert_eq!(fired(Condition::Or(0, 1)), matches!(operands[0], Condition::Not(_)));
         }
-        assert!(Condition::Or(0, 1).fired(&(), Nanos::ZERO, &[Condition::Quark(Always)], 0));
-        assert!(!Condition::Or(0, 1).fired(&(), Nanos::ZERO, &[Condition::Quark(Always)], 1));
+        assert!(Condition::Or(0, 1).fired(&at(&[Condition::Quark(Always)]), 0));
+        assert!(!Condition::Or(0, 1).fired(&at(&[Condition::Quark(Always)]), 1));
     }
 }

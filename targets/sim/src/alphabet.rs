@@ -3,7 +3,9 @@
 #![allow(unused_variables, reason = "not every alphabet has a quark that looks at all of this")]
 pub use crate::{Input, Output};
 pub use crate::quarks::{Go, GoAvoid};
-pub use ::mdle_atoms::{Bumper, AtIsection, Stop, Rotate, Turn, Align};
+pub use ::mdle_atoms::{
+    Bumper, AtIsection, Stop, Rotate, Turn, Align, R, X, Y, Theta, V, Omega,
+};
 use ::mdle_runtime as runtime;
 /// The target's name, as `mdlec --target` takes it.
 pub const NAME: &str = "sim";
@@ -64,6 +66,36 @@ mod signatures {
     const fn align(first: runtime::SonarId, second: runtime::SonarId) -> Align {
         Align::new(first, second)
     }
+
+    /// `r <sonar 0 to 15>`: The range that a sonar returns.
+    const fn r(which: runtime::SonarId) -> R {
+        R::new(which)
+    }
+
+    /// `x`: Odometry, along the first axis.
+    const fn x() -> X {
+        X::new()
+    }
+
+    /// `y`: Odometry, along the second axis.
+    const fn y_2() -> Y {
+        Y::new()
+    }
+
+    /// `theta`: Odometry, the heading.
+    const fn theta() -> Theta {
+        Theta::new()
+    }
+
+    /// `v`: The measured forward speed.
+    const fn v() -> V {
+        V::new()
+    }
+
+    /// `omega`: The measured turn rate.
+    const fn omega() -> Omega {
+        Omega::new()
+    }
 }
 
 /// Any interrupt of this robot with its arguments.
@@ -73,6 +105,8 @@ pub enum AnyInterrupt {
     Bumper(Bumper),
     /// `atIsection <4 bits>`: Fires when the four directions front, left, back, right are all as the bits say: 1 where an obstacle is near.
     AtIsection(AtIsection),
+    /// A comparison of signals.
+    Comparison(runtime::Comparison<AnySignal, AnySignal>),
 }
 
 impl runtime::Interrupt<Output> for AnyInterrupt {
@@ -80,6 +114,37 @@ impl runtime::Interrupt<Output> for AnyInterrupt {
         match self {
             Self::Bumper(interrupt) => runtime::Interrupt::fired(interrupt, y),
             Self::AtIsection(interrupt) => runtime::Interrupt::fired(interrupt, y),
+            Self::Comparison(comparison) => runtime::Interrupt::fired(comparison, y),
+        }
+    }
+}
+
+/// Any signal of this robot with its arguments.
+#[derive(Debug)]
+pub enum AnySignal {
+    /// `r <sonar 0 to 15>`: The range that a sonar returns.
+    R(R),
+    /// `x`: Odometry, along the first axis.
+    X(X),
+    /// `y`: Odometry, along the second axis.
+    Y(Y),
+    /// `theta`: Odometry, the heading.
+    Theta(Theta),
+    /// `v`: The measured forward speed.
+    V(V),
+    /// `omega`: The measured turn rate.
+    Omega(Omega),
+}
+
+impl runtime::Signal<Output> for AnySignal {
+    fn value(&self, y: &Output) -> f64 {
+        match self {
+            Self::R(signal) => runtime::Signal::value(signal, y),
+            Self::X(signal) => runtime::Signal::value(signal, y),
+            Self::Y(signal) => runtime::Signal::value(signal, y),
+            Self::Theta(signal) => runtime::Signal::value(signal, y),
+            Self::V(signal) => runtime::Signal::value(signal, y),
+            Self::Omega(signal) => runtime::Signal::value(signal, y),
         }
     }
 }
@@ -166,6 +231,7 @@ impl runtime::Alphabet for Alphabet {
     type Output = Output;
     type Input = Input;
     type Interrupt = AnyInterrupt;
+    type Signal = AnySignal;
     type Control = AnyControl;
     type Law = AnyLaw;
     fn interrupt(
@@ -183,6 +249,26 @@ impl runtime::Alphabet for Alphabet {
                 _ => return None,
             },
         )
+    }
+
+    fn signal(name: &str, arguments: &[runtime::Argument<'_>]) -> Option<AnySignal> {
+        Some(
+            match (name, arguments) {
+                ("r", &[runtime::Argument::Sonar(which)]) => AnySignal::R(R::new(which)),
+                ("x", &[]) => AnySignal::X(X::new()),
+                ("y", &[]) => AnySignal::Y(Y::new()),
+                ("theta", &[]) => AnySignal::Theta(Theta::new()),
+                ("v", &[]) => AnySignal::V(V::new()),
+                ("omega", &[]) => AnySignal::Omega(Omega::new()),
+                _ => return None,
+            },
+        )
+    }
+
+    fn comparison(
+        comparison: runtime::Comparison<AnySignal, AnySignal>,
+    ) -> Option<AnyInterrupt> {
+        Some(AnyInterrupt::Comparison(comparison))
     }
 
     fn control(name: &str, arguments: &[runtime::Argument<'_>]) -> Option<AnyControl> {

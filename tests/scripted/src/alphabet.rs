@@ -3,8 +3,8 @@
 #![allow(unused_variables, reason = "not every alphabet has a quark that looks at all of this")]
 pub use crate::{Input, Output};
 pub use crate::quarks::{
-    A, B, C, D, E, F, FarOff, Faster, Facing, Spinning, LowBattery, Pattern, Echo,
-    Beyond, Idle, Drift, Drive, Seek, Climb, Veer, Wander,
+    R, X, Theta, V, A, B, C, D, E, F, FarOff, Faster, Facing, Spinning, LowBattery,
+    Pattern, Echo, Beyond, Idle, Drift, Drive, Seek, Climb, Veer, Wander,
 };
 use ::mdle_runtime as runtime;
 /// The target's name, as `mdlec --target` takes it.
@@ -17,6 +17,26 @@ pub const HASH: u64 = 0xb30a9e78f1880c1b;
 #[allow(dead_code, reason = "what stands here is to be compiled, not called")]
 mod signatures {
     use super::*;
+    /// `r <sonar 0 to 15>`: The range that a sonar returns.
+    const fn r(which: runtime::SonarId) -> R {
+        R::new(which)
+    }
+
+    /// `x`: Takes a length.
+    const fn x() -> X {
+        X::new()
+    }
+
+    /// `theta`: Takes an angle.
+    const fn theta() -> Theta {
+        Theta::new()
+    }
+
+    /// `v`: Takes a speed.
+    const fn v() -> V {
+        V::new()
+    }
+
     /// `a`: Fires when the script says so.
     const fn a() -> A {
         A::new()
@@ -157,6 +177,8 @@ pub enum AnyInterrupt {
     Echo(Echo),
     /// `beyond <ratio> <times>`: Takes a number and a whole number.
     Beyond(Beyond),
+    /// A comparison of signals.
+    Comparison(runtime::Comparison<AnySignal, AnySignal>),
 }
 
 impl runtime::Interrupt<Output> for AnyInterrupt {
@@ -176,6 +198,31 @@ impl runtime::Interrupt<Output> for AnyInterrupt {
             Self::Pattern(interrupt) => runtime::Interrupt::fired(interrupt, y),
             Self::Echo(interrupt) => runtime::Interrupt::fired(interrupt, y),
             Self::Beyond(interrupt) => runtime::Interrupt::fired(interrupt, y),
+            Self::Comparison(comparison) => runtime::Interrupt::fired(comparison, y),
+        }
+    }
+}
+
+/// Any signal of this robot with its arguments.
+#[derive(Debug)]
+pub enum AnySignal {
+    /// `r <sonar 0 to 15>`: The range that a sonar returns.
+    R(R),
+    /// `x`: Takes a length.
+    X(X),
+    /// `theta`: Takes an angle.
+    Theta(Theta),
+    /// `v`: Takes a speed.
+    V(V),
+}
+
+impl runtime::Signal<Output> for AnySignal {
+    fn value(&self, y: &Output) -> f64 {
+        match self {
+            Self::R(signal) => runtime::Signal::value(signal, y),
+            Self::X(signal) => runtime::Signal::value(signal, y),
+            Self::Theta(signal) => runtime::Signal::value(signal, y),
+            Self::V(signal) => runtime::Signal::value(signal, y),
         }
     }
 }
@@ -269,6 +316,7 @@ impl runtime::Alphabet for Alphabet {
     type Output = Output;
     type Input = Input;
     type Interrupt = AnyInterrupt;
+    type Signal = AnySignal;
     type Control = AnyControl;
     type Law = AnyLaw;
     fn interrupt(
@@ -313,6 +361,24 @@ impl runtime::Alphabet for Alphabet {
                 _ => return None,
             },
         )
+    }
+
+    fn signal(name: &str, arguments: &[runtime::Argument<'_>]) -> Option<AnySignal> {
+        Some(
+            match (name, arguments) {
+                ("r", &[runtime::Argument::Sonar(which)]) => AnySignal::R(R::new(which)),
+                ("x", &[]) => AnySignal::X(X::new()),
+                ("theta", &[]) => AnySignal::Theta(Theta::new()),
+                ("v", &[]) => AnySignal::V(V::new()),
+                _ => return None,
+            },
+        )
+    }
+
+    fn comparison(
+        comparison: runtime::Comparison<AnySignal, AnySignal>,
+    ) -> Option<AnyInterrupt> {
+        Some(AnyInterrupt::Comparison(comparison))
     }
 
     fn control(name: &str, arguments: &[runtime::Argument<'_>]) -> Option<AnyControl> {

@@ -12,4 +12,4 @@ pub mod quarks;
 mod reports;
 
 pub use drive::drive;
-pub use reports::{INTERRUPTS, Input, LAWS, Output};
+pub use reports::{INTERRUPTS, Input, LAWS, Output, SIGNALS};

@@ -1,7 +1,7 @@
 //! The quarks of `alphabet.mdle`: interrupts that read the script, laws that leave their number in the input.
 
 use mdle_runtime::{
-    Begin, Bits, Completes, Control, Interrupt, Law, Meters, MetersPerSecond, Nanos, Radians, RadiansPerSecond,
+    Begin, Bits, Completes, Control, Interrupt, Law, Meters, MetersPerSecond, Nanos, Radians, RadiansPerSecond, Signal,
     SonarId, Volts,
 };
 
@@ -48,6 +48,58 @@ interrupts! {
     Pattern "pattern" (bits: Bits<4>) [bits.0.iter().fold(0.0, |digits, bit| digits * 10.0 + f64::from(u8::from(*bit)))];
     Echo "echo" (sonar: SonarId) [sonar.number() as f64];
     Beyond "beyond" (ratio: f64, times: i64) [ratio, times as f64];
+}
+
+/// The signal `r`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct R(SonarId);
+
+impl R {
+    /// The signal of this sonar.
+    #[must_use]
+    pub const fn new(which: SonarId) -> Self {
+        Self(which)
+    }
+}
+
+impl Signal<Output> for R {
+    fn value(&self, y: &Output) -> f64 {
+        match self.0.number() {
+            3 => y.signal("r3"),
+            5 => y.signal("r5"),
+            _ => f64::INFINITY,
+        }
+    }
+}
+
+/// Declares signals: the type and the name in the alphabet.
+macro_rules! signals {
+    ($($name:ident $text:literal;)*) => {$(
+        #[doc = concat!("The signal `", $text, "`.")]
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub struct $name;
+
+        impl $name {
+            /// The signal.
+            #[must_use]
+            #[allow(clippy::new_without_default, reason = "as bound alphabets have it")]
+            pub const fn new() -> Self {
+                Self
+            }
+        }
+
+        impl Signal<Output> for $name {
+            fn value(&self, y: &Output) -> f64 {
+                y.signal($text)
+            }
+        }
+    )*};
+}
+
+signals! {
+    X "x";
+    Theta "theta";
+    V "v";
 }
 
 /// Declares laws as interrupts are declared, and what they become when their atom begins.

@@ -40,13 +40,18 @@ pub const LAWS: &[&str] = &[
     "drive -5 0.36",
 ];
 
+/// The signals that have a value; other sonars see nothing.
+pub const SIGNALS: [&str; 5] = ["r3", "r5", "x", "theta", "v"];
+
 /// The output of a turn: what the script reports in it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Output {
     /// Bit `i`: `INTERRUPTS[i]` has fired.
     pub fired: u64,
     /// Bit `i`: `LAWS[i]` is done.
     pub completed: u64,
+    /// The values of [`SIGNALS`], in SI units.
+    pub signals: [f64; SIGNALS.len()],
 }
 
 impl mdle_runtime::Output for Output {}
@@ -55,6 +60,12 @@ impl Output {
     /// Whether the interrupt of this name with these arguments, in its default units, has fired.
     pub(crate) fn has_fired(&self, name: &str, arguments: &[f64]) -> bool {
         number(INTERRUPTS, name, arguments).is_some_and(|bit| self.fired >> bit & 1 == 1)
+    }
+
+    /// The value of a signal.
+    pub(crate) fn signal(&self, name: &str) -> f64 {
+        let known = SIGNALS.iter().zip(self.signals).find(|(signal, _)| **signal == name);
+        known.map_or(f64::INFINITY, |(_, value)| value)
     }
 
     /// Whether the law of this number is done.

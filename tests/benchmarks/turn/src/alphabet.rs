@@ -95,6 +95,7 @@ impl runtime::Alphabet for Alphabet {
     type Output = Output;
     type Input = Input;
     type Interrupt = AnyInterrupt;
+    type Signal = runtime::NoSignal;
     type Control = AnyControl;
     type Law = AnyLaw;
     fn interrupt(
@@ -110,6 +111,19 @@ impl runtime::Alphabet for Alphabet {
                 _ => return None,
             },
         )
+    }
+
+    fn signal(
+        name: &str,
+        arguments: &[runtime::Argument<'_>],
+    ) -> Option<runtime::NoSignal> {
+        None
+    }
+
+    fn comparison(
+        comparison: runtime::Comparison<runtime::NoSignal, runtime::NoSignal>,
+    ) -> Option<AnyInterrupt> {
+        None
     }
 
     fn control(name: &str, arguments: &[runtime::Argument<'_>]) -> Option<AnyControl> {

@@ -1,0 +1,141 @@
+//! Signals, and comparisons of them as interrupt quarks (paper, Definition 1: an interrupt is a function of `y`).
+
+use crate::{Interrupt, Radians};
+
+/// What comparisons read: a number of the output, in SI units.
+pub trait Signal<Y: ?Sized> {
+    /// Its value now; infinite where the sensor saw nothing.
+    fn value(&self, y: &Y) -> f64;
+}
+
+/// How a signal is compared.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Operator {
+    /// Not further apart than this.
+    Equal(f64),
+    /// Two directions not further apart than this, the shortest way round.
+    SameDirection(f64),
+    /// Below.
+    Less,
+    /// Not above.
+    LessOrEqual,
+    /// Above.
+    Greater,
+    /// Not below.
+    GreaterOrEqual,
+}
+
+impl Operator {
+    /// Whether it holds; it holds for nothing that is no number.
+    #[must_use]
+    pub fn holds(self, left: f64, right: f64) -> bool {
+        match self {
+            Self::Equal(tolerance) => (left - right).abs() <= tolerance,
+            Self::SameDirection(tolerance) => Radians(left - right).wrapped().0.abs() <= tolerance,
+            Self::Less => left < right,
+            Self::LessOrEqual => left <= right,
+            Self::Greater => left > right,
+            Self::GreaterOrEqual => left >= right,
+        }
+    }
+}
+
+/// What a signal is compared with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Operand<S> {
+    /// Another signal.
+    Signal(S),
+    /// A value.
+    Value(f64),
+}
+
+impl<Y: ?Sized, S: Signal<Y>> Signal<Y> for Operand<S> {
+    fn value(&self, y: &Y) -> f64 {
+        match self {
+            Self::Signal(signal) => signal.value(y),
+            Self::Value(value) => *value,
+        }
+    }
+}
+
+/// A comparison of a signal: an interrupt that has fired while it holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Comparison<S, O> {
+    signal: S,
+    operator: Operator,
+    with: Operand<O>,
+}
+
+impl<S, O> Comparison<S, O> {
+    /// The comparison of these.
+    #[must_use]
+    pub const fn new(signal: S, operator: Operator, with: Operand<O>) -> Self {
+        Self { signal, operator, with }
+    }
+}
+
+impl<Y: ?Sized, S: Signal<Y>, O: Signal<Y>> Interrupt<Y> for Comparison<S, O> {
+    fn fired(&self, y: &Y) -> bool {
+        self.operator.holds(self.signal.value(y), self.with.value(y))
+    }
+}
+
+/// The signals of a robot that has none.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NoSignal {}
+
+impl<Y: ?Sized> Signal<Y> for NoSignal {
+    fn value(&self, _: &Y) -> f64 {
+        match *self {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A robot whose output is two numbers.
+    struct First;
+    struct Second;
+
+    impl Signal<(f64, f64)> for First {
+        fn value(&self, y: &(f64, f64)) -> f64 {
+            y.0
+        }
+    }
+
+    impl Signal<(f64, f64)> for Second {
+        fn value(&self, y: &(f64, f64)) -> f64 {
+            y.1
+        }
+    }
+
+    #[test]
+    fn operators_hold_where_they_say() {
+        let holding = |left: f64, right: f64| {
+            [Operator::Equal(0.5), Operator::Less, Operator::LessOrEqual, Operator::Greater, Operator::GreaterOrEqual]
+                .map(|operator| operator.holds(left, right))
+        };
+        assert_eq!(holding(1.0, 1.5), [true, true, true, false, false]);
+        assert_eq!(holding(2.0, 1.0), [false, false, false, true, true]);
+        assert_eq!(holding(1.0, 1.0), [true, false, true, false, true]);
+        assert_eq!(holding(f64::INFINITY, f64::INFINITY), [false, false, true, false, true]);
+        assert_eq!(holding(f64::NAN, 1.0), [false; 5]);
+    }
+
+    #[test]
+    fn directions_are_compared_the_shortest_way_round() {
+        let degrees = |angle: f64| Radians::from_degrees(angle).0;
+        let same = Operator::SameDirection(degrees(1.0));
+        assert!(same.holds(degrees(179.5), degrees(-179.8)) && same.holds(degrees(-360.0), 0.0));
+        assert!(!same.holds(degrees(178.5), degrees(-179.8)) && !same.holds(degrees(180.0), 0.0));
+    }
+
+    #[test]
+    fn a_comparison_reads_both_of_its_sides() {
+        let signals = Comparison::new(First, Operator::Less, Operand::Signal(Second));
+        assert_eq!([(1.0, 2.0), (2.0, 1.0)].map(|y| signals.fired(&y)), [true, false]);
+        let value = Comparison::<_, Second>::new(First, Operator::Greater, Operand::Value(1.5));
+        assert_eq!([(1.0, 2.0), (2.0, 1.0)].map(|y| value.fired(&y)), [false, true]);
+    }
+}
