@@ -114,11 +114,15 @@ pub(super) fn read_plan(path: &Path, target: &Target) -> Result<Input, Failure> 
     for (name, text) in &target.sources {
         sources.add(name, text);
     }
-    let name = if path == Path::new("-") { "standard input".into() } else { path.display().to_string() };
-    let source = sources.add(name, text);
+    let source = sources.add(shown(path), text);
     let paths = BTreeMap::from([(source, path.to_owned())]);
     let read = path.canonicalize().map(|place| (place, source)).into_iter().collect();
     Ok(Input { sources, source, paths, read })
+}
+
+/// What messages call a file.
+pub(super) fn shown(path: &Path) -> String {
+    if path == Path::new("-") { "standard input".into() } else { path.display().to_string() }
 }
 
 /// Reads a text file, or standard input for `-`.

@@ -3,6 +3,7 @@
 mod bind;
 mod build;
 mod check;
+mod fmt;
 mod input;
 mod report;
 mod trace;
@@ -31,6 +32,8 @@ struct Cli {
 enum Command {
     /// Says what is wrong with plans, and builds nothing
     Check(Check),
+    /// Puts plans into the one canonical layout; comments stay
+    Fmt(Fmt),
     /// Runs a plan against a script of interrupts, no robot needed
     Trace(Trace),
     /// Lists the robots that plans can be compiled for
@@ -127,6 +130,16 @@ struct Check {
 }
 
 #[derive(Debug, Args)]
+struct Fmt {
+    /// The plans; `-` reads standard input and prints to standard output
+    #[arg(required = true)]
+    plans: Vec<PathBuf>,
+    /// Write nothing and list the plans that are laid out differently; exit status 1 if there are any
+    #[arg(long)]
+    check: bool,
+}
+
+#[derive(Debug, Args)]
 struct Trace {
     /// The plan
     plan: PathBuf,
@@ -210,6 +223,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
     match cli.command {
         None => build::build(&cli.build),
         Some(Command::Check(check)) => check::check(&check),
+        Some(Command::Fmt(fmt)) => fmt::fmt(&fmt),
         Some(Command::Trace(trace)) => trace::trace(&trace),
         Some(Command::Targets) => input::print_targets(),
         Some(Command::Bind(bind)) => bind::bind(&bind),

@@ -9,13 +9,19 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::{LinkError, stop};
 
-/// Writes `bytes` to the file `output`, whole or not at all; into a device as it comes.
+/// Writes `bytes` to the file `output`, whole or not at all; into a device as it comes. A file that is written over keeps its
+/// permissions.
 ///
 /// # Errors
 /// When `output` is a folder or cannot be written.
 pub fn write_whole(output: &Path, bytes: &[u8]) -> Result<(), LinkError> {
     match Destination::check(output, None) {
-        Ok(destination) => destination.put(|new| new.write_all(bytes)),
+        Ok(destination) => destination.put(|new| {
+            if let Ok(old) = fs::metadata(&destination.path) {
+                new.set_permissions(old.permissions())?;
+            }
+            new.write_all(bytes)
+        }),
         Err(LinkError::OutputIsSpecial(_)) => {
             fs::write(output, bytes).map_err(|error| LinkError::output(output, error))
         }

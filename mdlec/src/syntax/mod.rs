@@ -6,6 +6,7 @@ mod dropped;
 mod errors;
 mod files;
 mod flawless;
+mod format;
 mod header;
 mod lexical;
 mod mistakes;
@@ -47,6 +48,8 @@ use crate::diagnostic::{Code, Diagnostic, SourceId, sort};
 pub use files::{Files, Loader, NoFiles, parse_with};
 use nodes::Nodes;
 use source::{Location, Place, Source};
+
+pub use format::format;
 
 /// Where trees stand.
 pub type Arena = bumpalo::Bump;

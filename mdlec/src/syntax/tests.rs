@@ -1,5 +1,6 @@
 //! What the front end reads and says, source beside result.
 
+mod format;
 mod forms;
 mod listings;
 mod mistakes;

@@ -9,14 +9,17 @@ const LAB1_TO_OFFICE: &str = include_str!("../../../../plans/paper/lab1_to_offic
 const ROBOT1: &str = include_str!("../../../../plans/paper/first_robot.mdle");
 const ROBOT2: &str = include_str!("../../../../plans/paper/second_robot.mdle");
 
+/// In the order of the paper.
+pub(super) const ALL: [&str; 5] = [SOUND_FOLLOW, LAB2_TO_LAB1, LAB1_TO_OFFICE, ROBOT1, ROBOT2];
+
 #[test]
 fn the_papers_listings_are_read_as_printed() {
-    check("the_papers_listings_are_read_as_printed", &[SOUND_FOLLOW, LAB2_TO_LAB1, LAB1_TO_OFFICE, ROBOT1, ROBOT2]);
+    check("the_papers_listings_are_read_as_printed", &ALL);
 }
 
 #[test]
 fn the_papers_listings_are_read_from_one_file() {
-    let text = [SOUND_FOLLOW, LAB2_TO_LAB1, LAB1_TO_OFFICE, ROBOT1, ROBOT2].concat();
+    let text = ALL.concat();
     let arena = Arena::new();
     let (file, diagnostics) = parse(SourceId(0), &text, &arena);
     assert_eq!(diagnostics, []);

@@ -4,6 +4,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use super::super::brackets::{MAX_DEPTH, balance};
+use super::super::format;
 use super::super::source::Source;
 use super::super::token::{Tok, lex};
 use super::{Arena, outline, parse, recover};
@@ -84,7 +85,7 @@ fn soup() -> impl Strategy<Value = String> {
 }
 
 /// What each test is run with; it prints the seed, which is seen where the test fails.
-fn config() -> ProptestConfig {
+pub(super) fn config() -> ProptestConfig {
     let default = ProptestConfig::default();
     let rng_seed = match default.rng_seed {
         RngSeed::Random => RngSeed::Fixed(SEED),
@@ -112,6 +113,13 @@ fn reads(text: &str) {
             assert!(text.get(label.span.within(id)).is_some(), "{found:?}");
         }
         let _ = sources.render(found);
+    }
+    match format(id, text) {
+        Ok(formatted) => {
+            assert_eq!(outline(&parse(id, &formatted, &Arena::new()).0), outline(&file), "{formatted}");
+            assert_eq!(format(id, &formatted).as_ref(), Ok(&formatted));
+        }
+        Err(found) => assert_eq!(found, diagnostics),
     }
 }
 

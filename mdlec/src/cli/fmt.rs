@@ -1,0 +1,48 @@
+//! `mdlec fmt`: plans in the one canonical layout.
+
+use std::fs;
+use std::path::Path;
+
+use super::check::each;
+use super::{Failure, Fmt, input, report};
+use crate::diagnostic::Sources;
+use crate::{link, syntax};
+
+/// Lays out each file anew, or lists those that are laid out differently. A file with errors stays as it is.
+pub(super) fn fmt(options: &Fmt) -> Result<(), Failure> {
+    each(&options.plans, |path| {
+        let text = input::read_text(path)?;
+        let formatted = formatted(path, &text)?;
+        if options.check {
+            return if formatted == text { Ok(()) } else { differs(path) };
+        }
+        if path == Path::new("-") {
+            return report::print(&formatted);
+        }
+        if formatted == text { Ok(()) } else { write(path, &formatted) }
+    })
+}
+
+fn formatted(path: &Path, text: &str) -> Result<String, Failure> {
+    let mut sources = Sources::default();
+    let source = sources.add(input::shown(path), text);
+    syntax::format(source, text).map_err(|found| {
+        report::diagnostics(&sources, &found, false);
+        Failure::PLAN
+    })
+}
+
+/// Lists a file, for scripts and for people.
+fn differs(path: &Path) -> Result<(), Failure> {
+    report::print(&format!("{}\n", path.display()))?;
+    Err(Failure::PLAN)
+}
+
+/// Writes a file over, unless somebody has protected it.
+fn write(path: &Path, text: &str) -> Result<(), Failure> {
+    if fs::metadata(path).is_ok_and(|found| found.permissions().readonly()) {
+        return Err(Failure::usage(format!("`{}` is read-only", path.display())));
+    }
+    link::write_whole(path, text.as_bytes())
+        .map_err(|error| Failure { status: error.exit_status(), message: Some(error.to_string()) })
+}

@@ -1,0 +1,174 @@
+//! Text to the same text in the one canonical layout: two blanks for each level, an element a line where a scope has several.
+//!
+//! The tokens stay, and so does every comment at its place among them; the tree only says where lines may break.
+
+mod comments;
+mod lines;
+mod pieces;
+
+use super::source::Source;
+use super::token::Tok;
+use super::tree::{Element, File, Plan, Primary};
+use super::{arena_for, parse};
+use crate::diagnostic::{Diagnostic, SourceId, Span, has_errors};
+use comments::Before;
+use lines::Lines;
+use pieces::Pieces;
+
+/// How many columns a line has; only what cannot be broken is longer.
+const WIDTH: usize = 100;
+
+/// The blanks of a level.
+const INDENT: usize = 2;
+
+/// The text in the canonical layout; or what is wrong with it.
+///
+/// # Errors
+/// When the text has errors: where the parser had to guess, nothing is moved.
+pub fn format(id: SourceId, text: &str) -> Result<String, Vec<Diagnostic>> {
+    let arena = arena_for(text);
+    let (file, found) = parse(id, text, &arena);
+    if has_errors(&found) {
+        return Err(found);
+    }
+    let pieces = Pieces::of(Source { id, text });
+    let mut layout = Layout { id, pieces, at: 0, lines: Lines::default(), depth: 0 };
+    layout.file(&file);
+    Ok(layout.lines.text())
+}
+
+/// Puts one piece after the other into lines.
+struct Layout<'s> {
+    id: SourceId,
+    pieces: Pieces<'s>,
+    /// The piece that comes next.
+    at: usize,
+    lines: Lines,
+    depth: usize,
+}
+
+impl Layout<'_> {
+    fn file(&mut self, file: &File<'_>) {
+        let mut plans = file.plans.iter();
+        let mut before = Before::First;
+        while let Some(kind) = self.pieces.kind(self.at) {
+            if kind == Tok::Use {
+                self.boundary(before);
+                self.flow(self.at + 2);
+                before = Before::Next;
+            } else if let Some(plan) = plans.next() {
+                self.boundary(if before == Before::First { before } else { Before::Apart });
+                self.plan(plan);
+                before = Before::Apart;
+            } else {
+                self.flow(self.at + 1);
+            }
+        }
+        self.boundary(Before::Close);
+    }
+
+    /// A plan, on one line if it is small.
+    fn plan(&mut self, plan: &Plan<'_>) {
+        let end = self.behind(plan.span);
+        if breaks(plan) || !self.fits(end) {
+            self.list(plan.elements);
+        }
+        self.flow(end);
+    }
+
+    fn element(&mut self, element: &Element<'_>) {
+        let end = self.behind(element.span);
+        let is_broken = is_broken(element) || !self.fits(end);
+        if is_broken {
+            match &element.primary {
+                Primary::Plan(plan) => self.list(plan.elements),
+                Primary::Exec(exec) if self.is_braced(exec.body) => self.list(exec.body),
+                Primary::String(body) => self.list(body),
+                Primary::Formal(formal) if !is_one_call(formal.body) => self.list(formal.body),
+                Primary::Atom(atom) => {
+                    let law = self.first(atom.control.span);
+                    let is_in_parentheses = self.pieces.kind(law.wrapping_sub(1)) == Some(Tok::LParen);
+                    self.pieces.may_break_before(law - usize::from(is_in_parentheses));
+                }
+                Primary::Exec(_) | Primary::Formal(_) | Primary::Ref(_) | Primary::Broken => {}
+            }
+        }
+        self.flow(end);
+    }
+
+    /// What stands before these elements, and each of them on lines of its own.
+    fn list(&mut self, elements: &[Element<'_>]) {
+        let Some(first) = elements.first() else { return };
+        self.flow(self.first(first.span));
+        self.depth += 1;
+        let mut before = Before::First;
+        for element in elements {
+            self.boundary(before);
+            self.element(element);
+            before = Before::Next;
+        }
+        if self.pieces.kind(self.at) == Some(Tok::SigmaNull) {
+            self.boundary(before);
+            self.flow(self.at + 1);
+        }
+        self.depth -= 1;
+        self.boundary(Before::Close);
+    }
+
+    /// Whether what comes next, up to this piece, fits into the line that is being written.
+    fn fits(&self, end: usize) -> bool {
+        let column = self.lines.width() + usize::from(!self.lines.is_blank());
+        !self.pieces.have_comments(self.at + 1, end) && column + self.pieces.width(self.at, end) <= WIDTH
+    }
+
+    /// Whether a loop's body stands in braces, and is not a plan by name.
+    fn is_braced(&self, body: &[Element<'_>]) -> bool {
+        let first = body.first().map_or(0, |element| self.first(element.span));
+        first.checked_sub(1).and_then(|before| self.pieces.kind(before)) == Some(Tok::LBrace)
+    }
+
+    /// The first piece of a place in the text.
+    fn first(&self, span: Span) -> usize {
+        self.pieces.at_byte(span.within(self.id).start)
+    }
+
+    /// The piece behind a place in the text.
+    fn behind(&self, span: Span) -> usize {
+        self.pieces.at_byte(span.within(self.id).end)
+    }
+
+    /// Puts the pieces before `end` behind each other; lines that would be too long go on before an operator or a law.
+    fn flow(&mut self, end: usize) {
+        let further = INDENT * self.depth + 2 * INDENT;
+        while self.at < end {
+            self.comments_inside(further);
+            let chunk = self.pieces.chunk(self.at, end);
+            let is_full = chunk.may_break && self.lines.width() + 1 + chunk.width > WIDTH;
+            if self.lines.is_closed() || is_full && self.lines.width() > further {
+                self.lines.start(further);
+            }
+            self.lines.word(&self.pieces.get(self.at).text, self.pieces.get(self.at).is_glued);
+            self.at += 1;
+        }
+    }
+}
+
+/// Whether a plan stands on several lines however short it is.
+fn breaks(plan: &Plan<'_>) -> bool {
+    plan.elements.len() > 1 || plan.elements.iter().any(is_broken)
+}
+
+/// Whether a body is a law, or a plan by name, and no string of several elements.
+fn is_one_call(body: &[Element<'_>]) -> bool {
+    matches!(body, [Element { primary: Primary::Ref(_), .. }])
+}
+
+fn is_broken(element: &Element<'_>) -> bool {
+    match &element.primary {
+        Primary::Plan(plan) => breaks(plan),
+        Primary::Exec(exec) => exec.body.iter().any(is_broken),
+        Primary::String(body) => body.iter().any(is_broken),
+        Primary::Formal(formal) => formal.body.iter().any(is_broken),
+        Primary::Atom(_) | Primary::Ref(_) | Primary::Broken => false,
+    }
+}

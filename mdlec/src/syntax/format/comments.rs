@@ -1,0 +1,131 @@
+//! Where comments go: one that ends a line stays on that line, one that has a line of its own keeps it.
+
+use super::{INDENT, Layout};
+
+/// A comment, and how it stands in the text.
+#[derive(Debug)]
+pub(super) struct Comment<'s> {
+    /// All of it, with its slashes.
+    text: &'s str,
+    /// How many line ends there are between what is before it and it.
+    lines: usize,
+}
+
+impl Comment<'_> {
+    /// Whether nothing can follow it on its line.
+    fn ends_line(&self) -> bool {
+        self.text.starts_with("//")
+    }
+
+    /// Without blanks at the ends of its lines.
+    fn trimmed(&self) -> String {
+        self.text.lines().map(str::trim_end).collect::<Vec<_>>().join("\n")
+    }
+}
+
+/// What stands between two tokens.
+#[derive(Debug, Default)]
+pub(super) struct Gap<'s> {
+    /// The comments, in order.
+    pub(super) comments: Vec<Comment<'s>>,
+    /// How many line ends there are behind the last comment.
+    lines: usize,
+}
+
+/// Finds the comments in the text between two tokens.
+pub(super) fn gap(text: &str) -> Gap<'_> {
+    let mut gap = Gap::default();
+    let mut rest = text;
+    while let Some(start) = [rest.find("//"), rest.find("/*")].into_iter().flatten().min() {
+        let (blank, comment) = rest.split_at(start);
+        let length = if comment.starts_with("//") {
+            comment.find('\n')
+        } else {
+            comment.get(2..).and_then(|inside| inside.find("*/")).map(|end| end + 4)
+        };
+        let (comment, behind) = comment.split_at(length.unwrap_or(comment.len()));
+        gap.comments.push(Comment { text: comment, lines: line_ends(blank) });
+        rest = behind;
+    }
+    gap.lines = line_ends(rest);
+    gap
+}
+
+fn line_ends(blank: &str) -> usize {
+    blank.matches('\n').count()
+}
+
+/// What begins on a line of its own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Before {
+    /// The first of several: no empty line comes before it.
+    First,
+    /// The next: an empty line before it stays.
+    Next,
+    /// A plan behind others: an empty line comes before it.
+    Apart,
+    /// A closing bracket or the end: no empty line comes before it.
+    Close,
+}
+
+impl Layout<'_> {
+    /// Puts the comments before the next piece, which itself begins a line.
+    pub(super) fn boundary(&mut self, before: Before) {
+        let indent = INDENT * self.depth;
+        // The comments before a closing bracket belong to what it closes.
+        let inner =
+            if before == Before::Close && self.pieces.kind(self.at).is_some() { indent + INDENT } else { indent };
+        let Gap { comments, lines: behind } = self.pieces.take_gap(self.at);
+        let behind = if before == Before::Close { behind.max(1) } else { behind };
+        let starts_text = self.lines.is_empty();
+        let keeps_empty = before != Before::First;
+        let has_empty = comments.iter().map(|comment| comment.lines).chain([behind]).any(|lines| lines > 1);
+        let mut needs_empty = before == Before::Apart && !has_empty;
+        // Comments between two pieces of one line lead to the second.
+        let leads = behind == 0 && comments.iter().all(|comment| comment.lines == 0 && !comment.ends_line());
+        let mut is_fresh = false;
+        for (number, comment) in comments.iter().enumerate() {
+            let stays = comment.lines == 0 && !starts_text;
+            if number == 0 && stays && !leads {
+                self.lines.trail(&comment.trimmed());
+                continue;
+            }
+            if number > 0 && comment.lines == 0 {
+                self.lines.append(&comment.trimmed(), comment.ends_line());
+                continue;
+            }
+            let is_empty_kept = comment.lines > 1 && (keeps_empty || is_fresh);
+            self.line(inner, needs_empty || is_empty_kept);
+            self.lines.append(&comment.trimmed(), comment.ends_line());
+            (needs_empty, is_fresh) = (false, true);
+        }
+        let follows_on_line = behind == 0 && is_fresh;
+        if self.pieces.kind(self.at).is_some() && !follows_on_line {
+            let is_empty_kept = behind > 1 && before != Before::Close && (keeps_empty || is_fresh);
+            self.line(indent, needs_empty || is_empty_kept);
+        }
+    }
+
+    /// Begins a line, perhaps behind an empty one.
+    fn line(&mut self, indent: usize, behind_empty: bool) {
+        if behind_empty {
+            self.lines.skip();
+        }
+        self.lines.start(indent);
+    }
+
+    /// Puts the comments before the next piece, which is in the midst of an element.
+    pub(super) fn comments_inside(&mut self, further: usize) {
+        for comment in self.pieces.take_gap(self.at).comments {
+            let is_apart = comment.ends_line() && comment.lines > 0 && !self.lines.is_blank();
+            if comment.ends_line() && comment.lines == 0 && !self.lines.is_closed() {
+                self.lines.trail(&comment.trimmed());
+                continue;
+            }
+            if self.lines.is_closed() || is_apart {
+                self.lines.start(further);
+            }
+            self.lines.append(&comment.trimmed(), comment.ends_line());
+        }
+    }
+}

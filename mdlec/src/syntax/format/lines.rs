@@ -1,0 +1,117 @@
+//! Lines as they are written: code, and behind it a comment; those of neighbouring lines of a level stand below each other.
+
+/// How far the longest of neighbouring lines is from its comment.
+const GAP: usize = 4;
+
+/// A line.
+#[derive(Debug, Default)]
+struct Line {
+    code: String,
+    /// The comment behind it, or nothing.
+    comment: String,
+    /// Whether it ends here: nothing can stand behind a comment that ends with its line.
+    is_closed: bool,
+}
+
+/// A text that is being written.
+#[derive(Debug, Default)]
+pub(super) struct Lines {
+    done: Vec<Line>,
+    line: Option<Line>,
+}
+
+impl Lines {
+    /// Begins a line that is indented so far.
+    pub(super) fn start(&mut self, indent: usize) {
+        self.done.extend(self.line.take());
+        self.line = Some(Line { code: " ".repeat(indent), ..Line::default() });
+    }
+
+    /// Leaves a line empty.
+    pub(super) fn skip(&mut self) {
+        self.done.extend(self.line.take());
+        self.line = Some(Line::default());
+    }
+
+    /// Puts a word behind what stands on the line.
+    pub(super) fn word(&mut self, text: &str, is_glued: bool) {
+        let is_first = self.is_blank();
+        let code = &mut self.line.get_or_insert_default().code;
+        if !is_glued && !is_first {
+            code.push(' ');
+        }
+        code.push_str(text);
+    }
+
+    /// Puts a comment among the words, or on a line of its own.
+    pub(super) fn append(&mut self, comment: &str, is_closed: bool) {
+        if self.line.as_ref().is_some_and(|line| !line.comment.is_empty()) {
+            return self.trail(comment);
+        }
+        self.word(comment, false);
+        self.line.get_or_insert_default().is_closed = is_closed;
+    }
+
+    /// Ends the line with a comment.
+    pub(super) fn trail(&mut self, comment: &str) {
+        let line = self.line.get_or_insert_default();
+        if !line.comment.is_empty() {
+            line.comment.push(' ');
+        }
+        line.comment.push_str(comment);
+        line.is_closed = true;
+    }
+
+    /// Whether there is no line yet.
+    pub(super) fn is_empty(&self) -> bool {
+        self.line.is_none()
+    }
+
+    /// Whether nothing stands on the line yet.
+    pub(super) fn is_blank(&self) -> bool {
+        self.line.as_ref().is_none_or(|line| line.code.trim_start_matches(' ').is_empty())
+    }
+
+    /// Whether nothing can stand behind what is on the line.
+    pub(super) fn is_closed(&self) -> bool {
+        self.line.as_ref().is_some_and(|line| line.is_closed)
+    }
+
+    /// How many columns are taken.
+    pub(super) fn width(&self) -> usize {
+        self.line.as_ref().map_or(0, |line| width(&line.code))
+    }
+
+    /// The text, each line with its end.
+    pub(super) fn text(mut self) -> String {
+        self.done.extend(self.line.take());
+        let mut text = String::new();
+        for run in self.done.chunk_by(are_aligned) {
+            let column = GAP + run.iter().map(|line| width(&line.code)).max().unwrap_or(0);
+            for line in run {
+                text.push_str(&line.code);
+                if is_commented(line) {
+                    text.extend(std::iter::repeat_n(' ', column - width(&line.code)));
+                    text.push_str(&line.comment);
+                }
+                text.push('\n');
+            }
+        }
+        text
+    }
+}
+
+/// Whether the comments of two neighbours stand below each other.
+fn are_aligned(one: &Line, next: &Line) -> bool {
+    let indent = |line: &Line| line.code.len() - line.code.trim_start_matches(' ').len();
+    is_commented(one) && is_commented(next) && indent(one) == indent(next)
+}
+
+fn is_commented(line: &Line) -> bool {
+    !line.comment.is_empty()
+}
+
+/// The columns of what stands on the last line of this.
+fn width(code: &str) -> usize {
+    code.rsplit('\n').next().unwrap_or("").chars().count()
+}

@@ -1,0 +1,158 @@
+//! The tokens of a text as they are printed, each with the comments before it.
+
+use std::borrow::Cow;
+
+use super::super::header;
+use super::super::source::{Place, Source};
+use super::super::token::{Lexed, Tok, Token, label, lex};
+use super::comments::{Gap, gap};
+
+/// A token as it is printed.
+#[derive(Debug)]
+pub(super) struct Piece<'s> {
+    /// Its text, in the canonical spelling.
+    pub(super) text: Cow<'s, str>,
+    /// Whether it touches the piece before it.
+    pub(super) is_glued: bool,
+    kind: Tok<'s>,
+    /// Where it begins in the source.
+    start: usize,
+    /// What stands before it.
+    gap: Gap<'s>,
+    /// Whether a line that would be too long may go on before it.
+    may_break: bool,
+    /// How wide everything before it is on one line.
+    left: usize,
+    /// How many comments there are before it.
+    comments: usize,
+}
+
+/// Pieces that belong on one line.
+pub(super) struct Chunk {
+    /// Whether a line may break before it.
+    pub(super) may_break: bool,
+    /// How many columns it needs.
+    pub(super) width: usize,
+}
+
+/// All of a text; the last piece is its end, and empty.
+pub(super) struct Pieces<'s>(Vec<Piece<'s>>);
+
+impl<'s> Pieces<'s> {
+    /// The pieces of a text without errors.
+    pub(super) fn of(source: Source<'s>) -> Self {
+        let Lexed { mut tokens, .. } = lex(source);
+        header::mark(&mut tokens);
+        let end = source.text.len();
+        tokens.push(Token { kind: Tok::Comment, place: Place::new(end, end) });
+        let mut pieces: Vec<Piece<'s>> = Vec::with_capacity(tokens.len());
+        let (mut behind, mut left, mut comments) = (0, 0, 0);
+        for token in tokens {
+            let Token { kind, place } = token;
+            let gap = gap(source.slice(Place::new(behind, place.start)));
+            let is_glued = pieces.last().is_none_or(|before| touch(before.kind, kind));
+            let text = text(source, token);
+            left += usize::from(!is_glued);
+            comments += gap.comments.len();
+            let may_break = matches!(kind, Tok::Or | Tok::And | Tok::ConditionParen)
+                || pieces.last().is_some_and(|before| before.kind == Tok::Comma);
+            let width = text.chars().count();
+            pieces.push(Piece { text, is_glued, kind, start: place.start, gap, may_break, left, comments });
+            left += width;
+            behind = place.end;
+        }
+        Self(pieces)
+    }
+
+    pub(super) fn get(&self, at: usize) -> &Piece<'s> {
+        let last = self.0.len() - 1;
+        &self.0[at.min(last)]
+    }
+
+    /// What the piece is; nothing at the end.
+    pub(super) fn kind(&self, at: usize) -> Option<Tok<'s>> {
+        (at + 1 < self.0.len()).then(|| self.get(at).kind)
+    }
+
+    /// The first piece at this byte of the source or behind it.
+    pub(super) fn at_byte(&self, byte: usize) -> usize {
+        self.0.partition_point(|piece| piece.start < byte)
+    }
+
+    /// Takes what stands before a piece.
+    pub(super) fn take_gap(&mut self, at: usize) -> Gap<'s> {
+        self.0.get_mut(at).map(|piece| std::mem::take(&mut piece.gap)).unwrap_or_default()
+    }
+
+    pub(super) fn may_break_before(&mut self, at: usize) {
+        if let Some(piece) = self.0.get_mut(at) {
+            piece.may_break = true;
+        }
+    }
+
+    /// How many columns the pieces from `first` to before `end` need on one line.
+    pub(super) fn width(&self, first: usize, end: usize) -> usize {
+        let last = self.get(end.saturating_sub(1));
+        last.left + last.text.chars().count() - self.get(first).left
+    }
+
+    /// Whether a comment stands before any of the pieces from `first` to before `end`.
+    pub(super) fn have_comments(&self, first: usize, end: usize) -> bool {
+        self.get(end.saturating_sub(1)).comments > self.get(first.saturating_sub(1)).comments
+    }
+
+    /// The pieces from `first` to where the line may break, at the latest before `end`.
+    pub(super) fn chunk(&self, first: usize, end: usize) -> Chunk {
+        if !self.get(first).may_break {
+            return Chunk { may_break: false, width: 0 };
+        }
+        // A line breaks before OR rather than before AND, which binds closer.
+        let is_and = |at: usize| self.get(at).kind == Tok::And;
+        let next =
+            (first + 1..end).find(|at| self.get(*at).may_break && (is_and(first) || !is_and(*at))).unwrap_or(end);
+        Chunk { may_break: true, width: self.width(first, next) }
+    }
+}
+
+/// A token as it is spelled: words and numbers as they are written, and without typesetting.
+fn text<'s>(source: Source<'s>, token: Token<'s>) -> Cow<'s, str> {
+    let written = source.slice(token.place);
+    #[allow(clippy::wildcard_enum_match_arm, reason = "all others are written as they are")]
+    Cow::Borrowed(match token.kind {
+        Tok::Or => "OR",
+        Tok::And => "AND",
+        Tok::Not => "NOT",
+        Tok::Rising => "RISING",
+        Tok::SigmaNull => "sigma_null",
+        Tok::Infinity => "inf",
+        Tok::LBrace => "{",
+        Tok::RBrace => "}",
+        Tok::LessOrEqual => "<=",
+        Tok::GreaterOrEqual => ">=",
+        Tok::Label(written) => return plain_label(written),
+        _ => written,
+    })
+}
+
+/// A label without typesetting, if it still is one then.
+fn plain_label(written: &str) -> Cow<'_, str> {
+    let plain = label(written);
+    let is_label = |text: &str| {
+        let parts = text.strip_prefix("Γ_").map(|parts| parts.split('^'));
+        parts.is_some_and(|mut parts| parts.all(|part| !part.is_empty()))
+    };
+    if is_label(&plain) { Cow::Owned(plain) } else { Cow::Borrowed(written) }
+}
+
+/// Whether no blank stands between two tokens.
+fn touch(before: Tok<'_>, token: Tok<'_>) -> bool {
+    let opens = matches!(
+        before,
+        Tok::LParen | Tok::TouchParen | Tok::ParamParen | Tok::ConditionParen | Tok::LBracket | Tok::Caret
+    );
+    let closes = matches!(
+        token,
+        Tok::RParen | Tok::TouchParen | Tok::ParamParen | Tok::LBracket | Tok::RBracket | Tok::Comma | Tok::Colon
+    );
+    opens || closes || token == Tok::Caret
+}
