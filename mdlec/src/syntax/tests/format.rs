@@ -137,6 +137,12 @@ fn a_line_has_a_hundred_columns() {
 }
 
 #[test]
+fn the_deepest_nesting_is_laid_out() {
+    let flat = format!("{{ A {}B{} }}", "{ A ".repeat(255), " }".repeat(255));
+    assert_eq!(assert_kept(&flat).lines().count(), 256 + 1 + 256);
+}
+
+#[test]
 fn a_text_with_errors_is_not_laid_out() {
     let found = format(SourceId(0), "{ A (Atom (bumper) }").expect_err("a bracket is missing");
     assert!(!found.is_empty());
