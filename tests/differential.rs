@@ -13,7 +13,7 @@ use mdle_tests::random_script::script;
 use mdlec::trace::{Applied, Fired, Line, Outcome, Script};
 
 /// How many plans are tried.
-const PLANS: u64 = 5000;
+const PLANS: u64 = 10_000;
 
 /// What a random plan and its script brought about, to see that chance tries what it is meant to try.
 #[derive(Debug, Default)]

@@ -6,7 +6,7 @@ use mdlec::Compiled;
 use mdlec::alphabet::{self, Alphabet};
 use mdlec::diagnostic::{Diagnostic, Sources, has_errors};
 use mdlec::fsm::{Lowered, algorithm1, expand};
-use mdlec::trace::{Counted, Line, Script, Tree, run};
+use mdlec::trace::{Counted, Line, MatrixProduct, Script, Table, Tree, run};
 
 /// The most states of a plan whose expanded form is run as well.
 const EXPANDED: u64 = 2000;
@@ -79,8 +79,14 @@ impl<'c> Machines<'c> {
             ("tree", run(Tree::new(&self.compiled.plan), script).collect()),
             ("counted", run(Counted::new(&self.compiled.lowered), script).collect()),
         ];
-        let expanded = self.expanded.as_ref().map(|lowered| run(Counted::new(lowered), script).collect());
-        traces.extend(expanded.map(|trace| ("counted, expanded", trace)));
+        if let Some(expanded) = &self.expanded {
+            let plan = &self.compiled.nondegenerate;
+            traces.extend([
+                ("table", run(Table::new(plan).expect("a small plan"), script).collect()),
+                ("matrix", run(MatrixProduct::new(plan).expect("a small plan"), script).collect()),
+                ("counted, expanded", run(Counted::new(expanded), script).collect()),
+            ]);
+        }
         traces
     }
 }

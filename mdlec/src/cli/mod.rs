@@ -162,6 +162,10 @@ struct Trace {
 enum Machine {
     /// A direct walk over the plan as it is written
     Tree,
+    /// The finite state machine, loops written out, as a table
+    Table,
+    /// The product of the finite state machine's transition matrices
+    Matrix,
     /// The machine that robots run: brackets and counters
     Counted,
 }

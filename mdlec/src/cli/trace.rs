@@ -3,7 +3,7 @@
 use std::io::{self, BufWriter, Write};
 
 use super::{Failure, Machine, Trace, input, report};
-use crate::trace::{Counted, Line, Script, Tree, run};
+use crate::trace::{Counted, Line, MatrixProduct, Script, Table, Tree, run};
 
 /// Runs the plan and prints what it does, a line a turn.
 pub(super) fn trace(options: &Trace) -> Result<(), Failure> {
@@ -16,8 +16,14 @@ pub(super) fn trace(options: &Trace) -> Result<(), Failure> {
     let text = input::read_text(&options.script)?;
     let script = Script::read(&text)
         .map_err(|error| Failure::usage(format!("{}:{}: {}", options.script.display(), error.line, error.message)))?;
+    let too_large = |found| {
+        report::diagnostics(&input.sources, &[found], false);
+        Failure::PLAN
+    };
     match options.machine {
         Machine::Tree => print(run(Tree::new(&compiled.plan), &script)),
+        Machine::Table => print(run(Table::new(&compiled.nondegenerate).map_err(too_large)?, &script)),
+        Machine::Matrix => print(run(MatrixProduct::new(&compiled.nondegenerate).map_err(too_large)?, &script)),
         Machine::Counted => print(run(Counted::new(&compiled.lowered), &script)),
     }
 }

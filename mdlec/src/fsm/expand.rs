@@ -1,6 +1,6 @@
 //! Writes finite loops out (paper, section II-A: `(s1 s2)^3 → s1 s2 s1 s2 s1 s2`), so that every state has a number.
 
-use super::{Lowered, algorithm1};
+use super::algorithm1;
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::plan::{Loop, Node, Nondegenerate, Scope};
 
@@ -12,11 +12,17 @@ const EXPANDED: u64 = 100_000;
 /// # Errors
 /// E0501 for a plan that cannot be lowered, E0502 for one of more than 100,000 states.
 pub fn expand(plan: &Nondegenerate) -> Result<Nondegenerate, Diagnostic> {
-    let lowered = algorithm1(plan)?;
-    if lowered.termination > EXPANDED {
-        return Err(too_large(&lowered, plan));
-    }
+    expanded_states(plan)?;
     Ok(plan.map(expand_scope))
+}
+
+/// The number of states of a plan with its finite loops written out, the termination state included.
+///
+/// # Errors
+/// As [`expand`]: E0501 for a plan that cannot be lowered, E0502 for one of more than 100,000 states.
+pub fn expanded_states(plan: &Nondegenerate) -> Result<u64, Diagnostic> {
+    let states = algorithm1(plan)?.termination;
+    if states > EXPANDED { Err(too_large(states, plan)) } else { Ok(states) }
 }
 
 fn expand_scope(scope: &Scope) -> Scope {
@@ -48,8 +54,7 @@ fn expand_sequence(body: &[Node]) -> Vec<Node> {
     expanded
 }
 
-fn too_large(lowered: &Lowered, plan: &Nondegenerate) -> Diagnostic {
-    let states = lowered.termination;
+fn too_large(states: u64, plan: &Nondegenerate) -> Diagnostic {
     let message = format!("expanded, this plan has {states} states; an expanded form has at most {EXPANDED}");
     let help = "the executable and `--emit rust` need no expansion: their size does not depend on loop counts";
     match largest_loop(&plan.plan().root.body).1 {

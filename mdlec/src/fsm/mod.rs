@@ -4,11 +4,13 @@
 
 mod expand;
 mod file;
+mod matrices;
 #[cfg(test)]
 mod tests;
 
-pub use expand::expand;
+pub use expand::{expand, expanded_states};
 pub use file::{FsmFile, InterruptEntry, Moves, ScopeEntry, fsm_file};
+pub use matrices::{Matrices, Matrix, Transition, UnitVector, matrices};
 
 use std::collections::BTreeMap;
 

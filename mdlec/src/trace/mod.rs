@@ -1,12 +1,16 @@
 //! The machines of `mdlec trace`: the same plan, run by ways of working that share no stepping code (semantics, section 9).
 
 mod counted;
+mod matrix;
 mod script;
+mod table;
 mod tree;
 mod write;
 
 pub use counted::Counted;
+pub use matrix::MatrixProduct;
 pub use script::{Reports, Script, ScriptError};
+pub use table::Table;
 pub use tree::Tree;
 pub use write::{Applied, Fired, Line, Outcome};
 

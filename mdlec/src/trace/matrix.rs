@@ -1,0 +1,151 @@
+//! The machine `matrix`: an execution as a product of transition matrices (paper, Eq. 4; semantics, sections 8 and 9),
+//! of which only the column of the first state is ever multiplied out.
+
+use std::collections::BTreeSet;
+
+use mdle_runtime::{Nanos, TRANSITIONS_PER_TURN};
+
+use super::{Applied, Fired, Machine, Outcome, Reports};
+use crate::diagnostic::Diagnostic;
+use crate::fsm::{Matrices, Transition, UnitVector, matrices};
+use crate::plan::{Nondegenerate, Plan, Quark, QuarkId, RecordId, Situation};
+
+/// A plan as its transition matrices, and the vector that they are applied to.
+#[derive(Debug)]
+pub struct MatrixProduct<'p> {
+    plan: &'p Plan,
+    matrices: Matrices<'p>,
+    /// For each column the interrupts whose matrices list it, by number: the outermost first.
+    listing: Vec<Vec<u32>>,
+    /// When the scope of each interrupt was entered.
+    entered: Vec<Nanos>,
+    /// The memories of RISING that are set, by the number of their interrupt and their own.
+    risen: BTreeSet<(usize, u32)>,
+    /// What is so of the records of what ended last.
+    facts: BTreeSet<(RecordId, u32)>,
+    /// The product so far, applied to the first state.
+    e: UnitVector,
+}
+
+/// Where the condition of an interrupt is read.
+struct At<'t, 'p> {
+    product: &'t MatrixProduct<'p>,
+    number: usize,
+    y: &'t Reports,
+}
+
+impl Situation for At<'_, '_> {
+    fn quark(&self, quark: QuarkId) -> bool {
+        self.y.fired.contains(&self.product.plan.quark(quark).text)
+    }
+
+    fn waited(&self, nanos: u64) -> bool {
+        self.y.t.since(self.product.entered[self.number]) >= Nanos(nanos)
+    }
+
+    fn remembers(&self, memory: u32) -> bool {
+        self.product.risen.contains(&(self.number, memory))
+    }
+
+    fn recorded(&self, record: RecordId, fact: u32) -> bool {
+        self.product.facts.contains(&(record, fact))
+    }
+}
+
+impl<'p> MatrixProduct<'p> {
+    /// The empty product, at time 0.
+    ///
+    /// # Errors
+    /// E0501 and E0502 for a plan of too many states.
+    pub fn new(plan: &'p Nondegenerate) -> Result<Self, Diagnostic> {
+        let matrices = matrices(plan)?;
+        let mut listing = vec![Vec::new(); matrices.laws.len() + 1];
+        for (number, Transition { matrix, .. }) in (0..).zip(&matrices.transitions) {
+            matrix.listed().for_each(|column| listing[column].push(number));
+        }
+        let entered = vec![Nanos::ZERO; matrices.transitions.len()];
+        let (risen, facts, e) = (BTreeSet::new(), BTreeSet::new(), UnitVector { row: 0 });
+        Ok(Self { plan: plan.plan(), matrices, listing, entered, risen, facts, e })
+    }
+
+    /// The interrupts whose matrices list the column of the state.
+    fn listed(&self) -> impl DoubleEndedIterator<Item = usize> + use<'_, 'p> {
+        self.listing[self.e.row].iter().map(|number| *number as usize)
+    }
+
+    /// The interrupt of lowest number that has fired among these, or the atom's own if its law is done; with what a trace
+    /// says of it, and the operand that was the cause.
+    fn fired(&self, y: &Reports) -> Option<(usize, &'p str, Option<u32>)> {
+        for number in self.listed() {
+            let (interrupt, at) = (self.matrices.transitions[number].interrupt, At { product: self, number, y });
+            if interrupt.condition.fired(&at) {
+                return Some((number, &interrupt.text, Some(interrupt.condition.cause(&at))));
+            }
+        }
+        let law = self.law()?;
+        let done = law.completes && y.completed.contains(&law.text);
+        self.listed().next_back().filter(|_| done).map(|own| (own, Fired::COMPLETED, None))
+    }
+
+    /// The law of the state; none when the plan is over.
+    fn law(&self) -> Option<&'p Quark> {
+        self.matrices.laws.get(self.e.row).map(|law| self.plan.quark(*law))
+    }
+
+    /// Multiplies by the matrix of this interrupt.
+    fn multiply(&mut self, number: usize, operand: Option<u32>, t: Nanos) {
+        let Transition { matrix, afresh, marks, ends_with, .. } = &self.matrices.transitions[number];
+        let own = marks.iter().map(|mark| (mark, operand));
+        let ended: Vec<_> = own.chain(ends_with.iter().map(|mark| (*mark, None))).collect();
+        self.facts.retain(|(record, _)| ended.iter().all(|(mark, _)| mark.record != *record));
+        for (mark, operand) in ended {
+            let facts = mark.facts.iter().filter(|fact| fact.holds(operand));
+            self.facts.extend(facts.map(|fact| (mark.record, fact.number)));
+        }
+        self.e = matrix * self.e;
+        let afresh = self.listing[self.e.row].iter().map(|number| *number as usize).filter(|number| number >= afresh);
+        for number in afresh {
+            self.entered[number] = t;
+            self.risen.retain(|(interrupt, _)| *interrupt != number);
+            if let Some(kept) = self.matrices.transitions[number].record {
+                self.facts.retain(|(record, _)| *record != kept.id);
+            }
+        }
+    }
+
+    /// Sets each memory of RISING whose operand has not fired, in the interrupts that list the state's column.
+    fn settle(&mut self, y: &Reports) {
+        let mut set = Vec::new();
+        for number in self.listed() {
+            let at = At { product: self, number, y };
+            self.matrices.transitions[number].interrupt.condition.each_rising(&mut |memory, operand| {
+                if !operand.fired(&at) {
+                    set.push((number, memory));
+                }
+            });
+        }
+        self.risen.extend(set);
+    }
+
+    /// The number of the state, from 1.
+    fn state(&self) -> u64 {
+        self.e.row as u64 + 1
+    }
+}
+
+impl<'p> Machine<'p> for MatrixProduct<'p> {
+    fn turn(&mut self, y: &Reports) -> Outcome<'p> {
+        let mut fired = Vec::new();
+        while let Some((number, by, operand)) = self.fired(y) {
+            if fired.len() == TRANSITIONS_PER_TURN as usize {
+                self.settle(y);
+                return Outcome { state: self.state(), applied: Applied::Cut, fired };
+            }
+            fired.push(Fired { from: self.state(), level: self.matrices.transitions[number].level, by });
+            self.multiply(number, operand, y.t);
+        }
+        self.settle(y);
+        let applied = self.law().map_or(Applied::Over, |law| Applied::Law(&law.text));
+        Outcome { state: self.state(), applied, fired }
+    }
+}
