@@ -137,7 +137,14 @@ fn scripts_that_are_wrong() {
 #[test]
 fn an_expanded_form_that_is_too_large_names_its_loop() {
     let folder = with_plan("large", "{ P ExecPlan 1000000 { (Atom (wait 1) stop) } }\n");
-    insta::assert_snapshot!(said(&folder, &["plan.mdle", "--emit", "fsm"]));
+    let emitted = said(&folder, &["plan.mdle", "--emit", "fsm"]);
+    insta::assert_snapshot!(emitted);
+    fs::write(folder.join("script.jsonl"), "{\"t\":0}\n").unwrap();
+    let message = |said: &str| said.split_once('\n').map(|(_, message)| message.to_owned());
+    for machine in ["table", "matrix"] {
+        let traced = said(&folder, &["trace", "plan.mdle", "--script", "script.jsonl", "--machine", machine]);
+        assert_eq!(message(&traced), message(&emitted));
+    }
 }
 
 #[test]

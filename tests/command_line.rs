@@ -57,10 +57,11 @@ fn emitted(folder: &Path, kind: &str) -> String {
     printed(run_mdlec(folder, &["plan.mdle", "--target", "sim", "--emit", kind]))
 }
 
-/// Holds both machines to the trace of a plan, one line a turn.
+/// Holds all four machines to the trace of a plan, one line a turn.
 fn assert_trace(folder: &Path, expected: &str) {
-    for machine in [&[][..], &["--machine", "tree"], &["--machine", "counted"]] {
-        let arguments = [&["trace", "plan.mdle", "--script", "script.jsonl"][..], machine].concat();
+    for machine in [None, Some("tree"), Some("table"), Some("matrix"), Some("counted")] {
+        let machine = machine.map_or(vec![], |machine| vec!["--machine", machine]);
+        let arguments = [&["trace", "plan.mdle", "--script", "script.jsonl"][..], &machine].concat();
         assert_eq!(printed_alone(run_mdlec(folder, &arguments)), expected, "{machine:?}");
     }
 }

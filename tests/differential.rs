@@ -32,17 +32,32 @@ struct Seen {
     compared: usize,
 }
 
+impl Seen {
+    fn and(self, other: Self) -> Self {
+        Self {
+            plans: self.plans + other.plans,
+            refused: self.refused + other.refused,
+            turns: self.turns + other.turns,
+            over: self.over + other.over,
+            cut: self.cut + other.cut,
+            chains: self.chains + other.chains,
+            completions: self.completions + other.completions,
+            repeated: self.repeated + other.repeated,
+            rising: self.rising + other.rising,
+            after: self.after + other.after,
+            compared: self.compared + other.compared,
+        }
+    }
+}
+
 #[test]
 fn every_machine_prints_the_same_trace() {
-    let mut seen = Seen::default();
-    for seed in 0..PLANS {
-        let mut chance = Chance::new(seed);
-        // Small plans first, so that the first seed to fail is easy to read; a long search takes its time.
-        let long = seed % 200 == 199;
-        let text = RandomPlan::new(&mut chance, 2 + (seed as usize) * 20 / (PLANS as usize), long).to_string();
-        let turns = if long { 4 } else { 12 };
-        compare(seed, &text, &script(&mut chance, turns), &mut seen);
-    }
+    // Each seed is by itself, so they are dealt out to the cores.
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let seen = std::thread::scope(|scope| {
+        let hands: Vec<_> = (0..cores).map(|hand| scope.spawn(move || seeds(hand, cores))).collect();
+        hands.into_iter().map(|hand| hand.join().expect("no difference")).fold(Seen::default(), Seen::and)
+    });
     println!("{seen:?}");
     assert!(seen.refused < seen.plans / 50, "{seen:?}");
     let rare = [
@@ -58,7 +73,23 @@ fn every_machine_prints_the_same_trace() {
     assert!(rare.iter().all(|count| *count > seen.plans / 10), "{seen:?}");
 }
 
-fn compare(seed: u64, text: &str, script: &str, seen: &mut Seen) {
+/// Every so many seeds, from the first on.
+fn seeds(first: usize, step: usize) -> Seen {
+    let mut seen = Seen::default();
+    for seed in (first as u64..PLANS).step_by(step) {
+        let mut chance = Chance::new(seed);
+        // Small plans first, so that the first seed to fail is easy to read; a long search takes its time.
+        let long = seed % 200 == 199;
+        let text = RandomPlan::new(&mut chance, 2 + (seed as usize) * 20 / (PLANS as usize), long).to_string();
+        let script = script(&mut chance, if long { 4 } else { 12 });
+        let foresight = chance.percent(50);
+        compare(seed, foresight, &text, &script, &mut seen);
+    }
+    seen
+}
+
+/// Compares the traces of the machines, and of the plan when it is loaded, with or without foresight.
+fn compare(seed: u64, foresight: bool, text: &str, script: &str, seen: &mut Seen) {
     let compiled = match compile(text) {
         Ok(compiled) => compiled,
         // Loops in loops in loops can make too many states.
@@ -78,14 +109,12 @@ fn compare(seed: u64, text: &str, script: &str, seen: &mut Seen) {
         }
     }
     let expected: String = tree.iter().map(|line| format!("{line}\n")).collect();
-    for foresight in [true, false] {
-        let loaded = Loaded::new(&compiled.lowered, foresight);
-        let (rows, facts) = (loaded.rows(), loaded.facts());
-        let marks = marks(&facts);
-        let mut printed = String::new();
-        drive(|| loaded.plan(&rows, &marks), &outputs(&turns), &mut printed).expect("room for the trace");
-        assert!(printed == expected, "seed {seed}\n{reference}:\n{expected}loaded:\n{printed}{text}\n{script}");
-    }
+    let loaded = Loaded::new(&compiled.lowered, foresight);
+    let (rows, facts) = (loaded.rows(), loaded.facts());
+    let marks = marks(&facts);
+    let mut printed = String::new();
+    drive(|| loaded.plan(&rows, &marks), &outputs(&turns), &mut printed).expect("room for the trace");
+    assert!(printed == expected, "seed {seed}\n{reference}:\n{expected}loaded:\n{printed}{text}\n{script}");
     seen.plans += 1;
     seen.repeated += usize::from(compiled.nondegenerate.plan() != &compiled.plan);
     for Line { outcome: Outcome { applied, fired, .. }, .. } in tree {

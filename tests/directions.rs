@@ -129,18 +129,29 @@ fn climbs_to_the_root(file: &TextFile) -> Option<&str> {
 }
 
 #[test]
-fn the_walk_over_the_tree_shares_no_stepping_with_other_machines() {
-    let tree = files(&["tree.rs"]).into_iter().find(|file| file.path == "mdlec/src/trace/tree.rs").expect("`tree`");
-    let used = [
-        (names_from(&tree.text, "mdle_runtime"), &["Nanos", "TRANSITIONS_PER_TURN"][..]),
-        (names_from(&tree.text, "crate"), &["plan"]),
-        (names_from(&tree.text, "super"), &["Applied", "Fired", "Machine", "Outcome", "Reports"]),
+fn machines_written_from_the_rules_share_no_stepping_with_others() {
+    // What they may take from the lowering: the limit of what is expanded, and the matrices themselves.
+    let machines = [
+        ("tree", &[][..]),
+        ("table", &["expanded_states"]),
+        ("matrix", &["Matrices", "Transition", "UnitVector", "matrices"]),
     ];
-    for (names, allowed) in used {
-        assert!(!names.is_empty());
-        let others: Vec<_> = names.iter().filter(|name| !allowed.contains(&name.as_str())).collect();
-        assert_eq!(others, [""; 0], "in {}", tree.path);
+    for (machine, of_fsm) in machines {
+        let path = format!("mdlec/src/trace/{machine}.rs");
+        let file = files(&[".rs"]).into_iter().find(|file| file.path == path).expect(&path);
+        let used = [
+            (names_from(&file.text, "mdle_runtime"), &["Nanos", "TRANSITIONS_PER_TURN"][..]),
+            (names_from(&file.text, "crate"), &["diagnostic", "fsm", "plan"]),
+            (names_from(&file.text, "crate::fsm"), of_fsm),
+            (names_from(&file.text, "super"), &["Applied", "Fired", "Machine", "Outcome", "Reports"]),
+        ];
+        for (names, allowed) in used {
+            let others: Vec<_> = names.iter().filter(|name| !allowed.contains(&name.as_str())).collect();
+            assert_eq!(others, [""; 0], "in {path}");
+        }
     }
+    let lowering = files(&[".rs"]).into_iter().find(|file| file.path == "mdlec/src/fsm/matrices.rs").expect("matrices");
+    assert_eq!(names_from(&lowering.text, "mdle_runtime"), [""; 0], "in {}", lowering.path);
 }
 
 #[test]

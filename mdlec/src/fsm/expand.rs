@@ -56,7 +56,8 @@ fn expand_sequence(body: &[Node]) -> Vec<Node> {
 
 fn too_large(states: u64, plan: &Nondegenerate) -> Diagnostic {
     let message = format!("expanded, this plan has {states} states; an expanded form has at most {EXPANDED}");
-    let help = "the executable and `--emit rust` need no expansion: their size does not depend on loop counts";
+    let help = "the executable, `--emit rust` and `trace` with its usual machine need no expansion: their size does not \
+                depend on loop counts";
     match largest_loop(&plan.plan().root.body).1 {
         Some((states, span)) => {
             let here = format!("this loop makes {states} of them");

@@ -89,12 +89,15 @@ pub struct Input {
 pub(crate) fn number(texts: &[&str], name: &str, arguments: &[f64]) -> Option<usize> {
     texts.iter().position(|text| {
         let mut words = text.split(' ');
-        let same_name = words.next() == Some(name);
+        // First, for reading numbers takes its time.
+        if words.next() != Some(name) {
+            return false;
+        }
         let mut given = arguments.iter();
         let same = words.all(|word| match (word.parse::<f64>(), given.next()) {
             (Ok(word), Some(argument)) => (word - argument).abs() < 1e-9,
             (Ok(_), None) | (Err(_), _) => false,
         });
-        same_name && same && given.next().is_none()
+        same && given.next().is_none()
     })
 }
