@@ -8,7 +8,7 @@ use std::path::Path;
 use mdle_tests::executable::{folder, run_mdlec};
 
 /// A plan that is good.
-const REST: &str = "{ Rest (Atom (wait 0) stop) }\n";
+const REST: &str = "{ Rest (Atom (wait 1ms) stop) }\n";
 
 /// What a person sees: the exit status and standard error.
 fn said(folder: &Path, arguments: &[&str]) -> String {
@@ -59,7 +59,7 @@ fn targets_that_are_none() {
 
 #[test]
 fn plans_by_name() {
-    let folder = with_plan("several", format!("{REST}{{ Other Rest2 }}\n{{ Rest2 (Atom (wait 0) stop) }}\n"));
+    let folder = with_plan("several", format!("{REST}{{ Other Rest2 }}\n{{ Rest2 (Atom (wait 1ms) stop) }}\n"));
     let none = said(&folder, &["plan.mdle", "--target", "sim"]);
     let wrong = said(&folder, &["plan.mdle", "--target", "sim", "--plan", "Othre"]);
     insta::assert_snapshot!(format!("{none}\n{wrong}"));

@@ -19,7 +19,7 @@ const CARGO: &str = "#!/bin/sh\nexec 3> \"$AT_WORK\"\necho at work >&3\nsleep 12
 
 fn with_plan(test: &str) -> PathBuf {
     let folder = folder(test);
-    fs::write(folder.join(PLAN), "{ Rest (Atom (wait 0) stop) }\n").unwrap();
+    fs::write(folder.join(PLAN), "{ Rest (Atom (wait 1ms) stop) }\n").unwrap();
     folder
 }
 
@@ -110,7 +110,7 @@ fn no_room_in_the_cache_is_told_and_the_next_build_works() {
     let folder = with_plan("no_room_in_cache");
     assert_builds(&folder);
     // Room for the sources of another plan, not for what is compiled from them.
-    fs::write(folder.join(PLAN), "{ Rest (Atom (wait 0) (go 1 0)) }\n").unwrap();
+    fs::write(folder.join(PLAN), "{ Rest (Atom (wait 1ms) (go 1 0)) }\n").unwrap();
     let before = listing(&folder);
     let shared = cache().canonicalize().unwrap();
     assert_eq!(limited(&folder, 64, &[PLAN, "--target", "sim"], &shared), no_room(shared.to_str().unwrap()));

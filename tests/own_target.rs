@@ -16,7 +16,7 @@ const SENTENCE: &str =
 /// The folder of a plan, with a copy of the simulator as a robot of one's own in `rover`.
 fn with_rover(test: &str) -> PathBuf {
     let folder = folder(test);
-    fs::write(folder.join("plan.mdle"), "{ Rest (Atom (wait 0) stop) }\n").unwrap();
+    fs::write(folder.join("plan.mdle"), "{ Rest (Atom (wait 1ms) stop) }\n").unwrap();
     for file in files(&[""]) {
         let Some(name) = file.path.strip_prefix("targets/sim/") else { continue };
         let path = folder.join("rover").join(name);

@@ -105,6 +105,13 @@ codes! {
     E0502 "an expanded form that is too large",
     E0601 "an alphabet that makes no sense",
     W0101 "an interrupt that an outer one repeats",
+    W0201 "a plan that nothing ever ends",
+    W0202 "something that is never reached",
+    W0203 "a condition that is always or never true",
+    W0204 "a condition that an outer one shadows",
+    W0301 "a loop that can be skipped whole in one turn",
+    W0302 "a neighbour that is always skipped",
+    W0401 "a number that looks like another unit",
 }
 
 impl Code {

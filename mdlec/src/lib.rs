@@ -60,9 +60,11 @@ pub fn compile_with(
     found.extend(names);
     let mut compiled = Vec::new();
     if !diagnostic::has_errors(&found) {
+        found.extend(plan::lints::bare_numbers(&files, alphabet));
         for plan in plans {
             let (nondegenerate, warnings) = plan::remove_degeneracy(plan.clone());
             found.extend(warnings);
+            found.extend(plan::lints::lints(&nondegenerate));
             match fsm::algorithm1(&nondegenerate) {
                 Ok(lowered) => compiled.push(Compiled { plan, nondegenerate, lowered }),
                 Err(too_large) => found.push(too_large),

@@ -10,6 +10,7 @@ mod conditions;
 mod definitions;
 mod formal;
 mod labels;
+pub mod lints;
 mod nondegenerate;
 mod parameters;
 mod print;

@@ -1,0 +1,98 @@
+//! W0201 and W0202: atoms that nothing ever ends, and what is never reached because of one that does not end by itself.
+
+use crate::diagnostic::{Code, Diagnostic, Span};
+use crate::plan::{Atom, Condition, Interrupt, Node, Plan};
+
+/// Warns of both.
+pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
+    let mut ends = Ends { plan, found };
+    if let (Some(Endless { atom: Some(atom), told: false }), Condition::Null) =
+        (ends.sequence(&plan.root.body), &plan.root.interrupt.condition)
+    {
+        let lint = ends.nothing_ends(atom);
+        ends.found.push(lint);
+    }
+}
+
+struct Ends<'p, 'f> {
+    plan: &'p Plan,
+    found: &'f mut Vec<Diagnostic>,
+}
+
+/// Why an element never ends by itself.
+#[derive(Clone, Copy)]
+struct Endless<'p> {
+    /// The atom that does not; `None` for a loop without end, which is one on purpose.
+    atom: Option<&'p Atom>,
+    /// Whether it was told already.
+    told: bool,
+}
+
+impl<'p> Ends<'p, '_> {
+    /// What in a sequence never ends, if something does not.
+    fn sequence(&mut self, body: &'p [Node]) -> Option<Endless<'p>> {
+        let mut nodes = body.iter();
+        let (place, endless) = nodes.by_ref().find_map(|node| Some((node.span(), self.node(node)?)))?;
+        let Some(next) = nodes.next() else { return Some(endless) };
+        self.unreachable(["this is never reached", "never runs"], next.span(), endless, place);
+        Some(Endless { told: true, ..endless })
+    }
+
+    fn node(&mut self, node: &'p Node) -> Option<Endless<'p>> {
+        match node {
+            Node::Atom(atom) => {
+                let ends = can_end(&atom.interrupt) || self.plan.quark(atom.law).completes;
+                (!ends).then_some(Endless { atom: Some(atom), told: false })
+            }
+            Node::Scope(scope) => self.sequence(&scope.body).filter(|_| !can_end(&scope.interrupt)),
+            Node::Loop(repeated) => match (self.sequence(&repeated.body), repeated.times) {
+                (None, None) => Some(Endless { atom: None, told: false }),
+                (None, Some(_)) => None,
+                (Some(endless), times) => {
+                    let once = times == Some(1) || endless.told || endless.atom.is_none();
+                    if !once {
+                        let atom = endless.atom.map_or(repeated.span, |atom| atom.span);
+                        let words = ["the second pass of this loop is never reached", "runs only once"];
+                        self.unreachable(words, repeated.span, endless, atom);
+                    }
+                    Some(Endless { told: endless.told || !once, ..endless })
+                }
+            },
+        }
+    }
+
+    fn unreachable(&mut self, [message, here]: [&str; 2], span: Span, endless: Endless<'_>, place: Span) {
+        let lint = Diagnostic::new(Code::W0202, message, span, here);
+        self.found.push(match endless.atom {
+            Some(atom) => {
+                let law = &self.plan.quark(atom.law).text;
+                let help = if atom.interrupt.removed {
+                    format!("its own interrupt `{0}` was removed: end `{law}` by another one, or take `{0}` from the scope around it", atom.interrupt.text)
+                } else {
+                    format!("say when `{law}` ends: `(Atom (wait 10) {law})`")
+                };
+                lint.also(atom.span, format!("`{law}` never ends by itself")).help(help)
+            }
+            None => lint
+                .also(place, "this loop runs for ever")
+                .help("give it a count, or put it into a behavior with an interrupt: `{ Repeat (bumper) … }`"),
+        });
+    }
+
+    fn nothing_ends(&self, atom: &Atom) -> Diagnostic {
+        let law = &self.plan.quark(atom.law).text;
+        let name = &self.plan.root.name;
+        Diagnostic::new(
+            Code::W0201,
+            format!("nothing ever ends `{law}`, so the plan `{name}` never ends"),
+            atom.span,
+            "has no interrupt, nor has any scope around it",
+        )
+        .help(format!("say when it ends, `(Atom (wait 10) {law})`, or what ends the plan, `{{ {name} (bumper) … }}`"))
+    }
+}
+
+/// Whether it is one that can fire.
+fn can_end(interrupt: &Interrupt) -> bool {
+    interrupt.condition != Condition::Null
+}

@@ -1,0 +1,131 @@
+//! W0401: numbers without a unit that look as if another unit were meant, such as a speed of `0.5`, in cm/s.
+
+use std::collections::BTreeMap;
+
+use crate::alphabet::{Alphabet, Kind, Param, Unit};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::plan::parameters::Parameters;
+use crate::syntax::Files;
+use crate::syntax::tree::{self, Arg, Call, Condition, ConditionNode, Element, Number, Primary};
+
+/// Warns of them in every plan of files that resolve.
+#[must_use]
+pub fn bare_numbers(files: &Files, alphabet: &Alphabet) -> Vec<Diagnostic> {
+    let with_parameters = files.plans.iter().filter(|plan| !plan.params.is_empty());
+    let parameters = with_parameters.map(|plan| (plan.name.node, plan)).collect();
+    let mut numbers = Numbers { alphabet, parameters, found: Vec::new() };
+    for plan in &files.plans {
+        numbers.plan(plan);
+    }
+    numbers.found
+}
+
+struct Numbers<'a> {
+    alphabet: &'a Alphabet,
+    /// The plans that take arguments.
+    parameters: BTreeMap<&'a str, &'a tree::Plan<'a>>,
+    found: Vec<Diagnostic>,
+}
+
+impl Numbers<'_> {
+    fn plan(&mut self, plan: &tree::Plan) {
+        plan.condition.iter().for_each(|condition| self.condition(condition));
+        self.elements(plan.elements);
+    }
+
+    fn elements(&mut self, elements: &[Element]) {
+        for element in elements {
+            if let Some(number) = element.frame() {
+                self.number(number, Kind::Angle, "deg", "a frame");
+            }
+            match &element.primary {
+                Primary::Atom(atom) => {
+                    self.condition(&atom.condition);
+                    self.call(atom.control);
+                }
+                Primary::Plan(plan) => self.plan(plan),
+                Primary::Exec(exec) => self.elements(exec.body),
+                Primary::String(body) => self.elements(body),
+                Primary::Formal(formal) => {
+                    self.condition(&formal.condition);
+                    self.elements(formal.body);
+                }
+                Primary::Ref(call) => match self.parameters.get(call.name).copied() {
+                    Some(plan) => self.given(call, plan),
+                    // In formal notation a law looks like a plan by name.
+                    None => self.call(call),
+                },
+                Primary::Broken => {}
+            }
+        }
+    }
+
+    fn condition(&mut self, condition: &Condition) {
+        match condition.node {
+            ConditionNode::Or(operands) | ConditionNode::And(operands) => {
+                operands.iter().for_each(|operand| self.condition(operand));
+            }
+            ConditionNode::Not(operand) | ConditionNode::Rising(operand) => self.condition(operand),
+            ConditionNode::Call(call) => self.call(call),
+            // A compared value has the unit of its signal; what `after` names is written elsewhere as well.
+            ConditionNode::Comparison(_) | ConditionNode::After(_) => {}
+            ConditionNode::Null | ConditionNode::Broken => {}
+        }
+    }
+
+    fn call(&mut self, call: &Call) {
+        let is_meant = |params: &[Param]| {
+            let fits = |(arg, param): (&Arg, &Param)| !matches!(arg, Arg::Number(_)) || param.unit.is_some();
+            call.args.len() <= params.len() && call.args.iter().zip(params).all(fits)
+        };
+        let meant = self.alphabet.declarations_of(call.name).find(|declaration| is_meant(&declaration.params));
+        let Some(declaration) = meant else { return };
+        for (arg, param) in call.args.iter().zip(&declaration.params) {
+            if let (Arg::Number(number), Some(unit)) = (arg, param.unit) {
+                self.number(number, param.kind, unit.name, &format!("`{}` of `{}`", param.name, call.name));
+            }
+        }
+    }
+
+    /// The arguments of a plan.
+    fn given(&mut self, call: &Call, plan: &tree::Plan) {
+        let parameters = Parameters::declared(plan, &mut Vec::new());
+        for (arg, param) in call.args.iter().zip(plan.params) {
+            let parameter = parameters.get(param.name.node);
+            if let (Arg::Number(number), Some((kind, Some(unit)))) =
+                (arg, parameter.map(|parameter| (parameter.kind, parameter.unit())))
+            {
+                self.number(number, kind, unit.name, &format!("`{}` of `{}`", param.name.node, call.name));
+            }
+        }
+    }
+
+    fn number(&mut self, number: &Number, kind: Kind, unit: &str, what: &str) {
+        let digits = number.digits();
+        let Some(value) = digits.parse::<f64>().ok().filter(|_| number.unit().is_none()) else { return };
+        let Some((meant, why)) = doubt(kind, unit, value) else { return };
+        let message = format!("{what} is {digits} {unit}, which is {why}");
+        self.found.push(
+            Diagnostic::new(Code::W0401, message, number.span, format!("a number without a unit is in {unit} here"))
+                .help(format!("write `{digits}{meant}` if that is meant, or `{digits}{unit}` if it is right")),
+        );
+    }
+}
+
+/// The unit that was probably meant, and what is odd about a value of this kind in that unit.
+fn doubt(kind: Kind, unit: &str, value: f64) -> Option<(&'static str, &'static str)> {
+    let size = value.abs();
+    let is = |name: &str| Unit::from_name(name).is_some_and(|found| found.kind == kind) && unit == name;
+    // Up to a full circle, in radians.
+    let is_circle = size <= std::f64::consts::TAU;
+    Some(match () {
+        () if size == 0.0 => return None,
+        () if is("cm/s") && size < 1.0 => ("m/s", "slower than any robot drives"),
+        () if is("cm/s") && size > 500.0 => ("mm/s", "faster than a robot drives"),
+        () if is("rad/s") && !is_circle => ("deg/s", "more than a full turn a second"),
+        () if is("deg") && is_circle && value.fract() != 0.0 => ("rad", "a very small angle"),
+        () if is("m") && size > 1000.0 => ("mm", "farther than a robot goes"),
+        () if is("s") && size > 10_000.0 => ("ms", "more than two hours"),
+        () => return None,
+    })
+}

@@ -1,0 +1,153 @@
+//! W0301: loops that can be skipped whole in one turn, since nothing in a pass takes time while some conditions hold.
+
+use std::collections::BTreeSet;
+
+use super::conditions::pattern;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::plan::{Condition, Interrupt, Loop, Node, Plan, QuarkId, RecordId, Scope, Situation};
+
+/// The most quarks of a loop of which every choice is tried; a loop that reads more is left alone.
+const QUARKS: usize = 8;
+/// The most elements of a loop that is looked at.
+const ELEMENTS: usize = 64;
+
+/// Warns of them.
+pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
+    Skipped { plan, found }.sequence(&plan.root.body);
+}
+
+struct Skipped<'p, 'f> {
+    plan: &'p Plan,
+    found: &'f mut Vec<Diagnostic>,
+}
+
+impl Skipped<'_, '_> {
+    /// Whether a loop was told in it: one around it can be skipped because of that.
+    fn sequence(&mut self, body: &[Node]) -> bool {
+        body.iter().fold(false, |told, node| {
+            told | match node {
+                Node::Atom(_) => false,
+                Node::Scope(Scope { body, .. }) => self.sequence(body),
+                Node::Loop(repeated) => self.sequence(&repeated.body) || self.repeated(repeated),
+            }
+        })
+    }
+
+    fn repeated(&mut self, repeated: &Loop) -> bool {
+        if repeated.times == Some(1) {
+            return false;
+        }
+        let Some(holding) = self.skips(&repeated.body) else { return false };
+        let message = format!("while `{holding}` holds, this loop is skipped whole in one turn");
+        let lint = Diagnostic::new(Code::W0301, message, repeated.span, "no pass takes any time then");
+        let rising = if holding.contains(' ') { format!("RISING ({holding})") } else { format!("RISING {holding}") };
+        self.found.push(
+            lint.help("let each pass take some time, as `(Atom (wait 0.5) stop)` does")
+                .help(format!("or let a pass wait until it begins to hold: `{rising}`")),
+        );
+        true
+    }
+
+    /// What has to hold for a pass to take no time, if it can.
+    fn skips(&self, body: &[Node]) -> Option<String> {
+        let skip = all(body, &mut ELEMENTS.clone())?;
+        // What has ended before depends on the pass.
+        if skip.any(&|part| matches!(part, Condition::After(_))) {
+            return None;
+        }
+        let mut quarks = BTreeSet::new();
+        read(&skip, &mut quarks);
+        let quarks: Vec<QuarkId> = quarks.into_iter().collect();
+        if quarks.is_empty() || quarks.len() > QUARKS {
+            return None;
+        }
+        let said =
+            |choice: u32, id| quarks.iter().position(|quark| *quark == id).is_some_and(|bit| choice >> bit & 1 == 1);
+        let skips = |choice: u32| skip.fired(&AtOnce(|id| said(choice, id)));
+        let choices = || 0..1_u32 << quarks.len();
+        // What is skipped in any case has a condition that is always true, and W0203.
+        if choices().all(skips) {
+            return None;
+        }
+        let can_be = |choice: &u32| self.can_be(quarks.iter().filter(|id| said(*choice, **id)));
+        let choice =
+            choices().filter(|choice| skips(*choice) && can_be(choice)).min_by_key(|choice| choice.count_ones())?;
+        // Only what matters is told: the rest may be as it likes.
+        let mut matters = (1_u32 << quarks.len()) - 1;
+        for bit in (0..quarks.len()).map(|bit| 1 << bit) {
+            let without = matters & !bit;
+            if choices().filter(|other| (other ^ choice) & without == 0).all(skips) {
+                matters = without;
+            }
+        }
+        let told = quarks.iter().enumerate().filter(|(bit, _)| matters >> bit & 1 == 1);
+        let words = told.map(|(_, id)| {
+            let not = if said(choice, *id) { "" } else { "NOT " };
+            format!("{not}{}", self.plan.quark(*id).text)
+        });
+        Some(words.collect::<Vec<_>>().join(" AND "))
+    }
+
+    /// Whether these can have fired at once.
+    fn can_be<'i>(&self, fired: impl Iterator<Item = &'i QuarkId>) -> bool {
+        let patterns: BTreeSet<_> = fired.filter_map(|id| pattern(self.plan.quark(*id))).collect();
+        patterns.len() <= 1
+    }
+}
+
+/// What is so of a scope that has just been entered, where quarks say what the function says.
+struct AtOnce<F>(F);
+
+impl<F: Fn(QuarkId) -> bool> Situation for AtOnce<F> {
+    fn quark(&self, quark: QuarkId) -> bool {
+        (self.0)(quark)
+    }
+
+    fn waited(&self, nanos: u64) -> bool {
+        nanos == 0
+    }
+
+    fn remembers(&self, _: u32) -> bool {
+        false
+    }
+
+    fn recorded(&self, _: RecordId, _: u32) -> bool {
+        // Loops in which `after` stands are left alone.
+        false
+    }
+}
+
+/// The condition under which a sequence takes no time, with at most so many elements left to look at; `None` where
+/// there is none. A law may be done at once, but takes time as a rule.
+fn all(body: &[Node], left: &mut usize) -> Option<Condition> {
+    let mut conditions = Vec::new();
+    for node in body {
+        *left = left.checked_sub(1)?;
+        conditions.push(match node {
+            Node::Atom(atom) => own(&atom.interrupt)?,
+            Node::Loop(repeated) => all(&repeated.body, left)?,
+            Node::Scope(scope) => match (own(&scope.interrupt), all(&scope.body, left)) {
+                (Some(own), Some(all)) => Condition::Or(vec![own, all]),
+                (own, all) => own.or(all)?,
+            },
+        });
+    }
+    Some(Condition::And(conditions))
+}
+
+/// The condition, if it is one that can be true at once.
+fn own(interrupt: &Interrupt) -> Option<Condition> {
+    let condition = &interrupt.condition;
+    let never = matches!(condition, Condition::Null | Condition::Wait { nanos: 1.., .. } | Condition::Rising { .. });
+    (!never).then(|| condition.clone())
+}
+
+/// The quarks that a condition reads.
+fn read(condition: &Condition, quarks: &mut BTreeSet<QuarkId>) {
+    match condition {
+        Condition::Null | Condition::Wait { .. } | Condition::Elapsed { .. } | Condition::After(_) => {}
+        Condition::Quark(id) => drop(quarks.insert(*id)),
+        Condition::Or(operands) | Condition::And(operands) => operands.iter().for_each(|operand| read(operand, quarks)),
+        Condition::Not(operand) | Condition::Rising { operand, .. } => read(operand, quarks),
+    }
+}

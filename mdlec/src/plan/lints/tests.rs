@@ -1,0 +1,129 @@
+//! What each lint says, and what it leaves alone.
+
+use crate::samples::judged;
+
+/// One snapshot: the text, what is said of it, and the plan.
+macro_rules! assert_judged {
+    ($text:literal) => {
+        insta::assert_snapshot!(judged($text, None))
+    };
+}
+
+/// Holds the lints to have nothing to say of these plans.
+fn assert_silent(plans: &[&str]) {
+    for plan in plans {
+        let judged = judged(plan, None);
+        assert!(!judged.contains("[W") && !judged.contains("[E"), "{judged}");
+    }
+}
+
+#[test]
+fn a_plan_that_nothing_ends() {
+    assert_judged!("{ Cruise (Atom (wait 5) stop) { Ahead (Atom (wait inf) go 20 0) } }");
+    assert_silent(&[
+        "{ P (bumper) (Atom (null) go 20 0) }",
+        "{ P { Q (wait 5) (Atom (null) go 20 0) } }",
+        "{ P (Atom (null) rotate 90) }",
+        // On purpose.
+        "{ P ExecPlan inf { (Atom (wait 5) go 20 0) (Atom (null) rotate 90) } }",
+    ]);
+}
+
+#[test]
+fn what_is_never_reached() {
+    assert_judged!(
+        "{ P (bumper)
+  { Q (wait 90) (Atom (null) go 20 0) (Atom (wait 5) stop) (Atom (wait 6) stop) }
+  ExecPlan 3 { (Atom (wait 1) stop) { R (Atom (null) stop) } }
+}
+{ S ((Atom (wait 5) go 20 0))^inf (Atom (wait 5) stop) }
+{ T (bumper) (Atom (bumper) stop) (Atom (wait 5) stop) }"
+    );
+    assert_silent(&["{ P (bumper) { Q (wait 9) (Atom (null) stop)^1 } (Atom (wait 5) stop) }"]);
+}
+
+#[test]
+fn conditions_that_are_always_or_never_true() {
+    assert_judged!(
+        "{ P (NOT bumper OR bumper)
+  (Atom (wait 0) stop)
+  (Atom (bumper AND wait inf) stop)
+  (Atom (atIsection 1000 AND atIsection 0100) stop)
+  { Q (sync ada OR NOT (sync bob OR NOT null)) (Atom (wait 5) stop) }
+}"
+    );
+    assert_silent(&[
+        "{ P (Atom (rendezvous ada OR NOT rendezvous ada) stop) }",
+        "{ P (Atom (wait 5 AND NOT wait 9) stop) (Atom (wait inf OR bumper) stop) }",
+        "{ P (Atom (atIsection 1000 AND atIsection 1000) stop) }",
+    ]);
+}
+
+#[test]
+fn conditions_that_an_outer_one_shadows() {
+    assert_judged!(
+        "{ P (bumper OR wait 60)
+  (Atom (wait 20 OR bumper) go 20 0)
+  { Q (NOT sync ada) (Atom (wait 60) stop) ExecPlan 2 { (Atom (atIsection 1000 OR NOT sync ada) stop) } }
+}"
+    );
+    assert_silent(&[
+        "{ P (rendezvous ada) (Atom (rendezvous ada OR wait 5) stop) }",
+        "{ P (NOT wait 5) (Atom (bumper OR NOT wait 5) stop) }",
+        "{ P { Q (bumper) (Atom (wait 5) stop) } (Atom (bumper OR wait 5) stop) }",
+        "{ P (bumper) (Atom (bumper AND sync ada) stop) }",
+    ]);
+}
+
+#[test]
+fn loops_that_are_skipped_whole() {
+    assert_judged!(
+        "{ P
+  ExecPlan inf { (Atom (bumper) go 20 0) (Atom (NOT sync ada) turn 90) }
+  ({ Leg (atIsection 1000 OR wait 20) (Atom (wait 5) go 20 0) })^3
+}
+{ Q (((Atom (bumper) go 20 0))^2 (Atom (sync ada) stop))^2 }"
+    );
+    assert_silent(&[
+        // A pass takes time, cannot be skipped, or is the only one.
+        "{ P ExecPlan 4 { (Atom (bumper) go 20 0) (Atom (wait 0.5) stop) } }",
+        "{ P ExecPlan 4 { (Atom (bumper) go 20 0) (Atom (NOT bumper) stop) } }",
+        "{ P ExecPlan 4 { (Atom (atIsection 1000) go 20 0) (Atom (atIsection 0100) stop) } }",
+        "{ P ExecPlan 4 { (Atom (bumper) go 20 0) (Atom (null) turn 90) } }",
+        "{ P ExecPlan 1 { (Atom (bumper) go 20 0) } }",
+    ]);
+}
+
+#[test]
+fn neighbours_that_are_always_skipped() {
+    assert_judged!(
+        "{ P
+  (Atom (bumper) go 20 0)
+  (Atom (bumper) go -10 0)
+  (Atom (atIsection 1000 AND NOT sync ada) stop)
+  { Q (atIsection 1000 AND NOT sync ada) (Atom (wait 5) stop) }
+}"
+    );
+    assert_silent(&[
+        // It may have ended because it was done; or the condition may be true no more.
+        "{ P (Atom (bumper) rotate 90) (Atom (bumper) go 5 0) }",
+        "{ P (Atom (wait 5) stop) (Atom (wait 5) stop) (Atom (bumper OR wait 5) stop) (Atom (bumper OR wait 5) stop) }",
+        "{ P (Atom (rendezvous ada) stop) (Atom (rendezvous ada) stop) }",
+    ]);
+}
+
+#[test]
+fn numbers_that_look_like_another_unit() {
+    assert_judged!(
+        "{ P
+  (Atom (wait 20000) go 0.5 90)
+  (Atom (wait 5) rotate(1.57))
+  (Atom (wait 5) goAvoid 90 4000 2000)
+  FRAME 3.14 { Q (wait 86400) (Atom (wait 1) go -0.25 0.36) }
+}"
+    );
+    assert_silent(&[
+        "{ P (Atom (wait 20000s) go 0.5cm/s 90rad/s) (Atom (wait 3600) rotate(1.57deg)) }",
+        "{ P (Atom (wait 0.5) go 0 0.36) (Atom (wait 9) rotate 22.5) (Atom (wait 9) turn 3) (Atom (wait 9) goAvoid(heading module)) }",
+    ]);
+}
