@@ -1,7 +1,13 @@
 //! Diagnostics: a code, what is wrong, where, and what to type instead; rendered with codespan-reporting.
 
+mod explain;
+mod json;
+
 use std::fmt;
 use std::ops::Range;
+
+pub use explain::{Example, Explanation};
+pub use json::{Message, Place};
 
 use codespan_reporting::diagnostic as report;
 use codespan_reporting::files::{Error as FilesError, Files, SimpleFile};
@@ -72,6 +78,14 @@ macro_rules! codes {
             #[must_use]
             pub fn title(self) -> &'static str {
                 match self { $(Self::$name => $title,)* }
+            }
+
+            /// What `mdlec explain` says of it, from the file of its name.
+            #[must_use]
+            pub fn explanation(self) -> Explanation {
+                Explanation(match self {
+                    $(Self::$name => include_str!(concat!("diagnostic/explanations/", stringify!($name), ".md")),)*
+                })
             }
         }
     };
@@ -213,6 +227,12 @@ impl Sources {
         self.files.get(behind.checked_sub(1)?)
     }
 
+    /// The file that a stretch is in, and its bytes there.
+    fn range(&self, span: Span) -> (SourceId, Range<usize>) {
+        let source = self.file(span.start).map_or(SourceId(0), |(id, _)| *id);
+        (source, span.within(source))
+    }
+
     /// The text of a file.
     #[must_use]
     pub fn text(&self, source: SourceId) -> &str {
@@ -241,8 +261,8 @@ impl Sources {
         };
         let labels = diagnostic.labels.iter().map(|label| {
             let style = if label.primary { report::LabelStyle::Primary } else { report::LabelStyle::Secondary };
-            let source = self.file(label.span.start).map_or(SourceId(0), |(id, _)| *id);
-            report::Label::new(style, source, label.span.within(source)).with_message(&label.text)
+            let (source, range) = self.range(label.span);
+            report::Label::new(style, source, range).with_message(&label.text)
         });
         report::Diagnostic::new(severity)
             .with_code(diagnostic.code.name())

@@ -179,6 +179,9 @@ struct Shown {
 
 impl Shown {
     fn progress(&mut self, progress: &Progress) {
+        if report::is_json() {
+            return;
+        }
         let mut out = io::stderr().lock();
         // A closed standard error has nobody to wait for the build.
         let _ = if out.is_terminal() {

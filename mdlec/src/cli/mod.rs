@@ -3,6 +3,7 @@
 mod bind;
 mod build;
 mod check;
+mod explain;
 mod fmt;
 mod input;
 mod report;
@@ -26,6 +27,18 @@ struct Cli {
     command: Option<Command>,
     #[command(flatten)]
     build: Build,
+    /// How messages are written: for people, or as JSON, one object a line
+    #[arg(long, value_enum, global = true, default_value_t = MessageFormat::Human, value_name = "FORMAT")]
+    message_format: MessageFormat,
+}
+
+/// How messages are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum MessageFormat {
+    /// For people
+    Human,
+    /// One JSON object a line: code, severity, message, spans, help
+    Json,
 }
 
 #[derive(Debug, Subcommand)]
@@ -36,6 +49,8 @@ enum Command {
     Fmt(Fmt),
     /// Runs a plan against a script of interrupts, no robot needed
     Trace(Trace),
+    /// Explains the code of a message, with a wrong and a right example
+    Explain(Explain),
     /// Lists the robots that plans can be compiled for
     Targets,
     /// Lists the laws and interrupts that a plan can use
@@ -171,6 +186,12 @@ enum Machine {
 }
 
 #[derive(Debug, Args)]
+struct Explain {
+    /// The code, such as `E0201` [default: all codes are listed]
+    code: Option<String>,
+}
+
+#[derive(Debug, Args)]
 struct Quarks {
     /// The robot [default: one that has everything]
     #[arg(long, value_name = "NAME|FOLDER")]
@@ -224,11 +245,13 @@ pub fn main() -> ExitCode {
 
 /// Does what the command line asks for.
 fn run(cli: Cli) -> Result<(), Failure> {
+    report::choose(cli.message_format);
     match cli.command {
         None => build::build(&cli.build),
         Some(Command::Check(check)) => check::check(&check),
         Some(Command::Fmt(fmt)) => fmt::fmt(&fmt),
         Some(Command::Trace(trace)) => trace::trace(&trace),
+        Some(Command::Explain(explain)) => explain::explain(explain.code.as_deref()),
         Some(Command::Targets) => input::print_targets(),
         Some(Command::Bind(bind)) => bind::bind(&bind),
         Some(Command::Quarks(quarks)) => input::print_quarks(quarks.target.as_deref()),

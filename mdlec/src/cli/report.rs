@@ -2,12 +2,27 @@
 
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
+use std::sync::OnceLock;
 
 use codespan_reporting::term;
 use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
 
-use super::Failure;
-use crate::diagnostic::{Code, Diagnostic, Severity, Sources, Span};
+use super::{Failure, MessageFormat};
+use crate::diagnostic::{Code, Diagnostic, Message, Severity, Sources, Span};
+
+/// How this process says things. Said once, where the command line is read: every message goes through this file.
+static FORMAT: OnceLock<MessageFormat> = OnceLock::new();
+
+/// Chooses how things are said from now on.
+pub(super) fn choose(format: MessageFormat) {
+    // There is one command line, so this is the first time.
+    let _ = FORMAT.set(format);
+}
+
+/// Whether things are said as JSON.
+pub(super) fn is_json() -> bool {
+    FORMAT.get() == Some(&MessageFormat::Json)
+}
 
 /// The most diagnostics that are shown at once: nobody reads more, and each shows its whole line of the source.
 const SHOWN: usize = 100;
@@ -16,6 +31,23 @@ const SHOWN: usize = 100;
 ///
 /// Returns whether the plan may go on: no error, and no warning where these count as errors.
 pub(super) fn diagnostics(sources: &Sources, found: &[Diagnostic], deny_warnings: bool) -> bool {
+    if is_json() {
+        found.iter().for_each(|diagnostic| line(&sources.message(diagnostic)));
+    } else {
+        render(sources, found);
+    }
+    let count = |severity| found.iter().filter(|diagnostic| diagnostic.code.severity() == severity).count();
+    let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
+    if errors > 0 && !is_json() {
+        error(&number(errors, "error"));
+    } else if errors == 0 && deny_warnings && warnings > 0 {
+        error(&format!("{}, and `--deny-warnings` counts them as errors", number(warnings, "warning")));
+    }
+    errors == 0 && (warnings == 0 || !deny_warnings)
+}
+
+/// Shows diagnostics to a person.
+fn render(sources: &Sources, found: &[Diagnostic]) {
     let choice = if io::stderr().is_terminal() { ColorChoice::Auto } else { ColorChoice::Never };
     let mut out = StandardStream::stderr(choice);
     for diagnostic in found.iter().take(SHOWN) {
@@ -25,14 +57,12 @@ pub(super) fn diagnostics(sources: &Sources, found: &[Diagnostic], deny_warnings
     if found.len() > SHOWN {
         note(format_args!("… and {} more", found.len() - SHOWN));
     }
-    let count = |severity| found.iter().filter(|diagnostic| diagnostic.code.severity() == severity).count();
-    let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
-    if errors > 0 {
-        error(&number(errors, "error"));
-    } else if deny_warnings && warnings > 0 {
-        error(&format!("{}, and `--deny-warnings` counts them as errors", number(warnings, "warning")));
-    }
-    errors == 0 && (warnings == 0 || !deny_warnings)
+}
+
+/// Says one line of JSON.
+fn line(message: &Message<'_>) {
+    // Nobody is left to be told when standard error is closed.
+    let _ = writeln!(io::stderr().lock(), "{}", message.to_json());
 }
 
 /// The diagnostic of a file that is not text, with the file as far as it can be shown; its first `valid` bytes are good.
@@ -48,11 +78,17 @@ pub(super) fn not_utf8(name: &str, bytes: &[u8], valid: usize) -> (Sources, Diag
 
 /// Says what went wrong, in the form of the diagnostics.
 pub(super) fn error(message: &str) {
+    if is_json() {
+        return line(&Message::plain("error", message));
+    }
     let _ = writeln!(io::stderr().lock(), "error: {message}");
 }
 
 /// Says something that is no error.
 pub(super) fn note(message: impl Display) {
+    if is_json() {
+        return line(&Message::plain("note", &message.to_string()));
+    }
     let _ = writeln!(io::stderr().lock(), "{message}");
 }
 

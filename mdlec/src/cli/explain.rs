@@ -1,0 +1,23 @@
+//! `mdlec explain`: what a code means, with a wrong and a right example.
+
+use super::{Failure, report};
+use crate::diagnostic::Code;
+
+/// Explains a code, or lists them all.
+pub(super) fn explain(code: Option<&str>) -> Result<(), Failure> {
+    let Some(name) = code else {
+        let lines = Code::ALL.iter().map(|code| format!("{code}  {}\n", code.title()));
+        return report::print(&lines.collect::<String>());
+    };
+    let named = |code: &&Code| code.name().eq_ignore_ascii_case(name);
+    let code = Code::ALL.iter().find(named).ok_or_else(|| unknown(name))?;
+    report::print(&format!("{code}: {}\n\n{}", code.title(), code.explanation().text()))
+}
+
+fn unknown(name: &str) -> Failure {
+    let similar = |code: &&Code| strsim::damerau_levenshtein(&name.to_uppercase(), code.name());
+    let near =
+        Code::ALL.iter().min_by_key(similar).map(|code| format!("; the nearest one is `{code}`, {}", code.title()));
+    let near = near.unwrap_or_default();
+    Failure::usage(format!("there is no code `{name}`{near}\nhelp: `mdlec explain` lists all codes"))
+}

@@ -1,0 +1,46 @@
+//! What `mdlec explain` says of a code: a paragraph, and two examples that a test holds to the compiler.
+
+/// The text of a code: paragraphs, then a line that begins with `Wrong` and one with `Right`, each with an example below
+/// it that is indented by four blanks. Such a line may name, between backticks, the command that judges it; without one it
+/// is `mdlec check plan.mdle`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Explanation(pub(super) &'static str);
+
+/// An example of an explanation.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Example {
+    /// The arguments of `mdlec` that judge it.
+    pub arguments: Vec<String>,
+    /// The file.
+    pub text: String,
+}
+
+impl Explanation {
+    /// All of it, as it is printed.
+    #[must_use]
+    pub fn text(self) -> &'static str {
+        self.0
+    }
+
+    /// The example of the mistake.
+    #[must_use]
+    pub fn wrong(self) -> Option<Example> {
+        self.example("Wrong")
+    }
+
+    /// The example without it.
+    #[must_use]
+    pub fn right(self) -> Option<Example> {
+        self.example("Right")
+    }
+
+    fn example(self, word: &str) -> Option<Example> {
+        let mut lines = self.0.lines().skip_while(|line| !line.starts_with(word));
+        let mut named = lines.next()?.split('`').skip(1).step_by(2);
+        let command = named.find(|text| text.starts_with("mdlec ")).unwrap_or("mdlec check plan.mdle");
+        let is_inside = |line: &&str| line.is_empty() || line.starts_with("    ");
+        let lines = lines.take_while(is_inside).map(|line| line.strip_prefix("    ").unwrap_or(line));
+        let text = lines.collect::<Vec<_>>().join("\n").trim_matches('\n').to_owned() + "\n";
+        Some(Example { arguments: command.split(' ').skip(1).map(str::to_owned).collect(), text })
+    }
+}

@@ -1,0 +1,109 @@
+//! Diagnostics as JSON, one object a line, for editors and other programs.
+
+use codespan_reporting::files::Files;
+use serde::Serialize;
+
+use super::{Diagnostic, Label, Severity, Sources};
+
+/// A message; what has no code and no place is about the command, not the plan.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Message<'a> {
+    /// The code; `null` if it has none.
+    pub code: Option<&'static str>,
+    /// `error`, `warning` or `note`.
+    pub severity: &'static str,
+    /// What is wrong.
+    pub message: &'a str,
+    /// Where: the place of the defect first.
+    pub spans: Vec<Place<'a>>,
+    /// What to do about it.
+    pub help: Vec<&'a str>,
+}
+
+/// A place in a file. Lines and columns count from 1, columns in characters; the end is behind the last one.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Place<'a> {
+    /// The file.
+    pub file: &'a str,
+    /// Where it begins.
+    pub line: usize,
+    /// Where it begins.
+    pub column: usize,
+    /// Where it ends.
+    pub end_line: usize,
+    /// Where it ends.
+    pub end_column: usize,
+    /// Whether it is the place of the defect, and not one that explains it.
+    pub primary: bool,
+    /// What is said of it; may be empty.
+    pub text: &'a str,
+}
+
+impl<'a> Message<'a> {
+    /// A message without a code. Hints stand in its text as they do for people, one a line: they become its help.
+    #[must_use]
+    pub fn plain(severity: &'static str, text: &'a str) -> Self {
+        let mut parts = text.split("\nhelp: ");
+        let message = parts.next().unwrap_or(text);
+        Self { code: None, severity, message, spans: Vec::new(), help: parts.collect() }
+    }
+
+    /// The message as one line of JSON, without the line break.
+    #[must_use]
+    pub fn to_json(&self) -> String {
+        // Only maps with keys that are no strings cannot be written, and there are none.
+        serde_json::to_string(self).unwrap_or_default()
+    }
+}
+
+impl Sources {
+    /// The diagnostic as a message.
+    #[must_use]
+    pub fn message<'a>(&'a self, diagnostic: &'a Diagnostic) -> Message<'a> {
+        Message {
+            code: Some(diagnostic.code.name()),
+            severity: match diagnostic.code.severity() {
+                Severity::Warning => "warning",
+                Severity::Error => "error",
+            },
+            message: &diagnostic.message,
+            spans: diagnostic.labels.iter().map(|label| self.place(label)).collect(),
+            help: diagnostic.help.iter().map(String::as_str).collect(),
+        }
+    }
+
+    fn place<'a>(&'a self, Label { span, text, primary }: &'a Label) -> Place<'a> {
+        let (source, range) = self.range(*span);
+        let at = |byte| self.location(source, byte).map_or((1, 1), |at| (at.line_number, at.column_number));
+        let ((line, column), (end_line, end_column)) = (at(range.start), at(range.end));
+        Place { file: self.name(source), line, column, end_line, end_column, primary: *primary, text }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Code, Span};
+    use super::*;
+
+    #[test]
+    fn places_are_lines_and_columns_of_characters() {
+        let mut sources = Sources::default();
+        let source = sources.add("größe.mdle", "{ Γ_größe\n  stöp }\n");
+        let span = |start, end| Span::new(source, start, end);
+        let diagnostic =
+            Diagnostic::new(Code::E0201, "no `stöp`", span(15, 20), "here").also(span(2, 12), "").help("a").help("b");
+        let expected = concat!(
+            r#"{"code":"E0201","severity":"error","message":"no `stöp`","spans":["#,
+            r#"{"file":"größe.mdle","line":2,"column":3,"end_line":2,"end_column":7,"primary":true,"text":"here"},"#,
+            r#"{"file":"größe.mdle","line":1,"column":3,"end_line":1,"end_column":10,"primary":false,"text":""}],"#,
+            r#""help":["a","b"]}"#
+        );
+        assert_eq!(sources.message(&diagnostic).to_json(), expected);
+    }
+
+    #[test]
+    fn hints_of_a_plain_message_are_its_help() {
+        let message = Message::plain("error", "there is no file `a`\nhelp: there is `a.mdle`");
+        assert_eq!((message.message, &*message.help), ("there is no file `a`", &["there is `a.mdle`"][..]));
+    }
+}

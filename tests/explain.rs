@@ -1,0 +1,76 @@
+//! `mdlec explain`: each code has a text, and its two examples are what they claim to be, through the real binary.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+use mdle_tests::executable::{folder, run_mdlec};
+use mdlec::diagnostic::{Code, Example};
+use serde_json::Value;
+
+/// The codes of what is said of an example, and standard error as it is.
+fn codes(folder: &Path, example: &Example) -> (BTreeSet<String>, String) {
+    // What an example calls `\xDF` is that byte.
+    let bytes = example.text.split("\\xDF").map(str::as_bytes).collect::<Vec<_>>().join(&b'\xDF');
+    let file = if example.arguments.iter().any(|argument| argument == ".") { "alphabet.mdle" } else { "plan.mdle" };
+    fs::write(folder.join(file), bytes).unwrap();
+    let arguments: Vec<_> = example.arguments.iter().map(String::as_str).chain(["--message-format", "json"]).collect();
+    let said = String::from_utf8(run_mdlec(folder, &arguments).stderr).expect("UTF-8");
+    let codes = said.lines().map(|line| {
+        let message: Value = serde_json::from_str(line).unwrap_or_else(|error| panic!("{error}: {line}"));
+        message["code"].as_str().map(str::to_owned)
+    });
+    (codes.flatten().collect(), said)
+}
+
+#[test]
+fn wrong_examples_have_just_that_code_and_right_ones_none() {
+    let folder = folder("explain");
+    fs::write(folder.join("corridors.mdle"), "{ Corridor (Atom (wait 5) (go 20 0)) }\n").unwrap();
+    for code in Code::ALL {
+        let explanation = code.explanation();
+        let wrong = explanation.wrong().unwrap_or_else(|| panic!("{code} has no wrong example"));
+        let right = explanation.right().unwrap_or_else(|| panic!("{code} has no right example"));
+        assert!(!explanation.text().starts_with("Wrong"), "{code} has examples only");
+        let (codes_of_wrong, said) = codes(&folder, &wrong);
+        assert_eq!(codes_of_wrong, BTreeSet::from([code.name().to_owned()]), "{code}\n{}\n{said}", wrong.text);
+        let (_, said) = codes(&folder, &right);
+        assert_eq!(said, "", "{code}\n{}", right.text);
+    }
+}
+
+#[test]
+fn a_code_is_explained_and_all_are_listed() {
+    let folder = folder("explain_one");
+    let printed = |arguments: &[&str]| {
+        let output = run_mdlec(&folder, arguments);
+        assert_eq!((output.status.code(), &*output.stderr), (Some(0), &b""[..]));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    insta::assert_snapshot!(format!("{}\n----\n{}", printed(&["explain", "w0203"]), printed(&["explain"])));
+    for code in Code::ALL {
+        let text = printed(&["explain", code.name()]);
+        assert!(
+            text.starts_with(&format!("{code}: {}\n\n", code.title())) && text.ends_with(code.explanation().text())
+        );
+    }
+}
+
+#[test]
+fn a_code_that_is_none_is_told_the_nearest() {
+    let folder = folder("explain_none");
+    let said = ["E0210", "w999", "help"].map(|code| {
+        let output = run_mdlec(&folder, &["explain", code]);
+        format!("{}exit status {}\n", String::from_utf8(output.stderr).unwrap(), output.status.code().unwrap())
+    });
+    insta::assert_snapshot!(said.concat());
+}
+
+#[test]
+fn texts_fit_a_terminal() {
+    for code in Code::ALL {
+        let text = code.explanation().text();
+        assert!(text.lines().all(|line| line.chars().count() <= 100), "{code}");
+    }
+}
