@@ -22,6 +22,32 @@ pub(super) fn fit(
     robot: &str,
     parameters: &Parameters<'_>,
 ) -> Result<Arguments, Vec<Diagnostic>> {
+    fitted(call, declaration, robot, parameters).map_err(|found| units_apart(call).unwrap_or(found))
+}
+
+/// A unit that does not touch its number was read as an argument of its own, and is what is wrong.
+fn units_apart(call: &Call) -> Option<Vec<Diagnostic>> {
+    let apart = call.args.windows(2).filter_map(|pair| match pair {
+        [Arg::Number(number), Arg::Name(unit)] if number.unit().is_none() => {
+            Some((number, Unit::from_name(unit.node)?, unit))
+        }
+        _ => None,
+    });
+    let found = apart.map(|(number, Unit { name, .. }, unit)| {
+        let message = format!("the unit `{name}` does not touch its number");
+        Diagnostic::new(Code::E0104, message, unit.span, "a blank too many before this")
+            .help(format!("write `{}{name}`", number.digits()))
+    });
+    let found: Vec<_> = found.collect();
+    (!found.is_empty()).then_some(found)
+}
+
+fn fitted(
+    call: &Call,
+    declaration: &Declaration,
+    robot: &str,
+    parameters: &Parameters<'_>,
+) -> Result<Arguments, Vec<Diagnostic>> {
     let params = &declaration.params;
     let needed = params.iter().filter(|param| param.default.is_none()).count();
     if call.args.len() < needed || call.args.len() > params.len() {
@@ -251,6 +277,18 @@ impl Fitting<'_> {
     }
 }
 
+/// A call as it is written, but for its parentheses.
+pub(super) fn written(call: &Call) -> String {
+    let args = call.args.iter().map(|arg| match arg {
+        Arg::Number(number) => format!("{}{}", number.digits(), number.unit().unwrap_or_default()),
+        Arg::Infinity(_) => "inf".to_owned(),
+        Arg::String(text) => format!("\"{}\"", text.node),
+        Arg::Name(name) => name.node.to_owned(),
+        Arg::Module(name) => format!("{} module", name.node),
+    });
+    [call.name.to_owned()].into_iter().chain(args).collect::<Vec<_>>().join(" ")
+}
+
 fn wrong_count(call: &Call, declaration: &Declaration, needed: usize) -> Diagnostic {
     let most = declaration.params.len();
     let takes = match (needed, most) {
@@ -267,9 +305,20 @@ fn wrong_count(call: &Call, declaration: &Declaration, needed: usize) -> Diagnos
         Some(first_too_many) => first_too_many.span(),
         None => call.span,
     };
-    let here = if call.args.len() > most { "one too many" } else { "something is missing" };
-    Diagnostic::new(Code::E0301, format!("`{}` takes {takes}, {found}", declaration.name), span, here)
-        .help(format!("write it as `{}`", signature(declaration)))
+    let report = |here: String| {
+        let message = format!("`{}` takes {takes}, {found}", declaration.name);
+        Diagnostic::new(Code::E0301, message, span, here).help(format!("write it as `{}`", signature(declaration)))
+    };
+    if call.args.len() > most {
+        return report("one too many".into());
+    }
+    let missing = declaration.params.get(call.args.len()..needed).unwrap_or_default();
+    let names: Vec<_> = missing.iter().map(|param| format!("`{}`", param.name)).collect();
+    let report = report(format!("{} {} missing", names.join(" and "), if names.len() == 1 { "is" } else { "are" }));
+    // With no speed, angle or length at all it is well-formed: something to begin with.
+    let can_be_0 = missing.iter().all(|param| param.unit.is_some()) && !call.args.is_empty();
+    let zeros = " 0".repeat(missing.len());
+    if can_be_0 { report.help(format!("for instance `{}{zeros}`", written(call))) } else { report }
 }
 
 fn not_a_number(number: &Number) -> Diagnostic {

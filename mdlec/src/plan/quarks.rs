@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::arguments::{Arguments, fit, kind_words, signature};
+use super::arguments::{Arguments, fit, kind_words, signature, written};
 use super::parameters::Names;
 use super::{Quark, QuarkId, Value};
 use crate::alphabet::{Alphabet, Declaration, DeclarationKind};
@@ -156,14 +156,16 @@ fn is_meant(call: &Call, declaration: &Declaration) -> bool {
 }
 
 fn wrong_kind(call: &Call, found: DeclarationKind, expected: DeclarationKind) -> Diagnostic {
-    let name = call.name;
+    let (name, written) = (call.name, written(call));
     let message = format!("`{name}` is {}, but {} has to stand here", kind_words(found), kind_words(expected));
     let report = Diagnostic::new(Code::E0204, message, call.name_span(), kind_words(found));
     match (found, expected) {
-        (DeclarationKind::Control, DeclarationKind::Interrupt) => report
-            .help(format!("an atom is `(Atom (interrupt) law)`: the law comes last, as in `(Atom (wait 10) {name})`")),
-        (DeclarationKind::Interrupt, DeclarationKind::Control) => report
-            .help(format!("an atom is `(Atom (interrupt) law)`: write `(Atom ({name}) stop)` to wait for it at rest")),
+        (DeclarationKind::Control, DeclarationKind::Interrupt) => report.help(format!(
+            "an atom is `(Atom (interrupt) law)`: the law comes last, as in `(Atom (wait 10) {written})`"
+        )),
+        (DeclarationKind::Interrupt, DeclarationKind::Control) => report.help(format!(
+            "an atom is `(Atom (interrupt) law)`: write `(Atom ({written}) stop)` to wait for it at rest"
+        )),
         (DeclarationKind::Signal, DeclarationKind::Interrupt) => report.help(format!("compare it: `{name} < 1`")),
         (DeclarationKind::Signal | DeclarationKind::Control | DeclarationKind::Interrupt, _) => report,
     }

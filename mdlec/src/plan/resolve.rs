@@ -313,7 +313,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         let message = format!("a loop runs a whole number of times, at least once; found `{written}`");
         self.found.push(
             Diagnostic::new(Code::E0305, message, number.span, "not a count")
-                .help("write `1` or more, or `inf` for a loop without end"),
+                .help("write `1` or more, or `inf` for a loop without end; to run it not at all, leave it out"),
         );
         Some(1)
     }

@@ -116,6 +116,7 @@ impl<'s> Pass<'_, 's> {
                 }
                 return self.open(if atom { Kind::Atom } else { Kind::Parenthesis }, index, token);
             }
+            Tok::Atom if self.label_inside() => self.push(token),
             Tok::Atom if !self.after_parenthesis() => {
                 self.close_atom(token.place);
                 if !self.lone_atom(index, token) {
@@ -251,6 +252,27 @@ impl<'s> Pass<'_, 's> {
         let diagnostic =
             Diagnostic::new(Code::E0103, "this atom does not begin with `(`", span, "a `(` is missing before this");
         self.spoil(diagnostic.help("an atom stands in parentheses: `(Atom (bumper) stop)`"));
+        true
+    }
+
+    /// Whether a label stands between an atom's parenthesis and the `Atom` that comes now; then it is reported, and the
+    /// parenthesis is the atom's.
+    fn label_inside(&mut self) -> bool {
+        let [.., Token { kind: Tok::LParen | Tok::TouchParen, .. }, Token { kind: Tok::Name(label), place }, colon] =
+            self.balanced.tokens.as_slice()
+        else {
+            return false;
+        };
+        if colon.kind != Tok::Colon {
+            return false;
+        }
+        let message = format!("the label `{label}` stands inside of its atom");
+        let diagnostic = Diagnostic::new(Code::E0102, message, self.source.span(*place), "not expected here");
+        let diagnostic = diagnostic.help(format!("a label stands before what it names: `{label}: (Atom …)`"));
+        self.spoil(diagnostic);
+        if let Some(open) = self.open.last_mut() {
+            open.kind = Kind::Atom;
+        }
         true
     }
 

@@ -7,7 +7,7 @@ use crate::diagnostic::Diagnostic;
 
 /// The message about a mistake that is known; the first that fits.
 pub(super) fn known(site: &Site<'_, '_>) -> Option<Diagnostic> {
-    let mistakes: [fn(&Site<'_, '_>) -> Option<Diagnostic>; 15] = [
+    let mistakes: [fn(&Site<'_, '_>) -> Option<Diagnostic>; 16] = [
         at_file_level,
         element_touches,
         plan_name,
@@ -16,6 +16,7 @@ pub(super) fn known(site: &Site<'_, '_>) -> Option<Diagnostic> {
         atom_law,
         loop_count,
         power,
+        label_behind,
         keyword_argument,
         unit_apart,
         comma,
@@ -48,6 +49,10 @@ fn at_file_level(site: &Site<'_, '_>) -> Option<Diagnostic> {
     match site.found()? {
         Tok::Name(_) if site.kind(site.at + 1) == Some(Tok::LBrace) => Some(name_before_plan(site, site.at)),
         Tok::Name(name) if site.kind(site.at + 1) == Some(Tok::Assign) => Some(not_a_label(site, site.at, name)),
+        Tok::Name(name) if site.kind(site.at + 1) == Some(Tok::Colon) => Some(
+            site.about(site.at, format!("the label `{name}` stands outside of any plan"), "not expected here")
+                .help("a label names an element of a plan; a plan's own name is the first thing inside its braces"),
+        ),
         Tok::LParen | Tok::ExecPlan | Tok::Name(_) | Tok::Frame => Some(
             site.about(site.at, format!("expected a plan, found {}", site.found_words()), "outside of any plan")
                 .help("atoms, loops and names stand inside of a plan: `{ Name (Atom (bumper) stop) }`"),
@@ -152,6 +157,11 @@ fn atom_condition(site: &Site<'_, '_>) -> Option<Diagnostic> {
         let diagnostic = site.about(site.at - 1, "this atom is empty", "a condition and a law are missing");
         return Some(diagnostic.help("an atom is a condition and a law: `(Atom (bumper) stop)`"));
     }
+    if let (Some(label), Some(Tok::Colon)) = (site.name_at(site.at), site.kind(site.at + 1)) {
+        let message = format!("the label `{label}` stands inside of its atom");
+        let diagnostic = site.about(site.at, message, "not expected here");
+        return Some(diagnostic.help(format!("a label stands before what it names: `{label}: (Atom …)`")));
+    }
     let last = end_of_call(site, site.at);
     let diagnostic = site.about(site.at, "the condition of an atom stands in parentheses", "expected `(`");
     let Some(call) = site.name_at(site.at).and_then(|_| site.text(site.at, last)) else {
@@ -246,6 +256,15 @@ fn power(site: &Site<'_, '_>) -> Option<Diagnostic> {
     (site.before(1) == Some(Tok::Caret)).then(|| {
         site.about(site.at, format!("expected a count behind `^`, found {}", site.found_words()), "expected a count")
             .help("write `^3` for three times, `^inf` for ever")
+    })
+}
+
+/// A label with nothing behind it.
+fn label_behind(site: &Site<'_, '_>) -> Option<Diagnostic> {
+    let label = site.at.checked_sub(2).and_then(|at| site.name_at(at))?;
+    (site.before(1) == Some(Tok::Colon) && site.expects_element()).then(|| {
+        site.about(site.at - 2, format!("nothing stands behind the label `{label}`"), "it names what follows it")
+            .help(format!("a label stands before what it names: `{label}: (Atom (bumper) stop)`"))
     })
 }
 

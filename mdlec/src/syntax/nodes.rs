@@ -87,8 +87,14 @@ impl<'t, 's> Nodes<'t, 's> {
             let help = "give it an atom: `(Atom (wait 5) stop)`";
             self.empty((start, end), message, name.span, "no element follows", help);
         }
+        let is_headless = name.is_none();
         let name = name.or_else(|| self.name_before(start)).unwrap_or(Spanned { node: "", span });
         let (docs, elements) = (self.docs_of(start), self.elements(first));
+        let elements = match elements {
+            // Behind a brace without a name, a parenthesis that looks like a string is the plan's condition.
+            [Element { primary: Primary::String(_), .. }, behind @ ..] if is_headless => behind,
+            all => all,
+        };
         self.put(Plan { docs, label, name, params, condition, elements, span })
     }
 

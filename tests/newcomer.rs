@@ -1,0 +1,83 @@
+//! The mistakes of someone who has just begun: what is said of each, to people and as JSON, names what to type instead.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+
+use mdle_tests::executable::{folder, run_mdlec};
+use serde_json::Value;
+
+/// A plan with each mistake, and a part of the hint that ends it.
+const MISTAKES: &[(&str, &str, &str)] = &[
+    ("a missing `)`", "{ Dock (bumper)\n  (Atom (wait 20) (go 20 0)\n  (Atom (wait 5) stop)\n}\n", "a `)` is missing"),
+    ("a name with a letter too few", "{ Dock (bumpr)\n  (Atom (wait 20) (go 20 0))\n}\n", "did you mean `bumper`?"),
+    ("degrees where radians are meant", "{ Dock (bumper)\n  (Atom (wait 20) (go 20 90))\n}\n", "write `90deg/s`"),
+    ("radians where degrees are meant", "{ Dock (bumper)\n  (Atom (wait 20) rotate 1.57)\n}\n", "write `1.57rad`"),
+    ("an argument too few", "{ Dock (bumper)\n  (Atom (wait 20) go 1)\n}\n", "`go 1 0`"),
+    (
+        "AND for OR",
+        "{ Dock (bumper)\n  (Atom (atIsection 1000 AND atIsection 0100) (go 20 0))\n}\n",
+        "`atIsection 1000 OR atIsection 0100`",
+    ),
+    ("the name before its plan", "Dock { (bumper)\n  (Atom (wait 20) (go 20 0))\n}\n", "`{ Dock … }`"),
+    ("the name behind the condition", "{ (bumper) Dock\n  (Atom (wait 20) (go 20 0))\n}\n", "`{ Name (bumper) … }`"),
+    ("a unit with a blank", "{ Dock (bumper)\n  (Atom (wait 500 ms) (go 20 0))\n}\n", "write `500ms`"),
+    ("another unit with a blank", "{ Dock (bumper)\n  (Atom (wait 20) (go 20 cm/s 0))\n}\n", "write `20cm/s`"),
+    ("a label inside its atom", "{ Dock (bumper)\n  (Atom s1: (wait 20) (go 20 0))\n}\n", "`s1: (Atom …)`"),
+    ("a label before `Atom`", "{ Dock (bumper)\n  (s1: Atom (wait 20) (go 20 0))\n}\n", "`s1: (Atom …)`"),
+    ("a label behind its atom", "{ Dock (bumper)\n  (Atom (wait 20) (go 20 0)) s1:\n}\n", "`s1: (Atom (bumper) stop)`"),
+    (
+        "a label before its plan",
+        "s1: { Dock (bumper)\n  (Atom (wait 20) (go 20 0))\n}\n",
+        "the first thing inside its braces",
+    ),
+    ("a loop of 0", "{ Dock (bumper)\n  ExecPlan 0 { (Atom (wait 20) (go 20 0)) }\n}\n", "write `1` or more, or `inf`"),
+    (
+        "a law where an interrupt belongs",
+        "{ Dock (bumper)\n  (Atom (go 20 0) (wait 20))\n}\n",
+        "as in `(Atom (wait 10) go 20 0)`",
+    ),
+];
+
+#[test]
+fn each_message_says_how_to_end_the_mistake() {
+    let folder = folder("newcomer");
+    let mut shown = String::new();
+    for (mistake, plan, hint) in MISTAKES {
+        fs::write(folder.join("plan.mdle"), plan).unwrap();
+        let said = |format: &str| {
+            let output = run_mdlec(&folder, &["check", "plan.mdle", "--message-format", format]);
+            assert_eq!(output.stdout, b"");
+            (output.status.code(), String::from_utf8(output.stderr).unwrap())
+        };
+        let ((status, human), (status_of_json, json)) = (said("human"), said("json"));
+        assert_eq!(status, status_of_json);
+        assert!(human.contains(hint), "{mistake}\n{human}");
+        let told: Vec<Value> = json.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        assert!(json.contains(hint), "{mistake}\n{json}");
+        for message in &told {
+            let text = message["message"].as_str().unwrap();
+            assert!(human.contains(text), "{mistake}: {text}");
+            assert!(message["spans"][0]["primary"].as_bool().unwrap(), "{mistake}");
+        }
+        shown += &format!("==== {mistake}\n{plan}----\n{human}{json}\n");
+    }
+    insta::assert_snapshot!(shown);
+}
+
+#[test]
+fn what_is_no_diagnostic_is_json_as_well() {
+    let folder = folder("newcomer_json");
+    fs::write(folder.join("plan.mdle"), "{ P (bumper) (Atom (wait 5) (go 0.5 0)) }\n").unwrap();
+    let said = |arguments: &[&str]| {
+        let output = run_mdlec(&folder, arguments);
+        let status = output.status.code().unwrap();
+        format!("$ mdlec {}\n{}exit status {status}\n", arguments.join(" "), String::from_utf8(output.stderr).unwrap())
+    };
+    let json = ["--message-format", "json"];
+    let said = [
+        said(&["check", "plan.mdel", json[0], json[1]]),
+        said(&["check", "plan.mdle", "--deny-warnings", json[0], json[1]]),
+        said(&["plan.mdle", "--emit", "plan", json[0], json[1], "--target", "nowhere"]),
+    ];
+    insta::assert_snapshot!(said.concat());
+}
