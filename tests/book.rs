@@ -1,0 +1,156 @@
+//! The book: its pages are linked, its links lead somewhere, and its examples do what it says.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use mdle_tests::book::{Fence, anchors, fences, links, messages, name, pages};
+use mdle_tests::executable::{folder, run_mdlec};
+use mdle_tests::repository::{TextFile, root};
+use serde_json::Value;
+
+#[test]
+fn every_page_stands_in_the_summary_once() {
+    let (summary, pages): (Vec<_>, Vec<_>) = pages().into_iter().partition(|page| name(page) == "SUMMARY.md");
+    let mut listed = links(&summary[0]);
+    listed.sort_unstable();
+    assert_eq!(listed, pages.iter().map(name).collect::<Vec<_>>());
+    assert!(listed.len() > 10, "the pages are gone");
+}
+
+#[test]
+fn links_lead_to_a_page_and_a_heading_of_it() {
+    let pages = pages();
+    for page in &pages {
+        for link in links(page).into_iter().filter(|link| !link.starts_with("https://")) {
+            let (file, anchor) = link.split_once('#').unwrap_or((link, ""));
+            let file = if file.is_empty() { name(page) } else { file };
+            let target = pages.iter().find(|page| name(page) == file);
+            let target = target.unwrap_or_else(|| panic!("{}: no page {file}", page.path));
+            let is_there = anchor.is_empty() || anchors(target).iter().any(|heading| heading == anchor);
+            assert!(is_there, "{}: no heading {link}", page.path);
+        }
+    }
+}
+
+#[test]
+fn messages_are_as_they_are_explained() {
+    let path = root().join("docs/src/messages.md");
+    if std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always") {
+        fs::write(&path, messages()).unwrap();
+    }
+    let committed = fs::read_to_string(path).unwrap();
+    assert!(committed == messages(), "INSTA_UPDATE=always writes docs/src/messages.md");
+}
+
+/// A page's folder, into which its examples are written one after the other.
+struct Walk<'p> {
+    page: &'p TextFile,
+    folder: PathBuf,
+    plan: String,
+    script: String,
+}
+
+impl Walk<'_> {
+    fn write(&self, file: &str, fence: &Fence) -> String {
+        fs::write(self.folder.join(file), &fence.text).unwrap();
+        file.to_owned()
+    }
+
+    fn step(&mut self, fence: &Fence) {
+        match fence.words[0].as_str() {
+            "mdle" => {
+                self.plan = self.write(fence.file().unwrap_or("plan.mdle"), fence);
+                self.check(fence);
+            }
+            "script" => self.script = self.write(fence.file().unwrap_or("script.jsonl"), fence),
+            "trace" => self.trace(&fence.text),
+            "alphabet" => {
+                self.write("alphabet.mdle", fence);
+                let output = run_mdlec(&self.folder, &["quarks", "--target", "."]);
+                assert!(output.status.success(), "{}: {}", self.page.path, said(&output));
+            }
+            "console" => fence.text.split("$ ").skip(1).for_each(|command| self.run(command)),
+            "text" | "sh" => {}
+            other => panic!("{}: what is `{other}`?", self.page.path),
+        }
+    }
+
+    /// Holds a plan to the codes that are expected of it.
+    fn check(&self, fence: &Fence) {
+        let said = said(&run_mdlec(&self.folder, &["check", &self.plan, "--message-format", "json"]));
+        let codes = said.lines().filter_map(|line| {
+            let message: Value = serde_json::from_str(line).expect(line);
+            message["code"].as_str().map(str::to_owned)
+        });
+        let expected: BTreeSet<_> = fence.codes().into_iter().map(str::to_owned).collect();
+        assert_eq!(codes.collect::<BTreeSet<_>>(), expected, "{}\n{}\n{said}", self.page.path, fence.text);
+    }
+
+    /// Holds every machine to a trace of the last plan with the last script.
+    fn trace(&self, expected: &str) {
+        for machine in ["tree", "table", "matrix", "counted"] {
+            let arguments = ["trace", &self.plan, "--script", &self.script, "--machine", machine];
+            let output = run_mdlec(&self.folder, &arguments);
+            let trace = String::from_utf8_lossy(&output.stdout);
+            assert_eq!(trace, expected, "{}, machine {machine}: {}", self.page.path, said(&output));
+        }
+    }
+
+    /// Runs a command, as a reader types it, and holds it to what it says; without that, to success.
+    fn run(&self, command: &str) {
+        let (command, expected) = command.split_once('\n').unwrap();
+        let words: Vec<_> = command.split(' ').collect();
+        let output = match words[0] {
+            "mdlec" => run_mdlec(&self.folder, &words[1..]),
+            program => {
+                Command::new(self.folder.join(program)).args(&words[1..]).current_dir(&self.folder).output().unwrap()
+            }
+        };
+        let said = said(&output);
+        if expected.is_empty() {
+            assert!(output.status.success(), "{}: {command}\n{said}", self.page.path);
+        } else {
+            assert!(is_alike(&said, expected), "{}: {command}\n{said}", self.page.path);
+        }
+    }
+}
+
+fn said(output: &Output) -> String {
+    format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
+}
+
+/// Whether a text is as a page shows it: to the letter, but for what a line `…` leaves out.
+fn is_alike(said: &str, shown: &str) -> bool {
+    match shown.split_once("…\n") {
+        None => said == shown,
+        Some((start, end)) => said.len() > shown.len() && said.starts_with(start) && said.ends_with(end),
+    }
+}
+
+#[test]
+fn examples_do_what_the_book_says() {
+    let mut traces = 0;
+    for page in &pages() {
+        let folder = folder(&format!("book_{}", name(page)));
+        let mut walk = Walk { page, folder, plan: String::new(), script: String::new() };
+        let fences = fences(page);
+        fences.iter().for_each(|fence| walk.step(fence));
+        let count = |word: &str| fences.iter().filter(|fence| fence.words[0] == word).count();
+        assert_eq!(count("script"), count("trace") + usize::from(name(page) == "first_plan.md"), "{}", page.path);
+        traces += count("trace");
+    }
+    assert!(traces >= 20, "the book has {traces} traces");
+}
+
+#[test]
+fn the_book_shows_every_plan_to_learn_from() {
+    let shown = pages().into_iter().find(|page| name(page) == "plans.md").unwrap().text;
+    let plans = fs::read_dir(root().join("plans")).unwrap().map(|entry| entry.unwrap().path());
+    for plan in plans.filter(|plan| plan.is_file()) {
+        let file = Path::new(&plan).file_name().unwrap().to_str().unwrap();
+        assert!(shown.contains(&format!("{{{{#include ../../plans/{file}}}}}")), "{file} is not in docs/src/plans.md");
+    }
+}

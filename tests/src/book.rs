@@ -1,0 +1,120 @@
+//! The book in `docs/`: its pages, the examples in them, and the chapter that is generated.
+
+use std::fmt::Write;
+
+use mdlec::diagnostic::Code;
+
+use crate::repository::{TextFile, files, root};
+
+/// A fenced block of a page: what stands behind its backticks, separated by commas, and what is inside, with included files.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fence {
+    /// What it is, first, then what else is said of it.
+    pub words: Vec<String>,
+    /// What is inside.
+    pub text: String,
+}
+
+impl Fence {
+    /// The file that it is to be written to.
+    #[must_use]
+    pub fn file(&self) -> Option<&str> {
+        self.words.iter().skip(1).map(String::as_str).find(|word| word.contains('.'))
+    }
+
+    /// The codes of the messages that are expected of it.
+    #[must_use]
+    pub fn codes(&self) -> Vec<&str> {
+        self.words.iter().skip(1).map(String::as_str).filter(|word| !word.contains('.')).collect()
+    }
+}
+
+/// Every page, the table of contents included.
+#[must_use]
+pub fn pages() -> Vec<TextFile> {
+    files(&[".md"]).into_iter().filter(|file| file.path.starts_with("docs/src/")).collect()
+}
+
+/// The name of a page's file.
+#[must_use]
+pub fn name(page: &TextFile) -> &str {
+    page.path.trim_start_matches("docs/src/")
+}
+
+/// The fenced blocks of a page, in their order.
+#[must_use]
+pub fn fences(page: &TextFile) -> Vec<Fence> {
+    let mut found: Vec<Fence> = Vec::new();
+    let mut is_inside = false;
+    for line in page.text.lines() {
+        match (line.strip_prefix("```"), is_inside) {
+            (Some(""), true) => is_inside = false,
+            (Some(words), false) => {
+                assert!(!words.is_empty(), "{}: say what a block holds", page.path);
+                let words = words.split(',').map(str::to_owned).collect();
+                found.push(Fence { words, text: String::new() });
+                is_inside = true;
+            }
+            (Some(_), true) => panic!("{}: a block in a block: {line}", page.path),
+            (None, true) => {
+                let fence = found.last_mut().expect("a block");
+                fence.text += &included(line);
+                fence.text += "\n";
+            }
+            (None, false) => {}
+        }
+    }
+    assert!(!is_inside, "{}: a block does not end", page.path);
+    found
+}
+
+/// A line, or the file that it includes, without its last line end.
+fn included(line: &str) -> String {
+    let Some(path) = line.strip_prefix("{{#include ").and_then(|line| line.strip_suffix("}}")) else {
+        return line.to_owned();
+    };
+    let text = std::fs::read_to_string(root().join("docs/src").join(path)).unwrap_or_else(|_| panic!("no {path}"));
+    text.trim_end().to_owned()
+}
+
+/// The targets of a page's links, blocks of code aside.
+#[must_use]
+pub fn links(page: &TextFile) -> Vec<&str> {
+    let mut is_inside = false;
+    let lines = page.text.lines().filter(|line| {
+        let is_fence = line.starts_with("```");
+        is_inside ^= is_fence;
+        !is_inside && !is_fence && !line.starts_with("    ")
+    });
+    lines.flat_map(|line| line.split("](").skip(1).filter_map(|rest| rest.split(')').next())).collect()
+}
+
+/// The anchors of a page: a heading's words in small letters, joined by `-`.
+#[must_use]
+pub fn anchors(page: &TextFile) -> Vec<String> {
+    let headings =
+        page.text.lines().filter(|line| line.starts_with('#')).map(|line| line.trim_start_matches('#').trim());
+    let kept = |letter: char| match letter {
+        ' ' => Some('-'),
+        _ => (letter.is_alphanumeric() || "_-".contains(letter)).then(|| letter.to_ascii_lowercase()),
+    };
+    headings.map(|heading| heading.chars().filter_map(kept).collect()).collect()
+}
+
+/// The chapter of all messages, from what `mdlec explain` says.
+#[must_use]
+pub fn messages() -> String {
+    let mut text = "# All messages\n\n\
+        Every message has a code. Those that begin with E are errors: nothing is built. Those with W are warnings, which stop\n\
+        nothing unless `--deny-warnings` is given. `mdlec explain CODE` prints what this page says.\n"
+        .to_owned();
+    for code in Code::ALL {
+        write!(text, "\n## {code}\n\n**{}.**\n\n{}", capital(code.title()), code.explanation().text()).expect("a text");
+    }
+    text
+}
+
+fn capital(title: &str) -> String {
+    let mut letters = title.chars();
+    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
+}
