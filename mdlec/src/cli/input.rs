@@ -51,9 +51,9 @@ impl syntax::Loader for Input {
         let folder = self.paths.get(&from).and_then(|path| path.parent()).unwrap_or(Path::new(""));
         let file = folder.join(path);
         let name = file.display().to_string();
-        let refused = |error: io::Error| match error.kind() {
-            io::ErrorKind::NotFound => format!("there is no file `{name}`"),
-            _ => format!("`{name}` cannot be read: {error}"),
+        let refused = |error: io::Error| {
+            let is_missing = error.kind() == io::ErrorKind::NotFound;
+            if is_missing { format!("there is no file `{name}`") } else { format!("`{name}` cannot be read: {error}") }
         };
         let place = file.canonicalize().map_err(refused)?;
         if let Some(source) = self.read.get(&place) {

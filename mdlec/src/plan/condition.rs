@@ -81,13 +81,15 @@ impl Condition {
         }
     }
 
+    /// The operands of its outermost OR, as written; itself where it is none.
+    #[must_use]
+    pub fn operands(&self) -> &[Self] {
+        if let Self::Or(operands) = self { operands } else { std::slice::from_ref(self) }
+    }
+
     /// The first operand of its outermost OR that has fired, as written; the first and only one where it is no OR.
     pub fn cause(&self, at: &impl Situation) -> u32 {
-        let operands = match self {
-            Self::Or(operands) => operands.as_slice(),
-            other => std::slice::from_ref(other),
-        };
-        (0..).zip(operands).find(|(_, operand)| operand.fired(at)).map_or(0, |(number, _)| number)
+        (0..).zip(self.operands()).find(|(_, operand)| operand.fired(at)).map_or(0, |(number, _)| number)
     }
 
     /// Whether it asks when its scope was entered.

@@ -30,11 +30,7 @@ pub(super) fn interrupt(
     let mut resolving = Resolving { around, memories: 0 };
     let condition = resolving.condition(written);
     let Resolving { around: Around { quarks, .. }, memories } = resolving;
-    let operands = match &condition {
-        Condition::Or(operands) => operands.as_slice(),
-        other => std::slice::from_ref(other),
-    };
-    let operands = operands.iter().map(|operand| text(operand, quarks, Precedence::Or)).collect();
+    let operands = condition.operands().iter().map(|operand| text(operand, quarks, Precedence::Or)).collect();
     let text = text(&condition, quarks, Precedence::Or);
     let condition = without_infinite_waits(condition);
     (Interrupt { condition, text, memories, removed: false, span: written.span }, operands)

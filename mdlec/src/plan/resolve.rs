@@ -31,10 +31,7 @@ pub fn resolve(files: &Files, alphabet: &Alphabet, wanted: Option<&str>) -> (Vec
     if has_errors(&found) {
         return (Vec::new(), found);
     }
-    let wanted = match wanted {
-        None => None,
-        Some(name) => Some(definitions.get(name).into_iter().collect::<Vec<_>>()),
-    };
+    let wanted = wanted.map(|name| definitions.get(name).into_iter().collect::<Vec<_>>());
     if let Some(plan) = wanted.iter().flatten().find(|plan| !plan.params.is_empty()) {
         found.push(parameters::missing(plan, "it is the one that was asked for"));
         return (Vec::new(), found);
