@@ -101,7 +101,7 @@ impl Distinct {
 
     /// The function that asks whether a scope, or one around it, has ended, after the scope's name.
     pub(super) fn scope_function(&mut self, scope: &str) -> Ident {
-        let name = snake_case(scope);
+        let name = if scope.is_empty() { "unnamed".to_owned() } else { snake_case(scope) };
         let name = if syn::parse_str::<Ident>(&name).is_ok() { name } else { format!("{name}_scope") };
         self.distinct(&name)
     }
@@ -192,5 +192,6 @@ mod tests {
         assert_eq!(scope("shake_2"), "shake_2");
         assert_eq!(scope("shake"), "shake_3");
         assert_eq!(scope("T"), "t_2");
+        assert_eq!([scope(""), scope("")], ["unnamed", "unnamed_2"]);
     }
 }
