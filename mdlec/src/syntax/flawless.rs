@@ -16,8 +16,8 @@ use super::without_recovery;
 
 /// The tree of a text, if nothing is wrong with that.
 pub(super) fn read<'s>(source: Source<'s>, arena: &'s Bump) -> Option<File<'s>> {
-    // Then every place in it, and every number of tokens, is one of 32 bits.
-    source.id.0.checked_add(u32::try_from(source.text.len()).ok()?)?;
+    // Then every number of bytes or tokens in it is one of 32 bits.
+    u32::try_from(source.text.len()).ok()?;
     let docs = Docs::default();
     let mut tokens = Tokens::new(source.text, &docs);
     let mut nodes = Nodes::new(source, arena, &[], &docs);

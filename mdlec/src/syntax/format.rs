@@ -31,8 +31,8 @@ pub fn format(id: SourceId, text: &str) -> Result<String, Vec<Diagnostic>> {
     if has_errors(&found) {
         return Err(found);
     }
-    let pieces = Pieces::of(Source { id, text });
-    let mut layout = Layout { id, pieces, at: 0, lines: Lines::default(), depth: 0 };
+    let source = Source::new(id, text);
+    let mut layout = Layout { id: source.id, pieces: Pieces::of(source), at: 0, lines: Lines::default(), depth: 0 };
     layout.file(&file);
     Ok(layout.lines.text())
 }

@@ -63,7 +63,7 @@ pub fn arena_for(text: &str) -> Arena {
 /// The tree of a text, and all that is wrong with it, in the order of the text.
 #[must_use]
 pub fn parse<'s>(source: SourceId, text: &'s str, arena: &'s Arena) -> (tree::File<'s>, Vec<Diagnostic>) {
-    let source = Source { id: source, text };
+    let source = Source::new(source, text);
     match flawless::read(source, arena) {
         Some(file) => (file, Vec::new()),
         None => recover(source, arena),

@@ -3,6 +3,7 @@
 //! The parser's own stack holds small things that need no dropping, since it moves what it holds with every token: what is large is
 //! in the arena already, and what is to be in a list waits elsewhere until the list is complete.
 
+use std::borrow::Cow;
 use std::cell::RefCell;
 use std::ops::Range;
 
@@ -99,7 +100,10 @@ impl<'t, 's> Nodes<'t, 's> {
     }
 
     pub(super) fn head(&mut self, name: Name<'s>, condition: Option<Condition<'s>>) -> &'s Head<'s> {
-        let params = complete(&mut self.waiting.params, 0, self.arena);
+        let params = match self.waiting.params.as_slice() {
+            [] => &[],
+            [..] => complete(&mut self.waiting.params, 0, self.arena),
+        };
         self.put(Head { name: Some(name), params, condition })
     }
 
@@ -117,6 +121,9 @@ impl<'t, 's> Nodes<'t, 's> {
     /// The doc comment directly before a plan.
     fn docs_of(&self, start: Location) -> &'s [&'s str] {
         let (docs, start) = (self.docs.borrow(), start.token as usize);
+        if docs.last().is_none_or(|(last, _)| *last < start) {
+            return &[];
+        }
         let first = docs.partition_point(|(token, _)| *token < start);
         let lines = docs.get(first..).unwrap_or(&[]).iter();
         let lines: Vec<_> = lines.take_while(|(token, _)| *token == start).map(|(_, line)| *line).collect();
@@ -280,8 +287,12 @@ impl<'t, 's> Nodes<'t, 's> {
         Spanned { node: text, span: self.between(start, end) }
     }
 
-    pub(super) fn label(&self, start: Location, text: &str, end: Location) -> Name<'s> {
-        Spanned { node: self.arena.alloc_str(&label(text)), span: self.between(start, end) }
+    pub(super) fn label(&self, start: Location, text: &'s str, end: Location) -> Name<'s> {
+        let node = match label(text) {
+            Cow::Borrowed(plain) => plain,
+            Cow::Owned(plain) => self.arena.alloc_str(&plain),
+        };
+        Spanned { node, span: self.between(start, end) }
     }
 
     pub(super) fn number(&self, start: Location, text: &'s str, end: Location) -> Number<'s> {

@@ -54,6 +54,12 @@ impl Place {
 }
 
 impl<'s> Source<'s> {
+    /// A text. One that ends behind 4 GB is the first of its files to messages, for places have no more bits.
+    pub(super) fn new(id: SourceId, text: &'s str) -> Self {
+        let fits = u32::try_from(text.len()).is_ok_and(|length| id.0.checked_add(length).is_some());
+        Self { id: if fits { id } else { SourceId(0) }, text }
+    }
+
     /// The place as trees and diagnostics have it.
     pub(super) fn span(self, place: Place) -> Span {
         Span::new(self.id, place.start, place.end)
@@ -62,7 +68,7 @@ impl<'s> Source<'s> {
     /// The stretch between these two.
     pub(super) fn between(self, start: Location, end: Location) -> Span {
         let first = self.id.0;
-        Span { start: first.saturating_add(start.byte), end: first.saturating_add(end.byte.max(start.byte)) }
+        Span { start: first + start.byte, end: first + end.byte.max(start.byte) }
     }
 
     /// What is written there.

@@ -1,6 +1,8 @@
 //! Text to tokens (language, section 2): afterwards there are no blanks, no comments and no typesetting, and each parenthesis
 //! knows whether it touches a name.
 
+use std::borrow::Cow;
+
 use logos::{FilterResult, Lexer, Logos};
 
 use super::lexical;
@@ -237,14 +239,18 @@ impl<'s> Reader<'s> {
     }
 }
 
-/// The end of the text of a label, normalized: `Γ_from^to`.
-pub(super) fn label(text: &str) -> String {
-    let text = text.trim_start_matches('\\').replace(r"\text", "");
-    let bare: String = text.chars().filter(|c| !c.is_whitespace() && !matches!(c, '{' | '}')).collect();
-    match bare.strip_prefix("Gamma") {
-        Some(rest) => format!("Γ{rest}"),
-        None => bare,
+/// The text of a label, normalized: `Γ_from^to`.
+pub(super) fn label(text: &str) -> Cow<'_, str> {
+    if text.starts_with('Γ') && !text.contains('{') {
+        return Cow::Borrowed(text);
     }
+    let names = text.find('_').and_then(|at| text.get(at..)).unwrap_or("");
+    let mut label = String::with_capacity(text.len() + 1);
+    label.push('Γ');
+    for part in names.split(r"\text") {
+        label.extend(part.chars().filter(|c| !c.is_whitespace() && !matches!(c, '{' | '}')));
+    }
+    Cow::Owned(label)
 }
 
 /// Where the `\text{` that ends before `from` is closed; it holds no other braces than escaped ones.

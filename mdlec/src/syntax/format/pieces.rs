@@ -141,7 +141,7 @@ fn plain_label(written: &str) -> Cow<'_, str> {
         let parts = text.strip_prefix("Γ_").map(|parts| parts.split('^'));
         parts.is_some_and(|mut parts| parts.all(|part| !part.is_empty()))
     };
-    if is_label(&plain) { Cow::Owned(plain) } else { Cow::Borrowed(written) }
+    if is_label(&plain) { plain } else { Cow::Borrowed(written) }
 }
 
 /// Whether no blank stands between two tokens.
