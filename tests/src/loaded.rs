@@ -19,17 +19,20 @@ pub struct Loaded<'l> {
     texts: [Vec<&'l str>; 3],
 }
 
+/// What ends with a bracket: its record, and the facts there with the operand that each is about.
+pub type Facts = (u32, RecordPlace, Vec<(u32, Option<u32>)>);
+
 /// Labels with their facts, as a plan takes them.
 #[must_use]
-pub fn marks<'f>(facts: &'f [(u32, RecordPlace, Vec<(u32, Option<u32>)>)]) -> Vec<MarkRow<'f>> {
-    let mark = |(bracket, record, facts): &'f (u32, RecordPlace, Vec<_>)| MarkRow {
+pub fn marks(facts: &[Facts]) -> Vec<MarkRow<'_>> {
+    let marks = facts.iter().map(|(bracket, record, facts)| MarkRow {
         bracket: *bracket,
         level: record.level,
         first: record.first,
         count: record.facts,
         facts,
-    };
-    facts.iter().map(mark).collect()
+    });
+    marks.collect()
 }
 
 /// A plan that borrows them: storage for levels and loops is made when its size is known.
@@ -74,7 +77,7 @@ impl<'l> Loaded<'l> {
 
     /// What ends with which bracket, with the facts of each label.
     #[must_use]
-    pub fn facts(&self) -> Vec<(u32, RecordPlace, Vec<(u32, Option<u32>)>)> {
+    pub fn facts(&self) -> Vec<Facts> {
         let marks =
             self.lowered.marks.iter().flat_map(|(bracket, marks)| marks.iter().map(move |mark| (bracket, mark)));
         let facts = marks.filter_map(|(bracket, mark)| {
@@ -128,7 +131,9 @@ impl<'l> Loaded<'l> {
         let signal = |id| by_name(self.lowered.quark(id), scripted::Alphabet::signal);
         let si = |value: &Value| match value {
             Value::Quantity { exact, family, .. } => exact.to_f64() * family_to_si(family),
-            other => panic!("{other:?} is compared with a signal"),
+            Value::Infinity(_) | Value::Bits(_) | Value::Integer(_) | Value::Sonar(_) | Value::Name(..) => {
+                panic!("{value:?} is compared with a signal")
+            }
         };
         let tolerance = si(&comparison.tolerance);
         let is_angle = matches!(comparison.tolerance, Value::Quantity { kind: alphabet::Kind::Angle, .. });
