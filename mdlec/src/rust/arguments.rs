@@ -21,8 +21,13 @@ pub(super) fn type_of(quark: &Quark, quarks: &[Quark]) -> TokenStream {
     quote!(runtime::Comparison<#signal, #with>)
 }
 
-/// `runtime::Comparison::new(…)`, with its signals as `signal` writes them.
-pub(super) fn compared(comparison: &Comparison, signal: impl Fn(QuarkId) -> TokenStream) -> TokenStream {
+/// `runtime::Comparison::new(…)`, with its signals as `signal` writes them; a value is compared as if it were one of type
+/// `none`.
+pub(super) fn compared(
+    comparison: &Comparison,
+    none: &TokenStream,
+    signal: impl Fn(QuarkId) -> TokenStream,
+) -> TokenStream {
     let left = signal(comparison.signal);
     let tolerance = number(in_si(&comparison.tolerance));
     let operator = match (comparison.operator, &comparison.tolerance) {
@@ -36,14 +41,14 @@ pub(super) fn compared(comparison: &Comparison, signal: impl Fn(QuarkId) -> Toke
     let with = match &comparison.with {
         Compared::Signal(other) => {
             let other = signal(*other);
-            quote!(Signal(#other))
+            quote!(runtime::Operand::Signal(#other))
         }
         Compared::Value(value) => {
             let value = number(in_si(value));
-            quote!(Value(#value))
+            quote!(runtime::Operand::<#none>::Value(#value))
         }
     };
-    quote!(runtime::Comparison::new(#left, runtime::Operator::#operator, runtime::Operand::#with))
+    quote!(runtime::Comparison::new(#left, runtime::Operator::#operator, #with))
 }
 
 /// The SI value of a quantity, which is all that signals are compared with.
@@ -58,7 +63,7 @@ fn in_si(value: &Value) -> f64 {
 /// `robot::Go::new(…)`: a quark among `quarks`, made of its arguments, for a constant.
 pub(super) fn made(quark: &Quark, quarks: &[Quark]) -> TokenStream {
     if let Some(comparison) = &quark.comparison {
-        return compared(comparison, |signal| made(&quarks[signal.0 as usize], quarks));
+        return compared(comparison, &quote!(runtime::NoSignal), |signal| made(&quarks[signal.0 as usize], quarks));
     }
     let kind = quark_type(&quark.name, quark.overload);
     let arguments = quark.args.iter().map(argument);

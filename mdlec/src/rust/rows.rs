@@ -252,7 +252,9 @@ impl<'l> Operands<'l> {
 fn interrupt(id: QuarkId, quarks: &[Quark]) -> TokenStream {
     let quark = &quarks[id.0 as usize];
     let Some(comparison) = &quark.comparison else { return variant("AnyInterrupt", quark, quarks) };
-    let comparison = compared(comparison, |signal| variant("AnySignal", &quarks[signal.0 as usize], quarks));
+    let comparison = compared(comparison, &quote!(robot::AnySignal), |signal| {
+        variant("AnySignal", &quarks[signal.0 as usize], quarks)
+    });
     quote!(robot::AnyInterrupt::Comparison(#comparison))
 }
 

@@ -21,7 +21,8 @@ impl Meaning<'_> {
                 }
             });
             let order = if around.is_some() { ", and the scopes around it first" } else { "" };
-            let doc = format!(" {} ({}){order}.", scope.name, scope.interrupt.text);
+            let name = if scope.name.is_empty() { "A scope without a name" } else { &scope.name };
+            let doc = format!(" {name} ({}){order}.", scope.interrupt.text);
             Some(quote! {
                 #[doc = #doc]
                 fn #function(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> { #around #fired None }
