@@ -1,10 +1,12 @@
-//! The options of this target: `--world`, `--start`, `--seed`, `--speed`, `--plot` and `--trail`.
+//! The options of this target: `--world`, `--start`, `--body`, `--without`, `--seed`, `--speed`, `--plot` and `--trail`.
 
 use std::path::{Path, PathBuf};
 
 use mdle_host::clap::{Arg, ArgMatches, Command, value_parser};
 use mdle_host::{Pace, Time};
 
+use crate::model::{Body, PARTS};
+use crate::robot::Make;
 use crate::start::Start;
 use crate::world::World;
 
@@ -22,8 +24,17 @@ pub(crate) fn arguments(command: Command) -> Command {
                 .allow_hyphen_values(true),
         )
         .arg(
+            option("body", "ideal|scout|atrv").help(
+                "What is simulated: `scout` and `atrv` have sonars and wheels as those robots do [default: ideal]",
+            ),
+        )
+        .arg(
+            option("without", "PART,…")
+                .help("Leave out lobe, specular, minimum, steps, noise, outliers, order or slip of the body"),
+        )
+        .arg(
             option("seed", "N")
-                .help("Make the sonars noisy, by this seed: 1.5 cm of error, 1 % of missed echoes [default: exact]")
+                .help("What errors are drawn by: those of the sonars, and of wheels that slip [default: no errors]")
                 .allow_negative_numbers(true)
                 .value_parser(value_parser!(u64)),
         )
@@ -89,9 +100,24 @@ pub(crate) fn start(matches: &ArgMatches) -> Result<Option<(&str, Start)>, Strin
     Ok(Some((text, start)))
 }
 
-/// The seed of `--seed`.
-pub(crate) fn seed(matches: &ArgMatches) -> Option<u64> {
-    matches.get_one("seed").copied()
+/// What `--body`, `--without` and `--seed` say is to be simulated.
+pub(crate) fn make(matches: &ArgMatches) -> Result<Make, String> {
+    let body = match matches.get_one::<String>("body").map_or("ideal", String::as_str) {
+        "ideal" => Body::Ideal,
+        "scout" => Body::Scout,
+        "atrv" => Body::Atrv,
+        other => return Err(format!("--body {other}: expected `ideal`, `scout` or `atrv`")),
+    };
+    let text = matches.get_one::<String>("without").map_or("", String::as_str);
+    let parts = text.split(',').map(str::trim).filter(|name| !name.is_empty());
+    let without = parts.map(|name| {
+        let found = PARTS.iter().find(|(known, _)| *known == name).map(|(_, part)| *part);
+        found.ok_or_else(|| {
+            let names = PARTS.map(|(name, _)| name).join(", ");
+            format!("--without {text}: {name:?} is no part of a body; expected some of {names}")
+        })
+    });
+    Ok(Make { body, without: without.collect::<Result<_, _>>()?, seed: matches.get_one("seed").copied() })
 }
 
 /// The path of `--plot` or `--trail`.

@@ -4,28 +4,43 @@ use std::fmt;
 use std::time::Duration;
 
 use mdle_host::Hosted;
-use mdle_runtime::{Nanos, Pose, Robot, Twist};
+use mdle_runtime::{Meters, Nanos, Pose, Robot, Twist};
 
-use crate::body::Body;
-use crate::output::Sensed;
+use crate::body::{Body, STEP};
+use crate::model::{self, Model, Part};
+use crate::output::{Sensed, Shape};
 use crate::plot;
 use crate::sonar::Ring;
 use crate::start::{self, StartError};
 use crate::trail::Trail;
 use crate::walls::Walls;
 use crate::whole_file::WholeFile;
-use crate::world::World;
+use crate::world::{Place, World};
 
 /// A robot in a world.
 pub struct Simulated {
     walls: Walls,
     body: Body,
     ring: Ring,
+    shape: Shape,
+    /// How many bumper switches there are.
+    switches: u8,
     period: Duration,
     /// Exchanges so far; the first is at time 0.
     exchanges: u64,
     drawing: Option<Drawing>,
     table: Option<Table>,
+}
+
+/// What is simulated besides the world.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Make {
+    /// The body.
+    pub body: model::Body,
+    /// What of it is left out.
+    pub without: Vec<Part>,
+    /// What its errors are drawn by; without one nothing errs.
+    pub seed: Option<u64>,
 }
 
 /// What a plot is made of in the end.
@@ -66,17 +81,35 @@ impl fmt::Display for Fault {
 impl std::error::Error for Fault {}
 
 impl Simulated {
-    /// A robot at rest at `start` in `world`, whose odometry begins there. Its sonars are exact, or noisy with a seed.
+    /// A robot with an ideal body at rest at `start` in `world`, whose odometry begins there. Its sonars are exact, or
+    /// noisy with a seed.
     ///
     /// # Errors
     /// When it cannot stand there.
     pub fn new(world: &World, start: Pose, seed: Option<u64>, period: Duration) -> Result<Self, StartError> {
+        Self::with(&Make { seed, ..Make::default() }, world, start, period)
+    }
+
+    /// A robot of this make at rest at `start` in `world`, whose odometry begins there.
+    ///
+    /// # Errors
+    /// When it cannot stand there.
+    pub fn with(make: &Make, world: &World, start: Pose, period: Duration) -> Result<Self, StartError> {
         let walls = Walls::of(world);
-        start::check(&start, world, &walls)?;
+        let Model { drive, hearing, switches } = Model::of(make.body, &make.without);
+        start::check(&start, drive.radius, world, &walls)?;
+        let shape = Shape {
+            body_radius: Meters(drive.radius),
+            wheel_base: Meters(drive.wheel_base),
+            ring_radius: Meters(hearing.ring_radius),
+            confirmation: if hearing.order.is_some() { 2 } else { 3 },
+        };
         Ok(Self {
             walls,
-            body: Body::at(start),
-            ring: Ring::new(seed),
+            body: Body::new(drive, start, make.seed),
+            ring: Ring::new(hearing, make.seed),
+            shape,
+            switches,
             period,
             exchanges: 0,
             drawing: None,
@@ -107,6 +140,45 @@ impl Simulated {
         let period = u64::try_from(self.period.as_nanos()).unwrap_or(u64::MAX);
         Nanos(self.exchanges.saturating_mul(period))
     }
+
+    /// Drives for the period that ends `now`, and pings whenever a sonar is due in it.
+    fn drive(&mut self, input: &Twist, now: Nanos) {
+        let begins = Nanos(now.0.saturating_sub(u64::try_from(self.period.as_nanos()).unwrap_or(u64::MAX)));
+        if self.exchanges == 0 {
+            // The plan begins at the end of this period, and so does the world.
+            self.body.advance(input, self.period.as_secs_f64(), &self.walls);
+            self.ring.warm_up(&self.body.pose, self.body.odometry(), &self.walls);
+        } else if self.ring.due().is_none() {
+            self.advance(input, self.period.as_secs_f64());
+        } else {
+            let mut here = begins;
+            while let Some(due) = self.ring.due().filter(|due| *due <= now) {
+                self.advance(input, due.since(here).seconds());
+                here = due;
+                self.ring.ping(&self.body.pose, self.body.odometry(), due, &self.walls);
+            }
+            self.advance(input, now.since(here).seconds());
+        }
+        if self.ring.due().is_none() {
+            self.ring.ping(&self.body.pose, self.body.odometry(), now, &self.walls);
+        }
+    }
+
+    /// Moves the robot, and what moves in the world.
+    fn advance(&mut self, input: &Twist, seconds: f64) {
+        if seconds <= 0.0 {
+            return;
+        }
+        if !self.walls.move_at_all() {
+            self.body.advance(input, seconds, &self.walls);
+            return;
+        }
+        let steps = libm::ceil(seconds / STEP);
+        for _ in 0..steps as u32 {
+            self.walls.advance(seconds / steps, Place::of(&self.body.pose), self.shape.body_radius.0);
+            self.body.advance(input, seconds / steps, &self.walls);
+        }
+    }
 }
 
 impl Robot for Simulated {
@@ -118,10 +190,9 @@ impl Robot for Simulated {
         if !(input.v.0.is_finite() && input.omega.0.is_finite()) {
             return Err(Fault::Input);
         }
-        self.body.advance(input, self.period.as_secs_f64(), &self.walls);
-        let Body { pose, odometry, .. } = self.body;
         let now = self.now();
-        self.ring.ping(&pose, odometry, now, &self.walls);
+        self.drive(input, now);
+        let pose = self.body.pose;
         if let Some(table) = &mut self.table {
             table.went(now, &pose);
         }
@@ -130,10 +201,11 @@ impl Robot for Simulated {
             drawing.trail.went(&pose);
         }
         Ok(Sensed {
-            odometry,
+            odometry: self.body.odometry(),
             velocity: self.body.velocity(),
-            pressed: self.body.touches(&self.walls),
+            switches: self.body.pressed(self.switches, &self.walls),
             pings: self.ring.pings,
+            shape: self.shape,
         })
     }
 

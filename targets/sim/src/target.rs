@@ -38,7 +38,7 @@ fn robot(matches: &ArgMatches, period: Duration) -> Result<Simulated, String> {
     let world = options::world(matches)?;
     let given = options::start(matches)?;
     let Start(pose) = given.map_or(Start(world.start), |(_, start)| start);
-    let robot = Simulated::new(&world, pose, options::seed(matches), period).map_err(|error| match given {
+    let robot = Simulated::with(&options::make(matches)?, &world, pose, period).map_err(|error| match given {
         Some((text, _)) => format!("--start {text}: {error}; {}", hint(&world.start)),
         None => format!("the world's own start pose: {error}; give another, as in `--start 1,2,90`"),
     })?;

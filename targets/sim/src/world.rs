@@ -4,6 +4,7 @@ use std::fmt;
 
 use mdle_runtime::{Meters, Pose};
 
+use crate::moving::Thing;
 use crate::world_file::{self, WorldError};
 
 /// The floor of the paper's tour, box in the hallway included.
@@ -12,20 +13,22 @@ const OFFICE: &str = include_str!("../worlds/office.toml");
 /// What the simulated robot moves among. Its coordinates are finite and no wall has length zero.
 #[derive(Debug, Clone, PartialEq)]
 pub struct World {
-    /// Walls and boxes.
+    /// Walls, boxes and discs that stand.
     pub outlines: Vec<Outline>,
+    /// Doors, and boxes and discs that move.
+    pub things: Vec<Thing>,
     /// The start pose unless an option says otherwise.
     pub start: Pose,
 }
 
-/// A wall or a box, as the line around it.
+/// A wall, a box or a disc, as the line around it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outline {
     /// What messages call it.
     pub name: String,
-    /// Its corners in order; a box ends where it began.
+    /// Its corners in order; a box ends where it began. A disc has 48 of them.
     pub points: Vec<Place>,
-    /// Whether it is a box, which is solid inside; a wall has no thickness.
+    /// Whether it is a box or a disc, which is solid inside; a wall has no thickness.
     pub solid: bool,
 }
 
@@ -57,22 +60,28 @@ impl World {
 
     /// All walls and sides of boxes, each with its outline.
     pub(crate) fn segments(&self) -> impl Iterator<Item = (&Outline, Place, Place)> {
-        self.outlines.iter().flat_map(|outline| {
-            let ends = outline.points.iter().zip(outline.points.iter().skip(1));
-            ends.map(move |(from, to)| (outline, *from, *to))
-        })
+        self.outlines.iter().flat_map(Outline::segments)
+    }
+
+    /// The same with everything that moves, where it begins.
+    pub(crate) fn everything(&self) -> impl Iterator<Item = (&Outline, Place, Place)> {
+        self.segments().chain(self.things.iter().flat_map(|thing| thing.outline.segments()))
     }
 }
 
 impl Outline {
-    /// Whether `place` is inside a box.
+    /// Its sides.
+    fn segments(&self) -> impl Iterator<Item = (&Self, Place, Place)> {
+        self.points.iter().zip(self.points.iter().skip(1)).map(move |(from, to)| (self, *from, *to))
+    }
+
+    /// Whether `place` is inside something solid: a line from it crosses an odd number of sides.
     pub(crate) fn holds(&self, place: Place) -> bool {
-        let within = |of: fn(&Place) -> f64| {
-            let least = self.points.iter().map(of).fold(f64::INFINITY, f64::min);
-            let most = self.points.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
-            least < of(&place) && of(&place) < most
-        };
-        self.solid && within(|place| place.x) && within(|place| place.y)
+        let crossed = self.segments().filter(|(_, from, to)| {
+            let between = (from.y > place.y) != (to.y > place.y);
+            between && place.x < from.x + (to.x - from.x) * (place.y - from.y) / (to.y - from.y)
+        });
+        self.solid && crossed.count() % 2 == 1
     }
 }
 

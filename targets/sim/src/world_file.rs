@@ -126,7 +126,7 @@ fn read(text: &str) -> Result<World, Wrong> {
     let start = start(&written.start.0)?;
     let walls = (1..).zip(&written.walls).map(|(number, wall)| outline_of_wall(number, &wall.0));
     let boxes = (1..).zip(&written.boxes).map(|(number, text)| outline_of_box(number, text));
-    Ok(World { outlines: walls.chain(boxes).collect::<Result<_, _>>()?, start })
+    Ok(World { outlines: walls.chain(boxes).collect::<Result<_, _>>()?, things: Vec::new(), start })
 }
 
 fn start(text: &StartText) -> Result<Pose, Wrong> {
