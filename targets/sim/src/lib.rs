@@ -18,6 +18,7 @@ mod output;
 mod plot;
 pub mod quarks;
 mod robot;
+mod ros_map;
 mod sonar;
 mod start;
 mod surfaces;

@@ -7,6 +7,7 @@ use mdle_host::{Pace, Time};
 
 use crate::model::{Body, PARTS};
 use crate::robot::Make;
+use crate::ros_map::Header;
 use crate::start::Start;
 use crate::world::World;
 
@@ -14,8 +15,8 @@ use crate::world::World;
 pub(crate) fn arguments(command: Command) -> Command {
     command
         .arg(
-            option("world", "FILE")
-                .help("The floor, a TOML file of walls and boxes [default: the office floor of the paper's tour]")
+            option("world", "NAME|FILE")
+                .help("The floor: office, maze, hall, room, a TOML file, or a YAML map of ROS [default: office, the paper's]")
                 .value_parser(value_parser!(PathBuf)),
         )
         .arg(
@@ -76,21 +77,35 @@ fn pace(text: &str) -> Option<Pace> {
     }
 }
 
-/// The world of `--world`, or the office floor.
+/// The world of `--world`, or the office floor. A file goes before a world of ours with that name.
 pub(crate) fn world(matches: &ArgMatches) -> Result<World, String> {
-    match matches.get_one::<PathBuf>("world") {
-        Some(path) => read(path),
-        None => World::office().map_err(|error| error.to_string()),
+    let Some(path) = matches.get_one::<PathBuf>("world") else {
+        return World::office().map_err(|error| error.to_string());
+    };
+    match path.to_str().filter(|_| !path.exists()).and_then(World::named) {
+        Some(world) => world.map_err(|error| error.to_string()),
+        None => read(path),
     }
 }
 
 fn read(path: &Path) -> Result<World, String> {
-    let shown = path.display();
-    let bytes = std::fs::read(path).map_err(|error| {
-        format!("--world {shown}: the file cannot be read: {error}; without --world it is the office floor")
-    })?;
-    let text = String::from_utf8(bytes).map_err(|_| format!("--world {shown}: the file is not UTF-8 text"))?;
-    World::parse(&shown.to_string(), &text).map_err(|error| error.to_string())
+    let shown = path.display().to_string();
+    let text = String::from_utf8(bytes(path)?).map_err(|_| format!("--world {shown}: the file is not UTF-8 text"))?;
+    let is_map = path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml");
+    if !is_map {
+        return World::parse(&shown, &text).map_err(|error| error.to_string());
+    }
+    let header = Header::parse(&shown, &text).map_err(|error| error.to_string())?;
+    let image = path.with_file_name(&header.image);
+    header.world(&image.display().to_string(), &bytes(&image)?).map_err(|error| error.to_string())
+}
+
+fn bytes(path: &Path) -> Result<Vec<u8>, String> {
+    std::fs::read(path).map_err(|error| {
+        let names = World::names().collect::<Vec<_>>().join(", ");
+        let shown = path.display();
+        format!("--world {shown}: the file cannot be read: {error}; without --world it is the office floor, and {names} are there too")
+    })
 }
 
 /// The pose of `--start`, as text and read.

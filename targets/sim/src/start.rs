@@ -65,8 +65,7 @@ impl FromStr for Start {
 /// Whether a robot can start at `pose` in `world`.
 pub(crate) fn check(pose: &Pose, radius: f64, world: &World, walls: &Walls) -> Result<(), StartError> {
     let place = Place::of(pose);
-    let outlines = world.outlines.iter().chain(world.things.iter().map(|thing| &thing.outline));
-    if let Some(outline) = outlines.into_iter().find(|outline| outline.holds(place)) {
+    if let Some(outline) = world.solid(place) {
         return Err(StartError::Inside(outline.name.clone()));
     }
     if walls.clearance(place, 2.0 * radius) < radius {

@@ -7,8 +7,13 @@ use mdle_runtime::{Meters, Pose};
 use crate::moving::Thing;
 use crate::world_file::{self, WorldError};
 
-/// The floor of the paper's tour, box in the hallway included.
-const OFFICE: &str = include_str!("../worlds/office.toml");
+/// The worlds that come with the simulator: first the floor of the paper's tour, box in the hallway included.
+const WORLDS: [(&str, &str); 4] = [
+    ("office", include_str!("../worlds/office.toml")),
+    ("maze", include_str!("../worlds/maze.toml")),
+    ("hall", include_str!("../worlds/hall.toml")),
+    ("room", include_str!("../worlds/room.toml")),
+];
 
 /// What the simulated robot moves among. Its coordinates are finite and no wall has length zero.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,6 +24,8 @@ pub struct World {
     pub things: Vec<Thing>,
     /// The start pose unless an option says otherwise.
     pub start: Pose,
+    /// So many of the first outlines are contours of a map: inside an odd number of them it is solid.
+    pub(crate) contours: usize,
 }
 
 /// A wall, a box or a disc, as the line around it.
@@ -55,7 +62,30 @@ impl World {
     /// # Errors
     /// Never: a test reads it. It is the file of a user like any other.
     pub fn office() -> Result<Self, WorldError> {
-        Self::parse("the office floor", OFFICE)
+        let [(_, office), ..] = WORLDS;
+        Self::parse("the office floor", office)
+    }
+
+    /// The world of this name that comes with the simulator, if there is one.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Result<Self, WorldError>> {
+        let (name, text) = WORLDS.iter().find(|(known, _)| *known == name)?;
+        Some(Self::parse(name, text))
+    }
+
+    /// The names of the worlds that come with the simulator.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        WORLDS.iter().map(|(name, _)| *name)
+    }
+
+    /// The box, disc or contour inside of which `place` lies.
+    pub(crate) fn solid(&self, place: Place) -> Option<&Outline> {
+        let around = || self.outlines.iter().take(self.contours).filter(|outline| outline.surrounds(place));
+        if around().count() % 2 == 1 {
+            return around().next_back();
+        }
+        let outlines = self.outlines.iter().chain(self.things.iter().map(|thing| &thing.outline));
+        outlines.into_iter().find(|outline| outline.solid && outline.surrounds(place))
     }
 
     /// All walls and sides of boxes, each with its outline.
@@ -75,13 +105,13 @@ impl Outline {
         self.points.iter().zip(self.points.iter().skip(1)).map(move |(from, to)| (self, *from, *to))
     }
 
-    /// Whether `place` is inside something solid: a line from it crosses an odd number of sides.
-    pub(crate) fn holds(&self, place: Place) -> bool {
+    /// Whether `place` is inside: a line from it crosses an odd number of sides.
+    fn surrounds(&self, place: Place) -> bool {
         let crossed = self.segments().filter(|(_, from, to)| {
             let between = (from.y > place.y) != (to.y > place.y);
             between && place.x < from.x + (to.x - from.x) * (place.y - from.y) / (to.y - from.y)
         });
-        self.solid && crossed.count() % 2 == 1
+        crossed.count() % 2 == 1
     }
 }
 
