@@ -68,7 +68,7 @@ impl Observed {
     /// Has its way drawn when the run is finished: as a picture, and as one that moves.
     pub(crate) fn drawn(mut self, plot: Option<WholeFile>, record: Option<WholeFile>, world: &World) -> Self {
         if plot.is_some() || record.is_some() {
-            let mut trail = Trail::from(&self.robot.pose());
+            let mut trail = Trail::from(&self.robot.pose(), self.robot.radius());
             trail.frames = record.is_some().then(Frames::new);
             self.pictures = Some(Pictures { plot, record, world: world.clone(), trail });
         }
@@ -95,7 +95,8 @@ impl Robot for Observed {
     fn exchange(&mut self, input: &Twist) -> Result<Sensed, Fault> {
         let now = self.robot.now();
         let sensed = self.robot.exchange(input)?;
-        self.contacts += u64::from(sensed.pressed() && !self.touches);
+        let comes_into_contact = sensed.pressed() && !self.touches;
+        self.contacts += u64::from(comes_into_contact);
         self.touches = sensed.pressed();
         let pose = self.robot.pose();
         if let Some(table) = &mut self.table {
@@ -104,6 +105,9 @@ impl Robot for Observed {
         if let Some(Pictures { trail, .. }) = &mut self.pictures {
             trail.went(&pose);
             trail.sensed(&sensed, now);
+            if comes_into_contact {
+                trail.touched(self.robot.touched(), now);
+            }
         }
         if let Some(watch) = &mut self.watch {
             watch.sensed(&pose, &sensed, now, self.touches, self.contacts);

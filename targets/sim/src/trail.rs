@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use mdle_runtime::capability::{Bumpers as _, SonarRing as _};
+use mdle_runtime::capability::SonarRing as _;
 use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, SonarId};
 
 use crate::frames::Frames;
@@ -17,6 +17,8 @@ const SQUARE: f64 = 0.04;
 /// The way of a robot.
 #[derive(Debug, Clone)]
 pub(crate) struct Trail {
+    /// The radius of the body, in metres.
+    pub(crate) radius: f64,
     pub(crate) start: Pose,
     /// Where the robot is now.
     pub(crate) here: Pose,
@@ -26,10 +28,9 @@ pub(crate) struct Trail {
     /// Where the sonars heard something, at most one in a square of 4 cm.
     pub(crate) echoes: Vec<Place>,
     heard: BTreeSet<(i64, i64)>,
-    /// Where the body was when it came into contact, and when; at most one in such a square.
+    /// Where the body touched something when it came into contact, and when; at most one in such a square.
     pub(crate) contacts: Vec<(Place, Nanos)>,
     touched: BTreeSet<(i64, i64)>,
-    touches: bool,
     /// For a picture that moves.
     pub(crate) frames: Option<Frames>,
 }
@@ -45,9 +46,10 @@ pub(crate) struct Mark {
 }
 
 impl Trail {
-    /// A trail that begins here.
-    pub(crate) fn from(pose: &Pose) -> Self {
+    /// The trail of a body of this radius, in metres, that begins here.
+    pub(crate) fn from(pose: &Pose, radius: f64) -> Self {
         Self {
+            radius,
             start: *pose,
             here: *pose,
             before: vec![Place::of(pose)],
@@ -56,7 +58,6 @@ impl Trail {
             heard: BTreeSet::new(),
             contacts: Vec::new(),
             touched: BTreeSet::new(),
-            touches: false,
             frames: None,
         }
     }
@@ -73,11 +74,6 @@ impl Trail {
 
     /// Where it is, it senses this, at time `t`.
     pub(crate) fn sensed(&mut self, sensed: &Sensed, t: Nanos) {
-        let place = Place::of(&self.here);
-        if sensed.pressed() && !self.touches && self.touched.insert(square(place)) {
-            self.contacts.push((place, t));
-        }
-        self.touches = sensed.pressed();
         let echoes = echoes(&self.here, sensed, t);
         for echo in echoes.into_iter().flatten() {
             if self.heard.insert(square(echo)) {
@@ -86,6 +82,13 @@ impl Trail {
         }
         if let Some(frames) = &mut self.frames {
             frames.push(t, &self.here, &echoes);
+        }
+    }
+
+    /// The body comes into contact with something here, at time `t`.
+    pub(crate) fn touched(&mut self, place: Place, t: Nanos) {
+        if self.touched.insert(square(place)) {
+            self.contacts.push((place, t));
         }
     }
 

@@ -143,7 +143,7 @@ mod tests {
     use mdle_runtime::{Nanos, Pose};
 
     fn layout(world: &str, marks: usize) -> Layout {
-        let mut trail = Trail::from(&Pose::ORIGIN);
+        let mut trail = Trail::from(&Pose::ORIGIN, 0.205);
         for number in 0..marks {
             trail.began(number as u64 + 1, &"goAvoid 90 40 20 ".repeat(number % 5 + 1), Nanos(number as u64));
         }

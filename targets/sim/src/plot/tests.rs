@@ -10,7 +10,7 @@ use crate::world::{Place, World};
 
 /// A run of this many turns in circles, in which an atom begins every so many turns.
 fn run(turns: u64, an_atom_every: u64, law: &str) -> Trail {
-    let mut trail = Trail::from(&Pose::ORIGIN);
+    let mut trail = Trail::from(&Pose::ORIGIN, 0.205);
     trail.frames = Some(Frames::new());
     for turn in 0..turns {
         let (t, angle) = (Nanos(turn * 100_000_000), turn as f64 * 0.05);
@@ -108,15 +108,4 @@ fn all_animations_repeat_together_and_their_times_are_in_order() {
             assert_eq!(times.len(), listed.split(';').count());
         }
     }
-}
-
-#[test]
-fn a_contact_is_marked_at_the_wall_that_was_touched() {
-    let world = World::parse("a wall", "[[wall]]\npoints = [[1, -1], [1, 1]]").unwrap();
-    let mut trail = Trail::from(&Pose::ORIGIN);
-    trail.contacts = vec![(Place { x: 0.795, y: 0.25 }, Nanos::ZERO), (Place { x: -1.0, y: 0.0 }, Nanos::ZERO)];
-    let touched = |number: usize| super::drawing::touched(&world, trail.contacts[number].0);
-    assert_eq!((touched(0), touched(1)), (Place { x: 1.0, y: 0.25 }, Place { x: -1.0, y: 0.0 }));
-    let (_, text) = read(&svg(&world, &trail));
-    assert!(text.contains("contact"));
 }
