@@ -47,6 +47,30 @@ pub struct Stop {
     pub at: Place,
 }
 
+impl Thing {
+    /// Its corners when it has gone this far from where it begins.
+    pub(crate) fn corners(&self, gone: Place) -> impl Iterator<Item = Place> {
+        self.outline.points.iter().map(move |point| Place { x: point.x + gone.x, y: point.y + gone.y })
+    }
+
+    /// The places of its centre between which it goes; none of a door.
+    pub(crate) fn way(&self) -> impl Iterator<Item = Place> {
+        let stops = match &self.schedule {
+            Schedule::Open { .. } => [].as_slice(),
+            Schedule::Way { stops, .. } => stops.as_slice(),
+        };
+        stops.iter().map(|stop| stop.at)
+    }
+
+    /// All places of its corners between which it goes.
+    pub(crate) fn places(&self) -> impl Iterator<Item = Place> {
+        let still = Place { x: 0.0, y: 0.0 };
+        let first = self.way().next();
+        let gone = self.way().filter_map(move |at| first.map(|first| Place { x: at.x - first.x, y: at.y - first.y }));
+        [still].into_iter().chain(gone.skip(1)).flat_map(|gone| self.corners(gone))
+    }
+}
+
 impl Schedule {
     /// How far it has gone from where it begins; `None` for an open door.
     fn moved(&self, t: f64) -> Option<Place> {
@@ -118,6 +142,11 @@ impl Moving {
         };
         moving.put(moving.schedule.moved(0.0));
         moving
+    }
+
+    /// How far it has gone from where it begins; `None` for an open door.
+    pub(crate) fn gone(&self) -> Option<Place> {
+        self.moved
     }
 
     /// Its sides, where they are now.

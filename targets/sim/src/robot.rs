@@ -107,6 +107,11 @@ impl Simulated {
         self.shape.body_radius.0
     }
 
+    /// How far each thing of the world has gone from where it begins; `None` for an open door.
+    pub(crate) fn gone(&self) -> impl Iterator<Item = Option<Place>> {
+        self.walls.gone()
+    }
+
     /// The place of a wall that the body touches; its centre if it touches none.
     pub(crate) fn touched(&self) -> Place {
         let at = Place::of(&self.body.pose);

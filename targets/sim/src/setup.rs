@@ -33,7 +33,7 @@ pub(crate) fn robot(matches: &ArgMatches, period: Duration) -> Result<Observed, 
     let setup = Setup::of(matches, period)?;
     let robot = setup.robot(setup.make.seed)?;
     let file = |option| options::file(matches, option).map(|path| WholeFile::at(option, path)).transpose();
-    let watch = options::watch(matches).then(|| Watch::of(&setup.world)).transpose()?;
+    let watch = options::watch(matches).then(|| Watch::of(&setup.world, setup.make.radius())).transpose()?;
     let robot = robot.written_down(file("trail")?).watched(watch);
     Ok(robot.drawn(file("plot")?, file("record")?, &setup.world))
 }

@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use mdle_runtime::capability::SonarRing as _;
+use mdle_runtime::capability::{Odometry as _, SonarRing as _};
 use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, SonarId};
 
-use crate::frames::Frames;
+use crate::frames::{Frame, Frames};
 use crate::output::Sensed;
 use crate::world::Place;
 
@@ -22,6 +22,8 @@ pub(crate) struct Trail {
     pub(crate) start: Pose,
     /// Where the robot is now.
     pub(crate) here: Pose,
+    /// How far each thing of the world has gone now; `None` for an open door.
+    pub(crate) things: Vec<Option<Place>>,
     /// The way before the first atom began, then the way of each.
     pub(crate) before: Vec<Place>,
     pub(crate) marks: Vec<Mark>,
@@ -31,6 +33,8 @@ pub(crate) struct Trail {
     /// Where the body touched something when it came into contact, and when; at most one in such a square.
     pub(crate) contacts: Vec<(Place, Nanos)>,
     touched: BTreeSet<(i64, i64)>,
+    /// When it last sensed anything.
+    sensed: Option<Nanos>,
     /// For a picture that moves.
     pub(crate) frames: Option<Frames>,
 }
@@ -52,12 +56,14 @@ impl Trail {
             radius,
             start: *pose,
             here: *pose,
+            things: Vec::new(),
             before: vec![Place::of(pose)],
             marks: Vec::new(),
             echoes: Vec::new(),
             heard: BTreeSet::new(),
             contacts: Vec::new(),
             touched: BTreeSet::new(),
+            sensed: None,
             frames: None,
         }
     }
@@ -74,14 +80,14 @@ impl Trail {
 
     /// Where it is, it senses this, at time `t`.
     pub(crate) fn sensed(&mut self, sensed: &Sensed, t: Nanos) {
-        let echoes = echoes(&self.here, sensed, t);
+        let echoes = echoes(&self.here, sensed, self.sensed.replace(t));
         for echo in echoes.into_iter().flatten() {
             if self.heard.insert(square(echo)) {
                 self.echoes.push(echo);
             }
         }
         if let Some(frames) = &mut self.frames {
-            frames.push(t, &self.here, &echoes);
+            frames.push(Frame { t, pose: self.here, echoes, things: self.things.clone() });
         }
     }
 
@@ -108,17 +114,31 @@ impl Trail {
     }
 }
 
-/// Where the pings of time `t` had their echoes on the floor, if they had any, by sonar: on the axes of their cones.
-pub(crate) fn echoes(pose: &Pose, sensed: &Sensed, t: Nanos) -> [Option<Place>; SONARS] {
+/// Where the newest pings had their echoes on the floor, if they had any, by sonar: on the axes of their cones. A sonar
+/// that has not pinged since the turn before has none.
+pub(crate) fn echoes(pose: &Pose, sensed: &Sensed, before: Option<Nanos>) -> [Option<Place>; SONARS] {
     let mut echoes = [None; SONARS];
     for (echo, number) in echoes.iter_mut().zip(0..) {
         let sonar = SonarId::new(number);
-        let newest = sensed.pings(sonar).newest_first().next().filter(|ping| ping.at == t);
-        let Some(Meters(range)) = newest.and_then(|ping| ping.range) else { continue };
-        let axis = Radians(pose.theta.0 + sonar.bearing().0);
-        *echo = Some(Place::of(&pose.towards(axis, Meters(sensed.ring_radius().0 + range))));
+        let newest =
+            sensed.pings(sonar).newest_first().next().filter(|ping| before.is_none_or(|before| ping.at > before));
+        let Some((ping, Meters(range))) = newest.and_then(|ping| Some((ping, ping.range?))) else { continue };
+        let from = was(pose, &sensed.pose(), &ping.pose);
+        let axis = Radians(from.theta.0 + sonar.bearing().0);
+        *echo = Some(Place::of(&from.towards(axis, Meters(sensed.ring_radius().0 + range))));
     }
     echoes
+}
+
+/// Where a robot that is at `pose` now was on the floor when its odometry said `then`, as it says `now`.
+fn was(pose: &Pose, now: &Pose, then: &Pose) -> Pose {
+    let (sin, cos) = libm::sincos(pose.theta.0 - now.theta.0);
+    let (x, y) = (then.x.0 - now.x.0, then.y.0 - now.y.0);
+    Pose {
+        x: Meters(pose.x.0 + x * cos - y * sin),
+        y: Meters(pose.y.0 + x * sin + y * cos),
+        theta: Radians(pose.theta.0 + (then.theta.0 - now.theta.0)),
+    }
 }
 
 fn square(place: Place) -> (i64, i64) {

@@ -105,6 +105,11 @@ impl Walls {
         }
     }
 
+    /// How far each of the things has gone from where it begins; `None` for an open door.
+    pub(crate) fn gone(&self) -> impl Iterator<Item = Option<Place>> {
+        self.moving.iter().map(Moving::gone)
+    }
+
     /// Whether anything here ever moves.
     pub(crate) fn move_at_all(&self) -> bool {
         !self.moving.is_empty()

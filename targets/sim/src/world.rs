@@ -91,6 +91,12 @@ impl World {
         outlines.into_iter().find(|outline| outline.solid && outline.surrounds(place))
     }
 
+    /// All corners: of what stands, and of what moves at each of its stops.
+    pub(crate) fn places(&self) -> impl Iterator<Item = Place> {
+        let standing = self.outlines.iter().flat_map(|outline| outline.points.iter().copied());
+        standing.chain(self.things.iter().flat_map(Thing::places))
+    }
+
     /// All walls and sides of boxes, each with its outline.
     pub(crate) fn segments(&self) -> impl Iterator<Item = (&Outline, Place, Place)> {
         self.outlines.iter().flat_map(Outline::segments)

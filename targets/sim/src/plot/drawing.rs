@@ -7,7 +7,7 @@ use svg::node::element::{Group, Path, Title};
 use super::colours::{self, ECHO, FAINT, INK};
 use super::layout::{Layout, MARKS_MOST};
 use super::shapes::{Pixel, badge, circle, cross, dots, line, polyline, tenths};
-use super::{floor, labels, legend};
+use super::{floor, labels, legend, things};
 use crate::trail::Trail;
 use crate::world::{Place, World};
 
@@ -17,6 +17,7 @@ pub(crate) fn svg(world: &World, trail: &Trail) -> String {
     let dots = began(&layout, trail);
     let document = document(&layout, layout.height, "The way of the robot on its floor")
         .add(floor::drawn(&layout, world, layout.height))
+        .add(things::drawn(&layout, world, trail))
         .add(echoes(&layout, trail))
         .add(body(&layout, &trail.start, trail.radius, FAINT))
         .add(way(&layout, trail))

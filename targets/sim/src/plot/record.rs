@@ -10,7 +10,7 @@ use super::drawing::{body, document};
 use super::film::Film;
 use super::layout::{LEFT, LETTERS, LINE, Layout, MARGIN, MARKS_MOST, shortened};
 use super::shapes::{Pixel, badge, circle, cross, dots, line, polyline, tenths, text};
-use super::{floor, labels, legend};
+use super::{floor, labels, legend, things};
 use crate::frames::{Frame, Frames};
 use crate::trail::Trail;
 use crate::world::{Place, World};
@@ -25,6 +25,7 @@ pub(crate) fn animated(world: &World, trail: &Trail) -> String {
     let film = Film::of(&frames, trail);
     let document = document(&layout, layout.height + STRIP, "The robot drives on its floor")
         .add(floor::drawn(&layout, world, layout.height + STRIP))
+        .add(things::moving(&layout, world, trail, &film))
         .add(body(&layout, &trail.start, trail.radius, FAINT))
         .add(ways(&layout, &film))
         .add(echoes(&layout, &film))
