@@ -11,7 +11,7 @@ use crate::moving::{Schedule, Thing};
 use crate::trail::Trail;
 use crate::world::{Place, World};
 
-/// Dashes of doors, and of ways.
+/// Of doors.
 const DASHES: &str = "5 4";
 /// Where something begins.
 const NOWHERE: Place = Place { x: 0.0, y: 0.0 };
@@ -103,7 +103,7 @@ fn ways(layout: &Layout, world: &World) -> Group {
 }
 
 fn way(pixels: impl IntoIterator<Item = Pixel>) -> Path {
-    polyline(pixels).set("stroke", FAINT).set("stroke-dasharray", DASHES)
+    polyline(pixels).set("stroke", FAINT)
 }
 
 fn door(pixels: impl IntoIterator<Item = Pixel>) -> Path {
