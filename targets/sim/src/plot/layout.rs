@@ -65,8 +65,9 @@ impl Layout {
         let legend = (84.0 + letters as f64 * f64::from(LETTERS) * 0.56).max(LEGEND_LEAST);
         let listed = (lines.len() + KEY + things::signs(world).count()) as f64;
         let height = (high + 2.0 * MARGIN + BELOW).max(2.0 * MARGIN + (listed + 1.0) * LINE);
-        // A legend that is higher than the floor must not stretch it.
-        let y = (y.0, y.0 + (height - 2.0 * MARGIN - BELOW) / scale);
+        // A legend that is higher than the floor must not stretch it: there is more of the floor above and below.
+        let more = ((height - 2.0 * MARGIN - BELOW) / scale - (y.1 - y.0)) / 2.0;
+        let y = (y.0 - more, y.1 + more);
         Self { x, y, scale, chart: wide + 2.0 * MARGIN + LEFT, legend: libm::ceil(legend), height, lines }
     }
 

@@ -27,7 +27,7 @@ pub(crate) fn animated(world: &World, trail: &Trail) -> String {
         .add(floor::drawn(&layout, world, layout.height + STRIP))
         .add(things::moving(&layout, world, trail, &film))
         .add(body(&layout, &trail.start, trail.radius, FAINT))
-        .add(ways(&layout, &film))
+        .add(ways(&layout, trail, &film))
         .add(echoes(&layout, &film))
         .add(contacts(&layout, trail, &film))
         .add(robot(&layout, &film, trail))
@@ -38,7 +38,7 @@ pub(crate) fn animated(world: &World, trail: &Trail) -> String {
 }
 
 /// The way of each atom, which grows while it runs.
-fn ways(layout: &Layout, film: &Film<'_>) -> Group {
+fn ways(layout: &Layout, trail: &Trail, film: &Film<'_>) -> Group {
     let group = Group::new().set("stroke-width", 2.5).set("stroke-linejoin", "round").set("fill", "none");
     film.acts.iter().fold(group, |group, act| {
         let frames = film.of_act(act);
@@ -57,7 +57,10 @@ fn ways(layout: &Layout, film: &Film<'_>) -> Group {
         let left = [0.0].iter().chain(&lengths).map(|driven| format!("{}", tenths(dash - driven)));
         let times = frames.iter().map(|frame| frame.t);
         let grows = film.animate("stroke-dashoffset", times.zip(left));
-        let way = polyline(pixels).set("stroke", act.mark.map_or(FAINT, colours::of));
+        // The way itself is smoother than its moments. Its length is counted as theirs is.
+        let driven = film.way(act, trail).map(|places| places.into_iter().map(|place| layout.at(place)).collect());
+        let way = polyline::<Vec<Pixel>>(driven.unwrap_or(pixels)).set("pathLength", tenths(length));
+        let way = way.set("stroke", act.mark.map_or(FAINT, colours::of));
         group.add(way.set("stroke-dasharray", dash).add(grows))
     })
 }
