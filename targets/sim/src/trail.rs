@@ -123,25 +123,41 @@ pub(crate) fn echoes(pose: &Pose, sensed: &Sensed, before: Option<Nanos>) -> [Op
         let newest =
             sensed.pings(sonar).newest_first().next().filter(|ping| before.is_none_or(|before| ping.at > before));
         let Some((ping, Meters(range))) = newest.and_then(|ping| Some((ping, ping.range?))) else { continue };
-        let from = was(pose, &sensed.pose(), &ping.pose);
+        let from = on_the_floor(&ping.pose, pose, &sensed.pose());
         let axis = Radians(from.theta.0 + sonar.bearing().0);
         *echo = Some(Place::of(&from.towards(axis, Meters(sensed.ring_radius().0 + range))));
     }
     echoes
 }
 
-/// Where a robot that is at `pose` now was on the floor when its odometry said `then`, as it says `now`.
-fn was(pose: &Pose, now: &Pose, then: &Pose) -> Pose {
-    let (sin, cos) = libm::sincos(pose.theta.0 - now.theta.0);
-    let (x, y) = (then.x.0 - now.x.0, then.y.0 - now.y.0);
+/// Where a pose by odometry was on the floor, when the robot, which is `here`, is at `odometry` by the same reckoning.
+fn on_the_floor(then: &Pose, here: &Pose, odometry: &Pose) -> Pose {
+    let turned = here.theta.0 - odometry.theta.0;
+    let (x, y) = (then.x.0 - odometry.x.0, then.y.0 - odometry.y.0);
+    let (sin, cos) = libm::sincos(turned);
     Pose {
-        x: Meters(pose.x.0 + x * cos - y * sin),
-        y: Meters(pose.y.0 + x * sin + y * cos),
-        theta: Radians(pose.theta.0 + (then.theta.0 - now.theta.0)),
+        x: Meters(here.x.0 + cos * x - sin * y),
+        y: Meters(here.y.0 + sin * x + cos * y),
+        theta: Radians(then.theta.0 + turned),
     }
 }
 
 fn square(place: Place) -> (i64, i64) {
     let number = |metres: f64| libm::floor(metres / SQUARE) as i64;
     (number(place.x), number(place.y))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ping_is_drawn_where_it_was_taken_whatever_odometry_says() {
+        let pose = |x, y, degrees| Pose { x: Meters(x), y: Meters(y), theta: Radians::from_degrees(degrees) };
+        // Half a metre back along the way, in both reckonings.
+        let then = on_the_floor(&pose(1.0, 0.0, 0.0), &pose(5.0, 5.0, 90.0), &pose(1.5, 0.0, 0.0));
+        assert!(then.distance(&pose(5.0, 4.5, 0.0)).0 < 1e-12 && (then.theta.degrees() - 90.0).abs() < 1e-12);
+        let same = pose(0.3, -0.2, 17.0);
+        assert_eq!(on_the_floor(&same, &same, &same), same);
+    }
 }
