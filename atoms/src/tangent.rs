@@ -10,11 +10,19 @@ const DIRECTIONS: i32 = 72;
 const SEEN_WITHIN: f64 = 2.0;
 /// The points taken of a ping's arc, from its axis.
 const ARC: [Radians; 3] = [Radians::from_degrees(-8.0), Radians(0.0), Radians::from_degrees(8.0)];
-const POINTS: usize = SONARS * ARC.len();
+/// How far, in metres, a wall is taken to go on beyond where it was last heard.
+const EXTENDS: [f64; 3] = [0.25, 0.5, 0.75];
+/// Echoes of one wall are this far apart at least, in metres: those of an edge are not.
+const APART: f64 = 0.15;
+/// The cosine of the angle from a sonar's axis at which a wall is heard at least: 60°.
+const ACROSS: f64 = 0.5;
+const POINTS: usize = SONARS * (ARC.len() + EXTENDS.len());
 /// Kept around the body whatever it costs, in metres.
 const MARGIN: f64 = 0.06;
 /// Kept around the body where there is room, in metres.
 const SOFT_MARGIN: f64 = 0.35;
+/// The same where sonars fire in turn: odometry drifts too, and the middle of a hallway must be kept by what is heard.
+const SOFT_MARGIN_IN_TURN: f64 = 0.4;
 /// What a way that lacks free length costs, in radians of detour for the whole look-ahead.
 const BLOCKED_COSTS: f64 = 6.0;
 /// What a way along the hard margin costs, in radians of detour. With 0.6 the robot may drift off the middle of a
@@ -79,15 +87,22 @@ impl Obstacles {
     /// The points that the sonars of `y` saw, around the body at `here`.
     pub(crate) fn seen<Y: DiffDrive + SonarRing>(y: &Y, here: Pose) -> Self {
         let mut points = [None; POINTS];
-        for (number, arc) in (0..).zip(points.chunks_exact_mut(ARC.len())) {
+        let (arcs, walls) = points.split_at_mut(SONARS * ARC.len());
+        for (number, arc) in (0..).zip(arcs.chunks_exact_mut(ARC.len())) {
             let sonar = SonarId::new(number);
             let Some((ping, range)) = heard(y, sonar) else { continue };
             for (point, off_axis) in arc.iter_mut().zip(ARC) {
                 *point = Some(echo(&ping, range, sonar, off_axis, y.ring_radius(), here));
             }
         }
+        if y.confirmation() < PINGS_KEPT {
+            for (number, ahead) in (0..).zip(walls.chunks_exact_mut(EXTENDS.len())) {
+                extended(y, SonarId::new(number), here, ahead);
+            }
+        }
         let radius = y.body_radius().0;
-        Self { points, hard: radius + MARGIN, soft: radius + SOFT_MARGIN }
+        let soft = if y.confirmation() < PINGS_KEPT { SOFT_MARGIN_IN_TURN } else { SOFT_MARGIN };
+        Self { points, hard: radius + MARGIN, soft: radius + soft }
     }
 
     /// How far the body, with its margin, can go in this direction before it meets a point; at most 3 m, and negative
@@ -146,6 +161,26 @@ impl Obstacles {
     fn along(&self, direction: Radians) -> impl Iterator<Item = (f64, f64)> {
         let (sin, cos) = libm::sincos(direction.0);
         self.points.iter().flatten().map(move |point| (point.x * cos + point.y * sin, point.y * cos - point.x * sin))
+    }
+}
+
+/// Where the wall goes on that a sonar heard in all its pings kept: surfaces ahead are not heard, since they are not faced.
+fn extended<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose, ahead: &mut [Option<Point>]) {
+    let mut echoes = y.pings(sonar).newest_first().map(|ping| {
+        let range = ping.range.filter(|range| range.0 < SEEN_WITHIN)?;
+        Some(echo(ping, range, sonar, Radians(0.0), y.ring_radius(), here))
+    });
+    let (Some(Some(new)), Some(Some(_)), Some(Some(old))) = (echoes.next(), echoes.next(), echoes.next()) else {
+        return;
+    };
+    let (along, up) = (new.x - old.x, new.y - old.y);
+    let length = libm::hypot(along, up);
+    let (sin, cos) = libm::sincos(here.theta.0 + sonar.bearing().0);
+    if length < APART || (along * cos + up * sin).abs() > ACROSS * length {
+        return;
+    }
+    for (point, further) in ahead.iter_mut().zip(EXTENDS) {
+        *point = Some(Point { x: new.x + further * along / length, y: new.y + further * up / length });
     }
 }
 
@@ -208,6 +243,24 @@ mod tests {
         y.pose = Pose { x: Meters(0.5), y: Meters(0.0), theta: Radians(1.0) };
         let free = Obstacles::seen(&y, y.pose).free(Radians(0.0));
         assert!((free.0 - 0.425).abs() < 1e-12, "{free:?}");
+    }
+
+    /// What is free ahead of a robot that has heard a wall on its left in three pings, `leans` metres nearer each time.
+    fn beside_a_wall(leans: f64, confirmation: usize) -> f64 {
+        let mut y = Sensed { confirmation, ..Sensed::default() };
+        for ping in 0..3 {
+            y.pose.x = Meters(0.2 * f64::from(ping));
+            y.ping(SonarId::new(4), Some(0.5 - leans * f64::from(ping)));
+        }
+        Obstacles::seen(&y, y.pose).free(Radians(0.0)).0
+    }
+
+    #[test]
+    fn a_wall_goes_on_beyond_where_it_was_heard_where_sonars_fire_in_turn() {
+        assert_eq!(beside_a_wall(0.0, 2), FREE_MOST);
+        // Half a metre ahead a wall that leans in by 0.1 m for each 0.2 m is inside the margin.
+        assert!(beside_a_wall(0.1, 2) < 0.6, "{}", beside_a_wall(0.1, 2));
+        assert_eq!(beside_a_wall(0.1, 3), FREE_MOST, "full rings see it themselves");
     }
 
     #[test]

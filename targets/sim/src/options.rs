@@ -161,9 +161,8 @@ fn read(path: &Path) -> Result<World, String> {
 
 fn bytes(path: &Path) -> Result<Vec<u8>, String> {
     std::fs::read(path).map_err(|error| {
-        let names = World::names().collect::<Vec<_>>().join(", ");
         let shown = path.display();
-        format!("--world {shown}: the file cannot be read: {error}; without --world it is the office floor, and {names} are there too")
+        format!("--world {shown}: the file cannot be read: {error}; without --world it is the office floor")
     })
 }
 
