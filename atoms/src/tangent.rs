@@ -2,7 +2,9 @@
 //! ("to the edge of the obstacle nearest the desired path", paper, section IV-A).
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
-use mdle_runtime::{Meters, PINGS_KEPT, Ping, Pose, Radians, SONARS, SonarId};
+use mdle_runtime::{Meters, Nanos, PINGS_KEPT, Ping, Pose, Radians, SONARS, SonarId};
+
+use crate::memory::{Memory, PLACES};
 
 /// Directions tried all round, 5° apart.
 const DIRECTIONS: i32 = 72;
@@ -30,6 +32,10 @@ const BLOCKED_COSTS: f64 = 6.0;
 const CLOSE_COSTS: f64 = 0.9;
 /// What another direction than the one before costs, in radians of detour for each radian.
 const CHANGE_COSTS: f64 = 0.15;
+/// The same on a detour.
+const CHANGE_COSTS_ON_A_DETOUR: f64 = 0.6;
+/// Further than this from the goal's direction no detour leads: beyond, it would go in circles.
+const TURNED_MOST: Radians = Radians::from_degrees(215.0);
 /// Free way is not counted beyond this, in metres.
 const FREE_MOST: f64 = 3.0;
 /// How far back and ahead of the robot, in metres, points count as beside its way.
@@ -46,6 +52,8 @@ struct Point {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Obstacles {
     points: [Option<Point>; POINTS],
+    /// What was heard before and is not heard now.
+    remembered: [Option<Point>; PLACES],
     hard: f64,
     soft: f64,
 }
@@ -61,6 +69,8 @@ pub(crate) struct Wish {
     pub(crate) previous: Option<Radians>,
     /// The side of an obstacle to which the law keeps.
     pub(crate) side: Option<Side>,
+    /// Whether it goes along an obstacle rather than to the goal.
+    pub(crate) along: bool,
 }
 
 /// A side on which to pass.
@@ -102,7 +112,13 @@ impl Obstacles {
         }
         let radius = y.body_radius().0;
         let soft = if y.confirmation() < PINGS_KEPT { SOFT_MARGIN_IN_TURN } else { SOFT_MARGIN };
-        Self { points, hard: radius + MARGIN, soft: radius + soft }
+        Self { points, remembered: [None; PLACES], hard: radius + MARGIN, soft: radius + soft }
+    }
+
+    /// The same with what was heard before.
+    pub(crate) fn with(self, memory: &Memory, here: Pose, now: Nanos) -> Self {
+        let remembered = memory.around(here, now).map(|place| place.map(|(x, y)| Point { x, y }));
+        Self { remembered, ..self }
     }
 
     /// How far the body, with its margin, can go in this direction before it meets a point; at most 3 m, and negative
@@ -130,6 +146,9 @@ impl Obstacles {
         for step in -DIRECTIONS / 2..DIRECTIONS / 2 {
             let offset = Radians::from_degrees(f64::from(step) * (360.0 / f64::from(DIRECTIONS))).0;
             let counted = wish.side.map_or(offset, |side| side.counted(offset));
+            if wish.along && counted.abs() > TURNED_MOST.0 {
+                continue;
+            }
             let cost = self.cost(counted, wish);
             if cost < best.0 {
                 best = (cost, counted);
@@ -152,7 +171,8 @@ impl Obstacles {
         }
         if let Some(previous) = wish.previous {
             // So that two ways that are equally good do not take turns.
-            cost += CHANGE_COSTS * Radians(direction.0 - previous.0).wrapped().0.abs();
+            let costs = if wish.along { CHANGE_COSTS_ON_A_DETOUR } else { CHANGE_COSTS };
+            cost += costs * Radians(direction.0 - previous.0).wrapped().0.abs();
         }
         cost
     }
@@ -160,7 +180,8 @@ impl Obstacles {
     /// Every point as its distance along a direction and its distance to the left of it.
     fn along(&self, direction: Radians) -> impl Iterator<Item = (f64, f64)> {
         let (sin, cos) = libm::sincos(direction.0);
-        self.points.iter().flatten().map(move |point| (point.x * cos + point.y * sin, point.y * cos - point.x * sin))
+        let points = self.points.iter().chain(&self.remembered).flatten();
+        points.map(move |point| (point.x * cos + point.y * sin, point.y * cos - point.x * sin))
     }
 }
 
@@ -204,7 +225,7 @@ mod tests {
     use crate::trial::Sensed;
 
     fn wish(side: Option<Side>) -> Wish {
-        Wish { goal: Radians(0.0), look_ahead: Meters(0.4), previous: None, side }
+        Wish { goal: Radians(0.0), look_ahead: Meters(0.4), previous: None, side, along: false }
     }
 
     #[test]
