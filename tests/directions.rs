@@ -16,7 +16,7 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("targets/sim", &["mdle-runtime", "mdle-host", "mdle-atoms"]),
     ("tests", &["mdle-runtime", "mdle-host", "mdle-atoms", "mdle-sim", "mdle-scripted", "mdlec"]),
     ("tests/scripted", &["mdle-runtime"]),
-    ("tests/benchmarks", &["mdle-tests", "mdlec"]),
+    ("tests/benchmarks", &["mdle-runtime", "mdle-sim", "mdle-tests", "mdlec"]),
     ("tests/benchmarks/turn", &["mdle-runtime", "mdlec"]),
     ("tests/bare", &["mdle-runtime", "mdle-atoms"]),
     ("tests/mutants", &[]),

@@ -1,12 +1,23 @@
 //! `atIsection b`: fires where the ways front, left, back and right are as the bits say (paper, section IV-A).
 
 use mdle_runtime::capability::SonarRing;
-use mdle_runtime::{Bits, Interrupt, SonarId};
+use mdle_runtime::{Bits, Interrupt, Meters, PINGS_KEPT, Ping, Radians, SONARS, SonarId};
 
 /// The sonars that look front, left, back and right: the order in which the bits are written.
 const DIRECTIONS: [SonarId; 4] = [SonarId::new(0), SonarId::new(4), SonarId::new(8), SonarId::new(12)];
 
+/// A ping was in a direction if its axis was no further from it than this: half of what lies between two sonars, and a
+/// little, so that a robot that turns slowly has always one in each.
+const WITHIN: Radians = Radians::from_degrees(14.0);
+/// A wall faces a diagonal up to so many times the range under which a direction is blocked.
+const ALSO_FACES: f64 = 1.5;
+/// Ranges that differ by less, in metres, are alike.
+const ALIKE: f64 = 0.06;
+
 /// Fires while all four directions are as the bits say: 1 where an obstacle is near, 0 where the way is free.
+///
+/// Where sonars fire in turn, as on robots, it also needs walls to lie in the four directions and not between them: a wall
+/// is heard only by those sonars that it faces, and a robot that stands askew hears nothing where a way seems free.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AtIsection {
     pattern: Bits<4>,
@@ -22,7 +33,13 @@ impl AtIsection {
 
 impl<Y: SonarRing> Interrupt<Y> for AtIsection {
     fn fired(&self, y: &Y) -> bool {
-        DIRECTIONS.iter().zip(self.pattern.0).all(|(sonar, obstacle)| blocked(y, *sonar) == Some(obstacle))
+        let is_as_said = |blocked: fn(&Y, SonarId) -> Option<bool>| {
+            DIRECTIONS.iter().zip(self.pattern.0).all(|(sonar, obstacle)| blocked(y, *sonar) == Some(obstacle))
+        };
+        if y.confirmation() >= PINGS_KEPT {
+            return is_as_said(blocked);
+        }
+        is_as_said(blocked_in_turn) && !DIRECTIONS.iter().any(|sonar| faces_between(y, *sonar))
     }
 }
 
@@ -34,6 +51,52 @@ fn blocked<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<bool> {
     let pings = y.pings(sonar);
     pings.newest_first().next()?;
     Some(pings.nearest(y.confirmation()).is_some_and(|range| range < y.blocked_within()))
+}
+
+/// The same where sonars fire in turn, by what was heard in that direction of the room, by whichever sonar looked there:
+/// while the robot turns, the last pings of one sonar were not where it looks now.
+fn blocked_in_turn<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<bool> {
+    let near = towards(y, sonar)?;
+    Some(near < y.blocked_within())
+}
+
+/// The smallest range of the two newest pings in the direction of a sonar now; infinite without an echo, `None` without a
+/// ping.
+fn towards<Y: SonarRing>(y: &Y, direction: SonarId) -> Option<Meters> {
+    let bearing = y.here().theta.0 + direction.bearing().0;
+    let mut newest: [Option<&Ping>; 2] = [None; 2];
+    for number in 0..SONARS as u8 {
+        let sonar = SonarId::new(number);
+        for ping in y.pings(sonar).newest_first() {
+            let off = Radians(ping.pose.theta.0 + sonar.bearing().0 - bearing).wrapped();
+            if off.0.abs() > WITHIN.0 {
+                continue;
+            }
+            let [first, second] = newest;
+            if first.is_none_or(|first| first.at < ping.at) {
+                newest = [Some(ping), first];
+            } else if second.is_none_or(|second| second.at < ping.at) {
+                newest = [first, Some(ping)];
+            }
+        }
+    }
+    newest
+        .iter()
+        .flatten()
+        .map(|ping| ping.range.unwrap_or(Meters(f64::INFINITY)))
+        .reduce(|one, other| if other.0 < one.0 { other } else { one })
+}
+
+/// Whether a wall faces the diagonal that comes counter-clockwise after one of the directions: there and to both sides
+/// something near is heard, none nearer than there. An edge is heard in one direction or two.
+fn faces_between<Y: SonarRing>(y: &Y, direction: SonarId) -> bool {
+    let near = |further: u8| {
+        let sonar = SonarId::new(direction.number() as u8 + further);
+        towards(y, sonar).filter(|range| range.0 < ALSO_FACES * y.blocked_within().0)
+    };
+    let (Some(before), Some(diagonal), Some(after)) = (near(1), near(2), near(3)) else { return false };
+    let in_a_corner = [near(0), near(4)].iter().all(|wall| wall.is_some_and(|wall| wall < diagonal));
+    !in_a_corner && diagonal.0 <= before.0.min(after.0) + ALIKE
 }
 
 #[cfg(test)]
@@ -96,5 +159,47 @@ mod tests {
         let y = seen([&[], &[FAR; 3], &[FAR; 3], &[FAR; 3]]);
         assert!(!fires("0000", &y));
         assert!(!fires("1000", &y));
+    }
+
+    /// A robot whose sonars fire in turn, with these ranges heard twice by the sonars from the front on.
+    fn in_turn(ranges: [f64; 16]) -> Sensed {
+        let mut y = Sensed { confirmation: 2, ..Sensed::default() };
+        for _ in 0..2 {
+            for (number, range) in (0..).zip(ranges) {
+                y.ping(SonarId::new(number), (range < 6.0).then_some(range));
+            }
+        }
+        y
+    }
+
+    #[test]
+    fn nothing_fires_on_a_robot_that_stands_askew() {
+        let mut ranges = [9.0; 16];
+        ranges[3..=5].copy_from_slice(&[0.55, 0.53, 0.55]);
+        assert!(fires("0100", &in_turn(ranges)), "a wall on the left");
+        ranges[3..=5].copy_from_slice(&[9.0, 0.55, 0.53]);
+        ranges[6..=7].copy_from_slice(&[0.53, 0.55]);
+        assert!(!fires("0100", &in_turn(ranges)), "a wall that faces the diagonal behind the left");
+    }
+
+    #[test]
+    fn a_corner_is_no_wall_that_stands_askew() {
+        let mut ranges = [9.0; 16];
+        // Walls in front and to the right; between them the corner, further than both.
+        (ranges[0], ranges[15], ranges[14], ranges[13], ranges[12]) = (0.55, 0.57, 0.6, 0.57, 0.55);
+        assert!(fires("1001", &in_turn(ranges)));
+    }
+
+    #[test]
+    fn a_robot_that_turns_goes_by_where_each_sonar_looked() {
+        let mut y = in_turn({
+            let mut ranges = [9.0; 16];
+            ranges[4] = 0.5;
+            ranges
+        });
+        assert!(fires("0100", &y));
+        // A quarter turn on, what was on the left is ahead.
+        y.pose.theta = Radians::from_degrees(90.0);
+        assert!(fires("1000", &y) && !fires("0100", &y));
     }
 }

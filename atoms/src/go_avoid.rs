@@ -5,6 +5,7 @@ use mdle_runtime::{
     Begin, Completes, Control, Law, Meters, MetersPerSecond, Nanos, Pose, Radians, RadiansPerSecond, Twist,
 };
 
+use crate::memory::Memory;
 use crate::tangent::{Obstacles, Side, Wish};
 
 /// Nearer than this the goal is reached.
@@ -20,6 +21,10 @@ const FASTEST: f64 = 0.9;
 const ON_THE_SPOT: Radians = Radians::from_degrees(50.0);
 /// A detour further than this from the goal's direction is kept up.
 const DETOUR: Radians = Radians::from_degrees(60.0);
+/// A detour that has lasted this long goes along its obstacle: the goal's direction would lead back to where it began.
+const ALONG_AFTER: Nanos = Nanos(8_000_000_000);
+/// How far a detour is turned towards the obstacle that it goes along.
+const ALONG: Radians = Radians::from_degrees(40.0);
 /// A detour is over only when it has brought the robot nearer to the goal by this much...
 const GAINED: Meters = Meters(0.1);
 /// ... and has lasted this long.
@@ -49,6 +54,7 @@ pub struct GoingRound {
     speed: MetersPerSecond,
     previous: Option<Radians>,
     detour: Option<Detour>,
+    memory: Memory,
 }
 
 /// A way round something that leads far off the goal's direction: kept on one side until it has helped, or the robot
@@ -62,6 +68,11 @@ struct Detour {
 }
 
 impl GoingRound {
+    /// Whether a detour has lasted so long that it goes along its obstacle.
+    fn goes_along(&self, t: Nanos) -> bool {
+        self.detour.is_some_and(|detour| t.since(detour.since) > ALONG_AFTER)
+    }
+
     /// The direction to drive in, in the odometry's axes.
     fn choose(&mut self, obstacles: &Obstacles, here: Pose, t: Nanos) -> Radians {
         let Meters(distance) = here.distance(&self.goal);
@@ -74,12 +85,19 @@ impl GoingRound {
         };
         self.detour = self.detour.filter(|detour| !over(*detour));
         let side = self.detour.map(|detour| detour.side);
-        let offset = obstacles.best(&Wish { goal, look_ahead, previous: self.previous, side });
+        // On a detour along the obstacle: as far towards it as there is room, from where the robot heads.
+        let along = self.goes_along(t);
+        let towards = match side.filter(|_| along) {
+            Some(Side::Left) => Radians(here.theta.0 - ALONG.0),
+            Some(Side::Right) => Radians(here.theta.0 + ALONG.0),
+            None => goal,
+        };
+        let offset = obstacles.best(&Wish { goal: towards, look_ahead, previous: self.previous, side, along });
         if self.detour.is_none() && offset.0.abs() > DETOUR.0 {
             let side = if offset.0 > 0.0 { Side::Left } else { Side::Right };
             self.detour = Some(Detour { side, from: Meters(distance), since: t });
         }
-        let chosen = Radians(goal.0 + offset.0).wrapped();
+        let chosen = Radians(towards.0 + offset.0).wrapped();
         self.previous = Some(chosen);
         chosen
     }
@@ -90,7 +108,7 @@ impl<Y: DiffDrive + Odometry + SonarRing> Control<Y> for GoAvoid {
 
     fn begin(&self, y: &Y, begin: Begin) -> GoingRound {
         let goal = y.pose().towards(begin.frame.outward(self.bearing), self.range);
-        GoingRound { goal, speed: self.speed, previous: None, detour: None }
+        GoingRound { goal, speed: self.speed, previous: None, detour: None, memory: Memory::EMPTY }
     }
 }
 
@@ -99,10 +117,12 @@ impl<Y: DiffDrive + Odometry + SonarRing> Law<Y> for GoingRound {
 
     fn input(&mut self, y: &Y, t: Nanos) -> Twist {
         let here = y.pose();
-        let obstacles = Obstacles::seen(y, here);
+        self.memory.take(y);
+        let seen = Obstacles::seen(y, here);
+        let obstacles = if self.goes_along(t) { seen.with(&self.memory, here, t) } else { seen };
         let chosen = self.choose(&obstacles, here, t);
         let Radians(off) = Radians(chosen.0 - here.theta.0).wrapped();
-        let Meters(ahead) = obstacles.free(here.theta);
+        let Meters(ahead) = seen.free(here.theta);
         let Meters(distance) = here.distance(&self.goal);
         let v = (self.speed.0 * (1.0 - off.abs() / ON_THE_SPOT.0)).min(0.9 * (ahead - 0.03)).min(0.8 * distance + 0.03);
         let omega = (GAIN * off).clamp(-FASTEST, FASTEST);

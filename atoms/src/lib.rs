@@ -16,6 +16,7 @@ mod bumper;
 mod go;
 mod go_avoid;
 mod heading;
+mod memory;
 mod rotate;
 mod signals;
 mod stop;

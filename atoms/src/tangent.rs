@@ -2,7 +2,9 @@
 //! ("to the edge of the obstacle nearest the desired path", paper, section IV-A).
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
-use mdle_runtime::{Meters, PINGS_KEPT, Ping, Pose, Radians, SONARS, SonarId};
+use mdle_runtime::{Meters, Nanos, PINGS_KEPT, Ping, Pose, Radians, SONARS, SonarId};
+
+use crate::memory::{Memory, PLACES};
 
 /// Directions tried all round, 5° apart.
 const DIRECTIONS: i32 = 72;
@@ -10,11 +12,19 @@ const DIRECTIONS: i32 = 72;
 const SEEN_WITHIN: f64 = 2.0;
 /// The points taken of a ping's arc, from its axis.
 const ARC: [Radians; 3] = [Radians::from_degrees(-8.0), Radians(0.0), Radians::from_degrees(8.0)];
-const POINTS: usize = SONARS * ARC.len();
+/// How far, in metres, a wall is taken to go on beyond where it was last heard.
+const EXTENDS: [f64; 3] = [0.25, 0.5, 0.75];
+/// Echoes of one wall are this far apart at least, in metres: those of an edge are not.
+const APART: f64 = 0.15;
+/// The cosine of the angle from a sonar's axis at which a wall is heard at least: 60°.
+const ACROSS: f64 = 0.5;
+const POINTS: usize = SONARS * (ARC.len() + EXTENDS.len());
 /// Kept around the body whatever it costs, in metres.
 const MARGIN: f64 = 0.06;
 /// Kept around the body where there is room, in metres.
 const SOFT_MARGIN: f64 = 0.35;
+/// The same where sonars fire in turn: odometry drifts too, and the middle of a hallway must be kept by what is heard.
+const SOFT_MARGIN_IN_TURN: f64 = 0.4;
 /// What a way that lacks free length costs, in radians of detour for the whole look-ahead.
 const BLOCKED_COSTS: f64 = 6.0;
 /// What a way along the hard margin costs, in radians of detour. With 0.6 the robot may drift off the middle of a
@@ -22,6 +32,10 @@ const BLOCKED_COSTS: f64 = 6.0;
 const CLOSE_COSTS: f64 = 0.9;
 /// What another direction than the one before costs, in radians of detour for each radian.
 const CHANGE_COSTS: f64 = 0.15;
+/// The same on a detour.
+const CHANGE_COSTS_ON_A_DETOUR: f64 = 0.6;
+/// Further than this from the goal's direction no detour leads: beyond, it would go in circles.
+const TURNED_MOST: Radians = Radians::from_degrees(215.0);
 /// Free way is not counted beyond this, in metres.
 const FREE_MOST: f64 = 3.0;
 /// How far back and ahead of the robot, in metres, points count as beside its way.
@@ -38,6 +52,8 @@ struct Point {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Obstacles {
     points: [Option<Point>; POINTS],
+    /// What was heard before and is not heard now.
+    remembered: [Option<Point>; PLACES],
     hard: f64,
     soft: f64,
 }
@@ -53,6 +69,8 @@ pub(crate) struct Wish {
     pub(crate) previous: Option<Radians>,
     /// The side of an obstacle to which the law keeps.
     pub(crate) side: Option<Side>,
+    /// Whether it goes along an obstacle rather than to the goal.
+    pub(crate) along: bool,
 }
 
 /// A side on which to pass.
@@ -79,15 +97,28 @@ impl Obstacles {
     /// The points that the sonars of `y` saw, around the body at `here`.
     pub(crate) fn seen<Y: DiffDrive + SonarRing>(y: &Y, here: Pose) -> Self {
         let mut points = [None; POINTS];
-        for (number, arc) in (0..).zip(points.chunks_exact_mut(ARC.len())) {
+        let (arcs, walls) = points.split_at_mut(SONARS * ARC.len());
+        for (number, arc) in (0..).zip(arcs.chunks_exact_mut(ARC.len())) {
             let sonar = SonarId::new(number);
             let Some((ping, range)) = heard(y, sonar) else { continue };
             for (point, off_axis) in arc.iter_mut().zip(ARC) {
                 *point = Some(echo(&ping, range, sonar, off_axis, y.ring_radius(), here));
             }
         }
+        if y.confirmation() < PINGS_KEPT {
+            for (number, ahead) in (0..).zip(walls.chunks_exact_mut(EXTENDS.len())) {
+                extended(y, SonarId::new(number), here, ahead);
+            }
+        }
         let radius = y.body_radius().0;
-        Self { points, hard: radius + MARGIN, soft: radius + SOFT_MARGIN }
+        let soft = if y.confirmation() < PINGS_KEPT { SOFT_MARGIN_IN_TURN } else { SOFT_MARGIN };
+        Self { points, remembered: [None; PLACES], hard: radius + MARGIN, soft: radius + soft }
+    }
+
+    /// The same with what was heard before.
+    pub(crate) fn with(self, memory: &Memory, here: Pose, now: Nanos) -> Self {
+        let remembered = memory.around(here, now).map(|place| place.map(|(x, y)| Point { x, y }));
+        Self { remembered, ..self }
     }
 
     /// How far the body, with its margin, can go in this direction before it meets a point; at most 3 m, and negative
@@ -115,6 +146,9 @@ impl Obstacles {
         for step in -DIRECTIONS / 2..DIRECTIONS / 2 {
             let offset = Radians::from_degrees(f64::from(step) * (360.0 / f64::from(DIRECTIONS))).0;
             let counted = wish.side.map_or(offset, |side| side.counted(offset));
+            if wish.along && counted.abs() > TURNED_MOST.0 {
+                continue;
+            }
             let cost = self.cost(counted, wish);
             if cost < best.0 {
                 best = (cost, counted);
@@ -137,7 +171,8 @@ impl Obstacles {
         }
         if let Some(previous) = wish.previous {
             // So that two ways that are equally good do not take turns.
-            cost += CHANGE_COSTS * Radians(direction.0 - previous.0).wrapped().0.abs();
+            let costs = if wish.along { CHANGE_COSTS_ON_A_DETOUR } else { CHANGE_COSTS };
+            cost += costs * Radians(direction.0 - previous.0).wrapped().0.abs();
         }
         cost
     }
@@ -145,7 +180,28 @@ impl Obstacles {
     /// Every point as its distance along a direction and its distance to the left of it.
     fn along(&self, direction: Radians) -> impl Iterator<Item = (f64, f64)> {
         let (sin, cos) = libm::sincos(direction.0);
-        self.points.iter().flatten().map(move |point| (point.x * cos + point.y * sin, point.y * cos - point.x * sin))
+        let points = self.points.iter().chain(&self.remembered).flatten();
+        points.map(move |point| (point.x * cos + point.y * sin, point.y * cos - point.x * sin))
+    }
+}
+
+/// Where the wall goes on that a sonar heard in all its pings kept: surfaces ahead are not heard, since they are not faced.
+fn extended<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose, ahead: &mut [Option<Point>]) {
+    let mut echoes = y.pings(sonar).newest_first().map(|ping| {
+        let range = ping.range.filter(|range| range.0 < SEEN_WITHIN)?;
+        Some(echo(ping, range, sonar, Radians(0.0), y.ring_radius(), here))
+    });
+    let (Some(Some(new)), Some(Some(_)), Some(Some(old))) = (echoes.next(), echoes.next(), echoes.next()) else {
+        return;
+    };
+    let (along, up) = (new.x - old.x, new.y - old.y);
+    let length = libm::hypot(along, up);
+    let (sin, cos) = libm::sincos(here.theta.0 + sonar.bearing().0);
+    if length < APART || (along * cos + up * sin).abs() > ACROSS * length {
+        return;
+    }
+    for (point, further) in ahead.iter_mut().zip(EXTENDS) {
+        *point = Some(Point { x: new.x + further * along / length, y: new.y + further * up / length });
     }
 }
 
@@ -169,7 +225,7 @@ mod tests {
     use crate::trial::Sensed;
 
     fn wish(side: Option<Side>) -> Wish {
-        Wish { goal: Radians(0.0), look_ahead: Meters(0.4), previous: None, side }
+        Wish { goal: Radians(0.0), look_ahead: Meters(0.4), previous: None, side, along: false }
     }
 
     #[test]
@@ -208,6 +264,24 @@ mod tests {
         y.pose = Pose { x: Meters(0.5), y: Meters(0.0), theta: Radians(1.0) };
         let free = Obstacles::seen(&y, y.pose).free(Radians(0.0));
         assert!((free.0 - 0.425).abs() < 1e-12, "{free:?}");
+    }
+
+    /// What is free ahead of a robot that has heard a wall on its left in three pings, `leans` metres nearer each time.
+    fn beside_a_wall(leans: f64, confirmation: usize) -> f64 {
+        let mut y = Sensed { confirmation, ..Sensed::default() };
+        for ping in 0..3 {
+            y.pose.x = Meters(0.2 * f64::from(ping));
+            y.ping(SonarId::new(4), Some(0.5 - leans * f64::from(ping)));
+        }
+        Obstacles::seen(&y, y.pose).free(Radians(0.0)).0
+    }
+
+    #[test]
+    fn a_wall_goes_on_beyond_where_it_was_heard_where_sonars_fire_in_turn() {
+        assert_eq!(beside_a_wall(0.0, 2), FREE_MOST);
+        // Half a metre ahead a wall that leans in by 0.1 m for each 0.2 m is inside the margin.
+        assert!(beside_a_wall(0.1, 2) < 0.6, "{}", beside_a_wall(0.1, 2));
+        assert_eq!(beside_a_wall(0.1, 3), FREE_MOST, "full rings see it themselves");
     }
 
     #[test]

@@ -138,6 +138,13 @@ mod tests {
             assert!(!name.contains("mdlec") && !name.contains("/tests") && !name.starts_with('/'), "{name}");
         }
         assert!(!text("Cargo.toml").contains("tests\""));
+        for (name, contents) in embedded::FILES.iter().filter(|(name, _)| name.ends_with("/Cargo.toml")) {
+            let manifest = std::str::from_utf8(contents).unwrap();
+            assert!(
+                ["bench", "test", "example"].iter().all(|kind| !manifest.contains(&format!("[[{kind}]]"))),
+                "{name}"
+            );
+        }
     }
 
     #[test]

@@ -132,13 +132,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         let frame = frame + turned;
         let ends = match element.power() {
             None => self.primary(element, frame, nodes),
-            Some(power) => {
-                let mut body = Vec::new();
-                self.primary(element, frame, &mut body);
-                let times = self.count(power);
-                nodes.push(Node::Loop(Loop { times, body, marks: Vec::new(), span: element.span }));
-                Ends::WithItsLast
-            }
+            Some(power) => self.power(power, element, frame, nodes),
         };
         if let Some(label) = element.label() {
             self.labels.ends(label.node, ends);
@@ -149,31 +143,13 @@ impl<'r, 'a> Resolver<'r, 'a> {
         }
     }
 
+    /// Each form has a function of its own: plans are used in plans, and a level of them is to take little of the stack.
     fn primary(&mut self, element: &Element<'a>, frame: f64, nodes: &mut Vec<Node>) -> Ends {
         match &element.primary {
-            Primary::Atom(atom) => {
-                let (interrupt, ends) = self.interrupt(Some(&atom.condition), element.span);
-                self.atom(atom.control, interrupt, frame, element.span, nodes);
-                ends
-            }
-            Primary::Plan(plan) => {
-                let (scope, ends) = self.behavior(plan, frame);
-                nodes.push(Node::Scope(scope));
-                ends
-            }
-            Primary::Ref(call) => match self.reference(call, frame) {
-                Some((scope, ends)) => {
-                    nodes.push(Node::Scope(scope));
-                    ends
-                }
-                None => Ends::Unknown,
-            },
-            Primary::Exec(exec) => {
-                let times = self.count(&exec.count);
-                let body = self.sequence(exec.body, frame);
-                nodes.push(Node::Loop(Loop { times, body, marks: Vec::new(), span: element.span }));
-                Ends::WithItsLast
-            }
+            Primary::Atom(atom) => self.written(atom, element.span, frame, nodes),
+            Primary::Plan(plan) => self.in_place(plan, frame, nodes),
+            Primary::Ref(call) => self.used(call, frame, nodes),
+            Primary::Exec(exec) => self.exec(exec, element.span, frame, nodes),
             Primary::String(elements) => {
                 elements.iter().for_each(|inner| self.element(inner, frame, nodes));
                 Ends::WithItsLast
@@ -181,6 +157,45 @@ impl<'r, 'a> Resolver<'r, 'a> {
             Primary::Formal(formal) => self.formal(formal, element.span, frame, nodes),
             Primary::Broken => Ends::Unknown,
         }
+    }
+
+    /// `s^n`
+    fn power(&mut self, power: &Count, element: &Element<'a>, frame: f64, nodes: &mut Vec<Node>) -> Ends {
+        let mut body = Vec::new();
+        self.primary(element, frame, &mut body);
+        let times = self.count(power);
+        nodes.push(Node::Loop(Loop { times, body, marks: Vec::new(), span: element.span }));
+        Ends::WithItsLast
+    }
+
+    /// `ExecPlan n { s }`
+    fn exec(&mut self, exec: &tree::Exec<'a>, span: Span, frame: f64, nodes: &mut Vec<Node>) -> Ends {
+        let times = self.count(&exec.count);
+        let body = self.sequence(exec.body, frame);
+        nodes.push(Node::Loop(Loop { times, body, marks: Vec::new(), span }));
+        Ends::WithItsLast
+    }
+
+    /// `(Atom (ξ) u)`
+    fn written(&mut self, atom: &tree::Atom<'a>, span: Span, frame: f64, nodes: &mut Vec<Node>) -> Ends {
+        let (interrupt, ends) = self.interrupt(Some(&atom.condition), span);
+        self.atom(atom.control, interrupt, frame, span, nodes);
+        ends
+    }
+
+    /// `{ Behavior … }`
+    fn in_place(&mut self, plan: &tree::Plan<'a>, frame: f64, nodes: &mut Vec<Node>) -> Ends {
+        let (scope, ends) = self.behavior(plan, frame);
+        nodes.push(Node::Scope(scope));
+        ends
+    }
+
+    /// A plan by name.
+    fn used(&mut self, call: &Call<'a>, frame: f64, nodes: &mut Vec<Node>) -> Ends {
+        let Some((plan, parameters)) = self.reference(call) else { return Ends::Unknown };
+        let (scope, ends) = self.plan(plan, parameters, frame);
+        nodes.push(Node::Scope(scope));
+        ends
     }
 
     fn atom(&mut self, law: &Call<'a>, interrupt: Interrupt, frame: f64, span: Span, nodes: &mut Vec<Node>) {
@@ -236,10 +251,9 @@ impl<'r, 'a> Resolver<'r, 'a> {
         self.interrupt(Some(&whole(ConditionNode::Or(&operands))), span)
     }
 
-    /// A copy of the plan that `call` names.
-    fn reference(&mut self, call: &Call<'a>, frame: f64) -> Option<(Scope, Ends)> {
-        let name = call.name;
-        let Some(plan) = self.definitions.get(name) else {
+    /// The plan that `call` names, and what it is given, if a copy is to be put there.
+    fn reference(&mut self, call: &Call<'a>) -> Option<(&'r tree::Plan<'a>, Parameters<'a>)> {
+        let Some(plan) = self.definitions.get(call.name) else {
             let unknown = self.unknown_plan(call);
             // It may stand in a file that was reported missing.
             if unknown.code != Code::E0201 || !self.definitions.is_incomplete {
@@ -248,7 +262,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
             return None;
         };
         match (Parameters::given(plan, call, &self.parameters), self.uses) {
-            (Ok(parameters), Uses::Copy) => Some(self.plan(plan, parameters, frame)),
+            (Ok(parameters), Uses::Copy) => Some((plan, parameters)),
             (Ok(_), Uses::Check) => None,
             (Err(found), _) => {
                 self.found.extend(found);

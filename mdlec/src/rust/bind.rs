@@ -215,6 +215,7 @@ fn control_types(controls: &[&Bound<'_>]) -> TokenStream {
 
         #[doc = " Any law of this robot as it runs."]
         #[derive(Debug)]
+        #[allow(clippy::large_enum_variant, reason = "one law runs at a time, and there need be no allocator")]
         pub enum AnyLaw { #(#[doc = #docs] #kinds(<#kinds as runtime::Control<Output>>::Law),)* }
 
         impl runtime::Control<Output> for AnyControl {

@@ -12,7 +12,7 @@ const EVERY: Duration = Duration::from_millis(100);
 /// The longest line, in letters: none may need two lines of a terminal.
 const LETTERS: usize = 76;
 /// The letters of a bar.
-const BAR: u64 = 30;
+const BAR: usize = 30;
 
 /// A line that is written over and over, and gone when it is dropped.
 pub(crate) struct Progress<'e> {
@@ -41,8 +41,8 @@ impl<'e> Progress<'e> {
     /// So many runs of all are done.
     pub(crate) fn runs(&mut self, done: u64, all: u64) {
         let Some(now) = self.due() else { return };
-        let full = usize::try_from(BAR * done / all.max(1)).unwrap_or(0);
-        let (full, empty) = ("#".repeat(full), ".".repeat(usize::try_from(BAR).unwrap_or(0).saturating_sub(full)));
+        let full = (BAR as f64 * done as f64 / all.max(1) as f64) as usize;
+        let (full, empty) = ("#".repeat(full), ".".repeat(BAR.saturating_sub(full)));
         let left = now.as_secs_f64() / done.max(1) as f64 * all.saturating_sub(done) as f64;
         self.show(&format!("[{full}{empty}] {done} of {all} runs, {left:.0} s to go"));
     }
@@ -73,5 +73,52 @@ impl<'e> Progress<'e> {
 impl Drop for Progress<'_> {
     fn drop(&mut self) {
         self.clear();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::Cell;
+
+    use super::*;
+
+    #[test]
+    fn a_line_is_shown_ten_times_a_second_and_gone_in_the_end() {
+        let time = Cell::new(Duration::ZERO);
+        let (mut err, mut out) = (Vec::new(), Vec::new());
+        out.extend_from_slice(b"one\n");
+        let mut report = Report::new(&mut out, false);
+        let mut progress = Progress::new(&mut err, Box::new(|| time.get()));
+        for (millis, t) in [(0, 0), (99, 50), (100, 60), (150, 80), (201, 100)] {
+            time.set(Duration::from_millis(millis));
+            progress.run(Nanos(t * 1_000_000_000), 7, "goAvoid 0 40 20", &mut report);
+        }
+        drop(progress);
+        let shown = "60.0 s  600 times as fast as real  atom 7 goAvoid 0 40 20\x1b[K\r\x1b[K\
+                     100.0 s  498 times as fast as real  atom 7 goAvoid 0 40 20\x1b[K\r\x1b[K";
+        assert_eq!(String::from_utf8(err).unwrap(), shown);
+    }
+
+    #[test]
+    fn a_bar_grows_with_the_runs_and_no_line_is_longer_than_a_terminal() {
+        let mut seconds = 0;
+        let mut err = Vec::new();
+        let clock = Box::new(|| {
+            seconds += 1;
+            Duration::from_secs(seconds)
+        });
+        let mut progress = Progress::new(&mut err, clock);
+        for (done, all) in [(1, 4), (2, 4), (4, 4), (u64::MAX / 31, u64::MAX)] {
+            progress.runs(done, all);
+        }
+        drop(progress);
+        let shown = String::from_utf8(err).unwrap();
+        let lines: Vec<&str> = shown.split("\x1b[K").filter(|line| !line.trim().is_empty()).collect();
+        assert_eq!(lines[0], "[#######.......................] 1 of 4 runs, 3 s to go");
+        assert!(
+            lines[1].contains("2 of 4 runs, 2 s to go") && lines[2].contains("4 of 4 runs, 0 s to go"),
+            "{lines:?}"
+        );
+        assert!(lines.iter().all(|line| line.trim().chars().count() <= LETTERS));
     }
 }

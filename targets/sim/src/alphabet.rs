@@ -168,6 +168,10 @@ pub enum AnyControl {
 
 /// Any law of this robot as it runs.
 #[derive(Debug)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "one law runs at a time, and there need be no allocator"
+)]
 pub enum AnyLaw {
     /// `go <v in cm/s> <omega in rad/s>`: Drives with a forward speed and a turn rate, counter-clockwise positive, for ever.
     Go(<Go as runtime::Control<Output>>::Law),

@@ -1,230 +1,170 @@
-//! The body: a disc on two driven wheels, with the limits of its motors, that stops at walls
+//! The body: a disc on two driven wheels, with the limits of its motors, that slides along walls
 //! (`dx/dt = f(x) + G(x) u`, paper, Eq. 1).
 
-use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians, RadiansPerSecond, Twist};
+mod contact;
+mod odometry;
+#[cfg(test)]
+mod tests;
 
+use mdle_runtime::{Meters, MetersPerSecond, Pose, RadiansPerSecond, Twist};
+
+use crate::model::Drive;
 use crate::walls::Walls;
 use crate::world::Place;
+use contact::slid;
+use odometry::{Odometry, moved};
 
-/// The radius of the disc, in metres.
+/// The radius of the disc that is a Scout, in metres.
 pub(crate) const RADIUS: f64 = 0.205;
-/// The distance between the wheels, in metres.
-pub(crate) const WHEEL_BASE: f64 = 0.34519;
-/// The fastest a wheel turns, in m/s.
-const FASTEST: f64 = 1.0;
-/// How fast the speed of a wheel changes, in m/s².
-const ACCELERATION: f64 = 1.0;
-/// Wheel speeds are commanded in whole tenths of an inch a second; this many metres a second, rounded towards zero.
-const UNIT: f64 = 0.00254;
-/// The longest step of the integration, in seconds: at most a centimetre of way, so no wall is stepped over.
-const STEP: f64 = 0.01;
+/// The longest step of the integration, in seconds: little more than a centimetre of way, so no wall is stepped over.
+pub(crate) const STEP: f64 = 0.01;
 /// How near a wall must be for the bumper to feel it, in metres.
 const FEELS: f64 = 0.001;
+/// A wall that leaves this part of the speed forward lets the wheels turn as they did: one met at less than 45°.
+const GLANCES: f64 = 0.5;
+/// How far it is looked for walls, in metres beyond the body: within that it moves without looking again.
+const LOOKS: f64 = 0.6;
 
 /// Where the body is and how it moves.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub(crate) struct Body {
     /// On the floor.
     pub(crate) pose: Pose,
-    /// By the turns of the wheels: the origin at the start.
-    pub(crate) odometry: Pose,
+    drive: Drive,
+    odometry: Odometry,
     /// The speed of the left wheel, in m/s.
     left: f64,
     /// The speed of the right wheel, in m/s.
     right: f64,
+    /// What never moves is at least this far, in metres.
+    clear: f64,
 }
 
 /// What the body ran into in a step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 enum Met {
     Nothing,
-    Wall,
+    /// A wall that lets it go forward only this fast, in m/s.
+    Wall(f64),
 }
 
 impl Body {
-    /// At rest at `pose`.
-    pub(crate) fn at(pose: Pose) -> Self {
-        Self { pose, odometry: Pose::ORIGIN, left: 0.0, right: 0.0 }
+    /// At rest at `pose`, with the errors of this seed or none.
+    pub(crate) fn new(drive: Drive, pose: Pose, seed: Option<u64>) -> Self {
+        Self { pose, drive, odometry: Odometry::new(drive.slip, seed), left: 0.0, right: 0.0, clear: 0.0 }
+    }
+
+    /// Where it is by the turns of its wheels: the origin at the start.
+    pub(crate) fn odometry(&self) -> Pose {
+        self.odometry.pose
     }
 
     /// The velocities of the wheels, as a twist of the body.
     pub(crate) fn velocity(&self) -> Twist {
         Twist {
             v: MetersPerSecond((self.left + self.right) / 2.0),
-            omega: RadiansPerSecond((self.right - self.left) / WHEEL_BASE),
+            omega: RadiansPerSecond((self.right - self.left) / self.drive.wheel_base),
         }
     }
 
-    /// Whether a bumper is in contact.
-    pub(crate) fn touches(&self, walls: &Walls) -> bool {
-        walls.distance(Place::of(&self.pose)) < RADIUS + FEELS
+    /// The bumper switches in contact: bit `i` for number `i` of this many, counted counter-clockwise from the front.
+    pub(crate) fn pressed(&self, switches: u8, walls: &Walls) -> u32 {
+        let (at, felt) = (Place::of(&self.pose), self.drive.radius + FEELS);
+        if self.clear > FEELS && walls.moving(at) >= felt {
+            return 0;
+        }
+        let mut pressed = 0;
+        walls.near(at, felt, |place| {
+            let (x, y) = (place.x - at.x, place.y - at.y);
+            if libm::hypot(x, y) < felt {
+                let bearing = (libm::atan2(y, x) - self.pose.theta.0) / std::f64::consts::TAU;
+                let number = libm::round(bearing * f64::from(switches)).rem_euclid(f64::from(switches));
+                pressed |= 1 << (number as u32);
+            }
+        });
+        pressed
     }
 
     /// Moves for `seconds` with this input, which must be finite.
     pub(crate) fn advance(&mut self, input: &Twist, seconds: f64, walls: &Walls) {
-        let (left, right) = commanded(input);
+        let (left, right) = self.drive.commanded(input);
+        let acceleration = self.drive.acceleration;
         let steps = libm::ceil(seconds / STEP).max(1.0);
         let step = seconds / steps;
         // A period is at most a minute, so this fits.
         for _ in 0..steps as u32 {
             let across = self.right - self.left;
-            self.left = approached(self.left, left, ACCELERATION * step);
-            self.right = approached(self.right, right, ACCELERATION * step);
-            if self.step(step, walls) == Met::Wall {
+            self.left = approached(self.left, left, acceleration * step);
+            self.right = approached(self.right, right, acceleration * step);
+            if let Met::Wall(forward) = self.step(step, walls) {
                 // The wheels stall as far as they push, and gain speed only against each other.
-                let across = approached(across, right - left, 2.0 * ACCELERATION * step);
-                (self.left, self.right) = (-across / 2.0, across / 2.0);
+                let across = approached(across, right - left, 2.0 * acceleration * step);
+                (self.left, self.right) = (forward - across / 2.0, forward + across / 2.0);
             }
         }
     }
 
     /// Brakes until the wheels stand still.
     pub(crate) fn brake(&mut self, walls: &Walls) {
-        self.advance(&Twist::default(), FASTEST / ACCELERATION + STEP, walls);
+        self.advance(&Twist::default(), self.drive.fastest / self.drive.acceleration + STEP, walls);
     }
 
-    /// One step of the integration. Against a wall the body may turn, but goes no further; nor do the wheels, so that
-    /// odometry does not run away.
+    /// One step of the integration.
     fn step(&mut self, step: f64, walls: &Walls) -> Met {
         let Twist { v, omega } = self.velocity();
         let (way, turn) = (v.0 * step, omega.0 * step);
-        let free = |part: f64| walls.distance(Place::of(&moved(&self.pose, way * part, turn))) >= RADIUS;
-        let part = if way == 0.0 || free(1.0) { 1.0 } else { last_free(free) };
-        self.pose = moved(&self.pose, way * part, turn);
-        self.odometry = moved(&self.odometry, way * part, turn);
-        if part < 1.0 { Met::Wall } else { Met::Nothing }
+        let there = moved(&self.pose, way, turn);
+        if way == 0.0 || self.is_free(Place::of(&there), way.abs(), walls) {
+            self.pose = there;
+            self.odometry.rolled(way, turn);
+            return Met::Nothing;
+        }
+        let here = Place::of(&self.pose);
+        let straight = Place { x: there.x.0 - here.x, y: there.y.0 - here.y };
+        let slid = slid(here, straight, self.drive.radius, walls);
+        let (sin, cos) = libm::sincos(self.pose.theta.0 + turn / 2.0);
+        let forward = slid.x * cos + slid.y * sin;
+        match self.drive.slip {
+            Some(_) => self.odometry.rolled(forward, turn),
+            None => self.odometry.carried(self.pose.theta, slid, turn),
+        }
+        self.pose = Pose { x: Meters(here.x + slid.x), y: Meters(here.y + slid.y), theta: there.theta };
+        self.clear = 0.0;
+        let forward = forward / step;
+        if forward / v.0 >= GLANCES {
+            return Met::Nothing;
+        }
+        // It is not to come out faster, or backwards.
+        Met::Wall(if v.0 > 0.0 { forward.clamp(0.0, v.0) } else { forward.clamp(v.0, 0.0) })
+    }
+
+    /// Whether the body overlaps nothing at `there`, to which it is to go by `way`.
+    fn is_free(&mut self, there: Place, way: f64, walls: &Walls) -> bool {
+        let radius = self.drive.radius;
+        if walls.moving(there) < radius {
+            return false;
+        }
+        self.clear -= way;
+        if self.clear <= 0.0 {
+            self.clear = walls.standing(there, radius + LOOKS) - radius;
+        }
+        self.clear >= 0.0
     }
 }
 
-/// The wheel speeds of an input: both slowed alike where one is too fast, so the curve stays the same, then truncated.
-fn commanded(input: &Twist) -> (f64, f64) {
-    let across = input.omega.0 * (WHEEL_BASE / 2.0);
-    let (left, right) = (input.v.0 - across, input.v.0 + across);
-    let scale = (left.abs().max(right.abs()) / FASTEST).max(1.0);
-    let truncated = |speed: f64| libm::trunc(speed / scale / UNIT) * UNIT;
-    (truncated(left), truncated(right))
+impl Drive {
+    /// The wheel speeds of an input: both slowed alike where one is too fast, so the curve stays the same, then
+    /// truncated.
+    fn commanded(&self, input: &Twist) -> (f64, f64) {
+        let across = input.omega.0 * (self.wheel_base / 2.0);
+        let (left, right) = (input.v.0 - across, input.v.0 + across);
+        let scale = (left.abs().max(right.abs()) / self.fastest).max(1.0);
+        let truncated = |speed: f64| libm::trunc(speed / scale / self.unit) * self.unit;
+        (truncated(left), truncated(right))
+    }
 }
 
 /// A speed that has come nearer to the commanded one, by `most` at most.
 fn approached(speed: f64, commanded: f64, most: f64) -> f64 {
     speed + (commanded - speed).clamp(-most, most)
-}
-
-/// The pose after an arc of length `way` that turns by `turn`: exactly, by its chord.
-fn moved(pose: &Pose, way: f64, turn: f64) -> Pose {
-    let half = turn / 2.0;
-    let chord = if half.abs() < 1e-9 { way } else { way * libm::sin(half) / half };
-    let end = pose.towards(Radians(pose.theta.0 + half), Meters(chord));
-    Pose { theta: Radians(pose.theta.0 + turn).wrapped(), ..end }
-}
-
-/// The largest part of a step, to a millionth, after which the body is still free; 0 if none is.
-fn last_free(free: impl Fn(f64) -> bool) -> f64 {
-    let (mut least, mut most) = (0.0, 1.0);
-    for _ in 0..20 {
-        let middle = (least + most) / 2.0;
-        if free(middle) {
-            least = middle;
-        } else {
-            most = middle;
-        }
-    }
-    least
-}
-
-#[cfg(test)]
-mod tests {
-    use rand_chacha::ChaCha8Rng;
-    use rand_chacha::rand_core::{Rng, SeedableRng};
-
-    use super::*;
-    use crate::world::World;
-
-    fn twist(v: f64, omega: f64) -> Twist {
-        Twist { v: MetersPerSecond(v), omega: RadiansPerSecond(omega) }
-    }
-
-    fn walls(text: &str) -> Walls {
-        Walls::of(&World::parse("walls", text).expect("good walls"))
-    }
-
-    /// A body at the origin that has driven this long with this input.
-    fn driven(input: Twist, turns: usize, walls: &Walls) -> Body {
-        let mut body = Body::at(Pose::ORIGIN);
-        for _ in 0..turns {
-            body.advance(&input, 0.1, walls);
-        }
-        body
-    }
-
-    #[test]
-    fn wheel_speeds_are_truncated_to_tenths_of_an_inch() {
-        let body = driven(twist(0.2, 0.0), 10, &walls(""));
-        assert_eq!(body.velocity().v, MetersPerSecond(78.0 * UNIT));
-        assert_eq!(driven(twist(0.002, 0.0), 10, &walls("")).pose, Pose::ORIGIN);
-    }
-
-    #[test]
-    fn a_wheel_gains_a_metre_a_second_each_second() {
-        let mut body = Body::at(Pose::ORIGIN);
-        for tenths in 1..=5 {
-            body.advance(&twist(0.5, 0.0), 0.1, &walls(""));
-            assert!((body.velocity().v.0 - 0.1 * f64::from(tenths)).abs() < 0.003, "{tenths}");
-        }
-        body.brake(&walls(""));
-        assert_eq!(body.velocity(), Twist::default());
-    }
-
-    #[test]
-    fn a_wheel_that_would_be_too_fast_slows_both() {
-        let velocity = driven(twist(2.0, 2.0), 40, &walls("")).velocity();
-        assert!((velocity.v.0 - velocity.omega.0).abs() < 0.02, "{velocity:?}");
-        assert!((velocity.v.0 + velocity.omega.0 * WHEEL_BASE / 2.0 - FASTEST).abs() < 0.01, "{velocity:?}");
-    }
-
-    #[test]
-    fn a_full_circle_comes_back() {
-        let wide = walls("");
-        let mut body = driven(twist(0.2, 0.5), 20, &wide);
-        let (from, rate) = (body.pose, body.velocity().omega.0);
-        body.advance(&twist(0.2, 0.5), std::f64::consts::TAU / rate, &wide);
-        assert!(from.distance(&body.pose).0 < 1e-9 && (from.theta.0 - body.pose.theta.0).abs() < 1e-9);
-    }
-
-    #[test]
-    fn stops_at_a_wall_presses_the_bumper_and_may_turn_and_leave() {
-        let wall = walls("[[wall]]\npoints = [[1, -1], [1, 1]]");
-        let mut body = driven(twist(1.0, 0.0), 9, &wall);
-        assert!(!body.touches(&wall));
-        body.advance(&twist(1.0, 0.0), 3.0, &wall);
-        assert!(body.touches(&wall));
-        assert!((body.pose.x.0 - (1.0 - RADIUS)).abs() < 1e-6 && body.pose.x.0 <= 1.0 - RADIUS);
-        body.advance(&twist(1.0, 1.0), 1.0, &wall);
-        assert!(body.pose.theta.0 > 0.4 && body.touches(&wall));
-        body.advance(&twist(-0.3, 0.0), 1.0, &wall);
-        assert!(!body.touches(&wall));
-    }
-
-    #[test]
-    fn never_overlaps_a_wall_and_odometry_stays_true() {
-        let world = World::office().expect("our own floor");
-        let walls = Walls::of(&world);
-        let mut random = ChaCha8Rng::seed_from_u64(3);
-        let mut pressed = 0;
-        for _ in 0..8 {
-            let mut body = Body::at(Pose::ORIGIN);
-            for _ in 0..300 {
-                let mut within = |most: f64| most * ((random.next_u64() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0);
-                let input = twist(0.5 + within(0.7), within(4.0));
-                for _ in 0..5 {
-                    body.advance(&input, 0.1, &walls);
-                    assert!(walls.distance(Place::of(&body.pose)) >= RADIUS);
-                    // It starts in the origin, so the two are the same numbers.
-                    assert_eq!(body.pose, body.odometry);
-                    pressed += u32::from(body.touches(&walls));
-                }
-            }
-        }
-        assert!(pressed > 200, "a run that touches nothing tests nothing: {pressed}");
-    }
 }

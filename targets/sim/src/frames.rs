@@ -8,12 +8,14 @@ use crate::world::Place;
 pub(crate) const FRAMES_MOST: usize = 800;
 
 /// A moment.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Frame {
     pub(crate) t: Nanos,
     pub(crate) pose: Pose,
     /// Where each sonar had an echo just now.
     pub(crate) echoes: [Option<Place>; SONARS],
+    /// How far each thing of the world has gone; `None` for an open door.
+    pub(crate) things: Vec<Option<Place>>,
 }
 
 /// The moments kept.
@@ -34,10 +36,9 @@ impl Frames {
     }
 
     /// The next moment.
-    pub(crate) fn push(&mut self, t: Nanos, pose: &Pose, echoes: &[Option<Place>; SONARS]) {
-        let frame = Frame { t, pose: *pose, echoes: *echoes };
+    pub(crate) fn push(&mut self, frame: Frame) {
         if self.seen.is_multiple_of(self.stride) {
-            self.kept.push(frame);
+            self.kept.push(frame.clone());
         }
         if self.kept.len() >= FRAMES_MOST {
             let mut number = 0_usize;
@@ -53,8 +54,8 @@ impl Frames {
 
     /// The moments kept, in order, the last one among them.
     pub(crate) fn all(&self) -> Vec<Frame> {
-        let last = self.last.filter(|last| self.kept.last() != Some(last));
-        self.kept.iter().copied().chain(last).collect()
+        let last = self.last.as_ref().filter(|last| self.kept.last() != Some(last));
+        self.kept.iter().chain(last).cloned().collect()
     }
 }
 
@@ -67,7 +68,7 @@ mod tests {
         for turns in [1_u64, 2, 799, 800, 801, 5_000, 100_001] {
             let mut frames = Frames::new();
             for turn in 0..turns {
-                frames.push(Nanos(turn), &Pose::ORIGIN, &[None; SONARS]);
+                frames.push(Frame { t: Nanos(turn), pose: Pose::ORIGIN, echoes: [None; SONARS], things: Vec::new() });
             }
             let times: Vec<u64> = frames.all().iter().map(|frame| frame.t.0).collect();
             assert!(times.len() <= FRAMES_MOST && (times.len() as u64) >= turns.min(FRAMES_MOST as u64 / 2));

@@ -1,26 +1,33 @@
 //! The simulated robot as a target: a differential drive with bumper, odometry and sixteen sonars in a flat world.
 //!
 //! For generated code: [`Target`], which the host runs a plan on, and [`alphabet`], the quarks this robot has.
-//! For tests and tools: [`World`], [`Simulated`], [`Observed`] and [`Sensed`].
+//! For tests and tools: [`World`], [`Simulated`], [`Make`], [`Observed`] and [`Sensed`].
 //!
 //! Nothing here depends on the machine it runs on: no wall clock, no platform trigonometry, no unordered maps. Two
 //! runs with the same options give the same bytes.
 #![forbid(unsafe_code)]
 
+#[allow(clippy::large_enum_variant, reason = "one law runs at a time, and goAvoid remembers what it heard")]
 pub mod alphabet;
 mod body;
 mod frames;
 mod goal;
+mod grid;
+mod model;
+mod moving;
+mod noise;
 mod observed;
 mod options;
 mod output;
 mod plot;
 pub mod quarks;
 mod robot;
+mod ros_map;
 mod setup;
 mod sonar;
 mod start;
 mod start_noise;
+mod surfaces;
 mod target;
 mod trail;
 mod walls;
@@ -32,14 +39,17 @@ mod world_file;
 pub use goal::Goal;
 /// The robot's input.
 pub use mdle_runtime::Twist as Input;
+pub use model::{Body, Part};
+pub use moving::{Schedule, Stop, Thing};
 pub use observed::Observed;
 pub use output::Sensed;
 /// Its output.
 pub use output::Sensed as Output;
-pub use robot::{Fault, Simulated};
+pub use robot::{Fault, Make, Simulated};
 pub use start::{Start, StartError};
 pub use target::Sim;
 /// What the host runs a plan on.
 pub use target::Sim as Target;
+pub use walls::Walls;
 pub use world::{Outline, Place, World};
 pub use world_file::WorldError;

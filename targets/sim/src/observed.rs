@@ -68,7 +68,8 @@ impl Observed {
     /// Has its way drawn when the run is finished: as a picture, and as one that moves.
     pub(crate) fn drawn(mut self, plot: Option<WholeFile>, record: Option<WholeFile>, world: &World) -> Self {
         if plot.is_some() || record.is_some() {
-            let mut trail = Trail::from(&self.robot.pose());
+            let mut trail = Trail::from(&self.robot.pose(), self.robot.radius());
+            trail.things.extend(self.robot.gone());
             trail.frames = record.is_some().then(Frames::new);
             self.pictures = Some(Pictures { plot, record, world: world.clone(), trail });
         }
@@ -95,7 +96,8 @@ impl Robot for Observed {
     fn exchange(&mut self, input: &Twist) -> Result<Sensed, Fault> {
         let now = self.robot.now();
         let sensed = self.robot.exchange(input)?;
-        self.contacts += u64::from(sensed.pressed() && !self.touches);
+        let comes_into_contact = sensed.pressed() && !self.touches;
+        self.contacts += u64::from(comes_into_contact);
         self.touches = sensed.pressed();
         let pose = self.robot.pose();
         if let Some(table) = &mut self.table {
@@ -103,10 +105,16 @@ impl Robot for Observed {
         }
         if let Some(Pictures { trail, .. }) = &mut self.pictures {
             trail.went(&pose);
+            trail.things.clear();
+            trail.things.extend(self.robot.gone());
             trail.sensed(&sensed, now);
+            if comes_into_contact {
+                trail.touched(self.robot.touched(), now);
+            }
         }
         if let Some(watch) = &mut self.watch {
-            watch.sensed(&pose, &sensed, now, self.touches, self.contacts);
+            watch.sensed(&pose, &sensed, now, self.robot.gone());
+            watch.touched(self.touches, self.contacts);
         }
         Ok(sensed)
     }
@@ -168,5 +176,55 @@ impl Hosted for Observed {
             file.write("record", &plot::animated(world, trail))?;
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+    use crate::robot::Make;
+    use crate::world::Place;
+    use mdle_runtime::{MetersPerSecond, RadiansPerSecond};
+
+    /// The trail of a robot that goes ahead at 20 cm/s from the origin for so many turns of 100 ms.
+    fn ahead(world: &str, turns: usize) -> Trail {
+        let world = World::parse("a test's world", world).expect("a good world");
+        let robot = Simulated::with(&Make::default(), &world, Pose::ORIGIN, Duration::from_millis(100));
+        let robot = Observed::from(robot.expect("a start on the floor"));
+        let folder = std::env::temp_dir();
+        let mut robot = robot.drawn(WholeFile::at("plot", &folder.join("never written.svg")).ok(), None, &world);
+        for _ in 0..turns {
+            robot.exchange(&Twist { v: MetersPerSecond(0.2), omega: RadiansPerSecond(0.0) }).expect("finite inputs");
+        }
+        robot.pictures.expect("pictures").trail
+    }
+
+    #[test]
+    fn a_contact_is_where_the_body_touched_whether_that_moves_or_stands() {
+        let wall = ahead("[[wall]]\npoints = [[1, -1], [1, 0.1]]", 60);
+        let walker = "[[box]]\nsize = [0.4, 4]\nschedule = [[0, 2, 0], [4, 0.2, 0], [8, 2, 0]]\nrepeat = true";
+        let moving = ahead(walker, 100);
+        assert_eq!((wall.contacts.len(), wall.contacts[0].0), (1, Place { x: 1.0, y: 0.0 }));
+        let (Place { x, y }, t) = moving.contacts[0];
+        assert!((0.4..0.9).contains(&x) && y == 0.0 && (1.0..3.0).contains(&t.seconds()), "{:?}", moving.contacts);
+        assert!(moving.things[0].is_some_and(|gone| gone.x < 0.0), "{:?}", moving.things);
+    }
+
+    #[test]
+    fn the_echoes_of_sonars_that_fire_between_turns_are_where_they_were_heard() {
+        let world = World::parse("a wall ahead", "[[wall]]\npoints = [[3, -9], [3, 9]]").expect("a good world");
+        let make = Make { body: crate::model::Body::Scout, without: vec![crate::model::Part::Steps], seed: None };
+        let robot = Simulated::with(&make, &world, Pose::ORIGIN, Duration::from_secs(1)).expect("a start");
+        let file = WholeFile::at("plot", &std::env::temp_dir().join("never written.svg")).ok();
+        let mut robot = Observed::from(robot).drawn(file, None, &world);
+        for _ in 0..5 {
+            robot.exchange(&Twist { v: MetersPerSecond(0.4), omega: RadiansPerSecond(0.0) }).expect("finite inputs");
+        }
+        // The sonar in front hears the wall itself, its neighbours something nearer than where their axes meet it.
+        let echoes = robot.pictures.expect("pictures").trail.echoes;
+        let greatest = echoes.iter().map(|echo| echo.x).fold(0.0, f64::max);
+        assert!((greatest - 3.0).abs() < 1e-6 && robot.robot.pose().x.0 > 1.0, "{echoes:?}");
     }
 }

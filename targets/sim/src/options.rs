@@ -7,6 +7,9 @@ use mdle_host::clap::parser::ValueSource;
 use mdle_host::clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use mdle_host::{Pace, Time};
 
+use crate::model::{Body, PARTS};
+use crate::robot::Make;
+use crate::ros_map::Header;
 use crate::start::Start;
 use crate::start_noise::StartNoise;
 use crate::world::World;
@@ -19,8 +22,8 @@ pub(crate) fn arguments(command: Command) -> Command {
 fn of_the_world(command: Command) -> Command {
     command
         .arg(
-            option("world", "FILE")
-                .help("The floor, a TOML file of walls and boxes [default: the office floor of the paper's tour]")
+            option("world", "NAME|FILE")
+                .help("The floor: office, maze, hall, room, a TOML file, or a YAML map of ROS [default: office, the paper's]")
                 .value_parser(value_parser!(PathBuf)),
         )
         .arg(
@@ -36,8 +39,17 @@ fn of_the_world(command: Command) -> Command {
                 .allow_hyphen_values(true),
         )
         .arg(
+            option("body", "ideal|scout|atrv").help(
+                "What is simulated: `scout` and `atrv` have sonars and wheels as those robots do [default: ideal]",
+            ),
+        )
+        .arg(
+            option("without", "PART,…")
+                .help("Leave out lobe, specular, minimum, steps, noise, outliers, order or slip of the body"),
+        )
+        .arg(
             option("seed", "N")
-                .help("Make the sonars noisy, by this seed: 1.5 cm of error, 1 % of missed echoes [default: exact]")
+                .help("What errors are drawn by: those of the sonars, and of wheels that slip [default: no errors]")
                 .allow_negative_numbers(true)
                 .value_parser(value_parser!(u64)),
         )
@@ -124,21 +136,34 @@ fn pace(text: &str) -> Option<Pace> {
     }
 }
 
-/// The world of `--world`, or the office floor.
+/// The world of `--world`, or the office floor. A file goes before a world of ours with that name.
 pub(crate) fn world(matches: &ArgMatches) -> Result<World, String> {
-    match matches.get_one::<PathBuf>("world") {
-        Some(path) => read(path),
-        None => World::office().map_err(|error| error.to_string()),
+    let Some(path) = matches.get_one::<PathBuf>("world") else {
+        return World::office().map_err(|error| error.to_string());
+    };
+    match path.to_str().filter(|_| !path.exists()).and_then(World::named) {
+        Some(world) => world.map_err(|error| error.to_string()),
+        None => read(path),
     }
 }
 
 fn read(path: &Path) -> Result<World, String> {
-    let shown = path.display();
-    let bytes = std::fs::read(path).map_err(|error| {
+    let shown = path.display().to_string();
+    let text = String::from_utf8(bytes(path)?).map_err(|_| format!("--world {shown}: the file is not UTF-8 text"))?;
+    let is_map = path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml");
+    if !is_map {
+        return World::parse(&shown, &text).map_err(|error| error.to_string());
+    }
+    let header = Header::parse(&shown, &text).map_err(|error| error.to_string())?;
+    let image = path.with_file_name(&header.image);
+    header.world(&image.display().to_string(), &bytes(&image)?).map_err(|error| error.to_string())
+}
+
+fn bytes(path: &Path) -> Result<Vec<u8>, String> {
+    std::fs::read(path).map_err(|error| {
+        let shown = path.display();
         format!("--world {shown}: the file cannot be read: {error}; without --world it is the office floor")
-    })?;
-    let text = String::from_utf8(bytes).map_err(|_| format!("--world {shown}: the file is not UTF-8 text"))?;
-    World::parse(&shown.to_string(), &text).map_err(|error| error.to_string())
+    })
 }
 
 /// The pose of `--start`, as text and read.
@@ -148,9 +173,24 @@ pub(crate) fn start(matches: &ArgMatches) -> Result<Option<(&str, Start)>, Strin
     Ok(Some((text, start)))
 }
 
-/// The seed of `--seed`.
-pub(crate) fn seed(matches: &ArgMatches) -> Option<u64> {
-    matches.get_one("seed").copied()
+/// What `--body`, `--without` and `--seed` say is to be simulated.
+pub(crate) fn make(matches: &ArgMatches) -> Result<Make, String> {
+    let body = match matches.get_one::<String>("body").map_or("ideal", String::as_str) {
+        "ideal" => Body::Ideal,
+        "scout" => Body::Scout,
+        "atrv" => Body::Atrv,
+        other => return Err(format!("--body {other}: expected `ideal`, `scout` or `atrv`")),
+    };
+    let text = matches.get_one::<String>("without").map_or("", String::as_str);
+    let parts = text.split(',').map(str::trim).filter(|name| !name.is_empty());
+    let without = parts.map(|name| {
+        let found = PARTS.iter().find(|(known, _)| *known == name).map(|(_, part)| *part);
+        found.ok_or_else(|| {
+            let names = PARTS.map(|(name, _)| name).join(", ");
+            format!("--without {text}: {name:?} is no part of a body; expected some of {names}")
+        })
+    });
+    Ok(Make { body, without: without.collect::<Result<_, _>>()?, seed: matches.get_one("seed").copied() })
 }
 
 /// Whether the run is to be shown as it goes.

@@ -3,15 +3,33 @@
 use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, SonarRing};
 use mdle_runtime::{Meters, Output, Pings, Pose, SONARS, SonarId, Twist};
 
-use crate::{body, sonar};
-
 /// The output of one turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sensed {
     pub(crate) odometry: Pose,
     pub(crate) velocity: Twist,
-    pub(crate) pressed: bool,
+    /// Bit `i` for bumper switch `i`.
+    pub(crate) switches: u32,
     pub(crate) pings: [Pings; SONARS],
+    pub(crate) shape: Shape,
+}
+
+/// What laws must know of the body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Shape {
+    pub(crate) body_radius: Meters,
+    pub(crate) wheel_base: Meters,
+    pub(crate) ring_radius: Meters,
+    pub(crate) confirmation: usize,
+}
+
+impl Sensed {
+    /// The bumper switches in contact: bit `i` for number `i`, counted counter-clockwise from the front. A Scout has
+    /// six, an ATRV-mini one before and one behind.
+    #[must_use]
+    pub fn switches(&self) -> u32 {
+        self.switches
+    }
 }
 
 impl Output for Sensed {
@@ -32,17 +50,17 @@ impl Odometry for Sensed {
 
 impl Bumpers for Sensed {
     fn pressed(&self) -> bool {
-        self.pressed
+        self.switches != 0
     }
 }
 
 impl DiffDrive for Sensed {
     fn body_radius(&self) -> Meters {
-        Meters(body::RADIUS)
+        self.shape.body_radius
     }
 
     fn wheel_base(&self) -> Meters {
-        Meters(body::WHEEL_BASE)
+        self.shape.wheel_base
     }
 }
 
@@ -53,6 +71,10 @@ impl SonarRing for Sensed {
     }
 
     fn ring_radius(&self) -> Meters {
-        Meters(sonar::RING_RADIUS)
+        self.shape.ring_radius
+    }
+
+    fn confirmation(&self) -> usize {
+        self.shape.confirmation
     }
 }

@@ -11,6 +11,7 @@ mod record;
 mod shapes;
 #[cfg(test)]
 mod tests;
+mod things;
 
 pub(crate) use drawing::svg;
 pub(crate) use record::animated;

@@ -3,23 +3,45 @@
 use std::fmt;
 use std::time::Duration;
 
-use mdle_runtime::{Nanos, Pose, Robot, Twist};
+use mdle_runtime::{Meters, Nanos, Pose, Robot, Twist};
 
-use crate::body::Body;
-use crate::output::Sensed;
+use crate::body::{Body, STEP};
+use crate::model::{self, Model, Part};
+use crate::output::{Sensed, Shape};
 use crate::sonar::Ring;
 use crate::start::{self, StartError};
 use crate::walls::Walls;
-use crate::world::World;
+use crate::world::{Place, World};
 
 /// A robot in a world.
 pub struct Simulated {
     walls: Walls,
     body: Body,
     ring: Ring,
+    shape: Shape,
+    /// How many bumper switches there are.
+    switches: u8,
     period: Duration,
     /// Exchanges so far; the first is at time 0.
     exchanges: u64,
+}
+
+/// What is simulated besides the world.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Make {
+    /// The body.
+    pub body: model::Body,
+    /// What of it is left out.
+    pub without: Vec<Part>,
+    /// What its errors are drawn by; without one nothing errs.
+    pub seed: Option<u64>,
+}
+
+impl Make {
+    /// The radius of the body, in metres.
+    pub(crate) fn radius(&self) -> f64 {
+        Model::of(self.body, &self.without).drive.radius
+    }
 }
 
 /// Why an exchange failed.
@@ -40,14 +62,38 @@ impl fmt::Display for Fault {
 impl std::error::Error for Fault {}
 
 impl Simulated {
-    /// A robot at rest at `start` in `world`, whose odometry begins there. Its sonars are exact, or noisy with a seed.
+    /// A robot with an ideal body at rest at `start` in `world`, whose odometry begins there. Its sonars are exact, or
+    /// noisy with a seed.
     ///
     /// # Errors
     /// When it cannot stand there.
     pub fn new(world: &World, start: Pose, seed: Option<u64>, period: Duration) -> Result<Self, StartError> {
+        Self::with(&Make { seed, ..Make::default() }, world, start, period)
+    }
+
+    /// A robot of this make at rest at `start` in `world`, whose odometry begins there.
+    ///
+    /// # Errors
+    /// When it cannot stand there.
+    pub fn with(make: &Make, world: &World, start: Pose, period: Duration) -> Result<Self, StartError> {
         let walls = Walls::of(world);
-        start::check(&start, world, &walls)?;
-        Ok(Self { walls, body: Body::at(start), ring: Ring::new(seed), period, exchanges: 0 })
+        let Model { drive, hearing, switches } = Model::of(make.body, &make.without);
+        start::check(&start, drive.radius, world, &walls)?;
+        let shape = Shape {
+            body_radius: Meters(drive.radius),
+            wheel_base: Meters(drive.wheel_base),
+            ring_radius: Meters(hearing.ring_radius),
+            confirmation: if hearing.order.is_some() { 2 } else { 3 },
+        };
+        Ok(Self {
+            walls,
+            body: Body::new(drive, start, make.seed),
+            ring: Ring::new(hearing, make.seed),
+            shape,
+            switches,
+            period,
+            exchanges: 0,
+        })
     }
 
     /// Where it is on the floor, which only the simulator knows.
@@ -56,10 +102,65 @@ impl Simulated {
         self.body.pose
     }
 
+    /// The radius of the body, in metres.
+    pub(crate) fn radius(&self) -> f64 {
+        self.shape.body_radius.0
+    }
+
+    /// How far each thing of the world has gone from where it begins; `None` for an open door.
+    pub(crate) fn gone(&self) -> impl Iterator<Item = Option<Place>> {
+        self.walls.gone()
+    }
+
+    /// The place of a wall that the body touches; its centre if it touches none.
+    pub(crate) fn touched(&self) -> Place {
+        let at = Place::of(&self.body.pose);
+        self.walls.nearest(at, 1.1 * self.radius()).unwrap_or(at)
+    }
+
     /// The time of the next exchange.
     pub(crate) fn now(&self) -> Nanos {
         let period = u64::try_from(self.period.as_nanos()).unwrap_or(u64::MAX);
         Nanos(self.exchanges.saturating_mul(period))
+    }
+
+    /// Drives for the period that ends `now`, and pings whenever a sonar is due in it.
+    fn drive(&mut self, input: &Twist, now: Nanos) {
+        let begins = Nanos(now.0.saturating_sub(u64::try_from(self.period.as_nanos()).unwrap_or(u64::MAX)));
+        if self.exchanges == 0 {
+            // The plan begins at the end of this period, and so does the world.
+            self.body.advance(input, self.period.as_secs_f64(), &self.walls);
+            self.ring.warm_up(&self.body.pose, self.body.odometry(), &self.walls);
+        } else if self.ring.due().is_none() {
+            self.advance(input, self.period.as_secs_f64());
+        } else {
+            let mut here = begins;
+            while let Some(due) = self.ring.due().filter(|due| *due <= now) {
+                self.advance(input, due.since(here).seconds());
+                here = due;
+                self.ring.ping(&self.body.pose, self.body.odometry(), due, &self.walls);
+            }
+            self.advance(input, now.since(here).seconds());
+        }
+        if self.ring.due().is_none() {
+            self.ring.ping(&self.body.pose, self.body.odometry(), now, &self.walls);
+        }
+    }
+
+    /// Moves the robot, and what moves in the world.
+    fn advance(&mut self, input: &Twist, seconds: f64) {
+        if seconds <= 0.0 {
+            return;
+        }
+        if !self.walls.move_at_all() {
+            self.body.advance(input, seconds, &self.walls);
+            return;
+        }
+        let steps = libm::ceil(seconds / STEP);
+        for _ in 0..steps as u32 {
+            self.walls.advance(seconds / steps, Place::of(&self.body.pose), self.shape.body_radius.0);
+            self.body.advance(input, seconds / steps, &self.walls);
+        }
     }
 }
 
@@ -72,16 +173,15 @@ impl Robot for Simulated {
         if !(input.v.0.is_finite() && input.omega.0.is_finite()) {
             return Err(Fault::Input);
         }
-        self.body.advance(input, self.period.as_secs_f64(), &self.walls);
-        let Body { pose, odometry, .. } = self.body;
         let now = self.now();
-        self.ring.ping(&pose, odometry, now, &self.walls);
+        self.drive(input, now);
         self.exchanges = self.exchanges.saturating_add(1);
         Ok(Sensed {
-            odometry,
+            odometry: self.body.odometry(),
             velocity: self.body.velocity(),
-            pressed: self.body.touches(&self.walls),
+            switches: self.body.pressed(self.switches, &self.walls),
             pings: self.ring.pings,
+            shape: self.shape,
         })
     }
 

@@ -10,7 +10,7 @@ use mdle_runtime::Pose;
 
 use crate::observed::Observed;
 use crate::options;
-use crate::robot::Simulated;
+use crate::robot::{Make, Simulated};
 use crate::start::{self, Start, StartError};
 use crate::start_noise::StartNoise;
 use crate::walls::Walls;
@@ -18,10 +18,11 @@ use crate::watch::Watch;
 use crate::whole_file::WholeFile;
 use crate::world::World;
 
-/// A world, and where a robot starts in it.
+/// A world, the robot to be simulated in it, and where it starts.
 struct Setup {
     world: World,
     walls: Walls,
+    make: Make,
     start: Pose,
     noise: Option<StartNoise>,
     period: Duration,
@@ -30,9 +31,9 @@ struct Setup {
 /// The robot that the options describe; everything that can be refused is refused here, before anything moves.
 pub(crate) fn robot(matches: &ArgMatches, period: Duration) -> Result<Observed, String> {
     let setup = Setup::of(matches, period)?;
-    let robot = setup.robot(options::seed(matches))?;
+    let robot = setup.robot(setup.make.seed)?;
     let file = |option| options::file(matches, option).map(|path| WholeFile::at(option, path)).transpose();
-    let watch = options::watch(matches).then(|| Watch::of(&setup.world)).transpose()?;
+    let watch = options::watch(matches).then(|| Watch::of(&setup.world, setup.make.radius())).transpose()?;
     let robot = robot.written_down(file("trail")?).watched(watch);
     Ok(robot.drawn(file("plot")?, file("record")?, &setup.world))
 }
@@ -41,11 +42,11 @@ pub(crate) fn robot(matches: &ArgMatches, period: Duration) -> Result<Observed, 
 pub(crate) fn batch(matches: &ArgMatches, period: Duration) -> Result<Option<Batch<Observed>>, String> {
     let Some(runs) = options::runs(matches) else { return Ok(None) };
     options::agree(matches)?;
-    let first = options::seed(matches).unwrap_or(1);
+    let setup = Setup::of(matches, period)?;
+    let first = setup.make.seed.unwrap_or(1);
     if first.checked_add(runs.get() - 1).is_none() {
         return Err(format!("--seed {first}: there are not so many seeds; the last is {}", u64::MAX));
     }
-    let setup = Setup::of(matches, period)?;
     let given = options::given(matches);
     Ok(Some(Batch {
         first,
@@ -62,6 +63,7 @@ pub(crate) fn batch(matches: &ArgMatches, period: Duration) -> Result<Option<Bat
 
 impl Setup {
     fn of(matches: &ArgMatches, period: Duration) -> Result<Self, String> {
+        let make = options::make(matches)?;
         let world = options::world(matches)?;
         let walls = Walls::of(&world);
         let given = options::start(matches)?;
@@ -70,18 +72,20 @@ impl Setup {
             Some((text, _)) => format!("--start {text}: {error}; {}", hint(&world.start)),
             None => format!("the world's own start pose: {error}; give another, as in `--start 1,2,90`"),
         };
-        start::check(&start, &world, &walls).map_err(said)?;
+        start::check(&start, make.radius(), &world, &walls).map_err(said)?;
         let noise = options::start_noise(matches)?;
-        Ok(Self { world, walls, start, noise, period })
+        Ok(Self { world, walls, make, start, noise, period })
     }
 
+    /// The robot whose errors and start are drawn by this seed.
     fn robot(&self, seed: Option<u64>) -> Result<Observed, String> {
+        let make = Make { seed, ..self.make.clone() };
         let start = match (self.noise, seed) {
-            (Some(noise), Some(seed)) => noise.pose(&self.start, seed, &self.world, &self.walls),
+            (Some(noise), Some(seed)) => noise.pose(&self.start, seed, make.radius(), &self.world, &self.walls),
             (Some(_), None) => return Err("--start-noise: by which chance? Give a seed, as in `--seed 1`".to_owned()),
             (None, _) => Ok(self.start),
         };
-        let robot = start.and_then(|start| Simulated::new(&self.world, start, seed, self.period));
+        let robot = start.and_then(|start| Simulated::with(&make, &self.world, start, self.period));
         let robot = robot.map_err(|error| format!("no start could be found by chance: {error}"))?;
         Ok(Observed::from(robot).judged_by(self.world.goal))
     }

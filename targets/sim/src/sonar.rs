@@ -1,148 +1,164 @@
-//! The ring of sixteen sonars: each hears the nearest wall in its cone; all ping in every turn.
+//! The sonars: when which of them pings, and what it then hears, errors included.
 
-use std::f64::consts::TAU;
+mod echo;
+#[cfg(test)]
+mod tests;
 
-use mdle_runtime::{Meters, Nanos, Ping, Pings, Pose, Radians, SONARS, SonarId};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+use mdle_runtime::{Meters, Nanos, Ping, Pings, Pose, Radians, SONARS};
 
+use crate::model::{Hearing, Order, Transducer};
+use crate::noise::{Noise, Purpose};
 use crate::walls::Walls;
 use crate::world::Place;
-
-/// The distance of the transducers from the centre of the body, in metres; ranges are measured from there.
-pub(crate) const RING_RADIUS: f64 = 0.19;
-/// The longest range, in metres: 255 inches.
-pub(crate) const RANGE_MOST: f64 = 6.477;
-/// The rays of a cone, evenly spread.
-const RAYS: u8 = 7;
-/// From the axis of a cone to its edge.
-const HALF_CONE: Radians = Radians::from_degrees(12.5);
-/// The spread of the range, in metres, with noise.
-const SPREAD: f64 = 0.015;
-/// The share of pings, with noise, that bring no echo.
-const MISSES: f64 = 0.01;
 
 /// The sonars and their last pings.
 #[derive(Debug, Clone)]
 pub(crate) struct Ring {
     pub(crate) pings: [Pings; SONARS],
-    noise: Option<ChaCha8Rng>,
+    pub(crate) hearing: Hearing,
+    /// What each transducer heard last, as the range of the sonar that it speaks for.
+    ranges: Vec<Option<f64>>,
+    errors: Option<Errors>,
+    /// The group that pings next, and when, where there is an order.
+    next: (usize, Nanos),
+}
+
+/// What goes wrong in a run with a seed.
+#[derive(Debug, Clone)]
+struct Errors {
+    ranges: Noise,
+    outliers: Noise,
+    fading: Noise,
+    /// What all ranges of the run are multiplied by.
+    scale: f64,
 }
 
 impl Ring {
-    /// A ring that is exact, or noisy from this seed on.
-    pub(crate) fn new(seed: Option<u64>) -> Self {
-        Self { pings: [Pings::default(); SONARS], noise: seed.map(ChaCha8Rng::seed_from_u64) }
+    /// Sonars that err by this seed, or not at all.
+    pub(crate) fn new(hearing: Hearing, seed: Option<u64>) -> Self {
+        let errors = seed.map(|seed| {
+            let mut outliers = Noise::of(seed, Purpose::Outliers);
+            let scale = 1.0 + hearing.scale * (2.0 * outliers.uniform() - 1.0);
+            Errors {
+                ranges: Noise::of(seed, Purpose::Ranges),
+                outliers,
+                fading: Noise::of(seed, Purpose::Fading),
+                scale,
+            }
+        });
+        let ranges = vec![None; hearing.transducers.len()];
+        Self { pings: [Pings::default(); SONARS], hearing, ranges, errors, next: (0, Nanos::ZERO) }
     }
 
-    /// Pings all sixteen from the robot at `pose`, which is at `odometry` by its own reckoning.
+    /// When the next ping is due; `None` where all sonars ping in every turn.
+    pub(crate) fn due(&self) -> Option<Nanos> {
+        self.hearing.order.as_ref().map(|_| self.next.1)
+    }
+
+    /// Pings whatever is due at `at`, from the robot at `pose`, which is at `odometry` by its own reckoning.
     pub(crate) fn ping(&mut self, pose: &Pose, odometry: Pose, at: Nanos, walls: &Walls) {
-        for (number, pings) in (0..).zip(&mut self.pings) {
-            let exact = range(pose, SonarId::new(number), walls);
-            let heard = match &mut self.noise {
-                Some(noise) => noisy(exact, noise),
-                None => exact,
-            };
-            pings.push(Ping { range: heard.filter(|range| *range < RANGE_MOST).map(Meters), at, pose: odometry });
-        }
-    }
-}
-
-/// The distance from a transducer to the nearest wall in its cone, in metres.
-pub(crate) fn range(pose: &Pose, sonar: SonarId, walls: &Walls) -> Option<f64> {
-    let axis = Radians(pose.theta.0 + sonar.bearing().0);
-    let transducer = Place::of(&pose.towards(axis, Meters(RING_RADIUS)));
-    let rays = (0..RAYS).map(|ray| {
-        let part = f64::from(ray) / f64::from(RAYS - 1);
-        Radians(axis.0 + HALF_CONE.0 * (2.0 * part - 1.0))
-    });
-    let hits = rays.filter_map(|direction| walls.ray(transducer, direction, RANGE_MOST));
-    hits.reduce(f64::min)
-}
-
-/// What is heard of an exact range. Every ping draws the same number of numbers, whatever it hears.
-fn noisy(exact: Option<f64>, noise: &mut ChaCha8Rng) -> Option<f64> {
-    let missed = uniform(noise) < MISSES;
-    let error = SPREAD * normal(noise);
-    exact.filter(|_| !missed).map(|range| (range + error).max(0.0))
-}
-
-/// A number from the standard normal distribution, by Box and Muller's transform.
-fn normal(noise: &mut ChaCha8Rng) -> f64 {
-    let (one, other) = (uniform(noise), uniform(noise));
-    // 1 - u lies above 0, where the logarithm is finite.
-    libm::sqrt(-2.0 * libm::log(1.0 - one)) * libm::cos(TAU * other)
-}
-
-/// A number from 0 up to, not including, 1.
-fn uniform(noise: &mut ChaCha8Rng) -> f64 {
-    // The upper 53 bits are all that an f64 can hold.
-    (noise.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::world::World;
-
-    fn walls(text: &str) -> Walls {
-        Walls::of(&World::parse("walls", text).expect("good walls"))
-    }
-
-    /// The range of the sonar that looks ahead.
-    fn ahead(text: &str) -> Option<f64> {
-        range(&Pose::ORIGIN, SonarId::new(0), &walls(text))
-    }
-
-    #[test]
-    fn a_range_begins_at_the_transducer() {
-        let front = ahead("[[wall]]\npoints = [[2, -1], [2, 1]]").expect("a wall ahead");
-        assert!((front - 1.81).abs() < 1e-12, "{front}");
-    }
-
-    #[test]
-    fn sonars_count_counter_clockwise_from_the_front() {
-        let left = walls("[[wall]]\npoints = [[-1, 2], [1, 2]]");
-        let heard: Vec<u8> =
-            (0..16).filter(|sonar| range(&Pose::ORIGIN, SonarId::new(*sonar), &left).is_some()).collect();
-        assert_eq!(heard, [3, 4, 5]);
-    }
-
-    #[test]
-    fn a_cone_sees_what_its_axis_does_not() {
-        // A post 2 m away, seen at 11 and at 14 degrees off the axis of the cone.
-        let post = |degrees: f64| {
-            let at = Pose::ORIGIN
-                .towards(Radians(0.0), Meters(RING_RADIUS))
-                .towards(Radians::from_degrees(degrees), Meters(2.0));
-            ahead(&format!("[[box]]\ncentre = [{}, {}]\nsize = [0.1, 0.1]", at.x.0, at.y.0))
+        let Some(Order { groups, gap }) = &self.hearing.order else {
+            for number in 0..self.ranges.len() {
+                self.listen(number, pose, walls);
+            }
+            for (sonar, pings) in (0..).zip(&mut self.pings) {
+                pings.push(Ping { range: nearest(&self.hearing, &self.ranges, sonar), at, pose: odometry });
+            }
+            return;
         };
-        assert!(post(11.0).is_some_and(|range| (1.9..2.0).contains(&range)));
-        assert!(post(-11.0).is_some());
-        assert_eq!(post(14.5), None);
-    }
-
-    #[test]
-    fn nothing_within_range_is_no_echo() {
-        assert_eq!(ahead("[[wall]]\npoints = [[6.68, -9], [6.68, 9]]"), None);
-        assert!(ahead("[[wall]]\npoints = [[6.66, -9], [6.66, 9]]").is_some());
-    }
-
-    #[test]
-    fn a_seed_makes_the_noise_that_it_says_it_does() {
-        let mut ring = Ring::new(Some(5));
-        let (mut errors, mut missed) = (Vec::new(), 0);
-        for _ in 0..20_000 {
-            match noisy(Some(1.81), ring.noise.as_mut().expect("seeded")) {
-                Some(range) => errors.push(range - 1.81),
-                None => missed += 1,
+        let (group, when) = self.next;
+        self.next = ((group + 1) % groups.len(), Nanos(when.0.saturating_add(gap.0)));
+        for number in groups.get(group).cloned().unwrap_or_default() {
+            self.listen(number, pose, walls);
+            // A sonar of several transducers has pinged when the last of them has.
+            if let Some(sonar) = self.completed(group, number) {
+                let range = nearest(&self.hearing, &self.ranges, sonar);
+                self.pings[sonar].push(Ping { range, at, pose: odometry });
             }
         }
-        let count = errors.len() as f64;
-        let mean = errors.iter().sum::<f64>() / count;
-        let spread = libm::sqrt(errors.iter().map(|error| (error - mean) * (error - mean)).sum::<f64>() / count);
-        assert!(mean.abs() < 5e-4, "{mean}");
-        assert!((spread - SPREAD).abs() < 5e-4, "{spread}");
-        assert!((150..250).contains(&missed), "{missed}");
     }
+
+    /// Pings until every sonar has as many pings as are kept: it was switched on a while before the plan began.
+    pub(crate) fn warm_up(&mut self, pose: &Pose, odometry: Pose, walls: &Walls) {
+        let Some(order) = &self.hearing.order else { return };
+        for _ in 0..order.groups.len() * mdle_runtime::PINGS_KEPT {
+            self.ping(pose, odometry, Nanos::ZERO, walls);
+        }
+        self.next.1 = self.hearing.order.as_ref().map_or(Nanos::ZERO, |order| order.gap);
+    }
+
+    /// The sonar that this transducer speaks for, if no other that does so pings later in the order.
+    fn completed(&self, group: usize, number: usize) -> Option<usize> {
+        let speaks_for =
+            |number: usize| self.hearing.transducers.get(number).map(|transducer| transducer.sonar.number());
+        let sonar = speaks_for(number)?;
+        let order = self.hearing.order.as_ref()?;
+        let here = order.groups.get(group)?.iter().skip_while(|other| **other != number).skip(1);
+        let later = order.groups.iter().skip(group + 1).flatten();
+        here.chain(later).all(|other| speaks_for(*other) != Some(sonar)).then_some(sonar)
+    }
+
+    /// One transducer pings.
+    fn listen(&mut self, number: usize, pose: &Pose, walls: &Walls) {
+        let Self { hearing, errors, ranges, .. } = self;
+        let (Some(transducer), Some(range)) = (hearing.transducers.get(number), ranges.get_mut(number)) else { return };
+        let fade = match errors {
+            Some(errors) if hearing.fading > 0.0 => hearing.fading * errors.fading.normal(),
+            Some(_) | None => 0.0,
+        };
+        let (from, axis) = placed(transducer, pose, hearing.ring_radius);
+        let exact = echo::echo(walls, from, axis, hearing, fade);
+        let heard = errors.as_mut().map_or(exact, |errors| errors.of(exact, hearing));
+        let heard = heard.map(|range| stepped(range.max(hearing.least), hearing.step));
+        *range = heard.filter(|range| *range < hearing.most).map(|range| as_of_the_ring(range, transducer, hearing));
+    }
+}
+
+impl Errors {
+    /// What is heard of an exact range. Every ping draws the same number of numbers, whatever it hears.
+    fn of(&mut self, exact: Option<f64>, hearing: &Hearing) -> Option<f64> {
+        let missed = self.ranges.uniform() < hearing.misses;
+        let error = hearing.spread * self.ranges.normal();
+        let (strays, anywhere) = (self.outliers.uniform() < hearing.outliers, self.outliers.uniform());
+        if strays {
+            return Some(hearing.least + anywhere * (hearing.most - hearing.least));
+        }
+        exact.filter(|_| !missed).map(|range| (range * self.scale + error).max(0.0))
+    }
+}
+
+/// Where a transducer is and where it looks.
+fn placed(transducer: &Transducer, pose: &Pose, ring_radius: f64) -> (Place, Radians) {
+    let axis = Radians(pose.theta.0 + transducer.bearing.0);
+    let on_the_ring = transducer.bearing == transducer.sonar.bearing()
+        && (libm::hypot(transducer.x, transducer.y) - ring_radius).abs() < 1e-9;
+    if on_the_ring {
+        return (Place::of(&pose.towards(axis, Meters(ring_radius))), axis);
+    }
+    let (sin, cos) = libm::sincos(pose.theta.0);
+    let Transducer { x, y, .. } = transducer;
+    (Place { x: pose.x.0 + x * cos - y * sin, y: pose.y.0 + x * sin + y * cos }, axis)
+}
+
+/// A transducer's range as that of the sonar of the ring that it speaks for: as far from the centre.
+fn as_of_the_ring(range: f64, transducer: &Transducer, hearing: &Hearing) -> f64 {
+    let (sin, cos) = libm::sincos(transducer.bearing.0);
+    let (x, y) = (transducer.x + range * cos, transducer.y + range * sin);
+    let from_the_centre = libm::hypot(x, y);
+    // On the ring these are the same, but for the last bit.
+    if (libm::hypot(transducer.x, transducer.y) + range - from_the_centre).abs() < 1e-9 {
+        return range;
+    }
+    (from_the_centre - hearing.ring_radius).max(0.0)
+}
+
+fn stepped(range: f64, step: f64) -> f64 {
+    // A whole number of steps is not to become the one before by rounding.
+    if step > 0.0 { libm::floor(range / step + 1e-9) * step } else { range }
+}
+
+/// The least range that a transducer of this sonar heard last.
+fn nearest(hearing: &Hearing, ranges: &[Option<f64>], sonar: usize) -> Option<Meters> {
+    let speaking = hearing.transducers.iter().zip(ranges).filter(|(transducer, _)| transducer.sonar.number() == sonar);
+    speaking.filter_map(|(_, range)| *range).reduce(f64::min).map(Meters)
 }

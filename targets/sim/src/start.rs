@@ -5,7 +5,6 @@ use std::str::FromStr;
 
 use mdle_runtime::{Meters, Pose, Radians};
 
-use crate::body::RADIUS;
 use crate::walls::{self, Walls};
 use crate::world::{Place, World};
 
@@ -19,12 +18,12 @@ const SIGHT: f64 = 1e7;
 pub struct Start(pub Pose);
 
 /// Why a robot cannot start there.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum StartError {
     /// The text is not `x,y,deg`.
     Malformed,
-    /// The body would overlap this wall or box.
-    Overlaps(String),
+    /// A body of this radius, in metres, would overlap this wall or box.
+    Overlaps(f64, String),
     /// The centre is inside this box.
     Inside(String),
     /// No walls are around it, though the world's own start pose has them.
@@ -37,7 +36,9 @@ impl fmt::Display for StartError {
             Self::Malformed => {
                 write!(f, "expected x,y,heading: three numbers in metres and degrees, as in `0.1,-0.05,90`")
             }
-            Self::Overlaps(name) => write!(f, "the robot, {RADIUS} m around its centre, would stand in {name:?}"),
+            Self::Overlaps(radius, name) => {
+                write!(f, "the robot, {radius} m around its centre, would stand in {name:?}")
+            }
             Self::Inside(name) => write!(f, "the robot would stand inside {name:?}"),
             Self::OffTheFloor => write!(f, "that is off the floor"),
         }
@@ -62,14 +63,14 @@ impl FromStr for Start {
 }
 
 /// Whether a robot can start at `pose` in `world`.
-pub(crate) fn check(pose: &Pose, world: &World, walls: &Walls) -> Result<(), StartError> {
+pub(crate) fn check(pose: &Pose, radius: f64, world: &World, walls: &Walls) -> Result<(), StartError> {
     let place = Place::of(pose);
-    if let Some(outline) = world.outlines.iter().find(|outline| outline.holds(place)) {
+    if let Some(outline) = world.solid(place) {
         return Err(StartError::Inside(outline.name.clone()));
     }
-    if walls.distance(place) < RADIUS {
+    if walls.clearance(place, 2.0 * radius) < radius {
         let name = walls::nearest(world, place).map(|outline| outline.name.clone());
-        return Err(StartError::Overlaps(name.unwrap_or_default()));
+        return Err(StartError::Overlaps(radius, name.unwrap_or_default()));
     }
     // A world whose walls do not close has no outside.
     if encloses(walls, Place::of(&world.start)) && !encloses(walls, place) {
@@ -105,7 +106,7 @@ mod tests {
     /// What becomes of a start on the office floor.
     fn office(x: f64, y: f64) -> Result<(), StartError> {
         let world = World::office().expect("our own floor");
-        check(&Pose { x: Meters(x), y: Meters(y), theta: Radians(0.0) }, &world, &Walls::of(&world))
+        check(&Pose { x: Meters(x), y: Meters(y), theta: Radians(0.0) }, 0.205, &world, &Walls::of(&world))
     }
 
     #[test]
@@ -113,9 +114,9 @@ mod tests {
         for (x, y) in [(0.0, 0.0), (3.0, 0.0), (7.5, 7.7), (11.5, -2.0), (0.75, 0.0)] {
             assert_eq!(office(x, y), Ok(()), "{x} {y}");
         }
-        assert_eq!(office(-0.6, 2.0), Err(StartError::Overlaps("A west".into())));
+        assert_eq!(office(-0.6, 2.0), Err(StartError::Overlaps(0.205, "A west".into())));
         assert_eq!(office(3.65, 4.25), Err(StartError::Inside("obstacle".into())));
-        assert_eq!(office(3.65, 4.55), Err(StartError::Overlaps("obstacle".into())));
+        assert_eq!(office(3.65, 4.55), Err(StartError::Overlaps(0.205, "obstacle".into())));
         for (x, y) in [(-3.0, 0.0), (11.5, 5.0), (100.0, 100.0), (3.0, 7.0)] {
             assert_eq!(office(x, y), Err(StartError::OffTheFloor), "{x} {y}");
         }
@@ -125,6 +126,6 @@ mod tests {
     fn walls_that_do_not_close_have_no_outside() {
         let world = World::parse("one wall", "[[wall]]\npoints = [[0, 1], [5, 1]]").expect("a good world");
         let far = Pose { x: Meters(-50.0), ..Pose::ORIGIN };
-        assert_eq!(check(&far, &world, &Walls::of(&world)), Ok(()));
+        assert_eq!(check(&far, 0.205, &world, &Walls::of(&world)), Ok(()));
     }
 }

@@ -1,15 +1,12 @@
 //! Start poses that are off the given one by chance: by how much, says `--start-noise`; which, says the seed.
 
 use mdle_runtime::{Meters, Pose, Radians};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
 
+use crate::noise::{Noise, Purpose};
 use crate::start::{self, StartError};
 use crate::walls::Walls;
 use crate::world::World;
 
-/// The stream of a seed's numbers that start poses are drawn from; the sonars' noise has another.
-const STREAM: u64 = 1;
 /// Poses tried before there is said to be none.
 const TRIES: u32 = 1000;
 /// The most by which a start may be off, in metres and degrees.
@@ -31,26 +28,31 @@ impl StartNoise {
         Some(Self { metres: number(metres, MOST[0])?, degrees: number(degrees, MOST[1])? })
     }
 
-    /// The start pose of `seed`: the first drawn around `start` at which a robot can stand.
+    /// The start pose of `seed`: the first drawn around `start` at which a robot of this radius, in metres, can stand.
     ///
     /// # Errors
     /// Why it cannot stand at the last one tried.
-    pub(crate) fn pose(self, start: &Pose, seed: u64, world: &World, walls: &Walls) -> Result<Pose, StartError> {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        random.set_stream(STREAM);
-        let mut pose = self.drawn(start, &mut random);
+    pub(crate) fn pose(
+        self,
+        start: &Pose,
+        seed: u64,
+        radius: f64,
+        world: &World,
+        walls: &Walls,
+    ) -> Result<Pose, StartError> {
+        let mut noise = Noise::of(seed, Purpose::Start);
+        let mut pose = self.drawn(start, &mut noise);
         for _ in 1..TRIES {
-            if start::check(&pose, world, walls).is_ok() {
+            if start::check(&pose, radius, world, walls).is_ok() {
                 return Ok(pose);
             }
-            pose = self.drawn(start, &mut random);
+            pose = self.drawn(start, &mut noise);
         }
-        start::check(&pose, world, walls).map(|()| pose)
+        start::check(&pose, radius, world, walls).map(|()| pose)
     }
 
-    fn drawn(self, start: &Pose, random: &mut ChaCha8Rng) -> Pose {
-        // The upper 53 bits are all that an f64 can hold.
-        let mut within = |most: f64| most * ((random.next_u64() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0);
+    fn drawn(self, start: &Pose, noise: &mut Noise) -> Pose {
+        let mut within = |most: f64| most * (2.0 * noise.uniform() - 1.0);
         let (x, y) = (Meters(start.x.0 + within(self.metres)), Meters(start.y.0 + within(self.metres)));
         Pose { x, y, theta: Radians(start.theta.0 + Radians::from_degrees(within(self.degrees)).0).wrapped() }
     }
@@ -73,16 +75,17 @@ mod tests {
         let world = World::office().expect("our own floor");
         let walls = Walls::of(&world);
         let noise = StartNoise { metres: 1.0, degrees: 30.0 };
-        let poses: Vec<Pose> =
-            (0..200).map(|seed| noise.pose(&world.start, seed, &world, &walls).expect("there is room")).collect();
+        let poses: Vec<Pose> = (0..200)
+            .map(|seed| noise.pose(&world.start, seed, 0.205, &world, &walls).expect("there is room"))
+            .collect();
         let greatest = |of: fn(&Pose) -> f64| poses.iter().map(|pose| of(pose).abs()).fold(0.0, f64::max);
         // The wall is 0.75 m away, and the body 0.205 m thick.
         assert!((0.5..=0.545).contains(&greatest(|pose| pose.x.0.min(0.0))));
         assert!((0.9..=1.0).contains(&greatest(|pose| pose.y.0)));
         assert!((28.0..=30.0).contains(&greatest(|pose| pose.theta.degrees())));
-        assert_eq!(noise.pose(&world.start, 7, &world, &walls), Ok(poses[7]));
+        assert_eq!(noise.pose(&world.start, 7, 0.205, &world, &walls), Ok(poses[7]));
         let wall = Pose { x: Meters(-0.75), ..Pose::ORIGIN };
-        let stuck = StartNoise { metres: 0.0, degrees: 1.0 }.pose(&wall, 1, &world, &walls);
-        assert_eq!(stuck, Err(StartError::Overlaps("A west".into())));
+        let stuck = StartNoise { metres: 0.0, degrees: 1.0 }.pose(&wall, 1, 0.205, &world, &walls);
+        assert_eq!(stuck, Err(StartError::Overlaps(0.205, "A west".into())));
     }
 }

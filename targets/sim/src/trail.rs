@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
-use mdle_runtime::capability::{Bumpers as _, SonarRing as _};
+use mdle_runtime::capability::{Odometry as _, SonarRing as _};
 use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, SonarId};
 
-use crate::frames::Frames;
+use crate::frames::{Frame, Frames};
 use crate::output::Sensed;
 use crate::world::Place;
 
@@ -17,19 +17,24 @@ const SQUARE: f64 = 0.04;
 /// The way of a robot.
 #[derive(Debug, Clone)]
 pub(crate) struct Trail {
+    /// The radius of the body, in metres.
+    pub(crate) radius: f64,
     pub(crate) start: Pose,
     /// Where the robot is now.
     pub(crate) here: Pose,
+    /// How far each thing of the world has gone now; `None` for an open door.
+    pub(crate) things: Vec<Option<Place>>,
     /// The way before the first atom began, then the way of each.
     pub(crate) before: Vec<Place>,
     pub(crate) marks: Vec<Mark>,
     /// Where the sonars heard something, at most one in a square of 4 cm.
     pub(crate) echoes: Vec<Place>,
     heard: BTreeSet<(i64, i64)>,
-    /// Where the body was when it came into contact, and when; at most one in such a square.
+    /// Where the body touched something when it came into contact, and when; at most one in such a square.
     pub(crate) contacts: Vec<(Place, Nanos)>,
     touched: BTreeSet<(i64, i64)>,
-    touches: bool,
+    /// When it last sensed anything.
+    sensed: Option<Nanos>,
     /// For a picture that moves.
     pub(crate) frames: Option<Frames>,
 }
@@ -45,18 +50,20 @@ pub(crate) struct Mark {
 }
 
 impl Trail {
-    /// A trail that begins here.
-    pub(crate) fn from(pose: &Pose) -> Self {
+    /// The trail of a body of this radius, in metres, that begins here.
+    pub(crate) fn from(pose: &Pose, radius: f64) -> Self {
         Self {
+            radius,
             start: *pose,
             here: *pose,
+            things: Vec::new(),
             before: vec![Place::of(pose)],
             marks: Vec::new(),
             echoes: Vec::new(),
             heard: BTreeSet::new(),
             contacts: Vec::new(),
             touched: BTreeSet::new(),
-            touches: false,
+            sensed: None,
             frames: None,
         }
     }
@@ -73,19 +80,21 @@ impl Trail {
 
     /// Where it is, it senses this, at time `t`.
     pub(crate) fn sensed(&mut self, sensed: &Sensed, t: Nanos) {
-        let place = Place::of(&self.here);
-        if sensed.pressed() && !self.touches && self.touched.insert(square(place)) {
-            self.contacts.push((place, t));
-        }
-        self.touches = sensed.pressed();
-        let echoes = echoes(&self.here, sensed, t);
+        let echoes = echoes(&self.here, sensed, self.sensed.replace(t));
         for echo in echoes.into_iter().flatten() {
             if self.heard.insert(square(echo)) {
                 self.echoes.push(echo);
             }
         }
         if let Some(frames) = &mut self.frames {
-            frames.push(t, &self.here, &echoes);
+            frames.push(Frame { t, pose: self.here, echoes, things: self.things.clone() });
+        }
+    }
+
+    /// The body comes into contact with something here, at time `t`.
+    pub(crate) fn touched(&mut self, place: Place, t: Nanos) {
+        if self.touched.insert(square(place)) {
+            self.contacts.push((place, t));
         }
     }
 
@@ -105,20 +114,50 @@ impl Trail {
     }
 }
 
-/// Where the pings of time `t` had their echoes on the floor, if they had any, by sonar: on the axes of their cones.
-pub(crate) fn echoes(pose: &Pose, sensed: &Sensed, t: Nanos) -> [Option<Place>; SONARS] {
+/// Where the newest pings had their echoes on the floor, if they had any, by sonar: on the axes of their cones. A sonar
+/// that has not pinged since the turn before has none.
+pub(crate) fn echoes(pose: &Pose, sensed: &Sensed, before: Option<Nanos>) -> [Option<Place>; SONARS] {
     let mut echoes = [None; SONARS];
     for (echo, number) in echoes.iter_mut().zip(0..) {
         let sonar = SonarId::new(number);
-        let newest = sensed.pings(sonar).newest_first().next().filter(|ping| ping.at == t);
-        let Some(Meters(range)) = newest.and_then(|ping| ping.range) else { continue };
-        let axis = Radians(pose.theta.0 + sonar.bearing().0);
-        *echo = Some(Place::of(&pose.towards(axis, Meters(sensed.ring_radius().0 + range))));
+        let newest =
+            sensed.pings(sonar).newest_first().next().filter(|ping| before.is_none_or(|before| ping.at > before));
+        let Some((ping, Meters(range))) = newest.and_then(|ping| Some((ping, ping.range?))) else { continue };
+        let from = on_the_floor(&ping.pose, pose, &sensed.pose());
+        let axis = Radians(from.theta.0 + sonar.bearing().0);
+        *echo = Some(Place::of(&from.towards(axis, Meters(sensed.ring_radius().0 + range))));
     }
     echoes
+}
+
+/// Where a pose by odometry was on the floor, when the robot, which is `here`, is at `odometry` by the same reckoning.
+fn on_the_floor(then: &Pose, here: &Pose, odometry: &Pose) -> Pose {
+    let turned = here.theta.0 - odometry.theta.0;
+    let (x, y) = (then.x.0 - odometry.x.0, then.y.0 - odometry.y.0);
+    let (sin, cos) = libm::sincos(turned);
+    Pose {
+        x: Meters(here.x.0 + cos * x - sin * y),
+        y: Meters(here.y.0 + sin * x + cos * y),
+        theta: Radians(then.theta.0 + turned),
+    }
 }
 
 fn square(place: Place) -> (i64, i64) {
     let number = |metres: f64| libm::floor(metres / SQUARE) as i64;
     (number(place.x), number(place.y))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ping_is_drawn_where_it_was_taken_whatever_odometry_says() {
+        let pose = |x, y, degrees| Pose { x: Meters(x), y: Meters(y), theta: Radians::from_degrees(degrees) };
+        // Half a metre back along the way, in both reckonings.
+        let then = on_the_floor(&pose(1.0, 0.0, 0.0), &pose(5.0, 5.0, 90.0), &pose(1.5, 0.0, 0.0));
+        assert!(then.distance(&pose(5.0, 4.5, 0.0)).0 < 1e-12 && (then.theta.degrees() - 90.0).abs() < 1e-12);
+        let same = pose(0.3, -0.2, 17.0);
+        assert_eq!(on_the_floor(&same, &same, &same), same);
+    }
 }

@@ -27,16 +27,22 @@ pub(crate) struct Watch {
     /// The way so far, not denser than a centimetre.
     way: Vec<Place>,
     echoes: Vec<Place>,
+    /// How far each thing of the world has gone; `None` for an open door.
+    things: Vec<Option<Place>>,
+    /// When the robot last sensed anything.
+    sensed: Option<Nanos>,
+    /// Of the body, in metres.
+    radius: f64,
     now: view::Now,
     shown: Option<Instant>,
 }
 
 impl Watch {
-    /// A view of `world` on standard output; it takes the screen when the first turn is made.
+    /// A view of `world` on standard output, with a robot of this radius in metres; it takes the screen when the first turn is made.
     ///
     /// # Errors
     /// When standard output is no terminal.
-    pub(crate) fn of(world: &World) -> Result<Self, String> {
+    pub(crate) fn of(world: &World, radius: f64) -> Result<Self, String> {
         if !screen::is_there() {
             let hint = "run it in a terminal, or make a picture with --plot or --record";
             return Err(format!("--watch: standard output is not a terminal; {hint}"));
@@ -47,20 +53,36 @@ impl Watch {
             map: None,
             way: Vec::new(),
             echoes: Vec::new(),
+            things: Vec::new(),
+            sensed: None,
+            radius,
             now: view::Now::default(),
             shown: None,
         })
     }
 
-    /// The robot has come to `pose` and senses this.
-    pub(crate) fn sensed(&mut self, pose: &Pose, sensed: &Sensed, t: Nanos, touches: bool, contacts: u64) {
+    /// The robot has come to `pose` and senses this, and the things of the world have gone so far.
+    pub(crate) fn sensed(
+        &mut self,
+        pose: &Pose,
+        sensed: &Sensed,
+        t: Nanos,
+        things: impl Iterator<Item = Option<Place>>,
+    ) {
         let place = Place::of(pose);
         if self.way.last().is_none_or(|last| libm::hypot(last.x - place.x, last.y - place.y) >= 0.01) {
             self.way.push(place);
         }
         self.echoes.clear();
-        self.echoes.extend(trail::echoes(pose, sensed, t).into_iter().flatten());
-        (self.now.pose, self.now.touches, self.now.contacts) = (*pose, touches, contacts);
+        self.echoes.extend(trail::echoes(pose, sensed, self.sensed.replace(t)).into_iter().flatten());
+        self.things.clear();
+        self.things.extend(things);
+        self.now.pose = *pose;
+    }
+
+    /// Whether the robot is in contact with something, and how often it has come into contact so far.
+    pub(crate) fn touched(&mut self, touches: bool, contacts: u64) {
+        (self.now.touches, self.now.contacts) = (touches, contacts);
     }
 
     /// A turn was made: shows it, if it is time to show anything.
@@ -81,7 +103,10 @@ impl Watch {
         let Some(map) = &mut self.map else { return };
         map.went(&self.way);
         let mut lines = vec![self.now.above(columns)];
-        lines.extend(map.drawn(&self.now.pose, &self.echoes, self.now.touches));
+        let things = self.world.things.iter().zip(&self.things).filter_map(|(thing, gone)| Some((thing, (*gone)?)));
+        let mut now = map.with(things);
+        now.heard(&self.echoes);
+        lines.extend(now.drawn(&self.now.pose, self.radius, self.now.touches));
         lines.extend(below);
         lines.truncate(rows);
         screen.show(&lines);

@@ -5,30 +5,40 @@ use std::fmt;
 use mdle_runtime::{Meters, Pose};
 
 use crate::goal::Goal;
+use crate::moving::Thing;
 use crate::world_file::{self, WorldError};
 
-/// The floor of the paper's tour, box in the hallway included.
-const OFFICE: &str = include_str!("../worlds/office.toml");
+/// The worlds that come with the simulator: first the floor of the paper's tour, box in the hallway included.
+const WORLDS: [(&str, &str); 4] = [
+    ("office", include_str!("../worlds/office.toml")),
+    ("maze", include_str!("../worlds/maze.toml")),
+    ("hall", include_str!("../worlds/hall.toml")),
+    ("room", include_str!("../worlds/room.toml")),
+];
 
 /// What the simulated robot moves among. Its coordinates are finite and no wall has length zero.
 #[derive(Debug, Clone, PartialEq)]
 pub struct World {
-    /// Walls and boxes.
+    /// Walls, boxes and discs that stand.
     pub outlines: Vec<Outline>,
+    /// Doors, and boxes and discs that move.
+    pub things: Vec<Thing>,
     /// The start pose unless an option says otherwise.
     pub start: Pose,
     /// Where a plan is to leave the robot, if the world says so.
     pub goal: Option<Goal>,
+    /// So many of the first outlines are contours of a map: inside an odd number of them it is solid.
+    pub(crate) contours: usize,
 }
 
-/// A wall or a box, as the line around it.
+/// A wall, a box or a disc, as the line around it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outline {
     /// What messages call it.
     pub name: String,
-    /// Its corners in order; a box ends where it began.
+    /// Its corners in order; a box ends where it began. A disc has 48 of them.
     pub points: Vec<Place>,
-    /// Whether it is a box, which is solid inside; a wall has no thickness.
+    /// Whether it is a box or a disc, which is solid inside; a wall has no thickness.
     pub solid: bool,
 }
 
@@ -55,27 +65,62 @@ impl World {
     /// # Errors
     /// Never: a test reads it. It is the file of a user like any other.
     pub fn office() -> Result<Self, WorldError> {
-        Self::parse("the office floor", OFFICE)
+        let [(_, office), ..] = WORLDS;
+        Self::parse("the office floor", office)
+    }
+
+    /// The world of this name that comes with the simulator, if there is one.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Result<Self, WorldError>> {
+        let (name, text) = WORLDS.iter().find(|(known, _)| *known == name)?;
+        Some(Self::parse(name, text))
+    }
+
+    /// The names of the worlds that come with the simulator.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        WORLDS.iter().map(|(name, _)| *name)
+    }
+
+    /// The box, disc or contour inside of which `place` lies.
+    pub(crate) fn solid(&self, place: Place) -> Option<&Outline> {
+        let around = || self.outlines.iter().take(self.contours).filter(|outline| outline.surrounds(place));
+        if around().count() % 2 == 1 {
+            return around().next_back();
+        }
+        let outlines = self.outlines.iter().chain(self.things.iter().map(|thing| &thing.outline));
+        outlines.into_iter().find(|outline| outline.solid && outline.surrounds(place))
+    }
+
+    /// All corners: of what stands, and of what moves at each of its stops.
+    pub(crate) fn places(&self) -> impl Iterator<Item = Place> {
+        let standing = self.outlines.iter().flat_map(|outline| outline.points.iter().copied());
+        standing.chain(self.things.iter().flat_map(Thing::places))
     }
 
     /// All walls and sides of boxes, each with its outline.
     pub(crate) fn segments(&self) -> impl Iterator<Item = (&Outline, Place, Place)> {
-        self.outlines.iter().flat_map(|outline| {
-            let ends = outline.points.iter().zip(outline.points.iter().skip(1));
-            ends.map(move |(from, to)| (outline, *from, *to))
-        })
+        self.outlines.iter().flat_map(Outline::segments)
+    }
+
+    /// The same with everything that moves, where it begins.
+    pub(crate) fn everything(&self) -> impl Iterator<Item = (&Outline, Place, Place)> {
+        self.segments().chain(self.things.iter().flat_map(|thing| thing.outline.segments()))
     }
 }
 
 impl Outline {
-    /// Whether `place` is inside a box.
-    pub(crate) fn holds(&self, place: Place) -> bool {
-        let within = |of: fn(&Place) -> f64| {
-            let least = self.points.iter().map(of).fold(f64::INFINITY, f64::min);
-            let most = self.points.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
-            least < of(&place) && of(&place) < most
-        };
-        self.solid && within(|place| place.x) && within(|place| place.y)
+    /// Its sides.
+    fn segments(&self) -> impl Iterator<Item = (&Self, Place, Place)> {
+        self.points.iter().zip(self.points.iter().skip(1)).map(move |(from, to)| (self, *from, *to))
+    }
+
+    /// Whether `place` is inside: a line from it crosses an odd number of sides.
+    fn surrounds(&self, place: Place) -> bool {
+        let crossed = self.segments().filter(|(_, from, to)| {
+            let between = (from.y > place.y) != (to.y > place.y);
+            between && place.x < from.x + (to.x - from.x) * (place.y - from.y) / (to.y - from.y)
+        });
+        crossed.count() % 2 == 1
     }
 }
 

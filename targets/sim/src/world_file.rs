@@ -1,20 +1,21 @@
-//! Reading a world from TOML; afterwards every coordinate is finite and every wall and box has a size.
+//! Reading a world from TOML; afterwards every coordinate is finite, in metres, and every wall, box and disc has a size.
+//!
+//! Obstacles may overlap: together they are one. What moves goes through what stands, but never into the robot.
+
+mod outlines;
+mod text;
 
 use std::fmt;
-use std::marker::PhantomData;
 use std::ops::Range;
 
-use mdle_runtime::{Meters, Pose, Radians};
-use serde::de::value::MapAccessDeserializer;
-use serde::de::{MapAccess, Visitor};
-use serde::{Deserialize, Deserializer};
 use toml::Spanned;
 
-use crate::goal::Goal;
-use crate::world::{Outline, Place, World};
+use crate::world::World;
+use outlines::{Stands, Unit};
+use text::WorldText;
 
-/// The furthest coordinate, in metres: beyond it millimetres would begin to blur.
-const FURTHEST: f64 = 1e6;
+/// More walls and sides than this are refused: a million of them takes a second to make ready.
+const SEGMENTS_MOST: usize = 1_000_000;
 
 /// What is wrong with a world file: `file:line:column: sentence`.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -37,84 +38,18 @@ impl fmt::Display for WorldError {
 
 impl std::error::Error for WorldError {}
 
-type Coordinates = Spanned<Vec<Spanned<f64>>>;
-
-/// The file as written.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct WorldText {
-    #[serde(default)]
-    start: Table<StartText>,
-    goal: Option<Spanned<Table<GoalText>>>,
-    #[serde(default, rename = "wall")]
-    walls: Vec<Table<WallText>>,
-    #[serde(default, rename = "box")]
-    boxes: Vec<Spanned<Table<BoxText>>>,
-}
-
-#[derive(Deserialize, Default)]
-#[serde(deny_unknown_fields)]
-struct StartText {
-    x: Option<Spanned<f64>>,
-    y: Option<Spanned<f64>>,
-    heading: Option<Spanned<f64>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct GoalText {
-    min: Coordinates,
-    max: Coordinates,
-    heading: Option<Spanned<f64>>,
-    tolerance: Option<Spanned<f64>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct WallText {
-    name: Option<String>,
-    points: Spanned<Vec<Coordinates>>,
-}
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct BoxText {
-    name: Option<String>,
-    min: Option<Coordinates>,
-    max: Option<Coordinates>,
-    centre: Option<Coordinates>,
-    size: Option<Coordinates>,
-}
-
-/// A table and nothing else: serde would take an array for one too, and let its last values go unread.
-#[derive(Default)]
-struct Table<T>(T);
-
-impl<'de, T: Deserialize<'de>> Deserialize<'de> for Table<T> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_map(Keys(PhantomData))
-    }
-}
-
-struct Keys<T>(PhantomData<T>);
-
-impl<'de, T: Deserialize<'de>> Visitor<'de> for Keys<T> {
-    type Value = Table<T>;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "a table")
-    }
-
-    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Table<T>, A::Error> {
-        T::deserialize(MapAccessDeserializer::new(map)).map(Table)
+impl WorldError {
+    /// What is wrong at a line and column, from 1, of a file, or with it as a whole.
+    pub(crate) fn new(file: &str, place: Option<(usize, usize)>, what: impl Into<String>) -> Self {
+        Self { file: file.to_owned(), place, what: what.into() }
     }
 }
 
 /// A fault of the text: where, and what.
-struct Wrong(Option<Range<usize>>, String);
+pub(crate) struct Wrong(pub(crate) Option<Range<usize>>, pub(crate) String);
 
 impl Wrong {
-    fn at<T>(spanned: &Spanned<T>, what: impl Into<String>) -> Self {
+    pub(crate) fn at<T>(spanned: &Spanned<T>, what: impl Into<String>) -> Self {
         Self(Some(spanned.span()), what.into())
     }
 }
@@ -134,94 +69,35 @@ fn read(text: &str) -> Result<World, Wrong> {
         let what = error.message().replace('\n', " ").replace("expected f64", "expected a number");
         Wrong(error.span(), what)
     })?;
-    let start = start(&written.start.0)?;
-    let goal = written.goal.as_ref().map(goal).transpose()?;
-    let walls = (1..).zip(&written.walls).map(|(number, wall)| outline_of_wall(number, &wall.0));
-    let boxes = (1..).zip(&written.boxes).map(|(number, text)| outline_of_box(number, text));
-    Ok(World { outlines: walls.chain(boxes).collect::<Result<_, _>>()?, start, goal })
-}
-
-fn start(text: &StartText) -> Result<Pose, Wrong> {
-    let value = |written: &Option<Spanned<f64>>| written.as_ref().map_or(Ok(0.0), coordinate);
-    Ok(Pose {
-        x: Meters(value(&text.x)?),
-        y: Meters(value(&text.y)?),
-        theta: Radians::from_degrees(value(&text.heading)?).wrapped(),
-    })
-}
-
-fn goal(text: &Spanned<Table<GoalText>>) -> Result<Goal, Wrong> {
-    let Table(written) = text.get_ref();
-    let (min, max) = (pair(&written.min, "`min`")?, pair(&written.max, "`max`")?);
-    if min.x >= max.x || min.y >= max.y {
-        return Err(Wrong::at(&written.max, format!("a goal without an inside: it would reach from {min} to {max}")));
+    let unit = Unit::of(written.units.as_ref())?;
+    let start = unit.start(&written.start.0)?;
+    let goal = written.goal.as_ref().map(|goal| unit.goal(goal)).transpose()?;
+    let (mut outlines, mut things) = (Vec::new(), Vec::new());
+    for (number, wall) in (1..).zip(&written.walls) {
+        outlines.push(unit.wall(number, &wall.0)?);
     }
-    let heading = match (&written.heading, &written.tolerance) {
-        (Some(heading), Some(tolerance)) if (0.0..=180.0).contains(tolerance.get_ref()) => {
-            let tolerance = Radians::from_degrees(*tolerance.get_ref());
-            Some((Radians::from_degrees(coordinate(heading)?).wrapped(), tolerance))
+    for (number, text) in (1..).zip(&written.boxes) {
+        match unit.box_(number, text)? {
+            Stands::Still(outline) => outlines.push(outline),
+            Stands::Never(thing) => things.push(thing),
         }
-        (None, None) => None,
-        (Some(_), Some(tolerance)) => return Err(Wrong::at(tolerance, "a tolerance is from 0 to 180 degrees")),
-        (Some(_), None) | (None, Some(_)) => {
-            let what =
-                "a goal's `heading` needs a `tolerance` and the other way round, as in `heading = 90, tolerance = 15`";
-            return Err(Wrong::at(text, what));
+    }
+    for (number, text) in (1..).zip(&written.discs) {
+        match unit.disc(number, text)? {
+            Stands::Still(outline) => outlines.push(outline),
+            Stands::Never(thing) => things.push(thing),
         }
-    };
-    Ok(Goal { min, max, heading })
-}
-
-fn outline_of_wall(number: usize, text: &WallText) -> Result<Outline, Wrong> {
-    let written = text.points.get_ref();
-    if written.len() < 2 {
-        return Err(Wrong::at(&text.points, "a wall needs at least two points, as in `points = [[0, 0], [2.5, 0]]`"));
     }
-    let mut points: Vec<Place> = Vec::with_capacity(written.len());
-    for point in written {
-        let place = pair(point, "a point")?;
-        if points.last() == Some(&place) {
-            return Err(Wrong::at(point, format!("a wall of length zero: the point before it is {place} too")));
+    for (number, door) in (1..).zip(&written.doors) {
+        things.push(unit.door(number, door)?);
+    }
+    let world = World { outlines, things, start, goal, contours: 0 };
+    match world.everything().count() {
+        count if count > SEGMENTS_MOST => {
+            Err(Wrong(None, format!("{count} walls and sides are too many; expected at most {SEGMENTS_MOST}")))
         }
-        points.push(place);
+        _ => Ok(world),
     }
-    Ok(Outline { name: text.name.clone().unwrap_or_else(|| format!("wall {number}")), points, solid: false })
-}
-
-fn outline_of_box(number: usize, text: &Spanned<Table<BoxText>>) -> Result<Outline, Wrong> {
-    let Table(written) = text.get_ref();
-    let (min, max, told) = match (&written.min, &written.max, &written.centre, &written.size) {
-        (Some(min), Some(max), None, None) => (pair(min, "`min`")?, pair(max, "`max`")?, max),
-        (None, None, Some(centre), Some(size)) => {
-            let (Place { x, y }, half) = (pair(centre, "`centre`")?, pair(size, "`size`")?);
-            let (w, h) = (half.x / 2.0, half.y / 2.0);
-            (Place { x: x - w, y: y - h }, Place { x: x + w, y: y + h }, size)
-        }
-        (_, _, _, _) => {
-            return Err(Wrong::at(text, "a box is given by its corners `min` and `max`, or by `centre` and `size`"));
-        }
-    };
-    if min.x >= max.x || min.y >= max.y {
-        return Err(Wrong::at(told, format!("a box without an inside: it would reach from {min} to {max}")));
-    }
-    let points = vec![min, Place { x: max.x, y: min.y }, max, Place { x: min.x, y: max.y }, min];
-    Ok(Outline { name: written.name.clone().unwrap_or_else(|| format!("box {number}")), points, solid: true })
-}
-
-fn pair(written: &Coordinates, what: &str) -> Result<Place, Wrong> {
-    match written.get_ref().as_slice() {
-        [x, y] => Ok(Place { x: coordinate(x)?, y: coordinate(y)? }),
-        other => Err(Wrong::at(written, format!("{what} is two numbers, x and y in metres, not {}", other.len()))),
-    }
-}
-
-fn coordinate(written: &Spanned<f64>) -> Result<f64, Wrong> {
-    let value = *written.get_ref();
-    if value.is_finite() && value.abs() <= FURTHEST {
-        return Ok(value);
-    }
-    let kilometres = FURTHEST / 1000.0;
-    Err(Wrong::at(written, format!("{value:e} is no coordinate: expected a number, at most {kilometres} km")))
 }
 
 /// Line and column of a byte of `text`, from 1, columns in characters.

@@ -101,3 +101,28 @@ fn the_target_is_what_its_alphabet_says() {
     let said = format!("target {} : crate mdle_sim, period {}ms;", Sim::NAME, Sim::PERIOD.as_millis());
     assert_eq!(target, said);
 }
+
+#[test]
+fn a_world_is_a_name_a_file_or_a_map() {
+    let folder = folder("maps");
+    let connect = |world: &str| Sim::connect(&matches(&["--world", world]), Sim::PERIOD).map(|robot| robot.pose());
+    assert!(connect("maze").is_ok());
+    fs::write(folder.join("map.pgm"), [&b"P5 9 9 255\n"[..], &[254; 80], &[0]].concat()).expect("a file of our own");
+    let yaml = folder.join("map.yaml");
+    fs::write(&yaml, "image: map.pgm\nresolution: 1.0\norigin: [-4.5, -4.5, 0.0]\n").expect("a file of our own");
+    assert!(connect(yaml.to_str().expect("UTF-8")).is_ok());
+    fs::remove_file(folder.join("map.pgm")).expect("our own file");
+    assert!(refused(&["--world", yaml.to_str().expect("UTF-8")]).contains("map.pgm: the file cannot be read"));
+}
+
+#[test]
+fn a_body_and_its_parts_are_named() {
+    let connect = |options: &[&str]| Sim::connect(&matches(options), Sim::PERIOD).map(|robot| robot.pose());
+    assert!(connect(&["--body", "scout", "--without", "specular, slip,order", "--seed", "3"]).is_ok());
+    assert!(connect(&["--body", "atrv", "--without", ""]).is_ok());
+    let sentences = [&["--body", "pioneer"][..], &["--without", "order,lobes"]].map(refused);
+    insta::assert_snapshot!(sentences.join("\n"), @r#"
+    --body pioneer: expected `ideal`, `scout` or `atrv`
+    --without order,lobes: "lobes" is no part of a body; expected some of lobe, specular, minimum, steps, noise, outliers, order, slip
+    "#);
+}

@@ -1,7 +1,11 @@
 //! World files: the office is the one of the design, and every fault is told with its place.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
-use mdle_sim::World;
+use std::time::Duration;
+
+use mdle_runtime::capability::SonarRing;
+use mdle_runtime::{Robot, SonarId, Twist};
+use mdle_sim::{Body, Make, Simulated, World};
 
 /// What is wrong with a world.
 fn fault(text: &str) -> String {
@@ -54,11 +58,27 @@ fn faults_are_told_with_their_place() {
         "goal = { min = [0, 0], max = [0, 1] }",
         "goal = { min = [0, 0], max = [1, 1], heading = 90 }",
         "goal = { min = [0, 0], max = [1, 1], heading = 90, tolerance = -1 }",
+        "units = \"miles\"",
+        "units = \"ft\"\n[[wall]]\npoints = [[0, 0], [1e7, 0]]",
+        "[[disc]]\ncentre = [0, 0]\nradius = 0",
+        "[[disc]]\nradius = 1",
+        "[[disc]]\ncentre = [0, 0]\nradius = 1\nschedule = [[0, 0, 0]]",
+        "[[disc]]\nradius = 1\nschedule = []",
+        "[[disc]]\nradius = 1\nschedule = [[0, 0]]",
+        "[[disc]]\nradius = 1\nschedule = [[5, 0, 0], [5, 1, 0]]",
+        "[[disc]]\nradius = 1\nschedule = [[-1, 0, 0]]",
+        "[[box]]\nmin = [0, 0]\nmax = [1, 1]\nschedule = [[0, 0, 0]]",
+        "[[door]]\npoints = [[0, 0], [1, 0], [2, 0]]\nopen = []",
+        "[[door]]\npoints = [[0, 0], [1, 0]]",
+        "[[door]]\npoints = [[0, 0], [1, 0]]\nopen = [[3, 2]]",
+        "[[door]]\npoints = [[0, 0], [1, 0]]\nopen = [[1, 3], [2, 4]]",
+        "[[door]]\npoints = [[0, 0], [1, 0]]\nopen = [[1, 3]]\nevery = 2",
+        "[[door]]\npoints = [[0, 0], [1, 0]]\nopen = [[1, nan]]",
     ]
     .map(fault);
     insta::assert_snapshot!(faults.join("\n"), @r#"
     room.toml:3:1: missing comma between array elements, expected `,`
-    room.toml:1:3: unknown field `wal`, expected one of `start`, `goal`, `wall`, `box`
+    room.toml:1:3: unknown field `wal`, expected one of `units`, `start`, `goal`, `wall`, `box`, `disc`, `door`
     room.toml:2:1: unknown field `nmae`, expected `name` or `points`
     room.toml:1:1: missing field `points`
     room.toml:2:10: a wall needs at least two points, as in `points = [[0, 0], [2.5, 0]]`
@@ -81,5 +101,117 @@ fn faults_are_told_with_their_place() {
     room.toml:1:30: a goal without an inside: it would reach from (0, 0) to (0, 1)
     room.toml:1:8: a goal's `heading` needs a `tolerance` and the other way round, as in `heading = 90, tolerance = 15`
     room.toml:1:64: a tolerance is from 0 to 180 degrees
+    room.toml:1:9: "miles" is no unit of length; expected one of `m`, `cm`, `mm`, `in`, `ft`
+    room.toml:3:20: 1e7 is no coordinate: expected a number, at most 1000 km
+    room.toml:3:10: a disc without an inside: expected a radius above 0
+    room.toml:1:1: a disc has a `radius` and a `centre`, or a `schedule` if it moves
+    room.toml:1:1: a disc has a `radius` and a `centre`, or a `schedule` if it moves
+    room.toml:3:12: a schedule needs a stop, as in `schedule = [[0, 1, 2], [5, 4, 2]]`
+    room.toml:3:13: a stop is three numbers: seconds, and x and y of the centre
+    room.toml:3:24: the stops of a schedule must follow one another in time
+    room.toml:3:14: -1e0 is no time: expected seconds since the start, from 0 on
+    room.toml:1:1: a box that moves is given by `size` and the centres of its `schedule`
+    room.toml:2:10: a door has two points, as in `points = [[0, 0], [0.9, 0]]`
+    room.toml:1:1: missing field `open`
+    room.toml:3:9: times must follow one another
+    room.toml:3:17: times must follow one another
+    room.toml:4:9: `every` must be after all the times it repeats, and above 0
+    room.toml:3:13: NaN is no time: expected seconds since the start, from 0 on
     "#);
+}
+
+#[test]
+fn lengths_are_in_the_unit_that_the_file_says() {
+    let feet = World::parse(
+        "feet",
+        "units = \"ft\"\nstart = { x = 10, heading = 90 }\n\
+         goal = { min = [0, 0], max = [1, 2], heading = 90, tolerance = 9 }\n[[wall]]\npoints = [[0, 0], [1, 0]]",
+    );
+    let feet = feet.expect("a good world");
+    assert!((feet.start.x.0 - 3.048).abs() < 1e-12 && (feet.start.theta.degrees() - 90.0).abs() < 1e-12);
+    assert_eq!(feet.outlines[0].points[1].x, 0.3048);
+    let goal = feet.goal.expect("a goal");
+    assert_eq!((goal.max.x, goal.max.y), (0.3048, 0.6096));
+    assert!((goal.heading.expect("a heading").0.degrees() - 90.0).abs() < 1e-12);
+}
+
+#[test]
+fn every_world_that_comes_along_has_a_place_to_start() {
+    assert_eq!(World::names().collect::<Vec<_>>(), ["office", "maze", "hall", "room"]);
+    for name in World::names() {
+        let world = World::named(name).expect("known").expect("a good world");
+        for body in [Body::Ideal, Body::Scout, Body::Atrv] {
+            let make = Make { body, ..Make::default() };
+            let started = Simulated::with(&make, &world, world.start, Duration::from_millis(100));
+            assert!(started.is_ok(), "{name}: {:?}", started.err());
+        }
+    }
+    assert!(World::named("ofice").is_none());
+}
+
+/// How far the robot at the origin hears ahead, second by second, while it stands.
+fn ahead(text: &str, seconds: usize) -> Vec<Option<f64>> {
+    let world = World::parse("a test's world", text).expect("a good world");
+    let mut robot = Simulated::new(&world, world.start, None, Duration::from_secs(1)).expect("a start on the floor");
+    let heard = |robot: &mut Simulated| {
+        let y = robot.exchange(&Twist::default()).expect("finite inputs");
+        y.pings(SonarId::new(0)).nearest(1).map(|range| (range.0 * 1e6).round() / 1e6)
+    };
+    (0..seconds).map(|_| heard(&mut robot)).collect()
+}
+
+#[test]
+fn a_door_opens_and_closes_at_its_times() {
+    let door = "[[door]]\npoints = [[2, -1], [2, 1]]\nopen = [[1.5, 3.5]]\nevery = 5";
+    let (closed, open) = (Some(1.81), None);
+    assert_eq!(ahead(door, 10), [closed, closed, open, open, closed, closed, closed, open, open, closed]);
+}
+
+#[test]
+fn what_moves_is_where_its_schedule_says() {
+    let box_ = "[[box]]\nsize = [1, 1]\nschedule = [[1, 3, 0], [3, 5, 0]]\nrepeat = true";
+    let ranges = ahead(box_, 6).into_iter().map(|range| range.expect("the box"));
+    for (range, expected) in ranges.zip([2.31, 2.31, 3.31, 4.31, 3.31, 4.31]) {
+        assert!((range - expected).abs() < 0.05, "{range} {expected}");
+    }
+}
+
+#[test]
+fn nothing_moves_into_the_robot_and_it_feels_what_comes() {
+    // It walks through the robot and on, and a door closes on it.
+    for things in [
+        "[[disc]]\nradius = 0.3\nschedule = [[0, 3, 0], [10, -3, 0]]",
+        "[[box]]\nsize = [0.5, 0.5]\nschedule = [[0, 0, 3], [1, 0, -3]]",
+    ] {
+        let world = World::parse("a test's world", things).expect("a good world");
+        let mut robot = Simulated::new(&world, world.start, None, Duration::from_secs(1)).expect("a start");
+        let felt =
+            (0..20).filter(|_| robot.exchange(&Twist::default()).expect("finite inputs").switches() != 0).count();
+        assert!(felt > 10, "{things}: {felt}");
+        assert_eq!(robot.pose(), world.start);
+    }
+}
+
+#[test]
+fn a_door_does_not_close_on_the_robot() {
+    let door = |open| format!("[[door]]\npoints = [[-1, 0], [1, 0]]\nopen = {open}");
+    let made = |text: &str| {
+        let world = World::parse("a test's world", text).expect("a good world");
+        Simulated::new(&world, world.start, None, Duration::from_secs(1))
+    };
+    assert!(made(&door("[[1, 3]]")).is_err(), "a start in a closed door");
+    let mut robot = made(&door("[[0, 3]]")).expect("a start in an open door");
+    for _ in 0..9 {
+        assert_eq!(robot.exchange(&Twist::default()).expect("finite inputs").switches(), 0);
+    }
+}
+
+#[test]
+fn many_walls_are_made_ready_and_more_than_a_million_are_refused() {
+    let disc =
+        |number: usize| format!("[[disc]]\ncentre = [{}, {}]\nradius = 1\n", 3 + number % 99 * 3, number / 99 * 3);
+    let discs = |count: usize| (0..count).map(disc).collect::<String>();
+    let many = World::parse("large", &discs(4_000)).expect("192,000 sides");
+    assert!(Simulated::new(&many, many.start, None, Duration::from_secs(1)).is_ok());
+    assert_eq!(fault(&discs(20_834)), "room.toml: 1000032 walls and sides are too many; expected at most 1000000");
 }

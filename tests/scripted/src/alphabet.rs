@@ -248,6 +248,10 @@ pub enum AnyControl {
 
 /// Any law of this robot as it runs.
 #[derive(Debug)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "one law runs at a time, and there need be no allocator"
+)]
 pub enum AnyLaw {
     /// `idle`: Never completes.
     Idle(<Idle as runtime::Control<Output>>::Law),

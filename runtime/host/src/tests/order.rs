@@ -36,6 +36,28 @@ fn only_the_atom_that_is_left_standing_has_begun() {
 }
 
 #[test]
+fn a_robot_that_looks_is_told_in_each_turn_where_the_plan_stands() {
+    let skip = Act::Senses(vec![(0, Fired(1)), (1, Completed(2))]);
+    let over = Act::Senses(vec![(2, Fired(0))]);
+    let run = Stage { looks: true, ..Stage::script([quiet(), skip, quiet(), over]) }.run(&[]);
+    insta::assert_snapshot!(way_out(&run).replace(", ", "\n"), @"
+    exchange 0
+    began 1 go 20 0 at 0
+    1 go 20 0 in Lab[bumper] 0 [atIsection 0100] 0
+    exchange 1
+    began 3 stop at 0.1
+    3 stop in Lab[bumper] 0.1 Turn[wait 10] 0 [r3 < r5] 0
+    exchange 3
+    3 stop in Lab[bumper] 0.2 Turn[wait 10] 0.1 [r3 < r5] 0.1
+    exchange 3
+    exchange 0
+    stop
+    finish
+    status 0
+    ");
+}
+
+#[test]
 fn a_plan_that_is_over_in_its_first_turn_is_never_applied() {
     let run = Stage::script([Act::Senses(vec![(0, Fired(0))])]).run(&[]);
     insta::assert_snapshot!(way_out(&run), @"

@@ -14,7 +14,7 @@ use super::plan::ToyPlan;
 use crate::clock::Instants;
 use crate::session::{Surroundings, session};
 use crate::signals::{Signal, Signals};
-use crate::{Hosted, Pace, Refusal, Target, Time};
+use crate::{Around, Hosted, Pace, Refusal, Standing, Target, Time};
 
 /// An output: what fires while which atom, as written, is the current one.
 #[derive(Debug, Clone, Default)]
@@ -39,6 +39,8 @@ pub(super) struct Stage {
     pub(super) refusal: Option<Refusal>,
     pub(super) stop: Act,
     pub(super) finish: Result<(), String>,
+    /// Whether it looks where the plan stands.
+    pub(super) looks: bool,
     pub(super) plan: ToyPlan,
     /// The name by which the program is called.
     pub(super) program: &'static str,
@@ -53,6 +55,7 @@ impl Default for Stage {
             refusal: None,
             stop: Act::Senses(vec![]),
             finish: Ok(()),
+            looks: false,
             plan: ToyPlan::lab(),
             program: "./lab_tour",
         }
@@ -95,6 +98,7 @@ impl Stage {
             script: self.script.into(),
             stop: self.stop,
             finish: self.finish,
+            looks: self.looks,
             signals: signals.share(),
             journal: Rc::clone(&journal),
         };
@@ -184,6 +188,7 @@ struct Toy {
     script: VecDeque<Act>,
     stop: Act,
     finish: Result<(), String>,
+    looks: bool,
     signals: Signals,
     journal: Rc<RefCell<Vec<String>>>,
 }
@@ -226,6 +231,19 @@ impl Robot for Toy {
 impl Hosted for Toy {
     fn began(&mut self, state: u64, law: &str, t: Nanos) {
         self.note(format!("began {state} {law} at {}", t.seconds()));
+    }
+
+    fn looks(&self) -> bool {
+        self.looks
+    }
+
+    fn turned(&mut self, standing: &Standing<'_>) {
+        let scopes: Vec<String> = standing
+            .scopes
+            .iter()
+            .map(|Around { name, condition, since }| format!("{name}[{condition}] {}", since.seconds()))
+            .collect();
+        self.note(format!("{} {} in {}", standing.state, standing.law, scopes.join(" ")));
     }
 
     fn finish(&mut self) -> Result<(), String> {

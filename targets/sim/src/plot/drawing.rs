@@ -7,8 +7,7 @@ use svg::node::element::{Group, Path, Title};
 use super::colours::{self, ECHO, FAINT, INK};
 use super::layout::{Layout, MARKS_MOST};
 use super::shapes::{Pixel, badge, circle, cross, dots, line, polyline, tenths};
-use super::{floor, labels, legend};
-use crate::body::RADIUS;
+use super::{floor, labels, legend, things};
 use crate::trail::Trail;
 use crate::world::{Place, World};
 
@@ -18,11 +17,12 @@ pub(crate) fn svg(world: &World, trail: &Trail) -> String {
     let dots = began(&layout, trail);
     let document = document(&layout, layout.height, "The way of the robot on its floor")
         .add(floor::drawn(&layout, world, layout.height))
+        .add(things::drawn(&layout, world, trail))
         .add(echoes(&layout, trail))
-        .add(body(&layout, &trail.start, FAINT))
+        .add(body(&layout, &trail.start, trail.radius, FAINT))
         .add(way(&layout, trail))
-        .add(contacts(&layout, world, trail))
-        .add(body(&layout, &trail.here, INK))
+        .add(contacts(&layout, trail))
+        .add(body(&layout, &trail.here, trail.radius, INK))
         .add(marks(&layout, &dots))
         .add(legend::drawn(&layout, world, trail));
     format!("{document}\n")
@@ -51,30 +51,17 @@ fn way(layout: &Layout, trail: &Trail) -> Group {
 }
 
 /// The body: a disc with a line to its front.
-pub(super) fn body(layout: &Layout, pose: &Pose, colour: &str) -> Group {
+pub(super) fn body(layout: &Layout, pose: &Pose, radius: f64, colour: &str) -> Group {
     let centre = layout.at(Place::of(pose));
-    let front = layout.at(Place::of(&pose.towards(pose.theta, Meters(RADIUS))));
-    let disc = circle(centre, RADIUS * layout.scale).set("fill", "none");
+    let front = layout.at(Place::of(&pose.towards(pose.theta, Meters(radius))));
+    let disc = circle(centre, radius * layout.scale).set("fill", "none");
     Group::new().set("stroke", colour).set("stroke-width", 1.2).add(disc).add(line(centre, front))
 }
 
 /// A cross where the body touched something.
-fn contacts(layout: &Layout, world: &World, trail: &Trail) -> Group {
-    let touched = trail.contacts.iter().map(|(place, _)| cross(layout.at(touched(world, *place))));
+fn contacts(layout: &Layout, trail: &Trail) -> Group {
+    let touched = trail.contacts.iter().map(|(place, _)| cross(layout.at(*place)));
     touched.fold(Group::new(), Group::add)
-}
-
-/// The point of a wall that a body at `place` touches; its centre if what it touched stands elsewhere by now.
-pub(super) fn touched(world: &World, place: Place) -> Place {
-    let away = |point: &Place| libm::hypot(point.x - place.x, point.y - place.y);
-    let points = world.segments().map(|(_, from, to)| {
-        let (x, y) = (to.x - from.x, to.y - from.y);
-        let part = ((place.x - from.x) * x + (place.y - from.y) * y) / (x * x + y * y);
-        let part = part.clamp(0.0, 1.0);
-        Place { x: from.x + part * x, y: from.y + part * y }
-    });
-    let nearest = points.min_by(|one, other| away(one).total_cmp(&away(other)));
-    nearest.filter(|point| away(point) < RADIUS * 1.1).unwrap_or(place)
 }
 
 /// Where each of the atoms that are marked began.

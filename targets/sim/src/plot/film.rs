@@ -6,9 +6,12 @@ use svg::node::element::{Animate, AnimateTransform};
 use super::layout::round_step;
 use crate::frames::Frame;
 use crate::trail::Trail;
+use crate::world::Place;
 
 /// The longest film, in seconds, before the rest.
 const SHOWN_MOST: f64 = 20.0;
+/// The most places of a way that are written down one by one: some 200 m.
+const PLACES_MOST: usize = 20_000;
 /// The rest at the end, in seconds.
 const REST: f64 = 2.5;
 
@@ -20,6 +23,8 @@ pub(super) struct Film<'f> {
     pub(super) acts: Vec<Act>,
     /// How many times as fast as it happened it is shown.
     pub(super) times: f64,
+    /// Whether the ways are short enough to be written down place by place.
+    smooth: bool,
 }
 
 /// An atom that runs for a while.
@@ -56,12 +61,22 @@ impl<'f> Film<'f> {
             }
         }
         let seconds = frames.last().map_or(0.0, |frame| frame.t.seconds());
-        Self { frames, acts, times: round_step((seconds / SHOWN_MOST).max(1.0)) }
+        let smooth = trail.marks.iter().map(|mark| mark.way.len()).sum::<usize>() <= PLACES_MOST;
+        Self { frames, acts, times: round_step((seconds / SHOWN_MOST).max(1.0)), smooth }
     }
 
     /// The moments of an act.
     pub(super) fn of_act(&self, act: &Act) -> &'f [Frame] {
         self.frames.get(act.first..=act.last).unwrap_or_default()
+    }
+
+    /// The way driven in an act, with the ways of the atoms left out behind it; `None` if all the ways are too long to
+    /// be written down.
+    pub(super) fn way(&self, act: &Act, trail: &Trail) -> Option<Vec<Place>> {
+        let first = act.mark?;
+        let next = self.acts.get(self.acts.partition_point(|other| other.mark <= act.mark)).and_then(|next| next.mark);
+        let marks = trail.marks.get(first..next.unwrap_or(trail.marks.len())).filter(|_| self.smooth)?;
+        Some(marks.iter().flat_map(|mark| &mark.way).copied().collect())
     }
 
     /// When it ends, in the run's time.

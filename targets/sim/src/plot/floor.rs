@@ -5,7 +5,7 @@ use svg::node::element::{Group, Path, Rectangle};
 use super::colours::{BOX, FAINT, GOAL, GRID, INK, WHITE};
 use super::layout::{LEFT, Layout, MARGIN, round_step};
 use super::shapes::{line, polyline, tenths, text, through};
-use crate::world::{Place, World};
+use crate::world::{Outline, Place, World};
 
 /// Between two numbers of an axis, in pixels.
 const APART: f64 = 50.0;
@@ -64,14 +64,15 @@ fn walls(layout: &Layout, world: &World) -> Group {
         let zone = zone.set("width", tenths(right - left)).set("height", tenths(bottom - top));
         group = group.add(zone.set("fill", GOAL));
     }
-    // Two paths for all outlines: a map has many, and viewers draw few long paths faster than many short ones.
-    for solid in [true, false] {
-        let outlines = world.outlines.iter().filter(|outline| outline.solid == solid);
-        let data: String =
-            outlines.map(|outline| through(outline.points.iter().map(|place| layout.at(*place)))).collect();
+    // Few paths for all outlines: a map has many, and viewers draw few long paths faster than many short ones.
+    let (contours, outlines) = world.outlines.split_at(world.contours.min(world.outlines.len()));
+    let (boxes, walls): (Vec<&Outline>, Vec<&Outline>) = outlines.iter().partition(|outline| outline.solid);
+    for (outlines, fill) in [(contours.iter().collect(), BOX), (boxes, BOX), (walls, "none")] {
+        let outlines = outlines.into_iter().map(|outline| outline.points.iter().map(|place| layout.at(*place)));
+        let data: String = outlines.map(through).collect();
         if !data.is_empty() {
-            let path = Path::new().set("d", data).set("stroke", INK).set("stroke-width", 3);
-            group = group.add(path.set("fill", if solid { BOX } else { "none" }).set("stroke-linecap", "square"));
+            let path = Path::new().set("d", data).set("stroke", INK).set("stroke-width", 3).set("fill", fill);
+            group = group.add(path.set("stroke-linecap", "square"));
         }
     }
     group

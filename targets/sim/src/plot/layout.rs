@@ -1,6 +1,7 @@
 //! How large a plot is and where its parts lie, in pixels; both axes have one scale.
 
 use super::shapes::Pixel;
+use super::things;
 use crate::trail::Trail;
 use crate::world::{Place, World};
 
@@ -52,7 +53,7 @@ pub(super) struct Layout {
 impl Layout {
     /// The layout that shows all walls and the whole way.
     pub(super) fn of(world: &World, trail: &Trail) -> Self {
-        let places = || world.outlines.iter().flat_map(|outline| outline.points.iter().copied()).chain(trail.places());
+        let places = || world.places().chain(trail.places());
         let x = range(places().map(|place| place.x));
         let y = range(places().map(|place| place.y));
         let scale = (FLOOR_MOST.0 / (x.1 - x.0)).min(FLOOR_MOST.1 / (y.1 - y.0)).min(SCALE_MOST);
@@ -62,10 +63,11 @@ impl Layout {
         let letters = lines.iter().map(|(_, law, t)| law.chars().count() + t.len()).max().unwrap_or(0);
         // Sans-serif letters are less than six tenths as wide as they are high, on the whole.
         let legend = (84.0 + letters as f64 * f64::from(LETTERS) * 0.56).max(LEGEND_LEAST);
-        let listed = (lines.len() + KEY) as f64;
+        let listed = (lines.len() + KEY + things::signs(world).count()) as f64;
         let height = (high + 2.0 * MARGIN + BELOW).max(2.0 * MARGIN + (listed + 1.0) * LINE);
-        // A legend that is higher than the floor must not stretch it.
-        let y = (y.0, y.0 + (height - 2.0 * MARGIN - BELOW) / scale);
+        // A legend that is higher than the floor must not stretch it: there is more of the floor above and below.
+        let more = ((height - 2.0 * MARGIN - BELOW) / scale - (y.1 - y.0)) / 2.0;
+        let y = (y.0 - more, y.1 + more);
         Self { x, y, scale, chart: wide + 2.0 * MARGIN + LEFT, legend: libm::ceil(legend), height, lines }
     }
 
@@ -143,7 +145,7 @@ mod tests {
     use mdle_runtime::{Nanos, Pose};
 
     fn layout(world: &str, marks: usize) -> Layout {
-        let mut trail = Trail::from(&Pose::ORIGIN);
+        let mut trail = Trail::from(&Pose::ORIGIN, 0.205);
         for number in 0..marks {
             trail.began(number as u64 + 1, &"goAvoid 90 40 20 ".repeat(number % 5 + 1), Nanos(number as u64));
         }

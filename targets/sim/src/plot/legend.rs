@@ -6,6 +6,7 @@ use super::colours::{ECHO, FAINT, GOAL, INK};
 use super::labels::RADIUS;
 use super::layout::{LETTERS, Layout, MARGIN, round_step};
 use super::shapes::{badge, circle, cross, dots, polyline, text};
+use super::things;
 use crate::trail::Trail;
 use crate::world::World;
 
@@ -51,6 +52,7 @@ fn signs(x: f64, world: &World, trail: &Trail) -> Vec<(Group, &'static str)> {
         let zone = Rectangle::new().set("x", x - 9.0).set("y", -7).set("width", 18).set("height", 14);
         signs.push((Group::new().add(zone.set("fill", GOAL).set("stroke", FAINT).set("stroke-width", 0.5)), "goal"));
     }
+    signs.extend(things::signs(world).map(|sign| (sign.drawn(x), sign.said())));
     signs
 }
 

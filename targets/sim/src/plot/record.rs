@@ -6,12 +6,11 @@ use mdle_runtime::{Pose, Radians};
 use svg::node::element::{Group, Path, Rectangle};
 
 use super::colours::{self, FAINT, GRID, INK};
-use super::drawing::{body, document, touched};
+use super::drawing::{body, document};
 use super::film::Film;
 use super::layout::{LEFT, LETTERS, LINE, Layout, MARGIN, MARKS_MOST, shortened};
 use super::shapes::{Pixel, badge, circle, cross, dots, line, polyline, tenths, text};
-use super::{floor, labels, legend};
-use crate::body::RADIUS;
+use super::{floor, labels, legend, things};
 use crate::frames::{Frame, Frames};
 use crate::trail::Trail;
 use crate::world::{Place, World};
@@ -26,11 +25,12 @@ pub(crate) fn animated(world: &World, trail: &Trail) -> String {
     let film = Film::of(&frames, trail);
     let document = document(&layout, layout.height + STRIP, "The robot drives on its floor")
         .add(floor::drawn(&layout, world, layout.height + STRIP))
-        .add(body(&layout, &trail.start, FAINT))
-        .add(ways(&layout, &film))
+        .add(things::moving(&layout, world, trail, &film))
+        .add(body(&layout, &trail.start, trail.radius, FAINT))
+        .add(ways(&layout, trail, &film))
         .add(echoes(&layout, &film))
-        .add(contacts(&layout, world, trail, &film))
-        .add(robot(&layout, &film, &trail.here))
+        .add(contacts(&layout, trail, &film))
+        .add(robot(&layout, &film, trail))
         .add(highlight(&layout, &film))
         .add(legend::drawn(&layout, world, trail))
         .add(strip(&layout, trail, &film));
@@ -38,7 +38,7 @@ pub(crate) fn animated(world: &World, trail: &Trail) -> String {
 }
 
 /// The way of each atom, which grows while it runs.
-fn ways(layout: &Layout, film: &Film<'_>) -> Group {
+fn ways(layout: &Layout, trail: &Trail, film: &Film<'_>) -> Group {
     let group = Group::new().set("stroke-width", 2.5).set("stroke-linejoin", "round").set("fill", "none");
     film.acts.iter().fold(group, |group, act| {
         let frames = film.of_act(act);
@@ -57,7 +57,10 @@ fn ways(layout: &Layout, film: &Film<'_>) -> Group {
         let left = [0.0].iter().chain(&lengths).map(|driven| format!("{}", tenths(dash - driven)));
         let times = frames.iter().map(|frame| frame.t);
         let grows = film.animate("stroke-dashoffset", times.zip(left));
-        let way = polyline(pixels).set("stroke", act.mark.map_or(FAINT, colours::of));
+        // The way itself is smoother than its moments. Its length is counted as theirs is.
+        let driven = film.way(act, trail).map(|places| places.into_iter().map(|place| layout.at(place)).collect());
+        let way = polyline::<Vec<Pixel>>(driven.unwrap_or(pixels)).set("pathLength", tenths(length));
+        let way = way.set("stroke", act.mark.map_or(FAINT, colours::of));
         group.add(way.set("stroke-dasharray", dash).add(grows))
     })
 }
@@ -78,15 +81,15 @@ fn echoes(layout: &Layout, film: &Film<'_>) -> Path {
     path.add(film.switch("d", values))
 }
 
-fn contacts(layout: &Layout, world: &World, trail: &Trail, film: &Film<'_>) -> Group {
+fn contacts(layout: &Layout, trail: &Trail, film: &Film<'_>) -> Group {
     trail.contacts.iter().fold(Group::new(), |group, (place, t)| {
-        let cross = cross(layout.at(touched(world, *place)));
+        let cross = cross(layout.at(*place));
         group.add(cross.add(film.visible(*t, None)))
     })
 }
 
 /// The body, which drives and turns.
-fn robot(layout: &Layout, film: &Film<'_>, end: &Pose) -> Group {
+fn robot(layout: &Layout, film: &Film<'_>, trail: &Trail) -> Group {
     let at = |pose: &Pose| {
         let (x, y) = layout.at(Place::of(pose));
         format!("{} {}", tenths(x), tenths(y))
@@ -103,12 +106,12 @@ fn robot(layout: &Layout, film: &Film<'_>, end: &Pose) -> Group {
     });
     let turns = film.transform("rotate", headings);
     let drives = film.transform("translate", places);
-    let radius = RADIUS * layout.scale;
+    let radius = trail.radius * layout.scale;
     let disc = circle((0.0, 0.0), radius).set("fill", "#ffffff").set("fill-opacity", 0.75);
     let front = line((0.0, 0.0), (radius, 0.0));
-    let turned = Group::new().set("transform", format!("rotate({})", tenths(-end.theta.degrees())));
+    let turned = Group::new().set("transform", format!("rotate({})", tenths(-trail.here.theta.degrees())));
     let turned = turned.add(disc).add(front).add(turns);
-    let moved = Group::new().set("transform", format!("translate({})", at(end))).set("stroke", INK);
+    let moved = Group::new().set("transform", format!("translate({})", at(&trail.here))).set("stroke", INK);
     moved.set("stroke-width", 1.8).add(turned).add(drives)
 }
 

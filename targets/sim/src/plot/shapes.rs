@@ -27,7 +27,7 @@ pub(super) fn text(content: &str, (x, y): Pixel, anchor: &str) -> Text {
 }
 
 /// An open line through these places.
-pub(super) fn polyline(pixels: impl IntoIterator<Item = Pixel>) -> Path {
+pub(super) fn polyline<P: IntoIterator<Item = Pixel>>(pixels: P) -> Path {
     Path::new().set("d", through(pixels)).set("fill", "none")
 }
 

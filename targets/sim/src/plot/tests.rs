@@ -4,13 +4,13 @@ use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS};
 use svg::parser::Event;
 
 use super::{animated, svg};
-use crate::frames::Frames;
+use crate::frames::{Frame, Frames};
 use crate::trail::Trail;
 use crate::world::{Place, World};
 
 /// A run of this many turns in circles, in which an atom begins every so many turns.
 fn run(turns: u64, an_atom_every: u64, law: &str) -> Trail {
-    let mut trail = Trail::from(&Pose::ORIGIN);
+    let mut trail = Trail::from(&Pose::ORIGIN, 0.205);
     trail.frames = Some(Frames::new());
     for turn in 0..turns {
         let (t, angle) = (Nanos(turn * 100_000_000), turn as f64 * 0.05);
@@ -20,7 +20,8 @@ fn run(turns: u64, an_atom_every: u64, law: &str) -> Trail {
         let mut echoes = [None; SONARS];
         echoes[0] = Some(echo);
         trail.echoes.push(echo);
-        trail.frames.as_mut().unwrap().push(t, &trail.here, &echoes);
+        let frame = Frame { t, pose: trail.here, echoes, things: Vec::new() };
+        trail.frames.as_mut().unwrap().push(frame);
         if turn % an_atom_every == 0 {
             trail.began(turn / an_atom_every + 1, law, t);
         }
@@ -110,13 +111,38 @@ fn all_animations_repeat_together_and_their_times_are_in_order() {
     }
 }
 
+/// A door that opens, someone who walks, and one who never does; the walker has gone 2 m in the end.
+const THINGS: &str = "[[door]]\npoints = [[0, 1], [1, 1]]\nopen = [[1, 2]]\n\
+                      [[disc]]\nradius = 0.25\nschedule = [[0, 2, 0], [4, 4, 0]]\n\
+                      [[box]]\nsize = [0.5, 0.5]\nschedule = [[0, -7, -3]]\n";
+
 #[test]
-fn a_contact_is_marked_at_the_wall_that_was_touched() {
-    let world = World::parse("a wall", "[[wall]]\npoints = [[1, -1], [1, 1]]").unwrap();
-    let mut trail = Trail::from(&Pose::ORIGIN);
-    trail.contacts = vec![(Place { x: 0.795, y: 0.25 }, Nanos::ZERO), (Place { x: -1.0, y: 0.0 }, Nanos::ZERO)];
-    let touched = |number: usize| super::drawing::touched(&world, trail.contacts[number].0);
-    assert_eq!((touched(0), touched(1)), (Place { x: 1.0, y: 0.25 }, Place { x: -1.0, y: 0.0 }));
-    let (_, text) = read(&svg(&world, &trail));
-    assert!(text.contains("contact"));
+fn what_moves_is_drawn_where_it_is_and_moves_in_a_record() {
+    let world = World::parse("things", THINGS).unwrap();
+    let mut trail = run(41, 10, "stop");
+    trail.frames = Some(Frames::new());
+    for turn in 0..41_u64 {
+        let gone = Place { x: turn as f64 * 0.05, y: 0.0 };
+        let door = (!(10..20).contains(&turn)).then_some(Place { x: 0.0, y: 0.0 });
+        // Boxes come first, doors last.
+        trail.things = vec![Some(Place { x: 0.0, y: 0.0 }), Some(gone), door];
+        let things = trail.things.clone();
+        let frame = Frame { t: Nanos(turn * 100_000_000), pose: trail.here, echoes: [None; SONARS], things };
+        trail.frames.as_mut().unwrap().push(frame);
+    }
+    let (plot, record) = (svg(&world, &trail), animated(&world, &trail));
+    for picture in [&plot, &record] {
+        let (_, text) = read(picture);
+        assert!(text.contains("door") && text.contains("moves"), "{text}");
+    }
+    // Hidden from 1 s to 2 s of the run's 4 s, after which it rests 2.5 s.
+    let doors = values(&record, "animate", "values").into_iter().zip(values(&record, "animate", "keyTimes"));
+    let door = doors.filter(|(values, _)| values == "visible;hidden;visible").map(|(_, times)| times);
+    assert_eq!(door.collect::<Vec<_>>(), ["0;0.15385;0.30769"]);
+    let ways = values(&record, "animateTransform", "values");
+    let still = ways.iter().filter(|way| way.split(';').all(|at| at == "0 0")).count();
+    assert_eq!(still, 1, "{ways:?}");
+    let scale = super::layout::Layout::of(&world, &trail).scale;
+    let end = format!("{} 0", super::shapes::tenths(2.0 * scale));
+    assert!(ways.iter().any(|way| way.starts_with("0 0;") && way.ends_with(&end)), "{ways:?}");
 }

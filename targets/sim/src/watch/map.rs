@@ -1,12 +1,16 @@
 //! The floor as dots: walls and goal once, the way as it grows, and over them the robot and what it hears.
 
-use mdle_runtime::Pose;
+use mdle_runtime::{Meters, Pose, Radians};
 
 use super::canvas::{Canvas, Ink};
+use crate::moving::Thing;
 use crate::world::{Place, World};
 
 /// Kept free around what is drawn, in metres.
 const AROUND: f64 = 0.3;
+/// The least radius of a body, in dots, whose edge is drawn, and in how many dots.
+const BODY_LEAST: f64 = 2.5;
+const BODY_DOTS: u32 = 60;
 /// Eight directions of a robot, from the first axis counter-clockwise.
 const ARROWS: [char; 8] = ['→', '↗', '↑', '↖', '←', '↙', '↓', '↘'];
 
@@ -25,10 +29,10 @@ pub(super) struct Map {
 impl Map {
     /// The map of a floor, and of the places in `way`, in so many columns and rows.
     pub(super) fn of(world: &World, way: &[Place], columns: usize, rows: usize) -> Self {
-        let places = || world.outlines.iter().flat_map(|outline| &outline.points).chain(way);
+        let places = || world.places().chain(way.iter().copied());
         let range = |of: fn(&Place) -> f64| {
-            let least = places().map(of).fold(f64::INFINITY, f64::min);
-            let most = places().map(of).fold(f64::NEG_INFINITY, f64::max);
+            let least = places().map(|place| of(&place)).fold(f64::INFINITY, f64::min);
+            let most = places().map(|place| of(&place)).fold(f64::NEG_INFINITY, f64::max);
             (least - AROUND, most + AROUND)
         };
         let ((left, right), (low, high)) = (range(|place| place.x), range(|place| place.y));
@@ -65,18 +69,33 @@ impl Map {
         self.went = way.len();
     }
 
-    /// The rows of the map with the robot on it, and what it hears.
-    pub(super) fn drawn(&self, pose: &Pose, echoes: &[Place], touches: bool) -> Vec<String> {
+    /// The map with what moves on it, each gone so far.
+    pub(super) fn with<'t>(&self, things: impl Iterator<Item = (&'t Thing, Place)>) -> Self {
         let mut map = self.clone();
-        for echo in echoes {
-            map.dot(*echo, Ink::Echo);
+        for (thing, gone) in things {
+            for (from, to) in thing.corners(gone).zip(thing.corners(gone).skip(1)) {
+                map.line(from, to, Ink::Wall);
+            }
         }
+        map
+    }
+
+    /// Draws what the robot hears.
+    pub(super) fn heard(&mut self, echoes: &[Place]) {
+        for echo in echoes {
+            self.dot(*echo, Ink::Echo);
+        }
+    }
+
+    /// The rows of the map with the robot on it, whose body has this radius in metres.
+    pub(super) fn drawn(mut self, pose: &Pose, radius: f64, touches: bool) -> Vec<String> {
+        self.body(pose, radius);
         let eighths = libm::round(pose.theta.degrees() / 45.0) as i64;
         let arrow = usize::try_from(eighths.rem_euclid(8)).ok().and_then(|eighth| ARROWS.get(eighth)).unwrap_or(&'?');
         // Red where it touches something.
         let sign = format!("\x1b[0;1;97;{}m{arrow}", if touches { 41 } else { 44 });
         let (x, y) = self.at(Place::of(pose));
-        map.canvas.text(Some((((x / 2.0).max(0.0) as usize, (y / 4.0).max(0.0) as usize), &sign)))
+        self.canvas.text(Some((((x / 2.0).max(0.0) as usize, (y / 4.0).max(0.0) as usize), &sign)))
     }
 
     /// A place in dots.
@@ -96,6 +115,17 @@ impl Map {
             let part = f64::from(step) / steps;
             let (x, y) = (x1 + (x2 - x1) * part, y1 + (y2 - y1) * part);
             self.canvas.dot(libm::floor(x) as i64, libm::floor(y) as i64, ink);
+        }
+    }
+
+    /// The edge of the body, where it is seen around its arrow.
+    fn body(&mut self, pose: &Pose, radius: f64) {
+        if radius * self.scale < BODY_LEAST {
+            return;
+        }
+        for number in 0..BODY_DOTS {
+            let bearing = Radians::from_degrees(f64::from(number) * (360.0 / f64::from(BODY_DOTS)));
+            self.dot(Place::of(&pose.towards(bearing, Meters(radius))), Ink::Wall);
         }
     }
 
@@ -119,7 +149,6 @@ impl Map {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mdle_runtime::{Meters, Radians};
 
     fn shown(columns: usize, rows: usize) -> String {
         let world = World::office().unwrap();
@@ -128,7 +157,8 @@ mod tests {
         map.went(&way);
         let pose = Pose { x: Meters(0.0), y: Meters(4.3), theta: Radians::from_degrees(90.0) };
         assert!(map.shows(Place::of(&pose)) && map.is_of(columns, rows));
-        let text = map.drawn(&pose, &[Place { x: 0.0, y: 8.0 }], false).join("\n");
+        map.heard(&[Place { x: 0.0, y: 8.0 }]);
+        let text = map.drawn(&pose, 0.205, false).join("\n");
         // Colours aside.
         let mut plain = text.split('\x1b').map(|part| part.split_once('m').map_or(part, |(_, rest)| rest));
         plain.by_ref().collect()
@@ -145,6 +175,6 @@ mod tests {
             assert!(shown(columns, rows).contains('↑'), "{columns} {rows}");
         }
         let nothing = Map::of(&World::parse("empty", "").unwrap(), &[], 0, 0);
-        assert!(nothing.drawn(&Pose::ORIGIN, &[], true).is_empty());
+        assert!(nothing.drawn(&Pose::ORIGIN, 0.205, true).is_empty());
     }
 }

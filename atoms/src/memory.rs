@@ -1,0 +1,106 @@
+//! Where echoes came from in the last seconds: on a detour out of a corner the sonars do not see all of it at once.
+
+use mdle_runtime::capability::SonarRing;
+use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, SonarId};
+
+/// How many places are kept.
+pub(crate) const PLACES: usize = 96;
+/// Echoes from nearer to each other than this, in metres, are one place.
+const ONE_PLACE: f64 = 0.1;
+/// A place is forgotten after this long, so that what went away does not stay.
+const KEPT: Nanos = Nanos(15_000_000_000);
+/// Echoes from further away than this, in metres, are not kept.
+const NEAR: f64 = 1.2;
+
+/// A place, in the odometry's axes, and when something was last heard there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Heard {
+    x: f64,
+    y: f64,
+    at: Nanos,
+}
+
+/// Places where something was heard.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Memory {
+    places: [Option<Heard>; PLACES],
+}
+
+impl Memory {
+    pub(crate) const EMPTY: Self = Self { places: [None; PLACES] };
+
+    /// Takes in the newest ping of each sonar.
+    pub(crate) fn take<Y: SonarRing>(&mut self, y: &Y) {
+        for number in 0..SONARS as u8 {
+            let sonar = SonarId::new(number);
+            let newest = y.pings(sonar).newest_first().next();
+            let Some((ping, range)) = newest.and_then(|ping| Some((ping, ping.range?))) else { continue };
+            if range.0 < NEAR {
+                let axis = Radians(ping.pose.theta.0 + sonar.bearing().0);
+                let place = ping.pose.towards(axis, Meters(y.ring_radius().0 + range.0));
+                self.keep(Heard { x: place.x.0, y: place.y.0, at: ping.at });
+            }
+        }
+    }
+
+    /// Keeps a place in the stead of the same one, of a free one, or of the oldest.
+    fn keep(&mut self, heard: Heard) {
+        let same = |place: &Option<Heard>| {
+            place.is_some_and(|place| libm::hypot(place.x - heard.x, place.y - heard.y) < ONE_PLACE)
+        };
+        if let Some(place) = self.places.iter_mut().find(|place| same(place)).and_then(Option::as_mut) {
+            place.at = place.at.max(heard.at);
+            return;
+        }
+        if let Some(place) = self.places.iter_mut().min_by_key(|place| place.map(|place| place.at)) {
+            *place = Some(heard);
+        }
+    }
+
+    /// The places not yet forgotten at this time, from `here`, in the odometry's axes.
+    pub(crate) fn around(&self, here: Pose, now: Nanos) -> [Option<(f64, f64)>; PLACES] {
+        self.places.map(|place| {
+            let place = place.filter(|place| now.since(place.at) < KEPT)?;
+            Some((place.x - here.x.0, place.y - here.y.0))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trial::Sensed;
+
+    /// What is kept after these pings straight ahead, each by a robot so far along the first axis.
+    fn kept(pings: &[(f64, f64)], now: u64) -> usize {
+        let (mut y, mut memory) = (Sensed::default(), Memory::EMPTY);
+        for (x, range) in pings {
+            y.pose.x = Meters(*x);
+            y.ping(SonarId::new(0), Some(*range));
+            memory.take(&y);
+        }
+        memory.around(y.pose, Nanos(now)).iter().flatten().count()
+    }
+
+    #[test]
+    fn one_place_is_kept_once_and_what_is_far_not_at_all() {
+        assert_eq!(kept(&[(0.0, 1.0), (0.2, 0.8), (0.4, 0.61)], 0), 1);
+        assert_eq!(kept(&[(0.0, 1.0), (0.4, 1.0)], 0), 2);
+        assert_eq!(kept(&[(0.0, 1.5)], 0), 0);
+    }
+
+    #[test]
+    fn what_was_heard_is_forgotten_in_time() {
+        assert_eq!(kept(&[(0.0, 1.0)], KEPT.0 - 1), 1);
+        assert_eq!(kept(&[(0.0, 1.0)], KEPT.0), 0);
+    }
+
+    #[test]
+    fn the_oldest_place_makes_room() {
+        let mut pings = [(0.0, 1.0); 200];
+        for (number, ping) in (0..200_u32).zip(&mut pings) {
+            ping.0 = f64::from(number);
+        }
+        assert_eq!(kept(&pings, 0), PLACES);
+    }
+}

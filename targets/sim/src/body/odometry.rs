@@ -1,0 +1,67 @@
+//! What the wheels tell of the way, and how that goes wrong.
+
+use mdle_runtime::{Meters, Pose, Radians};
+
+use crate::model::Slip;
+use crate::noise::{Noise, Purpose};
+use crate::world::Place;
+
+/// Where the body takes itself to be: the origin at the start.
+#[derive(Debug, Clone)]
+pub(crate) struct Odometry {
+    pub(crate) pose: Pose,
+    /// What is wrong in this run, if anything is.
+    errors: Option<Errors>,
+}
+
+#[derive(Debug, Clone)]
+struct Errors {
+    noise: Noise,
+    /// What is told for each metre and each radian that the wheels roll, and the turn that is told for each metre.
+    way: f64,
+    turn: f64,
+    bend: f64,
+    wander: f64,
+}
+
+impl Odometry {
+    pub(crate) fn new(slip: Option<Slip>, seed: Option<u64>) -> Self {
+        let errors = slip.zip(seed).map(|(slip, seed)| {
+            let mut noise = Noise::of(seed, Purpose::Slip);
+            let way = 1.0 + slip.way * noise.normal();
+            let turn = 1.0 + slip.turn * noise.normal();
+            let bend = slip.bend * noise.normal();
+            Errors { noise, way, turn, bend, wander: slip.wander }
+        });
+        Self { pose: Pose::ORIGIN, errors }
+    }
+
+    /// The wheels have rolled an arc of length `way` that turns by `turn`.
+    pub(crate) fn rolled(&mut self, way: f64, turn: f64) {
+        let (mut told, mut turned) = (way, turn);
+        if let Some(errors) = self.errors.as_mut().filter(|_| way != 0.0 || turn != 0.0) {
+            told = way * errors.way;
+            let wander = errors.wander * libm::sqrt(way.abs()) * errors.noise.normal();
+            turned = turn * errors.turn + way.abs() * errors.bend + wander;
+        }
+        self.pose = moved(&self.pose, told, turned);
+    }
+
+    /// The body, of true heading `heading`, was moved by `way` and turned by `turn`, by whatever means, and knows it.
+    pub(crate) fn carried(&mut self, heading: Radians, way: Place, turn: f64) {
+        let (sin, cos) = libm::sincos(self.pose.theta.0 - heading.0);
+        self.pose = Pose {
+            x: Meters(self.pose.x.0 + (way.x * cos - way.y * sin)),
+            y: Meters(self.pose.y.0 + (way.x * sin + way.y * cos)),
+            theta: Radians(self.pose.theta.0 + turn).wrapped(),
+        };
+    }
+}
+
+/// The pose after an arc of length `way` that turns by `turn`: exactly, by its chord.
+pub(crate) fn moved(pose: &Pose, way: f64, turn: f64) -> Pose {
+    let half = turn / 2.0;
+    let chord = if half.abs() < 1e-9 { way } else { way * libm::sin(half) / half };
+    let end = pose.towards(Radians(pose.theta.0 + half), Meters(chord));
+    Pose { theta: Radians(pose.theta.0 + turn).wrapped(), ..end }
+}

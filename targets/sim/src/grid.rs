@@ -1,0 +1,245 @@
+//! Segments in a uniform grid: the first one a ray meets, and those near a place. All of the simulator's geometry of rays
+//! is here.
+//!
+//! A ray visits the cells on its way in order (Amanatides and Woo, 1987) and stops in the first cell that it does not
+//! leave before a hit. Only additions, multiplications, divisions and square roots: the same bits on every machine.
+
+use crate::world::Place;
+
+/// Cells for each segment, about: more are faster and take more memory.
+const CELLS_FOR_EACH: f64 = 3.0;
+/// The most cells along one axis.
+const CELLS_MOST: f64 = 4096.0;
+/// The cells that a segment of mean length crosses at most: a world of long walls gets larger cells.
+const CROSSED_MOST: f64 = 8.0;
+/// How much further than its ends a segment is entered, as a part of a cell, so that rounding loses none.
+const BEYOND: f64 = 1e-6;
+
+/// A segment from `from`, by `along`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Segment {
+    pub(crate) from: Place,
+    pub(crate) along: Place,
+}
+
+/// Where a ray ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Hit {
+    /// In metres from where the ray began.
+    pub(crate) range: f64,
+    /// The number of the segment.
+    pub(crate) segment: usize,
+}
+
+/// Segments, entered in each cell that they touch.
+#[derive(Debug, Clone)]
+pub(crate) struct Grid {
+    least: Place,
+    /// The length of a cell's side, in metres.
+    cell: f64,
+    columns: usize,
+    rows: usize,
+    /// Where the entries of a cell begin; one more than there are cells.
+    starts: Vec<u32>,
+    entries: Vec<(Segment, u32)>,
+}
+
+impl Segment {
+    pub(crate) fn between(from: Place, to: Place) -> Self {
+        Self { from, along: Place { x: to.x - from.x, y: to.y - from.y } }
+    }
+
+    pub(crate) fn to(&self) -> Place {
+        Place { x: self.from.x + self.along.x, y: self.from.y + self.along.y }
+    }
+
+    /// How far a ray from `from` in the unit direction `way` goes before it meets this segment, if below `most`.
+    pub(crate) fn met(&self, from: Place, way: Place, most: f64) -> Option<f64> {
+        let (ox, oy) = (self.from.x - from.x, self.from.y - from.y);
+        // Cramer's rule; divided only once it is known that there is a hit.
+        let determinant = way.x * self.along.y - way.y * self.along.x;
+        let sign = if determinant < 0.0 { -1.0 } else { 1.0 };
+        let size = determinant * sign;
+        let part = (ox * way.y - oy * way.x) * sign;
+        let range = (ox * self.along.y - oy * self.along.x) * sign;
+        let met = 0.0 <= part && part <= size && 0.0 <= range && range < most * size;
+        met.then(|| range / size)
+    }
+
+    /// The place of this segment that is nearest to `at`.
+    pub(crate) fn nearest(&self, at: Place) -> Place {
+        let (ox, oy) = (at.x - self.from.x, at.y - self.from.y);
+        let part =
+            (ox * self.along.x + oy * self.along.y) / (self.along.x * self.along.x + self.along.y * self.along.y);
+        // No segment has length zero.
+        let part = part.clamp(0.0, 1.0);
+        Place { x: self.from.x + part * self.along.x, y: self.from.y + part * self.along.y }
+    }
+}
+
+impl Grid {
+    /// A grid of these segments, whose coordinates must be finite.
+    pub(crate) fn of(segments: &[Segment]) -> Self {
+        let ends = || segments.iter().flat_map(|segment| [segment.from, segment.to()]);
+        let bound = |of: fn(Place) -> f64, pick: fn(f64, f64) -> f64| ends().map(of).reduce(pick).unwrap_or(0.0);
+        let least = Place { x: bound(|place| place.x, f64::min), y: bound(|place| place.y, f64::min) };
+        let most = Place { x: bound(|place| place.x, f64::max), y: bound(|place| place.y, f64::max) };
+        let (width, height) = (most.x - least.x, most.y - least.y);
+        let cells = CELLS_FOR_EACH * segments.len().max(1) as f64;
+        let long = width.max(height).max(1e-3);
+        let lengths = segments.iter().map(|segment| segment.along.x.abs() + segment.along.y.abs());
+        let crossing = lengths.sum::<f64>() / (CROSSED_MOST * segments.len().max(1) as f64);
+        let cell = libm::sqrt(width * height / cells).max(long / cells.min(CELLS_MOST)).max(crossing).max(1e-3);
+        let count = |length: f64| (length / cell) as usize + 1;
+        let mut grid =
+            Self { least, cell, columns: count(width), rows: count(height), starts: Vec::new(), entries: Vec::new() };
+        grid.enter(segments);
+        grid
+    }
+
+    /// Enters all segments: first counted for each cell, then put in place.
+    fn enter(&mut self, segments: &[Segment]) {
+        let mut starts = vec![0_u32; self.columns * self.rows + 1];
+        for segment in segments {
+            self.touched(segment, |cell| starts[cell] += 1);
+        }
+        let mut total = 0;
+        for start in &mut starts {
+            total += std::mem::replace(start, total);
+        }
+        let nothing = Segment { from: self.least, along: Place { x: 0.0, y: 0.0 } };
+        let mut entries = vec![(nothing, 0); total as usize];
+        let mut next = starts.clone();
+        for (segment, number) in segments.iter().zip(0..) {
+            self.touched(segment, |cell| {
+                entries[next[cell] as usize] = (*segment, number);
+                next[cell] += 1;
+            });
+        }
+        (self.starts, self.entries) = (starts, entries);
+    }
+
+    /// Calls `take` with every cell that a segment touches: column by column, the rows between where it comes in and out.
+    fn touched(&self, segment: &Segment, mut take: impl FnMut(usize)) {
+        let Segment { from, along } = *segment;
+        let to = segment.to();
+        let beyond = BEYOND * self.cell;
+        let (left, right) = (from.x.min(to.x) - beyond, from.x.max(to.x) + beyond);
+        let (low, high) = (from.y.min(to.y) - beyond, from.y.max(to.y) + beyond);
+        for column in self.column(left)..=self.column(right) {
+            // The part of the segment that lies in this column.
+            let edge = self.least.x + column as f64 * self.cell;
+            let rises = |x: f64| from.y + along.y * ((x - from.x) / along.x).clamp(0.0, 1.0);
+            let (mut bottom, mut top) = (low, high);
+            if along.x != 0.0 {
+                let (one, other) = (rises(edge - beyond), rises(edge + self.cell + beyond));
+                (bottom, top) = (one.min(other) - beyond, one.max(other) + beyond);
+            }
+            for row in self.row(bottom.max(low))..=self.row(top.min(high)) {
+                take(row * self.columns + column);
+            }
+        }
+    }
+
+    fn column(&self, x: f64) -> usize {
+        // Below zero becomes zero.
+        (((x - self.least.x) / self.cell) as usize).min(self.columns - 1)
+    }
+
+    fn row(&self, y: f64) -> usize {
+        (((y - self.least.y) / self.cell) as usize).min(self.rows - 1)
+    }
+
+    fn entries(&self, column: usize, row: usize) -> &[(Segment, u32)] {
+        let cell = row * self.columns + column;
+        &self.entries[self.starts[cell] as usize..self.starts[cell + 1] as usize]
+    }
+
+    /// What a ray from `from` in the unit direction `way` meets first, if nearer than `most` metres.
+    pub(crate) fn ray(&self, from: Place, way: Place, most: f64) -> Option<Hit> {
+        let (entered, left) = self.crossed(from, way, most)?;
+        let at = Place { x: from.x + entered * way.x, y: from.y + entered * way.y };
+        let (mut column, mut row) = (self.column(at.x), self.row(at.y));
+        let mut across = Axis::of(from.x - self.least.x, way.x, column, self.cell);
+        let mut up = Axis::of(from.y - self.least.y, way.y, row, self.cell);
+        let mut best = Hit { range: most, segment: usize::MAX };
+        loop {
+            for (segment, number) in self.entries(column, row) {
+                if let Some(range) = segment.met(from, way, best.range) {
+                    best = Hit { range, segment: *number as usize };
+                }
+            }
+            let border = across.next.min(up.next);
+            if best.range <= border || left < border {
+                break;
+            }
+            let inside = if across.next < up.next {
+                across.step(&mut column, self.columns)
+            } else {
+                up.step(&mut row, self.rows)
+            };
+            if !inside {
+                break;
+            }
+        }
+        (best.segment != usize::MAX).then_some(best)
+    }
+
+    /// From where to where a ray is over the grid; `None` if it never is.
+    fn crossed(&self, from: Place, way: Place, most: f64) -> Option<(f64, f64)> {
+        let beyond = BEYOND * self.cell;
+        let slab = |from: f64, way: f64, cells: usize| {
+            let (least, most) = (-beyond, cells as f64 * self.cell + beyond);
+            if way == 0.0 {
+                let inside = least <= from && from <= most;
+                return inside.then_some((f64::NEG_INFINITY, f64::INFINITY));
+            }
+            let (one, other) = ((least - from) / way, (most - from) / way);
+            Some((one.min(other), one.max(other)))
+        };
+        let (left, right) = slab(from.x - self.least.x, way.x, self.columns)?;
+        let (bottom, top) = slab(from.y - self.least.y, way.y, self.rows)?;
+        let (entered, left) = (left.max(bottom).max(0.0), right.min(top).min(most));
+        (entered <= left).then_some((entered, left))
+    }
+
+    /// Calls `take` with each segment that touches the cells within `reach` of `at`; one in several cells comes several
+    /// times.
+    pub(crate) fn near(&self, at: Place, reach: f64, mut take: impl FnMut(usize, &Segment)) {
+        for row in self.row(at.y - reach)..=self.row(at.y + reach) {
+            for column in self.column(at.x - reach)..=self.column(at.x + reach) {
+                for (segment, number) in self.entries(column, row) {
+                    take(*number as usize, segment);
+                }
+            }
+        }
+    }
+}
+
+/// A ray along one axis of the grid.
+struct Axis {
+    /// How far along the ray the next border lies.
+    next: f64,
+    /// From one border to the next.
+    between: f64,
+    forward: bool,
+}
+
+impl Axis {
+    fn of(from: f64, way: f64, number: usize, cell: f64) -> Self {
+        let forward = way > 0.0;
+        let border = (number + usize::from(forward)) as f64 * cell;
+        if way == 0.0 {
+            return Self { next: f64::INFINITY, between: 0.0, forward };
+        }
+        Self { next: (border - from) / way, between: (cell / way).abs(), forward }
+    }
+
+    /// On to the next cell, if there is one.
+    fn step(&mut self, number: &mut usize, count: usize) -> bool {
+        self.next += self.between;
+        let next = if self.forward { *number + 1 } else { number.wrapping_sub(1) };
+        *number = next;
+        next < count
+    }
+}

@@ -1,0 +1,176 @@
+//! What the simulated robot can be: a body, and what of it can be left out.
+
+mod figures;
+
+use mdle_runtime::{Nanos, Radians, SonarId};
+
+use figures::{atrv, ideal, scout};
+
+/// A body to simulate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Body {
+    /// The size and the motors of a Super Scout, whose sonars all ping in every turn and hear the nearest thing in
+    /// their cones, and whose odometry is true whatever happens.
+    #[default]
+    Ideal,
+    /// A Nomadic Super Scout II: its sonars fire in turn, miss what they do not face, and err; its wheels slip.
+    Scout,
+    /// An iRobot ATRV-mini, taken for the smallest disc around it: 24 sonars on four boards, skid steering.
+    Atrv,
+}
+
+/// What of a body can be left out, to see what it does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// The lobe of a sonar: without it everything in a cone of 25° is heard alike.
+    Lobe,
+    /// Surfaces that reflect like mirrors: without it they are heard from any angle.
+    Specular,
+    /// The least range: without it things are heard however near.
+    Minimum,
+    /// The steps in which ranges come: without them ranges are exact.
+    Steps,
+    /// Errors of ranges and missed echoes, which take a seed.
+    Noise,
+    /// Ranges that mean nothing, which take a seed.
+    Outliers,
+    /// The order in time: without it all sonars ping in every turn.
+    Order,
+    /// The slip of the wheels, which takes a seed.
+    Slip,
+}
+
+/// All parts with the names that options give them.
+pub(crate) const PARTS: [(&str, Part); 8] = [
+    ("lobe", Part::Lobe),
+    ("specular", Part::Specular),
+    ("minimum", Part::Minimum),
+    ("steps", Part::Steps),
+    ("noise", Part::Noise),
+    ("outliers", Part::Outliers),
+    ("order", Part::Order),
+    ("slip", Part::Slip),
+];
+
+/// All that is to be known to simulate a body.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Model {
+    pub(crate) drive: Drive,
+    pub(crate) hearing: Hearing,
+    /// Bumper switches: number `i` of them lies at `i` parts of a circle counter-clockwise from the front.
+    pub(crate) switches: u8,
+}
+
+/// Wheels and outline. Metres and seconds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Drive {
+    /// Of the disc.
+    pub(crate) radius: f64,
+    /// The distance between the wheels.
+    pub(crate) wheel_base: f64,
+    /// The fastest a wheel turns.
+    pub(crate) fastest: f64,
+    /// How fast the speed of a wheel changes.
+    pub(crate) acceleration: f64,
+    /// Wheel speeds are commanded in whole numbers of this, rounded towards zero.
+    pub(crate) unit: f64,
+    /// `None` for odometry that is true whatever happens.
+    pub(crate) slip: Option<Slip>,
+}
+
+/// How odometry goes wrong: spreads of normal distributions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Slip {
+    /// Of the way driven, as a part, once for a run: what the tyres measure.
+    pub(crate) way: f64,
+    /// Of the angle turned, as a part, once for a run: where on the floor the wheels bear.
+    pub(crate) turn: f64,
+    /// Of the heading, in radians for each metre driven, once for a run: wheels that are not quite alike.
+    pub(crate) bend: f64,
+    /// Of the heading, in radians, after a metre driven; grows with its root.
+    pub(crate) wander: f64,
+}
+
+/// The sonars. Metres and radians.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Hearing {
+    pub(crate) transducers: Vec<Transducer>,
+    /// The distance from the centre at which laws take the transducers to be.
+    pub(crate) ring_radius: f64,
+    /// Where the outermost rays lie.
+    pub(crate) half_cone: Radians,
+    /// How far off the axis something that faces the sonar is just heard; `None`: as far as there are rays.
+    pub(crate) lobe: Option<Radians>,
+    /// From how far off its normal a surface on the axis is just heard; `None`: from anywhere.
+    pub(crate) facing: Option<Radians>,
+    pub(crate) least: f64,
+    pub(crate) most: f64,
+    /// Ranges are whole numbers of this, rounded down; 0 for exact ones.
+    pub(crate) step: f64,
+    /// The spread of a range's error.
+    pub(crate) spread: f64,
+    /// How much all ranges of a run are too long or too short at most, as a part: the air's temperature.
+    pub(crate) scale: f64,
+    /// The spread of how well an echo is heard, as a part of what it takes to hear one.
+    pub(crate) fading: f64,
+    /// The share of pings that bring no echo whatever is there.
+    pub(crate) misses: f64,
+    /// The share of pings that bring any range, whatever is there.
+    pub(crate) outliers: f64,
+    /// Which transducers ping together, in order, each so long after the one before; `None`: all in every turn.
+    pub(crate) order: Option<Order>,
+}
+
+/// Transducers that ping together, one group after the other.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Order {
+    pub(crate) groups: Vec<Vec<usize>>,
+    pub(crate) gap: Nanos,
+}
+
+/// A sonar on the body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Transducer {
+    /// Forward and to the left of the centre.
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) bearing: Radians,
+    /// The direction, of the paper's sixteen, that it speaks for.
+    pub(crate) sonar: SonarId,
+}
+
+/// From the axis of a cone without a lobe to its edge.
+const HALF_CONE: Radians = Radians::from_degrees(12.5);
+
+impl Model {
+    /// The model of a body without some of its parts.
+    pub(crate) fn of(body: Body, without: &[Part]) -> Self {
+        let mut model = match body {
+            Body::Ideal => ideal(),
+            Body::Scout => scout(),
+            Body::Atrv => atrv(),
+        };
+        for part in without {
+            model.leave_out(*part);
+        }
+        model
+    }
+
+    fn leave_out(&mut self, part: Part) {
+        let Self { drive, hearing, .. } = self;
+        match part {
+            Part::Lobe => (hearing.lobe, hearing.half_cone) = (None, HALF_CONE),
+            Part::Specular => hearing.facing = None,
+            Part::Minimum => hearing.least = 0.0,
+            Part::Steps => hearing.step = 0.0,
+            Part::Noise => {
+                (hearing.spread, hearing.scale, hearing.fading, hearing.misses) = (0.0, 0.0, 0.0, 0.0);
+            }
+            Part::Outliers => hearing.outliers = 0.0,
+            Part::Order => hearing.order = None,
+            Part::Slip => {
+                drive.slip = drive.slip.map(|_| Slip { way: 0.0, turn: 0.0, bend: 0.0, wander: 0.0 });
+            }
+        }
+    }
+}

@@ -1,0 +1,230 @@
+//! What moves in a world: doors that open and close, boxes and discs on a schedule.
+//!
+//! Nothing moves into the robot: a door that would close on it stays open, and whoever would walk into it stops in contact
+//! with it, until it is gone. Its schedule goes on from there, so it comes later everywhere.
+
+use crate::grid::{Hit, Segment};
+use crate::surfaces::{Ends, Surface, apart, ends, surface};
+use crate::world::{Outline, Place};
+
+/// How near something may come to the robot, in metres: the bumper feels it.
+const STOPS_AT: f64 = 1e-4;
+
+/// Something that moves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Thing {
+    /// A closed door, or a box or disc where its schedule begins.
+    pub outline: Outline,
+    /// What it does when.
+    pub schedule: Schedule,
+}
+
+/// What something does when, in seconds since the robot was switched on.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Schedule {
+    /// A door, closed but for these times: from, to.
+    Open {
+        /// The times, none of which overlaps another.
+        times: Vec<[f64; 2]>,
+        /// Begins anew after this many seconds.
+        every: Option<f64>,
+    },
+    /// Straight from place to place.
+    Way {
+        /// When its centre is where: at least one, in order. It stands before the first and after the last.
+        stops: Vec<Stop>,
+        /// Begins anew at the first after the last.
+        repeats: bool,
+    },
+}
+
+/// When something is where.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stop {
+    /// In seconds.
+    pub t: f64,
+    /// The centre.
+    pub at: Place,
+}
+
+impl Thing {
+    /// Its corners when it has gone this far from where it begins.
+    pub(crate) fn corners(&self, gone: Place) -> impl Iterator<Item = Place> {
+        self.outline.points.iter().map(move |point| Place { x: point.x + gone.x, y: point.y + gone.y })
+    }
+
+    /// The places of its centre between which it goes; none of a door.
+    pub(crate) fn way(&self) -> impl Iterator<Item = Place> {
+        let stops = match &self.schedule {
+            Schedule::Open { .. } => [].as_slice(),
+            Schedule::Way { stops, .. } => stops.as_slice(),
+        };
+        stops.iter().map(|stop| stop.at)
+    }
+
+    /// All places of its corners between which it goes.
+    pub(crate) fn places(&self) -> impl Iterator<Item = Place> {
+        let still = Place { x: 0.0, y: 0.0 };
+        let first = self.way().next();
+        let gone = self.way().filter_map(move |at| first.map(|first| Place { x: at.x - first.x, y: at.y - first.y }));
+        [still].into_iter().chain(gone.skip(1)).flat_map(|gone| self.corners(gone))
+    }
+}
+
+impl Schedule {
+    /// How far it has gone from where it begins; `None` for an open door.
+    fn moved(&self, t: f64) -> Option<Place> {
+        match self {
+            Self::Open { times, every } => {
+                let t = every.map_or(t, |every| libm::fmod(t, every));
+                let open = times.iter().any(|[from, to]| *from <= t && t < *to);
+                (!open).then_some(Place { x: 0.0, y: 0.0 })
+            }
+            Self::Way { stops, repeats } => {
+                let (first, last) = (stops.first()?, stops.last()?);
+                let t = if *repeats && t > last.t && last.t > first.t {
+                    first.t + libm::fmod(t - first.t, last.t - first.t)
+                } else {
+                    t
+                };
+                let Place { x, y } = at(stops, t).unwrap_or(if t < first.t { first.at } else { last.at });
+                Some(Place { x: x - first.at.x, y: y - first.at.y })
+            }
+        }
+    }
+}
+
+/// Where something is on its way between two stops.
+fn at(stops: &[Stop], t: f64) -> Option<Place> {
+    let (from, to) = stops.iter().zip(stops.iter().skip(1)).find(|(from, to)| from.t <= t && t < to.t)?;
+    let part = (t - from.t) / (to.t - from.t);
+    let between = |from: f64, to: f64| from + part * (to - from);
+    Some(Place { x: between(from.at.x, to.at.x), y: between(from.at.y, to.at.y) })
+}
+
+/// A thing at a time.
+#[derive(Debug, Clone)]
+pub(crate) struct Moving {
+    schedule: Schedule,
+    /// By its own clock, which stands while it waits.
+    t: f64,
+    /// Where it begins.
+    first: Vec<Segment>,
+    ends: Vec<Ends>,
+    /// Where it is now: nowhere for an open door.
+    now: Vec<Segment>,
+    /// A circle around it where it begins, and how far it has gone.
+    centre: Place,
+    radius: f64,
+    moved: Option<Place>,
+}
+
+impl Moving {
+    pub(crate) fn of(thing: &Thing) -> Self {
+        let points = &thing.outline.points;
+        let first: Vec<_> =
+            points.iter().zip(points.iter().skip(1)).map(|(from, to)| Segment::between(*from, *to)).collect();
+        let bound =
+            |of: fn(&Place) -> f64, pick: fn(f64, f64) -> f64| points.iter().map(of).reduce(pick).unwrap_or(0.0);
+        let middle = |of: fn(&Place) -> f64| (bound(of, f64::min) + bound(of, f64::max)) / 2.0;
+        let centre = Place { x: middle(|place| place.x), y: middle(|place| place.y) };
+        let radius = points.iter().map(|point| apart(centre, *point)).fold(0.0, f64::max);
+        let ends = first.iter().map(|segment| ends(segment, first.iter())).collect();
+        let mut moving = Self {
+            schedule: thing.schedule.clone(),
+            t: 0.0,
+            first,
+            ends,
+            now: Vec::new(),
+            centre,
+            radius,
+            moved: None,
+        };
+        moving.put(moving.schedule.moved(0.0));
+        moving
+    }
+
+    /// How far it has gone from where it begins; `None` for an open door.
+    pub(crate) fn gone(&self) -> Option<Place> {
+        self.moved
+    }
+
+    /// Its sides, where they are now.
+    pub(crate) fn segments(&self) -> impl Iterator<Item = &Segment> {
+        self.now.iter()
+    }
+
+    fn put(&mut self, moved: Option<Place>) {
+        self.now.clear();
+        if let Some(Place { x, y }) = moved {
+            let there = |place: Place| Place { x: place.x + x, y: place.y + y };
+            self.now.extend(self.first.iter().map(|segment| Segment { from: there(segment.from), ..*segment }));
+        }
+        self.moved = moved;
+    }
+
+    /// Lets its clock go on, unless that would move it into the disc around `body`.
+    pub(crate) fn advance(&mut self, seconds: f64, body: Place, radius: f64) {
+        let moved = self.schedule.moved(self.t + seconds);
+        if moved == self.moved {
+            self.t += seconds;
+            return;
+        }
+        let free = radius + STOPS_AT;
+        let mut part = 1.0;
+        // Halved until it is free, which it was before it moved; a door has no half way.
+        while part > 1e-3 {
+            let moved = self.schedule.moved(self.t + seconds * part);
+            let (was, already) = (self.moved, self.distance(body, f64::INFINITY));
+            self.put(moved);
+            let distance = self.distance(body, f64::INFINITY);
+            if distance >= free || distance >= already {
+                self.t += seconds * part;
+                return;
+            }
+            self.put(was);
+            part /= 2.0;
+        }
+    }
+
+    /// The circle around it, now.
+    fn around(&self) -> Option<Place> {
+        let Place { x, y } = self.moved?;
+        Some(Place { x: self.centre.x + x, y: self.centre.y + y })
+    }
+
+    /// Its distance from `at`, exact where it is below `most`; infinite for an open door.
+    pub(crate) fn distance(&self, at: Place, most: f64) -> f64 {
+        match self.around() {
+            Some(around) if apart(around, at) - self.radius < most => {
+                self.now.iter().fold(f64::INFINITY, |least, segment| least.min(apart(segment.nearest(at), at)))
+            }
+            Some(_) | None => f64::INFINITY,
+        }
+    }
+
+    /// What a ray meets of it, if nearer than `most`.
+    pub(crate) fn ray(&self, from: Place, way: Place, most: f64) -> Option<Hit> {
+        let around = self.around()?;
+        let (x, y) = (around.x - from.x, around.y - from.y);
+        let (along, across) = (x * way.x + y * way.y, x * way.y - y * way.x);
+        if across.abs() > self.radius || along < -self.radius || along - self.radius > most {
+            return None;
+        }
+        let mut best = None;
+        for (number, segment) in self.now.iter().enumerate() {
+            let nearer = best.map_or(most, |hit: Hit| hit.range);
+            if let Some(range) = segment.met(from, way, nearer) {
+                best = Some(Hit { range, segment: number });
+            }
+        }
+        best
+    }
+
+    /// The same, with what the ray finds there.
+    pub(crate) fn found(&self, from: Place, way: Place, most: f64) -> Option<Surface> {
+        let Hit { range, segment } = self.ray(from, way, most)?;
+        let at = Place { x: from.x + range * way.x, y: from.y + range * way.y };
+        Some(surface(self.now.get(segment)?, self.ends.get(segment)?, at, way, range))
+    }
+}

@@ -1,0 +1,46 @@
+//! Random numbers of a run: each purpose has a stream of its own, so that leaving one out changes no other.
+
+use std::f64::consts::TAU;
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+/// Numbers drawn one after the other, the same for the same seed and purpose.
+#[derive(Debug, Clone)]
+pub(crate) struct Noise(ChaCha8Rng);
+
+/// What the numbers are for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Purpose {
+    /// Errors of the sonars' ranges.
+    Ranges = 0,
+    /// Ranges that mean nothing.
+    Outliers = 1,
+    /// How well echoes are heard.
+    Fading = 2,
+    /// The slip of the wheels.
+    Slip = 3,
+    /// Where the robot starts.
+    Start = 4,
+}
+
+impl Noise {
+    pub(crate) fn of(seed: u64, purpose: Purpose) -> Self {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        random.set_stream(purpose as u64);
+        Self(random)
+    }
+
+    /// A number from the standard normal distribution, by Box and Muller's transform.
+    pub(crate) fn normal(&mut self) -> f64 {
+        let (one, other) = (self.uniform(), self.uniform());
+        // 1 - u lies above 0, where the logarithm is finite.
+        libm::sqrt(-2.0 * libm::log(1.0 - one)) * libm::cos(TAU * other)
+    }
+
+    /// A number from 0 up to, not including, 1.
+    pub(crate) fn uniform(&mut self) -> f64 {
+        // The upper 53 bits are all that an f64 can hold.
+        (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}

@@ -1,0 +1,136 @@
+//! What moves in a world as it is drawn: doors dashed, the rest where it is in the end, with the way it goes.
+
+use svg::node::element::{Group, Path};
+
+use super::colours::{BOX, FAINT, INK};
+use super::film::Film;
+use super::layout::Layout;
+use super::shapes::{Pixel, polyline, tenths};
+use crate::frames::Frame;
+use crate::moving::{Schedule, Thing};
+use crate::trail::Trail;
+use crate::world::{Place, World};
+
+/// Of doors.
+const DASHES: &str = "5 4";
+/// Where something begins.
+const NOWHERE: Place = Place { x: 0.0, y: 0.0 };
+
+/// A sign that the legend explains.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Sign {
+    Door,
+    Moves,
+}
+
+impl Sign {
+    fn of(thing: &Thing) -> Self {
+        match thing.schedule {
+            Schedule::Open { .. } => Self::Door,
+            Schedule::Way { .. } => Self::Moves,
+        }
+    }
+
+    /// The sign around height 0.
+    pub(super) fn drawn(self, x: f64) -> Group {
+        match self {
+            Self::Door => Group::new().add(door([(x - 9.0, 0.0), (x + 9.0, 0.0)])),
+            Self::Moves => {
+                let corners = [(x - 4.0, -4.0), (x + 4.0, -4.0), (x + 4.0, 4.0), (x - 4.0, 4.0), (x - 4.0, -4.0)];
+                Group::new().add(way([(x - 10.0, 0.0), (x + 10.0, 0.0)])).add(outline(corners))
+            }
+        }
+    }
+
+    /// What it means.
+    pub(super) fn said(self) -> &'static str {
+        match self {
+            Self::Door => "door",
+            Self::Moves => "moves",
+        }
+    }
+}
+
+/// The signs that occur.
+pub(super) fn signs(world: &World) -> impl Iterator<Item = Sign> {
+    [Sign::Door, Sign::Moves].into_iter().filter(|sign| world.things.iter().any(|thing| Sign::of(thing) == *sign))
+}
+
+/// Everything that moves, where it is in the end.
+pub(super) fn drawn(layout: &Layout, world: &World, trail: &Trail) -> Group {
+    let things = world.things.iter().zip(&trail.things);
+    things.fold(ways(layout, world), |group, (thing, gone)| match Sign::of(thing) {
+        Sign::Door => group.add(door(pixels(layout, thing, NOWHERE))),
+        Sign::Moves => group.add(outline(pixels(layout, thing, gone.unwrap_or(NOWHERE)))),
+    })
+}
+
+/// The same, moving.
+pub(super) fn moving(layout: &Layout, world: &World, trail: &Trail, film: &Film<'_>) -> Group {
+    let things = world.things.iter().zip(&trail.things).enumerate();
+    things.fold(ways(layout, world), |group, (number, (thing, end))| {
+        let gone = |frame: &Frame| frame.things.get(number).copied().flatten();
+        match Sign::of(thing) {
+            Sign::Door => {
+                let seen = |gone: Option<Place>| if gone.is_some() { "visible" } else { "hidden" };
+                let values = film.frames.iter().map(|frame| (frame.t, seen(gone(frame)).to_owned()));
+                let closed = polyline(pixels(layout, thing, NOWHERE)).set("stroke", INK).set("stroke-width", 3);
+                let closed = closed.set("visibility", seen(*end)).add(film.switch("visibility", changes(values)));
+                group.add(door(pixels(layout, thing, NOWHERE))).add(closed)
+            }
+            Sign::Moves => {
+                let by = |gone: Option<Place>| {
+                    let Place { x, y } = gone.unwrap_or(NOWHERE);
+                    format!("{} {}", tenths(x * layout.scale), tenths(-y * layout.scale))
+                };
+                let values = film.frames.iter().map(|frame| (frame.t, by(gone(frame))));
+                let moved = Group::new().set("transform", format!("translate({})", by(*end)));
+                let there = outline(pixels(layout, thing, NOWHERE));
+                group.add(moved.add(there).add(film.transform("translate", bends(values))))
+            }
+        }
+    })
+}
+
+fn pixels(layout: &Layout, thing: &Thing, gone: Place) -> impl Iterator<Item = Pixel> {
+    thing.corners(gone).map(|place| layout.at(place))
+}
+
+/// The ways of all that has one.
+fn ways(layout: &Layout, world: &World) -> Group {
+    let moving = world.things.iter().filter(|thing| Sign::of(thing) == Sign::Moves);
+    moving.fold(Group::new(), |group, thing| group.add(way(thing.way().map(|place| layout.at(place)))))
+}
+
+fn way(pixels: impl IntoIterator<Item = Pixel>) -> Path {
+    polyline(pixels).set("stroke", FAINT)
+}
+
+fn door(pixels: impl IntoIterator<Item = Pixel>) -> Path {
+    polyline(pixels).set("stroke", INK).set("stroke-width", 1.5).set("stroke-dasharray", DASHES)
+}
+
+fn outline(pixels: impl IntoIterator<Item = Pixel>) -> Path {
+    polyline(pixels).set("fill", BOX).set("stroke", INK).set("stroke-width", 1.5)
+}
+
+/// Values without those that are as the one before.
+fn changes<T>(values: impl Iterator<Item = (T, String)>) -> impl Iterator<Item = (T, String)> {
+    let mut last = None;
+    values.filter(move |(_, value)| last.replace(value.clone()).as_ref() != Some(value))
+}
+
+/// Values without those between two that are as they are.
+fn bends<T>(values: impl Iterator<Item = (T, String)>) -> impl Iterator<Item = (T, String)> {
+    let mut values = values.peekable();
+    let mut last: Option<String> = None;
+    std::iter::from_fn(move || {
+        loop {
+            let (t, value) = values.next()?;
+            let before = last.replace(value.clone());
+            if before.as_ref() != Some(&value) || values.peek().is_none_or(|(_, next)| *next != value) {
+                return Some((t, value));
+            }
+        }
+    })
+}

@@ -1,0 +1,44 @@
+//! Worlds from maps of ROS: what `map_server` saves, a YAML file of a few keys beside an image.
+//!
+//! Pixels darker than the threshold stand; where they border on others there is a wall. The steps that pixels make of a
+//! slanted wall are smoothed out, since a sonar would not hear it otherwise. The unknown is floor. The robot starts at the
+//! origin of the map's frame, which is where the mapping robot began.
+
+mod contours;
+mod header;
+mod image;
+#[cfg(test)]
+mod tests;
+
+use mdle_runtime::Pose;
+
+use crate::world::{Outline, Place, World};
+use crate::world_file::WorldError;
+use contours::contours;
+pub(crate) use header::Header;
+use image::Image;
+
+impl Header {
+    /// The world of this header and the bytes of its image; `file` is what errors call the image.
+    pub(crate) fn world(&self, file: &str, bytes: &[u8]) -> Result<World, WorldError> {
+        let image = Image::read(bytes).map_err(|what| WorldError::new(file, None, what))?;
+        let (sin, cos) = libm::sincos(self.yaw);
+        // Rows count from the top of the image, the map's second axis from its bottom.
+        let place = |(column, row): (i32, i32)| {
+            let (x, y) =
+                (f64::from(column) * self.resolution, (image.height as f64 - f64::from(row)) * self.resolution);
+            Place { x: self.x + x * cos - y * sin, y: self.y + x * sin + y * cos }
+        };
+        let stands = |column, row| image.darkness(column, row, self.negate) > self.occupied;
+        let loops = contours(image.width, image.height, stands);
+        let outlines: Vec<_> = (1..)
+            .zip(loops)
+            .map(|(number, corners): (usize, Vec<_>)| Outline {
+                name: format!("contour {number}"),
+                points: corners.into_iter().map(place).collect(),
+                solid: false,
+            })
+            .collect();
+        Ok(World { contours: outlines.len(), outlines, things: Vec::new(), start: Pose::ORIGIN, goal: None })
+    }
+}

@@ -1,0 +1,114 @@
+//! The YAML file of a map: lines `key: value`, of which it has seven at most.
+
+use crate::world_file::WorldError;
+
+/// The smallest and the largest pixel, in metres.
+const RESOLUTIONS: std::ops::RangeInclusive<f64> = 1e-4..=100.0;
+
+/// What the file says.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Header {
+    /// The path of the image, from the folder of the file.
+    pub(crate) image: String,
+    /// Metres for each pixel.
+    pub(crate) resolution: f64,
+    /// Where the lower left corner of the image lies, and how it is turned, in metres and radians.
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) yaw: f64,
+    /// Whether white stands and black is free.
+    pub(crate) negate: bool,
+    /// Darker than this part of black stands.
+    pub(crate) occupied: f64,
+}
+
+/// A key's value, and where it is written.
+struct Value<'t> {
+    line: usize,
+    column: usize,
+    text: &'t str,
+}
+
+impl Header {
+    /// Reads the text of the file, which errors call `file`.
+    pub(crate) fn parse(file: &str, text: &str) -> Result<Self, WorldError> {
+        let missing = |what: &str| WorldError::new(file, None, what.to_owned());
+        let image = value(text, "image").ok_or_else(|| missing("no `image`: expected as in `image: map.pgm`"))?;
+        let resolution = value(text, "resolution")
+            .ok_or_else(|| missing("a map without scale: expected the metres of a pixel, as in `resolution: 0.05`"))?;
+        let number = |value: &Value<'_>| {
+            let number = value.text.parse().ok().filter(|number: &f64| number.is_finite());
+            number.ok_or_else(|| value.wrong(file, format!("{:?} is no number", value.text)))
+        };
+        let metres = number(&resolution)?;
+        if !RESOLUTIONS.contains(&metres) {
+            return Err(resolution.wrong(file, format!("a pixel of {metres} m; expected 0.0001 to 100")));
+        }
+        let origin = numbers(text, "origin");
+        let [x, y, yaw] = match &*origin.iter().map(number).collect::<Result<Vec<_>, _>>()? {
+            [] => [0.0; 3],
+            [x, y, yaw] => [*x, *y, *yaw],
+            _ => {
+                let what = "an origin is three numbers, as in `origin: [-10.0, -10.0, 0.0]`";
+                return Err(origin.first().map_or_else(|| missing(what), |first| first.wrong(file, what.to_owned())));
+            }
+        };
+        let or = |key, usual| value(text, key).map_or(Ok(usual), |value| number(&value));
+        Ok(Self {
+            image: image.text.to_owned(),
+            resolution: metres,
+            x,
+            y,
+            yaw,
+            negate: or("negate", 0.0)? != 0.0,
+            occupied: or("occupied_thresh", 0.65)?,
+        })
+    }
+}
+
+impl Value<'_> {
+    fn wrong(&self, file: &str, what: String) -> WorldError {
+        WorldError::new(file, Some((self.line, self.column)), what)
+    }
+}
+
+/// The value of a key, without quotes.
+fn value<'t>(text: &'t str, key: &str) -> Option<Value<'t>> {
+    let (number, line) = line(text, key)?;
+    Some(trimmed(number, line, key.len() + 1, line.get(key.len() + 1..)?))
+}
+
+/// The values of a key that has several: `[1, 2]`, or a line `- 1` for each.
+fn numbers<'t>(text: &'t str, key: &str) -> Vec<Value<'t>> {
+    let Some((number, line)) = line(text, key) else { return Vec::new() };
+    let Some(begins) = line.find('[') else {
+        let rows = (number + 1..).zip(text.lines().skip(number));
+        let rows = rows.map_while(|(number, line)| {
+            let after = line.trim_start().strip_prefix("- ")?;
+            Some(trimmed(number, line, line.len() - after.len(), after))
+        });
+        return rows.collect();
+    };
+    let inside = line.get(begins + 1..).unwrap_or_default();
+    let inside = inside.split(']').next().unwrap_or_default();
+    let mut column = begins + 1;
+    let values = inside.split(',').map(|part| {
+        let value = trimmed(number, line, column, part);
+        column += part.len() + 1;
+        value
+    });
+    values.collect()
+}
+
+/// The line of a key, and its number from 1.
+fn line<'t>(text: &'t str, key: &str) -> Option<(usize, &'t str)> {
+    (1..).zip(text.lines()).find(|(_, line)| line.strip_prefix(key).is_some_and(|rest| rest.starts_with(':')))
+}
+
+/// A value that begins at a byte of a line, without blanks, comment and quotes.
+fn trimmed<'t>(line: usize, whole: &'t str, from: usize, part: &'t str) -> Value<'t> {
+    let part = part.split(" #").next().unwrap_or_default();
+    let blanks = part.len() - part.trim_start().len();
+    let column = whole.get(..from + blanks).unwrap_or_default().chars().count() + 1;
+    Value { line, column, text: part.trim().trim_matches(['"', '\'']) }
+}

@@ -1,0 +1,87 @@
+//! The echo of one ping: which of the rays of a sonar's cone come back loud enough, and which of these first.
+//!
+//! A ray at angle α off the axis that meets a surface at angle β off its normal is heard when
+//! (α / lobe)² + (β / facing)² is at most what the distance leaves of 1. Near an edge sound goes everywhere, but little of
+//! it: there β counts as a fixed loss. A right-angled corner sends everything back where it came from.
+
+use mdle_runtime::Radians;
+
+use crate::model::Hearing;
+use crate::surfaces::{Surface, dot};
+use crate::walls::Walls;
+use crate::world::Place;
+
+/// The rays of a cone, evenly spread.
+const RAYS: u8 = 7;
+/// Nearer to an edge than this, in metres, a ray is scattered by it.
+const SCATTERS: f64 = 0.08;
+/// What an edge costs: it is heard up to 0.6 of the lobe, so 12.5° of 21°.
+const EDGE_COSTS: f64 = 0.65;
+/// Up to here, in metres, the receiver's growing gain makes up for the distance.
+const GAIN_LASTS: f64 = 2.0;
+/// What each metre beyond costs: at 6.5 m a wall is heard up to 26° off its normal.
+const METRE_COSTS: f64 = 0.13;
+/// How far apart the two bounces of a ray in a corner may lie, for each metre of range, for the sound to come back to
+/// the sonar: as for a ray that is one beside that into the corner itself.
+const CORNER: f64 = 0.35;
+/// How far from the opposite direction, as a cosine, a ray may leave a corner: 15°.
+const BACK: f64 = -0.966;
+/// How far from a surface, in metres, a ray goes on, so that it does not meet it again.
+const OFF: f64 = 1e-6;
+
+/// The distance from a transducer to the nearest thing heard in its cone, in metres. `fade` is how much better or worse
+/// than usual it hears.
+pub(crate) fn echo(walls: &Walls, from: Place, axis: Radians, hearing: &Hearing, fade: f64) -> Option<f64> {
+    let mut best = None;
+    for ray in 0..RAYS {
+        let part = f64::from(ray) / f64::from(RAYS - 1);
+        let off_axis = hearing.half_cone.0 * (2.0 * part - 1.0);
+        let most = best.unwrap_or(hearing.most);
+        let (sin, cos) = libm::sincos(axis.0 + off_axis);
+        let way = Place { x: cos, y: sin };
+        let heard = if hearing.lobe.is_none() && hearing.facing.is_none() {
+            walls.cast(from, way, most)
+        } else {
+            let lost = hearing.lobe.map_or(0.0, |lobe| (off_axis / lobe.0) * (off_axis / lobe.0));
+            walls.found(from, way, most).and_then(|surface| heard(walls, from, way, &surface, hearing, lost - fade))
+        };
+        // A corner's echo comes from behind the place where the ray first met a wall.
+        best = heard.filter(|range| *range < most).or(best);
+    }
+    best
+}
+
+/// The range at which this surface is heard, if it is, by a ray of which so much is lost already.
+fn heard(walls: &Walls, from: Place, way: Place, surface: &Surface, hearing: &Hearing, lost: f64) -> Option<f64> {
+    let left = 1.0 - METRE_COSTS * (surface.range - GAIN_LASTS).max(0.0) - lost;
+    let Some(facing) = hearing.facing else { return (left >= 0.0).then_some(surface.range) };
+    let incidence = libm::acos((-dot(way, surface.normal)).min(1.0)) / facing.0;
+    let costs = if surface.edge < SCATTERS { EDGE_COSTS.min(incidence * incidence) } else { incidence * incidence };
+    if costs <= left {
+        return Some(surface.range);
+    }
+    if left < 0.0 {
+        return None;
+    }
+    corner(walls, from, way, surface).filter(|range| *range < hearing.most)
+}
+
+/// The range of the corner in which this surface lies, if it sends the ray back.
+fn corner(walls: &Walls, from: Place, way: Place, first: &Surface) -> Option<f64> {
+    let on = reflected(way, first.normal);
+    let bounce = Place {
+        x: from.x + first.range * way.x + OFF * first.normal.x,
+        y: from.y + first.range * way.y + OFF * first.normal.y,
+    };
+    let second = walls.found(bounce, on, CORNER * first.range)?;
+    if dot(reflected(on, second.normal), way) > BACK {
+        return None;
+    }
+    let end = Place { x: bounce.x + second.range * on.x, y: bounce.y + second.range * on.y };
+    Some((first.range + second.range + crate::surfaces::apart(end, from)) / 2.0)
+}
+
+fn reflected(way: Place, normal: Place) -> Place {
+    let along = 2.0 * dot(way, normal);
+    Place { x: way.x - along * normal.x, y: way.y - along * normal.y }
+}

@@ -1,0 +1,170 @@
+//! What the sonars hear, ideal ones and those of a Scout.
+
+use mdle_runtime::SonarId;
+
+use super::*;
+use crate::model::{Body, Model, Part};
+use crate::world::World;
+
+fn walls(text: &str) -> Walls {
+    Walls::of(&World::parse("walls", text).expect("good walls"))
+}
+
+/// A ring without errors that has pinged once, or in order, at the origin.
+fn pinged(body: Body, without: &[Part], text: &str) -> Ring {
+    let mut ring = Ring::new(Model::of(body, without).hearing, None);
+    let walls = walls(text);
+    match ring.due() {
+        Some(_) => ring.warm_up(&Pose::ORIGIN, Pose::ORIGIN, &walls),
+        None => ring.ping(&Pose::ORIGIN, Pose::ORIGIN, Nanos::ZERO, &walls),
+    }
+    ring
+}
+
+fn range(ring: &Ring, sonar: u8) -> Option<f64> {
+    ring.pings[SonarId::new(sonar).number()].nearest(1).map(|range| range.0)
+}
+
+/// The range of an ideal sonar that looks ahead.
+fn ahead(text: &str) -> Option<f64> {
+    range(&pinged(Body::Ideal, &[], text), 0)
+}
+
+/// A wall at this distance along the first axis, turned by this many degrees round the place there.
+fn turned(distance: f64, degrees: f64) -> String {
+    let (sin, cos) = libm::sincos(degrees.to_radians());
+    let (x, y) = (9.0 * sin, 9.0 * cos);
+    format!("[[wall]]\npoints = [[{}, {y}], [{}, {}]]", distance - x, distance + x, -y)
+}
+
+#[test]
+fn a_range_begins_at_the_transducer() {
+    let front = ahead("[[wall]]\npoints = [[2, -1], [2, 1]]").expect("a wall ahead");
+    assert!((front - 1.81).abs() < 1e-12, "{front}");
+}
+
+#[test]
+fn sonars_count_counter_clockwise_from_the_front() {
+    let ring = pinged(Body::Ideal, &[], "[[wall]]\npoints = [[-1, 2], [1, 2]]");
+    let heard: Vec<u8> = (0..16).filter(|sonar| range(&ring, *sonar).is_some()).collect();
+    assert_eq!(heard, [3, 4, 5]);
+}
+
+#[test]
+fn a_cone_sees_what_its_axis_does_not() {
+    // A post 2 m away, seen at 11 and at 14 degrees off the axis of the cone.
+    let post = |degrees: f64| {
+        let at = Pose::ORIGIN.towards(Radians(0.0), Meters(0.19)).towards(Radians::from_degrees(degrees), Meters(2.0));
+        ahead(&format!("[[box]]\ncentre = [{}, {}]\nsize = [0.1, 0.1]", at.x.0, at.y.0))
+    };
+    assert!(post(11.0).is_some_and(|range| (1.9..2.0).contains(&range)));
+    assert!(post(-11.0).is_some());
+    assert_eq!(post(14.5), None);
+}
+
+#[test]
+fn nothing_within_range_is_no_echo() {
+    assert_eq!(ahead("[[wall]]\npoints = [[6.68, -9], [6.68, 9]]"), None);
+    assert!(ahead("[[wall]]\npoints = [[6.66, -9], [6.66, 9]]").is_some());
+}
+
+#[test]
+fn a_seed_makes_the_noise_that_it_says_it_does() {
+    let hearing = Model::of(Body::Ideal, &[]).hearing;
+    let mut ring = Ring::new(hearing.clone(), Some(5));
+    let (mut errors, mut missed) = (Vec::new(), 0);
+    for _ in 0..20_000 {
+        match ring.errors.as_mut().expect("seeded").of(Some(1.81), &hearing) {
+            Some(range) => errors.push(range - 1.81),
+            None => missed += 1,
+        }
+    }
+    let count = errors.len() as f64;
+    let mean = errors.iter().sum::<f64>() / count;
+    let spread = libm::sqrt(errors.iter().map(|error| (error - mean) * (error - mean)).sum::<f64>() / count);
+    assert!(mean.abs() < 5e-4, "{mean}");
+    assert!((spread - hearing.spread).abs() < 5e-4, "{spread}");
+    assert!((150..250).contains(&missed), "{missed}");
+}
+
+/// How far off its normal, in degrees, a wall 1 m ahead is last heard.
+fn last_heard(distance: f64, without: &[Part]) -> u32 {
+    (0..80)
+        .take_while(|degrees| range(&pinged(Body::Scout, without, &turned(distance, f64::from(*degrees))), 0).is_some())
+        .count() as u32
+        - 1
+}
+
+#[test]
+fn a_flat_wall_answers_up_to_forty_degrees_or_so() {
+    assert!((39..=42).contains(&last_heard(1.0, &[])), "{}", last_heard(1.0, &[]));
+    assert!((24..=30).contains(&last_heard(6.0, &[])), "{}", last_heard(6.0, &[]));
+    assert!(last_heard(1.0, &[Part::Specular]) > 70);
+    // The cone's outermost ray and the limit on its normal.
+    assert!((45..=49).contains(&last_heard(1.0, &[Part::Lobe])), "{}", last_heard(1.0, &[Part::Lobe]));
+}
+
+#[test]
+fn a_wall_end_is_heard_only_near_the_axis() {
+    // The end of a wall that lies along the ray's direction, so that its face is not heard.
+    let end = |degrees: f64| {
+        let (sin, cos) = libm::sincos(degrees.to_radians());
+        let (x, y) = (0.19 + cos, sin);
+        range(
+            &pinged(
+                Body::Scout,
+                &[],
+                &format!("[[box]]\nmin = [{x}, {}]\nmax = [{}, {}]", y - 0.03, x + 3.0, y + 0.03),
+            ),
+            0,
+        )
+    };
+    assert!(end(0.0).is_some_and(|range| (0.9..1.05).contains(&range)), "{:?}", end(0.0));
+    assert_eq!(end(24.0), None);
+}
+
+#[test]
+fn a_corner_is_heard_where_its_walls_are_not() {
+    // A right angle whose walls both lie 45 degrees off the axis.
+    let corner = "[[wall]]\npoints = [[0, -2], [2, 0], [0, 2]]";
+    let heard = range(&pinged(Body::Scout, &[], corner), 0).expect("a corner ahead");
+    assert!((heard - 1.81).abs() < 0.06, "{heard}");
+    let wall = "[[wall]]\npoints = [[0, -2], [4, 2]]";
+    assert_eq!(range(&pinged(Body::Scout, &[], wall), 0), None);
+}
+
+#[test]
+fn ranges_come_in_whole_inches_from_six_on() {
+    let wall = |x: f64| range(&pinged(Body::Scout, &[], &format!("[[wall]]\npoints = [[{x}, -1], [{x}, 1]]")), 0);
+    assert_eq!(wall(0.19 + 0.0254 * 40.5), Some(40.0 * 0.0254));
+    assert_eq!(wall(0.22), Some(6.0 * 0.0254));
+    let exact = pinged(Body::Scout, &[Part::Steps, Part::Minimum], "[[wall]]\npoints = [[0.22, -1], [0.22, 1]]");
+    assert!((range(&exact, 0).expect("a wall") - 0.03).abs() < 1e-9);
+}
+
+#[test]
+fn a_scout_pings_in_its_order_sixty_milliseconds_apart() {
+    let mut ring = Ring::new(Model::of(Body::Scout, &[]).hearing, None);
+    let walls = walls("[[wall]]\npoints = [[-1, 2], [1, 2]]");
+    let mut pinged = Vec::new();
+    for ping in 0..17 {
+        let at = ring.due().expect("an order");
+        assert_eq!(at, Nanos(ping * 60_000_000));
+        ring.ping(&Pose::ORIGIN, Pose::ORIGIN, at, &walls);
+        let newest = |pings: &Pings| pings.newest_first().next().map(|ping| ping.at);
+        pinged.extend((0..16).filter(|sonar| newest(&ring.pings[*sonar]) == Some(at)));
+    }
+    assert_eq!(pinged, [0, 2, 15, 1, 14, 3, 13, 4, 12, 5, 11, 6, 10, 7, 9, 8, 0]);
+}
+
+#[test]
+fn an_atrv_has_all_sixteen_directions_from_its_twenty_four() {
+    let around = "[[box]]\nmin = [-1.5, -1.5]\nmax = [1.5, 1.5]";
+    let ring = pinged(Body::Atrv, &[Part::Specular], around);
+    for sonar in 0..16 {
+        let heard = range(&ring, sonar).expect("a wall on every side") + 0.28;
+        assert!((1.4..2.2).contains(&heard), "sonar {sonar}: {heard}");
+    }
+    let front = range(&ring, 0).expect("a wall ahead") + 0.28;
+    assert!((front - 1.5).abs() < 0.02, "{front}");
+}

@@ -1,0 +1,96 @@
+//! What a ray finds where it ends: how squarely it meets the surface, and whether an edge is near.
+
+use crate::grid::Segment;
+use crate::world::Place;
+
+/// Ends nearer to another segment than this, in metres, belong together.
+const TOGETHER: f64 = 1e-3;
+/// The cosine of the turn up to which two segments are one smooth surface: 30°.
+const SMOOTH: f64 = 0.866;
+
+/// How a segment ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum End {
+    /// Free.
+    Edge,
+    /// At the middle of another segment.
+    Covered,
+    /// Where another segment goes on in this unit direction.
+    Meets(Place),
+}
+
+/// Both ends of a segment, first the one it is given from.
+pub(crate) type Ends = [End; 2];
+
+/// What a ray found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Surface {
+    /// How far the ray went, in metres.
+    pub(crate) range: f64,
+    /// The unit normal of the surface, on the side of the ray.
+    pub(crate) normal: Place,
+    /// How far the nearest edge is that sends sound back to where the ray came from; infinite without.
+    pub(crate) edge: f64,
+}
+
+/// How each end of `segment` lies to `others`, itself among them or not.
+pub(crate) fn ends<'s>(segment: &Segment, others: impl Iterator<Item = &'s Segment>) -> Ends {
+    let places = [segment.from, segment.to()];
+    let mut ends = [End::Edge; 2];
+    for other in others.filter(|other| *other != segment) {
+        for (end, at) in ends.iter_mut().zip(places) {
+            if apart(other.nearest(at), at) > TOGETHER {
+                continue;
+            }
+            let way = |sign: f64| {
+                let length = libm::hypot(other.along.x, other.along.y);
+                End::Meets(Place { x: sign * other.along.x / length, y: sign * other.along.y / length })
+            };
+            let found = if apart(other.from, at) <= TOGETHER {
+                way(1.0)
+            } else if apart(other.to(), at) <= TOGETHER {
+                way(-1.0)
+            } else {
+                End::Covered
+            };
+            // Where three meet there is no edge to any side.
+            *end = if *end == End::Edge { found } else { End::Covered };
+        }
+    }
+    ends
+}
+
+/// What a ray in the unit direction `way` that went `range` far finds at `at`.
+pub(crate) fn surface(segment: &Segment, ends: &Ends, at: Place, way: Place, range: f64) -> Surface {
+    let length = libm::hypot(segment.along.x, segment.along.y);
+    let along = Place { x: segment.along.x / length, y: segment.along.y / length };
+    let left = Place { x: -along.y, y: along.x };
+    let normal = if dot(left, way) < 0.0 { left } else { Place { x: along.y, y: -along.x } };
+    let [first, second] = ends;
+    let mut edge = f64::INFINITY;
+    for (end, to, outward) in [(first, segment.from, -1.0), (second, segment.to(), 1.0)] {
+        let outward = Place { x: outward * along.x, y: outward * along.y };
+        if is_edge(end, outward, normal) {
+            edge = edge.min(apart(to, at));
+        }
+    }
+    Surface { range, normal, edge }
+}
+
+/// Whether the end of a surface that runs `outward` to it and looks along `normal` is an edge seen from that side.
+fn is_edge(end: &End, outward: Place, normal: Place) -> bool {
+    match end {
+        End::Edge => true,
+        End::Covered => false,
+        // A surface that comes forward makes a corner, one that goes on is the same surface.
+        End::Meets(on) => dot(*on, outward) < SMOOTH && dot(*on, normal) <= 0.0,
+    }
+}
+
+pub(crate) fn dot(one: Place, other: Place) -> f64 {
+    one.x * other.x + one.y * other.y
+}
+
+pub(crate) fn apart(one: Place, other: Place) -> f64 {
+    libm::hypot(other.x - one.x, other.y - one.y)
+}

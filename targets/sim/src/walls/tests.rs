@@ -1,0 +1,122 @@
+//! Rays and distances beside parry2d and beside brute force, and what moves.
+
+use parry2d_f64::math::Vector;
+use parry2d_f64::query::{PointQuery, Ray, RayCast};
+use parry2d_f64::shape::Polyline;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use super::*;
+
+fn uniform(random: &mut ChaCha8Rng) -> f64 {
+    (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// Walls scattered over 10 m × 10 m, boxes among them.
+fn scene(random: &mut ChaCha8Rng, walls: usize) -> World {
+    let mut number = || 10.0 * uniform(random);
+    let mut text = String::new();
+    for wall in 0..walls {
+        let (x, y, across) = (number(), number(), number());
+        text += &match wall % 3 {
+            0 => format!("[[wall]]\npoints = [[{x}, {y}], [{x}, {across}], [{across}, {across}]]\n"),
+            1 => format!("[[wall]]\npoints = [[{x}, {y}], [{}, {across}]]\n", number()),
+            _ => format!("[[box]]\ncentre = [{x}, {y}]\nsize = [{}, 0.3]\n", 0.1 + across / 10.0),
+        };
+    }
+    World::parse("scene", &text).expect("a good scene")
+}
+
+/// The same walls in a library of geometry.
+fn beside(world: &World) -> Polyline {
+    let (mut vertices, mut indices) = (Vec::new(), Vec::new());
+    for ((_, from, to), first) in world.segments().zip((0_u32..).step_by(2)) {
+        vertices.extend([Vector::new(from.x, from.y), Vector::new(to.x, to.y)]);
+        indices.push([first, first + 1]);
+    }
+    Polyline::new(vertices, Some(indices))
+}
+
+#[test]
+fn rays_and_distances_are_those_of_parry() {
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    for walls in [1, 2, 3, 10, 40, 200, 1000] {
+        let world = scene(&mut random, walls);
+        let (ready, library) = (Walls::of(&world), beside(&world));
+        for _ in 0..2000 {
+            // From outside the walls too.
+            let mut number = || uniform(&mut random);
+            let from = Place { x: 14.0 * number() - 2.0, y: 14.0 * number() - 2.0 };
+            // Every third ray runs along an axis, as most walls do.
+            let turn = number();
+            let turn = if turn < 0.33 { libm::floor(turn * 12.0) / 4.0 } else { turn };
+            let direction = Radians(turn * std::f64::consts::TAU);
+            let (sin, cos) = libm::sincos(direction.0);
+            let ray = Ray::new(Vector::new(from.x, from.y), Vector::new(cos, sin));
+            match (ready.ray(from, direction, 6.0), library.cast_local_ray(&ray, 6.0, true)) {
+                (Some(found), Some(expected)) => assert!((found - expected).abs() < 1e-9, "{found} {expected}"),
+                (found, expected) => assert_eq!(found, expected, "from {from} along {direction:?}"),
+            }
+            let expected = library.distance_to_local_point(Vector::new(from.x, from.y), true);
+            assert!((ready.clearance(from, 1.0) - expected.min(1.0)).abs() < 1e-9);
+            let nearest = ready.nearest(from, 1.0).map(|place| apart(place, from));
+            assert_eq!(nearest.is_some(), expected < 1.0);
+            assert!(nearest.is_none_or(|nearest| (nearest - expected).abs() < 1e-9));
+        }
+    }
+}
+
+#[test]
+fn a_ray_that_lies_in_borders_of_cells_meets_what_is_there() {
+    // Walls on a raster, so that borders of cells fall on them, and rays from place to place of the raster.
+    let mut text = String::new();
+    for x in 0..20 {
+        text += &format!("[[box]]\nmin = [{x}, {}]\nmax = [{}.5, {}.5]\n", x % 5, x, x % 5);
+    }
+    let world = World::parse("raster", &text).expect("good");
+    let walls = Walls::of(&world);
+    let every: Vec<_> = world.segments().map(|(_, from, to)| Segment::between(from, to)).collect();
+    for from in (0..40).flat_map(|x| (0..12).map(move |y| Place { x: f64::from(x) / 2.0, y: f64::from(y) / 2.0 })) {
+        for eighth in 0..8 {
+            let (sin, cos) = libm::sincos(f64::from(eighth) * std::f64::consts::FRAC_PI_4);
+            let way = Place { x: cos, y: sin };
+            let expected = every.iter().filter_map(|segment| segment.met(from, way, 30.0)).reduce(f64::min);
+            assert_eq!(walls.cast(from, way, 30.0), expected, "from {from}, eighth {eighth}");
+        }
+    }
+}
+
+#[test]
+fn a_world_without_walls_is_endless() {
+    let walls = Walls::of(&World::parse("empty", "").expect("an empty world"));
+    assert_eq!(walls.ray(Place { x: 0.0, y: 0.0 }, Radians(0.3), 1e6), None);
+    assert_eq!(walls.clearance(Place { x: 0.0, y: 0.0 }, 5.0), 5.0);
+}
+
+#[test]
+fn the_nearest_wall_is_named() {
+    let world = World::office().expect("our own floor");
+    let name = |x, y| nearest(&world, Place { x, y }).map(|outline| outline.name.as_str());
+    assert_eq!(name(3.6, 4.6), Some("obstacle"));
+    assert_eq!(name(-0.5, 2.0), Some("A west"));
+}
+
+#[test]
+fn edges_are_where_a_surface_ends_or_turns_away() {
+    // A box, and a wall that ends at its left side and goes on round a corner.
+    let text = "[[box]]\nmin = [2, -1]\nmax = [4, 1]\n[[wall]]\npoints = [[2, 0], [0, 0], [0, 3], [0, 6]]";
+    let walls = Walls::of(&World::parse("edges", text).expect("good"));
+    let edge = |x, y, degrees: f64| {
+        let (sin, cos) = libm::sincos(degrees.to_radians());
+        walls.found(Place { x, y }, Place { x: cos, y: sin }, 9.0).expect("a wall").edge
+    };
+    // Up at the box from below: its corners turn away.
+    assert!((edge(2.25, -3.0, 90.0) - 0.25).abs() < 1e-9);
+    // At its left side, near the wall that ends there: that is a corner and no edge, and the box's own is 0.9 m away.
+    assert!((edge(1.0, 0.1, 0.0) - 0.9).abs() < 1e-9);
+    // Into the corner of the wall from inside and from outside.
+    assert!((edge(1.0, 0.5, 180.0)).is_infinite() || edge(1.0, 0.5, 180.0) > 5.0);
+    assert!((edge(-1.0, 0.5, 0.0) - 0.5).abs() < 1e-9);
+    // Where the wall goes straight on there is none.
+    assert!((edge(1.0, 3.1, 180.0) - 2.9).abs() < 1e-9);
+}

@@ -1,0 +1,111 @@
+//! A world file as it is written.
+
+use std::fmt;
+use std::marker::PhantomData;
+
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{MapAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+use toml::Spanned;
+
+/// Numbers in a row: a place, a size, a time and a place.
+pub(super) type Numbers = Spanned<Vec<Spanned<f64>>>;
+
+/// The file.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct WorldText {
+    pub(super) units: Option<Spanned<String>>,
+    #[serde(default)]
+    pub(super) start: Table<StartText>,
+    pub(super) goal: Option<Spanned<Table<GoalText>>>,
+    #[serde(default, rename = "wall")]
+    pub(super) walls: Vec<Table<WallText>>,
+    #[serde(default, rename = "box")]
+    pub(super) boxes: Vec<Spanned<Table<BoxText>>>,
+    #[serde(default, rename = "disc")]
+    pub(super) discs: Vec<Spanned<Table<DiscText>>>,
+    #[serde(default, rename = "door")]
+    pub(super) doors: Vec<Table<DoorText>>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(deny_unknown_fields)]
+pub(super) struct StartText {
+    pub(super) x: Option<Spanned<f64>>,
+    pub(super) y: Option<Spanned<f64>>,
+    pub(super) heading: Option<Spanned<f64>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct GoalText {
+    pub(super) min: Numbers,
+    pub(super) max: Numbers,
+    pub(super) heading: Option<Spanned<f64>>,
+    pub(super) tolerance: Option<Spanned<f64>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct WallText {
+    pub(super) name: Option<String>,
+    pub(super) points: Spanned<Vec<Numbers>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct BoxText {
+    pub(super) name: Option<String>,
+    pub(super) min: Option<Numbers>,
+    pub(super) max: Option<Numbers>,
+    pub(super) centre: Option<Numbers>,
+    pub(super) size: Option<Numbers>,
+    pub(super) schedule: Option<Spanned<Vec<Numbers>>>,
+    #[serde(default)]
+    pub(super) repeat: bool,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct DiscText {
+    pub(super) name: Option<String>,
+    pub(super) centre: Option<Numbers>,
+    pub(super) radius: Spanned<f64>,
+    pub(super) schedule: Option<Spanned<Vec<Numbers>>>,
+    #[serde(default)]
+    pub(super) repeat: bool,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct DoorText {
+    pub(super) name: Option<String>,
+    pub(super) points: Spanned<Vec<Numbers>>,
+    pub(super) open: Spanned<Vec<Numbers>>,
+    pub(super) every: Option<Spanned<f64>>,
+}
+
+/// A table and nothing else: serde would take an array for one too, and let its last values go unread.
+#[derive(Default)]
+pub(super) struct Table<T>(pub(super) T);
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for Table<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(Keys(PhantomData))
+    }
+}
+
+struct Keys<T>(PhantomData<T>);
+
+impl<'de, T: Deserialize<'de>> Visitor<'de> for Keys<T> {
+    type Value = Table<T>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "a table")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Table<T>, A::Error> {
+        T::deserialize(MapAccessDeserializer::new(map)).map(Table)
+    }
+}
