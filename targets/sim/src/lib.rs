@@ -7,7 +7,6 @@
 //! runs with the same options give the same bytes.
 #![forbid(unsafe_code)]
 
-#[allow(clippy::large_enum_variant, reason = "one law runs at a time, and goAvoid remembers what it heard")]
 pub mod alphabet;
 mod body;
 mod frames;

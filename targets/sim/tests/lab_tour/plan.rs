@@ -42,7 +42,7 @@ const ATOMS: [(Until, Does); 13] = [
 const SECOND: u32 = 8;
 
 /// The law that runs.
-#[allow(clippy::large_enum_variant, reason = "one law runs at a time")]
+#[allow(clippy::large_enum_variant, reason = "one runs at a time, and goAvoid remembers what it heard")]
 enum Running {
     GoAvoid(<GoAvoid as Control<Output>>::Law),
     Go(<Go as Control<Output>>::Law),
