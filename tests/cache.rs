@@ -105,7 +105,7 @@ fn stored(folder: &Path, start: &str) -> Vec<PathBuf> {
 
 #[test]
 fn a_place_that_cannot_be_a_cache_is_told() {
-    let folder = with_plan("no_cache", 0);
+    let folder = with_plan("no_cache", 1);
     // Permissions do not bind a superuser; these bind everyone.
     for place in ["plan.mdle", "plan.mdle/cache", "/proc/mdlec"] {
         let said = refused(command(&folder, &BUILD).env("MDLEC_CACHE", place));
@@ -120,7 +120,7 @@ fn a_place_that_cannot_be_a_cache_is_told() {
 
 #[test]
 fn without_rust_it_says_what_to_install() {
-    let folder = with_plan("no_rust", 0);
+    let folder = with_plan("no_rust", 1);
     let said = refused(command(&folder, &BUILD).env("PATH", &folder));
     let advice = "install Rust from rustup.rs\n";
     assert_eq!(said, format!("error: mdlec needs `rustc` to build an executable, and it is not there: {advice}"));
@@ -137,7 +137,7 @@ fn no_network_is_needed_when_all_was_fetched() {
 
 #[test]
 fn libraries_that_cannot_be_fetched_are_told() {
-    let folder = with_plan("not_fetched", 0);
+    let folder = with_plan("not_fetched", 1);
     let nothing = |name: &str, value: &str| {
         let mut command = command(&folder, &BUILD);
         command.env("MDLEC_CACHE", "cache").env("CARGO_HOME", folder.join("cargo"));

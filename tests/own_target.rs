@@ -66,7 +66,7 @@ fn a_crate_that_does_not_compile_is_quoted_whole_and_serves_when_mended() {
     let output = run_mdlec(&folder, &["plan.mdle", "--target", "rover"]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     let run = Command::new(folder.join("plan")).args(["--speed", "max"]).output().unwrap();
-    assert_eq!(run.stdout, b"plan over: wait 0 (atom 1)\n");
+    assert_eq!(run.stdout, b"plan over: wait 0.001 (atom 1)\n");
 }
 
 #[test]

@@ -9,7 +9,7 @@ use mdle_tests::executable::{folder, run_mdlec};
 
 const MAIN: &str = "use \"parts/legs.mdle\"\n{ Main Leg(2) }\n";
 const LEGS: &str = "use \"deep/turns.mdle\"\n{ Leg (n: count) ExecPlan n { Corner } }\n";
-const TURNS: &str = "\u{feff}{ Corner (Atom (bumper) turn 90) }\n";
+const TURNS: &str = "\u{feff}{ Corner (Atom (null) turn 90) }\n";
 
 fn with_files(test: &str, files: &[(&str, &str)]) -> PathBuf {
     let folder = folder(test);
@@ -33,14 +33,14 @@ fn files_in_folders_make_one_plan() {
     let files = [("main.mdle", MAIN), ("parts/legs.mdle", LEGS), ("parts/deep/turns.mdle", TURNS)];
     let folder = with_files("used", &files);
     let plan =
-        "{ Main\n  { Leg\n    ExecPlan 2 {\n      { Corner\n        (Atom (bumper) turn 90)\n      }\n    }\n  }\n}\n";
+        "{ Main\n  { Leg\n    ExecPlan 2 {\n      { Corner\n        (Atom (null) turn 90)\n      }\n    }\n  }\n}\n";
     assert_eq!(said(&folder, &["main.mdle", "--emit", "plan"]), format!("{plan}exit status 0\n"));
     // From another folder it is the same plan, and any of the plans can be asked for.
     let above = folder.parent().unwrap();
     let main = format!("{}/main.mdle", folder.file_name().unwrap().to_str().unwrap());
     assert_eq!(said(above, &[&main, "--emit", "plan"]), format!("{plan}exit status 0\n"));
     let corner = said(&folder, &["main.mdle", "--emit", "plan", "--plan", "Corner"]);
-    assert_eq!(corner, "{ Corner\n  (Atom (bumper) turn 90)\n}\nexit status 0\n");
+    assert_eq!(corner, "{ Corner\n  (Atom (null) turn 90)\n}\nexit status 0\n");
     assert_eq!(said(&folder, &["check", "main.mdle", "parts/legs.mdle"]), "exit status 0\n");
 }
 
