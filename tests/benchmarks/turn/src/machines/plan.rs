@@ -23,12 +23,12 @@ emitted!(plan_1000 "/plan_1000.rs", plan_100000 "/plan_100000.rs");
 #[allow(missing_debug_implementations, reason = "what is in it is the plan's")]
 pub struct Compiled<P: Plan>(Machine<P>);
 
-/// T(8): emitted as code.
+/// T(8): emitted as code with an arm for each atom.
 pub type Plan8 = Compiled<plan_8::T>;
-/// T(1000): emitted as rows.
+/// T(1000): emitted as code that alike atoms share.
 #[cfg(feature = "thousands")]
 pub type Plan1000 = Compiled<plan_1000::T>;
-/// T(100000): emitted as rows.
+/// T(100000): the same.
 #[cfg(feature = "thousands")]
 pub type Plan100000 = Compiled<plan_100000::T>;
 
