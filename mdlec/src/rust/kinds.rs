@@ -192,3 +192,37 @@ fn conditions(condition: &Condition, parts: &mut Vec<Part>) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Atoms;
+    use crate::samples::compiled;
+
+    fn kinds(body: &str) -> Vec<Vec<usize>> {
+        let compiled = compiled(&format!("{{ P {body} (Atom (wait 1) stop) }}"));
+        let kinds = Atoms::new(&compiled[0].lowered).kinds(usize::MAX, usize::MAX).unwrap_or_default();
+        kinds.into_iter().map(|kind| kind.atoms).collect()
+    }
+
+    #[test]
+    fn atoms_that_differ_in_more_than_constants_are_of_different_kinds() {
+        let alike = "(Atom (wait 1) turn 10) (Atom (wait 2) turn 20)";
+        assert_eq!(kinds(alike), [vec![0, 1], vec![2]]);
+        let one = "(Atom (wait 1) turn 10)";
+        for other in [
+            "FRAME 90deg (Atom (wait 1) turn 10)",
+            "(Atom (wait 1) rotate 10)",
+            "(Atom (bumper) turn 10)",
+            "(Atom (NOT wait 1) turn 10)",
+            "(Atom (wait 1 OR bumper) turn 10)",
+            "{ Q (bumper) (Atom (wait 1) turn 10) (Atom (wait 1) turn 10) }",
+        ] {
+            assert!(
+                !kinds(&format!("{one} {other}")).iter().any(|kind| kind.contains(&0) && kind.len() > 1),
+                "{other}"
+            );
+        }
+        // What follows is a constant, but whether it is known beforehand is not.
+        assert_eq!(kinds(&format!("{one} {one} ExecPlan 2 {{ {one} }}")), [vec![0], vec![1, 2], vec![3]]);
+    }
+}
