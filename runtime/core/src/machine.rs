@@ -68,7 +68,7 @@ pub struct Machine<P: Plan> {
 impl<P: Plan> Machine<P> {
     /// Begins `plan` at the first output `y` and its time; the turn itself is [`Machine::turn`], with the same two.
     pub fn begin(mut plan: P, y: &P::Output, t: Nanos) -> Self {
-        let frame = Frame(y.here());
+        let frame = Frame(y.here().theta);
         let (entered, left) = plan.slots();
         let cursor = Cursor::start(plan.fsm(), entered, left, t);
         plan.enter(0, y, Begin { now: t, frame });

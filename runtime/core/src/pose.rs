@@ -43,22 +43,22 @@ pub struct Twist {
     pub omega: RadiansPerSecond,
 }
 
-/// The frame in which an atom's headings are meant: the pose, by odometry, at which the outermost plan began,
-/// turned by the `FRAME`s around the atom.
+/// The frame in which an atom's headings are meant: the heading, by odometry, of the robot when the outermost plan
+/// began, turned by the `FRAME`s around the atom. Where it began does not matter, as a plan names directions only.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Frame(pub Pose);
+pub struct Frame(pub Radians);
 
 impl Frame {
     /// This frame turned counter-clockwise.
     #[must_use]
     pub fn turned(self, by: Radians) -> Self {
-        Self(Pose { theta: Radians(self.0.theta.0 + by.0), ..self.0 })
+        Self(Radians(self.0.0 + by.0))
     }
 
     /// An angle of this frame as an angle of the odometry's axes.
     #[must_use]
     pub fn outward(&self, angle: Radians) -> Radians {
-        Radians(self.0.theta.0 + angle.0).wrapped()
+        Radians(self.0.0 + angle.0).wrapped()
     }
 }
 
@@ -69,10 +69,10 @@ mod tests {
     #[test]
     fn an_angle_of_a_frame_is_turned_by_its_heading() {
         let degrees = |angle: f64| Radians::from_degrees(angle);
-        let frame = Frame(Pose { theta: degrees(100.0), ..Pose::ORIGIN });
+        let frame = Frame(degrees(100.0));
         let outward = |frame: Frame, angle| libm::round(frame.outward(degrees(angle)).degrees() * 1e6) / 1e6;
         assert_eq!([0.0, 45.0, -100.0, 90.0].map(|angle| outward(frame, angle)), [100.0, 145.0, 0.0, -170.0]);
         assert_eq!(outward(frame.turned(degrees(-30.0)), 45.0), 115.0);
-        assert_eq!(outward(Frame(Pose::ORIGIN), 360.0), 0.0);
+        assert_eq!(outward(Frame::default(), 360.0), 0.0);
     }
 }
