@@ -55,7 +55,9 @@ struct Walk<'p> {
 
 impl Walk<'_> {
     fn write(&self, file: &str, fence: &Fence) -> String {
-        fs::write(self.folder.join(file), &fence.text).unwrap();
+        let path = self.folder.join(file);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, &fence.text).unwrap();
         file.to_owned()
     }
 
@@ -73,9 +75,17 @@ impl Walk<'_> {
                 assert!(output.status.success(), "{}: {}", self.page.path, said(&output));
             }
             "console" => fence.text.split("$ ").skip(1).for_each(|command| self.run(command)),
-            "text" | "sh" => {}
+            "text" => self.compare(fence),
+            "rust" | "toml" => assert_eq!(name(self.page), "embedding.md", "tests/embed.rs builds what stands there"),
+            "sh" => {}
             other => panic!("{}: what is `{other}`?", self.page.path),
         }
+    }
+
+    /// Holds a file, if the block has one, to what the page says has become of it.
+    fn compare(&self, fence: &Fence) {
+        let Some(file) = fence.file() else { return };
+        assert_eq!(fs::read_to_string(self.folder.join(file)).unwrap(), fence.text, "{}: {file}", self.page.path);
     }
 
     /// Holds a plan to the codes that are expected of it.

@@ -19,6 +19,7 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("tests/benchmarks", &["mdle-runtime", "mdle-sim", "mdle-tests", "mdlec"]),
     ("tests/benchmarks/turn", &["mdle-runtime", "mdlec"]),
     ("tests/bare", &["mdle-runtime", "mdle-atoms"]),
+    ("tests/application", &["mdle-runtime", "mdle-host", "mdle-sim", "mdlec"]),
     ("tests/mutants", &[]),
 ];
 
@@ -33,11 +34,12 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("rust", &["diagnostic", "alphabet", "plan", "fsm"]),
     ("link", &["crate", "diagnostic", "syntax", "alphabet", "plan", "fsm", "rust"]),
     ("cli", &["crate", "diagnostic", "syntax", "alphabet", "plan", "fsm", "trace", "rust", "link"]),
+    ("embed", &["cli"]),
     ("main", &["cli"]),
 ];
 
 /// The rooms that may read files and the environment.
-const WITH_IO: &[&str] = &["main", "cli", "link"];
+const WITH_IO: &[&str] = &["main", "cli", "embed", "link"];
 
 #[test]
 fn packages_use_only_those_below_them() {

@@ -4,12 +4,13 @@
 //! text ─syntax→ tree ─plan::resolve→ Plan ─plan::remove_degeneracy→ Nondegenerate ─fsm::algorithm1→ Lowered ─rust::emit→ Rust ─link→ executable
 //! ```
 //!
-//! **A stage does no I/O**: only [`cli`] and [`link`] read and write files.
+//! **A stage does no I/O**: only [`cli`], [`embed`] and [`link`] read and write files.
 
 pub mod alphabet;
 #[allow(clippy::disallowed_methods, reason = "the command line reads and writes files")]
 pub mod cli;
 pub mod diagnostic;
+pub mod embed;
 pub mod fsm;
 pub mod link;
 pub mod plan;

@@ -26,7 +26,8 @@ pub fn mdlec() -> &'static Path {
 }
 
 /// The target folder of the build that this test belongs to, wherever `CARGO_TARGET_DIR` put it.
-fn target() -> PathBuf {
+#[must_use]
+pub fn target() -> PathBuf {
     // TARGET/PROFILE/deps/this-test
     let this = std::env::current_exe().expect("a test has a path");
     this.ancestors().nth(3).expect("a target folder").to_owned()

@@ -56,18 +56,19 @@ pub(super) fn compile_one(
     match (compiled.pop(), compiled.len()) {
         (Some(only), 0) => Ok(only),
         (None, _) => Err(Failure::usage(format!(
-            "every plan of `{}` is used by another or takes parameters\nhelp: say which one, as in `--plan NAME`, or \
-             write one that uses it",
+            "every plan of `{}` is used by another or takes parameters\nhelp: say which one, as in `{}`, or write one \
+             that uses it",
             input.sources.name(input.source),
+            report::option("plan", "NAME"),
         ))),
         (last, _) => {
             let names = compiled.iter().chain(&last).map(|compiled| compiled.plan.root.name.as_str());
             let names: Vec<_> = names.collect();
             Err(Failure::usage(format!(
-                "`{}` holds several plans that no other refers to: {}\nhelp: say which one, as in `--plan {}`",
+                "`{}` holds several plans that no other refers to: {}\nhelp: say which one, as in `{}`",
                 input.sources.name(input.source),
                 names.join(", "),
-                names.first().copied().unwrap_or("NAME"),
+                report::option("plan", names.first().copied().unwrap_or("NAME")),
             )))
         }
     }
@@ -107,7 +108,7 @@ fn stage(options: &Build, path: &Path, kind: EmitKind) -> Result<String, Failure
         EmitKind::Expanded => fsm::expand(nondegenerate).map(|expanded| expanded.plan().numbered()),
         EmitKind::Fsm => fsm::fsm_file(nondegenerate).map(|file| file.to_json()),
         EmitKind::Tree | EmitKind::Rust | EmitKind::Exe => {
-            needs_target(options)?;
+            needs_target(options.target.as_deref())?;
             Ok(rust_of(&compiled, path, &target))
         }
     };
@@ -118,9 +119,38 @@ fn stage(options: &Build, path: &Path, kind: EmitKind) -> Result<String, Failure
 }
 
 /// Rust is written for a robot.
-fn needs_target(options: &Build) -> Result<(), Failure> {
-    let question = "for which robot? Name it with `--target`, as in `--target sim`; `mdlec targets` lists them";
-    options.target.as_ref().map(|_| ()).ok_or_else(|| Failure::usage(question))
+fn needs_target(target: Option<&str>) -> Result<(), Failure> {
+    let question = || {
+        let option = report::option("target", "sim");
+        Failure::usage(format!("for which robot? Name it, as in `{option}`; `mdlec targets` lists them"))
+    };
+    target.map(|_| ()).ok_or_else(question)
+}
+
+/// A plan as Rust, and what it was made of.
+pub(super) struct Emitted {
+    pub(super) target: Target,
+    pub(super) input: Input,
+    pub(super) plan_name: String,
+    pub(super) rust: String,
+}
+
+/// Makes Rust of the one plan that is to be compiled with the crate of this target.
+pub(super) fn emitted(
+    path: &Path,
+    target: Option<&str>,
+    name: Option<&str>,
+    deny_warnings: bool,
+) -> Result<Emitted, Failure> {
+    needs_target(target)?;
+    let target = input::target(target)?;
+    let mut input = input::read_plan(path, &target)?;
+    let compiled = compile_one(&mut input, &target, name, deny_warnings)?;
+    if let Some(folder) = &target.folder {
+        bind::must_be_bound(folder, &target.alphabet)?;
+    }
+    let rust = rust_of(&compiled, path, &target);
+    Ok(Emitted { target, input, plan_name: compiled.plan.root.name, rust })
 }
 
 fn rust_of(compiled: &Compiled, path: &Path, target: &Target) -> String {
@@ -131,25 +161,19 @@ fn rust_of(compiled: &Compiled, path: &Path, target: &Target) -> String {
 
 fn executable(options: &Build, path: &Path, output: Option<PathBuf>) -> Result<(), Failure> {
     let started = Instant::now();
-    needs_target(options)?;
-    let target = input::target(options.target.as_deref())?;
-    let mut input = input::read_plan(path, &target)?;
-    let compiled = compile_one(&mut input, &target, options.name.as_deref(), options.deny_warnings)?;
-    if let Some(folder) = &target.folder {
-        bind::must_be_bound(folder, &target.alphabet)?;
-    }
-    let rust = rust_of(&compiled, path, &target);
-    let plan_name = compiled.plan.root.name.as_str();
+    let Emitted { target, plan_name, rust, .. } =
+        emitted(path, options.target.as_deref(), options.name.as_deref(), options.deny_warnings)?;
     // Standard input has no name of its own.
-    let stem = path.file_stem().filter(|stem| *stem != "-").map_or_else(|| PathBuf::from(plan_name), PathBuf::from);
+    let stem = path.file_stem().filter(|stem| *stem != "-").map_or_else(|| PathBuf::from(&plan_name), PathBuf::from);
     let output = output.unwrap_or(stem);
     let crate_name = &target.alphabet.crate_name;
     let target_crate = match &target.folder {
         None => TargetCrate::Builtin { name: &target.alphabet.name, crate_name },
         Some(folder) => TargetCrate::Path { folder, crate_name },
     };
-    let plan_type = rust::plan_type(plan_name);
-    let package = Package { plan_name, plan_file: path, plan_type: &plan_type, rust: &rust, target: &target_crate };
+    let plan_type = rust::plan_type(&plan_name);
+    let package =
+        Package { plan_name: &plan_name, plan_file: path, plan_type: &plan_type, rust: &rust, target: &target_crate };
     let mut shown = Shown { open: false };
     let built = Cache::of_user()
         .and_then(|cache| link::build(&cache, &package, &output, &mut |progress| shown.progress(&progress)));
@@ -168,7 +192,7 @@ fn run(output: &Path, args: &[String]) -> Result<(), Failure> {
     Err(Failure::usage(format!("cannot run `{}`: {error}", program.display())))
 }
 
-fn failure(error: &LinkError) -> Failure {
+pub(super) fn failure(error: &LinkError) -> Failure {
     Failure { status: error.exit_status(), message: Some(error.to_string()) }
 }
 

@@ -38,6 +38,11 @@ impl Input {
         compile_with(self.source, &text, alphabet, wanted, self)
     }
 
+    /// The files that were read for it, its own first.
+    pub(super) fn files(&self) -> impl Iterator<Item = &Path> {
+        self.paths.values().map(PathBuf::as_path)
+    }
+
     /// The names of its plans, those of the files that it uses included.
     pub(super) fn plan_names(&mut self) -> Vec<String> {
         let (arena, text) = (syntax::Arena::new(), self.sources.text(self.source).to_owned());
@@ -241,9 +246,10 @@ fn unknown_target(name: &str) -> Failure {
     }
     Failure::usage(format!(
         "there is no target `{name}`{}\nhelp: the targets are {}; a target of your own is named by its folder, \
-         as in `--target ../rover`",
+         as in `{}`",
         did_you_mean(name, &known),
-        known.join(", ")
+        known.join(", "),
+        report::option("target", "../rover")
     ))
 }
 

@@ -3,6 +3,7 @@
 mod bind;
 mod build;
 mod check;
+mod embed;
 mod explain;
 mod fmt;
 mod input;
@@ -13,6 +14,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+pub(crate) use embed::embed;
 
 /// Compiles plans in MDLe, the Motion Description Language, for robots.
 #[derive(Debug, Parser)]
@@ -39,6 +41,9 @@ enum MessageFormat {
     Human,
     /// One JSON object a line: code, severity, message, spans, help
     Json,
+    /// As cargo takes it from a build script: warnings for cargo to show, errors for people
+    #[value(skip)]
+    BuildScript,
 }
 
 #[derive(Debug, Subcommand)]
@@ -223,6 +228,14 @@ impl Failure {
 
     /// The plan has errors, and they were printed: exit status 1.
     const PLAN: Self = Self { status: 1, message: None };
+
+    /// Says what there is to say; the exit status.
+    fn told(&self) -> u8 {
+        if let Some(message) = &self.message {
+            report::error(message);
+        }
+        self.status
+    }
 }
 
 /// Runs the command line of this process.
@@ -234,12 +247,7 @@ pub fn main() -> ExitCode {
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            if let Some(message) = &failure.message {
-                report::error(message);
-            }
-            ExitCode::from(failure.status)
-        }
+        Err(failure) => ExitCode::from(failure.told()),
     }
 }
 

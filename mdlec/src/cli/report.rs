@@ -8,7 +8,7 @@ use codespan_reporting::term;
 use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
 
 use super::{Failure, MessageFormat};
-use crate::diagnostic::{Code, Diagnostic, Message, Severity, Sources, Span};
+use crate::diagnostic::{Code, Diagnostic, Message, Severity, Sources, Span, has_errors};
 
 /// How this process says things. Said once, where the command line is read: every message goes through this file.
 static FORMAT: OnceLock<MessageFormat> = OnceLock::new();
@@ -24,6 +24,16 @@ pub(super) fn is_json() -> bool {
     FORMAT.get() == Some(&MessageFormat::Json)
 }
 
+/// Whether it is a build script's cargo that listens.
+fn is_build_script() -> bool {
+    FORMAT.get() == Some(&MessageFormat::BuildScript)
+}
+
+/// An option as whoever reads this can type it.
+pub(super) fn option(name: &str, value: &str) -> String {
+    if is_build_script() { format!(".{name}({value:?})") } else { format!("--{name} {value}") }
+}
+
 /// The most diagnostics that are shown at once: nobody reads more, and each shows its whole line of the source.
 const SHOWN: usize = 100;
 
@@ -33,6 +43,8 @@ const SHOWN: usize = 100;
 pub(super) fn diagnostics(sources: &Sources, found: &[Diagnostic], deny_warnings: bool) -> bool {
     if is_json() {
         found.iter().for_each(|diagnostic| line(&sources.message(diagnostic)));
+    } else if is_build_script() && !has_errors(found) {
+        found.iter().for_each(|diagnostic| warn_cargo(&sources.message(diagnostic)));
     } else {
         render(sources, found);
     }
@@ -63,6 +75,15 @@ fn render(sources: &Sources, found: &[Diagnostic]) {
 fn line(message: &Message<'_>) {
     // Nobody is left to be told when standard error is closed.
     let _ = writeln!(io::stderr().lock(), "{}", message.to_json());
+}
+
+/// Has cargo show a warning, in the one line that it takes.
+fn warn_cargo(warning: &Message<'_>) {
+    let place = warning.spans.first().map(|place| format!("{}:{}:{}: ", place.file, place.line, place.column));
+    let help: String = warning.help.iter().map(|help| format!("; help: {help}")).collect();
+    let text = format!("{}{}{help} [{}]", place.unwrap_or_default(), warning.message, warning.code.unwrap_or_default());
+    // Nobody is left to be told when standard output is closed.
+    let _ = writeln!(io::stdout().lock(), "cargo::warning={}", text.replace(char::is_control, " "));
 }
 
 /// The diagnostic of a file that is not text, with the file as far as it can be shown; its first `valid` bytes are good.

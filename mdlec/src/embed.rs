@@ -1,0 +1,65 @@
+//! Plans in an application: its build script makes Rust of them, and the application includes that.
+//!
+//! ```no_run
+//! // build.rs
+//! mdlec::embed::plan("plans/dock.mdle").target("sim").write();
+//! ```
+//!
+//! ```text
+//! // src/main.rs
+//! mod dock {
+//!     include!(concat!(env!("OUT_DIR"), "/dock.rs"));
+//! }
+//!
+//! fn main() -> std::process::ExitCode {
+//!     mdle_host::run::<mdle_sim::Target, _>("Dock", dock::Dock::new)
+//! }
+//! ```
+//!
+//! The package has `mdlec` among its `[build-dependencies]`, and among its `[dependencies]` what the Rust refers to:
+//! `mdle-runtime` and the target's crate, here `mdle-sim`. [`write`](Embed::write) makes one type of the plan, which
+//! implements `mdle_runtime::Plan`: `mdle_host::run` runs it as an executable that `mdlec` makes, and
+//! `mdle_runtime::Machine` turn by turn.
+
+use std::path::PathBuf;
+use std::process;
+
+use crate::cli;
+
+/// A plan to be embedded.
+#[derive(Debug, Clone)]
+#[must_use = "nothing is embedded before it is written"]
+pub struct Embed {
+    file: PathBuf,
+    target: Option<String>,
+    plan: Option<String>,
+}
+
+/// The plan of this file; a path begins at the folder of the package.
+pub fn plan(file: impl Into<PathBuf>) -> Embed {
+    Embed { file: file.into(), target: None, plan: None }
+}
+
+impl Embed {
+    /// The robot: one of `mdlec targets`, or the folder of a target of your own. It has to be named.
+    pub fn target(self, target: impl Into<String>) -> Self {
+        Self { target: Some(target.into()), ..self }
+    }
+
+    /// Which plan of the file, if there are several that no other refers to.
+    pub fn plan(self, name: impl Into<String>) -> Self {
+        Self { plan: Some(name.into()), ..self }
+    }
+
+    /// Writes `$OUT_DIR/STEM.rs`, `STEM` being the plan file's name without its ending; the same file embedded twice, as two
+    /// plans, is written over. Has cargo show the warnings, and run the build script again when a file changes that was
+    /// read: the plan, the files that it uses, and the alphabet of a target of your own.
+    ///
+    /// Where the plan has errors, this process ends with exit status 1 and says on standard error what `mdlec check` says;
+    /// where a file or the target cannot be read, with 2.
+    pub fn write(self) {
+        if let Err(status) = cli::embed(&self.file, self.target.as_deref(), self.plan.as_deref()) {
+            process::exit(status.into());
+        }
+    }
+}

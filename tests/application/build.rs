@@ -1,0 +1,5 @@
+//! Makes Rust of the plan.
+
+fn main() {
+    mdlec::embed::plan("plans/round.mdle").target("sim").write();
+}

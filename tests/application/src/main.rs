@@ -1,0 +1,12 @@
+//! An application that goes round: its plan is part of it.
+
+use std::process::ExitCode;
+
+/// What `build.rs` has made of `plans/round.mdle`.
+mod round {
+    include!(concat!(env!("OUT_DIR"), "/round.rs"));
+}
+
+fn main() -> ExitCode {
+    mdle_host::run::<mdle_sim::Target, _>("Round", round::Round::new)
+}

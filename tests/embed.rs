@@ -1,0 +1,106 @@
+//! A plan in an application: its build script makes Rust of it, through the real cargo.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::{Mutex, PoisonError};
+
+use mdle_tests::book::{Fence, fences, name, pages};
+use mdle_tests::executable::{folder, target};
+use mdle_tests::repository::root;
+
+/// Only one test at a time builds the application: its folder and its executable are the same for all.
+static BUILDING: Mutex<()> = Mutex::new(());
+
+/// The application of the book, which is that of `tests/application` with a manifest of its own, as a reader writes it.
+fn application() -> (PathBuf, Vec<Fence>) {
+    let folder = folder("application");
+    let page = pages().into_iter().find(|page| name(page) == "embedding.md").expect("a chapter");
+    let fences = fences(&page);
+    for (file, fence) in fences.iter().filter_map(|fence| Some((fence.file()?, fence))) {
+        let path = folder.join(file);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, &fence.text).unwrap();
+    }
+    // The checkout is not beside it, but around it.
+    let elsewhere = format!("path = \"{}/", root().to_str().unwrap());
+    change(&folder.join("Cargo.toml"), "path = \"../mdle/", &elsewhere);
+    change(&folder.join("Cargo.toml"), "\n[dependencies]", "\n[workspace]\n\n[dependencies]");
+    fs::copy(root().join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
+    (folder, fences)
+}
+
+/// Builds and runs it; what others have built for this workspace need not be built again.
+fn run(folder: &Path) -> Output {
+    cargo_run(folder, "--quiet")
+}
+
+fn cargo_run(folder: &Path, loudness: &str) -> Output {
+    let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
+    command.args(["run", "--offline", loudness, "--target-dir"]).arg(target()).args(["--", "--speed", "max"]);
+    command.current_dir(folder).output().expect("cargo runs")
+}
+
+/// What it prints, after it was built in silence.
+fn printed(folder: &Path) -> String {
+    let output = run(folder);
+    let (out, err) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
+    assert_eq!((output.status.code(), err.as_str()), (Some(0), ""));
+    out
+}
+
+/// Puts something else into a file.
+fn change(file: &Path, from: &str, to: &str) {
+    let text = fs::read_to_string(file).unwrap();
+    assert!(text.contains(from), "{text}");
+    fs::write(file, text.replace(from, to)).unwrap();
+}
+
+#[test]
+fn an_application_runs_its_plan_and_is_built_anew_when_a_file_of_it_changes() {
+    let _alone = BUILDING.lock().unwrap_or_else(PoisonError::into_inner);
+    let (folder, fences) = application();
+    let first = printed(&folder);
+    let shown = fences.iter().find(|fence| fence.words == ["text", "output"]).expect("what it prints");
+    assert_eq!(format!("$ cargo run -- --speed max\n{first}"), shown.text);
+
+    // A file that the plan uses.
+    let sides = folder.join("plans/sides.mdle");
+    change(&sides, "turn 180", "turn 90");
+    let second = printed(&folder);
+    assert!(second.contains(" turn 90 ") && !second.contains("180"), "{second}");
+
+    // What is wrong with it stops the build, and nothing else is said.
+    change(&sides, "turn 90", "tern 90");
+    let output = run(&folder);
+    assert_eq!(output.status.code(), Some(101));
+    let said = String::from_utf8(output.stderr).unwrap();
+    let (cargo, script) = said.split_once("--- stderr\n").expect(&said);
+    assert!(cargo.contains("(exit status: 1)") && !cargo.contains("--- stdout"), "{cargo}");
+    insta::assert_snapshot!(script);
+
+    // Mended, it is what it was, but for what cargo is told to show.
+    change(&sides, "tern 90", "turn 180");
+    change(&sides, "(null)", "(bumper)");
+    let output = cargo_run(&folder, "--color=never");
+    assert_eq!(output.status.code(), Some(0));
+    let said = String::from_utf8(output.stderr).unwrap();
+    insta::assert_snapshot!(said.lines().filter(|line| line.starts_with("warning: ")).collect::<Vec<_>>().join("\n"));
+}
+
+#[test]
+fn what_is_missing_is_told_as_a_build_script_can_type_it() {
+    let _alone = BUILDING.lock().unwrap_or_else(PoisonError::into_inner);
+    let (folder, _) = application();
+    let mut told = String::new();
+    let script = folder.join("build.rs");
+    let good = fs::read_to_string(&script).unwrap();
+    for wrong in [".target(\"sin\")", "", ".target(\"sim\").plan(\"Rond\")"] {
+        fs::write(&script, good.replace(".target(\"sim\")", wrong)).unwrap();
+        let said = String::from_utf8(run(&folder).stderr).unwrap();
+        let (_, said) = said.split_once("--- stderr\n").expect(&said);
+        told += &format!("{wrong}\n{said}\n");
+    }
+    insta::assert_snapshot!(told);
+}
