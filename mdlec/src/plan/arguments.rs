@@ -127,6 +127,11 @@ struct Fitting<'a> {
 impl Fitting<'_> {
     /// An argument, or what the parameter stands for that it is.
     fn given(&self, arg: &Arg, param: &Param, parameters: &Parameters<'_>) -> Fitted {
+        if let Arg::Name(name) = arg
+            && parameters.is_untyped(name.node)
+        {
+            return Ok((Value::Name(param.kind, name.node.to_owned()), name.node.to_owned()));
+        }
         let Some(parameter) = parameters.of(arg) else { return self.argument(arg, param, param.unit) };
         if parameter.kind != param.kind {
             return Err(parameter.mismatch(param.kind, arg.span()).into());

@@ -54,6 +54,7 @@ pub(super) fn resolve(
     };
     // What is wrong with either side is told at once.
     let right = match (&written.right, parameter) {
+        (Operand::Signal(call), None) if names.parameters.is_untyped(call.name) => Some(Err(Vec::new())),
         (Operand::Signal(call), None) => Some(self::signal(call, quarks, names)),
         (Operand::Signal(_), Some(_)) | (Operand::Number(_), _) => None,
     };

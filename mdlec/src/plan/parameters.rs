@@ -1,6 +1,6 @@
 //! The parameters of a plan: their types, and what they stand for where the plan is used (language, section 3).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::arguments::fit;
 use crate::alphabet::{self, Declaration, DeclarationKind, Kind, Origin, Param, Unit};
@@ -18,7 +18,11 @@ pub(super) struct Names<'n, 's> {
 
 /// The parameters of a definition by name.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Parameters<'s>(BTreeMap<&'s str, Parameter<'s>>);
+pub(super) struct Parameters<'s> {
+    known: BTreeMap<&'s str, Parameter<'s>>,
+    /// Those with a type that is none: that was told, and nothing is wrong with where they stand.
+    untyped: BTreeSet<&'s str>,
+}
 
 /// A parameter, and what it stands for.
 #[derive(Debug, Clone, Copy)]
@@ -53,20 +57,21 @@ impl Parameter<'_> {
 impl<'s> Parameters<'s> {
     /// The parameters that a plan declares, which stand for nothing yet.
     pub(super) fn declared(plan: &tree::Plan<'s>, found: &mut Vec<Diagnostic>) -> Self {
-        let mut parameters = BTreeMap::new();
+        let mut parameters = Self::default();
         for tree::Param { name, type_name } in plan.params {
             let Some(kind) = kind_of(type_name.node) else {
                 found.push(unknown_type(*type_name));
+                parameters.untyped.insert(name.node);
                 continue;
             };
             let parameter = Parameter { name: *name, kind, given: None };
-            if let Some(first) = parameters.insert(name.node, parameter) {
+            if let Some(first) = parameters.known.insert(name.node, parameter) {
                 let message = format!("there are two parameters called `{}`", name.node);
                 let second = Diagnostic::new(Code::E0203, message, name.span, "the second one");
                 found.push(second.also(first.name.span, "the first one").help("give one of them another name"));
             }
         }
-        Self(parameters)
+        parameters
     }
 
     /// The parameters of `plan` as `call` gives them, in a definition that has parameters of its own.
@@ -76,7 +81,7 @@ impl<'s> Parameters<'s> {
     pub(super) fn given(plan: &tree::Plan<'s>, call: &Call<'s>, around: &Self) -> Result<Self, Vec<Diagnostic>> {
         // What is wrong with the types was told where they stand.
         let mut parameters = Self::declared(plan, &mut Vec::new());
-        if parameters.0.len() < plan.params.len() {
+        if parameters.known.len() < plan.params.len() {
             return Ok(parameters);
         }
         let declaration = declaration(plan, &parameters);
@@ -90,7 +95,7 @@ impl<'s> Parameters<'s> {
             return Err(found.into_iter().map(told).collect());
         }
         for (param, arg) in plan.params.iter().zip(call.args) {
-            if let Some(parameter) = parameters.0.get_mut(param.name.node) {
+            if let Some(parameter) = parameters.known.get_mut(param.name.node) {
                 parameter.given = match around.of(arg) {
                     Some(outer) => outer.given,
                     None => Some(*arg),
@@ -102,7 +107,12 @@ impl<'s> Parameters<'s> {
 
     /// The parameter of this name.
     pub(super) fn get(&self, name: &str) -> Option<&Parameter<'s>> {
-        self.0.get(name)
+        self.known.get(name)
+    }
+
+    /// Whether a parameter of this name has a type that is none.
+    pub(super) fn is_untyped(&self, name: &str) -> bool {
+        self.untyped.contains(name)
     }
 
     /// The parameter that an argument is.
@@ -116,12 +126,13 @@ impl<'s> Parameters<'s> {
 
     /// Adds those of a behavior.
     pub(super) fn extend(&mut self, others: Self) {
-        self.0.extend(others.0);
+        self.known.extend(others.known);
+        self.untyped.extend(others.untyped);
     }
 
     /// Their names.
     pub(super) fn names(&self) -> impl Iterator<Item = &'s str> {
-        self.0.keys().copied()
+        self.known.keys().copied()
     }
 }
 

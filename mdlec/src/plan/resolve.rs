@@ -304,6 +304,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
                 Some(Parameter { given: Some(Arg::Infinity(_)), .. }) => return None,
                 // It stands for itself, until the plan is used.
                 Some(_) => return Some(1),
+                None if self.parameters.is_untyped(name.node) => return Some(1),
                 None => {
                     self.found.push(parameters::no_count(*name, &self.parameters));
                     return Some(1);

@@ -377,6 +377,16 @@ fn what_is_given_is_not_what_a_parameter_is() {
 }
 
 #[test]
+fn a_type_that_is_none_is_told_and_not_what_follows_from_it() {
+    assert_judged!(
+        "{ Main Leg(20) Twice(3) Far(2m) }
+{ Leg (v: spead) (bumper) (Atom (x > v) go v 0) }
+{ Twice (n: cuont) (Atom (wait 1) stop)^n }
+{ Far(d: distance) Leg(d) { Near (far: Length) (Atom (r0 < far) stop) } }"
+    );
+}
+
+#[test]
 fn a_value_that_is_out_of_range_is_shown_where_it_is_given() {
     assert_judged!(
         "{ Main Leg(5m/s) Leg(20) }\n{ Leg (v: speed) (Atom (wait 1) go v 0) (Atom (wait 1) go v 0) }",
@@ -396,9 +406,11 @@ fn a_plan_that_nothing_gives_its_parameters() {
 #[test]
 fn a_label_behind_a_plans_name_is_no_parameter() {
     assert_judged!(
-        "{ P (s1: (Atom (bumper) stop) s2: Q)^3 }
+        "{ P (s1: (Atom (bumper) stop) s2: Q)^3 (s3: Speed) (s4: spede)^2 }
 { Q (s1: R (s2: R)) }
-{ R (null) (one: { S (Atom (bumper) stop) }) }"
+{ R (null) (one: { S (Atom (bumper) stop) }) }
+{ Speed (s1: spede) }
+{ spede (s1: R)^2 }"
     );
 }
 

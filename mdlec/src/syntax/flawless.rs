@@ -7,7 +7,7 @@ use bumpalo::Bump;
 use logos::{Lexer, Logos};
 
 use super::brackets::MAX_DEPTH;
-use super::header::{has_parameters, is_element};
+use super::header::{Begins, begins, is_element};
 use super::nodes::{Docs, Nodes};
 use super::source::{Location, Source};
 use super::token::Tok;
@@ -79,10 +79,13 @@ impl<'t, 's> Tokens<'t, 's> {
             Tok::Str(text) => self.lexer.slice().len() == text.len() + 2,
             // Typesetting that goes together with a brace is rare, and not worth the trouble.
             Tok::Text | Tok::Command | Tok::Comment => false,
-            Tok::LParen => {
-                *token = self.parenthesis();
-                self.open()
-            }
+            Tok::LParen => match self.parenthesis() {
+                Some(parenthesis) => {
+                    *token = parenthesis;
+                    self.open()
+                }
+                None => false,
+            },
             Tok::LBrace => self.open(),
             Tok::RParen | Tok::RBrace => {
                 self.depth = self.depth.saturating_sub(1);
@@ -104,17 +107,20 @@ impl<'t, 's> Tokens<'t, 's> {
         self.depth <= MAX_DEPTH
     }
 
-    /// What the parenthesis is that has just been read: in a header a copy of the lexer runs ahead to see.
-    fn parenthesis(&mut self) -> Tok<'s> {
+    /// What the parenthesis is that has just been read: in a header a copy of the lexer runs ahead to see. `None` where that
+    /// depends on the names of all plans.
+    fn parenthesis(&mut self) -> Option<Tok<'s>> {
         let ahead = || self.lexer.clone().map_while(Result::ok).filter(|token| !matches!(token, Tok::Doc(_)));
-        match self.header {
-            Header::Name if has_parameters(ahead()) => Tok::ParamParen,
+        let begins = if self.header == Header::Name { begins(ahead()) } else { Begins::Others };
+        Some(match self.header {
+            Header::Name if begins == Begins::Parameters => Tok::ParamParen,
+            Header::Name if begins != Begins::Others => return None,
             Header::Name | Header::Condition if is_element(ahead()) => Tok::LParen,
             Header::Name | Header::Condition => Tok::ConditionParen,
             Header::Outside | Header::Count | Header::Loop | Header::Brace | Header::Params => {
                 if self.lexer.span().start == self.name_ends { Tok::TouchParen } else { Tok::LParen }
             }
-        }
+        })
     }
 
     /// How far the header has been read after this token.

@@ -1,25 +1,45 @@
 //! Says what a parenthesis behind a plan's own name is (language, section 3): its parameters, its condition, or its first element.
 //! The grammar could not know before the end of it.
 
+use std::collections::BTreeSet;
+
 use super::token::{Tok, Token};
 use crate::alphabet::Kind;
 
+/// What begins behind a parenthesis in a header.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Begins<'s> {
+    /// Parameters.
+    Parameters,
+    /// Nothing with a type.
+    Others,
+    /// `(v: spead)`: a parameter whose type is none, unless a plan has this name: then that, with a label.
+    Either(&'s str),
+}
+
 /// Marks the parentheses in the headers of plans; brackets must match.
 pub(super) fn mark(tokens: &mut [Token<'_>]) {
+    let mut plans = None;
     for brace in 0..tokens.len() {
         if is(tokens, brace, Tok::LBrace) && !is_loop(tokens, brace) && is_name(tokens, brace + 1) {
-            mark_header(tokens, brace + 2);
+            mark_header(tokens, brace + 2, &mut plans);
         }
     }
 }
 
-/// Marks the parenthesis at `at`, and the next one if this holds parameters.
-fn mark_header(tokens: &mut [Token<'_>], at: usize) {
+/// Marks the parenthesis at `at`, and the next one if this holds parameters; `plans` are the names of the file's plans, once
+/// somebody has asked for them.
+fn mark_header<'s>(tokens: &mut [Token<'s>], at: usize, plans: &mut Option<BTreeSet<&'s str>>) {
     if !is_parenthesis(tokens, at) {
         return;
     }
     let mut condition = at;
-    if has_parameters(behind(tokens, at)) {
+    let has_parameters = match begins(behind(tokens, at)) {
+        Begins::Parameters => true,
+        Begins::Others => false,
+        Begins::Either(name) => !plans.get_or_insert_with(|| names(tokens)).contains(name),
+    };
+    if has_parameters {
         set(tokens, at, Tok::ParamParen);
         condition = end_of_group(tokens, at) + 1;
         if !is_parenthesis(tokens, condition) {
@@ -30,21 +50,33 @@ fn mark_header(tokens: &mut [Token<'_>], at: usize) {
     set(tokens, condition, kind);
 }
 
+/// The names of all plans.
+fn names<'s>(tokens: &[Token<'s>]) -> BTreeSet<&'s str> {
+    let named = tokens.windows(2).filter_map(|pair| match pair {
+        [Token { kind: Tok::LBrace, .. }, Token { kind: Tok::Name(name), .. }] => Some(*name),
+        _ => None,
+    });
+    named.collect()
+}
+
 /// Whether parameters begin here, behind a parenthesis, and not a string whose first element has a label: a type follows the
 /// name, or what has to be one.
-pub(super) fn has_parameters<'s>(mut behind: impl Iterator<Item = Tok<'s>>) -> bool {
+pub(super) fn begins<'s>(mut behind: impl Iterator<Item = Tok<'s>>) -> Begins<'s> {
     if !matches!((behind.next(), behind.next()), (Some(Tok::Name(_)), Some(Tok::Colon))) {
-        return false;
+        return Begins::Others;
     }
     #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens cannot begin an element")]
     match behind.next() {
-        Some(Tok::Name(name)) if name == "bits" || Kind::NAMES.contains(&name) => true,
-        Some(Tok::Name(_)) => {
-            let next = [behind.next(), behind.next(), behind.next()];
-            matches!(next, [Some(Tok::LBracket), ..] | [Some(Tok::Comma), Some(Tok::Name(_)), Some(Tok::Colon)])
-        }
-        Some(Tok::LParen | Tok::LBrace | Tok::ExecPlan | Tok::Frame | Tok::Label(_)) => false,
-        _ => true,
+        Some(Tok::Name(name)) if name == "bits" || Kind::NAMES.contains(&name) => Begins::Parameters,
+        Some(Tok::Name(name)) => match [behind.next(), behind.next(), behind.next()] {
+            [Some(Tok::LBracket), ..] | [Some(Tok::Comma), Some(Tok::Name(_)), Some(Tok::Colon)] => Begins::Parameters,
+            // What has a power is no list.
+            [Some(Tok::RParen), Some(Tok::Caret), ..] => Begins::Others,
+            [Some(Tok::RParen), ..] => Begins::Either(name),
+            _ => Begins::Others,
+        },
+        Some(Tok::LParen | Tok::LBrace | Tok::ExecPlan | Tok::Frame | Tok::Label(_)) => Begins::Others,
+        _ => Begins::Parameters,
     }
 }
 
