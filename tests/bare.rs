@@ -19,10 +19,11 @@ use mdlec::trace::{Reports, Script, Tree, run};
 use mdlec::{Compiled, compile, link};
 
 /// The executables: what each is called, its plan, and the plan's shape.
-const EXECUTABLES: [(&str, &str, Shape); 4] = [
+const EXECUTABLES: [(&str, &str, Shape); 5] = [
     ("round_as_code", "Round", Shape::Code),
     ("round_as_shared_code", "Round", Shape::Shared),
     ("round_as_rows", "Round", Shape::Rows),
+    ("recall", "Recall", Shape::Rows),
     ("every_quark", "EveryQuark", Shape::Code),
 ];
 
@@ -57,6 +58,41 @@ const ROUND_IN_TIME: &str = r#"
 {"t": 35.1}
 {"t": 65.1, "fired": ["atIsection 0010"]}
 {"t": 65.2, "fired": ["bumper"]}
+"#;
+
+/// And a third: measurements are compared.
+const ROUND_BY_SIGNALS: &str = r#"
+{"t": 0.0}
+{"t": 0.1, "fired": ["r2 < 0.3"]}
+{"t": 15.1}
+{"t": 15.2, "completed": ["rotate 45"]}
+{"t": 15.3, "fired": ["r6 == r14"]}
+{"t": 15.6, "fired": ["r6 == r14"]}
+{"t": 15.7, "fired": ["v >= 80"]}
+"#;
+
+/// The first element ends by time, the scopes behind it by what rises; contact is the end.
+const RECALL: &str = r#"
+{"t": 0.0}
+{"t": 2.0}
+{"t": 3.0}
+{"t": 3.5, "completed": ["turn 90"]}
+{"t": 3.6, "fired": ["r2 < 0.3"]}
+{"t": 3.7, "fired": ["r2 < 0.3"]}
+{"t": 4.6}
+{"t": 5.6}
+{"t": 6.0, "fired": ["bumper"]}
+"#;
+
+/// What is there from the beginning does not rise, and the first element ends in the other way.
+const RECALL_OTHERWISE: &str = r#"
+{"t": 0.0, "fired": ["bumper"]}
+{"t": 0.5, "fired": ["bumper", "atIsection 1000"]}
+{"t": 0.6, "fired": ["r2 < 0.3", "atIsection 0100"]}
+{"t": 0.7, "fired": ["r2 < 0.3"]}
+{"t": 1.7}
+{"t": 2.7}
+{"t": 5.7}
 "#;
 
 const EVERY_QUARK: &str = r#"
@@ -147,7 +183,8 @@ fn printed(executable: &str, script: &Script) -> String {
 /// alone. Nothing is at rest that is not done, so that no law completes of itself.
 fn record(reports: &Reports) -> Vec<u8> {
     let said = |text: &str| reports.completed.contains(text);
-    let goals = [("rotate 90", 90.0), ("rotate -90", -90.0), ("rotate 45", 225.0), ("turn -90", -90.0)];
+    let goals =
+        [("rotate 90", 90.0), ("rotate -90", -90.0), ("rotate 45", 225.0), ("turn -90", -90.0), ("turn 90", 90.0)];
     let heading = goals.iter().find(|(law, _)| said(law)).map_or(0.0, |(_, degrees)| degrees * (PI / 180.0));
     let x = if said("goAvoid 0 2 20") { 2.0 } else { 0.0 };
     let omega = if reports.completed.is_empty() { 0.5 } else { 0.0 };
@@ -159,7 +196,11 @@ fn record(reports: &Reports) -> Vec<u8> {
         *range = if bit == '1' { 0.5 } else { -1.0 };
     }
     ranges[9] = if said("align 7 9") { ranges[7] } else { 1.5 };
-    let numbers = [x, 0.0, heading, 0.0, omega, pressed];
+    let compared = |text: &str| reports.fired.contains(text);
+    ranges[2] = if compared("r2 < 0.3") { 0.2 } else { 1.0 };
+    ranges[6] = if compared("r6 == r14") { ranges[14] } else { 1.5 };
+    let v = if compared("v >= 80") { 0.9 } else { 0.0 };
+    let numbers = [x, 0.0, heading, v, omega, pressed];
     let bits = numbers.into_iter().chain(ranges).map(f64::to_bits);
     std::iter::once(reports.t.0).chain(bits).flat_map(u64::to_le_bytes).collect()
 }
@@ -181,14 +222,26 @@ fn traced(executable: &str, plan: &str, script: &str) -> String {
 
 #[test]
 fn conditions_and_nesting_of_every_form_link_and_run_in_every_shape() {
-    let turns = |executable| traced(executable, "Round", ROUND) + &traced(executable, "Round", ROUND_IN_TIME);
+    let scripts = [ROUND, ROUND_IN_TIME, ROUND_BY_SIGNALS];
+    let turns = |executable| scripts.map(|script| traced(executable, "Round", script)).concat();
     let [turns, shared, rows] = ["round_as_code", "round_as_shared_code", "round_as_rows"].map(turns);
     assert_eq!([&turns, &turns], [&shared, &rows]);
-    let (Compiled { lowered, .. }, _) = compiled("Round");
-    let conditions: BTreeSet<_> = lowered.scopes.iter().flatten().map(|scope| &scope.interrupt.text).collect();
-    let never: Vec<_> = conditions.into_iter().filter(|text| !turns.contains(&format!("\"by\":\"{text}\""))).collect();
-    assert_eq!(never, ["null"]);
+    assert_eq!(never_fired("Round", &turns), ["null"]);
     insta::assert_snapshot!(turns);
+}
+
+#[test]
+fn memories_link_and_run() {
+    let turns = [RECALL, RECALL_OTHERWISE].map(|script| traced("recall", "Recall", script)).concat();
+    assert_eq!(never_fired("Recall", &turns), ["null"]);
+    insta::assert_snapshot!(turns);
+}
+
+/// The conditions of a plan that ended nothing in these turns.
+fn never_fired(plan: &str, turns: &str) -> Vec<String> {
+    let (Compiled { lowered, .. }, _) = compiled(plan);
+    let conditions: BTreeSet<_> = lowered.scopes.iter().flatten().map(|scope| scope.interrupt.text.clone()).collect();
+    conditions.into_iter().filter(|text| !turns.contains(&format!("\"by\":\"{text}\""))).collect()
 }
 
 #[test]

@@ -1,0 +1,17 @@
+//! The plan `Recall`, whose memories are rows.
+#![no_std]
+#![no_main]
+
+use core::ffi::c_int;
+
+/// What mdlec emits: `tests/bare.rs` has it written where `PLANS` says.
+mod plan {
+    include!(concat!(env!("PLANS"), "/recall.rs"));
+}
+
+/// Where the C library begins.
+#[unsafe(no_mangle)]
+#[allow(unsafe_code, reason = "no other function has this name")]
+extern "C" fn main() -> c_int {
+    mdle_bare::run(plan::Recall::new())
+}
