@@ -2,16 +2,14 @@
 
 mod explain;
 mod json;
+mod sources;
 
 use std::fmt;
 use std::ops::Range;
 
 pub use explain::{Example, Explanation};
 pub use json::{Message, Place};
-
-use codespan_reporting::diagnostic as report;
-use codespan_reporting::files::{Error as FilesError, Files, SimpleFile};
-use codespan_reporting::term;
+pub use sources::Sources;
 
 /// A file that was read: where it begins if all files stand one behind the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -203,93 +201,4 @@ pub fn has_errors(diagnostics: &[Diagnostic]) -> bool {
 /// Puts diagnostics into the order of the sources.
 pub fn sort(diagnostics: &mut [Diagnostic]) {
     diagnostics.sort_by_key(|diagnostic| (diagnostic.span(), diagnostic.code));
-}
-
-/// The files that spans point into.
-#[derive(Debug, Default)]
-pub struct Sources {
-    /// In the order in which they begin.
-    files: Vec<(SourceId, SimpleFile<String, String>)>,
-}
-
-impl Sources {
-    /// Takes in a file: the name that messages show, and its text.
-    pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> SourceId {
-        // One byte between two files: what stands at the end of one is not in the next.
-        let id = self.files.last().map_or(0, |(last, file)| Span::new(*last, 0, file.source().len() + 1).end);
-        self.files.push((SourceId(id), SimpleFile::new(name.into(), text.into())));
-        SourceId(id)
-    }
-
-    /// The file that holds this byte.
-    fn file(&self, byte: u32) -> Option<&(SourceId, SimpleFile<String, String>)> {
-        let behind = self.files.partition_point(|(id, _)| id.0 <= byte);
-        self.files.get(behind.checked_sub(1)?)
-    }
-
-    /// The file that a stretch is in, and its bytes there.
-    fn range(&self, span: Span) -> (SourceId, Range<usize>) {
-        let source = self.file(span.start).map_or(SourceId(0), |(id, _)| *id);
-        (source, span.within(source))
-    }
-
-    /// The text of a file.
-    #[must_use]
-    pub fn text(&self, source: SourceId) -> &str {
-        self.file(source.0).map_or("", |(_, file)| file.source().as_str())
-    }
-
-    /// The name of a file.
-    #[must_use]
-    pub fn name(&self, source: SourceId) -> &str {
-        self.file(source.0).map_or("", |(_, file)| file.name().as_str())
-    }
-
-    /// The diagnostic as plain text, as a terminal without colours shows it.
-    #[must_use]
-    pub fn render(&self, diagnostic: &Diagnostic) -> String {
-        term::emit_into_string(&term::Config::default(), self, &self.report(diagnostic))
-            .unwrap_or_else(|_| format!("{}: {}\n", diagnostic.code, diagnostic.message))
-    }
-
-    /// The diagnostic as codespan-reporting takes it, for a terminal with colours.
-    #[must_use]
-    pub fn report(&self, diagnostic: &Diagnostic) -> report::Diagnostic<SourceId> {
-        let severity = match diagnostic.code.severity() {
-            Severity::Error => report::Severity::Error,
-            Severity::Warning => report::Severity::Warning,
-        };
-        let labels = diagnostic.labels.iter().map(|label| {
-            let style = if label.primary { report::LabelStyle::Primary } else { report::LabelStyle::Secondary };
-            let (source, range) = self.range(label.span);
-            report::Label::new(style, source, range).with_message(&label.text)
-        });
-        report::Diagnostic::new(severity)
-            .with_code(diagnostic.code.name())
-            .with_message(&diagnostic.message)
-            .with_labels(labels.collect())
-            .with_notes(diagnostic.help.iter().map(|help| format!("help: {help}")).collect())
-    }
-}
-
-impl<'a> Files<'a> for Sources {
-    type FileId = SourceId;
-    type Name = &'a str;
-    type Source = &'a str;
-
-    fn name(&'a self, id: SourceId) -> Result<&'a str, FilesError> {
-        self.file(id.0).map(|(_, file)| file.name().as_str()).ok_or(FilesError::FileMissing)
-    }
-
-    fn source(&'a self, id: SourceId) -> Result<&'a str, FilesError> {
-        self.file(id.0).map(|(_, file)| file.source().as_str()).ok_or(FilesError::FileMissing)
-    }
-
-    fn line_index(&'a self, id: SourceId, byte: usize) -> Result<usize, FilesError> {
-        self.file(id.0).ok_or(FilesError::FileMissing)?.1.line_index((), byte)
-    }
-
-    fn line_range(&'a self, id: SourceId, line: usize) -> Result<std::ops::Range<usize>, FilesError> {
-        self.file(id.0).ok_or(FilesError::FileMissing)?.1.line_range((), line)
-    }
 }

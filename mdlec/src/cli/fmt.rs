@@ -12,7 +12,7 @@ use crate::{link, syntax};
 pub(super) fn fmt(options: &Fmt) -> Result<(), Failure> {
     each(&options.plans, |path| {
         let text = input::read_text(path)?;
-        let formatted = formatted(path, &text)?;
+        let formatted = formatted(path, text.clone())?;
         if options.check {
             return if formatted == text { Ok(()) } else { differs(path) };
         }
@@ -23,10 +23,10 @@ pub(super) fn fmt(options: &Fmt) -> Result<(), Failure> {
     })
 }
 
-fn formatted(path: &Path, text: &str) -> Result<String, Failure> {
+fn formatted(path: &Path, text: String) -> Result<String, Failure> {
     let mut sources = Sources::default();
-    let source = sources.add(input::shown(path), text);
-    syntax::format(source, text).map_err(|found| {
+    let source = input::add(&mut sources, path, text)?;
+    syntax::format(source, sources.text(source)).map_err(|found| {
         report::diagnostics(&sources, &found, false);
         Failure::PLAN
     })

@@ -68,8 +68,8 @@ impl syntax::Loader for Input {
             return Err(format!("`{name}` is a folder, and a file has to stand here"));
         }
         let bytes = fs::read(&place).map_err(refused)?;
-        if u32::try_from(bytes.len()).is_err() {
-            return Err(format!("`{name}` is larger than 4 GB"));
+        if let Some(refusal) = self.sources.refusal(&name, bytes.len()) {
+            return Err(refusal);
         }
         let text = String::from_utf8(without_mark(bytes)).map_err(|_| format!("`{name}` is not UTF-8 text"))?;
         let source = self.sources.add(name, text);
@@ -119,14 +119,23 @@ pub(super) fn read_plan(path: &Path, target: &Target) -> Result<Input, Failure> 
     for (name, text) in &target.sources {
         sources.add(name, text);
     }
-    let source = sources.add(shown(path), text);
+    let source = add(&mut sources, path, text)?;
     let paths = BTreeMap::from([(source, path.to_owned())]);
     let read = path.canonicalize().map(|place| (place, source)).into_iter().collect();
     Ok(Input { sources, source, paths, read })
 }
 
+/// Takes in the text of a plan file.
+pub(super) fn add(sources: &mut Sources, path: &Path, text: String) -> Result<SourceId, Failure> {
+    let name = shown(path);
+    match sources.refusal(&name, text.len()) {
+        Some(refusal) => Err(Failure::usage(refusal)),
+        None => Ok(sources.add(name, text)),
+    }
+}
+
 /// What messages call a file.
-pub(super) fn shown(path: &Path) -> String {
+fn shown(path: &Path) -> String {
     if path == Path::new("-") { "standard input".into() } else { path.display().to_string() }
 }
 
@@ -148,9 +157,6 @@ pub(super) fn read_text(path: &Path) -> Result<String, Failure> {
             format!("cannot read `{name}`: {error}")
         })
     })?;
-    if u32::try_from(bytes.len()).is_err() {
-        return Err(Failure::usage(format!("`{name}` is larger than 4 GB")));
-    }
     String::from_utf8(without_mark(bytes)).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
         let (sources, found) = report::not_utf8(&name.to_string(), error.as_bytes(), valid);

@@ -34,15 +34,20 @@ pub(super) fn option(name: &str, value: &str) -> String {
     if is_build_script() { format!(".{name}({value:?})") } else { format!("--{name} {value}") }
 }
 
-/// The most diagnostics that are shown at once: nobody reads more, and each shows its whole line of the source.
+/// The most diagnostics that a person is shown at once: nobody reads more.
 const SHOWN: usize = 100;
+/// The most diagnostics that a program is told.
+const TOLD: usize = 1_000;
+/// So much of the source is shown with them, in bytes, and with one at least: each shows its lines whole, however long.
+const SOURCE_SHOWN: usize = 500_000;
 
 /// Prints diagnostics in their order, then how many there were.
 ///
 /// Returns whether the plan may go on: no error, and no warning where these count as errors.
 pub(super) fn diagnostics(sources: &Sources, found: &[Diagnostic], deny_warnings: bool) -> bool {
     if is_json() {
-        found.iter().for_each(|diagnostic| line(&sources.message(diagnostic)));
+        found.iter().take(TOLD).for_each(|diagnostic| line(&sources.message(diagnostic)));
+        note_others(found.len(), TOLD);
     } else if is_build_script() && !has_errors(found) {
         found.iter().for_each(|diagnostic| warn_cargo(&sources.message(diagnostic)));
     } else {
@@ -62,12 +67,25 @@ pub(super) fn diagnostics(sources: &Sources, found: &[Diagnostic], deny_warnings
 fn render(sources: &Sources, found: &[Diagnostic]) {
     let choice = if io::stderr().is_terminal() { ColorChoice::Auto } else { ColorChoice::Never };
     let mut out = StandardStream::stderr(choice);
-    for diagnostic in found.iter().take(SHOWN) {
+    let mut source = 0;
+    let shown = found.iter().take(SHOWN).take_while(|diagnostic| {
+        let is_shown = source <= SOURCE_SHOWN;
+        source += sources.shown(diagnostic);
+        is_shown
+    });
+    let mut count = 0;
+    for diagnostic in shown {
+        count += 1;
         // Nobody is left to be told when standard error is closed.
         let _ = term::emit_to_write_style(&mut out, &term::Config::default(), sources, &sources.report(diagnostic));
     }
-    if found.len() > SHOWN {
-        note(format_args!("… and {} more", found.len() - SHOWN));
+    note_others(found.len(), count);
+}
+
+/// Says how many diagnostics are not shown.
+fn note_others(all: usize, shown: usize) {
+    if all > shown {
+        note(format_args!("… and {} more", all - shown));
     }
 }
 

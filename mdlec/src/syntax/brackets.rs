@@ -45,6 +45,7 @@ fn pass<'s>(source: Source<'s>, lexed: &Lexed<'s>, ends: &BTreeSet<usize>) -> (B
         balanced: Balanced::default(),
         open: Vec::new(),
         braces: 0,
+        strays: None,
         reached: 0,
         ends: BTreeSet::new(),
     };
@@ -90,6 +91,16 @@ struct Open {
     stray: Option<usize>,
 }
 
+/// Closing brackets one behind the other that close nothing.
+#[derive(Debug, Clone, Copy)]
+struct Strays {
+    /// The message about them.
+    message: usize,
+    /// The last of them.
+    last: usize,
+    count: usize,
+}
+
 struct Pass<'t, 's> {
     source: Source<'s>,
     raw: &'t [Token<'s>],
@@ -97,6 +108,8 @@ struct Pass<'t, 's> {
     open: Vec<Open>,
     /// How many of the open brackets are braces.
     braces: usize,
+    /// The closing brackets that were read last and closed nothing.
+    strays: Option<Strays>,
     /// How far the text has been looked through for ends of lines.
     reached: usize,
     /// Where braces that are never closed seem to end, as tokens of the text.
@@ -125,8 +138,8 @@ impl<'s> Pass<'_, 's> {
                 self.push(token);
             }
             Tok::Use if !self.open.is_empty() => self.inner_use(token),
-            Tok::RBrace => self.close_brace(token),
-            Tok::RParen => self.close_parenthesis(token),
+            Tok::RBrace => self.close_brace(index, token),
+            Tok::RParen => self.close_parenthesis(index, token),
             _ => self.push(token),
         }
         true
@@ -285,8 +298,30 @@ impl<'s> Pass<'_, 's> {
         self.push(Token { kind: Tok::Name("use"), ..token });
     }
 
-    fn close_brace(&mut self, token: Token<'s>) {
+    /// Whether this closing bracket closes nothing as the one before it does; then the message is about both.
+    fn is_one_more(&mut self, index: usize, token: Token<'s>) -> bool {
+        let is_alike = |last: usize| self.raw.get(last).is_some_and(|last| last.kind == token.kind);
+        let strays = self.strays.as_mut().filter(|strays| strays.last + 1 == index && is_alike(strays.last));
+        let Some(strays) = strays else {
+            self.strays = Some(Strays { message: self.balanced.diagnostics.len(), last: index, count: 1 });
+            return false;
+        };
+        self.balanced.regions.spoil();
+        (strays.last, strays.count) = (index, strays.count + 1);
+        let bracket = if token.kind == Tok::RBrace { '}' } else { ')' };
+        if let Some(told) = self.balanced.diagnostics.get_mut(strays.message) {
+            told.message = format!("these {} `{bracket}` close nothing", strays.count);
+            told.help.clear();
+            told.labels.iter_mut().take(1).for_each(|label| label.span = label.span.to(self.source.span(token.place)));
+        }
+        true
+    }
+
+    fn close_brace(&mut self, index: usize, token: Token<'s>) {
         if self.braces == 0 {
+            if self.is_one_more(index, token) {
+                return;
+            }
             let span = self.source.span(token.place);
             let diagnostic = Diagnostic::new(Code::E0103, "this `}` closes nothing", span, "no `{` is open here");
             self.spoil(diagnostic.help("take it out, or open a plan: `{ Name (Atom (bumper) stop) }`"));
@@ -297,7 +332,7 @@ impl<'s> Pass<'_, 's> {
         self.close(token);
     }
 
-    fn close_parenthesis(&mut self, token: Token<'s>) {
+    fn close_parenthesis(&mut self, index: usize, token: Token<'s>) {
         let brace = match self.open.last() {
             Some(open) if open.kind != Kind::Brace => {
                 self.close(token);
@@ -305,6 +340,9 @@ impl<'s> Pass<'_, 's> {
             }
             other => other.and_then(|open| open.place),
         };
+        if self.is_one_more(index, token) {
+            return;
+        }
         let span = self.source.span(token.place);
         let mut diagnostic = Diagnostic::new(Code::E0103, "this `)` closes nothing", span, "no `(` is open here");
         if let Some(brace) = brace {

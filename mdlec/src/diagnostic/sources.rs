@@ -1,0 +1,160 @@
+//! The files that messages show: a place in one of them is a place among all, one behind the other.
+
+use std::ops::Range;
+
+use codespan_reporting::diagnostic as report;
+use codespan_reporting::files::{Error as FilesError, Files, SimpleFile};
+use codespan_reporting::term;
+
+use super::{Diagnostic, Label, Severity, SourceId, Span};
+
+/// The files that spans point into.
+#[derive(Debug, Default)]
+pub struct Sources {
+    /// In the order in which they begin.
+    files: Vec<(SourceId, SimpleFile<String, String>)>,
+}
+
+impl Sources {
+    /// The most bytes of all files together, with one between two: places are numbers of 32 bits.
+    const ROOM: u32 = u32::MAX;
+
+    /// Takes in a file for which there is [room](Self::refusal): the name that messages show, and its text.
+    pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> SourceId {
+        let id = self.next();
+        self.files.push((id, SimpleFile::new(name.into(), text.into())));
+        id
+    }
+
+    /// Where the next file begins. One byte is between two files: what stands at the end of one is not in the next.
+    fn next(&self) -> SourceId {
+        SourceId(self.files.last().map_or(0, |(last, file)| Span::new(*last, 0, file.source().len() + 1).end))
+    }
+
+    /// Why a file of so many bytes cannot be taken in, if it cannot.
+    #[must_use]
+    pub fn refusal(&self, name: &str, length: usize) -> Option<String> {
+        let room = Self::ROOM - self.next().0;
+        let is_small = u32::try_from(length).is_ok_and(|length| length < room);
+        (!is_small).then(|| {
+            format!(
+                "`{name}` has {length} bytes, and there is room for {}: a plan, the files that it uses and the alphabets \
+                 can have {} in all",
+                room.saturating_sub(1),
+                Self::ROOM
+            )
+        })
+    }
+
+    /// The file that holds this byte.
+    fn file(&self, byte: u32) -> Option<&(SourceId, SimpleFile<String, String>)> {
+        let behind = self.files.partition_point(|(id, _)| id.0 <= byte);
+        self.files.get(behind.checked_sub(1)?)
+    }
+
+    /// The file that a stretch is in, and its bytes there.
+    pub(super) fn range(&self, span: Span) -> (SourceId, Range<usize>) {
+        let source = self.file(span.start).map_or(SourceId(0), |(id, _)| *id);
+        (source, span.within(source))
+    }
+
+    /// How much of the files is shown with a diagnostic, in bytes: the lines of its places.
+    #[must_use]
+    pub fn shown(&self, diagnostic: &Diagnostic) -> usize {
+        let lines = |label: &Label| {
+            let (source, range) = self.range(label.span);
+            let line = |byte| self.line_index(source, byte).and_then(|line| self.line_range(source, line)).ok();
+            Some(line(range.end)?.end.saturating_sub(line(range.start)?.start))
+        };
+        diagnostic.labels.iter().filter_map(lines).sum()
+    }
+
+    /// The text of a file.
+    #[must_use]
+    pub fn text(&self, source: SourceId) -> &str {
+        self.file(source.0).map_or("", |(_, file)| file.source().as_str())
+    }
+
+    /// The name of a file.
+    #[must_use]
+    pub fn name(&self, source: SourceId) -> &str {
+        self.file(source.0).map_or("", |(_, file)| file.name().as_str())
+    }
+
+    /// The diagnostic as plain text, as a terminal without colours shows it.
+    #[must_use]
+    pub fn render(&self, diagnostic: &Diagnostic) -> String {
+        term::emit_into_string(&term::Config::default(), self, &self.report(diagnostic))
+            .unwrap_or_else(|_| format!("{}: {}\n", diagnostic.code, diagnostic.message))
+    }
+
+    /// The diagnostic as codespan-reporting takes it, for a terminal with colours.
+    #[must_use]
+    pub fn report(&self, diagnostic: &Diagnostic) -> report::Diagnostic<SourceId> {
+        let severity = match diagnostic.code.severity() {
+            Severity::Error => report::Severity::Error,
+            Severity::Warning => report::Severity::Warning,
+        };
+        let labels = diagnostic.labels.iter().map(|label| {
+            let style = if label.primary { report::LabelStyle::Primary } else { report::LabelStyle::Secondary };
+            let (source, range) = self.range(label.span);
+            report::Label::new(style, source, range).with_message(&label.text)
+        });
+        report::Diagnostic::new(severity)
+            .with_code(diagnostic.code.name())
+            .with_message(&diagnostic.message)
+            .with_labels(labels.collect())
+            .with_notes(diagnostic.help.iter().map(|help| format!("help: {help}")).collect())
+    }
+}
+
+impl<'a> Files<'a> for Sources {
+    type FileId = SourceId;
+    type Name = &'a str;
+    type Source = &'a str;
+
+    fn name(&'a self, id: SourceId) -> Result<&'a str, FilesError> {
+        self.file(id.0).map(|(_, file)| file.name().as_str()).ok_or(FilesError::FileMissing)
+    }
+
+    fn source(&'a self, id: SourceId) -> Result<&'a str, FilesError> {
+        self.file(id.0).map(|(_, file)| file.source().as_str()).ok_or(FilesError::FileMissing)
+    }
+
+    fn line_index(&'a self, id: SourceId, byte: usize) -> Result<usize, FilesError> {
+        self.file(id.0).ok_or(FilesError::FileMissing)?.1.line_index((), byte)
+    }
+
+    fn line_range(&'a self, id: SourceId, line: usize) -> Result<std::ops::Range<usize>, FilesError> {
+        self.file(id.0).ok_or(FilesError::FileMissing)?.1.line_range((), line)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A name for files that are told of only.
+    const NAME: &str = "long.mdle";
+
+    #[test]
+    fn places_among_all_files_are_numbers_of_32_bits() {
+        let mut sources = Sources::default();
+        assert_eq!(sources.refusal(NAME, u32::MAX as usize - 1), None);
+        assert!(sources.refusal(NAME, u32::MAX as usize).is_some());
+        let first = sources.add("first.mdle", "a".repeat(1_000));
+        let room = u32::MAX as usize - 1 - 1_001;
+        assert_eq!(sources.refusal(NAME, room), None);
+        assert_eq!(
+            sources.refusal(NAME, room + 1).as_deref(),
+            Some(
+                "`long.mdle` has 4294966294 bytes, and there is room for 4294966293: a plan, the files that it uses and the \
+                 alphabets can have 4294967295 in all"
+            )
+        );
+        // Where all of that is taken, the last place is one that a span can name.
+        let last = Span::new(SourceId(1_001), 0, room);
+        assert_eq!((last.end, last.within(SourceId(1_001))), (u32::MAX - 1, 0..room));
+        assert_eq!(sources.file(500).map(|(id, _)| *id), Some(first));
+    }
+}

@@ -1,0 +1,82 @@
+//! Plans that nobody writes by hand: what is too deep is one error that names the limit; through the real binary.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::path::Path;
+
+use mdle_tests::executable::{folder, run_mdlec};
+
+/// So many of each.
+const MANY: usize = 100_000;
+
+/// What every command is asked to do with a plan called `P`.
+const COMMANDS: [&[&str]; 4] = [
+    &["check", "plan.mdle"],
+    &["fmt", "--check", "plan.mdle"],
+    &["trace", "plan.mdle", "--script", "script.jsonl"],
+    &["plan.mdle", "--emit", "rust", "--target", "sim"],
+];
+
+/// The exit status, standard output and standard error of a command.
+fn said(folder: &Path, plan: &str, arguments: &[&str]) -> (Option<i32>, String, String) {
+    fs::write(folder.join("plan.mdle"), plan).unwrap();
+    fs::write(folder.join("script.jsonl"), "{\"t\": 0}\n{\"t\": 0.5, \"fired\": [\"bumper\"]}\n").unwrap();
+    let output = run_mdlec(folder, arguments);
+    let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
+    (output.status.code(), text(output.stdout), text(output.stderr))
+}
+
+/// What nests, from the outside to the inside and back.
+fn nested(before: &str, opened: &str, inside: &str, closed: &str, behind: &str) -> [String; 2] {
+    let open = format!("{before}{}{inside}", opened.repeat(MANY));
+    [format!("{open}{}{behind}", closed.repeat(MANY)), format!("{open}{behind}")]
+}
+
+#[test]
+fn what_nests_too_deep_is_one_error_that_names_the_limit() {
+    let folder = folder("too_deep");
+    let plans = [
+        nested("{ P ", "(", "Q", ")", " }"),
+        nested("", "{ P ", "(Atom (bumper) stop)", " }", ""),
+        nested("", "{ P (", "Q", ") }", ""),
+        nested("", "{ P (", "Q", "} )", ""),
+        nested("{ P (Atom ", "(", "bumper", ")", " stop) }"),
+        nested("{ P (Atom (", "NOT (", "bumper", ")", ") stop) }"),
+        nested("{ P (Atom (bumper) go", "(", "5 0", ")", ") }"),
+        nested("{ P ", "ExecPlan 2 { ", "Q", " }", " }"),
+    ];
+    for plan in plans.as_flattened() {
+        let [first, others @ ..] = COMMANDS.map(|arguments| said(&folder, plan, arguments));
+        let (status, printed, told) = &first;
+        let start: String = told.chars().take(300).collect();
+        assert_eq!((*status, printed.as_str()), (Some(1), ""), "{start}");
+        assert!(start.starts_with("error[E0106]: brackets nested more than 256 deep\n"), "{start}");
+        assert!(told.ends_with("\nerror: 1 error\n"), "{start}");
+        assert!(others.iter().all(|other| *other == first), "{start}");
+    }
+}
+
+#[test]
+fn brackets_that_close_nothing_are_one_error() {
+    let folder = folder("strays");
+    for bracket in [")", "}"] {
+        let plan = format!("{{ P (Atom (bumper) stop) }}{}", bracket.repeat(MANY));
+        for arguments in COMMANDS {
+            let (status, _, told) = said(&folder, &plan, arguments);
+            let message = format!("error[E0103]: these 100000 `{bracket}` close nothing\n");
+            assert!(status == Some(1) && told.starts_with(&message), "{}", &told[..300]);
+            assert!(told.ends_with("\nerror: 1 error\n"));
+        }
+    }
+}
+
+#[test]
+fn errors_without_number_are_told_as_far_as_anybody_reads() {
+    let folder = folder("without_number");
+    let plan = format!("{{ P {} }}", "(} {) ".repeat(MANY / 2));
+    let (status, _, told) = said(&folder, &plan, &["check", "plan.mdle"]);
+    assert_eq!(status, Some(1));
+    assert!(told.len() < 2_000_000 && told.contains("\n… and "), "{} bytes", told.len());
+    let (status, _, told) = said(&folder, &plan, &["check", "plan.mdle", "--message-format", "json"]);
+    assert_eq!((status, told.lines().count()), (Some(1), 1_001));
+}
