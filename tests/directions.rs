@@ -20,6 +20,7 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("tests/benchmarks/turn", &["mdle-runtime", "mdlec"]),
     ("tests/bare", &["mdle-runtime", "mdle-atoms"]),
     ("tests/mutants", &[]),
+    ("tests/fuzz", &["mdle-tests"]),
 ];
 
 /// What each room of the compiler may use of the others. `crate` is what `lib.rs` itself holds.

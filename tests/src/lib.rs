@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test tool fails by panicking")]
 
+pub mod any_text;
 pub mod book;
 pub mod chance;
 pub mod elf;
