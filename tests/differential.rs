@@ -5,11 +5,16 @@
 
 use mdle_scripted::drive;
 use mdle_tests::chance::Chance;
+use mdle_tests::grammar;
 use mdle_tests::loaded::{Loaded, marks};
 use mdle_tests::outputs::outputs;
 use mdle_tests::pipeline::{Machines, compile};
+use mdle_tests::productions::{self, Productions};
 use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::random_script::script;
+use mdlec::alphabet::Unit;
+use mdlec::diagnostic::SourceId;
+use mdlec::syntax::{arena_for, parse};
 use mdlec::trace::{Applied, Fired, Line, Outcome, Script};
 
 /// How many plans are tried.
@@ -30,10 +35,15 @@ struct Seen {
     rising: usize,
     after: usize,
     compared: usize,
+    /// How often each production of the grammar, and each unit, stood in a plan that was run.
+    productions: Productions,
 }
 
 impl Seen {
-    fn and(self, other: Self) -> Self {
+    fn and(mut self, other: Self) -> Self {
+        for (production, count) in other.productions {
+            *self.productions.entry(production).or_default() += count;
+        }
         Self {
             plans: self.plans + other.plans,
             refused: self.refused + other.refused,
@@ -46,6 +56,7 @@ impl Seen {
             rising: self.rising + other.rising,
             after: self.after + other.after,
             compared: self.compared + other.compared,
+            productions: self.productions,
         }
     }
 }
@@ -58,7 +69,8 @@ fn every_machine_prints_the_same_trace() {
         let hands: Vec<_> = (0..cores).map(|hand| scope.spawn(move || seeds(hand, cores))).collect();
         hands.into_iter().map(|hand| hand.join().expect("no difference")).fold(Seen::default(), Seen::and)
     });
-    println!("{seen:?}");
+    println!("{seen:#?}");
+    assert_every_production_is_met(&seen.productions);
     assert!(seen.refused < seen.plans / 50, "{seen:?}");
     let rare = [
         seen.over,
@@ -71,6 +83,23 @@ fn every_machine_prints_the_same_trace() {
         seen.compared,
     ];
     assert!(rare.iter().all(|count| *count > seen.plans / 10), "{seen:?}");
+}
+
+/// Units of which no parameter of the robot's quarks is.
+const UNMET_UNITS: &[&str] = &["Hz"];
+
+/// Holds the counts to the grammar: every production, every part that may be left out, and every unit is in some plan.
+fn assert_every_production_is_met(counts: &Productions) {
+    let grammar = grammar::productions().into_iter().filter(|production| !production.recovers);
+    let productions = grammar.flat_map(|production| [production.options(), vec![production.text]].concat());
+    let units = Unit::ALL.iter().map(|unit| unit.name).filter(|unit| !UNMET_UNITS.contains(unit));
+    let mut all: Vec<_> = productions.chain(units.map(str::to_owned)).collect();
+    all.sort();
+    all.dedup();
+    let unmet: Vec<_> = all.iter().filter(|name| !counts.contains_key(name.as_str())).collect();
+    assert!(unmet.is_empty(), "no random plan has {unmet:#?}");
+    let unknown: Vec<_> = counts.keys().filter(|name| all.iter().all(|known| known != *name)).collect();
+    assert!(unknown.is_empty(), "the grammar does not have {unknown:#?}");
 }
 
 /// Every so many seeds, from the first on.
@@ -115,6 +144,8 @@ fn compare(seed: u64, foresight: bool, text: &str, script: &str, seen: &mut Seen
     let mut printed = String::new();
     drive(|| loaded.plan(&rows, &marks), &outputs(&turns), &mut printed).expect("room for the trace");
     assert!(printed == expected, "seed {seed}\n{reference}:\n{expected}loaded:\n{printed}{text}\n{script}");
+    let arena = arena_for(text);
+    productions::count(text, &parse(SourceId(0), text, &arena).0, &mut seen.productions);
     seen.plans += 1;
     seen.repeated += usize::from(compiled.nondegenerate.plan() != &compiled.plan);
     for Line { outcome: Outcome { applied, fired, .. }, .. } in tree {

@@ -21,6 +21,7 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("tests/bare", &["mdle-runtime", "mdle-atoms"]),
     ("tests/application", &["mdle-runtime", "mdle-host", "mdle-sim", "mdlec"]),
     ("tests/mutants", &[]),
+    ("tests/fuzz", &["mdle-tests"]),
 ];
 
 /// What each room of the compiler may use of the others. `crate` is what `lib.rs` itself holds.

@@ -9,14 +9,19 @@ use mdle_tests::executable::{folder, run_mdlec};
 use mdlec::diagnostic::{Code, Example};
 use serde_json::Value;
 
-/// The codes of what is said of an example, and standard error as it is.
-fn codes(folder: &Path, example: &Example) -> (BTreeSet<String>, String) {
+/// What is said of an example, to people or as JSON.
+fn said(folder: &Path, example: &Example, format: &str) -> String {
     // What an example calls `\xDF` is that byte.
     let bytes = example.text.split("\\xDF").map(str::as_bytes).collect::<Vec<_>>().join(&b'\xDF');
     let file = if example.arguments.iter().any(|argument| argument == ".") { "alphabet.mdle" } else { "plan.mdle" };
     fs::write(folder.join(file), bytes).unwrap();
-    let arguments: Vec<_> = example.arguments.iter().map(String::as_str).chain(["--message-format", "json"]).collect();
-    let said = String::from_utf8(run_mdlec(folder, &arguments).stderr).expect("UTF-8");
+    let arguments: Vec<_> = example.arguments.iter().map(String::as_str).chain(["--message-format", format]).collect();
+    String::from_utf8(run_mdlec(folder, &arguments).stderr).expect("UTF-8")
+}
+
+/// The codes of what is said of an example, and that as JSON.
+fn codes(folder: &Path, example: &Example) -> (BTreeSet<String>, String) {
+    let said = said(folder, example, "json");
     let codes = said.lines().map(|line| {
         let message: Value = serde_json::from_str(line).unwrap_or_else(|error| panic!("{error}: {line}"));
         message["code"].as_str().map(str::to_owned)
@@ -38,6 +43,21 @@ fn wrong_examples_have_just_that_code_and_right_ones_none() {
         let (_, said) = codes(&folder, &right);
         assert_eq!(said, "", "{code}\n{}", right.text);
     }
+}
+
+#[test]
+fn every_code_is_shown_to_people_and_to_programs() {
+    let folder = folder("explain_shown");
+    fs::write(folder.join("corridors.mdle"), "{ Corridor (Atom (wait 5) (go 20 0)) }\n").unwrap();
+    let mut shown = String::new();
+    for code in Code::ALL {
+        let wrong = code.explanation().wrong().unwrap_or_else(|| panic!("{code} has no wrong example"));
+        let (human, json) = (said(&folder, &wrong, "human"), said(&folder, &wrong, "json"));
+        assert!(human.contains(&format!("[{code}]: ")) && json.contains(&format!("\"code\":\"{code}\"")), "{human}");
+        let arguments = wrong.arguments.join(" ");
+        shown += &format!("==== {code}: {}\n{}$ mdlec {arguments}\n{human}----\n{json}\n", code.title(), wrong.text);
+    }
+    insta::assert_snapshot!(shown);
 }
 
 #[test]

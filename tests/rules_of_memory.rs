@@ -77,6 +77,24 @@ fn rising_in_rising_and_under_not() {
 }
 
 #[test]
+fn an_operand_is_remembered_whatever_the_others_say() {
+    // In the first turn neither `c` nor `d` has fired, and what stands beside them is read all the same.
+    assert_turns(
+        "{ Main (Atom (c AND RISING b OR d AND RISING a) idle) (Atom (NOT (e OR RISING b)) drift) (Atom (null) seek) }",
+        &[("", ""), ("b", ""), ("b, c, e", ""), ("e", ""), ("b", ""), ("", "")],
+        &[
+            (1, Some("idle"), &[]),
+            (1, Some("idle"), &[]),
+            (2, Some("drift"), &[(1, 1, "c AND RISING b OR d AND RISING a")]),
+            (2, Some("drift"), &[]),
+            // `e` had fired in the turn in which `b` had not.
+            (2, Some("drift"), &[]),
+            (3, Some("seek"), &[(2, 1, "NOT (e OR RISING b)")]),
+        ],
+    );
+}
+
+#[test]
 fn a_turn_that_the_limit_cuts_sets_the_memory_as_well() {
     let cut: Vec<(u64, usize, &str)> = (0..4096).map(|_| (1, 1, "a")).collect();
     assert_turns(

@@ -2,14 +2,17 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test tool fails by panicking")]
 
+pub mod any_text;
 pub mod book;
 pub mod chance;
 pub mod elf;
 pub mod executable;
 pub mod golden;
+pub mod grammar;
 pub mod loaded;
 pub mod outputs;
 pub mod pipeline;
+pub mod productions;
 pub mod random_condition;
 pub mod random_plan;
 pub mod random_script;

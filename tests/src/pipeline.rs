@@ -4,12 +4,18 @@ use std::sync::LazyLock;
 
 use mdlec::Compiled;
 use mdlec::alphabet::{self, Alphabet};
-use mdlec::diagnostic::{Diagnostic, Sources, has_errors};
+use mdlec::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
 use mdlec::fsm::{Lowered, algorithm1, expand};
+use mdlec::syntax::Loader;
 use mdlec::trace::{Counted, Line, MatrixProduct, Script, Table, Tree, run};
 
 /// The most states of a plan whose expanded form is run as well.
 const EXPANDED: u64 = 2000;
+
+/// The one file that plans may use here, and what it says.
+pub const LIBRARY_FILE: &str = "library.mdle";
+const LIBRARY: &str =
+    "{ Stroll (T: time) (b OR wait T) (Atom (a) seek) (drift, c, T) }\n{ Pause (Atom (wait 0.1) idle) }\n";
 
 const SCRIPTED_FILE: &str = include_str!("../scripted/alphabet.mdle");
 
@@ -42,12 +48,26 @@ pub fn compile(text: &str) -> Result<Compiled, String> {
 pub fn compile_plan(text: &str, name: &str) -> Result<Compiled, String> {
     let mut sources = Sources::default();
     sources.add("alphabet.mdle", SCRIPTED_FILE);
+    let mut library = Library(sources.add(LIBRARY_FILE, LIBRARY));
     let source = sources.add("plan.mdle", text);
-    let (mut compiled, found) = mdlec::compile(source, text, scripted(), Some(name));
+    let (mut compiled, found) = mdlec::compile_with(source, text, scripted(), Some(name), &mut library);
     assert_eq!(compiled.is_empty(), has_errors(&found), "a plan or an error:\n{text}");
     match compiled.pop() {
         Some(compiled) => Ok(compiled),
         None => Err(rendered(&sources, &found)),
+    }
+}
+
+/// Finds [`LIBRARY`] and nothing else.
+struct Library(SourceId);
+
+impl Loader for Library {
+    fn find(&mut self, _: SourceId, path: &str) -> Result<SourceId, String> {
+        if path == LIBRARY_FILE { Ok(self.0) } else { Err(format!("there is no file `{path}`")) }
+    }
+
+    fn text(&self, _: SourceId) -> &'static str {
+        LIBRARY
     }
 }
 

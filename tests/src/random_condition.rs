@@ -30,13 +30,38 @@ const INTERRUPTS: &[&str] = &[
     "echo(15)",
     "beyond 0.125 -3",
     "beyond(0.125, -3)",
+    "beyond(0.125 -3)",
+    "beyond (0.125 -3)",
+    "beyond 0.125 (-3)",
+    "a()",
+    "farOff 250mm",
+    "farOff 1in",
+    "farOff(1ft)",
+    "faster 1in/s",
+    "faster 20cm/s",
+    "spinning 90deg/s",
+    "facing(90deg)",
+    "low_battery 10.8",
+    "played horn",
+    "played(\"bell.mid\")",
 ];
 
 /// Timers; among the scripts' steps, so that they are over just before, at and just after a turn.
-const TIMERS: &[&str] =
-    &["wait 0", "wait 0.05", "wait 100ms", "wait(0.2)", "wait 0.25", "wait 0.3s", "wait 1", "wait 2.5", "wait inf"];
+const TIMERS: &[&str] = &[
+    "wait 0",
+    "wait 0.05",
+    "wait 100ms",
+    "wait(0.2)",
+    "wait 0.25",
+    "wait 0.3s",
+    "wait 1",
+    "wait 2.5",
+    "wait inf",
+    "wait 0.005min",
+    "wait 0.001h",
+];
 
-/// The laws of the target `scripted`; the first half never completes.
+/// The laws of the target `scripted`, as any notation has them.
 const LAWS: &[&str] = &[
     "idle",
     "drift",
@@ -47,13 +72,24 @@ const LAWS: &[&str] = &[
     "(climb)",
     "veer 90",
     "veer(-45deg)",
+    "veer 1rad",
     "wander 3",
     "wander(50cm, 20ms)",
+    "wander 3m (1.5s)",
+    "hold 0.5",
+    "hold inf",
+    "(hold(500ms))",
+    "replay \"bell.mid\"",
+    "chase(sun module)",
 ];
 
-/// A law with its arguments.
-pub fn law(chance: &mut Chance) -> String {
-    chance.pick(LAWS).to_owned()
+/// Laws as only atoms have them: in formal notation they would be plans.
+const LAWS_OF_ATOMS: &[&str] = &["chase sun module", "drive (20 0)", "(wander (3 1500ms))"];
+
+/// A law with its arguments, perhaps for formal notation.
+pub fn law(chance: &mut Chance, is_formal: bool) -> String {
+    let choices = if !is_formal && chance.percent(15) { LAWS_OF_ATOMS } else { LAWS };
+    chance.pick(choices).to_owned()
 }
 
 /// Stands for an `after` until the labels of the definition are known; parentheses may stand around it.
@@ -107,7 +143,7 @@ fn or(chance: &mut Chance, depth: usize) -> String {
 }
 
 fn and(chance: &mut Chance, depth: usize) -> String {
-    let more = usize::from(chance.percent(40));
+    let more = if chance.percent(40) { 1 + chance.below(2) } else { 0 };
     let operands: Vec<_> = (0..=more).map(|_| not(chance, depth)).collect();
     operands.join(" AND ")
 }

@@ -51,5 +51,5 @@ fn change(chance: &mut Chance, reports: &mut [bool], often: usize, restless: usi
 
 fn quoted(texts: &[&str], reports: &[bool]) -> String {
     let listed = texts.iter().zip(reports).filter(|(_, reported)| **reported);
-    listed.map(|(text, _)| format!("\"{text}\"")).collect::<Vec<_>>().join(", ")
+    listed.map(|(text, _)| format!("{text:?}")).collect::<Vec<_>>().join(", ")
 }

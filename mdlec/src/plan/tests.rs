@@ -193,6 +193,14 @@ fn a_plan_in_formal_notation_is_the_same_plan() {
 }
 
 #[test]
+fn a_plan_without_an_interrupt_that_begins_with_a_loop_is_the_same_plan() {
+    let plan = &compiled("{ P ((Atom (bumper) stop) (Atom (wait 1) go 5 0))^inf }")[0].plan;
+    let formal = plan.formal();
+    assert_eq!(formal, "{ P\n  ((stop, bumper)(go(5 0), null, 1s))^inf\n}\n");
+    assert_eq!(compiled(&formal)[0].plan.formal(), formal);
+}
+
+#[test]
 fn rising_and_after_keep_their_texts() {
     assert_judged!(
         "{ P (RISING bumper OR NOT (RISING (bumper AND wait 5)))

@@ -80,19 +80,35 @@ pub(super) fn begins<'s>(mut behind: impl Iterator<Item = Tok<'s>>) -> Begins<'s
     }
 }
 
-/// Whether the group that begins here, behind its parenthesis, holds what no condition does.
+/// Whether the group that begins here, behind its parenthesis, holds what no condition does: a colon, or a comma that stands
+/// between no arguments, however deep.
 pub(super) fn is_element<'s>(behind: impl Iterator<Item = Tok<'s>>) -> bool {
     let mut depth = 1_usize;
+    // How deep the parenthesis is in which arguments stand, and whether one of those may come next.
+    let (mut arguments, mut takes) = (None, false);
     for token in behind {
         #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens say nothing")]
         match token {
-            Tok::LParen | Tok::TouchParen => depth += 1,
+            Tok::LParen | Tok::TouchParen => {
+                depth += 1;
+                if takes && arguments.is_none() {
+                    arguments = Some(depth);
+                }
+            }
             Tok::RParen if depth == 1 => return false,
-            Tok::RParen => depth -= 1,
-            Tok::Comma | Tok::Colon if depth == 1 => return true,
-            Tok::Atom | Tok::ExecPlan | Tok::LBrace | Tok::RBrace | Tok::Caret | Tok::Frame => return true,
+            Tok::RParen => {
+                takes = arguments.is_some();
+                arguments = arguments.filter(|outermost| *outermost < depth);
+                depth -= 1;
+                continue;
+            }
+            Tok::Comma if arguments.is_none() => return true,
+            Tok::Colon | Tok::Atom | Tok::ExecPlan | Tok::LBrace | Tok::RBrace | Tok::Caret | Tok::Frame => {
+                return true;
+            }
             _ => {}
         }
+        takes = matches!(token, Tok::Name(_) | Tok::Number(_) | Tok::Infinity | Tok::Str(_));
     }
     false
 }

@@ -4,7 +4,8 @@
 pub use crate::{Input, Output};
 pub use crate::quarks::{
     R, X, Theta, V, A, B, C, D, E, F, FarOff, Faster, Facing, Spinning, LowBattery,
-    Pattern, Echo, Beyond, Idle, Drift, Drive, Seek, Climb, Veer, Wander,
+    Pattern, Echo, Beyond, Played, Idle, Drift, Drive, Seek, Climb, Veer, Wander, Hold,
+    Replay, Chase,
 };
 use ::mdle_runtime as runtime;
 /// The target's name, as `mdlec --target` takes it.
@@ -12,7 +13,7 @@ pub const NAME: &str = "scripted";
 /// The period of a turn, unless the operator says otherwise.
 pub const PERIOD: runtime::Nanos = runtime::Nanos(100000000);
 /// Tells this alphabet from any other: a plan that was compiled for another one does not compile.
-pub const HASH: u64 = 0xb30a9e78f1880c1b;
+pub const HASH: u64 = 0xe695ec90bc7bed14;
 /// The quarks as plans make them: a crate whose quarks are otherwise does not compile.
 #[allow(dead_code, reason = "what stands here is to be compiled, not called")]
 mod signatures {
@@ -107,6 +108,11 @@ mod signatures {
         Beyond::new(ratio, times)
     }
 
+    /// `played <tune>`: Takes a file.
+    const fn played(tune: &'static str) -> Played {
+        Played::new(tune)
+    }
+
     /// `idle`: Never completes.
     const fn idle() -> Idle {
         Idle::new()
@@ -144,6 +150,21 @@ mod signatures {
     const fn wander(radius: runtime::Meters, pause: runtime::Nanos) -> Wander {
         Wander::new(radius, pause)
     }
+
+    /// `hold <pause in s>`: Completes when the script says so; takes a time.
+    const fn hold(pause: runtime::Nanos) -> Hold {
+        Hold::new(pause)
+    }
+
+    /// `replay <tune>`: Completes when the script says so; takes a file.
+    const fn replay(tune: &'static str) -> Replay {
+        Replay::new(tune)
+    }
+
+    /// `chase <module>`: Never completes; takes a module.
+    const fn chase(leader: &'static str) -> Chase {
+        Chase::new(leader)
+    }
 }
 
 /// Any interrupt of this robot with its arguments.
@@ -177,6 +198,8 @@ pub enum AnyInterrupt {
     Echo(Echo),
     /// `beyond <ratio> <times>`: Takes a number and a whole number.
     Beyond(Beyond),
+    /// `played <tune>`: Takes a file.
+    Played(Played),
     /// A comparison of signals.
     Comparison(runtime::Comparison<AnySignal, AnySignal>),
 }
@@ -198,6 +221,7 @@ impl runtime::Interrupt<Output> for AnyInterrupt {
             Self::Pattern(interrupt) => runtime::Interrupt::fired(interrupt, y),
             Self::Echo(interrupt) => runtime::Interrupt::fired(interrupt, y),
             Self::Beyond(interrupt) => runtime::Interrupt::fired(interrupt, y),
+            Self::Played(interrupt) => runtime::Interrupt::fired(interrupt, y),
             Self::Comparison(comparison) => runtime::Interrupt::fired(comparison, y),
         }
     }
@@ -244,6 +268,12 @@ pub enum AnyControl {
     Veer(Veer),
     /// `wander <radius in m> [pause in s]`: Completes when the script says so; takes a length and a time.
     Wander(Wander),
+    /// `hold <pause in s>`: Completes when the script says so; takes a time.
+    Hold(Hold),
+    /// `replay <tune>`: Completes when the script says so; takes a file.
+    Replay(Replay),
+    /// `chase <module>`: Never completes; takes a module.
+    Chase(Chase),
 }
 
 /// Any law of this robot as it runs.
@@ -267,6 +297,12 @@ pub enum AnyLaw {
     Veer(<Veer as runtime::Control<Output>>::Law),
     /// `wander <radius in m> [pause in s]`: Completes when the script says so; takes a length and a time.
     Wander(<Wander as runtime::Control<Output>>::Law),
+    /// `hold <pause in s>`: Completes when the script says so; takes a time.
+    Hold(<Hold as runtime::Control<Output>>::Law),
+    /// `replay <tune>`: Completes when the script says so; takes a file.
+    Replay(<Replay as runtime::Control<Output>>::Law),
+    /// `chase <module>`: Never completes; takes a module.
+    Chase(<Chase as runtime::Control<Output>>::Law),
 }
 
 impl runtime::Control<Output> for AnyControl {
@@ -280,6 +316,9 @@ impl runtime::Control<Output> for AnyControl {
             Self::Climb(law) => AnyLaw::Climb(runtime::Control::begin(law, y, begin)),
             Self::Veer(law) => AnyLaw::Veer(runtime::Control::begin(law, y, begin)),
             Self::Wander(law) => AnyLaw::Wander(runtime::Control::begin(law, y, begin)),
+            Self::Hold(law) => AnyLaw::Hold(runtime::Control::begin(law, y, begin)),
+            Self::Replay(law) => AnyLaw::Replay(runtime::Control::begin(law, y, begin)),
+            Self::Chase(law) => AnyLaw::Chase(runtime::Control::begin(law, y, begin)),
         }
     }
 }
@@ -295,6 +334,9 @@ impl runtime::Law<Output> for AnyLaw {
             Self::Climb(law) => runtime::Law::input(law, y, t),
             Self::Veer(law) => runtime::Law::input(law, y, t),
             Self::Wander(law) => runtime::Law::input(law, y, t),
+            Self::Hold(law) => runtime::Law::input(law, y, t),
+            Self::Replay(law) => runtime::Law::input(law, y, t),
+            Self::Chase(law) => runtime::Law::input(law, y, t),
         }
     }
 }
@@ -309,6 +351,9 @@ impl runtime::Completes<Output> for AnyLaw {
             Self::Climb(law) => runtime::Completes::completed(law, y, t),
             Self::Veer(law) => runtime::Completes::completed(law, y, t),
             Self::Wander(law) => runtime::Completes::completed(law, y, t),
+            Self::Hold(law) => runtime::Completes::completed(law, y, t),
+            Self::Replay(law) => runtime::Completes::completed(law, y, t),
+            Self::Chase(_) => false,
         }
     }
 }
@@ -362,6 +407,9 @@ impl runtime::Alphabet for Alphabet {
                     runtime::Argument::Integer(times),
                     ],
                 ) => AnyInterrupt::Beyond(Beyond::new(ratio, times)),
+                ("played", &[runtime::Argument::Name(tune)]) => {
+                    AnyInterrupt::Played(Played::new(tune))
+                }
                 _ => return None,
             },
         )
@@ -407,6 +455,15 @@ impl runtime::Alphabet for Alphabet {
                     runtime::Argument::Time(pause),
                     ],
                 ) => AnyControl::Wander(Wander::new(radius, pause)),
+                ("hold", &[runtime::Argument::Time(pause)]) => {
+                    AnyControl::Hold(Hold::new(pause))
+                }
+                ("replay", &[runtime::Argument::Name(tune)]) => {
+                    AnyControl::Replay(Replay::new(tune))
+                }
+                ("chase", &[runtime::Argument::Name(leader)]) => {
+                    AnyControl::Chase(Chase::new(leader))
+                }
                 _ => return None,
             },
         )

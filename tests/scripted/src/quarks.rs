@@ -5,7 +5,7 @@ use mdle_runtime::{
     SonarId, Volts,
 };
 
-use crate::reports::number;
+use crate::reports::{duration, number};
 use crate::{Input, LAWS, Output};
 
 /// Declares interrupts: the type, the name in the alphabet, the parameters, and the arguments in default units.
@@ -27,7 +27,7 @@ macro_rules! interrupts {
         impl Interrupt<Output> for $name {
             fn fired(&self, y: &Output) -> bool {
                 let Self { $($arg),* } = *self;
-                y.has_fired($text, &[$($value),*])
+                y.has_fired($text, &[$($value.into()),*])
             }
         }
     )*};
@@ -48,6 +48,7 @@ interrupts! {
     Pattern "pattern" (bits: Bits<4>) [bits.0.iter().fold(0.0, |digits, bit| digits * 10.0 + f64::from(u8::from(*bit)))];
     Echo "echo" (sonar: SonarId) [sonar.number() as f64];
     Beyond "beyond" (ratio: f64, times: i64) [ratio, times as f64];
+    Played "played" (tune: &'static str) [tune];
 }
 
 /// The signal `r`.
@@ -123,7 +124,7 @@ macro_rules! laws {
 
             fn begin(&self, _: &Output, begin: Begin) -> $law {
                 let Self { $($arg),* } = *self;
-                let number = number(LAWS, $text, &[$($value),*]);
+                let number = number(LAWS, $text, &[$($value.into()),*]);
                 $law(Input { law: number, began: begin.now, computed: 0 })
             }
         }
@@ -138,6 +139,9 @@ laws! {
     Climb "climb" () [] Finite;
     Veer "veer" (by: Radians) [by.degrees()] Finite;
     Wander "wander" (radius: Meters, pause: Nanos) [radius.0, pause.seconds()] Finite;
+    Hold "hold" (pause: Nanos) [duration(pause)] Finite;
+    Replay "replay" (tune: &'static str) [tune] Finite;
+    Chase "chase" (leader: &'static str) [leader] Endless;
 }
 
 /// A law that runs until an interrupt fires.

@@ -24,6 +24,12 @@ pub const INTERRUPTS: &[&str] = &[
     "echo 7",
     "echo 15",
     "beyond 0.125 -3",
+    "farOff 0.0254",
+    "farOff 0.3048",
+    "faster 2.54",
+    "spinning 1.5707963267948966",
+    "played horn",
+    "played \"bell.mid\"",
 ];
 
 /// The quark texts of every law.
@@ -38,6 +44,11 @@ pub const LAWS: &[&str] = &[
     "drift",
     "drive 20 0",
     "drive -5 0.36",
+    "veer 57.29577951308232",
+    "hold 0.5",
+    "hold inf",
+    "replay \"bell.mid\"",
+    "chase sun module",
 ];
 
 /// The signals that have a value; other sonars see nothing.
@@ -58,7 +69,7 @@ impl mdle_runtime::Output for Output {}
 
 impl Output {
     /// Whether the interrupt of this name with these arguments, in its default units, has fired.
-    pub(crate) fn has_fired(&self, name: &str, arguments: &[f64]) -> bool {
+    pub(crate) fn has_fired(&self, name: &str, arguments: &[Argument]) -> bool {
         number(INTERRUPTS, name, arguments).is_some_and(|bit| self.fired >> bit & 1 == 1)
     }
 
@@ -85,18 +96,47 @@ pub struct Input {
     pub computed: u32,
 }
 
+/// An argument in its default unit.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Argument {
+    /// A number.
+    Number(f64),
+    /// The name of a file or a module.
+    Name(&'static str),
+}
+
+impl From<f64> for Argument {
+    fn from(number: f64) -> Self {
+        Self::Number(number)
+    }
+}
+
+impl From<&'static str> for Argument {
+    fn from(name: &'static str) -> Self {
+        Self::Name(name)
+    }
+}
+
+/// A time in seconds, as its text has it.
+pub(crate) fn duration(time: Nanos) -> f64 {
+    if time == Nanos::MAX { f64::INFINITY } else { time.seconds() }
+}
+
 /// The number of the text of this name with these arguments. Numbers went through SI units, so they are compared closely.
-pub(crate) fn number(texts: &[&str], name: &str, arguments: &[f64]) -> Option<usize> {
+pub(crate) fn number(texts: &[&str], name: &str, arguments: &[Argument]) -> Option<usize> {
     texts.iter().position(|text| {
-        let mut words = text.split(' ');
+        let mut words = text.split(' ').filter(|word| *word != "module");
         // First, for reading numbers takes its time.
         if words.next() != Some(name) {
             return false;
         }
         let mut given = arguments.iter();
-        let same = words.all(|word| match (word.parse::<f64>(), given.next()) {
-            (Ok(word), Some(argument)) => (word - argument).abs() < 1e-9,
-            (Ok(_), None) | (Err(_), _) => false,
+        let same = words.all(|word| match given.next() {
+            Some(Argument::Number(number)) => {
+                word.parse::<f64>().is_ok_and(|word| word == *number || (word - number).abs() < 1e-9)
+            }
+            Some(Argument::Name(name)) => word.trim_matches('"') == *name,
+            None => false,
         });
         same && given.next().is_none()
     })

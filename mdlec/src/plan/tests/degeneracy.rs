@@ -41,3 +41,18 @@ fn a_file_is_the_same_with_and_without_quotes() {
     assert!(removed("{ P (played \"a\") (Atom (played a) stop) }"));
     assert!(!removed("{ P (played \"a\") (Atom (played b) stop) }"));
 }
+
+#[test]
+fn degrees_and_radians_are_never_the_same() {
+    let text = "target t : crate t, period 1s; interrupt facing(bearing: angle deg); control stop;";
+    let (alphabet, found) = alphabet::combine(alphabet::read(SourceId(0), text).0.expect("an alphabet"), &[]);
+    assert_eq!(found, []);
+    let removed = |inner: &str| {
+        let plan = format!("{{ P (facing 180) (Atom (facing {inner}) stop) }}");
+        let (compiled, found) = compile(SourceId(0), &plan, &alphabet, None);
+        of_first_atom(compiled.first().unwrap_or_else(|| panic!("{found:?}"))).removed
+    };
+    assert!(removed("180deg") && removed("1.8e2"));
+    // As near as a float comes to half a turn, and still another number.
+    assert!(!removed("3.141592653589793rad"));
+}

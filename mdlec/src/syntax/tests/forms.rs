@@ -39,9 +39,10 @@ fn headers() {
         "forms_headers",
         &[
             "{ A (bumper) B } { A(bumper) B } { A ((bumper)) B } { A (wait 5 OR NOT (bumper)) B }",
-            "{ A (v: speed, pattern: bits[4]) B } { A(v: speed)(bumper) B } { A (v: speed) (Atom (b) u) }",
+            "{ A (v: speed, pattern: bits[4], leader: module) B } { A(v: speed)(bumper) B } { A (v: speed) (Atom (b) u) }",
             "{ A ((Atom (b) u) B) } { A (B C^2) } { A (B, bumper) } { A (null) (B C) } { A (go(5, 0), bumper, 10) }",
             "{ A ExecPlan 2 { B (C D) } ExecPlan n { B (C) } }",
+            "{ A ((u, x)(v, y)) } { A (((u, x)), z) } { A ((s1: B)) } { A (b (1, 2)) C } { A ((b (1 (2, 3)) OR c(1, 2)) AND d 1 (2) (3, 4)) C }",
         ],
     );
 }
@@ -51,7 +52,7 @@ fn conditions() {
     check(
         "forms_conditions",
         &[
-            "{ A (a OR b AND NOT c OR (d OR e)) (Atom ((a AND b) and (c)) u) (Atom (not (a or b)) u) }",
+            "{ A (a OR b AND NOT c OR (d OR e)) (Atom ((a AND b) and (c) AND d) u) (Atom (not (a or b)) u) }",
             "{ A (RISING a AND rising (b OR c)) (Atom (null OR a) u) (Atom (sync robot2 OR sync(robot3)) u) }",
             "{ A (r_3 == r_5) (Atom (r 3 < 0.5m OR x >= -1 AND y ≤ 2) u) (Atom (r_3(t) \\leq r(5) OR t \\geq 5s OR v > 1) u) }",
             "{ A (after s1) (Atom (after s1 x12 OR after s2 (a OR b)) u) (Atom (x3 OR NOT (after s1 atIsection 0100)) u) }",
@@ -77,6 +78,7 @@ fn formal_notation() {
         "forms_formal_notation",
         &[
             "{ P (null) (A, x) (A B, x OR y) (A B, (x), 10s) (go 5 0, bumper, inf) (go(5 0), bumper, T) ((Atom (b) u)^2, x) }",
+            "{ P (null) (rotate 90, x) (hold inf, x AND y AND z) (path \"a b.txt\" 2, x, 1) }",
         ],
     );
 }

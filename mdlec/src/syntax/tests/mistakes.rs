@@ -64,6 +64,19 @@ fn elements() {
 }
 
 #[test]
+fn inside_parentheses() {
+    check(
+        "mistakes_inside_parentheses",
+        &[
+            "{ A (null) (go 20 = 0) (B, ) (B, = x) (B, x = 5) (B, x, 5 = 6) (Atom (b) u) }",
+            "{ A (v: 5) (Atom (b) u) }",
+            "{ A (null) (go 20, ) (go 20, = x) (go 20 0, x = 5) (go 20 0, x, 5 = 6) (Atom (b) u) }",
+            "{ A (null) B(5 = 6) (Atom (b (5 = 6)) u) (Atom (b) (u (5 = 6))) (Atom (b) (= u)) (Atom (b) u) }",
+        ],
+    );
+}
+
+#[test]
 fn conditions() {
     check(
         "mistakes_conditions",

@@ -1,0 +1,62 @@
+//! Every text that fuzzing found worth keeping, and every plan of this repository, holds to what holds for any text.
+//!
+//! What runs them here is what libFuzzer runs (`tests/fuzz`).
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+
+use mdle_tests::any_text;
+use mdle_tests::repository::{files, root};
+use mdlec::diagnostic::Code;
+
+/// The texts, each with where it is from.
+fn texts() -> Vec<(String, String)> {
+    let kept = fs::read_dir(root().join("tests/fuzz/corpus")).unwrap().map(|entry| {
+        let path = entry.unwrap().path();
+        (path.display().to_string(), any_text::text(&fs::read(&path).unwrap()))
+    });
+    let plans = files(&[".mdle"]).into_iter().map(|file| (file.path, file.text));
+    let examples = Code::ALL.iter().flat_map(|code| {
+        let explanation = code.explanation();
+        let examples = [explanation.wrong(), explanation.right()].into_iter().flatten();
+        examples.map(move |example| (format!("the explanation of {code}"), example.text))
+    });
+    let mut texts: Vec<_> = kept.chain(plans).chain(examples).collect();
+    texts.sort();
+    texts
+}
+
+/// Holds every text to this.
+fn assert_holds(property: fn(&str)) {
+    let texts = texts();
+    assert!(texts.len() > 200, "{} texts", texts.len());
+    for (from, text) in texts {
+        let holds = std::panic::catch_unwind(|| property(&text));
+        assert!(holds.is_ok(), "{from}\n{text}");
+    }
+}
+
+#[test]
+fn they_have_trees_or_errors() {
+    assert_holds(any_text::parse);
+}
+
+#[test]
+fn they_keep_their_trees_when_they_are_laid_out() {
+    assert_holds(any_text::layout);
+}
+
+#[test]
+fn they_have_plans_or_errors() {
+    assert_holds(any_text::check);
+}
+
+#[test]
+fn their_rust_is_rust() {
+    assert_holds(any_text::emit);
+}
+
+#[test]
+fn all_machines_do_the_same() {
+    assert_holds(any_text::run);
+}

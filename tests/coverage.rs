@@ -1,0 +1,172 @@
+//! The table `coverage.toml` is whole and true: each production of the grammar, each rule of what a plan means, and each code of a
+//! diagnostic has a test that there is.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use mdle_tests::grammar::{Production, productions};
+use mdle_tests::productions::{Productions, count};
+use mdle_tests::repository::{TextFile, files, root};
+use mdlec::diagnostic::{Code, SourceId};
+use mdlec::syntax::{arena_for, parse};
+use serde::Deserialize;
+
+/// The table.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Table {
+    productions: Vec<Covered>,
+    rules: Vec<Rule>,
+    codes: BTreeMap<String, Vec<String>>,
+}
+
+/// Productions that the same tests cover.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Covered {
+    tests: Vec<String>,
+    covers: Vec<String>,
+}
+
+/// A rule of what a plan means, and its tests.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Rule {
+    section: usize,
+    says: String,
+    tests: Vec<String>,
+}
+
+fn table() -> Table {
+    toml::from_str(&std::fs::read_to_string(root().join("tests/coverage.toml")).unwrap()).expect("the table")
+}
+
+/// The tests of the repository's files, by `path: name`, with their text.
+fn tests() -> BTreeMap<String, String> {
+    let mut tests = BTreeMap::new();
+    for TextFile { path, text } in files(&[".rs"]) {
+        for (_, behind) in text.match_indices("#[test]\n").map(|(at, mark)| text.split_at(at + mark.len())) {
+            let Some((_, named)) = behind.split_once("fn ") else { continue };
+            let name = named.split('(').next().unwrap_or("");
+            let indent = behind.len() - behind.trim_start().len();
+            let end = format!("\n{}}}\n", &behind[..indent]);
+            let body = named.split(&end).next().unwrap_or(named);
+            tests.insert(format!("{path}: {name}"), body.to_owned());
+        }
+    }
+    tests
+}
+
+fn assert_none(breaches: &[String]) {
+    assert!(breaches.is_empty(), "{}", breaches.join("\n"));
+}
+
+/// What of these is missing in the table, is there twice, or is none of them.
+fn differences<'a>(all: impl Iterator<Item = &'a str>, listed: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let all: BTreeSet<_> = all.collect();
+    let mut seen = BTreeSet::new();
+    let twice: Vec<_> = listed.filter(|name| !seen.insert(*name)).map(|name| format!("twice: {name}")).collect();
+    let missing = all.difference(&seen).map(|name| format!("without a test: {name}"));
+    missing.chain(seen.difference(&all).map(|name| format!("not there any more: {name}"))).chain(twice).collect()
+}
+
+#[test]
+fn every_production_is_in_the_table() {
+    let productions = productions();
+    let names: Vec<_> = productions.iter().flat_map(|one| [one.options(), vec![one.text.clone()]].concat()).collect();
+    let table = table();
+    let listed = table.productions.iter().flat_map(|group| &group.covers).map(String::as_str);
+    assert_none(&differences(names.iter().map(String::as_str), listed));
+}
+
+#[test]
+fn every_code_is_in_the_table_and_is_what_its_tests_are_about() {
+    let (table, tests, snapshots) = (table(), tests(), files(&[".snap"]));
+    assert_none(&differences(Code::ALL.iter().map(|code| code.name()), table.codes.keys().map(String::as_str)));
+    let mut breaches = Vec::new();
+    for (code, named) in &table.codes {
+        for test in named {
+            let (_, name) = test.split_once(": ").expect("`path: name`");
+            let is_in = |file: &TextFile| file.path.contains(name) && file.text.contains(code.as_str());
+            let is_told =
+                tests.get(test).is_some_and(|body| body.contains(code.as_str())) || snapshots.iter().any(is_in);
+            breaches.extend((!is_told).then(|| format!("{code}: {test} and its snapshots say nothing of it")));
+        }
+        breaches.extend(named.is_empty().then(|| format!("{code}: no test")));
+    }
+    assert_none(&breaches);
+}
+
+#[test]
+fn every_test_of_the_table_is_there() {
+    let (table, tests) = (table(), tests());
+    let named = table.productions.iter().flat_map(|group| &group.tests);
+    let named = named.chain(table.rules.iter().flat_map(|rule| &rule.tests)).chain(table.codes.values().flatten());
+    let missing: BTreeSet<_> = named.filter(|test| !tests.contains_key(*test)).cloned().collect();
+    assert_none(&missing.into_iter().collect::<Vec<_>>());
+}
+
+#[test]
+fn every_rule_has_tests_and_the_rules_are_in_order() {
+    let table = table();
+    let without: Vec<_> =
+        table.rules.iter().filter(|rule| rule.tests.is_empty()).map(|rule| rule.says.clone()).collect();
+    assert_none(&without);
+    assert!(table.rules.is_sorted_by_key(|rule| rule.section));
+    let sections: BTreeSet<_> = table.rules.iter().map(|rule| rule.section).collect();
+    assert_eq!(sections, (2..=9).collect());
+    assert_eq!(table.rules.iter().map(|rule| &rule.says).collect::<BTreeSet<_>>().len(), table.rules.len());
+}
+
+/// What no text without errors has is not looked for: trees do not show it.
+#[test]
+fn a_production_stands_in_a_plan_of_its_tests() {
+    let (table, tests) = (table(), tests());
+    let recovers = |name: &str| productions().into_iter().any(|Production { text, recovers }| recovers && text == name);
+    let mut breaches = Vec::new();
+    for group in &table.productions {
+        let mut counts = Productions::new();
+        for text in group.tests.iter().filter_map(|test| tests.get(test)).flat_map(|body| texts(body)) {
+            let arena = arena_for(&text);
+            let (file, found) = parse(SourceId(0), &text, &arena);
+            if found.is_empty() {
+                count(&text, &file, &mut counts);
+            }
+        }
+        let unmet = group.covers.iter().filter(|name| !counts.contains_key(name.as_str()) && !recovers(name));
+        breaches.extend(unmet.map(|name| format!("{name}: no plan in {:?} has it", group.tests)));
+    }
+    assert_none(&breaches);
+}
+
+/// The texts between quotes in the body of a test.
+fn texts(body: &str) -> Vec<String> {
+    let mut texts = Vec::new();
+    let mut rest = body;
+    while let Some(at) = rest.find('"') {
+        let (before, behind) = (&rest[..at], &rest[at + 1..]);
+        let raw = before.len() - before.trim_end_matches('#').len();
+        if before.trim_end_matches('#').ends_with('r') {
+            let Some((text, behind)) = behind.split_once(&format!("\"{}", "#".repeat(raw))) else { break };
+            texts.push(text.to_owned());
+            rest = behind;
+            continue;
+        }
+        let (mut text, mut letters) = (String::new(), behind.char_indices());
+        let end = loop {
+            match letters.next() {
+                Some((_, '\\')) => match letters.next() {
+                    Some((_, 'n')) => text.push('\n'),
+                    Some((_, letter @ ('"' | '\\' | '\''))) => text.push(letter),
+                    Some(_) | None => text.push(' '),
+                },
+                Some((at, '"')) => break at + 1,
+                Some((_, letter)) => text.push(letter),
+                None => return texts,
+            }
+        };
+        texts.push(text);
+        rest = &behind[end..];
+    }
+    texts
+}

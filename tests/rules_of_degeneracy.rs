@@ -1,0 +1,100 @@
+//! Removing degeneracy and writing loops out commute, and neither changes a trace (semantics, sections 6 to 8): random plans.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use mdle_tests::chance::Chance;
+use mdle_tests::pipeline::compile;
+use mdle_tests::random_plan::RandomPlan;
+use mdle_tests::random_script::script;
+use mdlec::Compiled;
+use mdlec::fsm::expand;
+use mdlec::plan::{Node, Plan, Scope, remove_degeneracy};
+use mdlec::trace::{Script, Tree, run};
+
+/// How many plans are tried, and the most states of one that is written out.
+const PLANS: u64 = 500;
+const STATES: u64 = 2000;
+
+/// What the plans were like.
+#[derive(Debug, Default)]
+struct Seen {
+    tried: u64,
+    degenerate: u64,
+    looping: u64,
+    both: u64,
+}
+
+#[test]
+fn removing_degeneracy_and_writing_loops_out_commute_and_change_no_trace() {
+    let mut seen = Seen::default();
+    for seed in 0..PLANS {
+        let mut chance = Chance::new(2_000_000 + seed);
+        let text = RandomPlan::new(&mut chance, 12, false).to_string();
+        let script = script(&mut chance, 12);
+        // Loops in loops in loops can make too many states.
+        let Ok(compiled) = compile(&text) else { continue };
+        if compiled.lowered.termination > STATES {
+            continue;
+        }
+        let (degenerate, looping) = hold(&compiled, &Script::read(&script).unwrap(), &format!("{text}\n{script}"));
+        seen.tried += 1;
+        seen.degenerate += u64::from(degenerate);
+        seen.looping += u64::from(looping);
+        seen.both += u64::from(degenerate && looping);
+    }
+    println!("{seen:?}");
+    assert!(seen.tried > PLANS / 10 * 9 && seen.both > PLANS / 10, "{seen:?}");
+}
+
+/// Holds a plan to it; whether it repeats interrupts, and whether it has loops to write out.
+fn hold(compiled: &Compiled, script: &Script, text: &str) -> (bool, bool) {
+    let Compiled { plan, nondegenerate, .. } = compiled;
+    let expanded = Plan { root: written_out(&plan.root), quarks: plan.quarks.clone() };
+    let (one_way, warnings) = remove_degeneracy(expanded.clone());
+    let other_way = expand(nondegenerate).unwrap();
+    assert_eq!(one_way.plan().numbered(), other_way.plan().numbered(), "{text}");
+    assert_eq!(one_way, other_way, "{text}");
+    // Every copy of an interrupt is warned of in one message.
+    assert_eq!(warnings, remove_degeneracy(plan.clone()).1, "{text}");
+    let (again, warnings) = remove_degeneracy(nondegenerate.plan().clone());
+    assert_eq!((&again, &*warnings), (nondegenerate, &[][..]), "{text}");
+
+    let trace = |plan: &Plan| run(Tree::new(plan), script).map(|line| format!("{line}\n")).collect::<String>();
+    let expected = trace(plan);
+    assert_eq!(trace(nondegenerate.plan()), expected, "without repeated interrupts:\n{text}");
+    assert_eq!(trace(&expanded), expected, "written out:\n{text}");
+    assert_eq!(trace(one_way.plan()), expected, "written out, without repeated interrupts:\n{text}");
+    (nondegenerate.plan() != plan, &expanded != plan)
+}
+
+/// A scope with its finite loops written out, whatever is repeated in it.
+fn written_out(scope: &Scope) -> Scope {
+    let mut body = Vec::new();
+    scope.body.iter().for_each(|node| write_out(node, &mut body));
+    Scope { body, ..scope.clone() }
+}
+
+/// Adds an element with its finite loops written out.
+fn write_out(node: &Node, all: &mut Vec<Node>) {
+    match node {
+        Node::Atom(_) => all.push(node.clone()),
+        Node::Scope(scope) => all.push(Node::Scope(written_out(scope))),
+        Node::Loop(endless) if endless.times.is_none() => {
+            let mut body = Vec::new();
+            endless.body.iter().for_each(|node| write_out(node, &mut body));
+            all.push(Node::Loop(mdlec::plan::Loop { body, ..endless.clone() }));
+        }
+        Node::Loop(counted) => {
+            for _ in 0..counted.times.unwrap() {
+                counted.body.iter().for_each(|node| write_out(node, all));
+            }
+            // What ends with the loop ends with its last element.
+            let marks = match all.last_mut().unwrap() {
+                Node::Atom(atom) => &mut atom.marks,
+                Node::Scope(scope) => &mut scope.marks,
+                Node::Loop(endless) => &mut endless.marks,
+            };
+            marks.extend(counted.marks.iter().cloned());
+        }
+    }
+}

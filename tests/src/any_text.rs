@@ -1,0 +1,181 @@
+//! What holds for every text whatever: libFuzzer looks for one for which it does not, and a test tries all that are kept.
+//!
+//! Each function panics where something does not hold.
+
+use std::sync::LazyLock;
+
+use mdlec::alphabet::Alphabet;
+use mdlec::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
+use mdlec::plan::{Compared, Value};
+use mdlec::rust::{Header, Shape, emit_as};
+use mdlec::syntax::{arena_for, format, outline::outline, parse as read};
+use mdlec::trace::Script;
+use mdlec::{Compiled, compile, link};
+
+use crate::chance::Chance;
+use crate::golden::alphabet;
+use crate::pipeline::{Machines, scripted};
+use crate::random_script::script;
+
+static SIMULATOR: LazyLock<Alphabet> = LazyLock::new(|| alphabet(Some("sim")));
+static EVERYTHING: LazyLock<Alphabet> = LazyLock::new(|| alphabet(None));
+
+/// The most brackets of a plan of which Rust is emitted, and the most of one that is run.
+const EMITTED: usize = 1000;
+const RUN: usize = 100;
+
+/// The most turns of a run: each may make as many transitions as there are.
+const TURNS: usize = 6;
+
+/// Bytes as a text: those that are none are one character each.
+#[must_use]
+pub fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// A text has a tree or errors, whose places are in it, and which can be shown; an error behind it changes no tree.
+pub fn parse(text: &str) {
+    let mut sources = Sources::default();
+    sources.add("before.mdle", "Γ");
+    let id = sources.add("plan.mdle", text);
+    let arena = arena_for(text);
+    let (file, found) = read(id, text, &arena);
+    let tree = outline(&file);
+    // A brace may be closed by none and belong to no name.
+    assert!(found.len() <= 2 * text.len() + 1, "{} messages", found.len());
+    assert!(!file.plans.is_empty() || has_errors(&found), "no plan and no error");
+    for label in found.iter().flat_map(|diagnostic| &diagnostic.labels) {
+        assert!(text.get(label.span.within(id)).is_some(), "{label:?}");
+    }
+    shown(&sources, &found);
+    if found.is_empty() {
+        // What is flawless is read by a parser of its own.
+        let flawed = format!("{text}\n§\n");
+        let arena = arena_for(&flawed);
+        let (file, found) = read(id, &flawed, &arena);
+        assert_eq!(found.iter().map(|found| found.code.name()).collect::<Vec<_>>(), ["E0101"], "{found:?}");
+        assert_eq!(outline(&file), tree);
+    }
+}
+
+/// The canonical layout of a text has its tree and its comments, and is its own; a text with errors has none.
+pub fn layout(text: &str) {
+    let id = SourceId(0);
+    let arena = arena_for(text);
+    let (file, found) = read(id, text, &arena);
+    let laid_out = match format(id, text) {
+        Ok(laid_out) => laid_out,
+        Err(errors) => return assert_eq!(errors, found),
+    };
+    let arena = arena_for(&laid_out);
+    let (again, found) = read(id, &laid_out, &arena);
+    assert_eq!(found, [], "{laid_out}");
+    assert_eq!(outline(&again), outline(&file), "{laid_out}");
+    assert_eq!(comments(&laid_out), comments(text), "{laid_out}");
+    assert_eq!(format(id, &laid_out).as_ref(), Ok(&laid_out));
+}
+
+/// Every robot's plans come out of a text or errors that can be shown; as formulas the plans are the same, where they can be
+/// written so.
+pub fn check(text: &str) {
+    for alphabet in [&*EVERYTHING, &*SIMULATOR, scripted()] {
+        for Compiled { plan, .. } in compiled(text, alphabet).iter().filter(|compiled| is_written_formally(compiled)) {
+            let formal = plan.formal();
+            let again = compiled(&formal, alphabet);
+            assert_eq!(again.len(), 1, "{formal}");
+            assert_eq!(again.iter().map(|again| again.plan.formal()).collect::<String>(), formal);
+        }
+    }
+}
+
+/// Whether formal notation has words for all of it: not for labels, which copies of a plan would share, nor for a signal
+/// that is compared with a parameter without end.
+fn is_written_formally(compiled: &Compiled) -> bool {
+    let mut compared = compiled.plan.quarks.iter().filter_map(|quark| quark.comparison.as_ref());
+    let is_without_end = compared.any(|comparison| matches!(comparison.with, Compared::Value(Value::Infinity(_))));
+    compiled.lowered.marks.is_empty() && !is_without_end
+}
+
+/// The Rust of a plan is Rust, in every shape.
+pub fn emit(text: &str) {
+    for alphabet in [&*SIMULATOR, scripted()] {
+        for Compiled { plan, lowered, .. } in compiled(text, alphabet) {
+            for shape in [Shape::Code, Shape::Shared, Shape::Rows] {
+                if lowered.brackets.len() > EMITTED {
+                    continue;
+                }
+                let rust = emit_as(shape, &lowered, Header { file: "plan.mdle", plan: &plan.root.name }, alphabet);
+                if let Err(error) = syn::parse_file(&rust) {
+                    panic!("{shape:?}: {error}\n{rust}");
+                }
+            }
+        }
+    }
+}
+
+/// All machines print the same trace of a plan; the text is also what chance makes the script of.
+pub fn run(text: &str) {
+    let seed = text.bytes().fold(0_u64, |seed, byte| seed.wrapping_mul(31).wrapping_add(u64::from(byte)));
+    let script = script(&mut Chance::new(seed), TURNS);
+    let turns = Script::read(&script).expect("a script");
+    for plan in compiled(text, scripted()).iter().filter(|plan| plan.lowered.brackets.len() <= RUN) {
+        let machines = Machines::new(plan);
+        let traces = machines.traces(&turns);
+        let (reference, tree) = &traces[0];
+        for (machine, trace) in &traces[1..] {
+            assert!(trace == tree, "{reference}:\n{}{machine}:\n{}{script}", lines(tree), lines(trace));
+        }
+    }
+}
+
+fn lines(trace: &[mdlec::trace::Line<'_>]) -> String {
+    trace.iter().map(|line| format!("{line}\n")).collect()
+}
+
+/// The plans of a text, once all that is said of it has been shown.
+fn compiled(text: &str, alphabet: &Alphabet) -> Vec<Compiled> {
+    let mut sources = Sources::default();
+    for file in link::alphabets() {
+        sources.add(file.file, file.text);
+    }
+    let id = sources.add("plan.mdle", text);
+    let (compiled, found) = compile(id, text, alphabet, None);
+    shown(&sources, &found);
+    assert!(compiled.is_empty() || !has_errors(&found), "a plan and an error");
+    compiled
+}
+
+/// Shows what was found, to people and to programs.
+fn shown(sources: &Sources, found: &[Diagnostic]) {
+    assert!(found.is_sorted_by_key(|found| found.span()), "{found:?}");
+    for diagnostic in found {
+        assert!(!diagnostic.message.is_empty() && !diagnostic.message.contains('\n'), "{diagnostic:?}");
+        let shown = sources.render(diagnostic);
+        // One that cannot be shown where it is would begin with its code.
+        assert!(shown.starts_with("error[") || shown.starts_with("warning["), "{diagnostic:?}\n{shown}");
+        assert!(!sources.message(diagnostic).to_json().is_empty(), "{diagnostic:?}");
+    }
+}
+
+/// The comments of a text without errors, blanks left out, in order.
+fn comments(text: &str) -> Vec<String> {
+    let mut comments = Vec::new();
+    let mut rest = text;
+    while let Some(at) = rest.find(['/', '"']) {
+        let here = &rest[at..];
+        let length = if let Some(string) = here.strip_prefix('"') {
+            string.find('"').map_or(here.len(), |end| end + 2)
+        } else if here.starts_with("//") {
+            here.find('\n').unwrap_or(here.len())
+        } else if let Some(inside) = here.strip_prefix("/*") {
+            inside.find("*/").map_or(here.len(), |end| end + 4)
+        } else {
+            1
+        };
+        if length > 1 && here.starts_with('/') {
+            comments.push(here[..length].chars().filter(|letter| !letter.is_whitespace()).collect());
+        }
+        rest = &here[length..];
+    }
+    comments
+}

@@ -1,0 +1,209 @@
+//! Counts how often each production of the grammar stands in a text: from its tree, and from the text where trees forget it.
+//!
+//! Productions are named as [`crate::grammar`] names them; what is optional counts where it stands. Units count by their names.
+
+mod conditions;
+
+use std::collections::BTreeMap;
+
+use mdlec::alphabet::Unit;
+use mdlec::diagnostic::{SourceId, Span};
+use mdlec::syntax::tree::{Arg, Atom, Call, Count, Element, Exec, File, Formal, Number, Param, Plan, Primary};
+
+/// How often each production, and each unit, has been met.
+pub type Productions = BTreeMap<&'static str, u64>;
+
+/// Counts those of a text without errors.
+pub fn count(text: &str, file: &File<'_>, counts: &mut Productions) {
+    let mut counter = Counter { text, counts };
+    counter.met("File = Items?");
+    counter.met("File … Items?");
+    let items = file.uses.len() + file.plans.len();
+    counter.list(items, "Items = Item", "Items = Items Item");
+    file.uses.iter().for_each(|_| counter.met("Item = \"use\" Str"));
+    for plan in &file.plans {
+        counter.met("Item = Plan");
+        counter.plan(plan);
+    }
+}
+
+struct Counter<'t> {
+    text: &'t str,
+    counts: &'t mut Productions,
+}
+
+impl<'t> Counter<'t> {
+    fn met(&mut self, production: &'static str) {
+        *self.counts.entry(production).or_default() += 1;
+    }
+
+    /// A list of this many: its first, and the others.
+    fn list(&mut self, length: usize, first: &'static str, further: &'static str) {
+        for place in 0..length {
+            self.met(if place == 0 { first } else { further });
+        }
+    }
+
+    /// A number: its unit counts as well.
+    fn number(&mut self, number: &Number<'_>) {
+        if let Some(unit) = number.unit().and_then(Unit::from_name) {
+            self.met(unit.name);
+        }
+    }
+
+    /// What is written there.
+    fn written(&self, span: Span) -> &'t str {
+        &self.text[span.within(SourceId(0))]
+    }
+
+    /// What is written before that, blanks at its end left out.
+    fn before(&self, span: Span) -> &'t str {
+        self.text[..span.within(SourceId(0)).start].trim_end()
+    }
+
+    fn plan(&mut self, plan: &Plan<'_>) {
+        self.met("Plan = (Label \"=\")? \"{\" Head Elements? \"sigma_null\"? \"}\"");
+        self.met("Head = Name Params? HeadCondition?");
+        self.met("Plan … Elements?");
+        if plan.label.is_some() {
+            self.met("Plan … (Label \"=\")?");
+        }
+        let inside = self.written(plan.span).trim_end_matches('}').trim_end();
+        if ["sigma_null", "σ_null"].iter().any(|null| inside.ends_with(null)) {
+            self.met("Plan … \"sigma_null\"?");
+        }
+        if !plan.params.is_empty() {
+            self.met("Head … Params?");
+            self.met("Params = \"parameters (\" ParamList \")\"");
+            self.list(plan.params.len(), "ParamList = Param", "ParamList = ParamList \",\" Param");
+            plan.params.iter().for_each(|param| self.param(param));
+        }
+        if let Some(condition) = &plan.condition {
+            self.met("Head … HeadCondition?");
+            self.met("HeadCondition = \"condition (\" Or \")\"");
+            self.or(condition);
+        }
+        self.elements(plan.elements);
+    }
+
+    fn param(&mut self, param: &Param<'_>) {
+        self.met("Param = Name \":\" Type");
+        self.met("Type = TypeName (\"[\" Number \"]\")?");
+        let written = param.type_name.node;
+        if written.contains('[') {
+            self.met("Type … (\"[\" Number \"]\")?");
+        }
+        self.met(if written == "module" { "TypeName = \"module\"" } else { "TypeName = Name" });
+    }
+
+    fn elements(&mut self, elements: &[Element<'_>]) {
+        self.list(elements.len(), "Elements = Element", "Elements = Elements Element");
+        elements.iter().for_each(|element| self.element(element));
+    }
+
+    fn element(&mut self, element: &Element<'_>) {
+        self.met("Element = (Name \":\")? (\"FRAME\" Number)? Primary (\"^\" Count)?");
+        if element.label().is_some() {
+            self.met("Element … (Name \":\")?");
+        }
+        if let Some(frame) = element.frame() {
+            self.met("Element … (\"FRAME\" Number)?");
+            self.number(frame);
+        }
+        if let Some(power) = element.power() {
+            self.met("Element … (\"^\" Count)?");
+            self.times(power);
+        }
+        match &element.primary {
+            Primary::Atom(atom) => self.atom(atom),
+            Primary::Plan(plan) => {
+                self.met("Primary = Plan");
+                self.plan(plan);
+            }
+            Primary::Ref(call) => {
+                self.met("Primary = Ref");
+                self.reference(call);
+            }
+            Primary::Exec(exec) => self.exec(exec),
+            Primary::String(body) => {
+                self.met("Primary = \"(\" Elements? \")\"");
+                self.met("Primary … Elements?");
+                self.elements(body);
+            }
+            Primary::Formal(formal) => self.formal(formal),
+            Primary::Broken => {}
+        }
+    }
+
+    fn atom(&mut self, atom: &Atom<'_>) {
+        self.met("Primary = \"(\" \"Atom\" AtomCondition Control \")\"");
+        self.met("AtomCondition = Parenthesized");
+        self.parenthesized(&atom.condition);
+        let is_in_parentheses = self.before(atom.control.span).ends_with('(');
+        self.met(if is_in_parentheses { "Control = \"(\" Call \")\"" } else { "Control = Call" });
+        self.call(atom.control);
+    }
+
+    fn exec(&mut self, exec: &Exec<'_>) {
+        self.times(&exec.count);
+        match exec.body {
+            [Element { primary: Primary::Ref(call), span, .. }] if !self.before(*span).ends_with('{') => {
+                self.met("Primary = \"ExecPlan\" Count Ref");
+                self.reference(call);
+            }
+            body => {
+                self.met("Primary = \"ExecPlan\" Count \"{\" Elements? \"}\"");
+                self.elements(body);
+            }
+        }
+    }
+
+    fn formal(&mut self, formal: &Formal<'_>) {
+        match formal.body {
+            [Element { primary: Primary::Ref(law), .. }] if !law.args.is_empty() && !self.touches(law) => {
+                self.met("Primary = \"(\" LawCall \",\" Or Timer? \")\"");
+                self.law(law);
+            }
+            body => {
+                self.met("Primary = \"(\" Elements? \",\" Or Timer? \")\"");
+                self.elements(body);
+            }
+        }
+        self.or_inside(&formal.condition);
+        if let Some(time) = &formal.time {
+            self.met("Primary … Timer?");
+            match time {
+                Arg::Number(number) => {
+                    self.met("Timer = \",\" Number");
+                    self.number(number);
+                }
+                Arg::Infinity(_) => self.met("Timer = \",\" Infinity"),
+                Arg::Name(_) => self.met("Timer = \",\" Name"),
+                Arg::String(_) | Arg::Module(_) => {}
+            }
+        }
+    }
+
+    fn law(&mut self, law: &Call<'_>) {
+        let (first, rest) = law.args.split_first().expect("an argument");
+        self.met(if rest.is_empty() { "LawCall = Name Literal" } else { "LawCall = Name Literal Args" });
+        match first {
+            Arg::Number(number) => {
+                self.met("Literal = Number");
+                self.number(number);
+            }
+            Arg::Infinity(_) => self.met("Literal = Infinity"),
+            Arg::String(_) => self.met("Literal = Str"),
+            Arg::Name(_) | Arg::Module(_) => {}
+        }
+        self.args(law, rest);
+    }
+
+    fn times(&mut self, count: &Count<'_>) {
+        self.met(match count {
+            Count::Number(_) => "Count = Number",
+            Count::Infinity(_) => "Count = Infinity",
+            Count::Name(_) => "Count = Name",
+        });
+    }
+}
