@@ -25,6 +25,10 @@ fn links_lead_to_a_page_and_a_heading_of_it() {
     let pages = pages();
     for page in &pages {
         for link in links(page).into_iter().filter(|link| !link.starts_with("https://")) {
+            if link.ends_with(".svg") {
+                assert!(root().join("docs/src").join(link).exists(), "{}: no picture {link}", page.path);
+                continue;
+            }
             let (file, anchor) = link.split_once('#').unwrap_or((link, ""));
             let file = if file.is_empty() { name(page) } else { file };
             let target = pages.iter().find(|page| name(page) == file);
@@ -128,6 +132,20 @@ impl Walk<'_> {
     }
 }
 
+impl Walk<'_> {
+    /// Holds the pictures of the page to what its commands have drawn.
+    fn pictures(&self) {
+        for picture in links(self.page).into_iter().filter(|link| self.folder.join(link).exists()) {
+            let (drawn, shown) = (self.folder.join(picture), root().join("docs/src").join(picture));
+            let drawn = fs::read(drawn).unwrap();
+            if std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always") {
+                fs::write(&shown, &drawn).unwrap();
+            }
+            assert!(fs::read(&shown).is_ok_and(|shown| shown == drawn), "INSTA_UPDATE=always writes {shown:?}");
+        }
+    }
+}
+
 fn said(output: &Output) -> String {
     format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
 }
@@ -148,6 +166,7 @@ fn examples_do_what_the_book_says() {
         let mut walk = Walk { page, folder, plan: String::new(), script: String::new() };
         let fences = fences(page);
         fences.iter().for_each(|fence| walk.step(fence));
+        walk.pictures();
         let count = |word: &str| fences.iter().filter(|fence| fence.words[0] == word).count();
         assert_eq!(count("script"), count("trace") + usize::from(name(page) == "first_plan.md"), "{}", page.path);
         traces += count("trace");

@@ -1,7 +1,11 @@
 //! `align i j`: turns until two sonars return equal ranges, `u_θ = k(r_i − r_j)` (paper, section IV-A).
 
+use core::f64::consts::TAU;
+
 use mdle_runtime::capability::{DiffDrive, SonarRing};
-use mdle_runtime::{Begin, Completes, Control, Law, Meters, Nanos, RadiansPerSecond, SONARS, SonarId, Twist};
+use mdle_runtime::{
+    Begin, Completes, Control, Law, Meters, Nanos, PINGS_KEPT, RadiansPerSecond, SONARS, SonarId, Twist,
+};
 
 /// `k`, in rad/s for each metre of difference.
 const GAIN: f64 = 2.0;
@@ -11,6 +15,11 @@ const FASTEST: f64 = 0.3;
 const FASTEST_IN_TURN: f64 = 0.12;
 /// The slowest turn, in rad/s: less would not get the wheels moving.
 const SLOWEST: f64 = 0.08;
+/// How long, in seconds, a sonar is waited for that has heard the wall and then does not, where every turn brings a ping of
+/// each sonar.
+const WAITS: f64 = 0.3;
+/// The same where sonars fire one after the other: two rings of them.
+const WAITS_IN_TURN: f64 = 2.0;
 /// Ranges that differ by this much or less are equal: one inch, the resolution of the paper's sonars.
 const EQUAL: Meters = Meters(0.026);
 
@@ -30,9 +39,15 @@ impl Align {
 }
 
 /// The law of [`Align`]: done when both sonars hear an echo and their ranges are equal.
+///
+/// A sonar that misses an echo now and then is waited for. While one hears nothing for longer, the robot looks for the wall,
+/// once round at most: then it stands still and is not done, and what ends the atom is for the plan to say.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Aligning {
     sonars: Align,
+    began: Nanos,
+    /// When both sonars were last heard.
+    heard: Option<Nanos>,
 }
 
 impl Aligning {
@@ -44,11 +59,16 @@ impl Aligning {
     }
 
     /// Which way to turn when only one of them hears an echo: towards the one that does.
-    fn unheard<Y: SonarRing>(&self, y: &Y) -> f64 {
+    fn unheard<Y: SonarRing>(&self, y: &Y, t: Nanos) -> f64 {
+        let (waits, fastest) = if in_turn(y) { (WAITS_IN_TURN, FASTEST_IN_TURN) } else { (WAITS, FASTEST) };
+        let (since, waits) = self.heard.map_or((self.began, 0.0), |heard| (heard, waits));
+        if !(waits..waits + TAU / fastest).contains(&t.since(since).seconds()) {
+            return 0.0;
+        }
         let heard = |sonar| y.pings(sonar).nearest(y.confirmation()).is_some();
         match (heard(self.sonars.first), heard(self.sonars.second)) {
-            (false, true) => FASTEST,
-            (true, false) => -FASTEST,
+            (false, true) => fastest,
+            (true, false) => -fastest,
             // Nothing to align with; both heard is the business of `difference`.
             (false, false) | (true, true) => 0.0,
         }
@@ -62,23 +82,31 @@ impl Aligning {
     }
 }
 
+/// Whether sonars fire one after the other, so that ranges are older.
+fn in_turn<Y: SonarRing>(y: &Y) -> bool {
+    y.confirmation() < PINGS_KEPT
+}
+
 impl<Y: DiffDrive + SonarRing> Control<Y> for Align {
     type Law = Aligning;
 
-    fn begin(&self, _: &Y, _: Begin) -> Aligning {
-        Aligning { sonars: *self }
+    fn begin(&self, _: &Y, begin: Begin) -> Aligning {
+        Aligning { sonars: *self, began: begin.now, heard: None }
     }
 }
 
 impl<Y: DiffDrive + SonarRing> Law<Y> for Aligning {
     type Input = Twist;
 
-    fn input(&mut self, y: &Y, _: Nanos) -> Twist {
+    fn input(&mut self, y: &Y, t: Nanos) -> Twist {
         let rate = match self.difference(y) {
-            Some(Meters(difference)) => GAIN * difference,
-            None => self.unheard(y),
+            Some(Meters(difference)) => {
+                self.heard = Some(t);
+                GAIN * difference
+            }
+            None => self.unheard(y, t),
         };
-        let fastest = if y.confirmation() < 3 { FASTEST_IN_TURN } else { FASTEST };
+        let fastest = if in_turn(y) { FASTEST_IN_TURN } else { FASTEST };
         let omega = match rate.abs() {
             0.0 => 0.0,
             size => self.sense() * size.clamp(SLOWEST, fastest) * rate.signum(),
@@ -98,26 +126,65 @@ mod tests {
     use super::*;
     use crate::trial::{Sensed, begun};
 
-    /// Runs `align first second` beside a straight wall 0.8 m away in direction `wall` (degrees), started `off`
-    /// degrees from square; how far from square it ends, in degrees.
-    fn aligned(first: u8, second: u8, wall: f64, off: f64, confirmation: usize) -> f64 {
-        let sonars = [SonarId::new(first), SonarId::new(second)];
-        let mut y = Sensed { confirmation, ..Sensed::heading(off) };
+    /// Numbers from 0 to 1 that look as if drawn by chance.
+    struct Chance(u64);
+
+    impl Chance {
+        fn draw(&mut self) -> f64 {
+            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 33) as f64 / (1_u64 << 31) as f64
+        }
+    }
+
+    /// A straight wall 0.8 m from the robot, and how well two sonars hear it.
+    #[derive(Clone, Copy)]
+    struct Wall {
+        first: u8,
+        second: u8,
+        /// Where it is, in degrees.
+        at: f64,
+        /// The share of pings of the first and of the second sonar that bring nothing.
+        misses: [f64; 2],
+        /// By how much a range may be too long or too short, in metres.
+        error: f64,
+        confirmation: usize,
+    }
+
+    const EXACT: Wall = Wall { first: 7, second: 9, at: 180.0, misses: [0.0; 2], error: 0.0, confirmation: 3 };
+
+    /// Runs `align` beside the wall, started `off` degrees from square, for three minutes: how far from square it ends, in
+    /// degrees, and whether it is done. Where sonars fire in turn, each pings once a second.
+    fn ended(wall: Wall, off: f64, seed: u64) -> (f64, bool) {
+        let sonars = [SonarId::new(wall.first), SonarId::new(wall.second)];
+        let mut y = Sensed { confirmation: wall.confirmation, ..Sensed::heading(off) };
         let mut law = Align::new(sonars[0], sonars[1]).begin(&y, begun());
-        for _ in 0..600 {
-            for sonar in sonars {
-                let incidence = y.pose.theta.0 + sonar.bearing().0 - wall.to_radians();
-                let range = 0.8 / libm::cos(incidence) - 0.19;
-                y.ping(sonar, (0.0..6.4).contains(&range).then_some(range));
+        let mut chance = Chance(seed);
+        for turn in 0..1800 {
+            for (number, (sonar, misses)) in sonars.into_iter().zip(wall.misses).enumerate() {
+                if in_turn(&y) && (turn + 5 * number) % 10 != 0 {
+                    continue;
+                }
+                let incidence = y.pose.theta.0 + sonar.bearing().0 - wall.at.to_radians();
+                let range = 0.8 / libm::cos(incidence) - 0.19 + wall.error * (2.0 * chance.draw() - 1.0);
+                let missed = chance.draw() < misses;
+                y.ping(sonar, (!missed && (0.0..6.4).contains(&range)).then_some(range));
             }
-            if law.completed(&y, Nanos(0)) {
-                return y.pose.theta.degrees();
+            let t = Nanos(turn as u64 * 100_000_000);
+            if law.completed(&y, t) {
+                return (y.pose.theta.wrapped().degrees(), true);
             }
-            let input = law.input(&y, Nanos(0));
+            let input = law.input(&y, t);
             assert_eq!(input.v.0, 0.0);
             y.drive(input);
         }
-        panic!("not aligned after a minute, at {} degrees", y.pose.theta.degrees());
+        (y.pose.theta.wrapped().degrees(), false)
+    }
+
+    /// How far from square it ends where nothing goes wrong.
+    fn aligned(first: u8, second: u8, at: f64, off: f64, confirmation: usize) -> f64 {
+        let (end, done) = ended(Wall { first, second, at, confirmation, ..EXACT }, off, 0);
+        assert!(done, "not aligned after three minutes, at {end} degrees");
+        end
     }
 
     #[test]
@@ -126,7 +193,9 @@ mod tests {
             for (first, second, wall) in [(7, 9, 180.0), (3, 5, 90.0), (11, 13, 270.0), (15, 1, 0.0)] {
                 for confirmation in [3, 2] {
                     let end = aligned(first, second, wall, off, confirmation);
-                    assert!(end.abs() < 4.0, "align {first} {second} from {off}: {end}");
+                    // Pings that come once a second are of where it was.
+                    let most = if confirmation == 3 { 4.0 } else { 5.0 };
+                    assert!(end.abs() < most, "align {first} {second} from {off}: {end}");
                 }
             }
         }
@@ -142,6 +211,42 @@ mod tests {
         // 75 degrees off, sonar 7 looks past the wall.
         assert!(aligned(7, 9, 180.0, -75.0, 3).abs() < 4.0);
         assert!(aligned(7, 9, 180.0, 75.0, 3).abs() < 4.0);
+    }
+
+    #[test]
+    fn errors_and_missed_echoes_do_not_keep_it_from_the_wall() {
+        for misses in [[0.0; 2], [0.3, 0.0], [0.0, 0.3], [0.2; 2]] {
+            for confirmation in [3, 2] {
+                for seed in 0..40 {
+                    let off = 8.0 * ((seed % 9) as f64 - 4.0);
+                    let wall = Wall { misses, error: 0.02, confirmation, ..EXACT };
+                    let (end, done) = ended(wall, off, seed + 4);
+                    // Two ranges that are 2 cm wrong make 3 degrees, and pings that come once a second are of where it was.
+                    let most = if confirmation == 3 { 5.0 } else { 10.0 };
+                    assert!(done && end.abs() < most, "from {off}, misses {misses:?}, {confirmation}: {end}, {done}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn beside_a_dead_sonar_it_looks_round_once_and_then_stands_still() {
+        for confirmation in [3, 2] {
+            let mut y = Sensed { confirmation, ..Sensed::default() };
+            let mut law = Align::new(SonarId::new(7), SonarId::new(9)).begin(&y, begun());
+            let mut turned = 0.0;
+            for turn in 0..1000 {
+                y.ping(SonarId::new(7), Some(0.6));
+                y.ping(SonarId::new(9), None);
+                let t = Nanos(turn * 100_000_000);
+                assert!(!law.completed(&y, t));
+                let input = law.input(&y, t);
+                turned += input.omega.0.to_degrees() * crate::trial::PERIOD;
+                y.drive(input);
+            }
+            assert!((-365.0..=-355.0).contains(&turned), "{turned}");
+            assert_eq!(y.velocity, Twist::default());
+        }
     }
 
     #[test]

@@ -1,10 +1,12 @@
-//! `goAvoid ψ r v`: drives to a point given by bearing and range, round obstacles (paper, section IV-A).
+//! `goAvoid ψ r v`: drives to a point given by bearing and range, round obstacles (paper, section IV-A), and out of the way
+//! of somebody who comes towards the robot.
 
 use mdle_runtime::capability::{DiffDrive, Odometry, SonarRing};
 use mdle_runtime::{
     Begin, Completes, Control, Law, Meters, MetersPerSecond, Nanos, Pose, Radians, RadiansPerSecond, Twist,
 };
 
+use crate::approach::Approach;
 use crate::memory::Memory;
 use crate::tangent::{Obstacles, Side, Wish};
 
@@ -29,6 +31,14 @@ const ALONG: Radians = Radians::from_degrees(40.0);
 const GAINED: Meters = Meters(0.1);
 /// ... and has lasted this long.
 const DETOUR_LEAST: Nanos = Nanos(1_000_000_000);
+/// Out of the way of somebody who comes, the robot goes in this direction from the goal's.
+const ASIDE: Radians = Radians::from_degrees(60.0);
+/// With this much room on its right it gives way to the right, as people do; else to where there is more.
+const ROOM: Meters = Meters(0.4);
+/// How long the robot keeps out of the way after somebody should have passed, in seconds.
+const PASSES: f64 = 1.0;
+/// The longest it keeps out of the way of somebody who does not come nearer any more, in seconds.
+const PASSES_MOST: f64 = 8.0;
 
 /// Towards the point at a bearing and range from where the atom begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,6 +64,8 @@ pub struct GoingRound {
     speed: MetersPerSecond,
     previous: Option<Radians>,
     detour: Option<Detour>,
+    approach: Approach,
+    gives_way: Option<GivesWay>,
     memory: Memory,
 }
 
@@ -67,16 +79,56 @@ struct Detour {
     since: Nanos,
 }
 
+/// Out of the way of somebody who comes towards the robot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct GivesWay {
+    side: Side,
+    until: Nanos,
+}
+
 impl GoingRound {
+    /// Looks out for somebody who comes along the way to the goal, to give way to.
+    fn look_out<Y: SonarRing>(&mut self, y: &Y, obstacles: &Obstacles, here: Pose, t: Nanos) {
+        let goal = self.direction(here);
+        self.approach.take(y, here, goal);
+        let gives_way = self.gives_way.filter(|gives_way| t < gives_way.until);
+        self.gives_way = match self.approach.seconds(here, goal, y.confirmation()) {
+            Some(seconds) => {
+                let seconds = (seconds + PASSES).min(PASSES_MOST);
+                let until = Nanos(t.0.saturating_add((seconds * 1e9) as u64));
+                let side = gives_way.map_or_else(|| freer(obstacles, goal), |gives_way| gives_way.side);
+                Some(GivesWay { side, until })
+            }
+            None => gives_way,
+        };
+    }
+
+    /// The direction of the goal.
+    fn direction(&self, here: Pose) -> Radians {
+        Radians(libm::atan2(self.goal.y.0 - here.y.0, self.goal.x.0 - here.x.0))
+    }
+
     /// Whether a detour has lasted so long that it goes along its obstacle.
     fn goes_along(&self, t: Nanos) -> bool {
         self.detour.is_some_and(|detour| t.since(detour.since) > ALONG_AFTER)
     }
 
+    /// The direction in which to give way, along the wall on that side once it is reached.
+    fn aside(&mut self, side: Side, goal: Radians, obstacles: &Obstacles, look_ahead: Meters) -> Radians {
+        let aside = match side {
+            Side::Left => Radians(goal.0 + ASIDE.0),
+            Side::Right => Radians(goal.0 - ASIDE.0),
+        };
+        let wish = Wish { goal: aside, look_ahead, previous: self.previous, side: None, along: false };
+        let chosen = Radians(aside.0 + obstacles.close().best(&wish).0).wrapped();
+        self.previous = Some(chosen);
+        chosen
+    }
+
     /// The direction to drive in, in the odometry's axes.
     fn choose(&mut self, obstacles: &Obstacles, here: Pose, t: Nanos) -> Radians {
         let Meters(distance) = here.distance(&self.goal);
-        let goal = Radians(libm::atan2(self.goal.y.0 - here.y.0, self.goal.x.0 - here.x.0));
+        let goal = self.direction(here);
         let look_ahead = Meters(LOOK_AHEAD.0.min(distance).max(ARRIVED.0));
         let over = |detour: Detour| {
             distance < detour.from.0 - GAINED.0
@@ -84,6 +136,9 @@ impl GoingRound {
                 && t.since(detour.since) > DETOUR_LEAST
         };
         self.detour = self.detour.filter(|detour| !over(*detour));
+        if let Some(gives_way) = self.gives_way {
+            return self.aside(gives_way.side, goal, obstacles, look_ahead);
+        }
         let side = self.detour.map(|detour| detour.side);
         // On a detour along the obstacle: as far towards it as there is room, from where the robot heads.
         let along = self.goes_along(t);
@@ -103,12 +158,26 @@ impl GoingRound {
     }
 }
 
+/// The side to which to give way.
+fn freer(obstacles: &Obstacles, goal: Radians) -> Side {
+    let [left, right] = [90.0, -90.0].map(|side| obstacles.free(Radians(goal.0 + Radians::from_degrees(side).0)));
+    if right >= ROOM || right >= left { Side::Right } else { Side::Left }
+}
+
 impl<Y: DiffDrive + Odometry + SonarRing> Control<Y> for GoAvoid {
     type Law = GoingRound;
 
     fn begin(&self, y: &Y, begin: Begin) -> GoingRound {
         let goal = y.pose().towards(begin.frame.outward(self.bearing), self.range);
-        GoingRound { goal, speed: self.speed, previous: None, detour: None, memory: Memory::EMPTY }
+        GoingRound {
+            goal,
+            speed: self.speed,
+            previous: None,
+            detour: None,
+            approach: Approach::default(),
+            gives_way: None,
+            memory: Memory::EMPTY,
+        }
     }
 }
 
@@ -120,6 +189,7 @@ impl<Y: DiffDrive + Odometry + SonarRing> Law<Y> for GoingRound {
         self.memory.take(y);
         let seen = Obstacles::seen(y, here);
         let obstacles = if self.goes_along(t) { seen.with(&self.memory, here, t) } else { seen };
+        self.look_out(y, &seen, here, t);
         let chosen = self.choose(&obstacles, here, t);
         let Radians(off) = Radians(chosen.0 - here.theta.0).wrapped();
         let Meters(ahead) = seen.free(here.theta);

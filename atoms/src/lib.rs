@@ -11,6 +11,7 @@
 #![deny(clippy::indexing_slicing)]
 
 mod align;
+mod approach;
 mod at_isection;
 mod bumper;
 mod go;

@@ -24,6 +24,8 @@ impl Rotate {
 pub struct Rotating {
     /// The heading by odometry.
     goal: Radians,
+    /// When the input was last asked for.
+    before: Option<Nanos>,
 }
 
 impl Rotating {
@@ -37,15 +39,15 @@ impl<Y: DiffDrive + Odometry> Control<Y> for Rotate {
     type Law = Rotating;
 
     fn begin(&self, _: &Y, begin: Begin) -> Rotating {
-        Rotating { goal: begin.frame.outward(self.heading) }
+        Rotating { goal: begin.frame.outward(self.heading), before: None }
     }
 }
 
 impl<Y: DiffDrive + Odometry> Law<Y> for Rotating {
     type Input = Twist;
 
-    fn input(&mut self, y: &Y, _: Nanos) -> Twist {
-        turning(self.left(y))
+    fn input(&mut self, y: &Y, t: Nanos) -> Twist {
+        turning(self.left(y), self.before.replace(t), t)
     }
 }
 

@@ -121,6 +121,11 @@ impl Obstacles {
         Self { remembered, ..self }
     }
 
+    /// The same for a robot that may go along walls as close as it can.
+    pub(crate) fn close(self) -> Self {
+        Self { soft: 0.0, ..self }
+    }
+
     /// How far the body, with its margin, can go in this direction before it meets a point; at most 3 m, and negative
     /// when a point is already inside the margin.
     pub(crate) fn free(&self, direction: Radians) -> Meters {

@@ -40,7 +40,12 @@ impl Sensed {
 
     /// Takes in a ping, made where the robot is.
     pub(crate) fn ping(&mut self, sonar: SonarId, range: Option<f64>) {
-        let ping = Ping { range: range.map(Meters), at: Nanos::ZERO, pose: self.pose };
+        self.ping_at(sonar, range, Nanos::ZERO);
+    }
+
+    /// The same at a time.
+    pub(crate) fn ping_at(&mut self, sonar: SonarId, range: Option<f64>, at: Nanos) {
+        let ping = Ping { range: range.map(Meters), at, pose: self.pose };
         self.pings.get_mut(sonar.number()).expect("one of the sixteen").push(ping);
     }
 

@@ -27,6 +27,8 @@ pub struct Turning {
     so_far: Radians,
     /// The heading of the last turn.
     last: Radians,
+    /// When that was.
+    before: Option<Nanos>,
 }
 
 impl Turning {
@@ -45,17 +47,17 @@ impl<Y: DiffDrive + Odometry> Control<Y> for Turn {
     type Law = Turning;
 
     fn begin(&self, y: &Y, _: Begin) -> Turning {
-        Turning { angle: self.angle, so_far: Radians(0.0), last: y.pose().theta }
+        Turning { angle: self.angle, so_far: Radians(0.0), last: y.pose().theta, before: None }
     }
 }
 
 impl<Y: DiffDrive + Odometry> Law<Y> for Turning {
     type Input = Twist;
 
-    fn input(&mut self, y: &Y, _: Nanos) -> Twist {
+    fn input(&mut self, y: &Y, t: Nanos) -> Twist {
         self.so_far = self.so_far(y);
         self.last = y.pose().theta;
-        turning(self.left(y))
+        turning(self.left(y), self.before.replace(t), t)
     }
 }
 

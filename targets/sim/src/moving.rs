@@ -187,8 +187,8 @@ impl Moving {
         }
     }
 
-    /// The circle around it, now.
-    fn around(&self) -> Option<Place> {
+    /// The middle of the circle around it, now; `None` for an open door.
+    pub(crate) fn around(&self) -> Option<Place> {
         let Place { x, y } = self.moved?;
         Some(Place { x: self.centre.x + x, y: self.centre.y + y })
     }

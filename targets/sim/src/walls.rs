@@ -110,6 +110,11 @@ impl Walls {
         self.moving.iter().map(Moving::gone)
     }
 
+    /// The middle of each of the things, but for open doors.
+    pub(crate) fn things(&self) -> impl Iterator<Item = Place> {
+        self.moving.iter().filter_map(Moving::around)
+    }
+
     /// Whether anything here ever moves.
     pub(crate) fn move_at_all(&self) -> bool {
         !self.moving.is_empty()

@@ -23,7 +23,7 @@ fn reaches(world: &World, y: f64) -> bool {
         let y = robot.exchange(&input).expect("finite inputs");
         let t = Nanos(turn * 100_000_000);
         let quark = GoAvoid::new(Radians(0.0), Meters(6.0), MetersPerSecond(0.2));
-        let law = law.get_or_insert_with(|| quark.begin(&y, Begin { now: t, frame: Frame(y.here()) }));
+        let law = law.get_or_insert_with(|| quark.begin(&y, Begin { now: t, frame: Frame(y.here().theta) }));
         if mdle_runtime::capability::Bumpers::pressed(&y) {
             return false;
         }

@@ -3,6 +3,9 @@
 //! A ray at angle α off the axis that meets a surface at angle β off its normal is heard when
 //! (α / lobe)² + (β / facing)² is at most what the distance leaves of 1. Near an edge sound goes everywhere, but little of
 //! it: there β counts as a fixed loss. A right-angled corner sends everything back where it came from.
+//!
+//! The rays of a cone lie so far apart that a person 4 m away may stand between two of them. So at what moves, of which
+//! there is little, one more ray is aimed.
 
 use mdle_runtime::Radians;
 
@@ -32,10 +35,13 @@ const OFF: f64 = 1e-6;
 /// The distance from a transducer to the nearest thing heard in its cone, in metres. `fade` is how much better or worse
 /// than usual it hears.
 pub(crate) fn echo(walls: &Walls, from: Place, axis: Radians, hearing: &Hearing, fade: f64) -> Option<f64> {
+    let spread = (0..RAYS).map(|ray| hearing.half_cone.0 * (2.0 * f64::from(ray) / f64::from(RAYS - 1) - 1.0));
+    let aimed = walls.things().map(|thing| {
+        let Radians(off_axis) = Radians(libm::atan2(thing.y - from.y, thing.x - from.x) - axis.0).wrapped();
+        off_axis
+    });
     let mut best = None;
-    for ray in 0..RAYS {
-        let part = f64::from(ray) / f64::from(RAYS - 1);
-        let off_axis = hearing.half_cone.0 * (2.0 * part - 1.0);
+    for off_axis in spread.chain(aimed.filter(|off_axis| off_axis.abs() < hearing.half_cone.0)) {
         let most = best.unwrap_or(hearing.most);
         let (sin, cos) = libm::sincos(axis.0 + off_axis);
         let way = Place { x: cos, y: sin };

@@ -225,3 +225,13 @@ fn the_same_options_draw_the_same_bytes() {
         assert!(plots[0].contains(text), "{text}");
     }
 }
+
+/// The picture in the book is drawn by an executable that mdlec has built, so with optimisation and by the emitted plan.
+#[test]
+fn the_book_shows_the_tour_as_it_is_driven_without_optimisation() {
+    let path = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("office.svg");
+    let shown = path.to_str().expect("a target folder in UTF-8");
+    run(&mut connected(&["--body", "scout", "--seed", "1", "--plot", shown]));
+    let drawn = std::fs::read_to_string(&path).expect("the plot was written");
+    assert!(drawn == include_str!("../../../../docs/src/office.svg"), "this build drives otherwise: see {shown}");
+}

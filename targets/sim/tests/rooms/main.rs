@@ -71,3 +71,28 @@ fn a_doorway_twenty_centimetres_wider_than_the_body_is_passed() {
     assert_eq!(ideal, 4);
     assert!(scout >= 3);
 }
+
+/// How many of these seeds go 6 m along a hallway 2 m wide, without contact, while somebody comes towards them at this
+/// speed, who keeps this far to his right of the middle.
+fn meet(name: &str, make: fn(u64) -> Make, seeds: u64, speed: f64, right: f64) -> usize {
+    let run = |seed: u64| {
+        let y = 0.1 * (seed as f64 / 9.5 - 1.0);
+        let text = format!(
+            "start = {{ y = {y} }}\n[[wall]]\npoints = [[-2, 1], [16, 1]]\n[[wall]]\npoints = [[-2, -1], [16, -1]]\n\
+             [[disc]]\nradius = 0.25\nschedule = [[0, 14, {right}], [{}, -1.5, {right}]]",
+            15.5 / speed
+        );
+        let world = World::parse("a test's world", &text).expect("a good world");
+        (seed, drive(&make(seed), &world, Place { x: 6.0, y }))
+    };
+    clean(name, (0..seeds).map(run))
+}
+
+/// At 1 m/s and 20 cm to his right, 20 of 20 ideal robots and 18 of 20 Scouts are not touched; at 0.5 m/s all.
+#[test]
+fn somebody_who_keeps_right_in_a_hallway_is_given_way_to() {
+    assert_eq!(meet("ideal", |_| ideal(), 6, 1.0, 0.2), 6);
+    assert_eq!(meet("ideal", |_| ideal(), 6, 0.5, 0.0), 6);
+    assert_eq!(meet("scout", scout, 6, 0.5, 0.2), 6);
+    assert!(meet("scout", scout, 12, 1.0, 0.2) >= 10);
+}

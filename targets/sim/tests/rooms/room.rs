@@ -81,7 +81,7 @@ pub(crate) fn drive(make: &Make, world: &World, to: Place) -> Outcome {
         contacts += u32::from(y.pressed() && !touched);
         touched = y.pressed();
         let quark = GoAvoid::new(Radians(bearing), Meters(range), MetersPerSecond(0.2));
-        let law = law.get_or_insert_with(|| quark.begin(&y, Begin { now: t, frame: Frame(y.here()) }));
+        let law = law.get_or_insert_with(|| quark.begin(&y, Begin { now: t, frame: Frame(y.here().theta) }));
         if law.completed(&y, t) {
             return if contacts == 0 { Outcome::Clean } else { Outcome::Touched(contacts) };
         }

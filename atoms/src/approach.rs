@@ -1,0 +1,146 @@
+//! Somebody who comes towards the robot: what is heard ahead gets nearer faster than the robot drives.
+
+use mdle_runtime::capability::SonarRing;
+use mdle_runtime::{Meters, Nanos, PINGS_KEPT, Pose, Radians, SONARS, SonarId};
+
+/// A sonar listens for somebody if its axis is no further off the way ahead than this.
+const AHEAD: Radians = Radians::from_degrees(14.0);
+/// Echoes are compared that are at least this long apart, so that the way between them is not lost in their errors.
+const APART: Nanos = Nanos(200_000_000);
+/// Whoever comes more slowly than this, in m/s, is gone round like what stands.
+const SLOWEST: f64 = 0.3;
+/// What comes faster than this, in m/s, is no person but two things taken for one.
+const FASTEST: f64 = 2.0;
+/// Echoes that have come nearer by less, in metres, may be those of something that stands: ranges err by 1.5 cm, and come
+/// in inches.
+const NEARER: f64 = 0.1;
+
+/// Echoes that lie further apart across the way than this, in metres, are of two things.
+const ACROSS: f64 = 0.25;
+
+/// Faster than this, in rad/s, the robot does not turn between echoes that are compared: what a cone just touches of a wall
+/// beside the way comes and goes as it turns.
+const TURNS: f64 = 0.02;
+
+/// An echo: where in the odometry's axes, and when.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Heard {
+    at: Nanos,
+    /// Its heading is the direction of the sonar's axis.
+    place: Pose,
+}
+
+/// The same from where the robot is: how far along the way, and across it.
+#[derive(Debug, Clone, Copy)]
+struct Relative {
+    at: Nanos,
+    axis: Radians,
+    along: f64,
+    across: f64,
+}
+
+/// The last echoes ahead, newest first, without silence between them.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Approach {
+    heard: [Option<Heard>; PINGS_KEPT],
+}
+
+impl Approach {
+    /// Takes in what the sonar that looks that way hears.
+    pub(crate) fn take<Y: SonarRing>(&mut self, y: &Y, here: Pose, way: Radians) {
+        let Some(sonar) = looking(here, way) else { return };
+        let Some(ping) = y.pings(sonar).newest_first().next() else { return };
+        if self.heard[0].is_some_and(|newest| ping.at.since(newest.at) < APART) {
+            return;
+        }
+        let axis = Radians(ping.pose.theta.0 + sonar.bearing().0);
+        let looked = Radians(axis.0 - way.0).wrapped().0.abs() <= AHEAD.0;
+        let [first, second, _] = self.heard;
+        self.heard = match ping.range.filter(|_| looked) {
+            Some(range) => {
+                let place = ping.pose.towards(axis, Meters(y.ring_radius().0 + range.0));
+                [Some(Heard { at: ping.at, place }), first, second]
+            }
+            None => Default::default(),
+        };
+    }
+
+    /// How many seconds whoever comes needs from the newest echo on until he is here; `None` where nobody comes.
+    ///
+    /// Places of what stands stay the same. As many echoes must agree as it takes to believe that a way is free, and none
+    /// that is still known may gainsay.
+    pub(crate) fn seconds(&self, here: Pose, way: Radians, confirmation: usize) -> Option<f64> {
+        let (sin, cos) = libm::sincos(way.0);
+        let mut heard = self.heard.iter().flatten().map(|Heard { at, place }| {
+            let (x, y) = (place.x.0 - here.x.0, place.y.0 - here.y.0);
+            Relative { at: *at, axis: place.theta, along: x * cos + y * sin, across: y * cos - x * sin }
+        });
+        let newest = heard.next()?;
+        let (mut oldest, mut agree) = (newest, 1);
+        for before in heard {
+            let seconds = oldest.at.since(before.at).seconds();
+            let comes = (SLOWEST..=FASTEST).contains(&((before.along - oldest.along) / seconds));
+            let turned = Radians(oldest.axis.0 - before.axis.0).wrapped().0.abs();
+            if !comes || turned > TURNS * seconds || (before.across - oldest.across).abs() > ACROSS {
+                return None;
+            }
+            (oldest, agree) = (before, agree + 1);
+        }
+        let nearer = oldest.along - newest.along;
+        let comes = agree >= confirmation && nearer >= NEARER && newest.along > 0.0;
+        comes.then(|| newest.along * newest.at.since(oldest.at).seconds() / nearer)
+    }
+}
+
+/// The sonar that looks in this direction, given in the odometry's axes.
+fn looking(here: Pose, way: Radians) -> Option<SonarId> {
+    let off = |sonar: SonarId| Radians(here.theta.0 + sonar.bearing().0 - way.0).wrapped().0.abs();
+    (0..SONARS as u8).map(SonarId::new).min_by(|one, other| off(*one).total_cmp(&off(*other)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trial::Sensed;
+    use mdle_runtime::Twist;
+
+    /// How long somebody needs who is heard at these ranges, a second apart, by a robot that drives at this speed and turn
+    /// rate, in m/s and rad/s.
+    fn seconds(ranges: &[Option<f64>], v: f64, omega: f64, confirmation: usize) -> Option<f64> {
+        let (mut y, mut approach) = (Sensed { confirmation, ..Sensed::default() }, Approach::default());
+        for (second, range) in (0..).zip(ranges) {
+            y.ping_at(SonarId::new(0), *range, Nanos(second * 1_000_000_000));
+            approach.take(&y, y.pose, Radians(0.0));
+            for _ in 0..10 {
+                let input = Twist { v: mdle_runtime::MetersPerSecond(v), omega: mdle_runtime::RadiansPerSecond(omega) };
+                y.drive(input);
+            }
+        }
+        approach.seconds(y.pose, Radians(0.0), confirmation)
+    }
+
+    #[test]
+    fn whoever_comes_faster_than_the_robot_drives_is_told_from_a_wall() {
+        let comes = [Some(5.0), Some(3.8), Some(2.6)];
+        // 2.6 m and the ring's radius, of which the robot has driven 0.2 m since.
+        let arrives = seconds(&comes, 0.2, 0.0, 3).expect("somebody");
+        assert!((arrives - 2.59).abs() < 1e-9, "{arrives}");
+        assert_eq!(seconds(&[Some(5.0), Some(4.8), Some(4.6)], 0.2, 0.0, 3), None, "a wall");
+        assert_eq!(seconds(&[Some(5.0), Some(4.6), Some(4.2)], 0.2, 0.0, 3), None, "too slow");
+        assert_eq!(seconds(&[Some(5.0), Some(2.6), Some(0.2)], 0.2, 0.0, 3), None, "too fast");
+    }
+
+    #[test]
+    fn as_many_echoes_must_agree_as_confirm_a_free_way_and_none_may_gainsay() {
+        assert!(seconds(&[None, Some(3.8), Some(2.6)], 0.2, 0.0, 2).is_some());
+        assert_eq!(seconds(&[None, Some(3.8), Some(2.6)], 0.2, 0.0, 3), None);
+        assert_eq!(seconds(&[Some(3.8), None, Some(2.6)], 0.2, 0.0, 2), None);
+        assert_eq!(seconds(&[Some(4.0), Some(3.8), Some(2.6)], 0.2, 0.0, 2), None);
+    }
+
+    #[test]
+    fn nobody_is_heard_by_a_robot_that_turns() {
+        assert!(seconds(&[Some(5.0), Some(3.8), Some(2.6)], 0.0, 0.01, 3).is_some());
+        assert_eq!(seconds(&[Some(5.0), Some(3.8), Some(2.6)], 0.0, 0.03, 3), None);
+    }
+}

@@ -1,0 +1,61 @@
+//! What the sonar in front of a simulated Scout hears of a wall or a column, ping after ping.
+
+use std::time::Duration;
+
+use mdle_runtime::capability::SonarRing;
+use mdle_runtime::{Pose, Radians, Robot, SonarId, Twist};
+use mdle_sim::{Body, Make, Simulated, World};
+
+/// A ring of sixteen takes this long, in milliseconds.
+const RING: u64 = 960;
+/// From the centre of the body to the transducer, in metres.
+const TRANSDUCER: f64 = 0.19;
+/// A new robot, and so another temperature of the air, after so many pings.
+const ONE_RUN: usize = 20;
+
+/// A long wall across the first axis at `{x}`.
+pub(crate) const WALL: &str = "[[wall]]\npoints = [[{x}, -60], [{x}, 60]]";
+/// A column 60 cm thick on the first axis, the near side at `{x}`.
+pub(crate) const COLUMN: &str = "[[disc]]\nradius = 0.3\ncentre = [{x}, 0]";
+
+/// What came of a number of pings.
+#[derive(Debug, Default)]
+pub(crate) struct Heard {
+    /// By how much each range heard was too long, in metres.
+    pub(crate) errors: Vec<f64>,
+    /// How many brought nothing.
+    pub(crate) silent: usize,
+}
+
+impl Heard {
+    /// The share of pings that were heard within 15 cm of where something is.
+    pub(crate) fn share(&self) -> f64 {
+        let true_ones = self.errors.iter().filter(|error| error.abs() < 0.15).count();
+        true_ones as f64 / (self.errors.len() + self.silent) as f64
+    }
+}
+
+/// So many pings at something this far, in metres, from the transducer along its normal, which lies so many degrees off the
+/// sonar's axis.
+pub(crate) fn heard(what: &str, distance: f64, degrees: f64, pings: usize) -> Heard {
+    let theta = Radians::from_degrees(degrees);
+    let (y, ahead) = (TRANSDUCER * libm::sin(theta.0), TRANSDUCER * libm::cos(theta.0));
+    let x = ahead + distance + if what == COLUMN { 0.3 } else { 0.0 };
+    let text = what.replace("{x}", &x.to_string());
+    // The transducer, not the body, is on the first axis.
+    let world = World::parse("a test's world", &text).expect("a good world");
+    let start = Pose { y: mdle_runtime::Meters(-y), theta, ..Pose::ORIGIN };
+    let mut heard = Heard::default();
+    for seed in 0..pings.div_ceil(ONE_RUN) as u64 {
+        let make = Make { body: Body::Scout, seed: Some(seed), ..Make::default() };
+        let mut robot = Simulated::with(&make, &world, start, Duration::from_millis(RING)).expect("a start");
+        for _ in 0..ONE_RUN.min(pings - seed as usize * ONE_RUN) {
+            let y = robot.exchange(&Twist::default()).expect("finite inputs");
+            match y.pings(SonarId::new(0)).newest_first().next().and_then(|ping| ping.range) {
+                Some(range) => heard.errors.push(range.0 - distance),
+                None => heard.silent += 1,
+            }
+        }
+    }
+    heard
+}
