@@ -363,31 +363,4 @@ fn text<'a>(texts: &[&'a str], index: u32) -> &'a str {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::{Condition, Reading};
-    use crate::{Interrupt, Nanos};
-
-    struct Always;
-
-    impl Interrupt<()> for Always {
-        fn fired(&self, (): &()) -> bool {
-            true
-        }
-    }
-
-    fn at(operands: &[Condition<Always>]) -> Reading<'_, Always, (), ()> {
-        Reading { y: &(), since: Nanos::ZERO, level: 0, operands, memory: &() }
-    }
-
-    #[test]
-    fn a_condition_that_is_its_own_operand_holds_nobody_up() {
-        for operand in [Condition::Not(0), Condition::Or(0, 1), Condition::And(0, 1)] {
-            let operands: [Condition<Always>; 1] = [operand];
-            let fired = |condition: Condition<Always>| condition.fired(&at(&operands), 0);
-            // What refers to itself or back is as if it were not there, and so has not fired.
-            assert_eq!(fired(Condition::Or(0, 1)), matches!(operands[0], Condition::Not(_)));
-        }
-        assert!(Condition::Or(0, 1).fired(&at(&[Condition::Quark(Always)]), 0));
-        assert!(!Condition::Or(0, 1).fired(&at(&[Condition::Quark(Always)]), 1));
-    }
-}
+mod tests;

@@ -141,6 +141,31 @@ fn a_loop_that_is_entered_again_has_all_its_passes() {
 }
 
 #[test]
+fn a_loop_ends_with_its_body_in_its_last_pass() {
+    let brackets = |times| {
+        [
+            Bracket::scope(0, 0, 1, 0),
+            Bracket::repeat(times, 0, 1, 0, 0, 0),
+            Bracket::scope(1, 0, 0, 1),
+            Bracket::scope(1, 1, 1, 0),
+        ]
+    };
+    let ended = |times: u64, passed: u64| {
+        let brackets = brackets(times);
+        let fsm = Fsm { brackets: &brackets, atoms: &[Atom::new(2, 1), Atom::new(3, 2)], termination: 3 };
+        let mut cursor = start(fsm);
+        (0..passed).for_each(|_| assert!(cursor.end(fsm, 1, Nanos(100))));
+        let without_counters = Cursor::start(fsm, [], [], Nanos(100));
+        let ended = cursor.ending(fsm, 1).map(|(number, _)| number).collect::<Vec<_>>();
+        (ended, without_counters.ending(fsm, 1).count())
+    };
+    assert_eq!(ended(1, 0), (std::vec![2, 1], 2));
+    assert_eq!(ended(2, 0), (std::vec![2], 2), "a loop without a counter is in its last pass");
+    assert_eq!(ended(2, 1), (std::vec![2, 1], 2));
+    assert_eq!(ended(0, 3), (std::vec![2], 1), "a loop without end");
+}
+
+#[test]
 fn tables_whose_parents_form_a_circle_hold_nobody_up() {
     let scopes = [Bracket::scope(5, 0, 0, 1), Bracket::scope(6, 0, 0, 0)];
     let loops =

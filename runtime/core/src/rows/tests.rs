@@ -1,0 +1,270 @@
+//! When conditions in rows fire, and what a plan in rows remembers.
+
+use std::vec::Vec;
+
+use super::{Condition, Guard, InRows, LawRow, Reading, Rows, Texts};
+use crate::fsm::{Atom, Bracket};
+use crate::{
+    Alphabet, Argument, Begin, Cause, Comparison, Completes, Control, Cursor, Follows, Frame, Fsm, Interrupt, Law,
+    MarkRow, Memories, Memory, Nanos, Next, NoSignal, Output, Plan, Radians,
+};
+
+/// The numbers of the interrupts that fire.
+struct Sensed(&'static [u8]);
+
+impl Output for Sensed {}
+
+struct Fires(u8);
+
+impl Interrupt<Sensed> for Fires {
+    fn fired(&self, y: &Sensed) -> bool {
+        y.0.contains(&self.0)
+    }
+}
+
+struct Idle;
+
+impl Control<Sensed> for Idle {
+    type Law = Idle;
+
+    fn begin(&self, _: &Sensed, _: Begin) -> Idle {
+        Idle
+    }
+}
+
+impl Law<Sensed> for Idle {
+    type Input = ();
+
+    fn input(&mut self, _: &Sensed, _: Nanos) {}
+}
+
+impl Completes<Sensed> for Idle {
+    fn completed(&self, _: &Sensed, _: Nanos) -> bool {
+        false
+    }
+}
+
+struct Toy;
+
+impl Alphabet for Toy {
+    type Output = Sensed;
+    type Input = ();
+    type Interrupt = Fires;
+    type Signal = NoSignal;
+    type Control = Idle;
+    type Law = Idle;
+
+    fn interrupt(_: &str, _: &[Argument<'_>]) -> Option<Fires> {
+        None
+    }
+
+    fn signal(_: &str, _: &[Argument<'_>]) -> Option<NoSignal> {
+        None
+    }
+
+    fn comparison(_: Comparison<NoSignal, NoSignal>) -> Option<Fires> {
+        None
+    }
+
+    fn control(_: &str, _: &[Argument<'_>]) -> Option<Idle> {
+        None
+    }
+}
+
+/// What a condition with these operands is read with, three nanoseconds after its scope was entered.
+fn at<'r, M>(operands: &'r [Condition<Fires>], y: &'r Sensed, memory: &'r M) -> Reading<'r, Fires, Sensed, M> {
+    Reading { y, since: Nanos(3), level: 0, operands, memory }
+}
+
+#[test]
+fn a_condition_that_is_its_own_operand_holds_nobody_up() {
+    let nothing = Sensed(&[]);
+    for operand in [Condition::Not(0), Condition::Or(0, 1), Condition::And(0, 1), Condition::Rising(0, 0)] {
+        let operands: [Condition<Fires>; 1] = [operand];
+        let or = Condition::Or(0, 1);
+        // What refers to itself or back is as if it were not there, and so has not fired.
+        assert_eq!(or.fired(&at(&operands, &nothing, &()), 0), matches!(operands[0], Condition::Not(_)));
+        assert_eq!(or.cause(&at(&operands, &nothing, &())), 0);
+        let mut told = Vec::new();
+        or.low(&at(&operands, &nothing, &()), 0, &mut |memory| told.push(memory));
+        assert_eq!(told, []);
+    }
+    let (always, operands) = (Sensed(&[0]), [Condition::Quark(Fires(0))]);
+    assert!(Condition::Or(0, 1).fired(&at(&operands, &always, &()), 0));
+    assert!(!Condition::Or(0, 1).fired(&at(&operands, &always, &()), 1));
+    let operands = [Condition::Not(0), Condition::Quark(Fires(0))];
+    assert_eq!(Condition::Or(0, 2).cause(&at(&operands, &always, &())), 0, "the NOT of what is not there has fired");
+}
+
+#[test]
+fn an_operand_may_stand_right_behind_what_it_belongs_to() {
+    let operands = [Condition::Not(1), Condition::Quark(Fires(0))];
+    assert!(Condition::Not(0).fired(&at(&operands, &Sensed(&[0]), &()), 0));
+    assert!(!Condition::Not(0).fired(&at(&operands, &Sensed(&[]), &()), 0));
+    let operands = [Condition::Quark(Fires(0)), Condition::Not(2), Condition::Quark(Fires(1))];
+    let cause = |y: Sensed| Condition::Or(0, 2).cause(&at(&operands, &y, &()));
+    assert_eq!([cause(Sensed(&[])), cause(Sensed(&[1]))], [1, 0]);
+}
+
+#[test]
+fn times_fire_from_their_first_moment_until_before_their_last() {
+    let fired = |condition: Condition<Fires>| condition.fired(&at(&[], &Sensed(&[]), &()), 0);
+    assert_eq!([2, 3, 4].map(|time| fired(Condition::Wait(Nanos(time)))), [true, true, false]);
+    assert_eq!(
+        [(2, 3), (2, 4), (3, 4), (4, 5)].map(|(from, until)| fired(Condition::Elapsed(Nanos(from), Nanos(until)))),
+        [false, true, true, false]
+    );
+}
+
+#[test]
+fn rising_fires_if_its_operand_does_and_once_did_not() {
+    let operands = [Condition::Quark(Fires(0))];
+    let fired = |y: &Sensed, was_low: bool| {
+        let mut memories = Memories::new(2, &[], [false; 2]);
+        memories.set(0, 1, was_low);
+        Condition::Rising(1, 0).fired(&at(&operands, y, &memories), 0)
+    };
+    let (high, low) = (Sensed(&[0]), Sensed(&[]));
+    assert_eq!(
+        [fired(&high, true), fired(&high, false), fired(&low, true), fired(&low, false)],
+        [true, false, false, false]
+    );
+}
+
+#[test]
+fn the_cause_is_the_first_operand_of_an_or_that_has_fired() {
+    let operands = [0, 1, 2, 3].map(|number| Condition::Quark(Fires(number)));
+    let cause =
+        |condition: Condition<Fires>, y: &[&'static [u8]; 1]| condition.cause(&at(&operands, &Sensed(y[0]), &()));
+    assert_eq!(cause(Condition::Or(1, 3), &[&[2, 3]]), 1);
+    assert_eq!(cause(Condition::Or(1, 3), &[&[0, 1]]), 0);
+    assert_eq!(cause(Condition::Or(0, 1), &[&[1]]), 0, "it is not one of them");
+    assert_eq!(cause(Condition::Or(0, 1), &[&[]]), 0);
+    assert_eq!(cause(Condition::And(1, 2), &[&[1, 2]]), 0);
+}
+
+#[test]
+fn every_rising_whose_operand_has_not_fired_is_told_once() {
+    let operands = [
+        Condition::Rising(0, 2),
+        Condition::Not(3),
+        Condition::Rising(1, 4),
+        Condition::Or(5, 2),
+        Condition::Quark(Fires(9)),
+        Condition::Rising(2, 7),
+        Condition::Rising(3, 8),
+        Condition::Quark(Fires(0)),
+        Condition::Rising(4, 9),
+        Condition::Quark(Fires(9)),
+        // Nobody's.
+        Condition::Rising(5, 11),
+        Condition::Quark(Fires(9)),
+    ];
+    let mut told = Vec::new();
+    Condition::And(0, 2).low(&at(&operands, &Sensed(&[0]), &()), 0, &mut |memory| told.push(memory));
+    assert_eq!(told, [0, 1, 3, 4], "the operand of 2 has fired");
+}
+
+/// `{ P { Q (Atom) } (Atom) }`, where all conditions are given, and what ends with the first atom and with `Q`.
+struct Remembering {
+    guards: [Guard<Fires>; 4],
+    operands: Vec<Condition<Fires>>,
+}
+
+const BRACKETS: [Bracket; 4] =
+    [Bracket::scope(0, 0, 1, 0), Bracket::scope(1, 0, 0, 0), Bracket::scope(2, 0, 0, 1), Bracket::scope(1, 1, 1, 0)];
+const ATOMS: [Atom; 2] = [Atom::new(2, 1), Atom::new(3, 2)];
+const MARKS: [MarkRow<'_>; 2] = [
+    MarkRow { bracket: 1, level: 0, first: 3, count: 1, facts: &[(3, Some(0))] },
+    MarkRow { bracket: 2, level: 0, first: 1, count: 2, facts: &[(1, None), (2, Some(1))] },
+];
+const WIDTH: usize = 5;
+const LEVELS: usize = 3;
+type Set = [bool; WIDTH * LEVELS];
+type Remembers<'r> = InRows<'r, Toy, [Nanos; LEVELS], [u64; 0], Memories<'r, Set>>;
+type At = Cursor<[Nanos; LEVELS], [u64; 0]>;
+const BEGIN: Begin = Begin { now: Nanos::ZERO, frame: Frame(Radians(0.0)) };
+
+impl Remembering {
+    fn new(plan: Condition<Fires>, atom: Condition<Fires>, operands: impl Into<Vec<Condition<Fires>>>) -> Self {
+        let guard = |condition, level, around, follows| Guard { condition, level, around, follows };
+        let behind = Some(Follows::new(1, 1, 2));
+        let guards = [
+            guard(plan, 0, 0, None),
+            guard(Condition::Null, 1, 0, behind),
+            guard(atom, 2, 0, behind),
+            guard(Condition::Null, 1, 0, None),
+        ];
+        Self { guards, operands: operands.into() }
+    }
+
+    /// What is set afterwards, where this was set before: the places of the memories, level by level.
+    fn after<R>(&self, before: Set, act: impl FnOnce(&mut Remembers<'_>, &mut At) -> R) -> (R, Vec<usize>) {
+        let laws = [0.0; 2].map(|angle| LawRow { control: Idle, frame: Radians(angle) });
+        let texts = Texts { laws: &[], conditions: &[], names: &[] };
+        let fsm = Fsm { brackets: &BRACKETS, atoms: &ATOMS, termination: 3 };
+        let rows: Rows<'_, Toy> = Rows { fsm, guards: &self.guards, operands: &self.operands, laws: &laws, texts };
+        let slots = ([Nanos::ZERO; LEVELS], []);
+        let memories = Memories::new(WIDTH as u32, &MARKS, before);
+        let mut plan = InRows::remembering(&rows, slots.0, slots.1, memories);
+        let mut cursor = Cursor::start(fsm, slots.0, slots.1, Nanos::ZERO);
+        plan.enter(0, &Sensed(&[]), BEGIN);
+        let result = act(&mut plan, &mut cursor);
+        let is_set = |place: &usize| plan.memory.is_set((place / WIDTH) as u16, (place % WIDTH) as u32);
+        (result, (0..WIDTH * LEVELS).filter(is_set).collect())
+    }
+}
+
+#[test]
+fn a_turn_sets_the_memory_of_every_rising_around_its_atom_that_is_low() {
+    let low = |y: Sensed| {
+        let operands = [
+            Condition::Rising(1, 2),
+            Condition::Rising(0, 3),
+            Condition::Quark(Fires(0)),
+            Condition::Quark(Fires(1)),
+            Condition::Quark(Fires(2)),
+        ];
+        let plan = Remembering::new(Condition::And(0, 2), Condition::Rising(2, 4), operands);
+        let settle = |plan: &mut Remembers<'_>, cursor: &mut At| plan.settle(cursor, &y, Nanos::ZERO);
+        plan.after([false; WIDTH * LEVELS], settle).1
+    };
+    let of_atom = 2 * WIDTH + 2;
+    assert_eq!(low(Sensed(&[])), [0, 1, of_atom]);
+    assert_eq!(low(Sensed(&[1])), [1, of_atom]);
+    assert_eq!(low(Sensed(&[0, 2])), [0]);
+}
+
+/// A plan whose first atom ends with one of these two.
+fn ends_by_either() -> Remembering {
+    let operands = [Condition::Quark(Fires(0)), Condition::Quark(Fires(1))];
+    Remembering::new(Condition::Null, Condition::Or(0, 2), operands)
+}
+
+#[test]
+fn what_ends_is_written_down_with_its_cause_and_what_was_inside_is_forgotten() {
+    let recorded = |cause: Cause, y: Sensed| {
+        let leave = |plan: &mut Remembers<'_>, cursor: &mut At| plan.leave(cursor, cause, &y, Nanos::ZERO);
+        ends_by_either().after([true; WIDTH * LEVELS], leave).1
+    };
+    // 0 and 4 are of no label. `Q` ends as well, but nothing of its own has ended it.
+    assert_eq!(recorded(Cause::Fired(2), Sensed(&[1])), [0, 1, 2, 4]);
+    assert_eq!(recorded(Cause::Fired(2), Sensed(&[0, 1])), [0, 1, 4]);
+    assert_eq!(recorded(Cause::Completed(2), Sensed(&[1])), [0, 1, 4]);
+}
+
+#[test]
+fn an_ending_whose_sequel_is_known_is_written_down_as_well() {
+    let y = Sensed(&[1]);
+    let next = |plan: &mut Remembers<'_>, cursor: &mut At| plan.next(cursor, &y, BEGIN, true);
+    let (next, set) = ends_by_either().after([false; WIDTH * LEVELS], next);
+    assert_eq!((next, &set[..]), (Next::Moved, &[1, 2][..]));
+}
+
+#[test]
+fn the_first_operand_of_all_can_end_a_scope() {
+    let y = Sensed(&[0]);
+    let next = |plan: &mut Remembers<'_>, cursor: &mut At| plan.next(cursor, &y, BEGIN, false);
+    let (next, _) = ends_by_either().after([false; WIDTH * LEVELS], next);
+    assert!(matches!(next, Next::Ends(ending) if ending.cause == Cause::Fired(2)), "{next:?}");
+}
