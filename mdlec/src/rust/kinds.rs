@@ -205,6 +205,49 @@ mod tests {
     }
 
     #[test]
+    fn operands_tell_kinds_apart() {
+        let one = |condition: &str| format!("(Atom ({condition}) turn 10)");
+        let apart = |conditions: [&str; 2]| kinds(&conditions.map(one).concat()).len() == 3;
+        assert!(apart(["wait 1 OR bumper", "wait 1 OR wait 2"]));
+        assert!(apart(["wait 1 OR bumper", "wait 1 AND bumper"]));
+        assert!(apart(["NOT bumper", "NOT wait 1"]));
+        assert!(apart(["t < 2", "bumper"]));
+        assert!(!apart(["wait 1 OR bumper", "wait 2 OR bumper"]));
+    }
+
+    #[test]
+    fn levels_tell_kinds_apart_where_what_follows_is_not_known() {
+        let one = "(Atom (bumper) turn 10)";
+        assert_eq!(kinds(&format!("ExecPlan 2 {{ {one} }} ExecPlan 2 {{ {{ Q {one} }} }}")), [[0], [1], [2]]);
+    }
+
+    #[test]
+    fn scopes_that_cannot_end_are_no_parts() {
+        let compiled = compiled(
+            "{ P { Q (Atom (null) rotate 90) } { R (bumper) { S (Atom (wait 1) stop) } } { T (Atom (null) stop) } }",
+        );
+        let atoms = Atoms::new(&compiled[0].lowered);
+        let own = |atom: usize| compiled[0].lowered.atoms[atom].scope;
+        let around = |bracket: u32| compiled[0].lowered.brackets[bracket as usize].parent;
+        // A law that completes ends its own scope, and none around it.
+        assert_eq!(atoms.scopes(0), [own(0)]);
+        assert_eq!(atoms.scopes(1), [own(1), around(around(own(1)))]);
+        assert!(atoms.scopes(2).is_empty());
+    }
+
+    #[test]
+    fn too_many_parts_are_refused() {
+        let compiled = compiled("{ P (Atom (wait 1) turn 10) (Atom (wait 1 OR bumper) turn 10) }");
+        let atoms = Atoms::new(&compiled[0].lowered);
+        // Scope, condition and what follows; then the law and its frame.
+        let (narrow, wide) = (3, 5);
+        assert!(atoms.parts(0, narrow).is_some() && atoms.parts(0, narrow - 1).is_none());
+        assert!(atoms.kinds(usize::MAX, wide).is_some() && atoms.kinds(usize::MAX, wide - 1).is_none());
+        let all = narrow + wide + 2 * 2;
+        assert!(atoms.kinds(all, usize::MAX).is_some() && atoms.kinds(all - 1, usize::MAX).is_none());
+    }
+
+    #[test]
     fn atoms_that_differ_in_more_than_constants_are_of_different_kinds() {
         let alike = "(Atom (wait 1) turn 10) (Atom (wait 2) turn 20)";
         assert_eq!(kinds(alike), [vec![0, 1], vec![2]]);

@@ -174,12 +174,16 @@ mod tests {
         let shape = |atoms: &str| Shape::of(&compiled(&format!("{{ P {atoms} }}"))[0].lowered);
         let alike = |atoms: usize| shape(&"(Atom (wait 1) stop)".repeat(atoms));
         assert_eq!([63, 64].map(alike), [Shape::Code, Shape::Shared]);
-        // No two of these have as many operands.
-        let differ = (1..64).map(|count| format!("(Atom ({}) stop)", vec!["wait 1"; count].join(" AND ")));
-        assert_eq!(shape(&format!("{} (Atom (wait 1) stop)", differ.collect::<String>())), Shape::Rows);
-        // And this is one kind, but too wide for a row.
-        let wide = format!("(Atom ({}) stop)", vec!["wait 1"; 32].join(" AND "));
-        assert_eq!(shape(&wide.repeat(64)), Shape::Rows);
+        let atom = |operator: &str, count| format!("(Atom ({}) stop)", vec!["wait 1"; count].join(operator));
+        assert_eq!(shape("(Atom (RISING bumper) stop)"), Shape::Rows, "what remembers is rows however short it is");
+        // A row has 32 parts at most: its scope, the operator and what follows beside the operands.
+        let wide = |operands: usize| shape(&atom(" AND ", operands).repeat(64));
+        assert_eq!([29, 30].map(wide), [Shape::Shared, Shape::Rows]);
+        // No two of these are alike. With the law and its frame, their kinds have five parts beside the operands, and with
+        // both kinds of `wait 1`, the last atom being one by itself, 512 parts are the most.
+        let differ: String = (2..=26).map(|operands| atom(" AND ", operands)).collect();
+        let kinds = |operands| shape(&[&differ, &*atom(" OR ", operands), &atom("", 1).repeat(64)].concat());
+        assert_eq!([22, 23].map(kinds), [Shape::Shared, Shape::Rows]);
     }
 
     #[test]

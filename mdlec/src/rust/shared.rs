@@ -109,12 +109,13 @@ impl<'l> Shared<'l> {
                 (name, type_of(quark, quarks), made(quark, quarks))
             }
             Part::Wait(nanos) => ("wait", quote!(Nanos), nanoseconds(nanos)),
-            Part::Follows(follows) => {
-                let atom = Literal::u32_unsuffixed(follows.map_or(0, |follows| follows.atom));
+            Part::Follows(Some(follows)) => {
+                let atom = Literal::u32_unsuffixed(follows.atom);
                 ("next", quote!(u32), quote!(#atom))
             }
             Part::Frame(radians) => ("frame", quote!(runtime::Radians), angle(radians)),
-            Part::Scope { .. } | Part::Null | Part::Elapsed | Part::Or(_) | Part::And(_) | Part::Not => {
+            Part::Follows(None) | Part::Scope { .. } | Part::Null => unreachable!("what has no constant is left out"),
+            Part::Elapsed | Part::Or(_) | Part::And(_) | Part::Not => {
                 unreachable!("what has no constant is left out")
             }
         }

@@ -30,6 +30,20 @@ fn an_interrupt_that_is_not_repeated_stays_as_it_is() {
 }
 
 #[test]
+fn a_condition_is_repeated_only_where_it_is_the_same_function() {
+    let removed = |interrupt: &str, label: &str| {
+        let compiled = compiled(&format!("{{ P {label} {{ Q ({interrupt}) (Atom ({interrupt}) stop) }} }}"));
+        let body = &compiled[0].nondegenerate.plan().root.body;
+        let Some(Node::Scope(scope)) = body.last() else { panic!("{body:?}") };
+        matches!(&scope.body[..], [Node::Atom(atom)] if atom.interrupt.removed)
+    };
+    // What the label says is the same in both places; what has been since a scope was entered is not.
+    assert!(removed("after s bumper", "s: (Atom (bumper) stop)"));
+    assert!(!removed("RISING bumper", ""));
+    assert!(!removed("t > 5s", ""));
+}
+
+#[test]
 fn a_file_is_the_same_with_and_without_quotes() {
     let text = "target t : crate t, period 1s; interrupt played(tune: file); control stop;";
     let (alphabet, found) = alphabet::combine(alphabet::read(SourceId(0), text).0.expect("an alphabet"), &[]);
