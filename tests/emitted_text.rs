@@ -1,33 +1,21 @@
-//! What an emitted file says: names, arguments and conditions as their rules have them (`emitted.rs` says what it does).
+//! What an emitted file says: arguments, conditions and tables as their rules have them (`emitted.rs` says what it does).
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
-use mdle_tests::pipeline::scripted;
-use mdlec::alphabet::{Alphabet, combine, read};
-use mdlec::diagnostic::SourceId;
-use mdlec::rust::{Header, emit, plan_type};
-
-fn emitted(plan: &str) -> String {
-    emitted_for(scripted(), plan)
-}
-
-fn emitted_for(alphabet: &Alphabet, plan: &str) -> String {
-    let (compiled, found) = mdlec::compile(SourceId(0), plan, alphabet, Some("Main"));
-    let compiled = compiled.first().unwrap_or_else(|| panic!("{plan}: {found:?}"));
-    emit(&compiled.lowered, Header { file: "plan.mdle", plan: "Main" }, alphabet)
-}
-
-/// The alphabet of a robot that has these quarks.
-fn alphabet(declarations: &str) -> Alphabet {
-    let text = format!("target t : crate t, period 1s; {declarations}");
-    let (alphabet, found) = combine(read(SourceId(0), &text).0.expect("an alphabet"), &[]);
-    assert_eq!(found, []);
-    alphabet
-}
+use mdle_tests::emission::{alphabet, emitted, emitted_as, emitted_for};
+use mdlec::rust::{Shape, bind};
 
 /// The same as if it were one line: without white space, and without a comma behind the last argument.
+fn one_line(rust: &str) -> String {
+    rust.split_whitespace().collect::<String>().replace(",)", ")")
+}
+
 fn dense(plan: &str) -> String {
-    emitted(plan).split_whitespace().collect::<String>().replace(",)", ")")
+    one_line(&emitted(plan))
+}
+
+fn dense_as(shape: Shape, plan: &str) -> String {
+    one_line(&emitted_as(shape, plan))
 }
 
 #[test]
@@ -55,99 +43,87 @@ fn arguments_are_what_their_texts_say() {
 }
 
 #[test]
-fn names_keep_their_words_and_are_always_names() {
-    assert_eq!(["leg_2", "a_leg", "_leg", "2"].map(plan_type), ["Leg2", "ALeg", "Leg", "P2"]);
-    let rust = emitted(
-        "{ Main (a) { leg2 (b) (Atom (c) idle) } { _Leg (b) (Atom (c) idle) } { Ändern (b) (Atom (c) idle) } }",
+fn comparisons_are_what_their_texts_say() {
+    let value = |number: &str| format!("runtime::Operand::<runtime::NoSignal>::Value({number})");
+    for (comparison, operator, with) in [
+        ("x < 2m", "Less", value("2.0")),
+        ("x <= 2m", "LessOrEqual", value("2.0")),
+        ("x > -50cm", "Greater", value("-0.5")),
+        ("x >= 2m", "GreaterOrEqual", value("2.0")),
+        ("x == 2m", "Equal(0.01)", value("2.0")),
+        ("x == r 3", "Equal(0.026)", "runtime::Operand::Signal(robot::R::new(runtime::SonarId::new(3)))".to_owned()),
+    ] {
+        let rust = dense(&format!("{{ Main (Atom ({comparison}) idle) }}"));
+        let new = format!("runtime::Comparison::new(robot::X::new(),runtime::Operator::{operator},{with});");
+        assert!(rust.contains(&new), "{new} in {rust}");
+        assert!(!rust.contains(":robot::X=") && !rust.contains(":robot::R="), "a signal is no constant: {rust}");
+    }
+    let clock = alphabet("signal age unit s tolerance 1; control halt;");
+    let rust = one_line(&emitted_for(&clock, "{ Leg (most: time) (Atom (age < most) halt) } { Main Leg(inf) }"));
+    assert!(rust.contains("Value(1797693134862315"), "the largest number: {rust}");
+    let rust = dense("{ Main (Atom (theta == 90deg) idle) }");
+    assert!(rust.contains("robot::Theta::new(),runtime::Operator::SameDirection("), "{rust}");
+}
+
+#[test]
+fn the_time_in_a_scope_is_an_interval_and_no_constant() {
+    for shape in [Shape::Code, Shape::Shared] {
+        let rust = dense_as(shape, "{ Main (Atom (t < 2s) idle) }");
+        assert!(rust.contains("(Nanos(0)..Nanos(2000000000)).contains(&cursor.since(1u16,t))"), "{rust}");
+        assert!(!rust.contains("runtime::Comparison"), "{rust}");
+    }
+    let rows = dense_as(Shape::Rows, "{ Main (Atom (t < 2s) idle) }");
+    assert!(rows.contains("Elapsed(Nanos(0),Nanos(2000000000))"), "{rows}");
+}
+
+#[test]
+fn what_never_fires_is_false_among_others() {
+    let rust = dense("{ Main (Atom (null OR a) idle) }");
+    assert!(rust.contains("iffalse|runtime::Interrupt::fired(&A,y)"), "{rust}");
+}
+
+#[test]
+fn a_plan_that_remembers_is_rows_with_a_memory_and_is_told_what_ends() {
+    for shape in [Shape::Code, Shape::Shared, Shape::Rows] {
+        let rust = dense_as(shape, "{ Main (a OR RISING b) (Atom (wait 1) idle) }");
+        // The operands of the plan's OR, then the one of RISING.
+        for part in ["Rising(0,2)", "InRows::remembering(", "fnleave(", "fnsettle("] {
+            assert!(rust.contains(part), "{part} in {rust}");
+        }
+        assert!(rust.contains("runtime::Memories<'static,[bool;2]>"), "a memory for each level of scopes: {rust}");
+    }
+    let rust = dense_as(Shape::Rows, "{ Main (a) (Atom (wait 1) idle) }");
+    assert!(rust.contains("InRows::new(&ROWS,"), "{rust}");
+    assert!(!rust.contains("fnleave(") && !rust.contains("Memories") && !rust.contains("MARKS"), "{rust}");
+}
+
+#[test]
+fn atoms_that_share_code_ask_the_plan_first_and_take_from_their_row_what_differs() {
+    let rust = dense_as(
+        Shape::Shared,
+        "{ Main (a OR wait 60) ExecPlan 2 { { Q (b) (Atom (echo 1) veer 10) } { Q (c) (Atom (echo 2) veer 20) } } (Atom (d) idle) }",
     );
-    for function in ["fn leg2(", "fn leg(", "fn uc4ndern("] {
-        assert!(rust.contains(function), "{function} in {rust}");
+    for part in [
+        "lett=begin.now;ifruntime::Interrupt::fired(&robot::A::new(),y)|(cursor.since(0u16,t)>=Nanos(60000000000)){\
+         returnNext::Ends(runtime::Cause::Fired(0u16).then(runtime::Follows::new(3,0,0)));}matchself.running",
+        // The second atom ends with the loop's body: what follows is not known, and no constant.
+        "runtime::Interrupt::fired(&robot::Echo::new(runtime::SonarId::new(2)),y)",
+        "staticPLACES:&[(u16,u32)]=&[(1,0),(2,0),(3,0)];",
+    ] {
+        assert!(rust.contains(part), "{part} in {rust}");
     }
 }
 
 #[test]
-fn declarations_of_one_name_are_numbered_from_two() {
-    let alphabet = alphabet(
-        "interrupt a; control go(to: length m); control go(to: module); control go(v: length m, w: length m);",
-    );
-    let rust = emitted_for(&alphabet, "{ Main (Atom (a) go 1) (Atom (a) go(x module)) (Atom (a) go 1 2) }");
-    for constant in ["GO_1: robot::Go =", "GO_X_MODULE: robot::Go2 =", "GO_1_2: robot::Go3 ="] {
-        assert!(rust.contains(constant), "{constant} in {rust}");
-    }
-}
-
-#[test]
-fn a_quark_may_be_called_as_any_constant_of_the_file_is() {
-    let constants = |rust: &str| {
-        let declared = rust.split(" const ").skip(1).filter_map(|constant| constant.split_once(": "));
-        let names = declared.map(|(name, _)| name.to_owned());
-        // `const fn` is none.
-        names.filter(|name| !name.contains('(')).collect::<Vec<_>>()
+fn a_bound_alphabet_matches_over_what_there_is() {
+    let fired = |declarations: &str| {
+        let rust = one_line(&bind(&alphabet(declarations)));
+        let (_, fired) = rust.split_once("fnfired(&self,y:&Output)->bool{").expect("how an interrupt is asked");
+        fired.split_once(']').map_or(fired, |(fired, _)| fired)[..40].to_owned()
     };
-    let own = constants(&emitted("{ Main (Atom (wait 1) idle) }"));
-    let own: Vec<_> = own.into_iter().filter(|name| name != "IDLE").map(|name| name.to_lowercase()).collect();
-    assert!(["fsm", "laws", "conditions", "names"].iter().all(|name| own.iter().any(|own| own == name)), "{own:?}");
-    let declarations: String = own.iter().map(|name| format!("interrupt {name}; ")).collect();
-    let alphabet = alphabet(&format!("{declarations} control stop;"));
-    let mut all = constants(&emitted_for(&alphabet, &format!("{{ Main (Atom ({}) stop) }}", own.join(" OR "))));
-    assert_eq!(all.len(), 2 * own.len() + 1);
-    all.sort();
-    all.dedup();
-    assert_eq!(all.len(), 2 * own.len() + 1, "{all:?}");
-}
-
-/// Every name that a file gives to a function of its own, an argument or a variable, as far as a scope could have it.
-fn names_of_its_own(rust: &str) -> Vec<&str> {
-    // Functions further in are methods, which hide nothing.
-    let functions = rust.lines().filter_map(|line| line.strip_prefix("    fn ")?.split('(').next());
-    let arguments = rust.split("fn ").skip(1).filter_map(|function| function.split_once('(')?.1.split(')').next());
-    let arguments =
-        arguments.flat_map(|arguments| arguments.split(',')).filter_map(|argument| argument.split_once(": "));
-    let laws = rust.split("Running::Atom").skip(1).filter_map(|arm| arm.split_once('(')?.1.split(')').next());
-    let names = functions.chain(arguments.map(|(name, _)| name.trim())).chain(laws);
-    let mut names: Vec<_> = names.filter(|name| name.chars().all(|letter| letter.is_ascii_lowercase())).collect();
-    names.sort();
-    names.dedup();
-    names
-}
-
-#[test]
-fn a_scope_may_be_called_as_anything_in_its_file_is() {
-    let rust = emitted("{ Main (Atom (a) seek) (Atom (b) idle) }");
-    let own = names_of_its_own(&rust);
-    for name in ["begin", "cursor", "direct", "law", "scope", "t", "text", "texts", "y"] {
-        assert!(own.contains(&name), "{name} is one of {own:?}");
-    }
-    for name in own.into_iter().chain(["gen", "fn"]) {
-        let rust = emitted(&format!("{{ Main (Atom (a) seek) {{ {name} (b) (Atom (c) idle) }} }}"));
-        assert!(!rust.contains(&format!("fn {name}(cursor")), "{name} in {rust}");
-    }
-}
-
-#[test]
-fn a_plan_may_be_called_as_any_type_that_its_file_uses() {
-    let rust = emitted("{ Main (Atom (a) seek)^2 }");
-    let lines = rust.lines().filter(|line| !line.trim_start().starts_with("//"));
-    let code = lines.collect::<Vec<_>>().join("\n");
-    // Variants are written with their enum everywhere else.
-    let (start, rest) = code.split_once("enum Running {").expect("the laws");
-    let code = format!("{start} Running {}", rest.split_once('}').expect("their end").1);
-    let is_part = |letter: char| letter.is_alphanumeric() || letter == '_';
-    // What is written large is a constant.
-    let is_type = |word: &str| {
-        word.starts_with(|letter: char| letter.is_ascii_uppercase())
-            && word.contains(|letter: char| letter.is_lowercase())
-    };
-    for name in code.split(|letter| !is_part(letter)).filter(|word| is_type(word) && *word != "Main") {
-        let places = code.match_indices(name).map(|(place, _)| (&code[..place], &code[place + name.len()..]));
-        let mut alone = places.filter(|(before, behind)| !before.ends_with(is_part) && !behind.starts_with(is_part));
-        // Where it is looked for is said before it, or it is a type of the trait's.
-        let is_found_elsewhere = alone.all(|(before, _)| before.ends_with("::") || before.ends_with("type "));
-        assert!(is_found_elsewhere || plan_type(name) != name, "{name}");
-    }
-    for name in ["Plan", "Self", "Option", "Some", "None"] {
-        assert_eq!(plan_type(name), format!("{name}Plan"), "what Rust or the runtime calls so keeps its name");
-    }
+    assert!(fired("control halt;").starts_with("match*self{}"));
+    assert!(fired("interrupt a; control halt;").starts_with("matchself{Self::A(interrupt)=>"));
+    assert!(fired("signal x unit m tolerance 1; control halt;").starts_with("matchself{Self::Comparison("));
 }
 
 #[test]

@@ -6,6 +6,7 @@ pub mod any_text;
 pub mod book;
 pub mod chance;
 pub mod elf;
+pub mod emission;
 pub mod executable;
 pub mod golden;
 pub mod grammar;

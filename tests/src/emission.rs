@@ -1,0 +1,46 @@
+//! What the compiler emits for a plan of the target `scripted`, or of a robot with quarks of one's own.
+
+use mdlec::alphabet::{Alphabet, combine, read};
+use mdlec::diagnostic::SourceId;
+use mdlec::fsm::Lowered;
+use mdlec::rust::{Header, Shape, emit, emit_as};
+
+use crate::pipeline::scripted;
+
+const HEADER: Header<'_> = Header { file: "plan.mdle", plan: "Main" };
+
+/// The file of plan `Main` for the target `scripted`.
+#[must_use]
+pub fn emitted(plan: &str) -> String {
+    emitted_for(scripted(), plan)
+}
+
+/// The same in this shape.
+#[must_use]
+pub fn emitted_as(shape: Shape, plan: &str) -> String {
+    emit_as(shape, &lowered(scripted(), plan), HEADER, scripted())
+}
+
+/// The same for the robot of another alphabet, in the shape that suits the plan.
+#[must_use]
+pub fn emitted_for(alphabet: &Alphabet, plan: &str) -> String {
+    emit(&lowered(alphabet, plan), HEADER, alphabet)
+}
+
+/// The alphabet of a robot that has these quarks.
+///
+/// # Panics
+/// If they are not declared as they should be.
+#[must_use]
+pub fn alphabet(declarations: &str) -> Alphabet {
+    let text = format!("target t : crate t, period 1s; {declarations}");
+    let (alphabet, found) = combine(read(SourceId(0), &text).0.expect("an alphabet"), &[]);
+    assert_eq!(found, []);
+    alphabet
+}
+
+fn lowered(alphabet: &Alphabet, plan: &str) -> Lowered {
+    let (mut compiled, found) = mdlec::compile(SourceId(0), plan, alphabet, Some("Main"));
+    assert!(!compiled.is_empty(), "{plan}: {found:?}");
+    compiled.swap_remove(0).lowered
+}
