@@ -4,28 +4,29 @@
 #![allow(clippy::print_stdout, reason = "what it prints is what it is for")]
 #![allow(clippy::wildcard_enum_match_arm, reason = "Rust's syntax has more nodes than are changed here")]
 
+mod at_once;
 mod checkout;
 mod choice;
 mod equivalent;
 mod finder;
+mod judge;
 mod mutant;
 mod operators;
 mod pieces;
+mod refusals;
 mod report;
+mod schemata;
 mod template;
 mod trial;
 
+use std::io::{BufWriter, ErrorKind, Write};
 use std::process::ExitCode;
-use std::time::Instant;
 
 use clap::Parser;
 
-use checkout::Checkout;
-use choice::Source;
 use equivalent::Equivalents;
+use judge::Judge;
 use mutant::Mutant;
-use report::Report;
-use trial::{Outcome, Trials};
 
 /// Puts small faults into the code, one at a time, and says which test catches each of them.
 #[derive(Debug, Parser)]
@@ -55,8 +56,7 @@ fn main() -> ExitCode {
     let mut chosen = choice::shuffled(&mutants, seed);
     chosen.retain(|mutant| mutant.to_string().contains(&options.only));
     if options.list {
-        chosen.iter().for_each(|mutant| println!("{mutant}"));
-        return ExitCode::SUCCESS;
+        return list(&chosen);
     }
     let equivalents = Equivalents::read();
     let stale: Vec<_> = equivalents.stale(&mutants).collect();
@@ -68,29 +68,18 @@ fn main() -> ExitCode {
     }
     println!("{} mutants, seed {seed}", mutants.len());
     chosen.retain(|mutant| options.all || equivalents.find(mutant).is_none());
-    let count = if options.all { usize::MAX } else { options.count };
-    let report = try_all(&chosen, count, &sources, &equivalents);
+    let judge = Judge { sources: &sources, equivalents: &equivalents };
+    let report = if options.all { judge.all(&chosen) } else { judge.some(&chosen, options.count) };
     println!("{report}");
     if report.is_good() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// Tries mutants until this many have compiled.
-fn try_all(chosen: &[&Mutant], count: usize, sources: &[Source], equivalents: &Equivalents) -> Report {
-    let trials = Trials::prepare(Checkout::copy());
-    let mut report = Report::default();
-    for mutant in chosen {
-        if report.compiled() == count {
-            break;
-        }
-        let source = sources.iter().find(|source| source.file == mutant.file).expect("the mutant's file");
-        let start = Instant::now();
-        let outcome = trials.run(mutant, &source.text);
-        let equivalent = equivalents.find(mutant);
-        report.add(mutant, outcome, equivalent.is_some());
-        if outcome != Outcome::DoesNotCompile {
-            let reason = equivalent.map_or(String::new(), |entry| format!(" (changes nothing: {})", entry.reason));
-            println!("{mutant}: {}{reason} [{:.0?}]", report::said(outcome), start.elapsed());
-        }
+/// Prints mutants, until there is nobody who reads on.
+fn list(mutants: &[&Mutant]) -> ExitCode {
+    let mut out = BufWriter::new(std::io::stdout().lock());
+    let printed = mutants.iter().try_for_each(|mutant| writeln!(out, "{mutant}")).and_then(|()| out.flush());
+    match printed {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => panic!("the list: {error}"),
+        _ => ExitCode::SUCCESS,
     }
-    report
 }

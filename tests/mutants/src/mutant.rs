@@ -18,8 +18,9 @@ pub(crate) struct Mutant {
     /// The change in words, which no other of this function has.
     pub(crate) change: String,
     line: usize,
-    place: Range<usize>,
-    new: String,
+    /// What stands in this range of bytes becomes this.
+    pub(crate) place: Range<usize>,
+    pub(crate) new: String,
 }
 
 impl Mutant {

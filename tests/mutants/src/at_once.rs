@@ -1,0 +1,196 @@
+//! All mutants before the tests: they are built together, and each trial only runs what is there already.
+
+use std::collections::BTreeMap;
+use std::os::unix::process::ExitStatusExt;
+use std::process::{Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::checkout::Checkout;
+use crate::choice::Source;
+use crate::mutant::Mutant;
+use crate::refusals::{Executable, Refusal, executables, refusals};
+use crate::schemata::{Body, Schema, VARIABLE};
+use crate::trial::{Outcome, RUNTIME, TESTS, cargo, environment};
+
+/// A test that works longer than this and three times what it takes without a fault hangs. It is the processor's time, so
+/// that others may work there as well.
+const PATIENCE: Duration = Duration::from_secs(5);
+/// A test that waits for longer than this, whatever for, hangs.
+const ENDLESS: Duration = Duration::from_secs(1800);
+/// The most memory of a process, in KiB.
+const MEMORY: &str = "6291456";
+const KILLED: i32 = 9;
+const OUT_OF_TIME: i32 = 24;
+
+/// The mutants in their builds.
+#[derive(Debug)]
+pub(crate) struct AtOnce<'m> {
+    checkout: Checkout,
+    mutants: Vec<(Standing, &'m Mutant)>,
+    tests: Vec<Test>,
+}
+
+/// What became of a mutant when all were built.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Standing {
+    Built,
+    DoesNotCompile,
+    /// It cannot be chosen while the program runs.
+    Apart,
+}
+
+/// A test executable: its place in the list of tests, and how long it may work.
+#[derive(Debug)]
+struct Test {
+    number: usize,
+    executable: Executable,
+    /// The names of its tests that are run, or parts of them; all without one.
+    filters: &'static [&'static str],
+    limit: Duration,
+}
+
+impl<'m> AtOnce<'m> {
+    /// Builds these mutants of these files, and runs every test without a fault.
+    pub(crate) fn prepare(checkout: Checkout, sources: &[Source], mutants: &[&'m Mutant]) -> Self {
+        let mutants = mutants.iter().map(|mutant| (Standing::Built, *mutant)).collect();
+        let mut this = Self { checkout, mutants, tests: Vec::new() };
+        for source in sources {
+            this.refuse_what_is_no_syntax(source);
+        }
+        while !this.is_built(sources) {}
+        for (number, (packages, targets)) in TESTS.iter().enumerate() {
+            let mut parts = targets.split(|argument| *argument == "--");
+            let (targets, filters) = (parts.next().unwrap_or_default(), parts.next().unwrap_or_default());
+            let (is_built, printed) = this.cargo(&[&["test", "--no-run", "--message-format=json"], packages, targets]);
+            assert!(is_built, "{:?}", refusals(&printed));
+            for executable in executables(&printed) {
+                let test = Test { number, executable, filters, limit: ENDLESS };
+                let start = Instant::now();
+                let status = this.executed(&test, 0);
+                assert!(status.success(), "without a fault, {}: {status}", test.executable.path.display());
+                this.tests.push(Test { limit: PATIENCE + 3 * start.elapsed(), ..test });
+            }
+        }
+        this
+    }
+
+    /// Each mutant, in the order in which they were given, and what became of it.
+    pub(crate) fn mutants(&self) -> impl Iterator<Item = (usize, Standing, &'m Mutant)> {
+        self.mutants.iter().enumerate().map(|(place, (standing, mutant))| (place, *standing, *mutant))
+    }
+
+    /// Tries the mutant in this place, which is built.
+    pub(crate) fn run(&self, place: usize) -> Outcome {
+        let (_, mutant) = self.mutants[place];
+        let is_runtime = mutant.file.starts_with("runtime/");
+        for test in self.tests.iter().filter(|test| is_runtime || TESTS[test.number].0 != RUNTIME) {
+            let status = self.executed(test, number(place));
+            match (status.code(), status.signal()) {
+                (Some(0), _) => {}
+                // `timeout` tells by its code, or by dying of the same signal, that it was this.
+                (Some(137), _) | (_, Some(KILLED | OUT_OF_TIME)) => return Outcome::Hangs(test.number),
+                _ => return Outcome::Caught(test.number),
+            }
+        }
+        Outcome::Survived
+    }
+
+    /// Gives the copy back, its files as they were.
+    pub(crate) fn restored(self, sources: &[Source]) -> Checkout {
+        sources.iter().for_each(|source| self.checkout.write(&source.file, &source.text));
+        self.checkout
+    }
+
+    /// One that is no syntax would take the whole file with it.
+    fn refuse_what_is_no_syntax(&mut self, source: &Source) {
+        for (standing, mutant) in self.mutants.iter_mut().filter(|(_, mutant)| mutant.file == source.file) {
+            if syn::parse_file(&mutant.apply(&source.text)).is_err() {
+                *standing = Standing::DoesNotCompile;
+            }
+        }
+    }
+
+    /// Whether rustc takes the files with all mutants that are left; those that it refuses are left out afterwards.
+    fn is_built(&mut self, sources: &[Source]) -> bool {
+        let schemata: BTreeMap<_, _> =
+            sources.iter().map(|source| (source.file.clone(), self.schema(source))).collect();
+        let left = self.mutants.iter().filter(|(standing, _)| *standing == Standing::Built).count();
+        println!("building {left} mutants");
+        let packages = ["--package", "mdle-runtime", "--package", "mdlec"];
+        let (is_built, printed) = self.cargo(&[&["check", "--message-format=json"], &packages]);
+        if is_built {
+            return true;
+        }
+        for refusal in refusals(&printed) {
+            self.refuse(&refusal, &schemata);
+        }
+        let now = self.mutants.iter().filter(|(standing, _)| *standing == Standing::Built).count();
+        assert!(now < left, "rustc refuses more than mutants:\n{printed}");
+        false
+    }
+
+    /// Writes a file with its mutants; those that cannot be chosen stand apart from now on.
+    fn schema(&mut self, source: &Source) -> Schema {
+        let built =
+            self.mutants().filter(|(_, standing, mutant)| *standing == Standing::Built && mutant.file == source.file);
+        let built: Vec<_> = built.map(|(place, _, mutant)| (number(place), mutant)).collect();
+        let schema = Schema::new(&source.text, &built).unwrap_or_else(|error| panic!("{}: {error}", source.file));
+        for (number, _) in built {
+            if !schema.holds(number) {
+                self.mutants[place(number)].0 = Standing::Apart;
+            }
+        }
+        self.checkout.write(&source.file, &schema.text);
+        schema
+    }
+
+    fn refuse(&mut self, refusal: &Refusal, schemata: &BTreeMap<String, Schema>) {
+        match refusal.places.iter().find_map(|(file, byte)| schemata.get(file)?.at(*byte)) {
+            Some(Body::Changed(number)) => self.mutants[place(*number)].0 = Standing::DoesNotCompile,
+            Some(Body::Original(numbers)) => {
+                numbers.iter().for_each(|number| self.mutants[place(*number)].0 = Standing::Apart);
+            }
+            None => println!("{}", refusal.text),
+        }
+    }
+
+    /// Runs cargo in the copy: whether all went well, and what it printed.
+    fn cargo(&self, arguments: &[&[&str]]) -> (bool, String) {
+        let mut command = Command::new(cargo());
+        environment(&mut command, &self.checkout);
+        command.args(arguments.concat()).env("RUSTFLAGS", "--cap-lints=allow").stderr(Stdio::null());
+        let output = command.output().expect("cargo runs");
+        (output.status.success(), String::from_utf8(output.stdout).expect("cargo prints UTF-8"))
+    }
+
+    /// Runs a test with this mutant.
+    fn executed(&self, test: &Test, number: u32) -> ExitStatus {
+        let mut command = Command::new("sh");
+        environment(&mut command, &self.checkout);
+        command
+            .args(["-c", "ulimit -v $0 && ulimit -t $1 && shift && exec timeout --signal=KILL \"$@\"", MEMORY])
+            .args([test.limit, ENDLESS].map(|limit| limit.as_secs().to_string()))
+            .arg(&test.executable.path)
+            .args(test.filters)
+            .current_dir(&test.executable.folder)
+            .env("CARGO", cargo())
+            .env("CARGO_MANIFEST_DIR", &test.executable.folder)
+            .env("INSTA_WORKSPACE_ROOT", self.checkout.sources())
+            // What tests build is built as this was.
+            .env("RUSTFLAGS", "--cap-lints=allow")
+            // A body with its mutants is long, and so are its frames.
+            .env("RUST_MIN_STACK", (64 << 20).to_string())
+            .env(VARIABLE, number.to_string());
+        command.stdout(Stdio::null()).stderr(Stdio::null()).status().expect("a shell")
+    }
+}
+
+/// The number of the mutant in this place.
+fn number(place: usize) -> u32 {
+    u32::try_from(place).ok().and_then(|place| place.checked_add(1)).expect("mutants can be counted")
+}
+
+/// The place of the mutant with this number.
+fn place(number: u32) -> usize {
+    number as usize - 1
+}

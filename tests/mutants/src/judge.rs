@@ -1,0 +1,68 @@
+//! Tries mutants, one by one or all together, says what comes of each, and counts.
+
+use std::time::Instant;
+
+use crate::at_once::{AtOnce, Standing};
+use crate::checkout::Checkout;
+use crate::choice::Source;
+use crate::equivalent::Equivalents;
+use crate::mutant::Mutant;
+use crate::report::{self, Report};
+use crate::trial::{Outcome, Trials};
+
+/// What is known before mutants are tried.
+pub(crate) struct Judge<'a> {
+    pub(crate) sources: &'a [Source],
+    pub(crate) equivalents: &'a Equivalents,
+}
+
+impl Judge<'_> {
+    /// Tries mutants one by one until this many have compiled.
+    pub(crate) fn some(&self, chosen: &[&Mutant], count: usize) -> Report {
+        let mut report = Report::default();
+        self.apart(&Trials::prepare(Checkout::copy()), chosen, count, &mut report);
+        report
+    }
+
+    /// Tries all these mutants: together in one build, and one by one what cannot be.
+    pub(crate) fn all(&self, chosen: &[&Mutant]) -> Report {
+        let mut report = Report::default();
+        let at_once = AtOnce::prepare(Checkout::copy(), self.sources, chosen);
+        let mut apart = Vec::new();
+        for (place, standing, mutant) in at_once.mutants() {
+            let start = Instant::now();
+            match standing {
+                Standing::Built => self.tried(mutant, at_once.run(place), start, &mut report),
+                Standing::DoesNotCompile => self.tried(mutant, Outcome::DoesNotCompile, start, &mut report),
+                Standing::Apart => apart.push(mutant),
+            }
+        }
+        let checkout = at_once.restored(self.sources);
+        if !apart.is_empty() {
+            self.apart(&Trials::prepare(checkout), &apart, usize::MAX, &mut report);
+        }
+        report
+    }
+
+    fn apart(&self, trials: &Trials, chosen: &[&Mutant], count: usize, report: &mut Report) {
+        let before = report.compiled();
+        for mutant in chosen {
+            if report.compiled() - before == count {
+                break;
+            }
+            let source = self.sources.iter().find(|source| source.file == mutant.file).expect("the mutant's file");
+            let start = Instant::now();
+            self.tried(mutant, trials.run(mutant, &source.text), start, report);
+        }
+    }
+
+    /// Counts a mutant, and says what came of it.
+    fn tried(&self, mutant: &Mutant, outcome: Outcome, start: Instant, report: &mut Report) {
+        let equivalent = self.equivalents.find(mutant);
+        report.add(mutant, outcome, equivalent.is_some());
+        if outcome != Outcome::DoesNotCompile {
+            let reason = equivalent.map_or(String::new(), |entry| format!(" (changes nothing: {})", entry.reason));
+            println!("{mutant}: {}{reason} [{:.0?}]", report::said(outcome), start.elapsed());
+        }
+    }
+}
