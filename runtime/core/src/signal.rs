@@ -118,6 +118,7 @@ mod tests {
         };
         assert_eq!(holding(1.0, 1.5), [true, true, true, false, false]);
         assert_eq!(holding(2.0, 1.0), [false, false, false, true, true]);
+        assert_eq!(holding(1.0, 2.0), [false, true, true, false, false]);
         assert_eq!(holding(1.0, 1.0), [true, false, true, false, true]);
         assert_eq!(holding(f64::INFINITY, f64::INFINITY), [false, false, true, false, true]);
         assert_eq!(holding(f64::NAN, 1.0), [false; 5]);
@@ -128,6 +129,7 @@ mod tests {
         let degrees = |angle: f64| Radians::from_degrees(angle).0;
         let same = Operator::SameDirection(degrees(1.0));
         assert!(same.holds(degrees(179.5), degrees(-179.8)) && same.holds(degrees(-360.0), 0.0));
+        assert!(same.holds(degrees(90.0), degrees(90.5)) && Operator::SameDirection(0.5).holds(1.0, 0.5));
         assert!(!same.holds(degrees(178.5), degrees(-179.8)) && !same.holds(degrees(180.0), 0.0));
     }
 

@@ -111,6 +111,14 @@ impl<'ast> Visit<'ast> for Finder<'_> {
         self.inside(&function.sig.ident, |finder| visit::visit_impl_item_fn(finder, function));
     }
 
+    fn visit_trait_item_fn(&mut self, function: &'ast syn::TraitItemFn) {
+        self.inside(&function.sig.ident, |finder| visit::visit_trait_item_fn(finder, function));
+    }
+
+    fn visit_impl_item_const(&mut self, constant: &'ast syn::ImplItemConst) {
+        self.inside(&constant.ident, |finder| visit::visit_impl_item_const(finder, constant));
+    }
+
     fn visit_item_const(&mut self, constant: &'ast syn::ItemConst) {
         self.inside(&constant.ident, |finder| visit::visit_item_const(finder, constant));
     }

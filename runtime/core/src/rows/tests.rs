@@ -129,6 +129,7 @@ fn rising_fires_if_its_operand_does_and_once_did_not() {
         [fired(&high, true), fired(&high, false), fired(&low, true), fired(&low, false)],
         [true, false, false, false]
     );
+    assert!(!Condition::Rising(1, 0).fired(&at(&operands, &high, &()), 0), "where nothing is remembered");
 }
 
 #[test]

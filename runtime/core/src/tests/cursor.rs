@@ -141,6 +141,27 @@ fn a_loop_that_is_entered_again_has_all_its_passes() {
 }
 
 #[test]
+fn what_has_no_element_left_ends_with_its_last_one() {
+    // `{ P { R { Q (a) (b) } } (c) }`.
+    let brackets = [
+        Bracket::scope(0, 0, 2, 0),
+        Bracket::scope(1, 0, 1, 0),
+        Bracket::scope(2, 0, 1, 1),
+        Bracket::scope(3, 0, 0, 2),
+        Bracket::scope(3, 1, 1, 2),
+        Bracket::scope(1, 2, 2, 0),
+    ];
+    let fsm = Fsm { brackets: &brackets, atoms: &[Atom::new(3, 1), Atom::new(4, 2), Atom::new(5, 3)], termination: 4 };
+    let mut cursor = start(fsm);
+    let ended = |cursor: &Walk, level| cursor.ending(fsm, level).map(|(number, _)| number).collect::<Vec<_>>();
+    assert_eq!([3, 2, 0].map(|level| ended(&cursor, level)), [std::vec![3], std::vec![2, 1], std::vec![0]]);
+    cursor.end(fsm, 3, Nanos(100));
+    assert_eq!(ended(&cursor, 3), [4, 2, 1]);
+    cursor.end(fsm, 3, Nanos(100));
+    assert_eq!(ended(&cursor, 1), [5, 0]);
+}
+
+#[test]
 fn a_loop_ends_with_its_body_in_its_last_pass() {
     let brackets = |times| {
         [
