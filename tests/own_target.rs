@@ -17,7 +17,7 @@ const SENTENCE: &str =
 fn with_rover(test: &str) -> PathBuf {
     let folder = folder(test);
     fs::write(folder.join("plan.mdle"), "{ Rest (Atom (wait 1ms) stop) }\n").unwrap();
-    for file in files(&[""]) {
+    for file in files(&[".rs", ".toml", ".mdle"]) {
         let Some(name) = file.path.strip_prefix("targets/sim/") else { continue };
         let path = folder.join("rover").join(name);
         fs::create_dir_all(path.parent().unwrap()).unwrap();
