@@ -56,6 +56,11 @@ where
     };
     let options = arguments::options::<T>(&matches);
     let limits = Limits { timeout: options.timeout, turns: options.turns };
+    match shielded(|| T::answer(&matches)).unwrap_or_else(bug_before) {
+        Err(refusal) => return refusal.tell(err),
+        Ok(Some(answer)) => return answered(&answer, &mut *out(None)),
+        Ok(None) => {}
+    }
     match batch::<T>(&matches, &options) {
         Err(refusal) => return refusal.tell(err),
         Ok(Some(batch)) => {
@@ -133,9 +138,12 @@ fn unparsed<'o>(error: &clap::Error, out: impl FnOnce() -> Box<dyn Write + 'o>, 
         say(err, format_args!("{}", error.render().to_string().trim_end()));
         return ending::USAGE;
     }
-    // Nobody has to read help to the end.
-    let mut out = out();
-    let _ = write!(out, "{}", error.render()).and_then(|()| out.flush());
+    answered(&error.render().to_string(), &mut *out())
+}
+
+/// Prints what was asked for instead of a run. Nobody has to read it to the end.
+fn answered(answer: &str, out: &mut dyn Write) -> u8 {
+    let _ = write!(out, "{answer}").and_then(|()| out.flush());
     ending::OVER
 }
 

@@ -31,6 +31,14 @@ pub trait Target {
     /// Why there is no robot: a bad option (exit status 2) or a fault (exit status 3).
     fn connect(matches: &ArgMatches, period: Duration) -> Result<Self::Robot, Refusal>;
 
+    /// What is printed instead of a run, if these options ask for something that needs none.
+    ///
+    /// # Errors
+    /// Why there is no answer: a bad option (exit status 2).
+    fn answer(_matches: &ArgMatches) -> Result<Option<String>, Refusal> {
+        Ok(None)
+    }
+
     /// Whether the robot shows its run on standard output itself, as with a live view: then the report waits until the
     /// robot is stopped, and the robot leaves the screen when it is.
     fn screen(_matches: &ArgMatches) -> bool {
