@@ -14,7 +14,13 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("atoms", &["mdle-runtime"]),
     ("mdlec", &["mdle-runtime"]),
     ("targets/sim", &["mdle-runtime", "mdle-host", "mdle-atoms"]),
-    ("tests", &["mdle-runtime", "mdle-host", "mdle-atoms", "mdle-sim", "mdle-scripted", "mdlec"]),
+    ("targets/scout", &["mdle-runtime", "mdle-host", "mdle-atoms"]),
+    // The driver is there for its tests alone: they share no word of the language.
+    ("targets/scout/emulator", &["mdle-runtime", "mdle-sim", "mdle-scout"]),
+    (
+        "tests",
+        &["mdle-runtime", "mdle-host", "mdle-atoms", "mdle-sim", "mdle-scout-emulator", "mdle-scripted", "mdlec"],
+    ),
     ("tests/scripted", &["mdle-runtime"]),
     ("tests/benchmarks", &["mdle-runtime", "mdle-sim", "mdle-tests", "mdlec"]),
     ("tests/benchmarks/turn", &["mdle-runtime", "mdlec"]),

@@ -1,0 +1,101 @@
+//! The pseudo-terminal on which the robot is found.
+
+use std::os::fd::OwnedFd;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+use std::{fs, io};
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::fs::OFlags;
+use rustix::io::Errno;
+use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
+
+/// Both ends of the line, and where the other one is.
+#[derive(Debug)]
+pub struct Port {
+    ours: OwnedFd,
+    /// Held open, so that the line outlives those who use it.
+    _theirs: fs::File,
+    path: PathBuf,
+    link: Option<PathBuf>,
+}
+
+impl Port {
+    /// A new line; `link` is where a symbolic link to it is put, in place of one that is there.
+    ///
+    /// # Errors
+    /// The system has no more pseudo-terminals, or the link cannot be made.
+    pub fn open(link: Option<&Path>) -> io::Result<Self> {
+        let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
+        grantpt(&ours)?;
+        unlockpt(&ours)?;
+        let name = ptsname(&ours, Vec::new())?.into_string().map_err(io::Error::other)?;
+        let path = PathBuf::from(name);
+        let theirs = fs::File::options().read(true).write(true).open(&path)?;
+        // A line and no terminal: no echo, and no byte means anything.
+        let mut settings = tcgetattr(&theirs)?;
+        settings.make_raw();
+        tcsetattr(&theirs, OptionalActions::Now, &settings)?;
+        let flags = rustix::fs::fcntl_getfl(&ours)?;
+        rustix::fs::fcntl_setfl(&ours, flags | OFlags::NONBLOCK)?;
+        if let Some(link) = link {
+            if fs::symlink_metadata(link).is_ok_and(|known| known.file_type().is_symlink()) {
+                fs::remove_file(link)?;
+            }
+            std::os::unix::fs::symlink(&path, link)?;
+        }
+        Ok(Self { ours, _theirs: theirs, path, link: link.map(Path::to_owned) })
+    }
+
+    /// The device that a driver opens.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Waits for bytes for at most so long. They go to `take`; whether there were any.
+    ///
+    /// # Errors
+    /// The line failed.
+    pub fn read(&self, limit: Duration, take: &mut dyn FnMut(&[u8])) -> io::Result<bool> {
+        let timeout = Timespec { tv_sec: limit.as_secs() as i64, tv_nsec: i64::from(limit.subsec_nanos()) };
+        match poll(&mut [PollFd::new(&self.ours, PollFlags::IN)], Some(&timeout)) {
+            Ok(0) | Err(Errno::INTR) => return Ok(false),
+            Ok(_) => {}
+            Err(error) => return Err(error.into()),
+        }
+        let mut chunk = [0; 512];
+        match rustix::io::read(&self.ours, &mut chunk) {
+            Ok(count) => take(chunk.get(..count).unwrap_or_default()),
+            Err(Errno::AGAIN | Errno::INTR) => return Ok(false),
+            Err(error) => return Err(error.into()),
+        }
+        Ok(true)
+    }
+
+    /// Sends bytes. What nobody reads is lost once the line is full, as on a wire.
+    ///
+    /// # Errors
+    /// The line failed.
+    pub fn write(&self, mut bytes: &[u8]) -> io::Result<()> {
+        while !bytes.is_empty() {
+            match rustix::io::write(&self.ours, bytes) {
+                Ok(count) => bytes = bytes.get(count..).unwrap_or_default(),
+                Err(Errno::AGAIN) => return Ok(()),
+                Err(Errno::INTR) => {}
+                Err(error) => return Err(error.into()),
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Port {
+    fn drop(&mut self) {
+        if let Some(link) = &self.link {
+            // It is gone if somebody else has taken it away.
+            let _ = fs::remove_file(link);
+        }
+    }
+}

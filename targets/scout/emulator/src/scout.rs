@@ -1,0 +1,155 @@
+//! A Super Scout in a simulated world: what each request does to it, and the state it answers with.
+
+use std::time::Duration;
+
+use mdle_runtime::capability::{Odometry, SonarRing};
+use mdle_runtime::{MetersPerSecond, Pose, RadiansPerSecond, Robot as _, SonarId, Twist};
+use mdle_sim::{Output, Simulated};
+
+use crate::wire::{Request, answer, number, two_bytes};
+
+/// Metres in an inch.
+const INCH: f64 = 0.0254;
+/// Inches that a wheel makes for each degree of a turn on the spot.
+const INCHES_A_DEGREE: f64 = 0.118_597;
+/// The answer to what a Scout does not know.
+const REFUSED: u8 = 8;
+
+/// The robot.
+#[allow(missing_debug_implementations, reason = "its body has none")]
+pub struct Scout {
+    body: Simulated,
+    sensed: Output,
+    /// What the wheels have been told, in tenths of an inch a second; `None` when the motors are limp.
+    wheels: Option<(i32, i32)>,
+    /// Where its numbers are zero.
+    zero: Pose,
+    /// The sonars that ping, bit by bit.
+    active: u16,
+    /// What each sonar said last.
+    heard: [u8; 16],
+    /// After how long without a request it stops; `None` when it never does.
+    watchdog: Option<Duration>,
+    silence: Duration,
+    /// How long it has been on.
+    age: Duration,
+    /// Whether its emergency stop is pressed.
+    pub emergency: bool,
+}
+
+impl Scout {
+    /// A robot that has just been switched on.
+    ///
+    /// # Errors
+    /// The world's sentence about an input that it cannot take, which none here is.
+    pub fn new(mut body: Simulated) -> Result<Self, String> {
+        let sensed = body.exchange(&Twist::default()).map_err(|error| error.to_string())?;
+        let zero = sensed.pose();
+        let mut scout = Self {
+            body,
+            sensed,
+            wheels: None,
+            zero,
+            active: u16::MAX,
+            heard: [255; 16],
+            watchdog: None,
+            silence: Duration::ZERO,
+            age: Duration::ZERO,
+            emergency: false,
+        };
+        scout.listen();
+        Ok(scout)
+    }
+
+    /// Where the robot really is.
+    #[must_use]
+    pub fn pose(&self) -> Pose {
+        self.body.pose()
+    }
+
+    /// Lets one period of the world pass.
+    ///
+    /// # Errors
+    /// As for [`Scout::new`].
+    pub fn pass(&mut self, period: Duration) -> Result<(), String> {
+        self.age += period;
+        self.silence += period;
+        if self.watchdog.is_some_and(|limit| self.silence >= limit) {
+            self.wheels = Some((0, 0));
+        }
+        let (right, left) = self.wheels.filter(|_| !self.emergency).unwrap_or((0, 0));
+        // The body counts in tenths of an inch as well, and cuts off: a hair more leaves it these very numbers.
+        let inches = |wheel: i32| (f64::from(wheel) + 0.01 * f64::from(wheel.signum())) / 10.0;
+        let (right, left) = (inches(right), inches(left));
+        let degrees = (right - left) / 2.0 / INCHES_A_DEGREE;
+        let input =
+            Twist { v: MetersPerSecond((right + left) / 2.0 * INCH), omega: RadiansPerSecond(degrees.to_radians()) };
+        self.sensed = self.body.exchange(&input).map_err(|error| error.to_string())?;
+        self.listen();
+        Ok(())
+    }
+
+    /// The sonars that ping say what they heard last.
+    fn listen(&mut self) {
+        for (sonar, heard) in (0..).zip(&mut self.heard) {
+            let newest = self.sensed.pings(SonarId::new(sonar)).newest_first().next();
+            if self.active & (1 << sonar) != 0
+                && let Some(ping) = newest
+            {
+                *heard = ping.range.map_or(255, |range| (range.0 / INCH + 0.5).clamp(0.0, 255.0) as u8);
+            }
+        }
+    }
+
+    /// Does what it is told, and answers.
+    pub fn obey(&mut self, request: &Request) -> Vec<u8> {
+        self.silence = Duration::ZERO;
+        match (request.command, &*request.data) {
+            (1 | 2 | 7, _) => {}
+            (5, [r0, r1, l0, l1, ..]) => self.wheels = Some((number(*r0, *r1), number(*l0, *l1))),
+            (9, _) => self.wheels = Some((0, 0)),
+            (10, _) => self.wheels = None,
+            (12, [0, 0, 0, 0]) => self.zero = Pose { theta: self.zero.theta, ..self.sensed.pose() },
+            (13, _) => self.zero = self.sensed.pose(),
+            (15, [_, order @ ..]) => {
+                let order = order.iter().take_while(|sonar| **sonar < 16);
+                self.active = order.fold(0, |active, sonar| active | 1 << sonar);
+            }
+            (18, [seconds]) => {
+                self.watchdog = (*seconds > 0).then(|| Duration::from_secs(u64::from(*seconds)));
+            }
+            _ => return answer(REFUSED, &[]),
+        }
+        answer(request.command, &self.state())
+    }
+
+    /// The state, as all answers have it.
+    fn state(&self) -> Vec<u8> {
+        let (pose, velocity) = (self.sensed.pose(), self.sensed.velocity());
+        let (x, y) = (pose.x.0 - self.zero.x.0, pose.y.0 - self.zero.y.0);
+        let (sin, cos) = libm::sincos(self.zero.theta.0);
+        let tenths = |meters: f64| (meters / INCH * 10.0).round() as i64;
+        let heading = (pose.theta.0 - self.zero.theta.0).to_degrees().rem_euclid(360.0);
+        let spin = velocity.omega.0.to_degrees() * INCHES_A_DEGREE * INCH;
+        let charge = 0b1000;
+        let moving = |wheel: f64, bit: u8| if tenths(wheel) == 0 { 0 } else { bit };
+        let (right, left) = (velocity.v.0 + spin, velocity.v.0 - spin);
+        let status = moving(left, 1) | moving(right, 2) | charge | if self.emergency { 0b0100_0000 } else { 0 };
+        let switches = self.sensed.switches();
+        [
+            &self.heard[..],
+            &[switches as u8, (switches >> 8) as u8, (switches >> 16) as u8],
+            &two_bytes(tenths(x * cos + y * sin)),
+            &two_bytes(tenths(y * cos - x * sin)),
+            &two_bytes((heading * 10.0).round() as i64 % 3600),
+            &[0, 0],
+            &two_bytes(tenths(right)),
+            &two_bytes(tenths(left)),
+            &[0, 0, 0, 0, status],
+            &(self.age.as_millis() as u32).to_le_bytes(),
+            // 11.5 V and 11.9 V.
+            &[239, 222],
+        ]
+        .concat()
+    }
+}

@@ -1,0 +1,79 @@
+//! The Scout's language as the robot speaks it: requests out of bytes, answers into bytes.
+//!
+//! It shares nothing with the driver's: what one of them gets wrong about the language, the other one finds.
+
+/// A request: which command, with which arguments.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Request {
+    /// The command's type.
+    pub command: u8,
+    /// What comes with it.
+    pub data: Vec<u8>,
+}
+
+/// Bytes that have come in, and the requests in them.
+#[derive(Debug, Default)]
+pub struct Incoming(Vec<u8>);
+
+impl Incoming {
+    /// Takes in more bytes.
+    pub fn push(&mut self, bytes: &[u8]) {
+        self.0.extend_from_slice(bytes);
+    }
+
+    /// The next request that is whole. What cannot be a request is skipped, a byte at a time, as a robot does that waits
+    /// for the beginning of one.
+    pub fn next_request(&mut self) -> Option<Request> {
+        loop {
+            let begin = self.0.iter().position(|byte| *byte == 1)?;
+            self.0.drain(..begin);
+            let length = match self.0.as_slice() {
+                [1, low, 0, ..] if *low >= 2 => usize::from(*low),
+                [_, _, _, ..] => {
+                    self.0.remove(0);
+                    continue;
+                }
+                _ => return None,
+            };
+            if self.0.len() < length + 4 {
+                return None;
+            }
+            let total = self.0.iter().take(length + 2).map(|byte| u32::from(*byte)).sum::<u32>() % 256;
+            let ends = (self.0.get(length + 2).copied().map(u32::from), self.0.get(length + 3).copied());
+            if ends != (Some(total), Some(b'\\')) {
+                self.0.remove(0);
+                continue;
+            }
+            let request: Vec<u8> = self.0.drain(..length + 4).collect();
+            let data = request.iter().skip(4).take(length - 2).copied().collect();
+            return Some(Request { command: request.get(3).copied()?, data });
+        }
+    }
+}
+
+/// An answer of this type with these bytes.
+#[must_use]
+pub fn answer(kind: u8, body: &[u8]) -> Vec<u8> {
+    let length = (body.len() + 2).min(usize::from(u8::MAX));
+    let mut bytes = vec![0x01, length as u8, 0x00, kind];
+    bytes.extend(body.iter().take(length - 2));
+    let total: u32 = bytes.iter().map(|byte| u32::from(*byte)).sum();
+    bytes.push((total % 256) as u8);
+    bytes.push(b'\\');
+    bytes
+}
+
+/// The number in two bytes: fifteen bits, and a sixteenth for the sign.
+#[must_use]
+pub fn number(low: u8, high: u8) -> i32 {
+    let size = i32::from(high % 128) * 256 + i32::from(low);
+    if high >= 128 { -size } else { size }
+}
+
+/// The two bytes of a number; only the rest of it modulo the 65,535 numbers there are can be said.
+#[must_use]
+pub fn two_bytes(number: i64) -> [u8; 2] {
+    let number = (number + 32_767).rem_euclid(65_535) - 32_767;
+    let size = number.unsigned_abs();
+    [(size % 256) as u8, (size / 256) as u8 + if number < 0 { 128 } else { 0 }]
+}

@@ -1,0 +1,59 @@
+//! What a Scout is told: the commands of its language that a driver needs, as frames.
+
+use crate::frame::Frame;
+use crate::number;
+
+/// How many sonars there are.
+const SONARS: usize = 16;
+
+/// A command. Lengths are tenths of an inch, speeds tenths of an inch per second, angles tenths of a degree.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Command {
+    /// Tell the state (GS).
+    State,
+    /// Stop and hold the position (ST).
+    Stop,
+    /// Leave the motors without current (LP).
+    Limp,
+    /// Position and heading are zero from now on (ZR).
+    Zero,
+    /// Stop when no command has come for so many seconds; 0 switches that off (CONF_TM).
+    Watchdog(u8),
+    /// Which sonars ping, one after the other, so many times four milliseconds apart; 255 ends the list (CONF_SN).
+    Sonars(u8, [u8; SONARS]),
+    /// The greatest accelerations of the right and the left wheel, a tenth of an inch per second squared (AC).
+    Accelerations(u16, u16),
+    /// The speeds of the right and the left wheel (VM).
+    Velocities(i16, i16),
+}
+
+impl Command {
+    /// Its type on the line, which its answer bears as well.
+    #[must_use]
+    pub const fn kind(&self) -> u8 {
+        match self {
+            Self::Accelerations(..) => 1,
+            Self::Velocities(..) => 5,
+            Self::State => 7,
+            Self::Stop => 9,
+            Self::Limp => 10,
+            Self::Zero => 13,
+            Self::Sonars(..) => 15,
+            Self::Watchdog(_) => 18,
+        }
+    }
+
+    /// The frame that says it.
+    #[must_use]
+    pub fn frame(&self) -> Frame {
+        let arguments = match *self {
+            Self::State | Self::Stop | Self::Limp | Self::Zero => Vec::new(),
+            Self::Watchdog(seconds) => vec![seconds],
+            Self::Sonars(rate, order) => [&[rate][..], &order].concat(),
+            // The third axis is the turret, which a Scout has not.
+            Self::Accelerations(right, left) => [right, left, 0].map(u16::to_le_bytes).concat(),
+            Self::Velocities(right, left) => [right, left, 0].map(number::signed).concat(),
+        };
+        Frame { kind: self.kind(), arguments }
+    }
+}

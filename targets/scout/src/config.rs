@@ -1,0 +1,177 @@
+//! What differs from Scout to Scout: a TOML file, the defaults, and where each value came from.
+
+use std::fmt::{self, Write as _};
+use std::path::Path;
+use std::time::Duration;
+
+use serde::Deserialize;
+
+/// The order in which everybody fires a Scout's sonars.
+const ORDER: [u8; 16] = [0, 2, 15, 1, 14, 3, 13, 4, 12, 5, 11, 6, 10, 7, 9, 8];
+
+/// What is known of the robot at hand.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Config {
+    /// Its serial port, or `tcp:ADDRESS:PORT`.
+    pub device: String,
+    /// The fastest that a wheel may go, in m/s.
+    pub fastest: f64,
+    /// The greatest acceleration of a wheel, in m/s².
+    pub acceleration: f64,
+    /// After how many seconds without a command the robot stops itself.
+    pub watchdog: u8,
+    /// How long an answer may take, in milliseconds.
+    pub answer: u64,
+    /// Which sonars ping, in which order.
+    pub sonars: Vec<u8>,
+    /// The time between two pings, in milliseconds.
+    pub gap: u64,
+    /// The distance of the transducers from the centre, in metres.
+    pub ring_radius: f64,
+}
+
+/// The file: whatever it does not say stays as it is.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+struct File {
+    device: Option<String>,
+    fastest: Option<f64>,
+    acceleration: Option<f64>,
+    watchdog: Option<u8>,
+    answer: Option<u64>,
+    sonars: Option<Vec<u8>>,
+    gap: Option<u64>,
+    ring_radius: Option<f64>,
+}
+
+/// A value with a few words on it, and where it came from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Entry {
+    name: &'static str,
+    value: String,
+    about: &'static str,
+    from: String,
+}
+
+/// A configuration, and where each of its values came from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Configured {
+    /// The values.
+    pub config: Config,
+    entries: Vec<Entry>,
+}
+
+impl Configured {
+    /// What the file says, if there is one, and `device`, if it was given; for the rest the defaults.
+    ///
+    /// # Errors
+    /// The file cannot be read, is no TOML, has a key that there is not, or a value that makes no sense: where and why.
+    pub fn read(file: Option<&Path>, device: Option<&str>) -> Result<Self, String> {
+        let said = match file {
+            None => File::default(),
+            Some(path) => {
+                let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
+                toml::from_str(&text)
+                    .map_err(|error| format!("{}: {}", path.display(), error.to_string().trim_end()))?
+            }
+        };
+        let mut made = Made { file: file.map(|path| path.display().to_string()), entries: Vec::new() };
+        let from_command_line = device.map(str::to_owned);
+        let config = Config {
+            device: match from_command_line {
+                Some(device) => made.noted("device", device, "the serial port, or tcp:ADDRESS:PORT", "--device"),
+                None => {
+                    made.value("device", said.device, "/dev/ttyS0".to_owned(), "the serial port, or tcp:ADDRESS:PORT")
+                }
+            },
+            fastest: made.value("fastest", said.fastest, 1.0, "m/s of a wheel; unverified"),
+            acceleration: made.value("acceleration", said.acceleration, 2.0, "m/s² of a wheel; unverified"),
+            watchdog: made.value("watchdog", said.watchdog, 1, "s without a command until the robot stops itself"),
+            answer: made.value("answer", said.answer, 800, "ms that an answer may take"),
+            sonars: made.value("sonars", said.sonars, ORDER.to_vec(), "which ping, in this order"),
+            gap: made.value("gap", said.gap, 60, "ms between two pings"),
+            ring_radius: made.value("ring-radius", said.ring_radius, 0.19, "m from the centre to a sonar; unverified"),
+        };
+        config.check().map_err(|why| match &made.file {
+            Some(file) => format!("{file}: {why}"),
+            None => why,
+        })?;
+        Ok(Self { config, entries: made.entries })
+    }
+}
+
+/// Takes down where values come from.
+struct Made {
+    file: Option<String>,
+    entries: Vec<Entry>,
+}
+
+impl Made {
+    fn value<T: fmt::Debug>(&mut self, name: &'static str, said: Option<T>, default: T, about: &'static str) -> T {
+        match (said, &self.file) {
+            (Some(value), Some(file)) => {
+                let from = file.clone();
+                self.noted(name, value, about, &from)
+            }
+            (Some(value), None) => self.noted(name, value, about, "default"),
+            (None, _) => self.noted(name, default, about, "default"),
+        }
+    }
+
+    fn noted<T: fmt::Debug>(&mut self, name: &'static str, value: T, about: &'static str, from: &str) -> T {
+        self.entries.push(Entry { name, value: format!("{value:?}"), about, from: from.to_owned() });
+        value
+    }
+}
+
+impl Config {
+    fn check(&self) -> Result<(), String> {
+        let within = |name: &str, value: f64, least: f64, most: f64| {
+            if (least..=most).contains(&value) {
+                Ok(())
+            } else {
+                Err(format!("`{name}` is {value}, and has to be from {least} to {most}"))
+            }
+        };
+        within("fastest", self.fastest, 0.01, 1.0)?;
+        within("acceleration", self.acceleration, 0.1, 10.0)?;
+        within("watchdog", f64::from(self.watchdog), 1.0, 60.0)?;
+        within("answer", self.answer as f64, 50.0, 1000.0)?;
+        within("gap", self.gap as f64, 4.0, 1020.0)?;
+        within("ring-radius", self.ring_radius, 0.0, 0.5)?;
+        if !self.gap.is_multiple_of(4) {
+            return Err(format!("`gap` is {}, and the robot counts it in steps of 4 ms", self.gap));
+        }
+        if let Some(sonar) = self.sonars.iter().find(|sonar| **sonar > 15) {
+            return Err(format!("`sonars` names sonar {sonar}, and they are numbered from 0 to 15"));
+        }
+        if self.sonars.len() > 16 {
+            return Err(format!("`sonars` names {}, and there are 16", self.sonars.len()));
+        }
+        Ok(())
+    }
+
+    /// The order of the sonars as the robot takes it: what is not used ends with 255.
+    #[must_use]
+    pub fn order(&self) -> [u8; 16] {
+        std::array::from_fn(|place| self.sonars.get(place).copied().unwrap_or(255))
+    }
+
+    /// How long an answer may take.
+    #[must_use]
+    pub const fn patience(&self) -> Duration {
+        Duration::from_millis(self.answer)
+    }
+}
+
+/// As TOML that can be given back with `--config`, with what each value means and where it came from.
+impl fmt::Display for Configured {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for Entry { name, value, about, from } in &self.entries {
+            let mut line = String::new();
+            write!(line, "{name} = {value}")?;
+            writeln!(f, "{line:34} # {about} ({from})")?;
+        }
+        Ok(())
+    }
+}

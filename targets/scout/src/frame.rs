@@ -1,0 +1,91 @@
+//! Frames on the Scout's line: start, length, type, arguments, sum and end, with no byte stuffing.
+
+/// The first byte of each frame.
+const START: u8 = 0x01;
+/// The last.
+const END: u8 = 0x5C;
+/// What is in a frame besides its arguments: start, two bytes of length, type, sum, end.
+const AROUND: usize = 6;
+/// The longest length that is believed: no reply of a Scout comes near it, and a garbled length must not be waited for.
+const LONGEST: usize = 255;
+
+/// A frame that has come in: its type, and its arguments in the order of the line.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Frame {
+    /// Of the command that it answers, or that it is.
+    pub kind: u8,
+    /// The arguments.
+    pub arguments: Vec<u8>,
+}
+
+/// What is wrong with bytes that should be a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Garbled {
+    /// The first byte is this one.
+    Start(u8),
+    /// No frame of a Scout is that long or that short.
+    Length(u16),
+    /// The bytes come to the first sum, and the frame says the second.
+    Sum(u8, u8),
+    /// Behind the sum is this byte.
+    End(u8),
+}
+
+impl core::fmt::Display for Garbled {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Start(byte) => write!(f, "a frame begins with {byte:02X} instead of {START:02X}"),
+            Self::Length(length) => write!(f, "a frame says that its length is {length}"),
+            Self::Sum(right, wrong) => write!(f, "the bytes of a frame add up to {right:02X}, and it says {wrong:02X}"),
+            Self::End(byte) => write!(f, "a frame ends with {byte:02X} instead of {END:02X}"),
+        }
+    }
+}
+
+/// The sum of these bytes, modulo 256.
+fn sum(bytes: &[u8]) -> u8 {
+    bytes.iter().fold(0, |sum: u8, byte| sum.wrapping_add(*byte))
+}
+
+impl Frame {
+    /// Its bytes on the line. Arguments are at most 253 bytes; of more, the first 253 are sent.
+    #[must_use]
+    pub fn bytes(&self) -> Vec<u8> {
+        let arguments = &self.arguments[..self.arguments.len().min(LONGEST - 2)];
+        // Type and sum count.
+        let length = arguments.len() as u8 + 2;
+        let mut bytes = vec![START, length, 0, self.kind];
+        bytes.extend_from_slice(arguments);
+        bytes.push(sum(&bytes));
+        bytes.push(END);
+        bytes
+    }
+
+    /// The frame at the beginning of what has come in, and its number of bytes; `None` if more has to come first.
+    ///
+    /// # Errors
+    /// These bytes do not begin a frame, whatever comes behind them.
+    pub fn read(bytes: &[u8]) -> Result<Option<(Self, usize)>, Garbled> {
+        match bytes.first() {
+            None => return Ok(None),
+            Some(&START) => {}
+            Some(&other) => return Err(Garbled::Start(other)),
+        }
+        let Some(&[low, high]) = bytes.get(1..3) else { return Ok(None) };
+        let length = u16::from_le_bytes([low, high]);
+        let count = usize::from(length);
+        if !(2..=LONGEST).contains(&count) {
+            return Err(Garbled::Length(length));
+        }
+        let Some(whole) = bytes.get(..count + AROUND - 2) else { return Ok(None) };
+        let [summed @ .., said, end] = whole else { return Ok(None) };
+        if sum(summed) != *said {
+            return Err(Garbled::Sum(sum(summed), *said));
+        }
+        if *end != END {
+            return Err(Garbled::End(*end));
+        }
+        let [_, _, _, kind, arguments @ ..] = summed else { return Ok(None) };
+        Ok(Some((Self { kind: *kind, arguments: arguments.to_vec() }, whole.len())))
+    }
+}

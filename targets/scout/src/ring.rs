@@ -1,0 +1,86 @@
+//! From the bytes of sixteen sonars to their pings: which of them are new, and how old the others are.
+
+use mdle_runtime::{Meters, Nanos, Ping, Pings, Pose, SONARS};
+
+/// Metres in an inch.
+const INCH: f64 = 0.0254;
+/// What a sonar says that heard nothing.
+const NOTHING: u8 = 255;
+
+/// The pings of the ring.
+///
+/// The line does not say when a sonar pinged. One whose number has changed has pinged since the last state; one whose
+/// number stays has pinged again, and heard the same, once in the time that the ring takes to go round.
+#[derive(Debug, Clone)]
+pub(crate) struct Ring {
+    pings: [Pings; SONARS],
+    last: [Option<(u8, Nanos)>; SONARS],
+    /// Which sonars ping at all.
+    active: [bool; SONARS],
+    /// How long the ring takes to go round.
+    around: Nanos,
+}
+
+impl Ring {
+    /// A ring of these sonars, one after the other with such a gap between two pings.
+    pub(crate) fn new(order: &[u8], gap: Nanos) -> Self {
+        let active = std::array::from_fn(|sonar| order.iter().any(|number| usize::from(*number) == sonar));
+        let around = Nanos(gap.0.saturating_mul(order.len() as u64));
+        Self { pings: [Pings::default(); SONARS], last: [None; SONARS], active, around }
+    }
+
+    /// How long it takes until each sonar has pinged.
+    pub(crate) fn around(&self) -> Nanos {
+        self.around
+    }
+
+    /// Takes in what the sonars say at `at`, with the robot at `pose` by odometry.
+    pub(crate) fn take_in(&mut self, sonars: &[u8; SONARS], at: Nanos, pose: Pose) -> [Pings; SONARS] {
+        let all = self.pings.iter_mut().zip(&mut self.last).zip(sonars).zip(&self.active);
+        for (((pings, last), heard), _) in all.filter(|(_, active)| **active) {
+            let is_old = last.is_some_and(|(byte, since)| byte == *heard && at.since(since) < self.around);
+            if !is_old {
+                let range = (*heard != NOTHING).then(|| Meters(f64::from(*heard) * INCH));
+                pings.push(Ping { range, at, pose });
+                *last = Some((*heard, at));
+            }
+        }
+        self.pings
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GAP: Nanos = Nanos(60_000_000);
+
+    #[test]
+    fn a_number_that_changes_is_a_new_ping_and_one_that_stays_is_one_a_round() {
+        let mut ring = Ring::new(&[0, 2, 1], GAP);
+        let mut heard = |byte, at: u64| {
+            let mut sonars = [NOTHING; SONARS];
+            sonars[2] = byte;
+            let pings = ring.take_in(&sonars, Nanos(at * 1_000_000), Pose::ORIGIN)[2];
+            pings
+                .newest_first()
+                .map(|ping| (ping.range.map(|range| range.0), ping.at.0 / 1_000_000))
+                .collect::<Vec<_>>()
+        };
+        let (one, two) = (Some(100.0 * INCH), Some(101.0 * INCH));
+        assert_eq!(heard(100, 0), [(one, 0)]);
+        assert_eq!(heard(100, 100), [(one, 0)]);
+        assert_eq!(heard(101, 150), [(two, 150), (one, 0)]);
+        assert_eq!(heard(101, 329), [(two, 150), (one, 0)]);
+        assert_eq!(heard(101, 330), [(two, 330), (two, 150), (one, 0)]);
+        assert_eq!(heard(NOTHING, 331), [(None, 331), (two, 330), (two, 150)]);
+    }
+
+    #[test]
+    fn a_sonar_that_does_not_ping_says_nothing() {
+        let mut ring = Ring::new(&[3], GAP);
+        let pings = ring.take_in(&[7; SONARS], Nanos::ZERO, Pose::ORIGIN);
+        assert_eq!(pings.map(|pings| pings.newest_first().count()).iter().sum::<usize>(), 1);
+        assert_eq!(pings[3].nearest(1), Some(Meters(7.0 * INCH)));
+    }
+}

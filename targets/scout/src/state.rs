@@ -1,0 +1,111 @@
+//! What a Scout says of itself in answer to almost any command: the state, 42 bytes in a fixed order.
+
+use crate::number;
+
+/// The length of the state, in bytes.
+const LENGTH: usize = 42;
+
+/// The state, in the units of the line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct State {
+    /// The range that each sonar heard last, in inches; 255 when it heard nothing.
+    pub sonars: [u8; 16],
+    /// Bit `i` for bumper switch `i` in contact.
+    pub bumper: u32,
+    /// Where it is, in tenths of an inch, forward and to the left of where it was zeroed; wraps at 83 m.
+    pub x: i16,
+    /// See `x`.
+    pub y: i16,
+    /// Its heading, in tenths of a degree, counter-clockwise.
+    pub heading: i16,
+    /// The speed of the right wheel, in tenths of an inch per second.
+    pub right: i16,
+    /// That of the left wheel.
+    pub left: i16,
+    /// Motors, battery, charger and emergency stop, as bits.
+    pub status: u8,
+    /// The controller's clock, in milliseconds.
+    pub clock: u32,
+    /// The supply of its computer, raw.
+    pub cpu: u8,
+    /// The supply of its motors, raw.
+    pub motor: u8,
+}
+
+/// How full the battery is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Battery {
+    /// It has to be charged.
+    Low,
+    /// Half full.
+    Medium,
+    /// Full.
+    High,
+}
+
+impl State {
+    /// The state that these arguments of an answer are; `None` if they are too few to be one.
+    #[must_use]
+    pub fn read(arguments: &[u8]) -> Option<Self> {
+        let body: &[u8; LENGTH] = arguments.get(..LENGTH)?.try_into().ok()?;
+        let [sonars @ .., _, _, _, _, _, _, _, _, _, _, _, _, _, _, _, _, _, _, _, _, _, _, _, _, _, _] = body;
+        let [
+            ..,
+            b0,
+            b1,
+            b2,
+            x0,
+            x1,
+            y0,
+            y1,
+            h0,
+            h1,
+            _turret0,
+            _turret1,
+            r0,
+            r1,
+            l0,
+            l1,
+            _spin0,
+            _spin1,
+            _compass0,
+            _compass1,
+            status,
+            t0,
+            t1,
+            t2,
+            t3,
+            cpu,
+            motor,
+        ] = *body;
+        Some(Self {
+            sonars: *sonars,
+            bumper: u32::from_le_bytes([b0, b1, b2, 0]),
+            x: number::read([x0, x1]),
+            y: number::read([y0, y1]),
+            heading: number::read([h0, h1]),
+            right: number::read([r0, r1]),
+            left: number::read([l0, l1]),
+            status,
+            clock: u32::from_le_bytes([t0, t1, t2, t3]),
+            cpu,
+            motor,
+        })
+    }
+
+    /// Whether the emergency stop is pressed; no command moves the robot then.
+    #[must_use]
+    pub const fn is_stopped(&self) -> bool {
+        self.status & 0b0100_0000 != 0
+    }
+
+    /// How full the battery is: bits 2 and 3 of the status, none of which is set when it is low.
+    #[must_use]
+    pub const fn battery(&self) -> Battery {
+        match (self.status >> 2) & 0b11 {
+            0b00 => Battery::Low,
+            0b01 => Battery::Medium,
+            _ => Battery::High,
+        }
+    }
+}
