@@ -42,3 +42,36 @@ fn unwrapped(from: i16, to: i16) -> i64 {
 fn meters(units: i64) -> Meters {
     Meters(units as f64 * UNIT)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_way_goes_on_where_numbers_wrap() {
+        let still = State {
+            sonars: [255; 16],
+            bumper: 0,
+            x: 0,
+            y: 0,
+            heading: 0,
+            right: 0,
+            left: 0,
+            status: 0,
+            clock: 0,
+            cpu: 0,
+            motor: 0,
+        };
+        let mut odometer = Odometer::default();
+        let mut units = |x: i16, y: i16| {
+            let pose = odometer.pose(&State { x, y, ..still });
+            [pose.x, pose.y].map(|meters| libm::round(meters.0 / UNIT) as i32)
+        };
+        assert_eq!(units(20_000, -20_000), [20_000, -20_000]);
+        assert_eq!(units(32_767, -32_767), [32_767, -32_767]);
+        // One unit on, and 83 m back by the number of the line.
+        assert_eq!(units(-32_767, 32_767), [32_768, -32_768]);
+        assert_eq!(units(0, 0), [65_535, -65_535]);
+        assert_eq!(units(-20_000, 20_000), [45_535, -45_535]);
+    }
+}
