@@ -46,7 +46,7 @@ fn emulated(executable: &Path) -> (Output, Pose) {
     let world = World::office().unwrap();
     let make = Make { body: Body::Scout, without: Vec::new(), seed: None };
     let mut robot = Scout::new(Simulated::with(&make, &world, world.start, PERIOD).unwrap()).unwrap();
-    let (port, over) = (Port::open(None).unwrap(), AtomicBool::new(false));
+    let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
     let output = thread::scope(|scope| {
         let serving =
             scope.spawn(|| serve(&mut robot, &port, Pace::Lockstep(PERIOD), &|| !over.load(Ordering::Relaxed)));

@@ -56,7 +56,7 @@ impl Embed {
     /// read: the plan, the files that it uses, and the alphabet of a target of your own.
     ///
     /// Where the plan has errors, this process ends with exit status 1 and says on standard error what `mdlec check` says;
-    /// where a file or the target cannot be read, with 2.
+    /// where the plan's own file or the target cannot be read, or the Rust cannot be written, with 2.
     pub fn write(self) {
         if let Err(status) = cli::embed(&self.file, self.target.as_deref(), self.plan.as_deref()) {
             process::exit(status.into());

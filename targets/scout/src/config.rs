@@ -87,7 +87,7 @@ impl Configured {
             fastest: made.value("fastest", said.fastest, 1.0, "m/s of a wheel; unverified"),
             acceleration: made.value("acceleration", said.acceleration, 2.0, "m/s² of a wheel; unverified"),
             watchdog: made.value("watchdog", said.watchdog, 1, "s without a command until the robot stops itself"),
-            answer: made.value("answer", said.answer, 800, "ms that an answer may take"),
+            answer: made.value("answer", said.answer, 300, "ms that an answer may take"),
             sonars: made.value("sonars", said.sonars, ORDER.to_vec(), "which ping, in this order"),
             gap: made.value("gap", said.gap, 60, "ms between two pings"),
             ring_radius: made.value("ring-radius", said.ring_radius, 0.19, "m from the centre to a sonar; unverified"),
@@ -136,7 +136,7 @@ impl Config {
         within("fastest", self.fastest, 0.01, 1.0)?;
         within("acceleration", self.acceleration, 0.1, 10.0)?;
         within("watchdog", f64::from(self.watchdog), 1.0, 60.0)?;
-        within("answer", self.answer as f64, 50.0, 1000.0)?;
+        within("answer", self.answer as f64, 50.0, 400.0)?;
         within("gap", self.gap as f64, 4.0, 1020.0)?;
         within("ring-radius", self.ring_radius, 0.0, 0.5)?;
         if !self.gap.is_multiple_of(4) {

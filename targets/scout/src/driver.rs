@@ -14,8 +14,14 @@ use crate::ring::Ring;
 use crate::state::State;
 use crate::wheels;
 
-/// How long the robot may take to stop: less than a person waits, and the watchdog is behind it.
-const STOPPING: Duration = Duration::from_millis(250);
+/// How long the robot may take to stand before its motors are let go: from 1 m/s it takes half a second.
+const STOPPING: Duration = Duration::from_millis(600);
+/// How long each answer may take meanwhile.
+const ANSWER: Duration = Duration::from_millis(150);
+/// The time between two looks at whether it stands.
+const LOOK: Duration = Duration::from_millis(20);
+/// How long it may take to set its position to zero: newer versions of its maker's library wait much longer for that.
+const ZEROING: Duration = Duration::from_secs(5);
 
 /// Where the time of an output comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,8 +54,14 @@ impl Scout {
         let line = Line::open(&config.device)?;
         let ring = Ring::new(&config.sonars, Nanos(config.gap.saturating_mul(1_000_000)));
         let mut scout = Self { line, config, clock, odometer: Odometer::default(), ring, first: None, outputs: 0 };
-        scout.prepare(period)?;
-        Ok(scout)
+        match scout.prepare(period) {
+            Ok(()) => Ok(scout),
+            Err(fault) => {
+                // What led here says more than what comes of this.
+                let _ = scout.stop();
+                Err(fault)
+            }
+        }
     }
 
     fn prepare(&mut self, period: Duration) -> Result<(), Fault> {
@@ -59,15 +71,32 @@ impl Scout {
         let acceleration = libm::trunc(self.config.acceleration / wheels::UNIT) as u16;
         self.tell(Command::Accelerations(acceleration, acceleration))?;
         self.tell(Command::Sonars((self.config.gap / 4) as u8, self.config.order()))?;
-        self.tell(Command::Zero)?;
         let mut left = Duration::from_nanos(self.ring.around().0);
         while !left.is_zero() {
-            match self.clock {
-                Clock::Wall => std::thread::sleep(period.min(left)),
-                Clock::Stepped(_) => {}
-            }
+            self.pass(period.min(left));
             left = left.saturating_sub(period);
             self.tell(Command::State)?;
+        }
+        // It stands by now.
+        self.line.ask(&Command::Zero, Instant::now() + ZEROING.max(self.config.patience())).map(|_| ())
+    }
+
+    /// Lets time pass, unless it passes with each command.
+    fn pass(&self, time: Duration) {
+        match self.clock {
+            Clock::Wall => std::thread::sleep(time),
+            Clock::Stepped(_) => {}
+        }
+    }
+
+    /// Waits until the robot stands, or `deadline`.
+    fn stands(&mut self, deadline: Instant) -> Result<(), Fault> {
+        while Instant::now() < deadline {
+            let frame = self.line.ask(&Command::State, deadline.min(Instant::now() + ANSWER))?;
+            if State::read(&frame.arguments).is_some_and(|state| (state.right, state.left) == (0, 0)) {
+                break;
+            }
+            self.pass(LOOK);
         }
         Ok(())
     }
@@ -110,9 +139,12 @@ impl Robot for Scout {
     }
 
     fn stop(&mut self) -> Result<(), Fault> {
-        let stopped = self.line.ask(&Command::Stop, Instant::now() + STOPPING);
+        let deadline = Instant::now() + STOPPING;
+        let stopped = self.line.ask(&Command::Stop, Instant::now() + ANSWER);
+        // Let go while it moves, it would roll on.
+        let stands = stopped.and_then(|_| self.stands(deadline));
         // Its motors are let go whether or not it has understood.
-        let let_go = self.line.ask(&Command::Limp, Instant::now() + STOPPING);
-        stopped.and(let_go).map(|_| ())
+        let let_go = self.line.ask(&Command::Limp, Instant::now() + ANSWER);
+        stands.and(let_go.map(|_| ()))
     }
 }

@@ -26,6 +26,8 @@ pub enum Fault {
         /// That of the answer.
         answered: u8,
     },
+    /// The robot does not take commands of this type.
+    Refused(u8),
     /// The answer has the right type, and too few bytes to be a state.
     Short(usize),
     /// The line was closed at the other end.
@@ -43,11 +45,6 @@ impl Fault {
             Errno::IO | Errno::NXIO | Errno::NODEV | Errno::CONNRESET | Errno::PIPE => Self::Closed,
             _ => Self::Line(error.to_string()),
         }
-    }
-
-    /// Whether the answer was at fault, so that to ask again may help.
-    pub(crate) const fn is_of_the_answer(&self) -> bool {
-        matches!(self, Self::Silent | Self::Garbled(_) | Self::Wrong { .. } | Self::Short(_))
     }
 }
 
@@ -68,6 +65,9 @@ impl fmt::Display for Fault {
                     f,
                     "the Scout answered a command of type {asked} with one of type {answered}: does another program use its line?"
                 )
+            }
+            Self::Refused(command) => {
+                write!(f, "the Scout refuses commands of type {command}: is its software older than these?")
             }
             Self::Short(bytes) => {
                 write!(f, "the Scout's state has {bytes} bytes instead of 42: is this another robot?")

@@ -21,6 +21,10 @@ use crate::frame::Frame;
 const CONNECT: Duration = Duration::from_secs(1);
 /// The most that is read at once.
 const CHUNK: usize = 512;
+/// After so long without a byte, more than forty bytes' worth, nothing more comes of an answer.
+const QUIET: Duration = Duration::from_millis(20);
+/// The type of the answer to a command that the robot does not take.
+const REFUSED: u8 = 8;
 
 /// An open line.
 #[derive(Debug)]
@@ -44,24 +48,27 @@ impl Line {
     }
 
     /// Says `command` and waits for its answer until `deadline`. What came in before is thrown away, as a Scout never
-    /// speaks first. A garbled answer is asked for once more, as each command can be said twice.
+    /// speaks first. A garbled answer is asked for once more, as each command can be said twice; silence is not, or an
+    /// answer that was only late would be taken for the next one's.
     ///
     /// # Errors
     /// The line is closed, or by the deadline there was no answer, or none that was whole.
     pub(crate) fn ask(&mut self, command: &Command, deadline: Instant) -> Result<Frame, Fault> {
-        let mut why = None;
-        // Half of what is left, so that there is time for a second question.
-        for last in [false, true] {
-            let now = Instant::now();
-            let until = if last { deadline } else { now + deadline.saturating_duration_since(now) / 2 };
-            match self.ask_once(command, until) {
-                Err(fault) if !last && fault.is_of_the_answer() => why = Some(fault),
-                // A garbled answer says more than the silence behind it.
-                Err(Fault::Silent) => return Err(why.unwrap_or(Fault::Silent)),
-                other => return other,
+        self.drain()?;
+        match self.ask_once(command, deadline) {
+            Err(garbled @ Fault::Garbled(_)) => {
+                // The rest of it is nobody's answer.
+                if !self.settles(deadline)? {
+                    return Err(garbled);
+                }
+                match self.ask_once(command, deadline) {
+                    // It says more than the silence behind it.
+                    Err(Fault::Silent) => Err(garbled),
+                    other => other,
+                }
             }
+            other => other,
         }
-        Err(why.unwrap_or(Fault::Silent))
     }
 
     /// Says `command` without waiting for the answer.
@@ -82,14 +89,34 @@ impl Line {
         Ok(())
     }
 
+    /// The same without a second question.
     fn ask_once(&mut self, command: &Command, deadline: Instant) -> Result<Frame, Fault> {
-        self.drain()?;
         self.say(command, deadline)?;
-        let frame = self.frame(deadline)?;
-        if frame.kind == command.kind() {
-            Ok(frame)
-        } else {
-            Err(Fault::Wrong { asked: command.kind(), answered: frame.kind })
+        let mut wrong = None;
+        loop {
+            match self.frame(deadline) {
+                Ok(frame) if frame.kind == command.kind() => return Ok(frame),
+                Ok(Frame { kind: REFUSED, .. }) => return Err(Fault::Refused(command.kind())),
+                // The right answer may be behind it.
+                Ok(frame) => wrong = Some(frame.kind),
+                Err(Fault::Silent) => {
+                    let wrong = wrong.map(|answered| Fault::Wrong { asked: command.kind(), answered });
+                    return Err(wrong.unwrap_or(Fault::Silent));
+                }
+                Err(fault) => return Err(fault),
+            }
+        }
+    }
+
+    /// Throws away what comes in until nothing has come for a while; whether that was before `deadline`.
+    fn settles(&mut self, deadline: Instant) -> Result<bool, Fault> {
+        loop {
+            self.waiting.clear();
+            match self.wait(PollFlags::IN, deadline.min(Instant::now() + QUIET)) {
+                Ok(()) => self.take_in()?,
+                Err(Fault::Silent) => return Ok(Instant::now() < deadline),
+                Err(fault) => return Err(fault),
+            };
         }
     }
 
@@ -155,7 +182,7 @@ impl Line {
     }
 }
 
-/// Opens a serial port, raw, at 38400 8N1, for this program alone.
+/// Opens a serial port, raw, at 38400 8N1, and locks it against other programs that ask for a lock.
 fn serial(path: &Path) -> Result<OwnedFd, Fault> {
     let device = path.display().to_string();
     // Without waiting for a carrier, and without making it this program's terminal.

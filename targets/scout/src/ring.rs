@@ -4,13 +4,15 @@ use mdle_runtime::{Meters, Nanos, Ping, Pings, Pose, SONARS};
 
 /// Metres in an inch.
 const INCH: f64 = 0.0254;
+/// By so many gaps a ring may be late: better a ping too few than one that was none.
+const SLACK: usize = 2;
 /// What a sonar says that heard nothing.
 const NOTHING: u8 = 255;
 
 /// The pings of the ring.
 ///
 /// The line does not say when a sonar pinged. One whose number has changed has pinged since the last state; one whose
-/// number stays has pinged again, and heard the same, once in the time that the ring takes to go round.
+/// number stays has pinged again, and heard the same, once in the time that the ring takes to go round, and a little.
 #[derive(Debug, Clone)]
 pub(crate) struct Ring {
     pings: [Pings; SONARS],
@@ -19,14 +21,18 @@ pub(crate) struct Ring {
     active: [bool; SONARS],
     /// How long the ring takes to go round.
     around: Nanos,
+    /// After how long a reading that stays is a new one.
+    again: Nanos,
 }
 
 impl Ring {
     /// A ring of these sonars, one after the other with such a gap between two pings.
     pub(crate) fn new(order: &[u8], gap: Nanos) -> Self {
         let active = std::array::from_fn(|sonar| order.iter().any(|number| usize::from(*number) == sonar));
-        let around = Nanos(gap.0.saturating_mul(order.len() as u64));
-        Self { pings: [Pings::default(); SONARS], last: [None; SONARS], active, around }
+        let times = |count: usize| Nanos(gap.0.saturating_mul(count as u64));
+        let around = times(order.len());
+        let again = times(order.len() + SLACK);
+        Self { pings: [Pings::default(); SONARS], last: [None; SONARS], active, around, again }
     }
 
     /// How long it takes until each sonar has pinged.
@@ -38,7 +44,7 @@ impl Ring {
     pub(crate) fn take_in(&mut self, sonars: &[u8; SONARS], at: Nanos, pose: Pose) -> [Pings; SONARS] {
         let all = self.pings.iter_mut().zip(&mut self.last).zip(sonars).zip(&self.active);
         for (((pings, last), heard), _) in all.filter(|(_, active)| **active) {
-            let is_old = last.is_some_and(|(byte, since)| byte == *heard && at.since(since) < self.around);
+            let is_old = last.is_some_and(|(byte, since)| byte == *heard && at.since(since) < self.again);
             if !is_old {
                 let range = (*heard != NOTHING).then(|| Meters(f64::from(*heard) * INCH));
                 pings.push(Ping { range, at, pose });
@@ -71,9 +77,9 @@ mod tests {
         assert_eq!(heard(100, 0), [(one, 0)]);
         assert_eq!(heard(100, 100), [(one, 0)]);
         assert_eq!(heard(101, 150), [(two, 150), (one, 0)]);
-        assert_eq!(heard(101, 329), [(two, 150), (one, 0)]);
-        assert_eq!(heard(101, 330), [(two, 330), (two, 150), (one, 0)]);
-        assert_eq!(heard(NOTHING, 331), [(None, 331), (two, 330), (two, 150)]);
+        assert_eq!(heard(101, 449), [(two, 150), (one, 0)]);
+        assert_eq!(heard(101, 450), [(two, 450), (two, 150), (one, 0)]);
+        assert_eq!(heard(NOTHING, 451), [(None, 451), (two, 450), (two, 150)]);
     }
 
     #[test]

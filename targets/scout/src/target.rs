@@ -59,7 +59,21 @@ impl Target for SuperScout {
 
     fn connect(matches: &ArgMatches, period: Duration) -> Result<Scout, Refusal> {
         let clock = if matches.get_flag("lockstep") { Clock::Stepped(period) } else { Clock::Wall };
-        let config = configured(matches)?.config;
+        let mut config = configured(matches)?.config;
+        let watchdog = Duration::from_secs(u64::from(config.watchdog));
+        match clock {
+            // An emulator takes as long as its machine makes it, and its robot stands meanwhile.
+            Clock::Stepped(_) => config.answer = 10_000,
+            Clock::Wall if period + config.patience() >= watchdog => {
+                return Err(Refusal::Usage(format!(
+                    "with a period of {} s the robot would stop itself between two commands: its watchdog waits for {} s; \
+                     shorten the period, or set `watchdog` in the configuration",
+                    period.as_secs_f64(),
+                    config.watchdog
+                )));
+            }
+            Clock::Wall => {}
+        }
         Scout::connect(config, clock, period).map_err(|fault| Refusal::Fault(fault.to_string()))
     }
 }

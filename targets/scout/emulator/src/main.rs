@@ -1,9 +1,12 @@
 //! `scout-emulator`: a Super Scout on a pseudo-terminal, in a simulated world, for those who have none at hand.
 #![forbid(unsafe_code)]
-#![allow(clippy::print_stdout, clippy::print_stderr, reason = "it says where the robot is, or why there is none")]
+#![allow(clippy::print_stderr, reason = "it says why there is no robot")]
 
+use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use clap::Parser;
@@ -11,6 +14,7 @@ use mdle_scout_emulator::port::Port;
 use mdle_scout_emulator::scout::Scout;
 use mdle_scout_emulator::serve::{Pace, serve};
 use mdle_sim::{Body, Make, Simulated, Start, World};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
 /// A Super Scout that is not there: its language on a pseudo-terminal, its body in a simulated world.
 #[derive(Debug, Parser)]
@@ -49,10 +53,24 @@ fn run(options: &Options) -> Result<(), String> {
     let start = options.start.map_or(world.start, |start| start.0);
     let body = Simulated::with(&make, &world, start, pace.step()).map_err(|error| error.to_string())?;
     let mut scout = Scout::new(body)?;
-    let port = Port::open(options.link.as_deref()).map_err(|error| format!("no pseudo-terminal: {error}"))?;
-    println!("the Scout is at {}", port.path().display());
-    let line = serve(&mut scout, &port, pace, &|| true);
+    let over = over().map_err(|error| format!("signals cannot be caught: {error}"))?;
+    let mut port = Port::open().map_err(|error| format!("no pseudo-terminal: {error}"))?;
+    if let Some(link) = &options.link {
+        port.link(link).map_err(|error| format!("--link {}: {error}", link.display()))?;
+    }
+    // Whoever does not read it knows the link.
+    let _ = writeln!(std::io::stdout(), "the Scout is at {}", port.path().display());
+    let line = serve(&mut scout, &port, pace, &|| !over.load(Ordering::Relaxed));
     line.map_err(|error| format!("the line failed: {error}"))
+}
+
+/// What turns true when this program is asked to end.
+fn over() -> std::io::Result<Arc<AtomicBool>> {
+    let over = Arc::new(AtomicBool::new(false));
+    for signal in [SIGINT, SIGTERM, SIGHUP] {
+        signal_hook::flag::register(signal, Arc::clone(&over))?;
+    }
+    Ok(over)
 }
 
 fn world(name: &str) -> Result<World, String> {

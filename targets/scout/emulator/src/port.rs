@@ -22,11 +22,11 @@ pub struct Port {
 }
 
 impl Port {
-    /// A new line; `link` is where a symbolic link to it is put, in place of one that is there.
+    /// A new line.
     ///
     /// # Errors
-    /// The system has no more pseudo-terminals, or the link cannot be made.
-    pub fn open(link: Option<&Path>) -> io::Result<Self> {
+    /// The system has no more pseudo-terminals.
+    pub fn open() -> io::Result<Self> {
         let ours = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)?;
         grantpt(&ours)?;
         unlockpt(&ours)?;
@@ -39,13 +39,20 @@ impl Port {
         tcsetattr(&theirs, OptionalActions::Now, &settings)?;
         let flags = rustix::fs::fcntl_getfl(&ours)?;
         rustix::fs::fcntl_setfl(&ours, flags | OFlags::NONBLOCK)?;
-        if let Some(link) = link {
-            if fs::symlink_metadata(link).is_ok_and(|known| known.file_type().is_symlink()) {
-                fs::remove_file(link)?;
-            }
-            std::os::unix::fs::symlink(&path, link)?;
+        Ok(Self { ours, _theirs: theirs, path, link: None })
+    }
+
+    /// Puts a symbolic link to the device here, in place of one that is there; it goes with the line.
+    ///
+    /// # Errors
+    /// Something else is there, or nothing can be.
+    pub fn link(&mut self, link: &Path) -> io::Result<()> {
+        if fs::symlink_metadata(link).is_ok_and(|known| known.file_type().is_symlink()) {
+            fs::remove_file(link)?;
         }
-        Ok(Self { ours, _theirs: theirs, path, link: link.map(Path::to_owned) })
+        std::os::unix::fs::symlink(&self.path, link)?;
+        self.link = Some(link.to_owned());
+        Ok(())
     }
 
     /// The device that a driver opens.

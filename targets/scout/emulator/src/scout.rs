@@ -12,6 +12,8 @@ use crate::wire::{Request, answer, number, two_bytes};
 const INCH: f64 = 0.0254;
 /// Inches that a wheel makes for each degree of a turn on the spot.
 const INCHES_A_DEGREE: f64 = 0.118_597;
+/// By how much a robot whose motors are limp gets slower, in tenths of an inch a second, each second: 0.3 m/s.
+const ROLLING: f64 = 120.0;
 /// The answer to what a Scout does not know.
 const REFUSED: u8 = 8;
 
@@ -20,8 +22,10 @@ const REFUSED: u8 = 8;
 pub struct Scout {
     body: Simulated,
     sensed: Output,
-    /// What the wheels have been told, in tenths of an inch a second; `None` when the motors are limp.
-    wheels: Option<(i32, i32)>,
+    /// What the wheels have been told, in tenths of an inch a second.
+    wheels: (i32, i32),
+    /// Whether the motors are limp: then it rolls on.
+    limp: bool,
     /// Where its numbers are zero.
     zero: Pose,
     /// The sonars that ping, bit by bit.
@@ -48,7 +52,8 @@ impl Scout {
         let mut scout = Self {
             body,
             sensed,
-            wheels: None,
+            wheels: (0, 0),
+            limp: true,
             zero,
             active: u16::MAX,
             heard: [255; 16],
@@ -75,9 +80,13 @@ impl Scout {
         self.age += period;
         self.silence += period;
         if self.watchdog.is_some_and(|limit| self.silence >= limit) {
-            self.wheels = Some((0, 0));
+            (self.wheels, self.limp) = ((0, 0), false);
         }
-        let (right, left) = self.wheels.filter(|_| !self.emergency).unwrap_or((0, 0));
+        if self.limp {
+            let less = |wheel: i32| wheel - wheel.signum() * wheel.abs().min((ROLLING * period.as_secs_f64()) as i32);
+            self.wheels = (less(self.wheels.0), less(self.wheels.1));
+        }
+        let (right, left) = if self.emergency { (0, 0) } else { self.wheels };
         // The body counts in tenths of an inch as well, and cuts off: a hair more leaves it these very numbers.
         let inches = |wheel: i32| (f64::from(wheel) + 0.01 * f64::from(wheel.signum())) / 10.0;
         let (right, left) = (inches(right), inches(left));
@@ -106,9 +115,9 @@ impl Scout {
         self.silence = Duration::ZERO;
         match (request.command, &*request.data) {
             (1 | 2 | 7, _) => {}
-            (5, [r0, r1, l0, l1, ..]) => self.wheels = Some((number(*r0, *r1), number(*l0, *l1))),
-            (9, _) => self.wheels = Some((0, 0)),
-            (10, _) => self.wheels = None,
+            (5, [r0, r1, l0, l1, ..]) => (self.wheels, self.limp) = ((number(*r0, *r1), number(*l0, *l1)), false),
+            (9, _) => (self.wheels, self.limp) = ((0, 0), false),
+            (10, _) => (self.wheels, self.limp) = (self.rolling(), true),
             (12, [0, 0, 0, 0]) => self.zero = Pose { theta: self.zero.theta, ..self.sensed.pose() },
             (13, _) => self.zero = self.sensed.pose(),
             (15, [_, order @ ..]) => {
@@ -123,17 +132,24 @@ impl Scout {
         answer(request.command, &self.state())
     }
 
+    /// How fast the wheels go, in tenths of an inch a second.
+    fn rolling(&self) -> (i32, i32) {
+        let velocity = self.sensed.velocity();
+        let spin = velocity.omega.0.to_degrees() * INCHES_A_DEGREE * INCH;
+        let tenths = |speed: f64| (speed / INCH * 10.0).round() as i32;
+        (tenths(velocity.v.0 + spin), tenths(velocity.v.0 - spin))
+    }
+
     /// The state, as all answers have it.
     fn state(&self) -> Vec<u8> {
-        let (pose, velocity) = (self.sensed.pose(), self.sensed.velocity());
+        let pose = self.sensed.pose();
         let (x, y) = (pose.x.0 - self.zero.x.0, pose.y.0 - self.zero.y.0);
         let (sin, cos) = libm::sincos(self.zero.theta.0);
         let tenths = |meters: f64| (meters / INCH * 10.0).round() as i64;
         let heading = (pose.theta.0 - self.zero.theta.0).to_degrees().rem_euclid(360.0);
-        let spin = velocity.omega.0.to_degrees() * INCHES_A_DEGREE * INCH;
         let charge = 0b1000;
-        let moving = |wheel: f64, bit: u8| if tenths(wheel) == 0 { 0 } else { bit };
-        let (right, left) = (velocity.v.0 + spin, velocity.v.0 - spin);
+        let moving = |wheel: i32, bit: u8| if wheel == 0 { 0 } else { bit };
+        let (right, left) = self.rolling();
         let status = moving(left, 1) | moving(right, 2) | charge | if self.emergency { 0b0100_0000 } else { 0 };
         let switches = self.sensed.switches();
         [
@@ -143,8 +159,8 @@ impl Scout {
             &two_bytes(tenths(y * cos - x * sin)),
             &two_bytes((heading * 10.0).round() as i64 % 3600),
             &[0, 0],
-            &two_bytes(tenths(right)),
-            &two_bytes(tenths(left)),
+            &two_bytes(i64::from(right)),
+            &two_bytes(i64::from(left)),
             &[0, 0, 0, 0, status],
             &(self.age.as_millis() as u32).to_le_bytes(),
             // 11.5 V and 11.9 V.
