@@ -55,6 +55,29 @@ pub fn compile_with(
     wanted: Option<&str>,
     loader: &mut dyn syntax::Loader,
 ) -> (Vec<Compiled>, Vec<Diagnostic>) {
+    stages(source, text, alphabet, wanted, loader, true)
+}
+
+/// What is wrong with a file that may use others: what [`compile_with`] finds, without keeping what it makes.
+#[must_use]
+pub fn check_with(
+    source: SourceId,
+    text: &str,
+    alphabet: &Alphabet,
+    loader: &mut dyn syntax::Loader,
+) -> Vec<Diagnostic> {
+    stages(source, text, alphabet, None, loader, false).1
+}
+
+/// All stages, one plan after the other; what they make of it is kept, or let go before the next.
+fn stages(
+    source: SourceId,
+    text: &str,
+    alphabet: &Alphabet,
+    wanted: Option<&str>,
+    loader: &mut dyn syntax::Loader,
+    keeps: bool,
+) -> (Vec<Compiled>, Vec<Diagnostic>) {
     let arena = syntax::arena_for(text);
     let (files, mut found) = syntax::parse_with(source, text, &arena, loader);
     let (plans, names) = plan::resolve(&files, alphabet, wanted);
@@ -63,11 +86,12 @@ pub fn compile_with(
     if !diagnostic::has_errors(&found) {
         found.extend(plan::lints::bare_numbers(&files, alphabet));
         for plan in plans {
-            let (nondegenerate, warnings) = plan::remove_degeneracy(plan.clone());
+            let kept = keeps.then(|| plan.clone());
+            let (nondegenerate, warnings) = plan::remove_degeneracy(plan);
             found.extend(warnings);
             found.extend(plan::lints::lints(&nondegenerate));
             match fsm::algorithm1(&nondegenerate) {
-                Ok(lowered) => compiled.push(Compiled { plan, nondegenerate, lowered }),
+                Ok(lowered) => compiled.extend(kept.map(|plan| Compiled { plan, nondegenerate, lowered })),
                 Err(too_large) => found.push(too_large),
             }
         }

@@ -10,7 +10,7 @@ pub(super) fn check(options: &Check) -> Result<(), Failure> {
     let target = input::target(options.target.as_deref())?;
     each(&options.plans, |path| {
         let mut input = input::read_plan(path, &target)?;
-        let (_, found) = input.compile(&target.alphabet, None);
+        let found = input.check(&target.alphabet);
         let good = report::diagnostics(&input.sources, &found, options.deny_warnings);
         if good && !has_errors(&found) { Ok(()) } else { Err(Failure::PLAN) }
     })

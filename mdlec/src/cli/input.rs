@@ -9,7 +9,7 @@ use super::{Failure, report};
 use crate::alphabet::{self, Alphabet, AlphabetFile, Declaration, DeclarationKind};
 use crate::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
 use crate::plan::signature;
-use crate::{Compiled, compile_with, link, syntax};
+use crate::{Compiled, check_with, compile_with, link, syntax};
 
 /// The robot that plans are checked against.
 pub(super) struct Target {
@@ -36,6 +36,12 @@ impl Input {
     pub(super) fn compile(&mut self, alphabet: &Alphabet, wanted: Option<&str>) -> (Vec<Compiled>, Vec<Diagnostic>) {
         let text = self.sources.text(self.source).to_owned();
         compile_with(self.source, &text, alphabet, wanted, self)
+    }
+
+    /// What is wrong with what stands in it.
+    pub(super) fn check(&mut self, alphabet: &Alphabet) -> Vec<Diagnostic> {
+        let text = self.sources.text(self.source).to_owned();
+        check_with(self.source, &text, alphabet, self)
     }
 
     /// The files that were read for it, its own first.
