@@ -36,8 +36,6 @@ pub(super) fn option(name: &str, value: &str) -> String {
 
 /// The most diagnostics that a person is shown at once: nobody reads more.
 const SHOWN: usize = 100;
-/// The most diagnostics that a program is told.
-const TOLD: usize = 1_000;
 /// So much of the source is shown with them, in bytes, and with one at least: each shows its lines whole, however long.
 const SOURCE_SHOWN: usize = 500_000;
 
@@ -46,8 +44,8 @@ const SOURCE_SHOWN: usize = 500_000;
 /// Returns whether the plan may go on: no error, and no warning where these count as errors.
 pub(super) fn diagnostics(sources: &Sources, found: &[Diagnostic], deny_warnings: bool) -> bool {
     if is_json() {
-        found.iter().take(TOLD).for_each(|diagnostic| line(&sources.message(diagnostic)));
-        note_others(found.len(), TOLD);
+        // A program is told all of them.
+        found.iter().for_each(|diagnostic| line(&sources.message(diagnostic)));
     } else if is_build_script() && !has_errors(found) {
         found.iter().for_each(|diagnostic| warn_cargo(&sources.message(diagnostic)));
     } else {

@@ -1,6 +1,5 @@
 //! Diagnostics as JSON, one object a line, for editors and other programs.
 
-use codespan_reporting::files::Files;
 use serde::Serialize;
 
 use super::{Diagnostic, Label, Severity, Sources};
@@ -74,7 +73,7 @@ impl Sources {
 
     fn place<'a>(&'a self, Label { span, text, primary }: &'a Label) -> Place<'a> {
         let (source, range) = self.range(*span);
-        let at = |byte| self.location(source, byte).map_or((1, 1), |at| (at.line_number, at.column_number));
+        let at = |byte| self.line_and_column(source, byte);
         let ((line, column), (end_line, end_column)) = (at(range.start), at(range.end));
         Place { file: self.name(source), line, column, end_line, end_column, primary: *primary, text }
     }

@@ -1,5 +1,6 @@
 //! The files that messages show: a place in one of them is a place among all, one behind the other.
 
+use std::cell::Cell;
 use std::ops::Range;
 
 use codespan_reporting::diagnostic as report;
@@ -13,6 +14,17 @@ use super::{Diagnostic, Label, Severity, SourceId, Span};
 pub struct Sources {
     /// In the order in which they begin.
     files: Vec<(SourceId, SimpleFile<String, String>)>,
+    /// The place that was looked for last.
+    last: Cell<Option<Known>>,
+}
+
+/// A place whose line and column are known; both count from 1 here.
+#[derive(Debug, Clone, Copy)]
+struct Known {
+    source: SourceId,
+    byte: usize,
+    line: usize,
+    column: usize,
 }
 
 impl Sources {
@@ -56,6 +68,27 @@ impl Sources {
     pub(super) fn range(&self, span: Span) -> (SourceId, Range<usize>) {
         let source = self.file(span.start).map_or(SourceId(0), |(id, _)| *id);
         (source, span.within(source))
+    }
+
+    /// The line and the column, in characters, of a byte; both count from 1.
+    ///
+    /// Counted from the place before, where that is in the same line: a file may be one line with a mistake at every word.
+    pub(super) fn line_and_column(&self, source: SourceId, byte: usize) -> (usize, usize) {
+        let known = self.place_near(source, byte).or_else(|| {
+            let at = self.location(source, byte).ok()?;
+            Some(Known { source, byte, line: at.line_number, column: at.column_number })
+        });
+        self.last.set(known);
+        known.map_or((1, 1), |known| (known.line, known.column))
+    }
+
+    /// The place of a byte in the line of the place before.
+    fn place_near(&self, source: SourceId, byte: usize) -> Option<Known> {
+        let last = self.last.get().filter(|last| last.source == source)?;
+        let line = self.line_index(source, byte).ok().map(|line| line + 1).filter(|line| *line == last.line)?;
+        let between = self.text(source).get(last.byte.min(byte)..last.byte.max(byte))?.chars().count();
+        let column = if byte < last.byte { last.column.checked_sub(between)? } else { last.column + between };
+        Some(Known { source, byte, line, column })
     }
 
     /// How much of the files is shown with a diagnostic, in bytes: the lines of its places.
@@ -156,5 +189,25 @@ mod tests {
         let last = Span::new(SourceId(1_001), 0, room);
         assert_eq!((last.end, last.within(SourceId(1_001))), (u32::MAX - 1, 0..room));
         assert_eq!(sources.file(500).map(|(id, _)| *id), Some(first));
+    }
+
+    #[test]
+    fn lines_and_columns_do_not_depend_on_what_was_asked_before() {
+        let mut sources = Sources::default();
+        let files = ["größe\n\n  stöp, α und ω\n", "noch\neins ∞"].map(|text| sources.add("a", text));
+        let places: Vec<_> = files
+            .iter()
+            .flat_map(|source| {
+                let text = sources.text(*source);
+                (0..=text.len()).filter(|byte| text.is_char_boundary(*byte)).map(|byte| (*source, byte))
+            })
+            .collect();
+        for before in &places {
+            for (source, byte) in &places {
+                sources.line_and_column(before.0, before.1);
+                let at = sources.location(*source, *byte).unwrap();
+                assert_eq!(sources.line_and_column(*source, *byte), (at.line_number, at.column_number));
+            }
+        }
     }
 }
