@@ -110,8 +110,8 @@ impl Scout {
         }
     }
 
-    /// Does what it is told, and answers.
-    pub fn obey(&mut self, request: &Request) -> Vec<u8> {
+    /// Does what it is told; whether it knows that.
+    pub fn obey(&mut self, request: &Request) -> bool {
         self.silence = Duration::ZERO;
         match (request.command, &*request.data) {
             (1 | 2 | 7, _) => {}
@@ -127,9 +127,15 @@ impl Scout {
             (18, [seconds]) => {
                 self.watchdog = (*seconds > 0).then(|| Duration::from_secs(u64::from(*seconds)));
             }
-            _ => return answer(REFUSED, &[]),
+            _ => return false,
         }
-        answer(request.command, &self.state())
+        true
+    }
+
+    /// What it says to a request that it knows, or does not.
+    #[must_use]
+    pub fn answer(&self, request: &Request, is_known: bool) -> Vec<u8> {
+        if is_known { answer(request.command, &self.state()) } else { answer(REFUSED, &[]) }
     }
 
     /// How fast the wheels go, in tenths of an inch a second.

@@ -50,13 +50,12 @@ pub fn serve(scout: &mut Scout, port: &Port, pace: Pace, goes_on: &dyn Fn() -> b
             next += STEP;
         }
         while let Some(request) = incoming.next_request() {
-            let mut answer = scout.obey(&request);
+            let is_known = scout.obey(&request);
             if let Pace::Lockstep(step) = pace {
                 // What it was told holds for the period that follows, and the answer says how that went.
                 scout.pass(step).map_err(io::Error::other)?;
-                answer = scout.obey(&request);
             }
-            port.write(&answer)?;
+            port.write(&scout.answer(&request, is_known))?;
         }
     }
     Ok(())
