@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
 
+use super::layout::laid_out;
 use super::names::{Distinct, quark_type};
-use super::pretty;
 use super::signatures::{argument_variant, signatures};
 use crate::alphabet::{Alphabet, Declaration, DeclarationKind, Kind, Origin};
 use crate::plan::{is_time, signature};
@@ -30,7 +30,7 @@ pub fn bind(alphabet: &Alphabet) -> String {
     let signal_types = signal_types(&signals);
     let control_types = control_types(&controls);
     let implementation = implementation(&interrupts, &signals, &controls);
-    let text = pretty(quote! {
+    let text = laid_out(quote! {
         pub use #home::{Input, Output};
         #imports
         use ::mdle_runtime as runtime;

@@ -7,6 +7,7 @@ mod arguments;
 mod bind;
 mod code;
 mod kinds;
+mod layout;
 mod names;
 mod rows;
 mod scopes;
@@ -107,7 +108,7 @@ pub fn emit_as(shape: Shape, lowered: &Lowered, header: Header<'_>, alphabet: &A
             #tables
         }
     };
-    format!("{}{}", heading(header, alphabet), pretty(file))
+    format!("{}{}", heading(header, alphabet), layout::laid_out(file))
 }
 
 /// What does not compile where the target was bound to another alphabet than the plan was checked against.
@@ -130,24 +131,6 @@ fn heading(header: Header<'_>, alphabet: &Alphabet) -> String {
         alphabet.name,
         alphabet.hash(),
     )
-}
-
-/// Lays the tokens out, with a blank line behind each item of the file and of its module. Text that does not parse is
-/// given as it is, and rustc then says what is wrong with it.
-fn pretty(tokens: TokenStream) -> String {
-    let text = tokens.to_string();
-    let text = syn::parse2(tokens).map_or(text, |file| prettyplease::unparse(&file));
-    let mut spaced = String::with_capacity(text.len());
-    let mut lines = text.lines().peekable();
-    while let Some(line) = lines.next() {
-        spaced.push_str(line);
-        spaced.push('\n');
-        let ends_item = matches!(line, "}" | "    }");
-        if ends_item && lines.peek().is_some_and(|next| !next.ends_with('}')) {
-            spaced.push('\n');
-        }
-    }
-    spaced
 }
 
 #[cfg(test)]

@@ -1,0 +1,176 @@
+//! Lays Rust out, long lists in pieces: what is read and laid out at one time stays small, however long the plan.
+
+use std::mem;
+
+use proc_macro2::{Delimiter, Group, Ident, Literal, Span, TokenStream, TokenTree};
+use quote::quote;
+
+/// The most elements of a list that are laid out at one time.
+const PIECE: usize = 256;
+/// Stands for elements that are laid out by themselves, with a number behind it. It is longer than a line, so it stands
+/// alone on one, as they do.
+const STAND_IN: &str =
+    "the_elements_of_a_long_list_which_are_laid_out_by_themselves_and_then_written_where_this_very_long_name_stands_";
+
+/// The text of a file, with a blank line behind each item of it and of its module. The elements of a long list stand
+/// below each other; there is none of numbers alone, which would fill lines.
+pub(super) fn laid_out(file: TokenStream) -> String {
+    let mut lists = Vec::new();
+    let text = printed(shortened(file, &mut lists));
+    let mut spaced = String::with_capacity(text.len());
+    let mut lines = text.lines().peekable();
+    while let Some(line) = lines.next() {
+        match list(line).and_then(|number| lists.get_mut(number)) {
+            Some(pieces) => mem::take(pieces).into_iter().for_each(|piece| write_elements(piece, line, &mut spaced)),
+            None => write_line(line, &mut spaced),
+        }
+        let ends_item = matches!(line, "}" | "    }");
+        if ends_item && lines.peek().is_some_and(|next| !next.ends_with('}')) {
+            spaced.push('\n');
+        }
+    }
+    spaced
+}
+
+/// The tokens, with the elements of long lists taken out of them, in pieces.
+fn shortened(tokens: TokenStream, lists: &mut Vec<Vec<TokenStream>>) -> TokenStream {
+    let shortened = tokens.into_iter().map(|token| match token {
+        TokenTree::Group(group) => {
+            let (delimiter, inside) = (group.delimiter(), group.stream());
+            // Nobody else has these tokens then, and they are moved.
+            drop(group);
+            let inside =
+                if delimiter == Delimiter::Bracket { elements(inside, lists) } else { shortened(inside, lists) };
+            Group::new(delimiter, inside).into()
+        }
+        TokenTree::Ident(_) | TokenTree::Punct(_) | TokenTree::Literal(_) => token,
+    });
+    shortened.collect()
+}
+
+/// What is between the brackets of a list, or what stands for it if it is long.
+fn elements(inside: TokenStream, lists: &mut Vec<Vec<TokenStream>>) -> TokenStream {
+    let mut pieces = Vec::new();
+    let (mut piece, mut commas) = (Vec::new(), 0);
+    for token in inside {
+        commas += usize::from(is_comma(&token));
+        piece.push(token);
+        if commas == PIECE {
+            pieces.push(mem::take(&mut piece).into_iter().collect());
+            commas = 0;
+        }
+    }
+    let rest = piece.into_iter().collect();
+    if pieces.is_empty() {
+        return shortened(rest, lists);
+    }
+    pieces.push(rest);
+    lists.push(pieces);
+    stand_in(lists.len() - 1)
+}
+
+fn stand_in(number: usize) -> TokenStream {
+    TokenTree::from(Ident::new(&format!("{STAND_IN}{number}"), Span::call_site())).into()
+}
+
+/// Which list a line stands for.
+fn list(line: &str) -> Option<usize> {
+    line.trim_start().strip_prefix(STAND_IN)?.strip_suffix(',')?.parse().ok()
+}
+
+/// Writes elements as they are laid out where a stand-in has this line.
+fn write_elements(elements: TokenStream, line: &str, text: &mut String) {
+    let indent = line.len() - line.trim_start().len();
+    if let Some(literals) = literals(&elements) {
+        literals.iter().for_each(|literal| write_line(&format!("{:indent$}{literal},", ""), text));
+        return;
+    }
+    let stand_in = stand_in(0);
+    let mut item = quote!(const LIST: () = [#stand_in, #elements];);
+    for _ in 1..indent / 4 {
+        item = quote!(mod around { #item });
+    }
+    let printed = printed(item);
+    let behind = printed.lines().skip_while(|line| list(line).is_none()).skip(1);
+    behind.take_while(|line| line.trim_start() != "];").for_each(|line| write_line(line, text));
+}
+
+/// The elements, if each is a literal: what they look like needs no syntax.
+fn literals(elements: &TokenStream) -> Option<Vec<Literal>> {
+    let tokens = elements.clone().into_iter().filter(|token| !is_comma(token));
+    let literal = |token| if let TokenTree::Literal(literal) = token { Some(literal) } else { None };
+    tokens.map(literal).collect()
+}
+
+fn is_comma(token: &TokenTree) -> bool {
+    matches!(token, TokenTree::Punct(punct) if punct.as_char() == ',')
+}
+
+fn write_line(line: &str, text: &mut String) {
+    text.push_str(line);
+    text.push('\n');
+}
+
+/// Tokens that are no Rust are an error of rustc's.
+fn printed(file: TokenStream) -> String {
+    syn::parse2(file).map_or_else(|error| error.into_compile_error().to_string(), |file| prettyplease::unparse(&file))
+}
+
+#[cfg(test)]
+mod tests {
+    use proc_macro2::{Literal, TokenStream};
+    use quote::quote;
+
+    use super::{PIECE, laid_out};
+
+    /// What is laid out in pieces, and at once.
+    fn both(file: &TokenStream) -> [String; 2] {
+        let whole = prettyplease::unparse(&syn::parse2(file.clone()).expect("a file"));
+        let pieces: Vec<_> =
+            laid_out(file.clone()).lines().filter(|line| !line.is_empty()).map(str::to_owned).collect();
+        [pieces.join("\n") + "\n", whole]
+    }
+
+    #[test]
+    fn long_lists_look_as_if_they_were_laid_out_at_once() {
+        let number = |number: usize| Literal::usize_unsuffixed(number * number);
+        let text = |number: usize| format!("number \"{number}\"\n");
+        let elements: [&dyn Fn(usize) -> TokenStream; 4] = [
+            &|i| {
+                let text = text(i);
+                quote!(#text)
+            },
+            &|i| {
+                let number = number(i);
+                quote!((#number, []))
+            },
+            &|i| {
+                let (number, text) = (number(i), text(i));
+                quote!(Row { at: #number, what: (a::Thing::of(&[#number, 2], #text)), then: Some(b::Other(#number)), })
+            },
+            &|i| {
+                let number = number(i);
+                if i % 100 == 0 { quote!(None) } else { quote!(#number) }
+            },
+        ];
+        for length in [PIECE - 1, PIECE, PIECE + 1, 2 * PIECE + 7] {
+            for element in elements {
+                let elements: Vec<_> = (0..length).map(element).collect();
+                let [pieces, whole] = both(&quote! {
+                    static OUTSIDE: &[T] = &[#(#elements),*];
+                    mod machine {
+                        static TRAILING: &[T] = &[#(#elements,)*];
+                        const NESTED: Table = Table { first: 1, rows: &[#(#elements),*], last: &[&[#(#elements),*], &[]] };
+                        fn asked() -> usize { if true { [#(#elements),*].len() } else { 0 } }
+                    }
+                });
+                assert!(pieces == whole, "{length}:\n{pieces}\n{whole}");
+            }
+        }
+    }
+
+    #[test]
+    fn tokens_that_are_no_rust_are_an_error_of_rustc_s() {
+        assert!(laid_out(quote!(fn fn)).contains("compile_error"));
+    }
+}
