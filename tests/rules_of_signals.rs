@@ -23,6 +23,19 @@ fn a_comparison_has_fired_while_it_holds_and_is_listed_by_its_text() {
 }
 
 #[test]
+fn a_time_without_end_is_never_over() {
+    assert_trace(
+        "{ Main Leg(inf) } { Leg (end: time) (t >= end) (Atom (t < inf) idle) (Atom (wait 1 OR t > inf) seek) }",
+        &[(0.0, "", ""), (0.5, "", ""), (1.0, "", "")],
+        &[
+            r#"{"turn":0,"t":0.0,"state":2,"law":"seek","fired":[{"from":1,"level":2,"by":"t < inf"}]}"#,
+            r#"{"turn":1,"t":0.5,"state":2,"law":"seek","fired":[]}"#,
+            r#"{"turn":2,"t":1.0,"state":3,"law":null,"fired":[{"from":2,"level":2,"by":"wait 1 OR t > inf"}]}"#,
+        ],
+    );
+}
+
+#[test]
 fn t_counts_from_its_own_scope_to_the_nanosecond() {
     assert_trace(
         "{ Main { P (t > 200ms) (Atom (t >= 0.1) idle) (Atom (t == 0.1) drift) } (Atom (t < 50ms) seek) (Atom (t <= 0) climb) \

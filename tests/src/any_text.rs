@@ -6,7 +6,6 @@ use std::sync::LazyLock;
 
 use mdlec::alphabet::Alphabet;
 use mdlec::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
-use mdlec::plan::{Compared, Value};
 use mdlec::rust::{Header, Shape, emit_as};
 use mdlec::syntax::{arena_for, format, outline::outline, parse as read};
 use mdlec::trace::Script;
@@ -88,12 +87,9 @@ pub fn check(text: &str) {
     }
 }
 
-/// Whether formal notation has words for all of it: not for labels, which copies of a plan would share, nor for a signal
-/// that is compared with a parameter without end.
+/// Whether formal notation has words for all of it: not for labels, which copies of a plan would share.
 fn is_written_formally(compiled: &Compiled) -> bool {
-    let mut compared = compiled.plan.quarks.iter().filter_map(|quark| quark.comparison.as_ref());
-    let is_without_end = compared.any(|comparison| matches!(comparison.with, Compared::Value(Value::Infinity(_))));
-    compiled.lowered.marks.is_empty() && !is_without_end
+    compiled.lowered.marks.is_empty()
 }
 
 /// The Rust of a plan is Rust, in every shape.

@@ -41,7 +41,18 @@ const COMPARISONS: &[Comparison] = &[
 ];
 
 /// Comparisons of `t`; among them the timers' own lengths.
-const TIMES: &[&str] = &["t >= 0.25", "t > 100ms", "t < 0.3s", "t <= 0.05", "t == 0.1", "t(t) > 1", "t > 0", "t ≤ 0.2"];
+const TIMES: &[&str] = &[
+    "t >= 0.25",
+    "t > 100ms",
+    "t < 0.3s",
+    "t <= 0.05",
+    "t == 0.1",
+    "t(t) > 1",
+    "t > 0",
+    "t ≤ 0.2",
+    "t >= inf",
+    "t < inf",
+];
 
 /// A comparison, as it stands in a condition.
 pub fn comparison(chance: &mut Chance) -> String {

@@ -50,13 +50,13 @@ pub(super) fn resolve(
     let signal = signal(written.left, quarks, names);
     let parameter = match &written.right {
         Operand::Signal(call) if call.args.is_empty() => names.parameters.get(call.name),
-        Operand::Signal(_) | Operand::Number(_) => None,
+        Operand::Signal(_) | Operand::Number(_) | Operand::Infinity(_) => None,
     };
     // What is wrong with either side is told at once.
     let right = match (&written.right, parameter) {
         (Operand::Signal(call), None) if names.parameters.is_untyped(call.name) => Some(Err(Vec::new())),
         (Operand::Signal(call), None) => Some(self::signal(call, quarks, names)),
-        (Operand::Signal(_), Some(_)) | (Operand::Number(_), _) => None,
+        (Operand::Signal(_), Some(_)) | (Operand::Number(_) | Operand::Infinity(_), _) => None,
     };
     let (signal, right) = match (signal, right.transpose()) {
         (Ok(signal), Ok(right)) => (signal, right),
@@ -74,6 +74,7 @@ pub(super) fn resolve(
         (None, right) => {
             let fitted = match (*right, parameter) {
                 (Operand::Number(number), _) => value(&number, signal.unit, signal.unit, signal.declaration),
+                (Operand::Infinity(span), _) => without_end(span, signal),
                 (Operand::Signal(call), Some(parameter)) => given(parameter, call.span, signal),
                 (Operand::Signal(_), None) => return Err(Vec::new()),
             };
@@ -109,13 +110,23 @@ fn given(parameter: &Parameter<'_>, at: Span, signal: Signal<'_>) -> Fitted {
     }
     match parameter.given {
         Some(Arg::Number(number)) => value(&number, parameter.unit().unwrap_or(unit), unit, declaration),
-        Some(Arg::Infinity(_)) => Ok((Value::Infinity(unit.kind), "inf".into())),
+        Some(Arg::Infinity(_)) => without_end(at, signal),
         // It stands for itself, until the plan is used.
         Some(Arg::String(_) | Arg::Name(_) | Arg::Module(_)) | None => {
             let name = parameter.name.node.to_owned();
             Ok((Value::Name(unit.kind, name.clone()), name))
         }
     }
+}
+
+/// `inf`, which only a time may be.
+fn without_end(at: Span, Signal { unit, declaration, .. }: Signal<'_>) -> Fitted {
+    if unit.kind == Kind::Time {
+        return Ok((Value::Infinity(unit.kind), "inf".into()));
+    }
+    let message = format!("expected {}, found infinity", unit.kind.words());
+    let here = format!("`{}` is {}", declaration.name, unit.kind.words());
+    Err(Diagnostic::new(Code::E0302, message, at, here).help("only a time is without end, as in `t > inf`").into())
 }
 
 /// The tolerance of two signals that are compared: the larger one.

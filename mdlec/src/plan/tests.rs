@@ -235,7 +235,9 @@ fn signals_are_compared_in_their_units() {
         "{ P (r_3(t) == r_5)
   (Atom (r 0 < 50cm OR x(t) ≥ -1.50 AND theta == 1rad) stop)
   { Q (t > 500ms OR NOT v \\leq 0.2m/s) (Atom (r3 == r5) align 3 5) (Atom (t > 0.5 OR NOT v <= 20) stop) }
-}"
+  Until(inf) Until(1min)
+}
+{ Until (end: time) (Atom (t >= end OR t < inf) stop) }"
     );
 }
 
@@ -252,6 +254,7 @@ fn comparisons_that_make_no_sense() {
   (Atom (t > -1s) stop)
   (Atom (go == stop) stop)
   (Atom (r < 1) stop)
+  (Atom (r3 < inf) stop)
 }"
     );
 }

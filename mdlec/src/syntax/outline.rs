@@ -91,6 +91,7 @@ fn condition(written: &Condition<'_>) -> String {
             let right = match &compared.right {
                 Operand::Signal(signal) => call(signal),
                 Operand::Number(value) => number(value),
+                Operand::Infinity(_) => "inf".into(),
             };
             format!("({} {} {right})", call(compared.left), compared.operator.symbol())
         }

@@ -203,6 +203,8 @@ pub enum Operand<'s> {
     Signal(&'s Call<'s>),
     /// A value.
     Number(Number<'s>),
+    /// `inf`, for a time.
+    Infinity(Span),
 }
 
 /// How a signal is compared.

@@ -141,6 +141,7 @@ impl Counter<'_> {
                         self.met("Operand = Number");
                         self.number(number);
                     }
+                    Operand::Infinity(_) => self.met("Operand = Infinity"),
                 }
             }
             ConditionNode::Null => self.met("Test = \"null\""),

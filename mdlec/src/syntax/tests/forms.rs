@@ -54,7 +54,7 @@ fn conditions() {
         &[
             "{ A (a OR b AND NOT c OR (d OR e)) (Atom ((a AND b) and (c) AND d) u) (Atom (not (a or b)) u) }",
             "{ A (RISING a AND rising (b OR c)) (Atom (null OR a) u) (Atom (sync robot2 OR sync(robot3)) u) }",
-            "{ A (r_3 == r_5) (Atom (r 3 < 0.5m OR x >= -1 AND y ≤ 2) u) (Atom (r_3(t) \\leq r(5) OR t \\geq 5s OR v > 1) u) }",
+            "{ A (r_3 == r_5) (Atom (r 3 < 0.5m OR x >= -1 AND y ≤ 2) u) (Atom (r_3(t) \\leq r(5) OR t \\geq 5s OR v > 1 OR t > ∞) u) }",
             "{ A (after s1) (Atom (after s1 x12 OR after s2 (a OR b)) u) (Atom (x3 OR NOT (after s1 atIsection 0100)) u) }",
         ],
     );
