@@ -24,7 +24,7 @@ impl Judge<'_> {
         report
     }
 
-    /// Tries all these mutants: together in one build, and one by one what cannot be.
+    /// Tries all these mutants: together in one build, and one by one what cannot be, and what survives there.
     pub(crate) fn all(&self, chosen: &[&Mutant]) -> Report {
         let mut report = Report::default();
         let at_once = AtOnce::prepare(Checkout::copy(), self.sources, chosen);
@@ -32,7 +32,10 @@ impl Judge<'_> {
         for (place, standing, mutant) in at_once.mutants() {
             let start = Instant::now();
             match standing {
-                Standing::Built => self.tried(mutant, at_once.run(place), start, &mut report),
+                Standing::Built => match at_once.run(place) {
+                    Outcome::Survived => apart.push(mutant),
+                    outcome => self.tried(mutant, outcome, start, &mut report),
+                },
                 Standing::DoesNotCompile => self.tried(mutant, Outcome::DoesNotCompile, start, &mut report),
                 Standing::Apart => apart.push(mutant),
             }

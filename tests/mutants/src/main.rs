@@ -31,9 +31,12 @@ use mutant::Mutant;
 /// Puts small faults into the code, one at a time, and says which test catches each of them.
 #[derive(Debug, Parser)]
 struct Options {
-    /// Try every mutant, those of `equivalent.toml` as well.
+    /// Try every mutant.
     #[arg(long)]
     all: bool,
+    /// Try those of `equivalent.toml` as well, which no test is known to catch.
+    #[arg(long)]
+    equivalent: bool,
     /// Try this many, other ones with every seed.
     #[arg(long, default_value_t = 5, conflicts_with = "all")]
     count: usize,
@@ -67,7 +70,7 @@ fn main() -> ExitCode {
         return ExitCode::FAILURE;
     }
     println!("{} mutants, seed {seed}", mutants.len());
-    chosen.retain(|mutant| options.all || equivalents.find(mutant).is_none());
+    chosen.retain(|mutant| options.equivalent || equivalents.find(mutant).is_none());
     let judge = Judge { sources: &sources, equivalents: &equivalents };
     let report = if options.all { judge.all(&chosen) } else { judge.some(&chosen, options.count) };
     println!("{report}");

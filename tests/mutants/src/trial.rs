@@ -12,6 +12,9 @@ pub(crate) type Packages = &'static [&'static str];
 pub(crate) const RUNTIME: Packages = &["--package", "mdle-runtime"];
 const COMPILER: Packages = &["--package", "mdlec", "--package", "mdle-tests"];
 
+/// The one that compiles what is emitted, of a runtime with its mutants too if they are built together: that takes rustc gigabytes.
+pub(crate) const DEAREST: (Packages, &[&str]) = (COMPILER, &["--test", "emitted"]);
+
 /// The tests, as `cargo test` takes them: those first that catch much and are fast.
 pub(crate) const TESTS: &[(Packages, &[&str])] = &[
     (RUNTIME, &["--lib"]),
@@ -19,7 +22,7 @@ pub(crate) const TESTS: &[(Packages, &[&str])] = &[
     (COMPILER, &["--test", "rules", "--test", "rules_of_*"]),
     (COMPILER, &["--lib", "--", "fsm::", "plan::", "rust::"]),
     (COMPILER, &["--test", "differential"]),
-    (COMPILER, &["--test", "emitted"]),
+    DEAREST,
 ];
 
 /// The command line of a test.
