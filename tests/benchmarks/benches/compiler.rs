@@ -1,0 +1,119 @@
+//! `mdlec` as a process: how long it works and how much memory it takes for long plans.
+//!
+//! The fastest of some runs counts. User time is counted by the system, in steps of 10 ms.
+#![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
+#![allow(clippy::expect_used, clippy::unwrap_used, reason = "a benchmark fails by panicking")]
+
+use std::env;
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::thread::sleep;
+use std::time::{Duration, Instant};
+
+use mdle_benchmarks::plan_text::plan_text;
+
+/// How often each plan is compiled.
+const RUNS: usize = 5;
+/// How often memory is looked at.
+const LOOK: Duration = Duration::from_millis(2);
+
+/// What a run took.
+struct Cost {
+    wall: Duration,
+    /// In seconds.
+    user: f64,
+    /// The most that was in memory at one time, in kB.
+    memory: u64,
+}
+
+fn main() {
+    let folder = env::temp_dir().join(format!("mdle-compiler-{}", std::process::id()));
+    fs::create_dir_all(&folder).expect("a folder to write to");
+    let mdlec = mdlec();
+    println!("{:<48}{:>8}{:>8}{:>12}", "", "wall, s", "user, s", "memory, MB");
+    let show = |what: &str, plan: &str, arguments: &[&str]| {
+        let file = folder.join("plan.mdle");
+        fs::write(&file, plan).expect("a folder to write to");
+        let runs = (0..RUNS).map(|_| run(&mdlec, &file, arguments));
+        let best = runs.min_by_key(|cost| cost.wall).expect("more than no runs");
+        let megabytes = best.memory / 1000;
+        println!("{what:<48}{:>8.2}{:>8.2}{megabytes:>12}", best.wall.as_secs_f64(), best.user);
+    };
+    let rust = ["--target", "sim", "--emit", "rust"];
+    show("check, 10 MB", &plan_text(10, 10_000_000), &["check"]);
+    show("Rust of 10,000 atoms, one condition", &written_out(10_000, false), &rust);
+    show("Rust of 10,000 atoms, each its own condition", &written_out(10_000, true), &rust);
+    show("Rust of 1,000 loops of two atoms, once", &loops(1_000, 1), &rust);
+    show("Rust of 1,000 loops of two atoms, 500 times", &loops(1_000, 500), &rust);
+    show("Rust of a condition of 100,000 operands", &operands(100_000), &rust);
+    fs::remove_dir_all(folder).expect("the folder of this run");
+}
+
+/// Atoms one behind the other.
+fn written_out(atoms: usize, differ: bool) -> String {
+    let mut plan = String::from("{ P (bumper)\n");
+    for atom in 0..atoms {
+        let from = if differ { atom } else { 0 };
+        writeln!(plan, "  (Atom (t > {from}ms OR atIsection 0100) (go {} 0.1))", 10 + atom % 50).unwrap();
+    }
+    plan + "}\n"
+}
+
+/// Loops of two atoms.
+fn loops(number: usize, count: usize) -> String {
+    let mut plan = String::from("{ P (bumper)\n");
+    for number in 0..number {
+        writeln!(plan, "  ((Atom (atIsection 0100) (go {} 0)) (Atom (wait {number}) stop))^{count}", 10 + number % 50)
+            .unwrap();
+    }
+    plan + "}\n"
+}
+
+/// One atom that many things end.
+fn operands(number: usize) -> String {
+    let operands: Vec<_> = (1..=number).map(|seconds| format!("wait {seconds}")).collect();
+    format!("{{ P (Atom ({}) stop) }}\n", operands.join(" OR "))
+}
+
+fn run(mdlec: &Path, file: &Path, arguments: &[&str]) -> Cost {
+    let (start, used) = (Instant::now(), used_by_children());
+    let mut command = Command::new(mdlec);
+    let mut child =
+        command.args(arguments).arg(file).stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("mdlec");
+    let mut memory = 0;
+    while child.try_wait().expect("a child").is_none() {
+        memory = most_memory(child.id()).unwrap_or(memory);
+        sleep(LOOK);
+    }
+    Cost { wall: start.elapsed(), user: used_by_children() - used, memory }
+}
+
+/// The most memory that a process has had, in kB, if it still runs.
+fn most_memory(process: u32) -> Option<u64> {
+    let status = fs::read_to_string(format!("/proc/{process}/status")).ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    line.trim().strip_suffix(" kB")?.parse().ok()
+}
+
+/// The user time of all children so far, in seconds; field 16 of `/proc/self/stat`, in hundredths of a second.
+fn used_by_children() -> f64 {
+    let stat = fs::read_to_string("/proc/self/stat").expect("Linux");
+    let after_name = stat.rsplit(')').next().expect("a name in brackets");
+    let ticks = after_name.split_whitespace().nth(13).expect("as proc(5) has it");
+    ticks.parse::<f64>().expect("a number") / 100.0
+}
+
+/// The compiler as users have it.
+fn mdlec() -> PathBuf {
+    let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/../../Cargo.toml");
+    let mut command = Command::new(env!("CARGO"));
+    command.args(["build", "--release", "--package", "mdlec", "--message-format=json", "--manifest-path", manifest]);
+    let output = command.stderr(Stdio::inherit()).output().expect("cargo");
+    assert!(output.status.success(), "cargo");
+    let messages = String::from_utf8(output.stdout).expect("JSON");
+    let built = messages.lines().filter_map(|line| serde_json::from_str::<serde_json::Value>(line).ok());
+    let mut executables = built.filter_map(|message| message["executable"].as_str().map(PathBuf::from));
+    executables.next_back().expect("an executable")
+}
