@@ -1,4 +1,5 @@
-//! Plans that nobody writes by hand: what is too deep is one error that names the limit; through the real binary.
+//! Plans that nobody writes by hand, through the real binary: what is too deep is one error that names the limit, what is
+//! only long comes to a result.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -53,6 +54,26 @@ fn what_nests_too_deep_is_one_error_that_names_the_limit() {
         assert!(start.starts_with("error[E0106]: brackets nested more than 256 deep\n"), "{start}");
         assert!(told.ends_with("\nerror: 1 error\n"), "{start}");
         assert!(others.iter().all(|other| *other == first), "{start}");
+    }
+}
+
+#[test]
+fn what_is_only_long_comes_to_a_result() {
+    let folder = folder("long");
+    let operands: Vec<_> = (1..=MANY).map(|seconds| format!("wait {seconds}")).collect();
+    let elements: Vec<_> = (1..=MANY).map(|seconds| format!("  (Atom (wait {seconds}) stop)\n")).collect();
+    // The first is one line, which `fmt` breaks.
+    let plans = [
+        (format!("{{ P\n  (Atom ({}) stop)\n}}\n", operands.join(" OR ")), (Some(1), "plan.mdle\n")),
+        (format!("{{ P\n{}}}\n", elements.concat()), (Some(0), "")),
+    ];
+    let [check, fmt, trace, _] = COMMANDS;
+    for (plan, laid_out) in plans {
+        assert_eq!(said(&folder, &plan, check).0, Some(0));
+        let (status, listed, _) = said(&folder, &plan, fmt);
+        assert_eq!((status, listed.as_str()), laid_out);
+        let (status, turns, _) = said(&folder, &plan, trace);
+        assert_eq!((status, turns.lines().count()), (Some(0), 2), "{turns}");
     }
 }
 
