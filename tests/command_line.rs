@@ -166,3 +166,21 @@ fn targets_and_their_quarks_are_listed() {
     };
     insta::assert_snapshot!([list(&["targets"]), list(&["quarks", "--target", "sim"])].join("\n"));
 }
+
+#[test]
+fn which_robots_can_run_which_plan_is_a_table() {
+    let folder = with_plan("everywhere", "{ Meet (bumper) (Atom (sync ada) stop) (Atom (wait 5) (go 150 0)) }");
+    fs::write(folder.join("good.mdle"), "{ Good (bumper) (Atom (wait 5) (go 50 0)) }").unwrap();
+    insta::assert_snapshot!(printed(run_mdlec(&folder, &["check", "--target", "all", "plan.mdle", "good.mdle"])));
+    fs::write(folder.join("bad.mdle"), "{ Bad (bumpr) (Atom (wait 5) stop) }").unwrap();
+    let output = run_mdlec(&folder, &["check", "--target", "all", "bad.mdle", "good.mdle", "none.mdle"]);
+    assert_eq!(output.status.code(), Some(2), "the worst of them");
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    let (table, told) = (text(output.stdout), text(output.stderr));
+    assert_eq!(table.lines().map(|line| line.split(' ').next().unwrap()).collect::<Vec<_>>(), ["plan", "good.mdle"]);
+    assert_eq!(
+        ["error[E0201]", "there is no file `none.mdle`"].map(|part| told.matches(part).count()),
+        [1, 1],
+        "{told}"
+    );
+}

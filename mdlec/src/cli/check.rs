@@ -2,11 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
+use super::everywhere::{ALL, everywhere};
 use super::{Check, Failure, input, report};
 use crate::diagnostic::has_errors;
 
 /// Checks each plan file and says what is wrong with it.
 pub(super) fn check(options: &Check) -> Result<(), Failure> {
+    if options.target.as_deref() == Some(ALL) {
+        return everywhere(options);
+    }
     let target = input::target(options.target.as_deref())?;
     each(&options.plans, |path| {
         let mut input = input::read_plan(path, &target)?;

@@ -120,7 +120,11 @@ pub(super) fn alphabet(file: &Path) -> Result<Alphabet, Failure> {
 
 /// Reads a plan file; `-` is standard input.
 pub(super) fn read_plan(path: &Path, target: &Target) -> Result<Input, Failure> {
-    let text = read_text(path)?;
+    plan(path, read_text(path)?, target)
+}
+
+/// A plan file that was read.
+pub(super) fn plan(path: &Path, text: String, target: &Target) -> Result<Input, Failure> {
     let mut sources = Sources::default();
     for (name, text) in &target.sources {
         sources.add(name, text);

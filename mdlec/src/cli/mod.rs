@@ -4,6 +4,7 @@ mod bind;
 mod build;
 mod check;
 mod embed;
+mod everywhere;
 mod explain;
 mod fmt;
 mod input;
@@ -141,8 +142,8 @@ struct Check {
     /// The plans
     #[arg(required = true)]
     plans: Vec<PathBuf>,
-    /// The robot [default: one that has everything]
-    #[arg(long, value_name = "NAME|FOLDER")]
+    /// The robot, or `all` for a table of which robots can run which plan [default: one that has everything]
+    #[arg(long, value_name = "NAME|FOLDER|all")]
     target: Option<String>,
     /// Treat warnings as errors
     #[arg(long)]

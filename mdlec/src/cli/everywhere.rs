@@ -1,0 +1,74 @@
+//! `mdlec check --target all`: which robots can run a plan, and why the others cannot.
+
+use std::path::Path;
+
+use super::check::each;
+use super::input::{self, Target};
+use super::{Check, Failure, report};
+use crate::diagnostic::{Severity, has_errors};
+use crate::link;
+
+/// What stands for every robot that came with mdlec.
+pub(super) const ALL: &str = "all";
+
+/// A plan file, and for each robot why it cannot run it: nothing if it can.
+struct Row {
+    name: String,
+    refusals: Vec<Vec<String>>,
+}
+
+/// Checks each plan file for a robot that has everything, then for each robot. That one of them cannot run it is no error.
+pub(super) fn everywhere(options: &Check) -> Result<(), Failure> {
+    let everything = input::target(None)?;
+    let names = link::alphabets().iter().filter(|alphabet| alphabet.target).map(|alphabet| alphabet.name);
+    let robots = names.map(|name| Ok((name, input::target(Some(name))?))).collect::<Result<Vec<_>, Failure>>()?;
+    let mut rows = Vec::new();
+    let checked = each(&options.plans, |path| {
+        let text = input::read_text(path)?;
+        let mut plan = input::plan(path, text.clone(), &everything)?;
+        let found = plan.check(&everything.alphabet);
+        let good = report::diagnostics(&plan.sources, &found, options.deny_warnings);
+        if !good || has_errors(&found) {
+            return Err(Failure::PLAN);
+        }
+        let refusals = robots.iter().map(|(_, robot)| refusals(path, &text, robot)).collect::<Result<_, _>>()?;
+        rows.push(Row { name: path.display().to_string(), refusals });
+        Ok(())
+    });
+    let names: Vec<_> = robots.iter().map(|(name, _)| *name).collect();
+    report::print(&(table(&names, &rows) + &reasons(&rows)))?;
+    checked
+}
+
+/// Why a robot cannot run what stands in a plan file: places and messages.
+fn refusals(path: &Path, text: &str, robot: &Target) -> Result<Vec<String>, Failure> {
+    let mut plan = input::plan(path, text.to_owned(), robot)?;
+    let found = plan.check(&robot.alphabet);
+    let errors = found.iter().filter(|found| found.code.severity() == Severity::Error);
+    let refusals = errors.map(|error| {
+        let message = plan.sources.message(error);
+        let place = message.spans.first().map(|place| format!("{}:{}:{}: ", place.file, place.line, place.column));
+        format!("{}{}", place.unwrap_or_default(), message.message)
+    });
+    Ok(refusals.collect())
+}
+
+/// A line for each plan, a column for each robot.
+fn table(robots: &[&str], rows: &[Row]) -> String {
+    let width = rows.iter().map(|row| row.name.chars().count()).chain(["plan".len()]).max().unwrap_or(0);
+    let line = |name: &str, cells: Vec<&str>| {
+        let cells: String =
+            robots.iter().zip(cells).map(|(robot, cell)| format!("  {cell:w$}", w = robot.len())).collect();
+        format!("{}\n", format!("{name:width$}{cells}").trim_end())
+    };
+    let can = |refusals: &Vec<String>| if refusals.is_empty() { "yes" } else { "no" };
+    let lines = rows.iter().map(|row| line(&row.name, row.refusals.iter().map(can).collect()));
+    line("plan", robots.to_vec()) + &lines.collect::<String>()
+}
+
+/// A line for each thing that a robot cannot do.
+fn reasons(rows: &[Row]) -> String {
+    let refusals = rows.iter().flat_map(|row| row.refusals.iter().flatten());
+    let lines: Vec<_> = refusals.map(|refusal| format!("{refusal}\n")).collect();
+    if lines.is_empty() { String::new() } else { format!("\n{}", lines.concat()) }
+}
