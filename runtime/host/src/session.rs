@@ -83,13 +83,17 @@ where
     }
     let mut report = Report::new(&mut *out, is_watched(time) && !screen);
     let ending = shielded(|| {
+        let log = match &mut log {
+            Ok(log) => log.as_mut(),
+            Err(error) => return Ending::Log(error.to_string()),
+        };
         let mut clock = Clock::begin(instants, time, options.period);
         let seen = seen.filter(|_| !screen && !is_watched(time));
         let progress = seen.map(|now| Progress::new(&mut *err, now));
-        let mut witnesses = Witnesses { report: &mut report, log: log.as_mut(), progress };
+        let mut witnesses = Witnesses { report: &mut report, log, progress };
         turns::run(&mut robot, plan(), limits, &mut clock, &signals, &mut witnesses)
     });
-    let status = way_out(&mut robot, ending.unwrap_or_else(bug), &mut report, log, err);
+    let status = way_out(&mut robot, ending.unwrap_or_else(bug), &mut report, log.ok().flatten(), err);
     // It stands, and all is said; even code that panics while it tidies up must not change the status.
     let _ = shielded(move || drop(robot));
     signals.robot_stands();
@@ -151,7 +155,8 @@ fn answered(answer: &str, out: &mut dyn Write) -> u8 {
 struct Ready<R> {
     robot: R,
     time: Time,
-    log: Option<Log<File>>,
+    /// A log that cannot begin is no refusal: the robot is there already, and has to be stopped.
+    log: io::Result<Option<Log<File>>>,
 }
 
 /// Opens what a run needs. A start that is refused leaves the file of the log as it was.
@@ -159,14 +164,11 @@ fn ready<T: Target>(matches: &ArgMatches, options: &Options) -> Result<Ready<T::
     let opened = shielded(|| {
         let time = T::time(matches).map_err(Refusal::Usage)?;
         let file = match &options.log {
-            Some(path) => Some((path, Untouched::open(path).map_err(|error| no_log(path, &error))?)),
+            Some(path) => Some(Untouched::open(path).map_err(|error| no_log(path, &error))?),
             None => None,
         };
         let robot = T::connect(matches, options.period)?;
-        let log = match file {
-            Some((path, file)) => Some(file.begin(is_watched(time)).map_err(|error| no_log(path, &error))?),
-            None => None,
-        };
+        let log = file.map(|file| file.begin(is_watched(time))).transpose();
         Ok(Ready { robot, time, log })
     });
     opened.unwrap_or_else(bug_before)

@@ -123,6 +123,17 @@ fn a_log_takes_the_place_of_an_older_one() {
 
 #[cfg(target_os = "linux")]
 #[test]
+fn a_log_that_cannot_begin_stops_the_robot_that_was_opened() {
+    let file = rustix::fs::memfd_create("log", rustix::fs::MemfdFlags::ALLOW_SEALING).unwrap();
+    rustix::io::write(&file, b"an old log\n").unwrap();
+    rustix::fs::fcntl_add_seals(&file, rustix::fs::SealFlags::SHRINK).unwrap();
+    let run = tour().run(&["--log", &format!("/proc/self/fd/{}", std::os::fd::AsRawFd::as_raw_fd(&file))]);
+    assert_eq!((run.status, &*run.journal), (3, "exchange 0, stop, finish"));
+    assert!(run.err.starts_with("error: the run log cannot be written, so the robot was stopped: "), "{}", run.err);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
 fn a_full_disk_stops_the_robot() {
     let run = Stage { time: Time::Stepped(Pace::Times(1.0)), ..tour() }.run(&["--log", "/dev/full"]);
     assert_eq!((run.status, &*run.journal), (3, "exchange 0, exchange 0, stop, finish"));
