@@ -7,7 +7,9 @@ use std::time::{Duration, Instant};
 
 use mdle_runtime::Nanos;
 
-use crate::signals::{Signal, Signals};
+use crate::ending::Ending;
+use crate::signals::Signals;
+use crate::timing::Timing;
 use crate::{Pace, Time};
 
 /// The longest sleep without a look at the signals.
@@ -57,13 +59,17 @@ pub(crate) struct Clock<I> {
     zero: u64,
     /// How many periods after the origin the current turn began.
     place: u64,
+    /// When the current turn began, in real nanoseconds.
+    begun: u64,
+    timing: Timing,
 }
 
 impl<I: Instants> Clock<I> {
     /// The clock of a run whose turn 0 begins now.
     pub(crate) fn begin(mut instants: I, time: Time, period: Duration) -> Self {
         let origin = nanos(instants.now());
-        Self { instants, time, period: nanos(period).max(1), origin, zero: origin, place: 0 }
+        let period = nanos(period).max(1);
+        Self { instants, time, period, origin, zero: origin, place: 0, begun: origin, timing: Timing::new(period) }
     }
 
     /// Takes note that the first output has been taken: this is the plan's time 0.
@@ -80,16 +86,31 @@ impl<I: Instants> Clock<I> {
         }
     }
 
-    /// Waits for the beginning of the next turn; a signal cuts the wait short.
-    pub(crate) fn next_turn(&mut self, signals: &Signals) -> Result<(), Signal> {
+    /// How late turns began and how long they took, if a robot in real time has made any.
+    pub(crate) fn timing(&self) -> Option<&Timing> {
+        Some(&self.timing).filter(|timing| self.time == Time::Wall && timing.has_turns())
+    }
+
+    /// Waits for the beginning of the next turn.
+    ///
+    /// # Errors
+    /// A signal, which cuts the wait short, or one turn too many that took longer than the period.
+    pub(crate) fn next_turn(&mut self, signals: &Signals) -> Result<(), Ending> {
+        if self.time == Time::Wall {
+            let took = nanos(self.instants.now()).saturating_sub(self.begun);
+            self.timing.took(took).map_err(Ending::Overrun)?;
+        }
         let deadline = self.deadline();
         loop {
             if let Some(signal) = signals.caught() {
-                return Err(signal);
+                return Err(Ending::Signal(signal));
             }
             let Some(deadline) = deadline else { return Ok(()) };
-            let left = deadline.saturating_sub(nanos(self.instants.now()));
+            let now = nanos(self.instants.now());
+            let left = deadline.saturating_sub(now);
             if left == 0 {
+                self.begun = now;
+                self.timing.begins(now.saturating_sub(deadline));
                 return Ok(());
             }
             self.instants.sleep(Duration::from_nanos(left).min(SLICE));
@@ -127,6 +148,7 @@ pub(crate) fn nanos(duration: Duration) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::signals::Signal;
 
     /// Time that passes only in sleeps, and when the test says so.
     #[derive(Debug, Default)]
@@ -164,6 +186,20 @@ mod tests {
         let mut clock = Clock::begin(ByHand::default(), Time::Wall, PERIOD);
         let begins = [101, 250, 10].map(|took| next_after(&mut clock, took));
         assert_eq!(begins, [200, 500, 600]);
+    }
+
+    #[test]
+    fn the_tenth_turn_in_a_row_that_is_too_long_is_one_too_many() {
+        let mut clock = Clock::begin(ByHand::default(), Time::Wall, PERIOD);
+        next_after(&mut clock, 100);
+        assert!(clock.timing().is_some_and(|timing| timing.to_string().starts_with("1 turn of 100ms, 0 longer\n")));
+        for _ in 0..9 {
+            next_after(&mut clock, 101);
+        }
+        clock.instants.0 += Duration::from_millis(101);
+        let ending = clock.next_turn(&Signals::unheard()).expect_err("an overrun");
+        let Ending::Overrun(sentence) = ending else { panic!("{ending:?}") };
+        assert!(sentence.starts_with("10 turns in a row took longer than the period of 100ms, "), "{sentence}");
     }
 
     #[test]
@@ -217,7 +253,7 @@ mod tests {
         signals.raise(Signal::Terminate);
         for time in [Time::Wall, Time::Stepped(Pace::Times(0.001)), Time::Stepped(Pace::Max)] {
             let mut clock = Clock::begin(ByHand::default(), time, PERIOD);
-            assert_eq!(clock.next_turn(&signals), Err(Signal::Terminate));
+            assert_eq!(clock.next_turn(&signals), Err(Ending::Signal(Signal::Terminate)));
             assert_eq!(clock.instants.0, Duration::ZERO);
         }
     }

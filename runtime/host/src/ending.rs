@@ -33,6 +33,8 @@ pub(crate) enum Ending {
     Robot(String),
     /// The run log could not be written: why.
     Log(String),
+    /// Too many turns took too long: how long.
+    Overrun(String),
     /// Code panicked: its message.
     Bug(String),
 }
@@ -53,7 +55,7 @@ impl Ending {
             Self::Over => OVER,
             Self::Timeout(_) | Self::Turns(_) => LIMIT,
             Self::Signal(signal) => 128 + signal.number(),
-            Self::Robot(_) | Self::Log(_) | Self::Bug(_) => FAULT,
+            Self::Robot(_) | Self::Log(_) | Self::Overrun(_) | Self::Bug(_) => FAULT,
         }
     }
 
@@ -61,7 +63,7 @@ impl Ending {
     /// nothing is known of it. Its stop command is sent all the same.
     pub(crate) fn robot_listens(&self) -> bool {
         match self {
-            Self::Over | Self::Timeout(_) | Self::Turns(_) | Self::Signal(_) | Self::Log(_) => true,
+            Self::Over | Self::Timeout(_) | Self::Turns(_) | Self::Signal(_) | Self::Log(_) | Self::Overrun(_) => true,
             Self::Robot(_) | Self::Bug(_) => false,
         }
     }
@@ -69,7 +71,13 @@ impl Ending {
     /// Whether the robot's own code can still be trusted to write what was asked for.
     pub(crate) fn is_orderly(&self) -> bool {
         match self {
-            Self::Over | Self::Timeout(_) | Self::Turns(_) | Self::Signal(_) | Self::Robot(_) | Self::Log(_) => true,
+            Self::Over
+            | Self::Timeout(_)
+            | Self::Turns(_)
+            | Self::Signal(_)
+            | Self::Robot(_)
+            | Self::Log(_)
+            | Self::Overrun(_) => true,
             Self::Bug(_) => false,
         }
     }
@@ -86,7 +94,9 @@ impl Ending {
                 say(err, format_args!("stopped by --turns: the plan was not over after {limit} {turns}"));
             }
             Self::Signal(signal) => say(err, format_args!("stopped by {}", signal.name())),
-            Self::Robot(fault) => say(err, format_args!("error: a fault stopped the robot: {fault}")),
+            Self::Robot(fault) | Self::Overrun(fault) => {
+                say(err, format_args!("error: a fault stopped the robot: {fault}"))
+            }
             Self::Log(fault) => {
                 say(err, format_args!("error: the run log cannot be written, so the robot was stopped: {fault}"))
             }

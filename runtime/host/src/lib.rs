@@ -22,6 +22,7 @@ mod summary;
 mod target;
 #[cfg(test)]
 mod tests;
+mod timing;
 mod turns;
 
 use std::io::{self, BufWriter, IsTerminal, Write};

@@ -82,21 +82,27 @@ where
         out = Box::new(Held::new(out));
     }
     let mut report = Report::new(&mut *out, is_watched(time) && !screen);
+    let mut clock = Clock::begin(instants, time, options.period);
     let ending = shielded(|| {
         let log = match &mut log {
             Ok(log) => log.as_mut(),
             Err(error) => return Ending::Log(error.to_string()),
         };
-        let mut clock = Clock::begin(instants, time, options.period);
         let seen = seen.filter(|_| !screen && !is_watched(time));
-        let progress = seen.map(|now| Progress::new(&mut *err, now));
-        let mut witnesses = Witnesses { report: &mut report, log, progress };
+        let (progress, err): (_, Option<&mut dyn Write>) = match seen {
+            Some(now) => (Some(Progress::new(&mut *err, now)), None),
+            None => (None, Some(&mut *err)),
+        };
+        let mut witnesses = Witnesses { report: &mut report, log, progress, err };
         turns::run(&mut robot, plan(), limits, &mut clock, &signals, &mut witnesses)
     });
     let status = way_out(&mut robot, ending.unwrap_or_else(bug), &mut report, log.ok().flatten(), err);
     // It stands, and all is said; even code that panics while it tidies up must not change the status.
     let _ = shielded(move || drop(robot));
     signals.robot_stands();
+    if let Some(timing) = clock.timing() {
+        say(err, format_args!("{timing}"));
+    }
     if let Err(error) = report.close() {
         say(err, format_args!("warning: standard output could not be written: {error}"));
     }

@@ -4,7 +4,7 @@ use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1};
 use signal_hook::flag;
 
 /// A signal that asks the program to end.
@@ -56,6 +56,8 @@ pub(crate) struct Signals {
     caught: Arc<AtomicUsize>,
     /// Whether a signal ends the program at once, as it does by default.
     deadly: Arc<AtomicBool>,
+    /// Whether SIGUSR1 came: how late are the turns?
+    timing: Arc<AtomicBool>,
 }
 
 impl Signals {
@@ -64,7 +66,8 @@ impl Signals {
     /// # Errors
     /// When the system does not let a signal be caught.
     pub(crate) fn listen() -> io::Result<Self> {
-        let signals = Self { caught: Arc::default(), deadly: Arc::new(AtomicBool::new(true)) };
+        let signals = Self { caught: Arc::default(), deadly: Arc::new(AtomicBool::new(true)), timing: Arc::default() };
+        flag::register(SIGUSR1, Arc::clone(&signals.timing))?;
         for signal in Signal::ALL {
             // Whoever started the program with `nohup` wants it to outlive the terminal.
             if signal == Signal::HangUp && ignored(signal) {
@@ -92,16 +95,21 @@ impl Signals {
         Signal::ALL.into_iter().find(|signal| usize::from(signal.number()) == number)
     }
 
+    /// Whether it has been asked, since this was asked last, how late the turns are.
+    pub(crate) fn timing_is_asked_for(&self) -> bool {
+        self.timing.swap(false, Ordering::SeqCst)
+    }
+
     /// Signals that only [`Signals::raise`] raises.
     #[cfg(test)]
     pub(crate) fn unheard() -> Self {
-        Self { caught: Arc::default(), deadly: Arc::default() }
+        Self { caught: Arc::default(), deadly: Arc::default(), timing: Arc::default() }
     }
 
     /// Another handle on the same signals.
     #[cfg(test)]
     pub(crate) fn share(&self) -> Self {
-        Self { caught: Arc::clone(&self.caught), deadly: Arc::clone(&self.deadly) }
+        Self { caught: Arc::clone(&self.caught), deadly: Arc::clone(&self.deadly), timing: Arc::clone(&self.timing) }
     }
 
     /// Does what the system does when the signal comes.

@@ -1,18 +1,19 @@
 //! The turns of a plan on a robot: exchange, time, machine, and the wait for the next (semantics, section 5).
 
 use std::fs::File;
-use std::io;
+use std::io::{self, Write};
 use std::time::Duration;
 
 use mdle_runtime::fsm::Kind;
 use mdle_runtime::{Machine, Nanos, Plan, Robot, Transition, Turn, Watch};
 
 use crate::clock::{Clock, Instants, nanos};
-use crate::ending::Ending;
+use crate::ending::{Ending, say};
 use crate::log::{Entry, Log};
 use crate::progress::Progress;
 use crate::report::Report;
 use crate::signals::Signals;
+use crate::timing::Timing;
 use crate::{Around, Hosted, Standing};
 
 /// When a plan that is not over is given up.
@@ -32,6 +33,8 @@ pub(crate) struct Witnesses<'a, 'o> {
     pub(crate) log: Option<&'a mut Log<File>>,
     /// The line that shows that a fast run goes on, where somebody sees it.
     pub(crate) progress: Option<Progress<'a>>,
+    /// Standard error, where it does not show that line.
+    pub(crate) err: Option<&'a mut dyn Write>,
 }
 
 /// Runs `plan` on `robot`, from the exchange of turn 0 until something ends it.
@@ -83,8 +86,11 @@ where
         if let Some(ending) = limits.reached(number, t) {
             return ending;
         }
-        if let Err(signal) = clock.next_turn(signals) {
-            return Ending::Signal(signal);
+        if signals.timing_is_asked_for() {
+            witnesses.tell_timing(clock.timing());
+        }
+        if let Err(ending) = clock.next_turn(signals) {
+            return ending;
         }
         y = match exchange(robot, &turn.input()) {
             Ok(output) => output,
@@ -125,6 +131,13 @@ impl Limits {
 }
 
 impl Witnesses<'_, '_> {
+    /// Tells how late turns begin and how long they take.
+    fn tell_timing(&mut self, timing: Option<&Timing>) {
+        if let (Some(err), Some(timing)) = (&mut self.err, timing) {
+            say(err, format_args!("{timing}"));
+        }
+    }
+
     /// Tells of a turn.
     fn tell<P: Plan>(
         &mut self,

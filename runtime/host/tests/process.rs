@@ -37,6 +37,11 @@ fn send(child: &Child, signal: &str) {
     assert!(sent.success());
 }
 
+/// Whether a line is none of the last words, on how late turns were.
+fn is_no_timing(line: &str) -> bool {
+    !line.contains(" turns of ") && !line.contains(" turn of ")
+}
+
 fn text(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
 }
@@ -47,7 +52,8 @@ fn a_signal_stops_the_cart_and_names_the_status() {
         let mut child = start(&FAR);
         let lines = wait_until_it_moves(child.stderr.take().unwrap());
         send(&child, signal);
-        let rest: Vec<_> = lines.skip_while(|line| line == "cart: 0.5 m/s").collect();
+        let rest: Vec<_> =
+            lines.skip_while(|line| line == "cart: 0.5 m/s").take_while(|line| is_no_timing(line)).collect();
         assert_eq!(rest, ["cart: 0 m/s".to_owned(), "cart: stop".to_owned(), format!("stopped by SIG{signal}")]);
         assert_eq!(child.wait().unwrap().code(), Some(status));
     }
@@ -59,7 +65,24 @@ fn a_signal_is_noticed_in_a_long_period() {
     let mut lines = BufReader::new(child.stderr.take().unwrap()).lines().map(Result::unwrap);
     assert_eq!(lines.next().as_deref(), Some("cart: 0 m/s"));
     send(&child, "TERM");
-    assert_eq!(lines.collect::<Vec<_>>(), ["cart: 0 m/s", "cart: stop", "stopped by SIGTERM"]);
+    let rest: Vec<_> = lines.take_while(|line| is_no_timing(line)).collect();
+    assert_eq!(rest, ["cart: 0 m/s", "cart: stop", "stopped by SIGTERM"]);
+    assert_eq!(child.wait().unwrap().code(), Some(143));
+}
+
+#[test]
+fn how_late_turns_are_is_told_on_sigusr1_and_at_the_end() {
+    let mut child = start(&FAR);
+    let mut lines = wait_until_it_moves(child.stderr.take().unwrap());
+    let table = ["     up to      late      took", "      most"];
+    for signal in ["USR1", "TERM"] {
+        send(&child, signal);
+        let head = lines.find(|line| !is_no_timing(line)).unwrap();
+        assert!(head.contains(" turns of 20ms, "), "{head}");
+        assert_eq!(lines.next().as_deref(), Some(table[0]));
+        assert!(lines.any(|line| line.starts_with(table[1])));
+    }
+    assert_eq!(lines.next(), None);
     assert_eq!(child.wait().unwrap().code(), Some(143));
 }
 
@@ -110,10 +133,10 @@ fn a_closed_pipe_disturbs_nothing() {
         let mut child = start(arguments);
         drop(child.stdout.take());
         let Output { status, stderr, .. } = child.wait_with_output().unwrap();
-        let limit = "stopped by --turns: the plan was not over after 10 turns\n";
+        let limit = "stopped by --turns: the plan was not over after 10 turns\n9 turns of 10ms, ";
         match status.code() {
             Some(0) => assert_eq!(text(&stderr), ""),
-            code => assert_eq!((code, &*text(&stderr)), (Some(4), limit)),
+            code => assert!(code == Some(4) && text(&stderr).starts_with(limit), "{code:?} {}", text(&stderr)),
         }
     }
 }
