@@ -33,7 +33,10 @@ impl Judge<'_> {
             let start = Instant::now();
             match standing {
                 Standing::Built => match at_once.run(place) {
-                    Outcome::Survived => apart.push(mutant),
+                    Outcome::Survived => {
+                        println!("{mutant}: survived the fast tests [{:.0?}]", start.elapsed());
+                        apart.push(mutant);
+                    }
                     outcome => self.tried(mutant, outcome, start, &mut report),
                 },
                 Standing::DoesNotCompile => self.tried(mutant, Outcome::DoesNotCompile, start, &mut report),

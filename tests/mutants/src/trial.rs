@@ -12,9 +12,6 @@ pub(crate) type Packages = &'static [&'static str];
 pub(crate) const RUNTIME: Packages = &["--package", "mdle-runtime"];
 const COMPILER: Packages = &["--package", "mdlec", "--package", "mdle-tests"];
 
-/// The one that compiles what is emitted, of a runtime with its mutants too if they are built together: that takes rustc gigabytes.
-pub(crate) const DEAREST: (Packages, &[&str]) = (COMPILER, &["--test", "emitted"]);
-
 /// The tests, as `cargo test` takes them: those first that catch much and are fast.
 pub(crate) const TESTS: &[(Packages, &[&str])] = &[
     (RUNTIME, &["--lib"]),
@@ -22,8 +19,11 @@ pub(crate) const TESTS: &[(Packages, &[&str])] = &[
     (COMPILER, &["--test", "rules", "--test", "rules_of_*"]),
     (COMPILER, &["--lib", "--", "fsm::", "plan::", "rust::"]),
     (COMPILER, &["--test", "differential"]),
-    DEAREST,
+    (COMPILER, &["--test", "emitted"]),
 ];
+
+/// So many of them take seconds. The others take minutes, and the last one has rustc compile a runtime.
+pub(crate) const FAST: usize = 4;
 
 /// The command line of a test.
 pub(crate) fn name(test: usize) -> String {
