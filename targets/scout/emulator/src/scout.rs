@@ -2,11 +2,12 @@
 
 use std::time::Duration;
 
+use mdle_emulator::Emulated;
 use mdle_runtime::capability::{Odometry, SonarRing};
 use mdle_runtime::{MetersPerSecond, Pose, RadiansPerSecond, Robot as _, SonarId, Twist};
 use mdle_sim::{Output, Simulated};
 
-use crate::wire::{Request, answer, number, two_bytes};
+use crate::wire::{Incoming, Request, answer, number, two_bytes};
 
 /// Metres in an inch.
 const INCH: f64 = 0.0254;
@@ -22,6 +23,9 @@ const REFUSED: u8 = 8;
 pub struct Scout {
     body: Simulated,
     sensed: Output,
+    incoming: Incoming,
+    /// What was asked last, and whether it knows that, until it has answered.
+    asked: Option<(Request, bool)>,
     /// What the wheels have been told, in tenths of an inch a second.
     wheels: (i32, i32),
     /// Whether the motors are limp: then it rolls on.
@@ -55,6 +59,8 @@ impl Scout {
             wheels: (0, 0),
             limp: true,
             zero,
+            incoming: Incoming::default(),
+            asked: None,
             active: u16::MAX,
             heard: [255; 16],
             watchdog: None,
@@ -72,32 +78,6 @@ impl Scout {
         self.body.pose()
     }
 
-    /// Lets one period of the world pass.
-    ///
-    /// # Errors
-    /// As for [`Scout::new`].
-    pub fn pass(&mut self, period: Duration) -> Result<(), String> {
-        self.age += period;
-        self.silence += period;
-        if self.watchdog.is_some_and(|limit| self.silence >= limit) {
-            (self.wheels, self.limp) = ((0, 0), false);
-        }
-        if self.limp {
-            let less = |wheel: i32| wheel - wheel.signum() * wheel.abs().min((ROLLING * period.as_secs_f64()) as i32);
-            self.wheels = (less(self.wheels.0), less(self.wheels.1));
-        }
-        let (right, left) = if self.emergency { (0, 0) } else { self.wheels };
-        // The body counts in tenths of an inch as well, and cuts off: a hair more leaves it these very numbers.
-        let inches = |wheel: i32| (f64::from(wheel) + 0.01 * f64::from(wheel.signum())) / 10.0;
-        let (right, left) = (inches(right), inches(left));
-        let degrees = (right - left) / 2.0 / INCHES_A_DEGREE;
-        let input =
-            Twist { v: MetersPerSecond((right + left) / 2.0 * INCH), omega: RadiansPerSecond(degrees.to_radians()) };
-        self.sensed = self.body.exchange(&input).map_err(|error| error.to_string())?;
-        self.listen();
-        Ok(())
-    }
-
     /// The sonars that ping say what they heard last.
     fn listen(&mut self) {
         for (sonar, heard) in (0..).zip(&mut self.heard) {
@@ -111,7 +91,7 @@ impl Scout {
     }
 
     /// Does what it is told; whether it knows that.
-    pub fn obey(&mut self, request: &Request) -> bool {
+    fn does(&mut self, request: &Request) -> bool {
         self.silence = Duration::ZERO;
         match (request.command, &*request.data) {
             (1 | 2 | 7, _) => {}
@@ -130,12 +110,6 @@ impl Scout {
             _ => return false,
         }
         true
-    }
-
-    /// What it says to a request that it knows, or does not.
-    #[must_use]
-    pub fn answer(&self, request: &Request, is_known: bool) -> Vec<u8> {
-        if is_known { answer(request.command, &self.state()) } else { answer(REFUSED, &[]) }
     }
 
     /// How fast the wheels go, in tenths of an inch a second.
@@ -157,7 +131,7 @@ impl Scout {
         let moving = |wheel: i32, bit: u8| if wheel == 0 { 0 } else { bit };
         let (right, left) = self.rolling();
         let status = moving(left, 1) | moving(right, 2) | charge | if self.emergency { 0b0100_0000 } else { 0 };
-        let switches = self.sensed.switches();
+        let switches = self.sensed.switches;
         [
             &self.heard[..],
             &[switches as u8, (switches >> 8) as u8, (switches >> 16) as u8],
@@ -173,5 +147,48 @@ impl Scout {
             &[239, 222],
         ]
         .concat()
+    }
+}
+
+impl Emulated for Scout {
+    fn push(&mut self, bytes: &[u8]) {
+        self.incoming.push(bytes);
+    }
+
+    fn obey(&mut self) -> Option<bool> {
+        let request = self.incoming.next_request()?;
+        let is_known = self.does(&request);
+        self.asked = Some((request, is_known));
+        Some(true)
+    }
+
+    fn pass(&mut self, period: Duration) -> Result<(), String> {
+        self.age += period;
+        self.silence += period;
+        if self.watchdog.is_some_and(|limit| self.silence >= limit) {
+            (self.wheels, self.limp) = ((0, 0), false);
+        }
+        if self.limp {
+            let less = |wheel: i32| wheel - wheel.signum() * wheel.abs().min((ROLLING * period.as_secs_f64()) as i32);
+            self.wheels = (less(self.wheels.0), less(self.wheels.1));
+        }
+        let (right, left) = if self.emergency { (0, 0) } else { self.wheels };
+        // The body counts in tenths of an inch as well, and cuts off: a hair more leaves it these very numbers.
+        let inches = |wheel: i32| (f64::from(wheel) + 0.01 * f64::from(wheel.signum())) / 10.0;
+        let (right, left) = (inches(right), inches(left));
+        let degrees = (right - left) / 2.0 / INCHES_A_DEGREE;
+        let input =
+            Twist { v: MetersPerSecond((right + left) / 2.0 * INCH), omega: RadiansPerSecond(degrees.to_radians()) };
+        self.sensed = self.body.exchange(&input).map_err(|error| error.to_string())?;
+        self.listen();
+        Ok(())
+    }
+
+    fn said(&mut self) -> Vec<u8> {
+        match self.asked.take() {
+            Some((request, true)) => answer(request.command, &self.state()),
+            Some((_, false)) => answer(REFUSED, &[]),
+            None => Vec::new(),
+        }
     }
 }
