@@ -20,6 +20,7 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("targets/emulator", &["mdle-sim"]),
     // The drivers are there for their tests alone: they share no word of the language.
     ("targets/scout/emulator", &["mdle-runtime", "mdle-sim", "mdle-emulator", "mdle-scout"]),
+    ("targets/atrv/emulator", &["mdle-runtime", "mdle-sim", "mdle-emulator", "mdle-atrv"]),
     (
         "tests",
         &[
@@ -29,6 +30,7 @@ const PACKAGES: &[(&str, &[&str])] = &[
             "mdle-sim",
             "mdle-emulator",
             "mdle-scout-emulator",
+            "mdle-atrv-emulator",
             "mdle-scripted",
             "mdlec",
         ],
