@@ -12,7 +12,7 @@ use std::time::Duration;
 
 use mdle_atrv_emulator::atrv::{Atrv, step};
 use mdle_atrv_emulator::wire::{Incoming, report};
-use mdle_emulator::{Emulated, Pace, Port, serve};
+use mdle_emulator::{Ailment, Emulated, Pace, Port, serve};
 use mdle_sim::{Body, Make, Simulated, World};
 use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::repository::root;
@@ -125,7 +125,7 @@ fn the_configuration_says_what_holds_and_why() {
 }
 
 /// A robot, or something else, that answers every command with the same bytes.
-struct Answers(Incoming, Vec<u8>, Vec<u8>);
+struct Answers(Incoming, Vec<u8>, Vec<Vec<u8>>);
 
 impl Answers {
     fn with(bytes: Vec<u8>) -> Self {
@@ -140,7 +140,7 @@ impl Emulated for Answers {
 
     fn obey(&mut self) -> Option<bool> {
         self.0.next_request()?;
-        self.2.extend_from_slice(&self.1);
+        self.2.push(self.1.clone());
         Some(false)
     }
 
@@ -148,9 +148,15 @@ impl Emulated for Answers {
         Ok(())
     }
 
-    fn said(&mut self) -> Vec<u8> {
+    fn said(&mut self) -> Vec<Vec<u8>> {
         std::mem::take(&mut self.2)
     }
+
+    fn can_suffer(_: Ailment) -> bool {
+        false
+    }
+
+    fn suffer(&mut self, _: Ailment) {}
 }
 
 #[test]
@@ -194,11 +200,17 @@ impl Emulated for Then {
         self.0.pass(time)
     }
 
-    fn said(&mut self) -> Vec<u8> {
+    fn said(&mut self) -> Vec<Vec<u8>> {
         let said = self.0.said();
         self.2 |= self.0.velocity().v.0 > 0.1 && (self.1)(&mut self.0);
         if self.2 { Vec::new() } else { said }
     }
+
+    fn can_suffer(_: Ailment) -> bool {
+        false
+    }
+
+    fn suffer(&mut self, _: Ailment) {}
 }
 
 #[test]
@@ -258,7 +270,13 @@ impl Emulated for Moves<'_> {
         Ok(())
     }
 
-    fn said(&mut self) -> Vec<u8> {
+    fn said(&mut self) -> Vec<Vec<u8>> {
         self.0.said()
     }
+
+    fn can_suffer(_: Ailment) -> bool {
+        false
+    }
+
+    fn suffer(&mut self, _: Ailment) {}
 }

@@ -11,6 +11,7 @@ use clap::Args;
 use mdle_sim::{Body, Make, Simulated, Start, World};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
+use crate::fault::{At, Faulty};
 use crate::port::Port;
 use crate::serve::{Emulated, Pace, serve};
 
@@ -32,6 +33,12 @@ pub struct Options {
     /// Let the world pass on by so many milliseconds with each command, whatever the clock says.
     #[arg(long, value_name = "MS", value_parser = clap::value_parser!(u64).range(1..=10_000))]
     lockstep: Option<u64>,
+    /// What goes wrong, so many seconds after the robot was switched on by the time of its world; may be given more than
+    /// once. On its line: noise, dribble (byte by byte), check (a bit of each frame is wrong), lose (two frames of three),
+    /// double, silence, close. With itself: stuck-wheel (the right one), dead-sonar (the one in front), bumper, emergency,
+    /// low-battery, and filler, for robots that know it.
+    #[arg(long, value_name = "KIND@SECONDS")]
+    fault: Vec<At>,
 }
 
 /// Runs the robot that `made` makes of a body, until a signal comes. `name` is the robot's, as in `the Scout`; the time of
@@ -66,7 +73,7 @@ fn run<R: Emulated>(
     let start = options.start.map_or(world.start, |start| start.0);
     let step = step(pace);
     let body = Simulated::with(&make, &world, start, step).map_err(|error| error.to_string())?;
-    let mut robot = made(body, step)?;
+    let mut robot = Faulty::new(made(body, step)?, &options.fault)?;
     let over = over().map_err(|error| format!("signals cannot be caught: {error}"))?;
     let mut port = Port::open().map_err(|error| format!("no pseudo-terminal: {error}"))?;
     if let Some(link) = &options.link {
@@ -75,6 +82,9 @@ fn run<R: Emulated>(
     // Whoever does not read it knows the link.
     let _ = writeln!(std::io::stdout(), "{name} is at {}", port.path().display());
     let line = serve(&mut robot, &port, pace, &|| !over.load(Ordering::Relaxed));
+    if robot.is_closed() {
+        return Ok(());
+    }
     line.map_err(|error| format!("the line failed: {error}"))
 }
 

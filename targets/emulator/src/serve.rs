@@ -3,6 +3,7 @@
 use std::io;
 use std::time::{Duration, Instant};
 
+use crate::fault::Ailment;
 use crate::port::Port;
 
 /// A step of the world in real time.
@@ -25,8 +26,14 @@ pub trait Emulated {
     /// The world's sentence about an input that it cannot take, which none here is.
     fn pass(&mut self, time: Duration) -> Result<(), String>;
 
-    /// What it has to say since it was asked last.
-    fn said(&mut self) -> Vec<u8>;
+    /// The frames that it has to say since it was asked last.
+    fn said(&mut self) -> Vec<Vec<u8>>;
+
+    /// Whether this can happen to it.
+    fn can_suffer(ailment: Ailment) -> bool;
+
+    /// From now on this is the matter with it.
+    fn suffer(&mut self, ailment: Ailment);
 }
 
 /// How the world passes on.
@@ -77,8 +84,12 @@ pub fn serve<R: Emulated>(robot: &mut R, port: &Port, pace: Pace, goes_on: &dyn 
                 // What it was told holds for the period that follows, and the answer says how that went.
                 robot.pass(step).map_err(io::Error::other)?;
             }
-            port.write(&robot.said())?;
+            say(robot, port)?;
         }
-        port.write(&robot.said())?;
+        say(robot, port)?;
     }
+}
+
+fn say<R: Emulated>(robot: &mut R, port: &Port) -> io::Result<()> {
+    robot.said().iter().try_for_each(|bytes| port.write(bytes))
 }

@@ -1,42 +1,32 @@
 //! An ATRV-mini in a simulated world: what each command does to it, and what it tells as time passes.
 
+mod telling;
+
 use std::time::Duration;
 
-use mdle_emulator::{Emulated, Pace, STEP};
+use mdle_emulator::{Ailment, Emulated, Pace, STEP};
 use mdle_runtime::{MetersPerSecond, Nanos, Pose, RadiansPerSecond, Robot as _, Twist};
 use mdle_sim::{Output, Simulated};
 
-use crate::wire::{Incoming, Request, number, report};
+use crate::wire::{Incoming, Request, number};
+use telling::Schedule;
 
 /// What the controller counts for a metre and a radian.
 const A_METRE: f64 = 139_654.7;
 const A_RADIAN: f64 = 49_784.5;
-/// What a sonar counts for a metre.
-const A_RANGE: f64 = 1550.0;
-/// The boards with the body's sonars, six on each: front left, rear left, front right, rear right.
-const BOARDS: [u8; 4] = [0, 1, 3, 2];
-/// What it tells when it has heard nothing.
-const NOTHING: u16 = 32_766;
 /// After how long without a command it stops by itself, unless it is told otherwise.
 const FAILSAFE: Duration = Duration::from_secs(1);
-/// In every so many reports there is filler.
-const FILLED: u8 = 7;
-/// The battery, in hundredths of a volt.
+/// The battery, in hundredths of a volt; and one that is low.
 const BATTERY: u32 = 2430;
+const LOW: u32 = 2010;
+/// The distance between its sides, in metres, as its body has it.
+const BETWEEN: f64 = 0.4;
 
 /// The steps in which the time of its body passes: as many as it takes for none to be longer than [`STEP`].
 #[must_use]
 pub fn step(pace: Pace) -> Duration {
     let step = pace.step();
     step / step.as_nanos().div_ceil(STEP.as_nanos()).max(1) as u32
-}
-
-/// Something that is told again and again.
-#[derive(Debug, Clone, Copy, Default)]
-struct Schedule {
-    /// Zero for never.
-    period: Duration,
-    due: Duration,
 }
 
 /// The robot.
@@ -47,7 +37,7 @@ pub struct Atrv {
     sensed: Output,
     incoming: Incoming,
     /// What is still to be sent, and how many reports there have been.
-    said: Vec<u8>,
+    said: Vec<Vec<u8>>,
     count: u8,
     /// What it has been told, forward and in turns, in its units a second.
     told: (i32, i32),
@@ -63,6 +53,8 @@ pub struct Atrv {
     age: Duration,
     /// Whether its emergency stop is pressed.
     pub emergency: bool,
+    /// What else is the matter with it.
+    ailments: Vec<Ailment>,
     /// After how long without a command it stops by itself.
     pub failsafe: Duration,
 }
@@ -90,6 +82,7 @@ impl Atrv {
             silence: Duration::ZERO,
             age: Duration::ZERO,
             emergency: false,
+            ailments: Vec::new(),
             failsafe: FAILSAFE,
         })
     }
@@ -118,7 +111,8 @@ impl Atrv {
         match (request.port, request.code, &*request.data) {
             (1, 1, _) => {
                 let brake = [u8::from(self.is_braked())];
-                let data = [&self.time()[..], &BATTERY.to_be_bytes(), &brake].concat();
+                let battery = if self.has(Ailment::LowBattery) { LOW } else { BATTERY };
+                let data = [&self.time()[..], &battery.to_be_bytes(), &brake].concat();
                 self.tell(1, 1, &data);
             }
             (2, 7, [axis, v0, v1, v2, v3, .., direction]) if request.data.len() == 14 => {
@@ -165,6 +159,7 @@ impl Atrv {
             v: MetersPerSecond(exactly(self.told.0, A_METRE)),
             omega: RadiansPerSecond(exactly(self.told.1, A_RADIAN)),
         };
+        let input = if self.has(Ailment::StuckWheel) { left_alone(&input) } else { input };
         let before = self.sensed.odometry;
         self.sensed = self.body.exchange(&input).map_err(|error| error.to_string())?;
         self.goes(&before);
@@ -190,74 +185,15 @@ impl Atrv {
         self.gone = (self.gone.0 + way * A_METRE, self.gone.1 + turn * A_RADIAN);
     }
 
-    fn tell_axes(&mut self) {
-        let Twist { v, omega } = self.sensed.velocity;
-        for (axis, gone, speed) in [(0, self.gone.0, v.0 * A_METRE), (1, self.gone.1, omega.0 * A_RADIAN)] {
-            // What is more than 32 bits is told without the rest.
-            let position = (gone.round() as i64) as i32;
-            let data = [
-                &[0; 4][..],
-                &self.time(),
-                &[axis],
-                &position.to_be_bytes(),
-                &(speed.round() as i32).to_be_bytes(),
-                &[0; 8],
-            ];
-            self.tell(2, 33, &data.concat());
-        }
-    }
-
-    /// A report for the sonars that have pinged since the last one, if any have.
-    fn tell_pings(&mut self) {
-        let Some(told) = &mut self.pings else { return };
-        let mut data = Vec::new();
-        for ((heard, told), sonar) in self.body.heard().iter().zip(told).zip(0_u8..) {
-            if heard.at > *told {
-                *told = heard.at;
-                let counts = heard.range.map_or(NOTHING, |range| (range.0 * A_RANGE).round() as u16);
-                data.push(BOARDS[usize::from(sonar / 6) % 4] * 16 + sonar % 6);
-                data.extend(counts.to_be_bytes());
-            }
-        }
-        if !data.is_empty() {
-            let data = [&[0; 4][..], &self.time(), &data].concat();
-            self.tell(4, 2, &data);
-        }
-    }
-
-    fn tell_bumpers(&mut self) {
-        for bumper in 0..2_u8 {
-            let state = u8::from(self.sensed.switches & (1 << bumper) != 0);
-            let data = [&self.time()[..], &[0x40 + bumper, 0, state]].concat();
-            self.tell(5, 1, &data);
-        }
-    }
-
-    fn time(&self) -> [u8; 4] {
-        (self.age.as_millis() as u32).to_be_bytes()
-    }
-
-    fn tell(&mut self, port: u8, code: u8, data: &[u8]) {
-        self.count = self.count.wrapping_add(1);
-        let filler: &[u8] = if self.count.is_multiple_of(FILLED) { &[0x1B, 0x01] } else { &[] };
-        self.said.extend(report(port, self.count, code, data, filler));
+    fn has(&self, ailment: Ailment) -> bool {
+        self.ailments.contains(&ailment)
     }
 }
 
-impl Schedule {
-    fn new(micros: u32, now: Duration) -> Self {
-        let period = Duration::from_micros(u64::from(micros));
-        Self { period, due: now + period }
-    }
-
-    /// Whether it is time.
-    fn is_due(&mut self, now: Duration) -> bool {
-        let is_due = !self.period.is_zero() && self.due <= now;
-        if is_due {
-            self.due += self.period;
-        }
-        is_due
-    }
+/// How the body moves if its right side does not.
+fn left_alone(input: &Twist) -> Twist {
+    let left = input.v.0 - input.omega.0 * (BETWEEN / 2.0);
+    Twist { v: MetersPerSecond(left / 2.0), omega: RadiansPerSecond(-left / BETWEEN) }
 }
 
 impl Emulated for Atrv {
@@ -276,7 +212,20 @@ impl Emulated for Atrv {
         (1..=steps).try_for_each(|step| self.tick(begun + time * step / steps))
     }
 
-    fn said(&mut self) -> Vec<u8> {
+    fn said(&mut self) -> Vec<Vec<u8>> {
         std::mem::take(&mut self.said)
+    }
+
+    fn can_suffer(_: Ailment) -> bool {
+        true
+    }
+
+    fn suffer(&mut self, ailment: Ailment) {
+        match ailment {
+            Ailment::Emergency => self.emergency = true,
+            Ailment::StuckWheel | Ailment::DeadSonar | Ailment::Bumper | Ailment::LowBattery | Ailment::Filler => {
+                self.ailments.push(ailment);
+            }
+        }
     }
 }

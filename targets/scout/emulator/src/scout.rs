@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use mdle_emulator::Emulated;
+use mdle_emulator::{Ailment, Emulated};
 use mdle_runtime::capability::{Odometry, SonarRing};
 use mdle_runtime::{MetersPerSecond, Pose, RadiansPerSecond, Robot as _, SonarId, Twist};
 use mdle_sim::{Output, Simulated};
@@ -43,6 +43,11 @@ pub struct Scout {
     age: Duration,
     /// Whether its emergency stop is pressed.
     pub emergency: bool,
+    /// What else may be the matter: its right wheel, the sonar in front, its first bumper, its battery.
+    is_stuck: bool,
+    is_deaf: bool,
+    is_pressed: bool,
+    is_low: bool,
 }
 
 impl Scout {
@@ -67,6 +72,10 @@ impl Scout {
             silence: Duration::ZERO,
             age: Duration::ZERO,
             emergency: false,
+            is_stuck: false,
+            is_deaf: false,
+            is_pressed: false,
+            is_low: false,
         };
         scout.listen();
         Ok(scout)
@@ -87,6 +96,9 @@ impl Scout {
             {
                 *heard = ping.range.map_or(255, |range| (range.0 / INCH + 0.5).clamp(0.0, 255.0) as u8);
             }
+        }
+        if let Some(heard) = self.heard.first_mut().filter(|_| self.is_deaf) {
+            *heard = 255;
         }
     }
 
@@ -127,11 +139,11 @@ impl Scout {
         let (sin, cos) = libm::sincos(self.zero.theta.0);
         let tenths = |meters: f64| (meters / INCH * 10.0).round() as i64;
         let heading = (pose.theta.0 - self.zero.theta.0).to_degrees().rem_euclid(360.0);
-        let charge = 0b1000;
+        let charge = if self.is_low { 0 } else { 0b1000 };
         let moving = |wheel: i32, bit: u8| if wheel == 0 { 0 } else { bit };
         let (right, left) = self.rolling();
         let status = moving(left, 1) | moving(right, 2) | charge | if self.emergency { 0b0100_0000 } else { 0 };
-        let switches = self.sensed.switches;
+        let switches = self.sensed.switches | u32::from(self.is_pressed);
         [
             &self.heard[..],
             &[switches as u8, (switches >> 8) as u8, (switches >> 16) as u8],
@@ -173,6 +185,7 @@ impl Emulated for Scout {
             self.wheels = (less(self.wheels.0), less(self.wheels.1));
         }
         let (right, left) = if self.emergency { (0, 0) } else { self.wheels };
+        let right = if self.is_stuck { 0 } else { right };
         // The body counts in tenths of an inch as well, and cuts off: a hair more leaves it these very numbers.
         let inches = |wheel: i32| (f64::from(wheel) + 0.01 * f64::from(wheel.signum())) / 10.0;
         let (right, left) = (inches(right), inches(left));
@@ -184,11 +197,28 @@ impl Emulated for Scout {
         Ok(())
     }
 
-    fn said(&mut self) -> Vec<u8> {
+    fn said(&mut self) -> Vec<Vec<u8>> {
         match self.asked.take() {
-            Some((request, true)) => answer(request.command, &self.state()),
-            Some((_, false)) => answer(REFUSED, &[]),
+            Some((request, true)) => vec![answer(request.command, &self.state())],
+            Some((_, false)) => vec![answer(REFUSED, &[])],
             None => Vec::new(),
         }
+    }
+
+    fn can_suffer(ailment: Ailment) -> bool {
+        // Each of its bytes means something.
+        ailment != Ailment::Filler
+    }
+
+    fn suffer(&mut self, ailment: Ailment) {
+        match ailment {
+            Ailment::StuckWheel => self.is_stuck = true,
+            Ailment::DeadSonar => self.is_deaf = true,
+            Ailment::Bumper => self.is_pressed = true,
+            Ailment::Emergency => self.emergency = true,
+            Ailment::LowBattery => self.is_low = true,
+            Ailment::Filler => {}
+        }
+        self.listen();
     }
 }

@@ -7,7 +7,7 @@ use std::time::Duration;
 use mdle_atrv::{Atrv, Clock, Config, Configured, Escape, Fault};
 use mdle_atrv_emulator::atrv::{Atrv as Emulated, step};
 use mdle_atrv_emulator::wire::{Incoming, Request};
-use mdle_emulator::{Pace, Port, serve};
+use mdle_emulator::{Ailment, Pace, Port, serve};
 use mdle_runtime::{Robot as _, Twist};
 use mdle_sim::{Body, Make, Simulated, World};
 
@@ -61,9 +61,15 @@ impl mdle_emulator::Emulated for Watched<'_> {
         Ok(())
     }
 
-    fn said(&mut self) -> Vec<u8> {
+    fn said(&mut self) -> Vec<Vec<u8>> {
         self.robot.said()
     }
+
+    fn can_suffer(_: Ailment) -> bool {
+        false
+    }
+
+    fn suffer(&mut self, _: Ailment) {}
 }
 
 /// What `drive` makes of a robot in the room, which is handed back.
@@ -182,7 +188,7 @@ pub(crate) fn dribbled(period: Duration) -> Result<(), Fault> {
                     if turns {
                         robot.pass(period).unwrap();
                     }
-                    let said = robot.said();
+                    let said = robot.said().concat();
                     let noise: &[u8] = if said.is_empty() { &[] } else { &[0xFF, 0x1B] };
                     for piece in [noise, &said].concat().chunks(5) {
                         port.write(piece).unwrap();
