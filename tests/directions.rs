@@ -11,15 +11,29 @@ use mdle_tests::repository::{TextFile, files, names_from, root};
 const PACKAGES: &[(&str, &[&str])] = &[
     ("runtime/core", &[]),
     ("runtime/host", &["mdle-runtime"]),
+    ("runtime/serial", &["mdle-runtime", "mdle-host"]),
     ("atoms", &["mdle-runtime"]),
     ("mdlec", &["mdle-runtime"]),
     ("targets/sim", &["mdle-runtime", "mdle-host", "mdle-atoms"]),
-    ("targets/scout", &["mdle-runtime", "mdle-host", "mdle-atoms"]),
-    // The driver is there for its tests alone: they share no word of the language.
-    ("targets/scout/emulator", &["mdle-runtime", "mdle-sim", "mdle-scout"]),
+    ("targets/scout", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms"]),
+    ("targets/atrv", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms"]),
+    ("targets/emulator", &["mdle-sim"]),
+    // The drivers are there for their tests alone: they share no word of the language.
+    ("targets/scout/emulator", &["mdle-runtime", "mdle-sim", "mdle-emulator", "mdle-scout"]),
+    ("targets/atrv/emulator", &["mdle-runtime", "mdle-sim", "mdle-emulator", "mdle-atrv"]),
     (
         "tests",
-        &["mdle-runtime", "mdle-host", "mdle-atoms", "mdle-sim", "mdle-scout-emulator", "mdle-scripted", "mdlec"],
+        &[
+            "mdle-runtime",
+            "mdle-host",
+            "mdle-atoms",
+            "mdle-sim",
+            "mdle-emulator",
+            "mdle-scout-emulator",
+            "mdle-atrv-emulator",
+            "mdle-scripted",
+            "mdlec",
+        ],
     ),
     ("tests/scripted", &["mdle-runtime"]),
     ("tests/benchmarks", &["mdle-runtime", "mdle-sim", "mdle-tests", "mdlec"]),

@@ -10,10 +10,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::Duration;
 
+use mdle_emulator::{Pace, Port, serve};
 use mdle_runtime::Pose;
-use mdle_scout_emulator::port::Port;
 use mdle_scout_emulator::scout::Scout;
-use mdle_scout_emulator::serve::{Pace, serve};
 use mdle_sim::{Body, Make, Simulated, World};
 use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::repository::root;

@@ -7,8 +7,8 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-/// The packages that every plan is built on; the targets come on top.
-const SHARED: [&str; 3] = ["runtime/core", "runtime/host", "atoms"];
+/// The packages that targets share; the targets come on top.
+const SHARED: [&str; 4] = ["runtime/core", "runtime/host", "runtime/serial", "atoms"];
 
 /// Folders that no build of an executable reads; a folder with a package of its own is left out as well.
 const LEFT_OUT: [&str; 5] = ["tests", "benches", "examples", "snapshots", "target"];

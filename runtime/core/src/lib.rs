@@ -25,6 +25,7 @@ mod pose;
 mod quark;
 mod robot;
 mod rows;
+mod sensed;
 mod signal;
 mod sonar;
 #[cfg(test)]
@@ -44,6 +45,7 @@ pub use pose::{Frame, Pose, Twist};
 pub use quark::{Begin, Completes, Control, Interrupt, Law};
 pub use robot::{Output, Robot};
 pub use rows::{Condition, Guard, InRows, LawRow, Rows, Texts};
+pub use sensed::{Sensed, Shape};
 pub use signal::{Comparison, NoSignal, Operand, Operator, Signal};
 pub use sonar::{PINGS_KEPT, Ping, Pings, SONARS, SonarId};
 pub use time::Nanos;

@@ -32,6 +32,15 @@ impl Pose {
             theta: bearing,
         }
     }
+
+    /// The pose after an arc of length `way` that turns by `turn`: exactly, by its chord.
+    #[must_use]
+    pub fn moved(&self, way: Meters, turn: Radians) -> Self {
+        let half = turn.0 / 2.0;
+        let chord = if half.abs() < 1e-9 { way.0 } else { way.0 * libm::sin(half) / half };
+        let end = self.towards(Radians(self.theta.0 + half), Meters(chord));
+        Self { theta: Radians(self.theta.0 + turn.0).wrapped(), ..end }
+    }
 }
 
 /// The input of a differentially driven robot, `(u_f, u_θ)` in the paper's section IV-A; zero is the null input.
@@ -65,6 +74,16 @@ impl Frame {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_quarter_of_a_circle_ends_beside_where_it_began() {
+        let quarter = core::f64::consts::FRAC_PI_2;
+        let pose = Pose::ORIGIN.moved(Meters(2.0 * quarter), Radians(quarter));
+        assert_eq!([pose.x.0, pose.y.0, pose.theta.degrees()].map(|it| libm::round(it * 1e9) / 1e9), [2.0, 2.0, 90.0]);
+        let back = pose.moved(Meters(-2.0 * quarter), Radians(-quarter));
+        assert!(back.distance(&Pose::ORIGIN).0 < 1e-12);
+        assert_eq!(Pose::ORIGIN.moved(Meters(3.0), Radians(0.0)), Pose { x: Meters(3.0), ..Pose::ORIGIN });
+    }
 
     #[test]
     fn an_angle_of_a_frame_is_turned_by_its_heading() {

@@ -1,9 +1,10 @@
 //! What differs from Scout to Scout: a TOML file, the defaults, and where each value came from.
 
-use std::fmt::{self, Write as _};
+use std::fmt;
 use std::path::Path;
 use std::time::Duration;
 
+use mdle_serial::{Settings, within};
 use serde::Deserialize;
 
 /// The order in which everybody fires a Scout's sonars.
@@ -44,21 +45,12 @@ struct File {
     ring_radius: Option<f64>,
 }
 
-/// A value with a few words on it, and where it came from.
-#[derive(Debug, Clone, PartialEq, Eq)]
-struct Entry {
-    name: &'static str,
-    value: String,
-    about: &'static str,
-    from: String,
-}
-
 /// A configuration, and where each of its values came from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Configured {
     /// The values.
     pub config: Config,
-    entries: Vec<Entry>,
+    settings: Settings,
 }
 
 impl Configured {
@@ -67,23 +59,9 @@ impl Configured {
     /// # Errors
     /// The file cannot be read, is no TOML, has a key that there is not, or a value that makes no sense: where and why.
     pub fn read(file: Option<&Path>, device: Option<&str>) -> Result<Self, String> {
-        let said = match file {
-            None => File::default(),
-            Some(path) => {
-                let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
-                toml::from_str(&text)
-                    .map_err(|error| format!("{}: {}", path.display(), error.to_string().trim_end()))?
-            }
-        };
-        let mut made = Made { file: file.map(|path| path.display().to_string()), entries: Vec::new() };
-        let from_command_line = device.map(str::to_owned);
+        let (said, mut made) = Settings::read::<File>(file)?;
         let config = Config {
-            device: match from_command_line {
-                Some(device) => made.noted("device", device, "the serial port, or tcp:ADDRESS:PORT", "--device"),
-                None => {
-                    made.value("device", said.device, "/dev/ttyS0".to_owned(), "the serial port, or tcp:ADDRESS:PORT")
-                }
-            },
+            device: made.device(device, said.device),
             fastest: made.value("fastest", said.fastest, 1.0, "m/s of a wheel; unverified"),
             acceleration: made.value("acceleration", said.acceleration, 2.0, "m/s² of a wheel; unverified"),
             watchdog: made.value("watchdog", said.watchdog, 1, "s without a command until the robot stops itself"),
@@ -92,47 +70,13 @@ impl Configured {
             gap: made.value("gap", said.gap, 60, "ms between two pings"),
             ring_radius: made.value("ring-radius", said.ring_radius, 0.19, "m from the centre to a sonar; unverified"),
         };
-        config.check().map_err(|why| match &made.file {
-            Some(file) => format!("{file}: {why}"),
-            None => why,
-        })?;
-        Ok(Self { config, entries: made.entries })
-    }
-}
-
-/// Takes down where values come from.
-struct Made {
-    file: Option<String>,
-    entries: Vec<Entry>,
-}
-
-impl Made {
-    fn value<T: fmt::Debug>(&mut self, name: &'static str, said: Option<T>, default: T, about: &'static str) -> T {
-        match (said, &self.file) {
-            (Some(value), Some(file)) => {
-                let from = file.clone();
-                self.noted(name, value, about, &from)
-            }
-            (Some(value), None) => self.noted(name, value, about, "default"),
-            (None, _) => self.noted(name, default, about, "default"),
-        }
-    }
-
-    fn noted<T: fmt::Debug>(&mut self, name: &'static str, value: T, about: &'static str, from: &str) -> T {
-        self.entries.push(Entry { name, value: format!("{value:?}"), about, from: from.to_owned() });
-        value
+        config.check().map_err(|why| made.blamed(&why))?;
+        Ok(Self { config, settings: made })
     }
 }
 
 impl Config {
     fn check(&self) -> Result<(), String> {
-        let within = |name: &str, value: f64, least: f64, most: f64| {
-            if (least..=most).contains(&value) {
-                Ok(())
-            } else {
-                Err(format!("`{name}` is {value}, and has to be from {least} to {most}"))
-            }
-        };
         within("fastest", self.fastest, 0.01, 1.0)?;
         within("acceleration", self.acceleration, 0.1, 10.0)?;
         within("watchdog", f64::from(self.watchdog), 1.0, 60.0)?;
@@ -164,14 +108,9 @@ impl Config {
     }
 }
 
-/// As TOML that can be given back with `--config`, with what each value means and where it came from.
+/// As TOML that can be given back with `--config`.
 impl fmt::Display for Configured {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for Entry { name, value, about, from } in &self.entries {
-            let mut line = String::new();
-            write!(line, "{name} = {value}")?;
-            writeln!(f, "{line:34} # {about} ({from})")?;
-        }
-        Ok(())
+        self.settings.fmt(f)
     }
 }

@@ -2,18 +2,22 @@
 
 use std::time::{Duration, Instant};
 
-use mdle_runtime::{Meters, Nanos, Robot, Twist};
+use mdle_runtime::{Meters, Nanos, Robot, Sensed, Shape, Twist};
+use mdle_serial::{Clock, Times};
 
 use crate::command::Command;
 use crate::config::Config;
 use crate::fault::Fault;
 use crate::line::Line;
 use crate::odometer::Odometer;
-use crate::output::Sensed;
 use crate::ring::Ring;
 use crate::state::State;
-use crate::wheels;
+use crate::wheels::{self, WHEEL_BASE};
 
+/// The radius of the body.
+const RADIUS: Meters = Meters(0.205);
+/// How many pings must agree that a way is free on a robot whose sonars fire in turn.
+const CONFIRMATION: usize = 2;
 /// How long the robot may take to stand before its motors are let go: from 1 m/s it takes half a second.
 const STOPPING: Duration = Duration::from_millis(600);
 /// How long each answer may take meanwhile.
@@ -23,15 +27,6 @@ const LOOK: Duration = Duration::from_millis(20);
 /// How long it may take to set its position to zero: newer versions of its maker's library wait much longer for that.
 const ZEROING: Duration = Duration::from_secs(5);
 
-/// Where the time of an output comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Clock {
-    /// The time that has passed since the first output.
-    Wall,
-    /// So much for each output: a robot in lockstep.
-    Stepped(Duration),
-}
-
 /// A Scout that answers.
 #[derive(Debug)]
 pub struct Scout {
@@ -40,9 +35,7 @@ pub struct Scout {
     clock: Clock,
     odometer: Odometer,
     ring: Ring,
-    /// When the first output was taken, and how many there have been.
-    first: Option<Instant>,
-    outputs: u64,
+    times: Times,
 }
 
 impl Scout {
@@ -53,7 +46,7 @@ impl Scout {
     pub fn connect(config: Config, clock: Clock, period: Duration) -> Result<Self, Fault> {
         let line = Line::open(&config.device)?;
         let ring = Ring::new(&config.sonars, Nanos(config.gap.saturating_mul(1_000_000)));
-        let mut scout = Self { line, config, clock, odometer: Odometer::default(), ring, first: None, outputs: 0 };
+        let mut scout = Self { line, config, clock, odometer: Odometer::default(), ring, times: Times::new(clock) };
         match scout.prepare(period) {
             Ok(()) => Ok(scout),
             Err(fault) => {
@@ -73,20 +66,12 @@ impl Scout {
         self.tell(Command::Sonars((self.config.gap / 4) as u8, self.config.order()))?;
         let mut left = Duration::from_nanos(self.ring.around().0);
         while !left.is_zero() {
-            self.pass(period.min(left));
+            self.clock.pass(period.min(left));
             left = left.saturating_sub(period);
             self.tell(Command::State)?;
         }
         // It stands by now.
         self.line.ask(&Command::Zero, Instant::now() + ZEROING.max(self.config.patience())).map(|_| ())
-    }
-
-    /// Lets time pass, unless it passes with each command.
-    fn pass(&self, time: Duration) {
-        match self.clock {
-            Clock::Wall => std::thread::sleep(time),
-            Clock::Stepped(_) => {}
-        }
     }
 
     /// Waits until the robot stands, or `deadline`.
@@ -96,7 +81,7 @@ impl Scout {
             if State::read(&frame.arguments).is_some_and(|state| (state.right, state.left) == (0, 0)) {
                 break;
             }
-            self.pass(LOOK);
+            self.clock.pass(LOOK);
         }
         Ok(())
     }
@@ -106,17 +91,6 @@ impl Scout {
         let frame = self.line.ask(&command, Instant::now() + self.config.patience())?;
         let state = State::read(&frame.arguments).ok_or(Fault::Short(frame.arguments.len()))?;
         if state.is_stopped() { Err(Fault::EmergencyStop) } else { Ok(state) }
-    }
-
-    /// The time of the output that has just come, from the first one on.
-    fn now(&mut self) -> Nanos {
-        let outputs = self.outputs;
-        self.outputs = outputs.saturating_add(1);
-        let passed = match self.clock {
-            Clock::Wall => self.first.get_or_insert_with(Instant::now).elapsed(),
-            Clock::Stepped(period) => period.saturating_mul(u32::try_from(outputs).unwrap_or(u32::MAX)),
-        };
-        Nanos(u64::try_from(passed.as_nanos()).unwrap_or(u64::MAX))
     }
 }
 
@@ -128,13 +102,18 @@ impl Robot for Scout {
     fn exchange(&mut self, input: &Twist) -> Result<Sensed, Fault> {
         let (right, left) = wheels::speeds(input, self.config.fastest);
         let state = self.tell(Command::Velocities(right, left))?;
-        let (at, odometry) = (self.now(), self.odometer.pose(&state));
+        let (at, odometry) = (self.times.now(), self.odometer.pose(&state));
         Ok(Sensed {
             odometry,
             velocity: wheels::twist(state.right, state.left),
             switches: state.bumper,
             pings: self.ring.take_in(&state.sonars, at, odometry),
-            ring_radius: Meters(self.config.ring_radius),
+            shape: Shape {
+                body_radius: RADIUS,
+                wheel_base: Meters(WHEEL_BASE),
+                ring_radius: Meters(self.config.ring_radius),
+                confirmation: CONFIRMATION,
+            },
         })
     }
 

@@ -2,21 +2,15 @@
 
 use std::fmt;
 
-use rustix::io::Errno;
+use mdle_serial::LineFault;
 
 use crate::frame::Garbled;
 
 /// Why the robot cannot be driven, or no longer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Fault {
-    /// This device cannot be opened, and why.
-    Open(String, String),
-    /// Somebody else has this device.
-    Busy(String),
-    /// This device is no serial port.
-    NotSerial(String),
-    /// No answer came in time.
-    Silent,
+    /// The line cannot be opened, is cut, or nothing came in time.
+    Line(LineFault),
     /// What came is no frame.
     Garbled(Garbled),
     /// The answer to this command is of that type.
@@ -30,33 +24,20 @@ pub enum Fault {
     Refused(u8),
     /// The answer has the right type, and too few bytes to be a state.
     Short(usize),
-    /// The line was closed at the other end.
-    Closed,
-    /// The line failed.
-    Line(String),
     /// The robot's emergency stop is pressed.
     EmergencyStop,
 }
 
-impl Fault {
-    /// A failure of the line: what is unplugged reads as an error of input and output.
-    pub(crate) fn of_line(error: Errno) -> Self {
-        match error {
-            Errno::IO | Errno::NXIO | Errno::NODEV | Errno::CONNRESET | Errno::PIPE => Self::Closed,
-            _ => Self::Line(error.to_string()),
-        }
+impl From<LineFault> for Fault {
+    fn from(fault: LineFault) -> Self {
+        Self::Line(fault)
     }
 }
 
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Open(device, why) => {
-                write!(f, "the Scout's line {device} cannot be opened: {why}; name its device with `--device`")
-            }
-            Self::Busy(device) => write!(f, "another program has the Scout's line {device}: end that one first"),
-            Self::NotSerial(device) => write!(f, "{device} is no serial port: name the Scout's with `--device`"),
-            Self::Silent => f.write_str("the Scout does not answer: is it switched on, and is this its line?"),
+            Self::Line(fault) => fault.tell("the Scout", f),
             Self::Garbled(garbled) => {
                 write!(f, "the Scout's answers are garbled ({garbled}): check the cable and the speed of the line")
             }
@@ -72,8 +53,6 @@ impl fmt::Display for Fault {
             Self::Short(bytes) => {
                 write!(f, "the Scout's state has {bytes} bytes instead of 42: is this another robot?")
             }
-            Self::Closed => f.write_str("the Scout's line was cut: check the cable"),
-            Self::Line(why) => write!(f, "the Scout's line failed: {why}"),
             Self::EmergencyStop => f.write_str("the Scout's emergency stop is pressed: release it and start again"),
         }
     }

@@ -13,7 +13,6 @@ mod frame;
 mod line;
 mod number;
 mod odometer;
-mod output;
 pub mod quarks;
 mod ring;
 mod state;
@@ -22,14 +21,15 @@ mod wheels;
 
 pub use command::Command;
 pub use config::{Config, Configured};
-pub use driver::{Clock, Scout};
+pub use driver::Scout;
 pub use fault::Fault;
 pub use frame::{Frame, Garbled};
+pub use mdle_runtime::Sensed;
+/// Its output.
+pub use mdle_runtime::Sensed as Output;
 /// The robot's input.
 pub use mdle_runtime::Twist as Input;
-pub use output::Sensed;
-/// Its output.
-pub use output::Sensed as Output;
+pub use mdle_serial::{Clock, LineFault};
 pub use state::{Battery, State};
 pub use target::SuperScout;
 /// What the host runs a plan on.

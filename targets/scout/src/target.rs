@@ -1,14 +1,14 @@
 //! The target `scout`, as the host runs plans on it.
 
-use std::path::PathBuf;
 use std::time::Duration;
 
-use mdle_host::clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use mdle_host::{Hosted, Pace, Refusal, Target, Time};
+use mdle_host::clap::{ArgMatches, Command};
+use mdle_host::{Hosted, Refusal, Target, Time};
+use mdle_serial::{Clock, options};
 
 use crate::alphabet;
 use crate::config::Configured;
-use crate::driver::{Clock, Scout};
+use crate::driver::Scout;
 
 /// The target `scout`.
 #[derive(Debug, Clone, Copy)]
@@ -20,45 +20,21 @@ impl Target for SuperScout {
     type Robot = Scout;
 
     fn arguments(command: Command) -> Command {
-        command
-            .arg(
-                Arg::new("device")
-                    .long("device")
-                    .value_name("PATH|tcp:ADDRESS:PORT")
-                    .help("The robot's serial port, or where it listens [default: as the configuration says]"),
-            )
-            .arg(
-                Arg::new("config")
-                    .long("config")
-                    .value_name("FILE.toml")
-                    .help("What is known of this robot; --print-config shows all that can be said")
-                    .value_parser(value_parser!(PathBuf)),
-            )
-            .arg(
-                Arg::new("print-config")
-                    .long("print-config")
-                    .action(ArgAction::SetTrue)
-                    .help("Print the configuration, where each value came from, and end"),
-            )
-            .arg(
-                Arg::new("lockstep")
-                    .long("lockstep")
-                    .action(ArgAction::SetTrue)
-                    .help("Make turns as fast as the robot answers: for an emulator in lockstep, never for a robot"),
-            )
+        options::arguments(command)
     }
 
     fn time(matches: &ArgMatches) -> Result<Time, String> {
-        Ok(if matches.get_flag("lockstep") { Time::Stepped(Pace::Max) } else { Time::Wall })
+        Ok(options::time(matches))
     }
 
     fn answer(matches: &ArgMatches) -> Result<Option<String>, Refusal> {
-        let asked = matches.get_flag("print-config");
-        asked.then(|| configured(matches).map(|configured| configured.to_string())).transpose()
+        options::prints_config(matches)
+            .then(|| configured(matches).map(|configured| configured.to_string()))
+            .transpose()
     }
 
     fn connect(matches: &ArgMatches, period: Duration) -> Result<Scout, Refusal> {
-        let clock = if matches.get_flag("lockstep") { Clock::Stepped(period) } else { Clock::Wall };
+        let clock = options::clock(matches, period);
         let mut config = configured(matches)?.config;
         let watchdog = Duration::from_secs(u64::from(config.watchdog));
         match clock {
@@ -82,7 +58,5 @@ impl Hosted for Scout {}
 
 /// The configuration that the options ask for.
 fn configured(matches: &ArgMatches) -> Result<Configured, Refusal> {
-    let file = matches.get_one::<PathBuf>("config");
-    let device = matches.get_one::<String>("device");
-    Configured::read(file.map(PathBuf::as_path), device.map(String::as_str)).map_err(Refusal::Usage)
+    Configured::read(options::config(matches), options::device(matches)).map_err(Refusal::Usage)
 }

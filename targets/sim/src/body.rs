@@ -6,13 +6,13 @@ mod odometry;
 #[cfg(test)]
 mod tests;
 
-use mdle_runtime::{Meters, MetersPerSecond, Pose, RadiansPerSecond, Twist};
+use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians, RadiansPerSecond, Twist};
 
 use crate::model::Drive;
 use crate::walls::Walls;
 use crate::world::Place;
 use contact::slid;
-use odometry::{Odometry, moved};
+use odometry::Odometry;
 
 /// The radius of the disc that is a Scout, in metres.
 pub(crate) const RADIUS: f64 = 0.205;
@@ -113,7 +113,7 @@ impl Body {
     fn step(&mut self, step: f64, walls: &Walls) -> Met {
         let Twist { v, omega } = self.velocity();
         let (way, turn) = (v.0 * step, omega.0 * step);
-        let there = moved(&self.pose, way, turn);
+        let there = self.pose.moved(Meters(way), Radians(turn));
         if way == 0.0 || self.is_free(Place::of(&there), way.abs(), walls) {
             self.pose = there;
             self.odometry.rolled(way, turn);

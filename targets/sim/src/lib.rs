@@ -17,7 +17,6 @@ mod moving;
 mod noise;
 mod observed;
 mod options;
-mod output;
 mod plot;
 pub mod quarks;
 mod robot;
@@ -36,15 +35,16 @@ mod world;
 mod world_file;
 
 pub use goal::Goal;
+pub use mdle_runtime::Sensed;
+/// Its output.
+pub use mdle_runtime::Sensed as Output;
 /// The robot's input.
 pub use mdle_runtime::Twist as Input;
 pub use model::{Body, Part};
 pub use moving::{Schedule, Stop, Thing};
 pub use observed::Observed;
-pub use output::Sensed;
-/// Its output.
-pub use output::Sensed as Output;
 pub use robot::{Fault, Make, Simulated};
+pub use sonar::Heard;
 pub use start::{Start, StartError};
 pub use target::Sim;
 /// What the host runs a plan on.

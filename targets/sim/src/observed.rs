@@ -2,11 +2,10 @@
 
 use mdle_host::{Hosted, Judgement, Standing};
 use mdle_runtime::capability::Bumpers as _;
-use mdle_runtime::{Nanos, Pose, Robot, Twist};
+use mdle_runtime::{Nanos, Pose, Robot, Sensed, Twist};
 
 use crate::frames::Frames;
 use crate::goal::Goal;
-use crate::output::Sensed;
 use crate::plot;
 use crate::robot::{Fault, Simulated};
 use crate::trail::Trail;

@@ -3,12 +3,11 @@
 use std::fmt;
 use std::time::Duration;
 
-use mdle_runtime::{Meters, Nanos, Pose, Robot, Twist};
+use mdle_runtime::{Meters, Nanos, Pose, Robot, Sensed, Shape, Twist};
 
 use crate::body::{Body, STEP};
 use crate::model::{self, Model, Part};
-use crate::output::{Sensed, Shape};
-use crate::sonar::Ring;
+use crate::sonar::{Heard, Ring};
 use crate::start::{self, StartError};
 use crate::walls::Walls;
 use crate::world::{Place, World};
@@ -100,6 +99,13 @@ impl Simulated {
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.body.pose
+    }
+
+    /// What each transducer heard last, in the order of the body's model: what a robot's boards tell before anybody makes
+    /// sixteen sonars of it.
+    #[must_use]
+    pub fn heard(&self) -> &[Heard] {
+        &self.ring.heard
     }
 
     /// The radius of the body, in metres.

@@ -18,9 +18,20 @@ pub(crate) struct Ring {
     pub(crate) hearing: Hearing,
     /// What each transducer heard last, as the range of the sonar that it speaks for.
     ranges: Vec<Option<f64>>,
+    /// The same as it heard it itself.
+    pub(crate) heard: Vec<Heard>,
     errors: Option<Errors>,
     /// The group that pings next, and when, where there is an order.
     next: (usize, Nanos),
+}
+
+/// The last ping of one transducer, of which several may speak for one sonar.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Heard {
+    /// From the transducer; `None` when no echo came back.
+    pub range: Option<Meters>,
+    /// When it pinged.
+    pub at: Nanos,
 }
 
 /// What goes wrong in a run with a seed.
@@ -46,8 +57,9 @@ impl Ring {
                 scale,
             }
         });
-        let ranges = vec![None; hearing.transducers.len()];
-        Self { pings: [Pings::default(); SONARS], hearing, ranges, errors, next: (0, Nanos::ZERO) }
+        let count = hearing.transducers.len();
+        let (ranges, heard) = (vec![None; count], vec![Heard::default(); count]);
+        Self { pings: [Pings::default(); SONARS], hearing, ranges, heard, errors, next: (0, Nanos::ZERO) }
     }
 
     /// When the next ping is due; `None` where all sonars ping in every turn.
@@ -59,7 +71,7 @@ impl Ring {
     pub(crate) fn ping(&mut self, pose: &Pose, odometry: Pose, at: Nanos, walls: &Walls) {
         let Some(Order { groups, gap }) = &self.hearing.order else {
             for number in 0..self.ranges.len() {
-                self.listen(number, pose, walls);
+                self.listen(number, pose, at, walls);
             }
             for (sonar, pings) in (0..).zip(&mut self.pings) {
                 pings.push(Ping { range: nearest(&self.hearing, &self.ranges, sonar), at, pose: odometry });
@@ -69,7 +81,7 @@ impl Ring {
         let (group, when) = self.next;
         self.next = ((group + 1) % groups.len(), Nanos(when.0.saturating_add(gap.0)));
         for number in groups.get(group).cloned().unwrap_or_default() {
-            self.listen(number, pose, walls);
+            self.listen(number, pose, at, walls);
             // A sonar of several transducers has pinged when the last of them has.
             if let Some(sonar) = self.completed(group, number) {
                 let range = nearest(&self.hearing, &self.ranges, sonar);
@@ -99,9 +111,13 @@ impl Ring {
     }
 
     /// One transducer pings.
-    fn listen(&mut self, number: usize, pose: &Pose, walls: &Walls) {
-        let Self { hearing, errors, ranges, .. } = self;
-        let (Some(transducer), Some(range)) = (hearing.transducers.get(number), ranges.get_mut(number)) else { return };
+    fn listen(&mut self, number: usize, pose: &Pose, at: Nanos, walls: &Walls) {
+        let Self { hearing, errors, ranges, heard: all, .. } = self;
+        let (Some(transducer), Some(range), Some(last)) =
+            (hearing.transducers.get(number), ranges.get_mut(number), all.get_mut(number))
+        else {
+            return;
+        };
         let fade = match errors {
             Some(errors) if hearing.fading > 0.0 => hearing.fading * errors.fading.normal(),
             Some(_) | None => 0.0,
@@ -110,7 +126,9 @@ impl Ring {
         let exact = echo::echo(walls, from, axis, hearing, fade);
         let heard = errors.as_mut().map_or(exact, |errors| errors.of(exact, hearing));
         let heard = heard.map(|range| stepped(range.max(hearing.least), hearing.step));
-        *range = heard.filter(|range| *range < hearing.most).map(|range| as_of_the_ring(range, transducer, hearing));
+        let heard = heard.filter(|range| *range < hearing.most);
+        *last = Heard { range: heard.map(Meters), at };
+        *range = heard.map(|range| as_of_the_ring(range, transducer, hearing));
     }
 }
 

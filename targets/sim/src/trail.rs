@@ -3,10 +3,9 @@
 use std::collections::BTreeSet;
 
 use mdle_runtime::capability::{Odometry as _, SonarRing as _};
-use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, SonarId};
+use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, Sensed, SonarId};
 
 use crate::frames::{Frame, Frames};
-use crate::output::Sensed;
 use crate::world::Place;
 
 /// Places nearer to the last than this, in metres, are not kept: less than a pixel.

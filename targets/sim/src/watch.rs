@@ -8,9 +8,8 @@ mod view;
 use std::time::{Duration, Instant};
 
 use mdle_host::Standing;
-use mdle_runtime::{Nanos, Pose};
+use mdle_runtime::{Nanos, Pose, Sensed};
 
-use crate::output::Sensed;
 use crate::trail;
 use crate::world::{Place, World};
 use map::Map;

@@ -123,7 +123,7 @@ fn robot(criterion: &mut Criterion) {
         let input = Twist { omega: RadiansPerSecond(0.36), ..Twist::default() };
         group.bench_function(name, |bencher| {
             bencher.iter(|| {
-                (0..10).map(|_| robot.exchange(black_box(&input)).map(|y| y.switches())).sum::<Result<u32, _>>()
+                (0..10).map(|_| robot.exchange(black_box(&input)).map(|y| y.switches)).sum::<Result<u32, _>>()
             });
         });
     }

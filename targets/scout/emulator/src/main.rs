@@ -1,82 +1,20 @@
 //! `scout-emulator`: a Super Scout on a pseudo-terminal, in a simulated world, for those who have none at hand.
 #![forbid(unsafe_code)]
-#![allow(clippy::print_stderr, reason = "it says why there is no robot")]
 
-use std::io::Write;
-use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
 
 use clap::Parser;
-use mdle_scout_emulator::port::Port;
+use mdle_emulator::{Options, Pace, program};
 use mdle_scout_emulator::scout::Scout;
-use mdle_scout_emulator::serve::{Pace, serve};
-use mdle_sim::{Body, Make, Simulated, Start, World};
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use mdle_sim::Body;
 
 /// A Super Scout that is not there: its language on a pseudo-terminal, its body in a simulated world.
 #[derive(Debug, Parser)]
-struct Options {
-    /// The floor: office, maze, hall, room, or a TOML file.
-    #[arg(long, value_name = "NAME|FILE", default_value = "office")]
-    world: String,
-    /// Where it stands, in metres and degrees [default: as the world says].
-    #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
-    start: Option<Start>,
-    /// What its errors are drawn by [default: no errors].
-    #[arg(long, value_name = "N")]
-    seed: Option<u64>,
-    /// Put a symbolic link to the device here.
-    #[arg(long, value_name = "PATH")]
-    link: Option<PathBuf>,
-    /// Let the world pass on by so many milliseconds with each request, whatever the clock says.
-    #[arg(long, value_name = "MS", value_parser = clap::value_parser!(u64).range(1..=10_000))]
-    lockstep: Option<u64>,
+struct Arguments {
+    #[command(flatten)]
+    options: Options,
 }
 
 fn main() -> ExitCode {
-    match run(&Options::parse()) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(error) => {
-            eprintln!("error: {error}");
-            ExitCode::from(2)
-        }
-    }
-}
-
-fn run(options: &Options) -> Result<(), String> {
-    let world = world(&options.world)?;
-    let pace = options.lockstep.map_or(Pace::Real, |period| Pace::Lockstep(Duration::from_millis(period)));
-    let make = Make { body: Body::Scout, without: Vec::new(), seed: options.seed };
-    let start = options.start.map_or(world.start, |start| start.0);
-    let body = Simulated::with(&make, &world, start, pace.step()).map_err(|error| error.to_string())?;
-    let mut scout = Scout::new(body)?;
-    let over = over().map_err(|error| format!("signals cannot be caught: {error}"))?;
-    let mut port = Port::open().map_err(|error| format!("no pseudo-terminal: {error}"))?;
-    if let Some(link) = &options.link {
-        port.link(link).map_err(|error| format!("--link {}: {error}", link.display()))?;
-    }
-    // Whoever does not read it knows the link.
-    let _ = writeln!(std::io::stdout(), "the Scout is at {}", port.path().display());
-    let line = serve(&mut scout, &port, pace, &|| !over.load(Ordering::Relaxed));
-    line.map_err(|error| format!("the line failed: {error}"))
-}
-
-/// What turns true when this program is asked to end.
-fn over() -> std::io::Result<Arc<AtomicBool>> {
-    let over = Arc::new(AtomicBool::new(false));
-    for signal in [SIGINT, SIGTERM, SIGHUP] {
-        signal_hook::flag::register(signal, Arc::clone(&over))?;
-    }
-    Ok(over)
-}
-
-fn world(name: &str) -> Result<World, String> {
-    if let Some(world) = World::named(name) {
-        return world.map_err(|error| error.to_string());
-    }
-    let text = std::fs::read_to_string(name).map_err(|error| format!("--world {name}: {error}"))?;
-    World::parse(name, &text).map_err(|error| error.to_string())
+    program("the Scout", Body::Scout, &Arguments::parse().options, Pace::step, |body, _| Scout::new(body))
 }

@@ -2,11 +2,12 @@
 
 use std::time::Duration;
 
+use mdle_emulator::{Ailment, Emulated};
 use mdle_runtime::capability::{Odometry, SonarRing};
 use mdle_runtime::{MetersPerSecond, Pose, RadiansPerSecond, Robot as _, SonarId, Twist};
 use mdle_sim::{Output, Simulated};
 
-use crate::wire::{Request, answer, number, two_bytes};
+use crate::wire::{Incoming, Request, answer, number, two_bytes};
 
 /// Metres in an inch.
 const INCH: f64 = 0.0254;
@@ -22,6 +23,9 @@ const REFUSED: u8 = 8;
 pub struct Scout {
     body: Simulated,
     sensed: Output,
+    incoming: Incoming,
+    /// What was asked last, and whether it knows that, until it has answered.
+    asked: Option<(Request, bool)>,
     /// What the wheels have been told, in tenths of an inch a second.
     wheels: (i32, i32),
     /// Whether the motors are limp: then it rolls on.
@@ -39,6 +43,11 @@ pub struct Scout {
     age: Duration,
     /// Whether its emergency stop is pressed.
     pub emergency: bool,
+    /// What else may be the matter: its right wheel, the sonar in front, its first bumper, its battery.
+    is_stuck: bool,
+    is_deaf: bool,
+    is_pressed: bool,
+    is_low: bool,
 }
 
 impl Scout {
@@ -55,12 +64,18 @@ impl Scout {
             wheels: (0, 0),
             limp: true,
             zero,
+            incoming: Incoming::default(),
+            asked: None,
             active: u16::MAX,
             heard: [255; 16],
             watchdog: None,
             silence: Duration::ZERO,
             age: Duration::ZERO,
             emergency: false,
+            is_stuck: false,
+            is_deaf: false,
+            is_pressed: false,
+            is_low: false,
         };
         scout.listen();
         Ok(scout)
@@ -70,32 +85,6 @@ impl Scout {
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.body.pose()
-    }
-
-    /// Lets one period of the world pass.
-    ///
-    /// # Errors
-    /// As for [`Scout::new`].
-    pub fn pass(&mut self, period: Duration) -> Result<(), String> {
-        self.age += period;
-        self.silence += period;
-        if self.watchdog.is_some_and(|limit| self.silence >= limit) {
-            (self.wheels, self.limp) = ((0, 0), false);
-        }
-        if self.limp {
-            let less = |wheel: i32| wheel - wheel.signum() * wheel.abs().min((ROLLING * period.as_secs_f64()) as i32);
-            self.wheels = (less(self.wheels.0), less(self.wheels.1));
-        }
-        let (right, left) = if self.emergency { (0, 0) } else { self.wheels };
-        // The body counts in tenths of an inch as well, and cuts off: a hair more leaves it these very numbers.
-        let inches = |wheel: i32| (f64::from(wheel) + 0.01 * f64::from(wheel.signum())) / 10.0;
-        let (right, left) = (inches(right), inches(left));
-        let degrees = (right - left) / 2.0 / INCHES_A_DEGREE;
-        let input =
-            Twist { v: MetersPerSecond((right + left) / 2.0 * INCH), omega: RadiansPerSecond(degrees.to_radians()) };
-        self.sensed = self.body.exchange(&input).map_err(|error| error.to_string())?;
-        self.listen();
-        Ok(())
     }
 
     /// The sonars that ping say what they heard last.
@@ -108,10 +97,13 @@ impl Scout {
                 *heard = ping.range.map_or(255, |range| (range.0 / INCH + 0.5).clamp(0.0, 255.0) as u8);
             }
         }
+        if let Some(heard) = self.heard.first_mut().filter(|_| self.is_deaf) {
+            *heard = 255;
+        }
     }
 
     /// Does what it is told; whether it knows that.
-    pub fn obey(&mut self, request: &Request) -> bool {
+    fn does(&mut self, request: &Request) -> bool {
         self.silence = Duration::ZERO;
         match (request.command, &*request.data) {
             (1 | 2 | 7, _) => {}
@@ -132,12 +124,6 @@ impl Scout {
         true
     }
 
-    /// What it says to a request that it knows, or does not.
-    #[must_use]
-    pub fn answer(&self, request: &Request, is_known: bool) -> Vec<u8> {
-        if is_known { answer(request.command, &self.state()) } else { answer(REFUSED, &[]) }
-    }
-
     /// How fast the wheels go, in tenths of an inch a second.
     fn rolling(&self) -> (i32, i32) {
         let velocity = self.sensed.velocity();
@@ -153,11 +139,11 @@ impl Scout {
         let (sin, cos) = libm::sincos(self.zero.theta.0);
         let tenths = |meters: f64| (meters / INCH * 10.0).round() as i64;
         let heading = (pose.theta.0 - self.zero.theta.0).to_degrees().rem_euclid(360.0);
-        let charge = 0b1000;
+        let charge = if self.is_low { 0 } else { 0b1000 };
         let moving = |wheel: i32, bit: u8| if wheel == 0 { 0 } else { bit };
         let (right, left) = self.rolling();
         let status = moving(left, 1) | moving(right, 2) | charge | if self.emergency { 0b0100_0000 } else { 0 };
-        let switches = self.sensed.switches();
+        let switches = self.sensed.switches | u32::from(self.is_pressed);
         [
             &self.heard[..],
             &[switches as u8, (switches >> 8) as u8, (switches >> 16) as u8],
@@ -173,5 +159,66 @@ impl Scout {
             &[239, 222],
         ]
         .concat()
+    }
+}
+
+impl Emulated for Scout {
+    fn push(&mut self, bytes: &[u8]) {
+        self.incoming.push(bytes);
+    }
+
+    fn obey(&mut self) -> Option<bool> {
+        let request = self.incoming.next_request()?;
+        let is_known = self.does(&request);
+        self.asked = Some((request, is_known));
+        Some(true)
+    }
+
+    fn pass(&mut self, period: Duration) -> Result<(), String> {
+        self.age += period;
+        self.silence += period;
+        if self.watchdog.is_some_and(|limit| self.silence >= limit) {
+            (self.wheels, self.limp) = ((0, 0), false);
+        }
+        if self.limp {
+            let less = |wheel: i32| wheel - wheel.signum() * wheel.abs().min((ROLLING * period.as_secs_f64()) as i32);
+            self.wheels = (less(self.wheels.0), less(self.wheels.1));
+        }
+        let (right, left) = if self.emergency { (0, 0) } else { self.wheels };
+        let right = if self.is_stuck { 0 } else { right };
+        // The body counts in tenths of an inch as well, and cuts off: a hair more leaves it these very numbers.
+        let inches = |wheel: i32| (f64::from(wheel) + 0.01 * f64::from(wheel.signum())) / 10.0;
+        let (right, left) = (inches(right), inches(left));
+        let degrees = (right - left) / 2.0 / INCHES_A_DEGREE;
+        let input =
+            Twist { v: MetersPerSecond((right + left) / 2.0 * INCH), omega: RadiansPerSecond(degrees.to_radians()) };
+        self.sensed = self.body.exchange(&input).map_err(|error| error.to_string())?;
+        self.listen();
+        Ok(())
+    }
+
+    fn said(&mut self) -> Vec<Vec<u8>> {
+        match self.asked.take() {
+            Some((request, true)) => vec![answer(request.command, &self.state())],
+            Some((_, false)) => vec![answer(REFUSED, &[])],
+            None => Vec::new(),
+        }
+    }
+
+    fn can_suffer(ailment: Ailment) -> bool {
+        // Each of its bytes means something.
+        ailment != Ailment::Filler
+    }
+
+    fn suffer(&mut self, ailment: Ailment) {
+        match ailment {
+            Ailment::StuckWheel => self.is_stuck = true,
+            Ailment::DeadSonar => self.is_deaf = true,
+            Ailment::Bumper => self.is_pressed = true,
+            Ailment::Emergency => self.emergency = true,
+            Ailment::LowBattery => self.is_low = true,
+            Ailment::Filler => {}
+        }
+        self.listen();
     }
 }

@@ -5,12 +5,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::Duration;
 
+use mdle_emulator::{Pace, Port, serve};
 use mdle_runtime::capability::{Bumpers, Odometry, SonarRing};
 use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Robot as _, SonarId, Twist};
-use mdle_scout::{Clock, Configured, Fault, Output, Scout};
-use mdle_scout_emulator::port::Port;
+use mdle_scout::{Clock, Configured, Fault, LineFault, Output, Scout};
 use mdle_scout_emulator::scout::Scout as Emulated;
-use mdle_scout_emulator::serve::{Pace, serve};
 use mdle_scout_emulator::wire::{Incoming, Request, answer};
 use mdle_sim::{Body, Make, Simulated, World};
 
@@ -149,7 +148,7 @@ fn a_robot_is_let_go_once_it_stands() {
 
 #[test]
 fn silence_garbage_and_other_robots_are_told_apart() {
-    assert_eq!(said_of(|_, _| Vec::new()), Fault::Silent);
+    assert_eq!(said_of(|_, _| Vec::new()), Fault::Line(LineFault::Silent));
     assert!(matches!(said_of(|_, _| b"Noise on the line.".to_vec()), Fault::Garbled(_)));
     assert_eq!(said_of(|_, _| state(7)), Fault::Wrong { asked: 5, answered: 7 });
     assert_eq!(said_of(|_, _| answer(8, &[])), Fault::Refused(5));
@@ -165,7 +164,7 @@ fn silence_garbage_and_other_robots_are_told_apart() {
     assert_eq!(said_of(|_, request| answer(request.command, &stopped)), Fault::EmergencyStop);
     // In a turn as well as at the start, which takes four commands, ten looks at the sonars and a zero.
     let late = |count: usize, request: &Request| if count < 15 { state(request.command) } else { Vec::new() };
-    assert_eq!(said_of(late), Fault::Silent);
+    assert_eq!(said_of(late), Fault::Line(LineFault::Silent));
 }
 
 #[test]
@@ -202,8 +201,8 @@ fn a_line_that_is_cut_is_a_fault_at_once() {
         let mut driver = Scout::connect(config, Clock::Stepped(PERIOD), PERIOD).unwrap();
         answering.store(false, Ordering::Relaxed);
         robot.join().unwrap();
-        assert_eq!(driver.exchange(&Twist::default()).map(|_| ()), Err(Fault::Closed));
-        assert_eq!(driver.stop(), Err(Fault::Closed));
+        assert_eq!(driver.exchange(&Twist::default()).map(|_| ()), Err(Fault::Line(LineFault::Closed)));
+        assert_eq!(driver.stop(), Err(Fault::Line(LineFault::Closed)));
     });
 }
 
@@ -213,14 +212,16 @@ fn a_device_that_is_none_is_refused() {
         let config = Configured::read(None, Some(device)).unwrap().config;
         Scout::connect(config, Clock::Wall, PERIOD).map(|_| ()).unwrap_err()
     };
-    assert!(matches!(refused("/nowhere/at/all"), Fault::Open(device, _) if device == "/nowhere/at/all"));
-    assert_eq!(refused("/dev/null"), Fault::NotSerial("/dev/null".to_owned()));
-    assert!(matches!(refused("tcp:example:1"), Fault::Open(..)));
+    assert!(
+        matches!(refused("/nowhere/at/all"), Fault::Line(LineFault::Open(device, _)) if device == "/nowhere/at/all")
+    );
+    assert_eq!(refused("/dev/null"), Fault::Line(LineFault::NotSerial("/dev/null".to_owned())));
+    assert!(matches!(refused("tcp:example:1"), Fault::Line(LineFault::Open(..))));
     // Nobody listens on the port that is reserved for nobody.
-    assert!(matches!(refused("tcp:127.0.0.1:1"), Fault::Open(..)));
+    assert!(matches!(refused("tcp:127.0.0.1:1"), Fault::Line(LineFault::Open(..))));
     let port = Port::open().unwrap();
     let serial = port.path().to_str().unwrap();
     let held = std::fs::File::open(serial).unwrap();
     held.try_lock().unwrap();
-    assert_eq!(refused(serial), Fault::Busy(serial.to_owned()));
+    assert_eq!(refused(serial), Fault::Line(LineFault::Busy(serial.to_owned())));
 }

@@ -44,7 +44,7 @@ impl Odometry {
             let wander = errors.wander * libm::sqrt(way.abs()) * errors.noise.normal();
             turned = turn * errors.turn + way.abs() * errors.bend + wander;
         }
-        self.pose = moved(&self.pose, told, turned);
+        self.pose = self.pose.moved(Meters(told), Radians(turned));
     }
 
     /// The body, of true heading `heading`, was moved by `way` and turned by `turn`, by whatever means, and knows it.
@@ -56,12 +56,4 @@ impl Odometry {
             theta: Radians(self.pose.theta.0 + turn).wrapped(),
         };
     }
-}
-
-/// The pose after an arc of length `way` that turns by `turn`: exactly, by its chord.
-pub(crate) fn moved(pose: &Pose, way: f64, turn: f64) -> Pose {
-    let half = turn / 2.0;
-    let chord = if half.abs() < 1e-9 { way } else { way * libm::sin(half) / half };
-    let end = pose.towards(Radians(pose.theta.0 + half), Meters(chord));
-    Pose { theta: Radians(pose.theta.0 + turn).wrapped(), ..end }
 }

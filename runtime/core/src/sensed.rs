@@ -1,0 +1,82 @@
+//! The output of a robot on two driven wheels with odometry, bumper switches and sixteen sonars: each value as it is kept,
+//! and the capabilities that it comes to (`y = h(x)`, paper, Eq. 1).
+
+use crate::capability::{Bumpers, DiffDrive, Odometry, SonarRing};
+use crate::{Meters, Output, Pings, Pose, SONARS, SonarId, Twist};
+
+/// The output of one turn.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sensed {
+    /// Where the robot is by its own reckoning.
+    pub odometry: Pose,
+    /// How fast it moves, measured.
+    pub velocity: Twist,
+    /// The bumper switches in contact: bit `i` for switch `i`. A simulated Scout has six, counted counter-clockwise from
+    /// the front, an ATRV-mini one before and one behind.
+    pub switches: u32,
+    /// The last pings of each sonar.
+    pub pings: [Pings; SONARS],
+    /// What never changes.
+    pub shape: Shape,
+}
+
+/// What laws must know of the body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shape {
+    /// The radius of the smallest circle around it.
+    pub body_radius: Meters,
+    /// The distance between its wheels.
+    pub wheel_base: Meters,
+    /// The distance of the sonars from its centre.
+    pub ring_radius: Meters,
+    /// How many pings must agree that a way is free.
+    pub confirmation: usize,
+}
+
+impl Output for Sensed {
+    fn here(&self) -> Pose {
+        self.odometry
+    }
+}
+
+impl Odometry for Sensed {
+    fn pose(&self) -> Pose {
+        self.odometry
+    }
+
+    fn velocity(&self) -> Twist {
+        self.velocity
+    }
+}
+
+impl Bumpers for Sensed {
+    fn pressed(&self) -> bool {
+        self.switches != 0
+    }
+}
+
+impl DiffDrive for Sensed {
+    fn body_radius(&self) -> Meters {
+        self.shape.body_radius
+    }
+
+    fn wheel_base(&self) -> Meters {
+        self.shape.wheel_base
+    }
+}
+
+impl SonarRing for Sensed {
+    fn pings(&self, sonar: SonarId) -> &Pings {
+        let [first, ..] = &self.pings;
+        // Numbers of sonars are below 16.
+        self.pings.get(sonar.number()).unwrap_or(first)
+    }
+
+    fn ring_radius(&self) -> Meters {
+        self.shape.ring_radius
+    }
+
+    fn confirmation(&self) -> usize {
+        self.shape.confirmation
+    }
+}

@@ -1,0 +1,178 @@
+//! A line to a robot: a serial port, 8N1 without flow control, or TCP to a literal address.
+
+use std::fmt;
+use std::fs::{File, OpenOptions};
+use std::io;
+use std::net::{SocketAddr, TcpStream};
+use std::os::fd::OwnedFd;
+use std::os::unix::fs::OpenOptionsExt;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::fs::{FlockOperation, OFlags};
+use rustix::io::Errno;
+use rustix::termios::{self, OptionalActions};
+
+/// How long a robot may take to accept a connection.
+const CONNECT: Duration = Duration::from_secs(1);
+
+/// An open line.
+#[derive(Debug)]
+pub struct Line {
+    port: OwnedFd,
+}
+
+/// What can go wrong with a line.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum LineFault {
+    /// This device cannot be opened, and why.
+    Open(String, String),
+    /// Somebody else has this device.
+    Busy(String),
+    /// This device is no serial port.
+    NotSerial(String),
+    /// Nothing came, or went, in time.
+    Silent,
+    /// The line was closed at the other end.
+    Closed,
+    /// The line failed.
+    Failed(String),
+}
+
+impl LineFault {
+    /// A failure of the line: what is unplugged reads as an error of input and output.
+    fn of(error: Errno) -> Self {
+        match error {
+            Errno::IO | Errno::NXIO | Errno::NODEV | Errno::CONNRESET | Errno::PIPE => Self::Closed,
+            _ => Self::Failed(error.to_string()),
+        }
+    }
+
+    /// The sentence for the operator of this robot, as in `the Scout`.
+    ///
+    /// # Errors
+    /// As everything that writes.
+    pub fn tell(&self, robot: &str, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Open(device, why) => {
+                write!(f, "{robot}'s line {device} cannot be opened: {why}; name its device with `--device`")
+            }
+            Self::Busy(device) => write!(f, "another program has {robot}'s line {device}: end that one first"),
+            Self::NotSerial(device) => write!(f, "{device} is no serial port: name {robot}'s with `--device`"),
+            Self::Silent => write!(f, "{robot} does not answer: is it switched on, and is this its line?"),
+            Self::Closed => write!(f, "{robot}'s line was cut: check the cable"),
+            Self::Failed(why) => write!(f, "{robot}'s line failed: {why}"),
+        }
+    }
+}
+
+impl Line {
+    /// Opens a serial port at so many bits a second, or `tcp:ADDRESS:PORT`. Nothing is sent.
+    ///
+    /// # Errors
+    /// It is missing, busy, no terminal, or nobody listens.
+    pub fn open(device: &str, speed: u32) -> Result<Self, LineFault> {
+        let port = match device.strip_prefix("tcp:") {
+            Some(address) => connect(address)?,
+            None => serial(Path::new(device), speed)?,
+        };
+        Ok(Self { port })
+    }
+
+    /// Sends all of these bytes.
+    ///
+    /// # Errors
+    /// The line is closed, or takes nothing until `deadline`.
+    pub fn write(&self, bytes: &[u8], deadline: Instant) -> Result<(), LineFault> {
+        let mut left = bytes;
+        while !left.is_empty() {
+            self.wait(PollFlags::OUT, deadline)?;
+            match rustix::io::write(&self.port, left) {
+                Ok(count) => left = left.get(count..).unwrap_or_default(),
+                Err(Errno::AGAIN | Errno::INTR) => {}
+                Err(error) => return Err(LineFault::of(error)),
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes in what is there, as much of it as there is room for; how many bytes that was.
+    ///
+    /// # Errors
+    /// The line is closed.
+    pub fn read(&self, into: &mut [u8]) -> Result<usize, LineFault> {
+        match rustix::io::read(&self.port, into) {
+            Ok(0) => Err(LineFault::Closed),
+            Ok(count) => Ok(count),
+            Err(Errno::AGAIN | Errno::INTR) => Ok(0),
+            Err(error) => Err(LineFault::of(error)),
+        }
+    }
+
+    /// Waits until there is something to be read.
+    ///
+    /// # Errors
+    /// There is nothing by `deadline`, or the line failed.
+    pub fn hear(&self, deadline: Instant) -> Result<(), LineFault> {
+        self.wait(PollFlags::IN, deadline)
+    }
+
+    /// Waits until the line is ready for this.
+    fn wait(&self, what: PollFlags, deadline: Instant) -> Result<(), LineFault> {
+        loop {
+            let left = deadline.saturating_duration_since(Instant::now());
+            if left.is_zero() {
+                return Err(LineFault::Silent);
+            }
+            let timeout = Timespec { tv_sec: left.as_secs() as i64, tv_nsec: i64::from(left.subsec_nanos()) };
+            let mut ports = [PollFd::new(&self.port, what)];
+            match poll(&mut ports, Some(&timeout)) {
+                Ok(0) | Err(Errno::INTR) => {}
+                Ok(_) => return Ok(()),
+                Err(error) => return Err(LineFault::of(error)),
+            }
+        }
+    }
+}
+
+/// Opens a serial port, raw, and locks it against other programs that ask for a lock.
+fn serial(path: &Path, speed: u32) -> Result<OwnedFd, LineFault> {
+    let device = path.display().to_string();
+    // Without waiting for a carrier, and without making it this program's terminal.
+    let flags = (OFlags::NONBLOCK | OFlags::NOCTTY).bits() as i32;
+    let file = OpenOptions::new().read(true).write(true).custom_flags(flags).open(path);
+    let file: File = file.map_err(|error| {
+        let is_busy = error.kind() == io::ErrorKind::ResourceBusy;
+        if is_busy { LineFault::Busy(device.clone()) } else { LineFault::Open(device.clone(), error.to_string()) }
+    })?;
+    if !termios::isatty(&file) {
+        return Err(LineFault::NotSerial(device));
+    }
+    // A file system without locks cannot say who else is there.
+    if rustix::fs::flock(&file, FlockOperation::NonBlockingLockExclusive) == Err(Errno::WOULDBLOCK) {
+        return Err(LineFault::Busy(device));
+    }
+    let refused = |error: Errno| LineFault::Open(device.clone(), format!("it cannot be set to {speed} 8N1: {error}"));
+    let mut settings = termios::tcgetattr(&file).map_err(refused)?;
+    settings.make_raw();
+    settings.set_speed(speed).map_err(refused)?;
+    settings.control_modes |= termios::ControlModes::CLOCAL | termios::ControlModes::CREAD;
+    settings.control_modes -= termios::ControlModes::CSTOPB | termios::ControlModes::CRTSCTS;
+    termios::tcsetattr(&file, OptionalActions::Flush, &settings).map_err(refused)?;
+    Ok(file.into())
+}
+
+/// Connects to a literal address.
+fn connect(address: &str) -> Result<OwnedFd, LineFault> {
+    let said = format!("tcp:{address}");
+    let address: SocketAddr = address.parse().map_err(|_| {
+        LineFault::Open(said.clone(), "an address and a port are meant, as in `tcp:192.168.1.7:65001`".to_owned())
+    })?;
+    let refused = |error: io::Error| LineFault::Open(said.clone(), error.to_string());
+    let stream = TcpStream::connect_timeout(&address, CONNECT).map_err(refused)?;
+    // A command must not wait until there are more.
+    stream.set_nodelay(true).map_err(refused)?;
+    stream.set_nonblocking(true).map_err(refused)?;
+    Ok(stream.into())
+}

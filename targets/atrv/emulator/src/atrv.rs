@@ -1,0 +1,231 @@
+//! An ATRV-mini in a simulated world: what each command does to it, and what it tells as time passes.
+
+mod telling;
+
+use std::time::Duration;
+
+use mdle_emulator::{Ailment, Emulated, Pace, STEP};
+use mdle_runtime::{MetersPerSecond, Nanos, Pose, RadiansPerSecond, Robot as _, Twist};
+use mdle_sim::{Output, Simulated};
+
+use crate::wire::{Incoming, Request, number};
+use telling::Schedule;
+
+/// What the controller counts for a metre and a radian.
+const A_METRE: f64 = 139_654.7;
+const A_RADIAN: f64 = 49_784.5;
+/// After how long without a command it stops by itself, unless it is told otherwise.
+const FAILSAFE: Duration = Duration::from_secs(1);
+/// The battery, in hundredths of a volt; and one that is low.
+const BATTERY: u32 = 2430;
+const LOW: u32 = 2010;
+/// The distance between its sides, in metres, as its body has it.
+const BETWEEN: f64 = 0.4;
+
+/// The steps in which the time of its body passes: as many as it takes for none to be longer than [`STEP`].
+#[must_use]
+pub fn step(pace: Pace) -> Duration {
+    let step = pace.step();
+    step / step.as_nanos().div_ceil(STEP.as_nanos()).max(1) as u32
+}
+
+/// The robot.
+#[allow(missing_debug_implementations, reason = "its body has none")]
+pub struct Atrv {
+    body: Simulated,
+    step: Duration,
+    sensed: Output,
+    incoming: Incoming,
+    /// What is still to be sent, and how many reports there have been.
+    said: Vec<Vec<u8>>,
+    count: u8,
+    /// What it has been told, forward and in turns, in its units a second.
+    told: (i32, i32),
+    /// How far each axis has gone, in its units.
+    gone: (f64, f64),
+    axes: Schedule,
+    inputs: Schedule,
+    /// Which pings have been told, while the sonars run.
+    pings: Option<Vec<Nanos>>,
+    is_braked: bool,
+    silence: Duration,
+    /// How long it has been on.
+    age: Duration,
+    /// Whether its emergency stop is pressed.
+    pub emergency: bool,
+    /// What else is the matter with it.
+    ailments: Vec<Ailment>,
+    /// After how long without a command it stops by itself.
+    pub failsafe: Duration,
+}
+
+impl Atrv {
+    /// A robot that has just been switched on, whose body's time passes in such steps. `marks` as for [`Incoming::new`].
+    ///
+    /// # Errors
+    /// The world's sentence about an input that it cannot take, which none here is.
+    pub fn new(mut body: Simulated, step: Duration, marks: bool) -> Result<Self, String> {
+        let sensed = body.exchange(&Twist::default()).map_err(|error| error.to_string())?;
+        Ok(Self {
+            body,
+            step,
+            sensed,
+            incoming: Incoming::new(marks),
+            said: Vec::new(),
+            count: 0,
+            told: (0, 0),
+            gone: (0.0, 0.0),
+            axes: Schedule::default(),
+            inputs: Schedule::default(),
+            pings: None,
+            is_braked: true,
+            silence: Duration::ZERO,
+            age: Duration::ZERO,
+            emergency: false,
+            ailments: Vec::new(),
+            failsafe: FAILSAFE,
+        })
+    }
+
+    /// Where the robot really is.
+    #[must_use]
+    pub fn pose(&self) -> Pose {
+        self.body.pose()
+    }
+
+    /// How fast it moves.
+    #[must_use]
+    pub fn velocity(&self) -> Twist {
+        self.sensed.velocity
+    }
+
+    /// Whether its brake holds it.
+    #[must_use]
+    pub fn is_braked(&self) -> bool {
+        self.is_braked || self.emergency
+    }
+
+    /// Does what it is told; whether that was to turn, which is the second half of a motion.
+    fn does(&mut self, request: &Request) -> bool {
+        self.silence = Duration::ZERO;
+        match (request.port, request.code, &*request.data) {
+            (1, 1, _) => {
+                let brake = [u8::from(self.is_braked())];
+                let battery = if self.has(Ailment::LowBattery) { LOW } else { BATTERY };
+                let data = [&self.time()[..], &battery.to_be_bytes(), &brake].concat();
+                self.tell(1, 1, &data);
+            }
+            (2, 7, [axis, v0, v1, v2, v3, .., direction]) if request.data.len() == 14 => {
+                let size = number(&[*v0, *v1, *v2, *v3]).min(i32::MAX as u32) as i32;
+                let velocity = if *direction == 0 { -size } else { size };
+                match axis {
+                    // As on the ATRV-Jr: nothing is no speed, so that the old one stays.
+                    0 if velocity == 0 => {}
+                    0 => self.told.0 = velocity,
+                    _ => self.told.1 = velocity,
+                }
+                return *axis == 1;
+            }
+            (2, 11, _) => (self.told, self.is_braked) = ((0, 0), true),
+            (2, 12, _) => self.is_braked = false,
+            (2, 34, [p0, p1, p2, p3, _, _, _, axes]) => {
+                let period = if *axes == 3 { number(&[*p0, *p1, *p2, *p3]) } else { 0 };
+                self.axes = Schedule::new(period, self.age);
+            }
+            (4, 0, [.., mode]) => {
+                let now = || self.body.heard().iter().map(|heard| heard.at).collect();
+                self.pings = (*mode == 2).then(now);
+            }
+            (5, 0, period) => {
+                self.inputs = Schedule::new(number(period), self.age);
+                let done = [&[0; 4][..], &self.time()].concat();
+                self.tell(5, 0, &done);
+            }
+            _ => {}
+        }
+        false
+    }
+
+    /// One step of the world, after which it is so old.
+    fn tick(&mut self, age: Duration) -> Result<(), String> {
+        self.silence += age.saturating_sub(self.age);
+        self.age = age;
+        if self.silence >= self.failsafe || self.is_braked() {
+            self.told = (0, 0);
+        }
+        // The body counts as well, and cuts off: a unit more leaves it these very numbers.
+        let exactly = |units: i32, one: f64| f64::from(units + units.signum()) / one;
+        let input = Twist {
+            v: MetersPerSecond(exactly(self.told.0, A_METRE)),
+            omega: RadiansPerSecond(exactly(self.told.1, A_RADIAN)),
+        };
+        let input = if self.has(Ailment::StuckWheel) { left_alone(&input) } else { input };
+        let before = self.sensed.odometry;
+        self.sensed = self.body.exchange(&input).map_err(|error| error.to_string())?;
+        self.goes(&before);
+        self.tell_pings();
+        if self.inputs.is_due(age) {
+            self.tell_bumpers();
+        }
+        if self.axes.is_due(age) {
+            self.tell_axes();
+        }
+        Ok(())
+    }
+
+    /// The axes have gone from there to where its odometry is.
+    fn goes(&mut self, before: &Pose) {
+        let after = &self.sensed.odometry;
+        let turn = (after.theta.0 - before.theta.0 + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU)
+            - std::f64::consts::PI;
+        let (sin, cos) = libm::sincos(before.theta.0 + turn / 2.0);
+        let chord = (after.x.0 - before.x.0) * cos + (after.y.0 - before.y.0) * sin;
+        let half = turn / 2.0;
+        let way = if half.abs() < 1e-9 { chord } else { chord * half / libm::sin(half) };
+        self.gone = (self.gone.0 + way * A_METRE, self.gone.1 + turn * A_RADIAN);
+    }
+
+    fn has(&self, ailment: Ailment) -> bool {
+        self.ailments.contains(&ailment)
+    }
+}
+
+/// How the body moves if its right side does not.
+fn left_alone(input: &Twist) -> Twist {
+    let left = input.v.0 - input.omega.0 * (BETWEEN / 2.0);
+    Twist { v: MetersPerSecond(left / 2.0), omega: RadiansPerSecond(-left / BETWEEN) }
+}
+
+impl Emulated for Atrv {
+    fn push(&mut self, bytes: &[u8]) {
+        self.incoming.push(bytes);
+    }
+
+    fn obey(&mut self) -> Option<bool> {
+        let request = self.incoming.next_request()?;
+        Some(self.does(&request))
+    }
+
+    fn pass(&mut self, time: Duration) -> Result<(), String> {
+        let begun = self.age;
+        let steps = (time.as_nanos() / self.step.as_nanos().max(1)).max(1) as u32;
+        (1..=steps).try_for_each(|step| self.tick(begun + time * step / steps))
+    }
+
+    fn said(&mut self) -> Vec<Vec<u8>> {
+        std::mem::take(&mut self.said)
+    }
+
+    fn can_suffer(_: Ailment) -> bool {
+        true
+    }
+
+    fn suffer(&mut self, ailment: Ailment) {
+        match ailment {
+            Ailment::Emergency => self.emergency = true,
+            Ailment::StuckWheel | Ailment::DeadSonar | Ailment::Bumper | Ailment::LowBattery | Ailment::Filler => {
+                self.ailments.push(ailment);
+            }
+        }
+    }
+}

@@ -1,0 +1,102 @@
+//! What the robot tells by itself: where its axes are, what its sonars hear, its bumpers; and when.
+
+use std::time::Duration;
+
+use mdle_emulator::Ailment;
+use mdle_runtime::Twist;
+
+use super::{A_METRE, A_RADIAN, Atrv};
+use crate::wire::report;
+
+/// What a sonar counts for a metre.
+const A_RANGE: f64 = 1550.0;
+/// The boards with the body's sonars, six on each: front left, rear left, front right, rear right.
+const BOARDS: [u8; 4] = [0, 1, 3, 2];
+/// What it tells when it has heard nothing.
+const NOTHING: u16 = 32_766;
+/// In every so many reports there is filler.
+const FILLED: u8 = 7;
+
+/// Something that is told again and again.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Schedule {
+    /// Zero for never.
+    period: Duration,
+    due: Duration,
+}
+
+impl Atrv {
+    pub(super) fn tell_axes(&mut self) {
+        let Twist { v, omega } = self.sensed.velocity;
+        for (axis, gone, speed) in [(0, self.gone.0, v.0 * A_METRE), (1, self.gone.1, omega.0 * A_RADIAN)] {
+            // What is more than 32 bits is told without the rest.
+            let position = (gone.round() as i64) as i32;
+            let data = [
+                &[0; 4][..],
+                &self.time(),
+                &[axis],
+                &position.to_be_bytes(),
+                &(speed.round() as i32).to_be_bytes(),
+                &[0; 8],
+            ];
+            self.tell(2, 33, &data.concat());
+        }
+    }
+
+    /// A report for the sonars that have pinged since the last one, if any have.
+    pub(super) fn tell_pings(&mut self) {
+        let is_dead = self.has(Ailment::DeadSonar);
+        let Some(told) = &mut self.pings else { return };
+        let mut data = Vec::new();
+        for ((heard, told), sonar) in self.body.heard().iter().zip(told).zip(0_u8..) {
+            if heard.at > *told {
+                *told = heard.at;
+                // Both that look ahead.
+                let range = heard.range.filter(|_| !(is_dead && [0, 12].contains(&sonar)));
+                let counts = range.map_or(NOTHING, |range| (range.0 * A_RANGE).round() as u16);
+                data.push(BOARDS[usize::from(sonar / 6) % 4] * 16 + sonar % 6);
+                data.extend(counts.to_be_bytes());
+            }
+        }
+        if !data.is_empty() {
+            let data = [&[0; 4][..], &self.time(), &data].concat();
+            self.tell(4, 2, &data);
+        }
+    }
+
+    pub(super) fn tell_bumpers(&mut self) {
+        for bumper in 0..2_u8 {
+            let is_pressed = bumper == 0 && self.has(Ailment::Bumper);
+            let state = u8::from(is_pressed || self.sensed.switches & (1 << bumper) != 0);
+            let data = [&self.time()[..], &[0x40 + bumper, 0, state]].concat();
+            self.tell(5, 1, &data);
+        }
+    }
+
+    pub(super) fn time(&self) -> [u8; 4] {
+        (self.age.as_millis() as u32).to_be_bytes()
+    }
+
+    pub(super) fn tell(&mut self, port: u8, code: u8, data: &[u8]) {
+        self.count = self.count.wrapping_add(1);
+        let filler: &[u8] =
+            if self.has(Ailment::Filler) || self.count.is_multiple_of(FILLED) { &[0x1B, 0x01] } else { &[] };
+        self.said.push(report(port, self.count, code, data, filler));
+    }
+}
+
+impl Schedule {
+    pub(super) fn new(micros: u32, now: Duration) -> Self {
+        let period = Duration::from_micros(u64::from(micros));
+        Self { period, due: now + period }
+    }
+
+    /// Whether it is time.
+    pub(super) fn is_due(&mut self, now: Duration) -> bool {
+        let is_due = !self.period.is_zero() && self.due <= now;
+        if is_due {
+            self.due += self.period;
+        }
+        is_due
+    }
+}

@@ -1,0 +1,123 @@
+//! The rFLEX language as the controller speaks it: commands out of bytes, reports into bytes.
+//!
+//! It shares nothing with the driver's: what one of them gets wrong about the language, the other one finds.
+
+/// A command: for which part of the robot, what, with which arguments.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Request {
+    /// The part: 1 system, 2 motors, 4 sonars, 5 digital inputs.
+    pub port: u8,
+    /// What it is to do.
+    pub code: u8,
+    /// What comes with it.
+    pub data: Vec<u8>,
+}
+
+/// Bytes that have come in, and the commands in them.
+#[derive(Debug, Default)]
+pub struct Incoming {
+    bytes: Vec<u8>,
+    /// Whether it knows that `1B 00` is a value.
+    marks: bool,
+}
+
+impl Incoming {
+    /// Before the first byte. `marks`: whether `1B 00` is known to be a value; nobody has seen a controller that knows.
+    #[must_use]
+    pub const fn new(marks: bool) -> Self {
+        Self { bytes: Vec::new(), marks }
+    }
+
+    /// Takes in more bytes.
+    pub fn push(&mut self, bytes: &[u8]) {
+        self.bytes.extend_from_slice(bytes);
+    }
+
+    /// The next command that is whole. One with a wrong length or check, or with a 1B in it that it does not know, is lost.
+    pub fn next_request(&mut self) -> Option<Request> {
+        loop {
+            let Some(begin) = self.bytes.windows(2).position(|two| two == [0x1B, 0x02]) else {
+                // The last byte may be the first half of a beginning.
+                let keep = usize::from(self.bytes.last() == Some(&0x1B));
+                self.bytes.drain(..self.bytes.len() - keep);
+                return None;
+            };
+            self.bytes.drain(..begin);
+            let (body, used) = match self.body() {
+                Body::Open => return None,
+                Body::Lost(used) => (None, used),
+                Body::Whole(body, used) => (Some(body), used),
+            };
+            self.bytes.drain(..used);
+            if let Some([port, _, code, size, rest @ ..]) = body.as_deref()
+                && let [data @ .., _] = rest
+                && data.len() == usize::from(*size)
+                && body.iter().flatten().fold(0, |all, byte| all ^ byte) == 0
+            {
+                return Some(Request { port: *port, code: *code, data: data.to_vec() });
+            }
+        }
+    }
+
+    /// What lies between the marks of the command that begins here.
+    fn body(&self) -> Body {
+        let mut body = Vec::new();
+        let mut at = 2;
+        loop {
+            match (self.bytes.get(at), self.bytes.get(at + 1)) {
+                (None, _) | (Some(0x1B), None) => return Body::Open,
+                (Some(0x1B), Some(0x03)) => return Body::Whole(body, at + 2),
+                (Some(0x1B), Some(0x02)) => return Body::Lost(at),
+                (Some(0x1B), Some(0x01)) => at += 2,
+                (Some(0x1B), Some(0x00)) if self.marks => {
+                    body.push(0x1B);
+                    at += 2;
+                }
+                (Some(0x1B), Some(_)) => return Body::Lost(at + 1),
+                (Some(byte), _) => {
+                    body.push(*byte);
+                    at += 1;
+                }
+            }
+            if body.len() > 260 {
+                return Body::Lost(at);
+            }
+        }
+    }
+}
+
+enum Body {
+    /// It has not ended yet.
+    Open,
+    /// So many bytes make none.
+    Lost(usize),
+    /// It takes so many bytes of the line.
+    Whole(Vec<u8>, usize),
+}
+
+/// A report with this number, in this way: values of 1B are followed by a 00. `filler` goes in between.
+#[must_use]
+pub fn report(port: u8, number: u8, code: u8, data: &[u8], filler: &[u8]) -> Vec<u8> {
+    let data = data.get(..data.len().min(255)).unwrap_or_default();
+    let mut inside = vec![port, number, code, data.len() as u8];
+    inside.extend_from_slice(data);
+    inside.push(inside.iter().fold(0, |all, byte| all ^ byte));
+    let mut bytes = vec![0x1B, 0x02];
+    for (place, byte) in inside.iter().enumerate() {
+        if place == 1 {
+            bytes.extend_from_slice(filler);
+        }
+        bytes.push(*byte);
+        if *byte == 0x1B {
+            bytes.push(0x00);
+        }
+    }
+    bytes.extend([0x1B, 0x03]);
+    bytes
+}
+
+/// The number in four bytes, the highest first.
+#[must_use]
+pub fn number(bytes: &[u8]) -> u32 {
+    bytes.iter().take(4).fold(0, |number, byte| number << 8 | u32::from(*byte))
+}

@@ -1,0 +1,227 @@
+//! A robot in a room, on a pseudo-terminal, and drivers of it; and what only says that it is one.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::Duration;
+
+use mdle_atrv::{Atrv, Clock, Config, Configured, Escape, Fault};
+use mdle_atrv_emulator::atrv::{Atrv as Emulated, step};
+use mdle_atrv_emulator::wire::{Incoming, Request};
+use mdle_emulator::{Ailment, Pace, Port, serve};
+use mdle_runtime::{Robot as _, Twist};
+use mdle_sim::{Body, Make, Simulated, World};
+
+pub(crate) const PERIOD: Duration = Duration::from_millis(100);
+/// Walls 2 m before the robot, 1.5 m to its left, 1 m to its right and 3 m behind it.
+const ROOM: &str =
+    "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[2, -1], [2, 1.5], [-3, 1.5], [-3, -1], [2, -1]]";
+
+/// Longer than any machine takes.
+const LONG: u64 = 60_000;
+/// What is not going to come is not waited for.
+const SHORT: u64 = 500;
+
+/// Ends the robot's thread when a test ends, also when it fails.
+struct Ends<'a>(&'a AtomicBool);
+
+impl Drop for Ends<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+/// The configuration of a robot at this line that answers within so many milliseconds.
+fn config(port: &Port, answer: u64) -> Config {
+    Config { answer, ..Configured::read(None, port.path().to_str()).unwrap().config }
+}
+
+/// The robot as an operator has it: who can press its emergency stop, and sees whether it has come to stand.
+struct Watched<'a> {
+    robot: Emulated,
+    emergency: &'a AtomicBool,
+    has_moved: bool,
+    stands: &'a AtomicBool,
+}
+
+impl mdle_emulator::Emulated for Watched<'_> {
+    fn push(&mut self, bytes: &[u8]) {
+        self.robot.push(bytes);
+    }
+
+    fn obey(&mut self) -> Option<bool> {
+        self.robot.emergency = self.emergency.load(Ordering::Relaxed);
+        self.robot.obey()
+    }
+
+    fn pass(&mut self, time: Duration) -> Result<(), String> {
+        self.robot.pass(time)?;
+        let moves = self.robot.velocity() != Twist::default();
+        self.has_moved |= moves;
+        self.stands.store(self.has_moved && !moves, Ordering::Relaxed);
+        Ok(())
+    }
+
+    fn said(&mut self) -> Vec<Vec<u8>> {
+        self.robot.said()
+    }
+
+    fn can_suffer(_: Ailment) -> bool {
+        false
+    }
+
+    fn suffer(&mut self, _: Ailment) {}
+}
+
+/// What `drive` makes of a robot in the room, which is handed back.
+fn in_the_room<T>(
+    pace: Pace,
+    [emergency, stands]: [&AtomicBool; 2],
+    change: impl FnOnce(&mut Config),
+    drive: impl FnOnce(Result<Atrv, Fault>) -> T,
+) -> (Emulated, T) {
+    let world = World::parse("room", ROOM).unwrap();
+    let make = Make { body: Body::Atrv, without: Vec::new(), seed: None };
+    let body = Simulated::with(&make, &world, world.start, step(pace)).unwrap();
+    let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
+    let mut config = config(&port, LONG);
+    change(&mut config);
+    let mut robot = Emulated::new(body, step(pace), config.escape == Escape::Mark).unwrap();
+    if pace == Pace::Real {
+        // Who stops it is the driver.
+        robot.failsafe = Duration::MAX;
+    }
+    let mut watched = Watched { robot, emergency, has_moved: false, stands };
+    let result = thread::scope(|scope| {
+        let serving = scope.spawn(|| serve(&mut watched, &port, pace, &|| !over.load(Ordering::Relaxed)));
+        let ends = Ends(&over);
+        // By the clock the start is looked at so often that no machine is too slow for it.
+        let (clock, period) = match pace {
+            Pace::Real => (Clock::Wall, Duration::from_millis(2)),
+            Pace::Lockstep(period) => (Clock::Stepped(period), period),
+        };
+        let result = drive(Atrv::connect(config, clock, period));
+        drop(ends);
+        serving.join().unwrap().unwrap();
+        result
+    });
+    (watched.robot, result)
+}
+
+/// What `drive` makes of a robot in lockstep.
+pub(crate) fn with_robot<T>(drive: impl FnOnce(&mut Atrv) -> T) -> (Emulated, T) {
+    with_emergency(&AtomicBool::new(false), drive)
+}
+
+/// The same with somebody at its emergency stop.
+pub(crate) fn with_emergency<T>(pressed: &AtomicBool, drive: impl FnOnce(&mut Atrv) -> T) -> (Emulated, T) {
+    let off = AtomicBool::new(false);
+    let lights = [pressed, &off];
+    in_the_room(Pace::Lockstep(PERIOD), lights, |_| {}, |driver| drive(&mut driver.unwrap()))
+}
+
+/// The same with a robot that takes bytes of 1B like this.
+pub(crate) fn driven_in(escape: Escape, drive: impl FnOnce(&mut Atrv)) {
+    let off = AtomicBool::new(false);
+    let lights = [&off; 2];
+    in_the_room(Pace::Lockstep(PERIOD), lights, |config| config.escape = escape, |driver| drive(&mut driver.unwrap()));
+}
+
+/// Why a driver with this configuration does not begin.
+pub(crate) fn refused(change: impl FnOnce(&mut Config)) -> Fault {
+    let off = AtomicBool::new(false);
+    let lights = [&off; 2];
+    in_the_room(Pace::Lockstep(PERIOD), lights, change, |driver| driver.map(|_| ()).unwrap_err()).1
+}
+
+/// Why one does not with the emergency stop pressed.
+pub(crate) fn refused_in_emergency(pressed: &AtomicBool) -> Fault {
+    let off = AtomicBool::new(false);
+    let lights = [pressed, &off];
+    in_the_room(Pace::Lockstep(PERIOD), lights, |_| {}, |driver| driver.map(|_| ()).unwrap_err()).1
+}
+
+/// What `drive` makes of a robot by the clock, which says when it has come to stand; and how fast that then is.
+pub(crate) fn overslept<T>(drive: impl FnOnce(&mut Atrv, &AtomicBool) -> T) -> (f64, T) {
+    let (emergency, stands) = (AtomicBool::new(false), AtomicBool::new(false));
+    let (robot, result) = in_the_room(
+        Pace::Real,
+        [&emergency, &stands],
+        // Longer than any machine is away.
+        |config| config.watchdog = 3000,
+        |driver| drive(&mut driver.unwrap(), &stands),
+    );
+    (robot.velocity().v.0, result)
+}
+
+/// What a driver says of something that answers each turn with these bytes.
+pub(crate) fn said_of(answers: impl Fn(&Request) -> Vec<u8> + Sync) -> Fault {
+    let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
+    thread::scope(|scope| {
+        scope.spawn(|| {
+            let mut incoming = Incoming::new(false);
+            while !over.load(Ordering::Relaxed) {
+                port.read(Duration::from_millis(10), &mut |bytes| incoming.push(bytes)).unwrap();
+                while let Some(request) = incoming.next_request() {
+                    port.write(&answers(&request)).unwrap();
+                }
+            }
+        });
+        let _ends = Ends(&over);
+        Atrv::connect(config(&port, SHORT), Clock::Stepped(PERIOD), PERIOD).map(|_| ()).unwrap_err()
+    })
+}
+
+/// What turns come to with a robot whose reports come in pieces, and behind noise.
+pub(crate) fn dribbled(period: Duration) -> Result<(), Fault> {
+    let world = World::parse("room", ROOM).unwrap();
+    let body = Make { body: Body::Atrv, without: Vec::new(), seed: None };
+    let pace = Pace::Lockstep(period);
+    let body = Simulated::with(&body, &world, world.start, step(pace)).unwrap();
+    let mut robot = Emulated::new(body, step(pace), false).unwrap();
+    let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
+    thread::scope(|scope| {
+        scope.spawn(|| {
+            use mdle_emulator::Emulated as _;
+            while !over.load(Ordering::Relaxed) {
+                port.read(Duration::from_millis(10), &mut |bytes| robot.push(bytes)).unwrap();
+                while let Some(turns) = robot.obey() {
+                    if turns {
+                        robot.pass(period).unwrap();
+                    }
+                    let said = robot.said().concat();
+                    let noise: &[u8] = if said.is_empty() { &[] } else { &[0xFF, 0x1B] };
+                    for piece in [noise, &said].concat().chunks(5) {
+                        port.write(piece).unwrap();
+                        thread::yield_now();
+                    }
+                }
+            }
+        });
+        let _ends = Ends(&over);
+        let mut driver = Atrv::connect(config(&port, LONG), Clock::Stepped(period), period)?;
+        (0..20).try_for_each(|_| driver.exchange(&Twist::default()).map(|_| ()))
+    })
+}
+
+/// What an exchange and a stop come to after the line was cut.
+pub(crate) fn cut() -> [Result<(), Fault>; 2] {
+    let port = Port::open().unwrap();
+    let (path, over) = (port.path().to_owned(), AtomicBool::new(false));
+    let world = World::parse("room", ROOM).unwrap();
+    let make = Make { body: Body::Atrv, without: Vec::new(), seed: None };
+    let pace = Pace::Lockstep(PERIOD);
+    let body = Simulated::with(&make, &world, world.start, step(pace)).unwrap();
+    let mut robot = Emulated::new(body, step(pace), false).unwrap();
+    thread::scope(|scope| {
+        let serving = scope.spawn(|| {
+            let port = port;
+            serve(&mut robot, &port, pace, &|| !over.load(Ordering::Relaxed))
+        });
+        let _ends = Ends(&over);
+        let config = Config { answer: LONG, ..Configured::read(None, path.to_str()).unwrap().config };
+        let mut driver = Atrv::connect(config, Clock::Stepped(PERIOD), PERIOD).unwrap();
+        over.store(true, Ordering::Relaxed);
+        serving.join().unwrap().unwrap();
+        [driver.exchange(&Twist::default()).map(|_| ()), driver.stop()]
+    })
+}

@@ -1,0 +1,196 @@
+//! The ATRV as a kinetic state machine: each input is two velocity commands, and the output is what its reports say by then
+//! (paper, Eq. 1).
+
+use std::time::{Duration, Instant};
+
+use mdle_runtime::{Meters, Nanos, Robot, Sensed, Shape, Twist};
+use mdle_serial::{Clock, Line, Times};
+
+use crate::command::Command;
+use crate::config::Config;
+use crate::fault::Fault;
+use crate::hearing::Hearing;
+use crate::layout::RING_RADIUS;
+use crate::motion;
+use crate::mouth::Mouth;
+
+/// Bits a second, 8N1.
+const SPEED: u32 = 115_200;
+/// The radius of the smallest circle around the body.
+const RADIUS: Meters = Meters(0.415);
+/// How many pings must agree that a way is free on a robot whose sonars fire in turn.
+const CONFIRMATION: usize = 2;
+/// How long the robot may take to release its brake, and each of its sonars to ping a few times.
+const STARTING: Duration = Duration::from_millis(1000);
+/// How long it may take to stand before its brake is set: from 1 m/s it takes a second.
+const STOPPING: Duration = Duration::from_millis(1000);
+/// How long each of its reports may take meanwhile.
+const ANSWER: Duration = Duration::from_millis(150);
+/// The time between two looks at whether it stands.
+const LOOK: Duration = Duration::from_millis(50);
+/// It stands when it moves no faster than this, in m/s and rad/s.
+const STANDS: f64 = 0.01;
+/// How often it tells its bumpers, in microseconds: as everybody asks.
+const INPUTS: u32 = 100_000;
+
+/// An ATRV that tells where it is.
+#[derive(Debug)]
+pub struct Atrv {
+    mouth: Mouth,
+    config: Config,
+    clock: Clock,
+    times: Times,
+    hearing: Hearing,
+    /// How often it tells where it is, and how many times in a turn in lockstep.
+    reports: Duration,
+    a_turn: u32,
+    /// When it was asked for its brake last.
+    asked: Nanos,
+}
+
+impl Atrv {
+    /// Opens the line and prepares the robot: it stands, its brake is released, it tells where it is, and each sonar has
+    /// pinged.
+    ///
+    /// # Errors
+    /// There is no line, no robot, its brake is set, or its sonars are silent.
+    pub fn connect(config: Config, clock: Clock, period: Duration) -> Result<Self, Fault> {
+        let line = Line::open(&config.device, SPEED)?;
+        let watchdog = match clock {
+            Clock::Wall => {
+                let stop = motion::commands(&Twist::default(), &config).map(|command| command.frame(config.escape));
+                Some((Duration::from_millis(config.watchdog), stop))
+            }
+            Clock::Stepped(_) => None,
+        };
+        let asked = Duration::from_millis(config.reports);
+        // In lockstep a turn has to end with a report.
+        let (reports, a_turn) = match clock {
+            Clock::Wall => (asked, 0),
+            Clock::Stepped(period) => {
+                let count = (period.as_micros() / asked.as_micros().max(1)).clamp(1, 1000) as u32;
+                (period / count, count)
+            }
+        };
+        let hearing = Hearing::new(&config);
+        let mouth = Mouth::new(line, watchdog);
+        let times = Times::new(clock);
+        let mut atrv = Self { mouth, config, clock, times, hearing, reports, a_turn, asked: Nanos::ZERO };
+        match atrv.prepare(period) {
+            Ok(()) => Ok(atrv),
+            Err(fault) => {
+                // What led here says more than what comes of this.
+                let _ = atrv.stop();
+                Err(fault)
+            }
+        }
+    }
+
+    fn prepare(&mut self, period: Duration) -> Result<(), Fault> {
+        // Whoever drove it before may have left it moving.
+        self.move_on(&Twist::default())?;
+        self.say(Command::Defaults)?;
+        self.say(Command::Inputs(INPUTS))?;
+        self.say(Command::Sonars(self.config.echo))?;
+        self.say(Command::Reports(self.reports.as_micros() as u32))?;
+        self.say(Command::Release)?;
+        let mut left = STARTING;
+        loop {
+            self.say(Command::Status)?;
+            self.move_on(&Twist::default())?;
+            self.clock.pass(period.min(left));
+            self.hear(Nanos::ZERO, self.config.patience())?;
+            let waits = self.hearing.waits_for();
+            if waits.is_none() {
+                return Ok(());
+            }
+            left = left.saturating_sub(period);
+            if left.is_zero() {
+                return waits.map_or(Ok(()), Err);
+            }
+        }
+    }
+
+    /// Tells the robot how to move.
+    fn move_on(&mut self, input: &Twist) -> Result<(), Fault> {
+        for command in motion::commands(input, &self.config) {
+            let frame = command.frame(self.config.escape);
+            self.mouth.say_motion(&frame, Instant::now() + self.config.patience())?;
+            self.rest();
+        }
+        Ok(())
+    }
+
+    /// Tells it something else.
+    fn say(&mut self, command: Command) -> Result<(), Fault> {
+        self.mouth.say(&command.frame(self.config.escape), Instant::now() + self.config.patience())?;
+        self.rest();
+        Ok(())
+    }
+
+    /// Controllers want to be left alone for a moment after each command.
+    fn rest(&self) {
+        self.clock.pass(Duration::from_millis(self.config.pause));
+    }
+
+    /// Takes in what the robot has told; in lockstep, all that it tells of this turn.
+    fn hear(&mut self, at: Nanos, patience: Duration) -> Result<(), Fault> {
+        self.hearing.take(self.mouth.line(), at, self.a_turn, patience)
+    }
+
+    /// Waits until the robot stands, or `deadline`.
+    fn stands(&mut self, deadline: Instant) -> Result<(), Fault> {
+        loop {
+            self.move_on(&Twist::default())?;
+            self.clock.pass(LOOK);
+            self.hear(Nanos::ZERO, ANSWER.min(self.config.patience()))?;
+            let Twist { v, omega } = self.hearing.velocity();
+            if (v.0.abs() < STANDS && omega.0.abs() < STANDS) || Instant::now() >= deadline {
+                return Ok(());
+            }
+        }
+    }
+}
+
+impl Robot for Atrv {
+    type Output = Sensed;
+    type Input = Twist;
+    type Error = Fault;
+
+    fn exchange(&mut self, input: &Twist) -> Result<Sensed, Fault> {
+        let at = self.times.now();
+        if at.since(self.asked) >= Nanos(self.config.status.saturating_mul(1_000_000)) {
+            self.asked = at;
+            self.say(Command::Status)?;
+        }
+        self.move_on(input)?;
+        self.hear(at, self.config.patience())?;
+        self.hearing.fault(at)?;
+        Ok(Sensed {
+            odometry: self.hearing.pose(),
+            velocity: self.hearing.velocity(),
+            switches: self.hearing.switches(),
+            pings: *self.hearing.pings(),
+            shape: Shape {
+                body_radius: RADIUS,
+                wheel_base: Meters(self.config.wheel_base),
+                ring_radius: Meters(RING_RADIUS),
+                confirmation: CONFIRMATION,
+            },
+        })
+    }
+
+    fn stop(&mut self) -> Result<(), Fault> {
+        self.mouth.ends();
+        // Braked at speed it would slide.
+        let stands = self.stands(Instant::now() + STOPPING);
+        self.mouth.ends();
+        let last = [Command::Brake, Command::Deaf, Command::Inputs(0), Command::Reports(0), Command::Defaults];
+        // It is braked whether or not it has understood.
+        last.into_iter().fold(stands, |before, command| {
+            let said = self.mouth.say(&command.frame(self.config.escape), Instant::now() + ANSWER);
+            self.rest();
+            before.and(said)
+        })
+    }
+}

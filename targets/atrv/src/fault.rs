@@ -1,0 +1,65 @@
+//! What can go wrong with an ATRV, each in a sentence for the operator that says what to do.
+
+use std::fmt;
+
+use mdle_serial::LineFault;
+
+use crate::frame::Garbled;
+use crate::report::Unreadable;
+
+/// Why the robot cannot be driven, or no longer.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Fault {
+    /// The line cannot be opened, is cut, or nothing came in time.
+    Line(LineFault),
+    /// What came is no frame, and no report of where the robot is came besides.
+    Garbled(Garbled),
+    /// What came says nothing that a driver understands.
+    Unreadable(Unreadable),
+    /// The brake holds the robot, though it was told to release it.
+    Braked,
+    /// The sonars of this direction, of sixteen, say nothing.
+    Deaf(u8),
+    /// No command was given for so long that the watchdog has stopped the robot.
+    Overslept,
+}
+
+impl From<LineFault> for Fault {
+    fn from(fault: LineFault) -> Self {
+        Self::Line(fault)
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(fault) => fault.tell("the ATRV", f),
+            Self::Garbled(garbled) => write!(
+                f,
+                "what the ATRV says is garbled ({garbled}): check the cable, the speed of the line, and whether another \
+                 program uses it"
+            ),
+            Self::Unreadable(Unreadable::Unknown(port, opcode)) => {
+                write!(f, "no ATRV says what came (port {port}, opcode {opcode}): is this another robot?")
+            }
+            Self::Unreadable(Unreadable::Short(port, opcode, bytes)) => write!(
+                f,
+                "a report of the ATRV (port {port}, opcode {opcode}) has {bytes} bytes, which is too few: is this another \
+                 robot?"
+            ),
+            Self::Braked => f.write_str(
+                "the ATRV's brake is set: release its emergency stop, or the brake at its display, and start again",
+            ),
+            Self::Deaf(sonar) => write!(
+                f,
+                "the ATRV's sonars in direction {sonar} of 16 say nothing: are they on, and is `sonars` right in the \
+                 configuration?"
+            ),
+            Self::Overslept => f.write_str(
+                "the ATRV was stopped because no command came in time: is this computer too busy, or `watchdog` too short?",
+            ),
+        }
+    }
+}
+
+impl std::error::Error for Fault {}

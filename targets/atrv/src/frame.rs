@@ -1,0 +1,208 @@
+//! Frames on the rFLEX line: start, port, id, opcode, length, data, check and end, with every 1B between them marked.
+//!
+//! A 1B that is a value is followed by 00; 1B 02 begins a frame, 1B 03 ends it, 1B 01 is filler and means nothing.
+
+/// What marks a byte that is none.
+const ESCAPE: u8 = 0x1B;
+/// Behind it: nothing is meant.
+const FILLER: u8 = 0x01;
+/// A frame begins.
+const START: u8 = 0x02;
+/// A frame ends.
+const END: u8 = 0x03;
+/// It was a value.
+const LITERAL: u8 = 0x00;
+/// Port, id, opcode and length.
+const HEAD: usize = 4;
+/// The longest packet: its head, 255 bytes of data, the check.
+const LONGEST: usize = HEAD + 255 + 1;
+/// The most data of a packet that is written.
+const MOST: usize = 32;
+/// The longest such packet on the line, if every byte of it had to be marked.
+const ROOM: usize = 2 * (HEAD + MOST + 1) + 4;
+
+/// What a frame says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Packet<'a> {
+    /// The part of the robot that it is for, or from.
+    pub port: u8,
+    /// A number that the robot counts up, and nobody needs.
+    pub id: u8,
+    /// What it is about.
+    pub opcode: u8,
+    /// The rest.
+    pub data: &'a [u8],
+}
+
+/// A frame's bytes on the line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Written {
+    bytes: [u8; ROOM],
+    count: usize,
+}
+
+/// What is wrong with bytes that should be a frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Garbled {
+    /// It says that its data is the first, and there are as many bytes as the second.
+    Length(usize, usize),
+    /// The bytes come to the first check, and the frame says the second.
+    Check(u8, u8),
+    /// Behind 1B is this byte.
+    Mark(u8),
+    /// Bytes outside of any frame, of which this is one.
+    Outside(u8),
+}
+
+impl core::fmt::Display for Garbled {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Length(said, found) => write!(f, "a frame says that it has {said} bytes of data, and has {found}"),
+            Self::Check(right, wrong) => write!(f, "the check of a frame is {right:02X}, and it says {wrong:02X}"),
+            Self::Mark(byte) => write!(f, "in a frame, 1B is followed by {byte:02X}"),
+            Self::Outside(byte) => write!(f, "there is {byte:02X} outside of any frame"),
+        }
+    }
+}
+
+/// The check of these bytes.
+pub(crate) fn check(bytes: &[u8]) -> u8 {
+    bytes.iter().fold(0, |check, byte| check ^ byte)
+}
+
+impl Packet<'_> {
+    /// Its bytes on the line. Data is at most 32 bytes long; of more, the first 32 are sent. Values that
+    /// are 1B are marked if `marks` says so.
+    #[must_use]
+    pub fn written(&self, marks: bool) -> Written {
+        let data = self.data.get(..self.data.len().min(MOST)).unwrap_or_default();
+        let head = [self.port, self.id, self.opcode, data.len() as u8];
+        let check = check(&head) ^ check(data);
+        let mut written = Written { bytes: [0; ROOM], count: 0 };
+        written.put(&[ESCAPE, START]);
+        for byte in head.iter().chain(data).chain([&check]) {
+            written.put(&[*byte]);
+            if *byte == ESCAPE && marks {
+                written.put(&[LITERAL]);
+            }
+        }
+        written.put(&[ESCAPE, END]);
+        written
+    }
+}
+
+impl Written {
+    fn put(&mut self, bytes: &[u8]) {
+        for byte in bytes {
+            if let Some(place) = self.bytes.get_mut(self.count) {
+                *place = *byte;
+                self.count += 1;
+            }
+        }
+    }
+
+    /// The bytes.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        self.bytes.get(..self.count).unwrap_or_default()
+    }
+}
+
+/// Where in the stream of bytes a reader is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Place {
+    /// Outside of any frame; whether the last byte was 1B, and whether anything was told of what lies here.
+    Outside { marked: bool, told: bool },
+    /// In a frame; whether the last byte was 1B.
+    Inside { marked: bool },
+}
+
+/// Finds frames in the bytes of the line.
+#[derive(Debug)]
+pub struct Reader {
+    place: Place,
+    bytes: [u8; LONGEST],
+    count: usize,
+}
+
+impl Default for Reader {
+    fn default() -> Self {
+        Self { place: Place::Outside { marked: false, told: false }, bytes: [0; LONGEST], count: 0 }
+    }
+}
+
+impl Reader {
+    /// Takes in the next byte: the packet that is whole with it, if one is.
+    ///
+    /// # Errors
+    /// What came so far is no frame. The reader waits for the next one to begin.
+    pub fn take(&mut self, byte: u8) -> Result<Option<Packet<'_>>, Garbled> {
+        match (self.place, byte) {
+            (Place::Outside { marked: true, .. }, START) | (Place::Inside { marked: true }, START) => {
+                let cut = matches!(self.place, Place::Inside { .. }) && self.count > 0;
+                let found = self.count;
+                (self.place, self.count) = (Place::Inside { marked: false }, 0);
+                // The one before it never ended.
+                if cut { Err(Garbled::Length(self.said(), found.saturating_sub(HEAD + 1))) } else { Ok(None) }
+            }
+            (Place::Outside { told, .. }, ESCAPE) => self.goes_on(Place::Outside { marked: true, told }),
+            (Place::Outside { marked: true, told }, FILLER) => self.goes_on(Place::Outside { marked: false, told }),
+            (Place::Outside { told: false, .. }, _) => {
+                self.place = Place::Outside { marked: false, told: true };
+                Err(Garbled::Outside(byte))
+            }
+            (Place::Outside { told: true, .. }, _) => self.goes_on(Place::Outside { marked: false, told: true }),
+            (Place::Inside { marked: true }, FILLER) => self.goes_on(Place::Inside { marked: false }),
+            (Place::Inside { marked: true }, LITERAL) => self.keep(ESCAPE),
+            (Place::Inside { marked: true }, END) => {
+                self.place = Place::Outside { marked: false, told: false };
+                self.packet().map(Some)
+            }
+            (Place::Inside { marked: true }, _) => {
+                self.place = Place::Outside { marked: byte == ESCAPE, told: true };
+                Err(Garbled::Mark(byte))
+            }
+            (Place::Inside { marked: false }, ESCAPE) => self.goes_on(Place::Inside { marked: true }),
+            (Place::Inside { marked: false }, _) => self.keep(byte),
+        }
+    }
+
+    fn goes_on(&mut self, place: Place) -> Result<Option<Packet<'_>>, Garbled> {
+        self.place = place;
+        Ok(None)
+    }
+
+    /// A value of the packet.
+    fn keep(&mut self, byte: u8) -> Result<Option<Packet<'_>>, Garbled> {
+        match self.bytes.get_mut(self.count) {
+            Some(place) => {
+                *place = byte;
+                self.count += 1;
+                self.goes_on(Place::Inside { marked: false })
+            }
+            None => {
+                self.place = Place::Outside { marked: false, told: true };
+                Err(Garbled::Length(self.said(), self.count))
+            }
+        }
+    }
+
+    /// The length that the packet says its data has.
+    fn said(&self) -> usize {
+        self.bytes.get(HEAD - 1).copied().map_or(0, usize::from)
+    }
+
+    /// The packet that has ended.
+    fn packet(&self) -> Result<Packet<'_>, Garbled> {
+        let whole = self.bytes.get(..self.count).unwrap_or_default();
+        let [checked @ .., said] = whole else { return Err(Garbled::Length(0, 0)) };
+        let [port, id, opcode, length, data @ ..] = checked else { return Err(Garbled::Length(0, 0)) };
+        if usize::from(*length) != data.len() {
+            return Err(Garbled::Length(usize::from(*length), data.len()));
+        }
+        if check(checked) != *said {
+            return Err(Garbled::Check(check(checked), *said));
+        }
+        Ok(Packet { port: *port, id: *id, opcode: *opcode, data })
+    }
+}

@@ -1,0 +1,189 @@
+//! What the robot has told so far: the stream of its reports, taken in as they come, and what is wrong with it.
+
+use std::time::{Duration, Instant};
+
+use mdle_runtime::{Nanos, Pings, Pose, SONARS, Twist};
+use mdle_serial::{Line, LineFault};
+
+use crate::command::Axis;
+use crate::config::Config;
+use crate::fault::Fault;
+use crate::frame::{Packet, Reader};
+use crate::motion::{Odometer, twist};
+use crate::report::Report;
+use crate::ring::Ring;
+
+/// The most that is read at once.
+const CHUNK: usize = 512;
+/// How many times something is read before it is looked whether that is enough: a robot may talk without end.
+const READS: usize = 64;
+
+/// All that is known of the robot.
+#[derive(Debug)]
+pub(crate) struct Hearing {
+    reader: Reader,
+    known: Known,
+    /// When it told where it is, by this computer's clock.
+    told: Option<Instant>,
+    /// What was wrong since then.
+    trouble: Option<Fault>,
+}
+
+/// What its reports say.
+#[derive(Debug)]
+struct Known {
+    config: Config,
+    odometer: Odometer,
+    ring: Ring,
+    /// Position and velocity along the way, which are told before those of the turn.
+    along: Option<(i32, i32)>,
+    velocity: Twist,
+    /// Bit 0 for the bumper before, bit 1 for the one behind.
+    switches: u32,
+    /// Whether the brake is set, if that was told.
+    is_braked: Option<bool>,
+}
+
+impl Hearing {
+    pub(crate) fn new(config: &Config) -> Self {
+        let known = Known {
+            config: config.clone(),
+            odometer: Odometer::default(),
+            ring: Ring::new(config),
+            along: None,
+            velocity: Twist::default(),
+            switches: 0,
+            is_braked: None,
+        };
+        Self { reader: Reader::default(), known, told: None, trouble: None }
+    }
+
+    /// Takes in what has come, and waits until the robot has told `count` times where it is, or, for a `count` of 0, until
+    /// it has done so within the last `patience`.
+    ///
+    /// # Errors
+    /// The line is closed, or `patience` was not enough.
+    pub(crate) fn take(&mut self, line: &Line, at: Nanos, count: u32, patience: Duration) -> Result<(), Fault> {
+        let begun = Instant::now();
+        let mut told = 0;
+        loop {
+            told += self.drain(line, at)?;
+            let is_fresh = self.told.is_some_and(|told| told.elapsed() <= patience);
+            if if count > 0 { told >= count } else { is_fresh } {
+                return Ok(());
+            }
+            let since = if count > 0 { begun } else { self.told.unwrap_or(begun) };
+            match line.hear(since + patience) {
+                Ok(()) => {}
+                // What came meanwhile says more than that it was not enough.
+                Err(LineFault::Silent) => return Err(self.trouble.take().unwrap_or(Fault::Line(LineFault::Silent))),
+                Err(fault) => return Err(fault.into()),
+            }
+        }
+    }
+
+    /// What the start still waits for: the fault that it will be if it does not come.
+    pub(crate) fn waits_for(&self) -> Option<Fault> {
+        match self.known.is_braked {
+            None => Some(Fault::Line(LineFault::Silent)),
+            Some(true) => Some(Fault::Braked),
+            Some(false) => self.known.ring.unheard().map(Fault::Deaf),
+        }
+    }
+
+    /// Whether the robot can go on at the time of this output.
+    ///
+    /// # Errors
+    /// It is braked, or some of its sonars have said nothing for too long.
+    pub(crate) fn fault(&self, at: Nanos) -> Result<(), Fault> {
+        if self.known.is_braked == Some(true) {
+            return Err(Fault::Braked);
+        }
+        self.known.ring.deaf(at).map_or(Ok(()), |sonar| Err(Fault::Deaf(sonar)))
+    }
+
+    /// Where it is.
+    pub(crate) fn pose(&self) -> Pose {
+        self.known.odometer.pose
+    }
+
+    /// How fast it moves.
+    pub(crate) fn velocity(&self) -> Twist {
+        self.known.velocity
+    }
+
+    /// Its bumpers.
+    pub(crate) fn switches(&self) -> u32 {
+        self.known.switches
+    }
+
+    /// Its sonars.
+    pub(crate) fn pings(&self) -> &[Pings; SONARS] {
+        &self.known.ring.pings
+    }
+
+    /// Takes in what is there; how often the robot has told where it is.
+    fn drain(&mut self, line: &Line, at: Nanos) -> Result<u32, Fault> {
+        let mut told = 0;
+        for _ in 0..READS {
+            let mut chunk = [0; CHUNK];
+            let count = line.read(&mut chunk)?;
+            if count == 0 {
+                break;
+            }
+            for byte in chunk.iter().take(count) {
+                let heard = match self.reader.take(*byte) {
+                    Ok(None) => continue,
+                    Ok(Some(packet)) => self.known.take(&packet, at),
+                    Err(garbled) => Err(Fault::Garbled(garbled)),
+                };
+                match heard {
+                    Ok(false) => {}
+                    Ok(true) => {
+                        told += 1;
+                        (self.told, self.trouble) = (Some(Instant::now()), None);
+                    }
+                    Err(trouble) => self.trouble = Some(trouble),
+                }
+            }
+        }
+        Ok(told)
+    }
+}
+
+impl Known {
+    /// Takes in a packet; whether with it the robot has told where it is.
+    fn take(&mut self, packet: &Packet<'_>, at: Nanos) -> Result<bool, Fault> {
+        match Report::read(packet).map_err(Fault::Unreadable)? {
+            Report::Axis { axis: Axis::Translation, position, velocity } => self.along = Some((position, velocity)),
+            Report::Axis { axis: Axis::Rotation, position, velocity } => {
+                if let Some((along, speed)) = self.along {
+                    self.odometer.take(along, position, &self.config);
+                    self.velocity = twist(speed, velocity, &self.config);
+                    return Ok(true);
+                }
+            }
+            Report::Sonars(echoes) => {
+                for (sonar, counts) in echoes.each() {
+                    self.ring.take(sonar, counts, at, self.odometer.pose);
+                }
+            }
+            Report::Input { address, state } => self.feel(address, state),
+            Report::Status { is_braked, .. } => self.is_braked = Some(is_braked),
+            Report::Other => {}
+        }
+        Ok(false)
+    }
+
+    /// A digital input says this.
+    fn feel(&mut self, address: u8, state: u16) {
+        match (address.wrapping_sub(self.config.bumper_address), self.config.bumpers_are_bits) {
+            (0, true) => self.switches = u32::from(state & 0b11),
+            (bumper @ (0 | 1), false) => {
+                let bit = 1 << bumper;
+                self.switches = if state == 0 { self.switches & !bit } else { self.switches | bit };
+            }
+            _ => {}
+        }
+    }
+}

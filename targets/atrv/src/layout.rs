@@ -1,0 +1,195 @@
+//! Where the sonars of the two ATRV-minis that are known look, and which of the paper's sixteen directions each speaks for.
+
+use mdle_runtime::SONARS;
+
+/// The most sonars that an ATRV-mini has.
+pub(crate) const MOST: usize = 24;
+/// The distance from the centre at which laws take the sonars to be, in metres.
+pub(crate) const RING_RADIUS: f64 = 0.28;
+
+/// A sonar on the body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Transducer {
+    /// Its board, times 16, and its channel.
+    pub(crate) id: u8,
+    /// Forward and to the left of the centre, in metres.
+    x: f64,
+    y: f64,
+    /// Counter-clockwise from the front.
+    degrees: f64,
+    /// The directions it speaks for: bit `i` for direction `i`.
+    pub(crate) directions: u16,
+}
+
+/// The six sonars at the front on the left, in millimetres and degrees, with the direction that each speaks for.
+const QUARTER: [(f64, f64, f64, usize); 6] = [
+    (258.17, 114.70, 0.0, 0),
+    (252.24, 152.17, 18.0, 1),
+    (235.01, 185.98, 36.0, 2),
+    (208.19, 212.81, 54.0, 2),
+    (174.38, 230.03, 72.0, 3),
+    (136.91, 235.97, 90.0, 4),
+];
+
+/// The eight on the left of the robot with sixteen, with the directions that each speaks for: between 90° and 180° there is
+/// one alone.
+const HALF: [(f64, f64, f64, &[usize]); 8] = [
+    (258.17, 114.70, 0.0, &[0]),
+    (252.24, 152.17, 18.0, &[1]),
+    (235.01, 185.98, 36.0, &[2]),
+    (208.19, 212.81, 54.0, &[2]),
+    (174.38, 230.03, 72.0, &[]),
+    (136.91, 235.97, 90.0, &[3, 4]),
+    (-258.17, 235.97, 180.0, &[7, 8]),
+    (-225.43, 230.03, 90.0, &[4, 5, 6]),
+];
+
+/// All sonars of the robot with so many.
+pub(crate) fn transducers(sonars: u8) -> [Option<Transducer>; MOST] {
+    let mut all = [None; MOST];
+    let known = if sonars == 16 { two_boards } else { four_boards };
+    for (place, number) in all.iter_mut().zip(0..) {
+        *place = known(number);
+    }
+    all
+}
+
+/// Four boards of six: the front left, and from it the rear left, the rear right and the front right.
+fn four_boards(number: usize) -> Option<Transducer> {
+    let (x, y, degrees, direction) = *QUARTER.get(number % 6)?;
+    let board = number / 6;
+    let (x, y, degrees, direction) = match board {
+        0 => (x, y, degrees, direction),
+        1 => (-x, y, 180.0 - degrees, 8 - direction),
+        2 => (-x, -y, degrees - 180.0, 8 + direction),
+        _ => (x, -y, -degrees, (SONARS - direction) % SONARS),
+    };
+    Some(at(board * 16 + number % 6, (x, y, degrees), &[direction]))
+}
+
+/// Two boards of eight: the left, and from it the right.
+fn two_boards(number: usize) -> Option<Transducer> {
+    let (board, channel) = (number / 8, number % 8);
+    // The last two are the other way round on the right.
+    let twin = if board == 1 { *[0, 1, 2, 3, 4, 5, 7, 6].get(channel)? } else { channel };
+    let (x, y, degrees, directions) = *HALF.get(twin)?;
+    let left = at(board * 16 + channel, (x, y, degrees), directions);
+    match board {
+        0 => Some(left),
+        1 => Some(Transducer {
+            y: -left.y,
+            degrees: -left.degrees,
+            // Bit 16 - i for bit i.
+            directions: left.directions.reverse_bits().rotate_left(1),
+            ..left
+        }),
+        _ => None,
+    }
+}
+
+fn at(id: usize, (x, y, degrees): (f64, f64, f64), directions: &[usize]) -> Transducer {
+    let directions = directions.iter().fold(0, |bits, direction| bits | 1 << direction);
+    Transducer { id: id as u8, x: x / 1000.0, y: y / 1000.0, degrees, directions }
+}
+
+impl Transducer {
+    /// A range of this sonar as one of the ring: from the centre to the place of the echo, less the ring's radius.
+    ///
+    /// One that speaks for several directions looks between them, so that the place is not to be believed: there it is how
+    /// far off that place is along the axis. A wall beside the robot is then as far in all directions that hear it alike.
+    pub(crate) fn on_the_ring(&self, range: f64) -> f64 {
+        let (sin, cos) = libm::sincos(self.degrees.to_radians());
+        let far = if self.directions.count_ones() == 1 {
+            libm::hypot(self.x + range * cos, self.y + range * sin)
+        } else {
+            self.x * cos + self.y * sin + range
+        };
+        (far - RING_RADIUS).max(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The ids of the sonars that speak for each direction.
+    fn speakers(sonars: u8) -> Vec<Vec<u8>> {
+        let all = transducers(sonars);
+        let of = |direction: usize| all.iter().flatten().filter(move |sonar| sonar.directions & (1 << direction) != 0);
+        (0..SONARS).map(|direction| of(direction).map(|sonar| sonar.id).collect()).collect()
+    }
+
+    #[test]
+    fn each_direction_has_its_sonars_on_both_robots() {
+        let four: [&[u8]; 16] = [
+            &[0, 48],
+            &[1],
+            &[2, 3],
+            &[4],
+            &[5, 21],
+            &[20],
+            &[18, 19],
+            &[17],
+            &[16, 32],
+            &[33],
+            &[34, 35],
+            &[36],
+            &[37, 53],
+            &[52],
+            &[50, 51],
+            &[49],
+        ];
+        assert_eq!(speakers(24), four);
+        let two: [&[u8]; 16] = [
+            &[0, 16],
+            &[1],
+            &[2, 3],
+            &[5],
+            &[5, 7],
+            &[7],
+            &[7],
+            &[6],
+            &[6, 23],
+            &[23],
+            &[22],
+            &[22],
+            &[21, 22],
+            &[21],
+            &[18, 19],
+            &[17],
+        ];
+        assert_eq!(speakers(16), two);
+    }
+
+    #[test]
+    fn both_robots_are_as_their_owners_say() {
+        // Some rows of the lists of both, as they are printed.
+        let found = |sonars: u8, id: u8| {
+            let sonar = transducers(sonars).into_iter().flatten().find(|sonar| sonar.id == id).expect("such a sonar");
+            [sonar.x * 1000.0, sonar.y * 1000.0, sonar.degrees].map(|number| libm::round(number * 100.0) / 100.0)
+        };
+        assert_eq!(found(24, 3), [208.19, 212.81, 54.0]);
+        assert_eq!(found(24, 16), [-258.17, 114.70, 180.0]);
+        assert_eq!(found(24, 20), [-174.38, 230.03, 108.0]);
+        assert_eq!(found(24, 34), [-235.01, -185.98, -144.0]);
+        assert_eq!(found(24, 53), [136.91, -235.97, -90.0]);
+        assert_eq!(found(16, 7), [-225.43, 230.03, 90.0]);
+        assert_eq!(found(16, 20), [174.38, -230.03, -72.0]);
+        assert_eq!(found(16, 22), [-225.43, -230.03, -90.0]);
+        assert_eq!(found(16, 23), [-258.17, -235.97, -180.0]);
+        assert_eq!([24, 16].map(|sonars| transducers(sonars).iter().flatten().count()), [24, 16]);
+    }
+
+    #[test]
+    fn a_wall_that_is_parallel_is_as_far_before_the_middle_as_behind() {
+        for (sonars, (before, behind)) in [(24, (4, 20)), (24, (52, 36)), (16, (5, 7)), (16, (21, 22))] {
+            let range = |id: u8| {
+                let sonar = transducers(sonars).into_iter().flatten().find(|sonar| sonar.id == id).expect("a sonar");
+                // Along its axis to a wall 1 m beside the middle.
+                let sin = libm::sin(sonar.degrees.to_radians());
+                sonar.on_the_ring((sin.signum() - sonar.y) / sin)
+            };
+            assert!((range(before) - range(behind)).abs() < 1e-9, "{sonars} {before} {behind}");
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! The iRobot ATRV-mini as a target: the language of its rFLEX controller, its driver, and its alphabet.
+//!
+//! For generated code: [`Target`], which the host runs a plan on, and [`alphabet`], the quarks this robot has. For
+//! tests and tools: the language ([`Command`], [`Packet`], [`Report`]) and the driver, [`Atrv`].
+#![forbid(unsafe_code)]
+
+pub mod alphabet;
+mod avoid;
+mod command;
+mod config;
+mod driver;
+mod fault;
+mod frame;
+mod hearing;
+mod layout;
+mod motion;
+mod mouth;
+pub mod quarks;
+mod report;
+mod ring;
+mod target;
+
+pub use avoid::avoided;
+pub use command::{Axis, Command, Escape, Motion};
+pub use config::{Config, Configured};
+pub use driver::Atrv;
+pub use fault::Fault;
+pub use frame::{Garbled, Packet, Reader, Written};
+pub use mdle_runtime::Sensed;
+/// Its output.
+pub use mdle_runtime::Sensed as Output;
+/// The robot's input.
+pub use mdle_runtime::Twist as Input;
+pub use mdle_serial::{Clock, LineFault};
+pub use report::{Echoes, Report, Unreadable};
+pub use target::AtrvMini;
+/// What the host runs a plan on.
+pub use target::AtrvMini as Target;

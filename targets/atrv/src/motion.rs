@@ -1,0 +1,119 @@
+//! Speeds of the robot in the controller's units, and the way that its positions tell.
+
+use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians, RadiansPerSecond, Twist};
+
+use crate::command::{Axis, Command, Motion};
+use crate::config::Config;
+
+/// No robot goes further than this between two reports, in metres; a number that says so is another one's.
+const LEAP: f64 = 1.0;
+
+/// The commands for this input, translation first, no side above the fastest: both axes are slowed down alike, so that
+/// the robot stays on its curve. An input that is no number stops the robot.
+pub(crate) fn commands(input: &Twist, config: &Config) -> [Command; 2] {
+    let side = input.v.0.abs() + input.omega.0.abs() * (config.wheel_base / 2.0);
+    let scale = if side.is_finite() { (config.fastest / side).min(1.0) } else { 0.0 };
+    let units = |speed: f64, per: f64| if scale > 0.0 { libm::trunc(speed * scale * per) as i32 } else { 0 };
+    let along = match units(input.v.0, config.units_per_metre) {
+        // There are controllers that leave the old speed as it is when they are told 0.
+        0 if config.zero_as_one => 1,
+        along => along,
+    };
+    let translation = Motion {
+        velocity: along,
+        acceleration: libm::trunc(config.acceleration * config.units_per_metre) as u32,
+        torque: config.translation_torque,
+    };
+    let rotation = Motion {
+        velocity: units(input.omega.0, config.units_per_radian),
+        acceleration: config.rotation_acceleration,
+        torque: config.rotation_torque,
+    };
+    [Command::Move(Axis::Translation, translation), Command::Move(Axis::Rotation, rotation)]
+}
+
+/// Where the robot is by the positions of its axes, from the first report on.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Odometer {
+    last: Option<(i32, i32)>,
+    pub(crate) pose: Pose,
+}
+
+impl Odometer {
+    /// The axes are at these positions now. Numbers go on at the other end where their 32 bits end.
+    pub(crate) fn take(&mut self, along: i32, round: i32, config: &Config) {
+        let (was_along, was_round) = self.last.replace((along, round)).unwrap_or((along, round));
+        let way = f64::from(along.wrapping_sub(was_along)) / config.units_per_metre;
+        let turn = f64::from(round.wrapping_sub(was_round)) / config.units_per_radian;
+        if way.abs() <= LEAP && turn.abs() <= std::f64::consts::PI {
+            self.pose = self.pose.moved(Meters(way), Radians(turn));
+        }
+    }
+}
+
+/// The speed of the robot whose axes have these velocities.
+pub(crate) fn twist(along: i32, round: i32, config: &Config) -> Twist {
+    Twist {
+        v: MetersPerSecond(f64::from(along) / config.units_per_metre),
+        omega: RadiansPerSecond(f64::from(round) / config.units_per_radian),
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+mod tests {
+    use super::*;
+    use crate::config::Configured;
+
+    fn config() -> Config {
+        Configured::read(None, None).unwrap().config
+    }
+
+    fn velocities(v: f64, omega: f64, config: &Config) -> [i32; 2] {
+        let input = Twist { v: MetersPerSecond(v), omega: RadiansPerSecond(omega) };
+        commands(&input, config).map(|command| {
+            let Command::Move(_, motion) = command else { panic!("{command:?}") };
+            motion.velocity
+        })
+    }
+
+    #[test]
+    fn speeds_are_in_units_and_a_zero_is_one() {
+        let config = config();
+        assert_eq!(velocities(0.2, 0.0, &config), [27_930, 0]);
+        assert_eq!(velocities(-0.2, 0.36, &config), [-27_930, 17_922]);
+        assert_eq!(velocities(0.0, -0.36, &config), [1, -17_922]);
+        assert_eq!(velocities(0.0, 0.0, &Config { zero_as_one: false, ..config }), [0, 0]);
+    }
+
+    #[test]
+    fn what_is_too_fast_stays_on_its_curve() {
+        let config = config();
+        let [along, round] = velocities(2.0, 4.0, &config);
+        let (v, omega) = (f64::from(along) / config.units_per_metre, f64::from(round) / config.units_per_radian);
+        assert!((v + 0.2 * omega - 1.2).abs() < 1e-4 && (omega / v - 2.0).abs() < 1e-3, "{v} {omega}");
+        for (v, omega) in [(f64::NAN, 0.0), (0.0, f64::INFINITY), (f64::NEG_INFINITY, 1.0)] {
+            assert_eq!(velocities(v, omega, &config), [1, 0]);
+        }
+    }
+
+    #[test]
+    fn the_way_begins_at_the_first_report_and_goes_on_where_numbers_end() {
+        let config = Config { units_per_metre: 1000.0, units_per_radian: 1000.0, ..config() };
+        let mut odometer = Odometer::default();
+        let mut at = |along: i32, round: i32| {
+            odometer.take(along, round, &config);
+            let Pose { x, y, theta } = odometer.pose;
+            [x.0, y.0, theta.0].map(|number| libm::round(number * 1000.0) as i32)
+        };
+        assert_eq!(at(i32::MAX - 200, i32::MIN + 100), [0, 0, 0]);
+        assert_eq!(at(i32::MAX, i32::MIN + 100), [200, 0, 0]);
+        assert_eq!(at(i32::MIN + 299, i32::MIN + 100), [500, 0, 0]);
+        // A quarter of a circle on the spot, over the end of its numbers too, then half a metre on.
+        assert_eq!(at(i32::MIN + 299, i32::MAX - 1470), [500, 0, -1571]);
+        assert_eq!(at(i32::MIN + 799, i32::MAX - 1470), [500, -500, -1571]);
+        // A leap is none, and what follows counts from where it ended.
+        assert_eq!(at(9000, 0), [500, -500, -1571]);
+        assert_eq!(at(9100, 0), [500, -600, -1571]);
+    }
+}

@@ -1,0 +1,125 @@
+//! What says commands on the line, and says "stop" by itself when nobody has given one for too long.
+//!
+//! The controller stops a robot whose line has fallen silent, after a time that nobody states. So a thread of this program
+//! does it as well, and only if the program dies the controller is what stops the robot.
+
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+
+use mdle_serial::Line;
+
+use crate::fault::Fault;
+use crate::frame::Written;
+
+/// How long the line may take the watchdog's commands.
+const STOPPING: Duration = Duration::from_millis(100);
+
+/// The line, and the watchdog over what is said on it.
+#[derive(Debug)]
+pub(crate) struct Mouth {
+    shared: Arc<Shared>,
+    watching: Option<JoinHandle<()>>,
+}
+
+#[derive(Debug)]
+struct Shared {
+    line: Line,
+    watch: Mutex<Watch>,
+    over: Condvar,
+}
+
+/// What the watchdog goes by.
+#[derive(Debug)]
+struct Watch {
+    /// When the robot was told to move last; `None` while it need not be.
+    told: Option<Instant>,
+    /// Whether it has stopped the robot.
+    has_bitten: bool,
+    is_over: bool,
+}
+
+impl Shared {
+    fn watch(&self) -> MutexGuard<'_, Watch> {
+        // Whoever panicked left nothing half done in it.
+        self.watch.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Mouth {
+    /// On this line; with a limit, its watchdog says `stop` when after a motion no other one follows for so long.
+    pub(crate) fn new(line: Line, watchdog: Option<(Duration, [Written; 2])>) -> Self {
+        let watch = Watch { told: None, has_bitten: false, is_over: false };
+        let shared = Arc::new(Shared { line, watch: Mutex::new(watch), over: Condvar::new() });
+        let watching = watchdog.and_then(|(limit, stop)| {
+            let shared = Arc::clone(&shared);
+            let thread = thread::Builder::new().name("watchdog".to_owned());
+            // Where there are no more threads the controller has to do.
+            thread.spawn(move || keep_watch(&shared, limit, &stop)).ok()
+        });
+        Self { shared, watching }
+    }
+
+    /// The line, to listen to.
+    pub(crate) fn line(&self) -> &Line {
+        &self.shared.line
+    }
+
+    /// Says something that moves nothing.
+    ///
+    /// # Errors
+    /// The line is closed, or takes nothing until `deadline`.
+    pub(crate) fn say(&self, frame: &Written, deadline: Instant) -> Result<(), Fault> {
+        // No command of the watchdog's is to come into the middle of it.
+        let _watch = self.shared.watch();
+        Ok(self.shared.line.write(frame.bytes(), deadline)?)
+    }
+
+    /// Says how to move. From then on the watchdog waits for the next time.
+    ///
+    /// # Errors
+    /// The same, or the watchdog has stopped the robot meanwhile.
+    pub(crate) fn say_motion(&self, frame: &Written, deadline: Instant) -> Result<(), Fault> {
+        let mut watch = self.shared.watch();
+        if watch.has_bitten {
+            return Err(Fault::Overslept);
+        }
+        watch.told = Some(Instant::now());
+        Ok(self.shared.line.write(frame.bytes(), deadline)?)
+    }
+
+    /// The robot is being stopped: the watchdog need no longer.
+    pub(crate) fn ends(&self) {
+        let mut watch = self.shared.watch();
+        (watch.told, watch.has_bitten) = (None, false);
+    }
+}
+
+impl Drop for Mouth {
+    fn drop(&mut self) {
+        self.shared.watch().is_over = true;
+        self.shared.over.notify_all();
+        if let Some(watching) = self.watching.take() {
+            // It has nothing to tell.
+            let _ = watching.join();
+        }
+    }
+}
+
+/// The watchdog.
+fn keep_watch(shared: &Shared, limit: Duration, stop: &[Written; 2]) {
+    let mut watch = shared.watch();
+    while !watch.is_over {
+        let silent = watch.told.map(|told| told.elapsed());
+        if silent.is_some_and(|silent| silent >= limit) {
+            (watch.told, watch.has_bitten) = (None, true);
+            let deadline = Instant::now() + STOPPING;
+            for frame in stop {
+                // If the line takes it no longer, nothing else can be done.
+                let _ = shared.line.write(frame.bytes(), deadline);
+            }
+        }
+        let left = silent.map_or(limit, |silent| limit.saturating_sub(silent)).max(Duration::from_millis(1));
+        watch = shared.over.wait_timeout(watch, left).unwrap_or_else(PoisonError::into_inner).0;
+    }
+}

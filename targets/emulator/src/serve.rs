@@ -1,0 +1,95 @@
+//! A robot at its line: requests come, answers go, and the world passes on meanwhile.
+
+use std::io;
+use std::time::{Duration, Instant};
+
+use crate::fault::Ailment;
+use crate::port::Port;
+
+/// A step of the world in real time.
+pub const STEP: Duration = Duration::from_millis(10);
+/// The longest wait without a look at whether to go on.
+const SLICE: Duration = Duration::from_millis(50);
+
+/// A robot that is not there: its language and its body.
+pub trait Emulated {
+    /// Takes in bytes from the line.
+    fn push(&mut self, bytes: &[u8]);
+
+    /// Does what the next request asks for that is whole; `None` if there is none. In lockstep a period passes after a
+    /// request of which this says true, and before anything is said.
+    fn obey(&mut self) -> Option<bool>;
+
+    /// Lets so much time pass.
+    ///
+    /// # Errors
+    /// The world's sentence about an input that it cannot take, which none here is.
+    fn pass(&mut self, time: Duration) -> Result<(), String>;
+
+    /// The frames that it has to say since it was asked last.
+    fn said(&mut self) -> Vec<Vec<u8>>;
+
+    /// Whether this can happen to it.
+    fn can_suffer(ailment: Ailment) -> bool;
+
+    /// From now on this is the matter with it.
+    fn suffer(&mut self, ailment: Ailment);
+}
+
+/// How the world passes on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Pace {
+    /// By so much with each command, whatever the clock says.
+    Lockstep(Duration),
+    /// By the clock, in steps of [`STEP`].
+    Real,
+}
+
+impl Pace {
+    /// The step that the body has to be made for.
+    #[must_use]
+    pub const fn step(self) -> Duration {
+        match self {
+            Self::Lockstep(step) => step,
+            Self::Real => STEP,
+        }
+    }
+}
+
+/// Serves the robot at this line as long as `goes_on` says so, and then until it has done what it was told before.
+///
+/// # Errors
+/// The line failed, or the world did.
+pub fn serve<R: Emulated>(robot: &mut R, port: &Port, pace: Pace, goes_on: &dyn Fn() -> bool) -> io::Result<()> {
+    let mut next = Instant::now() + STEP;
+    loop {
+        let ends = !goes_on();
+        let limit = match pace {
+            _ if ends => Duration::ZERO,
+            Pace::Lockstep(_) => SLICE,
+            Pace::Real => next.saturating_duration_since(Instant::now()),
+        };
+        let was_told = port.read(limit, &mut |bytes| robot.push(bytes))?;
+        if ends && !was_told {
+            return Ok(());
+        }
+        while pace == Pace::Real && next <= Instant::now() {
+            robot.pass(STEP).map_err(io::Error::other)?;
+            next += STEP;
+        }
+        while let Some(passes) = robot.obey() {
+            if let Pace::Lockstep(step) = pace
+                && passes
+            {
+                // What it was told holds for the period that follows, and the answer says how that went.
+                robot.pass(step).map_err(io::Error::other)?;
+            }
+            say(robot, port)?;
+        }
+        say(robot, port)?;
+    }
+}
+
+fn say<R: Emulated>(robot: &mut R, port: &Port) -> io::Result<()> {
+    robot.said().iter().try_for_each(|bytes| port.write(bytes))
+}
