@@ -2,7 +2,7 @@
 
 use std::mem;
 
-use proc_macro2::{Delimiter, Group, Ident, Literal, Span, TokenStream, TokenTree};
+use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 use quote::quote;
 
 /// The most elements of a list that are laid out at one time.
@@ -81,10 +81,6 @@ fn list(line: &str) -> Option<usize> {
 /// Writes elements as they are laid out where a stand-in has this line.
 fn write_elements(elements: TokenStream, line: &str, text: &mut String) {
     let indent = line.len() - line.trim_start().len();
-    if let Some(literals) = literals(&elements) {
-        literals.iter().for_each(|literal| write_line(&format!("{:indent$}{literal},", ""), text));
-        return;
-    }
     let stand_in = stand_in(0);
     let mut item = quote!(const LIST: () = [#stand_in, #elements];);
     for _ in 1..indent / 4 {
@@ -93,13 +89,6 @@ fn write_elements(elements: TokenStream, line: &str, text: &mut String) {
     let printed = printed(item);
     let behind = printed.lines().skip_while(|line| list(line).is_none()).skip(1);
     behind.take_while(|line| line.trim_start() != "];").for_each(|line| write_line(line, text));
-}
-
-/// The elements, if each is a literal: what they look like needs no syntax.
-fn literals(elements: &TokenStream) -> Option<Vec<Literal>> {
-    let tokens = elements.clone().into_iter().filter(|token| !is_comma(token));
-    let literal = |token| if let TokenTree::Literal(literal) = token { Some(literal) } else { None };
-    tokens.map(literal).collect()
 }
 
 fn is_comma(token: &TokenTree) -> bool {

@@ -135,8 +135,33 @@ fn heading(header: Header<'_>, alphabet: &Alphabet) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Header, Shape, emit};
+    use super::{Header, Shape, emit, emit_as};
     use crate::samples::{alphabet, compiled};
+
+    /// Every operator of conditions, one inside the other; frames too.
+    const OPERATORS: &str = "{ P (bumper AND (wait 1 OR NOT wait 2) OR NOT bumper AND t < 3)
+  (Atom (atIsection 1000 AND (r3 < r5 OR NOT atIsection 0100)) stop)
+  FRAME 90deg (Atom (null) rotate 10)
+}";
+
+    #[test]
+    fn conditions_in_every_shape() {
+        let compiled = compiled(OPERATORS).swap_remove(0);
+        for shape in [Shape::Code, Shape::Shared, Shape::Rows] {
+            let header = Header { file: "plan.mdle", plan: "P" };
+            let rust = emit_as(shape, &compiled.lowered, header, &alphabet(Some("sim")));
+            let body = rust.split_once("/// The plan `P`.").expect("a plan").1;
+            insta::assert_snapshot!(format!("conditions_{shape:?}"), body.split_once("const FSM").expect("tables").0);
+        }
+    }
+
+    #[test]
+    fn what_is_remembered_is_in_rows() {
+        let rust =
+            rust("{ P L: (Atom (RISING (bumper OR wait 4)) stop) (Atom (after L OR wait 1) stop) }", "plan.mdle");
+        let rows = rust.split_once("static ROWS").expect("rows").1;
+        insta::assert_snapshot!(rows.split_once("texts:").expect("texts").0);
+    }
 
     fn rust(text: &str, file: &str) -> String {
         let compiled = compiled(text).swap_remove(0);

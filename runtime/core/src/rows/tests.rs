@@ -22,25 +22,29 @@ impl Interrupt<Sensed> for Fires {
     }
 }
 
-struct Idle;
+/// Tells the heading of the frame in which it began, and is done with 99.
+#[derive(Default)]
+struct Points(f64);
 
-impl Control<Sensed> for Idle {
-    type Law = Idle;
+impl Control<Sensed> for Points {
+    type Law = Points;
 
-    fn begin(&self, _: &Sensed, _: Begin) -> Idle {
-        Idle
+    fn begin(&self, _: &Sensed, begin: Begin) -> Points {
+        Points(begin.frame.0.0)
     }
 }
 
-impl Law<Sensed> for Idle {
-    type Input = ();
+impl Law<Sensed> for Points {
+    type Input = f64;
 
-    fn input(&mut self, _: &Sensed, _: Nanos) {}
+    fn input(&mut self, _: &Sensed, _: Nanos) -> f64 {
+        self.0
+    }
 }
 
-impl Completes<Sensed> for Idle {
-    fn completed(&self, _: &Sensed, _: Nanos) -> bool {
-        false
+impl Completes<Sensed> for Points {
+    fn completed(&self, y: &Sensed, _: Nanos) -> bool {
+        y.0.contains(&99)
     }
 }
 
@@ -48,11 +52,11 @@ struct Toy;
 
 impl Alphabet for Toy {
     type Output = Sensed;
-    type Input = ();
+    type Input = f64;
     type Interrupt = Fires;
     type Signal = NoSignal;
-    type Control = Idle;
-    type Law = Idle;
+    type Control = Points;
+    type Law = Points;
 
     fn interrupt(_: &str, _: &[Argument<'_>]) -> Option<Fires> {
         None
@@ -66,7 +70,7 @@ impl Alphabet for Toy {
         None
     }
 
-    fn control(_: &str, _: &[Argument<'_>]) -> Option<Idle> {
+    fn control(_: &str, _: &[Argument<'_>]) -> Option<Points> {
         None
     }
 }
@@ -94,6 +98,19 @@ fn a_condition_that_is_its_own_operand_holds_nobody_up() {
     assert!(!Condition::Or(0, 1).fired(&at(&operands, &always, &()), 1));
     let operands = [Condition::Not(0), Condition::Quark(Fires(0))];
     assert_eq!(Condition::Or(0, 2).cause(&at(&operands, &always, &())), 0, "the NOT of what is not there has fired");
+}
+
+#[test]
+fn operators_are_those_of_logic() {
+    let operands = [Condition::Quark(Fires(0)), Condition::Quark(Fires(1))];
+    let fired = |condition: Condition<Fires>| {
+        let numbers: [&'static [u8]; 4] = [&[], &[0], &[1], &[0, 1]];
+        numbers.map(|numbers| condition.fired(&at(&operands, &Sensed(numbers), &()), 0))
+    };
+    assert_eq!(fired(Condition::Null), [false; 4]);
+    assert_eq!(fired(Condition::Or(0, 2)), [false, true, true, true]);
+    assert_eq!(fired(Condition::And(0, 2)), [false, false, false, true]);
+    assert_eq!(fired(Condition::Not(1)), [true, true, false, false]);
 }
 
 #[test]
@@ -184,7 +201,7 @@ const LEVELS: usize = 3;
 type Set = [bool; WIDTH * LEVELS];
 type Remembers<'r> = InRows<'r, Toy, [Nanos; LEVELS], [u64; 0], Memories<'r, Set>>;
 type At = Cursor<[Nanos; LEVELS], [u64; 0]>;
-const BEGIN: Begin = Begin { now: Nanos::ZERO, frame: Frame(Radians(0.0)) };
+const BEGIN: Begin = Begin { now: Nanos::ZERO, frame: Frame(Radians(0.25)) };
 
 impl Remembering {
     fn new(plan: Condition<Fires>, atom: Condition<Fires>, operands: impl Into<Vec<Condition<Fires>>>) -> Self {
@@ -201,7 +218,7 @@ impl Remembering {
 
     /// What is set afterwards, where this was set before: the places of the memories, level by level.
     fn after<R>(&self, before: Set, act: impl FnOnce(&mut Remembers<'_>, &mut At) -> R) -> (R, Vec<usize>) {
-        let laws = [0.0; 2].map(|angle| LawRow { control: Idle, frame: Radians(angle) });
+        let laws = [0.0, 1.0].map(|angle| LawRow { control: Points::default(), frame: Radians(angle) });
         let texts = Texts { laws: &[], conditions: &[], names: &[] };
         let fsm = Fsm { brackets: &BRACKETS, atoms: &ATOMS, termination: 3 };
         let rows: Rows<'_, Toy> = Rows { fsm, guards: &self.guards, operands: &self.operands, laws: &laws, texts };
@@ -260,6 +277,42 @@ fn an_ending_whose_sequel_is_known_is_written_down_as_well() {
     let next = |plan: &mut Remembers<'_>, cursor: &mut At| plan.next(cursor, &y, BEGIN, true);
     let (next, set) = ends_by_either().after([false; WIDTH * LEVELS], next);
     assert_eq!((next, &set[..]), (Next::Moved, &[1, 2][..]));
+}
+
+#[test]
+fn a_scope_ends_at_the_moment_for_which_it_waits() {
+    for (condition, from) in [(Condition::Wait(Nanos(3)), 3), (Condition::Elapsed(Nanos(2), Nanos(9)), 2)] {
+        let plan = Remembering::new(condition, Condition::Null, []);
+        let ends = (0..6).map(|now| {
+            let begin = Begin { now: Nanos(now), ..BEGIN };
+            let next = |plan: &mut Remembers<'_>, cursor: &mut At| plan.next(cursor, &Sensed(&[]), begin, false);
+            plan.after([false; WIDTH * LEVELS], next).0 != Next::Stays
+        });
+        assert_eq!(ends.collect::<Vec<_>>(), (0..6).map(|now| now >= from).collect::<Vec<_>>());
+    }
+}
+
+#[test]
+fn a_law_begins_with_its_atom_in_its_frame() {
+    let inputs = |plan: &mut Remembers<'_>, _: &mut At| {
+        let y = Sensed(&[]);
+        [0, 1, 0].map(|atom| {
+            plan.enter(atom, &y, BEGIN);
+            plan.input(&y, Nanos::ZERO)
+        })
+    };
+    assert_eq!(ends_by_either().after([false; WIDTH * LEVELS], inputs).0, [0.25, 1.25, 0.25]);
+}
+
+#[test]
+fn an_atom_ends_when_its_law_is_done_and_not_before() {
+    let next = |y: Sensed| {
+        let next = |plan: &mut Remembers<'_>, cursor: &mut At| plan.next(cursor, &y, BEGIN, false);
+        ends_by_either().after([false; WIDTH * LEVELS], next).0
+    };
+    assert_eq!(next(Sensed(&[])), Next::Stays);
+    assert!(matches!(next(Sensed(&[99])), Next::Ends(ending) if ending.cause == Cause::Completed(2)));
+    assert!(matches!(next(Sensed(&[1, 99])), Next::Ends(ending) if ending.cause == Cause::Fired(2)));
 }
 
 #[test]

@@ -189,6 +189,13 @@ fn a_plan_that_is_over_stays_over() {
 }
 
 #[test]
+fn a_plan_that_nobody_watches_is_over_as_well() {
+    let mut machine = begin(Toy::nested());
+    assert_eq!(machine.turn(&Sensed(&[PLAN], false), Nanos::ZERO, &mut ()), Turn::Over);
+    assert_eq!((machine.state(), machine.atom(), machine.is_over()), (4, None, true));
+}
+
+#[test]
 fn as_many_transitions_as_the_limit_are_no_cut() {
     let mut machine = begin(Toy::repeated(u64::from(TRANSITIONS_PER_TURN)));
     let (came, made) = turn(&mut machine, Sensed(&[FIRST], false));
