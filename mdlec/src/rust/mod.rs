@@ -135,13 +135,13 @@ fn heading(header: Header<'_>, alphabet: &Alphabet) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Header, Shape, emit, emit_as};
+    use super::{Header, Shape, bind, emit, emit_as};
     use crate::samples::{alphabet, compiled};
 
     /// Every operator of conditions, one inside the other; frames too.
     const OPERATORS: &str = "{ P (bumper AND (wait 1 OR NOT wait 2) OR NOT bumper AND t < 3)
   (Atom (atIsection 1000 AND (r3 < r5 OR NOT atIsection 0100)) stop)
-  FRAME 90deg (Atom (null) rotate 10)
+  { Q (null) FRAME 90deg (Atom (null) rotate 10) }
 }";
 
     #[test]
@@ -153,6 +153,12 @@ mod tests {
             let body = rust.split_once("/// The plan `P`.").expect("a plan").1;
             insta::assert_snapshot!(format!("conditions_{shape:?}"), body.split_once("const FSM").expect("tables").0);
         }
+    }
+
+    #[test]
+    fn quarks_of_one_name_are_numbered() {
+        let bound = bind(&alphabet(None));
+        assert_eq!(["GoAvoid2", "GoAvoid3"].map(|kind| bound.contains(kind)), [true, false]);
     }
 
     #[test]

@@ -302,6 +302,11 @@ fn a_law_begins_with_its_atom_in_its_frame() {
         })
     };
     assert_eq!(ends_by_either().after([false; WIDTH * LEVELS], inputs).0, [0.25, 1.25, 0.25]);
+    let none = |plan: &mut Remembers<'_>, _: &mut At| {
+        plan.enter(9, &Sensed(&[]), BEGIN);
+        (plan.own, plan.input(&Sensed(&[0]), Nanos::ZERO))
+    };
+    assert_eq!(ends_by_either().after([false; WIDTH * LEVELS], none).0, (0, 0.0), "there is no such atom");
 }
 
 #[test]
