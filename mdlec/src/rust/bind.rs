@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use proc_macro2::{Ident, Literal, TokenStream};
-use quote::{format_ident, quote};
+use proc_macro2::{Ident, Literal, Span, TokenStream};
+use quote::{ToTokens, format_ident, quote};
+use syn::LitInt;
 
 use super::layout::laid_out;
 use super::names::{Distinct, quark_type};
@@ -137,9 +138,7 @@ fn constants(alphabet: &Alphabet) -> TokenStream {
 
 /// The alphabet's hash as Rust writes it.
 pub(super) fn hash(alphabet: &Alphabet) -> TokenStream {
-    let text = format!("0x{:016x}", alphabet.hash());
-    // Sixteen digits at most, so it is a number.
-    text.parse::<Literal>().map_or_else(|_| quote!(0), |literal| quote!(#literal))
+    LitInt::new(&format!("0x{:016x}", alphabet.hash()), Span::call_site()).into_token_stream()
 }
 
 /// `enum AnyInterrupt`, which fires when the one that it holds does; where there are signals, comparisons are among them.

@@ -25,7 +25,7 @@ pub(super) fn laid_out(file: TokenStream) -> String {
             None => write_line(line, &mut spaced),
         }
         let ends_item = matches!(line, "}" | "    }");
-        if ends_item && lines.peek().is_some_and(|next| !next.ends_with('}')) {
+        if ends_item && lines.peek().is_some_and(|next| *next != "}") {
             spaced.push('\n');
         }
     }

@@ -114,10 +114,13 @@ impl<'l> Shared<'l> {
                 ("next", quote!(u32), quote!(#atom))
             }
             Part::Frame(radians) => ("frame", quote!(runtime::Radians), angle(radians)),
-            Part::Follows(None) | Part::Scope { .. } | Part::Null => unreachable!("what has no constant is left out"),
-            Part::Elapsed | Part::Or(_) | Part::And(_) | Part::Not => {
-                unreachable!("what has no constant is left out")
-            }
+            Part::Follows(None)
+            | Part::Scope { .. }
+            | Part::Null
+            | Part::Elapsed
+            | Part::Or(_)
+            | Part::And(_)
+            | Part::Not => unreachable!("what has no constant is left out"),
         }
     }
 
