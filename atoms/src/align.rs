@@ -3,23 +3,14 @@
 use core::f64::consts::TAU;
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
-use mdle_runtime::{
-    Begin, Completes, Control, Law, Meters, Nanos, PINGS_KEPT, RadiansPerSecond, SONARS, SonarId, Twist,
-};
+use mdle_runtime::{Begin, Completes, Control, Law, Meters, Nanos, RadiansPerSecond, SONARS, SonarId, Twist};
+
+use crate::gains::Gains;
 
 /// `k`, in rad/s for each metre of difference.
 const GAIN: f64 = 2.0;
-/// The fastest turn, in rad/s, where every turn brings a ping of each sonar.
-const FASTEST: f64 = 0.3;
-/// The fastest turn where sonars fire one after the other: the ranges are older.
-const FASTEST_IN_TURN: f64 = 0.12;
 /// The slowest turn, in rad/s: less would not get the wheels moving.
 const SLOWEST: f64 = 0.08;
-/// How long, in seconds, a sonar is waited for that has heard the wall and then does not, where every turn brings a ping of
-/// each sonar.
-const WAITS: f64 = 0.3;
-/// The same where sonars fire one after the other: two rings of them.
-const WAITS_IN_TURN: f64 = 2.0;
 /// Ranges that differ by this much or less are equal: one inch, the resolution of the paper's sonars.
 const EQUAL: Meters = Meters(0.026);
 
@@ -59,8 +50,8 @@ impl Aligning {
     }
 
     /// Which way to turn when only one of them hears an echo: towards the one that does.
-    fn unheard<Y: SonarRing>(&self, y: &Y, t: Nanos) -> f64 {
-        let (waits, fastest) = if in_turn(y) { (WAITS_IN_TURN, FASTEST_IN_TURN) } else { (WAITS, FASTEST) };
+    fn unheard<Y: DiffDrive + SonarRing>(&self, y: &Y, t: Nanos) -> f64 {
+        let Gains { align_waits: waits, align_fastest: fastest, .. } = *Gains::of(y);
         let (since, waits) = self.heard.map_or((self.began, 0.0), |heard| (heard, waits));
         if !(waits..waits + TAU / fastest).contains(&t.since(since).seconds()) {
             return 0.0;
@@ -82,11 +73,6 @@ impl Aligning {
     }
 }
 
-/// Whether sonars fire one after the other, so that ranges are older.
-fn in_turn<Y: SonarRing>(y: &Y) -> bool {
-    y.confirmation() < PINGS_KEPT
-}
-
 impl<Y: DiffDrive + SonarRing> Control<Y> for Align {
     type Law = Aligning;
 
@@ -106,7 +92,7 @@ impl<Y: DiffDrive + SonarRing> Law<Y> for Aligning {
             }
             None => self.unheard(y, t),
         };
-        let fastest = if in_turn(y) { FASTEST_IN_TURN } else { FASTEST };
+        let fastest = Gains::of(y).align_fastest;
         let omega = match rate.abs() {
             0.0 => 0.0,
             size => self.sense() * size.clamp(SLOWEST, fastest) * rate.signum(),
@@ -124,6 +110,7 @@ impl<Y: DiffDrive + SonarRing> Completes<Y> for Aligning {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gains::fire_in_turn;
     use crate::trial::{Sensed, begun};
 
     /// Numbers from 0 to 1 that look as if drawn by chance.
@@ -161,7 +148,7 @@ mod tests {
         let mut chance = Chance(seed);
         for turn in 0..1800 {
             for (number, (sonar, misses)) in sonars.into_iter().zip(wall.misses).enumerate() {
-                if in_turn(&y) && (turn + 5 * number) % 10 != 0 {
+                if fire_in_turn(&y) && (turn + 5 * number) % 10 != 0 {
                     continue;
                 }
                 let incidence = y.pose.theta.0 + sonar.bearing().0 - wall.at.to_radians();

@@ -1,7 +1,9 @@
 //! `atIsection b`: fires where the ways front, left, back and right are as the bits say (paper, section IV-A).
 
 use mdle_runtime::capability::SonarRing;
-use mdle_runtime::{Bits, Interrupt, Meters, PINGS_KEPT, Ping, Radians, SONARS, SonarId};
+use mdle_runtime::{Bits, Interrupt, Meters, Ping, Radians, SONARS, SonarId};
+
+use crate::gains::fire_in_turn;
 
 /// The sonars that look front, left, back and right: the order in which the bits are written.
 const DIRECTIONS: [SonarId; 4] = [SonarId::new(0), SonarId::new(4), SonarId::new(8), SonarId::new(12)];
@@ -13,6 +15,10 @@ const WITHIN: Radians = Radians::from_degrees(14.0);
 const ALSO_FACES: f64 = 1.5;
 /// Ranges that differ by less, in metres, are alike.
 const ALIKE: f64 = 0.06;
+
+/// What the sonars to both sides hear of a straight wall is longer than what the one between them hears, by this factor at
+/// most and by a step of ranges; the jambs of an opening are further.
+const SLANT: (f64, f64) = (1.08, 0.02);
 
 /// Fires while all four directions are as the bits say: 1 where an obstacle is near, 0 where the way is free.
 ///
@@ -36,7 +42,7 @@ impl<Y: SonarRing> Interrupt<Y> for AtIsection {
         let is_as_said = |blocked: fn(&Y, SonarId) -> Option<bool>| {
             DIRECTIONS.iter().zip(self.pattern.0).all(|(sonar, obstacle)| blocked(y, *sonar) == Some(obstacle))
         };
-        if y.confirmation() >= PINGS_KEPT {
+        if !fire_in_turn(y) {
             return is_as_said(blocked);
         }
         is_as_said(blocked_in_turn) && !DIRECTIONS.iter().any(|sonar| faces_between(y, *sonar))
@@ -63,15 +69,19 @@ fn blocked_in_turn<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<bool> {
 /// The smallest range of the two newest pings in the direction of a sonar now; infinite without an echo, `None` without a
 /// ping.
 fn towards<Y: SonarRing>(y: &Y, direction: SonarId) -> Option<Meters> {
-    let bearing = y.here().theta.0 + direction.bearing().0;
+    let heard = newest(y, direction).into_iter().flatten().map(|ping| ping.range);
+    let nearest = heard
+        .map(|range| range.unwrap_or(Meters(f64::INFINITY)))
+        .reduce(|one, other| if other.0 < one.0 { other } else { one })?;
+    Some(if nearest.0.is_infinite() { missed(y, direction).unwrap_or(nearest) } else { nearest })
+}
+
+/// The two newest pings in the direction of a sonar now.
+fn newest<Y: SonarRing>(y: &Y, direction: SonarId) -> [Option<&Ping>; 2] {
     let mut newest: [Option<&Ping>; 2] = [None; 2];
     for number in 0..SONARS as u8 {
         let sonar = SonarId::new(number);
-        for ping in y.pings(sonar).newest_first() {
-            let off = Radians(ping.pose.theta.0 + sonar.bearing().0 - bearing).wrapped();
-            if off.0.abs() > WITHIN.0 {
-                continue;
-            }
+        for ping in y.pings(sonar).newest_first().filter(|ping| looked_there(y, direction, sonar, ping)) {
             let [first, second] = newest;
             if first.is_none_or(|first| first.at < ping.at) {
                 newest = [Some(ping), first];
@@ -81,10 +91,28 @@ fn towards<Y: SonarRing>(y: &Y, direction: SonarId) -> Option<Meters> {
         }
     }
     newest
-        .iter()
-        .flatten()
-        .map(|ping| ping.range.unwrap_or(Meters(f64::INFINITY)))
-        .reduce(|one, other| if other.0 < one.0 { other } else { one })
+}
+
+/// Whether this ping of one sonar was in the direction that another looks in now, and what it heard still is: a jamb that
+/// was passed since is not where it was heard.
+fn looked_there<Y: SonarRing>(y: &Y, direction: SonarId, sonar: SonarId, ping: &Ping) -> bool {
+    let here = y.here();
+    let axis = Radians(ping.pose.theta.0 + sonar.bearing().0);
+    let is_within = |angle: f64| Radians(angle - here.theta.0 - direction.bearing().0).wrapped().0.abs() <= WITHIN.0;
+    let Some(range) = ping.range.filter(|_| sonar != direction) else { return is_within(axis.0) };
+    let place = ping.pose.towards(axis, Meters(y.ring_radius().0 + range.0));
+    is_within(axis.0) && is_within(libm::atan2(place.y.0 - here.y.0, place.x.0 - here.x.0))
+}
+
+/// The range of a wall that a sonar has missed twice: it heard the wall before, and those to both sides hear it still.
+fn missed<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<Meters> {
+    let before = y.pings(sonar).newest_first().nth(2)?.range.filter(|range| *range < y.blocked_within())?;
+    let beside = |further: u8| {
+        let sonar = SonarId::new(sonar.number() as u8 + further);
+        y.pings(sonar).newest_first().next()?.range
+    };
+    let further = beside(1)?.0.max(beside(SONARS as u8 - 1)?.0);
+    (further < SLANT.0 * before.0 + SLANT.1).then_some(before)
 }
 
 /// Whether a wall faces the diagonal that comes counter-clockwise after one of the directions: there and to both sides
@@ -103,6 +131,7 @@ fn faces_between<Y: SonarRing>(y: &Y, direction: SonarId) -> bool {
 mod tests {
     use super::*;
     use crate::trial::Sensed;
+    use mdle_runtime::Nanos;
 
     const NEAR: Option<f64> = Some(1.14);
     const FAR: Option<f64> = Some(1.15);
@@ -159,6 +188,32 @@ mod tests {
         let y = seen([&[], &[FAR; 3], &[FAR; 3], &[FAR; 3]]);
         assert!(!fires("0000", &y));
         assert!(!fires("1000", &y));
+    }
+
+    #[test]
+    fn a_wall_that_is_missed_twice_is_there_while_it_is_heard_on_both_sides() {
+        let missed = |beside: [f64; 2]| {
+            let mut y = in_turn([9.0; 16]);
+            for range in [Some(0.7), None, None] {
+                y.ping(SonarId::new(4), range);
+            }
+            y.ping(SonarId::new(3), Some(beside[0]));
+            y.ping(SonarId::new(5), Some(beside[1]));
+            (fires("0000", &y), fires("0100", &y))
+        };
+        assert_eq!(missed([0.74, 0.75]), (false, true));
+        assert_eq!(missed([0.74, 0.82]), (true, false), "a jamb");
+        assert_eq!(missed([0.82, 0.74]), (true, false), "a jamb");
+    }
+
+    #[test]
+    fn what_was_passed_since_another_sonar_heard_it_is_not_there_any_more() {
+        let mut y = in_turn([9.0; 16]);
+        y.ping_at(SonarId::new(5), Some(0.58), Nanos(1));
+        y.pose.theta = Radians::from_degrees(10.0);
+        assert!(fires("0100", &y) && !fires("0000", &y), "22.5 degrees behind, and the robot has turned to it");
+        y.pose.x = Meters(0.2);
+        assert!(fires("0000", &y) && !fires("0100", &y));
     }
 
     /// A robot whose sonars fire in turn, with these ranges heard twice by the sonars from the front on.

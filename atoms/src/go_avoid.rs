@@ -7,14 +7,12 @@ use mdle_runtime::{
 };
 
 use crate::approach::Approach;
+use crate::gains::Gains;
 use crate::memory::Memory;
 use crate::tangent::{Obstacles, Side, Wish};
 
 /// Nearer than this the goal is reached.
 const ARRIVED: Meters = Meters(0.12);
-/// How far ahead the way should be free. Further, and the robot turns off into a side way before `atIsection` has
-/// confirmed it.
-const LOOK_AHEAD: Meters = Meters(0.4);
 /// In turn rate for each radian off the direction chosen.
 const GAIN: f64 = 2.0;
 /// The fastest turn, in rad/s.
@@ -62,6 +60,7 @@ impl GoAvoid {
 pub struct GoingRound {
     goal: Pose,
     speed: MetersPerSecond,
+    look_ahead: Meters,
     previous: Option<Radians>,
     detour: Option<Detour>,
     approach: Approach,
@@ -129,7 +128,7 @@ impl GoingRound {
     fn choose(&mut self, obstacles: &Obstacles, here: Pose, t: Nanos) -> Radians {
         let Meters(distance) = here.distance(&self.goal);
         let goal = self.direction(here);
-        let look_ahead = Meters(LOOK_AHEAD.0.min(distance).max(ARRIVED.0));
+        let look_ahead = Meters(self.look_ahead.0.min(distance).max(ARRIVED.0));
         let over = |detour: Detour| {
             distance < detour.from.0 - GAINED.0
                 && obstacles.free(goal) >= look_ahead
@@ -172,6 +171,7 @@ impl<Y: DiffDrive + Odometry + SonarRing> Control<Y> for GoAvoid {
         GoingRound {
             goal,
             speed: self.speed,
+            look_ahead: Gains::of(y).look_ahead,
             previous: None,
             detour: None,
             approach: Approach::default(),

@@ -14,6 +14,7 @@ mod align;
 mod approach;
 mod at_isection;
 mod bumper;
+mod gains;
 mod go;
 mod go_avoid;
 mod heading;

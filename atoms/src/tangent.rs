@@ -4,6 +4,7 @@
 use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, Nanos, PINGS_KEPT, Ping, Pose, Radians, SONARS, SonarId};
 
+use crate::gains::{Gains, fire_in_turn};
 use crate::memory::{Memory, PLACES};
 
 /// Directions tried all round, 5° apart.
@@ -21,10 +22,6 @@ const ACROSS: f64 = 0.5;
 const POINTS: usize = SONARS * (ARC.len() + EXTENDS.len());
 /// Kept around the body whatever it costs, in metres.
 const MARGIN: f64 = 0.06;
-/// Kept around the body where there is room, in metres.
-const SOFT_MARGIN: f64 = 0.35;
-/// The same where sonars fire in turn: odometry drifts too, and the middle of a hallway must be kept by what is heard.
-const SOFT_MARGIN_IN_TURN: f64 = 0.4;
 /// What a way that lacks free length costs, in radians of detour for the whole look-ahead.
 const BLOCKED_COSTS: f64 = 6.0;
 /// What a way along the hard margin costs, in radians of detour. With 0.6 the robot may drift off the middle of a
@@ -56,6 +53,8 @@ pub(crate) struct Obstacles {
     remembered: [Option<Point>; PLACES],
     hard: f64,
     soft: f64,
+    room_at: f64,
+    beyond: f64,
 }
 
 /// Where a law wants to go.
@@ -105,14 +104,15 @@ impl Obstacles {
                 *point = Some(echo(&ping, range, sonar, off_axis, y.ring_radius(), here));
             }
         }
-        if y.confirmation() < PINGS_KEPT {
+        if fire_in_turn(y) {
             for (number, ahead) in (0..).zip(walls.chunks_exact_mut(EXTENDS.len())) {
                 extended(y, SonarId::new(number), here, ahead);
             }
         }
         let radius = y.body_radius().0;
-        let soft = if y.confirmation() < PINGS_KEPT { SOFT_MARGIN_IN_TURN } else { SOFT_MARGIN };
-        Self { points, remembered: [None; PLACES], hard: radius + MARGIN, soft: radius + soft }
+        let Gains { soft_margin, room_at, beyond, .. } = *Gains::of(y);
+        let (hard, soft) = (radius + MARGIN, radius + soft_margin);
+        Self { points, remembered: [None; PLACES], hard, soft, room_at, beyond }
     }
 
     /// The same with what was heard before.
@@ -138,11 +138,14 @@ impl Obstacles {
         Meters(free)
     }
 
-    /// The distance of the nearest point beside the way in this direction; infinite without any.
-    fn beside(&self, direction: Radians) -> f64 {
-        let (back, ahead) = BESIDE;
+    /// The distance of the nearest point beside the way in this direction, from a place along it; infinite without any.
+    ///
+    /// What the way ends at after its `free` length is not beside it, but on a wide body.
+    fn beside(&self, direction: Radians, free: Meters) -> f64 {
+        let (back, ahead) = (BESIDE.0, BESIDE.1.min(free.0 + self.beyond));
+        let place = self.room_at.min(free.0).max(0.0);
         let near = self.along(direction).filter(|(along, _)| back < *along && *along < ahead);
-        near.fold(f64::INFINITY, |least, (_, across)| least.min(across.abs()))
+        near.fold(f64::INFINITY, |least, (along, across)| least.min(libm::hypot(along - place, across)))
     }
 
     /// The direction of least cost, as an angle from the goal's direction counted round the side to keep to.
@@ -166,11 +169,11 @@ impl Obstacles {
         let direction = Radians(wish.goal.0 + offset);
         let mut cost = offset.abs();
         let Meters(look_ahead) = wish.look_ahead;
-        let Meters(free) = self.free(direction);
-        if free < look_ahead {
-            cost += BLOCKED_COSTS * (look_ahead - free) / look_ahead;
+        let free = self.free(direction);
+        if free.0 < look_ahead {
+            cost += BLOCKED_COSTS * (look_ahead - free.0) / look_ahead;
         }
-        let beside = self.beside(direction);
+        let beside = self.beside(direction, free);
         if beside < self.soft {
             cost += CLOSE_COSTS * (self.soft - beside) / (self.soft - self.hard);
         }
@@ -260,6 +263,33 @@ mod tests {
         let right = obstacles.best(&wish(Some(Side::Right)));
         assert!(left.0 > 0.5 && left.0 < 2.0, "{left:?}");
         assert!((left.0 + right.0).abs() < 1e-12, "{right:?}");
+    }
+
+    #[test]
+    fn leads_off_a_wall_that_is_too_close() {
+        let mut y = Sensed::default();
+        // A wall 0.4 m to the left of the centre, heard abreast and half a metre ahead.
+        y.ping(SonarId::new(4), Some(0.21));
+        let there = Pose { x: Meters(0.5), ..y.pose };
+        y.pose = there;
+        y.ping(SonarId::new(5), Some(0.43 - 0.19));
+        y.pose = Pose::ORIGIN;
+        let chosen = Obstacles::seen(&y, y.pose).best(&wish(None));
+        assert!((-40.0..=-10.0).contains(&chosen.degrees()), "{}", chosen.degrees());
+    }
+
+    #[test]
+    fn a_wall_ahead_is_come_as_near_to_as_the_look_ahead_lets() {
+        let ahead = |range: f64| {
+            let mut y = Sensed::default();
+            for sonar in [15, 0, 1] {
+                let slant = libm::cos(SonarId::new(sonar).bearing().0);
+                y.ping(SonarId::new(sonar), Some((range + 0.19) / slant - 0.19));
+            }
+            Obstacles::seen(&y, y.pose).best(&wish(None))
+        };
+        assert_eq!(ahead(0.55), Radians(0.0));
+        assert!(ahead(0.4).0.abs() > 0.3, "{:?}", ahead(0.4));
     }
 
     #[test]

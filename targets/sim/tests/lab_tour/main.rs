@@ -171,19 +171,19 @@ fn every_atom_ends_in_its_zone_by_its_cause() {
     let ends = tour(Pose::ORIGIN, None);
     assert_eq!(faults(&ends), Vec::<String>::new());
     insta::assert_snapshot!(table(&ends), @"
-     1   23.2 s  atIsection 0100   0.04   4.29   90
-     2   36.8 s  atIsection 0010   0.04   4.31    1
-     3   36.8 s  completed         0.04   4.31    1
-     4   73.8 s  atIsection 1000   7.01   4.73  359
-     5   87.5 s  atIsection 0100   7.03   4.73  272
-     6   87.5 s  completed         7.03   4.73  272
-     7   94.5 s  wait 7            7.41   3.53  275
-     8  110.2 s  atIsection 1000   7.45   0.43  270
-     9  112.7 s  atIsection 1001   7.45  -0.05  269
-    10  117.1 s  atIsection 0011   7.45  -0.06  357
-    11  117.1 s  completed         7.45  -0.06  357
-    12  136.4 s  atIsection 0100  11.25  -0.05    0
-    13  139.5 s  completed        11.28  -0.05  271
+     1   23.2 s  atIsection 0100   0.04   4.30   90
+     2   36.8 s  atIsection 0010   0.04   4.32    1
+     3   36.8 s  completed         0.04   4.32    1
+     4   73.4 s  atIsection 1000   7.02   4.78  359
+     5   87.0 s  atIsection 0100   7.04   4.78  271
+     6   87.0 s  completed         7.04   4.78  271
+     7   94.0 s  wait 7            7.16   3.51  295
+     8  109.9 s  atIsection 1000   7.40   0.44  270
+     9  112.3 s  atIsection 1001   7.40  -0.04  270
+    10  116.9 s  atIsection 0011   7.40  -0.06  359
+    11  116.9 s  completed         7.40  -0.06  359
+    12  136.4 s  atIsection 0100  11.24  -0.05    0
+    13  139.5 s  completed        11.27  -0.05  271
     ");
 }
 
@@ -197,7 +197,8 @@ fn noisy_sonars_arrive_too() {
     assert_eq!(arrived(0..3, true), 3);
 }
 
-/// A Scout with everything that goes wrong on it. Of seeds 0..200, 193 arrive, and of 1000..1400, 380.
+/// A Scout with everything that goes wrong on it. Of seeds 0..200, 197 arrive, of 1000..1200, 195, and of
+/// 20000..20200, by which nothing was chosen, 184.
 #[test]
 fn a_scout_arrives_whose_sonars_fire_in_turn_and_miss_and_whose_wheels_slip() {
     let world = World::office().expect("our own floor");

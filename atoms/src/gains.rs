@@ -1,0 +1,70 @@
+//! The gains of the laws that differ from body to body, in one place: a body of one's own is looked up by what it tells of
+//! itself. All other gains are constants beside their laws.
+
+use mdle_runtime::capability::{DiffDrive, SonarRing};
+use mdle_runtime::{Meters, PINGS_KEPT};
+
+/// A body of this radius or more is wide: hallways leave it little room to turn aside in.
+const WIDE: Meters = Meters(0.3);
+
+/// What the laws do otherwise on another body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Gains {
+    /// `align`: the fastest turn, in rad/s. Where sonars fire in turn, the ranges are older.
+    pub(crate) align_fastest: f64,
+    /// `align`: how long, in seconds, a sonar is waited for that has heard the wall and then does not: three pings of it
+    /// where every turn brings one, else two rings.
+    pub(crate) align_waits: f64,
+    /// `goAvoid`: how far ahead the way should be free. Further, and the robot turns off into a side way before
+    /// `atIsection` has confirmed it; where sonars fire in turn, what they hear is a second old, and nearer by now.
+    pub(crate) look_ahead: Meters,
+    /// `goAvoid`: kept around the body where there is room, in metres. Where sonars fire in turn odometry drifts too, and
+    /// the middle of a hallway must be kept by what is heard.
+    pub(crate) soft_margin: f64,
+    /// `goAvoid`: how far along a way it is asked how much room that leaves, in metres. Beside a wall, only what lies ahead
+    /// tells a way that leads off it from one that keeps as close: with room asked where the robot is, drift would never
+    /// be made good. A wide body that asked far ahead would turn back before what it can just pass.
+    pub(crate) room_at: f64,
+    /// `goAvoid`: how far beyond the end of a way, in metres, something still counts as beside it. At nothing, a wall ahead
+    /// is come as near to as the look-ahead lets; a wide body must begin sooner to go round a box.
+    pub(crate) beyond: f64,
+}
+
+/// A body whose sonars all ping in every turn.
+const RING: Gains = Gains {
+    align_fastest: 0.3,
+    align_waits: 0.3,
+    look_ahead: Meters(0.4),
+    soft_margin: 0.35,
+    room_at: 0.6,
+    beyond: 0.0,
+};
+
+/// A Scout, whose sonars fire one after the other.
+const SCOUT: Gains = Gains {
+    align_fastest: 0.12,
+    align_waits: 2.0,
+    look_ahead: Meters(0.5),
+    soft_margin: 0.4,
+    room_at: 0.6,
+    beyond: 0.0,
+};
+
+/// An ATRV-mini, twice as wide.
+const ATRV: Gains = Gains { look_ahead: Meters(0.4), room_at: 0.3, beyond: 0.6, ..SCOUT };
+
+impl Gains {
+    /// Those of the body that this is an output of.
+    pub(crate) fn of<Y: DiffDrive + SonarRing>(y: &Y) -> &'static Self {
+        match (fire_in_turn(y), y.body_radius() >= WIDE) {
+            (false, _) => &RING,
+            (true, false) => &SCOUT,
+            (true, true) => &ATRV,
+        }
+    }
+}
+
+/// Whether sonars fire one after the other, so that ranges are older.
+pub(crate) fn fire_in_turn<Y: SonarRing>(y: &Y) -> bool {
+    y.confirmation() < PINGS_KEPT
+}
