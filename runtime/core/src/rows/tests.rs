@@ -302,11 +302,13 @@ fn a_law_begins_with_its_atom_in_its_frame() {
         })
     };
     assert_eq!(ends_by_either().after([false; WIDTH * LEVELS], inputs).0, [0.25, 1.25, 0.25]);
-    let none = |plan: &mut Remembers<'_>, _: &mut At| {
-        plan.enter(9, &Sensed(&[]), BEGIN);
-        (plan.own, plan.input(&Sensed(&[0]), Nanos::ZERO))
+    let none = |plan: &mut Remembers<'_>, cursor: &mut At| {
+        let y = Sensed(&[]);
+        plan.enter(9, &y, BEGIN);
+        (plan.own, plan.input(&y, Nanos::ZERO), plan.next(cursor, &y, BEGIN, false))
     };
-    assert_eq!(ends_by_either().after([false; WIDTH * LEVELS], none).0, (0, 0.0), "there is no such atom");
+    let none = ends_by_either().after([false; WIDTH * LEVELS], none).0;
+    assert_eq!(none, (0, 0.0, Next::Stays), "there is no such atom, and it is never done");
 }
 
 #[test]

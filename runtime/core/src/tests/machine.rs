@@ -24,6 +24,8 @@ struct Toy {
     computed: u32,
     /// Whether it says what follows when a scope ends.
     foresees: bool,
+    /// Whether it leaves a scope at once where it may.
+    leaves: bool,
 }
 
 /// The brackets of [`Toy::nested`].
@@ -71,6 +73,7 @@ impl Toy {
             entered: Vec::new(),
             computed: 0,
             foresees: true,
+            leaves: true,
         }
     }
 }
@@ -101,7 +104,7 @@ impl Plan for Toy {
             return Next::Stays;
         };
         let follows = self.fsm().follows(cursor.scope(self.fsm(), cause.level())).filter(|_| self.foresees);
-        self.end(cursor, Ending { cause, follows }, y, begin, direct)
+        self.end(cursor, Ending { cause, follows }, y, begin, direct && self.leaves)
     }
 
     fn input(&mut self, _: &Sensed, _: Nanos) -> u32 {
@@ -190,9 +193,11 @@ fn a_plan_that_is_over_stays_over() {
 
 #[test]
 fn a_plan_that_nobody_watches_is_over_as_well() {
-    let mut machine = begin(Toy::nested());
-    assert_eq!(machine.turn(&Sensed(&[PLAN], false), Nanos::ZERO, &mut ()), Turn::Over);
-    assert_eq!((machine.state(), machine.atom(), machine.is_over()), (4, None, true));
+    for leaves in [true, false] {
+        let mut machine = begin(Toy { leaves, ..Toy::nested() });
+        assert_eq!(machine.turn(&Sensed(&[PLAN], false), Nanos::ZERO, &mut ()), Turn::Over);
+        assert_eq!((machine.state(), machine.atom(), machine.is_over()), (4, None, true));
+    }
 }
 
 #[test]
