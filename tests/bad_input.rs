@@ -51,6 +51,14 @@ fn every_command_gives_a_plan_with_errors_the_same_status() {
 }
 
 #[test]
+fn names_that_no_new_target_can_have() {
+    let folder = with_plan("new_target", REST);
+    fs::create_dir(folder.join("there")).unwrap();
+    let names = ["there", "plan.mdle", "sim", "all", "My-Rover", "../rover", "2wheels", ""];
+    insta::assert_snapshot!(names.map(|name| said(&folder, &["new-target", name])).join("\n"));
+}
+
+#[test]
 fn targets_that_are_none() {
     let folder = with_plan("target", REST);
     let said = ["sin", "spaceship", "../rover"].map(|target| said(&folder, &["plan.mdle", "--target", target]));

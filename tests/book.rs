@@ -74,8 +74,9 @@ impl Walk<'_> {
             "script" => self.script = self.write(fence.file().unwrap_or("script.jsonl"), fence),
             "trace" => self.trace(&fence.text),
             "alphabet" => {
-                self.write("alphabet.mdle", fence);
-                let output = run_mdlec(&self.folder, &["quarks", "--target", "."]);
+                let file = self.write(fence.file().unwrap_or("./alphabet.mdle"), fence);
+                let target = file.strip_suffix("/alphabet.mdle").unwrap();
+                let output = run_mdlec(&self.folder, &["quarks", "--target", target]);
                 assert!(output.status.success(), "{}: {}", self.page.path, said(&output));
             }
             "console" => fence.text.split("$ ").skip(1).for_each(|command| self.run(command)),

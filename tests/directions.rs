@@ -17,6 +17,7 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("targets/sim", &["mdle-runtime", "mdle-host", "mdle-atoms"]),
     ("targets/scout", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms"]),
     ("targets/atrv", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms"]),
+    ("targets/template", &["mdle-runtime", "mdle-host", "mdle-atoms"]),
     ("targets/emulator", &["mdle-sim"]),
     // The drivers are there for their tests alone: they share no word of the language.
     ("targets/scout/emulator", &["mdle-runtime", "mdle-sim", "mdle-emulator", "mdle-scout"]),

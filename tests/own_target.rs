@@ -70,6 +70,50 @@ fn a_crate_that_does_not_compile_is_quoted_whole_and_serves_when_mended() {
 }
 
 #[test]
+fn a_new_target_drives_and_feels_contact_once_it_can() {
+    let folder = folder("new_target");
+    let plan = "{ Touch (bumper)\n  (Atom (wait 3s) (go 20 0))\n  (Atom (null) go 10 0.5)\n}\n";
+    fs::write(folder.join("plan.mdle"), plan).unwrap();
+    let done = |arguments: &[&str]| {
+        let output = run_mdlec(&folder, arguments);
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    assert_eq!(done(&["new-target", "rover"]).0, Some(0));
+    assert_eq!(done(&["bind", "--check", "rover/alphabet.mdle"]).0, Some(0));
+    let (status, said) = done(&["plan.mdle", "--target", "./rover"]);
+    assert!(status == Some(1) && said.contains("bumper"), "{said}");
+
+    // As the book says.
+    let change = |file: &str, from: &str, to: &str| {
+        let path = folder.join("rover").join(file);
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(text.contains(from) && !text.contains("template"), "{file}: {text}");
+        fs::write(path, text.replace(from, to)).unwrap();
+    };
+    change("alphabet.mdle", "odometry;", "odometry, bumper;");
+    change("src/hardware.rs", "switches: 0,", "switches: u32::from(self.pose.x.0 > 0.795),");
+    assert_eq!(done(&["bind", "rover/alphabet.mdle"]).0, Some(0));
+    let (status, said) = done(&["plan.mdle", "--target", "./rover"]);
+    assert_eq!(status, Some(0), "{said}");
+    let run = Command::new(folder.join("plan")).args(["--speed", "max", "--timeout", "60"]).output().unwrap();
+    let printed = String::from_utf8(run.stdout).unwrap();
+    insta::assert_snapshot!(printed, @r"
+    3.000 s  atom 2 go 10 0.5  <- wait 3 (atom 1)
+    plan over: bumper (Touch)
+    ");
+}
+
+#[test]
+fn a_new_target_holds_every_file_of_the_template() {
+    let folder = folder("new_target_files");
+    assert_eq!(run_mdlec(&folder, &["new-target", "template"]).status.code(), Some(0));
+    for file in files(&[".rs", ".toml", ".mdle"]).iter().filter(|file| file.path.starts_with("targets/template/")) {
+        let written = fs::read_to_string(folder.join(file.path.trim_start_matches("targets/"))).expect(&file.path);
+        assert!(written == file.text || file.path.ends_with("Cargo.toml"), "{}", file.path);
+    }
+}
+
+#[test]
 fn a_build_script_that_fails_is_quoted() {
     let folder = with_rover("own_build_script");
     fs::write(folder.join("rover/build.rs"), "fn main() {\n    panic!(\"no library of the whistle\");\n}\n").unwrap();

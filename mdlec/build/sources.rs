@@ -13,6 +13,9 @@ const SHARED: [&str; 4] = ["runtime/core", "runtime/host", "runtime/serial", "at
 /// Folders that no build of an executable reads; a folder with a package of its own is left out as well.
 const LEFT_OUT: [&str; 5] = ["tests", "benches", "examples", "snapshots", "target"];
 
+/// The folder below `targets` that is no robot: `mdlec new-target` makes one of it.
+const TEMPLATE: &str = "template";
+
 /// Writes `$OUT_DIR/sources.rs`: the files with their contents, a hash of them all, the targets and the alphabets.
 pub(crate) fn pack() -> Result<(), Box<dyn Error>> {
     let root = Path::new(&env::var("CARGO_MANIFEST_DIR")?).join("..").canonicalize()?;
@@ -43,12 +46,13 @@ pub(crate) fn pack() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The folders below `targets` that are packages with an alphabet.
+/// The folders below `targets` that are packages with an alphabet, the template aside.
 fn targets(root: &Path) -> Result<Vec<String>, Box<dyn Error>> {
     let mut targets = Vec::new();
     for entry in fs::read_dir(root.join("targets"))? {
         let folder = entry?.path();
-        if folder.join("Cargo.toml").is_file() && folder.join("alphabet.mdle").is_file() {
+        let is_robot = !folder.ends_with(TEMPLATE);
+        if is_robot && folder.join("Cargo.toml").is_file() && folder.join("alphabet.mdle").is_file() {
             targets.push(text(folder.file_name())?.to_owned());
         }
     }

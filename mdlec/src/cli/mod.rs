@@ -8,6 +8,7 @@ mod everywhere;
 mod explain;
 mod fmt;
 mod input;
+mod new_target;
 mod report;
 mod trace;
 
@@ -63,6 +64,8 @@ enum Command {
     Quarks(Quarks),
     /// Writes a target's `src/alphabet.rs`, which holds its crate to its alphabet
     Bind(Bind),
+    /// Writes the folder of a robot of your own: a target that runs, with one place for your driver
+    NewTarget(NewTarget),
 }
 
 /// Builds the executable of a plan.
@@ -213,6 +216,12 @@ struct Bind {
     check: bool,
 }
 
+#[derive(Debug, Args)]
+struct NewTarget {
+    /// The robot's name, and the folder's, which is made here
+    name: String,
+}
+
 /// Why a command ends without having done what it was asked: what to say, and the exit status.
 #[derive(Debug)]
 struct Failure {
@@ -263,6 +272,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Explain(explain)) => explain::explain(explain.code.as_deref()),
         Some(Command::Targets) => input::print_targets(),
         Some(Command::Bind(bind)) => bind::bind(&bind),
+        Some(Command::NewTarget(new_target)) => new_target::new_target(&new_target),
         Some(Command::Quarks(quarks)) => input::print_quarks(quarks.target.as_deref()),
     }
 }

@@ -242,7 +242,12 @@ fn each(value: &TokenStream, arms: TokenStream, none: bool) -> TokenStream {
 fn implementation(interrupts: &[&Bound<'_>], signals: &[&Bound<'_>], controls: &[&Bound<'_>]) -> TokenStream {
     let table = |quarks: &[&Bound<'_>], any: &Ident| -> TokenStream {
         let arms: Vec<_> = quarks.iter().map(|quark| by_name(quark, any)).collect();
-        quote!(match (name, arguments) { #(#arms)* _ => return None })
+        // A match that only returns would leave the `Some` around it unreachable.
+        if arms.is_empty() {
+            quote!(None)
+        } else {
+            quote!(Some(match (name, arguments) { #(#arms)* _ => return None }))
+        }
     };
     let (any_interrupt, any_control) = (format_ident!("AnyInterrupt"), format_ident!("AnyControl"));
     let by_interrupt = table(interrupts, &any_interrupt);
@@ -252,7 +257,7 @@ fn implementation(interrupts: &[&Bound<'_>], signals: &[&Bound<'_>], controls: &
     let (signal, by_signal, comparison) = if signals.is_empty() {
         (quote!(runtime::NoSignal), quote!(None), quote!(None))
     } else {
-        (quote!(AnySignal), quote!(Some(#by_signal)), quote!(Some(AnyInterrupt::Comparison(comparison))))
+        (quote!(AnySignal), by_signal, quote!(Some(AnyInterrupt::Comparison(comparison))))
     };
     quote! {
         #[doc = " The quarks of this robot by their names."]
@@ -267,10 +272,10 @@ fn implementation(interrupts: &[&Bound<'_>], signals: &[&Bound<'_>], controls: &
             type Control = AnyControl;
             type Law = AnyLaw;
 
-            fn interrupt(name: &str, arguments: &[runtime::Argument<'_>]) -> Option<AnyInterrupt> { Some(#by_interrupt) }
+            fn interrupt(name: &str, arguments: &[runtime::Argument<'_>]) -> Option<AnyInterrupt> { #by_interrupt }
             fn signal(name: &str, arguments: &[runtime::Argument<'_>]) -> Option<#signal> { #by_signal }
             fn comparison(comparison: runtime::Comparison<#signal, #signal>) -> Option<AnyInterrupt> { #comparison }
-            fn control(name: &str, arguments: &[runtime::Argument<'_>]) -> Option<AnyControl> { Some(#by_control) }
+            fn control(name: &str, arguments: &[runtime::Argument<'_>]) -> Option<AnyControl> { #by_control }
         }
     }
 }

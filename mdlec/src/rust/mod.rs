@@ -151,7 +151,7 @@ mod tests {
             let header = Header { file: "plan.mdle", plan: "P" };
             let rust = emit_as(shape, &compiled.lowered, header, &alphabet(Some("sim")));
             let body = rust.split_once("/// The plan `P`.").expect("a plan").1;
-            insta::assert_snapshot!(format!("conditions_{shape:?}"), body.split_once("const FSM").expect("tables").0);
+            insta::assert_snapshot!(format!("conditions-{shape:?}"), body.split_once("const FSM").expect("tables").0);
         }
     }
 

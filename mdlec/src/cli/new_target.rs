@@ -1,0 +1,129 @@
+//! `mdlec new-target`: a folder with a robot of one's own, made of `targets/template`.
+
+use std::fs;
+use std::io;
+use std::path::Path;
+
+use super::{Bind, Failure, NewTarget, bind, report};
+use crate::link;
+
+/// The word that stands for the name in the files.
+const NAME: &str = "template";
+
+/// The longest name: a file that is named after the robot can be written everywhere.
+const LONGEST: usize = 32;
+
+/// The files, but for `src/alphabet.rs`, which `bind` writes.
+const FILES: [(&str, &str); 4] = [
+    ("Cargo.toml", include_str!("../../../targets/template/Cargo.toml")),
+    ("alphabet.mdle", include_str!("../../../targets/template/alphabet.mdle")),
+    ("src/lib.rs", include_str!("../../../targets/template/src/lib.rs")),
+    ("src/hardware.rs", include_str!("../../../targets/template/src/hardware.rs")),
+];
+
+/// Writes the folder, whole or not at all, and says what to do next.
+pub(super) fn new_target(options: &NewTarget) -> Result<(), Failure> {
+    let name = options.name.as_str();
+    must_be_free(name)?;
+    let folder = Path::new(name);
+    fs::create_dir(folder).map_err(|error| {
+        if error.kind() == io::ErrorKind::AlreadyExists {
+            Failure::usage(format!("`{name}` is there already\nhelp: take another name, or go to another folder"))
+        } else {
+            Failure::usage(format!("the folder `{name}` cannot be made: {error}"))
+        }
+    })?;
+    fill(folder, name).inspect_err(|_| {
+        // What led here says more than what comes of this.
+        let _ = fs::remove_dir_all(folder);
+    })?;
+    report::note(format_args!(
+        "`{name}` is a robot that drives at once: it is imagined in {name}/src/hardware.rs, where your driver goes\n\
+         next: `mdlec PLAN --target {name}`, and the page \"Add your robot\" of the book"
+    ));
+    Ok(())
+}
+
+/// Writes the files into an empty folder.
+fn fill(folder: &Path, name: &str) -> Result<(), Failure> {
+    let refused = |error| Failure::usage(format!("`{name}` cannot be written: {error}"));
+    fs::create_dir(folder.join("src")).map_err(refused)?;
+    for (file, text) in FILES {
+        fs::write(folder.join(file), named(file, text, name)).map_err(refused)?;
+    }
+    bind::bind(&Bind { alphabet: folder.join("alphabet.mdle"), check: false })
+}
+
+/// A file of the template with this name in it. The manifest leaves our workspace and becomes one of its own, wherever the
+/// folder is; the licence is for whoever writes the robot to choose.
+fn named(file: &str, text: &str, name: &str) -> String {
+    let text = text.replace(NAME, name);
+    if file != "Cargo.toml" {
+        return text;
+    }
+    let version = concat!(" = \"", env!("CARGO_PKG_VERSION"), "\"");
+    let text = text.replace("license.workspace = true\n", "");
+    text.replace("[lints]\nworkspace = true\n", "[workspace]\n").replace(".workspace = true", version)
+}
+
+/// A name that no package, no file and no word of `--target` takes amiss.
+fn must_be_free(name: &str) -> Result<(), Failure> {
+    if is_taken(name) {
+        return Err(Failure::usage(format!(
+            "`{name}` is a word that `--target` knows already\nhelp: take another name, such as `my_{name}`"
+        )));
+    }
+    if is_good(name) {
+        return Ok(());
+    }
+    let near = near(name);
+    Err(Failure::usage(format!(
+        "`{name}` cannot be the name of a robot: write small letters, digits and `_`, a letter first, {LONGEST} at most\n\
+         help: `mdlec new-target {near}`"
+    )))
+}
+
+fn is_good(name: &str) -> bool {
+    name.len() <= LONGEST
+        && name.starts_with(|first: char| first.is_ascii_lowercase())
+        && name.bytes().all(|byte| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'_')
+}
+
+fn is_taken(name: &str) -> bool {
+    name == "all" || link::alphabets().iter().any(|alphabet| alphabet.name == name)
+}
+
+/// A good name that is like this one.
+fn near(name: &str) -> String {
+    let last = Path::new(name).file_name().unwrap_or_default().to_string_lossy().to_lowercase();
+    let near: String = last.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    if is_good(&near) && !is_taken(&near) { near } else { "rover".to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{is_good, named, near};
+
+    #[test]
+    fn a_name_is_good_for_a_package_and_a_file() {
+        for name in ["rover", "r2_d2", "a", "fn", &"x".repeat(32)] {
+            assert!(is_good(name), "{name}");
+        }
+        for name in ["", "Rover", "2wheels", "_rover", "my-rover", "my rover", "../rover", "größe", &"x".repeat(33)] {
+            assert!(!is_good(name) && is_good(&near(name)), "{name}");
+        }
+        assert_eq!(["My-Rover", "../rover/", "2wheels", "x/Sim"].map(near), ["my_rover", "rover", "rover", "rover"]);
+    }
+
+    #[test]
+    fn a_manifest_leaves_our_workspace() {
+        let ours = "name = \"template-target\"\nlicense.workspace = true\n\n[dependencies]\n\
+                    mdle-host.workspace = true\n\n[lints]\nworkspace = true\n";
+        let theirs = concat!(
+            "name = \"rover-target\"\n\n[dependencies]\nmdle-host = \"",
+            env!("CARGO_PKG_VERSION"),
+            "\"\n\n[workspace]\n"
+        );
+        assert_eq!(named("Cargo.toml", ours, "rover"), theirs);
+    }
+}

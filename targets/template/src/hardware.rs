@@ -1,0 +1,139 @@
+//! The hardware: all that you REPLACE to have your own robot. Until then it is one that only this program imagines.
+
+use std::fmt;
+use std::time::Duration;
+
+use mdle_host::clap::{Arg, ArgMatches, Command};
+use mdle_host::{Pace, Time};
+use mdle_runtime::{Meters, MetersPerSecond, Pings, Pose, Radians, RadiansPerSecond, SONARS, Sensed, Shape, Twist};
+
+/// REPLACE by what you measure on your robot. `body_radius` is of the smallest circle around it.
+const SHAPE: Shape =
+    Shape { body_radius: Meters(0.2), wheel_base: Meters(0.35), ring_radius: Meters(0.2), confirmation: 1 };
+/// REPLACE by the speed that no law may exceed.
+const FASTEST: MetersPerSecond = MetersPerSecond(0.5);
+/// REPLACE by the turn rate that no law may exceed.
+const FASTEST_TURN: RadiansPerSecond = RadiansPerSecond(2.0);
+
+/// REPLACE by the options that your robot needs, such as the line that it is on.
+pub(crate) fn options(command: Command) -> Command {
+    let speed = Arg::new("speed").long("speed").value_name("real|max").value_parser(["real", "max"]);
+    command.arg(speed.help("How fast time passes [default: real]"))
+}
+
+/// REPLACE by `Time::Wall`: only where nothing is real can time be hurried.
+pub(crate) fn time(options: &ArgMatches) -> Time {
+    let is_hurried = options.get_one::<String>("speed").is_some_and(|speed| speed == "max");
+    Time::Stepped(if is_hurried { Pace::Max } else { Pace::Times(1.0) })
+}
+
+/// Why the robot cannot go on. Add what can go wrong with yours: a line that is closed, no answer, an emergency stop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Fault {
+    /// A law has asked for a speed that is no number.
+    NoNumber,
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoNumber => f.write_str("a law has asked for a speed that is no number"),
+        }
+    }
+}
+
+/// The command for this input: where it is too fast, both speeds are lowered alike, so that the robot stays on its curve.
+pub(crate) fn within_limits(input: &Twist) -> Result<Twist, Fault> {
+    if !(input.v.0.is_finite() && input.omega.0.is_finite()) {
+        return Err(Fault::NoNumber);
+    }
+    let scale = (FASTEST.0 / input.v.0.abs()).min(FASTEST_TURN.0 / input.omega.0.abs()).min(1.0);
+    Ok(Twist { v: MetersPerSecond(input.v.0 * scale), omega: RadiansPerSecond(input.omega.0 * scale) })
+}
+
+/// The robot. REPLACE its fields by the line to yours, and the bodies of the three functions by your driver.
+#[derive(Debug)]
+pub struct Hardware {
+    period: Duration,
+    pose: Pose,
+    velocity: Twist,
+}
+
+impl Hardware {
+    /// Opens the robot; it does not move yet. Yours sets its odometry to zero here and arms its watchdog, which has to stop
+    /// the robot when no command comes any more: even this program can be killed.
+    pub(crate) fn open(_options: &ArgMatches, period: Duration) -> Result<Self, Fault> {
+        Ok(Self { period, pose: Pose::ORIGIN, velocity: Twist::default() })
+    }
+
+    /// Sends the speeds for this period and returns what the sensors say then. Yours waits for that, but not for ever: a
+    /// robot that is silent is a fault, and what the sensors said before is never returned twice.
+    pub(crate) fn command(&mut self, speeds: Twist) -> Result<Sensed, Fault> {
+        let seconds = self.period.as_secs_f64();
+        self.pose = self.pose.moved(Meters(speeds.v.0 * seconds), Radians(speeds.omega.0 * seconds));
+        self.velocity = speeds;
+        Ok(Sensed {
+            odometry: self.pose,
+            velocity: self.velocity,
+            // What the alphabet does not declare, no plan can ask for: this stays empty until the robot has it.
+            switches: 0,
+            pings: [Pings::default(); SONARS],
+            shape: SHAPE,
+        })
+    }
+
+    /// Stops the robot; called on every way out, a fault's too. Yours sends the robot's own stop command, even if the last
+    /// one was not answered.
+    pub(crate) fn halt(&mut self) -> Result<(), Fault> {
+        self.velocity = Twist::default();
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn hardware() -> Hardware {
+        let options = options(Command::new("test")).get_matches_from(["test"]);
+        Hardware::open(&options, Duration::from_millis(100)).unwrap_or_else(|fault| unreachable!("{fault}"))
+    }
+
+    fn twist(v: f64, omega: f64) -> Twist {
+        Twist { v: MetersPerSecond(v), omega: RadiansPerSecond(omega) }
+    }
+
+    /// What the sensors say after a second with these speeds.
+    fn after_a_second(v: f64, omega: f64) -> Result<Sensed, Fault> {
+        let mut hardware = hardware();
+        (0..9).try_for_each(|_| hardware.command(twist(v, omega)).map(|_| ()))?;
+        hardware.command(twist(v, omega))
+    }
+
+    #[test]
+    fn forward_is_forward_and_a_positive_rate_turns_left() -> Result<(), Fault> {
+        let (ahead, left) = (after_a_second(0.2, 0.0)?, after_a_second(0.2, 0.5)?);
+        assert!((ahead.odometry.x.0 - 0.2).abs() < 1e-9 && ahead.odometry.y.0 == 0.0, "{ahead:?}");
+        assert!((left.odometry.theta.0 - 0.5).abs() < 1e-9 && left.odometry.y.0 > 0.0, "{left:?}");
+        assert_eq!([ahead.velocity, left.velocity], [twist(0.2, 0.0), twist(0.2, 0.5)]);
+        Ok(())
+    }
+
+    #[test]
+    fn what_is_too_fast_stays_on_its_curve() {
+        assert_eq!(within_limits(&twist(-1.0, 0.5)), Ok(twist(-0.5, 0.25)));
+        assert_eq!(within_limits(&twist(0.4, 4.0)), Ok(twist(0.2, 2.0)));
+        assert_eq!(within_limits(&twist(0.0, 0.0)), Ok(twist(0.0, 0.0)));
+        assert_eq!(within_limits(&twist(f64::NAN, 0.0)), Err(Fault::NoNumber));
+    }
+
+    #[test]
+    fn a_robot_that_is_stopped_stands() -> Result<(), Fault> {
+        let mut hardware = hardware();
+        hardware.command(twist(0.2, 0.5))?;
+        hardware.halt()?;
+        let [before, after] = [hardware.command(Twist::default())?, hardware.command(Twist::default())?];
+        assert_eq!((before.odometry, after.velocity), (after.odometry, Twist::default()));
+        Ok(())
+    }
+}

@@ -1,0 +1,59 @@
+//! The robot template as a target of mdlec. What it can do is in `alphabet.mdle`, what drives it in `hardware.rs`.
+#![forbid(unsafe_code)]
+
+pub mod alphabet;
+mod hardware;
+
+use std::time::Duration;
+
+pub use hardware::{Fault, Hardware};
+use mdle_host::clap::{ArgMatches, Command};
+use mdle_host::{Hosted, Refusal, Time};
+use mdle_runtime::Robot;
+/// The robot's output: what its sensors say.
+pub use mdle_runtime::Sensed as Output;
+/// The robot's input: a forward speed and a turn rate. Zero is the null input.
+pub use mdle_runtime::Twist as Input;
+
+/// The quarks that the alphabet declares itself. `go` is there for its ranges: its law is the shared one.
+pub mod quarks {
+    pub use mdle_atoms::Go;
+}
+
+/// What the host runs a plan on.
+#[derive(Debug, Clone, Copy)]
+pub struct Target;
+
+impl mdle_host::Target for Target {
+    const NAME: &'static str = alphabet::NAME;
+    const PERIOD: Duration = Duration::from_nanos(alphabet::PERIOD.0);
+    type Robot = Hardware;
+
+    fn arguments(command: Command) -> Command {
+        hardware::options(command)
+    }
+
+    fn time(matches: &ArgMatches) -> Result<Time, String> {
+        Ok(hardware::time(matches))
+    }
+
+    fn connect(matches: &ArgMatches, period: Duration) -> Result<Hardware, Refusal> {
+        Hardware::open(matches, period).map_err(|fault| Refusal::Fault(fault.to_string()))
+    }
+}
+
+impl Robot for Hardware {
+    type Output = Output;
+    type Input = Input;
+    type Error = Fault;
+
+    fn exchange(&mut self, input: &Input) -> Result<Output, Fault> {
+        self.command(hardware::within_limits(input)?)
+    }
+
+    fn stop(&mut self) -> Result<(), Fault> {
+        self.halt()
+    }
+}
+
+impl Hosted for Hardware {}
