@@ -12,8 +12,6 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use mdle_benchmarks::plan_text::plan_text;
-
 /// How often each plan is compiled.
 const RUNS: usize = 5;
 /// How often memory is looked at.
@@ -42,13 +40,31 @@ fn main() {
         println!("{what:<48}{:>8.2}{:>8.2}{megabytes:>12}", best.wall.as_secs_f64(), best.user);
     };
     let rust = ["--target", "sim", "--emit", "rust"];
-    show("check, 10 MB", &plan_text(10, 10_000_000), &["check"]);
+    show("check, 10 MB of small plans", &small_plans(10_000_000), &["check"]);
     show("Rust of 10,000 atoms, one condition", &written_out(10_000, false), &rust);
     show("Rust of 10,000 atoms, each its own condition", &written_out(10_000, true), &rust);
     show("Rust of 1,000 loops of two atoms, once", &loops(1_000, 1), &rust);
     show("Rust of 1,000 loops of two atoms, 500 times", &loops(1_000, 500), &rust);
     show("Rust of a condition of 100,000 operands", &operands(100_000), &rust);
     fs::remove_dir_all(folder).expect("the folder of this run");
+}
+
+/// So many bytes of plans as people write them, in which nothing is wrong.
+fn small_plans(bytes: usize) -> String {
+    let mut plans = String::with_capacity(bytes + 1000);
+    for number in 0.. {
+        if plans.len() >= bytes {
+            break;
+        }
+        let (speed, bearing) = (10 + number % 50, number % 360);
+        writeln!(plans, "// From one door to the next, number {number}.\n{{ Leg{number} (bumper)").unwrap();
+        writeln!(plans, "  (Atom (atIsection 0100 OR wait {}s) (goAvoid {bearing} 40 {speed}))", 5 + number % 7)
+            .unwrap();
+        writeln!(plans, "  {{ Crossing (wait 1min)\n    (Atom (NOT atIsection 0100 AND t > 500ms) (go {speed} 0))")
+            .unwrap();
+        writeln!(plans, "    ((Atom (r 3 < 0.5m) align 3 5) (Atom (null) rotate {bearing}deg))^3\n  }}\n}}\n").unwrap();
+    }
+    plans
 }
 
 /// Atoms one behind the other.
