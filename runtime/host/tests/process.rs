@@ -78,7 +78,7 @@ fn how_late_turns_are_is_told_on_sigusr1_and_at_the_end() {
     for signal in ["USR1", "TERM"] {
         send(&child, signal);
         let head = lines.find(|line| !is_no_timing(line)).unwrap();
-        assert!(head.contains(" turns of 20ms, "), "{head}");
+        assert!(head.contains(" of 20ms, "), "{head}");
         assert_eq!(lines.next().as_deref(), Some(table[0]));
         assert!(lines.any(|line| line.starts_with(table[1])));
     }
