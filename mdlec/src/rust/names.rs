@@ -31,7 +31,7 @@ const CONSTANTS: &[&str] = &["FSM", "LAWS", "CONDITIONS", "NAMES"];
 /// Its other function, the names of arguments and variables, which would hide a function, and the keyword that syn does
 /// not know yet.
 const FUNCTIONS: &[&str] =
-    &["text", "texts", "index", "gen", "cursor", "y", "t", "law", "atom", "begin", "scope", "ending", "direct"];
+    &["text", "texts", "index", "gen", "cursor", "y", "t", "law", "atom", "begin", "scope", "direct"];
 
 /// The type of a plan: its name in camel case.
 #[must_use]
