@@ -105,7 +105,10 @@ const EVERY_QUARK: &str = r#"
 {"t": 1.5}
 {"t": 1.6, "completed": ["rotate 90"]}
 {"t": 1.7}
-{"t": 2.6}
+{"t": 2.0}
+{"t": 2.1, "completed": ["path bend"]}
+{"t": 2.2}
+{"t": 3.1}
 "#;
 
 fn compiled(plan: &str) -> (Compiled, Alphabet) {

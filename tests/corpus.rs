@@ -5,8 +5,8 @@
 
 use std::fs;
 
-use mdle_tests::any_text;
 use mdle_tests::repository::{files, root};
+use mdle_tests::{any_bytes, any_text};
 use mdlec::diagnostic::Code;
 
 /// The texts, each with where it is from.
@@ -59,4 +59,26 @@ fn their_rust_is_rust() {
 #[test]
 fn all_machines_do_the_same() {
     assert_holds(any_text::run);
+}
+
+/// What fuzzing found worth keeping of the lines of robots, and what makes a reader keep what it need not.
+fn lines() -> Vec<Vec<u8>> {
+    let kept = fs::read_dir(root().join("tests/fuzz/lines")).unwrap();
+    let kept = kept.map(|entry| fs::read(entry.unwrap().path()).unwrap());
+    let mut endless = vec![vec![0x10; 5000], vec![0x1B; 5000], [0x1B, 0x01].repeat(2500)];
+    endless.extend(endless.clone().into_iter().map(|bytes| [&[9, 0x1B, 0x02][..], &bytes].concat()));
+    kept.chain(endless).collect()
+}
+
+#[test]
+fn both_ends_of_a_line_read_on() {
+    let lines = lines();
+    assert!(lines.len() > 30, "{} lines", lines.len());
+    for line in lines {
+        let holds = std::panic::catch_unwind(|| {
+            any_bytes::scout(&line);
+            any_bytes::atrv(&line);
+        });
+        assert!(holds.is_ok(), "{line:02X?}");
+    }
 }

@@ -19,9 +19,9 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("targets/atrv", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms"]),
     ("targets/template", &["mdle-runtime", "mdle-host", "mdle-atoms"]),
     ("targets/emulator", &["mdle-sim"]),
-    // The drivers are there for their tests alone: they share no word of the language.
-    ("targets/scout/emulator", &["mdle-runtime", "mdle-sim", "mdle-emulator", "mdle-scout"]),
-    ("targets/atrv/emulator", &["mdle-runtime", "mdle-sim", "mdle-emulator", "mdle-atrv"]),
+    // The drivers and the conformance of robots are there for their tests alone: they share no word of the language.
+    ("targets/scout/emulator", &["mdle-runtime", "mdle-host", "mdle-atoms", "mdle-sim", "mdle-emulator", "mdle-scout"]),
+    ("targets/atrv/emulator", &["mdle-runtime", "mdle-host", "mdle-atoms", "mdle-sim", "mdle-emulator", "mdle-atrv"]),
     (
         "tests",
         &[
@@ -31,13 +31,15 @@ const PACKAGES: &[(&str, &[&str])] = &[
             "mdle-sim",
             "mdle-emulator",
             "mdle-scout-emulator",
+            "mdle-scout",
+            "mdle-atrv",
             "mdle-atrv-emulator",
             "mdle-scripted",
             "mdlec",
         ],
     ),
     ("tests/scripted", &["mdle-runtime"]),
-    ("tests/benchmarks", &["mdle-runtime", "mdle-sim", "mdle-tests", "mdlec"]),
+    ("tests/benchmarks", &["mdle-host", "mdle-runtime", "mdle-sim", "mdle-tests", "mdlec"]),
     ("tests/benchmarks/turn", &["mdle-runtime", "mdlec"]),
     ("tests/bare", &["mdle-runtime", "mdle-atoms"]),
     ("tests/application", &["mdle-runtime", "mdle-host", "mdle-sim", "mdlec"]),
@@ -176,6 +178,17 @@ fn machines_written_from_the_rules_share_no_stepping_with_others() {
     }
     let lowering = files(&[".rs"]).into_iter().find(|file| file.path == "mdlec/src/fsm/matrices.rs").expect("matrices");
     assert_eq!(names_from(&lowering.text, "mdle_runtime"), [""; 0], "in {}", lowering.path);
+}
+
+#[test]
+fn the_lowering_is_validated_by_code_of_its_own() {
+    let path = "mdlec/src/fsm/validation.rs";
+    let file = files(&[".rs"]).into_iter().find(|file| file.path == path).expect(path);
+    // Of the lowering it may know what a machine is, and of the runtime what its tables are.
+    assert_eq!(names_from(&file.text, "super"), ["Lowered", "RecordPlace"]);
+    assert_eq!(names_from(&file.text, "mdle_runtime"), ["fsm"]);
+    assert_eq!(names_from(&file.text, "mdle_runtime::fsm"), ["Bracket", "Kind"]);
+    assert_eq!(names_from(&file.text, "crate"), ["diagnostic", "plan"]);
 }
 
 #[test]

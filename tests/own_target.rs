@@ -103,6 +103,43 @@ fn a_new_target_drives_and_feels_contact_once_it_can() {
     ");
 }
 
+/// What cargo says of the conformance of the robot in this folder, and whether it is passed.
+fn conformance(robot: &Path) -> (bool, String) {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let mut command = Command::new(cargo);
+    command.args(["test", "--offline", "--quiet", "--test", "conformance"]).current_dir(robot);
+    // What is built of the same sources stays from run to run.
+    let built = robot.parent().unwrap().with_file_name("new_target_built");
+    let output = command.env("CARGO_TARGET_DIR", built).output().unwrap();
+    let said = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+    (output.status.success(), said.concat())
+}
+
+#[test]
+fn a_new_target_conforms_until_a_sign_is_wrong() {
+    let folder = folder("new_target_conforms");
+    assert_eq!(run_mdlec(&folder, &["new-target", "rover"]).status.code(), Some(0));
+    let robot = folder.join("rover");
+    // As the book says, for cargo by itself.
+    let manifest = fs::read_to_string(robot.join("Cargo.toml")).unwrap();
+    let manifest = manifest.replace("# [patch", "[patch").replace("# mdle-", "mdle-");
+    let here = format!("path = \"{}/", root().to_str().unwrap());
+    fs::write(robot.join("Cargo.toml"), manifest.replace("path = \"../mdle/", &here)).unwrap();
+    // No network is needed.
+    fs::copy(root().join("Cargo.lock"), robot.join("Cargo.lock")).unwrap();
+    let (passed, said) = conformance(&robot);
+    assert!(passed, "{said}");
+
+    let hardware = robot.join("src/hardware.rs");
+    let text = fs::read_to_string(&hardware).unwrap();
+    let wrong = text.replace("Radians(speeds.omega.0 * seconds)", "Radians(-speeds.omega.0 * seconds)");
+    assert_ne!(wrong, text);
+    fs::write(&hardware, wrong).unwrap();
+    let (passed, said) = conformance(&robot);
+    let sentence = "the body turned counter-clockwise by -0.800 rad instead of 0.800 rad: a sign in the input";
+    assert!(!passed && said.contains(sentence), "{said}");
+}
+
 #[test]
 fn a_new_target_holds_every_file_of_the_template() {
     let folder = folder("new_target_files");

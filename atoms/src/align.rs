@@ -7,8 +7,6 @@ use mdle_runtime::{Begin, Completes, Control, Law, Meters, Nanos, RadiansPerSeco
 
 use crate::gains::Gains;
 
-/// `k`, in rad/s for each metre of difference.
-const GAIN: f64 = 2.0;
 /// The slowest turn, in rad/s: less would not get the wheels moving.
 const SLOWEST: f64 = 0.08;
 /// Ranges that differ by this much or less are equal: one inch, the resolution of the paper's sonars.
@@ -88,7 +86,7 @@ impl<Y: DiffDrive + SonarRing> Law<Y> for Aligning {
         let rate = match self.difference(y) {
             Some(Meters(difference)) => {
                 self.heard = Some(t);
-                GAIN * difference
+                y.steering().align * difference
             }
             None => self.unheard(y, t),
         };

@@ -17,7 +17,7 @@ const ALSO_FACES: f64 = 1.5;
 const ALIKE: f64 = 0.06;
 
 /// What the sonars to both sides hear of a straight wall is longer than what the one between them hears, by this factor at
-/// most and by a step of ranges; the jambs of an opening are further.
+/// most and by a step of ranges; what lies behind an opening is further.
 const SLANT: (f64, f64) = (1.08, 0.02);
 
 /// Fires while all four directions are as the bits say: 1 where an obstacle is near, 0 where the way is free.
@@ -66,14 +66,17 @@ fn blocked_in_turn<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<bool> {
     Some(near < y.blocked_within())
 }
 
-/// The smallest range of the two newest pings in the direction of a sonar now; infinite without an echo, `None` without a
-/// ping.
+/// The smallest range of the two newest pings in the direction of a sonar now; infinite where both heard nothing.
+///
+/// `None` where too few looked there: one ping that hears something near is believed, one that does not opens no way.
 fn towards<Y: SonarRing>(y: &Y, direction: SonarId) -> Option<Meters> {
-    let heard = newest(y, direction).into_iter().flatten().map(|ping| ping.range);
-    let nearest = heard
-        .map(|range| range.unwrap_or(Meters(f64::INFINITY)))
-        .reduce(|one, other| if other.0 < one.0 { other } else { one })?;
-    Some(if nearest.0.is_infinite() { missed(y, direction).unwrap_or(nearest) } else { nearest })
+    let newest = newest(y, direction);
+    let heard = newest.into_iter().flatten().filter_map(|ping| ping.range);
+    let nearest = heard.reduce(|one, other| if other < one { other } else { one });
+    match nearest.filter(|range| *range < y.blocked_within()) {
+        Some(near) => Some(near),
+        None => newest[1].map(|_| overheard(y, direction).or(nearest).unwrap_or(Meters(f64::INFINITY))),
+    }
 }
 
 /// The two newest pings in the direction of a sonar now.
@@ -104,15 +107,17 @@ fn looked_there<Y: SonarRing>(y: &Y, direction: SonarId, sonar: SonarId, ping: &
     is_within(axis.0) && is_within(libm::atan2(place.y.0 - here.y.0, place.x.0 - here.x.0))
 }
 
-/// The range of a wall that a sonar has missed twice: it heard the wall before, and those to both sides hear it still.
-fn missed<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<Meters> {
+/// The range of a wall that a sonar does not hear in its two last pings, which missed it or strayed, or look past it by now:
+/// it heard the wall before, and those to both sides have lately heard that and nothing further.
+fn overheard<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<Meters> {
     let before = y.pings(sonar).newest_first().nth(2)?.range.filter(|range| *range < y.blocked_within())?;
-    let beside = |further: u8| {
-        let sonar = SonarId::new(sonar.number() as u8 + further);
-        y.pings(sonar).newest_first().next()?.range
+    let most = SLANT.0 * before.0 + SLANT.1;
+    let hears = |further: u8| {
+        let beside = SonarId::new(sonar.number() as u8 + further);
+        let mut ranges = y.pings(beside).newest_first().take(2).filter_map(|ping| ping.range).peekable();
+        ranges.peek().is_some() && ranges.all(|range| range.0 < most)
     };
-    let further = beside(1)?.0.max(beside(SONARS as u8 - 1)?.0);
-    (further < SLANT.0 * before.0 + SLANT.1).then_some(before)
+    (hears(1) && hears(SONARS as u8 - 1)).then_some(before)
 }
 
 /// Whether a wall faces the diagonal that comes counter-clockwise after one of the directions: there and to both sides
@@ -190,20 +195,58 @@ mod tests {
         assert!(!fires("1000", &y));
     }
 
+    /// Whether the way to the left seems free, and whether blocked, after these pings of its sonar and the last two of those
+    /// to both sides, oldest first.
+    fn left(pings: [Option<f64>; 3], beside: [[Option<f64>; 2]; 2]) -> (bool, bool) {
+        let mut y = in_turn([9.0; 16]);
+        let [before, after] = &beside;
+        for (sonar, ranges) in [(3, &before[..]), (4, &pings), (5, after)] {
+            for (at, range) in (1..).zip(ranges) {
+                y.ping_at(SonarId::new(sonar), *range, Nanos(at));
+            }
+        }
+        (fires("0000", &y), fires("0100", &y))
+    }
+
+    const FREE: (bool, bool) = (true, false);
+    const BLOCKED: (bool, bool) = (false, true);
+
     #[test]
     fn a_wall_that_is_missed_twice_is_there_while_it_is_heard_on_both_sides() {
-        let missed = |beside: [f64; 2]| {
-            let mut y = in_turn([9.0; 16]);
-            for range in [Some(0.7), None, None] {
-                y.ping(SonarId::new(4), range);
-            }
-            y.ping(SonarId::new(3), Some(beside[0]));
-            y.ping(SonarId::new(5), Some(beside[1]));
-            (fires("0000", &y), fires("0100", &y))
-        };
-        assert_eq!(missed([0.74, 0.75]), (false, true));
-        assert_eq!(missed([0.74, 0.82]), (true, false), "a jamb");
-        assert_eq!(missed([0.82, 0.74]), (true, false), "a jamb");
+        let missed = |beside: [f64; 2]| left([Some(0.7), None, None], beside.map(|range| [Some(range); 2]));
+        assert_eq!(missed([0.74, 0.75]), BLOCKED);
+        assert_eq!(missed([0.74, 0.82]), FREE, "a jamb");
+        assert_eq!(missed([0.82, 0.74]), FREE, "a jamb");
+    }
+
+    #[test]
+    fn a_stray_ping_and_a_missed_one_open_no_way_in_a_wall_that_is_heard_on_both_sides() {
+        let wall = [[Some(0.74); 2]; 2];
+        for pings in [[Some(0.7), None, Some(5.8)], [Some(0.7), Some(2.5), None], [Some(0.7), Some(1.7), Some(6.2)]] {
+            assert_eq!(left(pings, wall), BLOCKED, "{pings:?}");
+        }
+        let one_missed = [[None, Some(0.74)], [Some(0.74), None]];
+        assert_eq!(left([Some(0.7), None, Some(5.8)], one_missed), BLOCKED);
+    }
+
+    #[test]
+    fn what_a_sonar_beside_heard_through_an_opening_tells_its_jamb_from_a_wall() {
+        let jambs = [[Some(4.0), Some(1.02)], [Some(1.02), Some(1.09)]];
+        assert_eq!(left([Some(1.02), Some(3.9), Some(3.9)], jambs), FREE);
+        assert_eq!(left([Some(1.02), Some(3.9), Some(3.9)], [[None; 2], [Some(1.02); 2]]), FREE);
+    }
+
+    #[test]
+    fn one_ping_opens_no_way_where_sonars_fire_in_turn() {
+        let mut y = Sensed { confirmation: 2, ..Sensed::default() };
+        for number in (0..16).filter(|number| !(3..=5).contains(number)) {
+            y.ping(SonarId::new(number), None);
+            y.ping(SonarId::new(number), None);
+        }
+        y.ping(SonarId::new(4), None);
+        assert!(!fires("0000", &y) && !fires("0100", &y));
+        y.ping(SonarId::new(4), None);
+        assert!(fires("0000", &y));
     }
 
     #[test]

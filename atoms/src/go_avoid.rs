@@ -13,8 +13,6 @@ use crate::tangent::{Obstacles, Side, Wish};
 
 /// Nearer than this the goal is reached.
 const ARRIVED: Meters = Meters(0.12);
-/// In turn rate for each radian off the direction chosen.
-const GAIN: f64 = 2.0;
 /// The fastest turn, in rad/s.
 const FASTEST: f64 = 0.9;
 /// This far off the direction chosen the robot turns on the spot.
@@ -195,7 +193,7 @@ impl<Y: DiffDrive + Odometry + SonarRing> Law<Y> for GoingRound {
         let Meters(ahead) = seen.free(here.theta);
         let Meters(distance) = here.distance(&self.goal);
         let v = (self.speed.0 * (1.0 - off.abs() / ON_THE_SPOT.0)).min(0.9 * (ahead - 0.03)).min(0.8 * distance + 0.03);
-        let omega = (GAIN * off).clamp(-FASTEST, FASTEST);
+        let omega = (y.steering().avoid * off).clamp(-FASTEST, FASTEST);
         Twist { v: MetersPerSecond(v.max(0.0)), omega: RadiansPerSecond(omega) }
     }
 }

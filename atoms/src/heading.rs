@@ -3,9 +3,6 @@
 use mdle_runtime::capability::{DiffDrive, Odometry};
 use mdle_runtime::{Nanos, Radians, RadiansPerSecond, Twist};
 
-/// `k`, in turn rate for each radian still to turn: with the fastest turn it asks for 1.6 rad/s² at most, where a Scout's
-/// wheels can do more than three times that, and an ATRV-mini's were set to 1.55 and 2.
-const GAIN: f64 = 2.0;
 /// The fastest turn, in rad/s.
 const FASTEST: f64 = 0.8;
 /// What of the angle still to turn is turned at most until the law is asked again: with more it would go too far.
@@ -15,10 +12,11 @@ const NEAR: Radians = Radians::from_degrees(2.0);
 /// Below this difference of the wheels' speeds, in m/s, the robot no longer turns.
 const AT_REST: f64 = 0.02;
 
-/// The input that turns on the spot, with `left` still to turn; the law was last asked `before`, if it was.
-pub(crate) fn turning(left: Radians, before: Option<Nanos>, t: Nanos) -> Twist {
+/// The input that turns on the spot, with `left` still to turn by `gain`, that is `k`; the law was last asked `before`, if it
+/// was.
+pub(crate) fn turning(left: Radians, gain: f64, before: Option<Nanos>, t: Nanos) -> Twist {
     let period = before.map_or(0.0, |before| t.since(before).seconds());
-    let gain = if GAIN * period > AT_ONCE { AT_ONCE / period } else { GAIN };
+    let gain = if gain * period > AT_ONCE { AT_ONCE / period } else { gain };
     Twist { omega: RadiansPerSecond((gain * left.0).clamp(-FASTEST, FASTEST)), ..Twist::default() }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! A quark is a type that holds its arguments, in the order of `alphabet.mdle`, and asks for the capabilities that the
 //! alphabet names. `wait` is no type here: time is the machine's business. There is none yet for `sync`, `rendezvous`,
-//! `goAvoid` with a module, `Follow` and `path`, whose capabilities no robot can offer yet either.
+//! `goAvoid` with a module and `Follow`, whose capabilities no robot can offer yet either.
 //!
 //! No allocation, no unsafe code, no path that panics; trigonometry from `libm`, so a law computes the same bits on
 //! every machine.
@@ -10,15 +10,21 @@
 #![forbid(unsafe_code)]
 #![deny(clippy::indexing_slicing)]
 
+#[cfg(feature = "conformance")]
+extern crate std;
+
 mod align;
 mod approach;
 mod at_isection;
 mod bumper;
+#[cfg(feature = "conformance")]
+pub mod conformance;
 mod gains;
 mod go;
 mod go_avoid;
 mod heading;
 mod memory;
+mod path;
 mod rotate;
 mod signals;
 mod stop;
@@ -32,6 +38,7 @@ pub use at_isection::AtIsection;
 pub use bumper::Bumper;
 pub use go::Go;
 pub use go_avoid::{GoAvoid, GoingRound};
+pub use path::{Path, Replaying};
 pub use rotate::{Rotate, Rotating};
 pub use signals::{Omega, R, Theta, V, X, Y};
 pub use stop::Stop;

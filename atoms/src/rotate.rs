@@ -47,7 +47,7 @@ impl<Y: DiffDrive + Odometry> Law<Y> for Rotating {
     type Input = Twist;
 
     fn input(&mut self, y: &Y, t: Nanos) -> Twist {
-        turning(self.left(y), self.before.replace(t), t)
+        turning(self.left(y), y.steering().rotate, self.before.replace(t), t)
     }
 }
 

@@ -2,9 +2,10 @@
 
 use core::f64::consts::PI;
 
-use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, SonarRing};
+use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, Paths, SonarRing};
 use mdle_runtime::{
-    Begin, Completes, Frame, Law, Meters, Nanos, Output, Ping, Pings, Pose, Radians, SONARS, SonarId, Twist,
+    Begin, Completes, Frame, Law, Meters, Nanos, Output, PathStore, Ping, Pings, Pose, Radians, SONARS, Setpoint,
+    SonarId, Twist,
 };
 
 /// The period of a turn in these trials, in seconds.
@@ -18,6 +19,7 @@ pub(crate) struct Sensed {
     pub(crate) pressed: bool,
     pub(crate) pings: [Pings; SONARS],
     pub(crate) confirmation: usize,
+    pub(crate) paths: PathStore,
 }
 
 impl Default for Sensed {
@@ -28,6 +30,7 @@ impl Default for Sensed {
             pressed: false,
             pings: [Pings::default(); SONARS],
             confirmation: 3,
+            paths: PathStore::EMPTY,
         }
     }
 }
@@ -102,6 +105,12 @@ impl SonarRing for Sensed {
 
     fn confirmation(&self) -> usize {
         self.confirmation
+    }
+}
+
+impl Paths for Sensed {
+    fn path(&self, name: &str) -> Option<&[Setpoint]> {
+        self.paths.path(name)
     }
 }
 

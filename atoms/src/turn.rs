@@ -57,7 +57,7 @@ impl<Y: DiffDrive + Odometry> Law<Y> for Turning {
     fn input(&mut self, y: &Y, t: Nanos) -> Twist {
         self.so_far = self.so_far(y);
         self.last = y.pose().theta;
-        turning(self.left(y), self.before.replace(t), t)
+        turning(self.left(y), y.steering().rotate, self.before.replace(t), t)
     }
 }
 

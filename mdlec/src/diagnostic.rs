@@ -116,6 +116,7 @@ codes! {
     E0501 "a plan of too many states",
     E0502 "an expanded form that is too large",
     E0601 "an alphabet that makes no sense",
+    E0901 "a machine that is not that of its plan",
     W0101 "an interrupt that an outer one repeats",
     W0201 "a plan that nothing ever ends",
     W0202 "something that is never reached",

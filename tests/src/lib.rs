@@ -1,7 +1,8 @@
-//! What the tests of this crate share: random plans and scripts, the way from text to machines, the repository's files.
+//! What the tests of this crate share: random plans and scripts, the way from text to machines, lines of robots, the repository's files.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test tool fails by panicking")]
 
+pub mod any_bytes;
 pub mod any_text;
 pub mod book;
 pub mod chance;

@@ -66,6 +66,12 @@ impl Alphabet {
         }
     }
 
+    /// What the robot can do; nothing for a shared file, whose robot has everything.
+    #[must_use]
+    pub fn capabilities(&self) -> &[Capability] {
+        &self.capabilities
+    }
+
     /// Its quarks and signals.
     pub fn declarations(&self) -> impl Iterator<Item = &Declaration> {
         self.declarations.iter()

@@ -162,6 +162,14 @@ impl Unit {
         family_to_si(self.family)
     }
 
+    /// So much of this unit in SI units.
+    #[must_use]
+    pub fn to_si(self, value: f64) -> f64 {
+        let tens = (0..self.exponent.unsigned_abs()).fold(1.0, |tens, _| tens * 10.0);
+        let value = value * f64::from(self.factor) * self.family_to_si();
+        if self.exponent < 0 { value / tens } else { value * tens }
+    }
+
     const fn new(name: &'static str, kind: Kind, factor: u32, exponent: i32, family: &'static str) -> Self {
         let is_base = factor == 1 && exponent == 0 && !matches!(family.as_bytes(), [b'd', ..]);
         Self { name, kind, factor, exponent, family, is_base }

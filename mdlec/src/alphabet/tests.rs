@@ -1,6 +1,6 @@
 //! What alphabets are read as, and what is said about those that make no sense.
 
-use super::{Alphabet, AlphabetFile, Capability, DeclarationKind, Origin, combine, read};
+use super::{Alphabet, AlphabetFile, Capability, DeclarationKind, Origin, Unit, combine, read};
 use crate::diagnostic::{Code, SourceId, Sources};
 
 const ATOMS: &str = include_str!("../../../atoms/alphabet.mdle");
@@ -38,7 +38,7 @@ fn our_own_alphabets_are_read() {
     assert_eq!((head.crate_name.as_str(), head.period), ("mdle_sim", Some(100_000_000)));
     assert_eq!(
         head.capabilities.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "),
-        "diff_drive sonar[16] bumper odometry"
+        "diff_drive sonar[16] bumper odometry paths"
     );
 }
 
@@ -59,6 +59,13 @@ fn a_declaration_of_the_target_replaces_the_shared_one() {
     let avoid: Vec<_> =
         sim.declarations_of("goAvoid").map(|found| (found.origin.clone(), found.params.len())).collect();
     assert_eq!(avoid, [(Origin::Target, 3), (Origin::Shared("atoms".into()), 1)]);
+}
+
+#[test]
+fn a_value_of_a_unit_is_exact_in_si_units() {
+    let si = |unit: &str, value| Unit::from_name(unit).map(|unit| unit.to_si(value));
+    assert_eq!([si("cm/s", -70.0), si("in", 3.0), si("min", 1.5)], [Some(-0.7), Some(0.0762), Some(90.0)]);
+    assert_eq!(si("deg", 180.0), Some(std::f64::consts::PI));
 }
 
 #[test]

@@ -14,11 +14,12 @@ const NAME: &str = "template";
 const LONGEST: usize = 32;
 
 /// The files, but for `src/alphabet.rs`, which `bind` writes.
-const FILES: [(&str, &str); 4] = [
+const FILES: [(&str, &str); 5] = [
     ("Cargo.toml", include_str!("../../../targets/template/Cargo.toml")),
     ("alphabet.mdle", include_str!("../../../targets/template/alphabet.mdle")),
     ("src/lib.rs", include_str!("../../../targets/template/src/lib.rs")),
     ("src/hardware.rs", include_str!("../../../targets/template/src/hardware.rs")),
+    ("tests/conformance.rs", include_str!("../../../targets/template/tests/conformance.rs")),
 ];
 
 /// Writes the folder, whole or not at all, and says what to do next.
@@ -47,7 +48,9 @@ pub(super) fn new_target(options: &NewTarget) -> Result<(), Failure> {
 /// Writes the files into an empty folder.
 fn fill(folder: &Path, name: &str) -> Result<(), Failure> {
     let refused = |error| Failure::usage(format!("`{name}` cannot be written: {error}"));
-    fs::create_dir(folder.join("src")).map_err(refused)?;
+    for inside in ["src", "tests"] {
+        fs::create_dir(folder.join(inside)).map_err(refused)?;
+    }
     for (file, text) in FILES {
         fs::write(folder.join(file), named(file, text, name)).map_err(refused)?;
     }
@@ -61,9 +64,11 @@ fn named(file: &str, text: &str, name: &str) -> String {
     if file != "Cargo.toml" {
         return text;
     }
-    let version = concat!(" = \"", env!("CARGO_PKG_VERSION"), "\"");
+    const VERSION: &str = concat!(" = \"", env!("CARGO_PKG_VERSION"), "\"");
     let text = text.replace("license.workspace = true\n", "");
-    text.replace("[lints]\nworkspace = true\n", "[workspace]\n").replace(".workspace = true", version)
+    let text = text.replace("[lints]\nworkspace = true\n", "[workspace]\n").replace(".workspace = true", VERSION);
+    // One that asks for features besides.
+    text.replace("{ workspace = true", &format!("{{ version{VERSION}"))
 }
 
 /// A name that no package, no file and no word of `--target` takes amiss.
@@ -118,11 +123,13 @@ mod tests {
     #[test]
     fn a_manifest_leaves_our_workspace() {
         let ours = "name = \"template-target\"\nlicense.workspace = true\n\n[dependencies]\n\
-                    mdle-host.workspace = true\n\n[lints]\nworkspace = true\n";
+                    mdle-host.workspace = true\nmdle-atoms = { workspace = true, features = [\"a\"] }\n\n[lints]\nworkspace = true\n";
         let theirs = concat!(
             "name = \"rover-target\"\n\n[dependencies]\nmdle-host = \"",
             env!("CARGO_PKG_VERSION"),
-            "\"\n\n[workspace]\n"
+            "\"\nmdle-atoms = { version = \"",
+            env!("CARGO_PKG_VERSION"),
+            "\", features = [\"a\"] }\n\n[workspace]\n"
         );
         assert_eq!(named("Cargo.toml", ours, "rover"), theirs);
     }

@@ -7,10 +7,12 @@ mod file;
 mod matrices;
 #[cfg(test)]
 mod tests;
+mod validation;
 
 pub use expand::{expand, expanded_states};
 pub use file::{FsmFile, InterruptEntry, Moves, ScopeEntry, fsm_file};
 pub use matrices::{Matrices, Matrix, Transition, UnitVector, matrices};
+pub use validation::validate;
 
 use std::collections::BTreeMap;
 
@@ -94,12 +96,13 @@ impl Lowered {
     }
 }
 
-/// Lowers a plan.
+/// Lowers a plan, and holds what it has made against it.
 ///
 /// # Errors
-/// E0501 when the plan, expanded, has more than [`STATES`] states.
-pub fn algorithm1(plan: &Nondegenerate) -> Result<Lowered, Diagnostic> {
-    let plan = plan.plan();
+/// E0501 when the plan, expanded, has more than [`STATES`] states; E0901 when the machine is not the plan's, which would be
+/// a defect of this compiler.
+pub fn algorithm1(nondegenerate: &Nondegenerate) -> Result<Lowered, Diagnostic> {
+    let plan = nondegenerate.plan();
     let mut lowering = Lowering {
         lowered: Lowered {
             brackets: Vec::new(),
@@ -117,6 +120,7 @@ pub fn algorithm1(plan: &Nondegenerate) -> Result<Lowered, Diagnostic> {
     };
     let states = lowering.scope(&plan.root, Place { parent: 0, level: 0, slot: 0, state: 1 })?;
     lowering.lowered.termination = states + 1;
+    validate(nondegenerate, &lowering.lowered)?;
     Ok(lowering.lowered)
 }
 

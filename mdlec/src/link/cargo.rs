@@ -104,12 +104,13 @@ impl Job<'_> {
         command
     }
 
-    /// The flags of rustc: a static executable without a path of this machine in it.
+    /// The flags of rustc: a static executable at a fixed address, which saves its table of relocations, without a path
+    /// of this machine in it.
     ///
     /// They are the same for every plan, as other flags would build everything anew; so a target outside the home
     /// folder keeps its path in the messages of its panics.
     fn flags(&self) -> OsString {
-        let mut flags = OsString::from("-Ctarget-feature=+crt-static");
+        let mut flags = OsString::from("-Ctarget-feature=+crt-static\x1f-Crelocation-model=static");
         let home = env::home_dir();
         let cargo_home = env::var_os("CARGO_HOME").map(PathBuf::from).or_else(|| Some(home.as_ref()?.join(".cargo")));
         // The last that fits wins.

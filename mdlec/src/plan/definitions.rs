@@ -90,6 +90,11 @@ impl<'a> Definitions<'a> {
         roots.into_iter().filter_map(|index| self.plans.get(index).copied()).collect()
     }
 
+    /// Whether a plan, by its number, uses no other one.
+    pub(super) fn stands_alone(&self, plan: usize) -> bool {
+        self.refers.get(plan).is_some_and(BTreeMap::is_empty)
+    }
+
     /// Visits the plans so that each comes after all it refers to; what is left over contains itself.
     fn measure(&mut self, found: &mut Vec<Diagnostic>) {
         let mut waits: Vec<usize> = self.refers.iter().map(BTreeMap::len).collect();

@@ -1,5 +1,7 @@
 //! Tree to plan: every name, argument, unit and plan by name resolved, each use of a plan a copy of its own.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::arguments::kind_words;
 use super::conditions::{self, Around};
 use super::definitions::Definitions;
@@ -21,28 +23,37 @@ const FRAME: f64 = 100_000.0;
 #[must_use]
 pub fn resolve(files: &Files, alphabet: &Alphabet, wanted: Option<&str>) -> (Vec<Plan>, Vec<Diagnostic>) {
     let (definitions, mut found) = Definitions::collect(files, alphabet);
+    let roots = || definitions.roots().into_iter().filter(|plan| plan.params.is_empty());
+    let asked: Vec<_> = wanted.map_or_else(|| roots().collect(), |name| definitions.get(name).into_iter().collect());
+    let names: BTreeSet<_> = asked.iter().map(|plan| plan.name.node).collect();
+    let mut alone = BTreeMap::new();
     // Each plan by itself: what is wrong with it is said once, however often it is used.
-    for plan in &definitions.plans {
+    for (index, plan) in definitions.plans.iter().enumerate() {
         let parameters = Parameters::declared(plan, &mut found);
         let mut resolver = Resolver::new(&definitions, alphabet, Uses::Check);
-        resolver.plan(plan, parameters, 0.0);
+        let (root, _) = resolver.plan(plan, parameters, 0.0);
         found.append(&mut resolver.found);
+        // Where no copy of another plan belongs, nothing is left to be done.
+        if names.contains(plan.name.node) && definitions.stands_alone(index) {
+            alone.insert(plan.name.node, Plan { root, quarks: resolver.quarks.into_vec() });
+        }
     }
     if has_errors(&found) {
         return (Vec::new(), found);
     }
-    let wanted = wanted.map(|name| definitions.get(name).into_iter().collect::<Vec<_>>());
-    if let Some(plan) = wanted.iter().flatten().find(|plan| !plan.params.is_empty()) {
+    if let Some(plan) = asked.iter().find(|plan| !plan.params.is_empty()) {
         found.push(parameters::missing(plan, "it is the one that was asked for"));
         return (Vec::new(), found);
     }
-    let copy = |plan: &&tree::Plan| {
+    let mut copy = |plan: &&tree::Plan| {
+        if let Some(plan) = alone.remove(plan.name.node) {
+            return (plan, Vec::new());
+        }
         let mut resolver = Resolver::new(&definitions, alphabet, Uses::Copy);
         let (root, _) = resolver.plan(plan, Parameters::default(), 0.0);
         (Plan { root, quarks: resolver.quarks.into_vec() }, resolver.found)
     };
-    let roots = || definitions.roots().into_iter().filter(|plan| plan.params.is_empty());
-    let (plans, more): (Vec<_>, Vec<_>) = wanted.clone().unwrap_or_else(|| roots().collect()).iter().map(copy).unzip();
+    let (plans, more): (Vec<_>, Vec<_>) = asked.iter().map(&mut copy).unzip();
     found.extend(more.into_iter().flatten());
     if wanted.is_some() && definitions.plans.iter().any(|plan| !plan.params.is_empty()) {
         // What is given to parameters may be out of range, and only a copy tells.

@@ -81,7 +81,7 @@ pub(super) fn angle(radians: f64) -> TokenStream {
 }
 
 /// A number with its sign apart, as Rust's syntax has it.
-fn number(value: f64) -> TokenStream {
+pub(super) fn number(value: f64) -> TokenStream {
     let digits = Literal::f64_unsuffixed(value.abs());
     if value.is_sign_negative() { quote!(-#digits) } else { quote!(#digits) }
 }

@@ -6,6 +6,7 @@ use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 use syn::LitInt;
 
+use super::arguments::number;
 use super::layout::laid_out;
 use super::names::{Distinct, quark_type};
 use super::signatures::{argument_variant, signatures};
@@ -30,7 +31,8 @@ pub fn bind(alphabet: &Alphabet) -> String {
     let interrupt_types = interrupt_types(&interrupts, !signals.is_empty());
     let signal_types = signal_types(&signals);
     let control_types = control_types(&controls);
-    let implementation = implementation(&interrupts, &signals, &controls);
+    let claims = claims(alphabet, &quarks);
+    let implementation = implementation(&interrupts, &signals, &controls, &claims);
     let text = laid_out(quote! {
         pub use #home::{Input, Output};
         #imports
@@ -133,6 +135,24 @@ fn constants(alphabet: &Alphabet) -> TokenStream {
         #period
         #[doc = " Tells this alphabet from any other: a plan that was compiled for another one does not compile."]
         pub const HASH: u64 = #hash;
+    }
+}
+
+/// `const CAPABILITIES` and `const LIMITS`: what the robot's conformance is tested for.
+fn claims(alphabet: &Alphabet, quarks: &[Bound<'_>]) -> TokenStream {
+    let capabilities = alphabet.capabilities().iter().map(ToString::to_string);
+    let limits = quarks.iter().flat_map(|quark| {
+        quark.declaration.params.iter().filter_map(|param| {
+            let (least, most) = param.range?;
+            let unit = param.unit.or_else(|| param.kind.base_unit());
+            let [least, most] = [least, most].map(|value| number(unit.map_or(value, |unit| unit.to_si(value))));
+            let (quark, parameter) = (&quark.declaration.name, &param.name);
+            Some(quote!(runtime::Limit { quark: #quark, parameter: #parameter, least: #least, most: #most }))
+        })
+    });
+    quote! {
+        const CAPABILITIES: &'static [&'static str] = &[#(#capabilities),*];
+        const LIMITS: &'static [runtime::Limit] = &[#(#limits),*];
     }
 }
 
@@ -239,7 +259,12 @@ fn each(value: &TokenStream, arms: TokenStream, none: bool) -> TokenStream {
 }
 
 /// `impl Alphabet`, with the tables that make a quark of its name and arguments.
-fn implementation(interrupts: &[&Bound<'_>], signals: &[&Bound<'_>], controls: &[&Bound<'_>]) -> TokenStream {
+fn implementation(
+    interrupts: &[&Bound<'_>],
+    signals: &[&Bound<'_>],
+    controls: &[&Bound<'_>],
+    claims: &TokenStream,
+) -> TokenStream {
     let table = |quarks: &[&Bound<'_>], any: &Ident| -> TokenStream {
         let arms: Vec<_> = quarks.iter().map(|quark| by_name(quark, any)).collect();
         // A match that only returns would leave the `Some` around it unreachable.
@@ -271,6 +296,8 @@ fn implementation(interrupts: &[&Bound<'_>], signals: &[&Bound<'_>], controls: &
             type Signal = #signal;
             type Control = AnyControl;
             type Law = AnyLaw;
+
+            #claims
 
             fn interrupt(name: &str, arguments: &[runtime::Argument<'_>]) -> Option<AnyInterrupt> { #by_interrupt }
             fn signal(name: &str, arguments: &[runtime::Argument<'_>]) -> Option<#signal> { #by_signal }

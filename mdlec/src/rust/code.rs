@@ -11,7 +11,7 @@ use crate::fsm::{LawMeaning, Lowered};
 use crate::plan::{Compared, Condition, Quark, QuarkId, frame_text};
 
 /// The plan's type and its implementation, with an arm for each atom.
-pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered) -> TokenStream {
+pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered, paths: Option<&TokenStream>) -> TokenStream {
     let meaning = Meaning::new(lowered);
     let constants = meaning.constants();
     let running = meaning.running();
@@ -22,7 +22,7 @@ pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered) -> TokenStream
         input: meaning.input(),
         behind: meaning.scope_functions(),
     };
-    parts.machine(plan, doc, lowered)
+    parts.machine(plan, doc, lowered, paths)
 }
 
 /// What differs from plan to plan in code.
@@ -41,9 +41,15 @@ pub(super) struct Parts {
 
 impl Parts {
     /// The plan's type and its implementation.
-    pub(super) fn machine(&self, plan: &Ident, doc: &str, lowered: &Lowered) -> TokenStream {
+    pub(super) fn machine(
+        &self,
+        plan: &Ident,
+        doc: &str,
+        lowered: &Lowered,
+        paths: Option<&TokenStream>,
+    ) -> TokenStream {
         let Self { before, behind, .. } = self;
-        let implementation = self.implementation(plan, lowered);
+        let implementation = self.implementation(plan, lowered, paths);
         quote! {
             #[doc = #doc]
             #[derive(Debug)]
@@ -66,7 +72,7 @@ impl Parts {
     }
 
     /// `impl Plan for LabTour`: what the machine asks of a plan.
-    fn implementation(&self, plan: &Ident, lowered: &Lowered) -> TokenStream {
+    fn implementation(&self, plan: &Ident, lowered: &Lowered, paths: Option<&TokenStream>) -> TokenStream {
         let [levels, slots] = [lowered.levels, lowered.slots].map(Literal::usize_unsuffixed);
         let Self { enter, next, input, .. } = self;
         quote! {
@@ -84,6 +90,7 @@ impl Parts {
                 fn law(&self, atom: u32) -> &str { text(LAWS, atom) }
                 fn condition(&self, scope: u32) -> &str { text(CONDITIONS, scope) }
                 fn name(&self, scope: u32) -> &str { text(NAMES, scope) }
+                #paths
             }
 
             #[doc = " The cursor of this plan: its levels of scopes and of loops are known."]

@@ -81,6 +81,11 @@ fn list(line: &str) -> Option<usize> {
 /// Writes elements as they are laid out where a stand-in has this line.
 fn write_elements(elements: TokenStream, line: &str, text: &mut String) {
     let indent = line.len() - line.trim_start().len();
+    if let Some(strings) = strings(&elements) {
+        let indent = &line[..indent];
+        strings.iter().for_each(|string| write_line(&format!("{indent}{string},"), text));
+        return;
+    }
     let stand_in = stand_in(0);
     let mut item = quote!(const LIST: () = [#stand_in, #elements];);
     for _ in 1..indent / 4 {
@@ -89,6 +94,12 @@ fn write_elements(elements: TokenStream, line: &str, text: &mut String) {
     let printed = printed(item);
     let behind = printed.lines().skip_while(|line| list(line).is_none()).skip(1);
     behind.take_while(|line| line.trim_start() != "];").for_each(|line| write_line(line, text));
+}
+
+/// The elements, if all are string literals: these are written as they are, and to read them would take the longest.
+fn strings(elements: &TokenStream) -> Option<Vec<String>> {
+    let tokens = elements.clone().into_iter().filter(|token| !is_comma(token)).map(|token| token.to_string());
+    tokens.map(|token| token.starts_with('"').then_some(token)).collect()
 }
 
 fn is_comma(token: &TokenTree) -> bool {

@@ -80,11 +80,12 @@ pub fn emit_as(shape: Shape, lowered: &Lowered, header: Header<'_>, alphabet: &A
     let target = format_ident!("{}", alphabet.crate_name);
     let plan = format_ident!("{}", plan_type(header.plan));
     let doc = format!(" The plan `{}`.", header.plan);
+    let paths = tables::paths(lowered, alphabet);
     // What a plan remembers is in rows, whatever is asked for.
     let machine = match if lowered.memories > 0 { Shape::Rows } else { shape } {
-        Shape::Code => code::machine(&plan, &doc, lowered),
-        Shape::Shared => shared::machine(&plan, &doc, lowered),
-        Shape::Rows => rows::machine(&plan, &doc, lowered),
+        Shape::Code => code::machine(&plan, &doc, lowered, paths.as_ref()),
+        Shape::Shared => shared::machine(&plan, &doc, lowered, paths.as_ref()),
+        Shape::Rows => rows::machine(&plan, &doc, lowered, paths.as_ref()),
     };
     let same_alphabet = same_alphabet(alphabet);
     let tables = tables::tables(lowered);
@@ -153,6 +154,20 @@ mod tests {
             let body = rust.split_once("/// The plan `P`.").expect("a plan").1;
             insta::assert_snapshot!(format!("conditions-{shape:?}"), body.split_once("const FSM").expect("tables").0);
         }
+    }
+
+    #[test]
+    fn a_plan_says_once_which_paths_it_replays() {
+        let text = "{ P (bumper) (Atom (null) path hall) (Atom (null) path \"a b.csv\") (Atom (wait 5) path(hall)) }";
+        let compiled = compiled(text).swap_remove(0);
+        for shape in [Shape::Code, Shape::Shared, Shape::Rows] {
+            let header = Header { file: "plan.mdle", plan: "P" };
+            let rust = emit_as(shape, &compiled.lowered, header, &alphabet(Some("sim")));
+            let dense: String = rust.split_whitespace().collect();
+            let paths = "fnpaths(&self)->&[&'staticstr]{&[\"ab.csv\",\"hall\"]}";
+            assert!(dense.contains(paths), "{shape:?}: {rust}");
+        }
+        assert!(!rust("{ P (Atom (wait 1) stop) }", "plan.mdle").contains("fn paths"));
     }
 
     #[test]

@@ -12,7 +12,7 @@ use crate::fsm::Lowered;
 use crate::plan::{Condition, Quark, QuarkId};
 
 /// The plan's type, which hands everything on to the runtime's, and its rows.
-pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered) -> TokenStream {
+pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered, paths: Option<&TokenStream>) -> TokenStream {
     let [levels, slots] = [lowered.levels, lowered.slots].map(Literal::usize_unsuffixed);
     let rows = rows(lowered);
     let (memory, new, marks) = memory(lowered);
@@ -55,6 +55,7 @@ pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered) -> TokenStream
             fn law(&self, atom: u32) -> &str { runtime::Plan::law(&self.0, atom) }
             fn condition(&self, scope: u32) -> &str { runtime::Plan::condition(&self.0, scope) }
             fn name(&self, scope: u32) -> &str { runtime::Plan::name(&self.0, scope) }
+            #paths
         }
 
         #rows

@@ -14,7 +14,7 @@ use crate::fsm::Lowered;
 use crate::plan::{Condition, Quark};
 
 /// The plan's type and its implementation, with an arm for each kind of atom.
-pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered) -> TokenStream {
+pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered, paths: Option<&TokenStream>) -> TokenStream {
     let shared = Shared::new(lowered);
     let parts = Parts {
         before: shared.running(),
@@ -23,7 +23,7 @@ pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered) -> TokenStream
         input: shared.input(),
         behind: shared.tables(),
     };
-    parts.machine(plan, doc, lowered)
+    parts.machine(plan, doc, lowered, paths)
 }
 
 /// The kinds' variants, tables and arms.

@@ -46,6 +46,7 @@ fn capability_trait(capability: &Capability) -> Option<Ident> {
         "bumper" => "Bumpers",
         "diff_drive" => "DiffDrive",
         "sonar" => "SonarRing",
+        "paths" => "Paths",
         _ => return None,
     };
     Some(format_ident!("{name}"))

@@ -1,11 +1,15 @@
 //! The constant tables of a generated file: the machine and the texts that traces and messages show.
 
+use std::collections::BTreeSet;
+
 use mdle_runtime::Follows;
 use mdle_runtime::fsm::{Bracket, Kind};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
+use crate::alphabet::{Alphabet, Kind as ValueKind};
 use crate::fsm::Lowered;
+use crate::plan::{Quark, Value};
 
 /// `const FSM`, `LAWS`, `CONDITIONS`, `NAMES`.
 pub(super) fn tables(lowered: &Lowered) -> TokenStream {
@@ -68,4 +72,29 @@ pub(super) fn follows(follows: Follows) -> TokenStream {
     let atom = Literal::u32_unsuffixed(atom);
     let [from, to] = [from, to].map(Literal::u16_unsuffixed);
     quote!(runtime::Follows::new(#atom, #from, #to))
+}
+
+/// `fn paths`: the files whose paths laws replay, each once; nothing for a plan that replays none.
+pub(super) fn paths(lowered: &Lowered, alphabet: &Alphabet) -> Option<TokenStream> {
+    let replays = |quark: &Quark| {
+        let declaration = alphabet.declarations_of(&quark.name).nth(quark.overload);
+        declaration.is_some_and(|declaration| declaration.needs.iter().any(|need| need.name == "paths"))
+    };
+    let laws = lowered.laws.iter().map(|law| lowered.quark(law.quark)).filter(|quark| replays(quark));
+    let files: BTreeSet<_> = laws.flat_map(|quark| quark.args.iter().filter_map(file)).collect();
+    let files = files.iter();
+    (files.len() > 0).then(|| quote!(fn paths(&self) -> &[&'static str] { &[#(#files),*] }))
+}
+
+/// The name of the file that an argument is.
+fn file(argument: &Value) -> Option<&str> {
+    match argument {
+        Value::Name(ValueKind::File, name) => Some(name),
+        Value::Name(..)
+        | Value::Quantity { .. }
+        | Value::Infinity(_)
+        | Value::Bits(_)
+        | Value::Integer(_)
+        | Value::Sonar(_) => None,
+    }
 }

@@ -22,6 +22,11 @@ pub trait Alphabet {
     /// Any of its laws as it runs; one that never completes says so by never being done.
     type Law: Law<Self::Output, Input = Self::Input> + Completes<Self::Output>;
 
+    /// What the robot can do, in the alphabet's words, such as `sonar[16]`.
+    const CAPABILITIES: &'static [&'static str];
+    /// What plans may ask of its quarks, where the alphabet limits that.
+    const LIMITS: &'static [Limit];
+
     /// The interrupt of this name with these arguments; `None` if the alphabet has no such signature.
     fn interrupt(name: &str, arguments: &[Argument<'_>]) -> Option<Self::Interrupt>;
     /// The signal of this name with these arguments; `None` if the alphabet has no such signature.
@@ -30,6 +35,19 @@ pub trait Alphabet {
     fn comparison(comparison: Comparison<Self::Signal, Self::Signal>) -> Option<Self::Interrupt>;
     /// The law of this name with these arguments; `None` if the alphabet has no such signature.
     fn control(name: &str, arguments: &[Argument<'_>]) -> Option<Self::Control>;
+}
+
+/// The range of a parameter that the alphabet declares with one, in SI units; both ends may be asked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limit {
+    /// The quark.
+    pub quark: &'static str,
+    /// The parameter.
+    pub parameter: &'static str,
+    /// The lowest value.
+    pub least: f64,
+    /// The highest.
+    pub most: f64,
 }
 
 /// An argument of a quark, of the kind that the alphabet declares.

@@ -1,7 +1,7 @@
 //! What a robot can offer to quarks: one trait for each capability an alphabet can name, implemented by the robot's output.
-//! `state_link`, `modules` and `paths` have none yet, so no robot can offer them.
+//! `state_link` and `modules` have none yet, so no robot can offer them.
 
-use crate::{Meters, Output, Pings, Pose, SonarId, Twist};
+use crate::{Meters, Output, Pings, Pose, Setpoint, SonarId, Twist};
 
 /// `odometry`: the robot knows where it is and how fast it moves, in axes that stay put while it is switched on.
 pub trait Odometry: Output {
@@ -23,6 +23,27 @@ pub trait DiffDrive: Output {
     fn body_radius(&self) -> Meters;
     /// The distance between the wheels.
     fn wheel_base(&self) -> Meters;
+    /// How hard laws steer.
+    fn steering(&self) -> Steering {
+        Steering::USUAL
+    }
+}
+
+/// How hard laws steer: the `k` of each in turn rate for what is still off (paper, section IV-A).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Steering {
+    /// `rotate`, `turn` and `path`: in rad/s for each radian still to turn.
+    pub rotate: f64,
+    /// `align`: in rad/s for each metre by which the ranges differ.
+    pub align: f64,
+    /// `goAvoid`: in rad/s for each radian off the direction chosen.
+    pub avoid: f64,
+}
+
+impl Steering {
+    /// For `rotate`, with its fastest turn, this asks for 1.6 rad/s² at most, where a Scout's wheels can do more than three
+    /// times that, and an ATRV-mini's were set to 1.55 and 2.
+    pub const USUAL: Self = Self { rotate: 2.0, align: 2.0, avoid: 2.0 };
 }
 
 /// `sonar[16]`: a ring of sonars in the sixteen directions of [`SonarId`].
@@ -39,4 +60,10 @@ pub trait SonarRing: Output {
     fn blocked_within(&self) -> Meters {
         Meters(1.15)
     }
+}
+
+/// `paths`: there is a store of recorded and loaded paths.
+pub trait Paths: Output {
+    /// The setpoints of a path; `None` if there is no path of this name.
+    fn path(&self, name: &str) -> Option<&[Setpoint]>;
 }

@@ -71,6 +71,11 @@ pub trait Plan {
     fn condition(&self, scope: u32) -> &str;
     /// The name of a scope, by its bracket; empty for an atom.
     fn name(&self, scope: u32) -> &str;
+
+    /// The paths that its laws replay, as the plan names them: whoever runs it has them ready before it begins.
+    fn paths(&self) -> &[&'static str] {
+        &[]
+    }
 }
 
 /// Why a scope ended.

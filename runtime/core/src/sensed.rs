@@ -1,8 +1,8 @@
-//! The output of a robot on two driven wheels with odometry, bumper switches and sixteen sonars: each value as it is kept,
-//! and the capabilities that it comes to (`y = h(x)`, paper, Eq. 1).
+//! The output of a robot on two driven wheels with odometry, bumper switches, sixteen sonars and a store of paths: each
+//! value as it is kept, and the capabilities that it comes to (`y = h(x)`, paper, Eq. 1).
 
-use crate::capability::{Bumpers, DiffDrive, Odometry, SonarRing};
-use crate::{Meters, Output, Pings, Pose, SONARS, SonarId, Twist};
+use crate::capability::{Bumpers, DiffDrive, Odometry, Paths, SonarRing, Steering};
+use crate::{Meters, Output, PathStore, Pings, Pose, SONARS, Setpoint, SonarId, Twist};
 
 /// The output of one turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,6 +18,8 @@ pub struct Sensed {
     pub pings: [Pings; SONARS],
     /// What never changes.
     pub shape: Shape,
+    /// The paths that the plan can replay; empty on a robot that is given none.
+    pub paths: PathStore,
 }
 
 /// What laws must know of the body.
@@ -31,6 +33,8 @@ pub struct Shape {
     pub ring_radius: Meters,
     /// How many pings must agree that a way is free.
     pub confirmation: usize,
+    /// How hard laws steer it.
+    pub steering: Steering,
 }
 
 impl Output for Sensed {
@@ -63,6 +67,10 @@ impl DiffDrive for Sensed {
     fn wheel_base(&self) -> Meters {
         self.shape.wheel_base
     }
+
+    fn steering(&self) -> Steering {
+        self.shape.steering
+    }
 }
 
 impl SonarRing for Sensed {
@@ -78,5 +86,11 @@ impl SonarRing for Sensed {
 
     fn confirmation(&self) -> usize {
         self.shape.confirmation
+    }
+}
+
+impl Paths for Sensed {
+    fn path(&self, name: &str) -> Option<&[Setpoint]> {
+        self.paths.path(name)
     }
 }

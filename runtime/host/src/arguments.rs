@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use clap::{Arg, ArgMatches, Command, value_parser};
 
-use crate::Target;
+use crate::{Target, paths};
 
 /// The shortest period: a turn must leave time for the exchange.
 const PERIOD_LEAST: Duration = Duration::from_micros(100);
@@ -28,6 +28,8 @@ pub(crate) struct Options {
     pub(crate) turns: Option<u64>,
     /// Where to write the run log.
     pub(crate) log: Option<PathBuf>,
+    /// Where to record the path that is driven.
+    pub(crate) path: Option<PathBuf>,
 }
 
 /// The command line of the executable of plan `name` for target `T`. Its usage names the first argument's file, and the
@@ -60,7 +62,7 @@ pub(crate) fn command<T: Target>(name: &str) -> Command {
                 .help("Write what happens, one JSON object a turn, as `mdlec trace` does")
                 .value_parser(value_parser!(PathBuf)),
         );
-    T::arguments(command)
+    T::arguments(if T::PATHS.is_some() { paths::arguments(command) } else { command })
 }
 
 /// Reads the common options.
@@ -70,6 +72,7 @@ pub(crate) fn options<T: Target>(matches: &ArgMatches) -> Options {
         timeout: matches.get_one("timeout").copied(),
         turns: matches.get_one("turns").copied(),
         log: matches.get_one("log").cloned(),
+        path: paths::recording::<T>(matches),
     }
 }
 

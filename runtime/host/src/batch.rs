@@ -174,7 +174,7 @@ where
     let limits = Limits { timeout: terms.limits.timeout.or(terms.by_default()), ..terms.limits };
     let ending = shielded(|| {
         let mut report = Report::new(&mut said, false);
-        let mut witnesses = Witnesses { report: &mut report, log: None, progress: None, err: None };
+        let mut witnesses = Witnesses { report: &mut report, log: None, path: None, progress: None, err: None };
         turns::run(&mut robot, plan(), limits, &mut clock, terms.signals, &mut witnesses)
     });
     run.t = clock.taken();
@@ -188,9 +188,13 @@ where
     run.outcome = match ending {
         Ok(Ending::Signal(_)) => return None,
         Err(panic) => Outcome::Failed(panicked::<()>(panic).err().unwrap_or_default()),
-        Ok(Ending::Robot(fault) | Ending::Log(fault) | Ending::Overrun(fault) | Ending::Bug(fault)) => {
-            Outcome::Failed(fault)
-        }
+        Ok(
+            Ending::Robot(fault)
+            | Ending::Unstopped(fault)
+            | Ending::Log(fault)
+            | Ending::Overrun(fault)
+            | Ending::Bug(fault),
+        ) => Outcome::Failed(fault),
         Ok(_) if failure.is_some() => Outcome::Failed(failure.unwrap_or_default()),
         Ok(Ending::Timeout(_) | Ending::Turns(_)) => Outcome::TimedOut,
         Ok(Ending::Over) => {

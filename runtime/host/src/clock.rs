@@ -10,7 +10,7 @@ use mdle_runtime::Nanos;
 use crate::ending::Ending;
 use crate::signals::Signals;
 use crate::timing::Timing;
-use crate::{Pace, Time};
+use crate::{Pace, Time, urgency};
 
 /// The longest sleep without a look at the signals.
 const SLICE: Duration = Duration::from_millis(20);
@@ -23,6 +23,13 @@ pub(crate) trait Instants {
     fn now(&mut self) -> Duration;
     /// Lets about this much time pass.
     fn sleep(&mut self, time: Duration);
+    /// Does what it can to be awake when time is up.
+    ///
+    /// # Errors
+    /// What the system does not permit, in words.
+    fn keep_time(&mut self) -> Result<(), String> {
+        Ok(())
+    }
 }
 
 /// The machine's own monotonic clock.
@@ -43,6 +50,10 @@ impl Instants for Monotonic {
 
     fn sleep(&mut self, time: Duration) {
         std::thread::sleep(time);
+    }
+
+    fn keep_time(&mut self) -> Result<(), String> {
+        urgency::claim()
     }
 }
 

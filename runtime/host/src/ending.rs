@@ -31,6 +31,8 @@ pub(crate) enum Ending {
     Signal(Signal),
     /// An exchange failed: the robot's sentence.
     Robot(String),
+    /// An exchange failed, the robot's sentence, and so did the stop.
+    Unstopped(String),
     /// The run log could not be written: why.
     Log(String),
     /// Too many turns took too long: how long.
@@ -48,14 +50,23 @@ impl Ending {
     pub(crate) fn status(&self, faults: &[Fault]) -> u8 {
         let grave = faults.iter().any(|fault| match fault {
             Fault::Exchange(_) | Fault::Log(_) | Fault::Stop(_) => true,
-            Fault::Finish(_) => *self == Self::Over,
+            Fault::Path(_) | Fault::Finish(_) => *self == Self::Over,
         });
         match self {
             _ if grave => FAULT,
             Self::Over => OVER,
             Self::Timeout(_) | Self::Turns(_) => LIMIT,
             Self::Signal(signal) => 128 + signal.number(),
-            Self::Robot(_) | Self::Log(_) | Self::Overrun(_) | Self::Bug(_) => FAULT,
+            Self::Robot(_) | Self::Unstopped(_) | Self::Log(_) | Self::Overrun(_) | Self::Bug(_) => FAULT,
+        }
+    }
+
+    /// This ending of a robot whose stop failed for this reason, if it did, and the reason if it is still to be told: what
+    /// an exchange failed by says enough, and mostly the same.
+    pub(crate) fn with_stop(self, stop: Option<String>) -> (Self, Option<String>) {
+        match (self, stop) {
+            (Self::Robot(fault), Some(_)) => (Self::Unstopped(fault), None),
+            untouched => untouched,
         }
     }
 
@@ -64,7 +75,7 @@ impl Ending {
     pub(crate) fn robot_listens(&self) -> bool {
         match self {
             Self::Over | Self::Timeout(_) | Self::Turns(_) | Self::Signal(_) | Self::Log(_) | Self::Overrun(_) => true,
-            Self::Robot(_) | Self::Bug(_) => false,
+            Self::Robot(_) | Self::Unstopped(_) | Self::Bug(_) => false,
         }
     }
 
@@ -76,6 +87,7 @@ impl Ending {
             | Self::Turns(_)
             | Self::Signal(_)
             | Self::Robot(_)
+            | Self::Unstopped(_)
             | Self::Log(_)
             | Self::Overrun(_) => true,
             Self::Bug(_) => false,
@@ -97,6 +109,9 @@ impl Ending {
             Self::Robot(fault) | Self::Overrun(fault) => {
                 say(err, format_args!("error: a fault stopped the robot: {fault}"))
             }
+            Self::Unstopped(fault) => {
+                say(err, format_args!("error: a fault ended the plan, and the robot may not have stopped: {fault}"));
+            }
             Self::Log(fault) => {
                 say(err, format_args!("error: the run log cannot be written, so the robot was stopped: {fault}"))
             }
@@ -117,6 +132,8 @@ pub(crate) enum Fault {
     Exchange(Ending),
     /// The rest of the run log could not be written.
     Log(io::Error),
+    /// The path that was driven could not be written whole.
+    Path(io::Error),
     /// The stop command could not be delivered: the robot's sentence.
     Stop(String),
     /// What was asked for could not be written: the robot's sentence.
@@ -129,6 +146,7 @@ impl Fault {
         match self {
             Self::Exchange(ending) => ending.tell(err),
             Self::Log(error) => say(err, format_args!("error: the run log cannot be written: {error}")),
+            Self::Path(error) => say(err, format_args!("error: the path that was driven cannot be written: {error}")),
             Self::Stop(fault) => say(err, format_args!("error: the robot could not be told to stop: {fault}")),
             Self::Finish(sentence) => say(err, format_args!("error: {sentence}")),
         }

@@ -1,6 +1,6 @@
 //! What the executable of a plan needs around its turns: arguments, clock, signals, safe stop, report and run log.
 //!
-//! For people who write a robot: [`Target`], [`Hosted`], [`Time`] and [`Refusal`], and [`Batch`] where it can be started over. For generated code: [`run`].
+//! For people who write a robot: [`Target`], [`Hosted`], [`Time`] and [`Refusal`], and [`Batch`] where it can be started over, [`Replays`] where it replays paths. For generated code: [`run`].
 //!
 //! Whatever happens, the robot is stopped: when the plan is over, when an exchange fails, when code panics, when a
 //! signal comes, when a limit is reached.
@@ -13,6 +13,7 @@ mod ending;
 mod held;
 mod log;
 mod outlet;
+mod paths;
 mod progress;
 mod report;
 mod safety;
@@ -24,6 +25,7 @@ mod target;
 mod tests;
 mod timing;
 mod turns;
+mod urgency;
 
 use std::io::{self, BufWriter, IsTerminal, Write};
 use std::process::ExitCode;
@@ -31,6 +33,7 @@ use std::process::ExitCode;
 pub use batch::Batch;
 pub use clap;
 use mdle_runtime::{Plan, Robot};
+pub use paths::Replays;
 pub use target::{Around, Hosted, Judgement, Pace, Refusal, Standing, Target, Time};
 
 /// Runs the plan that `plan` makes on the robot of the target `T`, with the arguments of this process: what the `main` of an executable

@@ -31,7 +31,7 @@ pub(crate) struct Entry<'a, P> {
     pub(crate) transitions: &'a [Transition],
 }
 
-/// A file for a run log, open and still as it was found; dropped, it leaves no file where there was none.
+/// A file that is to be written in a run, such as its log, open and still as it was found; dropped, it leaves no file where there was none.
 #[derive(Debug)]
 pub(crate) struct Untouched<'p> {
     file: File,
@@ -59,6 +59,14 @@ impl<'p> Untouched<'p> {
     /// # Errors
     /// When what it held cannot be cut off.
     pub(crate) fn begin(self, prompt: bool) -> io::Result<Log<File>> {
+        self.emptied().map(|file| Log::new(file, prompt))
+    }
+
+    /// The file, without whatever it held; from now on it stays.
+    ///
+    /// # Errors
+    /// When that cannot be cut off.
+    pub(crate) fn emptied(self) -> io::Result<File> {
         let Self { file, new } = self;
         // A device or a pipe has no length.
         if file.metadata()?.is_file() {
@@ -67,7 +75,7 @@ impl<'p> Untouched<'p> {
         if let Some(new) = new {
             std::mem::forget(new);
         }
-        Ok(Log::new(file, prompt))
+        Ok(file)
     }
 }
 

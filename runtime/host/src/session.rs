@@ -7,7 +7,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use clap::ArgMatches;
-use mdle_runtime::{Plan, Robot};
+use mdle_runtime::{PathStore, Plan, Robot};
 
 use crate::arguments::{self, Options};
 use crate::batch::{self, Batch, Terms};
@@ -15,6 +15,7 @@ use crate::clock::{Clock, Instants};
 use crate::ending::{self, Ending, Fault, say};
 use crate::held::Held;
 use crate::log::{Log, Untouched};
+use crate::paths::{self, Recorder};
 use crate::progress::Progress;
 use crate::report::Report;
 use crate::safety::{Panicked, shielded};
@@ -48,7 +49,7 @@ where
     I: Instants,
     O: FnOnce(Option<Time>) -> Box<dyn Write + 'o>,
 {
-    let Surroundings { instants, signals, out, err, seen } = surroundings;
+    let Surroundings { mut instants, signals, out, err, seen } = surroundings;
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let matches = match arguments::command::<T>(name).try_get_matches_from(&arguments) {
         Ok(matches) => matches,
@@ -61,7 +62,11 @@ where
         Ok(Some(answer)) => return answered(&answer, &mut *out(None)),
         Ok(None) => {}
     }
-    match batch::<T>(&matches, &options) {
+    let store = match stored::<T, P>(&matches, plan) {
+        Err(refusal) => return refusal.tell(err),
+        Ok(store) => store,
+    };
+    match batch::<T>(&matches, &options, store) {
         Err(refusal) => return refusal.tell(err),
         Ok(Some(batch)) => {
             signals.robot_runs();
@@ -71,7 +76,7 @@ where
         }
         Ok(None) => {}
     }
-    let Ready { mut robot, time, mut log } = match ready::<T>(&matches, &options) {
+    let Ready { mut robot, time, mut log, mut path } = match ready::<T>(&matches, &options, store) {
         Ok(ready) => ready,
         Err(refusal) => return refusal.tell(err),
     };
@@ -82,6 +87,11 @@ where
         out = Box::new(Held::new(out));
     }
     let mut report = Report::new(&mut *out, is_watched(time) && !screen);
+    if time == Time::Wall
+        && let Err(refused) = instants.keep_time()
+    {
+        warn_of_lateness(&refused, arguments.first(), err);
+    }
     let mut clock = Clock::begin(instants, time, options.period);
     let ending = shielded(|| {
         let log = match &mut log {
@@ -93,10 +103,12 @@ where
             Some(now) => (Some(Progress::new(&mut *err, now)), None),
             None => (None, Some(&mut *err)),
         };
-        let mut witnesses = Witnesses { report: &mut report, log, progress, err };
+        let mut witnesses =
+            Witnesses { report: &mut report, log, path: path.as_mut().ok().and_then(Option::as_mut), progress, err };
         turns::run(&mut robot, plan(), limits, &mut clock, &signals, &mut witnesses)
     });
-    let status = way_out(&mut robot, ending.unwrap_or_else(bug), &mut report, log.ok().flatten(), err);
+    let path = path.and_then(|path| path.map_or(Ok(()), Recorder::close));
+    let status = way_out(&mut robot, ending.unwrap_or_else(bug), &mut report, log.ok().flatten(), path, err);
     // It stands, and all is said; even code that panics while it tidies up must not change the status.
     let _ = shielded(move || drop(robot));
     signals.robot_stands();
@@ -109,14 +121,38 @@ where
     status
 }
 
+/// Says what this computer does not permit, and how it would.
+fn warn_of_lateness(refused: &str, program: Option<&OsString>, err: &mut dyn Write) {
+    let program = program.map_or_else(|| "FILE".into(), |program| program.to_string_lossy());
+    say(
+        err,
+        format_args!(
+            "warning: turns may be late when this computer is busy, as it does not permit {refused}; \
+             `sudo setcap cap_sys_nice,cap_ipc_lock+ep {program}` permits it to this executable"
+        ),
+    );
+}
+
+/// The paths that the plan replays, read.
+fn stored<T: Target, P: Plan>(matches: &ArgMatches, plan: &impl Fn() -> P) -> Result<PathStore, Refusal> {
+    shielded(|| paths::load::<T>(matches, plan().paths())).unwrap_or_else(bug_before)
+}
+
 /// The runs of a batch, if these options ask for several.
-fn batch<T: Target>(matches: &ArgMatches, options: &Options) -> Result<Option<Batch<T::Robot>>, Refusal> {
+fn batch<T: Target>(
+    matches: &ArgMatches,
+    options: &Options,
+    store: PathStore,
+) -> Result<Option<Batch<T::Robot>>, Refusal> {
     let batch = shielded(|| T::batch(matches, options.period)).unwrap_or_else(bug_before)?;
-    if batch.is_some() && options.log.is_some() {
-        let sentence = "--log writes down one run, and there are to be several: leave it out, or run one seed alone";
-        return Err(Refusal::Usage(sentence.to_owned()));
+    let alone =
+        [("--log", &options.log), ("--record-path", &options.path)].into_iter().find(|(_, file)| file.is_some());
+    if let (Some(_), Some((option, _))) = (&batch, alone) {
+        return Err(Refusal::Usage(format!(
+            "{option} writes down one run, and there are to be several: leave it out, or run one seed alone"
+        )));
     }
-    Ok(batch)
+    Ok(batch.map(|batch| paths::in_batch::<T>(batch, store)))
 }
 
 /// Makes the runs of a batch and tells of them; the exit status.
@@ -158,36 +194,41 @@ fn answered(answer: &str, out: &mut dyn Write) -> u8 {
 }
 
 /// What a run needs before its first turn.
-struct Ready<R> {
+struct Ready<R: Robot> {
     robot: R,
     time: Time,
     /// A log that cannot begin is no refusal: the robot is there already, and has to be stopped.
     log: io::Result<Option<Log<File>>>,
+    /// The path that is recorded.
+    path: io::Result<Option<Recorder<R::Output>>>,
 }
 
-/// Opens what a run needs. A start that is refused leaves the file of the log as it was.
-fn ready<T: Target>(matches: &ArgMatches, options: &Options) -> Result<Ready<T::Robot>, Refusal> {
+/// Opens what a run needs. A start that is refused leaves the files that it writes as they were.
+fn ready<T: Target>(matches: &ArgMatches, options: &Options, store: PathStore) -> Result<Ready<T::Robot>, Refusal> {
     let opened = shielded(|| {
         let time = T::time(matches).map_err(Refusal::Usage)?;
-        let file = match &options.log {
-            Some(path) => Some(Untouched::open(path).map_err(|error| no_log(path, &error))?),
-            None => None,
-        };
-        let robot = T::connect(matches, options.period)?;
-        let log = file.map(|file| file.begin(is_watched(time))).transpose();
-        Ok(Ready { robot, time, log })
+        let log = untouched("run log", options.log.as_deref())?;
+        let path = untouched("path", options.path.as_deref())?;
+        paths::check_period(options)?;
+        let mut robot = T::connect(matches, options.period)?;
+        paths::hand_over::<T>(&mut robot, store);
+        let log = log.map(|file| file.begin(is_watched(time))).transpose();
+        let path = path.map(|file| paths::recorder::<T>(file)).transpose().map(Option::flatten);
+        Ok(Ready { robot, time, log, path })
     });
     opened.unwrap_or_else(bug_before)
+}
+
+/// A file that the run is to write, open and as it was, if it was asked for.
+fn untouched<'p>(what: &str, path: Option<&'p Path>) -> Result<Option<Untouched<'p>>, Refusal> {
+    let refused =
+        |path: &Path, error| Refusal::Usage(format!("the {what} {} cannot be written: {error}", path.display()));
+    path.map(|path| Untouched::open(path).map_err(|error| refused(path, error))).transpose()
 }
 
 /// A panic before anything ran.
 fn bug_before<T>(Panicked(message): Panicked) -> Result<T, Refusal> {
     Err(Refusal::Fault(format!("the robot's code panicked before it ran, which is a bug: {message}")))
-}
-
-/// Why there is no run log at `path`.
-fn no_log(path: &Path, error: &io::Error) -> Refusal {
-    Refusal::Usage(format!("the run log {} cannot be written: {error}", path.display()))
 }
 
 /// Whether somebody may be watching: at the fastest pace it matters more that writing is cheap.
@@ -211,23 +252,33 @@ fn way_out<R: Hosted>(
     ending: Ending,
     report: &mut Report<'_>,
     log: Option<Log<File>>,
+    path: io::Result<()>,
     err: &mut dyn Write,
 ) -> u8 {
-    let mut faults = Vec::new();
-    let mut orderly = ending.is_orderly();
-    if ending.robot_listens() {
+    let last = if ending.robot_listens() {
         let last = shielded(|| turns::exchange(robot, &R::Input::default()).map(drop));
-        if let Err(fault) = last.unwrap_or_else(|panicked| Err(bug(panicked))) {
-            orderly = fault.is_orderly();
-            faults.push(Fault::Exchange(fault));
-        }
-    }
+        last.unwrap_or_else(|panicked| Err(bug(panicked))).err()
+    } else {
+        None
+    };
+    let orderly = last.as_ref().unwrap_or(&ending).is_orderly();
     let stopped = shielded(|| robot.stop().map_err(|fault| fault.to_string()));
     let stopped = stopped.unwrap_or_else(|Panicked(message)| Err(format!("its code panicked: {message}")));
+    let (ending, stopped) = ending.with_stop(stopped.err());
+    let mut faults = Vec::new();
+    let stopped = match last {
+        Some(last) => {
+            let (last, stopped) = last.with_stop(stopped);
+            faults.push(Fault::Exchange(last));
+            stopped
+        }
+        None => stopped,
+    };
     // Without a word on a broken log the reader of a short one would take it for a whole run.
     let logged = log.map_or(Ok(()), |mut log| log.flush());
     faults.extend(logged.err().filter(|_| !matches!(ending, Ending::Log(_))).map(Fault::Log));
-    faults.extend(stopped.err().map(Fault::Stop));
+    faults.extend(path.err().map(Fault::Path));
+    faults.extend(stopped.map(Fault::Stop));
     report.flush();
     // Before the robot finishes, which may take a while.
     ending.tell(err);

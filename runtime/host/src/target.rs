@@ -5,7 +5,7 @@ use std::time::Duration;
 use clap::{ArgMatches, Command};
 use mdle_runtime::{Nanos, Robot};
 
-use crate::Batch;
+use crate::{Batch, Replays};
 
 /// A robot that executables are built for; implemented once in each target crate.
 pub trait Target {
@@ -14,7 +14,10 @@ pub trait Target {
     /// The period of a turn unless `--period` says otherwise.
     const PERIOD: Duration;
     /// The robot.
-    type Robot: Hosted;
+    type Robot: Hosted + 'static;
+    /// What it takes to replay and to record paths, if the alphabet has the capability `paths`: the executable then takes
+    /// `--paths` and `--record-path`.
+    const PATHS: Option<Replays<Self::Robot>> = None;
 
     /// Adds the target's own options to the executable's.
     fn arguments(command: Command) -> Command;

@@ -10,6 +10,7 @@ use mdle_runtime::{Machine, Nanos, Plan, Robot, Transition, Turn, Watch};
 use crate::clock::{Clock, Instants, nanos};
 use crate::ending::{Ending, say};
 use crate::log::{Entry, Log};
+use crate::paths::Recorder;
 use crate::progress::Progress;
 use crate::report::Report;
 use crate::signals::Signals;
@@ -26,11 +27,13 @@ pub(crate) struct Limits {
 }
 
 /// What the turns tell of themselves to.
-pub(crate) struct Witnesses<'a, 'o> {
+pub(crate) struct Witnesses<'a, 'o, Y> {
     /// The lines on standard output.
     pub(crate) report: &'a mut Report<'o>,
     /// The run log, if one was asked for.
     pub(crate) log: Option<&'a mut Log<File>>,
+    /// The path that is driven, if it is to be recorded.
+    pub(crate) path: Option<&'a mut Recorder<Y>>,
     /// The line that shows that a fast run goes on, where somebody sees it.
     pub(crate) progress: Option<Progress<'a>>,
     /// Standard error, where it does not show that line.
@@ -47,7 +50,7 @@ pub(crate) fn run<R: Hosted, P, I: Instants>(
     limits: Limits,
     clock: &mut Clock<I>,
     signals: &Signals,
-    witnesses: &mut Witnesses<'_, '_>,
+    witnesses: &mut Witnesses<'_, '_, R::Output>,
 ) -> Ending
 where
     P: Plan<Output = R::Output, Input = R::Input>,
@@ -66,6 +69,9 @@ where
     let mut fresh = true;
     let mut number: u64 = 0;
     loop {
+        if let Some(path) = &mut witnesses.path {
+            path.take(&y, t);
+        }
         seen.0.clear();
         let turn = machine.turn(&y, t, &mut seen);
         fresh |= !seen.0.is_empty();
@@ -130,7 +136,7 @@ impl Limits {
     }
 }
 
-impl Witnesses<'_, '_> {
+impl<Y> Witnesses<'_, '_, Y> {
     /// Tells how late turns begin and how long they take.
     fn tell_timing(&mut self, timing: Option<&Timing>) {
         if let (Some(err), Some(timing)) = (&mut self.err, timing) {

@@ -13,7 +13,28 @@ pub enum Clock {
     Stepped(Duration),
 }
 
+/// In lockstep a robot takes as long as its machine makes it, and stands meanwhile: it is waited for so much longer.
+const LONGER: u32 = 10;
+
 impl Clock {
+    /// How long to wait, by the clock, for what may take a robot so long.
+    #[must_use]
+    pub const fn patience(self, limit: Duration) -> Duration {
+        match self {
+            Self::Wall => limit,
+            Self::Stepped(_) => limit.saturating_mul(LONGER),
+        }
+    }
+
+    /// Whether for the robot so much time has passed since `begun`, in which it was told so many commands.
+    #[must_use]
+    pub fn is_past(self, limit: Duration, begun: Instant, commands: u32) -> bool {
+        match self {
+            Self::Wall => begun.elapsed() >= limit,
+            Self::Stepped(period) => period.saturating_mul(commands) >= limit,
+        }
+    }
+
     /// Lets time pass, unless it passes with what the robot is told.
     pub fn pass(self, time: Duration) {
         match self {

@@ -3,6 +3,7 @@
 use std::fmt::{self, Write as _};
 use std::path::Path;
 
+use mdle_runtime::capability::Steering;
 use serde::de::DeserializeOwned;
 
 /// A value with a few words on it, and where it came from.
@@ -55,6 +56,16 @@ impl Settings {
         }
     }
 
+    /// How hard laws steer: what the file says of it, for the rest what is usual.
+    pub fn steering(&mut self, rotate: Option<f64>, align: Option<f64>, avoid: Option<f64>) -> Steering {
+        let usual = Steering::USUAL;
+        Steering {
+            rotate: self.value("rotate-gain", rotate, usual.rotate, "rad/s for each radian, of rotate, turn and path"),
+            align: self.value("align-gain", align, usual.align, "rad/s for each metre, of align"),
+            avoid: self.value("avoid-gain", avoid, usual.avoid, "rad/s for each radian, of goAvoid"),
+        }
+    }
+
     /// What is wrong with a value, with the file's name if there is one.
     #[must_use]
     pub fn blamed(&self, why: &str) -> String {
@@ -77,6 +88,16 @@ impl fmt::Display for Settings {
         }
         Ok(())
     }
+}
+
+/// Whether laws that steer so hard can hold a robot: one that steers less hardly turns, one that steers more swings.
+///
+/// # Errors
+/// The sentence that says which cannot.
+pub fn can_steer(steering: &Steering) -> Result<(), String> {
+    within("rotate-gain", steering.rotate, 0.1, 10.0)?;
+    within("align-gain", steering.align, 0.1, 10.0)?;
+    within("avoid-gain", steering.avoid, 0.1, 10.0)
 }
 
 /// Whether a value is from `least` to `most`.

@@ -4,7 +4,7 @@
 pub use crate::{Input, Output};
 pub use crate::quarks::{Go, GoAvoid};
 pub use ::mdle_atoms::{
-    Bumper, AtIsection, Stop, Rotate, Turn, Align, R, X, Y, Theta, V, Omega,
+    Bumper, AtIsection, Stop, Rotate, Turn, Align, Path, R, X, Y, Theta, V, Omega,
 };
 use ::mdle_runtime as runtime;
 /// The target's name, as `mdlec --target` takes it.
@@ -12,7 +12,7 @@ pub const NAME: &str = "atrv";
 /// The period of a turn, unless the operator says otherwise.
 pub const PERIOD: runtime::Nanos = runtime::Nanos(100000000);
 /// Tells this alphabet from any other: a plan that was compiled for another one does not compile.
-pub const HASH: u64 = 0x4a075c12b1e10608;
+pub const HASH: u64 = 0x7d6ac61d5441f58c;
 /// The quarks as plans make them: a crate whose quarks are otherwise does not compile.
 #[allow(dead_code, reason = "what stands here is to be compiled, not called")]
 mod signatures {
@@ -20,7 +20,8 @@ mod signatures {
     /// The output has what the capabilities need.
     const fn capable<
         Y: runtime::capability::DiffDrive + runtime::capability::SonarRing
-            + runtime::capability::Bumpers + runtime::capability::Odometry,
+            + runtime::capability::Bumpers + runtime::capability::Odometry
+            + runtime::capability::Paths,
     >() {}
     const _: () = capable::<Output>();
     /// `bumper`: Fires on contact of any bumper.
@@ -65,6 +66,11 @@ mod signatures {
     /// `align <sonar 0 to 15> <sonar 0 to 15>`: Turns until two sonars return equal ranges.
     const fn align(first: runtime::SonarId, second: runtime::SonarId) -> Align {
         Align::new(first, second)
+    }
+
+    /// `path <file>`: Replays the headings and forward speeds of a file.
+    const fn path(file: &'static str) -> Path {
+        Path::new(file)
     }
 
     /// `r <sonar 0 to 15>`: The range that a sonar returns.
@@ -164,6 +170,8 @@ pub enum AnyControl {
     GoAvoid(GoAvoid),
     /// `align <sonar 0 to 15> <sonar 0 to 15>`: Turns until two sonars return equal ranges.
     Align(Align),
+    /// `path <file>`: Replays the headings and forward speeds of a file.
+    Path(Path),
 }
 
 /// Any law of this robot as it runs.
@@ -185,6 +193,8 @@ pub enum AnyLaw {
     GoAvoid(<GoAvoid as runtime::Control<Output>>::Law),
     /// `align <sonar 0 to 15> <sonar 0 to 15>`: Turns until two sonars return equal ranges.
     Align(<Align as runtime::Control<Output>>::Law),
+    /// `path <file>`: Replays the headings and forward speeds of a file.
+    Path(<Path as runtime::Control<Output>>::Law),
 }
 
 impl runtime::Control<Output> for AnyControl {
@@ -197,6 +207,7 @@ impl runtime::Control<Output> for AnyControl {
             Self::Turn(law) => AnyLaw::Turn(runtime::Control::begin(law, y, begin)),
             Self::GoAvoid(law) => AnyLaw::GoAvoid(runtime::Control::begin(law, y, begin)),
             Self::Align(law) => AnyLaw::Align(runtime::Control::begin(law, y, begin)),
+            Self::Path(law) => AnyLaw::Path(runtime::Control::begin(law, y, begin)),
         }
     }
 }
@@ -211,6 +222,7 @@ impl runtime::Law<Output> for AnyLaw {
             Self::Turn(law) => runtime::Law::input(law, y, t),
             Self::GoAvoid(law) => runtime::Law::input(law, y, t),
             Self::Align(law) => runtime::Law::input(law, y, t),
+            Self::Path(law) => runtime::Law::input(law, y, t),
         }
     }
 }
@@ -224,6 +236,7 @@ impl runtime::Completes<Output> for AnyLaw {
             Self::Turn(law) => runtime::Completes::completed(law, y, t),
             Self::GoAvoid(law) => runtime::Completes::completed(law, y, t),
             Self::Align(law) => runtime::Completes::completed(law, y, t),
+            Self::Path(law) => runtime::Completes::completed(law, y, t),
         }
     }
 }
@@ -238,6 +251,39 @@ impl runtime::Alphabet for Alphabet {
     type Signal = AnySignal;
     type Control = AnyControl;
     type Law = AnyLaw;
+    const CAPABILITIES: &'static [&'static str] = &[
+        "diff_drive",
+        "sonar[16]",
+        "bumper",
+        "odometry",
+        "paths",
+    ];
+    const LIMITS: &'static [runtime::Limit] = &[
+        runtime::Limit {
+            quark: "go",
+            parameter: "v",
+            least: -1.0,
+            most: 1.0,
+        },
+        runtime::Limit {
+            quark: "go",
+            parameter: "omega",
+            least: -6.0,
+            most: 6.0,
+        },
+        runtime::Limit {
+            quark: "goAvoid",
+            parameter: "range",
+            least: 0.0,
+            most: 1000.0,
+        },
+        runtime::Limit {
+            quark: "goAvoid",
+            parameter: "speed",
+            least: 0.0,
+            most: 1.0,
+        },
+    ];
     fn interrupt(
         name: &str,
         arguments: &[runtime::Argument<'_>],
@@ -304,6 +350,9 @@ impl runtime::Alphabet for Alphabet {
                     runtime::Argument::Sonar(second),
                     ],
                 ) => AnyControl::Align(Align::new(first, second)),
+                ("path", &[runtime::Argument::Name(file)]) => {
+                    AnyControl::Path(Path::new(file))
+                }
                 _ => return None,
             },
         )

@@ -4,7 +4,8 @@ use std::fmt;
 use std::path::Path;
 use std::time::Duration;
 
-use mdle_serial::{Settings, within};
+use mdle_runtime::capability::Steering;
+use mdle_serial::{Settings, can_steer, within};
 use serde::Deserialize;
 
 use crate::command::Escape;
@@ -56,6 +57,8 @@ pub struct Config {
     pub watchdog: u64,
     /// How long it is left alone after each command, in milliseconds.
     pub pause: u64,
+    /// How hard laws steer.
+    pub steering: Steering,
 }
 
 /// The file: whatever it does not say stays as it is.
@@ -84,6 +87,9 @@ struct File {
     answer: Option<u64>,
     watchdog: Option<u64>,
     pause: Option<u64>,
+    rotate_gain: Option<f64>,
+    align_gain: Option<f64>,
+    avoid_gain: Option<f64>,
 }
 
 /// A configuration, and where each of its values came from.
@@ -158,6 +164,7 @@ impl File {
             answer: made.value("answer", self.answer, 300, "ms that it may say nothing"),
             watchdog: made.value("watchdog", self.watchdog, 500, "ms without a turn until it is stopped"),
             pause: made.value("pause", self.pause, 1, "ms after each command"),
+            steering: made.steering(self.rotate_gain, self.align_gain, self.avoid_gain),
         })
     }
 }
@@ -196,6 +203,7 @@ impl Config {
         within("answer", self.answer as f64, 50.0, 400.0)?;
         within("watchdog", self.watchdog as f64, 150.0, 5000.0)?;
         within("pause", self.pause as f64, 0.0, 10.0)?;
+        can_steer(&self.steering)?;
         if ![16, 24].contains(&self.sonars) {
             return Err(format!("`sonars` is {}, and robots with 24 or 16 are known", self.sonars));
         }

@@ -3,8 +3,8 @@
 
 use std::time::{Duration, Instant};
 
-use mdle_runtime::{Meters, Nanos, Robot, Sensed, Shape, Twist};
-use mdle_serial::{Clock, Line, Times};
+use mdle_runtime::{Meters, Nanos, PathStore, Robot, Sensed, Shape, Twist};
+use mdle_serial::{Clock, Line, Times, time_of};
 
 use crate::command::Command;
 use crate::config::Config;
@@ -46,6 +46,16 @@ pub struct Atrv {
     a_turn: u32,
     /// When it was asked for its brake last.
     asked: Nanos,
+    /// What the plan can replay.
+    paths: PathStore,
+}
+
+/// How long it takes in a turn to say all that a turn can say, and to leave the controllers alone after it.
+pub(crate) fn turn_takes(config: &Config) -> Duration {
+    let [along, round] = motion::commands(&Twist::default(), config);
+    let commands = [Command::Status, along, round];
+    let bytes = commands.iter().map(|command| command.frame(config.escape).bytes().len()).sum();
+    time_of(bytes, SPEED) + Duration::from_millis(config.pause) * commands.len() as u32
 }
 
 impl Atrv {
@@ -75,7 +85,8 @@ impl Atrv {
         let hearing = Hearing::new(&config);
         let mouth = Mouth::new(line, watchdog);
         let times = Times::new(clock);
-        let mut atrv = Self { mouth, config, clock, times, hearing, reports, a_turn, asked: Nanos::ZERO };
+        let (asked, paths) = (Nanos::ZERO, PathStore::EMPTY);
+        let mut atrv = Self { mouth, config, clock, times, hearing, reports, a_turn, asked, paths };
         match atrv.prepare(period) {
             Ok(()) => Ok(atrv),
             Err(fault) => {
@@ -84,6 +95,11 @@ impl Atrv {
                 Err(fault)
             }
         }
+    }
+
+    /// Takes the paths that the plan replays.
+    pub(crate) fn take_paths(&mut self, paths: PathStore) {
+        self.paths = paths;
     }
 
     fn prepare(&mut self, period: Duration) -> Result<(), Fault> {
@@ -138,17 +154,21 @@ impl Atrv {
         self.hearing.take(self.mouth.line(), at, self.a_turn, patience)
     }
 
-    /// Waits until the robot stands, or `deadline`.
-    fn stands(&mut self, deadline: Instant) -> Result<(), Fault> {
-        loop {
+    /// Waits until the robot stands, or has had the time for it.
+    fn stands(&mut self) -> Result<(), Fault> {
+        // Who has been stopped before tells nothing any more.
+        self.say(Command::Reports(self.reports.as_micros() as u32))?;
+        let begun = Instant::now();
+        for looks in 1.. {
             self.move_on(&Twist::default())?;
             self.clock.pass(LOOK);
-            self.hear(Nanos::ZERO, ANSWER.min(self.config.patience()))?;
+            self.hear(Nanos::ZERO, self.clock.patience(ANSWER).min(self.config.patience()))?;
             let Twist { v, omega } = self.hearing.velocity();
-            if (v.0.abs() < STANDS && omega.0.abs() < STANDS) || Instant::now() >= deadline {
-                return Ok(());
+            if (v.0.abs() < STANDS && omega.0.abs() < STANDS) || self.clock.is_past(STOPPING, begun, looks) {
+                break;
             }
         }
+        Ok(())
     }
 }
 
@@ -176,19 +196,22 @@ impl Robot for Atrv {
                 wheel_base: Meters(self.config.wheel_base),
                 ring_radius: Meters(RING_RADIUS),
                 confirmation: CONFIRMATION,
+                steering: self.config.steering,
             },
+            paths: self.paths,
         })
     }
 
     fn stop(&mut self) -> Result<(), Fault> {
         self.mouth.ends();
         // Braked at speed it would slide.
-        let stands = self.stands(Instant::now() + STOPPING);
+        let stands = self.stands();
         self.mouth.ends();
         let last = [Command::Brake, Command::Deaf, Command::Inputs(0), Command::Reports(0), Command::Defaults];
         // It is braked whether or not it has understood.
         last.into_iter().fold(stands, |before, command| {
-            let said = self.mouth.say(&command.frame(self.config.escape), Instant::now() + ANSWER);
+            let deadline = Instant::now() + self.clock.patience(ANSWER);
+            let said = self.mouth.say(&command.frame(self.config.escape), deadline);
             self.rest();
             before.and(said)
         })

@@ -16,6 +16,8 @@ pub enum Fault {
     Garbled(Garbled),
     /// What came says nothing that a driver understands.
     Unreadable(Unreadable),
+    /// It tells where it was again and again: its clock stands.
+    Repeated,
     /// The brake holds the robot, though it was told to release it.
     Braked,
     /// The sonars of this direction, of sixteen, say nothing.
@@ -46,6 +48,10 @@ impl fmt::Display for Fault {
                 f,
                 "a report of the ATRV (port {port}, opcode {opcode}) has {bytes} bytes, which is too few: is this another \
                  robot?"
+            ),
+            Self::Repeated => f.write_str(
+                "the ATRV tells the same again and again, by its clock, so what it says is old: switch its controller off \
+                 and on",
             ),
             Self::Braked => f.write_str(
                 "the ATRV's brake is set: release its emergency stop, or the brake at its display, and start again",

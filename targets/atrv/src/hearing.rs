@@ -38,6 +38,8 @@ struct Known {
     /// Position and velocity along the way, which are told before those of the turn.
     along: Option<(i32, i32)>,
     velocity: Twist,
+    /// When it told where it is, by its own clock.
+    time: Option<u32>,
     /// Bit 0 for the bumper before, bit 1 for the one behind.
     switches: u32,
     /// Whether the brake is set, if that was told.
@@ -52,6 +54,7 @@ impl Hearing {
             ring: Ring::new(config),
             along: None,
             velocity: Twist::default(),
+            time: None,
             switches: 0,
             is_braked: None,
         };
@@ -155,8 +158,12 @@ impl Known {
     /// Takes in a packet; whether with it the robot has told where it is.
     fn take(&mut self, packet: &Packet<'_>, at: Nanos) -> Result<bool, Fault> {
         match Report::read(packet).map_err(Fault::Unreadable)? {
-            Report::Axis { axis: Axis::Translation, position, velocity } => self.along = Some((position, velocity)),
-            Report::Axis { axis: Axis::Rotation, position, velocity } => {
+            Report::Axis { axis: Axis::Translation, position, velocity, .. } => {
+                self.along = Some((position, velocity));
+            }
+            Report::Axis { axis: Axis::Rotation, time, .. } if self.time == Some(time) => return Err(Fault::Repeated),
+            Report::Axis { axis: Axis::Rotation, position, velocity, time } => {
+                self.time = Some(time);
                 if let Some((along, speed)) = self.along {
                     self.odometer.take(along, position, &self.config);
                     self.velocity = twist(speed, velocity, &self.config);

@@ -14,6 +14,8 @@ pub enum Report<'a> {
         position: i32,
         /// Per second.
         velocity: i32,
+        /// When, by the controller's clock, in milliseconds.
+        time: u32,
     },
     /// What some of the sonars have heard.
     Sonars(Echoes<'a>),
@@ -79,7 +81,7 @@ impl<'a> Report<'a> {
 /// A return value and the time, which axis, its position, its velocity; behind them what the controller was told.
 fn axis(data: &[u8]) -> Option<Report<'static>> {
     // Twenty-five bytes have come, or it is not what it says.
-    let [_, _, _, _, _, _, _, _, axis, p0, p1, p2, p3, v0, v1, v2, v3, _, _, _, _, _, _, _, _, ..] = data else {
+    let [_, _, _, _, t0, t1, t2, t3, axis, p0, p1, p2, p3, v0, v1, v2, v3, _, _, _, _, _, _, _, _, ..] = data else {
         return None;
     };
     let axis = match axis {
@@ -88,7 +90,8 @@ fn axis(data: &[u8]) -> Option<Report<'static>> {
         _ => return Some(Report::Other),
     };
     let position = i32::from_be_bytes([*p0, *p1, *p2, *p3]);
-    Some(Report::Axis { axis, position, velocity: i32::from_be_bytes([*v0, *v1, *v2, *v3]) })
+    let time = u32::from_be_bytes([*t0, *t1, *t2, *t3]);
+    Some(Report::Axis { axis, position, velocity: i32::from_be_bytes([*v0, *v1, *v2, *v3]), time })
 }
 
 /// The time, an address, and what is there: some controllers leave a byte out.

@@ -3,12 +3,13 @@
 use std::time::Duration;
 
 use mdle_host::clap::{ArgMatches, Command};
-use mdle_host::{Hosted, Refusal, Target, Time};
-use mdle_serial::{Clock, options};
+use mdle_host::{Hosted, Refusal, Replays, Target, Time};
+use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Twist};
+use mdle_serial::{Clock, carries, options};
 
 use crate::alphabet;
 use crate::config::Configured;
-use crate::driver::Atrv;
+use crate::driver::{Atrv, turn_takes};
 
 /// How much later than it should a turn may be before the watchdog stops the robot.
 const SLACK: Duration = Duration::from_millis(50);
@@ -21,6 +22,12 @@ impl Target for AtrvMini {
     const NAME: &'static str = alphabet::NAME;
     const PERIOD: Duration = Duration::from_nanos(alphabet::PERIOD.0);
     type Robot = Atrv;
+    const PATHS: Option<Replays<Atrv>> = Some(Replays {
+        // As `go` in the alphabet.
+        fastest: Twist { v: MetersPerSecond(1.0), omega: RadiansPerSecond(6.0) },
+        take: Atrv::take_paths,
+        speed: |sensed| sensed.velocity.v,
+    });
 
     fn arguments(command: Command) -> Command {
         options::arguments(command)
@@ -40,8 +47,7 @@ impl Target for AtrvMini {
         let clock = options::clock(matches, period);
         let mut config = configured(matches)?.config;
         match clock {
-            // An emulator takes as long as its machine makes it, and its robot stands meanwhile.
-            Clock::Stepped(_) => config.answer = 10_000,
+            Clock::Stepped(_) => config.answer = clock.patience(config.patience()).as_millis() as u64,
             Clock::Wall if period + SLACK >= Duration::from_millis(config.watchdog) => {
                 return Err(Refusal::Usage(format!(
                     "with a period of {} s the robot would be stopped between two commands: its watchdog waits for {} ms; \
@@ -50,7 +56,7 @@ impl Target for AtrvMini {
                     config.watchdog
                 )));
             }
-            Clock::Wall => {}
+            Clock::Wall => carries(period, turn_takes(&config)).map_err(Refusal::Usage)?,
         }
         Atrv::connect(config, clock, period).map_err(|fault| Refusal::Fault(fault.to_string()))
     }
@@ -61,4 +67,32 @@ impl Hosted for Atrv {}
 /// The configuration that the options ask for.
 fn configured(matches: &ArgMatches) -> Result<Configured, Refusal> {
     Configured::read(options::config(matches), options::device(matches)).map_err(Refusal::Usage)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use mdle_host::clap::Command;
+    use mdle_host::{Refusal, Target as _};
+
+    use super::AtrvMini;
+
+    #[test]
+    fn a_period_that_the_line_cannot_carry_is_refused() {
+        let matches = |more: &[&str]| {
+            let arguments = ["plan", "--device", "/nowhere"].iter().chain(more);
+            AtrvMini::arguments(Command::new("plan")).get_matches_from(arguments)
+        };
+        let connected = |micros, more| AtrvMini::connect(&matches(more), Duration::from_micros(micros)).map(drop);
+        let Err(Refusal::Usage(sentence)) = connected(7_000, &[]) else { panic!("7000 µs are enough") };
+        assert_eq!(
+            sentence,
+            "a --period of 0.007 s is too short for this robot's line, on which each turn takes 7.8ms: choose 0.008 s or longer"
+        );
+        // There is no such device.
+        for (micros, more) in [(7_000 + 1_000, &[][..]), (7_000, &["--lockstep"])] {
+            assert!(matches!(connected(micros, more), Err(Refusal::Fault(_))), "{micros} {more:?}");
+        }
+    }
 }

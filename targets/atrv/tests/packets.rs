@@ -79,14 +79,14 @@ fn reports_say_what_the_worked_packets_should() {
     said(
         "1B 02 02 07 21 19 00 00 00 00 00 01 23 45 00 00 03 32 4A 00 00 6D 1A 00 01 10 C3 00 00 75 30 C1 1B 03",
         |id, report| {
-            let wanted = Report::Axis { axis: Axis::Translation, position: 209_482, velocity: 27_930 };
+            let wanted = Report::Axis { axis: Axis::Translation, position: 209_482, velocity: 27_930, time: 0x12345 };
             assert_eq!((id, report), (7, wanted));
         },
     );
     said(
         "1B 02 02 08 21 19 00 00 00 00 00 01 23 46 01 FF FE CE 87 00 00 46 02 00 01 86 A0 00 00 88 B8 4C 1B 03",
         |id, report| {
-            let wanted = Report::Axis { axis: Axis::Rotation, position: -78_201, velocity: 17_922 };
+            let wanted = Report::Axis { axis: Axis::Rotation, position: -78_201, velocity: 17_922, time: 0x12346 };
             assert_eq!((id, report), (8, wanted));
         },
     );

@@ -4,7 +4,9 @@ use std::fmt;
 use std::str::FromStr;
 use std::time::Duration;
 
-use crate::serve::Emulated;
+use mdle_sim::Disc;
+
+use crate::serve::{Embodied, Emulated};
 
 /// The longest time that can be given, in seconds.
 const LATEST: f64 = 1e6;
@@ -47,10 +49,14 @@ pub enum Ailment {
     LowBattery,
     /// Bytes that a reader must skip are in each frame.
     Filler,
+    /// It tells the same of itself again and again.
+    Hang,
+    /// Its sonars no longer ping.
+    NoPings,
 }
 
 /// All of them, with what `--fault` calls them.
-const KINDS: [(&str, Fault); 13] = [
+const KINDS: [(&str, Fault); 15] = [
     ("noise", Fault::Noise),
     ("dribble", Fault::Dribble),
     ("check", Fault::Check),
@@ -64,6 +70,8 @@ const KINDS: [(&str, Fault); 13] = [
     ("emergency", Fault::Body(Ailment::Emergency)),
     ("low-battery", Fault::Body(Ailment::LowBattery)),
     ("filler", Fault::Body(Ailment::Filler)),
+    ("hang", Fault::Body(Ailment::Hang)),
+    ("no-pings", Fault::Body(Ailment::NoPings)),
 ];
 
 /// A fault, and how long after the robot was switched on it begins, by the time of its world.
@@ -162,10 +170,12 @@ impl<R: Emulated> Faulty<R> {
         if self.has(Fault::Noise) {
             frame.splice(..0, NOISE);
         }
-        let times = if self.has(Fault::Double) { 2 } else { 1 };
+        if self.has(Fault::Double) {
+            // At once: on a line the second would come right behind the first.
+            frame = frame.repeat(2);
+        }
         let size = if self.has(Fault::Dribble) { 1 } else { frame.len().max(1) };
-        let pieces: Vec<Vec<u8>> = frame.chunks(size).map(<[u8]>::to_vec).collect();
-        std::iter::repeat_n(pieces, times).flatten().collect()
+        frame.chunks(size).map(<[u8]>::to_vec).collect()
     }
 }
 
@@ -196,6 +206,16 @@ impl<R: Emulated> Emulated for Faulty<R> {
 
     fn suffer(&mut self, ailment: Ailment) {
         self.robot.suffer(ailment);
+    }
+}
+
+impl<R: Embodied> Embodied for Faulty<R> {
+    fn disc(&self) -> Disc {
+        self.robot.disc()
+    }
+
+    fn see(&mut self, others: &[Disc]) {
+        self.robot.see(others);
     }
 }
 
@@ -244,7 +264,7 @@ mod tests {
         assert_eq!(said(&[]), vec![frame.clone(); 3]);
         assert_eq!(said(&["silence"]), [[0_u8; 0]; 0]);
         assert_eq!(said(&["lose"]), vec![frame.clone()]);
-        assert_eq!(said(&["double"]), vec![frame.clone(); 6]);
+        assert_eq!(said(&["double"]), vec![frame.repeat(2); 3]);
         assert_eq!(said(&["check"]), vec![vec![1, 2, 2, 4]; 3]);
         assert_eq!(said(&["noise"]), vec![vec![0xFF, 0x00, 0xA5, 1, 2, 3, 4]; 3]);
         assert_eq!(said(&["dribble", "lose"]), [[1], [2], [3], [4]]);

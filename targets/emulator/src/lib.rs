@@ -3,10 +3,15 @@
 
 mod fault;
 mod port;
+mod presence;
 mod program;
 mod serve;
+mod several;
+mod staged;
 
 pub use fault::{Ailment, At, Fault, Faulty};
 pub use port::Port;
 pub use program::{Options, program};
-pub use serve::{Emulated, Pace, STEP, serve};
+pub use serve::{Embodied, Emulated, Pace, STEP, serve};
+pub use several::{Seat, Several};
+pub use staged::Staged;

@@ -61,6 +61,11 @@ impl Port {
         &self.path
     }
 
+    /// This end of the line.
+    pub(crate) fn end(&self) -> &OwnedFd {
+        &self.ours
+    }
+
     /// Waits for bytes for at most so long. They go to `take`; whether there were any.
     ///
     /// # Errors

@@ -3,17 +3,19 @@
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::str::FromStr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use clap::Args;
-use mdle_sim::{Body, Make, Simulated, Start, World};
+use mdle_sim::{Body, Make, Simulated, Start, StartError, World};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
 use crate::fault::{At, Faulty};
 use crate::port::Port;
-use crate::serve::{Emulated, Pace, serve};
+use crate::serve::{Embodied, Emulated, Pace};
+use crate::several::{Seat, Several};
 
 /// The options that all emulated robots have.
 #[derive(Debug, Args)]
@@ -24,31 +26,54 @@ pub struct Options {
     /// Where it stands, in metres and degrees [default: as the world says].
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
     start: Option<Start>,
+    /// Several robots in one world: the name of one and where it stands, once for each. They hear and touch each other, and
+    /// each has a device of its own; a --link has its name behind it, as in PATH-NAME.
+    #[arg(long, value_name = "NAME=X,Y,DEG", allow_hyphen_values = true, conflicts_with = "start")]
+    robot: Vec<Named>,
     /// What its errors are drawn by [default: no errors].
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
     /// Put a symbolic link to the device here.
     #[arg(long, value_name = "PATH")]
     link: Option<PathBuf>,
-    /// Let the world pass on by so many milliseconds with each command, whatever the clock says.
+    /// Let the world pass on by so many milliseconds with each command, whatever the clock says. Several robots wait for
+    /// each other's commands, from when each has had a driver, as long as it has one.
     #[arg(long, value_name = "MS", value_parser = clap::value_parser!(u64).range(1..=10_000))]
     lockstep: Option<u64>,
-    /// What goes wrong, so many seconds after the robot was switched on by the time of its world; may be given more than
+    /// What goes wrong, with all robots, so many seconds after the robot was switched on by the time of its world; may be given more than
     /// once. On its line: noise, dribble (byte by byte), check (a bit of each frame is wrong), lose (two frames of three),
     /// double, silence, close. With itself: stuck-wheel (the right one), dead-sonar (the one in front), bumper, emergency,
-    /// low-battery, and filler, for robots that know it.
+    /// low-battery, no-pings, hang (it tells the same again and again), and filler, for robots that know it.
     #[arg(long, value_name = "KIND@SECONDS")]
     fault: Vec<At>,
 }
 
-/// Runs the robot that `made` makes of a body, until a signal comes. `name` is the robot's, as in `the Scout`; the time of
+/// A robot's name and where it stands.
+#[derive(Debug, Clone)]
+struct Named(String, Start);
+
+impl FromStr for Named {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, start) = text.split_once('=').ok_or("a name and a place are meant, as in `one=1,0.5,90`")?;
+        let is_name = !name.is_empty() && name.chars().all(|letter| letter.is_alphanumeric() || "_-".contains(letter));
+        if !is_name {
+            return Err("a name has letters, digits, _ and -".to_owned());
+        }
+        let start = start.parse().map_err(|error: StartError| error.to_string())?;
+        Ok(Self(name.to_owned(), start))
+    }
+}
+
+/// Runs the robots that `made` makes of their bodies, until a signal comes. `name` is the robot's, as in `the Scout`; the time of
 /// its body passes in such steps as `step` says for a pace.
-pub fn program<R: Emulated>(
+pub fn program<R: Emulated + Embodied>(
     name: &str,
     body: Body,
     options: &Options,
     step: fn(Pace) -> Duration,
-    made: impl FnOnce(Simulated, Duration) -> Result<R, String>,
+    made: impl Fn(Simulated, Duration) -> Result<R, String>,
 ) -> ExitCode {
     match run(name, body, options, step, made) {
         Ok(()) => ExitCode::SUCCESS,
@@ -60,32 +85,84 @@ pub fn program<R: Emulated>(
     }
 }
 
-fn run<R: Emulated>(
+fn run<R: Emulated + Embodied>(
     name: &str,
     body: Body,
     options: &Options,
     step: fn(Pace) -> Duration,
-    made: impl FnOnce(Simulated, Duration) -> Result<R, String>,
+    made: impl Fn(Simulated, Duration) -> Result<R, String>,
 ) -> Result<(), String> {
     let world = world(&options.world)?;
     let pace = options.lockstep.map_or(Pace::Real, |period| Pace::Lockstep(Duration::from_millis(period)));
-    let make = Make { body, without: Vec::new(), seed: options.seed };
-    let start = options.start.map_or(world.start, |start| start.0);
-    let step = step(pace);
-    let body = Simulated::with(&make, &world, start, step).map_err(|error| error.to_string())?;
-    let mut robot = Faulty::new(made(body, step)?, &options.fault)?;
+    let mut bodies = bodies(options, &world, body, step(pace))?;
     let over = over().map_err(|error| format!("signals cannot be caught: {error}"))?;
-    let mut port = Port::open().map_err(|error| format!("no pseudo-terminal: {error}"))?;
-    if let Some(link) = &options.link {
-        port.link(link).map_err(|error| format!("--link {}: {error}", link.display()))?;
+    let (mut seats, mut lines) = (Vec::new(), Vec::new());
+    for (called, body) in bodies.drain(..) {
+        let robot = Faulty::new(made(body, step(pace))?, &options.fault)?;
+        let mut port = Port::open().map_err(|error| format!("no pseudo-terminal: {error}"))?;
+        if let Some(link) = &options.link {
+            let mut link = link.clone().into_os_string();
+            called.iter().for_each(|called| link.push(format!("-{called}")));
+            let link = PathBuf::from(link);
+            port.link(&link).map_err(|error| format!("--link {}: {error}", link.display()))?;
+        }
+        let called = called.map_or(String::new(), |called| format!(" {called}"));
+        lines.push(format!("{name}{called} is at {}", port.path().display()));
+        seats.push(Seat { robot, port });
     }
+    let mut robots = Several::of(seats).map_err(|error| format!("the lines cannot be watched: {error}"))?;
     // Whoever does not read it knows the link.
-    let _ = writeln!(std::io::stdout(), "{name} is at {}", port.path().display());
-    let line = serve(&mut robot, &port, pace, &|| !over.load(Ordering::Relaxed));
-    if robot.is_closed() {
+    let _ = writeln!(std::io::stdout(), "{}", lines.join("\n"));
+    let line = robots.serve(pace, &|| !over.load(Ordering::Relaxed));
+    if robots.seats().iter().any(|seat| seat.robot.is_closed()) {
         return Ok(());
     }
     line.map_err(|error| format!("the line failed: {error}"))
+}
+
+/// The bodies that the options ask for, with their names if they have some. Each of them knows where the others are.
+fn bodies(
+    options: &Options,
+    world: &World,
+    body: Body,
+    step: Duration,
+) -> Result<Vec<(Option<String>, Simulated)>, String> {
+    let alone = [(None, options.start.map_or(world.start, |start| start.0))];
+    let named = options.robot.iter().map(|Named(name, start)| (Some(name.clone()), start.0));
+    let starts: Vec<_> = if options.robot.is_empty() { alone.to_vec() } else { named.collect() };
+    if starts.len() > 1 && !world.things.is_empty() {
+        return Err("several robots need a world in which nothing else moves".to_owned());
+    }
+    let mut bodies: Vec<(Option<String>, Simulated)> = Vec::new();
+    for (number, (name, start)) in (0..).zip(starts) {
+        // Each errs in its own way.
+        let make = Make { body, without: Vec::new(), seed: options.seed.map(|seed: u64| seed.wrapping_add(number)) };
+        let body = Simulated::with(&make, world, start, step).map_err(|error| error.to_string())?;
+        if let Some(name) = &name {
+            refuse(name, &body, &bodies)?;
+        }
+        bodies.push((name, body));
+    }
+    let discs: Vec<_> = bodies.iter().map(|(_, body)| body.disc()).collect();
+    for (number, (_, body)) in bodies.iter_mut().enumerate() {
+        let others = discs.iter().enumerate().filter(|(other, _)| *other != number).map(|(_, disc)| *disc);
+        body.see(&others.collect::<Vec<_>>());
+    }
+    Ok(bodies)
+}
+
+/// Refuses a robot with the name of another one, or in its place.
+fn refuse(name: &str, body: &Simulated, others: &[(Option<String>, Simulated)]) -> Result<(), String> {
+    for (other, known) in others {
+        if other.as_deref() == Some(name) {
+            return Err(format!("--robot {name}: there are two of that name"));
+        }
+        if known.disc().overlaps(&body.disc()) {
+            let other = other.as_deref().unwrap_or_default();
+            return Err(format!("--robot {name}: it would stand in {other}"));
+        }
+    }
+    Ok(())
 }
 
 /// What turns true when this program is asked to end.

@@ -3,13 +3,15 @@
 use std::io;
 use std::time::{Duration, Instant};
 
+use mdle_sim::Disc;
+
 use crate::fault::Ailment;
 use crate::port::Port;
 
 /// A step of the world in real time.
 pub const STEP: Duration = Duration::from_millis(10);
 /// The longest wait without a look at whether to go on.
-const SLICE: Duration = Duration::from_millis(50);
+pub(crate) const SLICE: Duration = Duration::from_millis(5);
 
 /// A robot that is not there: its language and its body.
 pub trait Emulated {
@@ -34,6 +36,15 @@ pub trait Emulated {
 
     /// From now on this is the matter with it.
     fn suffer(&mut self, ailment: Ailment);
+}
+
+/// A robot that others in its world see and touch.
+pub trait Embodied {
+    /// Where it is.
+    fn disc(&self) -> Disc;
+
+    /// From now on the others are here.
+    fn see(&mut self, others: &[Disc]);
 }
 
 /// How the world passes on.
@@ -90,6 +101,6 @@ pub fn serve<R: Emulated>(robot: &mut R, port: &Port, pace: Pace, goes_on: &dyn 
     }
 }
 
-fn say<R: Emulated>(robot: &mut R, port: &Port) -> io::Result<()> {
+pub(crate) fn say<R: Emulated>(robot: &mut R, port: &Port) -> io::Result<()> {
     robot.said().iter().try_for_each(|bytes| port.write(bytes))
 }

@@ -1,6 +1,6 @@
 //! What a Scout is told: the commands of its language that a driver needs, as frames.
 
-use crate::frame::Frame;
+use crate::frame::{Arguments, Frame};
 use crate::number;
 
 /// How many sonars there are.
@@ -46,14 +46,19 @@ impl Command {
     /// The frame that says it.
     #[must_use]
     pub fn frame(&self) -> Frame {
-        let arguments = match *self {
-            Self::State | Self::Stop | Self::Limp | Self::Zero => Vec::new(),
-            Self::Watchdog(seconds) => vec![seconds],
-            Self::Sonars(rate, order) => [&[rate][..], &order].concat(),
+        let mut arguments = Arguments::new();
+        match *self {
+            Self::State | Self::Stop | Self::Limp | Self::Zero => {}
+            Self::Watchdog(seconds) => arguments.push(seconds),
+            Self::Sonars(rate, order) => arguments.extend([rate].into_iter().chain(order)),
             // The third axis is the turret, which a Scout has not.
-            Self::Accelerations(right, left) => [right, left, 0].map(u16::to_le_bytes).concat(),
-            Self::Velocities(right, left) => [right, left, 0].map(number::signed).concat(),
-        };
+            Self::Accelerations(right, left) => {
+                arguments.extend([right, left, 0].map(u16::to_le_bytes).into_iter().flatten())
+            }
+            Self::Velocities(right, left) => {
+                arguments.extend([right, left, 0].map(number::signed).into_iter().flatten())
+            }
+        }
         Frame { kind: self.kind(), arguments }
     }
 }

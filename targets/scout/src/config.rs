@@ -4,7 +4,8 @@ use std::fmt;
 use std::path::Path;
 use std::time::Duration;
 
-use mdle_serial::{Settings, within};
+use mdle_runtime::capability::Steering;
+use mdle_serial::{Settings, can_steer, within};
 use serde::Deserialize;
 
 /// The order in which everybody fires a Scout's sonars.
@@ -23,12 +24,18 @@ pub struct Config {
     pub watchdog: u8,
     /// How long an answer may take, in milliseconds.
     pub answer: u64,
+    /// After how many milliseconds in which its clock stands what it says is old; 0 for never.
+    pub stale: u64,
+    /// How far it may go while its sonars say the same, in metres; 0 for ever.
+    pub frozen: f64,
     /// Which sonars ping, in which order.
     pub sonars: Vec<u8>,
     /// The time between two pings, in milliseconds.
     pub gap: u64,
     /// The distance of the transducers from the centre, in metres.
     pub ring_radius: f64,
+    /// How hard laws steer.
+    pub steering: Steering,
 }
 
 /// The file: whatever it does not say stays as it is.
@@ -40,9 +47,14 @@ struct File {
     acceleration: Option<f64>,
     watchdog: Option<u8>,
     answer: Option<u64>,
+    stale: Option<u64>,
+    frozen: Option<f64>,
     sonars: Option<Vec<u8>>,
     gap: Option<u64>,
     ring_radius: Option<f64>,
+    rotate_gain: Option<f64>,
+    align_gain: Option<f64>,
+    avoid_gain: Option<f64>,
 }
 
 /// A configuration, and where each of its values came from.
@@ -66,9 +78,12 @@ impl Configured {
             acceleration: made.value("acceleration", said.acceleration, 2.0, "m/s² of a wheel; unverified"),
             watchdog: made.value("watchdog", said.watchdog, 1, "s without a command until the robot stops itself"),
             answer: made.value("answer", said.answer, 300, "ms that an answer may take"),
+            stale: made.value("stale", said.stale, 500, "ms that its clock may stand, 0 for ever; unverified"),
+            frozen: made.value("frozen", said.frozen, 1.0, "m of way on which its sonars may say the same, 0 for ever"),
             sonars: made.value("sonars", said.sonars, ORDER.to_vec(), "which ping, in this order"),
             gap: made.value("gap", said.gap, 60, "ms between two pings"),
             ring_radius: made.value("ring-radius", said.ring_radius, 0.19, "m from the centre to a sonar; unverified"),
+            steering: made.steering(said.rotate_gain, said.align_gain, said.avoid_gain),
         };
         config.check().map_err(|why| made.blamed(&why))?;
         Ok(Self { config, settings: made })
@@ -81,8 +96,11 @@ impl Config {
         within("acceleration", self.acceleration, 0.1, 10.0)?;
         within("watchdog", f64::from(self.watchdog), 1.0, 60.0)?;
         within("answer", self.answer as f64, 50.0, 400.0)?;
+        within("stale", self.stale as f64, 0.0, 60_000.0)?;
+        within("frozen", self.frozen, 0.0, 100.0)?;
         within("gap", self.gap as f64, 4.0, 1020.0)?;
         within("ring-radius", self.ring_radius, 0.0, 0.5)?;
+        can_steer(&self.steering)?;
         if !self.gap.is_multiple_of(4) {
             return Err(format!("`gap` is {}, and the robot counts it in steps of 4 ms", self.gap));
         }

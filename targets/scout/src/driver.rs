@@ -2,16 +2,18 @@
 
 use std::time::{Duration, Instant};
 
-use mdle_runtime::{Meters, Nanos, Robot, Sensed, Shape, Twist};
-use mdle_serial::{Clock, Times};
+use mdle_runtime::{Meters, Nanos, PathStore, Robot, Sensed, Shape, Twist};
+use mdle_serial::{Clock, Times, time_of};
 
 use crate::command::Command;
 use crate::config::Config;
 use crate::fault::Fault;
-use crate::line::Line;
+use crate::frame::{self, Frame};
+use crate::freshness::Freshness;
+use crate::line::{Line, SPEED};
 use crate::odometer::Odometer;
 use crate::ring::Ring;
-use crate::state::State;
+use crate::state::{self, State};
 use crate::wheels::{self, WHEEL_BASE};
 
 /// The radius of the body.
@@ -24,6 +26,8 @@ const STOPPING: Duration = Duration::from_millis(600);
 const ANSWER: Duration = Duration::from_millis(150);
 /// The time between two looks at whether it stands.
 const LOOK: Duration = Duration::from_millis(20);
+/// The time between two times that a robot is told to stop which does not answer.
+const AGAIN: Duration = Duration::from_millis(100);
 /// How long it may take to set its position to zero: newer versions of its maker's library wait much longer for that.
 const ZEROING: Duration = Duration::from_secs(5);
 
@@ -35,7 +39,16 @@ pub struct Scout {
     clock: Clock,
     odometer: Odometer,
     ring: Ring,
+    freshness: Freshness,
     times: Times,
+    /// What the plan can replay.
+    paths: PathStore,
+}
+
+/// How long the line takes in a turn: for a command and the state that answers it.
+pub(crate) fn turn_takes() -> Duration {
+    let command = Command::Velocities(0, 0).frame().bytes().len();
+    time_of(command + state::LENGTH + frame::AROUND, SPEED)
 }
 
 impl Scout {
@@ -46,7 +59,9 @@ impl Scout {
     pub fn connect(config: Config, clock: Clock, period: Duration) -> Result<Self, Fault> {
         let line = Line::open(&config.device)?;
         let ring = Ring::new(&config.sonars, Nanos(config.gap.saturating_mul(1_000_000)));
-        let mut scout = Self { line, config, clock, odometer: Odometer::default(), ring, times: Times::new(clock) };
+        let (odometer, freshness, times) = (Odometer::default(), Freshness::default(), Times::new(clock));
+        let paths = PathStore::EMPTY;
+        let mut scout = Self { line, config, clock, odometer, ring, freshness, times, paths };
         match scout.prepare(period) {
             Ok(()) => Ok(scout),
             Err(fault) => {
@@ -55,6 +70,11 @@ impl Scout {
                 Err(fault)
             }
         }
+    }
+
+    /// Takes the paths that the plan replays.
+    pub(crate) fn take_paths(&mut self, paths: PathStore) {
+        self.paths = paths;
     }
 
     fn prepare(&mut self, period: Duration) -> Result<(), Fault> {
@@ -74,16 +94,35 @@ impl Scout {
         self.line.ask(&Command::Zero, Instant::now() + ZEROING.max(self.config.patience())).map(|_| ())
     }
 
-    /// Waits until the robot stands, or `deadline`.
-    fn stands(&mut self, deadline: Instant) -> Result<(), Fault> {
-        while Instant::now() < deadline {
-            let frame = self.line.ask(&Command::State, deadline.min(Instant::now() + ANSWER))?;
+    /// Waits until the robot stands, or has had the time for it.
+    fn stands(&mut self, begun: Instant) -> Result<(), Fault> {
+        for looks in 1.. {
+            if self.clock.is_past(STOPPING, begun, looks) {
+                break;
+            }
+            let frame = self.at_the_end(Command::State)?;
             if State::read(&frame.arguments).is_some_and(|state| (state.right, state.left) == (0, 0)) {
                 break;
             }
             self.clock.pass(LOOK);
         }
         Ok(())
+    }
+
+    /// Says a command on the way out.
+    fn at_the_end(&mut self, command: Command) -> Result<Frame, Fault> {
+        self.line.ask(&command, Instant::now() + self.clock.patience(ANSWER).min(self.config.patience()))
+    }
+
+    /// Says "stop" to a robot that does not answer, for as long as it may take to stand: it may hear all the same.
+    fn insist(&mut self, begun: Instant) {
+        for said in 1.. {
+            let deadline = Instant::now() + AGAIN;
+            if self.clock.is_past(STOPPING, begun, said) || self.line.say(&Command::Stop, deadline).is_err() {
+                break;
+            }
+            self.clock.pass(AGAIN);
+        }
     }
 
     /// Says a command and reads the state that answers it.
@@ -103,6 +142,7 @@ impl Robot for Scout {
         let (right, left) = wheels::speeds(input, self.config.fastest);
         let state = self.tell(Command::Velocities(right, left))?;
         let (at, odometry) = (self.times.now(), self.odometer.pose(&state));
+        self.freshness.take(&state, at, odometry, &self.config)?;
         Ok(Sensed {
             odometry,
             velocity: wheels::twist(state.right, state.left),
@@ -113,17 +153,22 @@ impl Robot for Scout {
                 wheel_base: Meters(WHEEL_BASE),
                 ring_radius: Meters(self.config.ring_radius),
                 confirmation: CONFIRMATION,
+                steering: self.config.steering,
             },
+            paths: self.paths,
         })
     }
 
     fn stop(&mut self) -> Result<(), Fault> {
-        let deadline = Instant::now() + STOPPING;
-        let stopped = self.line.ask(&Command::Stop, Instant::now() + ANSWER);
+        let begun = Instant::now();
+        let stopped = self.at_the_end(Command::Stop);
         // Let go while it moves, it would roll on.
-        let stands = stopped.and_then(|_| self.stands(deadline));
+        let stands = stopped.and_then(|_| self.stands(begun));
+        if stands.is_err() {
+            self.insist(begun);
+        }
         // Its motors are let go whether or not it has understood.
-        let let_go = self.line.ask(&Command::Limp, Instant::now() + ANSWER);
+        let let_go = self.at_the_end(Command::Limp);
         stands.and(let_go.map(|_| ()))
     }
 }

@@ -26,6 +26,10 @@ pub enum Fault {
     Short(usize),
     /// The robot's emergency stop is pressed.
     EmergencyStop,
+    /// The robot's clock has stood for so many milliseconds: it says the same state again and again.
+    Hung(u64),
+    /// The sonars have said the same for so long that they no longer ping.
+    Frozen,
 }
 
 impl From<LineFault> for Fault {
@@ -53,6 +57,15 @@ impl fmt::Display for Fault {
             Self::Short(bytes) => {
                 write!(f, "the Scout's state has {bytes} bytes instead of 42: is this another robot?")
             }
+            Self::Hung(stale) => write!(
+                f,
+                "the Scout's clock has stood for {stale} ms, so what it says is old: switch it off and on; if its clock \
+                 never runs, set `stale` to 0 in the configuration"
+            ),
+            Self::Frozen => f.write_str(
+                "the Scout's sonars say the same wherever it moves: are they on? `frozen` in the configuration says how \
+                 far they may",
+            ),
             Self::EmergencyStop => f.write_str("the Scout's emergency stop is pressed: release it and start again"),
         }
     }

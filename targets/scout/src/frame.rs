@@ -1,13 +1,20 @@
 //! Frames on the Scout's line: start, length, type, arguments, sum and end, with no byte stuffing.
 
+use arrayvec::ArrayVec;
+
 /// The first byte of each frame.
 const START: u8 = 0x01;
 /// The last.
 const END: u8 = 0x5C;
 /// What is in a frame besides its arguments: start, two bytes of length, type, sum, end.
-const AROUND: usize = 6;
+pub(crate) const AROUND: usize = 6;
 /// The longest length that is believed: no reply of a Scout comes near it, and a garbled length must not be waited for.
 const LONGEST: usize = 255;
+/// The most arguments, as type and sum count to the length.
+const MOST: usize = LONGEST - 2;
+
+/// A frame's arguments; a turn allocates nothing.
+pub type Arguments = ArrayVec<u8, MOST>;
 
 /// A frame that has come in: its type, and its arguments in the order of the line.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -15,7 +22,7 @@ pub struct Frame {
     /// Of the command that it answers, or that it is.
     pub kind: u8,
     /// The arguments.
-    pub arguments: Vec<u8>,
+    pub arguments: Arguments,
 }
 
 /// What is wrong with bytes that should be a frame.
@@ -48,14 +55,13 @@ fn sum(bytes: &[u8]) -> u8 {
 }
 
 impl Frame {
-    /// Its bytes on the line. Arguments are at most 253 bytes; of more, the first 253 are sent.
+    /// Its bytes on the line.
     #[must_use]
-    pub fn bytes(&self) -> Vec<u8> {
-        let arguments = &self.arguments[..self.arguments.len().min(LONGEST - 2)];
+    pub fn bytes(&self) -> ArrayVec<u8, { MOST + AROUND }> {
         // Type and sum count.
-        let length = arguments.len() as u8 + 2;
-        let mut bytes = vec![START, length, 0, self.kind];
-        bytes.extend_from_slice(arguments);
+        let length = self.arguments.len() as u8 + 2;
+        let mut bytes: ArrayVec<u8, _> =
+            [START, length, 0, self.kind].into_iter().chain(self.arguments.iter().copied()).collect();
         bytes.push(sum(&bytes));
         bytes.push(END);
         bytes
@@ -86,6 +92,6 @@ impl Frame {
             return Err(Garbled::End(*end));
         }
         let [_, _, _, kind, arguments @ ..] = summed else { return Ok(None) };
-        Ok(Some((Self { kind: *kind, arguments: arguments.to_vec() }, whole.len())))
+        Ok(Some((Self { kind: *kind, arguments: arguments.iter().copied().collect() }, whole.len())))
     }
 }

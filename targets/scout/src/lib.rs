@@ -10,6 +10,7 @@ mod config;
 mod driver;
 mod fault;
 mod frame;
+mod freshness;
 mod line;
 mod number;
 mod odometer;
@@ -23,7 +24,7 @@ pub use command::Command;
 pub use config::{Config, Configured};
 pub use driver::Scout;
 pub use fault::Fault;
-pub use frame::{Frame, Garbled};
+pub use frame::{Arguments, Frame, Garbled};
 pub use mdle_runtime::Sensed;
 /// Its output.
 pub use mdle_runtime::Sensed as Output;

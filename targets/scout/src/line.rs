@@ -9,7 +9,7 @@ use crate::fault::Fault;
 use crate::frame::Frame;
 
 /// Bits a second, 8N1.
-const SPEED: u32 = 38_400;
+pub(crate) const SPEED: u32 = 38_400;
 /// The most that is read at once.
 const CHUNK: usize = 512;
 /// After so long without a byte, more than forty bytes' worth, nothing more comes of an answer.
@@ -31,7 +31,7 @@ impl Line {
     /// # Errors
     /// It is missing, busy, no terminal, or nobody listens.
     pub(crate) fn open(device: &str) -> Result<Self, Fault> {
-        Ok(Self { line: mdle_serial::Line::open(device, SPEED)?, waiting: Vec::new() })
+        Ok(Self { line: mdle_serial::Line::open(device, SPEED)?, waiting: Vec::with_capacity(2 * CHUNK) })
     }
 
     /// Says `command` and waits for its answer until `deadline`. What came in before is thrown away, as a Scout never

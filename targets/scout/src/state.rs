@@ -3,7 +3,7 @@
 use crate::number;
 
 /// The length of the state, in bytes.
-const LENGTH: usize = 42;
+pub(crate) const LENGTH: usize = 42;
 
 /// The state, in the units of the line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

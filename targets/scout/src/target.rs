@@ -3,12 +3,13 @@
 use std::time::Duration;
 
 use mdle_host::clap::{ArgMatches, Command};
-use mdle_host::{Hosted, Refusal, Target, Time};
-use mdle_serial::{Clock, options};
+use mdle_host::{Hosted, Refusal, Replays, Target, Time};
+use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Twist};
+use mdle_serial::{Clock, carries, options};
 
 use crate::alphabet;
 use crate::config::Configured;
-use crate::driver::Scout;
+use crate::driver::{Scout, turn_takes};
 
 /// The target `scout`.
 #[derive(Debug, Clone, Copy)]
@@ -18,6 +19,12 @@ impl Target for SuperScout {
     const NAME: &'static str = alphabet::NAME;
     const PERIOD: Duration = Duration::from_nanos(alphabet::PERIOD.0);
     type Robot = Scout;
+    const PATHS: Option<Replays<Scout>> = Some(Replays {
+        // As `go` in the alphabet.
+        fastest: Twist { v: MetersPerSecond(1.0), omega: RadiansPerSecond(6.0) },
+        take: Scout::take_paths,
+        speed: |sensed| sensed.velocity.v,
+    });
 
     fn arguments(command: Command) -> Command {
         options::arguments(command)
@@ -38,8 +45,7 @@ impl Target for SuperScout {
         let mut config = configured(matches)?.config;
         let watchdog = Duration::from_secs(u64::from(config.watchdog));
         match clock {
-            // An emulator takes as long as its machine makes it, and its robot stands meanwhile.
-            Clock::Stepped(_) => config.answer = 10_000,
+            Clock::Stepped(_) => config.answer = clock.patience(config.patience()).as_millis() as u64,
             Clock::Wall if period + config.patience() >= watchdog => {
                 return Err(Refusal::Usage(format!(
                     "with a period of {} s the robot would stop itself between two commands: its watchdog waits for {} s; \
@@ -48,7 +54,7 @@ impl Target for SuperScout {
                     config.watchdog
                 )));
             }
-            Clock::Wall => {}
+            Clock::Wall => carries(period, turn_takes()).map_err(Refusal::Usage)?,
         }
         Scout::connect(config, clock, period).map_err(|fault| Refusal::Fault(fault.to_string()))
     }
@@ -59,4 +65,32 @@ impl Hosted for Scout {}
 /// The configuration that the options ask for.
 fn configured(matches: &ArgMatches) -> Result<Configured, Refusal> {
     Configured::read(options::config(matches), options::device(matches)).map_err(Refusal::Usage)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use mdle_host::clap::Command;
+    use mdle_host::{Refusal, Target as _};
+
+    use super::SuperScout;
+
+    #[test]
+    fn a_period_that_the_line_cannot_carry_is_refused() {
+        let matches = |more: &[&str]| {
+            let arguments = ["plan", "--device", "/nowhere"].iter().chain(more);
+            SuperScout::arguments(Command::new("plan")).get_matches_from(arguments)
+        };
+        let connected = |micros, more| SuperScout::connect(&matches(more), Duration::from_micros(micros)).map(drop);
+        let Err(Refusal::Usage(sentence)) = connected(15_000, &[]) else { panic!("15000 µs are enough") };
+        assert_eq!(
+            sentence,
+            "a --period of 0.015 s is too short for this robot's line, on which each turn takes 15.6ms: choose 0.016 s or longer"
+        );
+        // There is no such device.
+        for (micros, more) in [(15_000 + 1_000, &[][..]), (15_000, &["--lockstep"])] {
+            assert!(matches!(connected(micros, more), Err(Refusal::Fault(_))), "{micros} {more:?}");
+        }
+    }
 }

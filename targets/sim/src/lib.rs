@@ -9,6 +9,7 @@
 
 pub mod alphabet;
 mod body;
+mod disc;
 mod frames;
 mod goal;
 mod grid;
@@ -34,6 +35,7 @@ mod whole_file;
 mod world;
 mod world_file;
 
+pub use disc::Disc;
 pub use goal::Goal;
 pub use mdle_runtime::Sensed;
 /// Its output.

@@ -2,7 +2,7 @@
 
 use mdle_host::{Hosted, Judgement, Standing};
 use mdle_runtime::capability::Bumpers as _;
-use mdle_runtime::{Nanos, Pose, Robot, Sensed, Twist};
+use mdle_runtime::{Nanos, PathStore, Pose, Robot, Sensed, Twist};
 
 use crate::frames::Frames;
 use crate::goal::Goal;
@@ -57,6 +57,11 @@ impl Observed {
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.robot.pose()
+    }
+
+    /// Takes the paths that the plan replays.
+    pub(crate) fn take_paths(&mut self, paths: PathStore) {
+        self.robot.paths = paths;
     }
 
     /// Has its run judged by where it ends.

@@ -3,9 +3,11 @@
 use std::fmt;
 use std::time::Duration;
 
-use mdle_runtime::{Meters, Nanos, Pose, Robot, Sensed, Shape, Twist};
+use mdle_runtime::capability::Steering;
+use mdle_runtime::{Meters, Nanos, PathStore, Pose, Robot, Sensed, Shape, Twist};
 
 use crate::body::{Body, STEP};
+use crate::disc::Disc;
 use crate::model::{self, Model, Part};
 use crate::sonar::{Heard, Ring};
 use crate::start::{self, StartError};
@@ -18,6 +20,8 @@ pub struct Simulated {
     body: Body,
     ring: Ring,
     shape: Shape,
+    /// What the plan can replay.
+    pub(crate) paths: PathStore,
     /// How many bumper switches there are.
     switches: u8,
     period: Duration,
@@ -83,12 +87,14 @@ impl Simulated {
             wheel_base: Meters(drive.wheel_base),
             ring_radius: Meters(hearing.ring_radius),
             confirmation: if hearing.order.is_some() { 2 } else { 3 },
+            steering: Steering::USUAL,
         };
         Ok(Self {
             walls,
             body: Body::new(drive, start, make.seed),
             ring: Ring::new(hearing, make.seed),
             shape,
+            paths: PathStore::EMPTY,
             switches,
             period,
             exchanges: 0,
@@ -99,6 +105,17 @@ impl Simulated {
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.body.pose
+    }
+
+    /// Where it is in the world, as others see and touch it.
+    #[must_use]
+    pub fn disc(&self) -> Disc {
+        Disc { at: Place::of(&self.body.pose), radius: self.radius() }
+    }
+
+    /// From now on the other robots in its world are here: it hears them, and does not get through them.
+    pub fn see(&mut self, others: &[Disc]) {
+        self.walls.put_others(others);
     }
 
     /// What each transducer heard last, in the order of the body's model: what a robot's boards tell before anybody makes
@@ -188,6 +205,7 @@ impl Robot for Simulated {
             switches: self.body.pressed(self.switches, &self.walls),
             pings: self.ring.pings,
             shape: self.shape,
+            paths: self.paths,
         })
     }
 

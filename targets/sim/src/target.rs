@@ -3,7 +3,8 @@
 use std::time::Duration;
 
 use mdle_host::clap::{ArgMatches, Command};
-use mdle_host::{Batch, Refusal, Target, Time};
+use mdle_host::{Batch, Refusal, Replays, Target, Time};
+use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Twist};
 
 use crate::observed::Observed;
 use crate::{alphabet, options, setup};
@@ -16,6 +17,12 @@ impl Target for Sim {
     const NAME: &'static str = alphabet::NAME;
     const PERIOD: Duration = Duration::from_nanos(alphabet::PERIOD.0);
     type Robot = Observed;
+    const PATHS: Option<Replays<Observed>> = Some(Replays {
+        // As `go` in the alphabet.
+        fastest: Twist { v: MetersPerSecond(1.0), omega: RadiansPerSecond(6.0) },
+        take: Observed::take_paths,
+        speed: |sensed| sensed.velocity.v,
+    });
 
     fn arguments(command: Command) -> Command {
         options::arguments(command)

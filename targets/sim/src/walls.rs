@@ -2,6 +2,7 @@
 
 use mdle_runtime::Radians;
 
+use crate::disc::Disc;
 use crate::grid::{Grid, Hit, Segment};
 use crate::moving::Moving;
 use crate::surfaces::{Ends, Surface, apart, ends, surface};
@@ -14,6 +15,8 @@ pub struct Walls {
     ends: Vec<Ends>,
     grid: Grid,
     moving: Vec<Moving>,
+    /// The other robots.
+    others: Vec<Disc>,
 }
 
 impl Walls {
@@ -35,7 +38,7 @@ impl Walls {
         };
         let ends = segments.iter().map(near).collect();
         let moving = world.things.iter().map(Moving::of).collect();
-        Self { segments, ends, grid, moving }
+        Self { segments, ends, grid, moving, others: Vec::new() }
     }
 
     /// How far a ray from `from` goes before it hits a wall; `None` if that is `most` metres or more.
@@ -51,6 +54,7 @@ impl Walls {
         let range = self.grid.ray(from, way, most).map_or(most, |hit| hit.range);
         let range =
             self.moving.iter().fold(range, |range, thing| thing.ray(from, way, range).map_or(range, |hit| hit.range));
+        let range = self.others.iter().fold(range, |range, other| other.ray(from, way, range).unwrap_or(range));
         (range < most).then_some(range)
     }
 
@@ -61,10 +65,9 @@ impl Walls {
             let (segment, ends) = (self.segments.get(segment)?, self.ends.get(segment)?);
             Some(surface(segment, ends, at(range), way, range))
         });
-        self.moving.iter().fold(standing, |found, thing| {
-            let nearer = found.map_or(most, |surface| surface.range);
-            thing.found(from, way, nearer).or(found)
-        })
+        let nearer = |found: Option<Surface>| found.map_or(most, |surface| surface.range);
+        let found = self.moving.iter().fold(standing, |found, thing| thing.found(from, way, nearer(found)).or(found));
+        self.others.iter().fold(found, |found, other| other.found(from, way, nearer(found)).or(found))
     }
 
     /// The distance from `at` to the nearest wall, in metres, or `reach` if that is less.
@@ -82,7 +85,8 @@ impl Walls {
 
     /// The distance to what may move; infinite without any.
     pub(crate) fn moving(&self, at: Place) -> f64 {
-        self.moving.iter().fold(f64::INFINITY, |least, thing| thing.distance(at, least).min(least))
+        let least = self.moving.iter().fold(f64::INFINITY, |least, thing| thing.distance(at, least).min(least));
+        self.others.iter().fold(least, |least, other| least.min(other.distance(at)))
     }
 
     /// The nearest place of a wall, if it is nearer than `reach`.
@@ -103,6 +107,7 @@ impl Walls {
         for segment in self.moving.iter().flat_map(Moving::segments) {
             take(segment.nearest(at));
         }
+        self.others.iter().for_each(|other| take(other.nearest(at)));
     }
 
     /// How far each of the things has gone from where it begins; `None` for an open door.
@@ -110,9 +115,15 @@ impl Walls {
         self.moving.iter().map(Moving::gone)
     }
 
-    /// The middle of each of the things, but for open doors.
+    /// The middle of each of the things, but for open doors, and of each other robot.
     pub(crate) fn things(&self) -> impl Iterator<Item = Place> {
-        self.moving.iter().filter_map(Moving::around)
+        self.moving.iter().filter_map(Moving::around).chain(self.others.iter().map(|other| other.at))
+    }
+
+    /// From now on the other robots are here.
+    pub(crate) fn put_others(&mut self, others: &[Disc]) {
+        self.others.clear();
+        self.others.extend_from_slice(others);
     }
 
     /// Whether anything here ever moves.

@@ -181,6 +181,21 @@ impl runtime::Alphabet for Alphabet {
     type Signal = AnySignal;
     type Control = AnyControl;
     type Law = AnyLaw;
+    const CAPABILITIES: &'static [&'static str] = &["diff_drive", "odometry"];
+    const LIMITS: &'static [runtime::Limit] = &[
+        runtime::Limit {
+            quark: "go",
+            parameter: "v",
+            least: -0.5,
+            most: 0.5,
+        },
+        runtime::Limit {
+            quark: "go",
+            parameter: "omega",
+            least: -2.0,
+            most: 2.0,
+        },
+    ];
     fn interrupt(
         name: &str,
         arguments: &[runtime::Argument<'_>],

@@ -5,11 +5,19 @@ use std::time::Duration;
 
 use mdle_host::clap::{Arg, ArgMatches, Command};
 use mdle_host::{Pace, Time};
-use mdle_runtime::{Meters, MetersPerSecond, Pings, Pose, Radians, RadiansPerSecond, SONARS, Sensed, Shape, Twist};
+use mdle_runtime::capability::Steering;
+use mdle_runtime::{
+    Meters, MetersPerSecond, PathStore, Pings, Pose, Radians, RadiansPerSecond, SONARS, Sensed, Shape, Twist,
+};
 
 /// REPLACE by what you measure on your robot. `body_radius` is of the smallest circle around it.
-const SHAPE: Shape =
-    Shape { body_radius: Meters(0.2), wheel_base: Meters(0.35), ring_radius: Meters(0.2), confirmation: 1 };
+const SHAPE: Shape = Shape {
+    body_radius: Meters(0.2),
+    wheel_base: Meters(0.35),
+    ring_radius: Meters(0.2),
+    confirmation: 1,
+    steering: Steering::USUAL,
+};
 /// REPLACE by the speed that no law may exceed.
 const FASTEST: MetersPerSecond = MetersPerSecond(0.5);
 /// REPLACE by the turn rate that no law may exceed.
@@ -66,6 +74,13 @@ impl Hardware {
         Ok(Self { period, pose: Pose::ORIGIN, velocity: Twist::default() })
     }
 
+    /// Where the robot is that is imagined, from where it was opened. REPLACE: of a real one nobody knows that in here; take
+    /// it away, and have `tests/conformance.rs` find out.
+    #[must_use]
+    pub fn imagined(&self) -> Pose {
+        self.pose
+    }
+
     /// Sends the speeds for this period and returns what the sensors say then. Yours waits for that, but not for ever: a
     /// robot that is silent is a fault, and what the sensors said before is never returned twice.
     pub(crate) fn command(&mut self, speeds: Twist) -> Result<Sensed, Fault> {
@@ -79,6 +94,7 @@ impl Hardware {
             switches: 0,
             pings: [Pings::default(); SONARS],
             shape: SHAPE,
+            paths: PathStore::EMPTY,
         })
     }
 

@@ -3,7 +3,8 @@
 #![allow(unused_variables, reason = "not every alphabet has a quark that looks at all of this")]
 pub use crate::{Input, Output};
 pub use ::mdle_atoms::{
-    Bumper, AtIsection, Go, Stop, Rotate, Turn, GoAvoid, Align, R, X, Y, Theta, V, Omega,
+    Bumper, AtIsection, Go, Stop, Rotate, Turn, GoAvoid, Align, Path, R, X, Y, Theta, V,
+    Omega,
 };
 use ::mdle_runtime as runtime;
 /// The target's name, as `mdlec --target` takes it.
@@ -11,7 +12,7 @@ pub const NAME: &str = "bare";
 /// The period of a turn, unless the operator says otherwise.
 pub const PERIOD: runtime::Nanos = runtime::Nanos(100000000);
 /// Tells this alphabet from any other: a plan that was compiled for another one does not compile.
-pub const HASH: u64 = 0x46360f6cc0d3ab88;
+pub const HASH: u64 = 0xfffac2cc0e90c5f1;
 /// The quarks as plans make them: a crate whose quarks are otherwise does not compile.
 #[allow(dead_code, reason = "what stands here is to be compiled, not called")]
 mod signatures {
@@ -19,7 +20,8 @@ mod signatures {
     /// The output has what the capabilities need.
     const fn capable<
         Y: runtime::capability::DiffDrive + runtime::capability::SonarRing
-            + runtime::capability::Bumpers + runtime::capability::Odometry,
+            + runtime::capability::Bumpers + runtime::capability::Odometry
+            + runtime::capability::Paths,
     >() {}
     const _: () = capable::<Output>();
     /// `bumper`: Fires on contact of any bumper.
@@ -64,6 +66,11 @@ mod signatures {
     /// `align <sonar 0 to 15> <sonar 0 to 15>`: Turns until two sonars return equal ranges.
     const fn align(first: runtime::SonarId, second: runtime::SonarId) -> Align {
         Align::new(first, second)
+    }
+
+    /// `path <file>`: Replays the headings and forward speeds of a file.
+    const fn path(file: &'static str) -> Path {
+        Path::new(file)
     }
 
     /// `r <sonar 0 to 15>`: The range that a sonar returns.
@@ -163,6 +170,8 @@ pub enum AnyControl {
     GoAvoid(GoAvoid),
     /// `align <sonar 0 to 15> <sonar 0 to 15>`: Turns until two sonars return equal ranges.
     Align(Align),
+    /// `path <file>`: Replays the headings and forward speeds of a file.
+    Path(Path),
 }
 
 /// Any law of this robot as it runs.
@@ -184,6 +193,8 @@ pub enum AnyLaw {
     GoAvoid(<GoAvoid as runtime::Control<Output>>::Law),
     /// `align <sonar 0 to 15> <sonar 0 to 15>`: Turns until two sonars return equal ranges.
     Align(<Align as runtime::Control<Output>>::Law),
+    /// `path <file>`: Replays the headings and forward speeds of a file.
+    Path(<Path as runtime::Control<Output>>::Law),
 }
 
 impl runtime::Control<Output> for AnyControl {
@@ -196,6 +207,7 @@ impl runtime::Control<Output> for AnyControl {
             Self::Turn(law) => AnyLaw::Turn(runtime::Control::begin(law, y, begin)),
             Self::GoAvoid(law) => AnyLaw::GoAvoid(runtime::Control::begin(law, y, begin)),
             Self::Align(law) => AnyLaw::Align(runtime::Control::begin(law, y, begin)),
+            Self::Path(law) => AnyLaw::Path(runtime::Control::begin(law, y, begin)),
         }
     }
 }
@@ -210,6 +222,7 @@ impl runtime::Law<Output> for AnyLaw {
             Self::Turn(law) => runtime::Law::input(law, y, t),
             Self::GoAvoid(law) => runtime::Law::input(law, y, t),
             Self::Align(law) => runtime::Law::input(law, y, t),
+            Self::Path(law) => runtime::Law::input(law, y, t),
         }
     }
 }
@@ -223,6 +236,7 @@ impl runtime::Completes<Output> for AnyLaw {
             Self::Turn(law) => runtime::Completes::completed(law, y, t),
             Self::GoAvoid(law) => runtime::Completes::completed(law, y, t),
             Self::Align(law) => runtime::Completes::completed(law, y, t),
+            Self::Path(law) => runtime::Completes::completed(law, y, t),
         }
     }
 }
@@ -237,6 +251,14 @@ impl runtime::Alphabet for Alphabet {
     type Signal = AnySignal;
     type Control = AnyControl;
     type Law = AnyLaw;
+    const CAPABILITIES: &'static [&'static str] = &[
+        "diff_drive",
+        "sonar[16]",
+        "bumper",
+        "odometry",
+        "paths",
+    ];
+    const LIMITS: &'static [runtime::Limit] = &[];
     fn interrupt(
         name: &str,
         arguments: &[runtime::Argument<'_>],
@@ -303,6 +325,9 @@ impl runtime::Alphabet for Alphabet {
                     runtime::Argument::Sonar(second),
                     ],
                 ) => AnyControl::Align(Align::new(first, second)),
+                ("path", &[runtime::Argument::Name(file)]) => {
+                    AnyControl::Path(Path::new(file))
+                }
                 _ => return None,
             },
         )

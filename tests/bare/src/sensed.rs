@@ -1,8 +1,9 @@
-//! The robot's output, as it is read: the time and 22 numbers of 64 bits each.
+//! The robot's output, as it is read: the time and 22 numbers of 64 bits each. Its one path is part of the program.
 
-use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, SonarRing};
+use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, Paths, SonarRing};
 use mdle_runtime::{
-    Meters, MetersPerSecond, Nanos, Output, Ping, Pings, Pose, Radians, RadiansPerSecond, SONARS, SonarId, Twist,
+    Meters, MetersPerSecond, Nanos, Output, PathStore, Ping, Pings, Pose, Radians, RadiansPerSecond, SONARS, Setpoint,
+    SonarId, StoredPath, Twist,
 };
 
 /// The size of an output in bytes.
@@ -10,6 +11,13 @@ const SIZE: usize = 8 * (7 + SONARS);
 
 /// An output as it is read.
 pub(crate) type Record = [u8; SIZE];
+
+/// Half a second to the left, faster and faster.
+static BEND: [Setpoint; 2] = [
+    Setpoint { at: Nanos::ZERO, heading: Radians(0.0), speed: MetersPerSecond(0.1) },
+    Setpoint { at: Nanos(500_000_000), heading: Radians(0.1), speed: MetersPerSecond(0.2) },
+];
+static PATHS: [StoredPath; 1] = [StoredPath { name: "bend", setpoints: &BEND }];
 
 /// The output of one turn.
 #[derive(Debug)]
@@ -80,5 +88,11 @@ impl SonarRing for Sensed {
 
     fn ring_radius(&self) -> Meters {
         Meters(0.19)
+    }
+}
+
+impl Paths for Sensed {
+    fn path(&self, name: &str) -> Option<&[Setpoint]> {
+        PathStore::new(&PATHS).path(name)
     }
 }

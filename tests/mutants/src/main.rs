@@ -7,6 +7,7 @@
 mod at_once;
 mod checkout;
 mod choice;
+mod drivers;
 mod equivalent;
 mod finder;
 mod judge;
@@ -46,6 +47,9 @@ struct Options {
     /// Only mutants whose lines, as they are printed, contain this.
     #[arg(long, default_value = "")]
     only: String,
+    /// Try the faults of `drivers.toml` in the drivers of robots, on the robots' conformance.
+    #[arg(long, conflicts_with_all = ["all", "equivalent", "count", "seed", "only", "list"])]
+    drivers: bool,
     /// Print the mutants and try none.
     #[arg(long)]
     list: bool,
@@ -53,6 +57,9 @@ struct Options {
 
 fn main() -> ExitCode {
     let options = Options::parse();
+    if options.drivers {
+        return if drivers::all_are_caught() { ExitCode::SUCCESS } else { ExitCode::FAILURE };
+    }
     let sources = choice::sources();
     let mutants = choice::all(&sources);
     let seed = options.seed.unwrap_or_else(choice::seed_of_commit);

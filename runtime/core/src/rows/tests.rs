@@ -6,7 +6,7 @@ use super::{Condition, Guard, InRows, LawRow, Reading, Rows, Texts};
 use crate::fsm::{Atom, Bracket};
 use crate::{
     Alphabet, Argument, Begin, Cause, Comparison, Completes, Control, Cursor, Follows, Frame, Fsm, Interrupt, Law,
-    MarkRow, Memories, Memory, Nanos, Next, NoSignal, Output, Plan, Radians,
+    Limit, MarkRow, Memories, Memory, Nanos, Next, NoSignal, Output, Plan, Radians,
 };
 
 /// The numbers of the interrupts that fire.
@@ -57,6 +57,9 @@ impl Alphabet for Toy {
     type Signal = NoSignal;
     type Control = Points;
     type Law = Points;
+
+    const CAPABILITIES: &'static [&'static str] = &[];
+    const LIMITS: &'static [Limit] = &[];
 
     fn interrupt(_: &str, _: &[Argument<'_>]) -> Option<Fires> {
         None

@@ -104,3 +104,10 @@ fn a_pace_decides_how_long_a_run_takes_and_nothing_else() {
     assert_eq!((&real.journal, &real.out), (&fast.journal, &fast.out));
     assert_eq!((&real.journal, &real.out), (&fastest.journal, &fastest.out));
 }
+
+#[test]
+fn what_the_computer_does_not_permit_is_told_once_where_time_is_real() {
+    let at = |time| Stage { time, ..Stage::default() }.run(&["--turns", "3"]).err;
+    assert_eq!(at(Time::Stepped(Pace::Times(1.0))), "stopped by --turns: the plan was not over after 3 turns\n");
+    insta::assert_snapshot!(at(Time::Wall).lines().take(3).collect::<Vec<_>>().join("\n"));
+}

@@ -77,6 +77,17 @@ fn a_robot_whose_exchange_failed_is_only_stopped() {
 }
 
 #[test]
+fn one_sentence_tells_of_a_fault_that_leaves_the_robot_unstopped() {
+    let fails = |stop| Stage { stop: Act::Fails(stop), ..Stage::script([Act::Fails("the line is dead")]) };
+    insta::assert_snapshot!(way_out(&fails("the line is dead").run(&[])), @"
+    exchange 0, stop, finish
+    status 3
+    error: a fault ended the plan, and the robot may not have stopped: the line is dead
+    ");
+    assert_eq!(fails("no answer").run(&[]).err, fails("the line is dead").run(&[]).err);
+}
+
+#[test]
 fn the_first_exchange_may_fail() {
     let run = Stage::script([Act::Fails("the emergency stop is pressed")]).run(&[]);
     insta::assert_snapshot!(way_out(&run), @"
@@ -185,9 +196,8 @@ fn everything_that_goes_wrong_on_the_way_out_is_told_in_order() {
     exchange 0, began 1 go 20 0 at 0, exchange 0, stop, finish
     status 3
     stopped by SIGINT
-    error: a fault stopped the robot: no answer
+    error: a fault ended the plan, and the robot may not have stopped: no answer
     error: the run log cannot be written: No space left on device (os error 28)
-    error: the robot could not be told to stop: the line is dead
     error: plot.svg cannot be written
     ");
 }

@@ -92,6 +92,13 @@ fn a_log_that_cannot_be_opened_opens_no_robot() {
 }
 
 #[test]
+fn a_plan_that_replays_paths_opens_no_robot_that_cannot() {
+    let run = Stage { plan: ToyPlan::lab().replaying(), ..tour() }.run(&[]);
+    assert_eq!((run.status, run.journal.as_str(), run.out.as_str()), (2, "", ""));
+    insta::assert_snapshot!(run.err, @"error: the plan replays paths, and the crate of the robot toy does not say how: it needs `Target::PATHS`");
+}
+
+#[test]
 fn a_refused_start_leaves_the_log_as_it_was() {
     let path = fresh();
     let refused = |options: &[&str], refusal| {

@@ -15,6 +15,7 @@ pub(super) struct ToyPlan {
     names: Vec<&'static str>,
     /// Whether the current atom's interrupt has always fired.
     restless: bool,
+    paths: Vec<&'static str>,
     running: u32,
 }
 
@@ -36,6 +37,7 @@ impl ToyPlan {
             conditions: vec!["bumper", "atIsection 0100", "wait 10", "wait inf", "r3 < r5", "heard \"stop\""],
             names: vec!["Lab", "", "Turn", "", "", ""],
             restless: false,
+            paths: Vec::new(),
             running: 0,
         }
     }
@@ -43,6 +45,11 @@ impl ToyPlan {
     /// The same plan in the formal notation, which names no scopes.
     pub(super) fn unnamed(self) -> Self {
         Self { names: vec![""; 6], ..self }
+    }
+
+    /// The same plan, which replays a path as well.
+    pub(super) fn replaying(self) -> Self {
+        Self { paths: vec!["hall"], ..self }
     }
 
     /// `{ Spin (bumper) ((Atom (always) go 20 0))^inf }`: each turn is cut by the limit of transitions.
@@ -54,6 +61,7 @@ impl ToyPlan {
             conditions: vec!["bumper", "", "always"],
             names: vec!["Spin", "", ""],
             restless: true,
+            paths: Vec::new(),
             running: 0,
         }
     }
@@ -96,5 +104,8 @@ impl Plan for ToyPlan {
 
     fn name(&self, scope: u32) -> &str {
         self.names[scope as usize]
+    }
+    fn paths(&self) -> &[&'static str] {
+        &self.paths
     }
 }

@@ -156,6 +156,10 @@ impl Instants for ByHand {
     fn sleep(&mut self, time: Duration) {
         self.0.set(self.0.get() + time);
     }
+
+    fn keep_time(&mut self) -> Result<(), String> {
+        Err("real-time scheduling".to_owned())
+    }
 }
 
 /// The target of the toy robot.

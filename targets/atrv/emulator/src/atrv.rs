@@ -4,9 +4,9 @@ mod telling;
 
 use std::time::Duration;
 
-use mdle_emulator::{Ailment, Emulated, Pace, STEP};
+use mdle_emulator::{Ailment, Embodied, Emulated, Pace, STEP};
 use mdle_runtime::{MetersPerSecond, Nanos, Pose, RadiansPerSecond, Robot as _, Twist};
-use mdle_sim::{Output, Simulated};
+use mdle_sim::{Disc, Output, Simulated};
 
 use crate::wire::{Incoming, Request, number};
 use telling::Schedule;
@@ -45,6 +45,8 @@ pub struct Atrv {
     gone: (f64, f64),
     axes: Schedule,
     inputs: Schedule,
+    /// What it has told of its axes.
+    told_axes: Vec<Vec<u8>>,
     /// Which pings have been told, while the sonars run.
     pings: Option<Vec<Nanos>>,
     is_braked: bool,
@@ -77,6 +79,7 @@ impl Atrv {
             gone: (0.0, 0.0),
             axes: Schedule::default(),
             inputs: Schedule::default(),
+            told_axes: Vec::new(),
             pings: None,
             is_braked: true,
             silence: Duration::ZERO,
@@ -196,6 +199,16 @@ fn left_alone(input: &Twist) -> Twist {
     Twist { v: MetersPerSecond(left / 2.0), omega: RadiansPerSecond(-left / BETWEEN) }
 }
 
+impl Embodied for Atrv {
+    fn disc(&self) -> Disc {
+        self.body.disc()
+    }
+
+    fn see(&mut self, others: &[Disc]) {
+        self.body.see(others);
+    }
+}
+
 impl Emulated for Atrv {
     fn push(&mut self, bytes: &[u8]) {
         self.incoming.push(bytes);
@@ -223,9 +236,13 @@ impl Emulated for Atrv {
     fn suffer(&mut self, ailment: Ailment) {
         match ailment {
             Ailment::Emergency => self.emergency = true,
-            Ailment::StuckWheel | Ailment::DeadSonar | Ailment::Bumper | Ailment::LowBattery | Ailment::Filler => {
-                self.ailments.push(ailment);
-            }
+            Ailment::StuckWheel
+            | Ailment::DeadSonar
+            | Ailment::Bumper
+            | Ailment::LowBattery
+            | Ailment::Filler
+            | Ailment::Hang
+            | Ailment::NoPings => self.ailments.push(ailment),
         }
     }
 }

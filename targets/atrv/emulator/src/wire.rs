@@ -2,6 +2,9 @@
 //!
 //! It shares nothing with the driver's: what one of them gets wrong about the language, the other one finds.
 
+/// No command is longer on the line: one that is has no end, but filler.
+const LONGEST: usize = 1000;
+
 /// A command: for which part of the robot, what, with which arguments.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Request {
@@ -31,6 +34,12 @@ impl Incoming {
     /// Takes in more bytes.
     pub fn push(&mut self, bytes: &[u8]) {
         self.bytes.extend_from_slice(bytes);
+    }
+
+    /// How many bytes it keeps, of which something may still come.
+    #[must_use]
+    pub fn kept(&self) -> usize {
+        self.bytes.len()
     }
 
     /// The next command that is whole. One with a wrong length or check, or with a 1B in it that it does not know, is lost.
@@ -79,7 +88,7 @@ impl Incoming {
                     at += 1;
                 }
             }
-            if body.len() > 260 {
+            if body.len() > 260 || at > LONGEST {
                 return Body::Lost(at);
             }
         }

@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use mdle_emulator::{Ailment, Emulated};
+use mdle_emulator::{Ailment, Embodied, Emulated};
 use mdle_runtime::capability::{Odometry, SonarRing};
 use mdle_runtime::{MetersPerSecond, Pose, RadiansPerSecond, Robot as _, SonarId, Twist};
-use mdle_sim::{Output, Simulated};
+use mdle_sim::{Disc, Output, Simulated};
 
 use crate::wire::{Incoming, Request, answer, number, two_bytes};
 
@@ -43,11 +43,14 @@ pub struct Scout {
     age: Duration,
     /// Whether its emergency stop is pressed.
     pub emergency: bool,
-    /// What else may be the matter: its right wheel, the sonar in front, its first bumper, its battery.
+    /// What else may be the matter: its right wheel, the sonar in front, its first bumper, its battery, all its sonars.
     is_stuck: bool,
     is_deaf: bool,
     is_pressed: bool,
     is_low: bool,
+    is_mute: bool,
+    /// The state that it says again and again.
+    hung: Option<Vec<u8>>,
 }
 
 impl Scout {
@@ -76,6 +79,8 @@ impl Scout {
             is_deaf: false,
             is_pressed: false,
             is_low: false,
+            is_mute: false,
+            hung: None,
         };
         scout.listen();
         Ok(scout)
@@ -89,6 +94,9 @@ impl Scout {
 
     /// The sonars that ping say what they heard last.
     fn listen(&mut self) {
+        if self.is_mute {
+            return;
+        }
         for (sonar, heard) in (0..).zip(&mut self.heard) {
             let newest = self.sensed.pings(SonarId::new(sonar)).newest_first().next();
             if self.active & (1 << sonar) != 0
@@ -162,6 +170,16 @@ impl Scout {
     }
 }
 
+impl Embodied for Scout {
+    fn disc(&self) -> Disc {
+        self.body.disc()
+    }
+
+    fn see(&mut self, others: &[Disc]) {
+        self.body.see(others);
+    }
+}
+
 impl Emulated for Scout {
     fn push(&mut self, bytes: &[u8]) {
         self.incoming.push(bytes);
@@ -199,7 +217,10 @@ impl Emulated for Scout {
 
     fn said(&mut self) -> Vec<Vec<u8>> {
         match self.asked.take() {
-            Some((request, true)) => vec![answer(request.command, &self.state())],
+            Some((request, true)) => {
+                let state = self.hung.clone().unwrap_or_else(|| self.state());
+                vec![answer(request.command, &state)]
+            }
             Some((_, false)) => vec![answer(REFUSED, &[])],
             None => Vec::new(),
         }
@@ -217,6 +238,8 @@ impl Emulated for Scout {
             Ailment::Bumper => self.is_pressed = true,
             Ailment::Emergency => self.emergency = true,
             Ailment::LowBattery => self.is_low = true,
+            Ailment::Hang => self.hung = Some(self.state()),
+            Ailment::NoPings => self.is_mute = true,
             Ailment::Filler => {}
         }
         self.listen();

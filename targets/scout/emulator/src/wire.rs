@@ -21,11 +21,21 @@ impl Incoming {
         self.0.extend_from_slice(bytes);
     }
 
+    /// How many bytes it keeps, of which something may still come.
+    #[must_use]
+    pub fn kept(&self) -> usize {
+        self.0.len()
+    }
+
     /// The next request that is whole. What cannot be a request is skipped, a byte at a time, as a robot does that waits
     /// for the beginning of one.
     pub fn next_request(&mut self) -> Option<Request> {
         loop {
-            let begin = self.0.iter().position(|byte| *byte == 1)?;
+            let Some(begin) = self.0.iter().position(|byte| *byte == 1) else {
+                // Nothing of it can become one.
+                self.0.clear();
+                return None;
+            };
             self.0.drain(..begin);
             let length = match self.0.as_slice() {
                 [1, low, 0, ..] if *low >= 2 => usize::from(*low),

@@ -6,7 +6,7 @@ use std::thread;
 use std::time::Duration;
 
 use mdle_emulator::{Pace, Port, serve};
-use mdle_runtime::capability::{Bumpers, Odometry, SonarRing};
+use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, SonarRing, Steering};
 use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Robot as _, SonarId, Twist};
 use mdle_scout::{Clock, Configured, Fault, LineFault, Output, Scout};
 use mdle_scout_emulator::scout::Scout as Emulated;
@@ -23,10 +23,14 @@ const LONG: u64 = 60_000;
 /// What is not going to come is not waited for.
 const SHORT: u64 = 100;
 
+/// Not what is usual.
+const STEERING: Steering = Steering { rotate: 1.0, align: 3.0, avoid: 1.5 };
+
 /// A driver of what answers at this line within so many milliseconds.
 fn connected(port: &Port, answer: u64) -> Result<Scout, Fault> {
     let mut config = Configured::read(None, port.path().to_str()).unwrap().config;
     config.answer = answer;
+    config.steering = STEERING;
     Scout::connect(config, Clock::Stepped(PERIOD), PERIOD)
 }
 
@@ -106,6 +110,7 @@ fn what_is_told_is_done_and_told_back() {
         assert_near("x", y.pose().x.0, 0.58, 0.03);
         assert_near("y", y.pose().y.0, 0.0, 0.003);
         assert_near("speed", y.velocity().v.0, 0.2, 0.005);
+        assert_eq!(y.steering(), STEERING);
         driven(driver, 0.0, 0.0, 10);
         // A quarter of a circle to the left: what was before it is to its right.
         let y = driven(driver, 0.0, 0.36, 44);

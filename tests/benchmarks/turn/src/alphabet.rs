@@ -102,6 +102,8 @@ impl runtime::Alphabet for Alphabet {
     type Signal = runtime::NoSignal;
     type Control = AnyControl;
     type Law = AnyLaw;
+    const CAPABILITIES: &'static [&'static str] = &[];
+    const LIMITS: &'static [runtime::Limit] = &[];
     fn interrupt(
         name: &str,
         arguments: &[runtime::Argument<'_>],

@@ -27,26 +27,28 @@ pub(super) struct Schedule {
 
 impl Atrv {
     pub(super) fn tell_axes(&mut self) {
-        let Twist { v, omega } = self.sensed.velocity;
-        for (axis, gone, speed) in [(0, self.gone.0, v.0 * A_METRE), (1, self.gone.1, omega.0 * A_RADIAN)] {
-            // What is more than 32 bits is told without the rest.
-            let position = (gone.round() as i64) as i32;
-            let data = [
-                &[0; 4][..],
-                &self.time(),
-                &[axis],
-                &position.to_be_bytes(),
-                &(speed.round() as i32).to_be_bytes(),
-                &[0; 8],
-            ];
-            self.tell(2, 33, &data.concat());
+        if self.told_axes.is_empty() || !self.has(Ailment::Hang) {
+            let Twist { v, omega } = self.sensed.velocity;
+            let axes = [(0, self.gone.0, v.0 * A_METRE), (1, self.gone.1, omega.0 * A_RADIAN)];
+            self.told_axes = axes.map(|(axis, gone, speed)| self.axis(axis, gone, speed)).to_vec();
         }
+        let told = std::mem::take(&mut self.told_axes);
+        told.iter().for_each(|data| self.tell(2, 33, data));
+        self.told_axes = told;
+    }
+
+    fn axis(&self, axis: u8, gone: f64, speed: f64) -> Vec<u8> {
+        // What is more than 32 bits is told without the rest.
+        let position = (gone.round() as i64) as i32;
+        let speed = speed.round() as i32;
+        [&[0; 4][..], &self.time(), &[axis], &position.to_be_bytes(), &speed.to_be_bytes(), &[0; 8]].concat()
     }
 
     /// A report for the sonars that have pinged since the last one, if any have.
     pub(super) fn tell_pings(&mut self) {
         let is_dead = self.has(Ailment::DeadSonar);
-        let Some(told) = &mut self.pings else { return };
+        let is_mute = self.has(Ailment::NoPings);
+        let Some(told) = self.pings.as_mut().filter(|_| !is_mute) else { return };
         let mut data = Vec::new();
         for ((heard, told), sonar) in self.body.heard().iter().zip(told).zip(0_u8..) {
             if heard.at > *told {

@@ -3,16 +3,16 @@
 
 mod room;
 
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use std::thread;
 use std::time::Duration;
 
 use mdle_atrv::{Atrv, Clock, Configured, Escape, Fault, Garbled, LineFault, Output, Unreadable};
 use mdle_atrv_emulator::atrv::Atrv as Emulated;
 use mdle_emulator::Port;
-use mdle_runtime::capability::{Bumpers, Odometry, SonarRing};
+use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, SonarRing};
 use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Robot as _, SonarId, Twist};
-use room::{PERIOD, driven_in, said_of, with_robot};
+use room::{PERIOD, STEERING, driven_in, said_of, with_robot};
 
 fn driven(driver: &mut Atrv, v: f64, omega: f64, periods: usize) -> Output {
     let input = Twist { v: MetersPerSecond(v), omega: RadiansPerSecond(omega) };
@@ -35,6 +35,7 @@ fn what_is_told_is_done_and_told_back() {
         assert_near("x", y.pose().x.0, 0.58, 0.03);
         assert_near("y", y.pose().y.0, 0.0, 0.003);
         assert_near("speed", y.velocity().v.0, 0.2, 0.001);
+        assert_eq!(y.steering(), STEERING);
         driven(driver, 0.0, 0.0, 10);
         // A quarter of a circle to the left: what was before it is to its right.
         let y = driven(driver, 0.0, 0.36, 44);
@@ -149,9 +150,14 @@ fn silence_garbage_and_other_robots_are_told_apart() {
     assert!(matches!(said_of(|_| bad_check()), Fault::Garbled(Garbled::Check(..))));
     assert_eq!(said_of(|_| report(9, 4, &[0; 25])), Fault::Unreadable(Unreadable::Unknown(9, 4)));
     assert_eq!(said_of(|_| report(2, 33, &[0; 24])), Fault::Unreadable(Unreadable::Short(2, 33, 24)));
-    // It tells where it is, and nothing else.
-    let axes = |_: &_| [report(2, 33, &[0; 25]), report(2, 33, &[&[0; 8][..], &[1], &[0; 16]].concat())].concat();
-    assert_eq!(said_of(axes), Fault::Line(LineFault::Silent));
+    // It tells where it is, and nothing else; or where it was.
+    let axes = |time: u8| {
+        let axis = |axis: u8| report(2, 33, &[&[0, 0, 0, 0, 0, 0, 0, time][..], &[axis], &[0; 16]].concat());
+        [axis(0), axis(1)].concat()
+    };
+    let time = AtomicU8::new(0);
+    assert_eq!(said_of(|_| axes(time.fetch_add(1, Ordering::Relaxed))), Fault::Line(LineFault::Silent));
+    assert_eq!(said_of(|_| axes(0)), Fault::Repeated);
 }
 
 #[test]

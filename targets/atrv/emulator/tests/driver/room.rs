@@ -8,6 +8,7 @@ use mdle_atrv::{Atrv, Clock, Config, Configured, Escape, Fault};
 use mdle_atrv_emulator::atrv::{Atrv as Emulated, step};
 use mdle_atrv_emulator::wire::{Incoming, Request};
 use mdle_emulator::{Ailment, Pace, Port, serve};
+use mdle_runtime::capability::Steering;
 use mdle_runtime::{Robot as _, Twist};
 use mdle_sim::{Body, Make, Simulated, World};
 
@@ -30,9 +31,12 @@ impl Drop for Ends<'_> {
     }
 }
 
+/// Not what is usual.
+pub(crate) const STEERING: Steering = Steering { rotate: 1.0, align: 3.0, avoid: 1.5 };
+
 /// The configuration of a robot at this line that answers within so many milliseconds.
 fn config(port: &Port, answer: u64) -> Config {
-    Config { answer, ..Configured::read(None, port.path().to_str()).unwrap().config }
+    Config { answer, steering: STEERING, ..Configured::read(None, port.path().to_str()).unwrap().config }
 }
 
 /// The robot as an operator has it: who can press its emergency stop, and sees whether it has come to stand.

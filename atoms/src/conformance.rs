@@ -1,0 +1,193 @@
+//! What any robot must do whose alphabet claims a capability: a suite that a robot's author runs on the robot itself, or on
+//! one that is not there.
+//!
+//! A [`Stage`] puts the robot into rooms that the suite makes up, and tells where its body truly is, apart from what the
+//! robot says of itself. One test then does for all that the alphabet claims:
+//!
+//! ```text
+//! #[test]
+//! fn it_conforms() {
+//!     let report = Suite::on(&mut MyStage).diff_drive().odometry().bumper().sonar().paths().report();
+//!     assert!(report.holds(), "{report}");
+//! }
+//! ```
+//!
+//! It has std, as tests do; nothing of it is in a robot's executable.
+
+mod body;
+mod contact;
+mod drive;
+mod laws;
+mod measured;
+mod odometry;
+mod replay;
+mod report;
+mod ring;
+mod room;
+mod round;
+mod sides;
+mod trial;
+
+use std::string::String;
+use std::vec::Vec;
+
+use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, Paths, SonarRing};
+use mdle_runtime::{Alphabet, Nanos, PathStore, Pose, Robot, Twist};
+
+pub use report::{Checked, Report, Verdict};
+pub use room::{Room, Wall};
+
+/// Where robots are tried: it builds a room round a robot, and sees what becomes of it.
+pub trait Stage {
+    /// The robot.
+    type Robot: Robot<Input = Twist>;
+    /// Its alphabet, as `mdlec bind` wrote it.
+    type Alphabet: Alphabet<Output = <Self::Robot as Robot>::Output, Input = Twist>;
+    /// How long an exchange lasts: `alphabet::PERIOD`.
+    const PERIOD: Nanos;
+
+    /// A robot that has just been started, at rest in this room at this pose, before its first exchange. One that was
+    /// there before is gone.
+    ///
+    /// # Errors
+    /// Why there is none.
+    fn robot(&mut self, room: &Room, at: Pose) -> Result<Self::Robot, String>;
+
+    /// Hands the robot the paths that its plan replays, before its first exchange; for robots with the capability `paths`.
+    fn take_paths(&mut self, _robot: &mut Self::Robot, _paths: PathStore) {}
+
+    /// Where the body truly is by now, in the axes of the room: not what its odometry says.
+    fn truth(&self, robot: &Self::Robot) -> Pose;
+
+    /// Lets so many periods pass in which nobody tells the robot anything.
+    fn left_alone(&mut self, robot: &mut Self::Robot, periods: u32);
+}
+
+/// What a robot on this stage says.
+type Out<S> = <<S as Stage>::Robot as Robot>::Output;
+
+/// The checks, as they are asked for: one method for each capability.
+#[derive(Debug)]
+pub struct Suite<'s, S: Stage> {
+    stage: &'s mut S,
+    asked: Vec<&'static str>,
+    checked: Vec<Checked>,
+}
+
+/// A check of a robot on a stage.
+type Check<S> = fn(&mut S) -> Result<(), Verdict>;
+
+impl<'s, S: Stage> Suite<'s, S> {
+    /// No check yet.
+    #[must_use]
+    pub fn on(stage: &'s mut S) -> Self {
+        Self { stage, asked: Vec::new(), checked: Vec::new() }
+    }
+
+    /// `diff_drive`: what an input does to the body, what stops it, and the laws that need nothing else.
+    #[must_use]
+    pub fn diff_drive(self) -> Self
+    where
+        Out<S>: DiffDrive,
+    {
+        self.check(
+            "diff_drive",
+            &[
+                ("its measures are those of a body", body::is_plausible),
+                ("without an input it is at rest", drive::rests),
+                ("an input that is no number moves nothing", drive::ignores_what_is_no_number),
+                ("forward is forward, as fast as it was told", drive::goes_forward),
+                ("a positive turn rate turns counter-clockwise, as fast as it was told", drive::turns),
+                ("both at once drive an arc", drive::goes_round),
+                ("it reaches what the alphabet lets plans ask of `go`", drive::reaches_its_limits),
+                ("stopped, it stands", drive::stops),
+                ("`go` drives on for ever", laws::go),
+                ("`stop` stands still for ever", laws::stop),
+            ],
+        )
+    }
+
+    /// `odometry`: what the robot says of its own motion beside what became of it, and the laws that turn by it.
+    #[must_use]
+    pub fn odometry(self) -> Self
+    where
+        Out<S>: Odometry,
+    {
+        self.check(
+            "odometry",
+            &[
+                ("the way it counts is the way it went", odometry::counts_the_way),
+                ("the heading it counts is the way it turned", odometry::counts_turns),
+                ("its axes stay put while it turns", odometry::keeps_its_axes),
+                ("its heading goes on where a circle ends", odometry::goes_round),
+                ("the speed it measures is that of the body", odometry::measures_speed),
+                ("the turn rate it measures is that of the body", odometry::measures_turn_rate),
+                ("`x`, `y`, `theta`, `v` and `omega` are in SI units", odometry::signals),
+                ("`rotate` turns to a heading and stands there", laws::rotate),
+                ("`turn` turns by an angle and stands there", laws::turn),
+            ],
+        )
+    }
+
+    /// `bumper`: contact.
+    #[must_use]
+    pub fn bumper(self) -> Self
+    where
+        Out<S>: Bumpers + DiffDrive,
+    {
+        self.check("bumper", &[("it is pressed in contact, not before and not after", contact::is_felt)])
+    }
+
+    /// `sonar[16]`: what each sonar hears where, and the quarks that go by it.
+    #[must_use]
+    pub fn sonar(self) -> Self
+    where
+        Out<S>: SonarRing + DiffDrive,
+    {
+        self.check(
+            "sonar[16]",
+            &[
+                ("its measures are those of a ring on the body", body::has_a_ring),
+                ("each of the sixteen looks where its number says", ring::looks_all_round),
+                ("where nothing is, nothing is heard", ring::hears_nothing),
+                ("what comes near is heard nearer, up to contact", ring::hears_what_comes),
+                ("a ping says when and where it was taken", ring::dates_its_pings),
+                ("`atIsection` tells the four sides apart", sides::at_isection),
+                ("`align` turns square to a wall", laws::align),
+                ("`goAvoid` arrives where it was sent", round::arrives),
+                ("`goAvoid` touches no wall", round::touches_nothing),
+            ],
+        )
+    }
+
+    /// `paths`: those that the robot was given.
+    #[must_use]
+    pub fn paths(self) -> Self
+    where
+        Out<S>: Paths,
+    {
+        self.check(
+            "paths",
+            &[
+                ("each output has the paths that the robot was given", replay::are_there),
+                ("`path` drives along one, and is done at its end", replay::replays),
+            ],
+        )
+    }
+
+    /// What came of it, and of the claims of the alphabet: what it claims has to have been asked for, and the other way
+    /// round.
+    #[must_use]
+    pub fn report(self) -> Report {
+        Report::new(self.checked, &self.asked, S::Alphabet::CAPABILITIES)
+    }
+
+    fn check(mut self, capability: &'static str, checks: &[(&'static str, Check<S>)]) -> Self {
+        self.asked.push(capability);
+        for (name, check) in checks {
+            let verdict = check(self.stage).err().unwrap_or(Verdict::Holds);
+            self.checked.push(Checked { capability, name, verdict });
+        }
+        self
+    }
+}

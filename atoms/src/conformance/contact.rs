@@ -1,0 +1,70 @@
+//! The bumper: contact, and nothing else.
+
+use std::format;
+
+use mdle_runtime::capability::{Bumpers, DiffDrive};
+use mdle_runtime::{Alphabet, Interrupt as _};
+
+use super::room::AT;
+use super::trial::{Trial, Way};
+use super::{Out, Room, Stage, Verdict};
+
+/// How far the wall is from the body, in metres, and how fast it is driven at.
+const AWAY: f64 = 0.4;
+const V: f64 = 0.1;
+/// How far a body may be from a wall that it feels, in metres, beyond what it goes in a period.
+const FEELS: f64 = 0.02;
+
+pub(super) fn is_felt<S: Stage>(stage: &mut S) -> Result<(), Verdict>
+where
+    Out<S>: Bumpers + DiffDrive,
+{
+    let radius = Trial::of(stage, &Room::open())?.y.body_radius().0;
+    let wall = radius + AWAY;
+    let mut trial = Trial::of(stage, &Room::open().across(0.0, wall, 1.0))?;
+    let reach = FEELS + V * S::PERIOD.seconds();
+    // To the wall, and for two seconds against it.
+    let mut turns = 0;
+    while Way::between(AT, trial.truth()).ahead < AWAY - reach {
+        not_felt(&trial, wall - radius, reach)?;
+        trial.drive(V, 0.0, S::PERIOD.seconds())?;
+        turns += 1;
+        if turns > 1000 {
+            return Err(Verdict::Broken(format!("driven at {V} m/s, it does not come to a wall {AWAY} m away")));
+        }
+    }
+    let pushed = trial.drive(V, 0.0, 2.0)?.ahead;
+    if !trial.y.pressed() {
+        let why = format!("driven against a wall for 2 s (the last {pushed:.2} m of its way), it feels no contact");
+        return Err(Verdict::Broken(why));
+    }
+    agrees(&trial)?;
+    trial.drive(-V, 0.0, 3.0)?;
+    not_felt(&trial, wall - radius, reach)
+}
+
+/// That no contact is told where there is none.
+fn not_felt<S: Stage>(trial: &Trial<'_, S>, wall: f64, reach: f64) -> Result<(), Verdict>
+where
+    Out<S>: Bumpers,
+{
+    agrees(trial)?;
+    let away = wall - Way::between(AT, trial.truth()).ahead;
+    if trial.y.pressed() && away > reach {
+        let why = format!("contact is told {away:.2} m away from the only wall: a bit that is inverted, or another's");
+        return Err(Verdict::Broken(why));
+    }
+    Ok(())
+}
+
+/// That the interrupt says the same.
+fn agrees<S: Stage>(trial: &Trial<'_, S>) -> Result<(), Verdict>
+where
+    Out<S>: Bumpers,
+{
+    let bumper = S::Alphabet::interrupt("bumper", &[]).ok_or(Verdict::NotOffered)?;
+    if bumper.fired(&trial.y) == trial.y.pressed() {
+        return Ok(());
+    }
+    Err(Verdict::Broken("`bumper` and `Bumpers::pressed` do not agree".into()))
+}

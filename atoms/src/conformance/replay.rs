@@ -1,0 +1,63 @@
+//! Paths: that the robot has those it was given, and replays one (section IV-A).
+
+use std::format;
+
+use mdle_runtime::capability::Paths;
+use mdle_runtime::{Argument, Meters, MetersPerSecond, Nanos, PathStore, Radians, Setpoint, StoredPath};
+
+use super::drive::SETTLES;
+use super::trial::{Trial, Way};
+use super::{Out, Room, Stage, Verdict};
+
+/// What every robot is given: a second ahead, a quarter of a circle to the left in two, a second ahead.
+pub(super) static STORED: PathStore = PathStore::new(&[StoredPath { name: NAME, setpoints: &BEND }]);
+const NAME: &str = "bend.csv";
+static BEND: [Setpoint; 4] =
+    [setpoint(0, 0.0, SPEED), setpoint(1, 0.0, SPEED), setpoint(3, 90.0, SPEED), setpoint(4, 90.0, SPEED)];
+const SPEED: f64 = 0.2;
+/// How far from the end of the path the body may be, in metres and degrees: it has to get going, and to stop.
+const ENDS: (f64, f64) = (0.1, 10.0);
+
+const fn setpoint(seconds: u64, degrees: f64, speed: f64) -> Setpoint {
+    let at = Nanos(seconds * 1_000_000_000);
+    Setpoint { at, heading: Radians::from_degrees(degrees), speed: MetersPerSecond(speed) }
+}
+
+pub(super) fn are_there<S: Stage>(stage: &mut S) -> Result<(), Verdict>
+where
+    Out<S>: Paths,
+{
+    let mut trial = Trial::of(stage, &Room::open())?;
+    for _ in 0..3 {
+        if trial.y.path(NAME) != Some(&BEND[..]) {
+            let why = "a path that the robot was given is not in its output: `Stage::take_paths` hands it over";
+            return Err(Verdict::Broken(why.into()));
+        }
+        if trial.y.path("none.csv").is_some() {
+            return Err(Verdict::Broken("there is a path of a name that the robot was not given".into()));
+        }
+        trial.drive(0.0, 0.0, S::PERIOD.seconds())?;
+    }
+    Ok(())
+}
+
+pub(super) fn replays<S: Stage>(stage: &mut S) -> Result<(), Verdict> {
+    let mut trial = Trial::of(stage, &Room::open())?;
+    let from = trial.truth();
+    let done = trial.run("path", &[Argument::Name(NAME)], 6.0, |_| Ok(()))?;
+    let Some(seconds) = done else { return Err(Verdict::Broken("`path` was not done 2 s after its end".into())) };
+    if (seconds - 4.0).abs() > 2.0 * S::PERIOD.seconds() {
+        return Err(Verdict::Broken(format!("`path` was done after {seconds:.1} s, of a path of 4 s")));
+    }
+    trial.drive(0.0, 0.0, SETTLES)?;
+    let (goal, quarter) = (from.moved(Meters(SPEED), Radians(0.0)), Radians::from_degrees(90.0));
+    let goal = goal.moved(Meters(2.0 * SPEED), quarter).moved(Meters(SPEED), Radians(0.0));
+    let off = Way::between(goal, trial.truth());
+    if off.far() > ENDS.0 || off.turn.to_degrees().abs() > ENDS.1 {
+        let (far, turned) = (off.far(), off.turn.to_degrees());
+        return Err(Verdict::Broken(format!(
+            "`path` has brought the body {far:.2} m from the end of the path, {turned:.0} degrees off its heading"
+        )));
+    }
+    Ok(())
+}

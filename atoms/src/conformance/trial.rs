@@ -1,0 +1,148 @@
+//! A robot in a room while it is tried: turn by turn, and what became of its body.
+
+use std::format;
+use std::string::String;
+
+use mdle_runtime::{
+    Alphabet, Argument, Begin, Completes, Control, Frame, Law, MetersPerSecond, Nanos, Output as _, Pose, Radians,
+    RadiansPerSecond, Robot, Twist,
+};
+
+use super::room::AT;
+use super::{Out, Room, Stage, Verdict, replay};
+
+/// How far from where it was put a robot may stand, in metres and radians.
+const PUT: (f64, f64) = (0.02, 0.02);
+
+/// A robot in a room.
+pub(super) struct Trial<'s, S: Stage> {
+    stage: &'s mut S,
+    pub(super) robot: S::Robot,
+    /// What it said last.
+    pub(super) y: Out<S>,
+    /// The frame of a plan that began with its first output.
+    frame: Frame,
+    /// How many exchanges there have been.
+    exchanges: u64,
+}
+
+/// What became of a body between two poses, in the axes of the first.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Way {
+    /// In metres.
+    pub(super) ahead: f64,
+    /// In metres.
+    pub(super) left: f64,
+    /// In radians between -π and π, counter-clockwise.
+    pub(super) turn: f64,
+}
+
+impl Way {
+    pub(super) fn between(from: Pose, to: Pose) -> Self {
+        let (x, y) = (to.x.0 - from.x.0, to.y.0 - from.y.0);
+        let (sin, cos) = libm::sincos(from.theta.0);
+        let turn = Radians(to.theta.0 - from.theta.0).wrapped().0;
+        Self { ahead: x * cos + y * sin, left: y * cos - x * sin, turn }
+    }
+
+    /// In metres.
+    pub(super) fn far(&self) -> f64 {
+        libm::hypot(self.ahead, self.left)
+    }
+}
+
+pub(super) fn twist(v: f64, omega: f64) -> Twist {
+    Twist { v: MetersPerSecond(v), omega: RadiansPerSecond(omega) }
+}
+
+impl<'s, S: Stage> Trial<'s, S> {
+    /// A robot where robots begin in this room, after its first exchange.
+    pub(super) fn of(stage: &'s mut S, room: &Room) -> Result<Self, String> {
+        let mut robot = stage.robot(room, AT).map_err(|why| format!("the stage has no robot: {why}"))?;
+        stage.take_paths(&mut robot, replay::STORED);
+        let put = Way::between(AT, stage.truth(&robot));
+        if put.far() > PUT.0 || put.turn.abs() > PUT.1 {
+            let (far, turned) = (put.far(), put.turn.to_degrees());
+            return Err(format!(
+                "the stage has put the robot {far:.2} m and {turned:.0} degrees off where it was to be"
+            ));
+        }
+        let y = robot.exchange(&Twist::default()).map_err(|fault| format!("its first exchange failed: {fault}"))?;
+        let frame = Frame(y.here().theta);
+        Ok(Self { stage, robot, y, frame, exchanges: 1 })
+    }
+
+    /// The time of its last output.
+    pub(super) fn now(&self) -> Nanos {
+        Nanos(S::PERIOD.0.saturating_mul(self.exchanges.saturating_sub(1)))
+    }
+
+    /// Where its body is.
+    pub(super) fn truth(&self) -> Pose {
+        self.stage.truth(&self.robot)
+    }
+
+    /// One turn with this input.
+    pub(super) fn exchange(&mut self, input: &Twist) -> Result<(), String> {
+        self.y = self.robot.exchange(input).map_err(|fault| format!("an exchange failed: {fault}"))?;
+        self.exchanges = self.exchanges.saturating_add(1);
+        Ok(())
+    }
+
+    /// Turns with this input for so many seconds; what became of the body.
+    pub(super) fn drive(&mut self, v: f64, omega: f64, seconds: f64) -> Result<Way, String> {
+        let from = self.truth();
+        for _ in 0..periods::<S>(seconds) {
+            self.exchange(&twist(v, omega))?;
+        }
+        Ok(Way::between(from, self.truth()))
+    }
+
+    /// Nobody tells it anything for so many seconds; what became of the body.
+    pub(super) fn left_alone(&mut self, seconds: f64) -> Way {
+        let from = self.truth();
+        self.stage.left_alone(&mut self.robot, periods::<S>(seconds));
+        Way::between(from, self.truth())
+    }
+
+    /// The law of this name with these arguments, begun now in the frame of a plan that began with the first exchange, runs
+    /// until it is done: after how many seconds, or that it was not done in `most`. `each` looks at every turn.
+    pub(super) fn run(
+        &mut self,
+        name: &str,
+        arguments: &[Argument<'_>],
+        most: f64,
+        mut each: impl FnMut(&Self) -> Result<(), String>,
+    ) -> Result<Option<f64>, Verdict> {
+        let control = S::Alphabet::control(name, arguments).ok_or(Verdict::NotOffered)?;
+        let began = self.now();
+        let mut law = control.begin(&self.y, Begin { now: began, frame: self.frame });
+        for _ in 0..periods::<S>(most) {
+            if law.completed(&self.y, self.now()) {
+                return Ok(Some(self.now().since(began).seconds()));
+            }
+            let input = law.input(&self.y, self.now());
+            self.exchange(&input)?;
+            each(self)?;
+        }
+        Ok(None)
+    }
+
+    /// The same for a law that has to be done by then.
+    pub(super) fn run_until_done(&mut self, name: &str, arguments: &[Argument<'_>], most: f64) -> Result<(), Verdict> {
+        match self.run(name, arguments, most, |_| Ok(()))? {
+            Some(_) => Ok(()),
+            None => Err(Verdict::Broken(format!("`{name}` was not done after {most:.0} s"))),
+        }
+    }
+}
+
+/// About so many seconds in periods, of which there is one at least.
+fn periods<S: Stage>(seconds: f64) -> u32 {
+    libm::round(seconds / S::PERIOD.seconds().max(1e-3)).max(1.0) as u32
+}
+
+/// About so many seconds, as the whole periods that they last.
+pub(super) fn lasting<S: Stage>(seconds: f64) -> f64 {
+    f64::from(periods::<S>(seconds)) * S::PERIOD.seconds()
+}

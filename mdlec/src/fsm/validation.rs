@@ -1,0 +1,225 @@
+//! Holds a machine against its plan: every transition is the one that the plan asks for (paper, Eq. 2; semantics, sections
+//! 5 and 8).
+//!
+//! It shares no code with the lowering. It walks the plan and says of each scope, loop and atom what follows when it ends,
+//! as the plan's own nesting has it; the machine says the same by its intervals of atoms. As each step outwards agrees, so
+//! does every chain of them: where a transition leads, which scopes and counters it starts afresh, and which loop it
+//! repeats. So its cost does not depend on loop counts, and every lowering is held against its plan.
+
+use std::fmt;
+
+use mdle_runtime::fsm::{Bracket, Kind};
+
+use super::{Lowered, RecordPlace};
+use crate::diagnostic::{Code, Diagnostic, Span};
+use crate::plan::{Interrupt, Mark, Node, Nondegenerate, Record, Scope};
+
+/// Says whether `lowered` is the machine of `plan`.
+///
+/// # Errors
+/// E0901: the first place at which it is not, with what the plan asks for and what the machine has. That is a defect of the
+/// compiler.
+pub fn validate(plan: &Nondegenerate, lowered: &Lowered) -> Result<(), Diagnostic> {
+    let root = &plan.plan().root;
+    let mut walk = Walk { lowered, brackets: 0, atoms: 0 };
+    let states = walk.scope(root, Around { holder: 0, behind: None, scopes: 0, loops: 0, states: 0 })?;
+    same(root.span, "its brackets", walk.brackets, lowered.brackets.len() as u32)?;
+    same(root.span, "its atoms", walk.atoms, lowered.atoms.len() as u32)?;
+    same(
+        root.span,
+        "its meanings",
+        (walk.brackets, walk.atoms),
+        (lowered.scopes.len() as u32, lowered.laws.len() as u32),
+    )?;
+    same(root.span, "its termination state", states + 1, u128::from(lowered.termination))
+}
+
+/// What is around a node of the plan.
+#[derive(Clone, Copy)]
+struct Around {
+    /// The bracket of the node around it; of the plan, its own.
+    holder: u32,
+    /// Whether something follows it there; `None` for the plan.
+    behind: Option<bool>,
+    /// How many scopes are around it.
+    scopes: u16,
+    /// How many loops.
+    loops: u16,
+    /// How many states of the expanded plan come before it, in the first pass of every loop.
+    states: u128,
+}
+
+/// What happens when a node ends: one step outwards.
+#[derive(Debug, PartialEq)]
+enum Step {
+    /// The plan is over.
+    Over,
+    /// This atom becomes current; what is in this bracket starts afresh.
+    Enters { atom: u32, inside: u32 },
+    /// What is around it, this bracket, has come to the end of its string: a loop may repeat it.
+    Ends { bracket: u32 },
+}
+
+struct Walk<'l> {
+    lowered: &'l Lowered,
+    /// How many brackets and atoms of the plan have been met.
+    brackets: u32,
+    atoms: u32,
+}
+
+impl Walk<'_> {
+    /// Holds a scope against the machine; the number of its states.
+    fn scope(&mut self, scope: &Scope, around: Around) -> Result<u128, Diagnostic> {
+        let (number, first) = self.met();
+        let inside = Around { holder: number, scopes: around.scopes.saturating_add(1), ..around };
+        let states = self.sequence(&scope.body, inside)?;
+        let kind = Kind::Scope { level: around.scopes };
+        self.bracket(number, first, kind, around, scope.span)?;
+        self.meaning(number, Some((&scope.name, &scope.interrupt)), &scope.marks, around, scope.span)?;
+        if let Some(record) = scope.record {
+            self.record(record, scope, around)?;
+        }
+        Ok(states)
+    }
+
+    fn sequence(&mut self, body: &[Node], inside: Around) -> Result<u128, Diagnostic> {
+        let mut states = 0;
+        for (place, node) in body.iter().enumerate() {
+            let behind = Some(place + 1 < body.len());
+            let here = Around { behind, states: inside.states + states, ..inside };
+            states += match node {
+                Node::Atom(_) => self.atom(node, here)?,
+                Node::Scope(scope) => self.scope(scope, here)?,
+                Node::Loop(_) => self.repeated(node, here)?,
+            };
+        }
+        Ok(states)
+    }
+
+    fn repeated(&mut self, node: &Node, around: Around) -> Result<u128, Diagnostic> {
+        let Node::Loop(repeated) = node else { return Ok(0) };
+        let (number, first) = self.met();
+        let inside = Around { holder: number, loops: around.loops.saturating_add(1), ..around };
+        let pass = self.sequence(&repeated.body, inside)?;
+        // Passes of a loop without end are the same states again.
+        let (times, stride) = repeated.times.map_or((0, 0), |times| (times, pass));
+        same(repeated.span, "the states of a pass", Some(stride), self.stride(number))?;
+        let kind = Kind::Loop { times, slot: around.loops, stride: stride as u64 };
+        self.bracket(number, first, kind, around, repeated.span)?;
+        self.meaning(number, None, &repeated.marks, around, repeated.span)?;
+        if usize::from(around.loops) >= self.lowered.slots {
+            return Err(mismatch(
+                repeated.span,
+                "its counter",
+                "a place for it",
+                &format!("{} places", self.lowered.slots),
+            ));
+        }
+        Ok(pass * u128::from(times.max(1)))
+    }
+
+    fn atom(&mut self, node: &Node, around: Around) -> Result<u128, Diagnostic> {
+        let Node::Atom(atom) = node else { return Ok(0) };
+        let (number, first) = self.met();
+        self.atoms += 1;
+        self.bracket(number, first, Kind::Scope { level: around.scopes }, around, atom.span)?;
+        self.meaning(number, Some(("", &atom.interrupt)), &atom.marks, around, atom.span)?;
+        let made = self.lowered.atoms.get(first as usize);
+        let made = made.map(|made| (made.scope, u128::from(made.state)));
+        same(atom.span, "its bracket and state", Some((number, around.states + 1)), made)?;
+        let law = self.lowered.laws.get(first as usize).map(|law| (law.quark, law.frame.to_bits()));
+        same(atom.span, "its law and frame", Some((atom.law, atom.frame.to_bits())), law)?;
+        Ok(1)
+    }
+
+    /// The number of the next bracket, and of the first atom in it.
+    fn met(&mut self) -> (u32, u32) {
+        self.brackets += 1;
+        (self.brackets - 1, self.atoms)
+    }
+
+    /// Whether a bracket is of this kind, begins with this atom, and is followed by what follows it in the plan.
+    fn bracket(&self, number: u32, first: u32, kind: Kind, around: Around, span: Span) -> Result<(), Diagnostic> {
+        let made = self.lowered.brackets.get(number as usize);
+        same(span, "what it is", Some((kind, first)), made.map(|made| (made.kind, made.first)))?;
+        let asked = match around.behind {
+            None => Step::Over,
+            // All that is in it was met, so the next atom is the first one behind it.
+            Some(true) => Step::Enters { atom: self.atoms, inside: around.holder },
+            Some(false) => Step::Ends { bracket: around.holder },
+        };
+        same(span, "what follows it", Some(asked), made.and_then(|made| self.step(number, made)))
+    }
+
+    /// What the machine does when this bracket ends.
+    fn step(&self, number: u32, bracket: &Bracket) -> Option<Step> {
+        if number == 0 {
+            return (bracket.parent == 0 && bracket.last as usize + 1 == self.lowered.atoms.len())
+                .then_some(Step::Over);
+        }
+        // Who asks outwards comes to the plan in the end.
+        let holder = self.lowered.brackets.get(bracket.parent as usize).filter(|_| bracket.parent < number)?;
+        Some(if bracket.last == holder.last {
+            Step::Ends { bracket: bracket.parent }
+        } else {
+            Step::Enters { atom: bracket.last.saturating_add(1), inside: bracket.parent }
+        })
+    }
+
+    fn stride(&self, number: u32) -> Option<u128> {
+        match self.lowered.brackets.get(number as usize)?.kind {
+            Kind::Loop { stride, .. } => Some(u128::from(stride)),
+            Kind::Scope { .. } => None,
+        }
+    }
+
+    /// Whether a bracket has this name and interrupt and these labels, and memory enough.
+    fn meaning(
+        &self,
+        number: u32,
+        asked: Option<(&str, &Interrupt)>,
+        marks: &[Mark],
+        around: Around,
+        span: Span,
+    ) -> Result<(), Diagnostic> {
+        let made = self.lowered.scopes.get(number as usize);
+        let made = made.map(|made| made.as_ref().map(|made| (made.name.as_str(), &made.interrupt)));
+        same(span, "its name and interrupt", Some(asked), made)?;
+        same(span, "its labels", marks, self.lowered.marks.get(&number).map_or(&[], Vec::as_slice))?;
+        let Some((_, interrupt)) = asked else { return Ok(()) };
+        let (memories, levels) = (self.lowered.memories, self.lowered.levels);
+        if interrupt.memories as usize > memories {
+            return Err(mismatch(span, "its memories", &interrupt.memories.to_string(), &memories.to_string()));
+        }
+        if interrupt.condition.waits() && usize::from(around.scopes) >= levels {
+            let asked = format!("one of level {}", around.scopes);
+            return Err(mismatch(span, "its timer", &asked, &format!("timers of {levels} levels")));
+        }
+        Ok(())
+    }
+
+    /// Whether a record lies beside the memories of its scope's interrupt, and all of it.
+    fn record(&self, record: Record, scope: &Scope, around: Around) -> Result<(), Diagnostic> {
+        let (first, facts) = (scope.interrupt.memories, record.facts);
+        let asked = RecordPlace { level: around.scopes, first, facts };
+        same(scope.span, "its record", Some(asked), self.lowered.records.get(&record.id).copied())?;
+        let (end, memories) = (first as usize + facts as usize, self.lowered.memories);
+        if end > memories {
+            Err(mismatch(scope.span, "its record", &end.to_string(), &memories.to_string()))
+        } else {
+            Ok(())
+        }
+    }
+}
+
+/// Whether the plan and the machine agree.
+fn same<T: PartialEq + fmt::Debug>(span: Span, what: &str, asked: T, made: T) -> Result<(), Diagnostic> {
+    if asked == made { Ok(()) } else { Err(mismatch(span, what, &format!("{asked:?}"), &format!("{made:?}"))) }
+}
+
+fn mismatch(span: Span, what: &str, asked: &str, made: &str) -> Diagnostic {
+    let message =
+        format!("the machine is not that of the plan: {what} is {asked} in the plan and {made} in the machine");
+    Diagnostic::new(Code::E0901, message, span, "this is not what was made of it")
+        .help("this is a defect of mdlec, not of the plan: please report it with the plan")
+}

@@ -1,0 +1,64 @@
+//! Paths that a robot can be told to drive: headings and forward speeds against time, and the store that has them by name.
+
+use crate::{MetersPerSecond, Nanos, Radians};
+
+/// What the robot is to do at one time of a path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Setpoint {
+    /// The time since the path began.
+    pub at: Nanos,
+    /// The heading, in the frame of the atom that replays it; between -π and π.
+    pub heading: Radians,
+    /// The forward speed.
+    pub speed: MetersPerSecond,
+}
+
+/// A path under the name by which plans ask for it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StoredPath {
+    /// What stands behind `path` in the plan.
+    pub name: &'static str,
+    /// Its setpoints: the first at time 0, each later than the one before.
+    pub setpoints: &'static [Setpoint],
+}
+
+/// The paths that a plan can replay. They were read before the robot moves and stay until the program ends, so an output
+/// can hold them all and still be copied in a turn.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct PathStore(&'static [StoredPath]);
+
+impl PathStore {
+    /// A store without any path.
+    pub const EMPTY: Self = Self(&[]);
+
+    /// The store of these paths, in the order of their names.
+    #[must_use]
+    pub const fn new(paths: &'static [StoredPath]) -> Self {
+        Self(paths)
+    }
+
+    /// The setpoints of a path; `None` if there is no path of this name.
+    #[must_use]
+    pub fn path(&self, name: &str) -> Option<&'static [Setpoint]> {
+        let place = self.0.binary_search_by(|path| path.name.cmp(name)).ok()?;
+        self.0.get(place).map(|path| path.setpoints)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_is_found_by_its_whole_name() {
+        static HALL: [Setpoint; 1] = [Setpoint { at: Nanos::ZERO, heading: Radians(1.0), speed: MetersPerSecond(0.2) }];
+        static PATHS: [StoredPath; 2] =
+            [StoredPath { name: "empty", setpoints: &[] }, StoredPath { name: "hall", setpoints: &HALL }];
+        let store = PathStore::new(&PATHS);
+        assert_eq!(
+            ["hall", "empty", "hal", "Hall", ""].map(|name| store.path(name).map(<[Setpoint]>::len)),
+            [Some(1), Some(0), None, None, None]
+        );
+        assert_eq!(PathStore::EMPTY.path("hall"), None);
+    }
+}

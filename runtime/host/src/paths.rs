@@ -1,0 +1,153 @@
+//! The store of paths: what a plan replays is read before its robot moves, and what a robot drives can be recorded.
+
+mod record;
+#[cfg(test)]
+mod tests;
+mod text;
+
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Read as _};
+use std::path::{Path, PathBuf};
+
+use clap::{Arg, ArgMatches, Command, value_parser};
+use mdle_runtime::{MetersPerSecond, PathStore, Robot, Setpoint, StoredPath, Twist};
+
+pub(crate) use record::Recorder;
+use text::{APART, Wrong};
+
+use crate::arguments::Options;
+use crate::log::Untouched;
+use crate::{Batch, Refusal, Target};
+
+/// The largest file that is read, in bytes: at ten rows a second some eleven hours.
+const LARGEST: u64 = 10_000_000;
+
+/// What it takes to replay and to record paths on a robot whose alphabet has the capability `paths`.
+pub struct Replays<R: Robot> {
+    /// The fastest that a path may ask the robot to drive, forwards or backwards, and to turn.
+    pub fastest: Twist,
+    /// Hands the robot what the plan replays, before the first exchange: from then on each output has it.
+    pub take: fn(&mut R, PathStore),
+    /// How fast the robot drives forward, by this output.
+    pub speed: fn(&R::Output) -> MetersPerSecond,
+}
+
+/// Adds the options of a target that replays paths.
+pub(crate) fn arguments(command: Command) -> Command {
+    let option = |name, value| Arg::new(name).long(name).value_name(value).value_parser(value_parser!(PathBuf));
+    command
+        .arg(
+            option("paths", "FOLDER")
+                .help("Where the files are whose paths the plan replays [default: the current folder]"),
+        )
+        .arg(
+            option("record-path", "FILE.csv")
+                .help("Write down the headings and the speeds that are driven, as a path that a plan can replay"),
+        )
+}
+
+/// The file of `--record-path`.
+pub(crate) fn recording<T: Target>(matches: &ArgMatches) -> Option<PathBuf> {
+    T::PATHS.and_then(|_| matches.get_one("record-path").cloned())
+}
+
+/// Whether turns are short enough for a path to be recorded.
+///
+/// # Errors
+/// They are not: what is recorded could not be replayed.
+pub(crate) fn check_period(options: &Options) -> Result<(), Refusal> {
+    if options.path.is_none() || options.period <= APART {
+        return Ok(());
+    }
+    let (apart, period) = (APART.as_secs_f64(), options.period.as_secs_f64());
+    let sentence = format!("--record-path: a path has a row every {apart} s at least, and a turn takes {period} s");
+    Err(Refusal::Usage(format!("{sentence}; choose a shorter --period")))
+}
+
+/// Begins to record the path that a robot drives; `None` if it cannot tell.
+///
+/// # Errors
+/// What the file held cannot be cut off.
+pub(crate) fn recorder<T: Target>(file: Untouched<'_>) -> io::Result<Option<Recorder<<T::Robot as Robot>::Output>>> {
+    let Some(Replays { speed, .. }) = T::PATHS else { return Ok(None) };
+    Ok(Some(Recorder::new(file.emptied()?, speed)))
+}
+
+/// Reads the paths that a plan replays.
+///
+/// # Errors
+/// A path that is not there, is none, or is too fast for the robot: in which file, where and why.
+pub(crate) fn load<T: Target>(matches: &ArgMatches, names: &[&'static str]) -> Result<PathStore, Refusal> {
+    if names.is_empty() {
+        return Ok(PathStore::EMPTY);
+    }
+    let Some(Replays { fastest, .. }) = T::PATHS else {
+        return Err(Refusal::Usage(format!(
+            "the plan replays paths, and the crate of the robot {} does not say how: it needs `Target::PATHS`",
+            T::NAME
+        )));
+    };
+    let folder = matches.get_one::<PathBuf>("paths").map(PathBuf::as_path);
+    if let Some(folder) = folder.filter(|folder| !folder.is_dir()) {
+        return Err(Refusal::Usage(format!("--paths {}: there is no such folder", folder.display())));
+    }
+    let read = |name| read(folder, name, fastest).map(|setpoints| (name, setpoints)).map_err(Refusal::Usage);
+    let paths: BTreeMap<&'static str, Vec<Setpoint>> = names.iter().copied().map(read).collect::<Result<_, _>>()?;
+    let stored = paths.into_iter().map(|(name, setpoints)| StoredPath { name, setpoints: setpoints.leak() });
+    Ok(PathStore::new(stored.collect::<Vec<_>>().leak()))
+}
+
+/// Hands a robot its paths.
+pub(crate) fn hand_over<T: Target>(robot: &mut T::Robot, store: PathStore) {
+    if let Some(Replays { take, .. }) = T::PATHS {
+        take(robot, store);
+    }
+}
+
+/// The same batch, whose robots have these paths.
+pub(crate) fn in_batch<T: Target>(batch: Batch<T::Robot>, store: PathStore) -> Batch<T::Robot> {
+    let Some(Replays { take, .. }) = T::PATHS else { return batch };
+    let make = batch.robot;
+    let robot = move |seed| {
+        let mut robot = make(seed)?;
+        take(&mut robot, store);
+        Ok(robot)
+    };
+    Batch { robot: Box::new(robot), ..batch }
+}
+
+/// Reads the path that a plan calls `name`: a name without an ending is that of a CSV file.
+fn read(folder: Option<&Path>, name: &str, fastest: Twist) -> Result<Vec<Setpoint>, String> {
+    let file = if Path::new(name).extension().is_some() { name.to_owned() } else { format!("{name}.csv") };
+    let place = folder.map_or_else(|| PathBuf::from(&file), |folder| folder.join(&file));
+    let shown = place.display();
+    let found = fs::metadata(&place).map_err(|error| match (error.kind(), folder) {
+        (ErrorKind::NotFound, None) => format!(
+            "there is no file `{shown}` in the current folder, and the plan replays its path; \
+             `--paths FOLDER` says where it is"
+        ),
+        (ErrorKind::NotFound, Some(_)) => {
+            format!("there is no file `{shown}`, and the plan replays its path; does --paths name the right folder?")
+        }
+        _ => format!("the path {shown} cannot be read: {error}"),
+    })?;
+    if found.is_dir() {
+        return Err(format!("the path {shown} is a folder; expected a CSV file"));
+    }
+    if !found.is_file() {
+        return Err(format!("the path {shown} is no regular file; expected a CSV file"));
+    }
+    let mut bytes = Vec::new();
+    let file = File::open(&place).and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes));
+    file.map_err(|error| format!("the path {shown} cannot be read: {error}"))?;
+    if bytes.len() as u64 > LARGEST {
+        let megabytes = LARGEST / 1_000_000;
+        return Err(format!("the path {shown} is larger than {megabytes} MB, which is the most; cut it in two"));
+    }
+    let read = text::utf8(&bytes).and_then(|text| text::setpoints(text, fastest));
+    read.map_err(|Wrong { place, what }| match place {
+        Some((line, column)) => format!("{shown}:{line}:{column}: {what}"),
+        None => format!("{shown}: {what}"),
+    })
+}

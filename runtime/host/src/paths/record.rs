@@ -1,0 +1,45 @@
+//! What a robot drives, written down as a path: a row a turn.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+
+use mdle_runtime::{MetersPerSecond, Nanos, Output, Radians};
+
+/// A path that is being recorded, by the outputs `Y` of a robot.
+pub(crate) struct Recorder<Y, W: Write = File> {
+    file: BufWriter<W>,
+    speed: fn(&Y) -> MetersPerSecond,
+    /// The heading in which the plan began, by odometry.
+    begun: Option<Radians>,
+    /// Nothing more is written after an error, which is told in the end: a recording is no reason to stop a robot.
+    written: io::Result<()>,
+}
+
+impl<Y: Output, W: Write> Recorder<Y, W> {
+    /// A recording to `file` of a robot that drives at this speed by an output.
+    pub(crate) fn new(file: W, speed: fn(&Y) -> MetersPerSecond) -> Self {
+        let mut file = BufWriter::new(file);
+        let written = file.write_all(b"time s, heading deg, speed cm/s\n");
+        Self { file, speed, begun: None, written }
+    }
+
+    /// Writes the row of the turn at time `t`.
+    pub(crate) fn take(&mut self, y: &Y, t: Nanos) {
+        let heading = y.here().theta;
+        let begun = *self.begun.get_or_insert(heading);
+        if self.written.is_ok() {
+            let degrees = Radians(heading.0 - begun.0).wrapped().degrees();
+            let (seconds, speed) = (t.seconds(), (self.speed)(y).0 * 100.0);
+            self.written = writeln!(self.file, "{seconds}, {degrees:.4}, {speed:.4}");
+        }
+    }
+
+    /// Hands the rest to the system.
+    ///
+    /// # Errors
+    /// When not all could be written.
+    pub(crate) fn close(mut self) -> io::Result<()> {
+        self.written?;
+        self.file.flush()
+    }
+}

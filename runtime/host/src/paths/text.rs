@@ -1,0 +1,233 @@
+//! The text of a path: a line of columns with their units, then a row for each setpoint; `#` begins a comment.
+
+use std::f64::consts::PI;
+use std::str::from_utf8;
+use std::time::Duration;
+
+use mdle_runtime::{MetersPerSecond, Nanos, Radians, Setpoint, Twist};
+
+/// How far apart two rows may be: further, and what lies between them would be made up.
+pub(super) const APART: Duration = Duration::from_secs(1);
+
+/// What a file may begin with.
+const HEADER: &str = "`time s, heading deg, speed cm/s`";
+/// What a path may ask for of what the robot can do: what was measured of a robot at its limits may lie above them.
+const MARGIN: f64 = 1.05;
+/// The latest time, in nanoseconds: up to there they are whole in a number with a fraction. Three months.
+const LATEST: f64 = (1_u64 << 53) as f64;
+
+/// A column, and its units as nanoseconds, radians, or metres a second.
+struct Column {
+    name: &'static str,
+    units: [(&'static str, f64); 2],
+}
+
+const COLUMNS: [Column; 3] = [
+    Column { name: "time", units: [("s", 1e9), ("ms", 1e6)] },
+    Column { name: "heading", units: [("deg", PI / 180.0), ("rad", 1.0)] },
+    Column { name: "speed", units: [("cm/s", 0.01), ("m/s", 1.0)] },
+];
+
+/// What is wrong with a path: where, by line and column from 1, and what.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Wrong {
+    pub(super) place: Option<(usize, usize)>,
+    pub(super) what: String,
+}
+
+/// A value between commas.
+#[derive(Debug, Clone, Copy)]
+struct Cell<'t> {
+    place: (usize, usize),
+    text: &'t str,
+}
+
+impl Cell<'_> {
+    fn wrong(&self, what: String) -> Wrong {
+        Wrong { place: Some(self.place), what }
+    }
+
+    /// The number that it is, in the column's unit; `what` it tells.
+    fn number(&self, what: &str) -> Result<f64, Wrong> {
+        match self.text.parse::<f64>() {
+            _ if self.text.is_empty() => Err(self.wrong(format!("the {what} is missing"))),
+            Ok(number) if number.is_finite() => Ok(number),
+            Ok(_) | Err(_) => Err(self.wrong(format!("the {what} is `{}`: expected a number", self.text))),
+        }
+    }
+}
+
+/// The text that a file holds.
+pub(super) fn utf8(bytes: &[u8]) -> Result<&str, Wrong> {
+    from_utf8(bytes).map_err(|error| {
+        let before = String::from_utf8_lossy(bytes.get(..error.valid_up_to()).unwrap_or_default());
+        let line = before.matches('\n').count() + 1;
+        let column = before.rsplit('\n').next().map_or(0, |line| line.chars().count()) + 1;
+        Wrong { place: Some((line, column)), what: "this is not UTF-8; save the file as text in UTF-8".to_owned() }
+    })
+}
+
+/// The setpoints that `text` tells, for a robot that is no faster than this: the first at time 0, each later than the one
+/// before.
+pub(super) fn setpoints(text: &str, fastest: Twist) -> Result<Vec<Setpoint>, Wrong> {
+    // Spreadsheets like to put it in front.
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let told = text.lines().map(|line| line.split_once('#').map_or(line, |(told, _)| told));
+    let mut lines = (1..).zip(told).filter(|(_, told)| !told.trim().is_empty());
+    let Some((line, header)) = lines.next() else {
+        return Err(Wrong { place: None, what: format!("there is nothing in it; a path begins with {HEADER}") });
+    };
+    let units = units(&cells(line, header))?;
+    let mut rows = Rows { units, fastest, setpoints: Vec::new() };
+    lines.try_for_each(|(line, row)| rows.push(&cells(line, row)))?;
+    if rows.setpoints.len() < 2 {
+        let what = "a path needs two rows at least: where it begins, and where it ends".to_owned();
+        return Err(Wrong { place: None, what });
+    }
+    Ok(rows.setpoints)
+}
+
+/// The values of a line.
+fn cells(line: usize, text: &str) -> Vec<Cell<'_>> {
+    let mut column = 1;
+    let cells = text.split(',').map(|cell| {
+        let blanks = cell.chars().take_while(|blank| blank.is_whitespace()).count();
+        // What is not there is missed where the next comma is.
+        let place = (line, column + if cell.trim().is_empty() { 0 } else { blanks });
+        column += cell.chars().count() + 1;
+        Cell { place, text: cell.trim() }
+    });
+    cells.collect()
+}
+
+/// The unit of each column.
+fn units(header: &[Cell<'_>]) -> Result<[(&'static str, f64); 3], Wrong> {
+    if let [cell] = header
+        && cell.text.contains([';', '\t'])
+    {
+        return Err(cell.wrong(format!("expected commas between the columns, as in {HEADER}")));
+    }
+    let mut units = [("", 0.0); 3];
+    for (number, cell) in header.iter().enumerate() {
+        if cell.text.parse::<f64>().is_ok() {
+            return Err(cell.wrong(format!("no units are told; put {HEADER} in front")));
+        }
+        let (Some(column), Some(place)) = (COLUMNS.get(number), units.get_mut(number)) else {
+            return Err(cell.wrong(format!("`{}` is one column too many; expected {HEADER}", cell.text)));
+        };
+        *place = column.unit(cell)?;
+    }
+    match (COLUMNS.get(header.len()), header.last()) {
+        (Some(missing), Some(last)) => {
+            Err(last.wrong(format!("the column `{}` is missing; expected {HEADER}", missing.name)))
+        }
+        (Some(_) | None, _) => Ok(units),
+    }
+}
+
+impl Column {
+    /// The unit in which a cell of the header says that this column is.
+    fn unit(&self, cell: &Cell<'_>) -> Result<(&'static str, f64), Wrong> {
+        let Self { name, units: [(one, _), (other, _)] } = self;
+        let mut words = cell.text.split_whitespace();
+        if words.next() != Some(name) {
+            return Err(cell.wrong(format!("expected the column `{name}`, found `{}`; as in {HEADER}", cell.text)));
+        }
+        let told = words.collect::<Vec<_>>().join(" ");
+        let found = self.units.into_iter().find(|(unit, _)| *unit == told);
+        found.ok_or_else(|| {
+            let expected = format!("expected `{name} {one}` or `{name} {other}`");
+            cell.wrong(match told.as_str() {
+                "" => format!("the unit of `{name}` is missing: {expected}"),
+                told => format!("`{told}` is no unit of `{name}`: {expected}"),
+            })
+        })
+    }
+}
+
+/// The rows read so far.
+struct Rows {
+    units: [(&'static str, f64); 3],
+    fastest: Twist,
+    setpoints: Vec<Setpoint>,
+}
+
+impl Rows {
+    fn push(&mut self, row: &[Cell<'_>]) -> Result<(), Wrong> {
+        let [(_, nanos), (_, radians), (_, metres)] = self.units;
+        let (time, heading, speed) = match row {
+            [time, heading, speed] => (time, heading, speed),
+            [_, _, _, more, ..] => {
+                return Err(more.wrong(format!("`{}` is one value too many; expected time, heading, speed", more.text)));
+            }
+            [.., last] => return Err(last.wrong("a value is missing; expected time, heading, speed".to_owned())),
+            [] => return Ok(()),
+        };
+        let at = self.time(time, time.number("time")? * nanos)?;
+        let setpoint = Setpoint {
+            at,
+            heading: Radians(heading.number("heading")? * radians).wrapped(),
+            speed: MetersPerSecond(speed.number("speed")? * metres),
+        };
+        self.check_speed(speed, setpoint.speed)?;
+        self.check_turn(heading, &setpoint)?;
+        self.setpoints.push(setpoint);
+        Ok(())
+    }
+
+    /// The time of the next row, which is so many nanoseconds after the first.
+    fn time(&self, cell: &Cell<'_>, nanos: f64) -> Result<Nanos, Wrong> {
+        if nanos > LATEST {
+            return Err(cell.wrong(format!("no path is as long as {}", self.shown(cell))));
+        }
+        // What is negative becomes 0, and is told below.
+        let at = Nanos(nanos.round() as u64);
+        match self.setpoints.last() {
+            None if nanos != 0.0 => {
+                Err(cell.wrong(format!("the first row is at {}: a path begins at time 0", self.shown(cell))))
+            }
+            None => Ok(at),
+            Some(last) if nanos.is_sign_negative() || at <= last.at => Err(cell.wrong(format!(
+                "the row before is at {} s, and this one at {}: times have to increase",
+                last.at.seconds(),
+                self.shown(cell)
+            ))),
+            Some(last) if u128::from(at.since(last.at).0) > APART.as_nanos() => Err(cell.wrong(format!(
+                "a gap: there is no row between {} s and {} s, and two rows may be {} s apart; fill it, or cut the path in two",
+                last.at.seconds(),
+                at.seconds(),
+                APART.as_secs()
+            ))),
+            Some(_) => Ok(at),
+        }
+    }
+
+    /// A time as it is written, with its unit.
+    fn shown(&self, cell: &Cell<'_>) -> String {
+        let [(unit, _), ..] = self.units;
+        format!("{} {unit}", cell.text)
+    }
+
+    fn check_speed(&self, cell: &Cell<'_>, speed: MetersPerSecond) -> Result<(), Wrong> {
+        let ([.., (unit, metres)], fastest) = (self.units, self.fastest.v.0);
+        if speed.0.abs() <= fastest * MARGIN {
+            return Ok(());
+        }
+        let fastest = fastest / metres;
+        Err(cell.wrong(format!("{} {unit} is too fast: this robot drives at {fastest} {unit} at most", cell.text)))
+    }
+
+    /// Whether the robot can turn to this heading from the one before in time.
+    fn check_turn(&self, cell: &Cell<'_>, to: &Setpoint) -> Result<(), Wrong> {
+        let Some(from) = self.setpoints.last() else { return Ok(()) };
+        let (turn, seconds) = (Radians(to.heading.0 - from.heading.0).wrapped(), to.at.since(from.at).seconds());
+        let fastest = self.fastest.omega.0;
+        if turn.0.abs() <= fastest * MARGIN * seconds {
+            return Ok(());
+        }
+        let [turn, fastest] = [turn.0.abs(), fastest].map(|angle| (Radians(angle).degrees() * 10.0).round() / 10.0);
+        Err(cell.wrong(format!(
+            "{turn} deg in {seconds} s is too fast a turn: this robot turns by {fastest} deg/s at most; give it more time"
+        )))
+    }
+}

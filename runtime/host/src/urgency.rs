@@ -1,0 +1,60 @@
+//! What keeps other programs from making turns late: real-time scheduling, and memory that is not paged out.
+
+use rustix::mm::{MlockAllFlags, mlockall};
+use thread_priority::{
+    RealtimeThreadSchedulePolicy, ThreadPriority, ThreadSchedulePolicy, set_thread_priority_and_policy,
+    thread_native_id,
+};
+
+/// The priority among real-time threads, from 1 to 99: above ordinary programs, below the kernel's own threads.
+const PRIORITY: u8 = 50;
+/// As the operator is told of it.
+const SCHEDULING: &str = "real-time scheduling";
+/// As the operator is told of it.
+const MEMORY: &str = "locked memory";
+
+/// Has this thread run before all ordinary ones whenever it is ready, and all memory of this process stay where it is.
+/// What is allocated later may be paged out: a limit on locked memory would make asking for it fail in mid-run, and a
+/// turn asks for none.
+///
+/// # Errors
+/// What the system does not permit, in words. The run goes on without it.
+pub(crate) fn claim() -> Result<(), String> {
+    let first_in_first_out = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
+    let is_scheduled = ThreadPriority::try_from(PRIORITY)
+        .is_ok_and(|priority| set_thread_priority_and_policy(thread_native_id(), priority, first_in_first_out).is_ok());
+    let is_locked = mlockall(MlockAllFlags::CURRENT).is_ok();
+    let claims = [(SCHEDULING, is_scheduled), (MEMORY, is_locked)];
+    let refused: Vec<_> = claims.into_iter().filter(|(_, is_granted)| !is_granted).map(|(what, _)| what).collect();
+    if refused.is_empty() { Ok(()) } else { Err(refused.join(" and ")) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{MEMORY, PRIORITY, SCHEDULING, claim};
+
+    /// Scheduling policy and real-time priority of this thread, fields 41 and 40 of proc(5), and the locked memory in kB.
+    fn granted() -> (u32, u32, u64) {
+        let stat = std::fs::read_to_string("/proc/thread-self/stat").unwrap();
+        let after_name: Vec<u32> = stat
+            .rsplit(')')
+            .next()
+            .unwrap()
+            .split_whitespace()
+            .map(|field| field.parse().unwrap_or_default())
+            .collect();
+        let status = std::fs::read_to_string("/proc/thread-self/status").unwrap();
+        let locked = status.lines().find_map(|line| line.strip_prefix("VmLck:")).unwrap();
+        (after_name[38], after_name[37], locked.trim().trim_end_matches(" kB").parse().unwrap())
+    }
+
+    #[test]
+    fn what_is_not_refused_is_granted() {
+        // Scheduling is the thread's own; this one is not needed any more.
+        let (answer, (policy, priority, locked)) = std::thread::spawn(|| (claim(), granted())).join().unwrap();
+        let refused = |what: &str| answer.as_ref().is_err_and(|why| why.contains(what));
+        let first_in_first_out = 1;
+        assert_eq!((policy, priority) == (first_in_first_out, PRIORITY.into()), !refused(SCHEDULING));
+        assert_eq!(locked > 0, !refused(MEMORY));
+    }
+}

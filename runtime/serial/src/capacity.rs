@@ -1,0 +1,28 @@
+//! What a line carries in a turn.
+
+use std::time::Duration;
+
+/// Bits of a byte on the line: eight, a start and a stop.
+const BITS: f64 = 10.0;
+
+/// How long so many bytes take on a line of so many bits a second.
+#[must_use]
+pub fn time_of(bytes: usize, speed: u32) -> Duration {
+    Duration::from_secs_f64(bytes as f64 * BITS / f64::from(speed.max(1)))
+}
+
+/// Sees that turns of this period leave the line the time that it takes.
+///
+/// # Errors
+/// The sentence that says that they do not.
+pub fn carries(period: Duration, takes: Duration) -> Result<(), String> {
+    if takes <= period {
+        return Ok(());
+    }
+    let least = (takes.as_secs_f64() * 1e3).ceil() / 1e3;
+    Err(format!(
+        "a --period of {} s is too short for this robot's line, on which each turn takes {takes:.1?}: \
+         choose {least} s or longer",
+        period.as_secs_f64()
+    ))
+}

@@ -1,0 +1,81 @@
+//! Which of the lines has a driver at its other end: whoever opens and closes the device is seen by the system.
+
+use std::mem::MaybeUninit;
+use std::os::fd::OwnedFd;
+use std::path::Path;
+use std::{io, iter};
+
+use rustix::fs::inotify::{self, CreateFlags, ReadFlags, Reader, WatchFlags};
+use rustix::io::Errno;
+
+/// The lines, in their order.
+#[derive(Debug)]
+pub(crate) struct Presence {
+    watch: OwnedFd,
+    lines: Vec<Seen>,
+}
+
+/// What was seen of a line.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    /// What the system calls it.
+    number: i32,
+    /// How many have it open, and whether anybody ever had.
+    users: u32,
+    has_begun: bool,
+}
+
+impl Presence {
+    /// Of the drivers at these devices, from now on.
+    ///
+    /// # Errors
+    /// The system cannot watch so many.
+    pub(crate) fn of<'p>(devices: impl Iterator<Item = &'p Path>) -> io::Result<Self> {
+        let watch = inotify::init(CreateFlags::NONBLOCK | CreateFlags::CLOEXEC)?;
+        let events = WatchFlags::OPEN | WatchFlags::CLOSE_WRITE | WatchFlags::CLOSE_NOWRITE;
+        let seen = |device: &Path| inotify::add_watch(&watch, device, events);
+        let lines = devices.map(|device| Ok(Seen { number: seen(device)?, users: 0, has_begun: false }));
+        let lines = lines.collect::<io::Result<_>>()?;
+        Ok(Self { watch, lines })
+    }
+
+    /// What can be waited for: it can be read when somebody has come or gone.
+    pub(crate) fn end(&self) -> &OwnedFd {
+        &self.watch
+    }
+
+    /// Takes in who has come and gone.
+    ///
+    /// # Errors
+    /// The system no longer tells.
+    pub(crate) fn look(&mut self) -> io::Result<()> {
+        let mut buffer = [MaybeUninit::uninit(); 1024];
+        let mut reader = Reader::new(&self.watch, &mut buffer);
+        let events = iter::from_fn(|| match reader.next() {
+            Ok(event) => Some(Ok((event.wd(), event.events()))),
+            Err(Errno::AGAIN | Errno::INTR) => None,
+            Err(error) => Some(Err(error)),
+        });
+        for event in events {
+            let (number, events) = event?;
+            for line in self.lines.iter_mut().filter(|line| line.number == number) {
+                if events.contains(ReadFlags::OPEN) {
+                    (line.users, line.has_begun) = (line.users.saturating_add(1), true);
+                } else {
+                    line.users = line.users.saturating_sub(1);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether each line has had a driver by now.
+    pub(crate) fn all_have_begun(&self) -> bool {
+        self.lines.iter().all(|line| line.has_begun)
+    }
+
+    /// Whether each line has one now, in their order.
+    pub(crate) fn are_open(&self) -> impl Iterator<Item = bool> {
+        self.lines.iter().map(|line| line.users > 0)
+    }
+}

@@ -1,0 +1,154 @@
+//! Several robots in one world, each at its own line: they hear and touch each other.
+//!
+//! In lockstep the world passes on by a step once each robot that has a driver has been told its command for that step. It
+//! begins when each of them has had a driver; one whose driver has gone no longer holds up the others, and its own
+//! watchdog stops it. In a step the robots move one behind the other, in their order.
+
+use std::io;
+use std::time::{Duration, Instant};
+
+use mdle_sim::Disc;
+use rustix::event::{PollFd, PollFlags, Timespec, poll};
+use rustix::io::Errno;
+
+use crate::port::Port;
+use crate::presence::Presence;
+use crate::serve::{self, Embodied, Emulated, Pace, SLICE, STEP, say};
+
+/// A robot and its line.
+#[derive(Debug)]
+pub struct Seat<R> {
+    /// The robot.
+    pub robot: R,
+    /// Its line.
+    pub port: Port,
+}
+
+/// Robots in one world.
+#[derive(Debug)]
+pub struct Several<R> {
+    seats: Vec<Seat<R>>,
+    presence: Presence,
+}
+
+impl<R> Several<R> {
+    /// Whoever comes to one of these lines is seen from now on.
+    ///
+    /// # Errors
+    /// The system cannot watch so many.
+    pub fn of(seats: Vec<Seat<R>>) -> io::Result<Self> {
+        let presence = Presence::of(seats.iter().map(|seat| seat.port.path()))?;
+        Ok(Self { seats, presence })
+    }
+
+    /// The robots at their lines.
+    #[must_use]
+    pub fn seats(&self) -> &[Seat<R>] {
+        &self.seats
+    }
+}
+
+impl<R: Emulated + Embodied> Several<R> {
+    /// Serves all of them as long as `goes_on` says so, and then until they have done what they were told before.
+    ///
+    /// # Errors
+    /// A line failed, or the world did.
+    pub fn serve(&mut self, pace: Pace, goes_on: &dyn Fn() -> bool) -> io::Result<()> {
+        let Self { seats, presence } = self;
+        match seats.as_mut_slice() {
+            // One alone has nobody to wait for.
+            [Seat { robot, port }] => serve::serve(robot, port, pace, goes_on),
+            several => serve_several(several, presence, pace, goes_on),
+        }
+    }
+}
+
+fn serve_several<R: Emulated + Embodied>(
+    seats: &mut [Seat<R>],
+    presence: &mut Presence,
+    pace: Pace,
+    goes_on: &dyn Fn() -> bool,
+) -> io::Result<()> {
+    // Who has been told its command for the coming step.
+    let mut told = vec![false; seats.len()];
+    let mut next = Instant::now() + STEP;
+    loop {
+        let ends = !goes_on();
+        let limit = match pace {
+            _ if ends => Duration::ZERO,
+            Pace::Lockstep(_) => SLICE,
+            Pace::Real => next.saturating_duration_since(Instant::now()).min(SLICE),
+        };
+        wait(seats, presence, limit)?;
+        let mut was_told = false;
+        for (seat, told) in seats.iter_mut().zip(&mut told) {
+            was_told |= seat.port.read(Duration::ZERO, &mut |bytes| seat.robot.push(bytes))?;
+            hear(seat, pace, told)?;
+        }
+        presence.look()?;
+        match pace {
+            Pace::Lockstep(step) => {
+                while is_due(presence, &told) {
+                    pass(seats, step)?;
+                    for (seat, told) in seats.iter_mut().zip(&mut told) {
+                        *told = false;
+                        hear(seat, pace, told)?;
+                    }
+                }
+            }
+            Pace::Real => {
+                while next <= Instant::now() {
+                    pass(seats, STEP)?;
+                    next += STEP;
+                }
+            }
+        }
+        if ends && !was_told {
+            return Ok(());
+        }
+    }
+}
+
+/// Waits until somebody says something, comes or goes, or so long.
+fn wait<R>(seats: &[Seat<R>], presence: &Presence, limit: Duration) -> io::Result<()> {
+    let timeout = Timespec { tv_sec: limit.as_secs() as i64, tv_nsec: i64::from(limit.subsec_nanos()) };
+    let ends = seats.iter().map(|seat| seat.port.end()).chain([presence.end()]);
+    let mut ends: Vec<_> = ends.map(|end| PollFd::new(end, PollFlags::IN)).collect();
+    match poll(&mut ends, Some(&timeout)) {
+        Ok(_) | Err(Errno::INTR) => Ok(()),
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// Has a robot do what it is told, up to its command for the coming step.
+fn hear<R: Emulated>(seat: &mut Seat<R>, pace: Pace, told: &mut bool) -> io::Result<()> {
+    while !*told {
+        match seat.robot.obey() {
+            None => break,
+            Some(passes) if passes && pace != Pace::Real => *told = true,
+            Some(_) => say(&mut seat.robot, &seat.port)?,
+        }
+    }
+    Ok(())
+}
+
+/// Whether the world is to pass on.
+fn is_due(presence: &Presence, told: &[bool]) -> bool {
+    let nobody_is_waited_for = presence.are_open().zip(told).all(|(is_open, told)| *told || !is_open);
+    presence.all_have_begun() && nobody_is_waited_for && told.contains(&true)
+}
+
+/// Lets the world pass on, in which each of them finds the others where they are.
+fn pass<R: Emulated + Embodied>(seats: &mut [Seat<R>], step: Duration) -> io::Result<()> {
+    let mut discs: Vec<Disc> = seats.iter().map(|seat| seat.robot.disc()).collect();
+    for (number, Seat { robot, port }) in seats.iter_mut().enumerate() {
+        let others = discs.iter().enumerate().filter(|(other, _)| *other != number).map(|(_, disc)| *disc);
+        robot.see(&others.collect::<Vec<_>>());
+        robot.pass(step).map_err(io::Error::other)?;
+        if let Some(disc) = discs.get_mut(number) {
+            *disc = robot.disc();
+        }
+        say(robot, port)?;
+    }
+    Ok(())
+}

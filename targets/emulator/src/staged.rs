@@ -1,0 +1,122 @@
+//! An emulated robot on a stage: it serves its line in a thread, in lockstep, while a test watches what becomes of it.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicU32, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use crate::fault::Ailment;
+use crate::port::Port;
+use crate::serve::{Emulated, Pace, serve};
+
+/// A robot at its line. It is switched off when this is dropped.
+#[derive(Debug)]
+pub struct Staged<T> {
+    device: PathBuf,
+    seen: Arc<Seen<T>>,
+    serving: Option<JoinHandle<io::Result<()>>>,
+}
+
+/// What is seen of the robot from outside, and asked of its world.
+#[derive(Debug)]
+struct Seen<T> {
+    now: Mutex<T>,
+    /// How many periods are to pass in which it is told nothing.
+    idle: AtomicU32,
+    is_over: AtomicBool,
+}
+
+/// The robot as its line sees it.
+struct Watched<R, T> {
+    robot: R,
+    look: fn(&R) -> T,
+    period: Duration,
+    seen: Arc<Seen<T>>,
+}
+
+impl<T: Clone + Send + 'static> Staged<T> {
+    /// Switches on a robot whose world passes on by `period` with each command; `look` is what is seen of it.
+    ///
+    /// # Errors
+    /// The system has no more pseudo-terminals.
+    pub fn new<R: Emulated + Send + 'static>(robot: R, period: Duration, look: fn(&R) -> T) -> io::Result<Self> {
+        let port = Port::open()?;
+        let device = port.path().to_owned();
+        let now = Mutex::new(look(&robot));
+        let seen = Arc::new(Seen { now, idle: AtomicU32::new(0), is_over: AtomicBool::new(false) });
+        let mut watched = Watched { robot, look, period, seen: Arc::clone(&seen) };
+        let serving = thread::spawn(move || {
+            let seen = Arc::clone(&watched.seen);
+            serve(&mut watched, &port, Pace::Lockstep(period), &|| !seen.is_over.load(Ordering::Acquire))
+        });
+        Ok(Self { device, seen, serving: Some(serving) })
+    }
+
+    /// The device that a driver opens.
+    #[must_use]
+    pub fn device(&self) -> &Path {
+        &self.device
+    }
+
+    /// What is seen of it now.
+    #[must_use]
+    pub fn now(&self) -> T {
+        self.seen.now.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Lets so many periods pass in which the robot is told nothing, and waits for that.
+    pub fn left_alone(&self, periods: u32) {
+        self.seen.idle.store(periods, Ordering::Release);
+        while self.seen.idle.load(Ordering::Acquire) > 0 && self.serving.as_ref().is_some_and(|it| !it.is_finished()) {
+            thread::yield_now();
+        }
+    }
+}
+
+impl<T> Drop for Staged<T> {
+    fn drop(&mut self) {
+        self.seen.is_over.store(true, Ordering::Release);
+        if let Some(serving) = self.serving.take() {
+            // What went wrong there, who was at the line has noticed.
+            let _ = serving.join();
+        }
+    }
+}
+
+impl<R: Emulated, T> Emulated for Watched<R, T> {
+    fn push(&mut self, bytes: &[u8]) {
+        self.robot.push(bytes);
+    }
+
+    fn obey(&mut self) -> Option<bool> {
+        let told = self.robot.obey();
+        // Whatever was said before has been done by then.
+        if told.is_none() {
+            for _ in 0..self.seen.idle.load(Ordering::Acquire) {
+                let _ = self.pass(self.period);
+            }
+            self.seen.idle.store(0, Ordering::Release);
+        }
+        told
+    }
+
+    fn pass(&mut self, time: Duration) -> Result<(), String> {
+        self.robot.pass(time)?;
+        *self.seen.now.lock().unwrap_or_else(PoisonError::into_inner) = (self.look)(&self.robot);
+        Ok(())
+    }
+
+    fn said(&mut self) -> Vec<Vec<u8>> {
+        self.robot.said()
+    }
+
+    fn can_suffer(ailment: Ailment) -> bool {
+        R::can_suffer(ailment)
+    }
+
+    fn suffer(&mut self, ailment: Ailment) {
+        self.robot.suffer(ailment);
+    }
+}

@@ -1,0 +1,114 @@
+//! Whether what a Scout says is new: its clock goes on, and its sonars say something else where they must.
+//!
+//! A state answers a command and is as old as that, unless the controller says the same one again; that its clock shows.
+//! No clock shows when the sonars pinged. But where the robot turns, or goes towards what it hears or away from it, one of
+//! them says something else if they ping at all.
+
+use mdle_runtime::{Nanos, Pose, Radians};
+
+use crate::config::Config;
+use crate::fault::Fault;
+use crate::state::State;
+
+/// What a sonar says that heard nothing.
+const NOTHING: u8 = 255;
+/// A turn after which one of the sonars has something else before it: each of them looks where the fourth one did.
+const TURN: f64 = std::f64::consts::FRAC_PI_2;
+
+/// What was new last.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Freshness {
+    /// The time of the clock, and since when it is that.
+    clock: Option<(u32, Nanos)>,
+    sonars: [u8; 16],
+    /// Where the robot was last; how far it has gone and turned since a sonar said something new, in metres and radians.
+    pose: Pose,
+    way: f64,
+    turn: f64,
+}
+
+impl Freshness {
+    /// Takes in the state that came at `at`, with the robot at `pose` by it.
+    ///
+    /// # Errors
+    /// It is as old as the configuration allows, or what its sonars say is.
+    pub(crate) fn take(&mut self, state: &State, at: Nanos, pose: Pose, config: &Config) -> Result<(), Fault> {
+        let (_, since) =
+            *self.clock.insert(self.clock.filter(|(clock, _)| *clock == state.clock).unwrap_or((state.clock, at)));
+        if config.stale > 0 && at.since(since) >= Nanos(config.stale.saturating_mul(1_000_000)) {
+            return Err(Fault::Hung(config.stale));
+        }
+        let heard = config.sonars.iter().any(|sonar| hears(state, *sonar));
+        if !heard || state.sonars != self.sonars {
+            (self.sonars, self.pose, self.way, self.turn) = (state.sonars, pose, 0.0, 0.0);
+        }
+        let was = std::mem::replace(&mut self.pose, pose);
+        self.turn += Radians(pose.theta.0 - was.theta.0).wrapped().0.abs();
+        // Of what is beside it the way changes nothing.
+        if [0, 8].iter().any(|sonar| config.sonars.contains(sonar) && hears(state, *sonar)) {
+            self.way += libm::hypot(pose.x.0 - was.x.0, pose.y.0 - was.y.0);
+        }
+        let is_old = self.way >= config.frozen || self.turn >= TURN;
+        if config.frozen > 0.0 && is_old { Err(Fault::Frozen) } else { Ok(()) }
+    }
+}
+
+/// Whether this sonar heard something.
+fn hears(state: &State, sonar: u8) -> bool {
+    state.sonars.get(usize::from(sonar)).is_some_and(|range| *range != NOTHING)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use mdle_runtime::Meters;
+
+    use super::*;
+    use crate::config::Configured;
+
+    /// Which of these states, a second apart, is refused, and why: range ahead, range to the left, x in metres, heading in
+    /// degrees, clock.
+    fn refused(states: &[(u8, u8, f64, f64, u32)]) -> Option<(usize, Fault)> {
+        let config = Config { stale: 1500, ..Configured::read(None, None).unwrap().config };
+        let mut freshness = Freshness::default();
+        states.iter().enumerate().find_map(|(number, (ahead, left, x, degrees, clock))| {
+            let mut sonars = [NOTHING; 16];
+            (sonars[0], sonars[4]) = (*ahead, *left);
+            let state = State { sonars, clock: *clock, ..State::read(&[0; 42]).unwrap() };
+            let pose = Pose { x: Meters(*x), theta: Radians::from_degrees(*degrees), ..Pose::ORIGIN };
+            let at = Nanos(number as u64 * 1_000_000_000);
+            freshness.take(&state, at, pose, &config).err().map(|fault| (number, fault))
+        })
+    }
+
+    #[test]
+    fn a_clock_that_stands_makes_a_state_an_old_one() {
+        assert_eq!(
+            refused(&[(9, 9, 0.0, 0.0, 5), (9, 9, 0.0, 0.0, 5), (9, 9, 0.0, 0.0, 6), (9, 9, 0.0, 0.0, 6)]),
+            None
+        );
+        let stands = [(9, 9, 0.0, 0.0, 5), (8, 9, 0.5, 0.0, 5), (7, 9, 1.0, 0.0, 5)];
+        assert_eq!(refused(&stands), Some((2, Fault::Hung(1500))));
+    }
+
+    #[test]
+    fn sonars_that_say_the_same_where_they_must_not_are_old() {
+        let driven = |ahead, left| [0.0, 0.6, 1.2, 1.8].map(|x| (ahead, left, x, 0.0, (x * 10.0) as u32));
+        assert_eq!(refused(&driven(70, NOTHING)), Some((2, Fault::Frozen)));
+        // A wall beside it stays as far away as it is; and nothing is no more than nothing.
+        assert_eq!(refused(&driven(NOTHING, 70)), None);
+        let turned =
+            |left| [0.0, 50.0, 170.0, -170.0, 0.0].map(|degrees| (NOTHING, left, 0.0, degrees, degrees as u32));
+        assert_eq!(refused(&turned(70)), Some((2, Fault::Frozen)));
+        assert_eq!(refused(&turned(NOTHING)), None);
+        // It stands.
+        assert_eq!(refused(&[0, 1, 2, 3].map(|clock| (70, 70, 0.0, 0.0, clock))), None);
+    }
+
+    #[test]
+    fn one_reading_that_changes_shows_that_all_are_new() {
+        let driven =
+            [0, 6, 12, 18, 24].map(|tenths| (70, 70 + tenths / 10, f64::from(tenths) / 10.0, 0.0, tenths.into()));
+        assert_eq!(refused(&driven), None);
+    }
+}

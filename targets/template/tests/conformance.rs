@@ -1,0 +1,53 @@
+//! The robot does what any robot must do that can do what its alphabet claims. Run it with `cargo test`.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::f64::consts::FRAC_PI_2;
+use std::time::Duration;
+
+use mdle_atoms::conformance::{Room, Stage, Suite};
+use mdle_host::Target as _;
+use mdle_host::clap::Command;
+use mdle_runtime::{Nanos, Pose, Radians, Robot as _};
+use template_target::{Hardware, Input, Target, alphabet};
+
+/// Where the robot is tried.
+struct Floor {
+    began: Pose,
+}
+
+impl Stage for Floor {
+    type Robot = Hardware;
+    type Alphabet = alphabet::Alphabet;
+    const PERIOD: Nanos = alphabet::PERIOD;
+
+    /// REPLACE: starts the robot anew, and sees to it that the walls of `room` are where it says, and the robot `at` a place
+    /// among them. One that is imagined without walls is wherever it is said to be.
+    fn robot(&mut self, _room: &Room, at: Pose) -> Result<Hardware, String> {
+        self.began = at;
+        let options = Target::arguments(Command::new("conformance")).get_matches_from(["conformance"]);
+        Target::connect(&options, Duration::from_nanos(Self::PERIOD.0)).map_err(|refusal| format!("{refusal:?}"))
+    }
+
+    /// REPLACE: where the robot truly is, by the test bench, the simulator or the camera that sees it.
+    fn truth(&self, robot: &Hardware) -> Pose {
+        let (imagined, began) = (robot.imagined(), self.began);
+        let left = Radians(began.theta.0 + FRAC_PI_2);
+        let place = began.towards(began.theta, imagined.x).towards(left, imagined.y);
+        Pose { theta: Radians(began.theta.0 + imagined.theta.0), ..place }
+    }
+
+    /// REPLACE: waits. What is imagined moves with commands alone.
+    fn left_alone(&mut self, robot: &mut Hardware, periods: u32) {
+        for _ in 0..periods {
+            let _ = robot.exchange(&Input::default()).unwrap();
+        }
+    }
+}
+
+#[test]
+fn the_robot_conforms() {
+    let mut floor = Floor { began: Pose::ORIGIN };
+    // A method for each capability of the alphabet; there are `.bumper()`, `.sonar()` and `.paths()` too.
+    let report = Suite::on(&mut floor).diff_drive().odometry().report();
+    assert!(report.holds(), "{report}");
+}

@@ -1,0 +1,62 @@
+//! The page of the book that has the table.
+
+use std::fmt::Write;
+use std::process::Output;
+
+use crate::watched::Way;
+
+/// What came of something.
+#[derive(Debug)]
+pub(crate) struct Row {
+    pub(crate) said: String,
+    /// `None` when it was killed.
+    pub(crate) status: Option<i32>,
+    pub(crate) way: Way,
+}
+
+impl Row {
+    /// The executable has ended like this, and the body has gone that way since.
+    pub(crate) fn of(output: Output, way: Way) -> Self {
+        let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+        let said = match err.strip_prefix("error: ") {
+            Some(error) => error.trim_end().to_owned(),
+            None => out.lines().last().unwrap_or_default().to_owned() + err.trim_end(),
+        };
+        // Which terminal it was chance decides.
+        let said = said.split(' ').map(|word| if word.starts_with("/dev/pts/") { "/dev/pts/N:" } else { word });
+        let said = said.collect::<Vec<_>>().join(" ");
+        Self { said, status: output.status.code(), way }
+    }
+}
+
+/// The whole page.
+pub(crate) fn text(plan: &str, robots: &[(&str, Vec<(String, Row)>)]) -> String {
+    let mut text = format!(
+        "# Faults\n\n\
+        Whatever goes wrong, the robot is stopped, or its own watchdog is left to do it; the program says one sentence and \
+        ends with status 3, within a second and a half. What can be borne is borne. A plan never goes on with what its \
+        sensors said a while ago.\n\n\
+        The tables are written by a test, `tests/faults`: it runs the executable of this plan on the emulated robots.\n\n\
+        ```mdle\n{plan}```\n\n\
+        The robot drives at 20 cm/s when something goes wrong, 2 m before a wall. \"Moves on\" is how far its body then goes \
+        in its world, and \"for\" how long that takes, from the last good answer until it stands for good. What is borne \
+        ends as the plan says.\n\n\
+        The emulators are in lockstep, so that the figures are the same each time: a command lets 100 ms pass. While no \
+        answer comes, the robot drives on for as long as a driver waits by its configuration, 300 ms. Once the program has \
+        ended, it drives on until it stops itself: a Scout by its watchdog, which was set to a second; an ATRV by that of \
+        its controller, of which nobody knows how long it takes, and the emulator's takes a second too. By the clock a \
+        fault may come a turn later, so that 0.1 s and 2 cm are to be added; the test holds the executables to that as well. \
+        At another speed the way is another.\n"
+    );
+    for (robot, rows) in robots {
+        write!(text, "\n## {robot}\n\n| what happens | what the program says | status | moves on | for |\n").unwrap();
+        writeln!(text, "|---|---|---|---|---|").unwrap();
+        for (what, Row { said, status, way }) in rows {
+            let said = if said.is_empty() { "nothing" } else { said };
+            let status = status.map_or("killed".to_owned(), |status| status.to_string());
+            let (centimetres, seconds) = ((way.metres * 100.0).round(), way.time.as_secs_f64());
+            writeln!(text, "| {what} | {said} | {status} | {centimetres} cm | {seconds:.1} s |").unwrap();
+        }
+    }
+    text
+}

@@ -1,0 +1,90 @@
+//! Two Scouts in one world, each with an executable of its own: they hear and touch each other, in lockstep, the same way
+//! each time.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::cell::RefCell;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+use mdle_emulator::{Embodied, Pace, Port, Seat, Several};
+use mdle_runtime::{Meters, Pose, Radians};
+use mdle_scout_emulator::scout::Scout;
+use mdle_sim::{Body, Disc, Make, Simulated, World};
+use mdle_tests::executable::{folder, run_mdlec};
+
+const PERIOD: Duration = Duration::from_millis(100);
+/// Two robots 3 m apart have nothing else before them that is nearer.
+const ROOM: &str =
+    "start = { x = -1.5, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[4, -3], [4, 3], [-4, 3], [-4, -3], [4, -3]]";
+const APPROACH: &str = "{ Approach (bumper OR wait 30s) (Atom (r0 < 60cm) (go 20 0)) }\n";
+const MEET: &str = "{ Meet (bumper OR wait 30s) (Atom (null) (go 20 0)) }\n";
+const STAY: &str = "{ Stay (wait 3s) (Atom (null) stop) }\n";
+
+/// The executable of a plan for the Scout.
+fn executable(folder: &Path, name: &str, plan: &str) -> PathBuf {
+    let file = format!("{name}.mdle");
+    fs::write(folder.join(&file), plan).unwrap();
+    let output = run_mdlec(folder, &[&file, "--target", "scout"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    folder.join(name)
+}
+
+/// A robot at a line, 1.5 m from the middle, that looks there.
+fn seat(is_left: bool) -> Seat<Scout> {
+    let world = World::parse("room", ROOM).unwrap();
+    let there = Pose { x: Meters(1.5), theta: Radians::from_degrees(180.0), ..world.start };
+    let make = Make { body: Body::Scout, without: Vec::new(), seed: None };
+    let body = Simulated::with(&make, &world, if is_left { world.start } else { there }, PERIOD).unwrap();
+    Seat { robot: Scout::new(body).unwrap(), port: Port::open().unwrap() }
+}
+
+/// What two executables say at the end, each on a robot of its own, and where these are then.
+fn together(executables: [&Path; 2]) -> ([String; 2], [Disc; 2]) {
+    let mut robots = Several::of(vec![seat(true), seat(false)]).unwrap();
+    let mut started = executables.iter().zip(robots.seats()).map(|(executable, seat)| {
+        let mut command = Command::new(executable);
+        let command = command.args(["--lockstep", "--device"]).arg(seat.port.path());
+        command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+    });
+    let children: RefCell<[Child; 2]> = RefCell::new([started.next().unwrap(), started.next().unwrap()]);
+    drop(started);
+    let goes_on = || children.borrow_mut().iter_mut().any(|child| child.try_wait().unwrap().is_none());
+    robots.serve(Pace::Lockstep(PERIOD), &goes_on).unwrap();
+    let said = children.into_inner().map(|child| {
+        let output = child.wait_with_output().unwrap();
+        let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+        format!("{out}{err}[{}]", output.status.code().unwrap())
+    });
+    let discs = [0, 1].map(|seat: usize| robots.seats()[seat].robot.disc());
+    (said, discs)
+}
+
+fn gap([one, other]: [Disc; 2]) -> f64 {
+    libm::hypot(one.at.x - other.at.x, one.at.y - other.at.y) - one.radius - other.radius
+}
+
+#[test]
+fn a_robot_stops_before_another_one_whose_driver_has_gone() {
+    let folder = folder("several_stop");
+    let (approach, stay) = (executable(&folder, "approach", APPROACH), executable(&folder, "stay", STAY));
+    let (said, discs) = together([&approach, &stay]);
+    assert!(said[0].contains("plan over: r0 < 0.6") && said[0].ends_with("[0]"), "{}", said[0]);
+    assert!(said[1].contains("plan over: wait 3") && said[1].ends_with("[0]"), "{}", said[1]);
+    // Behind the last ping it has gone on for a round of its sonars at most.
+    assert!((0.35..0.6).contains(&gap(discs)), "{}", gap(discs));
+    assert_eq!(together([&approach, &stay]), (said, discs));
+}
+
+#[test]
+fn robots_that_meet_touch_each_other() {
+    let folder = folder("several_meet");
+    let meet = executable(&folder, "meet", MEET);
+    let (said, discs) = together([&meet, &meet]);
+    for said in &said {
+        assert!(said.contains("plan over: bumper") && said.ends_with("[0]"), "{said}");
+    }
+    assert!((0.0..0.005).contains(&gap(discs)), "{}", gap(discs));
+    assert_eq!(together([&meet, &meet]), (said, discs));
+}

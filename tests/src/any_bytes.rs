@@ -1,0 +1,121 @@
+//! What holds for all bytes whatever that come on a robot's line, at either end: libFuzzer looks for some for which it does
+//! not, and a test tries all that are kept.
+//!
+//! Each function panics where something does not hold. The first byte says in what pieces the others come.
+
+use mdle_atrv::{Packet, Reader, Report};
+use mdle_atrv_emulator::wire as rflex;
+use mdle_scout::{Frame, State};
+use mdle_scout_emulator::wire;
+
+/// No reader keeps more bytes than this of what may still become something.
+const KEPT: usize = 1100;
+
+/// The bytes that come, and how many at once.
+fn in_pieces(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let (size, stream) =
+        bytes.split_first().map_or((1, bytes), |(size, stream)| (1 + usize::from(*size) % 100, stream));
+    stream.chunks(size)
+}
+
+/// On a Scout's line.
+pub fn scout(bytes: &[u8]) {
+    answers(bytes);
+    let whole: Vec<u8> = in_pieces(bytes).flatten().copied().collect();
+    let mut robot = wire::Incoming::default();
+    let found = requests(&mut robot, in_pieces(bytes));
+    assert_eq!(found, requests(&mut wire::Incoming::default(), [whole.as_slice()].into_iter()));
+    // It may be in the middle of what is none, but not for longer than that is.
+    let state = Frame { kind: 7, arguments: [].into_iter().collect() }.bytes();
+    let behind = requests(&mut robot, std::iter::repeat_n(state.as_slice(), 64));
+    assert!(behind.iter().any(|request| request.command == 7 && request.data.is_empty()), "{behind:?}");
+
+    let said = whole.get(..whole.len().min(253)).unwrap_or_default();
+    let answer = wire::answer(5, said);
+    let frame = Frame { kind: 5, arguments: said.iter().copied().collect() };
+    assert_eq!(Frame::read(&answer), Ok(Some((frame.clone(), answer.len()))));
+    let mut robot = wire::Incoming::default();
+    let asked = wire::Request { command: 5, data: said.to_vec() };
+    assert_eq!(requests(&mut robot, [frame.bytes().as_slice()].into_iter()), [asked]);
+}
+
+/// What the driver makes of them: as its line does it, whatever is garbled throws away all that has come.
+fn answers(bytes: &[u8]) {
+    let mut waiting: Vec<u8> = Vec::new();
+    for piece in in_pieces(bytes) {
+        waiting.extend_from_slice(piece);
+        loop {
+            match Frame::read(&waiting) {
+                Ok(Some((frame, count))) => {
+                    assert_eq!(frame.bytes().as_slice(), &waiting[..count]);
+                    assert_eq!(State::read(&frame.arguments).is_some(), frame.arguments.len() >= 42);
+                    waiting.drain(..count);
+                }
+                Ok(None) => break,
+                Err(_) => waiting.clear(),
+            }
+        }
+        assert!(waiting.len() <= KEPT, "{} bytes", waiting.len());
+    }
+}
+
+/// What the emulator makes of them.
+fn requests<'b>(robot: &mut wire::Incoming, pieces: impl Iterator<Item = &'b [u8]>) -> Vec<wire::Request> {
+    let mut found = Vec::new();
+    for piece in pieces {
+        robot.push(piece);
+        found.extend(std::iter::from_fn(|| robot.next_request()));
+        assert!(robot.kept() <= KEPT, "{} bytes", robot.kept());
+    }
+    found
+}
+
+/// On an ATRV's line.
+pub fn atrv(bytes: &[u8]) {
+    let whole: Vec<u8> = in_pieces(bytes).flatten().copied().collect();
+    for marks in [true, false] {
+        let mut robot = rflex::Incoming::new(marks);
+        let found = commands(&mut robot, in_pieces(bytes));
+        assert_eq!(found, commands(&mut rflex::Incoming::new(marks), [whole.as_slice()].into_iter()));
+        // Whatever it is in, this ends it.
+        let defaults = Packet { port: 2, id: 0, opcode: 10, data: &[] };
+        let behind = commands(&mut robot, [&[0x1B, 0x03][..], defaults.written(false).bytes()].into_iter());
+        assert_eq!(behind.last(), Some(&rflex::Request { port: 2, code: 10, data: Vec::new() }));
+    }
+    let mut reader = Reader::default();
+    packets(&mut reader, &whole);
+    packets(&mut reader, &[0x1B, 0x03]);
+    let said = whole.get(..whole.len().min(255)).unwrap_or_default();
+    assert_eq!(packets(&mut reader, &rflex::report(3, 1, 2, said, &[0x1B, 0x01])), [(3, 2, said.to_vec())]);
+
+    let said = whole.get(..whole.len().min(32)).unwrap_or_default();
+    let written = Packet { port: 5, id: 0, opcode: 4, data: said }.written(true);
+    let mut robot = rflex::Incoming::new(true);
+    let told = rflex::Request { port: 5, code: 4, data: said.to_vec() };
+    assert_eq!(commands(&mut robot, [written.bytes()].into_iter()), [told]);
+}
+
+/// What the driver makes of them: port, opcode and data of each packet.
+fn packets(reader: &mut Reader, bytes: &[u8]) -> Vec<(u8, u8, Vec<u8>)> {
+    let mut found = Vec::new();
+    for byte in bytes {
+        if let Ok(Some(packet)) = reader.take(*byte) {
+            if let Ok(Report::Sonars(echoes)) = Report::read(&packet) {
+                assert!(echoes.each().count() <= packet.data.len() / 3);
+            }
+            found.push((packet.port, packet.opcode, packet.data.to_vec()));
+        }
+    }
+    found
+}
+
+/// What the emulator makes of them.
+fn commands<'b>(robot: &mut rflex::Incoming, pieces: impl Iterator<Item = &'b [u8]>) -> Vec<rflex::Request> {
+    let mut found = Vec::new();
+    for piece in pieces {
+        robot.push(piece);
+        found.extend(std::iter::from_fn(|| robot.next_request()));
+        assert!(robot.kept() <= KEPT, "{} bytes", robot.kept());
+    }
+    found
+}

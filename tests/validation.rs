@@ -1,0 +1,131 @@
+//! Machines that are not their plan's are told apart from those that are: 500 mutations of random machines.
+
+use std::collections::BTreeMap;
+
+use mdle_runtime::fsm::Kind;
+use mdle_tests::chance::Chance;
+use mdle_tests::pipeline::compile;
+use mdle_tests::random_plan::RandomPlan;
+use mdlec::diagnostic::Code;
+use mdlec::fsm::{Lowered, validate};
+
+/// How many mutated machines are tried.
+const MUTATIONS: usize = 500;
+
+/// Makes a machine wrong in a place that chance picks, or leaves it as it is.
+type Mutation = fn(&mut Lowered, &mut Chance);
+
+/// What can go wrong with a machine.
+const WRONG: &[(&str, Mutation)] = &[
+    ("extent, its first atom", |machine, chance| {
+        let bracket = pick(&mut machine.brackets, chance);
+        bracket.first = other(bracket.first, chance);
+    }),
+    ("extent, its last atom, and so where it leads", |machine, chance| {
+        let bracket = pick(&mut machine.brackets, chance);
+        bracket.last = other(bracket.last, chance);
+    }),
+    ("what is around it, and so what starts afresh", |machine, chance| {
+        let brackets = machine.brackets.len();
+        pick(&mut machine.brackets, chance).parent = chance.below(brackets) as u32;
+    }),
+    ("its timer's level", |machine, chance| {
+        if let Kind::Scope { level } = &mut pick(&mut machine.brackets, chance).kind {
+            *level = other((*level).into(), chance) as u16;
+        }
+    }),
+    ("passes of a loop", |machine, chance| {
+        for bracket in &mut machine.brackets {
+            if let Kind::Loop { times, .. } = &mut bracket.kind {
+                *times = other(*times as u32, chance).into();
+            }
+        }
+    }),
+    ("counter of a loop", |machine, chance| {
+        for bracket in &mut machine.brackets {
+            if let Kind::Loop { slot, .. } = &mut bracket.kind {
+                *slot = other((*slot).into(), chance) as u16;
+            }
+        }
+    }),
+    ("states of a pass", |machine, chance| {
+        for bracket in &mut machine.brackets {
+            if let Kind::Loop { stride, .. } = &mut bracket.kind {
+                *stride = other(*stride as u32, chance).into();
+            }
+        }
+    }),
+    ("a loop that is a scope", |machine, chance| {
+        pick(&mut machine.brackets, chance).kind = Kind::Scope { level: 1 };
+    }),
+    ("order of brackets", |machine, chance| swap(&mut machine.brackets, chance)),
+    ("a bracket too few", |machine, chance| {
+        machine.brackets.remove(chance.below(machine.brackets.len()));
+    }),
+    ("order of atoms", |machine, chance| swap(&mut machine.atoms, chance)),
+    ("an atom's bracket", |machine, chance| {
+        let atom = pick(&mut machine.atoms, chance);
+        atom.scope = other(atom.scope, chance);
+    }),
+    ("an atom's state", |machine, chance| {
+        let atom = pick(&mut machine.atoms, chance);
+        atom.state = other(atom.state as u32, chance).into();
+    }),
+    ("an atom too few", |machine, chance| {
+        machine.atoms.remove(chance.below(machine.atoms.len()));
+    }),
+    ("order of laws", |machine, chance| swap(&mut machine.laws, chance)),
+    ("a frame", |machine, chance| pick(&mut machine.laws, chance).frame += 0.5),
+    ("order of interrupts", |machine, chance| swap(&mut machine.scopes, chance)),
+    ("a scope without an interrupt", |machine, chance| *pick(&mut machine.scopes, chance) = None),
+    ("the termination state", |machine, chance| machine.termination = other(machine.termination as u32, chance).into()),
+    ("labels", |machine, _| machine.marks = BTreeMap::new()),
+    ("records", |machine, _| machine.records = BTreeMap::new()),
+    ("places of records", |machine, _| machine.records.values_mut().for_each(|place| place.first += 1)),
+    ("timers", |machine, _| machine.levels = machine.levels.saturating_sub(1)),
+    ("counters", |machine, _| machine.slots = machine.slots.saturating_sub(1)),
+    ("memories", |machine, _| machine.memories = machine.memories.saturating_sub(1)),
+];
+
+fn pick<'a, T>(all: &'a mut [T], chance: &mut Chance) -> &'a mut T {
+    let place = chance.below(all.len());
+    &mut all[place]
+}
+
+/// Another number, most often a neighbour.
+fn other(number: u32, chance: &mut Chance) -> u32 {
+    match chance.below(3) {
+        0 => number.wrapping_sub(1),
+        1 => number.wrapping_add(1),
+        _ => number.wrapping_add(2 + chance.below(5) as u32),
+    }
+}
+
+fn swap<T>(all: &mut [T], chance: &mut Chance) {
+    let [one, another] = [(); 2].map(|()| chance.below(all.len()));
+    all.swap(one, another);
+}
+
+#[test]
+fn every_mutated_machine_is_told_apart() {
+    let (mut seed, mut tried) = (0, BTreeMap::<_, usize>::new());
+    while tried.values().sum::<usize>() < MUTATIONS {
+        seed += 1;
+        let mut chance = Chance::new(seed);
+        let text = RandomPlan::new(&mut chance, 2 + (seed % 20) as usize, false).to_string();
+        let Ok(compiled) = compile(&text) else { continue };
+        assert_eq!(validate(&compiled.nondegenerate, &compiled.lowered), Ok(()), "seed {seed}\n{text}");
+        let (what, wrong) = WRONG[seed as usize % WRONG.len()];
+        let mut machine = compiled.lowered.clone();
+        wrong(&mut machine, &mut chance);
+        if machine == compiled.lowered {
+            continue;
+        }
+        *tried.entry(what).or_default() += 1;
+        let said = validate(&compiled.nondegenerate, &machine);
+        assert!(said.as_ref().is_err_and(|said| said.code == Code::E0901), "seed {seed}, {what}: {said:?}\n{text}");
+    }
+    println!("{tried:#?}");
+    // Nothing is left untried.
+    assert_eq!(tried.len(), WRONG.len(), "{tried:?}");
+}
