@@ -87,6 +87,13 @@ fn libraries_that_are_damaged_are_built_anew() {
     cut(&libraries(".rmeta"), 0);
     assert_builds(&robot, "night");
 
+    // A library of a stranger is compiled again, beside others of which nothing is left.
+    let compiled = files(&robot.cache.folder().join("target"), &|name| name.starts_with("lib-thread_priority"));
+    cut(&libraries(".rmeta"), 0);
+    compiled.iter().for_each(|fingerprint| fs::remove_file(fingerprint).unwrap());
+    assert!(!compiled.is_empty());
+    assert_builds(&robot, "noon");
+
     fs::remove_dir_all(robot.cache.folder().join("target")).unwrap();
     fs::write(robot.cache.folder().join("target"), "garbage").unwrap();
     assert_builds(&robot, "morning");
@@ -98,6 +105,8 @@ fn a_fault_of_the_target_is_not_taken_for_damage() {
     assert_builds(&robot, "morning");
     let libraries = fs::metadata(robot.cache.folder().join("target")).unwrap().ino();
     fs::write(robot.folder.join("rover/src/lib.rs"), ROVER.replace("Ok(Self)", "Ok(Rower)")).unwrap();
+    assert!(matches!(robot.build("nap.mdle", PLAN), Err(LinkError::TargetBroken { .. })));
+    fs::write(robot.folder.join("rover/src/lib.rs"), format!("extern crate forgotten;\n{ROVER}")).unwrap();
     assert!(matches!(robot.build("nap.mdle", PLAN), Err(LinkError::TargetBroken { .. })));
     fs::write(robot.folder.join("rover/src/lib.rs"), ROVER).unwrap();
     assert!(matches!(robot.build("nap.mdle", "nonsense"), Err(LinkError::TargetMisfit { .. })));

@@ -8,11 +8,17 @@ use super::messages::{Complaint, Run};
 use super::package::PlanPackage;
 use super::{LinkError, Progress, TargetCrate, record};
 
+/// What rustc says of a library that is not there, or of which nothing is left.
+const ABSENT: &str = "can't find crate for `";
+
+/// The same of those that came with mdlec.
+const OURS_ABSENT: &str = "can't find crate for `mdle_";
+
 /// What rustc says of a library that it cannot read.
 const UNREADABLE: [&str; 5] = [
     "found invalid metadata files for crate",
     "found possibly newer version of crate",
-    "can't find crate for `mdle_",
+    ABSENT,
     "error: linking with `",
     "error: internal compiler error",
 ];
@@ -50,12 +56,16 @@ pub(super) fn found(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>) -> Optio
 /// Whether an error can come of a library that is damaged.
 fn is_of_damage(complaint: &Complaint, plan: &PlanPackage, target: &TargetCrate<'_>) -> bool {
     let says = |signs: &[&str]| signs.iter().any(|sign| complaint.text.contains(sign));
-    let is_tested = match target {
-        // What came with mdlec does not fail by itself, but what mdlec makes of a plan can be wrong.
-        TargetCrate::Builtin { .. } => complaint.manifest != plan.manifest(),
-        TargetCrate::Path { .. } => false,
-    };
-    complaint.is_error && !says(&LACKING) && (is_tested || says(&UNREADABLE))
+    // What came with mdlec does not fail by itself, but what mdlec makes of a plan can be wrong.
+    let is_tested = matches!(target, TargetCrate::Builtin { .. }) && complaint.manifest != plan.manifest();
+    complaint.is_error && !says(&LACKING) && (is_tested || says(&UNREADABLE) && !is_forgotten(complaint, target))
+}
+
+/// Whether a third party's crate names one that it does not depend on.
+fn is_forgotten(complaint: &Complaint, target: &TargetCrate<'_>) -> bool {
+    let TargetCrate::Path { folder, .. } = target else { return false };
+    let is_own = folder.canonicalize().is_ok_and(|folder| complaint.manifest.starts_with(folder));
+    is_own && complaint.text.contains(ABSENT) && !complaint.text.contains(OURS_ABSENT)
 }
 
 /// Removes what is damaged, so that the next run of cargo makes it anew.
