@@ -108,7 +108,10 @@ const EVERY_QUARK: &str = r#"
 {"t": 2.0}
 {"t": 2.1, "completed": ["path bend"]}
 {"t": 2.2}
-{"t": 3.1}
+{"t": 2.3, "fired": ["lowBattery"]}
+{"t": 2.4, "fired": ["lowBattery", "charger"]}
+{"t": 2.5, "fired": ["charger"]}
+{"t": 2.6, "fired": ["battery > 12", "charger"]}
 "#;
 
 fn compiled(plan: &str) -> (Compiled, Alphabet) {
@@ -203,7 +206,9 @@ fn record(reports: &Reports) -> Vec<u8> {
     ranges[2] = if compared("r2 < 0.3") { 0.2 } else { 1.0 };
     ranges[6] = if compared("r6 == r14") { ranges[14] } else { 1.5 };
     let v = if compared("v >= 80") { 0.9 } else { 0.0 };
-    let numbers = [x, 0.0, heading, v, omega, pressed];
+    let [is_low, is_plugged] = ["lowBattery", "charger"].map(|name| f64::from(u8::from(compared(name))));
+    let battery = if compared("battery > 12") { 12.5 } else { 11.5 };
+    let numbers = [x, 0.0, heading, v, omega, pressed, battery, is_low, is_plugged];
     let bits = numbers.into_iter().chain(ranges).map(f64::to_bits);
     std::iter::once(reports.t.0).chain(bits).flat_map(u64::to_le_bytes).collect()
 }

@@ -20,6 +20,7 @@ mod drive;
 mod laws;
 mod measured;
 mod odometry;
+mod power;
 mod replay;
 mod report;
 mod ring;
@@ -31,7 +32,7 @@ mod trial;
 use std::string::String;
 use std::vec::Vec;
 
-use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, Paths, SonarRing};
+use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, Paths, Power, SonarRing};
 use mdle_runtime::{Alphabet, Nanos, PathStore, Pose, Robot, Twist};
 
 pub use report::{Checked, Report, Verdict};
@@ -56,11 +57,25 @@ pub trait Stage {
     /// Hands the robot the paths that its plan replays, before its first exchange; for robots with the capability `paths`.
     fn take_paths(&mut self, _robot: &mut Self::Robot, _paths: PathStore) {}
 
+    /// Sees to the robot's supply, from now on; for robots with the capability `power`.
+    fn supply(&mut self, _robot: &mut Self::Robot, _supplied: Supplied) {}
+
     /// Where the body truly is by now, in the axes of the room: not what its odometry says.
     fn truth(&self, robot: &Self::Robot) -> Pose;
 
     /// Lets so many periods pass in which nobody tells the robot anything.
     fn left_alone(&mut self, robot: &mut Self::Robot, periods: u32);
+}
+
+/// How a robot on a stage is supplied.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Supplied {
+    /// By a battery that is charged, as it is when it has just been started.
+    Well,
+    /// By a battery that has to be charged.
+    Low,
+    /// By its charger.
+    Plugged,
 }
 
 /// What a robot on this stage says.
@@ -171,6 +186,21 @@ impl<'s, S: Stage> Suite<'s, S> {
             &[
                 ("each output has the paths that the robot was given", replay::are_there),
                 ("`path` drives along one, and is done at its end", replay::replays),
+            ],
+        )
+    }
+
+    /// `power`: the battery and the charger.
+    #[must_use]
+    pub fn power(self) -> Self
+    where
+        Out<S>: Power,
+    {
+        self.check(
+            "power",
+            &[
+                ("it tells the battery's voltage, and when it is low", power::battery),
+                ("it tells whether it is on its charger", power::charger),
             ],
         )
     }

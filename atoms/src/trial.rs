@@ -2,10 +2,10 @@
 
 use core::f64::consts::PI;
 
-use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, Paths, SonarRing};
+use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, Paths, Power, SonarRing};
 use mdle_runtime::{
     Begin, Completes, Frame, Law, Meters, Nanos, Output, PathStore, Ping, Pings, Pose, Radians, SONARS, Setpoint,
-    SonarId, Twist,
+    SonarId, Supply, Twist, Volts,
 };
 
 /// The period of a turn in these trials, in seconds.
@@ -19,6 +19,7 @@ pub(crate) struct Sensed {
     pub(crate) pressed: bool,
     pub(crate) pings: [Pings; SONARS],
     pub(crate) confirmation: usize,
+    pub(crate) supply: Supply,
     pub(crate) paths: PathStore,
 }
 
@@ -30,6 +31,7 @@ impl Default for Sensed {
             pressed: false,
             pings: [Pings::default(); SONARS],
             confirmation: 3,
+            supply: Supply::default(),
             paths: PathStore::EMPTY,
         }
     }
@@ -105,6 +107,20 @@ impl SonarRing for Sensed {
 
     fn confirmation(&self) -> usize {
         self.confirmation
+    }
+}
+
+impl Power for Sensed {
+    fn battery(&self) -> Volts {
+        self.supply.battery
+    }
+
+    fn is_low(&self) -> bool {
+        self.supply.is_low
+    }
+
+    fn is_plugged(&self) -> bool {
+        self.supply.is_plugged
     }
 }
 

@@ -32,7 +32,7 @@ const ROOM: &str =
     "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[3, -2], [3, 2], [-2, 2], [-2, -2], [3, -2]]";
 
 /// What can be had with `--fault`.
-const ON_COMMAND: [(&str, &str); 15] = [
+const ON_COMMAND: [(&str, &str); 16] = [
     ("noise", "bytes that mean nothing before each frame"),
     ("dribble", "frames come byte by byte"),
     ("check", "a bit of each frame is wrong"),
@@ -45,6 +45,7 @@ const ON_COMMAND: [(&str, &str); 15] = [
     ("bumper", "a bumper is in contact"),
     ("emergency", "the emergency stop is pressed"),
     ("low-battery", "the battery is low"),
+    ("plugged-in", "the charger is plugged in"),
     ("filler", "filler in each frame"),
     ("no-pings", "the sonars no longer ping"),
     ("hang", "the robot says the same again and again"),

@@ -7,7 +7,7 @@ use std::vec::Vec;
 use core::fmt;
 
 /// What there are checks for.
-const KNOWN: [&str; 5] = ["diff_drive", "odometry", "bumper", "sonar[16]", "paths"];
+const KNOWN: [&str; 6] = ["diff_drive", "odometry", "bumper", "sonar[16]", "paths", "power"];
 
 /// What came of a check.
 #[derive(Debug, Clone, PartialEq, Eq)]

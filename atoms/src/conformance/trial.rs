@@ -9,7 +9,7 @@ use mdle_runtime::{
 };
 
 use super::room::AT;
-use super::{Out, Room, Stage, Verdict, replay};
+use super::{Out, Room, Stage, Supplied, Verdict, replay};
 
 /// How far from where it was put a robot may stand, in metres and radians.
 const PUT: (f64, f64) = (0.02, 0.02);
@@ -87,6 +87,11 @@ impl<'s, S: Stage> Trial<'s, S> {
         self.y = self.robot.exchange(input).map_err(|fault| format!("an exchange failed: {fault}"))?;
         self.exchanges = self.exchanges.saturating_add(1);
         Ok(())
+    }
+
+    /// Sees to its supply.
+    pub(super) fn supply(&mut self, supplied: Supplied) {
+        self.stage.supply(&mut self.robot, supplied);
     }
 
     /// Turns with this input for so many seconds; what became of the body.

@@ -47,6 +47,7 @@ fn capability_trait(capability: &Capability) -> Option<Ident> {
         "diff_drive" => "DiffDrive",
         "sonar" => "SonarRing",
         "paths" => "Paths",
+        "power" => "Power",
         _ => return None,
     };
     Some(format_ident!("{name}"))

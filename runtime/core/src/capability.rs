@@ -1,7 +1,7 @@
 //! What a robot can offer to quarks: one trait for each capability an alphabet can name, implemented by the robot's output.
 //! `state_link` and `modules` have none yet, so no robot can offer them.
 
-use crate::{Meters, Output, Pings, Pose, Setpoint, SonarId, Twist};
+use crate::{Meters, Output, Pings, Pose, Setpoint, SonarId, Twist, Volts};
 
 /// `odometry`: the robot knows where it is and how fast it moves, in axes that stay put while it is switched on.
 pub trait Odometry: Output {
@@ -60,6 +60,16 @@ pub trait SonarRing: Output {
     fn blocked_within(&self) -> Meters {
         Meters(1.15)
     }
+}
+
+/// `power`: the robot measures its battery, and knows whether it is plugged in.
+pub trait Power: Output {
+    /// The voltage of the battery, as the robot measures it.
+    fn battery(&self) -> Volts;
+    /// Whether the battery has to be charged, by what is low on this robot.
+    fn is_low(&self) -> bool;
+    /// Whether the robot is on its charger.
+    fn is_plugged(&self) -> bool;
 }
 
 /// `paths`: there is a store of recorded and loaded paths.

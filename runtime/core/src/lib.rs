@@ -47,7 +47,7 @@ pub use pose::{Frame, Pose, Twist};
 pub use quark::{Begin, Completes, Control, Interrupt, Law};
 pub use robot::{Output, Robot};
 pub use rows::{Condition, Guard, InRows, LawRow, Rows, Texts};
-pub use sensed::{Sensed, Shape};
+pub use sensed::{Sensed, Shape, Supply};
 pub use signal::{Comparison, NoSignal, Operand, Operator, Signal};
 pub use sonar::{PINGS_KEPT, Ping, Pings, SONARS, SonarId};
 pub use time::Nanos;

@@ -1,8 +1,8 @@
-//! The output of a robot on two driven wheels with odometry, bumper switches, sixteen sonars and a store of paths: each
+//! The output of a robot on two driven wheels with odometry, bumper switches, sixteen sonars, a battery and a store of paths: each
 //! value as it is kept, and the capabilities that it comes to (`y = h(x)`, paper, Eq. 1).
 
-use crate::capability::{Bumpers, DiffDrive, Odometry, Paths, SonarRing, Steering};
-use crate::{Meters, Output, PathStore, Pings, Pose, SONARS, Setpoint, SonarId, Twist};
+use crate::capability::{Bumpers, DiffDrive, Odometry, Paths, Power, SonarRing, Steering};
+use crate::{Meters, Output, PathStore, Pings, Pose, SONARS, Setpoint, SonarId, Twist, Volts};
 
 /// The output of one turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,10 +16,23 @@ pub struct Sensed {
     pub switches: u32,
     /// The last pings of each sonar.
     pub pings: [Pings; SONARS],
+    /// What the robot says of its power; the default on one that says nothing of it.
+    pub supply: Supply,
     /// What never changes.
     pub shape: Shape,
     /// The paths that the plan can replay; empty on a robot that is given none.
     pub paths: PathStore,
+}
+
+/// What a robot says of its power.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Supply {
+    /// The voltage of its battery.
+    pub battery: Volts,
+    /// Whether the battery has to be charged.
+    pub is_low: bool,
+    /// Whether the robot is on its charger.
+    pub is_plugged: bool,
 }
 
 /// What laws must know of the body.
@@ -86,6 +99,20 @@ impl SonarRing for Sensed {
 
     fn confirmation(&self) -> usize {
         self.shape.confirmation
+    }
+}
+
+impl Power for Sensed {
+    fn battery(&self) -> Volts {
+        self.supply.battery
+    }
+
+    fn is_low(&self) -> bool {
+        self.supply.is_low
+    }
+
+    fn is_plugged(&self) -> bool {
+        self.supply.is_plugged
     }
 }
 

@@ -57,6 +57,12 @@ pub struct Config {
     pub watchdog: u64,
     /// How long it is left alone after each command, in milliseconds.
     pub pause: u64,
+    /// By how much the battery's voltage is above what the controller says, in volts.
+    pub battery_offset: f64,
+    /// Below which voltage the battery is low.
+    pub low_battery: f64,
+    /// Above which voltage it is being charged.
+    pub plugged_above: f64,
     /// How hard laws steer.
     pub steering: Steering,
 }
@@ -87,6 +93,9 @@ struct File {
     answer: Option<u64>,
     watchdog: Option<u64>,
     pause: Option<u64>,
+    battery_offset: Option<f64>,
+    low_battery: Option<f64>,
+    plugged_above: Option<f64>,
     rotate_gain: Option<f64>,
     align_gain: Option<f64>,
     avoid_gain: Option<f64>,
@@ -164,6 +173,24 @@ impl File {
             answer: made.value("answer", self.answer, 300, "ms that it may say nothing"),
             watchdog: made.value("watchdog", self.watchdog, 500, "ms without a turn until it is stopped"),
             pause: made.value("pause", self.pause, 1, "ms after each command"),
+            battery_offset: made.value(
+                "battery-offset",
+                self.battery_offset,
+                1.82,
+                "V by which it is above what it tells; unverified",
+            ),
+            low_battery: made.value(
+                "low-battery",
+                self.low_battery,
+                21.0,
+                "V below which the battery is low; unverified",
+            ),
+            plugged_above: made.value(
+                "plugged-above",
+                self.plugged_above,
+                27.6,
+                "V above which it is being charged; unverified",
+            ),
             steering: made.steering(self.rotate_gain, self.align_gain, self.avoid_gain),
         })
     }
@@ -203,6 +230,9 @@ impl Config {
         within("answer", self.answer as f64, 50.0, 400.0)?;
         within("watchdog", self.watchdog as f64, 150.0, 5000.0)?;
         within("pause", self.pause as f64, 0.0, 10.0)?;
+        within("battery-offset", self.battery_offset, -5.0, 5.0)?;
+        within("low-battery", self.low_battery, 10.0, 30.0)?;
+        within("plugged-above", self.plugged_above, self.low_battery, 40.0)?;
         can_steer(&self.steering)?;
         if ![16, 24].contains(&self.sonars) {
             return Err(format!("`sonars` is {}, and robots with 24 or 16 are known", self.sonars));

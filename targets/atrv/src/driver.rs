@@ -191,6 +191,7 @@ impl Robot for Atrv {
             velocity: self.hearing.velocity(),
             switches: self.hearing.switches(),
             pings: *self.hearing.pings(),
+            supply: self.hearing.supply(),
             shape: Shape {
                 body_radius: RADIUS,
                 wheel_base: Meters(self.config.wheel_base),

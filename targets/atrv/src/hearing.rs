@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use mdle_runtime::{Nanos, Pings, Pose, SONARS, Twist};
+use mdle_runtime::{Nanos, Pings, Pose, SONARS, Supply, Twist, Volts};
 use mdle_serial::{Line, LineFault};
 
 use crate::command::Axis;
@@ -44,6 +44,8 @@ struct Known {
     switches: u32,
     /// Whether the brake is set, if that was told.
     is_braked: Option<bool>,
+    /// What its battery was at then.
+    battery: Volts,
 }
 
 impl Hearing {
@@ -57,6 +59,7 @@ impl Hearing {
             time: None,
             switches: 0,
             is_braked: None,
+            battery: Volts(0.0),
         };
         Self { reader: Reader::default(), known, told: None, trouble: None }
     }
@@ -125,6 +128,13 @@ impl Hearing {
         &self.known.ring.pings
     }
 
+    /// Its battery, and whether that is being charged, which only its voltage tells.
+    pub(crate) fn supply(&self) -> Supply {
+        let Known { battery, config, .. } = &self.known;
+        let is_plugged = battery.0 > config.plugged_above;
+        Supply { battery: *battery, is_low: battery.0 < config.low_battery, is_plugged }
+    }
+
     /// Takes in what is there; how often the robot has told where it is.
     fn drain(&mut self, line: &Line, at: Nanos) -> Result<u32, Fault> {
         let mut told = 0;
@@ -176,7 +186,10 @@ impl Known {
                 }
             }
             Report::Input { address, state } => self.feel(address, state),
-            Report::Status { is_braked, .. } => self.is_braked = Some(is_braked),
+            Report::Status { battery, is_braked } => {
+                self.is_braked = Some(is_braked);
+                self.battery = Volts(f64::from(battery) / 100.0 + self.config.battery_offset);
+            }
             Report::Other => {}
         }
         Ok(false)

@@ -47,6 +47,8 @@ pub enum Ailment {
     Emergency,
     /// The battery is low.
     LowBattery,
+    /// The charger is plugged in.
+    PluggedIn,
     /// Bytes that a reader must skip are in each frame.
     Filler,
     /// It tells the same of itself again and again.
@@ -56,7 +58,7 @@ pub enum Ailment {
 }
 
 /// All of them, with what `--fault` calls them.
-const KINDS: [(&str, Fault); 15] = [
+const KINDS: [(&str, Fault); 16] = [
     ("noise", Fault::Noise),
     ("dribble", Fault::Dribble),
     ("check", Fault::Check),
@@ -69,6 +71,7 @@ const KINDS: [(&str, Fault); 15] = [
     ("bumper", Fault::Body(Ailment::Bumper)),
     ("emergency", Fault::Body(Ailment::Emergency)),
     ("low-battery", Fault::Body(Ailment::LowBattery)),
+    ("plugged-in", Fault::Body(Ailment::PluggedIn)),
     ("filler", Fault::Body(Ailment::Filler)),
     ("hang", Fault::Body(Ailment::Hang)),
     ("no-pings", Fault::Body(Ailment::NoPings)),

@@ -1,6 +1,7 @@
 //! The pseudo-terminal on which the robot is found.
 
 use std::os::fd::OwnedFd;
+use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 use std::{fs, io};
@@ -32,7 +33,9 @@ impl Port {
         unlockpt(&ours)?;
         let name = ptsname(&ours, Vec::new())?.into_string().map_err(io::Error::other)?;
         let path = PathBuf::from(name);
-        let theirs = fs::File::options().read(true).write(true).open(&path)?;
+        // It must not become the terminal of a session that this program may lead: that would end with the line.
+        let alone = OFlags::NOCTTY.bits() as i32;
+        let theirs = fs::File::options().read(true).write(true).custom_flags(alone).open(&path)?;
         // A line and no terminal: no echo, and no byte means anything.
         let mut settings = tcgetattr(&theirs)?;
         settings.make_raw();

@@ -43,7 +43,7 @@ pub struct Options {
     /// What goes wrong, with all robots, so many seconds after the robot was switched on by the time of its world; may be given more than
     /// once. On its line: noise, dribble (byte by byte), check (a bit of each frame is wrong), lose (two frames of three),
     /// double, silence, close. With itself: stuck-wheel (the right one), dead-sonar (the one in front), bumper, emergency,
-    /// low-battery, no-pings, hang (it tells the same again and again), and filler, for robots that know it.
+    /// low-battery, plugged-in, no-pings, hang (it tells the same again and again), and filler, for robots that know it.
     #[arg(long, value_name = "KIND@SECONDS")]
     fault: Vec<At>,
 }

@@ -25,6 +25,8 @@ struct Seen<T> {
     now: Mutex<T>,
     /// How many periods are to pass in which it is told nothing.
     idle: AtomicU32,
+    /// What it suffers next.
+    ailment: Mutex<Option<Ailment>>,
     is_over: AtomicBool,
 }
 
@@ -45,7 +47,8 @@ impl<T: Clone + Send + 'static> Staged<T> {
         let port = Port::open()?;
         let device = port.path().to_owned();
         let now = Mutex::new(look(&robot));
-        let seen = Arc::new(Seen { now, idle: AtomicU32::new(0), is_over: AtomicBool::new(false) });
+        let seen =
+            Arc::new(Seen { now, idle: AtomicU32::new(0), ailment: Mutex::new(None), is_over: AtomicBool::new(false) });
         let mut watched = Watched { robot, look, period, seen: Arc::clone(&seen) };
         let serving = thread::spawn(move || {
             let seen = Arc::clone(&watched.seen);
@@ -64,6 +67,11 @@ impl<T: Clone + Send + 'static> Staged<T> {
     #[must_use]
     pub fn now(&self) -> T {
         self.seen.now.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// Has the robot suffer this, from the end of the next period on.
+    pub fn suffers(&self, ailment: Ailment) {
+        *self.seen.ailment.lock().unwrap_or_else(PoisonError::into_inner) = Some(ailment);
     }
 
     /// Lets so many periods pass in which the robot is told nothing, and waits for that.
@@ -104,6 +112,9 @@ impl<R: Emulated, T> Emulated for Watched<R, T> {
 
     fn pass(&mut self, time: Duration) -> Result<(), String> {
         self.robot.pass(time)?;
+        if let Some(ailment) = self.seen.ailment.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            self.robot.suffer(ailment);
+        }
         *self.seen.now.lock().unwrap_or_else(PoisonError::into_inner) = (self.look)(&self.robot);
         Ok(())
     }

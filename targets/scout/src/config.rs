@@ -34,6 +34,8 @@ pub struct Config {
     pub gap: u64,
     /// The distance of the transducers from the centre, in metres.
     pub ring_radius: f64,
+    /// Below which voltage the battery is low.
+    pub low_battery: f64,
     /// How hard laws steer.
     pub steering: Steering,
 }
@@ -52,6 +54,7 @@ struct File {
     sonars: Option<Vec<u8>>,
     gap: Option<u64>,
     ring_radius: Option<f64>,
+    low_battery: Option<f64>,
     rotate_gain: Option<f64>,
     align_gain: Option<f64>,
     avoid_gain: Option<f64>,
@@ -83,6 +86,7 @@ impl Configured {
             sonars: made.value("sonars", said.sonars, ORDER.to_vec(), "which ping, in this order"),
             gap: made.value("gap", said.gap, 60, "ms between two pings"),
             ring_radius: made.value("ring-radius", said.ring_radius, 0.19, "m from the centre to a sonar; unverified"),
+            low_battery: made.value("low-battery", said.low_battery, 10.8, "V below which the battery is low"),
             steering: made.steering(said.rotate_gain, said.align_gain, said.avoid_gain),
         };
         config.check().map_err(|why| made.blamed(&why))?;
@@ -100,6 +104,7 @@ impl Config {
         within("frozen", self.frozen, 0.0, 100.0)?;
         within("gap", self.gap as f64, 4.0, 1020.0)?;
         within("ring-radius", self.ring_radius, 0.0, 0.5)?;
+        within("low-battery", self.low_battery, 5.0, 12.0)?;
         can_steer(&self.steering)?;
         if !self.gap.is_multiple_of(4) {
             return Err(format!("`gap` is {}, and the robot counts it in steps of 4 ms", self.gap));

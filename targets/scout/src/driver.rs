@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use mdle_runtime::{Meters, Nanos, PathStore, Robot, Sensed, Shape, Twist};
+use mdle_runtime::{Meters, Nanos, PathStore, Robot, Sensed, Shape, Supply, Twist, Volts};
 use mdle_serial::{Clock, Times, time_of};
 
 use crate::command::Command;
@@ -133,6 +133,13 @@ impl Scout {
     }
 }
 
+/// What the state says of the battery, which both supplies are of: the lower one counts.
+fn supply(state: &State, config: &Config) -> Supply {
+    let [cpu, motor] = state.volts();
+    let battery = Volts(cpu.0.min(motor.0));
+    Supply { battery, is_low: battery.0 < config.low_battery, is_plugged: state.is_plugged() }
+}
+
 impl Robot for Scout {
     type Output = Sensed;
     type Input = Twist;
@@ -148,6 +155,7 @@ impl Robot for Scout {
             velocity: wheels::twist(state.right, state.left),
             switches: state.bumper,
             pings: self.ring.take_in(&state.sonars, at, odometry),
+            supply: supply(&state, &self.config),
             shape: Shape {
                 body_radius: RADIUS,
                 wheel_base: Meters(WHEEL_BASE),

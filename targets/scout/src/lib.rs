@@ -31,7 +31,7 @@ pub use mdle_runtime::Sensed as Output;
 /// The robot's input.
 pub use mdle_runtime::Twist as Input;
 pub use mdle_serial::{Clock, LineFault};
-pub use state::{Battery, State};
+pub use state::State;
 pub use target::SuperScout;
 /// What the host runs a plan on.
 pub use target::SuperScout as Target;

@@ -1,9 +1,15 @@
 //! What a Scout says of itself in answer to almost any command: the state, 42 bytes in a fixed order.
 
+use mdle_runtime::Volts;
+
 use crate::number;
 
 /// The length of the state, in bytes.
 pub(crate) const LENGTH: usize = 42;
+
+/// The ends of the scales of both supplies, in volts.
+const CPU_RANGE: f64 = 12.0;
+const MOTOR_RANGE: f64 = 12.85;
 
 /// The state, in the units of the line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,17 +36,6 @@ pub struct State {
     pub cpu: u8,
     /// The supply of its motors, raw.
     pub motor: u8,
-}
-
-/// How full the battery is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Battery {
-    /// It has to be charged.
-    Low,
-    /// Half full.
-    Medium,
-    /// Full.
-    High,
 }
 
 impl State {
@@ -99,13 +94,16 @@ impl State {
         self.status & 0b0100_0000 != 0
     }
 
-    /// How full the battery is: bits 2 and 3 of the status, none of which is set when it is low.
+    /// Whether the charger is plugged in, or charges.
     #[must_use]
-    pub const fn battery(&self) -> Battery {
-        match (self.status >> 2) & 0b11 {
-            0b00 => Battery::Low,
-            0b01 => Battery::Medium,
-            _ => Battery::High,
-        }
+    pub const fn is_plugged(&self) -> bool {
+        self.status & 0b0011_0000 != 0
+    }
+
+    /// The voltages of the supplies of its computer and of its motors, each of which stays at the end of its scale.
+    #[must_use]
+    pub fn volts(&self) -> [Volts; 2] {
+        let volts = |raw: u8, range: f64| Volts((2.0 + f64::from(raw) * (3.0 / 255.0)) * (range / 5.0));
+        [volts(self.cpu, CPU_RANGE), volts(self.motor, MOTOR_RANGE)]
     }
 }

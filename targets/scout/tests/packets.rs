@@ -1,7 +1,8 @@
 //! Every worked packet that we know of, both ways: what a command is on the line, and what an answer says.
 #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "a test fails by panicking")]
 
-use mdle_scout::{Battery, Command, Frame, Garbled, State};
+use mdle_runtime::Volts;
+use mdle_scout::{Command, Frame, Garbled, State};
 
 /// The order in which a Scout's sonars are fired.
 const ORDER: [u8; 16] = [0, 2, 15, 1, 14, 3, 13, 4, 12, 5, 11, 6, 10, 7, 9, 8];
@@ -79,16 +80,18 @@ fn the_worked_state_says_what_it_should() {
         motor: 210,
     };
     assert_eq!(state, wanted);
-    assert_eq!((state.is_stopped(), state.battery()), (false, Battery::High));
+    assert_eq!((state.is_stopped(), state.is_plugged()), (false, false));
+    let hundredths = |volts: Volts| (volts.0 * 100.0).round();
+    assert_eq!(state.volts().map(hundredths), [1045.0, 1149.0]);
     assert_eq!(State::read(&answer.arguments[..41]), None);
 }
 
 #[test]
-fn emergency_stop_and_battery_are_bits_of_the_status() {
+fn emergency_stop_and_charger_are_bits_of_the_status() {
     let state = State::read(&frame(GS_REPLY).arguments).unwrap();
     let of = |status| State { status, ..state };
     assert_eq!([of(0x40), of(0x3F), of(0x80)].map(|state| state.is_stopped()), [true, false, false]);
-    assert_eq!([0x73, 0x04, 0x08].map(|status| of(status).battery()), [Battery::Low, Battery::Medium, Battery::High]);
+    assert_eq!([of(0x10), of(0x20), of(0xCF)].map(|state| state.is_plugged()), [true, true, false]);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::fmt;
 use std::time::Duration;
 
 use mdle_runtime::capability::Steering;
-use mdle_runtime::{Meters, Nanos, PathStore, Pose, Robot, Sensed, Shape, Twist};
+use mdle_runtime::{Meters, Nanos, PathStore, Pose, Robot, Sensed, Shape, Supply, Twist};
 
 use crate::body::{Body, STEP};
 use crate::disc::Disc;
@@ -204,6 +204,7 @@ impl Robot for Simulated {
             velocity: self.body.velocity(),
             switches: self.body.pressed(self.switches, &self.walls),
             pings: self.ring.pings,
+            supply: Supply::default(),
             shape: self.shape,
             paths: self.paths,
         })

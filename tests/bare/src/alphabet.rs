@@ -3,8 +3,8 @@
 #![allow(unused_variables, reason = "not every alphabet has a quark that looks at all of this")]
 pub use crate::{Input, Output};
 pub use ::mdle_atoms::{
-    Bumper, AtIsection, Go, Stop, Rotate, Turn, GoAvoid, Align, Path, R, X, Y, Theta, V,
-    Omega,
+    Bumper, AtIsection, LowBattery, Charger, Go, Stop, Rotate, Turn, GoAvoid, Align,
+    Path, R, X, Y, Theta, V, Omega, Battery,
 };
 use ::mdle_runtime as runtime;
 /// The target's name, as `mdlec --target` takes it.
@@ -12,7 +12,7 @@ pub const NAME: &str = "bare";
 /// The period of a turn, unless the operator says otherwise.
 pub const PERIOD: runtime::Nanos = runtime::Nanos(100000000);
 /// Tells this alphabet from any other: a plan that was compiled for another one does not compile.
-pub const HASH: u64 = 0xfffac2cc0e90c5f1;
+pub const HASH: u64 = 0xd233e7975dcf22ff;
 /// The quarks as plans make them: a crate whose quarks are otherwise does not compile.
 #[allow(dead_code, reason = "what stands here is to be compiled, not called")]
 mod signatures {
@@ -21,7 +21,7 @@ mod signatures {
     const fn capable<
         Y: runtime::capability::DiffDrive + runtime::capability::SonarRing
             + runtime::capability::Bumpers + runtime::capability::Odometry
-            + runtime::capability::Paths,
+            + runtime::capability::Paths + runtime::capability::Power,
     >() {}
     const _: () = capable::<Output>();
     /// `bumper`: Fires on contact of any bumper.
@@ -32,6 +32,16 @@ mod signatures {
     /// `atIsection <4 bits>`: Fires when the four directions front, left, back, right are all as the bits say: 1 where an obstacle is near.
     const fn at_isection(pattern: runtime::Bits<4>) -> AtIsection {
         AtIsection::new(pattern)
+    }
+
+    /// `lowBattery`: Fires while the battery is low, by what is low on this robot.
+    const fn low_battery() -> LowBattery {
+        LowBattery::new()
+    }
+
+    /// `charger`: Fires while the robot is on its charger.
+    const fn charger() -> Charger {
+        Charger::new()
     }
 
     /// `go <v in cm/s> <omega in rad/s>`: Drives with a forward speed and a turn rate, counter-clockwise positive, for ever.
@@ -102,6 +112,11 @@ mod signatures {
     const fn omega() -> Omega {
         Omega::new()
     }
+
+    /// `battery`: The voltage of the battery.
+    const fn battery() -> Battery {
+        Battery::new()
+    }
 }
 
 /// Any interrupt of this robot with its arguments.
@@ -111,6 +126,10 @@ pub enum AnyInterrupt {
     Bumper(Bumper),
     /// `atIsection <4 bits>`: Fires when the four directions front, left, back, right are all as the bits say: 1 where an obstacle is near.
     AtIsection(AtIsection),
+    /// `lowBattery`: Fires while the battery is low, by what is low on this robot.
+    LowBattery(LowBattery),
+    /// `charger`: Fires while the robot is on its charger.
+    Charger(Charger),
     /// A comparison of signals.
     Comparison(runtime::Comparison<AnySignal, AnySignal>),
 }
@@ -120,6 +139,8 @@ impl runtime::Interrupt<Output> for AnyInterrupt {
         match self {
             Self::Bumper(interrupt) => runtime::Interrupt::fired(interrupt, y),
             Self::AtIsection(interrupt) => runtime::Interrupt::fired(interrupt, y),
+            Self::LowBattery(interrupt) => runtime::Interrupt::fired(interrupt, y),
+            Self::Charger(interrupt) => runtime::Interrupt::fired(interrupt, y),
             Self::Comparison(comparison) => runtime::Interrupt::fired(comparison, y),
         }
     }
@@ -140,6 +161,8 @@ pub enum AnySignal {
     V(V),
     /// `omega`: The measured turn rate.
     Omega(Omega),
+    /// `battery`: The voltage of the battery.
+    Battery(Battery),
 }
 
 impl runtime::Signal<Output> for AnySignal {
@@ -151,6 +174,7 @@ impl runtime::Signal<Output> for AnySignal {
             Self::Theta(signal) => runtime::Signal::value(signal, y),
             Self::V(signal) => runtime::Signal::value(signal, y),
             Self::Omega(signal) => runtime::Signal::value(signal, y),
+            Self::Battery(signal) => runtime::Signal::value(signal, y),
         }
     }
 }
@@ -257,6 +281,7 @@ impl runtime::Alphabet for Alphabet {
         "bumper",
         "odometry",
         "paths",
+        "power",
     ];
     const LIMITS: &'static [runtime::Limit] = &[];
     fn interrupt(
@@ -271,6 +296,8 @@ impl runtime::Alphabet for Alphabet {
                         AtIsection::new(runtime::Bits::from_slice(pattern)?),
                     )
                 }
+                ("lowBattery", &[]) => AnyInterrupt::LowBattery(LowBattery::new()),
+                ("charger", &[]) => AnyInterrupt::Charger(Charger::new()),
                 _ => return None,
             },
         )
@@ -285,6 +312,7 @@ impl runtime::Alphabet for Alphabet {
                 ("theta", &[]) => AnySignal::Theta(Theta::new()),
                 ("v", &[]) => AnySignal::V(V::new()),
                 ("omega", &[]) => AnySignal::Omega(Omega::new()),
+                ("battery", &[]) => AnySignal::Battery(Battery::new()),
                 _ => return None,
             },
         )

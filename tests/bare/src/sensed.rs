@@ -1,13 +1,13 @@
-//! The robot's output, as it is read: the time and 22 numbers of 64 bits each. Its one path is part of the program.
+//! The robot's output, as it is read: the time and 25 numbers of 64 bits each. Its one path is part of the program.
 
-use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, Paths, SonarRing};
+use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, Paths, Power, SonarRing};
 use mdle_runtime::{
     Meters, MetersPerSecond, Nanos, Output, PathStore, Ping, Pings, Pose, Radians, RadiansPerSecond, SONARS, Setpoint,
-    SonarId, StoredPath, Twist,
+    SonarId, StoredPath, Supply, Twist, Volts,
 };
 
 /// The size of an output in bytes.
-const SIZE: usize = 8 * (7 + SONARS);
+const SIZE: usize = 8 * (10 + SONARS);
 
 /// An output as it is read.
 pub(crate) type Record = [u8; SIZE];
@@ -25,12 +25,13 @@ pub struct Sensed {
     pose: Pose,
     velocity: Twist,
     pressed: bool,
+    supply: Supply,
     pings: [Pings; SONARS],
 }
 
 impl Sensed {
-    /// The time and the output that a record holds: nanoseconds, `x`, `y`, `theta`, `v`, `omega`, the bumper, and the
-    /// ranges; numbers in SI units, negative for a range where no echo came back.
+    /// The time and the output that a record holds: nanoseconds, `x`, `y`, `theta`, `v`, `omega`, the bumper, the
+    /// battery, whether it is low, the charger, and the ranges; numbers in SI units, negative for a range where no echo came back.
     pub(crate) fn read(record: &Record) -> (Nanos, Self) {
         let (words, _) = record.as_chunks();
         let mut words = words.iter().map(|word| u64::from_le_bytes(*word));
@@ -39,12 +40,14 @@ impl Sensed {
         let pose = Pose { x: Meters(number()), y: Meters(number()), theta: Radians(number()) };
         let velocity = Twist { v: MetersPerSecond(number()), omega: RadiansPerSecond(number()) };
         let pressed = number() != 0.0;
+        let battery = Volts(number());
+        let supply = Supply { battery, is_low: number() != 0.0, is_plugged: number() != 0.0 };
         let mut pings = [Pings::default(); SONARS];
         for pings in &mut pings {
             let range = number();
             pings.push(Ping { range: (range >= 0.0).then_some(Meters(range)), at: t, pose });
         }
-        (t, Self { pose, velocity, pressed, pings })
+        (t, Self { pose, velocity, pressed, supply, pings })
     }
 }
 
@@ -88,6 +91,20 @@ impl SonarRing for Sensed {
 
     fn ring_radius(&self) -> Meters {
         Meters(0.19)
+    }
+}
+
+impl Power for Sensed {
+    fn battery(&self) -> Volts {
+        self.supply.battery
+    }
+
+    fn is_low(&self) -> bool {
+        self.supply.is_low
+    }
+
+    fn is_plugged(&self) -> bool {
+        self.supply.is_plugged
     }
 }
 

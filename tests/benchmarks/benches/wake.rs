@@ -67,8 +67,15 @@ fn lateness(role: &str) -> Vec<i64> {
     let begins: Vec<i64> = begins.lines().filter_map(|line| line.strip_prefix("begun ")?.parse().ok()).collect();
     assert_eq!(begins.len(), TURNS, "{role}");
     let first = begins.first().copied().unwrap_or_default();
-    let deadlines = (0..).map(|turn: i64| first + turn * PERIOD.as_nanos() as i64);
-    begins.iter().zip(deadlines).map(|(begun, deadline)| begun - deadline).skip(1).collect()
+    // A turn that is skipped makes those behind it turns of later deadlines, and not late.
+    begins.iter().skip(1).map(|begun| late(begun - first)).collect()
+}
+
+/// How late a turn begins that begins so long after the first one, beside the deadline that is nearest before it; a turn
+/// that is hardly too early is so little early.
+fn late(nanos: i64) -> i64 {
+    let period = PERIOD.as_nanos() as i64;
+    (nanos + period / 10).rem_euclid(period) - period / 10
 }
 
 fn tell(begins: &[Duration]) {

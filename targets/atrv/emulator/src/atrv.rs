@@ -16,9 +16,10 @@ const A_METRE: f64 = 139_654.7;
 const A_RADIAN: f64 = 49_784.5;
 /// After how long without a command it stops by itself, unless it is told otherwise.
 const FAILSAFE: Duration = Duration::from_secs(1);
-/// The battery, in hundredths of a volt; and one that is low.
+/// The battery, in hundredths of a volt less 1.82 V; one that is low; and on its charger.
 const BATTERY: u32 = 2430;
-const LOW: u32 = 2010;
+const LOW: u32 = 1850;
+const PLUGGED: u32 = 2650;
 /// The distance between its sides, in metres, as its body has it.
 const BETWEEN: f64 = 0.4;
 
@@ -114,7 +115,7 @@ impl Atrv {
         match (request.port, request.code, &*request.data) {
             (1, 1, _) => {
                 let brake = [u8::from(self.is_braked())];
-                let battery = if self.has(Ailment::LowBattery) { LOW } else { BATTERY };
+                let battery = self.battery();
                 let data = [&self.time()[..], &battery.to_be_bytes(), &brake].concat();
                 self.tell(1, 1, &data);
             }
@@ -188,6 +189,17 @@ impl Atrv {
         self.gone = (self.gone.0 + way * A_METRE, self.gone.1 + turn * A_RADIAN);
     }
 
+    /// What it tells of its battery. On the charger that is no longer low.
+    fn battery(&self) -> u32 {
+        if self.has(Ailment::PluggedIn) {
+            PLUGGED
+        } else if self.has(Ailment::LowBattery) {
+            LOW
+        } else {
+            BATTERY
+        }
+    }
+
     fn has(&self, ailment: Ailment) -> bool {
         self.ailments.contains(&ailment)
     }
@@ -240,6 +252,7 @@ impl Emulated for Atrv {
             | Ailment::DeadSonar
             | Ailment::Bumper
             | Ailment::LowBattery
+            | Ailment::PluggedIn
             | Ailment::Filler
             | Ailment::Hang
             | Ailment::NoPings => self.ailments.push(ailment),

@@ -4,10 +4,10 @@
 
 use std::time::Duration;
 
-use mdle_atoms::conformance::{Room, Stage, Suite};
+use mdle_atoms::conformance::{Room, Stage, Suite, Supplied};
 use mdle_atrv::{Atrv, Clock, Config, Configured, Target, alphabet};
 use mdle_atrv_emulator::atrv::{Atrv as Emulated, step};
-use mdle_emulator::{Pace, Staged};
+use mdle_emulator::{Ailment, Pace, Staged};
 use mdle_host::Target as _;
 use mdle_runtime::{Nanos, PathStore, Pose};
 use mdle_sim::{Body, Make, Simulated, World};
@@ -44,6 +44,15 @@ impl Stage for OnItsLine {
         }
     }
 
+    fn supply(&mut self, _: &mut Atrv, supplied: Supplied) {
+        let ailment = match supplied {
+            Supplied::Well => return,
+            Supplied::Low => Ailment::LowBattery,
+            Supplied::Plugged => Ailment::PluggedIn,
+        };
+        self.0.as_ref().expect("a robot is switched on").suffers(ailment);
+    }
+
     fn truth(&self, _: &Atrv) -> Pose {
         self.0.as_ref().expect("a robot is switched on").now()
     }
@@ -56,6 +65,6 @@ impl Stage for OnItsLine {
 #[test]
 fn the_driver_conforms() {
     let mut stage = OnItsLine::default();
-    let report = Suite::on(&mut stage).diff_drive().odometry().bumper().sonar().paths().report();
+    let report = Suite::on(&mut stage).diff_drive().odometry().bumper().sonar().paths().power().report();
     assert!(report.holds(), "{report}");
 }

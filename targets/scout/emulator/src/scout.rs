@@ -15,6 +15,9 @@ const INCH: f64 = 0.0254;
 const INCHES_A_DEGREE: f64 = 0.118_597;
 /// By how much a robot whose motors are limp gets slower, in tenths of an inch a second, each second: 0.3 m/s.
 const ROLLING: f64 = 120.0;
+/// What it measures of both supplies: at 11.5 V and 11.9 V, and when both are at 10.5 V.
+const CHARGED: [u8; 2] = [239, 222];
+const LOW: [u8; 2] = [202, 177];
 /// The answer to what a Scout does not know.
 const REFUSED: u8 = 8;
 
@@ -43,11 +46,13 @@ pub struct Scout {
     age: Duration,
     /// Whether its emergency stop is pressed.
     pub emergency: bool,
-    /// What else may be the matter: its right wheel, the sonar in front, its first bumper, its battery, all its sonars.
+    /// What else may be the matter: its right wheel, the sonar in front, its first bumper, its battery, its
+    /// charger, all its sonars.
     is_stuck: bool,
     is_deaf: bool,
     is_pressed: bool,
     is_low: bool,
+    is_plugged: bool,
     is_mute: bool,
     /// The state that it says again and again.
     hung: Option<Vec<u8>>,
@@ -79,6 +84,7 @@ impl Scout {
             is_deaf: false,
             is_pressed: false,
             is_low: false,
+            is_plugged: false,
             is_mute: false,
             hung: None,
         };
@@ -147,7 +153,7 @@ impl Scout {
         let (sin, cos) = libm::sincos(self.zero.theta.0);
         let tenths = |meters: f64| (meters / INCH * 10.0).round() as i64;
         let heading = (pose.theta.0 - self.zero.theta.0).to_degrees().rem_euclid(360.0);
-        let charge = if self.is_low { 0 } else { 0b1000 };
+        let charge = if self.is_low { 0 } else { 0b1000 } | if self.is_plugged { 0b0011_0000 } else { 0 };
         let moving = |wheel: i32, bit: u8| if wheel == 0 { 0 } else { bit };
         let (right, left) = self.rolling();
         let status = moving(left, 1) | moving(right, 2) | charge | if self.emergency { 0b0100_0000 } else { 0 };
@@ -163,8 +169,7 @@ impl Scout {
             &two_bytes(i64::from(left)),
             &[0, 0, 0, 0, status],
             &(self.age.as_millis() as u32).to_le_bytes(),
-            // 11.5 V and 11.9 V.
-            &[239, 222],
+            if self.is_low { &LOW } else { &CHARGED },
         ]
         .concat()
     }
@@ -238,6 +243,7 @@ impl Emulated for Scout {
             Ailment::Bumper => self.is_pressed = true,
             Ailment::Emergency => self.emergency = true,
             Ailment::LowBattery => self.is_low = true,
+            Ailment::PluggedIn => self.is_plugged = true,
             Ailment::Hang => self.hung = Some(self.state()),
             Ailment::NoPings => self.is_mute = true,
             Ailment::Filler => {}

@@ -4,8 +4,8 @@
 
 use std::time::Duration;
 
-use mdle_atoms::conformance::{Room, Stage, Suite};
-use mdle_emulator::Staged;
+use mdle_atoms::conformance::{Room, Stage, Suite, Supplied};
+use mdle_emulator::{Ailment, Staged};
 use mdle_host::Target as _;
 use mdle_runtime::{Nanos, PathStore, Pose};
 use mdle_scout::{Clock, Config, Configured, Scout, Target, alphabet};
@@ -42,6 +42,15 @@ impl Stage for OnItsLine {
         }
     }
 
+    fn supply(&mut self, _: &mut Scout, supplied: Supplied) {
+        let ailment = match supplied {
+            Supplied::Well => return,
+            Supplied::Low => Ailment::LowBattery,
+            Supplied::Plugged => Ailment::PluggedIn,
+        };
+        self.0.as_ref().expect("a robot is switched on").suffers(ailment);
+    }
+
     fn truth(&self, _: &Scout) -> Pose {
         self.0.as_ref().expect("a robot is switched on").now()
     }
@@ -54,6 +63,6 @@ impl Stage for OnItsLine {
 #[test]
 fn the_driver_conforms() {
     let mut stage = OnItsLine::default();
-    let report = Suite::on(&mut stage).diff_drive().odometry().bumper().sonar().paths().report();
+    let report = Suite::on(&mut stage).diff_drive().odometry().bumper().sonar().paths().power().report();
     assert!(report.holds(), "{report}");
 }

@@ -1,0 +1,77 @@
+//! `lowBattery`, `charger` and the signal `battery`: what a plan goes by that brings its robot home (ours).
+
+use mdle_runtime::capability::Power;
+use mdle_runtime::{Interrupt, Signal};
+
+/// Fires while the battery is low, by what is low on this robot.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct LowBattery;
+
+impl LowBattery {
+    /// The quark `lowBattery`.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self
+    }
+}
+
+impl<Y: Power> Interrupt<Y> for LowBattery {
+    fn fired(&self, y: &Y) -> bool {
+        y.is_low()
+    }
+}
+
+/// Fires while the robot is on its charger.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Charger;
+
+impl Charger {
+    /// The quark `charger`.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self
+    }
+}
+
+impl<Y: Power> Interrupt<Y> for Charger {
+    fn fired(&self, y: &Y) -> bool {
+        y.is_plugged()
+    }
+}
+
+/// The voltage of the battery, in volts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Battery;
+
+impl Battery {
+    /// The signal `battery`.
+    #[must_use]
+    pub const fn new() -> Self {
+        Self
+    }
+}
+
+impl<Y: Power> Signal<Y> for Battery {
+    fn value(&self, y: &Y) -> f64 {
+        y.battery().0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use mdle_runtime::{Supply, Volts};
+
+    use super::*;
+    use crate::trial::Sensed;
+
+    #[test]
+    fn each_says_what_the_robot_says_of_it() {
+        let says = |supply| {
+            let y = Sensed { supply, ..Sensed::default() };
+            (Battery::new().value(&y), LowBattery::new().fired(&y), Charger::new().fired(&y))
+        };
+        let full = Supply { battery: Volts(12.5), is_low: false, is_plugged: true };
+        assert_eq!(says(full), (12.5, false, true));
+        assert_eq!(says(Supply { battery: Volts(10.5), is_low: true, is_plugged: false }), (10.5, true, false));
+    }
+}

@@ -1,0 +1,53 @@
+//! A plan that goes by battery and charger does the same on each emulated robot that has them.
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::process::Command;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::Duration;
+
+use mdle_atrv_emulator::atrv::{Atrv, step};
+use mdle_emulator::{At, Emulated, Faulty, Pace, Port, serve};
+use mdle_scout_emulator::scout::Scout;
+use mdle_sim::{Body, Make, Simulated, World};
+use mdle_tests::executable::{folder, run_mdlec};
+
+const PERIOD: Duration = Duration::from_millis(100);
+const PACE: Pace = Pace::Lockstep(PERIOD);
+/// It drives until its battery is low, and rests until somebody plugs it in.
+const PLAN: &str = "{ Home (charger OR wait 30s) (Atom (lowBattery OR battery < 5V) (go 10 0)) (Atom (null) stop) }\n";
+
+/// What the plan reports on this robot, whose battery is low after 5 s and which is plugged in after 10, times left out.
+fn reported<R: Emulated + Send>(target: &str, robot: R) -> Vec<String> {
+    let folder = folder(&format!("power_on_{target}"));
+    fs::write(folder.join("home.mdle"), PLAN).unwrap();
+    let output = run_mdlec(&folder, &["home.mdle", "--target", target]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let faults: Vec<At> = ["low-battery@5", "plugged-in@10"].map(|text| text.parse().expect("a fault")).into();
+    let mut robot = Faulty::new(robot, &faults).expect("a robot");
+    let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
+    let output = thread::scope(|scope| {
+        let serving = scope.spawn(|| serve(&mut robot, &port, PACE, &|| !over.load(Ordering::Relaxed)));
+        let output = Command::new(folder.join("home")).arg("--device").arg(port.path()).arg("--lockstep").output();
+        over.store(true, Ordering::Relaxed);
+        serving.join().unwrap().unwrap();
+        output.unwrap()
+    });
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let said = String::from_utf8(output.stdout).unwrap();
+    said.lines().map(|line| line.split_once(" s  ").map_or(line, |(_, transition)| transition).to_owned()).collect()
+}
+
+#[test]
+fn a_robot_stops_when_its_battery_is_low_and_is_done_when_it_is_plugged_in() {
+    let body = |body, step| {
+        let (world, make) = (World::office().unwrap(), Make { body, without: Vec::new(), seed: None });
+        Simulated::with(&make, &world, world.start, step).unwrap()
+    };
+    let scout = reported("scout", Scout::new(body(Body::Scout, PERIOD)).unwrap());
+    let step = step(PACE);
+    let atrv = reported("atrv", Atrv::new(body(Body::Atrv, step), step, false).unwrap());
+    assert_eq!(scout, ["atom 2 stop  <- lowBattery OR battery < 5 (atom 1)", "plan over: charger OR wait 30 (Home)"]);
+    assert_eq!(atrv, scout);
+}
