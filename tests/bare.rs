@@ -111,7 +111,7 @@ const EVERY_QUARK: &str = r#"
 {"t": 2.3, "fired": ["lowBattery"]}
 {"t": 2.4, "fired": ["lowBattery", "charger"]}
 {"t": 2.5, "fired": ["charger"]}
-{"t": 2.6, "fired": ["battery > 12", "charger"]}
+{"t": 2.6, "fired": ["battery > 12", "age3 < 1", "charger"]}
 "#;
 
 fn compiled(plan: &str) -> (Compiled, Alphabet) {

@@ -42,6 +42,6 @@ pub use go_avoid::{GoAvoid, GoingRound};
 pub use path::{Path, Replaying};
 pub use power::{Battery, Charger, LowBattery};
 pub use rotate::{Rotate, Rotating};
-pub use signals::{Omega, R, Theta, V, X, Y};
+pub use signals::{Age, Omega, R, Theta, V, X, Y};
 pub use stop::Stop;
 pub use turn::{Turn, Turning};

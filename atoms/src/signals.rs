@@ -1,4 +1,4 @@
-//! The signals that plans compare: sonar ranges and odometry (paper, section IV-A: `r_i`).
+//! The signals that plans compare: sonar ranges and their age, and odometry (paper, section IV-A: `r_i`).
 
 use mdle_runtime::capability::{Odometry, SonarRing};
 use mdle_runtime::{Signal, SonarId};
@@ -19,6 +19,25 @@ impl<Y: SonarRing> Signal<Y> for R {
     fn value(&self, y: &Y) -> f64 {
         let newest = y.pings(self.0).newest_first().next();
         newest.and_then(|ping| ping.range).map_or(f64::INFINITY, |range| range.0)
+    }
+}
+
+/// How long ago a sonar pinged last, in seconds; infinite where it has not yet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Age(SonarId);
+
+impl Age {
+    /// The signal of this sonar.
+    #[must_use]
+    pub const fn new(which: SonarId) -> Self {
+        Self(which)
+    }
+}
+
+impl<Y: SonarRing> Signal<Y> for Age {
+    fn value(&self, y: &Y) -> f64 {
+        let newest = y.pings(self.0).newest_first().next();
+        newest.map_or(f64::INFINITY, |ping| y.now().since(ping.at).seconds())
     }
 }
 
@@ -56,7 +75,7 @@ signals! {
 
 #[cfg(test)]
 mod tests {
-    use mdle_runtime::{Radians, RadiansPerSecond};
+    use mdle_runtime::{Nanos, Radians, RadiansPerSecond};
 
     use super::*;
     use crate::trial::Sensed;
@@ -71,6 +90,17 @@ mod tests {
         assert_eq!(range(&y), 2.5);
         y.ping(SonarId::new(3), None);
         assert_eq!(range(&y), f64::INFINITY);
+    }
+
+    #[test]
+    fn a_sonar_is_as_old_as_its_last_ping_echo_or_not() {
+        let mut y = Sensed { now: Nanos(2_500_000_000), ..Sensed::default() };
+        let age = |y: &Sensed| Age::new(SonarId::new(3)).value(y);
+        assert_eq!(age(&y), f64::INFINITY);
+        y.ping_at(SonarId::new(3), Some(2.5), Nanos(1_000_000_000));
+        assert_eq!(age(&y), 1.5);
+        y.ping_at(SonarId::new(3), None, Nanos(2_000_000_000));
+        assert_eq!(age(&y), 0.5);
     }
 
     #[test]

@@ -14,6 +14,7 @@ pub(crate) const PERIOD: f64 = 0.1;
 /// What a robot with every capability might sense.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Sensed {
+    pub(crate) now: Nanos,
     pub(crate) pose: Pose,
     pub(crate) velocity: Twist,
     pub(crate) pressed: bool,
@@ -26,6 +27,7 @@ pub(crate) struct Sensed {
 impl Default for Sensed {
     fn default() -> Self {
         Self {
+            now: Nanos::ZERO,
             pose: Pose::ORIGIN,
             velocity: Twist::default(),
             pressed: false,
@@ -99,6 +101,10 @@ impl DiffDrive for Sensed {
 impl SonarRing for Sensed {
     fn pings(&self, sonar: SonarId) -> &Pings {
         self.pings.get(sonar.number()).expect("one of the sixteen")
+    }
+
+    fn now(&self) -> Nanos {
+        self.now
     }
 
     fn ring_radius(&self) -> Meters {

@@ -167,6 +167,12 @@ where
     while trial.now().seconds() < HEARD + 3.0 {
         trial.drive(0.2, 0.4, S::PERIOD.seconds())?;
         been.push((trial.now(), trial.y.here()));
+        let (now, said) = (trial.now(), trial.y.now());
+        if now.since(said).0.max(said.since(now).0) > S::PERIOD.0 {
+            let (now, said) = (now.seconds(), said.seconds());
+            let why = format!("`now` is {said:.1} s, and it is {now:.1} s from the first exchange on");
+            return Err(Verdict::Broken(why));
+        }
         for sonar in sonars() {
             let pings: Vec<&Ping> = trial.y.pings(sonar).newest_first().collect();
             let said = |what: &str| Verdict::Broken(format!("sonar {}: {what}", sonar.number()));

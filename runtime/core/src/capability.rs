@@ -1,7 +1,7 @@
 //! What a robot can offer to quarks: one trait for each capability an alphabet can name, implemented by the robot's output.
 //! `state_link` and `modules` have none yet, so no robot can offer them.
 
-use crate::{Meters, Output, Pings, Pose, Setpoint, SonarId, Twist, Volts};
+use crate::{Meters, Nanos, Output, Pings, Pose, Setpoint, SonarId, Twist, Volts};
 
 /// `odometry`: the robot knows where it is and how fast it moves, in axes that stay put while it is switched on.
 pub trait Odometry: Output {
@@ -50,6 +50,8 @@ impl Steering {
 pub trait SonarRing: Output {
     /// The last pings of one sonar.
     fn pings(&self, sonar: SonarId) -> &Pings;
+    /// The time of this output, on the clock by which pings are dated.
+    fn now(&self) -> Nanos;
     /// The distance of the transducers from the centre of the body.
     fn ring_radius(&self) -> Meters;
     /// How many pings must agree that a way is free: three, or two on a robot whose sonars fire in turn.

@@ -2,11 +2,13 @@
 //! value as it is kept, and the capabilities that it comes to (`y = h(x)`, paper, Eq. 1).
 
 use crate::capability::{Bumpers, DiffDrive, Odometry, Paths, Power, SonarRing, Steering};
-use crate::{Meters, Output, PathStore, Pings, Pose, SONARS, Setpoint, SonarId, Twist, Volts};
+use crate::{Meters, Nanos, Output, PathStore, Pings, Pose, SONARS, Setpoint, SonarId, Twist, Volts};
 
 /// The output of one turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sensed {
+    /// The time of the exchange that brought it, counted from the first, as that of its pings.
+    pub at: Nanos,
     /// Where the robot is by its own reckoning.
     pub odometry: Pose,
     /// How fast it moves, measured.
@@ -91,6 +93,10 @@ impl SonarRing for Sensed {
         let [first, ..] = &self.pings;
         // Numbers of sonars are below 16.
         self.pings.get(sonar.number()).unwrap_or(first)
+    }
+
+    fn now(&self) -> Nanos {
+        self.at
     }
 
     fn ring_radius(&self) -> Meters {

@@ -187,6 +187,7 @@ impl Robot for Atrv {
         self.hear(at, self.config.patience())?;
         self.hearing.fault(at)?;
         Ok(Sensed {
+            at,
             odometry: self.hearing.pose(),
             velocity: self.hearing.velocity(),
             switches: self.hearing.switches(),

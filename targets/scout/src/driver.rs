@@ -151,6 +151,7 @@ impl Robot for Scout {
         let (at, odometry) = (self.times.now(), self.odometer.pose(&state));
         self.freshness.take(&state, at, odometry, &self.config)?;
         Ok(Sensed {
+            at,
             odometry,
             velocity: wheels::twist(state.right, state.left),
             switches: state.bumper,

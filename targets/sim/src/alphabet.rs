@@ -4,7 +4,7 @@
 pub use crate::{Input, Output};
 pub use crate::quarks::{Go, GoAvoid};
 pub use ::mdle_atoms::{
-    Bumper, AtIsection, Stop, Rotate, Turn, Align, Path, R, X, Y, Theta, V, Omega,
+    Bumper, AtIsection, Stop, Rotate, Turn, Align, Path, R, Age, X, Y, Theta, V, Omega,
 };
 use ::mdle_runtime as runtime;
 /// The target's name, as `mdlec --target` takes it.
@@ -12,7 +12,7 @@ pub const NAME: &str = "sim";
 /// The period of a turn, unless the operator says otherwise.
 pub const PERIOD: runtime::Nanos = runtime::Nanos(100000000);
 /// Tells this alphabet from any other: a plan that was compiled for another one does not compile.
-pub const HASH: u64 = 0xdcf7de724ae183f0;
+pub const HASH: u64 = 0x268c79ee069a3e9e;
 /// The quarks as plans make them: a crate whose quarks are otherwise does not compile.
 #[allow(dead_code, reason = "what stands here is to be compiled, not called")]
 mod signatures {
@@ -78,6 +78,11 @@ mod signatures {
         R::new(which)
     }
 
+    /// `age <sonar 0 to 15>`: How long ago a sonar pinged last; infinite before the first time.
+    const fn age(which: runtime::SonarId) -> Age {
+        Age::new(which)
+    }
+
     /// `x`: Odometry, along the first axis.
     const fn x() -> X {
         X::new()
@@ -130,6 +135,8 @@ impl runtime::Interrupt<Output> for AnyInterrupt {
 pub enum AnySignal {
     /// `r <sonar 0 to 15>`: The range that a sonar returns.
     R(R),
+    /// `age <sonar 0 to 15>`: How long ago a sonar pinged last; infinite before the first time.
+    Age(Age),
     /// `x`: Odometry, along the first axis.
     X(X),
     /// `y`: Odometry, along the second axis.
@@ -146,6 +153,7 @@ impl runtime::Signal<Output> for AnySignal {
     fn value(&self, y: &Output) -> f64 {
         match self {
             Self::R(signal) => runtime::Signal::value(signal, y),
+            Self::Age(signal) => runtime::Signal::value(signal, y),
             Self::X(signal) => runtime::Signal::value(signal, y),
             Self::Y(signal) => runtime::Signal::value(signal, y),
             Self::Theta(signal) => runtime::Signal::value(signal, y),
@@ -305,6 +313,9 @@ impl runtime::Alphabet for Alphabet {
         Some(
             match (name, arguments) {
                 ("r", &[runtime::Argument::Sonar(which)]) => AnySignal::R(R::new(which)),
+                ("age", &[runtime::Argument::Sonar(which)]) => {
+                    AnySignal::Age(Age::new(which))
+                }
                 ("x", &[]) => AnySignal::X(X::new()),
                 ("y", &[]) => AnySignal::Y(Y::new()),
                 ("theta", &[]) => AnySignal::Theta(Theta::new()),

@@ -200,6 +200,7 @@ impl Robot for Simulated {
         self.drive(input, now);
         self.exchanges = self.exchanges.saturating_add(1);
         Ok(Sensed {
+            at: now,
             odometry: self.body.odometry(),
             velocity: self.body.velocity(),
             switches: self.body.pressed(self.switches, &self.walls),

@@ -182,6 +182,7 @@ fn what_is_wrong_with_a_driver_is_told_in_a_sentence() {
         says(|y| y.switches = 0),
         says(|y| y.switches |= 4),
         says(|y| y.paths = PathStore::EMPTY),
+        says(|y| y.at = Nanos::ZERO),
         says(|y| y.pings.swap(3, 5)),
         says(|y| repinged(y, |_, ping| Ping { range: ping.range.or(Some(Meters(9.0))), ..*ping })),
         says(|y| repinged(y, |_, ping| Ping { at: Nanos(ping.at.0 + 1_000_000_000), ..*ping })),

@@ -7,7 +7,8 @@ use mdle_host::clap::{Arg, ArgMatches, Command};
 use mdle_host::{Pace, Time};
 use mdle_runtime::capability::Steering;
 use mdle_runtime::{
-    Meters, MetersPerSecond, PathStore, Pings, Pose, Radians, RadiansPerSecond, SONARS, Sensed, Shape, Supply, Twist,
+    Meters, MetersPerSecond, Nanos, PathStore, Pings, Pose, Radians, RadiansPerSecond, SONARS, Sensed, Shape, Supply,
+    Twist,
 };
 
 /// REPLACE by what you measure on your robot. `body_radius` is of the smallest circle around it.
@@ -93,6 +94,7 @@ impl Hardware {
             // What the alphabet does not declare, no plan can ask for: this stays empty until the robot has it.
             switches: 0,
             pings: [Pings::default(); SONARS],
+            at: Nanos::ZERO,
             supply: Supply::default(),
             shape: SHAPE,
             paths: PathStore::EMPTY,
