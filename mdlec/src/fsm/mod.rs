@@ -5,6 +5,7 @@
 mod expand;
 mod file;
 mod matrices;
+mod observation;
 #[cfg(test)]
 mod tests;
 mod validation;
@@ -12,6 +13,7 @@ mod validation;
 pub use expand::{expand, expanded_states};
 pub use file::{FsmFile, InterruptEntry, Moves, ScopeEntry, fsm_file};
 pub use matrices::{Matrices, Matrix, Transition, UnitVector, matrices};
+pub use observation::observation1;
 pub use validation::validate;
 
 use std::collections::BTreeMap;
@@ -121,6 +123,7 @@ pub fn algorithm1(nondegenerate: &Nondegenerate) -> Result<Lowered, Diagnostic> 
     let states = lowering.scope(&plan.root, Place { parent: 0, level: 0, slot: 0, state: 1 })?;
     lowering.lowered.termination = states + 1;
     validate(nondegenerate, &lowering.lowered)?;
+    observation1(&lowering.lowered)?;
     Ok(lowering.lowered)
 }
 
