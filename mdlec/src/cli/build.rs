@@ -8,7 +8,7 @@ use std::time::Instant;
 
 use super::bind;
 use super::input::{self, Input, Target};
-use super::{Build, Emit, EmitKind, Failure, report};
+use super::{Build, Emit, EmitKind, Failure, matrices, report};
 use crate::link::{self, Cache, LinkError, Package, Progress, TargetCrate};
 use crate::rust::{self, Header};
 use crate::syntax::outline;
@@ -31,6 +31,15 @@ pub(super) fn build(options: &Build) -> Result<(), Failure> {
     }
     if options.run {
         return Err(Failure::usage("`--run` runs an executable, and this `--emit` makes none"));
+    }
+    if options.combine && kind != EmitKind::Matrices {
+        return Err(Failure::usage("`--combine` sums matrices: it goes with `--emit matrices`"));
+    }
+    if kind == EmitKind::Matrices {
+        let target = input::target(options.target.as_deref())?;
+        let mut input = input::read_plan(path, &target)?;
+        let compiled = compile_one(&mut input, &target, options.name.as_deref(), options.deny_warnings)?;
+        return matrices::matrices(&compiled.nondegenerate, options.combine, file.as_deref(), &input.sources);
     }
     let text = stage(options, path, kind)?;
     match file {
@@ -107,7 +116,7 @@ fn stage(options: &Build, path: &Path, kind: EmitKind) -> Result<String, Failure
         EmitKind::Nondegenerate => Ok(nondegenerate.plan().to_string()),
         EmitKind::Expanded => fsm::expand(nondegenerate).map(|expanded| expanded.plan().numbered()),
         EmitKind::Fsm => fsm::fsm_file(nondegenerate).map(|file| file.to_json()),
-        EmitKind::Tree | EmitKind::Rust | EmitKind::Exe => {
+        EmitKind::Tree | EmitKind::Matrices | EmitKind::Rust | EmitKind::Exe => {
             needs_target(options.target.as_deref())?;
             Ok(rust_of(&compiled, path, &target))
         }

@@ -8,6 +8,7 @@ mod everywhere;
 mod explain;
 mod fmt;
 mod input;
+mod matrices;
 mod new_target;
 mod report;
 mod trace;
@@ -83,9 +84,12 @@ struct Build {
     /// Which plan of the file [default: the one that no other refers to]
     #[arg(long = "plan", value_name = "NAME")]
     name: Option<String>,
-    /// Print a stage instead of building, to standard output or to a file
+    /// Print a stage instead of building, to standard output or to a file; matrices also into a folder
     #[arg(long, value_name = "KIND[=FILE]", value_parser = Emit::parse)]
     emit: Option<Emit>,
+    /// With `--emit matrices`: one matrix for all places of an interrupt
+    #[arg(long)]
+    combine: bool,
     /// Treat warnings as errors
     #[arg(long)]
     deny_warnings: bool,
@@ -117,6 +121,8 @@ enum EmitKind {
     Expanded,
     /// The finite state machine, as JSON
     Fsm,
+    /// The transition matrices: in the paper's notation, or as MatrixMarket files into a folder
+    Matrices,
     /// The plan in the paper's formal notation
     Formal,
     /// The Rust that is compiled

@@ -3,7 +3,7 @@
 //! Afterwards: every column of a matrix is a standard basis vector (Observation 1), and interrupts are in pre-order, so
 //! that of those that list a column the outermost has the lowest number.
 
-use std::ops::Mul;
+use std::ops::{Mul, RangeInclusive};
 
 use nalgebra::DMatrix;
 
@@ -25,6 +25,8 @@ pub struct Matrices<'p> {
 pub struct Transition<'p> {
     /// The interrupt.
     pub interrupt: &'p Interrupt,
+    /// The name of its scope; empty for an atom.
+    pub name: &'p str,
     /// How many scopes are around its scope.
     pub level: usize,
     /// Where it leads.
@@ -59,8 +61,14 @@ pub struct UnitVector {
 
 impl Matrix {
     /// The columns that it lists: those of the states which its scope holds.
-    pub fn listed(&self) -> impl Iterator<Item = usize> + use<> {
+    pub fn listed(&self) -> RangeInclusive<usize> {
         self.first..=self.last
+    }
+
+    /// The row that these columns have their 1 in.
+    #[must_use]
+    pub fn row(&self) -> usize {
+        self.row
     }
 
     /// The matrix with all its zeros, for small ones.
@@ -89,10 +97,10 @@ pub fn matrices(plan: &Nondegenerate) -> Result<Matrices<'_>, Diagnostic> {
     brackets.scope(&plan.plan().root, Place { around: None, level: 0 });
     let size = brackets.laws.len() + 1;
     let transitions = brackets.all.iter().filter_map(|bracket| {
-        let Kind::Scope { interrupt, level, record } = bracket.kind else { return None };
+        let Kind::Scope { interrupt, name, level, record } = bracket.kind else { return None };
         let Destination { row, afresh, ends_with } = brackets.destination(bracket);
         let matrix = Matrix { size, first: bracket.first, last: bracket.last, row };
-        Some(Transition { interrupt, level, matrix, afresh, record, marks: bracket.marks, ends_with })
+        Some(Transition { interrupt, name, level, matrix, afresh, record, marks: bracket.marks, ends_with })
     });
     Ok(Matrices { transitions: transitions.collect(), laws: brackets.laws })
 }
@@ -123,6 +131,7 @@ struct Bracket<'p> {
 enum Kind<'p> {
     Scope {
         interrupt: &'p Interrupt,
+        name: &'p str,
         level: usize,
         record: Option<Record>,
     },
@@ -149,7 +158,8 @@ struct Destination<'p> {
 
 impl<'p> Brackets<'p> {
     fn scope(&mut self, scope: &'p Scope, place: Place) {
-        let kind = Kind::Scope { interrupt: &scope.interrupt, level: place.level, record: scope.record };
+        let (interrupt, name) = (&scope.interrupt, scope.name.as_str());
+        let kind = Kind::Scope { interrupt, name, level: place.level, record: scope.record };
         let here = self.open(kind, place, &scope.marks);
         self.sequence(&scope.body, Place { around: Some(here), level: place.level + 1 });
         self.close(here);
@@ -173,7 +183,7 @@ impl<'p> Brackets<'p> {
     }
 
     fn atom(&mut self, atom: &'p Atom, place: Place) {
-        let kind = Kind::Scope { interrupt: &atom.interrupt, level: place.level, record: None };
+        let kind = Kind::Scope { interrupt: &atom.interrupt, name: "", level: place.level, record: None };
         let here = self.open(kind, place, &atom.marks);
         self.laws.push(atom.law);
         self.close(here);

@@ -2,16 +2,24 @@
 //!
 //! Afterwards: brackets are in pre-order, bracket 0 is the plan, the children of a bracket partition its atoms.
 
+mod equation;
 mod expand;
 mod file;
 mod matrices;
+mod matrix_market;
+mod observation;
+mod terms;
 #[cfg(test)]
 mod tests;
 mod validation;
 
+pub use equation::{equation, most_states};
 pub use expand::{expand, expanded_states};
 pub use file::{FsmFile, InterruptEntry, Moves, ScopeEntry, fsm_file};
 pub use matrices::{Matrices, Matrix, Transition, UnitVector, matrices};
+pub use matrix_market::{MatrixFiles, matrix_files};
+pub use observation::observation1;
+pub use terms::{Extent, Term, Terms, terms};
 pub use validation::validate;
 
 use std::collections::BTreeMap;
@@ -121,6 +129,7 @@ pub fn algorithm1(nondegenerate: &Nondegenerate) -> Result<Lowered, Diagnostic> 
     let states = lowering.scope(&plan.root, Place { parent: 0, level: 0, slot: 0, state: 1 })?;
     lowering.lowered.termination = states + 1;
     validate(nondegenerate, &lowering.lowered)?;
+    observation1(&lowering.lowered)?;
     Ok(lowering.lowered)
 }
 

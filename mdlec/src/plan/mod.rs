@@ -9,6 +9,7 @@ mod condition;
 mod conditions;
 mod definitions;
 mod formal;
+mod functions;
 mod labels;
 pub mod lints;
 mod nondegenerate;
@@ -24,6 +25,7 @@ pub use angle::{frame_text, in_degrees};
 pub use arguments::signature;
 pub use comparisons::is_time;
 pub use condition::{After, Condition, Situation};
+pub use functions::{Function, Functions};
 pub use nondegenerate::{Nondegenerate, remove_degeneracy};
 pub use resolve::resolve;
 

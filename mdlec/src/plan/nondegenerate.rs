@@ -4,7 +4,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{Atom, Condition, Interrupt, Node, Plan, Quark, QuarkId, RecordId, Scope};
+use super::{Atom, Condition, Function, Functions, Interrupt, Node, Plan, Quark, QuarkId, Scope};
 use crate::diagnostic::{Code, Diagnostic, Span};
 
 /// A plan without degeneracy; only [`remove_degeneracy`] makes one.
@@ -28,38 +28,23 @@ impl Nondegenerate {
 /// Replaces every repeated interrupt by the null interrupt and warns of each, once.
 #[must_use]
 pub fn remove_degeneracy(mut plan: Plan) -> (Nondegenerate, Vec<Diagnostic>) {
-    let mut removal = Removal { same: same_functions(&plan.quarks), quarks: &plan.quarks, ..Removal::default() };
+    let mut removal = Removal {
+        functions: Functions::new(&plan.quarks),
+        quarks: &plan.quarks,
+        around: BTreeMap::new(),
+        warned: BTreeSet::new(),
+        warnings: Vec::new(),
+    };
     removal.scope(&mut plan.root);
     let warnings = removal.warnings;
     (Nondegenerate(plan), warnings)
 }
 
-/// The normal form that decides whether two interrupts are the same.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
-enum Normal {
-    Null,
-    Quark(QuarkId),
-    Or(BTreeSet<Normal>),
-    And(BTreeSet<Normal>),
-    Not(Box<Normal>),
-    Rising(Box<Normal>),
-    After(RecordId, u32),
-}
-
-/// For each quark the first one that is the same function.
-fn same_functions(quarks: &[Quark]) -> Vec<QuarkId> {
-    let mut first = BTreeMap::new();
-    let ids = quarks.iter().zip((0..).map(QuarkId));
-    ids.map(|(quark, id)| *first.entry((&quark.name, quark.overload, &quark.args, &quark.comparison)).or_insert(id))
-        .collect()
-}
-
 /// The interrupts of the scopes around the place where the removal is, each with its scope's name and its own place.
-#[derive(Default)]
 struct Removal<'a> {
-    same: Vec<QuarkId>,
+    functions: Functions<'a>,
     quarks: &'a [Quark],
-    around: BTreeMap<Normal, (String, Span)>,
+    around: BTreeMap<Function, (String, Span)>,
     warned: BTreeSet<(Span, Span)>,
     warnings: Vec<Diagnostic>,
 }
@@ -67,13 +52,13 @@ struct Removal<'a> {
 impl Removal<'_> {
     fn scope(&mut self, scope: &mut Scope) {
         // New, or it would have been removed.
-        let normal = self.interrupt(&mut scope.interrupt, None);
-        if let Some(normal) = &normal {
-            self.around.insert(normal.clone(), (scope.name.clone(), scope.interrupt.span));
+        let function = self.interrupt(&mut scope.interrupt, None);
+        if let Some(function) = &function {
+            self.around.insert(function.clone(), (scope.name.clone(), scope.interrupt.span));
         }
         self.sequence(&mut scope.body);
-        if let Some(normal) = &normal {
-            self.around.remove(normal);
+        if let Some(function) = &function {
+            self.around.remove(function);
         }
     }
 
@@ -89,80 +74,16 @@ impl Removal<'_> {
         }
     }
 
-    /// Removes the interrupt if it is repeated; else gives its normal form, if it can be repeated at all.
-    fn interrupt(&mut self, interrupt: &mut Interrupt, law: Option<QuarkId>) -> Option<Normal> {
-        if !self.can_be_repeated(&interrupt.condition, false) {
-            return None;
-        }
-        let normal = self.normal(&interrupt.condition);
-        if normal == Normal::Null {
-            return None;
-        }
-        let Some((scope, outer)) = self.around.get(&normal).cloned() else { return Some(normal) };
+    /// Removes the interrupt if it is repeated; else gives its function, if it can be repeated at all.
+    fn interrupt(&mut self, interrupt: &mut Interrupt, law: Option<QuarkId>) -> Option<Function> {
+        let function = self.functions.function(&interrupt.condition)?;
+        let Some((scope, outer)) = self.around.get(&function).cloned() else { return Some(function) };
         if self.warned.insert((interrupt.span, outer)) {
             self.warnings.push(self.warning(interrupt, law, &scope, outer));
         }
         interrupt.condition = Condition::Null;
         interrupt.removed = true;
         None
-    }
-
-    /// Whether the condition is the same function wherever it stands.
-    fn can_be_repeated(&self, condition: &Condition, under_not: bool) -> bool {
-        match condition {
-            Condition::Null => true,
-            Condition::Quark(id) => self.quarks.get(id.0 as usize).is_some_and(|quark| !quark.remembers),
-            Condition::Wait { .. } => !under_not,
-            Condition::Elapsed { .. } | Condition::Rising { .. } => false,
-            // It is the same label of the same use of a plan, or it is another one.
-            Condition::After(_) => true,
-            Condition::Or(operands) | Condition::And(operands) => {
-                operands.iter().all(|operand| self.can_be_repeated(operand, under_not))
-            }
-            Condition::Not(operand) => self.can_be_repeated(operand, true),
-        }
-    }
-
-    fn normal(&self, condition: &Condition) -> Normal {
-        match condition {
-            Condition::Null => Normal::Null,
-            Condition::Quark(id) | Condition::Wait { quark: id, .. } | Condition::Elapsed { quark: id, .. } => {
-                Normal::Quark(self.same.get(id.0 as usize).copied().unwrap_or(*id))
-            }
-            Condition::Or(operands) => {
-                let mut all = BTreeSet::new();
-                for operand in operands {
-                    match self.normal(operand) {
-                        Normal::Or(inner) => all.extend(inner),
-                        other @ (Normal::Null | Normal::Quark(_) | Normal::And(_) | Normal::Not(_))
-                        | other @ (Normal::Rising(_) | Normal::After(..)) => {
-                            all.insert(other);
-                        }
-                    }
-                }
-                single(all, Normal::Or)
-            }
-            Condition::And(operands) => {
-                let mut all = BTreeSet::new();
-                for operand in operands {
-                    match self.normal(operand) {
-                        Normal::And(inner) => all.extend(inner),
-                        other @ (Normal::Null | Normal::Quark(_) | Normal::Or(_) | Normal::Not(_))
-                        | other @ (Normal::Rising(_) | Normal::After(..)) => {
-                            all.insert(other);
-                        }
-                    }
-                }
-                single(all, Normal::And)
-            }
-            Condition::Not(operand) => match self.normal(operand) {
-                Normal::Not(inner) => *inner,
-                other @ (Normal::Null | Normal::Quark(_) | Normal::Or(_) | Normal::And(_))
-                | other @ (Normal::Rising(_) | Normal::After(..)) => Normal::Not(Box::new(other)),
-            },
-            Condition::Rising { operand, .. } => Normal::Rising(Box::new(self.normal(operand))),
-            Condition::After(after) => Normal::After(after.record, after.fact),
-        }
     }
 
     fn warning(&self, interrupt: &Interrupt, law: Option<QuarkId>, scope: &str, outer: Span) -> Diagnostic {
@@ -182,17 +103,5 @@ impl Removal<'_> {
             )),
             None => warning.help("write `(null)` if nothing else is to end this scope"),
         }
-    }
-}
-
-/// A set of one operand is that operand.
-fn single(mut operands: BTreeSet<Normal>, join: impl Fn(BTreeSet<Normal>) -> Normal) -> Normal {
-    match operands.pop_first() {
-        Some(only) if operands.is_empty() => only,
-        Some(first) => {
-            operands.insert(first);
-            join(operands)
-        }
-        None => Normal::Null,
     }
 }

@@ -20,8 +20,8 @@ const AREAS: &[&[&str]] = &[
         "runtime/core/src/rows.rs",
         "runtime/core/src/signal.rs",
     ],
-    &["mdlec/src/plan/nondegenerate.rs"],
-    &["mdlec/src/fsm/mod.rs"],
+    &["mdlec/src/plan/functions.rs", "mdlec/src/plan/nondegenerate.rs"],
+    &["mdlec/src/fsm/mod.rs", "mdlec/src/fsm/observation.rs"],
     &["mdlec/src/rust"],
 ];
 

@@ -1,0 +1,86 @@
+//! `mdlec PLAN --emit matrices`: in the paper's notation to standard output, as MatrixMarket files into a folder.
+
+use std::fs;
+use std::path::Path;
+
+use super::{Failure, report};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::fsm::{self, MatrixFiles};
+use crate::plan::Nondegenerate;
+use crate::{diagnostic::Sources, link};
+
+/// Prints the matrices, or writes them into a folder. A person reads a few small ones; files are for programs, however
+/// small the plan is.
+pub(super) fn matrices(
+    plan: &Nondegenerate,
+    combined: bool,
+    folder: Option<&Path>,
+    sources: &Sources,
+) -> Result<(), Failure> {
+    let refused = |found: Diagnostic| {
+        report::diagnostics(sources, &[found], false);
+        Failure::PLAN
+    };
+    let terms = fsm::terms(plan, combined).map_err(refused)?;
+    let Some(folder) = folder else {
+        let text = fsm::equation(&terms).ok_or_else(|| {
+            Failure::usage(format!(
+                "this plan has {} states, and matrices of more than {} are not for a terminal\nhelp: have them written as \
+                 MatrixMarket files into a folder: `--emit matrices=FOLDER`; `--emit fsm` lists only what moves",
+                terms.states(),
+                fsm::most_states(),
+            ))
+        })?;
+        return report::print(&text);
+    };
+    let files = fsm::matrix_files(&terms).map_err(|(ones, most)| {
+        let root = plan.plan().root.span;
+        let message =
+            format!("the {} matrices of this plan have {ones} ones; written are at most {most}", terms.live.len());
+        let help = "`--combine` makes one matrix of equal interrupts, and `--emit fsm` lists only what moves";
+        refused(Diagnostic::new(Code::E0502, message, root, "this plan").help(help))
+    })?;
+    let count = write(&files, folder)?;
+    report::note(format_args!(
+        "{count} {} of {} states as MatrixMarket files in `{}`; `{}` says which interrupt each belongs to",
+        if count == 1 { "matrix" } else { "matrices" },
+        terms.states(),
+        folder.display(),
+        MatrixFiles::LIST,
+    ));
+    Ok(())
+}
+
+/// Writes the files and then their list, and takes away those that an earlier list named; the number of matrices.
+fn write(files: &MatrixFiles<'_, '_>, folder: &Path) -> Result<usize, Failure> {
+    let failed = |error: std::io::Error| Failure::usage(format!("`{}` cannot be written: {error}", folder.display()));
+    fs::create_dir_all(folder).map_err(failed)?;
+    if folder.join(MatrixFiles::LIST).exists() {
+        forget(folder).map_err(failed)?;
+    }
+    let put = |name: &str, text: &str| {
+        link::write_whole(&folder.join(name), text.as_bytes())
+            .map_err(|error| Failure { status: error.exit_status(), message: Some(error.to_string()) })
+    };
+    let mut count = 0;
+    for (name, text) in files.files() {
+        put(&name, &text)?;
+        count += 1;
+    }
+    put(MatrixFiles::LIST, &files.list())?;
+    Ok(count)
+}
+
+/// Removes matrices that were written here before: those of another plan would be taken for this one's.
+fn forget(folder: &Path) -> std::io::Result<()> {
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        let name = entry.file_name();
+        let stem = name.to_str().and_then(|name| name.strip_suffix(".mtx"));
+        let is_number = |digits: &str| !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
+        if stem.is_some_and(|stem| stem == "completed" || stem.strip_prefix('x').is_some_and(is_number)) {
+            fs::remove_file(entry.path())?;
+        }
+    }
+    Ok(())
+}

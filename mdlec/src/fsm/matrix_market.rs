@@ -1,0 +1,118 @@
+//! The transition matrices of a plan as MatrixMarket coordinate files, one for each interrupt, and a list of them.
+
+use std::fmt::Write;
+
+use serde::Serialize;
+
+use super::terms::{Extent, Term, Terms};
+
+/// The version of the list.
+const VERSION: u32 = 1;
+/// The most ones that all files have together: each is a line.
+const ONES: usize = 10_000_000;
+/// The longest comment, in characters: a line of a MatrixMarket file has at most 1024 bytes.
+const COMMENT: usize = 200;
+
+/// The files of a plan's matrices.
+#[derive(Debug, Clone, Copy)]
+pub struct MatrixFiles<'t, 'p>(&'t Terms<'p>);
+
+/// The files of these terms; or, where they would be too many, how many lines they have and how many they may have.
+///
+/// # Errors
+/// When all files together have more than ten million ones.
+pub fn matrix_files<'t, 'p>(terms: &'t Terms<'p>) -> Result<MatrixFiles<'t, 'p>, (usize, usize)> {
+    let ones = terms.states().saturating_mul(terms.live.len());
+    if ones > ONES { Err((ones, ONES)) } else { Ok(MatrixFiles(terms)) }
+}
+
+/// The list of the matrices.
+#[derive(Debug, Serialize)]
+struct List<'t> {
+    version: u32,
+    source: &'t str,
+    combined: bool,
+    states: Vec<String>,
+    laws: &'t [&'t str],
+    matrices: Vec<Entry<'t>>,
+    never: Vec<Entry<'t>>,
+}
+
+#[derive(Debug, Serialize)]
+struct Entry<'t> {
+    name: &'t str,
+    text: &'t str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    file: Option<String>,
+    places: Vec<Listed<'t>>,
+}
+
+/// The states of a scope, from 1.
+#[derive(Debug, Serialize)]
+struct Listed<'t> {
+    number: usize,
+    scope: &'t str,
+    first: usize,
+    last: usize,
+}
+
+impl MatrixFiles<'_, '_> {
+    /// The name of the list among the files.
+    pub const LIST: &'static str = "matrices.json";
+
+    /// Every file of a matrix: its name and its text, made when it is asked for.
+    pub fn files(&self) -> impl Iterator<Item = (String, String)> {
+        self.0.live.iter().map(|term| (file_name(term), self.file(term)))
+    }
+
+    /// The list: states, laws, and each matrix with its interrupt, its file and the states of its scopes.
+    #[must_use]
+    pub fn list(&self) -> String {
+        let states = (1..self.0.states()).map(|atom| format!("a{atom}")).chain(["end".to_owned()]);
+        let list = List {
+            version: VERSION,
+            source: self.0.source,
+            combined: self.0.combined,
+            states: states.collect(),
+            laws: &self.0.laws,
+            matrices: self.0.live.iter().map(|term| entry(term, Some(file_name(term)))).collect(),
+            never: self.0.never.iter().map(|term| entry(term, None)).collect(),
+        };
+        // Only maps with keys that are no strings cannot be written, and there are none.
+        serde_json::to_string_pretty(&list).map(|text| text + "\n").unwrap_or_default()
+    }
+
+    fn file(&self, term: &Term<'_>) -> String {
+        let (matrix, states) = (self.0.matrix(term), self.0.states());
+        let mut text = String::from("%%MatrixMarket matrix coordinate integer general\n");
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "% {}", comment(&format!("{} = {}", term.name, term.text)));
+        let _ = writeln!(text, "{states} {states} {states}");
+        for (row, column) in matrix.iter().zip(1..) {
+            let _ = writeln!(text, "{} {column} 1", row + 1);
+        }
+        text
+    }
+}
+
+fn file_name(term: &Term<'_>) -> String {
+    format!("{}.mtx", term.name)
+}
+
+fn entry<'t>(term: &'t Term<'_>, file: Option<String>) -> Entry<'t> {
+    let listed = |place: &Extent<'t>| {
+        let Extent { number, scope, first, last, row: _ } = *place;
+        Listed { number, scope, first: first + 1, last: last + 1 }
+    };
+    Entry { name: &term.name, text: term.text, file, places: term.places.iter().map(listed).collect() }
+}
+
+/// A text on one line, and no longer than such a line may be.
+fn comment(text: &str) -> String {
+    let mut line: String =
+        text.chars().take(COMMENT).map(|letter| if letter.is_control() { ' ' } else { letter }).collect();
+    if text.chars().nth(COMMENT).is_some() {
+        line.push('…');
+    }
+    line
+}

@@ -1,0 +1,81 @@
+//! Holds a machine to Observation 1 of the paper: every column of its transition matrices is a standard basis vector.
+//!
+//! The matrix of one scope has such columns by its form: those of its atoms have their one in a single row. Where an
+//! interrupt is counted once, its matrix is a sum over all scopes that have it (Eq. 3), and a column in two of them would
+//! have two ones and a minus one. Intervals of a machine are nested or disjoint, so no scope may have the interrupt of one
+//! around it: the machine is that of a non-degenerate plan.
+
+use std::collections::BTreeMap;
+
+use super::Lowered;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::plan::{Function, Functions};
+
+/// Says whether all transition matrices of a machine have columns that are standard basis vectors, also those that count
+/// an interrupt once. The brackets are to be in pre-order and nested, as [`validate`](super::validate) finds them.
+///
+/// # Errors
+/// E0901: the first interrupt that is repeated inside its scope. That is a defect of the compiler.
+pub fn observation1(lowered: &Lowered) -> Result<(), Diagnostic> {
+    let functions = Functions::new(&lowered.quarks);
+    // The brackets around the one at hand, with the interrupts that they brought.
+    let mut around: Vec<(u32, Option<Function>)> = Vec::new();
+    let mut open: BTreeMap<Function, &str> = BTreeMap::new();
+    for (number, (bracket, scope)) in (0..).zip(lowered.brackets.iter().zip(&lowered.scopes)) {
+        while let Some((_, ended)) = around.pop_if(|(holder, _)| *holder != bracket.parent) {
+            if let Some(function) = ended {
+                open.remove(&function);
+            }
+        }
+        let function = scope.as_ref().and_then(|scope| functions.function(&scope.interrupt.condition));
+        if let (Some(function), Some(scope)) = (&function, scope)
+            && let Some(outer) = open.insert(function.clone(), &scope.name)
+        {
+            let message = format!(
+                "`{}` is repeated inside the scope `{outer}`, which has the same interrupt: its transition matrix would \
+                 have a column that is no unit vector",
+                scope.interrupt.text
+            );
+            return Err(Diagnostic::new(Code::E0901, message, scope.interrupt.span, "this one was to be removed")
+                .help("this is a defect of mdlec, not of the plan: please report it with the plan"));
+        }
+        around.push((number, function));
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fsm::algorithm1;
+    use crate::samples::compiled;
+
+    #[test]
+    fn a_plan_that_repeats_an_interrupt_is_not_lowered() {
+        let found = [
+            "{ P (bumper) (Atom (bumper) stop) }",
+            "{ P { Q (bumper OR wait 5) { R (Atom (wait 1) stop) (Atom (wait 5s OR bumper) stop) } } }",
+            "{ P (wait 3) ((Atom (wait 1) stop) { Q (wait 3000ms) (Atom (wait 2) stop) })^2 }",
+        ];
+        for text in found {
+            let compiled = compiled(text).swap_remove(0);
+            assert_eq!(observation1(&compiled.lowered), Ok(()), "{text}");
+            let degenerate = compiled.nondegenerate.map(|_| compiled.plan.root.clone());
+            let said = algorithm1(&degenerate).unwrap_err();
+            assert!(said.code == Code::E0901 && said.message.contains("is repeated inside"), "{text}: {said:?}");
+        }
+    }
+
+    #[test]
+    fn an_interrupt_of_scopes_side_by_side_is_not_repeated() {
+        let text =
+            "{ P { Q (bumper) (Atom (wait 1) stop) (Atom (wait 2) stop) } (Atom (bumper) stop) (Atom (wait 1) stop) }";
+        assert_eq!(observation1(&compiled(text)[0].lowered), Ok(()));
+    }
+
+    #[test]
+    fn what_is_another_function_in_each_place_may_stand_inside_itself() {
+        let text = "{ P (RISING bumper) { Q (NOT wait 1) (Atom (RISING bumper) stop) (Atom (NOT wait 1) stop) } }";
+        assert_eq!(observation1(&compiled(text)[0].lowered), Ok(()));
+    }
+}

@@ -1,0 +1,127 @@
+//! Tells interrupts that are the same function wherever they stand (paper, Definition 4; semantics, section 7).
+//!
+//! Whole interrupts are compared, by their normal form: AND and OR flattened, sorted and deduplicated, double NOT removed.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{Condition, Quark, QuarkId, RecordId};
+
+/// Tells the interrupts of one plan from each other.
+#[derive(Debug)]
+pub struct Functions<'q> {
+    quarks: &'q [Quark],
+    /// For each quark the first one that is the same function.
+    same: Vec<QuarkId>,
+}
+
+/// An interrupt as a function: equal functions are the same interrupt (Definition 4, Eq. 3).
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Function(Normal);
+
+/// The normal form that decides whether two interrupts are the same.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+enum Normal {
+    Null,
+    Quark(QuarkId),
+    Or(BTreeSet<Normal>),
+    And(BTreeSet<Normal>),
+    Not(Box<Normal>),
+    Rising(Box<Normal>),
+    After(RecordId, u32),
+}
+
+/// For each quark the first one that is the same function.
+fn same_functions(quarks: &[Quark]) -> Vec<QuarkId> {
+    let mut first = BTreeMap::new();
+    let ids = quarks.iter().zip((0..).map(QuarkId));
+    ids.map(|(quark, id)| *first.entry((&quark.name, quark.overload, &quark.args, &quark.comparison)).or_insert(id))
+        .collect()
+}
+
+impl<'q> Functions<'q> {
+    /// Those of a plan with these quarks.
+    #[must_use]
+    pub fn new(quarks: &'q [Quark]) -> Self {
+        Self { quarks, same: same_functions(quarks) }
+    }
+
+    /// The function of a condition; none for one that never fires, or that is another one in each place where it stands.
+    #[must_use]
+    pub fn function(&self, condition: &Condition) -> Option<Function> {
+        if !self.can_be_repeated(condition, false) {
+            return None;
+        }
+        let normal = self.normal(condition);
+        (normal != Normal::Null).then_some(Function(normal))
+    }
+
+    /// Whether the condition is the same function wherever it stands.
+    fn can_be_repeated(&self, condition: &Condition, under_not: bool) -> bool {
+        match condition {
+            Condition::Null => true,
+            Condition::Quark(id) => self.quarks.get(id.0 as usize).is_some_and(|quark| !quark.remembers),
+            Condition::Wait { .. } => !under_not,
+            Condition::Elapsed { .. } | Condition::Rising { .. } => false,
+            // It is the same label of the same use of a plan, or it is another one.
+            Condition::After(_) => true,
+            Condition::Or(operands) | Condition::And(operands) => {
+                operands.iter().all(|operand| self.can_be_repeated(operand, under_not))
+            }
+            Condition::Not(operand) => self.can_be_repeated(operand, true),
+        }
+    }
+
+    fn normal(&self, condition: &Condition) -> Normal {
+        match condition {
+            Condition::Null => Normal::Null,
+            Condition::Quark(id) | Condition::Wait { quark: id, .. } | Condition::Elapsed { quark: id, .. } => {
+                Normal::Quark(self.same.get(id.0 as usize).copied().unwrap_or(*id))
+            }
+            Condition::Or(operands) => {
+                let mut all = BTreeSet::new();
+                for operand in operands {
+                    match self.normal(operand) {
+                        Normal::Or(inner) => all.extend(inner),
+                        other @ (Normal::Null | Normal::Quark(_) | Normal::And(_) | Normal::Not(_))
+                        | other @ (Normal::Rising(_) | Normal::After(..)) => {
+                            all.insert(other);
+                        }
+                    }
+                }
+                single(all, Normal::Or)
+            }
+            Condition::And(operands) => {
+                let mut all = BTreeSet::new();
+                for operand in operands {
+                    match self.normal(operand) {
+                        Normal::And(inner) => all.extend(inner),
+                        other @ (Normal::Null | Normal::Quark(_) | Normal::Or(_) | Normal::Not(_))
+                        | other @ (Normal::Rising(_) | Normal::After(..)) => {
+                            all.insert(other);
+                        }
+                    }
+                }
+                single(all, Normal::And)
+            }
+            Condition::Not(operand) => match self.normal(operand) {
+                Normal::Not(inner) => *inner,
+                other @ (Normal::Null | Normal::Quark(_) | Normal::Or(_) | Normal::And(_))
+                | other @ (Normal::Rising(_) | Normal::After(..)) => Normal::Not(Box::new(other)),
+            },
+            Condition::Rising { operand, .. } => Normal::Rising(Box::new(self.normal(operand))),
+            Condition::After(after) => Normal::After(after.record, after.fact),
+        }
+    }
+}
+
+/// A set of one operand is that operand.
+fn single(mut operands: BTreeSet<Normal>, join: impl Fn(BTreeSet<Normal>) -> Normal) -> Normal {
+    match operands.pop_first() {
+        Some(only) if operands.is_empty() => only,
+        Some(first) => {
+            operands.insert(first);
+            join(operands)
+        }
+        None => Normal::Null,
+    }
+}

@@ -1,0 +1,269 @@
+//! Matrices that are read back from what `--emit matrices` prints and writes drive the same transitions as the machine
+//! `table` (paper, Eqs. 2 to 4), and the command says which of the two forms it chose.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::collections::BTreeMap;
+use std::fs;
+
+use mdle_tests::chance::Chance;
+use mdle_tests::executable::{folder, run_mdlec};
+use mdle_tests::pipeline::compile;
+use mdle_tests::random_plan::RandomPlan;
+use mdle_tests::random_script::script;
+use mdlec::fsm::{Terms, equation, matrix_files, most_states, terms};
+use mdlec::trace::{Fired, Line, Script, Table, run};
+use serde_json::Value;
+
+/// How many random plans are tried.
+const PLANS: u64 = 400;
+/// Plans of more states are left out: each matrix is read as a whole.
+const STATES: u64 = 300;
+
+/// A matrix as it was read: for each column the row of its one, from 1, and what is said of it.
+#[derive(Debug)]
+struct Read {
+    name: String,
+    text: String,
+    rows: Vec<usize>,
+    /// The number of the interrupt, the first and the last state of each place.
+    places: Vec<(usize, usize, usize)>,
+}
+
+/// All that was read of a plan.
+#[derive(Debug, Default)]
+struct Matrices {
+    live: Vec<Read>,
+    never: Vec<Read>,
+}
+
+impl Matrices {
+    /// The numbers of the interrupts whose scopes hold a state, outermost first.
+    fn around(&self, state: usize) -> Vec<usize> {
+        let all = self.live.iter().chain(&self.never).filter(|read| read.name != "completed");
+        let places = all.flat_map(|read| &read.places);
+        let mut numbers: Vec<_> = places.filter(|place| holds(place, state)).map(|(number, ..)| *number).collect();
+        numbers.sort_unstable();
+        numbers
+    }
+
+    /// Follows a trace by the product of the matrices of what fired; how many there were.
+    fn follow(&self, trace: &[Line<'_>], combined: bool) -> usize {
+        let (mut e, mut count) = (1, 0);
+        for Line { turn, outcome, .. } in trace {
+            for Fired { from, level, by } in &outcome.fired {
+                assert_eq!(e as u64, *from, "turn {turn}");
+                let number = self.around(e)[*level];
+                let is_it = |read: &&Read| {
+                    read.places.iter().any(|place| place.0 == number && holds(place, e))
+                        && (read.name == "completed") == (*by == Fired::COMPLETED)
+                };
+                let read = self.live.iter().find(is_it).unwrap_or_else(|| panic!("turn {turn}: {by} at e{e}"));
+                // Where it is counted once, it may be written otherwise in another place.
+                assert!(combined || read.text == *by || read.name == "completed", "turn {turn}: {read:?} is not {by}");
+                e = read.rows[e - 1];
+                count += 1;
+            }
+            assert_eq!(e as u64, outcome.state, "turn {turn}");
+        }
+        count
+    }
+}
+
+fn holds(place: &(usize, usize, usize), state: usize) -> bool {
+    (place.1..=place.2).contains(&state)
+}
+
+/// Reads a MatrixMarket coordinate file: square, of ones, each column with one of them.
+fn read_market(text: &str) -> Vec<usize> {
+    assert!(text.lines().all(|line| line.len() <= 1024));
+    let mut lines = text.lines();
+    assert_eq!(lines.next(), Some("%%MatrixMarket matrix coordinate integer general"));
+    let numbers = |line: &str| line.split(' ').map(|word| word.parse().unwrap()).collect::<Vec<usize>>();
+    let mut lines = lines.filter(|line| !line.starts_with('%')).map(numbers);
+    let size = lines.next().unwrap();
+    let (states, entries) = (size[0], lines.collect::<Vec<_>>());
+    assert_eq!(size, [states, states, entries.len()]);
+    columns(
+        states,
+        entries.iter().map(|entry| {
+            assert_eq!((entry.len(), entry[2]), (3, 1));
+            (entry[0], entry[1])
+        }),
+    )
+}
+
+/// The row of the one in each column, of the places of all ones; a column that is no standard basis vector is an error.
+fn columns(states: usize, ones: impl Iterator<Item = (usize, usize)>) -> Vec<usize> {
+    let mut rows = vec![0; states];
+    for (row, column) in ones {
+        assert!((1..=states).contains(&row) && rows[column - 1] == 0, "column {column} has two ones");
+        rows[column - 1] = row;
+    }
+    assert!(rows.iter().all(|row| *row != 0), "a column has no one: {rows:?}");
+    rows
+}
+
+/// Reads the list and the files.
+fn read_files(list: &str, files: &BTreeMap<String, String>) -> Matrices {
+    let list: Value = serde_json::from_str(list).unwrap();
+    let number = |value: &Value| value.as_u64().unwrap() as usize;
+    let entries = |key: &str| {
+        let entries = list[key].as_array().unwrap().iter().map(|entry| Read {
+            name: entry["name"].as_str().unwrap().into(),
+            text: entry["text"].as_str().unwrap().into(),
+            rows: entry["file"].as_str().map(|file| read_market(&files[file])).unwrap_or_default(),
+            places: entry["places"]
+                .as_array()
+                .unwrap()
+                .iter()
+                .map(|place| (number(&place["number"]), number(&place["first"]), number(&place["last"])))
+                .collect(),
+        });
+        entries.collect()
+    };
+    Matrices { live: entries("matrices"), never: entries("never") }
+}
+
+/// Reads the equation in the paper's notation, with what its symbols stand for.
+fn read_equation(text: &str) -> Matrices {
+    let (sum, symbols) = text.split_once("where the state is one of\n").unwrap();
+    let mut rows = BTreeMap::new();
+    for beside in sum.trim_end_matches('\n').split("\n\n").filter(|beside| *beside != "Π(t) = 0") {
+        let lines: Vec<Vec<_>> = beside.lines().map(|line| line.split(['⎡', '⎢', '⎣']).skip(1).collect()).collect();
+        for block in 0..lines[0].len() {
+            let parts = lines.iter().map(|line| line[block].split_once(['⎤', '⎥', '⎦']).unwrap());
+            let (entries, names): (Vec<_>, Vec<_>) = parts.unzip();
+            let name = names.iter().find_map(|part| part.split_once("ξ\u{304}")?.1.split_once("(t)")).unwrap().0;
+            let ones = entries.iter().zip(1..).flat_map(|(entries, row)| {
+                let entries = entries.split(' ').zip(1..);
+                entries.filter(|(entry, _)| *entry == "1").map(move |(_, column)| (row, column))
+            });
+            rows.insert(name.to_owned(), columns(entries.len(), ones));
+        }
+    }
+    let mut matrices = Matrices::default();
+    for line in symbols.lines().filter_map(|line| line.strip_prefix("  ξ")) {
+        let read = read_symbol(line, &mut rows);
+        if read.rows.is_empty() { matrices.never.push(read) } else { matrices.live.push(read) }
+    }
+    assert!(rows.is_empty(), "nothing is said of {rows:?}");
+    matrices
+}
+
+/// `2  bumper, at e1…e2 of Q (2), e3 (5)`.
+fn read_symbol(line: &str, rows: &mut BTreeMap<String, Vec<usize>>) -> Read {
+    let (symbol, what) = line.split_once(' ').unwrap();
+    let (text, places) = what.trim_start().rsplit_once(", at ").unwrap();
+    let places = places.split(", ").map(|place| {
+        let states = place.split(' ').next().unwrap();
+        let (first, last) = states.split_once('…').unwrap_or((states, states));
+        let number = place.rsplit_once('(').map_or(symbol, |(_, number)| number.trim_end_matches(')'));
+        let state = |text: &str| text.strip_prefix('e').unwrap().parse().unwrap();
+        (number.parse().unwrap(), state(first), state(last))
+    });
+    let (places, rows) = (places.collect(), rows.remove(symbol).unwrap_or_default());
+    Read { name: symbol.trim_start_matches('_').into(), text: text.into(), rows, places }
+}
+
+fn written(terms: &Terms<'_>) -> Matrices {
+    let files = matrix_files(terms).expect("a small plan");
+    read_files(&files.list(), &files.files().collect())
+}
+
+#[test]
+fn matrices_that_are_read_back_drive_the_transitions_of_the_table() {
+    let (mut plans, mut small, mut transitions, mut summed) = (0, 0, 0, 0);
+    for seed in 0..PLANS {
+        let mut chance = Chance::new(seed);
+        let text = RandomPlan::new(&mut chance, 2 + (seed % 20) as usize, false).to_string();
+        let script = Script::read(&script(&mut chance, 12)).unwrap();
+        let Ok(compiled) = compile(&text) else { continue };
+        if compiled.lowered.termination > STATES {
+            continue;
+        }
+        println!("seed {seed}\n{text}");
+        let plan = &compiled.nondegenerate;
+        let trace: Vec<_> = run(Table::new(plan).unwrap(), &script).collect();
+        plans += 1;
+        for combined in [false, true] {
+            let terms = terms(plan, combined).unwrap();
+            summed += terms.live.iter().filter(|term| term.places.len() > 1 && term.name != "completed").count();
+            transitions += written(&terms).follow(&trace, combined);
+            if let Some(text) = equation(&terms) {
+                small += 1;
+                transitions += read_equation(&text).follow(&trace, combined);
+            } else {
+                assert!(terms.states() > most_states());
+            }
+        }
+    }
+    println!("{plans} plans, {small} in the paper's notation, {transitions} transitions, {summed} sums");
+    assert!(plans > 300 && small > 200 && transitions > 10_000 && summed > 200);
+}
+
+/// A plan with a matrix of each of the paper's three types.
+const PLAN: &str = "{ P (bumper) { Q (wait 9) (Atom (wait 1) stop) (Atom (wait 2) (go 5 0)) }\n  \
+                    ((Atom (wait 3) stop) (Atom (wait 1) rotate 90))^inf }\n";
+
+#[test]
+fn matrices_are_printed_or_written_into_a_folder() {
+    let folder = folder("matrices");
+    fs::write(folder.join("plan.mdle"), PLAN).unwrap();
+    let said = |arguments: &[&str]| {
+        let output = run_mdlec(&folder, &[&["plan.mdle", "--emit"], arguments].concat());
+        let text = |bytes| String::from_utf8(bytes).unwrap();
+        (output.status.code(), text(output.stdout), text(output.stderr))
+    };
+    let (status, printed, told) = said(&["matrices"]);
+    assert_eq!((status, &*told), (Some(0), ""));
+    insta::assert_snapshot!("matrices_of_each_type", printed);
+    let names = |folder: &str| {
+        let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        let mut names: Vec<_> = entries.collect();
+        names.sort();
+        names
+    };
+    let there = folder.join("written/here");
+    let (status, printed, told) = said(&["matrices=written/here"]);
+    assert_eq!((status, &*printed), (Some(0), ""));
+    assert_eq!(
+        told,
+        "7 matrices of 5 states as MatrixMarket files in `written/here`; `matrices.json` says which interrupt each belongs \
+         to\n"
+    );
+    let there = there.to_str().unwrap();
+    assert_eq!(
+        names(there),
+        ["completed.mtx", "matrices.json", "x1.mtx", "x2.mtx", "x3.mtx", "x4.mtx", "x5.mtx", "x6.mtx"]
+    );
+    // What an earlier plan left is not there any more; what is not ours stays.
+    fs::write(folder.join("written/here/x.mtx"), "mine").unwrap();
+    assert_eq!(said(&["matrices", "--combine", "-o", "written/here"]).0, Some(0));
+    assert_eq!(
+        names(there),
+        ["completed.mtx", "matrices.json", "x.mtx", "x1.mtx", "x2.mtx", "x3.mtx", "x4.mtx", "x5.mtx"]
+    );
+}
+
+#[test]
+fn what_cannot_be_printed_or_written_is_told_with_what_to_do() {
+    let folder = folder("no_matrices");
+    let said = |plan: &str, arguments: &[&str]| {
+        fs::write(folder.join("plan.mdle"), plan).unwrap();
+        let output = run_mdlec(&folder, &[&["plan.mdle", "--emit"], arguments].concat());
+        assert_eq!(output.stdout, b"");
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    let (status, told) = said("{ P (Atom (wait 1) stop)^16 }", &["matrices"]);
+    assert!(status == Some(2) && told.contains("`--emit matrices=FOLDER`"), "{told}");
+    let (status, told) = said("{ P (Atom (wait 1) stop)^9999 }", &["matrices=large"]);
+    assert!(status == Some(1) && told.contains("error[E0502]") && told.contains("99990000 ones"), "{told}");
+    assert!(!folder.join("large").exists());
+    // Counted once, there is one.
+    let (status, told) = said("{ P (Atom (wait 1) stop)^9999 }", &["matrices=large", "--combine"]);
+    assert!(status == Some(0) && told.starts_with("1 matrix of 10000 states"), "{told}");
+    let (status, told) = said(PLAN, &["matrices=plan.mdle"]);
+    assert!(status == Some(2) && told.contains("`plan.mdle` cannot be written"), "{told}");
+    let (status, told) = said(PLAN, &["fsm", "--combine"]);
+    assert!(status == Some(2) && told.contains("`--emit matrices`"), "{told}");
+}
