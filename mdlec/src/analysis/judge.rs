@@ -2,9 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::choices::When;
 use super::variables::Variable;
 use super::walk::{Found, Outcome, Reach, Skip, Walk};
-use super::world::{Wanted, When, World};
+use super::world::{Wanted, World};
 use crate::plan::Condition;
 
 impl<'l> Walk<'l> {

@@ -4,8 +4,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::choices::When;
 use super::walk::{Found, Outcome, Skip};
-use super::world::{When, World};
+use super::world::World;
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::fsm::{Lowered, ScopeMeaning};
 use crate::plan::{Condition, condition_text};

@@ -3,6 +3,7 @@
 //!
 //! What is said never to happen never happens, in no run; what is said to be possible may be too much to look at.
 
+mod choices;
 mod durations;
 mod judge;
 mod lints;

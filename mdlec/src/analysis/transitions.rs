@@ -3,10 +3,12 @@
 //! All that a turn reads is read of one output at one time, so each choice of what the interrupt quarks say is counted by
 //! itself, as long as there are few of them; else each may say anything each time, and the count is a bound.
 
+use std::collections::BTreeSet;
+
 use mdle_runtime::TRANSITIONS_PER_TURN;
 use mdle_runtime::fsm::Kind;
 
-use super::tables::Table;
+use super::choices::Choices;
 use super::variables::{self, Variable};
 use crate::fsm::Lowered;
 use crate::plan::{Condition, QuarkId};
@@ -35,10 +37,12 @@ pub(super) fn most(lowered: &Lowered) -> Most {
     if quarks.len() > QUARKS || lowered.brackets.len() << quarks.len() > WORK {
         quarks.clear();
     }
-    let order: Vec<Variable> = quarks.iter().map(|id| Variable::Quark(*id)).collect();
-    let possible =
-        if order.is_empty() { Table::constant(0, true) } else { variables::possible(&order, &lowered.quarks, &|_| 0) };
-    let choices = (0..1_usize << quarks.len()).filter(|choice| possible.holds(*choice));
+    // The bits of a choice are in the order of the variables.
+    quarks.sort_unstable();
+    let variables: BTreeSet<Variable> = quarks.iter().map(|id| Variable::Quark(*id)).collect();
+    let possible = Choices::new(&variables, |_| None).map(|free| variables::possible(&free, &lowered.quarks, &|_| 0));
+    let is_possible = |choice: &usize| possible.as_ref().is_none_or(|possible| possible.holds(*choice));
+    let choices = (0..1_usize << quarks.len()).filter(is_possible);
     let count = choices.map(|choice| longest(lowered, &quarks, choice)).max().unwrap_or(0);
     let limit = u64::from(TRANSITIONS_PER_TURN);
     Most { count: count.min(limit), is_cut: count > limit }

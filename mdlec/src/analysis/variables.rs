@@ -3,6 +3,7 @@
 
 use std::collections::BTreeMap;
 
+use super::choices::Choices;
 use super::tables::Table;
 use crate::alphabet::{Kind, family_to_si};
 use crate::plan::{Compared, Comparison, Operator, Quark, QuarkId, RecordId, Value};
@@ -67,47 +68,45 @@ fn threshold(comparison: &Comparison) -> Option<(f64, f64)> {
 
 /// Where the values of these variables can be so at once: `entered` says when a scope was entered at the earliest, and the
 /// brackets of timers hold one another, a smaller number the larger.
-pub(super) fn possible(variables: &[Variable], quarks: &[Quark], entered: &impl Fn(u32) -> u64) -> Table {
-    let count = variables.len();
-    let mut possible = Table::constant(count, true);
-    let column = |index| Table::variable(count, index);
-    let timers: Vec<_> = variables.iter().enumerate().filter_map(|(index, variable)| timer(index, variable)).collect();
-    for (index, inner, nanos) in &timers {
-        for (other, outer, until) in &timers {
-            let is_past = entered(*outer).saturating_add(*until) <= entered(*inner).saturating_add(*nanos);
-            if other != index && outer <= inner && is_past {
-                possible = possible.and(&column(*index).not().or(&column(*other)));
+pub(super) fn possible(choices: &Choices, quarks: &[Quark], entered: &impl Fn(u32) -> u64) -> Table {
+    let mut possible = choices.constant(true);
+    let mut timers: Vec<(u32, u64, &Table)> = Vec::new();
+    let mut families: BTreeMap<Family, Vec<(&Quark, &Table)>> = BTreeMap::new();
+    for (variable, column) in choices.columns() {
+        match variable {
+            Variable::Timer(bracket, nanos) => {
+                timers.push((*bracket, entered(*bracket).saturating_add(*nanos), column))
+            }
+            Variable::Quark(id) => {
+                let Some(quark) = quarks.get(id.0 as usize) else { continue };
+                if let Some(family) = family(quark) {
+                    families.entry(family).or_default().push((quark, column));
+                }
+            }
+            Variable::Own(..) | Variable::Past(..) | Variable::Memory(..) => {}
+            Variable::Fact(..) | Variable::PastFact(..) => {}
+        }
+    }
+    for (inner, at, over) in &timers {
+        for (outer, until, column) in &timers {
+            // The outer one has run for longer.
+            if !std::ptr::eq(*over, *column) && outer <= inner && until <= at {
+                possible = possible.and(&(*over).clone().not().or(column));
             }
         }
     }
-    let mut families: BTreeMap<Family, Vec<(usize, &Quark)>> = BTreeMap::new();
-    for (index, variable) in variables.iter().enumerate() {
-        let Variable::Quark(id) = variable else { continue };
-        let Some(quark) = quarks.get(id.0 as usize) else { continue };
-        if let Some(family) = family(quark) {
-            families.entry(family).or_default().push((index, quark));
-        }
-    }
     for members in families.values().filter(|members| members.len() > 1) {
-        let mut some = Table::constant(count, false);
-        for fired in at_once(members.iter().map(|(_, quark)| *quark)) {
-            let mut one = Table::constant(count, true);
-            for ((index, _), fired) in members.iter().zip(fired) {
-                one = one.and(&if fired { column(*index) } else { column(*index).not() });
+        let mut some = choices.constant(false);
+        for fired in at_once(members.iter().map(|(quark, _)| *quark)) {
+            let mut one = choices.constant(true);
+            for ((_, column), fired) in members.iter().zip(fired) {
+                one = if fired { one.and(column) } else { one.and(&(*column).clone().not()) };
             }
             some = some.or(&one);
         }
         possible = possible.and(&some);
     }
     possible
-}
-
-fn timer(index: usize, variable: &Variable) -> Option<(usize, u32, u64)> {
-    match variable {
-        Variable::Timer(bracket, nanos) => Some((index, *bracket, *nanos)),
-        Variable::Quark(_) | Variable::Own(..) | Variable::Past(..) | Variable::Memory(..) => None,
-        Variable::Fact(..) | Variable::PastFact(..) => None,
-    }
 }
 
 /// What the quarks of one family can say at once.

@@ -9,7 +9,8 @@ use std::collections::BTreeMap;
 use mdle_runtime::fsm::{Bracket, Kind};
 use serde::Serialize;
 
-use super::world::{Added, Read, When, World};
+use super::choices::{Read, When};
+use super::world::{Added, World};
 use crate::fsm::Lowered;
 use crate::plan::{Condition, QuarkId};
 

@@ -5,32 +5,14 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::tables::{Table, VARIABLES};
+use super::choices::{self, Choices, Read, When};
+use super::tables::VARIABLES;
 use super::variables::{self, Family, Variable, family};
 use crate::fsm::Lowered;
-use crate::plan::{After, Condition, QuarkId};
+use crate::plan::{Condition, QuarkId};
 
 /// The most conditions around a place that are looked at for each variable of a question.
 const CLAUSES: usize = 8;
-
-/// When a condition is read.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum When {
-    /// In the turn in which its scope is entered.
-    Entered,
-    /// In any turn.
-    Later,
-    /// When its scope has just ended.
-    Past,
-}
-
-/// A condition in the scope of a bracket.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Read<'l> {
-    pub(super) condition: &'l Condition,
-    pub(super) bracket: u32,
-    pub(super) when: When,
-}
 
 /// What is asked of some conditions: that one of them has fired, or that none has.
 #[derive(Debug, Clone)]
@@ -193,42 +175,8 @@ impl<'l> World<'l> {
     }
 
     /// Adds the variables of a condition, whatever is known of them; `false` where there are too many.
-    pub(super) fn variables(&self, read: Read<'l>, variables: &mut BTreeSet<Variable>) -> bool {
-        if variables.len() > 4 * VARIABLES {
-            return false;
-        }
-        let Read { condition, bracket, when } = read;
-        let timer =
-            |nanos| if when == When::Past { Variable::Past(bracket, nanos) } else { Variable::Timer(bracket, nanos) };
-        let mut inside = |operand| self.variables(Read { condition: operand, ..read }, variables);
-        match condition {
-            Condition::Null => true,
-            Condition::Or(operands) | Condition::And(operands) => operands.iter().all(inside),
-            Condition::Not(operand) => inside(operand),
-            Condition::Rising { memory, operand } => {
-                let fits = inside(operand);
-                variables.insert(Variable::Memory(bracket, *memory));
-                fits
-            }
-            Condition::Quark(id) => {
-                let remembers = self.lowered.quark(*id).remembers;
-                variables.insert(if remembers { Variable::Own(bracket, *id) } else { Variable::Quark(*id) });
-                true
-            }
-            Condition::Wait { nanos, .. } => {
-                variables.insert(timer(*nanos));
-                true
-            }
-            Condition::Elapsed { from, until, .. } => {
-                variables.insert(timer(*from));
-                variables.extend(until.map(timer));
-                true
-            }
-            Condition::After(after) => {
-                variables.insert(fact(after, when));
-                true
-            }
-        }
+    pub(super) fn variables(&self, read: Read<'l>, found: &mut BTreeSet<Variable>) -> bool {
+        choices::variables(read, self.lowered, found)
     }
 
     /// The value that a variable has here, if it has only one.
@@ -254,29 +202,21 @@ impl<'l> World<'l> {
         let value = |variable: &Variable| fixed.get(variable).copied().or_else(|| self.known(*variable));
         let mut all = variables.clone();
         all.extend(self.relatives(&variables));
-        let clauses = self.clauses(&mut all);
-        let free = |all: &BTreeSet<Variable>| all.iter().filter(|variable| value(variable).is_none()).count();
         // What is around may be left out: then more is possible. What is wanted may not.
-        let (all, clauses) = if all.len() <= VARIABLES { (all, clauses) } else { (variables, Vec::new()) };
-        if all.len() > VARIABLES || free(&all) > VARIABLES {
-            return true;
-        }
-        let order: Vec<Variable> = all.into_iter().collect();
-        let mut table = variables::possible(&order, &self.lowered.quarks, &|bracket| self.entered[bracket as usize]);
-        for (index, variable) in order.iter().enumerate() {
-            let column = || Table::variable(order.len(), index);
-            match value(variable) {
-                Some(true) => table = table.and(&column()),
-                Some(false) => table = table.and(&column().not()),
-                None => {}
-            }
-        }
+        let clauses = self.clauses(&mut all, &value);
+        let (choices, clauses) = match (Choices::new(&all, value), Choices::new(&variables, value)) {
+            (Some(choices), _) => (choices, clauses),
+            (None, Some(choices)) => (choices, Vec::new()),
+            (None, None) => return true,
+        };
+        let entered = |bracket: u32| self.entered[bracket as usize];
+        let mut table = variables::possible(&choices, &self.lowered.quarks, &entered);
         for read in clauses {
-            table = table.and(&table_of(read, &order, self.lowered).not());
+            table = table.and(&choices.fired(read, self.lowered).not());
         }
         for Wanted { any, fired } in wanted {
-            let none = Table::constant(order.len(), false);
-            let some = any.iter().fold(none, |some, read| some.or(&table_of(*read, &order, self.lowered)));
+            let none = choices.constant(false);
+            let some = any.iter().fold(none, |some, read| some.or(&choices.fired(*read, self.lowered)));
             table = table.and(&if *fired { some } else { some.not() });
         }
         table.is_possible()
@@ -293,7 +233,8 @@ impl<'l> World<'l> {
     }
 
     /// What has not fired around and shares variables with these, as long as there are not too many in all.
-    fn clauses(&self, all: &mut BTreeSet<Variable>) -> Vec<Read<'l>> {
+    fn clauses(&self, all: &mut BTreeSet<Variable>, value: &impl Fn(&Variable) -> Option<bool>) -> Vec<Read<'l>> {
+        let free = |all: &BTreeSet<Variable>| all.iter().filter(|variable| value(variable).is_none()).count();
         let related: Vec<Read<'l>> = all
             .iter()
             .filter_map(|variable| self.clauses.get(variable))
@@ -303,45 +244,12 @@ impl<'l> World<'l> {
         for read in related {
             let mut with = all.clone();
             let is_new = taken.iter().all(|other| !std::ptr::eq(other.condition, read.condition));
-            if is_new && self.variables(read, &mut with) && with.len() <= VARIABLES {
+            if is_new && self.variables(read, &mut with) && free(&with) <= VARIABLES {
                 *all = with;
                 taken.push(read);
             }
         }
         taken
-    }
-}
-
-/// Where a condition has fired, by the values of these variables.
-fn table_of(read: Read<'_>, order: &[Variable], lowered: &Lowered) -> Table {
-    let Read { condition, bracket, when } = read;
-    let constant = |value| Table::constant(order.len(), value);
-    let column = |variable: Variable| {
-        let index = order.iter().position(|other| *other == variable);
-        index.map_or_else(|| constant(false), |index| Table::variable(order.len(), index))
-    };
-    let timer = |nanos: u64| match when {
-        When::Entered => constant(nanos == 0),
-        When::Later => column(Variable::Timer(bracket, nanos)),
-        When::Past => column(Variable::Past(bracket, nanos)),
-    };
-    let inside = |operand| table_of(Read { condition: operand, ..read }, order, lowered);
-    match condition {
-        Condition::Null => constant(false),
-        Condition::Quark(id) if lowered.quark(*id).remembers => column(Variable::Own(bracket, *id)),
-        Condition::Quark(id) => column(Variable::Quark(*id)),
-        Condition::Wait { nanos, .. } => timer(*nanos),
-        Condition::Elapsed { from, until, .. } => match until {
-            Some(until) => timer(*from).and(&timer(*until).not()),
-            None => timer(*from),
-        },
-        Condition::Or(operands) => operands.iter().fold(constant(false), |all, operand| all.or(&inside(operand))),
-        Condition::And(operands) => operands.iter().fold(constant(true), |all, operand| all.and(&inside(operand))),
-        Condition::Not(operand) => inside(operand).not(),
-        // It never has fired in the turn in which its scope is entered.
-        Condition::Rising { .. } if when == When::Entered => constant(false),
-        Condition::Rising { memory, operand } => column(Variable::Memory(bracket, *memory)).and(&inside(operand)),
-        Condition::After(after) => column(fact(after, when)),
     }
 }
 
@@ -356,12 +264,4 @@ fn flat(condition: &Condition) -> Vec<&Condition> {
         }
     }
     operands
-}
-
-/// What ends changes what `after` says.
-fn fact(after: &After, when: When) -> Variable {
-    match when {
-        When::Entered | When::Later => Variable::Fact(after.record, after.fact),
-        When::Past => Variable::PastFact(after.record, after.fact),
-    }
 }

@@ -9,9 +9,14 @@ use crate::diagnostic::Diagnostic;
 pub(super) fn analyze(options: &Analyze) -> Result<(), Failure> {
     let target = input::target(options.target.as_deref())?;
     let mut input = input::read_plan(&options.plan, &target)?;
-    let suspicious = |compiled: &Compiled| -> Vec<Diagnostic> { analysis(&compiled.lowered).1 };
-    let name = options.name.as_deref();
-    let compiled = build::compile_judged(&mut input, &target, name, options.deny_warnings, suspicious)?;
-    let (analysis, _) = analysis(&compiled.lowered);
+    let mut analysed = None;
+    let suspicious = |compiled: &Compiled| -> Vec<Diagnostic> {
+        let (analysis, suspicious) = analysis(&compiled.lowered);
+        analysed = Some(analysis);
+        suspicious
+    };
+    build::compile_judged(&mut input, &target, options.name.as_deref(), options.deny_warnings, suspicious)?;
+    // There is one plan then, or there was an error.
+    let Some(analysis) = analysed else { return Err(Failure::PLAN) };
     report::print(&if options.json { analysis.to_json() } else { analysis.to_text() })
 }

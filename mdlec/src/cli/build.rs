@@ -56,7 +56,7 @@ pub(super) fn compile_judged(
     target: &Target,
     name: Option<&str>,
     deny_warnings: bool,
-    judge: impl Fn(&Compiled) -> Vec<Diagnostic>,
+    judge: impl FnMut(&Compiled) -> Vec<Diagnostic>,
 ) -> Result<Compiled, Failure> {
     if let Some(name) = name {
         known_plan(input, name)?;
