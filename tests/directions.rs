@@ -56,8 +56,9 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("fsm", &["diagnostic", "alphabet", "plan"]),
     ("trace", &["diagnostic", "alphabet", "plan", "fsm"]),
     ("rust", &["diagnostic", "alphabet", "plan", "fsm"]),
+    ("analysis", &["diagnostic", "alphabet", "plan", "fsm", "rust"]),
     ("link", &["crate", "diagnostic", "syntax", "alphabet", "plan", "fsm", "rust"]),
-    ("cli", &["crate", "diagnostic", "syntax", "alphabet", "plan", "fsm", "trace", "rust", "link"]),
+    ("cli", &["crate", "diagnostic", "syntax", "alphabet", "plan", "fsm", "trace", "rust", "analysis", "link"]),
     ("embed", &["cli"]),
     ("main", &["cli"]),
 ];

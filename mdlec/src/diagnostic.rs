@@ -122,8 +122,11 @@ codes! {
     W0202 "something that is never reached",
     W0203 "a condition that is always or never true",
     W0204 "a condition that an outer one shadows",
+    W0205 "a condition that is true only when an outer one is",
+    W0206 "a timer that an outer timer always beats",
     W0301 "a loop that can be skipped whole in one turn",
     W0302 "a neighbour that is always skipped",
+    W0303 "an element that is true at once wherever it is entered",
     W0401 "a number that looks like another unit",
 }
 

@@ -7,6 +7,7 @@
 //! **A stage does no I/O**: only [`cli`], [`embed`] and [`link`] read and write files.
 
 pub mod alphabet;
+pub mod analysis;
 #[allow(clippy::disallowed_methods, reason = "the command line reads and writes files")]
 pub mod cli;
 pub mod diagnostic;

@@ -9,6 +9,7 @@ pub mod chance;
 pub mod elf;
 pub mod emission;
 pub mod executable;
+pub mod explore;
 pub mod golden;
 pub mod grammar;
 pub mod loaded;

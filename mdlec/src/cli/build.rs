@@ -9,6 +9,7 @@ use std::time::Instant;
 use super::bind;
 use super::input::{self, Input, Target};
 use super::{Build, Emit, EmitKind, Failure, matrices, report};
+use crate::diagnostic::{Diagnostic, sort};
 use crate::link::{self, Cache, LinkError, Package, Progress, TargetCrate};
 use crate::rust::{self, Header};
 use crate::syntax::outline;
@@ -55,10 +56,24 @@ pub(super) fn compile_one(
     name: Option<&str>,
     deny_warnings: bool,
 ) -> Result<Compiled, Failure> {
+    compile_judged(input, target, name, deny_warnings, |_| Vec::new())
+}
+
+/// The same, with more to say of what was compiled.
+pub(super) fn compile_judged(
+    input: &mut Input,
+    target: &Target,
+    name: Option<&str>,
+    deny_warnings: bool,
+    judge: impl FnMut(&Compiled) -> Vec<Diagnostic>,
+) -> Result<Compiled, Failure> {
     if let Some(name) = name {
         known_plan(input, name)?;
     }
-    let (mut compiled, found) = input.compile(&target.alphabet, name);
+    let (mut compiled, mut found) = input.compile(&target.alphabet, name);
+    found.extend(compiled.iter().flat_map(judge));
+    sort(&mut found);
+    found.dedup();
     if !report::diagnostics(&input.sources, &found, deny_warnings) {
         return Err(Failure::PLAN);
     }

@@ -1,5 +1,6 @@
 //! The command line: what `mdlec` takes and which room does it; exit statuses as the interfaces say.
 
+mod analyze;
 mod bind;
 mod build;
 mod check;
@@ -57,6 +58,8 @@ enum Command {
     Fmt(Fmt),
     /// Runs a plan against a script of interrupts, no robot needed
     Trace(Trace),
+    /// Says what is so of every run of a plan: which atoms run, what can end them, how long it takes, how large it is
+    Analyze(Analyze),
     /// Explains the code of a message, with a wrong and a right example
     Explain(Explain),
     /// Lists the robots that plans can be compiled for
@@ -201,6 +204,24 @@ enum Machine {
 }
 
 #[derive(Debug, Args)]
+struct Analyze {
+    /// The plan; `-` reads standard input
+    plan: PathBuf,
+    /// Print one JSON object
+    #[arg(long)]
+    json: bool,
+    /// Which plan of the file [default: the one that no other refers to]
+    #[arg(long = "plan", value_name = "NAME")]
+    name: Option<String>,
+    /// The robot [default: one that has everything]
+    #[arg(long, value_name = "NAME|FOLDER")]
+    target: Option<String>,
+    /// Treat warnings as errors
+    #[arg(long)]
+    deny_warnings: bool,
+}
+
+#[derive(Debug, Args)]
 struct Explain {
     /// The code, such as `E0201` [default: all codes are listed]
     code: Option<String>,
@@ -275,6 +296,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Check(check)) => check::check(&check),
         Some(Command::Fmt(fmt)) => fmt::fmt(&fmt),
         Some(Command::Trace(trace)) => trace::trace(&trace),
+        Some(Command::Analyze(analyze)) => analyze::analyze(&analyze),
         Some(Command::Explain(explain)) => explain::explain(explain.code.as_deref()),
         Some(Command::Targets) => input::print_targets(),
         Some(Command::Bind(bind)) => bind::bind(&bind),

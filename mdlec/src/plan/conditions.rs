@@ -3,7 +3,7 @@
 use super::labels::Labels;
 use super::parameters::Names;
 use super::quarks::Quarks;
-use super::{After, Condition, Interrupt, Value, comparisons};
+use super::{After, Condition, Interrupt, QuarkId, Value, comparisons};
 use crate::alphabet::DeclarationKind;
 use crate::diagnostic::{Diagnostic, Span};
 use crate::syntax::tree::{self, Call, Compared, ConditionNode};
@@ -30,8 +30,9 @@ pub(super) fn interrupt(
     let mut resolving = Resolving { around, memories: 0 };
     let condition = resolving.condition(written);
     let Resolving { around: Around { quarks, .. }, memories } = resolving;
-    let operands = condition.operands().iter().map(|operand| text(operand, quarks, Precedence::Or)).collect();
-    let text = text(&condition, quarks, Precedence::Or);
+    let name = |id| quarks.get(id).map(|quark| quark.text.clone()).unwrap_or_default();
+    let operands = condition.operands().iter().map(|operand| condition_text(operand, &name)).collect();
+    let text = condition_text(&condition, &name);
     let condition = without_infinite_waits(condition);
     (Interrupt { condition, text, memories, removed: false, span: written.span }, operands)
 }
@@ -85,7 +86,9 @@ impl Resolving<'_, '_, '_> {
         let cause = after.cause.as_ref().map(|cause| (self.condition(cause), cause));
         self.memories = memories;
         let cause = cause.map(|(cause, written)| {
-            let words = text(&cause, self.around.quarks, Precedence::Or);
+            let quarks = &self.around.quarks;
+            let words =
+                condition_text(&cause, &|id| quarks.get(id).map(|quark| quark.text.clone()).unwrap_or_default());
             let stands_alone = matches!(written.node, ConditionNode::Call(_));
             (written.span, words, stands_alone)
         });
@@ -137,22 +140,27 @@ enum Precedence {
     Test,
 }
 
-fn text(condition: &Condition, quarks: &Quarks<'_>, around: Precedence) -> String {
+/// The text of a condition (language, section 7), by the texts of its quarks.
+pub fn condition_text(condition: &Condition, quark: &impl Fn(QuarkId) -> String) -> String {
+    text(condition, quark, Precedence::Or)
+}
+
+fn text(condition: &Condition, quark: &impl Fn(QuarkId) -> String, around: Precedence) -> String {
     let join = |operands: &[Condition], word: &str, inside: Precedence| {
-        let operands: Vec<_> = operands.iter().map(|operand| text(operand, quarks, inside)).collect();
+        let operands: Vec<_> = operands.iter().map(|operand| text(operand, quark, inside)).collect();
         operands.join(word)
     };
     let (text, precedence) = match condition {
         Condition::Null => ("null".to_owned(), Precedence::Test),
         Condition::Quark(id) | Condition::Wait { quark: id, .. } | Condition::Elapsed { quark: id, .. } => {
-            (quarks.get(*id).map(|quark| quark.text.clone()).unwrap_or_default(), Precedence::Test)
+            (quark(*id), Precedence::Test)
         }
         // An OR inside an OR needs no parentheses: the text is flattened, the condition stays as written.
         Condition::Or(operands) => (join(operands, " OR ", Precedence::Or), Precedence::Or),
         Condition::And(operands) => (join(operands, " AND ", Precedence::And), Precedence::And),
-        Condition::Not(operand) => (format!("NOT {}", text(operand, quarks, Precedence::Test)), Precedence::And),
+        Condition::Not(operand) => (format!("NOT {}", text(operand, quark, Precedence::Test)), Precedence::And),
         Condition::Rising { operand, .. } => {
-            (format!("RISING {}", text(operand, quarks, Precedence::Test)), Precedence::And)
+            (format!("RISING {}", text(operand, quark, Precedence::Test)), Precedence::And)
         }
         Condition::After(after) => (after.text.clone(), Precedence::Test),
     };

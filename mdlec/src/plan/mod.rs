@@ -25,6 +25,7 @@ pub use angle::{frame_text, in_degrees};
 pub use arguments::signature;
 pub use comparisons::is_time;
 pub use condition::{After, Condition, Situation};
+pub use conditions::condition_text;
 pub use functions::{Function, Functions};
 pub use nondegenerate::{Nondegenerate, remove_degeneracy};
 pub use resolve::resolve;

@@ -1,0 +1,138 @@
+//! Every choice of the values of some variables, and where a condition has fired among them.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::tables::{Table, VARIABLES};
+use super::variables::Variable;
+use crate::fsm::Lowered;
+use crate::plan::{After, Condition};
+
+/// When a condition is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum When {
+    /// In the turn in which its scope is entered.
+    Entered,
+    /// In any turn.
+    Later,
+    /// When its scope has just ended.
+    Past,
+}
+
+/// A condition in the scope of a bracket.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Read<'l> {
+    pub(super) condition: &'l Condition,
+    pub(super) bracket: u32,
+    pub(super) when: When,
+}
+
+/// Variables, each with its value in every choice of those that have more than one.
+#[derive(Debug)]
+pub(super) struct Choices {
+    free: usize,
+    columns: BTreeMap<Variable, Table>,
+}
+
+impl Choices {
+    /// The choices of these, in their order, where `value` says which have one value only; nothing if there are too many.
+    pub(super) fn new(all: &BTreeSet<Variable>, value: impl Fn(&Variable) -> Option<bool>) -> Option<Self> {
+        let free = all.iter().filter(|variable| value(variable).is_none()).count();
+        if free > VARIABLES {
+            return None;
+        }
+        let mut index = 0..free;
+        let columns = all.iter().map(|variable| {
+            let column = match value(variable) {
+                Some(value) => Table::constant(free, value),
+                None => Table::variable(free, index.next().unwrap_or(0)),
+            };
+            (*variable, column)
+        });
+        Some(Self { free, columns: columns.collect() })
+    }
+
+    /// What is so in every choice, or in none.
+    pub(super) fn constant(&self, value: bool) -> Table {
+        Table::constant(self.free, value)
+    }
+
+    /// Each variable, and the choices in which it is true.
+    pub(super) fn columns(&self) -> impl Iterator<Item = (&Variable, &Table)> {
+        self.columns.iter()
+    }
+
+    /// The choices in which a condition has fired. What is no variable here is not true.
+    pub(super) fn fired(&self, read: Read<'_>, lowered: &Lowered) -> Table {
+        let Read { condition, bracket, when } = read;
+        let column = |variable| self.columns.get(&variable).cloned().unwrap_or_else(|| self.constant(false));
+        let timer = |nanos: u64| match when {
+            When::Entered => self.constant(nanos == 0),
+            When::Later => column(Variable::Timer(bracket, nanos)),
+            When::Past => column(Variable::Past(bracket, nanos)),
+        };
+        let inside = |operand| self.fired(Read { condition: operand, ..read }, lowered);
+        match condition {
+            Condition::Null => self.constant(false),
+            Condition::Quark(id) if lowered.quark(*id).remembers => column(Variable::Own(bracket, *id)),
+            Condition::Quark(id) => column(Variable::Quark(*id)),
+            Condition::Wait { nanos, .. } => timer(*nanos),
+            Condition::Elapsed { from, until, .. } => match until {
+                Some(until) => timer(*from).and(&timer(*until).not()),
+                None => timer(*from),
+            },
+            Condition::Or(operands) => {
+                operands.iter().fold(self.constant(false), |all, operand| all.or(&inside(operand)))
+            }
+            Condition::And(operands) => {
+                operands.iter().fold(self.constant(true), |all, operand| all.and(&inside(operand)))
+            }
+            Condition::Not(operand) => inside(operand).not(),
+            // It never has fired in the turn in which its scope is entered.
+            Condition::Rising { .. } if when == When::Entered => self.constant(false),
+            Condition::Rising { memory, operand } => column(Variable::Memory(bracket, *memory)).and(&inside(operand)),
+            Condition::After(after) => column(fact(after, when)),
+        }
+    }
+}
+
+/// Adds the variables of a condition; `false` where there are too many.
+pub(super) fn variables(read: Read<'_>, lowered: &Lowered, found: &mut BTreeSet<Variable>) -> bool {
+    /// More than can be tried, since some may have one value only.
+    const MOST: usize = 4 * VARIABLES;
+    let Read { condition, bracket, when } = read;
+    let timer = |nanos| match when {
+        When::Entered | When::Later => Variable::Timer(bracket, nanos),
+        When::Past => Variable::Past(bracket, nanos),
+    };
+    let mut inside = |operand| variables(Read { condition: operand, ..read }, lowered, found);
+    match condition {
+        Condition::Null => return true,
+        Condition::Or(operands) | Condition::And(operands) => return operands.iter().all(inside),
+        Condition::Not(operand) => return inside(operand),
+        Condition::Rising { memory, operand } => {
+            if !inside(operand) {
+                return false;
+            }
+            found.insert(Variable::Memory(bracket, *memory));
+        }
+        Condition::Quark(id) => {
+            let remembers = lowered.quark(*id).remembers;
+            found.insert(if remembers { Variable::Own(bracket, *id) } else { Variable::Quark(*id) });
+        }
+        Condition::Wait { nanos, .. } => drop(found.insert(timer(*nanos))),
+        Condition::Elapsed { from, until, .. } => {
+            found.insert(timer(*from));
+            found.extend(until.map(timer));
+        }
+        Condition::After(after) => drop(found.insert(fact(after, when))),
+    }
+    found.len() <= MOST
+}
+
+/// What ends changes what `after` says.
+fn fact(after: &After, when: When) -> Variable {
+    match when {
+        When::Entered | When::Later => Variable::Fact(after.record, after.fact),
+        When::Past => Variable::PastFact(after.record, after.fact),
+    }
+}

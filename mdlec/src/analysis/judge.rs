@@ -1,0 +1,107 @@
+//! What can end one scope, and whether it is always skipped, in what is known where it stands.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::choices::When;
+use super::variables::Variable;
+use super::walk::{Found, Outcome, Reach, Skip, Walk};
+use super::world::{Wanted, World};
+use crate::plan::Condition;
+
+impl<'l> Walk<'l> {
+    /// Finds out what can end a scope that is reached, and when at the earliest.
+    pub(super) fn judge(&mut self, number: u32, found: &mut Found) -> Option<u64> {
+        let clock = self.clock?;
+        let condition = self.condition(number);
+        // Where a search is cut, what it has come to is read again in the next turn.
+        let when = if self.one_turn { When::Entered } else { When::Later };
+        let none = Wanted { any: vec![self.read(condition, number, when)], fired: false };
+        let just = Wanted { any: self.facts.clone(), fired: true };
+        let fixed = BTreeMap::new();
+        let behind = just.any.first().map(|read| read.bracket);
+        if !self.world.stays(number, condition, when) {
+            found.skipped = Some(Skip::AtOnce);
+        } else if let Some(behind) = behind.filter(|_| !self.world.is_possible(&[none, just.clone()], &fixed)) {
+            found.skipped = Some(Skip::Behind(behind));
+        }
+        if found.skipped.is_some() {
+            found.reach = Reach::Skipped;
+            let operands = condition.operands().iter();
+            let asked = operands.map(|operand| {
+                let fired = Wanted { any: vec![self.read(operand, number, when)], fired: true };
+                let asked = if just.any.is_empty() { vec![fired] } else { vec![fired, just.clone()] };
+                if self.world.is_possible(&asked, &fixed) { Outcome::Possible } else { Outcome::Never }
+            });
+            found.operands = asked.collect();
+            return Some(clock);
+        }
+        found.completes = self.completes(number);
+        let mut earliest = found.completes.then_some(clock);
+        for (operand, outcome) in condition.operands().iter().zip(&mut found.operands) {
+            match self.earliest(operand, number) {
+                Some(nanos) => {
+                    *outcome = Outcome::Possible;
+                    let at = clock.saturating_add(nanos);
+                    earliest = Some(earliest.map_or(at, |earliest| earliest.min(at)));
+                }
+                None => *outcome = self.blame(operand, number),
+            }
+        }
+        earliest
+    }
+
+    /// The nanoseconds after which an operand can end its scope at the earliest; `None` if it cannot.
+    fn earliest(&self, operand: &'l Condition, number: u32) -> Option<u64> {
+        /// The most timers of which every order with the present is tried.
+        const TIMERS: usize = 8;
+        let asked = [Wanted { any: vec![self.read(operand, number, When::Later)], fired: true }];
+        if !self.world.is_possible(&asked, &BTreeMap::new()) {
+            return None;
+        }
+        let mut variables = BTreeSet::new();
+        let fits = self.world.variables(asked[0].any[0], &mut variables);
+        let timers: Vec<(Variable, u64)> = variables
+            .into_iter()
+            .filter_map(|variable| match variable {
+                Variable::Timer(_, nanos) if nanos > 0 => Some((variable, nanos)),
+                Variable::Timer(..) | Variable::Past(..) | Variable::Memory(..) => None,
+                Variable::Quark(_) | Variable::Own(..) | Variable::Fact(..) | Variable::PastFact(..) => None,
+            })
+            .collect();
+        if !fits || timers.len() > TIMERS {
+            return Some(0);
+        }
+        // The timers of one scope are in the order of their lengths.
+        let over = (0..=timers.len()).find(|over| {
+            let fixed = timers.iter().enumerate().map(|(place, (timer, _))| (*timer, place < *over)).collect();
+            self.world.is_possible(&asked, &fixed)
+        });
+        Some(over.and_then(|over| over.checked_sub(1)).map_or(0, |last| timers[last].1))
+    }
+
+    /// Why an operand cannot end its scope.
+    fn blame(&self, operand: &'l Condition, number: u32) -> Outcome {
+        let read = self.read(operand, number, When::Later);
+        if let Condition::Wait { quark, .. } = operand
+            && let Some(outer) = self.waits.get(quark).and_then(|brackets| brackets.first())
+        {
+            return Outcome::Repeated(*outer);
+        }
+        let alone = World::new(self.world.lowered);
+        if !alone.is_possible(&[Wanted { any: vec![read], fired: true }], &BTreeMap::new()) {
+            return Outcome::Never;
+        }
+        let mut variables = BTreeSet::new();
+        self.world.variables(read, &mut variables);
+        let single = (variables.len() == 1).then(|| variables.first().copied()).flatten();
+        if let Some(outer) = single.and_then(|variable| self.world.unit(variable)) {
+            return Outcome::Repeated(outer);
+        }
+        let late = self.world.deadline().map(|(_, bracket)| bracket);
+        match (self.world.around(&variables), late) {
+            (None, Some(late)) => Outcome::Late(late),
+            (Some(outer), _) => Outcome::Beaten(outer),
+            (None, None) => Outcome::Never,
+        }
+    }
+}

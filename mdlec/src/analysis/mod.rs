@@ -1,0 +1,245 @@
+//! What is so of every run of a plan, found without running it: which atoms run, what can end them, how long it all takes,
+//! how large the machine is.
+//!
+//! What is said never to happen never happens, in no run; what is said to be possible may be too much to look at.
+
+mod choices;
+mod durations;
+mod judge;
+mod lints;
+mod report;
+mod sizes;
+mod tables;
+#[cfg(test)]
+mod tests;
+mod transitions;
+mod variables;
+mod walk;
+mod world;
+
+use durations::Longest;
+use mdle_runtime::TRANSITIONS_PER_TURN;
+use mdle_runtime::fsm::Kind;
+use serde::Serialize;
+pub use sizes::Bytes;
+pub use walk::Reach;
+use walk::{Found, Outcome};
+
+use crate::diagnostic::Diagnostic;
+use crate::fsm::Lowered;
+use crate::plan::{Condition, condition_text};
+
+/// What is so of every run of a plan.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Analysis {
+    /// The plan's name.
+    pub plan: String,
+    /// The states of its machine, the last one included.
+    pub states: u64,
+    /// The atoms as written, plans by name copied in.
+    pub atom_count: usize,
+    /// The interrupts as written that can be one that fires: null ones and removed ones are none.
+    pub interrupts: usize,
+    /// How many scopes are around each other at most, the plan and the atom's own included.
+    pub depth: usize,
+    /// How many loops are around an atom at most.
+    pub loop_depth: usize,
+    /// The most transitions of one turn.
+    pub transitions: u64,
+    /// The turns from the one in which an interrupt fires to the one that begins with what follows being sent; nothing
+    /// where a search for what follows may go on without end.
+    pub reaction_turns: Option<u64>,
+    /// The shortest time in which it can be over, in seconds; nothing if it never is.
+    pub shortest: Option<f64>,
+    /// The longest time.
+    pub longest: Duration,
+    /// How large it is.
+    pub bytes: Bytes,
+    /// The plan and its behaviors, in order; atoms are below.
+    pub scopes: Vec<ScopeAnswer>,
+    /// The atoms, in order.
+    pub atoms: Vec<AtomAnswer>,
+}
+
+/// How long a plan takes at most.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Duration {
+    /// In seconds; nothing where there is no bound.
+    pub seconds: Option<f64>,
+    /// So many times from one turn to the next more, since a timer is read once a turn.
+    pub turns: Option<u64>,
+    /// What has no bound, where there is none.
+    pub because: Option<String>,
+}
+
+/// What is so of a scope other than an atom.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ScopeAnswer {
+    /// Its number, from 1: the plan.
+    pub scope: usize,
+    /// The number of the scope around it.
+    pub within: Option<usize>,
+    /// Its name; empty for a scope in formal notation.
+    pub name: String,
+    /// Its first and its last atom.
+    pub atoms: [usize; 2],
+    /// Whether its atoms come to run.
+    pub reach: Reach,
+    /// By which operands of its interrupt it can end.
+    pub ended_by: Vec<String>,
+    /// The operands by which it never ends.
+    pub never_by: Vec<String>,
+}
+
+/// What is so of an atom.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct AtomAnswer {
+    /// Its number, from 1, among the atoms as written.
+    pub atom: usize,
+    /// The number of its state, in the first pass of every loop around it.
+    pub state: u64,
+    /// The number of the scope around it.
+    pub within: usize,
+    /// Its law.
+    pub law: String,
+    /// Whether it comes to run.
+    pub reach: Reach,
+    /// By which operands of its own interrupt it can end, and `completed` if its law can be done.
+    pub ended_by: Vec<String>,
+    /// The operands by which it never ends.
+    pub never_by: Vec<String>,
+    /// Whether it can end at all: by itself, or with a scope around it.
+    pub ends: bool,
+}
+
+/// Analyses a machine; also says what is suspicious about it, beyond what the lints of a plan see.
+#[must_use]
+pub fn analyze(lowered: &Lowered) -> (Analysis, Vec<Diagnostic>) {
+    let most = transitions::most(lowered);
+    let walked = walk::walk(lowered, !most.is_cut);
+    let longest = durations::longest(lowered, &walked.found, most);
+    let answers = Answers::new(lowered, &walked.found);
+    let is_interrupt = |condition: &Condition| *condition != Condition::Null;
+    let scopes = || lowered.scopes.iter().flatten();
+    let levels = lowered.brackets.iter().map(|bracket| match bracket.kind {
+        Kind::Scope { level } => usize::from(level) + 1,
+        Kind::Loop { .. } => 0,
+    });
+    let analysis = Analysis {
+        plan: scopes().next().map(|plan| plan.name.clone()).unwrap_or_default(),
+        states: lowered.termination,
+        atom_count: lowered.atoms.len(),
+        interrupts: scopes().filter(|scope| is_interrupt(&scope.interrupt.condition)).count(),
+        depth: levels.max().unwrap_or(0),
+        loop_depth: lowered.slots,
+        transitions: most.count,
+        reaction_turns: reaction(lowered, most),
+        shortest: walked.shortest.map(|nanos| seconds(nanos.into())),
+        longest: duration(longest, lowered),
+        bytes: sizes::bytes(lowered),
+        scopes: answers.scopes,
+        atoms: answers.atoms,
+    };
+    (analysis, lints::lints(lowered, &walked.found))
+}
+
+/// The input that follows an interrupt is sent at the head of the next turn; a search that is cut goes on in that turn.
+fn reaction(lowered: &Lowered, most: transitions::Most) -> Option<u64> {
+    let endless = || lowered.brackets.iter().any(|bracket| matches!(bracket.kind, Kind::Loop { times: 0, .. }));
+    match most.is_cut {
+        false => Some(1),
+        true if endless() => None,
+        true => Some(1 + lowered.termination / u64::from(TRANSITIONS_PER_TURN)),
+    }
+}
+
+fn duration(longest: Longest, lowered: &Lowered) -> Duration {
+    match longest {
+        Longest::Bounded { nanos, turns } => {
+            Duration { seconds: Some(seconds(nanos)), turns: Some(turns), because: None }
+        }
+        Longest::Unbounded(bracket) => {
+            let first = lowered.brackets[bracket as usize].first as usize;
+            let law = lowered.laws.get(first).map(|law| lowered.quark(law.quark).text.as_str()).unwrap_or_default();
+            let because = match lowered.scopes[bracket as usize] {
+                Some(_) => format!("no timer ends atom {}, `{law}`", first + 1),
+                None => format!("no timer ends the loop without end at atom {}, `{law}`", first + 1),
+            };
+            Duration { seconds: None, turns: None, because: Some(because) }
+        }
+    }
+}
+
+#[allow(clippy::cast_precision_loss, reason = "a time is told in seconds")]
+fn seconds(nanos: u128) -> f64 {
+    nanos as f64 / 1e9
+}
+
+struct Answers {
+    scopes: Vec<ScopeAnswer>,
+    atoms: Vec<AtomAnswer>,
+}
+
+impl Answers {
+    fn new(lowered: &Lowered, found: &[Found]) -> Self {
+        let mut answers = Self { scopes: Vec::new(), atoms: Vec::new() };
+        // For each bracket the number of the innermost scope that it is or is in, and whether anything ends that.
+        let mut scope_of: Vec<(usize, bool)> = Vec::with_capacity(found.len());
+        for (number, (bracket, found)) in lowered.brackets.iter().zip(found).enumerate() {
+            let around = if number == 0 { (0, false) } else { scope_of[bracket.parent as usize] };
+            let Some(scope) = &lowered.scopes[number] else {
+                scope_of.push(around);
+                continue;
+            };
+            let first = bracket.first as usize;
+            let (ended_by, never_by) = by(&scope.interrupt.condition, found, lowered);
+            match lowered.atoms.get(first).filter(|atom| atom.scope as usize == number) {
+                Some(atom) => {
+                    let own = ended_by.into_iter().chain(found.completes.then(|| "completed".to_owned()));
+                    let ended_by: Vec<String> = own.collect();
+                    let ends = found.reach != Reach::Never && (around.1 || !ended_by.is_empty());
+                    scope_of.push(around);
+                    answers.atoms.push(AtomAnswer {
+                        atom: first + 1,
+                        state: atom.state,
+                        within: around.0,
+                        law: lowered.quark(lowered.laws[first].quark).text.clone(),
+                        reach: found.reach,
+                        ended_by,
+                        never_by,
+                        ends,
+                    });
+                }
+                None => {
+                    let number = answers.scopes.len() + 1;
+                    scope_of.push((number, around.1 || !ended_by.is_empty()));
+                    answers.scopes.push(ScopeAnswer {
+                        scope: number,
+                        within: (number > 1).then_some(around.0),
+                        name: scope.name.clone(),
+                        atoms: [first + 1, bracket.last as usize + 1],
+                        reach: found.reach,
+                        ended_by,
+                        never_by,
+                    });
+                }
+            }
+        }
+        answers
+    }
+}
+
+/// The texts of the operands by which an interrupt can fire, and of those by which it cannot; `null` is none.
+fn by(condition: &Condition, found: &Found, lowered: &Lowered) -> (Vec<String>, Vec<String>) {
+    let (mut can, mut never) = (Vec::new(), Vec::new());
+    for (operand, outcome) in condition.operands().iter().zip(&found.operands) {
+        let text = || condition_text(operand, &|id| lowered.quark(id).text.clone());
+        match outcome {
+            _ if *operand == Condition::Null => {}
+            Outcome::Possible => can.push(text()),
+            Outcome::Never | Outcome::Beaten(_) | Outcome::Late(_) | Outcome::Repeated(_) => never.push(text()),
+            Outcome::Unread => {}
+        }
+    }
+    (can, never)
+}

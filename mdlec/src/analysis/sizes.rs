@@ -1,0 +1,62 @@
+//! How many bytes the emitted machine takes: what it keeps from turn to turn, and its tables.
+
+use std::collections::BTreeSet;
+
+use mdle_runtime::fsm::{Atom, Bracket, Kind};
+use mdle_runtime::{Frame, Nanos};
+use serde::Serialize;
+
+use crate::fsm::Lowered;
+use crate::rust::Shape;
+
+/// Bytes of the emitted machine, on a computer of 64 bits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Bytes {
+    /// How it is written: `code`, `shared` or `rows`.
+    pub form: &'static str,
+    /// What is kept from turn to turn beside the law that runs: where the plan is, when it began what, its frame.
+    pub state: u64,
+    /// What it remembers, for RISING and `after`.
+    pub memories: u64,
+    /// The tables of brackets and atoms.
+    pub machine: u64,
+    /// The texts that it shows: each place that has one, and each different text once.
+    pub texts: u64,
+}
+
+/// Counts them.
+pub(super) fn bytes(lowered: &Lowered) -> Bytes {
+    let number = |count: usize| u64::try_from(count).unwrap_or(u64::MAX);
+    // A cursor begins with the number of its atom, in front of numbers of eight bytes.
+    let cursor = size_of::<u64>() + lowered.levels * size_of::<Nanos>() + lowered.slots * size_of::<u64>();
+    let scopes = lowered.brackets.iter().map(|bracket| match bracket.kind {
+        Kind::Scope { level } => usize::from(level) + 1,
+        Kind::Loop { .. } => 0,
+    });
+    let machine = size_of_val(lowered.brackets.as_slice()) + size_of_val(lowered.atoms.as_slice());
+    debug_assert!(align_of::<Bracket>() == 8 && align_of::<Atom>() == 8);
+    Bytes {
+        form: match Shape::of(lowered) {
+            Shape::Code => "code",
+            Shape::Shared => "shared",
+            Shape::Rows => "rows",
+        },
+        state: number(cursor + size_of::<Frame>()),
+        memories: number(scopes.max().unwrap_or(0) * lowered.memories),
+        machine: number(machine),
+        texts: number(texts(lowered)),
+    }
+}
+
+fn texts(lowered: &Lowered) -> usize {
+    let laws = lowered.laws.iter().map(|law| lowered.quark(law.quark).text.as_str());
+    let scopes = || lowered.scopes.iter().map(Option::as_ref);
+    let conditions = scopes().map(|scope| scope.map_or("", |scope| scope.interrupt.text.as_str()));
+    let names = scopes().map(|scope| scope.map_or("", |scope| scope.name.as_str()));
+    let (mut places, mut different) = (0, BTreeSet::new());
+    for text in laws.chain(conditions).chain(names) {
+        places += size_of::<&str>();
+        different.insert(text);
+    }
+    places + different.iter().map(|text| text.len()).sum::<usize>()
+}

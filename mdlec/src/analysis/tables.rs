@@ -1,0 +1,88 @@
+//! Truth tables: for every choice of some variables, whether something holds. A bit a choice, sixty-four at a time.
+
+/// The most variables of which every choice is tried.
+pub(super) const VARIABLES: usize = 12;
+
+/// Whether something holds, by the number of the choice: bit `i` of that number is the value of variable `i`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Table(Vec<u64>);
+
+/// The first six variables, in one word.
+const SHORT: [u64; 6] = [
+    0xAAAA_AAAA_AAAA_AAAA,
+    0xCCCC_CCCC_CCCC_CCCC,
+    0xF0F0_F0F0_F0F0_F0F0,
+    0xFF00_FF00_FF00_FF00,
+    0xFFFF_0000_FFFF_0000,
+    0xFFFF_FFFF_0000_0000,
+];
+
+impl Table {
+    /// What holds always, or never, of so many variables.
+    pub(super) fn constant(variables: usize, value: bool) -> Self {
+        let words = 1_usize << variables.saturating_sub(SHORT.len());
+        Self(vec![if value { u64::MAX } else { 0 }; words])
+    }
+
+    /// What holds when this variable does.
+    pub(super) fn variable(variables: usize, index: usize) -> Self {
+        let mut table = Self::constant(variables, false);
+        for (number, word) in table.0.iter_mut().enumerate() {
+            *word = match SHORT.get(index) {
+                Some(short) => *short,
+                None if number >> (index - SHORT.len()) & 1 == 1 => u64::MAX,
+                None => 0,
+            };
+        }
+        table
+    }
+
+    /// Where both hold.
+    pub(super) fn and(mut self, other: &Self) -> Self {
+        self.0.iter_mut().zip(&other.0).for_each(|(word, other)| *word &= other);
+        self
+    }
+
+    /// Where one of them holds.
+    pub(super) fn or(mut self, other: &Self) -> Self {
+        self.0.iter_mut().zip(&other.0).for_each(|(word, other)| *word |= other);
+        self
+    }
+
+    /// Where it does not hold.
+    pub(super) fn not(mut self) -> Self {
+        self.0.iter_mut().for_each(|word| *word = !*word);
+        self
+    }
+
+    /// Whether it holds for the choice of this number.
+    pub(super) fn holds(&self, choice: usize) -> bool {
+        self.0.get(choice / 64).is_some_and(|word| word >> (choice % 64) & 1 == 1)
+    }
+
+    /// Whether it holds for some choice.
+    pub(super) fn is_possible(&self) -> bool {
+        self.0.iter().any(|word| *word != 0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Table;
+
+    #[test]
+    fn tables_are_what_the_operators_say_of_every_choice() {
+        for variables in 1..=9_usize {
+            let of = |index| Table::variable(variables, index);
+            let [one, other] = [0, variables - 1];
+            let (both, any, not) = (of(one).and(&of(other)), of(one).or(&of(other)), of(one).not());
+            for choice in 0..1 << variables {
+                let [first, last] = [one, other].map(|index| choice >> index & 1 == 1);
+                assert_eq!([of(one).holds(choice), of(other).holds(choice)], [first, last]);
+                assert_eq!([both.holds(choice), any.holds(choice)], [first & last, first | last]);
+                assert_eq!(not.holds(choice), !first);
+            }
+            assert!(!of(one).and(&of(one).not()).is_possible() && Table::constant(variables, true).is_possible());
+        }
+    }
+}

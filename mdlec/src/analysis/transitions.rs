@@ -1,0 +1,192 @@
+//! How many transitions one turn makes at most (semantics, section 5).
+//!
+//! All that a turn reads is read of one output at one time, so each choice of what the interrupt quarks say is counted by
+//! itself, as long as there are few of them; else each may say anything each time, and the count is a bound.
+
+use std::collections::BTreeSet;
+
+use mdle_runtime::TRANSITIONS_PER_TURN;
+use mdle_runtime::fsm::Kind;
+
+use super::choices::Choices;
+use super::variables::{self, Variable};
+use crate::fsm::Lowered;
+use crate::plan::{Condition, QuarkId};
+
+/// The most transitions of one turn: no more than the machine makes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Most {
+    pub(super) count: u64,
+    /// Whether a search may need more than one turn has.
+    pub(super) is_cut: bool,
+}
+
+/// Counts them.
+pub(super) fn most(lowered: &Lowered) -> Most {
+    /// The most quarks of which every choice is counted, and the most brackets times choices.
+    const QUARKS: usize = 8;
+    const WORK: usize = 2_000_000;
+    let mut quarks: Vec<QuarkId> = Vec::new();
+    for scope in lowered.scopes.iter().flatten() {
+        scope.interrupt.condition.each_quark(&mut |id| {
+            if !lowered.quark(id).remembers && quarks.len() <= QUARKS && !quarks.contains(&id) {
+                quarks.push(id);
+            }
+        });
+    }
+    if quarks.len() > QUARKS || lowered.brackets.len() << quarks.len() > WORK {
+        quarks.clear();
+    }
+    // The bits of a choice are in the order of the variables.
+    quarks.sort_unstable();
+    let variables: BTreeSet<Variable> = quarks.iter().map(|id| Variable::Quark(*id)).collect();
+    let possible = Choices::new(&variables, |_| None).map(|free| variables::possible(&free, &lowered.quarks, &|_| 0));
+    let is_possible = |choice: &usize| possible.as_ref().is_none_or(|possible| possible.holds(*choice));
+    let choices = (0..1_usize << quarks.len()).filter(is_possible);
+    let count = choices.map(|choice| longest(lowered, &quarks, choice)).max().unwrap_or(0);
+    let limit = u64::from(TRANSITIONS_PER_TURN);
+    Most { count: count.min(limit), is_cut: count > limit }
+}
+
+/// How long chains of transitions in an element, or in elements one behind the other, can be.
+#[derive(Debug, Clone, Copy)]
+struct Chains {
+    /// From its beginning to its end, if it can be passed in one turn.
+    pass: Option<u64>,
+    /// From its beginning to somewhere inside.
+    first: u64,
+    /// From somewhere inside to its end, if it can end.
+    last: Option<u64>,
+    /// Anywhere in it.
+    inside: u64,
+}
+
+impl Chains {
+    const NONE: Self = Self { pass: Some(0), first: 0, last: None, inside: 0 };
+
+    /// This, and behind it those.
+    fn then(self, next: Self) -> Self {
+        let last = plus(self.last, next.pass);
+        let through = self.last.map_or(0, |last| last.saturating_add(next.first));
+        Self {
+            pass: plus(self.pass, next.pass),
+            first: self.first.max(self.pass.map_or(0, |pass| pass.saturating_add(next.first))),
+            last: last.max(next.last),
+            inside: self.inside.max(next.inside).max(through),
+        }
+    }
+
+    /// So many passes of this; 0 is for ever.
+    fn times(self, times: u64) -> Self {
+        let through = |passes: u64| self.pass.map_or(0, |pass| pass.saturating_mul(passes));
+        let again = |passes: u64| self.last.map_or(0, |last| last.saturating_add(through(passes)));
+        match times {
+            1 => self,
+            0 if self.pass.is_some_and(|pass| pass > 0) => {
+                Self { pass: None, first: u64::MAX, last: None, inside: u64::MAX }
+            }
+            0 => Self { pass: None, last: None, inside: self.inside.max(again(0).saturating_add(self.first)), ..self },
+            _ => Self {
+                pass: self.pass.map(|pass| pass.saturating_mul(times)),
+                first: self.first.max(through(times - 1).saturating_add(self.first)),
+                last: self.last.map(|last| last.saturating_add(through(times - 1))),
+                inside: self.inside.max(again(times - 2).saturating_add(self.first)),
+            },
+        }
+    }
+
+    /// What a scope makes of what is inside it.
+    fn within(self, at_once: Certainty, later: Certainty, asks_after: bool) -> Self {
+        let one = |certainty: Certainty| certainty.can.then_some(1);
+        if at_once.must {
+            let inside = if later.must { 1 } else { self.inside.max(1) };
+            return Self { pass: Some(1), first: 0, last: Some(1), inside };
+        }
+        // What has ended in the turn may be what it asks.
+        let [first, inside] = [self.first, self.inside].map(|count| if asks_after { count } else { 0 });
+        let pass =
+            self.pass.max(if asks_after { one(later).map(|one: u64| first.saturating_add(one)) } else { one(at_once) });
+        let last = self.last.max(one(later).map(|one| inside.saturating_add(one)));
+        let last = if later.must { Some(1) } else { last };
+        Self { pass, first: self.first, last, inside: self.inside.max(last.unwrap_or(0)) }
+    }
+}
+
+fn plus(one: Option<u64>, other: Option<u64>) -> Option<u64> {
+    Some(one?.saturating_add(other?))
+}
+
+/// The longest chain of transitions where the quarks say what the bits of `choice` are.
+fn longest(lowered: &Lowered, quarks: &[QuarkId], choice: usize) -> u64 {
+    let mut inside = vec![Chains::NONE; lowered.brackets.len()];
+    // The last bracket first: so what is inside of one is known, and what stands behind it.
+    for (number, bracket) in lowered.brackets.iter().enumerate().rev() {
+        let chains = match (bracket.kind, &lowered.scopes[number]) {
+            (Kind::Loop { times, .. }, _) => inside[number].times(times),
+            (Kind::Scope { .. }, scope) => {
+                let condition = scope.as_ref().map_or(&Condition::Null, |scope| &scope.interrupt.condition);
+                let read = |is_entered| certainty(condition, quarks, choice, is_entered);
+                let asks_after = condition.any(&|part| matches!(part, Condition::After(_)));
+                let atom = lowered.atoms.get(bracket.first as usize).is_some_and(|atom| atom.scope as usize == number);
+                let law = lowered.laws.get(bracket.first as usize).filter(|_| atom);
+                let completes = law.is_some_and(|law| lowered.quark(law.quark).completes);
+                let done = completes.then_some(1);
+                let body = if atom { Chains { pass: done, last: done, ..Chains::NONE } } else { inside[number] };
+                body.within(read(true), read(false), asks_after)
+            }
+        };
+        if number == 0 {
+            return chains.inside.max(chains.first).max(chains.pass.unwrap_or(0)).max(chains.last.unwrap_or(0));
+        }
+        let parent = bracket.parent as usize;
+        inside[parent] = chains.then(inside[parent]);
+    }
+    0
+}
+
+/// Whether something can be, and whether it has to be.
+#[derive(Debug, Clone, Copy)]
+struct Certainty {
+    can: bool,
+    must: bool,
+}
+
+/// Of a condition: in the turn in which its scope is entered, or in any.
+fn certainty(condition: &Condition, quarks: &[QuarkId], choice: usize, entered: bool) -> Certainty {
+    let known = |value| Certainty { can: value, must: value };
+    let unknown = Certainty { can: true, must: false };
+    let inside = |operand| certainty(operand, quarks, choice, entered);
+    let timer = |nanos: u64| {
+        if nanos == 0 {
+            known(true)
+        } else if entered {
+            known(false)
+        } else {
+            unknown
+        }
+    };
+    let not = |Certainty { can, must }| Certainty { can: !must, must: !can };
+    match condition {
+        Condition::Null => known(false),
+        Condition::Quark(id) => {
+            quarks.iter().position(|quark| quark == id).map_or(unknown, |bit| known(choice >> bit & 1 == 1))
+        }
+        Condition::Wait { nanos, .. } => timer(*nanos),
+        Condition::Elapsed { from, until, .. } => {
+            let (from, until) = (timer(*from), until.map_or(known(true), |until| not(timer(until))));
+            Certainty { can: from.can && until.can, must: from.must && until.must }
+        }
+        Condition::Or(operands) => operands
+            .iter()
+            .map(inside)
+            .fold(known(false), |one, other| Certainty { can: one.can || other.can, must: one.must || other.must }),
+        Condition::And(operands) => operands
+            .iter()
+            .map(inside)
+            .fold(known(true), |one, other| Certainty { can: one.can && other.can, must: one.must && other.must }),
+        Condition::Not(operand) => not(inside(operand)),
+        Condition::Rising { .. } if entered => known(false),
+        Condition::Rising { operand, .. } => Certainty { can: inside(operand).can, must: false },
+        Condition::After(_) => unknown,
+    }
+}

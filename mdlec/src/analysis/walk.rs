@@ -1,0 +1,295 @@
+//! Walks over a machine in the order in which it runs: which atoms run, which are skipped, which are never reached, and
+//! what can end each scope.
+//!
+//! One pass over the brackets: what a scope around a place does to it is in [`World`], when it is reached at the earliest
+//! is counted on the way. A loop's body is walked over once: its first pass comes first.
+
+use std::collections::BTreeMap;
+
+use mdle_runtime::fsm::{Bracket, Kind};
+use serde::Serialize;
+
+use super::choices::{Read, When};
+use super::world::{Added, World};
+use crate::fsm::Lowered;
+use crate::plan::{Condition, QuarkId};
+
+/// Whether an atom comes to run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Reach {
+    /// Its law may be applied.
+    Runs,
+    /// It may become the current atom, but then something around it has always fired.
+    Skipped,
+    /// It never becomes the current atom.
+    Never,
+}
+
+/// What is so of a bracket.
+#[derive(Debug, Clone)]
+pub(super) struct Found {
+    pub(super) reach: Reach,
+    /// For each operand of its interrupt's outermost OR: whether the interrupt can fire by it.
+    pub(super) operands: Vec<Outcome>,
+    /// Whether it ends because its law is done.
+    pub(super) completes: bool,
+    /// Why it is always skipped, if it is.
+    pub(super) skipped: Option<Skip>,
+    /// The element before it, if that keeps it from being reached and a reader of the text alone would not see it.
+    pub(super) cut_off_by: Option<u32>,
+}
+
+/// Why an element is always skipped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Skip {
+    /// Its interrupt has always fired when it is entered.
+    AtOnce,
+    /// Its interrupt has fired whenever what comes before it ends: the bracket of one of these.
+    Behind(u32),
+    /// It is inside of something that is skipped.
+    Inside,
+}
+
+/// Whether an interrupt can fire by one of its operands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Outcome {
+    /// It can.
+    Possible,
+    /// It is never true.
+    Never,
+    /// It is true only when the interrupt of this bracket has fired.
+    Beaten(u32),
+    /// It is over later than a timer of this bracket.
+    Late(u32),
+    /// It is the same as an operand of this bracket's interrupt.
+    Repeated(u32),
+    /// It was not asked: this place is never reached.
+    Unread,
+}
+
+/// What has just fired where an element is entered: one of these. Nothing is known where there are none.
+type Facts<'l> = Vec<Read<'l>>;
+
+/// A bracket that the walk is inside.
+struct Open {
+    bracket: u32,
+    reach: Reach,
+    /// When it is entered, and when it ends by itself, each at the earliest.
+    clock: Option<u64>,
+    own: Option<u64>,
+    added: Added,
+    /// Whether what is before it in the text ends.
+    written: bool,
+}
+
+/// What is so of each bracket, and the time at which the plan is over at the earliest.
+pub(super) struct Walked {
+    pub(super) found: Vec<Found>,
+    pub(super) shortest: Option<u64>,
+}
+
+/// Walks over a machine. `one_turn` says that every search for the next atom comes to its end in one turn.
+pub(super) fn walk(lowered: &Lowered, one_turn: bool) -> Walked {
+    let mut last_child = vec![0; lowered.brackets.len()];
+    for (number, bracket) in (0_u32..).zip(&lowered.brackets) {
+        last_child[bracket.parent as usize] = number;
+    }
+    let mut walk = Walk {
+        world: World::new(lowered),
+        open: Vec::new(),
+        found: Vec::with_capacity(lowered.brackets.len()),
+        last_child,
+        waits: BTreeMap::new(),
+        clock: Some(0),
+        facts: Vec::new(),
+        written: true,
+        skipping: false,
+        before: None,
+        one_turn,
+    };
+    for (number, bracket) in (0_u32..).zip(&lowered.brackets) {
+        while number > 0 && walk.open.last().is_some_and(|open| open.bracket != bracket.parent) {
+            walk.close();
+        }
+        walk.enter(number, bracket);
+    }
+    while !walk.open.is_empty() {
+        walk.close();
+    }
+    Walked { found: walk.found, shortest: walk.clock }
+}
+
+pub(super) struct Walk<'l> {
+    pub(super) world: World<'l>,
+    open: Vec<Open>,
+    found: Vec<Found>,
+    last_child: Vec<u32>,
+    /// The timers that are operands of interrupts around, by their brackets.
+    pub(super) waits: BTreeMap<QuarkId, Vec<u32>>,
+    /// When the next element is entered at the earliest; `None` where it is not.
+    pub(super) clock: Option<u64>,
+    pub(super) facts: Facts<'l>,
+    /// Whether what stands before the next element ends, as far as its text alone says.
+    written: bool,
+    /// Whether the next element is the first of one that is skipped.
+    skipping: bool,
+    /// The element before the next one.
+    before: Option<u32>,
+    /// Whether every search for the next atom comes to its end in one turn.
+    pub(super) one_turn: bool,
+}
+
+impl<'l> Walk<'l> {
+    pub(super) fn condition(&self, bracket: u32) -> &'l Condition {
+        let scope = self.world.lowered.scopes[bracket as usize].as_ref();
+        scope.map_or(&Condition::Null, |scope| &scope.interrupt.condition)
+    }
+
+    fn is_atom(&self, bracket: u32) -> bool {
+        let lowered = self.world.lowered;
+        let first = lowered.brackets[bracket as usize].first as usize;
+        lowered.atoms.get(first).is_some_and(|atom| atom.scope == bracket)
+    }
+
+    pub(super) fn completes(&self, bracket: u32) -> bool {
+        let lowered = self.world.lowered;
+        let law = lowered.laws.get(lowered.brackets[bracket as usize].first as usize);
+        self.is_atom(bracket) && law.is_some_and(|law| lowered.quark(law.quark).completes)
+    }
+
+    fn enter(&mut self, number: u32, bracket: &Bracket) {
+        let reach = match self.clock {
+            Some(_) if self.skipping => Reach::Skipped,
+            Some(_) => Reach::Runs,
+            None => Reach::Never,
+        };
+        let is_cut_off = reach == Reach::Never && self.written;
+        self.world.entered[number as usize] = self.clock.unwrap_or(0);
+        let condition = self.condition(number);
+        let mut found = Found {
+            reach,
+            operands: vec![Outcome::Unread; condition.operands().len()],
+            completes: false,
+            skipped: (reach == Reach::Skipped).then_some(Skip::Inside),
+            cut_off_by: self.before.filter(|_| is_cut_off),
+        };
+        // It is told once, for the first of what is never reached.
+        let written = self.written && !is_cut_off;
+        let mut open = Open { bracket: number, reach, clock: self.clock, own: None, added: Added::default(), written };
+        self.written = written;
+        match bracket.kind {
+            Kind::Loop { times, .. } if times != 1 && reach == Reach::Runs => self.repeat(number),
+            Kind::Loop { .. } => {}
+            Kind::Scope { .. } if reach == Reach::Runs => {
+                open.own = self.judge(number, &mut found);
+                if found.reach == Reach::Skipped {
+                    open.reach = Reach::Skipped;
+                    self.skipping = true;
+                    self.written = false;
+                } else if !self.is_atom(number) {
+                    open.added = self.world.open(number, condition);
+                    self.wait_for(number, true);
+                }
+            }
+            Kind::Scope { .. } => {}
+        }
+        self.found.push(found);
+        self.open.push(open);
+        self.before = None;
+    }
+
+    /// What has just fired where a loop's body begins: what leads there may be its own last element.
+    fn repeat(&mut self, number: u32) {
+        let again = self.exit(number);
+        if self.facts.is_empty() || again.is_empty() {
+            self.facts.clear();
+        } else {
+            self.facts.extend(again);
+        }
+    }
+
+    pub(super) fn read(&self, condition: &'l Condition, bracket: u32, when: When) -> Read<'l> {
+        Read { condition, bracket, when }
+    }
+
+    /// Counts the timers of a scope's interrupt among those around, or takes them out again.
+    fn wait_for(&mut self, number: u32, opened: bool) {
+        for operand in self.condition(number).operands() {
+            let Condition::Wait { quark, .. } = operand else { continue };
+            let brackets = self.waits.entry(*quark).or_default();
+            if opened {
+                brackets.push(number);
+            } else {
+                brackets.pop();
+            }
+        }
+    }
+
+    /// What has fired when an element has ended: one of these; nothing if that is not known.
+    fn exit(&self, number: u32) -> Facts<'l> {
+        /// The most scopes that may end one with the other.
+        const ENDING: usize = 8;
+        let (mut here, mut exits) = (number, Vec::new());
+        for _ in 0..ENDING {
+            if self.completes(here) || !self.one_turn {
+                return Vec::new();
+            }
+            if self.world.lowered.scopes[here as usize].is_some() {
+                exits.push(self.read(self.condition(here), here, When::Past));
+            }
+            if self.is_atom(here) {
+                return exits;
+            }
+            here = self.last_child[here as usize];
+        }
+        Vec::new()
+    }
+
+    /// Leaves the innermost bracket: what follows it is reached when it ends at the earliest.
+    fn close(&mut self) {
+        let Some(open) = self.open.pop() else { return };
+        let is_atom = self.is_atom(open.bracket);
+        let bracket = self.world.lowered.brackets[open.bracket as usize];
+        let is_null = *self.condition(open.bracket) == Condition::Null;
+        let inside = self.clock.filter(|_| !is_atom);
+        match bracket.kind {
+            Kind::Scope { .. } => {
+                let own = self.completes(open.bracket) || !is_null;
+                self.written = open.written && (own || (!is_atom && self.written));
+            }
+            Kind::Loop { times, .. } => self.written = open.written && self.written && times > 0,
+        }
+        self.before = Some(open.bracket);
+        match open.reach {
+            Reach::Never => self.clock = None,
+            // The first atom of what is skipped is all that is met of it.
+            Reach::Skipped => self.clock = open.own,
+            Reach::Runs => {
+                self.clock = match bracket.kind {
+                    Kind::Scope { .. } => [open.own, inside].into_iter().flatten().min(),
+                    Kind::Loop { times, .. } => passes(open.clock, inside, times),
+                };
+                if !is_atom && bracket_is_scope(&bracket) {
+                    self.wait_for(open.bracket, false);
+                }
+                self.world.close(open.added);
+            }
+        }
+        if open.own.is_some() && open.reach == Reach::Skipped {
+            self.skipping = false;
+            self.written = open.written;
+        }
+        self.facts = self.exit(open.bracket);
+    }
+}
+
+fn bracket_is_scope(bracket: &Bracket) -> bool {
+    matches!(bracket.kind, Kind::Scope { .. })
+}
+
+/// When a loop ends at the earliest, by when it is entered and when its first pass ends.
+fn passes(from: Option<u64>, pass: Option<u64>, times: u64) -> Option<u64> {
+    let (from, pass) = (from?, pass?);
+    (times > 0).then(|| from.saturating_add(pass.saturating_sub(from).saturating_mul(times)))
+}

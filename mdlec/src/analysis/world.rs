@@ -1,0 +1,267 @@
+//! What is known where a condition is read: no interrupt of a scope around it has fired, for these are read first
+//! (semantics, section 5).
+//!
+//! An answer "impossible" holds for every run; "possible" may be said of what is too much to look at.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::choices::{self, Choices, Read, When};
+use super::tables::VARIABLES;
+use super::variables::{self, Family, Variable, family};
+use crate::fsm::Lowered;
+use crate::plan::{Condition, QuarkId};
+
+/// The most conditions around a place that are looked at for each variable of a question.
+const CLAUSES: usize = 8;
+
+/// What is asked of some conditions: that one of them has fired, or that none has.
+#[derive(Debug, Clone)]
+pub(super) struct Wanted<'l> {
+    pub(super) any: Vec<Read<'l>>,
+    pub(super) fired: bool,
+}
+
+/// What is known at a place of a plan.
+#[derive(Debug)]
+pub(super) struct World<'l> {
+    pub(super) lowered: &'l Lowered,
+    /// When the scope of each bracket was entered at the earliest, in nanoseconds since the plan began.
+    pub(super) entered: Vec<u64>,
+    /// What has one value only, or a scope around would have ended; and the bracket of that scope.
+    units: BTreeMap<Variable, (bool, u32)>,
+    /// When a timer around is over, on the clock of `entered`, and its bracket: the first of them is the last.
+    deadlines: Vec<(u64, u32)>,
+    /// What else has not fired around, by the variables in it.
+    clauses: BTreeMap<Variable, Vec<Read<'l>>>,
+    families: BTreeMap<Family, BTreeSet<QuarkId>>,
+}
+
+/// What a scope has added to what is known inside it.
+#[derive(Debug, Default)]
+pub(super) struct Added {
+    units: Vec<Variable>,
+    clauses: Vec<Variable>,
+    deadline: bool,
+}
+
+impl<'l> World<'l> {
+    pub(super) fn new(lowered: &'l Lowered) -> Self {
+        Self {
+            lowered,
+            entered: vec![0; lowered.brackets.len()],
+            units: BTreeMap::new(),
+            deadlines: Vec::new(),
+            clauses: BTreeMap::new(),
+            families: BTreeMap::new(),
+        }
+    }
+
+    /// The time at which a timer around is over, and its bracket.
+    pub(super) fn deadline(&self) -> Option<(u64, u32)> {
+        self.deadlines.last().copied()
+    }
+
+    /// The bracket around this place that gives a variable its value.
+    pub(super) fn unit(&self, variable: Variable) -> Option<u32> {
+        self.units.get(&variable).map(|(_, bracket)| *bracket)
+    }
+
+    /// The brackets around this place whose conditions have something to do with these variables.
+    pub(super) fn around(&self, variables: &BTreeSet<Variable>) -> Option<u32> {
+        let unit = variables.iter().find_map(|variable| self.unit(*variable));
+        let relative = || self.relatives(variables).iter().find_map(|variable| self.unit(*variable));
+        let clause = || variables.iter().find_map(|variable| Some(self.clauses.get(variable)?.first()?.bracket));
+        unit.or_else(clause).or_else(relative)
+    }
+
+    /// From now on the interrupt of this bracket has not fired.
+    pub(super) fn open(&mut self, bracket: u32, condition: &'l Condition) -> Added {
+        let mut added = Added::default();
+        for condition in flat(condition) {
+            let read = Read { condition, bracket, when: When::Later };
+            match self.unit_of(read) {
+                Some((Variable::Timer(_, nanos), false)) => {
+                    let at = self.entered[bracket as usize].saturating_add(nanos);
+                    if self.deadline().is_none_or(|(first, _)| at < first) {
+                        self.deadlines.push((at, bracket));
+                        added.deadline = true;
+                    }
+                }
+                Some((variable, value)) => {
+                    if let std::collections::btree_map::Entry::Vacant(place) = self.units.entry(variable) {
+                        place.insert((value, bracket));
+                        added.units.push(variable);
+                        self.relate(variable, true);
+                    }
+                }
+                None => self.add_clause(read, &mut added),
+            }
+        }
+        // Several timers of one scope are one deadline.
+        if added.deadline {
+            while let [.., before, last] = self.deadlines.as_slice()
+                && before.1 == last.1
+            {
+                let last = *last;
+                self.deadlines.truncate(self.deadlines.len() - 2);
+                self.deadlines.push(last);
+            }
+        }
+        added
+    }
+
+    /// Forgets what a scope has added.
+    pub(super) fn close(&mut self, added: Added) {
+        for variable in added.units {
+            self.units.remove(&variable);
+            self.relate(variable, false);
+        }
+        for variable in added.clauses {
+            self.clauses.entry(variable).or_default().pop();
+        }
+        if added.deadline {
+            self.deadlines.pop();
+        }
+    }
+
+    fn relate(&mut self, variable: Variable, is_known: bool) {
+        let Variable::Quark(id) = variable else { return };
+        let Some(family) = family(self.lowered.quark(id)) else { return };
+        let members = self.families.entry(family).or_default();
+        if is_known {
+            members.insert(id);
+        } else {
+            members.remove(&id);
+        }
+    }
+
+    /// Other quarks of the same families whose values are known.
+    fn relatives(&self, variables: &BTreeSet<Variable>) -> Vec<Variable> {
+        let mut found = Vec::new();
+        for variable in variables {
+            let Variable::Quark(id) = variable else { continue };
+            let members = family(self.lowered.quark(*id)).and_then(|family| self.families.get(&family));
+            found.extend(members.into_iter().flatten().take(CLAUSES).map(|id| Variable::Quark(*id)));
+        }
+        found
+    }
+
+    fn add_clause(&mut self, read: Read<'l>, added: &mut Added) {
+        let mut variables = BTreeSet::new();
+        if !self.variables(read, &mut variables) {
+            return;
+        }
+        for variable in variables {
+            // Timers are met by way of the other variables: every scope has some.
+            if !matches!(variable, Variable::Timer(..)) {
+                self.clauses.entry(variable).or_default().push(read);
+                added.clauses.push(variable);
+            }
+        }
+    }
+
+    /// The one variable that has to have this value for a condition not to have fired, if it is one.
+    fn unit_of(&self, read: Read<'l>) -> Option<(Variable, bool)> {
+        let leaf = |condition: &'l Condition| {
+            let mut variables = BTreeSet::new();
+            let is_leaf = matches!(condition, Condition::Quark(_) | Condition::Wait { .. } | Condition::After(_));
+            let read = Read { condition, ..read };
+            (is_leaf && self.variables(read, &mut variables)).then(|| variables.pop_first()).flatten()
+        };
+        if let Condition::Not(operand) = read.condition {
+            return leaf(operand).map(|variable| (variable, true));
+        }
+        leaf(read.condition).map(|variable| (variable, false))
+    }
+
+    /// Adds the variables of a condition, whatever is known of them; `false` where there are too many.
+    pub(super) fn variables(&self, read: Read<'l>, found: &mut BTreeSet<Variable>) -> bool {
+        choices::variables(read, self.lowered, found)
+    }
+
+    /// The value that a variable has here, if it has only one.
+    fn known(&self, variable: Variable) -> Option<bool> {
+        let Variable::Timer(bracket, nanos) = variable else {
+            return self.units.get(&variable).map(|(value, _)| *value);
+        };
+        let at = self.entered[bracket as usize].saturating_add(nanos);
+        match self.deadline() {
+            _ if nanos == 0 => Some(true),
+            Some((deadline, _)) if at >= deadline => Some(false),
+            Some(_) | None => None,
+        }
+    }
+
+    /// Whether all this can be so in one turn; `fixed` says what the values of some variables are.
+    pub(super) fn is_possible(&self, wanted: &[Wanted<'l>], fixed: &BTreeMap<Variable, bool>) -> bool {
+        let mut variables = BTreeSet::new();
+        let reads = wanted.iter().flat_map(|wanted| &wanted.any);
+        if !reads.into_iter().all(|read| self.variables(*read, &mut variables)) {
+            return true;
+        }
+        let value = |variable: &Variable| fixed.get(variable).copied().or_else(|| self.known(*variable));
+        let mut all = variables.clone();
+        all.extend(self.relatives(&variables));
+        // What is around may be left out: then more is possible. What is wanted may not.
+        let clauses = self.clauses(&mut all, &value);
+        let (choices, clauses) = match (Choices::new(&all, value), Choices::new(&variables, value)) {
+            (Some(choices), _) => (choices, clauses),
+            (None, Some(choices)) => (choices, Vec::new()),
+            (None, None) => return true,
+        };
+        let entered = |bracket: u32| self.entered[bracket as usize];
+        let mut table = variables::possible(&choices, &self.lowered.quarks, &entered);
+        for read in clauses {
+            table = table.and(&choices.fired(read, self.lowered).not());
+        }
+        for Wanted { any, fired } in wanted {
+            let none = choices.constant(false);
+            let some = any.iter().fold(none, |some, read| some.or(&choices.fired(*read, self.lowered)));
+            table = table.and(&if *fired { some } else { some.not() });
+        }
+        table.is_possible()
+    }
+
+    /// Whether an interrupt may be one that has not fired.
+    pub(super) fn stays(&self, bracket: u32, condition: &'l Condition, when: When) -> bool {
+        let not = |condition| {
+            let any = vec![Read { condition, bracket, when }];
+            self.is_possible(&[Wanted { any, fired: false }], &BTreeMap::new())
+        };
+        // Of an OR too long to be looked at, each operand may be short enough.
+        condition.operands().iter().all(not) && not(condition)
+    }
+
+    /// What has not fired around and shares variables with these, as long as there are not too many in all.
+    fn clauses(&self, all: &mut BTreeSet<Variable>, value: &impl Fn(&Variable) -> Option<bool>) -> Vec<Read<'l>> {
+        let free = |all: &BTreeSet<Variable>| all.iter().filter(|variable| value(variable).is_none()).count();
+        let related: Vec<Read<'l>> = all
+            .iter()
+            .filter_map(|variable| self.clauses.get(variable))
+            .flat_map(|clauses| clauses.iter().take(CLAUSES).copied())
+            .collect();
+        let mut taken: Vec<Read<'l>> = Vec::new();
+        for read in related {
+            let mut with = all.clone();
+            let is_new = taken.iter().all(|other| !std::ptr::eq(other.condition, read.condition));
+            if is_new && self.variables(read, &mut with) && free(&with) <= VARIABLES {
+                *all = with;
+                taken.push(read);
+            }
+        }
+        taken
+    }
+}
+
+/// The operands of an OR, and those of an OR in it.
+fn flat(condition: &Condition) -> Vec<&Condition> {
+    let (mut waiting, mut operands) = (vec![condition], Vec::new());
+    while let Some(condition) = waiting.pop() {
+        if let Condition::Or(inside) = condition {
+            waiting.extend(inside.iter().rev());
+        } else {
+            operands.push(condition);
+        }
+    }
+    operands
+}

@@ -1,0 +1,297 @@
+//! A plan run by brute force: from each situation it can be in, a turn for each choice of what its quarks say and of how
+//! much time goes by. Written from the rules (semantics, sections 3 to 6) alone; it shares no stepping with any machine.
+
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
+
+use mdlec::plan::{Condition, Interrupt, Mark, Node, Plan, QuarkId, Record, RecordId, Situation};
+
+/// What quarks say in a turn, by their numbers.
+#[derive(Debug, Clone, Default)]
+pub struct Said {
+    /// Which interrupts have fired.
+    pub fired: Vec<bool>,
+    /// Which laws are done.
+    pub completed: Vec<bool>,
+}
+
+/// The most transitions of one turn.
+const TRANSITIONS: usize = 4096;
+
+/// A scope, a loop or an atom.
+struct Part<'p> {
+    interrupt: Option<&'p Interrupt>,
+    /// The passes of a loop; 0 is for ever.
+    times: u64,
+    law: Option<QuarkId>,
+    record: Option<Record>,
+    marks: &'p [Mark],
+    children: Vec<usize>,
+}
+
+/// A plan with its parts numbered in pre-order.
+pub struct Explorer<'p> {
+    plan: &'p Plan,
+    parts: Vec<Part<'p>>,
+}
+
+/// A part that is being run.
+#[derive(Debug, Clone)]
+struct Frame {
+    part: usize,
+    entered: u64,
+    left: u64,
+    memories: Vec<bool>,
+    facts: Vec<bool>,
+}
+
+/// Where a plan is.
+#[derive(Debug, Clone)]
+pub struct Run {
+    frames: Vec<Frame>,
+    /// Nanoseconds since it began.
+    pub now: u64,
+}
+
+/// What a turn did.
+#[derive(Debug, Default)]
+pub struct Turn {
+    /// The atoms that were current, by their parts; the last one's law is applied unless the turn was cut.
+    pub current: Vec<usize>,
+    /// The parts that ended, each with the operands of its interrupt that had fired; none if its law was done.
+    pub ended: Vec<(usize, Vec<usize>)>,
+    /// Whether a law was applied.
+    pub applied: bool,
+    /// Whether the plan is over.
+    pub over: bool,
+}
+
+/// Where a condition is read.
+struct At<'r, 'p> {
+    explorer: &'r Explorer<'p>,
+    run: &'r Run,
+    frame: &'r Frame,
+    said: &'r Said,
+}
+
+impl Situation for At<'_, '_> {
+    fn quark(&self, quark: QuarkId) -> bool {
+        self.said.fired[quark.0 as usize]
+    }
+
+    fn waited(&self, nanos: u64) -> bool {
+        self.run.now - self.frame.entered >= nanos
+    }
+
+    fn remembers(&self, memory: u32) -> bool {
+        self.frame.memories[memory as usize]
+    }
+
+    fn recorded(&self, record: RecordId, fact: u32) -> bool {
+        self.run.frames.iter().any(|frame| {
+            let kept = self.explorer.parts[frame.part].record;
+            kept.is_some_and(|kept| kept.id == record) && frame.facts[fact as usize]
+        })
+    }
+}
+
+impl<'p> Explorer<'p> {
+    /// The parts of a plan.
+    #[must_use]
+    pub fn new(plan: &'p Plan) -> Self {
+        let mut explorer = Self { plan, parts: Vec::new() };
+        let root = &plan.root;
+        explorer.parts.push(Part {
+            interrupt: Some(&root.interrupt),
+            times: 1,
+            law: None,
+            record: root.record,
+            marks: &root.marks,
+            children: Vec::new(),
+        });
+        explorer.add(0, &root.body);
+        explorer
+    }
+
+    fn add(&mut self, parent: usize, body: &'p [Node]) {
+        for node in body {
+            let (interrupt, times, law, record, marks, inside) = match node {
+                Node::Atom(atom) => (Some(&atom.interrupt), 1, Some(atom.law), None, &atom.marks, None),
+                Node::Scope(scope) => (Some(&scope.interrupt), 1, None, scope.record, &scope.marks, Some(&scope.body)),
+                Node::Loop(repeated) => {
+                    (None, repeated.times.unwrap_or(0), None, None, &repeated.marks, Some(&repeated.body))
+                }
+            };
+            let part = self.parts.len();
+            self.parts.push(Part { interrupt, times, law, record, marks, children: Vec::new() });
+            self.parts[parent].children.push(part);
+            if let Some(body) = inside {
+                self.add(part, body);
+            }
+        }
+    }
+
+    /// The plan as it begins.
+    #[must_use]
+    pub fn begin(&self) -> Run {
+        let mut run = Run { frames: Vec::new(), now: 0 };
+        self.open(&mut run, 0);
+        run
+    }
+
+    /// The operands of a part's interrupt.
+    #[must_use]
+    pub fn operands(&self, part: usize) -> &'p [Condition] {
+        self.parts[part].interrupt.map_or(&[], |interrupt| interrupt.condition.operands())
+    }
+
+    fn open(&self, run: &mut Run, mut part: usize) {
+        loop {
+            let this = &self.parts[part];
+            run.frames.push(Frame {
+                part,
+                entered: run.now,
+                left: this.times.saturating_sub(1),
+                memories: vec![false; this.interrupt.map_or(0, |interrupt| interrupt.memories) as usize],
+                facts: vec![false; this.record.map_or(0, |record| record.facts) as usize],
+            });
+            match this.children.first() {
+                Some(first) => part = *first,
+                None => return,
+            }
+        }
+    }
+
+    /// Makes one turn.
+    #[must_use]
+    pub fn turn(&self, run: &mut Run, said: &Said) -> Turn {
+        let mut turn = Turn::default();
+        loop {
+            turn.current.push(run.frames.last().expect("an atom").part);
+            let Some((place, operands)) = self.fired(run, said) else {
+                turn.applied = true;
+                break;
+            };
+            if turn.ended.len() == TRANSITIONS {
+                break;
+            }
+            turn.ended.push((run.frames[place].part, operands.clone()));
+            if !self.end(run, place, operands.first().copied()) {
+                turn.over = true;
+                return turn;
+            }
+        }
+        self.remember(run, said);
+        turn
+    }
+
+    /// The outermost part that ends, by its place among those around the current atom.
+    fn fired(&self, run: &Run, said: &Said) -> Option<(usize, Vec<usize>)> {
+        for (place, frame) in run.frames.iter().enumerate() {
+            let at = At { explorer: self, run, frame, said };
+            let operands = self.operands(frame.part).iter().enumerate();
+            let fired: Vec<_> = operands.filter(|(_, operand)| operand.fired(&at)).map(|(number, _)| number).collect();
+            if !fired.is_empty() {
+                return Some((place, fired));
+            }
+        }
+        let law = self.parts[run.frames.last()?.part].law?;
+        let is_done = self.plan.quark(law).completes && said.completed[law.0 as usize];
+        is_done.then(|| (run.frames.len() - 1, Vec::new()))
+    }
+
+    /// Ends the part at this place and goes on to what follows; `false` where nothing does.
+    fn end(&self, run: &mut Run, mut place: usize, cause: Option<usize>) -> bool {
+        let mut ended = vec![(run.frames[place].part, cause)];
+        let next = loop {
+            let Some(holder) = place.checked_sub(1) else { return false };
+            let children = &self.parts[run.frames[holder].part].children;
+            let position = children.iter().position(|child| *child == run.frames[place].part).expect("a child");
+            if let Some(next) = children.get(position + 1) {
+                break *next;
+            }
+            let times = self.parts[run.frames[holder].part].times;
+            if self.parts[run.frames[holder].part].interrupt.is_none() && (times == 0 || run.frames[holder].left > 0) {
+                run.frames[holder].left = run.frames[holder].left.saturating_sub(1);
+                break children[0];
+            }
+            place = holder;
+            ended.push((run.frames[place].part, None));
+        };
+        self.record(run, &ended);
+        run.frames.truncate(place);
+        self.open(run, next);
+        true
+    }
+
+    /// Writes down the labels of what has ended at once.
+    fn record(&self, run: &mut Run, ended: &[(usize, Option<usize>)]) {
+        let mut fresh: BTreeMap<RecordId, Vec<u32>> = BTreeMap::new();
+        for (part, cause) in ended {
+            for mark in self.parts[*part].marks {
+                let cause = cause.map(|cause| u32::try_from(cause).expect("few operands"));
+                let holding = mark.facts.iter().filter(|fact| fact.holds(cause)).map(|fact| fact.number);
+                fresh.entry(mark.record).or_default().extend(holding);
+            }
+        }
+        for frame in &mut run.frames {
+            let Some(record) = self.parts[frame.part].record else { continue };
+            let Some(holding) = fresh.get(&record.id) else { continue };
+            frame.facts.fill(false);
+            holding.iter().for_each(|fact| frame.facts[*fact as usize] = true);
+        }
+    }
+
+    /// Sets the memories of what has not fired.
+    fn remember(&self, run: &mut Run, said: &Said) {
+        let mut set = Vec::new();
+        for (place, frame) in run.frames.iter().enumerate() {
+            let at = At { explorer: self, run, frame, said };
+            let Some(interrupt) = self.parts[frame.part].interrupt else { continue };
+            interrupt.condition.each_rising(&mut |memory, operand| {
+                if !operand.fired(&at) {
+                    set.push((place, memory as usize));
+                }
+            });
+        }
+        set.into_iter().for_each(|(place, memory)| run.frames[place].memories[memory] = true);
+    }
+
+    /// What tells two situations apart; times only up to `longest`, behind which every timer is over.
+    fn key(&self, run: &Run, longest: u64) -> Vec<u64> {
+        let mut key = Vec::new();
+        for frame in &run.frames {
+            key.extend([frame.part as u64, (run.now - frame.entered).min(longest), frame.left]);
+            key.extend(frame.memories.iter().chain(&frame.facts).map(|bit| u64::from(*bit)));
+        }
+        key
+    }
+
+    /// Visits every turn from every situation that can be reached, breadth first, with these choices of what quarks say and
+    /// these steps of time; at most so many situations. `true` if that were all.
+    pub fn explore(&self, said: &[Said], steps: &[u64], most: usize, visit: &mut impl FnMut(&Turn, &Run)) -> bool {
+        /// How many transitions a situation may take in the mean: searches that are cut are long.
+        const TRANSITIONS_EACH: usize = 500;
+        let longest = 20_000_000_000;
+        let mut made = 0;
+        let mut seen = BTreeSet::new();
+        let mut waiting = VecDeque::from([(self.begin(), true)]);
+        while let Some((run, is_first)) = waiting.pop_front() {
+            for step in if is_first { &[0] } else { steps } {
+                for said in said {
+                    let mut next = run.clone();
+                    next.now += step;
+                    let turn = self.turn(&mut next, said);
+                    made += turn.ended.len();
+                    if made > most * TRANSITIONS_EACH {
+                        return false;
+                    }
+                    visit(&turn, &next);
+                    if !turn.over && seen.len() < most && seen.insert(self.key(&next, longest)) {
+                        waiting.push_back((next, false));
+                    }
+                }
+            }
+        }
+        seen.len() < most
+    }
+}
