@@ -3,6 +3,7 @@
 mod bind;
 mod build;
 mod check;
+mod draw;
 mod embed;
 mod everywhere;
 mod explain;
@@ -57,6 +58,8 @@ enum Command {
     Fmt(Fmt),
     /// Runs a plan against a script of interrupts, no robot needed
     Trace(Trace),
+    /// Draws a plan as a picture (SVG): scopes as boxes, atoms in rows, exits as arcs
+    Draw(Draw),
     /// Explains the code of a message, with a wrong and a right example
     Explain(Explain),
     /// Lists the robots that plans can be compiled for
@@ -123,6 +126,12 @@ enum EmitKind {
     Fsm,
     /// The transition matrices: in the paper's notation, or as MatrixMarket files into a folder
     Matrices,
+    /// A picture for Graphviz
+    Dot,
+    /// A picture for mermaid, a `stateDiagram-v2`
+    Mermaid,
+    /// A machine in W3C SCXML that does what the plan does, a state for each atom of the expanded plan
+    Scxml,
     /// The plan in the paper's formal notation
     Formal,
     /// The Rust that is compiled
@@ -179,6 +188,21 @@ struct Trace {
     /// Which of the equivalent machines runs the plan
     #[arg(long, value_enum, default_value_t = Machine::Counted)]
     machine: Machine,
+    /// Which plan of the file [default: the one that no other refers to]
+    #[arg(long = "plan", value_name = "NAME")]
+    name: Option<String>,
+    /// The robot [default: one that has everything]
+    #[arg(long, value_name = "NAME|FOLDER")]
+    target: Option<String>,
+}
+
+#[derive(Debug, Args)]
+struct Draw {
+    /// The plan; `-` reads standard input
+    plan: PathBuf,
+    /// The picture to write [default: standard output]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
     /// Which plan of the file [default: the one that no other refers to]
     #[arg(long = "plan", value_name = "NAME")]
     name: Option<String>,
@@ -275,6 +299,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Check(check)) => check::check(&check),
         Some(Command::Fmt(fmt)) => fmt::fmt(&fmt),
         Some(Command::Trace(trace)) => trace::trace(&trace),
+        Some(Command::Draw(draw)) => draw::draw(&draw),
         Some(Command::Explain(explain)) => explain::explain(explain.code.as_deref()),
         Some(Command::Targets) => input::print_targets(),
         Some(Command::Bind(bind)) => bind::bind(&bind),
