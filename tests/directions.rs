@@ -55,10 +55,14 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("plan", &["diagnostic", "syntax", "alphabet"]),
     ("fsm", &["diagnostic", "alphabet", "plan"]),
     ("trace", &["diagnostic", "alphabet", "plan", "fsm"]),
+    ("picture", &["diagnostic", "plan", "fsm"]),
     ("rust", &["diagnostic", "alphabet", "plan", "fsm"]),
     ("analysis", &["diagnostic", "alphabet", "plan", "fsm", "rust"]),
     ("link", &["crate", "diagnostic", "syntax", "alphabet", "plan", "fsm", "rust"]),
-    ("cli", &["crate", "diagnostic", "syntax", "alphabet", "plan", "fsm", "trace", "rust", "analysis", "link"]),
+    (
+        "cli",
+        &["crate", "diagnostic", "syntax", "alphabet", "plan", "fsm", "trace", "picture", "rust", "analysis", "link"],
+    ),
     ("embed", &["cli"]),
     ("main", &["cli"]),
 ];

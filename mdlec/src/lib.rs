@@ -14,6 +14,7 @@ pub mod diagnostic;
 pub mod embed;
 pub mod fsm;
 pub mod link;
+pub mod picture;
 pub mod plan;
 pub mod rust;
 #[cfg(test)]

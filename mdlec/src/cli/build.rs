@@ -13,7 +13,7 @@ use crate::diagnostic::{Diagnostic, sort};
 use crate::link::{self, Cache, LinkError, Package, Progress, TargetCrate};
 use crate::rust::{self, Header};
 use crate::syntax::outline;
-use crate::{Compiled, fsm, syntax};
+use crate::{Compiled, fsm, picture, syntax};
 
 /// Does what the command line without a command asks for.
 pub(super) fn build(options: &Build) -> Result<(), Failure> {
@@ -131,6 +131,9 @@ fn stage(options: &Build, path: &Path, kind: EmitKind) -> Result<String, Failure
         EmitKind::Nondegenerate => Ok(nondegenerate.plan().to_string()),
         EmitKind::Expanded => fsm::expand(nondegenerate).map(|expanded| expanded.plan().numbered()),
         EmitKind::Fsm => fsm::fsm_file(nondegenerate).map(|file| file.to_json()),
+        EmitKind::Dot => picture::dot(&compiled.lowered),
+        EmitKind::Mermaid => picture::mermaid(&compiled.lowered),
+        EmitKind::Scxml => picture::scxml(nondegenerate),
         EmitKind::Tree | EmitKind::Matrices | EmitKind::Rust | EmitKind::Exe => {
             needs_target(options.target.as_deref())?;
             Ok(rust_of(&compiled, path, &target))

@@ -4,6 +4,7 @@ mod analyze;
 mod bind;
 mod build;
 mod check;
+mod draw;
 mod embed;
 mod everywhere;
 mod explain;
@@ -60,6 +61,8 @@ enum Command {
     Trace(Trace),
     /// Says what is so of every run of a plan: which atoms run, what can end them, how long it takes, how large it is
     Analyze(Analyze),
+    /// Draws a plan as a picture (SVG): scopes as boxes, atoms in rows, exits as arcs
+    Draw(Draw),
     /// Explains the code of a message, with a wrong and a right example
     Explain(Explain),
     /// Lists the robots that plans can be compiled for
@@ -126,6 +129,12 @@ enum EmitKind {
     Fsm,
     /// The transition matrices: in the paper's notation, or as MatrixMarket files into a folder
     Matrices,
+    /// A picture for Graphviz
+    Dot,
+    /// A picture for mermaid, a `stateDiagram-v2`
+    Mermaid,
+    /// A machine in W3C SCXML that does what the plan does, a state for each atom of the expanded plan
+    Scxml,
     /// The plan in the paper's formal notation
     Formal,
     /// The Rust that is compiled
@@ -182,6 +191,21 @@ struct Trace {
     /// Which of the equivalent machines runs the plan
     #[arg(long, value_enum, default_value_t = Machine::Counted)]
     machine: Machine,
+    /// Which plan of the file [default: the one that no other refers to]
+    #[arg(long = "plan", value_name = "NAME")]
+    name: Option<String>,
+    /// The robot [default: one that has everything]
+    #[arg(long, value_name = "NAME|FOLDER")]
+    target: Option<String>,
+}
+
+#[derive(Debug, Args)]
+struct Draw {
+    /// The plan; `-` reads standard input
+    plan: PathBuf,
+    /// The picture to write [default: standard output]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
     /// Which plan of the file [default: the one that no other refers to]
     #[arg(long = "plan", value_name = "NAME")]
     name: Option<String>,
@@ -297,6 +321,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Fmt(fmt)) => fmt::fmt(&fmt),
         Some(Command::Trace(trace)) => trace::trace(&trace),
         Some(Command::Analyze(analyze)) => analyze::analyze(&analyze),
+        Some(Command::Draw(draw)) => draw::draw(&draw),
         Some(Command::Explain(explain)) => explain::explain(explain.code.as_deref()),
         Some(Command::Targets) => input::print_targets(),
         Some(Command::Bind(bind)) => bind::bind(&bind),

@@ -1,0 +1,20 @@
+//! `mdlec draw`: a plan as a picture.
+
+use super::{Draw, Failure, build, input, report};
+use crate::{link, picture};
+
+/// Draws the plan, into a file or to standard output.
+pub(super) fn draw(options: &Draw) -> Result<(), Failure> {
+    let target = input::target(options.target.as_deref())?;
+    let mut input = input::read_plan(&options.plan, &target)?;
+    let compiled = build::compile_one(&mut input, &target, options.name.as_deref(), false)?;
+    let drawn = picture::svg(&compiled.lowered).map_err(|too_large| {
+        report::diagnostics(&input.sources, &[too_large], false);
+        Failure::PLAN
+    })?;
+    match &options.output {
+        None => report::print(&drawn),
+        Some(file) => link::write_whole(file, drawn.as_bytes())
+            .map_err(|error| Failure { status: error.exit_status(), message: Some(error.to_string()) }),
+    }
+}

@@ -1,0 +1,144 @@
+//! The arrows of a picture, between boxes that have their places: what follows what, and how a scope is left.
+
+use super::places::{GAP, Placed, SIDE};
+use super::texts::{Texts, What};
+
+/// What an arrow says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Arrow {
+    /// What follows.
+    Flow,
+    /// Into the first of what a box holds, or out of its last: a line without a head.
+    Port,
+    /// How a scope is left when its own condition fires.
+    Exit,
+    /// The next pass of a loop.
+    Again,
+}
+
+/// A line through these points with rounded corners.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Line {
+    pub(super) arrow: Arrow,
+    pub(super) points: Vec<(i64, i64)>,
+    /// How deep the box is that it belongs to.
+    pub(super) depth: usize,
+}
+
+/// Where the picture begins and ends, beside the box of the plan.
+pub(super) const MARGIN: i64 = 44;
+/// How far below the upper edge of a scope its own exit is.
+pub(super) const EXIT: i64 = 16;
+
+/// All arrows, in the order of their boxes.
+pub(super) fn arrows(texts: Texts<'_>, all: &[Placed]) -> Vec<Line> {
+    let mut lines = Vec::new();
+    if let Some(root) = all.first() {
+        let (y, right) = (root.y + root.enters, root.x + root.width);
+        lines.push(line(Arrow::Flow, 0, &[(root.x - MARGIN + 16, y), (root.x, y)]));
+        let end = (right + MARGIN - 18, root.y + root.leaves);
+        if root.flows {
+            lines.push(line(Arrow::Flow, 0, &[(right, end.1), end]));
+        }
+        lines.extend(exit(texts, 0, root, (end.0 + 6, end.1 - 9), right + MARGIN - 12));
+    }
+    for (number, placed) in all.iter().enumerate() {
+        inside(texts, number, placed, all, &mut lines);
+    }
+    lines
+}
+
+fn line(arrow: Arrow, depth: usize, points: &[(i64, i64)]) -> Line {
+    Line { arrow, points: points.to_vec(), depth }
+}
+
+/// The arrows between the children of a box, into the first and out of the last.
+fn inside(texts: Texts<'_>, number: usize, placed: &Placed, all: &[Placed], lines: &mut Vec<Line>) {
+    let depth = placed.depth + 1;
+    let (Some(first), Some(last)) = (placed.children.first(), placed.children.last()) else { return };
+    let entry = placed.y + placed.enters;
+    lines.push(line(Arrow::Port, depth, &[(placed.x, entry), (all[*first].x, entry)]));
+    for pair in placed.children.windows(2) {
+        let (one, next) = (&all[pair[0]], &all[pair[1]]);
+        let (from, to) = ((one.x + one.width, one.y + one.leaves), (next.x, next.y + next.enters));
+        let is_below = placed.rows.contains(&pair[1]);
+        if one.flows {
+            let points = if is_below { around(from, to, gap_above(pair[1], placed, all)) } else { beside(from, to) };
+            lines.push(line(Arrow::Flow, depth, &points));
+        }
+        if is_below {
+            let gap = gap_above(pair[1], placed, all);
+            lines.extend(exit_below(texts, pair[0], one, to, gap));
+        } else {
+            lines.extend(exit(texts, pair[0], one, to, from.0 + GAP / 2));
+        }
+    }
+    let end = &all[*last];
+    let (from, right) = ((end.x + end.width, end.y + end.leaves), placed.x + placed.width);
+    let is_loop = matches!(texts.what(number), What::Loop(_));
+    if is_loop && end.ends {
+        lines.push(again(placed, from, (all[*first].x, entry)));
+    }
+    let leads_on = !matches!(texts.what(number), What::Loop(None));
+    let port = if leads_on { right } else { from.0 + SIDE / 2 };
+    if end.flows && leads_on {
+        lines.push(line(Arrow::Port, depth, &[from, (right, from.1)]));
+    }
+    lines.extend(exit(texts, *last, end, (port, from.1), from.0 + SIDE / 2));
+}
+
+/// From one box to the one beside it, whose lines may be on other heights.
+fn beside(from: (i64, i64), to: (i64, i64)) -> Vec<(i64, i64)> {
+    if from.1 == to.1 {
+        return vec![from, to];
+    }
+    let middle = i64::midpoint(from.0, to.0);
+    vec![from, (middle, from.1), (middle, to.1), to]
+}
+
+/// From the end of a row to the begin of the next one, through the gap between them.
+fn around(from: (i64, i64), to: (i64, i64), gap: i64) -> Vec<(i64, i64)> {
+    vec![
+        from,
+        (from.0 + SIDE / 2, from.1),
+        (from.0 + SIDE / 2, gap),
+        (to.0 - SIDE / 2, gap),
+        (to.0 - SIDE / 2, to.1),
+        to,
+    ]
+}
+
+/// The middle of the gap above the row that begins with this child.
+fn gap_above(child: usize, placed: &Placed, all: &[Placed]) -> i64 {
+    let row = placed.children.iter().skip_while(|other| **other != child);
+    let next = row.clone().skip(1).find(|other| placed.rows.contains(other));
+    let tops = row.take_while(|other| Some(*other) != next).map(|other| all[*other].y);
+    tops.min().unwrap_or(0) - GAP / 2
+}
+
+/// The next pass: below everything that the loop holds, back to its first.
+fn again(placed: &Placed, from: (i64, i64), to: (i64, i64)) -> Line {
+    let (right, left, below) = (from.0 + SIDE / 2, to.0 - SIDE / 2, placed.y + placed.height - 16);
+    line(Arrow::Again, placed.depth, &[from, (right, from.1), (right, below), (left, below), (left, to.1), to])
+}
+
+/// How a scope is left by its own condition: from its head to where it leads.
+fn exit(texts: Texts<'_>, number: usize, placed: &Placed, to: (i64, i64), over: i64) -> Vec<Line> {
+    if !matches!(texts.what(number), What::Scope(_)) || !texts.until(number).ends() {
+        return Vec::new();
+    }
+    let from = (placed.x + placed.width, placed.y + EXIT);
+    vec![line(Arrow::Exit, placed.depth, &[from, (over, from.1), (over, to.1), to])]
+}
+
+/// How a scope at the end of a row is left by its own condition: down to the arrow in the gap, which leads on.
+fn exit_below(texts: Texts<'_>, number: usize, placed: &Placed, to: (i64, i64), gap: i64) -> Vec<Line> {
+    let right = placed.x + placed.width;
+    if placed.flows {
+        return exit(texts, number, placed, (right - 8, gap), right + GAP / 2);
+    }
+    // Nothing else draws the way to the next row.
+    let mut lines = exit(texts, number, placed, (to.0 - SIDE / 2, gap), right + GAP / 2);
+    lines.iter_mut().for_each(|line| line.points.extend([(to.0 - SIDE / 2, to.1), to]));
+    lines
+}

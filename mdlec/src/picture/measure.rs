@@ -1,0 +1,115 @@
+//! How much room text takes in a picture: it is set in letters of one width, so that no font has to be asked.
+
+/// The width of ten letters, in pixels.
+const TEN_LETTERS: i64 = 73;
+/// The height of a line, in pixels.
+pub(super) const LINE: i64 = 16;
+
+/// The width of a text, in pixels.
+pub(super) fn width(text: &str) -> i64 {
+    columns(text) * TEN_LETTERS / 10
+}
+
+/// How many letters fit.
+pub(super) fn letters(width: i64) -> usize {
+    usize::try_from(width.max(0) * 10 / TEN_LETTERS).unwrap_or(0)
+}
+
+/// The places that a text takes: two for a letter of the East Asian scripts.
+fn columns(text: &str) -> i64 {
+    text.chars().map(|letter| if letter < '\u{1100}' { 1 } else { 2 }).sum()
+}
+
+/// A text on at most so many lines of at most so many letters, broken before OR and AND where that can be, else between
+/// words; what does not fit is left out, and the last line tells so by `…`.
+pub(super) fn wrapped(text: &str, letters: usize, lines: usize) -> Vec<String> {
+    let letters = letters.max(4);
+    // More is never shown, however long the text is.
+    let shown = (letters + 1) * lines + 1;
+    let enough: String = text.chars().take(shown).collect();
+    let mut wrapped = vec![String::new()];
+    for operand in operands(&enough) {
+        if fits(&wrapped, &operand, letters) || length(&operand) <= letters {
+            put(&mut wrapped, &operand, letters);
+        } else {
+            operand.split(' ').for_each(|word| put(&mut wrapped, word, letters));
+        }
+    }
+    let is_cut = wrapped.len() > lines || text.chars().nth(shown).is_some();
+    wrapped.truncate(lines);
+    if let Some(last) = wrapped.last_mut().filter(|_| is_cut) {
+        let end = last.char_indices().nth(letters - 1).map_or(last.len(), |(end, _)| end);
+        last.truncate(end);
+        last.push('…');
+    }
+    wrapped.retain(|line| !line.is_empty());
+    wrapped
+}
+
+/// The words of a text, those together that stand between ORs and ANDs.
+fn operands(text: &str) -> Vec<String> {
+    let mut operands: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match operands.last_mut() {
+            Some(operand) if !["OR", "AND", "or"].contains(&word) => {
+                operand.push(' ');
+                operand.push_str(word);
+            }
+            Some(_) | None => operands.push(word.to_owned()),
+        }
+    }
+    operands
+}
+
+/// Whether there is room for these words on the last line.
+fn fits(wrapped: &[String], words: &str, letters: usize) -> bool {
+    let line = wrapped.last().map_or(0, |line| length(line) + usize::from(!line.is_empty()));
+    line + length(words) <= letters
+}
+
+/// Puts words on the last line, or on the next one; in pieces where they are too long for any.
+fn put(wrapped: &mut Vec<String>, words: &str, letters: usize) {
+    if !fits(wrapped, words, letters) && wrapped.last().is_some_and(|line| !line.is_empty()) {
+        wrapped.push(String::new());
+    }
+    let mut rest = words;
+    while let Some(line) = wrapped.last_mut() {
+        if !line.is_empty() {
+            line.push(' ');
+        }
+        let end = rest.char_indices().nth(letters).map_or(rest.len(), |(end, _)| end);
+        line.push_str(&rest[..end]);
+        rest = &rest[end..];
+        if rest.is_empty() {
+            break;
+        }
+        wrapped.push(String::new());
+    }
+}
+
+fn length(text: &str) -> usize {
+    usize::try_from(columns(text)).unwrap_or(usize::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::wrapped;
+
+    #[test]
+    fn texts_are_broken_between_words_and_shortened_at_their_end() {
+        assert_eq!(wrapped("bumper OR wait 20", 10, 3), ["bumper", "OR wait 20"]);
+        assert_eq!(wrapped("bumper OR wait 20 OR atIsection 0100", 10, 2), ["bumper", "OR wait 2…"]);
+        assert_eq!(wrapped("until wait 20 or done", 18, 2), ["until wait 20", "or done"]);
+        assert_eq!(wrapped("unbreakable", 5, 3), ["unbre", "akabl", "e"]);
+        assert_eq!(wrapped("unbreakable", 5, 2), ["unbre", "akab…"]);
+        assert_eq!(wrapped("", 5, 2), [""; 0]);
+    }
+
+    #[test]
+    fn a_text_without_end_is_read_as_far_as_it_is_shown() {
+        let long = "wait 1 OR ".repeat(100_000);
+        let lines = wrapped(&long, 20, 3);
+        assert_eq!(lines.len(), 3);
+        assert!(lines[2].ends_with('…'));
+    }
+}

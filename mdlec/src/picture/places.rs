@@ -1,0 +1,212 @@
+//! Where the boxes of a picture are put: children in rows inside the scope or loop that holds them.
+
+use super::exits::ends;
+use super::measure::{LINE, letters, width, wrapped};
+use super::texts::{Texts, Until, What, exponent, passes};
+use crate::plan::frame_text;
+
+/// How wide a picture is, if nothing in it needs more.
+const PICTURE: i64 = 1180;
+/// The least room for what a box holds, however deep it is.
+const LEAST: i64 = 400;
+/// Between boxes beside each other, and between a box and what it holds.
+pub(super) const GAP: i64 = 34;
+pub(super) const SIDE: i64 = 26;
+const BETWEEN_ROWS: i64 = 34;
+const BOTTOM: i64 = 16;
+/// The room below for the arrow that begins the next pass.
+const AGAIN: i64 = 30;
+const PADDING: i64 = 10;
+/// How many letters an atom is wide at most, and how many lines of a text it shows.
+const LETTERS: usize = 30;
+const LINES: usize = 3;
+
+/// What a line in a box is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Style {
+    Law,
+    Name,
+    Until,
+    Quiet,
+}
+
+/// The box of a bracket; at first its place is relative to the box around it.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Placed {
+    pub(super) x: i64,
+    pub(super) y: i64,
+    pub(super) width: i64,
+    pub(super) height: i64,
+    /// How far below its upper edge what comes before leads to it, and what comes behind begins.
+    pub(super) enters: i64,
+    pub(super) leaves: i64,
+    /// What is written at its head, from above.
+    pub(super) lines: Vec<(Style, String)>,
+    pub(super) children: Vec<usize>,
+    /// Which of the children begin a row.
+    pub(super) rows: Vec<usize>,
+    /// How many scopes and loops are around it.
+    pub(super) depth: usize,
+    /// Whether anything in it, or it itself, ever leads behind it; and whether that is what it holds.
+    pub(super) ends: bool,
+    pub(super) flows: bool,
+}
+
+/// The boxes of all brackets, by their numbers. No recursion: a bracket stands behind the one around it.
+pub(super) fn places(texts: Texts<'_>) -> Vec<Placed> {
+    let mut all = nested(texts);
+    let ends = ends(texts);
+    for (placed, (ever, at_its_end)) in all.iter_mut().zip(ends.ever.into_iter().zip(ends.at_its_end)) {
+        (placed.ends, placed.flows) = (ever, at_its_end);
+    }
+    for number in (0..all.len()).rev() {
+        match texts.what(number) {
+            What::Atom(..) => atom(texts, number, &mut all[number]),
+            What::Scope(_) | What::Loop(_) => holder(texts, number, &mut all),
+        }
+    }
+    if let Some(root) = all.first_mut() {
+        (root.x, root.y) = (0, 0);
+    }
+    for number in 0..all.len() {
+        let (x, y) = (all[number].x, all[number].y);
+        for child in all[number].children.clone() {
+            all[child].x += x;
+            all[child].y += y;
+        }
+    }
+    all
+}
+
+/// Boxes without a size, each with what it holds.
+fn nested(texts: Texts<'_>) -> Vec<Placed> {
+    let brackets = &texts.0.brackets;
+    let mut all = vec![Placed::default(); brackets.len()];
+    for (number, bracket) in brackets.iter().enumerate().skip(1) {
+        let around = bracket.parent as usize;
+        all[around].children.push(number);
+        all[number].depth = all[around].depth + 1;
+    }
+    all
+}
+
+fn atom(texts: Texts<'_>, number: usize, placed: &mut Placed) {
+    let What::Atom(_, _, law) = texts.what(number) else { return };
+    let until = texts.until(number);
+    let mut lines = Vec::new();
+    let labels = texts.labels(number);
+    lines.extend(wrapped(&labels, LETTERS, 1).into_iter().map(|line| (Style::Quiet, line)));
+    lines.extend(wrapped(&frame_text(law.frame), LETTERS, 1).into_iter().map(|line| (Style::Quiet, line)));
+    lines.extend(wrapped(texts.law(law), LETTERS, LINES).into_iter().map(|line| (Style::Law, line)));
+    lines.extend(until_lines(&until, LETTERS));
+    placed.width = widest(&lines).max(80) + 2 * PADDING;
+    placed.height = lines.len() as i64 * LINE + 2 * PADDING;
+    placed.enters = placed.height / 2;
+    placed.leaves = placed.enters;
+    placed.lines = lines;
+}
+
+/// What ends it, in words; nothing where a scope only ends with its last element.
+fn until_lines(until: &Until, letters: usize) -> Vec<(Style, String)> {
+    let (style, text) = match until {
+        Until::Fires(text) => (Style::Until, format!("until {text}")),
+        Until::Done => (Style::Until, "until done".into()),
+        Until::FiresOrDone(text) => (Style::Until, format!("until {text} or done")),
+        Until::Removed(_) | Until::Never => (Style::Quiet, "never ends by itself".into()),
+    };
+    wrapped(&text, letters, LINES).into_iter().map(|line| (style, line)).collect()
+}
+
+fn widest(lines: &[(Style, String)]) -> i64 {
+    lines.iter().map(|(_, line)| width(line)).max().unwrap_or(0)
+}
+
+/// Places what a scope or a loop holds, whose sizes are known, and so finds its size.
+fn holder(texts: Texts<'_>, number: usize, all: &mut [Placed]) {
+    let children = all[number].children.clone();
+    let room = (PICTURE - 2 * SIDE * all[number].depth as i64).max(LEAST);
+    let limit = even(&children, all, room);
+    let rows = rows(&children, all, limit);
+    let content = rows.iter().map(|row| row_width(row, all)).max().unwrap_or(0);
+    let lines = head(texts, number, content);
+    let inside = content.max(widest(&lines) - SIDE);
+    let mut y = PADDING + lines.len() as i64 * LINE + PADDING;
+    let (mut enters, mut leaves) = (y, y);
+    for (place, row) in rows.iter().enumerate() {
+        let above = row.iter().map(|child| all[*child].enters).max().unwrap_or(0);
+        let mut x = SIDE;
+        for child in row {
+            let child = &mut all[*child];
+            (child.x, child.y) = (x, y + above - child.enters);
+            x += child.width + GAP;
+        }
+        if place == 0 {
+            enters = y + above;
+        }
+        let bottom = row.iter().map(|child| all[*child].y + all[*child].height).max().unwrap_or(y);
+        leaves = row.last().map_or(leaves, |last| all[*last].y + all[*last].leaves);
+        y = bottom + if place + 1 < rows.len() { BETWEEN_ROWS } else { 0 };
+    }
+    let again = if matches!(texts.what(number), What::Loop(_)) { AGAIN } else { 0 };
+    let placed = &mut all[number];
+    placed.width = inside + 2 * SIDE;
+    placed.height = y + BOTTOM + again;
+    (placed.enters, placed.leaves, placed.lines) = (enters, leaves, lines);
+    placed.rows = rows.iter().filter_map(|row| row.first().copied()).collect();
+}
+
+/// What is written at the head of a scope or a loop.
+fn head(texts: Texts<'_>, number: usize, content: i64) -> Vec<(Style, String)> {
+    let letters = letters(content + SIDE).max(34);
+    let labels = texts.labels(number);
+    let named =
+        |name: &str| wrapped(&format!("{labels}{name}"), letters, 1).into_iter().map(|line| (Style::Name, line));
+    match texts.what(number) {
+        What::Loop(times) => named(&format!("{} ({})", exponent(times), passes(times))).collect(),
+        What::Scope(scope) => {
+            let until = texts.until(number);
+            let until = if until.ends() { until_lines(&until, letters) } else { Vec::new() };
+            named(&scope.name).chain(until).collect()
+        }
+        What::Atom(..) => Vec::new(),
+    }
+}
+
+/// The width at which the children take no more rows than in this room, and rows are as even as they can be.
+fn even(children: &[usize], all: &[Placed], room: i64) -> i64 {
+    let needed = rows(children, all, room).len();
+    let (mut low, mut high) = (0, room);
+    while low + 1 < high {
+        let middle = i64::midpoint(low, high);
+        if rows(children, all, middle).len() > needed {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    high
+}
+
+/// The children in rows, each at most so wide, if a single child is not wider.
+fn rows(children: &[usize], all: &[Placed], limit: i64) -> Vec<Vec<usize>> {
+    let mut rows: Vec<Vec<usize>> = Vec::new();
+    let mut taken = 0;
+    for child in children {
+        let wide = all[*child].width;
+        match rows.last_mut() {
+            Some(row) if taken + GAP + wide <= limit => {
+                row.push(*child);
+                taken += GAP + wide;
+            }
+            Some(_) | None => {
+                rows.push(vec![*child]);
+                taken = wide;
+            }
+        }
+    }
+    rows
+}
+
+fn row_width(row: &[usize], all: &[Placed]) -> i64 {
+    row.iter().map(|child| all[*child].width).sum::<i64>() + GAP * (row.len() as i64 - 1)
+}

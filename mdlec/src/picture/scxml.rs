@@ -1,0 +1,278 @@
+//! A plan as a machine in W3C SCXML that does what the plan does.
+//!
+//! In SCXML the transitions of inner states go first, in MDLe those of outer scopes. So there are no states in states: each
+//! atom of the expanded plan is a state, and has the transitions of all scopes around it in document order, the outermost
+//! first. What starts afresh with a state, which SCXML would tell by entering states, is told by assignments.
+//!
+//! An event `turn` brings what a line of a script has (`t`, `fired`, `completed`); afterwards transitions without an event
+//! are taken as long as there are any, at most [`TRANSITIONS_PER_TURN`], and `law` is what is applied.
+
+use std::collections::BTreeMap;
+
+use mdle_runtime::TRANSITIONS_PER_TURN;
+
+use super::xml::escaped;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::fsm::{Matrices, Transition, matrices};
+use crate::plan::{Condition, Mark, Nondegenerate, Plan, Quark, RecordId};
+
+/// The longest text, in bytes.
+const LONGEST: usize = 64 << 20;
+/// What `n`, the number of transitions in this turn, is before the first turn.
+const BEFORE: u32 = TRANSITIONS_PER_TURN + 1;
+
+/// The machine of a plan.
+///
+/// # Errors
+/// E0501 and E0502, as [`fsm::expand`](crate::fsm::expand) has them; E0502 for a machine of more than 64 MB.
+pub fn scxml(plan: &Nondegenerate) -> Result<String, Diagnostic> {
+    let made = matrices(plan)?;
+    let mut listing = vec![Vec::new(); made.laws.len() + 1];
+    for (number, transition) in made.transitions.iter().enumerate() {
+        transition.matrix.listed().for_each(|column| listing[column].push(number));
+    }
+    let plan = plan.plan();
+    let records = made.transitions.iter().filter_map(|transition| transition.record);
+    let facts = records.map(|record| (record.id, record.facts)).collect();
+    let mut machine = Machine { plan, made: &made, listing, facts, text: String::new() };
+    machine.head();
+    for state in 0..made.laws.len() {
+        machine.state(state);
+        if machine.text.len() > LONGEST {
+            let states = made.laws.len() + 1;
+            let message = format!("as SCXML the {states} states of this plan take more than {} MB", LONGEST >> 20);
+            let help = "a state has the conditions of all scopes around it: let the outer ones be shorter, or use `--emit fsm`";
+            return Err(Diagnostic::new(Code::E0502, message, plan.root.span, "this plan").help(help));
+        }
+    }
+    machine.foot();
+    Ok(machine.text)
+}
+
+struct Machine<'m, 'p> {
+    plan: &'p Plan,
+    made: &'m Matrices<'p>,
+    /// For each state the interrupts whose scopes hold it, the outermost first.
+    listing: Vec<Vec<usize>>,
+    /// How many facts each record has.
+    facts: BTreeMap<RecordId, u32>,
+    text: String,
+}
+
+impl<'p> Machine<'_, 'p> {
+    fn line(&mut self, depth: usize, text: &str) {
+        let indent = 2 * depth;
+        self.text += &format!("{:indent$}{text}\n", "");
+    }
+
+    fn assign(&mut self, depth: usize, location: &str, value: &str) {
+        self.line(depth, &format!("<assign location=\"{location}\" expr=\"{}\"/>", escaped(value)));
+    }
+
+    fn data(&mut self, id: &str, value: &str) {
+        self.line(2, &format!("<data id=\"{id}\" expr=\"{value}\"/>"));
+    }
+
+    fn transition(&self, number: usize) -> &Transition<'p> {
+        &self.made.transitions[number]
+    }
+
+    fn head(&mut self) {
+        let name = escaped(&self.plan.root.name);
+        self.line(0, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>");
+        let space = "xmlns=\"http://www.w3.org/2005/07/scxml\" version=\"1.0\" datamodel=\"ecmascript\"";
+        self.line(0, &format!("<scxml {space} name=\"{name}\" initial=\"a1\">"));
+        self.line(1, "<datamodel>");
+        let data = [("n", BEFORE.to_string().as_str()), ("start", "0"), ("t", "0"), ("fired", "[]")].map(owned);
+        let others = [("completed", "[]"), ("law", "null"), ("cause", "-1")].map(owned);
+        data.into_iter().chain(others).for_each(|(id, value)| self.data(&id, &value));
+        for number in 0..self.made.transitions.len() {
+            let interrupt = self.transition(number).interrupt;
+            if interrupt.condition.waits() {
+                self.data(&entered(number), "0");
+            }
+            (0..interrupt.memories).for_each(|memory| self.data(&risen(number, memory), "false"));
+        }
+        for (record, facts) in self.facts.clone() {
+            (0..facts).for_each(|number| self.data(&fact(record, number), "false"));
+        }
+        self.line(1, "</datamodel>");
+    }
+
+    fn foot(&mut self) {
+        self.line(1, "<final id=\"end\">");
+        self.line(2, "<onentry>");
+        self.assign(3, "law", "null");
+        self.line(2, "</onentry>");
+        self.line(1, "</final>");
+        self.line(0, "</scxml>");
+    }
+
+    fn state(&mut self, state: usize) {
+        let law = self.plan.quark(self.made.laws[state]);
+        self.line(1, &format!("<state id=\"{}\">", self.name(state)));
+        self.line(2, "<onentry>");
+        self.assign(3, "law", &text(law));
+        self.line(2, "</onentry>");
+        self.turn(state, law);
+        let mut any = Vec::new();
+        for number in self.listing[state].clone() {
+            let condition = &self.transition(number).interrupt.condition;
+            if *condition != Condition::Null {
+                let fired = self.expression(condition, number);
+                self.leave(number, &fired, true);
+                any.push(fired);
+            }
+        }
+        if let Some(own) = self.listing[state].last().copied().filter(|_| law.completes) {
+            let done = format!("completed.indexOf({}) >= 0", text(law));
+            self.leave(own, &done, false);
+            any.push(done);
+        }
+        if !any.is_empty() {
+            // The limit of transitions cuts the turn: nothing is applied, and the search goes on in the next one.
+            let cut = format!("n == {TRANSITIONS_PER_TURN} && law !== null && ({})", any.join(" || "));
+            self.line(2, &format!("<transition cond=\"{}\">", escaped(&cut)));
+            self.assign(3, "law", "null");
+            self.line(2, "</transition>");
+        }
+        self.line(1, "</state>");
+    }
+
+    /// A turn begins: memories are set by what was so at the end of the last one, and everything is read anew.
+    fn turn(&mut self, state: usize, law: &Quark) {
+        self.line(2, "<transition event=\"turn\">");
+        for number in self.listing[state].clone() {
+            let mut set = Vec::new();
+            self.transition(number).interrupt.condition.each_rising(&mut |memory, operand| {
+                set.push((risen(number, memory), self.expression(operand, number)));
+            });
+            for (memory, operand) in set {
+                self.line(3, &format!("<if cond=\"{}\">", escaped(&format!("n < {BEFORE} && !({operand})"))));
+                self.assign(4, &memory, "true");
+                self.line(3, "</if>");
+            }
+        }
+        self.line(3, &format!("<if cond=\"n == {BEFORE}\">"));
+        self.assign(4, "start", "_event.data.t");
+        self.line(3, "</if>");
+        self.assign(3, "t", "_event.data.t - start");
+        self.assign(3, "fired", "_event.data.fired || []");
+        self.assign(3, "completed", "_event.data.completed || []");
+        self.assign(3, "n", "0");
+        self.assign(3, "law", &text(law));
+        self.line(2, "</transition>");
+    }
+
+    /// The transition of this interrupt, when this is so; by its own condition, or because the law is done.
+    fn leave(&mut self, number: usize, when: &str, by_condition: bool) {
+        let made = self.made;
+        let transition = &made.transitions[number];
+        let target = transition.matrix.row();
+        let condition = format!("n < {TRANSITIONS_PER_TURN} && {when}");
+        self.line(2, &format!("<transition cond=\"{}\" target=\"{}\">", escaped(&condition), self.name(target)));
+        self.record(transition, number, by_condition);
+        self.assign(3, "n", "n + 1");
+        let begins = self.listing[target].iter().copied().filter(|begun| *begun >= transition.afresh);
+        for begun in begins.collect::<Vec<_>>() {
+            let Transition { interrupt, record, .. } = &made.transitions[begun];
+            if interrupt.condition.waits() {
+                self.assign(3, &entered(begun), "t");
+            }
+            (0..interrupt.memories).for_each(|memory| self.assign(3, &risen(begun, memory), "false"));
+            if let Some(kept) = record {
+                (0..kept.facts).for_each(|number| self.assign(3, &fact(kept.id, number), "false"));
+            }
+        }
+        self.line(2, "</transition>");
+    }
+
+    /// What `after` will ask about what ends now.
+    fn record(&mut self, transition: &Transition<'p>, number: usize, by_condition: bool) {
+        let own = transition.marks.iter().map(|mark| (mark, by_condition));
+        let ended: Vec<(&Mark, bool)> = own.chain(transition.ends_with.iter().map(|mark| (*mark, false))).collect();
+        let asks =
+            ended.iter().any(|(mark, has_cause)| *has_cause && mark.facts.iter().any(|fact| fact.operand.is_some()));
+        if asks {
+            let operands = transition.interrupt.condition.operands();
+            let causes = (0..).zip(operands).map(|(place, operand)| {
+                let fired = self.expression(operand, number);
+                format!("{fired} ? {place} : ")
+            });
+            let cause = causes.collect::<String>() + "-1";
+            self.assign(3, "cause", &cause);
+        }
+        for (mark, _) in &ended {
+            let facts = self.facts.get(&mark.record).copied().unwrap_or(0);
+            (0..facts).for_each(|number| self.assign(3, &fact(mark.record, number), "false"));
+        }
+        for (mark, has_cause) in ended {
+            for asked in &mark.facts {
+                let name = fact(mark.record, asked.number);
+                match asked.operand {
+                    None => self.assign(3, &name, "true"),
+                    Some(operand) if has_cause => {
+                        self.line(3, &format!("<if cond=\"cause == {operand}\">"));
+                        self.assign(4, &name, "true");
+                        self.line(3, "</if>");
+                    }
+                    Some(_) => {}
+                }
+            }
+        }
+    }
+
+    /// Whether a condition of this interrupt has fired, in ECMAScript.
+    fn expression(&self, condition: &Condition, number: usize) -> String {
+        let joined = |operands: &[Condition], sign: &str| {
+            let operands: Vec<_> = operands.iter().map(|operand| self.expression(operand, number)).collect();
+            format!("({})", operands.join(sign))
+        };
+        let waited = |nanos: &u64| format!("Math.round((t - {}) * 1000000000) >= {nanos}", entered(number));
+        match condition {
+            Condition::Null => "false".into(),
+            Condition::Quark(id) => format!("fired.indexOf({}) >= 0", text(self.plan.quark(*id))),
+            Condition::Wait { nanos, .. } => waited(nanos),
+            Condition::Elapsed { from, until: None, .. } => waited(from),
+            Condition::Elapsed { from, until: Some(until), .. } => {
+                format!("({} && !({}))", waited(from), waited(until))
+            }
+            Condition::Or(operands) => joined(operands, " || "),
+            Condition::And(operands) => joined(operands, " && "),
+            Condition::Not(operand) => format!("!({})", self.expression(operand, number)),
+            Condition::Rising { memory, operand } => {
+                format!("({} && {})", risen(number, *memory), self.expression(operand, number))
+            }
+            Condition::After(after) => fact(after.record, after.fact),
+        }
+    }
+
+    fn name(&self, state: usize) -> String {
+        if state == self.made.laws.len() { "end".into() } else { format!("a{}", state + 1) }
+    }
+}
+
+fn owned((id, value): (&str, &str)) -> (String, String) {
+    (id.to_owned(), value.to_owned())
+}
+
+/// When the scope of an interrupt was entered.
+fn entered(number: usize) -> String {
+    format!("entered{}", number + 1)
+}
+
+/// A memory of RISING.
+fn risen(number: usize, memory: u32) -> String {
+    format!("risen{}_{memory}", number + 1)
+}
+
+/// A fact of a record.
+fn fact(record: RecordId, number: u32) -> String {
+    format!("fact{}_{number}", record.0)
+}
+
+/// A quark's text as a string of ECMAScript's, which one of JSON's is.
+fn text(quark: &Quark) -> String {
+    // A string can always be written.
+    serde_json::to_string(&quark.text).unwrap_or_default()
+}

@@ -1,0 +1,194 @@
+//! A plan drawn as nested boxes: atoms in rows, exits as arcs. No other tool is needed to see it.
+
+use std::fmt::Write;
+
+use super::can_be_shown;
+use super::layout::{Arrow, Line, MARGIN, arrows};
+use super::measure::LINE;
+use super::places::{Placed, Style, places};
+use super::texts::{Texts, What};
+use super::xml::escaped;
+use crate::diagnostic::Diagnostic;
+use crate::fsm::Lowered;
+
+/// Colours for light and dark, and letters.
+const STYLE: &str = include_str!("style.css");
+/// Above the plan's box, for the title.
+const TITLE: i64 = 46;
+/// Below it, for what the signs mean.
+const FOOT: i64 = 40;
+/// How round a corner of a line is.
+const ROUND: i64 = 8;
+/// How many colours there are for scopes in scopes.
+const COLOURS: usize = 4;
+
+/// The picture of a plan.
+///
+/// # Errors
+/// E0502 for a plan of more than 1,000 atoms, or of as many scopes and loops.
+pub fn svg(lowered: &Lowered) -> Result<String, Diagnostic> {
+    can_be_shown(lowered)?;
+    let texts = Texts(lowered);
+    let mut all = places(texts);
+    for placed in &mut all {
+        placed.x += MARGIN;
+        placed.y += TITLE;
+    }
+    let mut picture = Picture { texts, all: &all, text: String::new() };
+    picture.draw();
+    Ok(picture.text)
+}
+
+struct Picture<'p> {
+    texts: Texts<'p>,
+    all: &'p [Placed],
+    text: String,
+}
+
+impl Picture<'_> {
+    fn line(&mut self, text: &str) {
+        self.text.push_str(text);
+        self.text.push('\n');
+    }
+
+    fn draw(&mut self) {
+        let Some(root) = self.all.first() else { return };
+        let (width, height) = ((root.width + 2 * MARGIN).max(640), root.height + TITLE + FOOT);
+        let name = self.texts.0.scopes.iter().flatten().next().map(|plan| escaped(&plan.name)).unwrap_or_default();
+        let count = self.texts.0.atoms.len();
+        let atoms = if count == 1 { "1 atom".to_owned() } else { format!("{count} atoms") };
+        self.line(&format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
+             role=\"img\" aria-label=\"The plan {name}, {atoms}\">"
+        ));
+        self.line(&format!("<title>{name}</title>"));
+        self.line(&format!("<style>\n{STYLE}</style>"));
+        self.line("<defs>");
+        for (id, class) in [("flow", "tip"), ("exit", "tip exit")] {
+            self.line(&format!(
+                "<marker id=\"{id}\" viewBox=\"0 0 8 8\" refX=\"7\" refY=\"4\" markerWidth=\"8\" markerHeight=\"8\" \
+                 orient=\"auto\" markerUnits=\"userSpaceOnUse\"><path class=\"{class}\" d=\"M0 0L8 4L0 8z\"/></marker>"
+            ));
+        }
+        self.line("</defs>");
+        self.line(&format!("<rect class=\"paper\" width=\"{width}\" height=\"{height}\"/>"));
+        self.line(&format!("<text class=\"title\" x=\"{}\" y=\"28\">{name}</text>", root.x));
+        let right = width - MARGIN;
+        self.line(&format!("<text class=\"quiet\" x=\"{right}\" y=\"28\" text-anchor=\"end\">{atoms}</text>"));
+        self.boxes();
+        arrows(self.texts, self.all).iter().for_each(|line| self.arrow(line));
+        self.ends(root, height);
+        self.line("</svg>");
+    }
+
+    /// Where the plan begins and is over, and what the signs mean.
+    fn ends(&mut self, root: &Placed, height: i64) {
+        let (begin, end) = (root.x - MARGIN + 16, root.x + root.width + MARGIN - 12);
+        self.line(&format!("<circle class=\"end\" cx=\"{begin}\" cy=\"{}\" r=\"6\"/>", root.y + root.enters));
+        if root.ends {
+            let y = root.y + root.leaves;
+            self.line(&format!("<circle class=\"ring\" cx=\"{end}\" cy=\"{y}\" r=\"8\"/>"));
+            self.line(&format!("<circle class=\"end\" cx=\"{end}\" cy=\"{y}\" r=\"4\"/>"));
+        }
+        let (x, y) = (root.x, height - 14);
+        let meanings = self.meanings();
+        if !meanings.is_empty() {
+            self.line(&format!("<text class=\"quiet\" x=\"{x}\" y=\"{y}\">{meanings}</text>"));
+        }
+    }
+
+    /// What those of the signs mean that are in this picture.
+    fn meanings(&self) -> String {
+        let all = || (0..self.all.len()).map(|number| (self.texts.what(number), number));
+        let leaves = |(what, number)| matches!(what, What::Scope(_)) && self.texts.until(number).ends();
+        let mut meanings = Vec::new();
+        if all().any(leaves) {
+            meanings.push("A red line leaves a box whose own condition fires, the outermost first.");
+        }
+        if all().any(|(what, _)| matches!(what, What::Loop(_))) {
+            meanings.push("A dashed line begins the next pass.");
+        }
+        meanings.join(" ")
+    }
+
+    /// All boxes, outer ones first, so that what they hold is drawn over them.
+    fn boxes(&mut self) {
+        for number in 0..self.all.len() {
+            let placed = &self.all[number];
+            let (x, y, width, height) = (placed.x, placed.y, placed.width, placed.height);
+            let (class, round) = match self.texts.what(number) {
+                What::Atom(..) => ("atom".to_owned(), 6),
+                What::Loop(_) => ("loop".to_owned(), 18),
+                What::Scope(_) => (format!("scope s{}", placed.depth % COLOURS), 10),
+            };
+            self.line(&format!("<g><title>{}</title>", escaped(&self.texts.tooltip(number))));
+            self.line(&format!(
+                "<rect class=\"{class}\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" rx=\"{round}\"/>"
+            ));
+            self.words(number, placed);
+            self.line("</g>");
+        }
+    }
+
+    /// What is written in a box.
+    fn words(&mut self, number: usize, placed: &Placed) {
+        let is_atom = matches!(self.texts.what(number), What::Atom(..));
+        for (place, (style, text)) in (0..).zip(&placed.lines) {
+            let class = match style {
+                Style::Law => "law",
+                Style::Name => "name",
+                Style::Until => "until",
+                Style::Quiet => "quiet",
+            };
+            let x = placed.x + if is_atom { 10 } else { 14 };
+            let y = placed.y + 10 + LINE * place + 12;
+            self.line(&format!("<text class=\"{class}\" x=\"{x}\" y=\"{y}\">{}</text>", escaped(text)));
+        }
+        if let What::Atom(atom, ..) = self.texts.what(number) {
+            let state = self.texts.state(atom).to_string();
+            let wide = 10 + 7 * state.len() as i64;
+            let (x, y) = (placed.x + placed.width - wide + 6, placed.y - 8);
+            self.line(&format!(
+                "<rect class=\"number\" x=\"{x}\" y=\"{y}\" width=\"{wide}\" height=\"16\" rx=\"8\"/><text class=\"count\" \
+                 x=\"{}\" y=\"{}\" text-anchor=\"middle\">{state}</text>",
+                x + wide / 2,
+                y + 12
+            ));
+        }
+    }
+
+    fn arrow(&mut self, line: &Line) {
+        let (class, tip) = match line.arrow {
+            Arrow::Flow => ("flow", " marker-end=\"url(#flow)\""),
+            Arrow::Port => ("flow", ""),
+            Arrow::Exit => ("flow exit", " marker-end=\"url(#exit)\""),
+            Arrow::Again => ("flow again", " marker-end=\"url(#flow)\""),
+        };
+        let path = rounded(&line.points);
+        self.line(&format!("<path class=\"{class}\" d=\"{path}\"{tip}/>"));
+    }
+}
+
+/// A path through points with rounded corners.
+fn rounded(points: &[(i64, i64)]) -> String {
+    let mut points = points.to_vec();
+    points.dedup();
+    let Some((x, y)) = points.first() else { return String::new() };
+    let mut path = format!("M{x} {y}");
+    for corner in points.windows(3) {
+        let (before, here, behind) = (corner[0], corner[1], corner[2]);
+        let (start, end) = (towards(here, before), towards(here, behind));
+        // Writing to a string cannot fail.
+        let _ = write!(path, "L{} {}Q{} {} {} {}", start.0, start.1, here.0, here.1, end.0, end.1);
+    }
+    if let Some((x, y)) = points.last().filter(|_| points.len() > 1) {
+        let _ = write!(path, "L{x} {y}");
+    }
+    path
+}
+
+/// A point on the way from one to another, where the corner begins: no farther than half the way.
+fn towards(from: (i64, i64), to: (i64, i64)) -> (i64, i64) {
+    let step = |from: i64, to: i64| from + (to - from).signum() * ROUND.min((to - from).abs() / 2);
+    (step(from.0, to.0), step(from.1, to.1))
+}

@@ -1,0 +1,31 @@
+//! Text that stands in XML: escaped, and without the characters that XML does not have.
+
+/// The text as content, or as an attribute's value in double quotes.
+pub(super) fn escaped(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '&' => escaped.push_str("&amp;"),
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '"' => escaped.push_str("&quot;"),
+            '\n' => escaped.push('\n'),
+            letter if letter.is_control() || matches!(letter, '\u{FFFE}' | '\u{FFFF}') => escaped.push('\u{FFFD}'),
+            letter => escaped.push(letter),
+        }
+    }
+    escaped
+}
+
+#[cfg(test)]
+mod tests {
+    use super::escaped;
+
+    #[test]
+    fn what_xml_reads_otherwise_is_escaped() {
+        assert_eq!(
+            escaped("a < b && \"c\" > 'd'\u{7}\u{FFFE}ξ"),
+            "a &lt; b &amp;&amp; &quot;c&quot; &gt; 'd'\u{FFFD}\u{FFFD}ξ"
+        );
+    }
+}
