@@ -13,11 +13,13 @@ use mdle_tests::explore::{Explorer, Run, Said, Turn};
 use mdle_tests::golden::judge;
 use mdle_tests::pipeline::compile;
 use mdle_tests::random_plan::RandomPlan;
+use mdle_tests::random_script::script;
 use mdle_tests::repository::{TextFile, files, root};
 use mdle_tests::signals::Values;
 use mdlec::Compiled;
 use mdlec::analysis::{Analysis, Reach, analyze};
 use mdlec::plan::{Plan, Quark, condition_text};
+use mdlec::trace::{Applied, Counted, Line, Outcome, Script, run};
 
 /// The Rust of two plans, as it is recorded and compiled.
 mod recorded {
@@ -204,6 +206,37 @@ impl<'c> Trial<'c> {
             panic!("seed {}: {seen}\n{}\n{}", self.seed, self.text, self.analysis.to_text());
         }
     }
+}
+
+#[test]
+fn runs_of_the_machine_take_as_long_as_is_said() {
+    let (mut over, mut bounded) = (0, 0);
+    for seed in 0..4000 {
+        let mut chance = Chance::new(seed);
+        let long = seed % 100 >= 98;
+        let text = RandomPlan::new(&mut chance, 2 + seed as usize % 12, long).to_string();
+        let script = Script::read(&script(&mut chance, 12)).expect("a script");
+        let Ok(compiled) = compile(&text) else { continue };
+        let (analysis, _) = analyze(&compiled.lowered);
+        let times: Vec<f64> = script.turns().iter().map(|turn| turn.t.0 as f64 / 1e9).collect();
+        let gap = times.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+        for Line { turn, outcome: Outcome { applied, fired, .. }, .. } in run(Counted::new(&compiled.lowered), &script)
+        {
+            let now = times[turn];
+            let said = || format!("seed {seed}, turn {turn} at {now} s\n{text}\n{}", analysis.to_text());
+            assert!(fired.len() as u64 <= analysis.transitions, "{}", said());
+            // Nothing is written with more digits than these.
+            let longest = analysis.longest.seconds.zip(analysis.longest.turns);
+            let longest = longest.map(|(seconds, turns)| seconds + turns as f64 * gap + 1e-9);
+            assert!(longest.is_none_or(|longest| now <= longest), "{}", said());
+            if applied == Applied::Over {
+                over += 1;
+                bounded += usize::from(longest.is_some());
+                assert!(analysis.shortest.is_some_and(|shortest| shortest <= now + 1e-9), "{}", said());
+            }
+        }
+    }
+    assert!(over > 500 && bounded > 200, "{over} plans are over, {bounded} of them with a longest time");
 }
 
 /// Choices of what the quarks of a plan say, and whether these are all. Signals have values, so that their comparisons agree.

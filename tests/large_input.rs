@@ -11,11 +11,12 @@ use mdle_tests::executable::{folder, run_mdlec};
 const MANY: usize = 100_000;
 
 /// What every command is asked to do with a plan called `P`.
-const COMMANDS: [&[&str]; 4] = [
+const COMMANDS: [&[&str]; 5] = [
     &["check", "plan.mdle"],
     &["fmt", "--check", "plan.mdle"],
     &["trace", "plan.mdle", "--script", "script.jsonl"],
     &["plan.mdle", "--emit", "rust", "--target", "sim"],
+    &["analyze", "plan.mdle"],
 ];
 
 /// The exit status, standard output and standard error of a command.
@@ -67,13 +68,15 @@ fn what_is_only_long_comes_to_a_result() {
         (format!("{{ P\n  (Atom ({}) stop)\n}}\n", operands.join(" OR ")), (Some(1), "plan.mdle\n")),
         (format!("{{ P\n{}}}\n", elements.concat()), (Some(0), "")),
     ];
-    let [check, fmt, trace, _] = COMMANDS;
+    let [check, fmt, trace, _, analyze] = COMMANDS;
     for (plan, laid_out) in plans {
         assert_eq!(said(&folder, &plan, check).0, Some(0));
         let (status, listed, _) = said(&folder, &plan, fmt);
         assert_eq!((status, listed.as_str()), laid_out);
         let (status, turns, _) = said(&folder, &plan, trace);
         assert_eq!((status, turns.lines().count()), (Some(0), 2), "{turns}");
+        let (status, analysis, _) = said(&folder, &plan, analyze);
+        assert_eq!((status, analysis.starts_with("plan  ")), (Some(0), true), "{analysis}");
     }
 }
 

@@ -5,7 +5,9 @@
 use std::sync::LazyLock;
 
 use mdlec::alphabet::Alphabet;
+use mdlec::analysis::analyze;
 use mdlec::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
+use mdlec::fsm::Lowered;
 use mdlec::rust::{Header, Shape, emit_as};
 use mdlec::syntax::{arena_for, format, outline::outline, parse as read};
 use mdlec::trace::Script;
@@ -74,17 +76,27 @@ pub fn layout(text: &str) {
     assert_eq!(format(id, &laid_out).as_ref(), Ok(&laid_out));
 }
 
-/// Every robot's plans come out of a text or errors that can be shown; as formulas the plans are the same, where they can be
-/// written so.
+/// Every robot's plans come out of a text or errors that can be shown, and can be analysed; as formulas the plans are the
+/// same, where they can be written so.
 pub fn check(text: &str) {
     for alphabet in [&*EVERYTHING, &*SIMULATOR, scripted()] {
-        for Compiled { plan, .. } in compiled(text, alphabet).iter().filter(|compiled| is_written_formally(compiled)) {
+        let all = compiled(text, alphabet);
+        all.iter().for_each(|compiled| analysed(&compiled.lowered));
+        for Compiled { plan, .. } in all.iter().filter(|compiled| is_written_formally(compiled)) {
             let formal = plan.formal();
             let again = compiled(&formal, alphabet);
             assert_eq!(again.len(), 1, "{formal}");
             assert_eq!(again.iter().map(|again| again.plan.formal()).collect::<String>(), formal);
         }
     }
+}
+
+/// An analysis comes to a result, and agrees with itself.
+fn analysed(lowered: &Lowered) {
+    let (analysis, _) = analyze(lowered);
+    assert_eq!((analysis.states, analysis.atoms.len()), (lowered.termination, lowered.atoms.len()));
+    let is_shorter = analysis.shortest.zip(analysis.longest.seconds).is_none_or(|(short, long)| short <= long);
+    assert!(is_shorter && !analysis.to_json().is_empty(), "{}", analysis.to_text());
 }
 
 /// Whether formal notation has words for all of it: not for labels, which copies of a plan would share.

@@ -55,9 +55,6 @@ impl<'l> Walk<'l> {
         /// The most timers of which every order with the present is tried.
         const TIMERS: usize = 8;
         let asked = [Wanted { any: vec![self.read(operand, number, When::Later)], fired: true }];
-        if !self.world.is_possible(&asked, &BTreeMap::new()) {
-            return None;
-        }
         let mut variables = BTreeSet::new();
         let fits = self.world.variables(asked[0].any[0], &mut variables);
         let timers: Vec<(Variable, u64)> = variables
@@ -69,14 +66,14 @@ impl<'l> Walk<'l> {
             })
             .collect();
         if !fits || timers.len() > TIMERS {
-            return Some(0);
+            return self.world.is_possible(&asked, &BTreeMap::new()).then_some(0);
         }
         // The timers of one scope are in the order of their lengths.
         let over = (0..=timers.len()).find(|over| {
             let fixed = timers.iter().enumerate().map(|(place, (timer, _))| (*timer, place < *over)).collect();
             self.world.is_possible(&asked, &fixed)
         });
-        Some(over.and_then(|over| over.checked_sub(1)).map_or(0, |last| timers[last].1))
+        over.map(|over| over.checked_sub(1).map_or(0, |last| timers[last].1))
     }
 
     /// Why an operand cannot end its scope.

@@ -199,6 +199,9 @@ impl<'l> World<'l> {
         if !reads.into_iter().all(|read| self.variables(*read, &mut variables)) {
             return true;
         }
+        if fixed.iter().any(|(variable, value)| self.known(*variable).is_some_and(|known| known != *value)) {
+            return false;
+        }
         let value = |variable: &Variable| fixed.get(variable).copied().or_else(|| self.known(*variable));
         let mut all = variables.clone();
         all.extend(self.relatives(&variables));
@@ -229,7 +232,8 @@ impl<'l> World<'l> {
             self.is_possible(&[Wanted { any, fired: false }], &BTreeMap::new())
         };
         // Of an OR too long to be looked at, each operand may be short enough.
-        condition.operands().iter().all(not) && not(condition)
+        let operands = condition.operands();
+        operands.iter().all(not) && (operands.len() == 1 || not(condition))
     }
 
     /// What has not fired around and shares variables with these, as long as there are not too many in all.
