@@ -55,9 +55,10 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("plan", &["diagnostic", "syntax", "alphabet"]),
     ("fsm", &["diagnostic", "alphabet", "plan"]),
     ("trace", &["diagnostic", "alphabet", "plan", "fsm"]),
+    ("theorem", &["alphabet"]),
     ("rust", &["diagnostic", "alphabet", "plan", "fsm"]),
     ("link", &["crate", "diagnostic", "syntax", "alphabet", "plan", "fsm", "rust"]),
-    ("cli", &["crate", "diagnostic", "syntax", "alphabet", "plan", "fsm", "trace", "rust", "link"]),
+    ("cli", &["crate", "diagnostic", "syntax", "alphabet", "plan", "fsm", "trace", "theorem", "rust", "link"]),
     ("embed", &["cli"]),
     ("main", &["cli"]),
 ];

@@ -3,6 +3,7 @@
 mod bind;
 mod build;
 mod check;
+mod decompile;
 mod embed;
 mod everywhere;
 mod explain;
@@ -17,6 +18,8 @@ use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 pub(crate) use embed::embed;
+
+use crate::theorem::STEPS;
 
 /// Compiles plans in MDLe, the Motion Description Language, for robots.
 #[derive(Debug, Parser)]
@@ -56,6 +59,8 @@ enum Command {
     Fmt(Fmt),
     /// Runs a plan against a script of interrupts, no robot needed
     Trace(Trace),
+    /// Finds the plan of a finite state machine, or says why there is none (Theorem 1)
+    Decompile(Decompile),
     /// Explains the code of a message, with a wrong and a right example
     Explain(Explain),
     /// Lists the robots that plans can be compiled for
@@ -195,6 +200,22 @@ enum Machine {
 }
 
 #[derive(Debug, Args)]
+struct Decompile {
+    /// The machine: an FSM file, as `--emit fsm` writes it; `-` reads standard input
+    #[arg(value_name = "FSM.json")]
+    machine: PathBuf,
+    /// Makes a plan of any machine, with `after`: one loop over all states
+    #[arg(long, conflicts_with = "as_printed")]
+    augment: bool,
+    /// Judges by R1 to R4 as the paper prints them, and says where they differ from the exact conditions
+    #[arg(long)]
+    as_printed: bool,
+    /// Stops the search for an order of the states, which a machine with loops needs, after this many steps
+    #[arg(long, value_name = "N", default_value_t = STEPS)]
+    steps: u64,
+}
+
+#[derive(Debug, Args)]
 struct Explain {
     /// The code, such as `E0201` [default: all codes are listed]
     code: Option<String>,
@@ -269,6 +290,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Check(check)) => check::check(&check),
         Some(Command::Fmt(fmt)) => fmt::fmt(&fmt),
         Some(Command::Trace(trace)) => trace::trace(&trace),
+        Some(Command::Decompile(decompile)) => decompile::decompile(&decompile),
         Some(Command::Explain(explain)) => explain::explain(explain.code.as_deref()),
         Some(Command::Targets) => input::print_targets(),
         Some(Command::Bind(bind)) => bind::bind(&bind),
