@@ -25,7 +25,7 @@ use crate::theorem::STEPS;
 #[derive(Debug, Parser)]
 #[command(name = "mdlec", version, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 #[command(
-    after_help = "Exit status: 0 done, 1 the plan has errors, 2 wrong usage, a target that does not compile, or a \
+    after_help = "Exit status: 0 done, 1 the plan has errors or a machine has no plan, 2 wrong usage, a target that does not compile, or a \
                         file that cannot be read or written, 101 a bug in mdlec, 128 and its number more when a signal \
                         ended it. With --run, that of the executable."
 )]
