@@ -82,7 +82,7 @@ impl Walk<'_> {
             "console" => fence.text.split("$ ").skip(1).for_each(|command| self.run(command)),
             "text" => self.compare(fence),
             "rust" | "toml" => assert_eq!(name(self.page), "embedding.md", "tests/embed.rs builds what stands there"),
-            "csv" => drop(self.write(fence.file().unwrap(), fence)),
+            "csv" | "json" => drop(self.write(fence.file().unwrap(), fence)),
             "sh" => {}
             other => panic!("{}: what is `{other}`?", self.page.path),
         }

@@ -20,6 +20,7 @@ pub mod rust;
 #[cfg(test)]
 mod samples;
 pub mod syntax;
+pub mod theorem;
 pub mod trace;
 
 use alphabet::Alphabet;

@@ -4,6 +4,7 @@ mod analyze;
 mod bind;
 mod build;
 mod check;
+mod decompile;
 mod draw;
 mod embed;
 mod everywhere;
@@ -21,11 +22,13 @@ use std::process::ExitCode;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 pub(crate) use embed::embed;
 
+use crate::theorem::STEPS;
+
 /// Compiles plans in MDLe, the Motion Description Language, for robots.
 #[derive(Debug, Parser)]
 #[command(name = "mdlec", version, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 #[command(
-    after_help = "Exit status: 0 done, 1 the plan has errors, 2 wrong usage, a target that does not compile, or a \
+    after_help = "Exit status: 0 done, 1 the plan has errors or a machine has no plan, 2 wrong usage, a target that does not compile, or a \
                         file that cannot be read or written, 101 a bug in mdlec, 128 and its number more when a signal \
                         ended it. With --run, that of the executable."
 )]
@@ -63,6 +66,8 @@ enum Command {
     Analyze(Analyze),
     /// Draws a plan as a picture (SVG): scopes as boxes, atoms in rows, exits as arcs
     Draw(Draw),
+    /// Finds the plan of a finite state machine, or says why there is none (Theorem 1)
+    Decompile(Decompile),
     /// Explains the code of a message, with a wrong and a right example
     Explain(Explain),
     /// Lists the robots that plans can be compiled for
@@ -246,6 +251,22 @@ struct Analyze {
 }
 
 #[derive(Debug, Args)]
+struct Decompile {
+    /// The machine: an FSM file, as `--emit fsm` writes it; `-` reads standard input
+    #[arg(value_name = "FSM.json")]
+    machine: PathBuf,
+    /// Makes a plan of any machine, with `after`: one loop over all states
+    #[arg(long, conflicts_with = "as_printed")]
+    augment: bool,
+    /// Judges by R1 to R4 as the paper prints them, and says where they differ from the exact conditions
+    #[arg(long)]
+    as_printed: bool,
+    /// Stops the search for an order of the states, which a machine with loops needs, after this many steps
+    #[arg(long, value_name = "N", default_value_t = STEPS)]
+    steps: u64,
+}
+
+#[derive(Debug, Args)]
 struct Explain {
     /// The code, such as `E0201` [default: all codes are listed]
     code: Option<String>,
@@ -322,6 +343,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Trace(trace)) => trace::trace(&trace),
         Some(Command::Analyze(analyze)) => analyze::analyze(&analyze),
         Some(Command::Draw(draw)) => draw::draw(&draw),
+        Some(Command::Decompile(decompile)) => decompile::decompile(&decompile),
         Some(Command::Explain(explain)) => explain::explain(explain.code.as_deref()),
         Some(Command::Targets) => input::print_targets(),
         Some(Command::Bind(bind)) => bind::bind(&bind),

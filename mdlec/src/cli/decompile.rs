@@ -1,0 +1,102 @@
+//! `mdlec decompile`: the MDLe string of a machine, or why it has none (paper, Theorem 1).
+
+use std::path::Path;
+
+use super::{Decompile, Failure, input, report};
+use crate::diagnostic::Sources;
+use crate::syntax;
+use crate::theorem::{Answer, Machine, as_printed, augment, decompile as theorem, monomial, read, string};
+
+/// Machines with more states are not shown as matrices.
+const SHOWN: usize = 12;
+
+/// Prints the plan of a machine, or how the paper's own conditions judge it.
+pub(super) fn decompile(options: &Decompile) -> Result<(), Failure> {
+    let file = options.machine.display();
+    let text = input::read_text(&options.machine)?;
+    let machine = read(&text).map_err(|error| {
+        let line = error.line.map(|line| format!("{line}:")).unwrap_or_default();
+        refused(format!("{file}:{line} {}", error.message))
+    })?;
+    if options.augment {
+        return print(&options.machine, &augment(&machine));
+    }
+    let answer = theorem(&machine, options.steps);
+    if options.as_printed {
+        report::print(&printed(&machine, &answer))?;
+    }
+    match answer {
+        Answer::String(_) if options.as_printed => Ok(()),
+        Answer::String(found) => print(&options.machine, &string(&machine, &found)),
+        Answer::None(broken) => {
+            let count = broken.len();
+            let mut said = format!("{file}: no MDLe string is equivalent to this machine (Theorem 1)");
+            broken.iter().take(CONDITIONS).for_each(|broken| said += &format!("\n  {}", broken.sentence(&machine)));
+            if count > CONDITIONS {
+                said += &format!("\n  … and {} more", count - CONDITIONS);
+            }
+            Err(refused(format!("{said}\nhelp: `mdlec decompile --augment {file}` makes a plan with `after` of it")))
+        }
+        Answer::Stopped(steps) => Err(refused(format!(
+            "{file}: the search for an order of its states was stopped after {steps} steps: whether this machine has an MDLe string is \
+             not known\nhelp: `--steps {}` searches longer; `--augment` makes a plan with `after` of any machine",
+            steps.saturating_mul(10)
+        ))),
+    }
+}
+
+/// So many conditions that fail are told.
+const CONDITIONS: usize = 100;
+
+fn refused(message: String) -> Failure {
+    Failure { status: 1, message: Some(message) }
+}
+
+/// Prints a plan in the canonical layout. What the file has as laws and conditions is shown where it is no MDLe.
+fn print(file: &Path, plan: &str) -> Result<(), Failure> {
+    let mut sources = Sources::default();
+    let source = input::add(&mut sources, Path::new(&format!("the plan of {}", file.display())), plan.to_owned())?;
+    match syntax::format(source, plan) {
+        Ok(text) => report::print(&text),
+        Err(found) => {
+            report::diagnostics(&sources, &found, false);
+            Err(refused(format!("{}: what it has as `laws` and `text` is no MDLe", file.display())))
+        }
+    }
+}
+
+/// How the printed conditions judge a machine, and where they differ from the exact ones.
+fn printed(machine: &Machine, exactly: &Answer) -> String {
+    let mut text = String::new();
+    if machine.states().len() <= SHOWN {
+        text += &monomial(machine);
+        text += "\n";
+    }
+    let rules = as_printed(machine, exactly);
+    for rule in &rules {
+        text += &match (&rule.letter, &rule.meant) {
+            (None, None) => format!("{} holds\n", rule.name),
+            (Some(letter), Some(meant)) if letter == meant => format!("{} fails: {letter}\n", rule.name),
+            (Some(letter), Some(meant)) => format!("{} fails: {meant}; to the letter: {letter}\n", rule.name),
+            (Some(letter), None) => format!("{} holds as it is meant, but to the letter: {letter}\n", rule.name),
+            (None, Some(meant)) => format!("{} holds to the letter, but: {meant}\n", rule.name),
+        };
+    }
+    let verdict = |holds: bool| if holds { "there is a string" } else { "there is none" };
+    let letter = rules.iter().all(|rule| rule.letter.is_none());
+    let meant = rules.iter().all(|rule| rule.meant.is_none());
+    let exact = match exactly {
+        Answer::String(_) => verdict(true),
+        Answer::None(_) => verdict(false),
+        Answer::Stopped(_) => "the search was stopped",
+    };
+    let differ = match (meant, exactly) {
+        (true, Answer::None(_)) | (false, Answer::String(_)) => ": they differ",
+        (true, Answer::String(_) | Answer::Stopped(_)) | (false, Answer::None(_) | Answer::Stopped(_)) => "",
+    };
+    text + &format!(
+        "to the letter: {}\nas meant:      {}\nexactly:       {exact}{differ}\n",
+        verdict(letter),
+        verdict(meant)
+    )
+}

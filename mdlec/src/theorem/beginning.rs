@@ -1,0 +1,250 @@
+//! The beginning of an order of a machine's states, with what is enclosed in it: what must end if a state follows, and
+//! whether it can (Theorem 1, R1 to R4).
+//!
+//! Afterwards: everything that has ended is pairwise nested or disjoint, and each place but the last has an interrupt of its own.
+
+mod fits;
+
+use super::{Broken, InterruptId, Loop, Machine, Run, State, Stretch};
+
+/// An interrupt that leads to the same state from each place since one.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Open {
+    interrupt: InterruptId,
+    first: usize,
+    to: State,
+}
+
+/// What ends where one state follows another.
+#[derive(Default)]
+pub(super) struct Ending {
+    runs: Vec<Run>,
+    /// Where the loops begin that end here, in ascending order.
+    loops: Vec<usize>,
+    /// What goes on.
+    open: Vec<Open>,
+    /// Where the widest of what ends begins.
+    widest: Option<usize>,
+}
+
+/// What takes a step back.
+#[derive(Default)]
+pub(super) struct Before {
+    runs: usize,
+    loops: usize,
+    /// What had ended as a whole and is now in one that is wider.
+    wholes: Vec<(usize, usize)>,
+    has_whole: bool,
+}
+
+/// The beginning of an order.
+pub(super) struct Beginning<'m> {
+    machine: &'m Machine,
+    pub(super) order: Vec<State>,
+    places: Vec<Option<usize>>,
+    /// The states that lead to each state.
+    sources: Vec<Vec<State>>,
+    pub(super) runs: Vec<Run>,
+    pub(super) loops: Vec<Loop>,
+    /// The first and the last place of what has ended, outermost only.
+    wholes: Vec<(usize, usize)>,
+    /// The interrupt of laws that are done: it is an atom's own, so that each state is left by itself.
+    completed: Option<InterruptId>,
+}
+
+impl<'m> Beginning<'m> {
+    pub(super) fn new(machine: &'m Machine, completed: Option<InterruptId>) -> Self {
+        let places = vec![None; machine.states().len()];
+        let mut sources = vec![Vec::new(); places.len()];
+        for state in machine.atoms() {
+            machine.exits(state).iter().for_each(|exit| sources[exit.to.0 as usize].push(state));
+        }
+        Self {
+            machine,
+            order: Vec::new(),
+            places,
+            sources,
+            runs: Vec::new(),
+            loops: Vec::new(),
+            wholes: Vec::new(),
+            completed,
+        }
+    }
+
+    pub(super) fn place(&self, state: State) -> Option<usize> {
+        self.places[state.0 as usize]
+    }
+
+    /// What ends if this state follows: what has to and, if there is one, the `extra` of those that are open; `None` where that
+    /// has to end anyway, or must not.
+    ///
+    /// More than one extra is never needed. What a scope gains by ending early is an interrupt of its own for this place
+    /// or the next, and two that lead back would serve both; two parts of what leads to the start of the scope itself can be
+    /// one otherwise.
+    ///
+    /// # Errors
+    /// What it breaks.
+    pub(super) fn ending(&self, open: &[Open], next: State, extra: Option<usize>) -> Result<Option<Ending>, Broken> {
+        let Some(here) = self.order.len().checked_sub(1) else {
+            return Ok(extra.is_none().then(Ending::default));
+        };
+        let mut ends = Vec::with_capacity(open.len());
+        let mut widest = here + 1;
+        for run in open {
+            let must_end = self.must_end(*run, next)?;
+            ends.push(must_end);
+            if must_end {
+                widest = widest.min(self.reach(*run, next));
+            }
+        }
+        self.spread(open, next, &mut ends, &mut widest)?;
+        if let Some(extra) = extra {
+            let run = open[extra];
+            if ends[extra] || self.place(run.to).is_none() {
+                return Ok(None);
+            }
+            ends[extra] = true;
+            widest = widest.min(self.reach(run, next));
+            self.spread(open, next, &mut ends, &mut widest)?;
+        }
+        self.ended(open, next, &ends, widest).map(Some)
+    }
+
+    /// Whether a scope would end before this state though other states without a place have its interrupt lead there too.
+    pub(super) fn ends_too_early(&self, open: &[Open], next: State) -> bool {
+        let mut ending = open.iter().filter(|run| run.to == next && self.completed != Some(run.interrupt));
+        ending.any(|run| {
+            let mut others = self.outside(next).filter(|source| *source != next);
+            others.any(|source| self.machine.destination(source, run.interrupt) == Some(next))
+        })
+    }
+
+    /// Whether a scope has to end before this state.
+    fn must_end(&self, run: Open, next: State) -> Result<bool, Broken> {
+        if run.to == next {
+            return Ok(true);
+        }
+        let other = self.machine.destination(next, run.interrupt);
+        let is_single = self.completed == Some(run.interrupt) && self.place(run.to).is_some();
+        let goes_on = other == Some(run.to) && !is_single;
+        if !goes_on && self.place(run.to).is_none() {
+            let from = self.order[self.order.len() - 1];
+            return Err(Broken::Skips { interrupt: run.interrupt, from, to: run.to, past: next, other });
+        }
+        Ok(!goes_on)
+    }
+
+    /// Where a scope that ends begins, or the loop around it.
+    fn reach(&self, run: Open, next: State) -> usize {
+        if run.to == next { run.first } else { self.place(run.to).unwrap_or(run.first) }
+    }
+
+    /// Ends what begins inside of what ends.
+    fn spread(&self, open: &[Open], next: State, ends: &mut [bool], widest: &mut usize) -> Result<(), Broken> {
+        for (run, ends) in open.iter().zip(ends).rev() {
+            if run.first <= *widest {
+                break;
+            }
+            if !*ends && self.place(run.to).is_none() {
+                return Err(self.crossing(*run, open, *widest, next));
+            }
+            *ends = true;
+            *widest = (*widest).min(self.reach(*run, next));
+        }
+        Ok(())
+    }
+
+    /// A scope that goes on, though what begins before it ends.
+    fn crossing(&self, run: Open, open: &[Open], widest: usize, next: State) -> Broken {
+        let around = open.iter().find(|around| around.first == widest || self.place(around.to) == Some(widest));
+        let [.., here] = *self.order.as_slice() else { return Broken::NoExit(next) };
+        Broken::Crosses {
+            interrupt: around.unwrap_or(&run).interrupt,
+            around: Stretch { first: self.order[widest], last: here },
+            other: run.interrupt,
+            begins: self.order[run.first],
+            goes_on: next,
+        }
+    }
+
+    /// What ends, if it can.
+    fn ended(&self, open: &[Open], next: State, ends: &[bool], widest: usize) -> Result<Ending, Broken> {
+        let here = self.order.len() - 1;
+        let mut ending = Ending { widest: Some(widest), ..Ending::default() };
+        for (run, ends) in open.iter().zip(ends) {
+            if !ends {
+                ending.open.push(*run);
+                continue;
+            }
+            let to = if run.to == next { here + 1 } else { self.place(run.to).unwrap_or(here + 1) };
+            if to <= here {
+                ending.loops.push(to);
+            }
+            ending.runs.push(Run { interrupt: run.interrupt, first: run.first, last: here, to });
+        }
+        ending.loops.sort_unstable();
+        ending.loops.dedup();
+        if ending.runs.iter().all(|run| run.first != here) {
+            return Err(Broken::NoOwnInterrupt { state: self.order[here], next, shared: None });
+        }
+        self.loops_fit(&ending, next)?;
+        self.nothing_leads_inside(&ending, next, widest)?;
+        Ok(ending)
+    }
+
+    /// Puts a state behind what has ended. What is open with it, and what takes this back.
+    pub(super) fn fill(&mut self, ending: Ending, next: State) -> (Vec<Open>, Before) {
+        let place = self.order.len();
+        let mut before = Before { runs: self.runs.len(), loops: self.loops.len(), ..Before::default() };
+        if let (Some(widest), Some(last)) = (ending.widest, place.checked_sub(1)) {
+            let inside = self.wholes.partition_point(|(first, _)| *first < widest);
+            before.wholes = self.wholes.split_off(inside);
+            before.has_whole = true;
+            self.wholes.push((widest, last));
+            self.loops.extend(ending.loops.iter().map(|first| Loop { first: *first, last }));
+        }
+        self.runs.extend(ending.runs);
+        self.order.push(next);
+        self.places[next.0 as usize] = Some(place);
+        let mut open = ending.open;
+        let mut going: Vec<_> = open.iter().map(|run| run.interrupt).collect();
+        going.sort_unstable();
+        let begun = self.machine.exits(next).iter().filter(|exit| going.binary_search(&exit.interrupt).is_err());
+        open.extend(begun.map(|exit| Open { interrupt: exit.interrupt, first: place, to: exit.to }));
+        (open, before)
+    }
+
+    /// All that decides what can follow: which states have a place, where what has ended begins, what is open, and the last state.
+    /// How the inside of what has ended is arranged does not matter any more.
+    pub(super) fn outline(&self, open: &[Open]) -> [u8; 32] {
+        let mut placed = vec![0_u8; self.places.len().div_ceil(8)];
+        for state in &self.order {
+            placed[state.0 as usize / 8] |= 1 << (state.0 % 8);
+        }
+        let mut hash = blake3::Hasher::new();
+        hash.update(&placed);
+        let mut put = |number: u32| {
+            hash.update(&number.to_le_bytes());
+        };
+        self.wholes.iter().for_each(|(first, _)| put(self.order[*first].0));
+        self.order.iter().last().iter().for_each(|last| put(last.0));
+        for run in open {
+            let begins = self.wholes.partition_point(|(first, _)| *first < run.first);
+            [run.interrupt.0, run.to.0, super::number(begins)].into_iter().for_each(&mut put);
+        }
+        hash.finalize().into()
+    }
+
+    /// Takes the last state back.
+    pub(super) fn take_back(&mut self, before: Before) {
+        if let Some(state) = self.order.pop() {
+            self.places[state.0 as usize] = None;
+        }
+        self.runs.truncate(before.runs);
+        self.loops.truncate(before.loops);
+        if before.has_whole {
+            self.wholes.pop();
+            self.wholes.extend(before.wholes);
+        }
+    }
+}

@@ -1,0 +1,199 @@
+//! Theorem 1 as the paper prints it: R1 to R4 to the letter, and as they are meant, on the columns of transition matrices.
+//!
+//! The columns of an interrupt are those that it moves. A move to the same state is none: the matrix is the identity there.
+
+use super::loop_free::{crossings, cut};
+use super::order::{forwards, places};
+use super::{Answer, InterruptId, Machine, State};
+
+/// What one of the printed conditions says of a machine.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Rule {
+    /// `R1` to `R4`.
+    pub name: &'static str,
+    /// What breaks it to the letter.
+    pub letter: Option<String>,
+    /// What breaks it as it is meant.
+    pub meant: Option<String>,
+}
+
+/// The columns of the matrices in an order of the states, from 0.
+struct Columns<'m> {
+    machine: &'m Machine,
+    order: Vec<State>,
+    places: Vec<usize>,
+}
+
+/// The printed conditions, in the one order in which they can hold: the one in which all leads forwards. Where something leads
+/// back, none can, and it is the order of the string that there is, or one that is near.
+#[must_use]
+pub fn as_printed(machine: &Machine, exactly: &Answer) -> [Rule; 4] {
+    let mut order = forwards(machine);
+    let mut places = places(&order);
+    let place = |state: &State| places[state.0 as usize];
+    let leads_back = order.iter().any(|from| machine.exits(*from).iter().any(|exit| place(&exit.to) < place(from)));
+    if let (true, Answer::String(found)) = (leads_back, exactly) {
+        order.clone_from(&found.order);
+        places = super::order::places(&order);
+    }
+    let columns = Columns { machine, order, places };
+    let (first, second) = (columns.atoms(), columns.forwards());
+    [
+        Rule { name: "R1", letter: first.clone(), meant: first },
+        Rule { name: "R2", letter: second.clone(), meant: second },
+        Rule { name: "R3", letter: columns.nested_to_the_letter(), meant: columns.nested() },
+        // R2 forbids what it speaks of.
+        Rule { name: "R4", letter: columns.loops_to_the_letter(), meant: None },
+    ]
+}
+
+impl Columns<'_> {
+    /// Every move from a place to another.
+    fn moves(&self) -> impl Iterator<Item = (InterruptId, usize, usize)> {
+        let from = self.order.iter().enumerate();
+        let all = from.flat_map(|(place, state)| self.machine.exits(*state).iter().map(move |exit| (place, exit)));
+        let all = all.map(|(place, exit)| (exit.interrupt, place, self.places[exit.to.0 as usize]));
+        all.filter(|(_, from, to)| from != to)
+    }
+
+    /// The row in which a column of an interrupt has its 1.
+    fn row(&self, interrupt: InterruptId, column: usize) -> usize {
+        let to = self.machine.destination(self.order[column], interrupt);
+        to.map_or(column, |to| self.places[to.0 as usize])
+    }
+
+    fn state(&self, place: usize) -> String {
+        format!("`{}`", self.machine.name(self.order[place]))
+    }
+
+    fn interrupt(&self, interrupt: InterruptId) -> String {
+        format!("`{}`", self.machine.interrupt(interrupt).name)
+    }
+
+    /// R1: one interrupt, and no other, that moves a column to the next and nothing else.
+    fn atoms(&self) -> Option<String> {
+        let mut moved = vec![0_usize; self.machine.interrupts().len()];
+        self.moves().for_each(|(interrupt, ..)| moved[interrupt.0 as usize] += 1);
+        let mut own: Vec<Vec<InterruptId>> = vec![Vec::new(); self.order.len()];
+        for (interrupt, from, to) in self.moves() {
+            if to == from + 1 && moved[interrupt.0 as usize] == 1 {
+                own[from].push(interrupt);
+            }
+        }
+        let wrong = own.iter().take(self.order.len() - 1).position(|own| own.len() != 1)?;
+        let (state, next) = (self.state(wrong), self.state(wrong + 1));
+        Some(match own[wrong].as_slice() {
+            [one, other, ..] => format!(
+                "the interrupt that leads from {state} to {next} and does nothing else is to be unique, \
+                 and {} and {} both do",
+                self.interrupt(*one),
+                self.interrupt(*other)
+            ),
+            [] | [_] => format!("no interrupt leads from {state} to {next} and does nothing else"),
+        })
+    }
+
+    /// R2: nothing leads back, and what leads on leads on from all columns up to where it leads.
+    fn forwards(&self) -> Option<String> {
+        self.moves().find_map(|(interrupt, from, to)| {
+            let name = self.interrupt(interrupt);
+            if to < from {
+                return Some(format!("{name} leads back, from {} to {}", self.state(from), self.state(to)));
+            }
+            let other = (from..=to).find(|column| self.row(interrupt, *column) != to)?;
+            let (from, to, at) = (self.state(from), self.state(to), self.state(other));
+            let row = self.row(interrupt, other);
+            Some(match row == other {
+                true => format!("{name} leads from {from} to {to}, but does not lead on from {at}"),
+                false => format!("{name} leads from {from} to {to}, but from {at} to {}", self.state(row)),
+            })
+        })
+    }
+
+    /// R3 as it is meant: of what two interrupts enclose, neither or one is inside the other.
+    fn nested(&self) -> Option<String> {
+        let (mut runs, _) = cut(self.machine, &self.order);
+        runs.sort_by_key(|run| (run.first, std::cmp::Reverse(run.last), run.interrupt));
+        let sentence = crossings(&self.order, &runs).first()?.sentence(self.machine);
+        Some(sentence.trim_start_matches("R3: ").to_owned())
+    }
+
+    /// R3 to the letter: `k2 <= k1` and `p2 < p1` is all that it asks before one has to enclose the other.
+    fn nested_to_the_letter(&self) -> Option<String> {
+        let mut nearest: Vec<(InterruptId, usize, usize)> = Vec::new();
+        for (interrupt, from, to) in self.moves() {
+            for (other, column, row) in &nearest {
+                let encloses = || *column < from && (*column..=to).all(|column| self.row(interrupt, column) == to);
+                if *other != interrupt && *row < to && !encloses() {
+                    return Some(format!(
+                        "{} leads from {} to {}, and so {} would have to lead to {} from there on as well",
+                        self.interrupt(*other),
+                        self.state(*column),
+                        self.state(*row),
+                        self.interrupt(interrupt),
+                        self.state(to)
+                    ));
+                }
+            }
+            nearest.push((interrupt, from, to));
+        }
+        None
+    }
+
+    /// R4 to the letter: where anything leads forwards to, no matrix may have a column that is equal to that one's neighbour.
+    fn loops_to_the_letter(&self) -> Option<String> {
+        let mut equal = vec![None; self.order.len()];
+        for (interrupt, from, _) in self.moves() {
+            for column in
+                [from.checked_sub(1), Some(from)].into_iter().flatten().filter(|one| one + 1 < self.order.len())
+            {
+                if self.row(interrupt, column) == self.row(interrupt, column + 1) {
+                    equal[column].get_or_insert(interrupt);
+                }
+            }
+        }
+        self.moves().filter(|(_, from, to)| from < to).find_map(|(interrupt, from, to)| {
+            let before = to.checked_sub(1).and_then(|column| equal[column]);
+            let other = before.or(equal[to])?;
+            let near = self.state(if before.is_some() { to - 1 } else { to + 1 });
+            let (name, from, to) = (self.interrupt(interrupt), self.state(from), self.state(to));
+            Some(format!(
+                "{name} leads from {from} to {to}, and in {} the columns of {near} and {to} are equal",
+                self.interrupt(other)
+            ))
+        })
+    }
+}
+
+/// So wide may a line of matrices be.
+const WIDTH: usize = 110;
+
+/// The machine in monomial form (paper, Eq. 2), its matrices as the paper prints those of Eq. 6: states in the order of the file.
+#[must_use]
+pub fn monomial(machine: &Machine) -> String {
+    let size = machine.states().len();
+    let order: Vec<_> = machine.atoms().chain([machine.end()]).collect();
+    let columns = Columns { machine, places: places(&order), order };
+    let middle = (size - 1) / 2;
+    let mut lines = vec![String::new(); size];
+    let (mut text, mut start) = (String::new(), "Π(t) = ");
+    for (interrupt, named) in (0..).map(InterruptId).zip(machine.interrupts()) {
+        let blocks = (0..size).map(|row| {
+            let bits = (0..size).map(|column| if columns.row(interrupt, column) == row { "1" } else { "0" });
+            bits.collect::<Vec<_>>().join(" ")
+        });
+        let behind = format!(" {}", named.name);
+        let room = start.chars().count() + 2 * size + 1 + behind.chars().count();
+        if !lines[0].is_empty() && lines[0].chars().count() + room > WIDTH {
+            lines.iter_mut().for_each(|line| text += &format!("{}\n", std::mem::take(line).trim_end()));
+            text += "\n";
+        }
+        for (row, (line, block)) in lines.iter_mut().zip(blocks).enumerate() {
+            let beside = |text: &str| if row == middle { text.to_owned() } else { " ".repeat(text.chars().count()) };
+            *line += &format!("{}[{block}]{}", beside(start), beside(&behind));
+        }
+        start = " + ";
+    }
+    lines.iter().for_each(|line| text += &format!("{}\n", line.trim_end()));
+    text
+}

@@ -1,0 +1,170 @@
+//! Reads FSM files (interfaces, "FSM files"): states, and interrupts with their moves.
+//!
+//! Afterwards: every move is between states of the file, and an interrupt has one destination for a state at most.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use serde::Deserialize;
+use serde::de::{Deserializer, Error, MapAccess, Visitor};
+
+use super::{Machine, Named, State, number};
+use crate::alphabet::nearest;
+
+/// Why a file cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FileError {
+    /// The line, from 1, where it is one line's fault.
+    pub line: Option<usize>,
+    /// What is wrong.
+    pub message: String,
+}
+
+/// A file as it is written; what else stands in it is ignored.
+#[derive(Deserialize)]
+#[serde(expecting = "an object with `states` and `interrupts`")]
+struct Written {
+    states: Vec<String>,
+    interrupts: Vec<WrittenInterrupt>,
+    start: Option<String>,
+    laws: Option<Vec<String>>,
+}
+
+#[derive(Deserialize)]
+#[serde(expecting = "an interrupt: an object with `name` and `moves`")]
+struct WrittenInterrupt {
+    name: String,
+    moves: Moves,
+    text: Option<String>,
+}
+
+/// Moves by the state they leave, in the order of the names.
+struct Moves(BTreeMap<String, String>);
+
+impl<'de> Deserialize<'de> for Moves {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(MovesVisitor)
+    }
+}
+
+struct MovesVisitor;
+
+impl<'de> Visitor<'de> for MovesVisitor {
+    type Value = Moves;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("an object from states to states")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Moves, A::Error> {
+        let mut moves = BTreeMap::new();
+        while let Some((from, to)) = map.next_entry::<String, String>()? {
+            match moves.get(&from) {
+                Some(other) if *other != to => {
+                    return Err(A::Error::custom(format!(
+                        "this interrupt leads from `{from}` to `{other}` and to `{to}`: it can lead to one of them only"
+                    )));
+                }
+                Some(_) => {}
+                None => drop(moves.insert(from, to)),
+            }
+        }
+        Ok(Moves(moves))
+    }
+}
+
+/// Reads a machine. Entries of one name are one interrupt.
+///
+/// # Errors
+/// If it is no JSON, has no state, names states that it does not have, gives one interrupt two destinations for a state, or
+/// gives a state no law or two.
+pub fn read(text: &str) -> Result<Machine, FileError> {
+    let written: Written = serde_json::from_str(text).map_err(|error| reason(&error))?;
+    let states = States::new(&written.states)?;
+    let mut interrupts: Vec<(Named, BTreeMap<State, State>)> = Vec::new();
+    let mut known: BTreeMap<String, usize> = BTreeMap::new();
+    for WrittenInterrupt { name, moves, text } in written.interrupts {
+        let place = *known.entry(name.clone()).or_insert(interrupts.len());
+        if place == interrupts.len() {
+            interrupts.push((Named { name, text: None }, BTreeMap::new()));
+        }
+        let (named, all) = &mut interrupts[place];
+        named.text = named.text.take().or(text);
+        for (from, to) in &moves.0 {
+            let asks = || format!("interrupt `{}`", named.name);
+            let (state, to) = (states.find(from, asks)?, states.find(to, asks)?);
+            if let Some(other) = all.insert(state, to).filter(|other| *other != to) {
+                let [other, to] = [other, to].map(|state| &written.states[state.0 as usize]);
+                return Err(refused(format!(
+                    "interrupt `{}` leads from `{from}` to `{other}` and to `{to}`: it can lead to one of them only",
+                    named.name
+                )));
+            }
+        }
+    }
+    let start = written.start.map(|start| states.find(&start, || "`start`".to_owned())).transpose()?;
+    let interrupts = interrupts.into_iter().map(|(named, moves)| (named, moves.into_iter().collect()));
+    let machine = Machine { start, ..Machine::new(written.states, interrupts.collect()) };
+    let atoms = machine.end().0 as usize;
+    if start == Some(machine.end()) {
+        return Err(refused("`start` names the last state, in which the plan is over".to_owned()));
+    }
+    match written.laws {
+        Some(laws) if laws.len() != atoms => Err(refused(format!(
+            "`laws` has to have a law for each state but the last: {atoms}, and there are {}",
+            laws.len()
+        ))),
+        laws => Ok(Machine { laws, ..machine }),
+    }
+}
+
+/// The states of a file by their names.
+struct States<'n>(BTreeMap<&'n str, State>);
+
+impl<'n> States<'n> {
+    fn new(names: &'n [String]) -> Result<Self, FileError> {
+        match names {
+            [] => {
+                return Err(refused(
+                    "`states` is empty: the last state is the one in which the plan is over".to_owned(),
+                ));
+            }
+            [only] => {
+                return Err(refused(format!(
+                    "`{only}` is the only state, in which the plan is over: a plan has an atom"
+                )));
+            }
+            [..] => {}
+        }
+        let mut states = BTreeMap::new();
+        for (place, name) in names.iter().enumerate() {
+            if states.insert(name.as_str(), State(number(place))).is_some() {
+                return Err(refused(format!("there are two states `{name}`")));
+            }
+        }
+        Ok(Self(states))
+    }
+
+    /// The state of this name, for whoever asks.
+    fn find(&self, name: &str, asks: impl Fn() -> String) -> Result<State, FileError> {
+        self.0.get(name).copied().ok_or_else(|| {
+            let near = nearest(name, self.0.keys().copied());
+            let near = near.map(|near| format!("; did you mean `{near}`?")).unwrap_or_default();
+            refused(format!("{} names the state `{name}`, which is not among `states`{near}", asks()))
+        })
+    }
+}
+
+fn refused(message: String) -> FileError {
+    FileError { line: None, message }
+}
+
+/// The reader's message, its place as the column only.
+fn reason(error: &serde_json::Error) -> FileError {
+    let message = error.to_string();
+    let message = match message.rsplit_once(" at line ") {
+        Some((message, _)) => format!("{message} (column {})", error.column()),
+        None => message,
+    };
+    FileError { line: (error.line() > 0).then(|| error.line()), message }
+}

@@ -1,0 +1,105 @@
+//! Small machines, as numbers: for each interrupt a row that says of each atom where it leads, if anywhere.
+
+use mdle_tests::chance::Chance;
+use mdlec::theorem::{Machine, Named, State};
+
+/// A row: where an interrupt leads from each atom.
+pub(crate) type Row = Vec<Option<usize>>;
+
+/// The rows of machines with so many atoms.
+pub(crate) struct Table;
+
+impl Table {
+    /// How many rows there are.
+    pub(crate) fn count(atoms: usize) -> usize {
+        (atoms + 2).pow(u32::try_from(atoms).unwrap())
+    }
+
+    /// Every row, by its number.
+    pub(crate) fn rows(atoms: usize) -> Vec<Row> {
+        (0..Self::count(atoms)).map(|number| Self::row(number, atoms)).collect()
+    }
+
+    /// The row of this number.
+    pub(crate) fn row(mut number: usize, atoms: usize) -> Row {
+        let mut row = Vec::new();
+        for _ in 0..atoms {
+            row.push((number % (atoms + 2)).checked_sub(1));
+            number /= atoms + 2;
+        }
+        row
+    }
+
+    /// The number of a row.
+    pub(crate) fn number(row: &[Option<usize>]) -> usize {
+        row.iter().rev().fold(0, |number, to| number * (row.len() + 2) + to.map_or(0, |to| to + 1))
+    }
+}
+
+/// The machine of these rows: states `s1`, `s2`, …, interrupts `x1`, `x2`, ….
+pub(crate) fn machine(atoms: usize, rows: &[Row]) -> Machine {
+    let states = (1..=atoms + 1).map(|number| format!("s{number}")).collect();
+    let state = |place: usize| State(u32::try_from(place).unwrap());
+    let interrupts = (1..).zip(rows).map(|(number, row)| {
+        let moves = row.iter().enumerate().filter_map(|(from, to)| Some((state(from), state((*to)?))));
+        (Named { name: format!("x{number}"), text: None }, moves.collect())
+    });
+    Machine::new(states, interrupts.collect())
+}
+
+/// A machine that often has a string, and else is near to one that has: scopes and loops that nest, the atoms in disorder.
+pub(crate) fn likely(chance: &mut Chance, atoms: usize, interrupts: usize) -> Vec<Row> {
+    let (mut loops, mut runs) = (Vec::new(), Vec::new());
+    enclose(chance, 0, atoms, &mut loops, &mut runs);
+    let mut rows = vec![vec![None; atoms]; interrupts];
+    for (first, last) in runs {
+        let around: Vec<_> = loops.iter().filter(|(begin, end)| *end == last && *begin <= first).collect();
+        let to = around.iter().map(|(begin, _)| *begin).max().unwrap_or(last + 1);
+        // Where nothing is listed yet: one interrupt may stand in several places.
+        let free: Vec<_> = (0..interrupts).filter(|row| rows[*row][first..=last].iter().all(Option::is_none)).collect();
+        if !free.is_empty() {
+            let row = free[chance.below(free.len())];
+            rows[row][first..=last].fill(Some(to));
+        }
+    }
+    let mut places: Vec<_> = (0..atoms).collect();
+    for place in (1..atoms).rev() {
+        places.swap(place, chance.below(place + 1));
+    }
+    places.push(atoms);
+    let mut disordered = vec![vec![None; atoms]; interrupts];
+    for (row, disordered) in rows.iter().zip(&mut disordered) {
+        for (atom, to) in row.iter().enumerate() {
+            disordered[places[atom]] = to.map(|to| places[to]);
+        }
+    }
+    if chance.percent(40) {
+        let (row, atom) = (chance.below(interrupts), chance.below(atoms));
+        disordered[row][atom] = chance.below(atoms + 2).checked_sub(1);
+    }
+    disordered
+}
+
+/// Encloses atoms in scopes and loops, all of them in one of their own at least.
+fn enclose(
+    chance: &mut Chance,
+    first: usize,
+    behind: usize,
+    loops: &mut Vec<(usize, usize)>,
+    runs: &mut Vec<(usize, usize)>,
+) {
+    let last = behind - 1;
+    if chance.percent(35) {
+        loops.push((first, last));
+    }
+    if first == last {
+        runs.push((first, last));
+        return;
+    }
+    if chance.percent(40) {
+        runs.push((first, last));
+    }
+    let middle = first + 1 + chance.below(last - first);
+    enclose(chance, first, middle, loops, runs);
+    enclose(chance, middle, behind, loops, runs);
+}
