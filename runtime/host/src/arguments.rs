@@ -1,4 +1,4 @@
-//! The options that every executable takes, next to those of its target.
+//! The options of every executable, whatever its target.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -9,57 +9,72 @@ use crate::{Target, paths};
 
 /// The shortest period: a turn must leave time for the exchange.
 const PERIOD_LEAST: Duration = Duration::from_micros(100);
-/// The longest period: a robot that is told something once a minute is not controlled.
+/// The longest period: a robot that is commanded once a minute is not controlled.
 const PERIOD_MOST: Duration = Duration::from_secs(60);
 /// The longest timeout, some 31 years: far below what nanoseconds in 64 bits can count.
 const TIMEOUT_MOST: Duration = Duration::from_secs(1_000_000_000);
 
-const STATUS: &str = "Exit status: 0 the plan is over, 2 a bad option, world or start pose, 3 a fault stopped the robot,\n\
-                      4 timeout or turn limit, 129, 130 or 143 stopped by a signal. The robot is stopped in every case.";
+const STATUS: &str = "Exit status: 0 the plan ended, 2 invalid option, world or start pose, 3 a fault stopped the robot,\n\
+                      4 timeout or turn limit, 128+N terminated by signal N. The robot is stopped in every case.";
 
-/// What the options common to all targets say.
+const STATUS_LONG: &str = "\
+Exit status:
+  0      the plan ended
+  2      invalid option, world or start pose
+  3      a fault stopped the robot
+  4      timeout or turn limit
+  128+N  terminated by signal N (129, 130, 143)
+The robot is stopped in every case. On a real robot, SIGUSR1 prints how late turns began and how long they took.";
+
+/// The values of the options that all targets share.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Options {
-    /// From the start of a turn to the start of the next.
+    /// Time from the start of a turn to the start of the next.
     pub(crate) period: Duration,
-    /// The plan's time at which it is given up.
+    /// Time of the plan after which the run is stopped.
     pub(crate) timeout: Option<Duration>,
-    /// The number of turns after which it is given up; at least 1.
+    /// Number of turns after which the run is stopped; at least 1.
     pub(crate) turns: Option<u64>,
-    /// Where to write the run log.
+    /// File of the run log.
     pub(crate) log: Option<PathBuf>,
-    /// Where to record the path that is driven.
+    /// File of the recorded path.
     pub(crate) path: Option<PathBuf>,
 }
 
-/// The command line of the executable of plan `name` for target `T`. Its usage names the first argument's file, and the
-/// plan where there is none.
+/// Returns the command line of the executable of plan `name` for target `T`. The usage line names the executable's file, or
+/// the plan if the file name is unknown.
 pub(crate) fn command<T: Target>(name: &str) -> Command {
     let seconds = T::PERIOD.as_secs_f64();
     let command = Command::new(name.to_owned())
-        .about(format!("Runs the plan {name} on the robot {}.", T::NAME))
+        .about(format!("Run the plan {name} on the robot {}", T::NAME))
         .after_help(STATUS)
+        .after_long_help(STATUS_LONG)
         .arg(
             option("period", "SECONDS")
-                .help(format!("Time from one turn to the next [default: {seconds}]"))
+                .help(format!("Period of the control loop, in seconds [default: {seconds}]"))
+                .long_help(format!(
+                    "Period of the control loop, in seconds, from {} to {} [default: {seconds}]",
+                    PERIOD_LEAST.as_secs_f64(),
+                    PERIOD_MOST.as_secs_f64()
+                ))
                 .allow_negative_numbers(true)
                 .value_parser(|text: &str| duration(text, PERIOD_LEAST, PERIOD_MOST)),
         )
         .arg(
             option("timeout", "SECONDS")
-                .help("Give up when the plan is not over at this time (exit status 4)")
+                .help("Maximum duration of the plan, in seconds; exit status 4 after it [default: none]")
                 .allow_negative_numbers(true)
                 .value_parser(|text: &str| duration(text, Duration::from_nanos(1), TIMEOUT_MOST)),
         )
         .arg(
             option("turns", "N")
-                .help("Give up when the plan is not over after this many turns (exit status 4)")
+                .help("Maximum number of turns; exit status 4 after them [default: none]")
                 .allow_negative_numbers(true)
                 .value_parser(value_parser!(u64).range(1..)),
         )
         .arg(
             option("log", "FILE")
-                .help("Write what happens, one JSON object a turn, as `mdlec trace` does")
+                .help("File for a log of the run, one JSON object per turn, in the format of `mdlec trace`")
                 .value_parser(value_parser!(PathBuf)),
         );
     T::arguments(if T::PATHS.is_some() { paths::arguments(command) } else { command })

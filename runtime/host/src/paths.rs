@@ -37,13 +37,10 @@ pub struct Replays<R: Robot> {
 pub(crate) fn arguments(command: Command) -> Command {
     let option = |name, value| Arg::new(name).long(name).value_name(value).value_parser(value_parser!(PathBuf));
     command
-        .arg(
-            option("paths", "FOLDER")
-                .help("Where the files are whose paths the plan replays [default: the current folder]"),
-        )
+        .arg(option("paths", "FOLDER").help("Folder of the paths that the plan replays [default: the current folder]"))
         .arg(
             option("record-path", "FILE.csv")
-                .help("Write down the headings and the speeds that are driven, as a path that a plan can replay"),
+                .help("File for the headings and speeds driven, as a path that a plan can replay"),
         )
 }
 

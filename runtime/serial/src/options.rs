@@ -8,7 +8,7 @@ use mdle_host::{Pace, Time};
 
 use crate::clock::Clock;
 
-/// Adds them.
+/// Adds the options of a robot on a serial line to `command`.
 #[must_use]
 pub fn arguments(command: Command) -> Command {
     command
@@ -16,54 +16,58 @@ pub fn arguments(command: Command) -> Command {
             Arg::new("device")
                 .long("device")
                 .value_name("PATH|tcp:ADDRESS:PORT")
-                .help("The robot's serial port, or where it listens [default: as the configuration says]"),
+                .help("Serial port or TCP address of the robot [default: `device` of the configuration]"),
         )
         .arg(
             Arg::new("config")
                 .long("config")
                 .value_name("FILE.toml")
-                .help("What is known of this robot; --print-config shows all that can be said")
+                .help("Configuration of the robot [default: that of --print-config]")
+                .long_help(
+                    "Configuration of the robot: device, limits, timeouts. `--print-config > FILE.toml` writes a file to \
+                     start from, with every value and its unit.",
+                )
                 .value_parser(value_parser!(PathBuf)),
         )
         .arg(
             Arg::new("print-config")
                 .long("print-config")
                 .action(ArgAction::SetTrue)
-                .help("Print the configuration, where each value came from, and end"),
+                .help("Print the configuration and the origin of each value, and exit"),
         )
         .arg(
             Arg::new("lockstep")
                 .long("lockstep")
                 .action(ArgAction::SetTrue)
-                .help("Make turns as fast as the robot answers: for an emulator in lockstep, never for a robot"),
+                .help("Take each turn as soon as the robot answers; for an emulator with --lockstep only"),
         )
 }
 
-/// The device, if it was given.
+/// Returns the value of `--device`, if it was given.
 #[must_use]
 pub fn device(matches: &ArgMatches) -> Option<&str> {
     matches.get_one::<String>("device").map(String::as_str)
 }
 
-/// The file of the configuration, if there is one.
+/// Returns the file of `--config`, if it was given.
 #[must_use]
 pub fn config(matches: &ArgMatches) -> Option<&Path> {
     matches.get_one::<PathBuf>("config").map(PathBuf::as_path)
 }
 
-/// Whether the configuration is to be printed.
+/// Returns `true` if `--print-config` was given.
 #[must_use]
 pub fn prints_config(matches: &ArgMatches) -> bool {
     matches.get_flag("print-config")
 }
 
-/// How time passes for the host.
+/// Returns the clock of the host: that of the computer, or as fast as possible with `--lockstep`.
 #[must_use]
 pub fn time(matches: &ArgMatches) -> Time {
     if matches.get_flag("lockstep") { Time::Stepped(Pace::Max) } else { Time::Wall }
 }
 
-/// How it passes for outputs.
+/// Returns the clock of the robot's outputs: that of the computer, or one `period` per turn with `--lockstep`.
 #[must_use]
 pub fn clock(matches: &ArgMatches, period: Duration) -> Clock {
     if matches.get_flag("lockstep") { Clock::Stepped(period) } else { Clock::Wall }

@@ -17,33 +17,37 @@ use crate::port::Port;
 use crate::serve::{Embodied, Emulated, Pace};
 use crate::several::{Seat, Several};
 
-/// The options that all emulated robots have.
+/// The options of all robot emulators.
 #[derive(Debug, Args)]
 pub struct Options {
-    /// The floor: office, maze, hall, room, or a TOML file.
+    /// World: office, maze, hall, room, or a TOML file
     #[arg(long, value_name = "NAME|FILE", default_value = "office")]
     world: String,
-    /// Where it stands, in metres and degrees [default: as the world says].
+    /// Start pose, in metres and degrees counter-clockwise [default: that of the world]
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
     start: Option<Start>,
-    /// Several robots in one world: the name of one and where it stands, once for each. They hear and touch each other, and
-    /// each has a device of its own; a --link has its name behind it, as in PATH-NAME.
+    /// Name and start pose of a robot; once per robot, for several robots in one world
+    ///
+    /// The robots hear and touch each other. Each has a device of its own; with --link PATH its link is PATH-NAME.
     #[arg(long, value_name = "NAME=X,Y,DEG", allow_hyphen_values = true, conflicts_with = "start")]
     robot: Vec<Named>,
-    /// What its errors are drawn by [default: no errors].
+    /// Random seed for sensor and wheel errors [default: no random errors]
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
-    /// Put a symbolic link to the device here.
+    /// Path for a symbolic link to the device
     #[arg(long, value_name = "PATH")]
     link: Option<PathBuf>,
-    /// Let the world pass on by so many milliseconds with each command, whatever the clock says. Several robots wait for
-    /// each other's commands, from when each has had a driver, as long as it has one.
+    /// Simulated time per command, in milliseconds, from 1 to 10000 [default: the time of the clock]
+    ///
+    /// A run in lockstep is the same each time. Once every robot has a driver, several robots wait for each other's commands.
     #[arg(long, value_name = "MS", value_parser = clap::value_parser!(u64).range(1..=10_000))]
     lockstep: Option<u64>,
-    /// What goes wrong, with all robots, so many seconds after the robot was switched on by the time of its world; may be given more than
-    /// once. On its line: noise, dribble (byte by byte), check (a bit of each frame is wrong), lose (two frames of three),
-    /// double, silence, close. With itself: stuck-wheel (the right one), dead-sonar (the one in front), bumper, emergency,
-    /// low-battery, plugged-in, no-pings, hang (it tells the same again and again), and filler, for robots that know it.
+    /// Fault to inject, and the time after which it begins, in seconds; repeatable
+    ///
+    /// On the line: noise, dribble (byte by byte), check (one wrong bit per frame), lose (two frames of three), double,
+    /// silence, close. In the robot: stuck-wheel (the right one), dead-sonar (the front ones), bumper, emergency, low-battery,
+    /// plugged-in, no-pings, hang (it repeats the same state), and filler on the ATRV-mini. The time is that of the simulated
+    /// world since the robot was switched on. A fault affects all robots.
     #[arg(long, value_name = "KIND@SECONDS")]
     fault: Vec<At>,
 }

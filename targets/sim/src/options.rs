@@ -1,4 +1,4 @@
-//! The options of this target: of its world, of how a run is shown and written down, and of several runs.
+//! The options of the simulator: its world, its outputs, and batches of runs.
 
 use std::num::{NonZeroU64, NonZeroUsize};
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ use crate::start::Start;
 use crate::start_noise::StartNoise;
 use crate::world::World;
 
-/// Adds the options to the executable's.
+/// Adds the options of the simulator to `command`.
 pub(crate) fn arguments(command: Command) -> Command {
     of_runs(of_outputs(of_the_world(command)))
 }
@@ -23,39 +23,49 @@ fn of_the_world(command: Command) -> Command {
     command
         .arg(
             option("world", "NAME|FILE")
-                .help("The floor: office, maze, hall, room, a TOML file, or a YAML map of ROS [default: office, the paper's]")
+                .help("World: office, maze, hall, room, a TOML file or a ROS map [default: office]")
+                .long_help(
+                    "World: `office` (the floor of the paper), `maze`, `hall` or `room`, a TOML file (the page \"Worlds\" of \
+                     the book has the format), or the YAML file of a ROS map [default: office]",
+                )
                 .value_parser(value_parser!(PathBuf)),
         )
         .arg(
             option("start", "X,Y,DEG")
-                .help("Where the robot starts, in metres and degrees [default: as the world says]")
+                .help("Start pose, in metres and degrees counter-clockwise [default: that of the world]")
                 .allow_hyphen_values(true),
         )
         .arg(
             option("start-noise", "M,DEG")
-                .help(
-                    "Start off that pose by chance: by up to so many metres along each axis, and degrees; needs a seed",
+                .help("Maximum random offset of the start pose, in metres and degrees; needs --seed")
+                .long_help(
+                    "Maximum random offset of the start pose: in metres along each axis, up to 100, and in degrees, up to \
+                     180. Needs --seed or --runs [default: 0,0]",
                 )
                 .allow_hyphen_values(true),
         )
         .arg(
-            option("body", "ideal|scout|atrv").help(
-                "What is simulated: `scout` and `atrv` have sonars and wheels as those robots do [default: ideal]",
+            option("body", "ideal|scout|atrv").help("Body to simulate: exact, or with the errors of a real robot [default: ideal]").long_help(
+                "Body to simulate. `ideal` has exact sonars and odometry. `scout` and `atrv` have the sonars and wheels of \
+                 those robots, whose errors --seed draws [default: ideal]",
             ),
         )
         .arg(
             option("without", "PART,…")
-                .help("Leave out lobe, specular, minimum, steps, noise, outliers, order or slip of the body"),
+                .help("Errors of the body to leave out, such as noise,slip").long_help(
+                "Errors of the body to leave out, separated by commas: lobe, specular, minimum, steps, noise, outliers, \
+                 order (sonars that fire in turn) and slip",
+            ),
         )
         .arg(
             option("seed", "N")
-                .help("What errors are drawn by: those of the sonars, and of wheels that slip [default: no errors]")
+                .help("Random seed for sensor and wheel errors [default: no random errors]")
                 .allow_negative_numbers(true)
                 .value_parser(value_parser!(u64)),
         )
         .arg(
             option("speed", "real|max|N")
-                .help("How fast time passes: as outside, as fast as possible, or N times as fast [default: real]")
+                .help("Speed of the simulated time: that of the clock, maximum, or N times the clock [default: real]")
                 .allow_negative_numbers(true),
         )
 }
@@ -66,21 +76,21 @@ fn of_outputs(command: Command) -> Command {
             Arg::new("watch")
                 .long("watch")
                 .action(ArgAction::SetTrue)
-                .help("Show the floor, the robot, the running atom and the timers while it runs, in this terminal"),
+                .help("Show the world, the robot, the running atom and the timers in this terminal"),
         )
         .arg(
             option("plot", "FILE.svg")
-                .help("Draw the floor, the way driven, where each atom began, and what was heard and touched")
+                .help("Picture of the run: world, trail, start of each atom, echoes and contacts")
                 .value_parser(value_parser!(PathBuf)),
         )
         .arg(
             option("record", "FILE.svg")
-                .help("Make a moving picture of the run, for a browser")
+                .help("Animated picture of the run, for a browser")
                 .value_parser(value_parser!(PathBuf)),
         )
         .arg(
             option("trail", "FILE.csv")
-                .help("Write down where the robot was in each turn: seconds, metres, degrees")
+                .help("File for the pose in each turn: seconds, metres, degrees")
                 .value_parser(value_parser!(PathBuf)),
         )
 }
@@ -89,9 +99,11 @@ fn of_runs(command: Command) -> Command {
     command
         .arg(
             option("runs", "N")
-                .help(
-                    "Run the plan N times, with a seed each from --seed on [default: 1], and say how many arrived; exit \
-                     status 0 if all did, 1 if not",
+                .help("Number of runs, with consecutive seeds; print how many arrived")
+                .long_help(
+                    "Number of runs, with consecutive seeds from --seed on [default: 1]. Prints how many arrived, bumped, \
+                     went astray or timed out, the durations, and for each run that did not arrive the command that \
+                     repeats it. Exit status 0 if all arrived, 1 if not",
                 )
                 .allow_negative_numbers(true)
                 .value_parser(value_parser!(u64).range(1..))
@@ -99,13 +111,13 @@ fn of_runs(command: Command) -> Command {
         )
         .arg(
             option("jobs", "N")
-                .help("How many runs are made at the same time; what comes out is the same [default: one a processor]")
+                .help("Number of parallel runs; results do not depend on it [default: number of processors]")
                 .allow_negative_numbers(true)
                 .value_parser(value_parser!(u64).range(1..=1024))
                 .requires("runs"),
         )
         .arg(
-            Arg::new("json").long("json").action(ArgAction::SetTrue).help("Say it as JSON, each run told").requires("runs"),
+            Arg::new("json").long("json").action(ArgAction::SetTrue).help("Print the results of --runs as JSON, with each run").requires("runs"),
         )
 }
 

@@ -27,7 +27,7 @@ const FASTEST_TURN: RadiansPerSecond = RadiansPerSecond(2.0);
 /// REPLACE by the options that your robot needs, such as the line that it is on.
 pub(crate) fn options(command: Command) -> Command {
     let speed = Arg::new("speed").long("speed").value_name("real|max").value_parser(["real", "max"]);
-    command.arg(speed.help("How fast time passes [default: real]"))
+    command.arg(speed.help("Speed of the simulated time: as fast as the clock, or as possible [default: real]"))
 }
 
 /// REPLACE by `Time::Wall`: only where nothing is real can time be hurried.

@@ -9,24 +9,35 @@ use crate::{Pace, Time};
 
 #[test]
 fn help_lists_all_options_and_opens_no_robot() {
-    let run = Stage::default().run(&["--help"]);
+    let run = Stage::default().run(&["-h"]);
     assert_eq!((run.status, &*run.err, &*run.journal), (0, "", ""));
     insta::assert_snapshot!(run.out, @"
-    Runs the plan Lab on the robot toy.
+    Run the plan Lab on the robot toy
 
     Usage: lab_tour [OPTIONS]
 
     Options:
-          --period <SECONDS>   Time from one turn to the next [default: 0.1]
-          --timeout <SECONDS>  Give up when the plan is not over at this time (exit status 4)
-          --turns <N>          Give up when the plan is not over after this many turns (exit status 4)
-          --log <FILE>         Write what happens, one JSON object a turn, as `mdlec trace` does
+          --period <SECONDS>   Period of the control loop, in seconds [default: 0.1]
+          --timeout <SECONDS>  Maximum duration of the plan, in seconds; exit status 4 after it [default: none]
+          --turns <N>          Maximum number of turns; exit status 4 after them [default: none]
+          --log <FILE>         File for a log of the run, one JSON object per turn, in the format of `mdlec trace`
           --device <PATH>      Where the toy is
-      -h, --help               Print help
+      -h, --help               Print help (see more with '--help')
 
-    Exit status: 0 the plan is over, 2 a bad option, world or start pose, 3 a fault stopped the robot,
-    4 timeout or turn limit, 129, 130 or 143 stopped by a signal. The robot is stopped in every case.
+    Exit status: 0 the plan ended, 2 invalid option, world or start pose, 3 a fault stopped the robot,
+    4 timeout or turn limit, 128+N terminated by signal N. The robot is stopped in every case.
     ");
+}
+
+#[test]
+fn long_help_lists_all_exit_statuses_and_opens_no_robot() {
+    let run = Stage::default().run(&["--help"]);
+    assert_eq!((run.status, &*run.err, &*run.journal), (0, "", ""));
+    let (_, statuses) = run.out.split_once("Exit status:\n").expect(&run.out);
+    for status in ["  0 ", "  2 ", "  3 ", "  4 ", "  128+N "] {
+        assert!(statuses.contains(status), "{status:?} is missing in {statuses}");
+    }
+    assert!(run.out.contains("in seconds, from 0.0001 to 60 [default: 0.1]"), "{}", run.out);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! `atrv-emulator`: an ATRV-mini on a pseudo-terminal, in a simulated world, for those who have none at hand.
+//! `atrv-emulator`: emulates an ATRV-mini on a pseudo-terminal, in a simulated world.
 #![forbid(unsafe_code)]
 
 use std::process::ExitCode;
@@ -8,12 +8,12 @@ use mdle_atrv_emulator::atrv::{Atrv, step};
 use mdle_emulator::{Options, program};
 use mdle_sim::Body;
 
-/// An ATRV-mini that is not there: its language on a pseudo-terminal, its body in a simulated world.
+/// Emulate an iRobot ATRV-mini on a pseudo-terminal, in a simulated world
 #[derive(Debug, Parser)]
 struct Arguments {
     #[command(flatten)]
     options: Options,
-    /// Understand values of 1B that are marked in commands; without it such a command is lost.
+    /// Accept escaped 1B bytes in commands; without this option such a command is lost
     #[arg(long)]
     marks: bool,
 }

@@ -1,4 +1,4 @@
-//! `scout-emulator`: a Super Scout on a pseudo-terminal, in a simulated world, for those who have none at hand.
+//! `scout-emulator`: emulates a Super Scout on a pseudo-terminal, in a simulated world.
 #![forbid(unsafe_code)]
 
 use std::process::ExitCode;
@@ -8,7 +8,7 @@ use mdle_emulator::{Options, Pace, program};
 use mdle_scout_emulator::scout::Scout;
 use mdle_sim::Body;
 
-/// A Super Scout that is not there: its language on a pseudo-terminal, its body in a simulated world.
+/// Emulate a Nomadic Super Scout on a pseudo-terminal, in a simulated world
 #[derive(Debug, Parser)]
 struct Arguments {
     #[command(flatten)]

@@ -1,0 +1,79 @@
+//! The texts of `--help`: one line per command and option, an imperative for a command and a noun phrase for an option.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fmt::Write as _;
+use std::fs;
+use std::process::{Command, Output};
+
+use mdle_tests::executable::{folder, run_mdlec};
+
+/// The commands of `mdlec`; the first is the bare form, which builds.
+const COMMANDS: [&str; 12] =
+    ["", "check", "fmt", "trace", "analyze", "draw", "decompile", "explain", "targets", "quarks", "bind", "new-target"];
+
+/// First words that make a reader ask what the line is about.
+const OPENERS: [&str; 13] =
+    ["What", "How", "Whether", "Where", "Which", "When", "Its", "The", "Says", "Lists", "Runs", "Finds", "Writes"];
+
+/// Help on standard output, with nothing on standard error.
+fn text(output: Output) -> String {
+    assert_eq!((output.status.code(), output.stderr.as_slice()), (Some(0), &b""[..]));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// The descriptions in a short help text: the right column of its lists.
+fn descriptions(help: &str) -> impl Iterator<Item = &str> {
+    let lines = help.lines().filter(|line| line.starts_with("  ") && !line.contains("Print help"));
+    lines.filter_map(|line| line.trim_start().split_once("  ").map(|(_, text)| text.trim()))
+}
+
+fn assert_plain(help: &str) {
+    let texts: Vec<_> = help.lines().take(1).chain(descriptions(help)).collect();
+    assert!(texts.len() >= 2, "{help}");
+    for text in texts {
+        let first = text.split([' ', ',', ':']).next().unwrap();
+        assert!(!OPENERS.contains(&first), "`{text}` begins with `{first}`");
+        assert!(first.starts_with(char::is_uppercase) && !text.ends_with('.'), "`{text}`");
+    }
+}
+
+#[test]
+fn every_command_describes_itself_in_a_line() {
+    let folder = folder("help");
+    let mut shown = String::new();
+    for command in COMMANDS {
+        let arguments: Vec<_> = [command, "-h"].into_iter().filter(|word| !word.is_empty()).collect();
+        let help = text(run_mdlec(&folder, &arguments));
+        assert_plain(&help);
+        writeln!(shown, "$ mdlec {}\n{help}", arguments.join(" ")).unwrap();
+    }
+    let listed = shown.split("Commands:\n").nth(1).unwrap().lines().take_while(|line| line.starts_with("  "));
+    let listed: Vec<_> = listed.filter_map(|line| line.split_whitespace().next()).collect();
+    assert_eq!(listed.split_last(), Some((&"help", &COMMANDS[1..])));
+    insta::assert_snapshot!(shown);
+}
+
+#[test]
+fn long_help_has_examples_and_exit_statuses() {
+    let help = text(run_mdlec(&folder("long_help"), &["--help"]));
+    insta::assert_snapshot!(help);
+}
+
+#[test]
+fn executables_describe_their_options_in_a_line() {
+    let folder = folder("help_of_executables");
+    fs::write(folder.join("rest.mdle"), "{ Rest (Atom (wait 1ms) stop) }\n").unwrap();
+    let mut shown = String::new();
+    for robot in ["sim", "scout"] {
+        let built = run_mdlec(&folder, &["rest.mdle", "--target", robot, "-o", robot]);
+        assert_eq!(built.status.code(), Some(0), "{}", String::from_utf8_lossy(&built.stderr));
+        for option in ["-h", "--help"] {
+            let help = text(Command::new(folder.join(robot)).arg(option).output().unwrap());
+            writeln!(shown, "$ ./{robot} {option}\n{help}").unwrap();
+            if option == "-h" {
+                assert_plain(&help);
+            }
+        }
+    }
+    insta::assert_snapshot!(shown);
+}
