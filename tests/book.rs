@@ -79,13 +79,30 @@ impl Walk<'_> {
                 let output = run_mdlec(&self.folder, &["quarks", "--target", target]);
                 assert!(output.status.success(), "{}: {}", self.page.path, said(&output));
             }
+            "diff" => self.patch(fence),
             "console" => fence.text.split("$ ").skip(1).for_each(|command| self.run(command)),
             "text" => self.compare(fence),
-            "rust" | "toml" => assert_eq!(name(self.page), "embedding.md", "tests/embed.rs builds what stands there"),
-            "csv" | "json" => drop(self.write(fence.file().unwrap(), fence)),
+            // Later commands of the page use these files; those of the two pages on applications, tests/embed.rs builds.
+            "csv" | "json" | "rust" | "toml" => drop(self.write(fence.file().unwrap(), fence)),
             "sh" => {}
             other => panic!("{}: what is `{other}`?", self.page.path),
         }
+    }
+
+    /// Replaces lines of a file, as a reader does: those marked `-` by those marked `+` after them.
+    fn patch(&self, fence: &Fence) {
+        let path = self.folder.join(fence.file().expect("a file to change"));
+        let mut text = fs::read_to_string(&path).unwrap();
+        for change in fence.text.split("\n\n") {
+            let lines = |mark| {
+                let lines = change.lines().filter_map(|line| line.strip_prefix(mark));
+                lines.fold(String::new(), |text, line| text + line + "\n")
+            };
+            let (before, after) = (lines('-'), lines('+'));
+            assert_eq!(text.matches(&before).count(), 1, "{}: {before}", self.page.path);
+            text = text.replace(&before, &after);
+        }
+        fs::write(path, text).unwrap();
     }
 
     /// Holds a file, if the block has one, to what the page says has become of it.

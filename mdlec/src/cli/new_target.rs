@@ -14,11 +14,12 @@ const NAME: &str = "template";
 const LONGEST: usize = 32;
 
 /// The files, but for `src/alphabet.rs`, which `bind` writes.
-const FILES: [(&str, &str); 5] = [
+const FILES: [(&str, &str); 6] = [
     ("Cargo.toml", include_str!("../../../targets/template/Cargo.toml")),
     ("alphabet.mdle", include_str!("../../../targets/template/alphabet.mdle")),
     ("src/lib.rs", include_str!("../../../targets/template/src/lib.rs")),
     ("src/hardware.rs", include_str!("../../../targets/template/src/hardware.rs")),
+    ("src/quarks.rs", include_str!("../../../targets/template/src/quarks.rs")),
     ("tests/conformance.rs", include_str!("../../../targets/template/tests/conformance.rs")),
 ];
 

@@ -3,6 +3,7 @@
 
 pub mod alphabet;
 mod hardware;
+pub mod quarks;
 
 use std::time::Duration;
 
@@ -14,11 +15,6 @@ use mdle_runtime::Robot;
 pub use mdle_runtime::Sensed as Output;
 /// The robot's input: a forward speed and a turn rate. Zero is the null input.
 pub use mdle_runtime::Twist as Input;
-
-/// The quarks that the alphabet declares itself. `go` is there for its ranges: its law is the shared one.
-pub mod quarks {
-    pub use mdle_atoms::Go;
-}
 
 /// What the host runs a plan on.
 #[derive(Debug, Clone, Copy)]
