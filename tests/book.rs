@@ -202,3 +202,18 @@ fn the_book_shows_every_plan_to_learn_from() {
         assert!(shown.contains(&format!("{{{{#include ../../plans/{file}}}}}")), "{file} is not in docs/src/plans.md");
     }
 }
+
+#[test]
+fn the_page_on_worlds_names_every_key() {
+    let page = pages().into_iter().find(|page| name(page) == "worlds.md").unwrap().text;
+    let format = fs::read_to_string(root().join("targets/sim/src/world_file/text.rs")).unwrap();
+    let obstacles = format.split("rename = \"").skip(1).filter_map(|rest| rest.split('"').next());
+    let obstacles: Vec<_> = obstacles.map(|kind| format!("`[[{kind}]]`")).collect();
+    let fields = format.lines().filter(|line| !line.contains("Vec<Table<") && !line.contains("Vec<Spanned<Table<"));
+    let keys = fields.filter_map(|line| line.trim().strip_prefix("pub(super) ")?.split_once(": "));
+    let keys: Vec<_> = keys.map(|(key, _)| format!("`{key}`")).collect();
+    assert!(obstacles.len() == 4 && keys.len() > 20, "{obstacles:?} {keys:?}");
+    for key in obstacles.iter().chain(&keys) {
+        assert!(page.contains(key), "docs/src/worlds.md does not name {key}");
+    }
+}
