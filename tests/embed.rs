@@ -1,4 +1,4 @@
-//! A plan in an application: its build script makes Rust of it, through the real cargo.
+//! The applications of the book, whose build scripts compile a plan: built and run by the real cargo.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -13,10 +13,15 @@ use mdle_tests::repository::root;
 /// Only one test at a time builds the application: its folder and its executable are the same for all.
 static BUILDING: Mutex<()> = Mutex::new(());
 
-/// The application of the book, which is that of `tests/application` with a manifest of its own, as a reader writes it.
+/// The application of `embedding.md`, which is that of `tests/application` with a manifest of its own.
 fn application() -> (PathBuf, Vec<Fence>) {
-    let folder = folder("application");
-    let page = pages().into_iter().find(|page| name(page) == "embedding.md").expect("a chapter");
+    written("application", "embedding.md")
+}
+
+/// Writes the application of a page, as a reader does.
+fn written(test: &str, chapter: &str) -> (PathBuf, Vec<Fence>) {
+    let folder = folder(test);
+    let page = pages().into_iter().find(|page| name(page) == chapter).expect("a chapter");
     let fences = fences(&page);
     for (file, fence) in fences.iter().filter_map(|fence| Some((fence.file()?, fence))) {
         let path = folder.join(file);
@@ -33,12 +38,12 @@ fn application() -> (PathBuf, Vec<Fence>) {
 
 /// Builds and runs it; what others have built for this workspace need not be built again.
 fn run(folder: &Path) -> Output {
-    cargo_run(folder, "--quiet")
+    cargo_run(folder, "--quiet", &["--speed", "max"])
 }
 
-fn cargo_run(folder: &Path, loudness: &str) -> Output {
+fn cargo_run(folder: &Path, loudness: &str, arguments: &[&str]) -> Output {
     let mut command = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()));
-    command.args(["run", "--offline", loudness, "--target-dir"]).arg(target()).args(["--", "--speed", "max"]);
+    command.args(["run", "--offline", loudness, "--target-dir"]).arg(target()).arg("--").args(arguments);
     command.current_dir(folder).output().expect("cargo runs")
 }
 
@@ -83,10 +88,20 @@ fn an_application_runs_its_plan_and_is_built_anew_when_a_file_of_it_changes() {
     // Mended, it is what it was, but for what cargo is told to show.
     change(&sides, "tern 90", "turn 180");
     change(&sides, "(null)", "(bumper)");
-    let output = cargo_run(&folder, "--color=never");
+    let output = cargo_run(&folder, "--color=never", &["--speed", "max"]);
     assert_eq!(output.status.code(), Some(0));
     let said = String::from_utf8(output.stderr).unwrap();
     insta::assert_snapshot!(said.lines().filter(|line| line.starts_with("warning: ")).collect::<Vec<_>>().join("\n"));
+}
+
+#[test]
+fn an_application_calls_its_plan_from_its_own_loop() {
+    let (folder, fences) = written("own_loop", "own_loop.md");
+    let output = cargo_run(&folder, "--quiet", &[]);
+    let (out, err) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());
+    assert_eq!((output.status.code(), err.as_str()), (Some(0), ""), "{out}");
+    let shown = fences.iter().find(|fence| fence.words == ["text", "output"]).expect("what it prints");
+    assert_eq!(format!("$ cargo run\n{out}"), shown.text);
 }
 
 #[test]
