@@ -1,9 +1,10 @@
-//! What the README shows is what there is.
+//! The README and ARCHITECTURE.md agree with the repository: the first plan, the first command, links and rooms.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
 
-use mdle_tests::repository::root;
+use mdle_tests::book::links;
+use mdle_tests::repository::{TextFile, files, root};
 
 fn readme() -> String {
     fs::read_to_string(root().join("README.md")).unwrap()
@@ -31,9 +32,46 @@ fn its_first_command_is_the_tour_that_is_tested() {
 }
 
 #[test]
-fn its_rooms_are_all_there() {
-    let readme = readme();
-    let rooms = readme.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next());
-    let missing: Vec<_> = rooms.filter(|room| !root().join(room).exists()).collect();
-    assert_eq!(missing, [""; 0]);
+fn it_is_two_screens_long() {
+    let lines = readme().lines().count();
+    assert!((60..=110).contains(&lines), "{lines} lines");
+}
+
+#[test]
+fn links_of_documents_outside_the_book_lead_to_files() {
+    let documents = files(&[".md"]).into_iter().filter(|file| !file.path.starts_with("docs/src/"));
+    let mut count = 0;
+    for document in documents {
+        for link in links(&document).into_iter().filter(|link| !link.starts_with("https://")) {
+            let path = link.split('#').next().unwrap_or_default();
+            assert!(folder(&document).join(path).exists(), "{}: {link}", document.path);
+            count += 1;
+        }
+    }
+    assert!(count > 10, "{count} links");
+}
+
+/// The folder that a document's links start from.
+fn folder(document: &TextFile) -> std::path::PathBuf {
+    root().join(&document.path).parent().unwrap().to_owned()
+}
+
+#[test]
+fn rooms_of_the_architecture_exist() {
+    let map = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    let rooms: Vec<_> = map.lines().filter_map(|line| line.strip_prefix("| `")?.split('`').next()).collect();
+    assert!(rooms.len() > 20, "{rooms:?}");
+    let missing: Vec<_> = rooms.iter().filter(|room| !root().join(room).exists()).collect();
+    assert!(missing.is_empty(), "{missing:?}");
+}
+
+#[test]
+fn the_architecture_names_every_room_of_the_compiler() {
+    let map = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    for entry in fs::read_dir(root().join("mdlec/src")).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        let room = if name.ends_with(".rs") { format!("`mdlec/src/{name}`") } else { format!("`mdlec/src/{name}/`") };
+        let is_room = !["lib.rs", "main.rs", "samples.rs", "diagnostic.rs"].contains(&name.as_str());
+        assert!(!is_room || map.contains(&room), "{room} is missing in ARCHITECTURE.md");
+    }
 }
