@@ -185,3 +185,19 @@ fn world(name: &str) -> Result<World, String> {
     let text = std::fs::read_to_string(name).map_err(|error| format!("--world {name}: {error}"))?;
     World::parse(name, &text).map_err(|error| error.to_string())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_option_is_described_in_a_line() {
+        let command = Options::augment_args(clap::Command::new("emulator"));
+        let helps: Vec<_> = command.get_arguments().map(|option| option.get_help().unwrap_or_default()).collect();
+        assert_eq!(helps.len(), 7);
+        for help in helps.iter().map(ToString::to_string) {
+            let is_phrase = help.starts_with(char::is_uppercase) && !help.ends_with('.');
+            assert!(is_phrase && (10..=100).contains(&help.len()), "{help}");
+        }
+    }
+}
