@@ -3,6 +3,7 @@
 //! For people who write a robot: [`Robot`], [`Output`] and the traits of [`capability`].
 //! For people who write a quark: [`Interrupt`], [`Control`], [`Law`] and [`Completes`].
 //! For generated code and for whoever runs it: [`fsm`], [`Cursor`], [`Plan`] and [`Machine`], whose turns [`trace`] writes down.
+//! For everything that shows text to people: [`Printable`].
 //!
 //! No allocation, no unsafe code, no path that panics: what is here runs in a robot's control loop.
 #![no_std]
@@ -23,6 +24,7 @@ mod memory;
 mod paths;
 mod plan;
 mod pose;
+mod printable;
 mod quark;
 mod robot;
 mod rows;
@@ -44,6 +46,7 @@ pub use memory::{MarkRow, Memories, Memory};
 pub use paths::{PathStore, Setpoint, StoredPath};
 pub use plan::{Cause, Ending, Next, Plan};
 pub use pose::{Frame, Pose, Twist};
+pub use printable::{Printable, PrintableLines, is_printable};
 pub use quark::{Begin, Completes, Control, Interrupt, Law};
 pub use robot::{Output, Robot};
 pub use rows::{Condition, Guard, InRows, LawRow, Rows, Texts};
