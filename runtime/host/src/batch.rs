@@ -10,7 +10,7 @@ use std::sync::mpsc::{Sender, channel};
 use std::thread;
 use std::time::Duration;
 
-use mdle_runtime::{Nanos, Plan};
+use mdle_runtime::{Nanos, Plan, PrintableLines};
 
 use crate::clock::{Clock, Instants};
 use crate::ending::Ending;
@@ -129,7 +129,8 @@ where
         timeout: terms.by_default(),
         program: terms.program,
     };
-    let written = if batch.json { writeln!(out, "{}", summary.json()) } else { write!(out, "{summary}") };
+    let written =
+        if batch.json { writeln!(out, "{}", summary.json()) } else { write!(out, "{}", PrintableLines(&summary)) };
     let status = match terms.signals.caught() {
         Some(signal) => 128 + signal.number(),
         None => summary.status(),

@@ -4,6 +4,8 @@ use std::fmt;
 use std::io::{self, Write};
 use std::time::Duration;
 
+use mdle_runtime::PrintableLines;
+
 use crate::Refusal;
 use crate::signals::Signal;
 
@@ -168,5 +170,5 @@ impl Refusal {
 /// Writes a line to standard error.
 pub(crate) fn say(err: &mut dyn Write, line: fmt::Arguments<'_>) {
     // When even that fails nobody is left to tell; the exit status still says it.
-    let _ = writeln!(err, "{line}").and_then(|()| err.flush());
+    let _ = writeln!(err, "{}", PrintableLines(line)).and_then(|()| err.flush());
 }

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::time::Duration;
 
-use mdle_runtime::Nanos;
+use mdle_runtime::{Nanos, Printable};
 
 use crate::report::Report;
 
@@ -35,7 +35,7 @@ impl<'e> Progress<'e> {
         self.clear();
         report.flush();
         let times = t.seconds() / now.as_secs_f64();
-        self.show(&format!("{:.1} s  {times:.0} times as fast as real  atom {state} {law}", t.seconds()));
+        self.show(&format!("{:.1} s  {times:.0} times as fast as real  atom {state} {}", t.seconds(), Printable(law)));
     }
 
     /// So many runs of all are done.

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::io::{self, Write};
 
-use mdle_runtime::{Nanos, Plan, Transition};
+use mdle_runtime::{Nanos, Plan, Printable, Transition};
 
 /// The report of a run; goes quiet when nobody reads it any more.
 pub(crate) struct Report<'a> {
@@ -34,9 +34,10 @@ impl<'a> Report<'a> {
                 (State::Closed(_), _) => return,
                 (State::Open, Some(atom)) => {
                     let (to, law) = (transition.to, plan.law(atom));
+                    let (law, cause) = (Printable(law), Printable(cause));
                     writeln!(self.out, "{}  atom {to} {law}  <- {cause}", Clocked(t))
                 }
-                (State::Open, None) => writeln!(self.out, "plan over: {cause}"),
+                (State::Open, None) => writeln!(self.out, "plan over: {}", Printable(cause)),
             };
             self.note(written);
         }

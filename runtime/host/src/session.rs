@@ -7,7 +7,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use clap::ArgMatches;
-use mdle_runtime::{PathStore, Plan, Robot};
+use mdle_runtime::{PathStore, Plan, PrintableLines, Robot};
 
 use crate::arguments::{self, Options};
 use crate::batch::{self, Batch, Terms};
@@ -189,7 +189,7 @@ fn unparsed<'o>(error: &clap::Error, out: impl FnOnce() -> Box<dyn Write + 'o>, 
 
 /// Prints what was asked for instead of a run. Nobody has to read it to the end.
 fn answered(answer: &str, out: &mut dyn Write) -> u8 {
-    let _ = write!(out, "{answer}").and_then(|()| out.flush());
+    let _ = write!(out, "{}", PrintableLines(answer)).and_then(|()| out.flush());
     ending::OVER
 }
 

@@ -1,5 +1,7 @@
 //! How large a plot is and where its parts lie, in pixels; both axes have one scale.
 
+use mdle_runtime::Printable;
+
 use super::shapes::Pixel;
 use super::things;
 use crate::trail::Trail;
@@ -125,11 +127,8 @@ fn lines(trail: &Trail) -> Vec<(String, String, String)> {
 
 /// A law as long as there is room for.
 pub(super) fn shortened(law: &str) -> String {
-    if law.chars().count() <= LAW_MOST {
-        law.to_owned()
-    } else {
-        law.chars().take(LAW_MOST - 1).chain(['…']).collect()
-    }
+    let law = Printable(law).to_string();
+    if law.chars().count() <= LAW_MOST { law } else { law.chars().take(LAW_MOST - 1).chain(['…']).collect() }
 }
 
 /// The step between the numbers of an axis: one, two or five times a power of ten, at least `least`.

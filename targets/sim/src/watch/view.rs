@@ -1,7 +1,7 @@
 //! The words around the map: time and place above it, the running atom and the scopes around it below.
 
 use mdle_host::{Around, Standing};
-use mdle_runtime::Pose;
+use mdle_runtime::{Pose, Printable};
 
 /// The most scopes that are shown: the outermost and the innermost count most.
 const SCOPES_MOST: usize = 4;
@@ -98,8 +98,9 @@ fn wait(condition: &str) -> Option<f64> {
 
 /// As much of a text as there is room for.
 fn cut(text: &str, room: usize) -> String {
+    let text = Printable(text).to_string();
     if text.chars().count() <= room {
-        text.to_owned()
+        text
     } else {
         text.chars().take(room.saturating_sub(1)).chain(['…']).take(room).collect()
     }
