@@ -1,6 +1,6 @@
 //! What the executable of a plan needs around its turns: arguments, clock, signals, safe stop, report and run log.
 //!
-//! For people who write a robot: [`Target`], [`Hosted`], [`Time`] and [`Refusal`], and [`Batch`] where it can be started over, [`Replays`] where it replays paths. For generated code: [`run`].
+//! For people who write a robot: [`Target`], [`Hosted`], [`Time`] and [`Refusal`], and [`Batch`] where it can be started over, [`Replays`] where it replays paths, [`read_file`] where its options name files. For generated code: [`run`].
 //!
 //! Whatever happens, the robot is stopped: when the plan is over, when an exchange fails, when code panics, when a
 //! signal comes, when a limit is reached.
@@ -10,6 +10,7 @@ mod arguments;
 mod batch;
 mod clock;
 mod ending;
+mod files;
 mod held;
 mod log;
 mod outlet;
@@ -32,6 +33,7 @@ use std::process::ExitCode;
 
 pub use batch::Batch;
 pub use clap;
+pub use files::{read_file, read_text};
 use mdle_runtime::{Plan, Robot};
 pub use paths::Replays;
 pub use target::{Around, Hosted, Judgement, Pace, Refusal, Standing, Target, Time};

@@ -6,8 +6,7 @@ mod tests;
 mod text;
 
 use std::collections::BTreeMap;
-use std::fs::{self, File};
-use std::io::{self, ErrorKind, Read as _};
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgMatches, Command, value_parser};
@@ -17,6 +16,7 @@ pub(crate) use record::Recorder;
 use text::{APART, Wrong};
 
 use crate::arguments::Options;
+use crate::files::read_file;
 use crate::log::Untouched;
 use crate::{Batch, Refusal, Target};
 
@@ -119,7 +119,7 @@ fn read(folder: Option<&Path>, name: &str, fastest: Twist) -> Result<Vec<Setpoin
     let file = if Path::new(name).extension().is_some() { name.to_owned() } else { format!("{name}.csv") };
     let place = folder.map_or_else(|| PathBuf::from(&file), |folder| folder.join(&file));
     let shown = place.display();
-    let found = fs::metadata(&place).map_err(|error| match (error.kind(), folder) {
+    let bytes = read_file(&place, LARGEST).map_err(|error| match (error.kind(), folder) {
         (ErrorKind::NotFound, None) => format!(
             "there is no file `{shown}` in the current folder, and the plan replays its path; \
              `--paths FOLDER` says where it is"
@@ -127,21 +127,8 @@ fn read(folder: Option<&Path>, name: &str, fastest: Twist) -> Result<Vec<Setpoin
         (ErrorKind::NotFound, Some(_)) => {
             format!("there is no file `{shown}`, and the plan replays its path; does --paths name the right folder?")
         }
-        _ => format!("the path {shown} cannot be read: {error}"),
+        _ => format!("the path {shown} cannot be read: {error}; expected a CSV file"),
     })?;
-    if found.is_dir() {
-        return Err(format!("the path {shown} is a folder; expected a CSV file"));
-    }
-    if !found.is_file() {
-        return Err(format!("the path {shown} is no regular file; expected a CSV file"));
-    }
-    let mut bytes = Vec::new();
-    let file = File::open(&place).and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes));
-    file.map_err(|error| format!("the path {shown} cannot be read: {error}"))?;
-    if bytes.len() as u64 > LARGEST {
-        let megabytes = LARGEST / 1_000_000;
-        return Err(format!("the path {shown} is larger than {megabytes} MB, which is the most; cut it in two"));
-    }
     let read = text::utf8(&bytes).and_then(|text| text::setpoints(text, fastest));
     read.map_err(|Wrong { place, what }| match place {
         Some((line, column)) => format!("{shown}:{line}:{column}: {what}"),

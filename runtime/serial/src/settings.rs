@@ -3,8 +3,12 @@
 use std::fmt::{self, Write as _};
 use std::path::Path;
 
+use mdle_host::read_text;
 use mdle_runtime::capability::Steering;
 use serde::de::DeserializeOwned;
+
+/// The largest configuration that is read, in bytes.
+const LARGEST: u64 = 1_000_000;
 
 /// A value with a few words on it, and where it came from.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -30,7 +34,7 @@ impl Settings {
     pub fn read<F: DeserializeOwned + Default>(file: Option<&Path>) -> Result<(F, Self), String> {
         let Some(path) = file else { return Ok((F::default(), Self::default())) };
         let name = path.display().to_string();
-        let text = std::fs::read_to_string(path).map_err(|error| format!("{name}: {error}"))?;
+        let text = read_text(path, LARGEST).map_err(|error| format!("{name}: {error}"))?;
         let said = toml::from_str(&text).map_err(|error| format!("{name}: {}", error.to_string().trim_end()))?;
         Ok((said, Self { file: Some(name), entries: Vec::new() }))
     }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use mdle_host::clap::parser::ValueSource;
 use mdle_host::clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use mdle_host::{Pace, Time};
+use mdle_host::{Pace, Time, read_file};
 
 use crate::model::{Body, PARTS};
 use crate::robot::Make;
@@ -13,6 +13,9 @@ use crate::ros_map::Header;
 use crate::start::Start;
 use crate::start_noise::StartNoise;
 use crate::world::World;
+
+/// The largest file of a world or a map that is read, in bytes.
+const LARGEST: u64 = 64_000_000;
 
 /// Adds the options of the simulator to `command`.
 pub(crate) fn arguments(command: Command) -> Command {
@@ -172,7 +175,7 @@ fn read(path: &Path) -> Result<World, String> {
 }
 
 fn bytes(path: &Path) -> Result<Vec<u8>, String> {
-    std::fs::read(path).map_err(|error| {
+    read_file(path, LARGEST).map_err(|error| {
         let shown = path.display();
         format!("--world {shown}: the file cannot be read: {error}; without --world it is the office floor")
     })
