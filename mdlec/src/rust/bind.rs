@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use mdle_runtime::Printable;
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 use syn::LitInt;
@@ -86,7 +87,7 @@ impl<'a> Bound<'a> {
     }
 
     pub(super) fn doc(&self) -> String {
-        format!(" `{}`: {}", signature(self.declaration), self.declaration.docs)
+        format!(" `{}`: {}", signature(self.declaration), Printable(&self.declaration.docs))
     }
 
     /// The names and types of its parameters.

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use mdle_runtime::Printable;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
@@ -137,7 +138,7 @@ impl<'a> Meaning<'a> {
         let constants = quarks.map(|((_, quark), constant)| {
             let kind = type_of(quark, &self.lowered.quarks);
             let value = made(quark, &self.lowered.quarks);
-            let doc = format!(" `{}`", quark.text);
+            let doc = format!(" `{}`", Printable(&quark.text));
             quote! {
                 #[doc = #doc]
                 const #constant: #kind = #value;
@@ -173,7 +174,7 @@ impl<'a> Meaning<'a> {
         let variants = self.atoms().map(|(atom, _, quark)| {
             let kind = quark_type(&quark.name, quark.overload);
             let variant = atom_variant(atom);
-            let doc = format!(" `{}`", atom_text(self.lowered, atom));
+            let doc = format!(" `{}`", atom_doc(self.lowered, atom));
             quote! {
                 #[doc = #doc]
                 #variant(<robot::#kind as runtime::Control<Output>>::Law)
@@ -265,12 +266,14 @@ impl<'a> Meaning<'a> {
     }
 }
 
-/// `FRAME 90 (Atom (bumper) stop)`: an atom as written.
-pub(super) fn atom_text(lowered: &Lowered, atom: usize) -> String {
+/// `FRAME 90 (Atom (bumper) stop)`: an atom as written, for a comment, in which Rust has no carriage return alone and
+/// nothing that turns text around.
+pub(super) fn atom_doc(lowered: &Lowered, atom: usize) -> String {
     let (law, bracket) = (&lowered.laws[atom], lowered.atoms[atom].scope as usize);
     let interrupt = lowered.scopes[bracket].as_ref().map(|scope| &scope.interrupt);
     let condition = interrupt.filter(|interrupt| !interrupt.removed).map_or("null", |interrupt| &interrupt.text);
-    format!("{}(Atom ({condition}) {})", frame_text(law.frame), lowered.quark(law.quark).text)
+    let law_text = &lowered.quark(law.quark).text;
+    format!("{}(Atom ({}) {})", frame_text(law.frame), Printable(condition), Printable(law_text))
 }
 
 /// Ends the scopes that this function asks for, before anything further inside is asked.

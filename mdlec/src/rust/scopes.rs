@@ -1,5 +1,6 @@
 //! When scopes end, as code: interrupts as expressions, and a function for each scope that asks the one around it first.
 
+use mdle_runtime::Printable;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
@@ -22,7 +23,7 @@ impl Meaning<'_> {
             });
             let order = if around.is_some() { ", and the scopes around it first" } else { "" };
             let name = if scope.name.is_empty() { "A scope without a name" } else { &scope.name };
-            let doc = format!(" {name} ({}){order}.", scope.interrupt.text);
+            let doc = format!(" {name} ({}){order}.", Printable(&scope.interrupt.text));
             Some(quote! {
                 #[doc = #doc]
                 fn #function(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> { #around #fired None }

@@ -5,7 +5,7 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
 use super::arguments::{angle, made, type_of};
-use super::code::{Parts, atom_text};
+use super::code::{Parts, atom_doc};
 use super::kinds::{Atoms, Kind, Part};
 use super::names::{Distinct, kind_table, kind_variant, quark_type};
 use super::scopes::{Constant, ending, expression, nanoseconds};
@@ -63,7 +63,7 @@ impl<'l> Shared<'l> {
 
     /// The first of a kind's atoms, as written.
     fn text(&self, kind: &Kind) -> String {
-        atom_text(self.lowered, kind.atoms[0])
+        atom_doc(self.lowered, kind.atoms[0])
     }
 
     /// The constants of an arm, in the order in which it writes them.
