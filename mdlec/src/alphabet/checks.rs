@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{AlphabetFile, Declaration, DeclarationKind};
+use super::{AlphabetFile, Declaration, DeclarationKind, Kind};
 use crate::diagnostic::{Code, Diagnostic};
 
 /// All that is wrong with the declarations.
@@ -10,12 +10,20 @@ pub(super) fn check(alphabet: &AlphabetFile) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     let mut met = BTreeSet::new();
     for declaration in &alphabet.declarations {
-        let kinds: Vec<_> = declaration.params.iter().map(|param| param.kind).collect();
-        if !met.insert((declaration.name.as_str(), kinds)) {
+        if !met.insert((declaration.name.as_str(), kinds_of(declaration))) {
             let message = format!("`{}` is declared twice with the same kinds of arguments", declaration.name);
             found.push(at(declaration, message));
         }
         check_params(declaration, &mut found);
+        if declaration.name == "wait"
+            && declaration.kind == DeclarationKind::Interrupt
+            && kinds_of(declaration) != [Kind::Time]
+        {
+            let message = "`wait` is the timer that each scope has: its one parameter is a time".into();
+            found.push(
+                at(declaration, message).help("write `interrupt wait(duration: time s)`, or choose another name"),
+            );
+        }
         let is_signal = declaration.kind == DeclarationKind::Signal;
         if is_signal != declaration.unit.is_some() {
             let message =
@@ -27,6 +35,10 @@ pub(super) fn check(alphabet: &AlphabetFile) -> Vec<Diagnostic> {
         }
     }
     found
+}
+
+fn kinds_of(declaration: &Declaration) -> Vec<Kind> {
+    declaration.params.iter().map(|param| param.kind).collect()
 }
 
 fn check_params(declaration: &Declaration, found: &mut Vec<Diagnostic>) {

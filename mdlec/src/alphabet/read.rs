@@ -80,7 +80,7 @@ impl<'t> Reader<'t> {
                 let name = self.name()?.0;
                 self.require(Token::Colon)?;
                 self.keyword("crate")?;
-                let crate_name = self.name()?.0;
+                let crate_name = self.crate_name()?;
                 let mut period = None;
                 while self.take(Token::Comma) {
                     self.keyword("period")?;
@@ -96,7 +96,7 @@ impl<'t> Reader<'t> {
 
     fn period(&mut self) -> Read<u64> {
         let (digits, span) = self.number()?;
-        let (word, unit_span) = self.name()?;
+        let (word, unit_span) = self.word()?;
         let unit = Unit::from_name(&word).filter(|unit| unit.kind == Kind::Time);
         let exact = unit.and_then(|unit| Some(Decimal::parse(&digits)?.scaled(unit.factor, unit.exponent)));
         match exact.and_then(|exact| exact.to_nanos()).filter(|nanos| *nanos > 0) {
@@ -221,7 +221,7 @@ impl<'t> Reader<'t> {
     }
 
     fn unit(&mut self, kind: Kind) -> Read<Unit> {
-        let (word, span) = self.name()?;
+        let (word, span) = self.word()?;
         match Unit::from_name(&word) {
             Some(unit) if unit.kind == kind => Ok(unit),
             Some(unit) => {
@@ -238,7 +238,7 @@ impl<'t> Reader<'t> {
             return Ok(None);
         }
         self.at += 1;
-        let (word, span) = self.name()?;
+        let (word, span) = self.word()?;
         let Some(unit) = Unit::from_name(&word) else {
             return self.defect(span, &format!("`{word}` is not a unit"), "");
         };
@@ -268,6 +268,27 @@ impl<'t> Reader<'t> {
     }
 
     fn name(&mut self) -> Read<(String, Span)> {
+        let (name, span) = self.word()?;
+        if name.contains('/') {
+            return self.defect(span, &format!("`{name}` cannot be a name"), "only units have a `/`");
+        }
+        Ok((name, span))
+    }
+
+    /// The name of a crate, as cargo and Rust have them.
+    fn crate_name(&mut self) -> Read<String> {
+        let (name, span) = self.word()?;
+        let is_ascii = name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
+        // A keyword that syn does not know yet.
+        let is_word_of_rust = name == "gen" || syn::parse_str::<syn::Ident>(&name).is_err();
+        if is_ascii && !is_word_of_rust {
+            return Ok(name);
+        }
+        let help = "take letters from a to z, digits and `_`, and no word of Rust's own, as in `crate rover_target`";
+        self.defect(span, &format!("`{name}` cannot be the name of a crate"), help)
+    }
+
+    fn word(&mut self) -> Read<(String, Span)> {
         self.text_of(Token::Word)
     }
 

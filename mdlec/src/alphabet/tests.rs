@@ -115,8 +115,27 @@ fn alphabets_that_make_no_sense() {
         "control f;",
         "alphabet a; control f(p speed); control; capability x; law g;",
         "target t : crate t, period 5m;",
+        "target t : crate x/y;",
+        "target t : crate größe;",
+        "target t : crate fn;",
+        "target t : crate _;",
+        "target t : crate gen;",
+        "target t : crate self, period 1s;",
+        "target x/y : crate t;",
+        "alphabet a; interrupt a/b; control f(m/s: speed m/s) needs x/y;",
+        "target t : crate t; interrupt wait(x: length);",
+        "target t : crate t; interrupt wait(x: time, y: time); interrupt wait;",
     ];
     insta::assert_snapshot!(texts.map(defects).join("\n════════\n"));
+}
+
+#[test]
+fn names_have_no_digits_but_decimal_ones() {
+    for text in ["target t : crate a²;", "target t : crate t; interrupt a①;"] {
+        let (_, diagnostics) = read(SourceId(0), text);
+        assert!(diagnostics.iter().any(|found| found.code == Code::E0101), "{text}: {diagnostics:?}");
+    }
+    assert_eq!(good("target t : crate t, period 1e-1s; control a٣(p: speed cm/s);").declarations[0].name, "a٣");
 }
 
 #[test]

@@ -11,7 +11,7 @@ pub(super) enum Token {
     #[regex(r"///[^\n]*", allow_greedy = true)]
     Doc,
     /// A name, a keyword or a unit such as `cm/s`.
-    #[regex(r"[\p{L}_][\p{L}\p{N}_]*(/[a-z]+)?")]
+    #[regex(r"[\p{L}_][\p{L}\p{Nd}_]*(/[a-z]+)?")]
     Word,
     /// A number; a unit may touch it.
     #[regex(r"[+-]?[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?")]
