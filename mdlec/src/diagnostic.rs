@@ -2,6 +2,7 @@
 
 mod explain;
 mod json;
+mod shown;
 mod sources;
 
 use std::fmt;

@@ -18,5 +18,5 @@ pub(super) fn analyze(options: &Analyze) -> Result<(), Failure> {
     build::compile_judged(&mut input, &target, options.name.as_deref(), options.deny_warnings, suspicious)?;
     // There is one plan then, or there was an error.
     let Some(analysis) = analysed else { return Err(Failure::PLAN) };
-    report::print(&if options.json { analysis.to_json() } else { analysis.to_text() })
+    if options.json { report::print_exactly(&analysis.to_json()) } else { report::print(&analysis.to_text()) }
 }

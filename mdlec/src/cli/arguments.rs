@@ -187,6 +187,16 @@ pub(super) enum EmitKind {
     Exe,
 }
 
+impl EmitKind {
+    /// Returns `true` if people rather than programs read this kind.
+    pub(super) fn is_for_people(self) -> bool {
+        match self {
+            Self::Tree | Self::Plan | Self::Nondegenerate | Self::Expanded | Self::Matrices | Self::Formal => true,
+            Self::Fsm | Self::Dot | Self::Mermaid | Self::Scxml | Self::Rust | Self::Exe => false,
+        }
+    }
+}
+
 impl Emit {
     fn parse(text: &str) -> Result<Self, String> {
         let (kind, file) = match text.split_once('=') {

@@ -1,8 +1,8 @@
 //! `mdlec bind`: a target's `src/alphabet.rs` from its `alphabet.mdle`.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::read::{self, LARGEST_PLAN};
 use super::{Bind, Failure, input, report};
 use crate::alphabet::Alphabet;
 use crate::{link, rust};
@@ -19,7 +19,7 @@ pub(super) fn bind(options: &Bind) -> Result<(), Failure> {
     }
     let text = rust::bind(&alphabet);
     let bound = bound(file);
-    if fs::read(&bound).is_ok_and(|found| found == text.as_bytes()) {
+    if read::file(&bound, LARGEST_PLAN).is_ok_and(|found| found == text.as_bytes()) {
         report::note(format_args!("{} is up to date", bound.display()));
         return Ok(());
     }
@@ -35,7 +35,8 @@ pub(super) fn bind(options: &Bind) -> Result<(), Failure> {
 /// Exit status 2 if the crate of the target in `folder` is not bound to this alphabet: nothing can be built for it.
 pub(super) fn must_be_bound(folder: &Path, alphabet: &Alphabet) -> Result<(), Failure> {
     let file = folder.join("alphabet.mdle");
-    let is_up_to_date = fs::read(bound(&file)).is_ok_and(|found| found == rust::bind(alphabet).as_bytes());
+    let is_up_to_date =
+        read::file(&bound(&file), LARGEST_PLAN).is_ok_and(|found| found == rust::bind(alphabet).as_bytes());
     if is_up_to_date { Ok(()) } else { Err(Failure::usage(out_of_date(&file))) }
 }
 

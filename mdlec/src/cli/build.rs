@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
+use mdle_runtime::Printable;
+
 use super::bind;
 use super::input::{self, Input, Target};
 use super::{Build, Emit, EmitKind, Failure, matrices, report};
@@ -45,7 +47,8 @@ pub(super) fn build(options: &Build) -> Result<(), Failure> {
     let text = stage(options, path, kind)?;
     match file {
         Some(file) => link::write_whole(&file, text.as_bytes()).map_err(|error| failure(&error)),
-        None => report::print(&text),
+        None if kind.is_for_people() => report::print(&text),
+        None => report::print_exactly(&text),
     }
 }
 
@@ -237,9 +240,9 @@ impl Shown {
         // A closed standard error has nobody to wait for the build.
         let _ = if out.is_terminal() {
             self.open = true;
-            write!(out, "\r\x1b[K{progress}")
+            write!(out, "\r\x1b[K{}", Printable(progress))
         } else if progress.is_first() {
-            writeln!(out, "{progress}")
+            writeln!(out, "{}", Printable(progress))
         } else {
             Ok(())
         };

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::read::LARGEST_DATA;
 use super::{Decompile, Failure, input, report};
 use crate::diagnostic::Sources;
 use crate::syntax;
@@ -13,7 +14,7 @@ const SHOWN: usize = 12;
 /// Prints the plan of a machine, or how the paper's own conditions judge it.
 pub(super) fn decompile(options: &Decompile) -> Result<(), Failure> {
     let file = options.machine.display();
-    let text = input::read_text(&options.machine)?;
+    let text = input::read_text(&options.machine, LARGEST_DATA)?;
     let machine = read(&text).map_err(|error| {
         let line = error.line.map(|line| format!("{line}:")).unwrap_or_default();
         refused(format!("{file}:{line} {}", error.message))

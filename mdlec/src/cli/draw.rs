@@ -13,7 +13,7 @@ pub(super) fn draw(options: &Draw) -> Result<(), Failure> {
         Failure::PLAN
     })?;
     match &options.output {
-        None => report::print(&drawn),
+        None => report::print_exactly(&drawn),
         Some(file) => link::write_whole(file, drawn.as_bytes())
             .map_err(|error| Failure { status: error.exit_status(), message: Some(error.to_string()) }),
     }

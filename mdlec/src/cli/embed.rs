@@ -29,5 +29,5 @@ fn write(file: &Path, target: Option<&str>, plan: Option<&str>) -> Result<(), Fa
     let of_target =
         target.folder.iter().flat_map(|folder| ["alphabet.mdle", "src/alphabet.rs"].map(|file| folder.join(file)));
     let read = input.files().map(Path::to_owned).chain(of_target);
-    report::print(&read.map(|file| format!("cargo::rerun-if-changed={}\n", file.display())).collect::<String>())
+    report::print_exactly(&read.map(|file| format!("cargo::rerun-if-changed={}\n", file.display())).collect::<String>())
 }

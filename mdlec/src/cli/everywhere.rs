@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::check::each;
 use super::input::{self, Target};
+use super::read::LARGEST_PLAN;
 use super::{Check, Failure, report};
 use crate::diagnostic::{Severity, has_errors};
 use crate::link;
@@ -24,7 +25,7 @@ pub(super) fn everywhere(options: &Check) -> Result<(), Failure> {
     let robots = names.map(|name| Ok((name, input::target(Some(name))?))).collect::<Result<Vec<_>, Failure>>()?;
     let mut rows = Vec::new();
     let checked = each(&options.plans, |path| {
-        let text = input::read_text(path)?;
+        let text = input::read_text(path, LARGEST_PLAN)?;
         let mut plan = input::plan(path, text.clone(), &everything)?;
         let found = plan.check(&everything.alphabet);
         let good = report::diagnostics(&plan.sources, &found, options.deny_warnings);

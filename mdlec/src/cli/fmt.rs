@@ -1,9 +1,11 @@
 //! `mdlec fmt`: plans in the one canonical layout.
 
 use std::fs;
+use std::io::{self, IsTerminal};
 use std::path::Path;
 
 use super::check::each;
+use super::read::LARGEST_PLAN;
 use super::{Failure, Fmt, input, report};
 use crate::diagnostic::Sources;
 use crate::{link, syntax};
@@ -11,13 +13,15 @@ use crate::{link, syntax};
 /// Lays out each file anew, or lists those that are laid out differently. A file with errors stays as it is.
 pub(super) fn fmt(options: &Fmt) -> Result<(), Failure> {
     each(&options.plans, |path| {
-        let text = input::read_text(path)?;
+        let text = input::read_text(path, LARGEST_PLAN)?;
         let formatted = formatted(path, text.clone())?;
         if options.check {
             return if formatted == text { Ok(()) } else { differs(path) };
         }
         if path == Path::new("-") {
-            return report::print(&formatted);
+            // The text is the user's own, and an editor wants it back as it was; a terminal is not to obey it.
+            let is_terminal = io::stdout().is_terminal();
+            return if is_terminal { report::print(&formatted) } else { report::print_exactly(&formatted) };
         }
         if formatted == text { Ok(()) } else { write(path, &formatted) }
     })

@@ -1,15 +1,14 @@
 //! Reads plans and alphabets: the files a command works on.
 
 use std::collections::BTreeMap;
-use std::fs;
-use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
-use super::{Failure, report};
+use super::{Failure, read, report};
 use crate::alphabet::{self, Alphabet, AlphabetFile, Declaration, DeclarationKind};
 use crate::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
 use crate::plan::signature;
 use crate::{Compiled, check_with, compile_with, link, syntax};
+use read::Unread;
 
 /// The robot that plans are checked against.
 pub(super) struct Target {
@@ -62,18 +61,12 @@ impl syntax::Loader for Input {
         let folder = self.paths.get(&from).and_then(|path| path.parent()).unwrap_or(Path::new(""));
         let file = folder.join(path);
         let name = file.display().to_string();
-        let refused = |error: io::Error| {
-            let is_missing = error.kind() == io::ErrorKind::NotFound;
-            if is_missing { format!("there is no file `{name}`") } else { format!("`{name}` cannot be read: {error}") }
-        };
-        let place = file.canonicalize().map_err(refused)?;
+        let refused = |why: Unread| if why.is_missing() { format!("there is no file `{name}`") } else { why.of(&name) };
+        let place = file.canonicalize().map_err(|error| refused(Unread::System(error)))?;
         if let Some(source) = self.read.get(&place) {
             return Ok(*source);
         }
-        if place.is_dir() {
-            return Err(format!("`{name}` is a folder, and a file has to stand here"));
-        }
-        let bytes = fs::read(&place).map_err(refused)?;
+        let bytes = read::file(&place, read::LARGEST_PLAN).map_err(refused)?;
         if let Some(refusal) = self.sources.refusal(&name, bytes.len()) {
             return Err(refusal);
         }
@@ -105,7 +98,7 @@ pub(super) fn target(option: Option<&str>) -> Result<Target, Failure> {
         return Err(unknown_target(name));
     }
     let file = folder.join("alphabet.mdle");
-    let text = read_text(&file)?;
+    let text = read_text(&file, read::LARGEST_PLAN)?;
     let mut target = read_alphabets(Some((file.display().to_string(), text)), name)?;
     target.folder = Some(folder.to_owned());
     Ok(target)
@@ -114,13 +107,13 @@ pub(super) fn target(option: Option<&str>) -> Result<Target, Failure> {
 /// The alphabet of this file, with the shared ones that it uses.
 pub(super) fn alphabet(file: &Path) -> Result<Alphabet, Failure> {
     let name = file.display().to_string();
-    let text = read_text(file)?;
+    let text = read_text(file, read::LARGEST_PLAN)?;
     read_alphabets(Some((name.clone(), text)), &name).map(|target| target.alphabet)
 }
 
 /// Reads a plan file; `-` is standard input.
 pub(super) fn read_plan(path: &Path, target: &Target) -> Result<Input, Failure> {
-    plan(path, read_text(path)?, target)
+    plan(path, read_text(path, read::LARGEST_PLAN)?, target)
 }
 
 /// A plan file that was read.
@@ -149,27 +142,21 @@ fn shown(path: &Path) -> String {
     if path == Path::new("-") { "standard input".into() } else { path.display().to_string() }
 }
 
-/// Reads a text file, or standard input for `-`.
-pub(super) fn read_text(path: &Path) -> Result<String, Failure> {
-    let name = path.display();
-    let bytes = if path == Path::new("-") {
-        let mut bytes = Vec::new();
-        io::stdin().lock().read_to_end(&mut bytes).map(|_| bytes)
-    } else if path.is_dir() {
-        return Err(Failure::usage(format!("`{name}` is a folder, and a file has to stand here")));
-    } else {
-        fs::read(path)
-    };
-    let bytes = bytes.map_err(|error| {
-        Failure::usage(if error.kind() == io::ErrorKind::NotFound {
+/// Reads a text file of at most `most` bytes, or standard input for `-`.
+pub(super) fn read_text(path: &Path, most: u64) -> Result<String, Failure> {
+    let name = shown(path);
+    let is_input = path == Path::new("-");
+    let bytes = if is_input { read::standard_input(most) } else { read::file(path, most) };
+    let bytes = bytes.map_err(|why| {
+        Failure::usage(if why.is_missing() {
             format!("there is no file `{name}`{}", plan_nearby(path))
         } else {
-            format!("cannot read `{name}`: {error}")
+            why.of(&name) + why.help()
         })
     })?;
     String::from_utf8(without_mark(bytes)).map_err(|error| {
         let valid = error.utf8_error().valid_up_to();
-        let (sources, found) = report::not_utf8(&name.to_string(), error.as_bytes(), valid);
+        let (sources, found) = report::not_utf8(&name, error.as_bytes(), valid);
         report::diagnostics(&sources, &[found], false);
         Failure::PLAN
     })
@@ -186,10 +173,14 @@ pub(super) fn print_targets() -> Result<(), Failure> {
     report::print(&text)
 }
 
+/// Signatures of more letters do not make the column wide in which signatures are.
+const WIDEST: usize = 100;
+
 /// `mdlec quarks`.
 pub(super) fn print_quarks(option: Option<&str>) -> Result<(), Failure> {
     let target = target(option)?;
-    let width = target.alphabet.declarations().map(|declaration| signature(declaration).len()).max().unwrap_or(0);
+    let widths = target.alphabet.declarations().map(|declaration| signature(declaration).chars().count());
+    let width = widths.filter(|width| *width <= WIDEST).max().unwrap_or(0);
     let mut text = String::new();
     for (kind, title) in [
         (DeclarationKind::Interrupt, "interrupts"),

@@ -14,6 +14,7 @@ mod fmt;
 mod input;
 mod matrices;
 mod new_target;
+mod read;
 mod report;
 mod trace;
 

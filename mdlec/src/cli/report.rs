@@ -1,11 +1,14 @@
 //! What is said on standard error and printed on standard output.
 
+use std::env;
+use std::ffi::OsString;
 use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 use std::sync::OnceLock;
 
 use codespan_reporting::term;
 use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
+use mdle_runtime::{Printable, PrintableLines, is_printable};
 
 use super::{Failure, MessageFormat};
 use crate::diagnostic::{Code, Diagnostic, Message, Severity, Sources, Span, has_errors};
@@ -99,7 +102,7 @@ fn warn_cargo(warning: &Message<'_>) {
     let help: String = warning.help.iter().map(|help| format!("; help: {help}")).collect();
     let text = format!("{}{}{help} [{}]", place.unwrap_or_default(), warning.message, warning.code.unwrap_or_default());
     // Nobody is left to be told when standard output is closed.
-    let _ = writeln!(io::stdout().lock(), "cargo::warning={}", text.replace(char::is_control, " "));
+    let _ = writeln!(io::stdout().lock(), "cargo::warning={}", Printable(text));
 }
 
 /// The diagnostic of a file that is not text, with the file as far as it can be shown; its first `valid` bytes are good.
@@ -118,7 +121,7 @@ pub(super) fn error(message: &str) {
     if is_json() {
         return line(&Message::plain("error", message));
     }
-    let _ = writeln!(io::stderr().lock(), "error: {message}");
+    let _ = writeln!(io::stderr().lock(), "error: {}", PrintableLines(message));
 }
 
 /// Says something that is no error.
@@ -126,11 +129,16 @@ pub(super) fn note(message: impl Display) {
     if is_json() {
         return line(&Message::plain("note", &message.to_string()));
     }
-    let _ = writeln!(io::stderr().lock(), "{message}");
+    let _ = writeln!(io::stderr().lock(), "{}", PrintableLines(message));
 }
 
-/// Prints to standard output; a reader that went away is no error.
+/// Prints text for people to standard output, nothing in it that a terminal obeys; a reader that went away is no error.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
+    print_exactly(&PrintableLines(text).to_string())
+}
+
+/// Prints text for programs to standard output as it is; a reader that went away is no error.
+pub(super) fn print_exactly(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     printed(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
 }
@@ -147,7 +155,14 @@ pub(super) fn printed(result: io::Result<()>) -> Result<(), Failure> {
 
 /// Gives the answer of the command line itself: help and version, which were asked for, or what is wrong with the usage.
 pub(super) fn answer(answer: &clap::Error) -> Result<(), Failure> {
-    let result = answer.print();
+    // Only the arguments can have brought what a terminal would obey; beside its colours it could not be told from them.
+    let is_plain = |argument: OsString| argument.to_string_lossy().chars().all(is_printable);
+    let result = if env::args_os().all(is_plain) {
+        answer.print()
+    } else {
+        let text = PrintableLines(answer.render()).to_string();
+        if answer.use_stderr() { write!(io::stderr(), "{text}") } else { write!(io::stdout(), "{text}") }
+    };
     if answer.use_stderr() { Err(Failure { status: 2, message: None }) } else { printed(result) }
 }
 

@@ -2,6 +2,7 @@
 
 use std::io::{self, BufWriter, Write};
 
+use super::read::LARGEST_DATA;
 use super::{Failure, Machine, Trace, input, report};
 use crate::trace::{Counted, Line, MatrixProduct, Script, Table, Tree, run};
 
@@ -13,7 +14,7 @@ pub(super) fn trace(options: &Trace) -> Result<(), Failure> {
     let target = input::target(options.target.as_deref())?;
     let mut input = input::read_plan(&options.plan, &target)?;
     let compiled = super::build::compile_one(&mut input, &target, options.name.as_deref(), false)?;
-    let text = input::read_text(&options.script)?;
+    let text = input::read_text(&options.script, LARGEST_DATA)?;
     let script = Script::read(&text)
         .map_err(|error| Failure::usage(format!("{}:{}: {}", options.script.display(), error.line, error.message)))?;
     let too_large = |found| {

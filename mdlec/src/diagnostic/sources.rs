@@ -4,18 +4,27 @@ use std::cell::Cell;
 use std::ops::Range;
 
 use codespan_reporting::diagnostic as report;
-use codespan_reporting::files::{Error as FilesError, Files, SimpleFile};
+use codespan_reporting::files::{Error as FilesError, Files, SimpleFile, column_index};
 use codespan_reporting::term;
+use mdle_runtime::{Printable, PrintableLines};
 
+use super::shown::Shown;
 use super::{Diagnostic, Label, Severity, SourceId, Span};
 
 /// The files that spans point into.
 #[derive(Debug, Default)]
 pub struct Sources {
     /// In the order in which they begin.
-    files: Vec<(SourceId, SimpleFile<String, String>)>,
+    files: Vec<(SourceId, File)>,
     /// The place that was looked for last.
     last: Cell<Option<Known>>,
+}
+
+/// A file as it is written, and as it is shown where that differs.
+#[derive(Debug)]
+struct File {
+    written: SimpleFile<String, String>,
+    shown: Option<Shown>,
 }
 
 /// A place whose line and column are known; both count from 1 here.
@@ -33,14 +42,15 @@ impl Sources {
 
     /// Takes in a file for which there is [room](Self::refusal): the name that messages show, and its text.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> SourceId {
-        let id = self.next();
-        self.files.push((id, SimpleFile::new(name.into(), text.into())));
+        let (id, name, text) = (self.next(), name.into(), text.into());
+        let shown = Shown::of(&name, &text);
+        self.files.push((id, File { written: SimpleFile::new(name, text), shown }));
         id
     }
 
     /// Where the next file begins. One byte is between two files: what stands at the end of one is not in the next.
     fn next(&self) -> SourceId {
-        SourceId(self.files.last().map_or(0, |(last, file)| Span::new(*last, 0, file.source().len() + 1).end))
+        SourceId(self.files.last().map_or(0, |(last, file)| Span::new(*last, 0, file.written.source().len() + 1).end))
     }
 
     /// Why a file of so many bytes cannot be taken in, if it cannot.
@@ -59,7 +69,7 @@ impl Sources {
     }
 
     /// The file that holds this byte.
-    fn file(&self, byte: u32) -> Option<&(SourceId, SimpleFile<String, String>)> {
+    fn file(&self, byte: u32) -> Option<&(SourceId, File)> {
         let behind = self.files.partition_point(|(id, _)| id.0 <= byte);
         self.files.get(behind.checked_sub(1)?)
     }
@@ -75,7 +85,7 @@ impl Sources {
     /// Counted from the place before, where that is in the same line: a file may be one line with a mistake at every word.
     pub(super) fn line_and_column(&self, source: SourceId, byte: usize) -> (usize, usize) {
         let known = self.place_near(source, byte).or_else(|| {
-            let at = self.location(source, byte).ok()?;
+            let at = self.written(source)?.location((), byte).ok()?;
             Some(Known { source, byte, line: at.line_number, column: at.column_number })
         });
         self.last.set(known);
@@ -85,7 +95,8 @@ impl Sources {
     /// The place of a byte in the line of the place before.
     fn place_near(&self, source: SourceId, byte: usize) -> Option<Known> {
         let last = self.last.get().filter(|last| last.source == source)?;
-        let line = self.line_index(source, byte).ok().map(|line| line + 1).filter(|line| *line == last.line)?;
+        let line = self.written(source)?.line_index((), byte).ok();
+        let line = line.map(|line| line + 1).filter(|line| *line == last.line)?;
         let between = self.text(source).get(last.byte.min(byte)..last.byte.max(byte))?.chars().count();
         let column = if byte < last.byte { last.column.checked_sub(between)? } else { last.column + between };
         Some(Known { source, byte, line, column })
@@ -96,7 +107,8 @@ impl Sources {
     pub fn shown(&self, diagnostic: &Diagnostic) -> usize {
         let lines = |label: &Label| {
             let (source, range) = self.range(label.span);
-            let line = |byte| self.line_index(source, byte).and_then(|line| self.line_range(source, line)).ok();
+            let file = self.written(source)?;
+            let line = |byte| file.line_index((), byte).and_then(|line| file.line_range((), line)).ok();
             Some(line(range.end)?.end.saturating_sub(line(range.start)?.start))
         };
         diagnostic.labels.iter().filter_map(lines).sum()
@@ -105,20 +117,36 @@ impl Sources {
     /// The text of a file.
     #[must_use]
     pub fn text(&self, source: SourceId) -> &str {
-        self.file(source.0).map_or("", |(_, file)| file.source().as_str())
+        self.written(source).map_or("", |file| file.source().as_str())
     }
 
     /// The name of a file.
     #[must_use]
     pub fn name(&self, source: SourceId) -> &str {
-        self.file(source.0).map_or("", |(_, file)| file.name().as_str())
+        self.written(source).map_or("", |file| file.name().as_str())
+    }
+
+    fn written(&self, source: SourceId) -> Option<&SimpleFile<String, String>> {
+        self.file(source.0).map(|(_, file)| &file.written)
+    }
+
+    /// A file as it is shown.
+    fn shown_file(&self, source: SourceId) -> Result<&SimpleFile<String, String>, FilesError> {
+        let (_, file) = self.file(source.0).ok_or(FilesError::FileMissing)?;
+        Ok(file.shown.as_ref().map_or(&file.written, |shown| &shown.file))
+    }
+
+    /// Where a byte of a file is shown.
+    fn shown_place(&self, source: SourceId, byte: usize) -> usize {
+        let shown = self.file(source.0).and_then(|(_, file)| file.shown.as_ref());
+        shown.map_or(byte, |shown| shown.place(byte))
     }
 
     /// The diagnostic as plain text, as a terminal without colours shows it.
     #[must_use]
     pub fn render(&self, diagnostic: &Diagnostic) -> String {
         term::emit_into_string(&term::Config::default(), self, &self.report(diagnostic))
-            .unwrap_or_else(|_| format!("{}: {}\n", diagnostic.code, diagnostic.message))
+            .unwrap_or_else(|_| format!("{}: {}\n", diagnostic.code, PrintableLines(&diagnostic.message)))
     }
 
     /// The diagnostic as codespan-reporting takes it, for a terminal with colours.
@@ -131,35 +159,43 @@ impl Sources {
         let labels = diagnostic.labels.iter().map(|label| {
             let style = if label.primary { report::LabelStyle::Primary } else { report::LabelStyle::Secondary };
             let (source, range) = self.range(label.span);
-            report::Label::new(style, source, range).with_message(&label.text)
+            let range = self.shown_place(source, range.start)..self.shown_place(source, range.end);
+            report::Label::new(style, source, range).with_message(PrintableLines(&label.text).to_string())
         });
         report::Diagnostic::new(severity)
             .with_code(diagnostic.code.name())
-            .with_message(&diagnostic.message)
+            .with_message(PrintableLines(&diagnostic.message).to_string())
             .with_labels(labels.collect())
-            .with_notes(diagnostic.help.iter().map(|help| format!("help: {help}")).collect())
+            .with_notes(diagnostic.help.iter().map(|help| format!("help: {}", PrintableLines(help))).collect())
     }
 }
 
+/// The files as they are shown, with the columns that they have as they are written.
 impl<'a> Files<'a> for Sources {
     type FileId = SourceId;
-    type Name = &'a str;
+    type Name = Printable<&'a str>;
     type Source = &'a str;
 
-    fn name(&'a self, id: SourceId) -> Result<&'a str, FilesError> {
-        self.file(id.0).map(|(_, file)| file.name().as_str()).ok_or(FilesError::FileMissing)
+    fn name(&'a self, id: SourceId) -> Result<Printable<&'a str>, FilesError> {
+        self.shown_file(id).map(|file| Printable(file.name().as_str()))
     }
 
     fn source(&'a self, id: SourceId) -> Result<&'a str, FilesError> {
-        self.file(id.0).map(|(_, file)| file.source().as_str()).ok_or(FilesError::FileMissing)
+        self.shown_file(id).map(|file| file.source().as_str())
     }
 
     fn line_index(&'a self, id: SourceId, byte: usize) -> Result<usize, FilesError> {
-        self.file(id.0).ok_or(FilesError::FileMissing)?.1.line_index((), byte)
+        self.shown_file(id)?.line_index((), byte)
     }
 
-    fn line_range(&'a self, id: SourceId, line: usize) -> Result<std::ops::Range<usize>, FilesError> {
-        self.file(id.0).ok_or(FilesError::FileMissing)?.1.line_range((), line)
+    fn line_range(&'a self, id: SourceId, line: usize) -> Result<Range<usize>, FilesError> {
+        self.shown_file(id)?.line_range((), line)
+    }
+
+    fn column_number(&'a self, id: SourceId, line: usize, byte: usize) -> Result<usize, FilesError> {
+        let (_, file) = self.file(id.0).ok_or(FilesError::FileMissing)?;
+        let byte = file.shown.as_ref().map_or(byte, |shown| shown.origin(byte));
+        Ok(column_index(file.written.source(), file.written.line_range((), line)?, byte) + 1)
     }
 }
 
@@ -205,9 +241,35 @@ mod tests {
         for before in &places {
             for (source, byte) in &places {
                 sources.line_and_column(before.0, before.1);
-                let at = sources.location(*source, *byte).unwrap();
+                let at = sources.written(*source).unwrap().location((), *byte).unwrap();
                 assert_eq!(sources.line_and_column(*source, *byte), (at.line_number, at.column_number));
             }
         }
+    }
+
+    #[test]
+    fn places_stay_where_unprintable_characters_are_shown() {
+        let mut sources = Sources::default();
+        let text = "{ P\r\n  \"\u{1b}[2J\u{202e}\" stöp\t\u{7}x }\n";
+        let source = sources.add("a\u{1b}\u{2066}.mdle", text);
+        let at = text.find("stöp").unwrap();
+        let found =
+            Diagnostic::new(super::super::Code::E0201, "no `\u{1b}`", Span::new(source, at, at + 5), "\u{7}here")
+                .also(Span::new(source, text.find('x').unwrap(), text.find('x').unwrap() + 1), "\u{202e}")
+                .help("a\rb");
+        let place = &sources.message(&found).spans[0];
+        assert_eq!((place.line, place.column, place.end_column), (2, 11, 15));
+        let shown: Vec<_> = sources.render(&found).lines().map(|line| line.trim_end().to_owned()).collect();
+        insta::assert_snapshot!(shown.join("\n"), @r#"
+        error[E0201]: no `U+001B`
+          ┌─ aU+001BU+2066.mdle:2:11
+          │
+        2 │   "U+001B[2JU+202E" stöp    U+0007x }
+          │                     ^^^^          - U+202E
+          │                     │
+          │                     U+0007here
+          │
+          = help: aU+000Db
+        "#);
     }
 }

@@ -1,6 +1,7 @@
 //! A plan for Graphviz: scopes and loops as clusters, atoms as nodes, exits as edges.
 
 use mdle_runtime::fsm::Bracket;
+use mdle_runtime::{Printable, is_printable};
 
 use super::exits::{Exit, exits};
 use super::measure::wrapped;
@@ -170,7 +171,7 @@ fn escaped(text: &str) -> String {
             '\\' => escaped.push_str("\\\\"),
             '&' => escaped.push_str("&amp;"),
             '\n' => escaped.push_str("\\n"),
-            letter if letter.is_control() => escaped.push('\u{FFFD}'),
+            letter if !is_printable(letter) => escaped += &Printable(letter).to_string(),
             letter => escaped.push(letter),
         }
     }

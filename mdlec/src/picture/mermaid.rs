@@ -3,6 +3,8 @@
 //! In mermaid nothing leads from inside a composite state to the outside, so an end is told one step at a time: what ends
 //! last leads to the end of what is around it, and that leads on.
 
+use mdle_runtime::{Printable, is_printable};
+
 use super::can_be_shown;
 use super::exits::ends;
 use super::measure::wrapped;
@@ -135,7 +137,7 @@ fn shown(text: &str) -> String {
             '"' | '#' | ';' | ':' | '<' | '>' | '&' | '{' | '}' | '%' | '`' | '\\' => {
                 shown += &format!("#{};", letter as u32)
             }
-            letter if letter.is_control() => shown.push('\u{FFFD}'),
+            letter if !is_printable(letter) => shown += &Printable(letter).to_string(),
             letter => shown.push(letter),
         }
     }

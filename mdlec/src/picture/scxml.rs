@@ -9,7 +9,7 @@
 
 use std::collections::BTreeMap;
 
-use mdle_runtime::TRANSITIONS_PER_TURN;
+use mdle_runtime::{TRANSITIONS_PER_TURN, is_printable};
 
 use super::xml::escaped;
 use crate::diagnostic::{Code, Diagnostic};
@@ -274,5 +274,9 @@ fn fact(record: RecordId, number: u32) -> String {
 /// A quark's text as a string of ECMAScript's, which one of JSON's is.
 fn text(quark: &Quark) -> String {
     // A string can always be written.
-    serde_json::to_string(&quark.text).unwrap_or_default()
+    let text = serde_json::to_string(&quark.text).unwrap_or_default();
+    let escape = |letter: char| -> String {
+        letter.encode_utf16(&mut [0; 2]).iter().map(|unit| format!("\\u{unit:04x}")).collect()
+    };
+    text.chars().map(|letter| if is_printable(letter) { letter.to_string() } else { escape(letter) }).collect()
 }

@@ -1,5 +1,7 @@
 //! Text that stands in XML: escaped, and without the characters that XML does not have.
 
+use mdle_runtime::{Printable, is_printable};
+
 /// The text as content, or as an attribute's value in double quotes.
 pub(super) fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
@@ -10,7 +12,7 @@ pub(super) fn escaped(text: &str) -> String {
             '>' => escaped.push_str("&gt;"),
             '"' => escaped.push_str("&quot;"),
             '\n' => escaped.push('\n'),
-            letter if letter.is_control() || matches!(letter, '\u{FFFE}' | '\u{FFFF}') => escaped.push('\u{FFFD}'),
+            letter if !is_printable(letter) => escaped += &Printable(letter).to_string(),
             letter => escaped.push(letter),
         }
     }
@@ -25,7 +27,7 @@ mod tests {
     fn what_xml_reads_otherwise_is_escaped() {
         assert_eq!(
             escaped("a < b && \"c\" > 'd'\u{7}\u{FFFE}ξ"),
-            "a &lt; b &amp;&amp; &quot;c&quot; &gt; 'd'\u{FFFD}\u{FFFD}ξ"
+            "a &lt; b &amp;&amp; &quot;c&quot; &gt; 'd'U+0007U+FFFEξ"
         );
     }
 }

@@ -1,0 +1,91 @@
+//! Reads the files that a user names: regular ones up to a size, never one that waits for somebody to write; and standard input.
+
+use std::fmt;
+use std::fs::{self, FileType, OpenOptions};
+use std::io::{self, Read};
+use std::os::unix::fs::{FileTypeExt, OpenOptionsExt};
+use std::path::Path;
+
+use rustix::fs::OFlags;
+
+/// The largest plan, alphabet or file that a plan uses, in bytes: what is written by hand is far smaller.
+pub(super) const LARGEST_PLAN: u64 = 64_000_000;
+/// The largest machine or script, in bytes, which programs write.
+pub(super) const LARGEST_DATA: u64 = 1_000_000_000;
+
+/// Why a file is not read.
+#[derive(Debug)]
+pub(super) enum Unread {
+    /// It is no regular file, but this.
+    Irregular(&'static str),
+    /// It has more bytes than are read.
+    TooLarge(u64),
+    /// It has no end yet: somebody may write more.
+    Endless,
+    /// The system refuses.
+    System(io::Error),
+}
+
+impl Unread {
+    /// Whether there is no such file.
+    pub(super) fn is_missing(&self) -> bool {
+        matches!(self, Self::System(error) if error.kind() == io::ErrorKind::NotFound)
+    }
+
+    /// What to do instead, where standard input can be read.
+    pub(super) fn help(&self) -> &'static str {
+        match self {
+            Self::Irregular("pipe") | Self::Endless => "\nhelp: `-` in its place reads standard input",
+            Self::Irregular(_) | Self::TooLarge(_) | Self::System(_) => "",
+        }
+    }
+
+    /// Says it of the file that messages call `name`.
+    pub(super) fn of(&self, name: impl fmt::Display) -> String {
+        match self {
+            Self::Irregular(what) => format!("`{name}` is a {what}, and a file has to stand here"),
+            Self::TooLarge(most) => format!("`{name}` is larger than {} MB, which is the most", most / 1_000_000),
+            Self::Endless => format!("`{name}` does not end: a file has to stand here"),
+            Self::System(error) => format!("cannot read `{name}`: {error}"),
+        }
+    }
+}
+
+/// Reads a regular file of at most `most` bytes.
+pub(super) fn file(path: &Path, most: u64) -> Result<Vec<u8>, Unread> {
+    // To open a device or a pipe may already do something to it.
+    regular(fs::metadata(path).map_err(Unread::System)?.file_type())?;
+    let flags = (OFlags::NONBLOCK | OFlags::NOCTTY).bits() as i32;
+    let file = OpenOptions::new().read(true).custom_flags(flags).open(path).map_err(Unread::System)?;
+    let metadata = file.metadata().map_err(Unread::System)?;
+    // Something else may have the name by now.
+    regular(metadata.file_type())?;
+    if metadata.len() > most { Err(Unread::TooLarge(most)) } else { whole(file, most) }
+}
+
+/// Reads standard input, at most `most` bytes of it.
+pub(super) fn standard_input(most: u64) -> Result<Vec<u8>, Unread> {
+    whole(io::stdin().lock(), most)
+}
+
+fn whole(from: impl Read, most: u64) -> Result<Vec<u8>, Unread> {
+    let mut bytes = Vec::new();
+    from.take(most.saturating_add(1)).read_to_end(&mut bytes).map_err(|error| {
+        if error.kind() == io::ErrorKind::WouldBlock { Unread::Endless } else { Unread::System(error) }
+    })?;
+    if bytes.len() as u64 > most { Err(Unread::TooLarge(most)) } else { Ok(bytes) }
+}
+
+fn regular(found: FileType) -> Result<(), Unread> {
+    if found.is_file() {
+        Ok(())
+    } else if found.is_dir() {
+        Err(Unread::Irregular("folder"))
+    } else if found.is_fifo() {
+        Err(Unread::Irregular("pipe"))
+    } else if found.is_socket() {
+        Err(Unread::Irregular("socket"))
+    } else {
+        Err(Unread::Irregular("device"))
+    }
+}

@@ -1,0 +1,69 @@
+//! The text of a file as a terminal may have it: characters that are not printable as their numbers, and each place's counterpart.
+
+use codespan_reporting::files::SimpleFile;
+use mdle_runtime::{Printable, is_printable};
+
+/// A file whose text has characters that are not printable, and what is shown instead of it.
+#[derive(Debug)]
+pub(super) struct Shown {
+    /// Its name as well as its text can be shown.
+    pub(super) file: SimpleFile<String, String>,
+    /// The byte after each replaced character, and after what replaces it.
+    replaced: Vec<(usize, usize)>,
+}
+
+impl Shown {
+    /// What is shown instead of a text; `None` where that is the text itself.
+    pub(super) fn of(name: &str, text: &str) -> Option<Self> {
+        let mut shown = String::new();
+        let mut replaced = Vec::new();
+        let mut kept = 0;
+        for (place, letter) in text.char_indices().filter(|(_, letter)| !is_printable(*letter)) {
+            let after = place + letter.len_utf8();
+            // Line breaks, a carriage return before one of them included, and tabs are the renderer's business.
+            let is_layout = matches!(letter, '\n' | '\t') || letter == '\r' && text[after..].starts_with('\n');
+            if !is_layout {
+                shown += &text[kept..place];
+                shown += &Printable(letter).to_string();
+                kept = after;
+                replaced.push((after, shown.len()));
+            }
+        }
+        if replaced.is_empty() {
+            return None;
+        }
+        shown += &text[kept..];
+        Some(Self { file: SimpleFile::new(name.to_owned(), shown), replaced })
+    }
+
+    /// Where a byte of the text is shown.
+    pub(super) fn place(&self, byte: usize) -> usize {
+        let before = self.replaced.partition_point(|(text, _)| *text <= byte);
+        before.checked_sub(1).map_or(byte, |last| self.replaced[last].1 + (byte - self.replaced[last].0))
+    }
+
+    /// The byte of the text that is shown here.
+    pub(super) fn origin(&self, place: usize) -> usize {
+        let before = self.replaced.partition_point(|(_, shown)| *shown <= place);
+        before.checked_sub(1).map_or(place, |last| self.replaced[last].0 + (place - self.replaced[last].1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Shown;
+
+    #[test]
+    fn each_place_of_a_text_has_one_where_it_is_shown() {
+        let text = "größe\u{1b}[1m\tA\r\n\u{202e}\rB\n\u{7f}";
+        let shown = Shown::of("a", text).expect("a text with such characters");
+        assert_eq!(shown.file.source(), "größeU+001B[1m\tA\r\nU+202EU+000DB\nU+007F");
+        for (byte, letter) in text.char_indices() {
+            let place = shown.place(byte);
+            assert!(shown.file.source()[place..].starts_with([letter, 'U']), "{byte}");
+            assert_eq!(shown.origin(place), byte);
+        }
+        assert_eq!(shown.place(text.len()), shown.file.source().len());
+        assert!(Shown::of("a", "größe\r\n\t∞").is_none());
+    }
+}
