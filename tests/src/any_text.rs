@@ -2,12 +2,14 @@
 //!
 //! Each function panics where something does not hold.
 
+use std::cell::RefCell;
 use std::sync::LazyLock;
 
 use mdlec::alphabet::Alphabet;
 use mdlec::analysis::analyze;
 use mdlec::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
 use mdlec::fsm::Lowered;
+use mdlec::plan::{Condition, RecordId};
 use mdlec::rust::{Header, Shape, emit_as};
 use mdlec::syntax::{arena_for, format, outline::outline, parse as read};
 use mdlec::trace::Script;
@@ -82,11 +84,12 @@ pub fn check(text: &str) {
     for alphabet in [&*EVERYTHING, &*SIMULATOR, scripted()] {
         let all = compiled(text, alphabet);
         all.iter().for_each(|compiled| analysed(&compiled.lowered));
-        for Compiled { plan, .. } in all.iter().filter(|compiled| is_written_formally(compiled)) {
+        for Compiled { plan, lowered, .. } in &all {
             let formal = plan.formal();
             let again = compiled(&formal, alphabet);
             assert_eq!(again.len(), 1, "{formal}");
-            assert_eq!(again.iter().map(|again| again.plan.formal()).collect::<String>(), formal);
+            assert_eq!(again[0].plan.formal(), formal);
+            assert_eq!(machine(&again[0].lowered), machine(lowered), "{formal}");
         }
     }
 }
@@ -99,9 +102,29 @@ fn analysed(lowered: &Lowered) {
     assert!(is_shorter && !analysis.to_json().is_empty(), "{}", analysis.to_text());
 }
 
-/// Whether formal notation has words for all of it: not for labels, which copies of a plan would share.
-fn is_written_formally(compiled: &Compiled) -> bool {
-    compiled.lowered.marks.is_empty()
+/// All that a machine does, without the names of its scopes and without the numbers of its records.
+fn machine(lowered: &Lowered) -> String {
+    let place = |record: &RecordId| lowered.records.get(record).map(|record| (record.level, record.first));
+    let marks: Vec<_> =
+        lowered.marks.iter().flat_map(|(bracket, marks)| marks.iter().map(move |mark| (bracket, mark))).collect();
+    let marks: Vec<_> =
+        marks.iter().map(|(bracket, mark)| (bracket, place(&mark.record), &mark.label, &mark.facts)).collect();
+    let asks = |condition: &Condition| {
+        let places = RefCell::new(Vec::new());
+        condition.any(&|part| {
+            if let Condition::After(after) = part {
+                places.borrow_mut().push((place(&after.record), after.fact));
+            }
+            false
+        });
+        places.into_inner()
+    };
+    let scopes: Vec<_> = lowered.scopes.iter().flatten().map(|scope| &scope.interrupt).collect();
+    let scopes: Vec<_> =
+        scopes.iter().map(|own| (&own.text, &own.nested, own.memories, own.removed, asks(&own.condition))).collect();
+    let Lowered { brackets, atoms, laws, memories, .. } = lowered;
+    let quarks: Vec<_> = lowered.quarks.iter().map(|quark| &quark.text).collect();
+    format!("{brackets:?} {atoms:?} {scopes:?} {laws:?} {marks:?} {memories} {quarks:?}")
 }
 
 /// The Rust of a plan is Rust, in every shape.

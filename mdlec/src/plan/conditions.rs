@@ -33,8 +33,10 @@ pub(super) fn interrupt(
     let name = |id| quarks.get(id).map(|quark| quark.text.clone()).unwrap_or_default();
     let operands = condition.operands().iter().map(|operand| condition_text(operand, &name)).collect();
     let text = condition_text(&condition, &name);
+    let has_nested = condition.any(&|part| matches!(part, Condition::Or(all) if all.iter().any(is_or)));
+    let nested = has_nested.then(|| self::text(&condition, &name, Precedence::Or, Ors::Nested).into_boxed_str());
     let condition = without_infinite_waits(condition);
-    (Interrupt { condition, text, memories, removed: false, span: written.span }, operands)
+    (Interrupt { condition, text, nested, memories, removed: false, span: written.span }, operands)
 }
 
 /// The nanoseconds of `wait inf`; no other wait may be as long.
@@ -140,15 +142,32 @@ enum Precedence {
     Test,
 }
 
-/// The text of a condition (language, section 7), by the texts of its quarks.
-pub fn condition_text(condition: &Condition, quark: &impl Fn(QuarkId) -> String) -> String {
-    text(condition, quark, Precedence::Or)
+/// What becomes of an OR that is directly in an OR.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Ors {
+    /// Its operands stand among those of the outer one.
+    Flattened,
+    /// It stands in parentheses, as it was written.
+    Nested,
 }
 
-fn text(condition: &Condition, quark: &impl Fn(QuarkId) -> String, around: Precedence) -> String {
+fn is_or(condition: &Condition) -> bool {
+    matches!(condition, Condition::Or(_))
+}
+
+/// The text of a condition (language, section 7), by the texts of its quarks.
+pub fn condition_text(condition: &Condition, quark: &impl Fn(QuarkId) -> String) -> String {
+    text(condition, quark, Precedence::Or, Ors::Flattened)
+}
+
+fn text(condition: &Condition, quark: &impl Fn(QuarkId) -> String, around: Precedence, ors: Ors) -> String {
     let join = |operands: &[Condition], word: &str, inside: Precedence| {
-        let operands: Vec<_> = operands.iter().map(|operand| text(operand, quark, inside)).collect();
+        let operands: Vec<_> = operands.iter().map(|operand| text(operand, quark, inside, ors)).collect();
         operands.join(word)
+    };
+    let inside_or = match ors {
+        Ors::Flattened => Precedence::Or,
+        Ors::Nested => Precedence::And,
     };
     let (text, precedence) = match condition {
         Condition::Null => ("null".to_owned(), Precedence::Test),
@@ -156,11 +175,11 @@ fn text(condition: &Condition, quark: &impl Fn(QuarkId) -> String, around: Prece
             (quark(*id), Precedence::Test)
         }
         // An OR inside an OR needs no parentheses: the text is flattened, the condition stays as written.
-        Condition::Or(operands) => (join(operands, " OR ", Precedence::Or), Precedence::Or),
+        Condition::Or(operands) => (join(operands, " OR ", inside_or), Precedence::Or),
         Condition::And(operands) => (join(operands, " AND ", Precedence::And), Precedence::And),
-        Condition::Not(operand) => (format!("NOT {}", text(operand, quark, Precedence::Test)), Precedence::And),
+        Condition::Not(operand) => (format!("NOT {}", text(operand, quark, Precedence::Test, ors)), Precedence::And),
         Condition::Rising { operand, .. } => {
-            (format!("RISING {}", text(operand, quark, Precedence::Test)), Precedence::And)
+            (format!("RISING {}", text(operand, quark, Precedence::Test, ors)), Precedence::And)
         }
         Condition::After(after) => (after.text.clone(), Precedence::Test),
     };

@@ -2,6 +2,8 @@
 //!
 //! It is MDLe again: the outermost scope keeps its braces and its name, for a file is made of those.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use super::angle::frame_text;
 use super::{Atom, Interrupt, Mark, Node, Plan, Scope};
 
@@ -9,28 +11,52 @@ use super::{Atom, Interrupt, Mark, Node, Plan, Scope};
 const WIDTH: usize = 100;
 
 impl Plan {
-    /// The text in formal notation. Labels of plans that are used more than once come as often.
+    /// The text in formal notation. A use of a plan that asks its labels is a plan of its own: labels are asked within one.
     #[must_use]
     pub fn formal(&self) -> String {
-        let (name, text) = (self.root.name.as_str(), self.root.interrupt.text.as_str());
-        let condition = if text == "null" { String::new() } else { format!(" ({text})") };
-        let body = self.sequence(&self.root.body).into_iter().map(|line| format!("  {line}\n"));
-        format!("{{ {name}{condition}\n{}}}\n", body.collect::<String>())
+        let quarks = self.quarks.iter().map(|quark| quark.name.clone());
+        let taken = quarks.chain([self.root.name.clone()]).collect();
+        let mut writer = Writer { plan: self, taken, numbers: BTreeMap::new(), definitions: Vec::new() };
+        writer.definition(self.root.name.clone(), &self.root);
+        writer.definitions.concat()
+    }
+}
+
+struct Writer<'p> {
+    plan: &'p Plan,
+    /// The names that no further plan can have.
+    taken: BTreeSet<String>,
+    /// How many plans are named after each name.
+    numbers: BTreeMap<String, usize>,
+    /// The texts of the plans, the main one first.
+    definitions: Vec<String>,
+}
+
+impl<'p> Writer<'p> {
+    /// Writes a plan of this name.
+    fn definition(&mut self, name: String, scope: &'p Scope) {
+        let number = self.definitions.len();
+        self.definitions.push(String::new());
+        let body = self.sequence(&scope.body).into_iter().map(|line| format!("  {line}\n")).collect::<String>();
+        let text = in_parentheses(&scope.interrupt);
+        // A string of plans by name behind the plan's own could be read as its condition.
+        let uses_others = self.definitions.len() > number + 1;
+        let condition = if text == "null" && !uses_others { String::new() } else { format!(" ({text})") };
+        self.definitions[number] = format!("{{ {name}{condition}\n{body}}}\n");
     }
 
     /// The lines of a sequence.
-    fn sequence(&self, body: &[Node]) -> Vec<String> {
+    fn sequence(&mut self, body: &'p [Node]) -> Vec<String> {
         body.iter().flat_map(|node| self.node(node)).collect()
     }
 
-    fn node(&self, node: &Node) -> Vec<String> {
+    fn node(&mut self, node: &'p Node) -> Vec<String> {
         let (mut lines, marks) = match node {
             Node::Atom(atom) => (vec![self.atom(atom)], &atom.marks),
             Node::Scope(scope) => (self.scope(scope), &scope.marks),
             Node::Loop(repeated) => {
                 let times = repeated.times.map_or_else(|| "inf".to_owned(), |times| times.to_string());
-                let is_whole =
-                    matches!(repeated.body.as_slice(), [Node::Scope(Scope { marks, .. })] if marks.is_empty());
+                let is_whole = matches!(repeated.body.as_slice(), [Node::Scope(scope)] if scope.marks.is_empty() && scope.record.is_none());
                 let body = self.sequence(&repeated.body);
                 let body = if is_whole { body } else { around(body, "(", ")") };
                 (ended(body, &format!("^{times}")), &repeated.marks)
@@ -48,7 +74,7 @@ impl Plan {
     }
 
     fn atom(&self, atom: &Atom) -> String {
-        let text = &self.quark(atom.law).text;
+        let text = &self.plan.quark(atom.law).text;
         let law = match text.split_once(' ') {
             Some((name, arguments)) => format!("{name}({arguments})"),
             None => text.clone(),
@@ -56,19 +82,36 @@ impl Plan {
         format!("{}({law}, {})", frame_text(atom.frame), interrupt(&atom.interrupt))
     }
 
-    fn scope(&self, scope: &Scope) -> Vec<String> {
+    fn scope(&mut self, scope: &'p Scope) -> Vec<String> {
+        if scope.record.is_some() {
+            let name = self.distinct(&scope.name);
+            self.definition(name.clone(), scope);
+            return vec![name];
+        }
         around(self.sequence(&scope.body), "(", &format!(", {})", interrupt(&scope.interrupt)))
+    }
+
+    /// A name like this one that no plan and no quark of the text has.
+    fn distinct(&mut self, name: &str) -> String {
+        let number = self.numbers.entry(name.to_owned()).or_insert(1);
+        let mut distinct = name.to_owned();
+        while !self.taken.insert(distinct.clone()) {
+            *number += 1;
+            distinct = format!("{name}_{number}");
+        }
+        distinct
     }
 }
 
 /// `ξ`, or `ξ, T` where a timer is its last operand.
 fn interrupt(interrupt: &Interrupt) -> String {
-    let text = interrupt.text.as_str();
+    let text = in_parentheses(interrupt);
     let (condition, time) = match text.strip_prefix("wait ") {
         Some(time) => ("null", time),
         None => match text.rsplit_once(" OR wait ") {
-            Some((condition, time)) => (condition, time),
-            None => return text.to_owned(),
+            // `ξ, T` is one OR of all operands of ξ and the time, and the time alone where ξ is null.
+            Some((condition, time)) if interrupt.nested.is_none() && condition != "null" => (condition, time),
+            Some(_) | None => return text.to_owned(),
         },
     };
     // Behind the time something else may follow, and a parenthesis may be open.
@@ -78,14 +121,34 @@ fn interrupt(interrupt: &Interrupt) -> String {
     }
 }
 
+/// The condition with the ORs in it as they are written: what `after` asks is an operand of the outermost.
+fn in_parentheses(interrupt: &Interrupt) -> &str {
+    interrupt.nested.as_deref().unwrap_or(&interrupt.text)
+}
+
 /// Lines between brackets: one line if there is room for that.
 fn around(lines: Vec<String>, open: &str, close: &str) -> Vec<String> {
     let length: usize = lines.iter().map(|line| line.chars().count()).sum();
     if length + open.len() + close.len() <= WIDTH && lines.iter().all(|line| !line.starts_with(' ')) {
-        return vec![format!("{open}{}{close}", lines.concat())];
+        return vec![format!("{open}{}{close}", joined(&lines))];
     }
     let inside = lines.into_iter().map(|line| format!("  {line}"));
     [open.to_owned()].into_iter().chain(inside).chain([close.to_owned()]).collect()
+}
+
+/// Elements one behind the other, with a blank where two would be one: behind a name a parenthesis holds its arguments.
+fn joined(elements: &[String]) -> String {
+    let is_of_a_name = |letter: char| letter.is_ascii_alphanumeric() || letter == '_' || !letter.is_ascii();
+    let mut joined = String::new();
+    for element in elements {
+        let is_count = joined.rsplit_once('^').is_some_and(|(_, count)| count == "inf" || count.parse::<u64>().is_ok());
+        let begins_with_name = element.starts_with(is_of_a_name);
+        if joined.ends_with(is_of_a_name) && (begins_with_name || !is_count) {
+            joined.push(' ');
+        }
+        joined += element;
+    }
+    joined
 }
 
 /// Lines with this in front.

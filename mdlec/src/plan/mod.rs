@@ -234,6 +234,8 @@ pub struct Interrupt {
     pub condition: Condition,
     /// Its condition text, also where it was removed.
     pub text: String,
+    /// Its condition text with the ORs directly in an OR in parentheses; `None` where there is none.
+    pub nested: Option<Box<str>>,
     /// How many memories of RISING it has in each scope entered.
     pub memories: u32,
     /// Whether an outer scope repeats it, so that it was replaced by the null interrupt.
@@ -246,6 +248,6 @@ impl Interrupt {
     /// The interrupt of a scope at `scope` that has none: it never fires.
     #[must_use]
     pub fn none(scope: Span) -> Self {
-        Self { condition: Condition::Null, text: "null".into(), memories: 0, removed: false, span: scope }
+        Self { condition: Condition::Null, text: "null".into(), nested: None, memories: 0, removed: false, span: scope }
     }
 }

@@ -2,6 +2,7 @@
 
 mod degeneracy;
 mod files;
+mod formal;
 
 use crate::samples::{compiled, judged, sources};
 

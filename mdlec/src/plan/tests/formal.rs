@@ -1,0 +1,89 @@
+//! Formal notation is read as the plan that it was made of, whatever the plan asks its labels.
+
+use crate::samples::compiled;
+
+/// The formal text of a plan, which is that of the plan that it is read as.
+fn formal(text: &str) -> String {
+    let formal = compiled(text)[0].plan.formal();
+    assert_eq!(compiled(&formal)[0].plan.formal(), formal);
+    formal
+}
+
+#[test]
+fn each_use_whose_labels_are_asked_is_a_plan() {
+    let text = "{ P (bumper)
+  Leg { In (wait 9) s1: Leg } (Leg)^2
+  (Atom (after s1) stop)
+}
+{ Leg (wait 5 OR bumper) s1: (Atom (bumper) stop) (Atom (after s1 OR wait 1) stop) Plain }
+{ Plain (wait 3) (Atom (null) stop) }";
+    insta::assert_snapshot!(formal(text), @r"
+    { P (bumper)
+      Leg
+      (s1: Leg_2, null, 9s)
+      (Leg_3)^2
+      (stop, after s1)
+    }
+    { Leg (wait 5 OR bumper)
+      s1: (stop, bumper)
+      (stop, after s1, 1s)
+      ((stop, null), null, 3s)
+    }
+    { Leg_2 (wait 5 OR bumper)
+      s1: (stop, bumper)
+      (stop, after s1, 1s)
+      ((stop, null), null, 3s)
+    }
+    { Leg_3 (wait 5 OR bumper)
+      s1: (stop, bumper)
+      (stop, after s1, 1s)
+      ((stop, null), null, 3s)
+    }
+    ");
+}
+
+#[test]
+fn nested_alternatives_are_in_parentheses() {
+    let text = "{ P s1: (Atom (bumper OR (wait 1 OR r3 < 2) OR wait 7) stop) s2: (Atom (null OR wait 5) stop)
+  s3: (Atom ((wait 3 OR bumper) OR wait 2) stop)
+  (Atom (after s1 (wait 1 OR r3 < 2) OR after s1 (wait 7) OR after s2 (wait 5)) stop)
+  (Atom (after s3 (wait 3 OR bumper)) stop) }";
+    insta::assert_snapshot!(formal(text), @r"
+    { P
+      s1: (stop, bumper OR (wait 1 OR r3 < 2) OR wait 7)
+      s2: (stop, null OR wait 5)
+      s3: (stop, (wait 3 OR bumper) OR wait 2)
+      (stop, after s1 (wait 1 OR r3 < 2) OR after s1 wait 7 OR after s2 wait 5)
+      (stop, after s3 (wait 3 OR bumper))
+    }
+    ");
+}
+
+#[test]
+fn plans_by_name_are_neither_a_condition_nor_one_name() {
+    let text = "{ P (Leg Leg)^2 (Atom (bumper) stop) ((Leg (Atom (wait 1) stop))^3 s2: Leg)^inf }
+{ Leg s1: (Atom (bumper) stop) (Atom (after s1) stop) }";
+    insta::assert_snapshot!(formal(text), @r"
+    { P (null)
+      (Leg Leg_2)^2
+      (stop, bumper)
+      ((Leg_3 (stop, null, 1s))^3 s2: Leg_4)^inf
+    }
+    { Leg
+      s1: (stop, bumper)
+      (stop, after s1)
+    }
+    { Leg_2
+      s1: (stop, bumper)
+      (stop, after s1)
+    }
+    { Leg_3
+      s1: (stop, bumper)
+      (stop, after s1)
+    }
+    { Leg_4
+      s1: (stop, bumper)
+      (stop, after s1)
+    }
+    ");
+}
