@@ -56,7 +56,7 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("fsm", &["diagnostic", "alphabet", "plan"]),
     ("trace", &["diagnostic", "alphabet", "plan", "fsm"]),
     ("picture", &["diagnostic", "plan", "fsm"]),
-    ("theorem", &["alphabet"]),
+    ("theorem", &["alphabet", "syntax"]),
     ("rust", &["diagnostic", "alphabet", "plan", "fsm"]),
     ("analysis", &["diagnostic", "alphabet", "plan", "fsm", "rust"]),
     ("link", &["crate", "diagnostic", "syntax", "alphabet", "plan", "fsm", "rust"]),

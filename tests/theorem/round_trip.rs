@@ -6,8 +6,10 @@ use std::collections::BTreeMap;
 use mdle_tests::chance::Chance;
 use mdle_tests::pipeline::{compile, compile_plan};
 use mdle_tests::random_plan::RandomPlan;
+use mdlec::diagnostic::SourceId;
 use mdlec::fsm::{FsmFile, fsm_file};
-use mdlec::theorem::{Answer, State, decompile, read, string};
+use mdlec::syntax::{arena_for, parse};
+use mdlec::theorem::{Answer, State, augment, decompile, read, string};
 
 use crate::definition::assert_is_string;
 use crate::loops::plan_of_loops;
@@ -128,4 +130,74 @@ fn plans_of_loops_without_end_go_round() {
     println!("{seen:?}");
     assert!(seen.stopped <= PLANS / 100, "{seen:?}");
     assert!(seen.with_loops > PLANS / 2, "{seen:?}");
+}
+
+/// Pieces of laws and conditions, good ones and such as reach beyond their place.
+const PIECES: [&str; 20] = [
+    "idle",
+    "drift",
+    "a",
+    "wait 3",
+    " OR ",
+    " AND ",
+    "NOT ",
+    "(",
+    ")",
+    ") idle) (Atom (a",
+    ") (Atom (null) idle",
+    ")^3 (",
+    " // ",
+    " /* ",
+    " */ ",
+    "\"",
+    ") } //",
+    "{ Q ",
+    "}",
+    "\n",
+];
+
+/// Where interrupts lead, from state to state in their order.
+fn moves(file: &FsmFile) -> Vec<(usize, usize)> {
+    let place: BTreeMap<_, _> = file.states.iter().zip(0..).collect();
+    // Whether a law completes is its own matter.
+    let interrupts = file.interrupts.iter().filter(|interrupt| interrupt.name != "completed");
+    let all = interrupts.flat_map(|interrupt| &interrupt.moves.0);
+    let mut moves: Vec<_> = all.map(|(from, to)| (place[from], place[to])).collect();
+    moves.sort_unstable();
+    moves
+}
+
+#[test]
+fn texts_that_reach_further_are_refused_or_change_nothing() {
+    let compiled =
+        compile("{ Main (a) (Atom (wait 1) idle) { Q (wait 9) (Atom (wait 2) drift) (Atom (wait 4) idle) } }");
+    let file = fsm_file(&compiled.unwrap().nondegenerate).unwrap();
+    let (mut taken, mut refused) = (0, 0);
+    for seed in 0..20_000 {
+        let mut chance = Chance::new(seed);
+        let text: String = (0..=chance.below(4)).map(|_| PIECES[chance.below(PIECES.len())]).collect();
+        let mut hostile = file.clone();
+        let place = chance.below(hostile.laws.len() + hostile.interrupts.len());
+        match hostile.laws.get_mut(place) {
+            Some(law) => law.clone_from(&text),
+            None => hostile.interrupts[place - file.laws.len()].text.clone_from(&text),
+        }
+        let Ok(machine) = read(&hostile.to_json()) else {
+            refused += 1;
+            continue;
+        };
+        let Answer::String(found) = decompile(&machine, STEPS) else { panic!("{text:?}") };
+        let printed = string(&machine, &found);
+        for plan in [printed.clone(), augment(&machine)] {
+            let (id, arena) = (SourceId(0), arena_for(&plan));
+            let (_, wrong) = parse(id, &plan, &arena);
+            assert_eq!(wrong, [], "{text:?}\n{plan}");
+        }
+        // What names a quark of the robot's is a plan whose machine is the same.
+        let Ok(again) = compile_plan(&printed, "Decompiled") else { continue };
+        taken += 1;
+        let again = fsm_file(&again.nondegenerate).unwrap();
+        assert_eq!((moves(&again), again.laws.len()), (moves(&file), file.laws.len()), "{text:?}\n{printed}");
+    }
+    assert!(taken > 200 && refused > 1_000, "{taken} {refused}");
 }

@@ -13,6 +13,7 @@ mod mistakes;
 mod nodes;
 pub mod outline;
 mod regions;
+mod single;
 mod source;
 #[cfg(test)]
 mod tests;
@@ -50,6 +51,7 @@ use nodes::Nodes;
 use source::{Location, Place, Source};
 
 pub use format::format;
+pub use single::{is_law, operands};
 
 /// Where trees stand.
 pub type Arena = bumpalo::Bump;

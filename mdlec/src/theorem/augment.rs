@@ -6,6 +6,7 @@ use std::fmt::Write;
 
 use super::names::{in_a_comment, texts};
 use super::{COMPLETED, Machine, State};
+use crate::syntax::operands;
 
 /// The plan of a machine, whatever its shape. Of the interrupts that lead on from a state, the first in the file goes first.
 ///
@@ -71,7 +72,8 @@ impl<'t> Exits<'t> {
                 exits.completed = Some(exit.to);
                 continue;
             }
-            let operands = operands(&conditions[exit.interrupt.0 as usize]);
+            let condition = &conditions[exit.interrupt.0 as usize];
+            let operands = operands(condition).unwrap_or_else(|| vec![condition]);
             // What never fires leads nowhere, and what the first has led away from never comes to the second.
             let new = operands.into_iter().filter(|operand| *operand != "null" && seen.insert(*operand));
             exits.operands.extend(new.map(|operand| (operand, exit.to)));
@@ -104,50 +106,4 @@ impl<'t> Exits<'t> {
 
 fn is_a_name(operand: &str) -> bool {
     operand.chars().all(|letter| letter.is_alphanumeric() || letter == '_')
-}
-
-/// The operands of the outermost OR of a condition, as written.
-fn operands(condition: &str) -> Vec<&str> {
-    let mut bare = condition.trim();
-    // Parentheses around the whole of it are none of an operand.
-    while let Some(inside) = bare.strip_prefix('(').and_then(|rest| rest.strip_suffix(')')).filter(|text| closes(text))
-    {
-        bare = inside.trim();
-    }
-    split(bare)
-}
-
-/// Whether no parenthesis of a text is closed that was not opened in it.
-fn closes(text: &str) -> bool {
-    let mut depth = 0_usize;
-    text.chars().all(|letter| match letter {
-        '(' => {
-            depth += 1;
-            true
-        }
-        ')' => depth.checked_sub(1).inspect(|left| depth = *left).is_some(),
-        _ => true,
-    })
-}
-
-/// A text at each OR that stands in no parentheses.
-fn split(condition: &str) -> Vec<&str> {
-    let (mut depth, mut start) = (0_usize, 0);
-    let mut operands = Vec::new();
-    for (place, letter) in condition.char_indices() {
-        match letter {
-            '(' => depth += 1,
-            ')' => depth = depth.saturating_sub(1),
-            ' ' if depth == 0 => {
-                let or = condition[place..].get(..4).filter(|word| word.eq_ignore_ascii_case(" OR "));
-                if or.is_some() && place >= start {
-                    operands.push(condition[start..place].trim());
-                    start = place + 4;
-                }
-            }
-            _ => {}
-        }
-    }
-    operands.push(condition[start..].trim());
-    operands
 }

@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use mdle_runtime::Printable;
+
 use super::{InterruptId, Machine, State};
 
 /// Neighbouring states of an order: the first and the last of them.
@@ -204,14 +206,7 @@ impl Broken {
     }
 }
 
-/// A name in a sentence; what is no visible character in it is escaped.
+/// A name in a sentence.
 fn quoted(name: &str) -> String {
-    let visible: String = name
-        .chars()
-        .flat_map(|letter| {
-            let escaped = letter.is_control().then(|| letter.escape_default());
-            escaped.into_iter().flatten().chain((!letter.is_control()).then_some(letter))
-        })
-        .collect();
-    format!("`{visible}`")
+    format!("`{}`", Printable(name))
 }

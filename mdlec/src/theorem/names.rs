@@ -2,7 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use mdle_runtime::Printable;
+
 use super::Machine;
+use crate::syntax::is_law;
 
 /// What is no name, in capitals.
 const RESERVED: &[&str] = &[
@@ -42,9 +45,8 @@ pub(super) struct Texts {
 impl Names {
     /// A name like this one that nothing else has.
     pub(super) fn name(&mut self, like: &str) -> String {
-        let mut name: String =
-            like.chars().map(|letter| if letter.is_alphanumeric() || letter == '_' { letter } else { '_' }).collect();
-        let begins_well = name.starts_with(|letter: char| letter.is_alphabetic() || letter == '_');
+        let mut name: String = like.chars().map(|letter| if is_in_names(letter) { letter } else { '_' }).collect();
+        let begins_well = name.chars().next().is_some_and(|first| is_law(&first.to_string()));
         let is_label = ["Γ_", "Gamma_", "σ_"].iter().any(|label| name.starts_with(label));
         if !begins_well || is_label {
             name.insert(0, '_');
@@ -95,7 +97,12 @@ pub(super) fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|letter: char| !letter.is_alphanumeric() && letter != '_').filter(|word| !word.is_empty())
 }
 
+/// Whether a name may have this letter, behind its first.
+fn is_in_names(letter: char) -> bool {
+    letter.is_ascii_alphanumeric() || letter == '_' || !letter.is_ascii() && is_law(&format!("_{letter}"))
+}
+
 /// A text on one line of a comment.
 pub(super) fn in_a_comment(text: &str) -> String {
-    text.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).collect()
+    Printable(text).to_string()
 }

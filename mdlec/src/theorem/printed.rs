@@ -47,6 +47,44 @@ pub fn as_printed(machine: &Machine, exactly: &Answer) -> [Rule; 4] {
     ]
 }
 
+/// Neighbouring columns of an interrupt that have their 1 in one row.
+#[derive(Debug, Clone, Copy)]
+struct Same {
+    first: usize,
+    /// The column behind the last.
+    behind: usize,
+}
+
+/// Of some moves the lowest row that one leads to, and the lowest that one of another interrupt leads to.
+#[derive(Debug, Clone, Copy, Default)]
+struct Lowest {
+    one: Option<(usize, InterruptId)>,
+    other: Option<usize>,
+}
+
+impl Lowest {
+    /// With a move more.
+    fn with(self, interrupt: InterruptId, row: usize) -> Self {
+        let Some((lowest, of)) = self.one else { return Self { one: Some((row, interrupt)), other: None } };
+        if of == interrupt {
+            return Self { one: Some((lowest.min(row), of)), ..self };
+        }
+        if row < lowest {
+            return Self { one: Some((row, interrupt)), other: Some(lowest) };
+        }
+        Self { other: Some(self.other.map_or(row, |other| other.min(row))), ..self }
+    }
+
+    /// The lowest row that another interrupt than this leads to.
+    fn of_another(self, interrupt: InterruptId) -> usize {
+        match self.one {
+            Some((lowest, of)) if of != interrupt => lowest,
+            Some(_) => self.other.unwrap_or(usize::MAX),
+            None => usize::MAX,
+        }
+    }
+}
+
 impl Columns<'_> {
     /// Every move from a place to another.
     fn moves(&self) -> impl Iterator<Item = (InterruptId, usize, usize)> {
@@ -95,12 +133,13 @@ impl Columns<'_> {
 
     /// R2: nothing leads back, and what leads on leads on from all columns up to where it leads.
     fn forwards(&self) -> Option<String> {
-        self.moves().find_map(|(interrupt, from, to)| {
+        let runs = self.runs();
+        self.moves().zip(&runs).find_map(|((interrupt, from, to), run)| {
             let name = self.interrupt(interrupt);
             if to < from {
                 return Some(format!("{name} leads back, from {} to {}", self.state(from), self.state(to)));
             }
-            let other = (from..=to).find(|column| self.row(interrupt, *column) != to)?;
+            let other = (run.behind <= to).then_some(run.behind)?;
             let (from, to, at) = (self.state(from), self.state(to), self.state(other));
             let row = self.row(interrupt, other);
             Some(match row == other {
@@ -108,6 +147,33 @@ impl Columns<'_> {
                 false => format!("{name} leads from {from} to {to}, but from {at} to {}", self.state(row)),
             })
         })
+    }
+
+    /// For each move, in their order, the neighbouring columns whose 1 the interrupt has in the row that it leads to.
+    fn runs(&self) -> Vec<Same> {
+        let moves: Vec<_> = self.moves().collect();
+        let mut runs: Vec<Same> = moves.iter().map(|(_, from, _)| Same { first: *from, behind: from + 1 }).collect();
+        // The move of each interrupt that was met last.
+        let mut near: Vec<Option<usize>> = vec![None; self.machine.interrupts().len()];
+        for (number, (interrupt, from, to)) in moves.iter().enumerate() {
+            let before = near[interrupt.0 as usize].replace(number);
+            let before = before.filter(|before| moves[*before].1 + 1 == *from && moves[*before].2 == *to);
+            runs[number].first = match before {
+                Some(before) => runs[before].first,
+                None => *from,
+            };
+        }
+        near.fill(None);
+        for (number, (interrupt, from, to)) in moves.iter().enumerate().rev() {
+            let after = near[interrupt.0 as usize].replace(number);
+            let is_same = |after: &usize| moves[*after].1 == from + 1 && moves[*after].2 == *to;
+            if let Some(after) = after.filter(is_same) {
+                runs[number].behind = runs[after].behind;
+            } else if *to == from + 1 && self.row(*interrupt, *to) == *to {
+                runs[number].behind = to + 1;
+            }
+        }
+        runs
     }
 
     /// R3 as it is meant: of what two interrupts enclose, neither or one is inside the other.
@@ -118,24 +184,51 @@ impl Columns<'_> {
         Some(sentence.trim_start_matches("R3: ").to_owned())
     }
 
+    /// The first column from which on a move's interrupt has its 1 in the row of the move, up to that row; `None` where
+    /// one between them has not.
+    fn first_enclosed(&self, moves: &[(InterruptId, usize, usize)], runs: &[Same], number: usize) -> Option<usize> {
+        let (interrupt, from, to) = moves[number];
+        if from < to {
+            return Some(runs[number].first).filter(|_| runs[number].behind > to);
+        }
+        if self.row(interrupt, to) != to {
+            return Some(to + 1);
+        }
+        let before = to.checked_sub(1).and_then(|column| {
+            moves.binary_search_by_key(&(column, interrupt), |(interrupt, from, _)| (*from, *interrupt)).ok()
+        });
+        Some(before.filter(|before| moves[*before].2 == to).map_or(to, |before| runs[before].first))
+    }
+
     /// R3 to the letter: `k2 <= k1` and `p2 < p1` is all that it asks before one has to enclose the other.
     fn nested_to_the_letter(&self) -> Option<String> {
-        let mut nearest: Vec<(InterruptId, usize, usize)> = Vec::new();
-        for (interrupt, from, to) in self.moves() {
-            for (other, column, row) in &nearest {
-                let encloses = || *column < from && (*column..=to).all(|column| self.row(interrupt, column) == to);
-                if *other != interrupt && *row < to && !encloses() {
-                    return Some(format!(
-                        "{} leads from {} to {}, and so {} would have to lead to {} from there on as well",
-                        self.interrupt(*other),
-                        self.state(*column),
-                        self.state(*row),
-                        self.interrupt(interrupt),
-                        self.state(to)
-                    ));
-                }
+        let (moves, runs) = (self.moves().collect::<Vec<_>>(), self.runs());
+        let mut lowest = Vec::with_capacity(moves.len() + 1);
+        lowest.push(Lowest::default());
+        for (number, (interrupt, from, to)) in moves.iter().enumerate() {
+            let (interrupt, from, to) = (*interrupt, *from, *to);
+            let first = self.first_enclosed(&moves, &runs, number);
+            let is_enclosed = |column: usize| column < from && first.is_some_and(|first| first <= column);
+            // Those that begin before what it encloses; those that begin where it does follow.
+            let asked =
+                first.map_or(number, |first| moves.partition_point(|(_, column, _)| *column < first).min(number));
+            let beside = moves[..number].iter().rev().take_while(|(_, column, _)| *column == from);
+            let is_broken = lowest[asked].of_another(interrupt) < to
+                || beside.clone().any(|(other, _, row)| *other != interrupt && *row < to);
+            if is_broken {
+                let mut all = moves[..number].iter();
+                let (other, column, row) =
+                    all.find(|(other, column, row)| *other != interrupt && *row < to && !is_enclosed(*column))?;
+                return Some(format!(
+                    "{} leads from {} to {}, and so {} would have to lead to {} from there on as well",
+                    self.interrupt(*other),
+                    self.state(*column),
+                    self.state(*row),
+                    self.interrupt(interrupt),
+                    self.state(to)
+                ));
             }
-            nearest.push((interrupt, from, to));
+            lowest.push(lowest[number].with(interrupt, to));
         }
         None
     }

@@ -10,6 +10,7 @@ use serde::de::{Deserializer, Error, MapAccess, Visitor};
 
 use super::{Machine, Named, State, number};
 use crate::alphabet::nearest;
+use crate::syntax::{is_law, operands};
 
 /// Why a file cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -77,7 +78,7 @@ impl<'de> Visitor<'de> for MovesVisitor {
 ///
 /// # Errors
 /// If it is no JSON, has no state, names states that it does not have, gives one interrupt two destinations for a state, or
-/// gives a state no law or two.
+/// gives a state no law, two, or a text that is not one law, or an interrupt one that is not one condition.
 pub fn read(text: &str) -> Result<Machine, FileError> {
     let written: Written = serde_json::from_str(text).map_err(|error| reason(&error))?;
     let states = States::new(&written.states)?;
@@ -87,6 +88,13 @@ pub fn read(text: &str) -> Result<Machine, FileError> {
         let place = *known.entry(name.clone()).or_insert(interrupts.len());
         if place == interrupts.len() {
             interrupts.push((Named { name, text: None }, BTreeMap::new()));
+        }
+        if let Some(text) = text.as_ref().filter(|text| operands(text).is_none()) {
+            return Err(refused(format!(
+                "the `text` of interrupt `{name}` is not one condition and nothing else: `{text}`\nhelp: write it as in a plan, \
+                 such as `bumper OR wait 5`, or leave `text` out: the interrupt is called by its name then",
+                name = interrupts[place].0.name
+            )));
         }
         let (named, all) = &mut interrupts[place];
         named.text = named.text.take().or(text);
@@ -114,7 +122,16 @@ pub fn read(text: &str) -> Result<Machine, FileError> {
             "`laws` has to have a law for each state but the last: {atoms}, and there are {}",
             laws.len()
         ))),
-        laws => Ok(Machine { laws, ..machine }),
+        laws => {
+            let named = machine.states().iter().zip(laws.iter().flatten());
+            match named.into_iter().find(|(_, law)| !is_law(law)) {
+                Some((state, law)) => Err(refused(format!(
+                    "the law of state `{state}` is not one law and nothing else: `{law}`\nhelp: write it as in a plan, such as \
+                     `go 20 0`, or leave `laws` out: laws are called by their states' names then"
+                ))),
+                None => Ok(Machine { laws, ..machine }),
+            }
+        }
     }
 }
 

@@ -1,0 +1,123 @@
+//! One law or one condition by itself, as a file of another format has it.
+
+use super::tree::{Condition, ConditionNode, Element, Primary};
+use super::{Arena, arena_for, parse};
+use crate::diagnostic::SourceId;
+
+/// Returns `true` if a text is one law with its arguments and nothing else: in an atom it changes nothing around it.
+#[must_use]
+pub fn is_law(text: &str) -> bool {
+    is_alone(text, "{ P (Atom (null) ", ") }", |element| match element {
+        Element { primary: Primary::Atom(atom), marks: None, .. } => atom.condition.node == ConditionNode::Null,
+        _ => false,
+    })
+}
+
+/// The operands of the outermost OR of a condition, as written; `None` if a text is not one condition and nothing else.
+#[must_use]
+pub fn operands(text: &str) -> Option<Vec<&str>> {
+    const BEFORE: &str = "{ P (Atom (";
+    let mut ranges = Vec::new();
+    let is_condition = is_alone(text, BEFORE, ") stop) }", |element| {
+        let Element { primary: Primary::Atom(atom), marks: None, .. } = element else { return false };
+        let operands: &[Condition<'_>] = if let ConditionNode::Or(operands) = atom.condition.node {
+            operands
+        } else {
+            std::slice::from_ref(&atom.condition)
+        };
+        ranges = operands.iter().map(|operand| operand.span.within(SourceId(0))).collect();
+        atom.control.name == "stop" && atom.control.args.is_empty()
+    });
+    let alone = ranges.len() == 1;
+    let operand = |range: &std::ops::Range<usize>| {
+        // The condition itself may have parentheses around it that are the template's.
+        if alone {
+            Some(text.trim())
+        } else {
+            text.get(range.start.checked_sub(BEFORE.len())?..range.end - BEFORE.len())
+        }
+    };
+    if is_condition { ranges.iter().map(operand).collect() } else { None }
+}
+
+/// Whether a text between these makes a plan of one element that is good, on one line and with a line break behind it: no
+/// comment in it reaches further, and no bracket in it closes one that it did not open.
+fn is_alone(text: &str, before: &str, behind: &str, mut is_good: impl FnMut(&Element<'_>) -> bool) -> bool {
+    text.chars().all(mdle_runtime::is_printable)
+        && ["", "\n"].iter().all(|end| {
+            let whole = [before, text, end, behind].concat();
+            let arena: Arena = arena_for(&whole);
+            let (file, found) = parse(SourceId(0), &whole, &arena);
+            match (file.plans.as_slice(), found.as_slice()) {
+                ([plan], []) if file.uses.is_empty() => {
+                    plan.label.is_none() && matches!(plan.elements, [only] if is_good(only))
+                }
+                _ => false,
+            }
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_law_is_a_name_with_arguments_and_nothing_else() {
+        for good in
+            ["stop", " go 20 0 ", "go(20cm/s, 0)", "path \"a) b // c\"", "goAvoid(heading module)", "go /* 20 */ 1 0"]
+        {
+            assert!(is_law(good), "{good}");
+        }
+        for bad in [
+            "",
+            "stop) (Atom (null) stop",
+            "stop)^3 (",
+            "stop) } //",
+            "stop) } { Q (Atom (null) stop",
+            "stop) use \"x\" (Atom (null) stop",
+            "stop // x",
+            "stop /* x",
+            "stop stop) (",
+            "path \"a",
+            "go\n20 0",
+            "path \"\u{202e}\"",
+            "stop\u{7}",
+            "Atom (null) stop",
+            "20",
+        ] {
+            assert!(!is_law(bad), "{bad}");
+        }
+    }
+
+    #[test]
+    fn a_condition_is_split_at_its_outermost_or() {
+        let good = [
+            ("bumper", &["bumper"][..]),
+            ("null", &["null"]),
+            ("(bumper)", &["(bumper)"]),
+            (" a OR (b or c) OR d AND e ", &["a", "(b or c)", "d AND e"]),
+            ("a OR(b)", &["a", "(b)"]),
+            ("NOT (a OR b)", &["NOT (a OR b)"]),
+            ("((a OR b))", &["a", "b"]),
+            ("at \"x OR y\" OR r3 < 1", &["at \"x OR y\"", "r3 < 1"]),
+            ("after s1 (a OR b) OR RISING c", &["after s1 (a OR b)", "RISING c"]),
+        ];
+        for (text, expected) in good {
+            assert_eq!(operands(text).as_deref(), Some(expected), "{text}");
+        }
+        for bad in [
+            "",
+            "a) stop) (Atom (b",
+            "a) OR (b",
+            "a OR",
+            "a //",
+            "a) stop) } //",
+            "a /*",
+            "a, 5",
+            "\n a",
+            "a) b) (Atom (c",
+        ] {
+            assert_eq!(operands(bad), None, "{bad}");
+        }
+    }
+}
