@@ -7,7 +7,12 @@ use std::process::{Command, Output};
 
 use mdle_runtime::is_printable;
 use mdle_tests::executable::{command, folder};
+use mdle_tests::golden::alphabet;
 use mdle_tests::xml;
+use mdlec::alphabet::combine;
+use mdlec::compile;
+use mdlec::diagnostic::{SourceId, has_errors};
+use mdlec::rust::{Header, Shape, bind, emit_as};
 
 /// Colours and clears a terminal, renames its window, rings, goes to the start of the line, and turns text around.
 const HOSTILE: &str = "a\u{1b}[2J\u{1b}]0;x\u{7}\u{9b}31m\r\u{202e}\u{2066}\u{200f}\u{2028}\u{7f}z";
@@ -137,6 +142,26 @@ fn layout_is_the_users_own_text_to_the_byte() {
 }
 
 #[test]
+fn emitted_rust_is_printable_in_every_shape() {
+    let sim = alphabet(Some("sim"));
+    let atoms = format!("(Atom (wait 1 OR bumper) path \"{HOSTILE}\") {{ Q (wait 2) (Atom (bumper) stop) }}");
+    let text = format!("{{ P {} }}", atoms.repeat(3));
+    let (compiled, found) = compile(SourceId(0), &text, &sim, None);
+    assert!(!has_errors(&found), "{found:?}");
+    for shape in [Shape::Code, Shape::Shared, Shape::Rows] {
+        let rust = emit_as(shape, &compiled[0].lowered, Header { file: HOSTILE, plan: "P" }, &sim);
+        assert!(rust.chars().all(|letter| letter == '\n' || is_printable(letter)), "{shape:?}: {rust:?}");
+        assert!(syn::parse_file(&rust).is_ok_and(|file| !file.items.is_empty()), "{shape:?}: {rust}");
+    }
+    let own = hostile("target t : crate t;\n/// HOSTILE\ncontrol halt;\n/// HOSTILE\ninterrupt hit;\n");
+    let (own, found) = mdlec::alphabet::read(SourceId(0), &own);
+    assert!(found.is_empty(), "{found:?}");
+    let bound = bind(&combine(own.unwrap(), &[]).0);
+    assert!(bound.chars().all(|letter| letter == '\n' || is_printable(letter)), "{bound:?}");
+    assert!(syn::parse_file(&bound).is_ok(), "{bound}");
+}
+
+#[test]
 fn an_executable_of_a_hostile_plan_is_built_runs_and_draws() {
     let folder = prepared("hostile_run");
     let plan = hostile("HOSTILE.mdle");
@@ -152,7 +177,7 @@ fn an_executable_of_a_hostile_plan_is_built_runs_and_draws() {
         output
     };
     let driven = run(&["--speed", "max", "--plot", "plot.svg", "--record", "film.svg", "--turns", "5"]);
-    assert_eq!(driven.status.code(), Some(0), "{driven:?}");
+    assert_eq!(driven.status.code(), Some(4), "{driven:?}");
     for picture in ["plot.svg", "film.svg"] {
         let text = fs::read_to_string(folder.join(picture)).unwrap();
         assert!(text.contains("aU+001B[2J"), "{text}");

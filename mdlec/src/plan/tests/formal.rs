@@ -61,7 +61,7 @@ fn nested_alternatives_are_in_parentheses() {
 
 #[test]
 fn plans_by_name_are_neither_a_condition_nor_one_name() {
-    let text = "{ P (Leg Leg)^2 (Atom (bumper) stop) ((Leg (Atom (wait 1) stop))^3 s2: Leg)^inf }
+    let text = "{ P (null) (Leg Leg)^2 (Atom (bumper) stop) ((Leg (Atom (wait 1) stop))^3 s2: Leg)^inf }
 { Leg s1: (Atom (bumper) stop) (Atom (after s1) stop) }";
     insta::assert_snapshot!(formal(text), @r"
     { P (null)
