@@ -8,7 +8,7 @@ use std::convert::Infallible;
 use std::time::Duration;
 
 use mdle_host::clap::{ArgMatches, Command};
-use mdle_host::{Hosted, Pace, Refusal, Time};
+use mdle_host::{Hosted, Pace, Refusal, StopRequest, Time};
 use mdle_runtime::{Robot, Volts};
 
 pub use Rover as Target;
@@ -57,7 +57,7 @@ impl mdle_host::Target for Rover {
         Ok(Time::Stepped(Pace::Max))
     }
 
-    fn connect(_: &ArgMatches, _: Duration) -> Result<Self, Refusal> {
+    fn connect(_: &ArgMatches, _: Duration, _: &StopRequest) -> Result<Self, Refusal> {
         Ok(Self(Volts(14.0)))
     }
 }

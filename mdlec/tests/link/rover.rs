@@ -5,7 +5,7 @@ use std::convert::Infallible;
 use std::time::Duration;
 
 use mdle_host::clap::{ArgMatches, Command};
-use mdle_host::{Hosted, Pace, Refusal, Time};
+use mdle_host::{Hosted, Pace, Refusal, StopRequest, Time};
 use mdle_runtime::Robot;
 
 /// What the program refers to.
@@ -50,7 +50,7 @@ impl mdle_host::Target for Rover {
         Ok(Time::Stepped(Pace::Max))
     }
 
-    fn connect(_: &ArgMatches, _: Duration) -> Result<Self, Refusal> {
+    fn connect(_: &ArgMatches, _: Duration, _: &StopRequest) -> Result<Self, Refusal> {
         Ok(Self)
     }
 }

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use mdle_host::clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use mdle_host::{Hosted, Pace, Refusal, Target, Time, run};
+use mdle_host::{Hosted, Pace, Refusal, StopRequest, Target, Time, run};
 use mdle_runtime::fsm::{Atom, Bracket};
 use mdle_runtime::{Begin, Cause, Cursor, Fsm, Meters, MetersPerSecond, Nanos, Next, Output, Plan, Robot};
 
@@ -103,7 +103,7 @@ impl Target for CartTarget {
         Ok(if fastest { Time::Stepped(Pace::Max) } else { Time::Wall })
     }
 
-    fn connect(matches: &ArgMatches, period: Duration) -> Result<Cart, Refusal> {
+    fn connect(matches: &ArgMatches, period: Duration, _: &StopRequest) -> Result<Cart, Refusal> {
         let track = matches.get_one("track").copied().unwrap_or(1.0);
         if !(0.0..=1e3).contains(&track) {
             return Err(Refusal::Usage("a track is at most 1000 m long".to_owned()));

@@ -159,8 +159,9 @@ impl Refusal {
     /// Says it on standard error; the exit status.
     pub(crate) fn tell(&self, err: &mut dyn Write) -> u8 {
         let (sentence, status) = match self {
-            Self::Usage(sentence) => (sentence, USAGE),
-            Self::Fault(sentence) => (sentence, FAULT),
+            Self::Usage(sentence) => (sentence.as_str(), USAGE),
+            Self::Fault(sentence) | Self::Ended(Err(sentence)) => (sentence.as_str(), FAULT),
+            Self::Ended(Ok(())) => ("the run was asked to end before it began", FAULT),
         };
         say(err, format_args!("error: {sentence}"));
         status

@@ -20,6 +20,7 @@ mod report;
 mod safety;
 mod session;
 mod signals;
+mod stop_request;
 mod summary;
 mod target;
 #[cfg(test)]
@@ -36,6 +37,7 @@ pub use clap;
 pub use files::{read_file, read_text};
 use mdle_runtime::{Plan, Robot};
 pub use paths::Replays;
+pub use stop_request::StopRequest;
 pub use target::{Around, Hosted, Judgement, Pace, Refusal, Standing, Target, Time};
 
 /// Runs the plan that `plan` makes on the robot of the target `T`, with the arguments of this process: what the `main` of an executable

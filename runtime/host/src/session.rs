@@ -76,11 +76,11 @@ where
         }
         Ok(None) => {}
     }
-    let Ready { mut robot, time, mut log, mut path } = match ready::<T>(&matches, &options, store) {
+    let Ready { mut robot, time, mut log, mut path } = match ready::<T>(&matches, &options, store, &signals) {
         Ok(ready) => ready,
+        Err(Refusal::Ended(stopped)) => return ended_at_the_start(&signals, stopped, err),
         Err(refusal) => return refusal.tell(err),
     };
-    signals.robot_runs();
     let screen = T::screen(&matches);
     let mut out = out(Some(time));
     if screen {
@@ -204,19 +204,38 @@ struct Ready<R: Robot> {
 }
 
 /// Opens what a run needs. A start that is refused leaves the files that it writes as they were.
-fn ready<T: Target>(matches: &ArgMatches, options: &Options, store: PathStore) -> Result<Ready<T::Robot>, Refusal> {
+fn ready<T: Target>(
+    matches: &ArgMatches,
+    options: &Options,
+    store: PathStore,
+    signals: &Signals,
+) -> Result<Ready<T::Robot>, Refusal> {
     let opened = shielded(|| {
         let time = T::time(matches).map_err(Refusal::Usage)?;
         let log = untouched("run log", options.log.as_deref())?;
         let path = untouched("path", options.path.as_deref())?;
         paths::check_period(options)?;
-        let mut robot = T::connect(matches, options.period)?;
+        // From here on a signal must not end the program before the robot was stopped.
+        signals.robot_runs();
+        let mut robot = T::connect(matches, options.period, &signals.stop_request())?;
         paths::hand_over::<T>(&mut robot, store);
         let log = log.map(|file| file.begin(is_watched(time))).transpose();
         let path = path.map(|file| paths::recorder::<T>(file)).transpose().map(Option::flatten);
         Ok(Ready { robot, time, log, path })
     });
     opened.unwrap_or_else(bug_before)
+}
+
+/// Says that a signal ended the run while the robot was opened; the exit status.
+fn ended_at_the_start(signals: &Signals, stopped: Result<(), String>, err: &mut dyn Write) -> u8 {
+    let Some(signal) = signals.caught() else {
+        return Refusal::Fault("the robot's code ended the start, and nothing asked for that".to_owned()).tell(err);
+    };
+    let ending = Ending::Signal(signal);
+    ending.tell(err);
+    let faults: Vec<Fault> = stopped.err().map(Fault::Stop).into_iter().collect();
+    faults.iter().for_each(|fault| fault.tell(err));
+    ending.status(&faults)
 }
 
 /// A file that the run is to write, open and as it was, if it was asked for.

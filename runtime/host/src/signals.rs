@@ -7,6 +7,8 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1};
 use signal_hook::flag;
 
+use crate::StopRequest;
+
 /// A signal that asks the program to end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Signal {
@@ -93,6 +95,11 @@ impl Signals {
     pub(crate) fn caught(&self) -> Option<Signal> {
         let number = self.caught.load(Ordering::SeqCst);
         Signal::ALL.into_iter().find(|signal| usize::from(signal.number()) == number)
+    }
+
+    /// Tells code that opens a robot whether a signal came.
+    pub(crate) fn stop_request(&self) -> StopRequest {
+        StopRequest::of(&self.caught)
     }
 
     /// Whether it has been asked, since this was asked last, how late the turns are.

@@ -5,7 +5,7 @@ use std::time::Duration;
 use clap::{ArgMatches, Command};
 use mdle_runtime::{Nanos, Robot};
 
-use crate::{Batch, Replays};
+use crate::{Batch, Replays, StopRequest};
 
 /// A robot that executables are built for; implemented once in each target crate.
 pub trait Target {
@@ -30,9 +30,13 @@ pub trait Target {
 
     /// Opens the robot; no motion yet.
     ///
+    /// From the call on, signals no longer end the program: they make `request`. A robot that is open in no time ignores it,
+    /// and the host stops the robot before its first turn. One that takes a while looks at `request` between its steps, and
+    /// when it is made, stops and returns [`Refusal::Ended`].
+    ///
     /// # Errors
-    /// Why there is no robot: a bad option (exit status 2) or a fault (exit status 3).
-    fn connect(matches: &ArgMatches, period: Duration) -> Result<Self::Robot, Refusal>;
+    /// Why there is no robot: a bad option (exit status 2), a fault (exit status 3), or `request`.
+    fn connect(matches: &ArgMatches, period: Duration, request: &StopRequest) -> Result<Self::Robot, Refusal>;
 
     /// What is printed instead of a run, if these options ask for something that needs none.
     ///
@@ -83,6 +87,9 @@ pub enum Refusal {
     Usage(String),
     /// The robot does not answer, or answers that it cannot run.
     Fault(String),
+    /// The run was asked to end while the robot was opened. The robot was stopped; if not, a sentence that says why
+    /// (exit status 3).
+    Ended(Result<(), String>),
 }
 
 /// Where a plan stands after a turn in which it was not over.

@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use mdle_host::StopRequest;
 use mdle_runtime::Nanos;
 
 /// Where the time of an output comes from.
@@ -39,6 +40,14 @@ impl Clock {
     pub fn pass(self, time: Duration) {
         match self {
             Self::Wall => std::thread::sleep(time),
+            Self::Stepped(_) => {}
+        }
+    }
+
+    /// Lets time pass as [`Clock::pass`] does, but not after `request` is made.
+    pub fn pass_unless(self, request: &StopRequest, time: Duration) {
+        match self {
+            Self::Wall => request.wait(time),
             Self::Stepped(_) => {}
         }
     }

@@ -3,6 +3,7 @@
 
 use std::time::{Duration, Instant};
 
+use mdle_host::StopRequest;
 use mdle_runtime::{Meters, Nanos, PathStore, Robot, Sensed, Shape, Twist};
 use mdle_serial::{Clock, Line, Times, time_of};
 
@@ -64,7 +65,7 @@ impl Atrv {
     ///
     /// # Errors
     /// There is no line, no robot, its brake is set, or its sonars are silent.
-    pub fn connect(config: Config, clock: Clock, period: Duration) -> Result<Self, Fault> {
+    pub fn connect(config: Config, clock: Clock, period: Duration, request: &StopRequest) -> Result<Self, Fault> {
         let line = Line::open(&config.device, SPEED)?;
         let watchdog = match clock {
             Clock::Wall => {
@@ -87,8 +88,9 @@ impl Atrv {
         let times = Times::new(clock);
         let (asked, paths) = (Nanos::ZERO, PathStore::EMPTY);
         let mut atrv = Self { mouth, config, clock, times, hearing, reports, a_turn, asked, paths };
-        match atrv.prepare(period) {
+        match atrv.prepare(period, request) {
             Ok(()) => Ok(atrv),
+            Err(Fault::Ended(_)) => Err(Fault::Ended(atrv.stop().err().map(Box::new))),
             Err(fault) => {
                 // What led here says more than what comes of this.
                 let _ = atrv.stop();
@@ -102,19 +104,23 @@ impl Atrv {
         self.paths = paths;
     }
 
-    fn prepare(&mut self, period: Duration) -> Result<(), Fault> {
+    fn prepare(&mut self, period: Duration, request: &StopRequest) -> Result<(), Fault> {
+        let go_on = || if request.is_made() { Err(Fault::Ended(None)) } else { Ok(()) };
+        go_on()?;
         // Whoever drove it before may have left it moving.
         self.move_on(&Twist::default())?;
         self.say(Command::Defaults)?;
         self.say(Command::Inputs(INPUTS))?;
         self.say(Command::Sonars(self.config.echo))?;
         self.say(Command::Reports(self.reports.as_micros() as u32))?;
+        go_on()?;
         self.say(Command::Release)?;
         let mut left = STARTING;
         loop {
             self.say(Command::Status)?;
             self.move_on(&Twist::default())?;
-            self.clock.pass(period.min(left));
+            self.clock.pass_unless(request, period.min(left));
+            go_on()?;
             self.hear(Nanos::ZERO, self.config.patience())?;
             let waits = self.hearing.waits_for();
             if waits.is_none() {

@@ -3,13 +3,14 @@
 use std::time::Duration;
 
 use mdle_host::clap::{ArgMatches, Command};
-use mdle_host::{Hosted, Refusal, Replays, Target, Time};
+use mdle_host::{Hosted, Refusal, Replays, StopRequest, Target, Time};
 use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Twist};
 use mdle_serial::{Clock, carries, options};
 
 use crate::alphabet;
 use crate::config::Configured;
 use crate::driver::{Atrv, turn_takes};
+use crate::fault::Fault;
 
 /// How much later than it should a turn may be before the watchdog stops the robot.
 const SLACK: Duration = Duration::from_millis(50);
@@ -43,7 +44,7 @@ impl Target for AtrvMini {
             .transpose()
     }
 
-    fn connect(matches: &ArgMatches, period: Duration) -> Result<Atrv, Refusal> {
+    fn connect(matches: &ArgMatches, period: Duration, request: &StopRequest) -> Result<Atrv, Refusal> {
         let clock = options::clock(matches, period);
         let mut config = configured(matches)?.config;
         match clock {
@@ -58,7 +59,10 @@ impl Target for AtrvMini {
             }
             Clock::Wall => carries(period, turn_takes(&config)).map_err(Refusal::Usage)?,
         }
-        Atrv::connect(config, clock, period).map_err(|fault| Refusal::Fault(fault.to_string()))
+        Atrv::connect(config, clock, period, request).map_err(|fault| match fault {
+            Fault::Ended(unstopped) => Refusal::Ended(unstopped.map_or(Ok(()), |fault| Err(fault.to_string()))),
+            fault => Refusal::Fault(fault.to_string()),
+        })
     }
 }
 
@@ -74,7 +78,7 @@ mod tests {
     use std::time::Duration;
 
     use mdle_host::clap::Command;
-    use mdle_host::{Refusal, Target as _};
+    use mdle_host::{Refusal, StopRequest, Target as _};
 
     use super::AtrvMini;
 
@@ -84,7 +88,9 @@ mod tests {
             let arguments = ["plan", "--device", "/nowhere"].iter().chain(more);
             AtrvMini::arguments(Command::new("plan")).get_matches_from(arguments)
         };
-        let connected = |micros, more| AtrvMini::connect(&matches(more), Duration::from_micros(micros)).map(drop);
+        let connected = |micros, more| {
+            AtrvMini::connect(&matches(more), Duration::from_micros(micros), &StopRequest::default()).map(drop)
+        };
         let Err(Refusal::Usage(sentence)) = connected(7_000, &[]) else { panic!("7000 µs are enough") };
         assert_eq!(
             sentence,

@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use mdle_host::StopRequest;
 use mdle_runtime::{Meters, Nanos, PathStore, Robot, Sensed, Shape, Supply, Twist, Volts};
 use mdle_serial::{Clock, Times, time_of};
 
@@ -56,14 +57,15 @@ impl Scout {
     ///
     /// # Errors
     /// There is no line, no robot, or its emergency stop is pressed.
-    pub fn connect(config: Config, clock: Clock, period: Duration) -> Result<Self, Fault> {
+    pub fn connect(config: Config, clock: Clock, period: Duration, request: &StopRequest) -> Result<Self, Fault> {
         let line = Line::open(&config.device)?;
         let ring = Ring::new(&config.sonars, Nanos(config.gap.saturating_mul(1_000_000)));
         let (odometer, freshness, times) = (Odometer::default(), Freshness::default(), Times::new(clock));
         let paths = PathStore::EMPTY;
         let mut scout = Self { line, config, clock, odometer, ring, freshness, times, paths };
-        match scout.prepare(period) {
+        match scout.prepare(period, request) {
             Ok(()) => Ok(scout),
+            Err(Fault::Ended(_)) => Err(Fault::Ended(scout.stop().err().map(Box::new))),
             Err(fault) => {
                 // What led here says more than what comes of this.
                 let _ = scout.stop();
@@ -77,16 +79,20 @@ impl Scout {
         self.paths = paths;
     }
 
-    fn prepare(&mut self, period: Duration) -> Result<(), Fault> {
+    fn prepare(&mut self, period: Duration, request: &StopRequest) -> Result<(), Fault> {
+        let go_on = || if request.is_made() { Err(Fault::Ended(None)) } else { Ok(()) };
+        go_on()?;
         // Whoever drove it before may have left it moving.
         self.tell(Command::Velocities(0, 0))?;
         self.tell(Command::Watchdog(self.config.watchdog))?;
         let acceleration = libm::trunc(self.config.acceleration / wheels::UNIT) as u16;
         self.tell(Command::Accelerations(acceleration, acceleration))?;
+        go_on()?;
         self.tell(Command::Sonars((self.config.gap / 4) as u8, self.config.order()))?;
         let mut left = Duration::from_nanos(self.ring.around().0);
         while !left.is_zero() {
-            self.clock.pass(period.min(left));
+            self.clock.pass_unless(request, period.min(left));
+            go_on()?;
             left = left.saturating_sub(period);
             self.tell(Command::State)?;
         }

@@ -9,6 +9,8 @@ use crate::frame::Garbled;
 /// Why the robot cannot be driven, or no longer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Fault {
+    /// The run was asked to end while the robot was prepared; if it could not be stopped, why.
+    Ended(Option<Box<Self>>),
     /// The line cannot be opened, is cut, or nothing came in time.
     Line(LineFault),
     /// What came is no frame.
@@ -41,6 +43,8 @@ impl From<LineFault> for Fault {
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Ended(None) => f.write_str("the run was asked to end before it began"),
+            Self::Ended(Some(fault)) => fault.fmt(f),
             Self::Line(fault) => fault.tell("the Scout", f),
             Self::Garbled(garbled) => {
                 write!(f, "the Scout's answers are garbled ({garbled}): check the cable and the speed of the line")

@@ -3,13 +3,14 @@
 use std::time::Duration;
 
 use mdle_host::clap::{ArgMatches, Command};
-use mdle_host::{Hosted, Refusal, Replays, Target, Time};
+use mdle_host::{Hosted, Refusal, Replays, StopRequest, Target, Time};
 use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Twist};
 use mdle_serial::{Clock, carries, options};
 
 use crate::alphabet;
 use crate::config::Configured;
 use crate::driver::{Scout, turn_takes};
+use crate::fault::Fault;
 
 /// The target `scout`.
 #[derive(Debug, Clone, Copy)]
@@ -40,7 +41,7 @@ impl Target for SuperScout {
             .transpose()
     }
 
-    fn connect(matches: &ArgMatches, period: Duration) -> Result<Scout, Refusal> {
+    fn connect(matches: &ArgMatches, period: Duration, request: &StopRequest) -> Result<Scout, Refusal> {
         let clock = options::clock(matches, period);
         let mut config = configured(matches)?.config;
         let watchdog = Duration::from_secs(u64::from(config.watchdog));
@@ -56,7 +57,10 @@ impl Target for SuperScout {
             }
             Clock::Wall => carries(period, turn_takes()).map_err(Refusal::Usage)?,
         }
-        Scout::connect(config, clock, period).map_err(|fault| Refusal::Fault(fault.to_string()))
+        Scout::connect(config, clock, period, request).map_err(|fault| match fault {
+            Fault::Ended(unstopped) => Refusal::Ended(unstopped.map_or(Ok(()), |fault| Err(fault.to_string()))),
+            fault => Refusal::Fault(fault.to_string()),
+        })
     }
 }
 
@@ -72,7 +76,7 @@ mod tests {
     use std::time::Duration;
 
     use mdle_host::clap::Command;
-    use mdle_host::{Refusal, Target as _};
+    use mdle_host::{Refusal, StopRequest, Target as _};
 
     use super::SuperScout;
 
@@ -82,7 +86,9 @@ mod tests {
             let arguments = ["plan", "--device", "/nowhere"].iter().chain(more);
             SuperScout::arguments(Command::new("plan")).get_matches_from(arguments)
         };
-        let connected = |micros, more| SuperScout::connect(&matches(more), Duration::from_micros(micros)).map(drop);
+        let connected = |micros, more| {
+            SuperScout::connect(&matches(more), Duration::from_micros(micros), &StopRequest::default()).map(drop)
+        };
         let Err(Refusal::Usage(sentence)) = connected(15_000, &[]) else { panic!("15000 µs are enough") };
         assert_eq!(
             sentence,

@@ -11,7 +11,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use mdle_host::clap::{Arg, ArgMatches, Command, value_parser};
-use mdle_host::{Batch, Hosted, Judgement, Refusal, Standing, Target, Time, run};
+use mdle_host::{Batch, Hosted, Judgement, Refusal, Standing, StopRequest, Target, Time, run};
 use mdle_runtime::{Nanos, Robot, Twist};
 use mdle_sim::{Fault, Observed, Sensed, Sim};
 
@@ -42,8 +42,8 @@ impl Target for Fragile {
         Sim::time(matches)
     }
 
-    fn connect(matches: &ArgMatches, period: Duration) -> Result<Breaking, Refusal> {
-        Ok(Breaking { robot: Sim::connect(matches, period)?, left: matches.get_one("panic-at").copied() })
+    fn connect(matches: &ArgMatches, period: Duration, request: &StopRequest) -> Result<Breaking, Refusal> {
+        Ok(Breaking { robot: Sim::connect(matches, period, request)?, left: matches.get_one("panic-at").copied() })
     }
 
     fn screen(matches: &ArgMatches) -> bool {

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use mdle_host::clap::{ArgMatches, Command};
-use mdle_host::{Batch, Refusal, Replays, Target, Time};
+use mdle_host::{Batch, Refusal, Replays, StopRequest, Target, Time};
 use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Twist};
 
 use crate::observed::Observed;
@@ -32,7 +32,7 @@ impl Target for Sim {
         options::time(matches)
     }
 
-    fn connect(matches: &ArgMatches, period: Duration) -> Result<Observed, Refusal> {
+    fn connect(matches: &ArgMatches, period: Duration, _: &StopRequest) -> Result<Observed, Refusal> {
         setup::robot(matches, period).map_err(Refusal::Usage)
     }
 

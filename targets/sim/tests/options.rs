@@ -5,7 +5,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use mdle_host::clap::{ArgMatches, Command};
-use mdle_host::{Pace, Refusal, Target, Time};
+use mdle_host::{Pace, Refusal, StopRequest, Target, Time};
 use mdle_runtime::{Robot, Twist};
 use mdle_sim::Sim;
 
@@ -15,10 +15,10 @@ fn matches(options: &[&str]) -> ArgMatches {
 
 /// The sentence with which these options are refused.
 fn refused(options: &[&str]) -> String {
-    match Sim::connect(&matches(options), Sim::PERIOD) {
+    match Sim::connect(&matches(options), Sim::PERIOD, &StopRequest::default()) {
         Ok(_) => panic!("{options:?} were accepted"),
         Err(Refusal::Usage(sentence)) => sentence,
-        Err(Refusal::Fault(sentence)) => panic!("a fault: {sentence}"),
+        Err(refusal @ (Refusal::Fault(_) | Refusal::Ended(_))) => panic!("{refusal:?}"),
     }
 }
 
@@ -80,14 +80,17 @@ fn a_plot_that_could_not_be_written_is_refused_and_leaves_nothing() {
     fs::write(folder.join("file"), "").expect("a file of our own");
     assert!(plot(folder.join("file/plot.svg")).contains("nothing can be written there"));
     let good = folder.join("plot.svg");
-    assert!(Sim::connect(&matches(&["--plot", good.to_str().expect("UTF-8")]), Sim::PERIOD).is_ok());
+    assert!(
+        Sim::connect(&matches(&["--plot", good.to_str().expect("UTF-8")]), Sim::PERIOD, &StopRequest::default())
+            .is_ok()
+    );
     assert!(!good.exists(), "nothing is written before the run is finished");
     assert_eq!(fs::read_dir(&folder).expect("our folder").count(), 1);
 }
 
 #[test]
 fn an_input_that_is_not_a_number_is_a_fault() {
-    let mut robot = Sim::connect(&matches(&[]), Sim::PERIOD).expect("no bad options");
+    let mut robot = Sim::connect(&matches(&[]), Sim::PERIOD, &StopRequest::default()).expect("no bad options");
     let mut input = Twist::default();
     input.omega.0 = f64::NAN;
     let fault = robot.exchange(&input).expect_err("nonsense");
@@ -105,7 +108,9 @@ fn the_target_is_what_its_alphabet_says() {
 #[test]
 fn a_world_is_a_name_a_file_or_a_map() {
     let folder = folder("maps");
-    let connect = |world: &str| Sim::connect(&matches(&["--world", world]), Sim::PERIOD).map(|robot| robot.pose());
+    let connect = |world: &str| {
+        Sim::connect(&matches(&["--world", world]), Sim::PERIOD, &StopRequest::default()).map(|robot| robot.pose())
+    };
     assert!(connect("maze").is_ok());
     fs::write(folder.join("map.pgm"), [&b"P5 9 9 255\n"[..], &[254; 80], &[0]].concat()).expect("a file of our own");
     let yaml = folder.join("map.yaml");
@@ -117,7 +122,9 @@ fn a_world_is_a_name_a_file_or_a_map() {
 
 #[test]
 fn a_body_and_its_parts_are_named() {
-    let connect = |options: &[&str]| Sim::connect(&matches(options), Sim::PERIOD).map(|robot| robot.pose());
+    let connect = |options: &[&str]| {
+        Sim::connect(&matches(options), Sim::PERIOD, &StopRequest::default()).map(|robot| robot.pose())
+    };
     assert!(connect(&["--body", "scout", "--without", "specular, slip,order", "--seed", "3"]).is_ok());
     assert!(connect(&["--body", "atrv", "--without", ""]).is_ok());
     let sentences = [&["--body", "pioneer"][..], &["--without", "order,lobes"]].map(refused);

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 pub use hardware::{Fault, Hardware};
 use mdle_host::clap::{ArgMatches, Command};
-use mdle_host::{Hosted, Refusal, Time};
+use mdle_host::{Hosted, Refusal, StopRequest, Time};
 use mdle_runtime::Robot;
 /// The robot's output: what its sensors say.
 pub use mdle_runtime::Sensed as Output;
@@ -33,7 +33,7 @@ impl mdle_host::Target for Target {
         Ok(hardware::time(matches))
     }
 
-    fn connect(matches: &ArgMatches, period: Duration) -> Result<Hardware, Refusal> {
+    fn connect(matches: &ArgMatches, period: Duration, _: &StopRequest) -> Result<Hardware, Refusal> {
         Hardware::open(matches, period).map_err(|fault| Refusal::Fault(fault.to_string()))
     }
 }

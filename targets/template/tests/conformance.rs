@@ -5,8 +5,8 @@ use std::f64::consts::FRAC_PI_2;
 use std::time::Duration;
 
 use mdle_atoms::conformance::{Room, Stage, Suite};
-use mdle_host::Target as _;
 use mdle_host::clap::Command;
+use mdle_host::{StopRequest, Target as _};
 use mdle_runtime::{Nanos, Pose, Radians, Robot as _};
 use template_target::{Hardware, Input, Target, alphabet};
 
@@ -25,7 +25,8 @@ impl Stage for Floor {
     fn robot(&mut self, _room: &Room, at: Pose) -> Result<Hardware, String> {
         self.began = at;
         let options = Target::arguments(Command::new("conformance")).get_matches_from(["conformance"]);
-        Target::connect(&options, Duration::from_nanos(Self::PERIOD.0)).map_err(|refusal| format!("{refusal:?}"))
+        Target::connect(&options, Duration::from_nanos(Self::PERIOD.0), &StopRequest::default())
+            .map_err(|refusal| format!("{refusal:?}"))
     }
 
     /// REPLACE: where the robot truly is, by the test bench, the simulator or the camera that sees it.

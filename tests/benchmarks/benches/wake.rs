@@ -10,7 +10,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use mdle_host::clap::{self, ArgMatches};
-use mdle_host::{Hosted, Refusal, Target, Time};
+use mdle_host::{Hosted, Refusal, StopRequest, Target, Time};
 use mdle_runtime::fsm::{Atom, Bracket};
 use mdle_runtime::{Begin, Cursor, Fsm, Nanos, Next, Output, Plan, Robot};
 use rustix::mm::{MlockAllFlags, mlockall};
@@ -144,7 +144,7 @@ impl Target for Stopwatch {
         Ok(Time::Wall)
     }
 
-    fn connect(_: &ArgMatches, _: Duration) -> Result<Self, Refusal> {
+    fn connect(_: &ArgMatches, _: Duration, _: &StopRequest) -> Result<Self, Refusal> {
         Ok(Self { origin: Instant::now(), begins: Vec::with_capacity(TURNS + 1) })
     }
 }

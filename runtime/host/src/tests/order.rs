@@ -210,3 +210,26 @@ fn a_robot_that_cannot_be_opened_is_sent_nothing() {
     assert_eq!(usage, "\nstatus 2\nerror: the start pose is inside a wall\n");
     assert_eq!(fault, "\nstatus 3\nerror: nothing answers at /dev/ttyS0\n");
 }
+
+#[test]
+fn a_signal_at_the_start_stops_the_robot() {
+    let interrupted = |refusal| Stage { interrupted: Some(Signal::Interrupt), refusal, ..Stage::default() };
+    // A robot that does not look at the request.
+    insta::assert_snapshot!(way_out(&interrupted(None).run(&[])), @"
+    exchange 0, stop, finish
+    status 130
+    stopped by SIGINT
+    ");
+    insta::assert_snapshot!(way_out(&interrupted(Some(Refusal::Ended(Ok(())))).run(&[])), @"
+
+    status 130
+    stopped by SIGINT
+    ");
+    let unstopped = Refusal::Ended(Err("the line is dead".to_owned()));
+    insta::assert_snapshot!(way_out(&interrupted(Some(unstopped)).run(&[])), @"
+
+    status 3
+    stopped by SIGINT
+    error: the robot could not be told to stop: the line is dead
+    ");
+}

@@ -14,7 +14,7 @@ use super::plan::ToyPlan;
 use crate::clock::Instants;
 use crate::session::{Surroundings, session};
 use crate::signals::{Signal, Signals};
-use crate::{Around, Hosted, Pace, Refusal, Standing, Target, Time};
+use crate::{Around, Hosted, Pace, Refusal, Standing, StopRequest, Target, Time};
 
 /// An output: what fires while which atom, as written, is the current one.
 #[derive(Debug, Clone, Default)]
@@ -37,6 +37,8 @@ pub(super) struct Stage {
     pub(super) script: Vec<Act>,
     pub(super) time: Time,
     pub(super) refusal: Option<Refusal>,
+    /// The signal that comes while the robot is opened.
+    pub(super) interrupted: Option<Signal>,
     pub(super) stop: Act,
     pub(super) finish: Result<(), String>,
     /// Whether it looks where the plan stands.
@@ -53,6 +55,7 @@ impl Default for Stage {
             script: Vec::new(),
             time,
             refusal: None,
+            interrupted: None,
             stop: Act::Senses(vec![]),
             finish: Ok(()),
             looks: false,
@@ -75,8 +78,16 @@ pub(super) struct Run {
 }
 
 thread_local! {
-    /// What [`Toy::connect`] finds: a target has no other way to a test.
-    static READY: RefCell<Option<(Time, Result<Toy, Refusal>)>> = const { RefCell::new(None) };
+    /// What [`ToyTarget::connect`] finds: a target has no other way to a test.
+    static READY: RefCell<Option<Ready>> = const { RefCell::new(None) };
+}
+
+/// A toy that waits to be opened.
+struct Ready {
+    time: Time,
+    interrupted: Option<Signal>,
+    toy: Toy,
+    refusal: Option<Refusal>,
 }
 
 impl Stage {
@@ -102,7 +113,7 @@ impl Stage {
             signals: signals.share(),
             journal: Rc::clone(&journal),
         };
-        READY.set(Some((self.time, self.refusal.map_or(Ok(toy), Err))));
+        READY.set(Some(Ready { time: self.time, interrupted: self.interrupted, toy, refusal: self.refusal }));
         let out = Rc::new(RefCell::new(sink));
         let slept = Rc::new(Cell::new(Duration::ZERO));
         let mut err = Vec::new();
@@ -178,11 +189,17 @@ impl Target for ToyTarget {
         if matches.contains_id("device") {
             return Err("a toy has no device".to_owned());
         }
-        Ok(READY.with_borrow(|ready| ready.as_ref().unwrap().0))
+        Ok(READY.with_borrow(|ready| ready.as_ref().unwrap().time))
     }
 
-    fn connect(_: &ArgMatches, _: Duration) -> Result<Toy, Refusal> {
-        READY.take().unwrap().1
+    fn connect(_: &ArgMatches, _: Duration, request: &StopRequest) -> Result<Toy, Refusal> {
+        let Ready { interrupted, toy, refusal, .. } = READY.take().unwrap();
+        if let Some(signal) = interrupted {
+            assert!(!request.is_made());
+            toy.signals.raise(signal);
+            assert!(request.is_made());
+        }
+        refusal.map_or(Ok(toy), Err)
     }
 }
 

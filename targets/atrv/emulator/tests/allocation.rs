@@ -8,6 +8,7 @@ use std::time::Duration;
 use mdle_atrv::{Atrv, Clock, Config, Configured};
 use mdle_atrv_emulator::atrv::{Atrv as Emulated, step};
 use mdle_emulator::{Pace, Port, serve};
+use mdle_host::StopRequest;
 use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Robot as _, Twist};
 use mdle_sim::{Body, Make, Simulated, World};
 
@@ -25,7 +26,8 @@ fn a_turn_allocates_nothing() {
     thread::scope(|scope| {
         let serving = scope.spawn(|| serve(&mut robot, &port, pace, &|| !over.load(Ordering::Relaxed)));
         let config = Config { answer: 60_000, ..Configured::read(None, port.path().to_str()).unwrap().config };
-        let mut driver = Atrv::connect(config, Clock::Stepped(pace.step()), pace.step()).unwrap();
+        let mut driver =
+            Atrv::connect(config, Clock::Stepped(pace.step()), pace.step(), &StopRequest::default()).unwrap();
         let before = counting::asked();
         // Long enough for it to be asked for its brake, and for filler.
         let turns = (0..50)

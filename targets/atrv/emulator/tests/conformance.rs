@@ -8,6 +8,7 @@ use mdle_atoms::conformance::{Room, Stage, Suite, Supplied};
 use mdle_atrv::{Atrv, Clock, Config, Configured, Target, alphabet};
 use mdle_atrv_emulator::atrv::{Atrv as Emulated, step};
 use mdle_emulator::{Ailment, Pace, Staged};
+use mdle_host::StopRequest;
 use mdle_host::Target as _;
 use mdle_runtime::{Nanos, PathStore, Pose};
 use mdle_sim::{Body, Make, Simulated, World};
@@ -35,7 +36,8 @@ impl Stage for OnItsLine {
         let configured = Configured::read(None, staged.device().to_str())?;
         self.0 = Some(staged);
         let config = Config { answer: LONG, ..configured.config };
-        Atrv::connect(config, Clock::Stepped(PERIOD), PERIOD).map_err(|fault| fault.to_string())
+        Atrv::connect(config, Clock::Stepped(PERIOD), PERIOD, &StopRequest::default())
+            .map_err(|fault| fault.to_string())
     }
 
     fn take_paths(&mut self, robot: &mut Atrv, paths: PathStore) {

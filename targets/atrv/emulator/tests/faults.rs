@@ -8,6 +8,7 @@ use std::time::Duration;
 use mdle_atrv::{Atrv, Clock, Config, Configured, Fault, Garbled, LineFault, Output};
 use mdle_atrv_emulator::atrv::{Atrv as Emulated, step};
 use mdle_emulator::{Faulty, Pace, Port, serve};
+use mdle_host::StopRequest;
 use mdle_runtime::capability::{Bumpers, Odometry, SonarRing};
 use mdle_runtime::{MetersPerSecond, Robot as _, SonarId, Twist};
 use mdle_sim::{Body, Make, Simulated, World};
@@ -35,7 +36,7 @@ fn driven(fault: &str) -> Result<Output, Fault> {
         });
         // What is not going to come is waited for longer than any machine takes for what comes.
         let config = Config { answer: 3000, ..Configured::read(None, Some(&device)).unwrap().config };
-        let mut driver = Atrv::connect(config, Clock::Stepped(PERIOD), PERIOD).unwrap();
+        let mut driver = Atrv::connect(config, Clock::Stepped(PERIOD), PERIOD, &StopRequest::default()).unwrap();
         let go = Twist { v: MetersPerSecond(0.2), ..Twist::default() };
         let said = (0..50).try_fold(None, |_, _| driver.exchange(&go).map(Some)).map(Option::unwrap);
         // As the host does, whatever has come.

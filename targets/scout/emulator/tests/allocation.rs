@@ -6,6 +6,7 @@ use std::thread;
 use std::time::Duration;
 
 use mdle_emulator::{Pace, Port, serve};
+use mdle_host::StopRequest;
 use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Robot as _, Twist};
 use mdle_scout::{Clock, Config, Configured, Scout};
 use mdle_scout_emulator::scout::Scout as Emulated;
@@ -25,7 +26,8 @@ fn a_turn_allocates_nothing() {
     thread::scope(|scope| {
         let serving = scope.spawn(|| serve(&mut robot, &port, pace, &|| !over.load(Ordering::Relaxed)));
         let config = Config { answer: 60_000, ..Configured::read(None, port.path().to_str()).unwrap().config };
-        let mut driver = Scout::connect(config, Clock::Stepped(pace.step()), pace.step()).unwrap();
+        let mut driver =
+            Scout::connect(config, Clock::Stepped(pace.step()), pace.step(), &StopRequest::default()).unwrap();
         let before = counting::asked();
         // Long enough for each sonar to ping.
         let turns = (0..50)

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use mdle_atoms::conformance::{Room, Stage, Suite, Supplied};
 use mdle_emulator::{Ailment, Staged};
+use mdle_host::StopRequest;
 use mdle_host::Target as _;
 use mdle_runtime::{Nanos, PathStore, Pose};
 use mdle_scout::{Clock, Config, Configured, Scout, Target, alphabet};
@@ -33,7 +34,8 @@ impl Stage for OnItsLine {
         let configured = Configured::read(None, staged.device().to_str())?;
         self.0 = Some(staged);
         let config = Config { answer: LONG, ..configured.config };
-        Scout::connect(config, Clock::Stepped(PERIOD), PERIOD).map_err(|fault| fault.to_string())
+        Scout::connect(config, Clock::Stepped(PERIOD), PERIOD, &StopRequest::default())
+            .map_err(|fault| fault.to_string())
     }
 
     fn take_paths(&mut self, robot: &mut Scout, paths: PathStore) {

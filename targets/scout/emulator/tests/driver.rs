@@ -6,9 +6,10 @@ use std::thread;
 use std::time::Duration;
 
 use mdle_emulator::{Pace, Port, serve};
+use mdle_host::StopRequest;
 use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, SonarRing, Steering};
 use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Robot as _, SonarId, Twist};
-use mdle_scout::{Clock, Configured, Fault, LineFault, Output, Scout};
+use mdle_scout::{Clock, Command, Configured, Fault, LineFault, Output, Scout};
 use mdle_scout_emulator::scout::Scout as Emulated;
 use mdle_scout_emulator::wire::{Incoming, Request, answer};
 use mdle_sim::{Body, Make, Simulated, World};
@@ -31,7 +32,7 @@ fn connected(port: &Port, answer: u64) -> Result<Scout, Fault> {
     let mut config = Configured::read(None, port.path().to_str()).unwrap().config;
     config.answer = answer;
     config.steering = STEERING;
-    Scout::connect(config, Clock::Stepped(PERIOD), PERIOD)
+    Scout::connect(config, Clock::Stepped(PERIOD), PERIOD, &StopRequest::default())
 }
 
 /// Ends the robot's thread when a test ends, also when it fails.
@@ -203,7 +204,7 @@ fn a_line_that_is_cut_is_a_fault_at_once() {
         });
         let mut config = Configured::read(None, path.to_str()).unwrap().config;
         config.answer = LONG;
-        let mut driver = Scout::connect(config, Clock::Stepped(PERIOD), PERIOD).unwrap();
+        let mut driver = Scout::connect(config, Clock::Stepped(PERIOD), PERIOD, &StopRequest::default()).unwrap();
         answering.store(false, Ordering::Relaxed);
         robot.join().unwrap();
         assert_eq!(driver.exchange(&Twist::default()).map(|_| ()), Err(Fault::Line(LineFault::Closed)));
@@ -215,7 +216,7 @@ fn a_line_that_is_cut_is_a_fault_at_once() {
 fn a_device_that_is_none_is_refused() {
     let refused = |device: &str| {
         let config = Configured::read(None, Some(device)).unwrap().config;
-        Scout::connect(config, Clock::Wall, PERIOD).map(|_| ()).unwrap_err()
+        Scout::connect(config, Clock::Wall, PERIOD, &StopRequest::default()).map(|_| ()).unwrap_err()
     };
     assert!(
         matches!(refused("/nowhere/at/all"), Fault::Line(LineFault::Open(device, _)) if device == "/nowhere/at/all")
@@ -229,4 +230,30 @@ fn a_device_that_is_none_is_refused() {
     let held = std::fs::File::open(serial).unwrap();
     held.try_lock().unwrap();
     assert_eq!(refused(serial), Fault::Line(LineFault::Busy(serial.to_owned())));
+}
+
+#[test]
+fn a_start_that_is_asked_to_end_stops_the_robot() {
+    let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
+    let config = Configured::read(None, port.path().to_str()).unwrap().config;
+    let told = thread::scope(|scope| {
+        let robot = scope.spawn(|| {
+            let (mut incoming, mut told) = (Incoming::default(), Vec::new());
+            while !over.load(Ordering::Relaxed) {
+                port.read(Duration::from_millis(10), &mut |bytes| incoming.push(bytes)).unwrap();
+                while let Some(request) = incoming.next_request() {
+                    told.push(request.command);
+                    port.write(&answer(request.command, &[0; 42])).unwrap();
+                }
+            }
+            told
+        });
+        let config = mdle_scout::Config { answer: LONG, ..config };
+        let started = Scout::connect(config, Clock::Stepped(PERIOD), PERIOD, &StopRequest::made());
+        assert_eq!(started.map(|_| ()), Err(Fault::Ended(None)));
+        over.store(true, Ordering::Relaxed);
+        robot.join().unwrap()
+    });
+    let [stop, limp] = [Command::Stop, Command::Limp].map(|command| Some(command.kind()));
+    assert_eq!((told.first().copied(), told.last().copied()), (stop, limp), "{told:?}");
 }

@@ -10,6 +10,7 @@ use std::time::Duration;
 use mdle_atrv::{Atrv, Clock, Configured, Escape, Fault, Garbled, LineFault, Output, Unreadable};
 use mdle_atrv_emulator::atrv::Atrv as Emulated;
 use mdle_emulator::Port;
+use mdle_host::StopRequest;
 use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, SonarRing};
 use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Robot as _, SonarId, Twist};
 use room::{PERIOD, STEERING, driven_in, said_of, with_robot};
@@ -189,7 +190,7 @@ fn who_comes_too_late_finds_the_robot_stopped() {
 fn a_device_that_is_none_is_refused() {
     let refused = |device: &str| {
         let config = Configured::read(None, Some(device)).unwrap().config;
-        Atrv::connect(config, Clock::Wall, PERIOD).map(|_| ()).unwrap_err()
+        Atrv::connect(config, Clock::Wall, PERIOD, &StopRequest::default()).map(|_| ()).unwrap_err()
     };
     assert!(
         matches!(refused("/nowhere/at/all"), Fault::Line(LineFault::Open(device, _)) if device == "/nowhere/at/all")

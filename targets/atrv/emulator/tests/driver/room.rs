@@ -8,6 +8,7 @@ use mdle_atrv::{Atrv, Clock, Config, Configured, Escape, Fault};
 use mdle_atrv_emulator::atrv::{Atrv as Emulated, step};
 use mdle_atrv_emulator::wire::{Incoming, Request};
 use mdle_emulator::{Ailment, Pace, Port, serve};
+use mdle_host::StopRequest;
 use mdle_runtime::capability::Steering;
 use mdle_runtime::{Robot as _, Twist};
 use mdle_sim::{Body, Make, Simulated, World};
@@ -103,7 +104,7 @@ fn in_the_room<T>(
             Pace::Real => (Clock::Wall, Duration::from_millis(2)),
             Pace::Lockstep(period) => (Clock::Stepped(period), period),
         };
-        let result = drive(Atrv::connect(config, clock, period));
+        let result = drive(Atrv::connect(config, clock, period, &StopRequest::default()));
         drop(ends);
         serving.join().unwrap().unwrap();
         result
@@ -171,7 +172,9 @@ pub(crate) fn said_of(answers: impl Fn(&Request) -> Vec<u8> + Sync) -> Fault {
             }
         });
         let _ends = Ends(&over);
-        Atrv::connect(config(&port, SHORT), Clock::Stepped(PERIOD), PERIOD).map(|_| ()).unwrap_err()
+        Atrv::connect(config(&port, SHORT), Clock::Stepped(PERIOD), PERIOD, &StopRequest::default())
+            .map(|_| ())
+            .unwrap_err()
     })
 }
 
@@ -202,7 +205,7 @@ pub(crate) fn dribbled(period: Duration) -> Result<(), Fault> {
             }
         });
         let _ends = Ends(&over);
-        let mut driver = Atrv::connect(config(&port, LONG), Clock::Stepped(period), period)?;
+        let mut driver = Atrv::connect(config(&port, LONG), Clock::Stepped(period), period, &StopRequest::default())?;
         (0..20).try_for_each(|_| driver.exchange(&Twist::default()).map(|_| ()))
     })
 }
@@ -223,7 +226,7 @@ pub(crate) fn cut() -> [Result<(), Fault>; 2] {
         });
         let _ends = Ends(&over);
         let config = Config { answer: LONG, ..Configured::read(None, path.to_str()).unwrap().config };
-        let mut driver = Atrv::connect(config, Clock::Stepped(PERIOD), PERIOD).unwrap();
+        let mut driver = Atrv::connect(config, Clock::Stepped(PERIOD), PERIOD, &StopRequest::default()).unwrap();
         over.store(true, Ordering::Relaxed);
         serving.join().unwrap().unwrap();
         [driver.exchange(&Twist::default()).map(|_| ()), driver.stop()]

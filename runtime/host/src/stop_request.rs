@@ -1,0 +1,57 @@
+//! The request to end a run, as code sees it that opens a robot.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+/// The longest wait without a look at the request.
+const SLICE: Duration = Duration::from_millis(20);
+
+/// The request to end a run, which a signal makes. The default is one that nothing makes.
+#[derive(Debug, Clone, Default)]
+pub struct StopRequest(Arc<AtomicUsize>);
+
+impl StopRequest {
+    /// The request that a signal makes by storing its number in `caught`.
+    pub(crate) fn of(caught: &Arc<AtomicUsize>) -> Self {
+        Self(Arc::clone(caught))
+    }
+
+    /// A request that is made already.
+    #[must_use]
+    pub fn made() -> Self {
+        Self(Arc::new(AtomicUsize::new(1)))
+    }
+
+    /// Returns `true` from the moment at which the run is asked to end.
+    #[must_use]
+    pub fn is_made(&self) -> bool {
+        self.0.load(Ordering::SeqCst) != 0
+    }
+
+    /// Waits for `time`, or until the run is asked to end.
+    pub fn wait(&self, time: Duration) {
+        let begun = Instant::now();
+        while !self.is_made() {
+            let left = time.saturating_sub(begun.elapsed());
+            if left.is_zero() {
+                return;
+            }
+            std::thread::sleep(left.min(SLICE));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_request_ends_a_wait() {
+        StopRequest::made().wait(Duration::MAX);
+        assert!(StopRequest::made().is_made() && !StopRequest::default().is_made());
+        let begun = Instant::now();
+        StopRequest::default().wait(Duration::from_millis(50));
+        assert!(begun.elapsed() >= Duration::from_millis(50));
+    }
+}
