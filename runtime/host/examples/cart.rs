@@ -2,14 +2,18 @@
 //!
 //! `cargo run -p mdle-host --example cart -- --speed max --timeout 20`. The tests of this package run it as a program.
 
+use std::fs::File;
 use std::io::Write;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
 use mdle_host::clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use mdle_host::{Hosted, Pace, Refusal, StopRequest, Target, Time, run};
+use mdle_host::{Hosted, Pace, Refusal, Replays, StopRequest, Target, Time, run};
 use mdle_runtime::fsm::{Atom, Bracket};
-use mdle_runtime::{Begin, Cause, Cursor, Fsm, Meters, MetersPerSecond, Nanos, Next, Output, Plan, Robot};
+use mdle_runtime::{
+    Begin, Cause, Cursor, Fsm, Meters, MetersPerSecond, Nanos, Next, Output, Plan, RadiansPerSecond, Robot, Twist,
+};
 
 fn main() -> ExitCode {
     run::<CartTarget, _>("shuttle", || Shuttle { forward: true })
@@ -29,16 +33,30 @@ struct Cart {
     track: Meters,
     period: Duration,
     exchanges: u64,
-    /// The exchange that does not work, and whether it panics.
-    broken: Option<(u64, bool)>,
-    /// Whether it tells what it is told.
+    /// The exchange that does not work, and how.
+    broken: Option<(u64, Breakdown)>,
+    /// Whether it tells what it is told, on standard error.
     tells: bool,
+    /// The file in which it writes that down.
+    journal: Option<File>,
+}
+
+/// How an exchange goes wrong.
+#[derive(Debug, Clone, Copy)]
+enum Breakdown {
+    Fails,
+    Panics,
+    Hangs,
 }
 
 impl Cart {
     fn tell(&self, what: std::fmt::Arguments<'_>) {
         if self.tells {
-            let _ = writeln!(std::io::stderr(), "cart: {what}");
+            // In one piece: the host writes there too.
+            let _ = std::io::stderr().write_all(format!("cart: {what}\n").as_bytes());
+        }
+        if let Some(mut journal) = self.journal.as_ref() {
+            let _ = writeln!(journal, "{what}");
         }
     }
 }
@@ -52,8 +70,13 @@ impl Robot for Cart {
         let MetersPerSecond(speed) = input.0;
         self.tell(format_args!("{speed} m/s"));
         match self.broken {
-            Some((exchange, false)) if exchange == self.exchanges => return Err("the cart fell off its track"),
-            Some((exchange, true)) if exchange == self.exchanges => self.explode(),
+            Some((exchange, breakdown)) if exchange == self.exchanges => match breakdown {
+                Breakdown::Fails => return Err("the cart fell off its track"),
+                Breakdown::Panics => self.explode(),
+                Breakdown::Hangs => loop {
+                    std::thread::park();
+                },
+            },
             Some(_) | None => {}
         }
         self.exchanges += 1;
@@ -87,6 +110,11 @@ impl Target for CartTarget {
     const NAME: &'static str = "cart";
     const PERIOD: Duration = Duration::from_millis(100);
     type Robot = Cart;
+    const PATHS: Option<Replays<Cart>> = Some(Replays {
+        fastest: Twist { v: MetersPerSecond(0.5), omega: RadiansPerSecond(0.0) },
+        take: |_, _| {},
+        speed: |_| MetersPerSecond(0.5),
+    });
 
     fn arguments(command: Command) -> Command {
         let number = |name| Arg::new(name).long(name).value_name("N").value_parser(value_parser!(u64));
@@ -95,6 +123,14 @@ impl Target for CartTarget {
             .arg(Arg::new("speed").long("speed").value_parser(["wall", "max"]).help("How time passes [default: wall]"))
             .arg(number("fail-at").help("Fail at this exchange"))
             .arg(number("panic-at").help("Panic at this exchange"))
+            .arg(number("hang-at").help("Hang at this exchange"))
+            .arg(number("start").help("Milliseconds that it takes to be opened"))
+            .arg(
+                Arg::new("journal")
+                    .long("journal")
+                    .value_parser(value_parser!(PathBuf))
+                    .help("Where to write what the cart is told"),
+            )
             .arg(Arg::new("tell").long("tell").action(ArgAction::SetTrue).help("Tell what the cart is told"))
     }
 
@@ -103,15 +139,26 @@ impl Target for CartTarget {
         Ok(if fastest { Time::Stepped(Pace::Max) } else { Time::Wall })
     }
 
-    fn connect(matches: &ArgMatches, period: Duration, _: &StopRequest) -> Result<Cart, Refusal> {
+    fn connect(matches: &ArgMatches, period: Duration, request: &StopRequest) -> Result<Cart, Refusal> {
         let track = matches.get_one("track").copied().unwrap_or(1.0);
         if !(0.0..=1e3).contains(&track) {
             return Err(Refusal::Usage("a track is at most 1000 m long".to_owned()));
         }
-        let at = |name, panics| matches.get_one::<u64>(name).map(|exchange| (*exchange, panics));
-        let broken = at("fail-at", false).or(at("panic-at", true));
+        let at = |name, breakdown| matches.get_one::<u64>(name).map(|exchange| (*exchange, breakdown));
+        let broken = at("fail-at", Breakdown::Fails).or(at("panic-at", Breakdown::Panics));
+        let broken = broken.or(at("hang-at", Breakdown::Hangs));
         let tells = matches.get_flag("tell");
-        Ok(Cart { at: Meters(0.0), track: Meters(track), period, exchanges: 0, broken, tells })
+        let journal = matches.get_one::<PathBuf>("journal").map(File::create).transpose();
+        let journal = journal.map_err(|error| Refusal::Usage(error.to_string()))?;
+        let mut cart = Cart { at: Meters(0.0), track: Meters(track), period, exchanges: 0, broken, tells, journal };
+        if let Some(millis) = matches.get_one("start") {
+            cart.tell(format_args!("start"));
+            request.wait(Duration::from_millis(*millis));
+            if request.is_made() {
+                return Err(Refusal::Ended(cart.stop().map_err(str::to_owned)));
+            }
+        }
+        Ok(cart)
     }
 }
 

@@ -170,7 +170,7 @@ where
         Ok(robot) => robot,
         Err(sentence) => return Some(Done { outcome: Outcome::Failed(sentence), ..run }),
     };
-    let mut clock = Clock::begin(Standing, Time::Stepped(Pace::Max), terms.period);
+    let mut clock = Clock::begin(Standing, Time::Stepped(Pace::Max), terms.period, None);
     let mut said = LastLine::default();
     let limits = Limits { timeout: terms.limits.timeout.or(terms.by_default()), ..terms.limits };
     let ending = shielded(|| {
@@ -196,6 +196,7 @@ where
             | Ending::Overrun(fault)
             | Ending::Bug(fault),
         ) => Outcome::Failed(fault),
+        Ok(Ending::Suspended { .. }) => Outcome::Failed("it went without a command".to_owned()),
         Ok(_) if failure.is_some() => Outcome::Failed(failure.unwrap_or_default()),
         Ok(Ending::Timeout(_) | Ending::Turns(_)) => Outcome::TimedOut,
         Ok(Ending::Over) => {

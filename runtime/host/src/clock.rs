@@ -3,9 +3,10 @@
 //! Turns begin at absolute deadlines, so lateness never adds up. A real robot that was late skips ahead: it is never
 //! sent a burst of inputs. In stepped time no turn may be skipped; what scheduling cost is caught up there.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use mdle_runtime::Nanos;
+use rustix::time::{ClockId, clock_gettime};
 
 use crate::ending::Ending;
 use crate::signals::Signals;
@@ -16,6 +17,9 @@ use crate::{Pace, Time, urgency};
 const SLICE: Duration = Duration::from_millis(20);
 /// How much lateness stepped time catches up, in nanoseconds; after more, such as a suspended process, it goes on from now.
 const CATCH_UP: u64 = 250_000_000;
+
+/// How much later than it should a turn may begin on a robot that does not say how long it goes without a command.
+const GAP: Duration = Duration::from_secs(2);
 
 /// Where real time comes from; a test drives it by hand.
 pub(crate) trait Instants {
@@ -32,20 +36,14 @@ pub(crate) trait Instants {
     }
 }
 
-/// The machine's own monotonic clock.
+/// The time since the machine was started, in which it may have been suspended.
 #[derive(Debug)]
-pub(crate) struct Monotonic(Instant);
+pub(crate) struct SinceBoot;
 
-impl Monotonic {
-    /// A clock that starts now.
-    pub(crate) fn start() -> Self {
-        Self(Instant::now())
-    }
-}
-
-impl Instants for Monotonic {
+impl Instants for SinceBoot {
     fn now(&mut self) -> Duration {
-        self.0.elapsed()
+        let now = clock_gettime(ClockId::Boottime);
+        Duration::new(now.tv_sec.try_into().unwrap_or(0), now.tv_nsec.try_into().unwrap_or(0))
     }
 
     fn sleep(&mut self, time: Duration) {
@@ -72,15 +70,20 @@ pub(crate) struct Clock<I> {
     place: u64,
     /// When the current turn began, in real nanoseconds.
     begun: u64,
+    /// How long a robot in real time may go without a command, in nanoseconds.
+    longest_gap: u64,
     timing: Timing,
 }
 
 impl<I: Instants> Clock<I> {
-    /// The clock of a run whose turn 0 begins now.
-    pub(crate) fn begin(mut instants: I, time: Time, period: Duration) -> Self {
+    /// The clock of a run whose turn 0 begins now, of a robot that goes without a command for so long at most; by default
+    /// for two seconds more than a period.
+    pub(crate) fn begin(mut instants: I, time: Time, period: Duration, longest_gap: Option<Duration>) -> Self {
         let origin = nanos(instants.now());
+        let longest_gap = nanos(longest_gap.unwrap_or(period.saturating_add(GAP)));
         let period = nanos(period).max(1);
-        Self { instants, time, period, origin, zero: origin, place: 0, begun: origin, timing: Timing::new(period) }
+        let timing = Timing::new(period);
+        Self { instants, time, period, origin, zero: origin, place: 0, begun: origin, longest_gap, timing }
     }
 
     /// Takes note that the first output has been taken: this is the plan's time 0.
@@ -105,7 +108,8 @@ impl<I: Instants> Clock<I> {
     /// Waits for the beginning of the next turn.
     ///
     /// # Errors
-    /// A signal, which cuts the wait short, or one turn too many that took longer than the period.
+    /// A signal, which cuts the wait short, one turn too many that took longer than the period, or the robot has gone without
+    /// a command for too long.
     pub(crate) fn next_turn(&mut self, signals: &Signals) -> Result<(), Ending> {
         if self.time == Time::Wall {
             let took = nanos(self.instants.now()).saturating_sub(self.begun);
@@ -120,6 +124,10 @@ impl<I: Instants> Clock<I> {
             let now = nanos(self.instants.now());
             let left = deadline.saturating_sub(now);
             if left == 0 {
+                let gap = now.saturating_sub(self.begun);
+                if self.time == Time::Wall && gap > self.longest_gap {
+                    return Err(Ending::Suspended { gap, longest: self.longest_gap });
+                }
                 self.begun = now;
                 self.timing.begins(now.saturating_sub(deadline));
                 return Ok(());
@@ -187,21 +195,21 @@ mod tests {
 
     #[test]
     fn turns_begin_at_absolute_deadlines() {
-        let mut clock = Clock::begin(ByHand::default(), Time::Wall, PERIOD);
+        let mut clock = Clock::begin(ByHand::default(), Time::Wall, PERIOD, None);
         let begins = [30, 99, 0, 100].map(|took| next_after(&mut clock, took));
         assert_eq!(begins, [100, 200, 300, 400]);
     }
 
     #[test]
     fn a_late_robot_skips_ahead() {
-        let mut clock = Clock::begin(ByHand::default(), Time::Wall, PERIOD);
+        let mut clock = Clock::begin(ByHand::default(), Time::Wall, PERIOD, None);
         let begins = [101, 250, 10].map(|took| next_after(&mut clock, took));
         assert_eq!(begins, [200, 500, 600]);
     }
 
     #[test]
     fn the_tenth_turn_in_a_row_that_is_too_long_is_one_too_many() {
-        let mut clock = Clock::begin(ByHand::default(), Time::Wall, PERIOD);
+        let mut clock = Clock::begin(ByHand::default(), Time::Wall, PERIOD, None);
         next_after(&mut clock, 100);
         assert!(clock.timing().is_some_and(|timing| timing.to_string().starts_with("1 turn of 100ms, 0 longer\n")));
         for _ in 0..9 {
@@ -215,7 +223,7 @@ mod tests {
 
     #[test]
     fn the_first_output_is_at_zero() {
-        let mut clock = Clock::begin(ByHand(Duration::from_secs(7)), Time::Wall, PERIOD);
+        let mut clock = Clock::begin(ByHand(Duration::from_secs(7)), Time::Wall, PERIOD, None);
         clock.instants.0 += Duration::from_millis(30);
         assert_eq!(clock.zero(), Nanos::ZERO);
         clock.next_turn(&Signals::unheard()).expect("no signal");
@@ -226,7 +234,7 @@ mod tests {
     #[test]
     fn stepped_time_is_exact() {
         let third = Duration::from_nanos(33_333_333);
-        let mut clock = Clock::begin(ByHand::default(), Time::Stepped(Pace::Max), third);
+        let mut clock = Clock::begin(ByHand::default(), Time::Stepped(Pace::Max), third, None);
         assert_eq!(clock.zero(), Nanos::ZERO);
         for turn in 1..=1000 {
             next_after(&mut clock, 7);
@@ -237,22 +245,39 @@ mod tests {
 
     #[test]
     fn a_pace_of_four_is_four_times_as_fast() {
-        let mut clock = Clock::begin(ByHand::default(), Time::Stepped(Pace::Times(4.0)), PERIOD);
+        let mut clock = Clock::begin(ByHand::default(), Time::Stepped(Pace::Times(4.0)), PERIOD, None);
         let begins = [5, 25, 0, 24].map(|took| next_after(&mut clock, took));
         assert_eq!(begins, [25, 50, 75, 100]);
     }
 
     #[test]
     fn stepped_time_catches_up_a_little_lateness() {
-        let mut clock = Clock::begin(ByHand::default(), Time::Stepped(Pace::Times(1.0)), PERIOD);
+        let mut clock = Clock::begin(ByHand::default(), Time::Stepped(Pace::Times(1.0)), PERIOD, None);
         let begins = [250, 10, 10, 10].map(|took| next_after(&mut clock, took));
         assert_eq!(begins, [250, 260, 300, 400]);
         assert_eq!(clock.taken(), Nanos(400_000_000));
     }
 
     #[test]
+    fn a_robot_that_went_without_a_command_for_too_long_is_not_driven_on() {
+        let gap = |clock: &mut Clock<ByHand>, took| {
+            clock.instants.0 += Duration::from_millis(took);
+            clock.next_turn(&Signals::unheard())
+        };
+        let second = Duration::from_secs(1);
+        let mut clock = Clock::begin(ByHand::default(), Time::Wall, PERIOD, Some(second));
+        assert_eq!([900, 1000].map(|took| gap(&mut clock, took)), [Ok(()), Ok(())]);
+        let Err(Ending::Suspended { gap: 1_100_000_000, longest }) = gap(&mut clock, 1001) else { panic!("a fault") };
+        assert_eq!(longest, nanos(second));
+        // Of a robot that does not say.
+        let mut clock = Clock::begin(ByHand::default(), Time::Wall, PERIOD, None);
+        assert_eq!(gap(&mut clock, 2100), Ok(()));
+        assert!(gap(&mut clock, 2101).is_err());
+    }
+
+    #[test]
     fn stepped_time_goes_on_from_now_after_a_suspension() {
-        let mut clock = Clock::begin(ByHand::default(), Time::Stepped(Pace::Times(1.0)), PERIOD);
+        let mut clock = Clock::begin(ByHand::default(), Time::Stepped(Pace::Times(1.0)), PERIOD, None);
         let begins = [600_000, 10, 10].map(|took| next_after(&mut clock, took));
         assert_eq!(begins, [600_000, 600_100, 600_200]);
         assert_eq!(clock.taken(), Nanos(300_000_000));
@@ -261,10 +286,10 @@ mod tests {
     #[test]
     fn a_signal_cuts_the_wait_short() {
         let signals = Signals::unheard();
-        signals.raise(Signal::Terminate);
+        signals.raise(Signal::TERMINATE);
         for time in [Time::Wall, Time::Stepped(Pace::Times(0.001)), Time::Stepped(Pace::Max)] {
-            let mut clock = Clock::begin(ByHand::default(), time, PERIOD);
-            assert_eq!(clock.next_turn(&signals), Err(Ending::Signal(Signal::Terminate)));
+            let mut clock = Clock::begin(ByHand::default(), time, PERIOD, None);
+            assert_eq!(clock.next_turn(&signals), Err(Ending::Signal(Signal::TERMINATE)));
             assert_eq!(clock.instants.0, Duration::ZERO);
         }
     }

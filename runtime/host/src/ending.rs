@@ -39,6 +39,13 @@ pub(crate) enum Ending {
     Log(String),
     /// Too many turns took too long: how long.
     Overrun(String),
+    /// The robot went without a command for `gap`, longer than for `longest`, both in nanoseconds.
+    Suspended {
+        /// How long it was.
+        gap: u64,
+        /// How long it may be.
+        longest: u64,
+    },
     /// Code panicked: its message.
     Bug(String),
 }
@@ -59,7 +66,12 @@ impl Ending {
             Self::Over => OVER,
             Self::Timeout(_) | Self::Turns(_) => LIMIT,
             Self::Signal(signal) => 128 + signal.number(),
-            Self::Robot(_) | Self::Unstopped(_) | Self::Log(_) | Self::Overrun(_) | Self::Bug(_) => FAULT,
+            Self::Robot(_)
+            | Self::Unstopped(_)
+            | Self::Log(_)
+            | Self::Overrun(_)
+            | Self::Suspended { .. }
+            | Self::Bug(_) => FAULT,
         }
     }
 
@@ -77,7 +89,7 @@ impl Ending {
     pub(crate) fn robot_listens(&self) -> bool {
         match self {
             Self::Over | Self::Timeout(_) | Self::Turns(_) | Self::Signal(_) | Self::Log(_) | Self::Overrun(_) => true,
-            Self::Robot(_) | Self::Unstopped(_) | Self::Bug(_) => false,
+            Self::Robot(_) | Self::Unstopped(_) | Self::Suspended { .. } | Self::Bug(_) => false,
         }
     }
 
@@ -91,7 +103,8 @@ impl Ending {
             | Self::Robot(_)
             | Self::Unstopped(_)
             | Self::Log(_)
-            | Self::Overrun(_) => true,
+            | Self::Overrun(_)
+            | Self::Suspended { .. } => true,
             Self::Bug(_) => false,
         }
     }
@@ -110,6 +123,16 @@ impl Ending {
             Self::Signal(signal) => say(err, format_args!("stopped by {}", signal.name())),
             Self::Robot(fault) | Self::Overrun(fault) => {
                 say(err, format_args!("error: a fault stopped the robot: {fault}"))
+            }
+            Self::Suspended { gap, longest } => {
+                let [gap, longest] = [gap, longest].map(|nanos| Duration::from_nanos(*nanos).as_secs_f64());
+                say(
+                    err,
+                    format_args!(
+                        "error: a fault stopped the robot: it had no command for {gap:.1} s, and may go {longest} s \
+                         without one: this program or this computer was suspended, or too busy; start the plan again"
+                    ),
+                );
             }
             Self::Unstopped(fault) => {
                 say(err, format_args!("error: a fault ended the plan, and the robot may not have stopped: {fault}"));

@@ -14,10 +14,13 @@ mod files;
 mod held;
 mod log;
 mod outlet;
+mod panic_hook;
 mod paths;
+mod patience;
 mod progress;
 mod report;
 mod safety;
+mod second_signal;
 mod session;
 mod signals;
 mod stop_request;
@@ -27,16 +30,22 @@ mod target;
 mod tests;
 mod timing;
 mod turns;
+mod unwinding;
 mod urgency;
+mod way_out;
 
-use std::io::{self, BufWriter, IsTerminal, Write};
+use std::fs::File;
+use std::io::{self, IsTerminal, Write};
+use std::os::fd::{AsFd, BorrowedFd};
 use std::process::ExitCode;
 
 pub use batch::Batch;
 pub use clap;
 pub use files::{read_file, read_text};
 use mdle_runtime::{Plan, Robot};
+use outlet::{Keeps, Outlet};
 pub use paths::Replays;
+use patience::Patience;
 pub use stop_request::StopRequest;
 pub use target::{Around, Hosted, Judgement, Pace, Refusal, Standing, Target, Time};
 
@@ -44,12 +53,16 @@ pub use target::{Around, Hosted, Judgement, Pace, Refusal, Standing, Target, Tim
 /// that mdlec builds calls. `name` is the plan's, for `--help`; its usage names the executable as it was called.
 ///
 /// Exit status: 0 the plan is over; 1 of several runs not all arrived; 2 a bad option, world or start pose; 3 a fault stopped the robot, or what was asked
-/// for could not be written; 4 `--timeout` or `--turns`; 129, 130 or 143 a signal. In every case the robot was stopped.
+/// for could not be written; 4 `--timeout` or `--turns`; 128+N signal N. In every case the robot was stopped.
+///
+/// It handles the signals of the process and replaces its panic hook by one that never makes the robot wait.
 pub fn run<T: Target, P>(name: &str, plan: impl Fn() -> P + Sync) -> ExitCode
 where
     P: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>,
 {
-    let signals = match signals::Signals::listen() {
+    let signals = signals::Signals::listen();
+    let signals = signals.and_then(|signals| second_signal::watch(&signals, T::leave_screen).map(|()| signals));
+    let signals = match signals {
         Ok(signals) => signals,
         Err(error) => {
             // Without them Ctrl-C would leave the robot moving.
@@ -57,21 +70,26 @@ where
             return ExitCode::from(ending::FAULT);
         }
     };
-    let instants = clock::Monotonic::start();
+    let (out, err) = match standard_streams(signals.patience()) {
+        Ok(streams) => streams,
+        Err(error) => {
+            ending::say(&mut io::stderr(), format_args!("error: the system gives no threads: {error}"));
+            return ExitCode::from(ending::FAULT);
+        }
+    };
+    panic_hook::tell_to(err.aside());
     let begun = std::time::Instant::now();
     let seen = io::stderr().is_terminal().then(|| Box::new(move || begun.elapsed()) as Box<dyn FnMut() -> _>);
-    let surroundings = session::Surroundings { instants, signals, out: standard_output, err: &mut io::stderr(), seen };
+    let (out, mut err) = (|| Box::new(out) as Box<dyn Write>, err);
+    let surroundings = session::Surroundings { instants: clock::SinceBoot, signals, out, err: &mut err, seen };
     ExitCode::from(session::session::<T, P, _, _>(name, std::env::args_os(), &plan, surroundings))
 }
 
-/// Standard output for a run in which time passes like this.
-fn standard_output(time: Option<Time>) -> Box<dyn Write> {
-    match time {
-        // A robot must not wait for whoever reads its report; without a thread it must.
-        Some(Time::Wall) => match outlet::Outlet::open(io::stdout()) {
-            Ok(outlet) => Box::new(outlet),
-            Err(_) => Box::new(BufWriter::new(io::stdout())),
-        },
-        Some(Time::Stepped(_)) | None => Box::new(BufWriter::new(io::stdout())),
-    }
+/// Standard output and standard error, each with a thread that writes to it. The library's own buffer of standard output is
+/// left out: nobody may take what is in it when the program ends.
+fn standard_streams(patience: &Patience) -> io::Result<(Outlet, Outlet)> {
+    let open = |stream: BorrowedFd<'_>| -> io::Result<Outlet> {
+        Outlet::open(File::from(stream.try_clone_to_owned()?), Keeps::WhatIsRead, patience)
+    };
+    Ok((open(io::stdout().as_fd())?, open(io::stderr().as_fd())?))
 }

@@ -1,16 +1,19 @@
 //! The run log: JSON lines, one object a turn, in the format of `mdlec trace`.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::Path;
 
 use mdle_runtime::trace::Line;
 use mdle_runtime::{Nanos, Plan, Transition};
 
+use crate::outlet::{Keeps, Outlet};
+use crate::patience::Patience;
+
 /// A run log that is being written.
 #[derive(Debug)]
-pub(crate) struct Log<W: Write> {
-    file: BufWriter<W>,
+pub(crate) struct Log {
+    file: Outlet,
     /// Whether each turn reaches the file at once: not at the fastest pace.
     prompt: bool,
 }
@@ -58,15 +61,15 @@ impl<'p> Untouched<'p> {
     ///
     /// # Errors
     /// When what it held cannot be cut off.
-    pub(crate) fn begin(self, prompt: bool) -> io::Result<Log<File>> {
-        self.emptied().map(|file| Log::new(file, prompt))
+    pub(crate) fn begin(self, prompt: bool, patience: &Patience) -> io::Result<Log> {
+        Ok(Log { file: self.emptied(patience)?, prompt })
     }
 
-    /// The file, without whatever it held; from now on it stays.
+    /// Writes to the file, without whatever it held; from now on it stays.
     ///
     /// # Errors
     /// When that cannot be cut off.
-    pub(crate) fn emptied(self) -> io::Result<File> {
+    pub(crate) fn emptied(self, patience: &Patience) -> io::Result<Outlet> {
         let Self { file, new } = self;
         // A device or a pipe has no length.
         if file.metadata()?.is_file() {
@@ -75,7 +78,7 @@ impl<'p> Untouched<'p> {
         if let Some(new) = new {
             std::mem::forget(new);
         }
-        Ok(file)
+        Outlet::open(file, Keeps::All, patience)
     }
 }
 
@@ -90,12 +93,7 @@ impl Drop for New<'_> {
     }
 }
 
-impl<W: Write> Log<W> {
-    /// A log to `file`.
-    fn new(file: W, prompt: bool) -> Self {
-        Self { file: BufWriter::new(file), prompt }
-    }
-
+impl Log {
     /// Writes one turn.
     ///
     /// # Errors

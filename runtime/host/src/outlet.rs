@@ -1,20 +1,100 @@
-//! Standard output that never makes a robot wait: a thread of its own writes what the turns hand over.
+//! A writer that never makes a robot wait: a thread of its own writes what the turns hand over.
 
+#[cfg(test)]
+mod tests;
+
+use std::collections::VecDeque;
 use std::io::{self, Write};
-use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
-use std::thread::{Builder, JoinHandle};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::Builder;
+use std::time::{Duration, Instant};
 
-/// How many pieces, one a turn with transitions, may wait for a slow reader before pieces are lost.
-const WAITING: usize = 256;
+use crate::patience::{AT_THE_END, Patience};
 
-/// A writer whose `flush` hands over and returns at once; dropping it waits until all is written.
+/// The stack of a thread that only writes. All memory of a run is locked: this is as much as it takes.
+pub(crate) const STACK: usize = 128 * 1024;
+/// How much may wait for a slow reader, in bytes.
+const WAITING: usize = 1 << 20;
+/// As much is handed over without being asked for, in bytes.
+const PIECE: usize = 1 << 16;
+/// As much is written at a time, in bytes: who takes that is no reader that takes nothing.
+const CHUNK: usize = 1 << 13;
+/// How long a file that must not lack anything may take nothing while a robot drives.
+const LAG: Duration = Duration::from_secs(5);
+/// The longest wait without a look at how long to wait.
+const LOOK: Duration = Duration::from_millis(20);
+
+/// What becomes of pieces that a slow reader leaves no room for while a robot drives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Keeps {
+    /// Lines for people: they are left out, and a line says so.
+    WhatIsRead,
+    /// A record that must not lack anything: that is an error.
+    All,
+}
+
+/// A writer whose `flush` returns at once while a robot drives, and otherwise when all is written, as far as the patience of
+/// the run goes. Dropping it waits likewise.
 #[derive(Debug)]
 pub(crate) struct Outlet {
     piece: Vec<u8>,
+    keeps: Keeps,
+    patience: Patience,
     /// Whether pieces have been lost since the last one that was handed over.
     lost: bool,
-    pieces: Option<SyncSender<Vec<u8>>>,
-    writer: Option<JoinHandle<io::Result<()>>>,
+    /// Whether its reader has used up all patience.
+    given_up: bool,
+    shared: Arc<Shared>,
+}
+
+#[derive(Debug)]
+struct Shared {
+    queue: Mutex<Queue>,
+    changed: Condvar,
+}
+
+#[derive(Debug)]
+struct Queue {
+    pieces: VecDeque<Vec<u8>>,
+    /// How many bytes wait or are being written.
+    bytes: usize,
+    /// When the reader took something last, or something was handed over to one that waited.
+    moved: Instant,
+    is_closed: bool,
+    /// Why the thread has ended.
+    error: Option<io::Error>,
+    has_ended: bool,
+}
+
+impl Shared {
+    fn queue(&self) -> MutexGuard<'_, Queue> {
+        // Nothing in here panics half way.
+        self.queue.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Queue {
+    /// Takes in a piece. There is always room for one alone, however long.
+    fn push(&mut self, piece: Vec<u8>) -> Result<(), Vec<u8>> {
+        if self.bytes > 0 && self.bytes.saturating_add(piece.len()) > WAITING {
+            return Err(piece);
+        }
+        if self.bytes == 0 {
+            self.moved = Instant::now();
+        }
+        self.bytes += piece.len();
+        self.pieces.push_back(piece);
+        Ok(())
+    }
+
+    /// Returns an error once the thread has ended.
+    fn check(&mut self) -> io::Result<()> {
+        match self.error.take() {
+            Some(error) => Err(error),
+            None if self.has_ended => Err(io::ErrorKind::BrokenPipe.into()),
+            None => Ok(()),
+        }
+    }
 }
 
 impl Outlet {
@@ -22,29 +102,28 @@ impl Outlet {
     ///
     /// # Errors
     /// When the system gives no thread.
-    pub(crate) fn open(sink: impl Write + Send + 'static) -> io::Result<Self> {
-        let (pieces, waiting) = sync_channel(WAITING);
-        let writer = Builder::new().name("report".to_owned()).spawn(move || write_all(sink, &waiting))?;
-        Ok(Self { piece: Vec::new(), lost: false, pieces: Some(pieces), writer: Some(writer) })
+    pub(crate) fn open(sink: impl Write + Send + 'static, keeps: Keeps, patience: &Patience) -> io::Result<Self> {
+        let queue = Queue {
+            pieces: VecDeque::new(),
+            bytes: 0,
+            moved: Instant::now(),
+            is_closed: false,
+            error: None,
+            has_ended: false,
+        };
+        let shared = Arc::new(Shared { queue: Mutex::new(queue), changed: Condvar::new() });
+        let writer = Arc::clone(&shared);
+        Builder::new().name("writer".to_owned()).stack_size(STACK).spawn(move || write_all(sink, &writer))?;
+        Ok(Self { piece: Vec::new(), keeps, patience: patience.clone(), lost: false, given_up: false, shared })
     }
 
-    /// Why the thread has ended.
-    fn error(&mut self) -> io::Error {
-        self.pieces = None;
-        match self.writer.take().map(JoinHandle::join) {
-            Some(Ok(Err(error))) => error,
-            Some(Ok(Ok(())) | Err(_)) | None => io::ErrorKind::BrokenPipe.into(),
-        }
-    }
-}
-
-impl Write for Outlet {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.piece.extend_from_slice(bytes);
-        Ok(bytes.len())
+    /// Returns a handle through which other threads write pieces, without waiting.
+    pub(crate) fn aside(&self) -> Aside {
+        Aside(Arc::clone(&self.shared))
     }
 
-    fn flush(&mut self) -> io::Result<()> {
+    /// Hands over what has been written so far.
+    fn hand_over(&mut self) -> io::Result<()> {
         if self.piece.is_empty() {
             return Ok(());
         }
@@ -52,104 +131,151 @@ impl Write for Outlet {
         if self.lost {
             piece.splice(0..0, *b"(lines are missing here: nobody read them in time)\n");
         }
-        match self.pieces.as_ref().map(|pieces| pieces.try_send(piece)) {
-            Some(Ok(())) => self.lost = false,
-            Some(Err(TrySendError::Full(_))) => self.lost = true,
-            Some(Err(TrySendError::Disconnected(_))) | None => return Err(self.error()),
+        let shared = Arc::clone(&self.shared);
+        let begun = Instant::now();
+        let mut queue = shared.queue();
+        loop {
+            queue.check()?;
+            piece = match queue.push(piece) {
+                Ok(()) => break,
+                Err(piece) => piece,
+            };
+            if self.has_no_patience(queue.moved.max(begun)) {
+                return self.without_room();
+            }
+            queue = self.wait(queue);
         }
-        Ok(())
+        self.lost = false;
+        shared.changed.notify_all();
+        let lags = self.keeps == Keeps::All && self.is_driving() && queue.moved.elapsed() >= LAG;
+        if lags { Err(too_slow(LAG)) } else { Ok(()) }
+    }
+
+    /// A piece has to be left out.
+    fn without_room(&mut self) -> io::Result<()> {
+        match self.keeps {
+            Keeps::WhatIsRead if self.is_driving() => {
+                self.lost = true;
+                Ok(())
+            }
+            Keeps::WhatIsRead | Keeps::All => {
+                self.given_up = true;
+                let took =
+                    if self.is_driving() { "it takes less than is written".to_owned() } else { unread(AT_THE_END) };
+                Err(io::Error::new(io::ErrorKind::TimedOut, took))
+            }
+        }
+    }
+
+    /// Waits until all is written, as far as patience goes.
+    fn drain(&mut self) -> io::Result<()> {
+        let shared = Arc::clone(&self.shared);
+        let begun = Instant::now();
+        let mut queue = shared.queue();
+        loop {
+            queue.check()?;
+            if queue.bytes == 0 || self.is_driving() {
+                return Ok(());
+            }
+            if self.has_no_patience(queue.moved.max(begun)) {
+                self.given_up = true;
+                return Err(too_slow(AT_THE_END));
+            }
+            queue = self.wait(queue);
+        }
+    }
+
+    /// Whether a robot must not wait.
+    fn is_driving(&self) -> bool {
+        self.patience.limit() == Some(Duration::ZERO)
+    }
+
+    /// Whether a reader that has taken nothing `since` then is not waited for any longer.
+    fn has_no_patience(&self, since: Instant) -> bool {
+        self.given_up || self.patience.limit().is_some_and(|limit| since.elapsed() >= limit)
+    }
+
+    fn wait<'q>(&self, queue: MutexGuard<'q, Queue>) -> MutexGuard<'q, Queue> {
+        self.shared.changed.wait_timeout(queue, LOOK).unwrap_or_else(PoisonError::into_inner).0
+    }
+}
+
+/// The error of a reader that takes nothing.
+fn too_slow(limit: Duration) -> io::Error {
+    io::Error::new(io::ErrorKind::TimedOut, unread(limit))
+}
+
+fn unread(limit: Duration) -> String {
+    format!("nobody has taken it for {} s", limit.as_secs())
+}
+
+impl Write for Outlet {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.piece.extend_from_slice(bytes);
+        if self.piece.len() >= PIECE {
+            self.hand_over()?;
+        }
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.hand_over()?;
+        self.drain()
     }
 }
 
 impl Drop for Outlet {
     fn drop(&mut self) {
-        self.pieces = None;
-        if let Some(writer) = self.writer.take() {
-            // An error that comes only now is about the last lines of a report; the robot stands already.
-            let _ = writer.join();
-        }
+        // An error that comes only now is about the last lines of a report; the robot stands already.
+        let _ = self.flush();
+        self.shared.queue().is_closed = true;
+        self.shared.changed.notify_all();
+    }
+}
+
+/// A handle on an outlet for what other threads have to tell at once.
+#[derive(Debug, Clone)]
+pub(crate) struct Aside(Arc<Shared>);
+
+impl Aside {
+    /// Hands over a text, or drops it when there is no room.
+    pub(crate) fn tell(&self, text: String) {
+        let _ = self.0.queue().push(text.into_bytes());
+        self.0.changed.notify_all();
     }
 }
 
 /// Writes pieces until there are no more.
-fn write_all(mut sink: impl Write, pieces: &Receiver<Vec<u8>>) -> io::Result<()> {
-    for piece in pieces {
-        sink.write_all(&piece)?;
-        sink.flush()?;
-    }
-    Ok(())
+fn write_all(mut sink: impl Write, shared: &Shared) {
+    let written = loop {
+        let mut queue = shared.queue();
+        while queue.pieces.is_empty() && !queue.is_closed {
+            queue = shared.changed.wait(queue).unwrap_or_else(PoisonError::into_inner);
+        }
+        let Some(piece) = queue.pieces.pop_front() else { break Ok(()) };
+        drop(queue);
+        if let Err(error) = write_piece(&mut sink, &piece, shared) {
+            break Err(error);
+        }
+    };
+    let mut queue = shared.queue();
+    queue.has_ended = true;
+    queue.error = written.err();
+    queue.pieces.clear();
+    drop(queue);
+    shared.changed.notify_all();
 }
 
-#[cfg(test)]
-mod tests {
-    use std::sync::{Arc, Mutex};
-
-    use super::*;
-
-    /// A sink that takes nothing until it is unlocked.
-    #[derive(Clone, Default)]
-    struct Slow(Arc<Mutex<Vec<u8>>>);
-
-    impl Write for Slow {
-        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-            self.0.lock().unwrap().write(bytes)
-        }
-
-        fn flush(&mut self) -> io::Result<()> {
-            Ok(())
-        }
+/// Writes a piece, and notes how it gets on.
+fn write_piece(sink: &mut impl Write, piece: &[u8], shared: &Shared) -> io::Result<()> {
+    for chunk in piece.chunks(CHUNK) {
+        sink.write_all(chunk)?;
+        sink.flush()?;
+        let mut queue = shared.queue();
+        queue.bytes = queue.bytes.saturating_sub(chunk.len());
+        queue.moved = Instant::now();
+        drop(queue);
+        shared.changed.notify_all();
     }
-
-    #[test]
-    fn a_slow_reader_loses_lines_and_the_robot_does_not_wait() {
-        let sink = Slow::default();
-        let mut outlet = Outlet::open(sink.clone()).unwrap();
-        let held = sink.0.lock().unwrap();
-        for turn in 0..2 * WAITING {
-            writeln!(outlet, "turn {turn}").unwrap();
-            outlet.flush().unwrap();
-        }
-        drop(held);
-        while outlet.lost {
-            writeln!(outlet, "at last").unwrap();
-            outlet.flush().unwrap();
-        }
-        drop(outlet);
-        let text = String::from_utf8(sink.0.lock().unwrap().clone()).unwrap();
-        assert!(text.starts_with("turn 0\nturn 1\n"));
-        assert!(text.ends_with("(lines are missing here: nobody read them in time)\nat last\n"));
-    }
-
-    #[test]
-    fn the_end_waits_until_all_is_written() {
-        let sink = Slow::default();
-        let mut outlet = Outlet::open(sink.clone()).unwrap();
-        write!(outlet, "plan over: ").unwrap();
-        writeln!(outlet, "bumper (Lab)").unwrap();
-        outlet.flush().unwrap();
-        drop(outlet);
-        assert_eq!(*sink.0.lock().unwrap(), b"plan over: bumper (Lab)\n");
-    }
-
-    #[test]
-    fn a_reader_that_has_gone_is_found_out() {
-        struct Gone;
-        impl Write for Gone {
-            fn write(&mut self, _: &[u8]) -> io::Result<usize> {
-                Err(io::ErrorKind::BrokenPipe.into())
-            }
-            fn flush(&mut self) -> io::Result<()> {
-                Ok(())
-            }
-        }
-        let mut outlet = Outlet::open(Gone).unwrap();
-        let error = loop {
-            outlet.write_all(b"line\n").unwrap();
-            if let Err(error) = outlet.flush() {
-                break error;
-            }
-            std::thread::yield_now();
-        };
-        assert_eq!(error.kind(), io::ErrorKind::BrokenPipe);
-    }
+    Ok(())
 }

@@ -18,6 +18,7 @@ use text::{APART, Wrong};
 use crate::arguments::Options;
 use crate::files::read_file;
 use crate::log::Untouched;
+use crate::patience::Patience;
 use crate::{Batch, Refusal, Target};
 
 /// The largest file that is read, in bytes: at ten rows a second some eleven hours.
@@ -66,9 +67,12 @@ pub(crate) fn check_period(options: &Options) -> Result<(), Refusal> {
 ///
 /// # Errors
 /// What the file held cannot be cut off.
-pub(crate) fn recorder<T: Target>(file: Untouched<'_>) -> io::Result<Option<Recorder<<T::Robot as Robot>::Output>>> {
+pub(crate) fn recorder<T: Target>(
+    file: Untouched<'_>,
+    patience: &Patience,
+) -> io::Result<Option<Recorder<<T::Robot as Robot>::Output>>> {
     let Some(Replays { speed, .. }) = T::PATHS else { return Ok(None) };
-    Ok(Some(Recorder::new(file.emptied()?, speed)))
+    Ok(Some(Recorder::new(file.emptied(patience)?, speed)))
 }
 
 /// Reads the paths that a plan replays.

@@ -21,7 +21,7 @@ pub(crate) fn shielded<T>(code: impl FnOnce() -> T) -> Result<T, Panicked> {
 }
 
 /// The message of a panic.
-fn text(payload: &(dyn Any + Send)) -> String {
+pub(crate) fn text(payload: &dyn Any) -> String {
     match (payload.downcast_ref::<&str>(), payload.downcast_ref::<String>()) {
         (Some(message), _) => (*message).to_owned(),
         (None, Some(message)) => message.clone(),

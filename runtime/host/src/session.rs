@@ -1,7 +1,6 @@
 //! A whole run: options, robot, turns, and the way out, on which the robot is stopped whatever has happened.
 
 use std::ffi::OsString;
-use std::fs::File;
 use std::io::{self, Write};
 use std::path::Path;
 use std::time::Duration;
@@ -21,7 +20,7 @@ use crate::report::Report;
 use crate::safety::{Panicked, shielded};
 use crate::signals::Signals;
 use crate::turns::{self, Limits, Witnesses};
-use crate::{Hosted, Pace, Refusal, Target, Time};
+use crate::{Hosted, Pace, Refusal, Target, Time, way_out};
 
 /// What a run meets outside the program; a test brings its own.
 pub(crate) struct Surroundings<'e, I, O> {
@@ -29,7 +28,7 @@ pub(crate) struct Surroundings<'e, I, O> {
     pub(crate) instants: I,
     /// The signals that end the run.
     pub(crate) signals: Signals,
-    /// Opens standard output, once it is known how time passes (`None` for help).
+    /// Opens standard output.
     pub(crate) out: O,
     /// Standard error.
     pub(crate) err: &'e mut dyn Write,
@@ -47,19 +46,19 @@ pub(crate) fn session<'o, T: Target, P, I, O>(
 where
     P: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>,
     I: Instants,
-    O: FnOnce(Option<Time>) -> Box<dyn Write + 'o>,
+    O: FnOnce() -> Box<dyn Write + 'o>,
 {
     let Surroundings { mut instants, signals, out, err, seen } = surroundings;
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let matches = match arguments::command::<T>(name).try_get_matches_from(&arguments) {
         Ok(matches) => matches,
-        Err(error) => return unparsed(&error, || out(None), err),
+        Err(error) => return unparsed(&error, out, err),
     };
     let options = arguments::options::<T>(&matches);
     let limits = Limits { timeout: options.timeout, turns: options.turns };
     match shielded(|| T::answer(&matches)).unwrap_or_else(bug_before) {
         Err(refusal) => return refusal.tell(err),
-        Ok(Some(answer)) => return answered(&answer, &mut *out(None)),
+        Ok(Some(answer)) => return answered(&answer, &mut *out()),
         Ok(None) => {}
     }
     let store = match stored::<T, P>(&matches, plan) {
@@ -69,10 +68,12 @@ where
     match batch::<T>(&matches, &options, store) {
         Err(refusal) => return refusal.tell(err),
         Ok(Some(batch)) => {
-            signals.robot_runs();
+            // Nothing has to be stopped.
+            signals.robot_runs(Time::Stepped(Pace::Max));
+            signals.patience().stop_was_tried(None);
             let program = arguments.first().map_or_else(|| name.into(), |program| program.to_string_lossy());
             let terms = Terms { period: options.period, limits, signals: &signals, program: &program };
-            return several(&batch, plan, &terms, &mut *out(None), err, seen);
+            return several(&batch, plan, &terms, &mut *out(), err, seen);
         }
         Ok(None) => {}
     }
@@ -82,7 +83,7 @@ where
         Err(refusal) => return refusal.tell(err),
     };
     let screen = T::screen(&matches);
-    let mut out = out(Some(time));
+    let mut out = out();
     if screen {
         out = Box::new(Held::new(out));
     }
@@ -92,7 +93,7 @@ where
     {
         warn_of_lateness(&refused, arguments.first(), err);
     }
-    let mut clock = Clock::begin(instants, time, options.period);
+    let mut clock = Clock::begin(instants, time, options.period, robot.longest_gap());
     let ending = shielded(|| {
         let log = match &mut log {
             Ok(log) => log.as_mut(),
@@ -107,11 +108,15 @@ where
             Witnesses { report: &mut report, log, path: path.as_mut().ok().and_then(Option::as_mut), progress, err };
         turns::run(&mut robot, plan(), limits, &mut clock, &signals, &mut witnesses)
     });
-    let path = path.and_then(|path| path.map_or(Ok(()), Recorder::close));
-    let status = way_out(&mut robot, ending.unwrap_or_else(bug), &mut report, log.ok().flatten(), path, err);
+    let (ending, orderly, faults) = way_out::stop(&mut robot, ending.unwrap_or_else(way_out::bug));
+    signals.patience().stop_was_tried(Some(ending.status(&faults)));
+    let files = way_out::Files {
+        log: log.ok().flatten(),
+        path: path.and_then(|path| path.map_or(Ok(()), Recorder::close)).err(),
+    };
+    let status = way_out::tell(&mut robot, ending, orderly, faults, &mut report, files, err);
     // It stands, and all is said; even code that panics while it tidies up must not change the status.
     let _ = shielded(move || drop(robot));
-    signals.robot_stands();
     if let Some(timing) = clock.timing() {
         say(err, format_args!("{timing}"));
     }
@@ -198,7 +203,7 @@ struct Ready<R: Robot> {
     robot: R,
     time: Time,
     /// A log that cannot begin is no refusal: the robot is there already, and has to be stopped.
-    log: io::Result<Option<Log<File>>>,
+    log: io::Result<Option<Log>>,
     /// The path that is recorded.
     path: io::Result<Option<Recorder<R::Output>>>,
 }
@@ -216,11 +221,11 @@ fn ready<T: Target>(
         let path = untouched("path", options.path.as_deref())?;
         paths::check_period(options)?;
         // From here on a signal must not end the program before the robot was stopped.
-        signals.robot_runs();
+        signals.robot_runs(time);
         let mut robot = T::connect(matches, options.period, &signals.stop_request())?;
         paths::hand_over::<T>(&mut robot, store);
-        let log = log.map(|file| file.begin(is_watched(time))).transpose();
-        let path = path.map(|file| paths::recorder::<T>(file)).transpose().map(Option::flatten);
+        let log = log.map(|file| file.begin(is_watched(time), signals.patience())).transpose();
+        let path = path.map(|file| paths::recorder::<T>(file, signals.patience())).transpose().map(Option::flatten);
         Ok(Ready { robot, time, log, path })
     });
     opened.unwrap_or_else(bug_before)
@@ -232,8 +237,9 @@ fn ended_at_the_start(signals: &Signals, stopped: Result<(), String>, err: &mut 
         return Refusal::Fault("the robot's code ended the start, and nothing asked for that".to_owned()).tell(err);
     };
     let ending = Ending::Signal(signal);
-    ending.tell(err);
     let faults: Vec<Fault> = stopped.err().map(Fault::Stop).into_iter().collect();
+    signals.patience().stop_was_tried(Some(ending.status(&faults)));
+    ending.tell(err);
     faults.iter().for_each(|fault| fault.tell(err));
     ending.status(&faults)
 }
@@ -256,56 +262,4 @@ fn is_watched(time: Time) -> bool {
         Time::Wall | Time::Stepped(Pace::Times(_)) => true,
         Time::Stepped(Pace::Max) => false,
     }
-}
-
-/// A panic as an ending.
-fn bug(Panicked(message): Panicked) -> Ending {
-    Ending::Bug(message)
-}
-
-/// Stops the robot and says why the run ended, and what else went wrong; the exit status.
-///
-/// The null input is sent once more where the robot still listens, then the stop command in any case.
-fn way_out<R: Hosted>(
-    robot: &mut R,
-    ending: Ending,
-    report: &mut Report<'_>,
-    log: Option<Log<File>>,
-    path: io::Result<()>,
-    err: &mut dyn Write,
-) -> u8 {
-    let last = if ending.robot_listens() {
-        let last = shielded(|| turns::exchange(robot, &R::Input::default()).map(drop));
-        last.unwrap_or_else(|panicked| Err(bug(panicked))).err()
-    } else {
-        None
-    };
-    let orderly = last.as_ref().unwrap_or(&ending).is_orderly();
-    let stopped = shielded(|| robot.stop().map_err(|fault| fault.to_string()));
-    let stopped = stopped.unwrap_or_else(|Panicked(message)| Err(format!("its code panicked: {message}")));
-    let (ending, stopped) = ending.with_stop(stopped.err());
-    let mut faults = Vec::new();
-    let stopped = match last {
-        Some(last) => {
-            let (last, stopped) = last.with_stop(stopped);
-            faults.push(Fault::Exchange(last));
-            stopped
-        }
-        None => stopped,
-    };
-    // Without a word on a broken log the reader of a short one would take it for a whole run.
-    let logged = log.map_or(Ok(()), |mut log| log.flush());
-    faults.extend(logged.err().filter(|_| !matches!(ending, Ending::Log(_))).map(Fault::Log));
-    faults.extend(path.err().map(Fault::Path));
-    faults.extend(stopped.map(Fault::Stop));
-    report.flush();
-    // Before the robot finishes, which may take a while.
-    ending.tell(err);
-    if orderly {
-        let finished = shielded(|| robot.finish());
-        let finished = finished.unwrap_or_else(|Panicked(message)| Err(format!("a panic: {message}")));
-        faults.extend(finished.err().map(Fault::Finish));
-    }
-    faults.iter().for_each(|fault| fault.tell(err));
-    ending.status(&faults)
 }

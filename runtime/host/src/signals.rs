@@ -1,53 +1,87 @@
 //! Signals that ask the program to end: they are noted, so that the robot is stopped first.
 
+use std::borrow::Cow;
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGUSR1};
+use rustix::process::Signal as Number;
 use signal_hook::flag;
 
-use crate::StopRequest;
+use crate::Time;
+use crate::patience::Patience;
+use crate::stop_request::StopRequest;
 
-/// A signal that asks the program to end.
+/// A signal that asks the program to end, by its number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Signal {
-    /// The terminal is gone, such as a lost connection to the robot's computer.
-    HangUp,
-    /// Ctrl-C.
-    Interrupt,
-    /// A polite `kill`.
-    Terminate,
-}
+pub(crate) struct Signal(u8);
+
+/// The signals that end a program by default and can be caught, but for those that mean something else here: SIGUSR1 asks for
+/// the timing, SIGPIPE and SIGXFSZ are errors of the file that is written.
+const NAMED: [(Number, &str); 16] = [
+    (Number::HUP, "SIGHUP"),
+    (Number::INT, "SIGINT"),
+    (Number::QUIT, "SIGQUIT"),
+    (Number::TRAP, "SIGTRAP"),
+    (Number::ABORT, "SIGABRT"),
+    (Number::BUS, "SIGBUS"),
+    (Number::USR2, "SIGUSR2"),
+    (Number::ALARM, "SIGALRM"),
+    (Number::TERM, "SIGTERM"),
+    (Number::STKFLT, "SIGSTKFLT"),
+    (Number::XCPU, "SIGXCPU"),
+    (Number::VTALARM, "SIGVTALRM"),
+    (Number::PROF, "SIGPROF"),
+    (Number::IO, "SIGIO"),
+    (Number::POWER, "SIGPWR"),
+    (Number::SYS, "SIGSYS"),
+];
+/// The first and the last real-time signal. A C library keeps some of the first ones to itself.
+const REAL_TIME: (u8, u8) = (34, 64);
 
 impl Signal {
-    const ALL: [Self; 3] = [Self::HangUp, Self::Interrupt, Self::Terminate];
+    /// Ctrl-C.
+    #[cfg(test)]
+    pub(crate) const INTERRUPT: Self = Self::of(Number::INT);
+    /// A polite `kill`.
+    #[cfg(test)]
+    pub(crate) const TERMINATE: Self = Self::of(Number::TERM);
+    /// The terminal is gone, such as a lost connection to the robot's computer.
+    #[cfg(test)]
+    pub(crate) const HANG_UP: Self = Self::of(Number::HUP);
 
-    /// Its name, for the operator.
-    pub(crate) fn name(self) -> &'static str {
-        match self {
-            Self::HangUp => "SIGHUP",
-            Self::Interrupt => "SIGINT",
-            Self::Terminate => "SIGTERM",
+    const fn of(number: Number) -> Self {
+        Self(number.as_raw() as u8)
+    }
+
+    /// The signals that end a run.
+    pub(crate) fn all() -> impl Iterator<Item = Self> {
+        NAMED.into_iter().map(|(number, _)| Self::of(number)).chain((REAL_TIME.0..=REAL_TIME.1).map(Self))
+    }
+
+    /// Returns the signal's name, for the operator.
+    pub(crate) fn name(self) -> Cow<'static, str> {
+        match NAMED.into_iter().find(|(number, _)| Self::of(*number) == self) {
+            Some((_, name)) => name.into(),
+            None => format!("SIGRTMIN+{}", self.0.saturating_sub(REAL_TIME.0)).into(),
         }
     }
 
-    /// Its number; a shell reports 128 more as the status of a program that it ended.
+    /// Returns the signal's number; a shell reports 128 more as the status of a program that the signal ended.
     pub(crate) fn number(self) -> u8 {
-        match self {
-            Self::HangUp => 1,
-            Self::Interrupt => 2,
-            Self::Terminate => 15,
-        }
+        self.0
     }
 
-    /// Its number as the system takes it.
-    fn raw(self) -> i32 {
-        match self {
-            Self::HangUp => SIGHUP,
-            Self::Interrupt => SIGINT,
-            Self::Terminate => SIGTERM,
-        }
+    fn is_real_time(self) -> bool {
+        self.0 >= REAL_TIME.0
+    }
+
+    /// Returns `true` if a program that was started with this signal ignored goes on ignoring it.
+    ///
+    /// `nohup` asks for that. A script's shell starts jobs in the background with SIGINT and SIGQUIT ignored, which nobody has
+    /// asked for: who presses Ctrl-C wants the robot to stop.
+    fn may_be_ignored(self) -> bool {
+        ![Number::INT, Number::QUIT, Number::TERM].map(Self::of).contains(&self)
     }
 }
 
@@ -60,6 +94,9 @@ pub(crate) struct Signals {
     deadly: Arc<AtomicBool>,
     /// Whether SIGUSR1 came: how late are the turns?
     timing: Arc<AtomicBool>,
+    /// The signals that are noted: all but those that were ignored already.
+    noted: Vec<Signal>,
+    patience: Patience,
 }
 
 impl Signals {
@@ -68,33 +105,68 @@ impl Signals {
     /// # Errors
     /// When the system does not let a signal be caught.
     pub(crate) fn listen() -> io::Result<Self> {
-        let signals = Self { caught: Arc::default(), deadly: Arc::new(AtomicBool::new(true)), timing: Arc::default() };
-        flag::register(SIGUSR1, Arc::clone(&signals.timing))?;
-        for signal in Signal::ALL {
-            // Whoever started the program with `nohup` wants it to outlive the terminal.
-            if signal == Signal::HangUp && ignored(signal) {
+        let mut signals = Self { deadly: Arc::new(AtomicBool::new(true)), ..Self::unheard() };
+        flag::register(Number::USR1.as_raw(), Arc::clone(&signals.timing))?;
+        // Ignored in effect: the write fails that would make the file too long.
+        flag::register(Number::XFSZ.as_raw(), Arc::default())?;
+        let ignored = ignored();
+        for signal in Signal::all() {
+            if signal.may_be_ignored() && ignored & (1 << (signal.number() - 1)) != 0 {
                 continue;
             }
-            flag::register_usize(signal.raw(), Arc::clone(&signals.caught), usize::from(signal.number()))?;
-            flag::register_conditional_default(signal.raw(), Arc::clone(&signals.deadly))?;
+            match signals.note(signal) {
+                Err(_) if signal.is_real_time() => {}
+                Err(error) => return Err(error),
+                Ok(()) => signals.noted.push(signal),
+            }
         }
         Ok(signals)
     }
 
-    /// From here on a signal is only noted: the robot must be stopped first.
-    pub(crate) fn robot_runs(&self) {
-        self.deadly.store(false, Ordering::SeqCst);
+    /// Has a signal noted, or end the program while signals do.
+    fn note(&self, signal: Signal) -> io::Result<()> {
+        let number = i32::from(signal.number());
+        if signal == Signal::of(Number::BUS) {
+            // A real bus error comes again and again: only one from outside is noted.
+            let noted = Arc::new(AtomicBool::new(false));
+            flag::register_conditional_shutdown(number, 128 + number, Arc::clone(&noted))?;
+            flag::register(number, noted)?;
+        }
+        flag::register_usize(number, Arc::clone(&self.caught), usize::from(signal.number()))?;
+        // What signal-hook does not know the name of it cannot do as the system does.
+        match flag::register_conditional_default(number, Arc::clone(&self.deadly)) {
+            Ok(_) => Ok(()),
+            Err(_) => flag::register_conditional_shutdown(number, 128 + number, Arc::clone(&self.deadly)).map(|_| ()),
+        }
     }
 
-    /// The robot stands and all is written: a signal may end at once whatever still holds the program up.
-    pub(crate) fn robot_stands(&self) {
-        self.deadly.store(true, Ordering::SeqCst);
+    /// From here on a signal is only noted: the robot must be stopped first. What is written must not hold up a robot whose
+    /// time is real.
+    pub(crate) fn robot_runs(&self, time: Time) {
+        self.deadly.store(false, Ordering::SeqCst);
+        if time == Time::Wall {
+            self.patience.robot_drives();
+        }
+    }
+
+    /// The signals that are noted.
+    pub(crate) fn noted(&self) -> &[Signal] {
+        &self.noted
+    }
+
+    /// How long writers wait for their readers.
+    pub(crate) fn patience(&self) -> &Patience {
+        &self.patience
+    }
+
+    /// Whether a signal ends the program at once.
+    pub(crate) fn are_deadly(&self) -> bool {
+        self.deadly.load(Ordering::SeqCst)
     }
 
     /// The signal that came last, if one came.
     pub(crate) fn caught(&self) -> Option<Signal> {
-        let number = self.caught.load(Ordering::SeqCst);
-        Signal::ALL.into_iter().find(|signal| usize::from(signal.number()) == number)
+        u8::try_from(self.caught.load(Ordering::SeqCst)).ok().filter(|number| *number > 0).map(Signal)
     }
 
     /// Tells code that opens a robot whether a signal came.
@@ -108,15 +180,22 @@ impl Signals {
     }
 
     /// Signals that only [`Signals::raise`] raises.
-    #[cfg(test)]
     pub(crate) fn unheard() -> Self {
-        Self { caught: Arc::default(), deadly: Arc::default(), timing: Arc::default() }
+        let caught = Arc::default();
+        let patience = Patience::new(StopRequest::of(&caught));
+        Self { caught, deadly: Arc::default(), timing: Arc::default(), noted: Vec::new(), patience }
     }
 
     /// Another handle on the same signals.
-    #[cfg(test)]
     pub(crate) fn share(&self) -> Self {
-        Self { caught: Arc::clone(&self.caught), deadly: Arc::clone(&self.deadly), timing: Arc::clone(&self.timing) }
+        let Self { caught, deadly, timing, noted, patience } = self;
+        Self {
+            caught: Arc::clone(caught),
+            deadly: Arc::clone(deadly),
+            timing: Arc::clone(timing),
+            noted: noted.clone(),
+            patience: patience.clone(),
+        }
     }
 
     /// Does what the system does when the signal comes.
@@ -126,10 +205,21 @@ impl Signals {
     }
 }
 
-/// Whether this process was started with the signal ignored; where that cannot be found out, it was not.
-fn ignored(signal: Signal) -> bool {
+/// The signals that this process was started with ignored, a bit each from SIGHUP; where that cannot be found out, none.
+fn ignored() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    let mask = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0);
-    mask & (1 << (signal.number() - 1)) != 0
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_signal_has_a_name_of_its_own() {
+        let names: std::collections::BTreeSet<_> = Signal::all().map(Signal::name).collect();
+        assert_eq!(names.len(), 16 + 31);
+        assert_eq!((Signal(1).name(), Signal(34).name()), ("SIGHUP".into(), "SIGRTMIN+0".into()));
+    }
 }

@@ -52,6 +52,10 @@ pub trait Target {
         false
     }
 
+    /// Gives the terminal back, if [`Target::screen`] took it. Called on another thread when the program ends while the robot's
+    /// code hangs: it must neither wait nor panic.
+    fn leave_screen() {}
+
     /// The runs to be made instead of one, if these options ask for several: only robots that can be started over have
     /// such options. No run has begun yet.
     ///
@@ -139,6 +143,13 @@ pub trait Hosted: Robot {
 
     /// A turn was made, and this is where the plan stands.
     fn turned(&mut self, _standing: &Standing<'_>) {}
+
+    /// Returns the longest time without a command after which the robot is still driven on, by the wall clock: that of the robot's own
+    /// watchdog, or how long its data stay fresh. After a longer gap, as when the program was suspended, the run ends with a
+    /// fault before a command is sent. `None` for two seconds more than the period. Simulated time has no gaps.
+    fn longest_gap(&self) -> Option<Duration> {
+        None
+    }
 
     /// How a run has gone whose plan is over; asked after the robot was stopped.
     fn judged(&self) -> Judgement {

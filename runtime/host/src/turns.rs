@@ -1,6 +1,5 @@
 //! The turns of a plan on a robot: exchange, time, machine, and the wait for the next (semantics, section 5).
 
-use std::fs::File;
 use std::io::{self, Write};
 use std::time::Duration;
 
@@ -31,7 +30,7 @@ pub(crate) struct Witnesses<'a, 'o, Y> {
     /// The lines on standard output.
     pub(crate) report: &'a mut Report<'o>,
     /// The run log, if one was asked for.
-    pub(crate) log: Option<&'a mut Log<File>>,
+    pub(crate) log: Option<&'a mut Log>,
     /// The path that is driven, if it is to be recorded.
     pub(crate) path: Option<&'a mut Recorder<Y>>,
     /// The line that shows that a fast run goes on, where somebody sees it.

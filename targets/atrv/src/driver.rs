@@ -99,6 +99,11 @@ impl Atrv {
         }
     }
 
+    /// Returns the time without a command after which the robot is stopped.
+    pub(crate) fn watchdog(&self) -> Duration {
+        Duration::from_millis(self.config.watchdog)
+    }
+
     /// Takes the paths that the plan replays.
     pub(crate) fn take_paths(&mut self, paths: PathStore) {
         self.paths = paths;

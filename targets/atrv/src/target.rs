@@ -59,14 +59,21 @@ impl Target for AtrvMini {
             }
             Clock::Wall => carries(period, turn_takes(&config)).map_err(Refusal::Usage)?,
         }
-        Atrv::connect(config, clock, period, request).map_err(|fault| match fault {
-            Fault::Ended(unstopped) => Refusal::Ended(unstopped.map_or(Ok(()), |fault| Err(fault.to_string()))),
-            fault => Refusal::Fault(fault.to_string()),
+        Atrv::connect(config, clock, period, request).map_err(|fault| {
+            if let Fault::Ended(unstopped) = fault {
+                Refusal::Ended(unstopped.map_or(Ok(()), |fault| Err(fault.to_string())))
+            } else {
+                Refusal::Fault(fault.to_string())
+            }
         })
     }
 }
 
-impl Hosted for Atrv {}
+impl Hosted for Atrv {
+    fn longest_gap(&self) -> Option<Duration> {
+        Some(self.watchdog())
+    }
+}
 
 /// The configuration that the options ask for.
 fn configured(matches: &ArgMatches) -> Result<Configured, Refusal> {

@@ -74,6 +74,11 @@ impl Scout {
         }
     }
 
+    /// Returns the time without a command after which the robot stops itself.
+    pub(crate) fn watchdog(&self) -> Duration {
+        Duration::from_secs(self.config.watchdog.into())
+    }
+
     /// Takes the paths that the plan replays.
     pub(crate) fn take_paths(&mut self, paths: PathStore) {
         self.paths = paths;

@@ -57,14 +57,21 @@ impl Target for SuperScout {
             }
             Clock::Wall => carries(period, turn_takes()).map_err(Refusal::Usage)?,
         }
-        Scout::connect(config, clock, period, request).map_err(|fault| match fault {
-            Fault::Ended(unstopped) => Refusal::Ended(unstopped.map_or(Ok(()), |fault| Err(fault.to_string()))),
-            fault => Refusal::Fault(fault.to_string()),
+        Scout::connect(config, clock, period, request).map_err(|fault| {
+            if let Fault::Ended(unstopped) = fault {
+                Refusal::Ended(unstopped.map_or(Ok(()), |fault| Err(fault.to_string())))
+            } else {
+                Refusal::Fault(fault.to_string())
+            }
         })
     }
 }
 
-impl Hosted for Scout {}
+impl Hosted for Scout {
+    fn longest_gap(&self) -> Option<Duration> {
+        Some(self.watchdog())
+    }
+}
 
 /// The configuration that the options ask for.
 fn configured(matches: &ArgMatches) -> Result<Configured, Refusal> {

@@ -1,13 +1,14 @@
 //! What a robot drives, written down as a path: a row a turn.
 
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 
 use mdle_runtime::{MetersPerSecond, Nanos, Output, Radians};
 
+use crate::outlet::Outlet;
+
 /// A path that is being recorded, by the outputs `Y` of a robot.
-pub(crate) struct Recorder<Y, W: Write = File> {
-    file: BufWriter<W>,
+pub(crate) struct Recorder<Y, W: Write = Outlet> {
+    file: W,
     speed: fn(&Y) -> MetersPerSecond,
     /// The heading in which the plan began, by odometry.
     begun: Option<Radians>,
@@ -17,8 +18,7 @@ pub(crate) struct Recorder<Y, W: Write = File> {
 
 impl<Y: Output, W: Write> Recorder<Y, W> {
     /// A recording to `file` of a robot that drives at this speed by an output.
-    pub(crate) fn new(file: W, speed: fn(&Y) -> MetersPerSecond) -> Self {
-        let mut file = BufWriter::new(file);
+    pub(crate) fn new(mut file: W, speed: fn(&Y) -> MetersPerSecond) -> Self {
         let written = file.write_all(b"time s, heading deg, speed cm/s\n");
         Self { file, speed, begun: None, written }
     }

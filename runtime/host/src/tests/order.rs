@@ -120,7 +120,7 @@ fn a_panic_stops_the_robot_and_asks_no_more_of_it() {
 
 #[test]
 fn a_panic_in_the_last_exchange_stops_the_robot_too() {
-    let run = Stage::script([Act::Hears(Signal::Interrupt), Act::Panics("oh")]).run(&[]);
+    let run = Stage::script([Act::Hears(Signal::INTERRUPT), Act::Panics("oh")]).run(&[]);
     insta::assert_snapshot!(way_out(&run), @"
     exchange 0, began 1 go 20 0 at 0, exchange 0, stop
     status 3
@@ -131,7 +131,7 @@ fn a_panic_in_the_last_exchange_stops_the_robot_too() {
 
 #[test]
 fn a_signal_replaces_the_next_input_by_the_null_input() {
-    let run = Stage::script([quiet(), Act::Hears(Signal::Interrupt)]).run(&[]);
+    let run = Stage::script([quiet(), Act::Hears(Signal::INTERRUPT)]).run(&[]);
     insta::assert_snapshot!(way_out(&run), @"
     exchange 0, began 1 go 20 0 at 0, exchange 1, exchange 0, stop, finish
     status 130
@@ -142,13 +142,13 @@ fn a_signal_replaces_the_next_input_by_the_null_input() {
 #[test]
 fn each_signal_has_its_status() {
     let status = |signal| Stage::script([Act::Hears(signal)]).run(&[]).status;
-    assert_eq!([Signal::HangUp, Signal::Interrupt, Signal::Terminate].map(status), [129, 130, 143]);
+    assert_eq!([Signal::HANG_UP, Signal::INTERRUPT, Signal::TERMINATE].map(status), [129, 130, 143]);
 }
 
 #[test]
 fn a_second_signal_while_the_robot_is_stopped_changes_nothing() {
-    let script = [Act::Hears(Signal::Terminate), Act::Hears(Signal::Interrupt)];
-    let run = Stage { stop: Act::Hears(Signal::HangUp), ..Stage::script(script) }.run(&[]);
+    let script = [Act::Hears(Signal::TERMINATE), Act::Hears(Signal::INTERRUPT)];
+    let run = Stage { stop: Act::Hears(Signal::HANG_UP), ..Stage::script(script) }.run(&[]);
     insta::assert_snapshot!(way_out(&run), @"
     exchange 0, began 1 go 20 0 at 0, exchange 0, stop, finish
     status 143
@@ -158,7 +158,7 @@ fn a_second_signal_while_the_robot_is_stopped_changes_nothing() {
 
 #[test]
 fn a_stop_that_fails_is_a_fault_whatever_came_before() {
-    let script = || [Act::Hears(Signal::Interrupt)];
+    let script = || [Act::Hears(Signal::INTERRUPT)];
     let run = Stage { stop: Act::Fails("the line is dead"), ..Stage::script(script()) }.run(&[]);
     insta::assert_snapshot!(way_out(&run), @"
     exchange 0, began 1 go 20 0 at 0, exchange 0, stop, finish
@@ -181,7 +181,7 @@ fn what_cannot_be_finished_is_a_fault_of_a_plan_that_is_over_only() {
     status 3
     error: plot.svg cannot be written
     ");
-    let run = Stage { finish: finish(), ..Stage::script([Act::Hears(Signal::Terminate)]) }.run(&[]);
+    let run = Stage { finish: finish(), ..Stage::script([Act::Hears(Signal::TERMINATE)]) }.run(&[]);
     assert_eq!(run.status, 143);
     assert_eq!(run.err, "stopped by SIGTERM\nerror: plot.svg cannot be written\n");
 }
@@ -189,7 +189,7 @@ fn what_cannot_be_finished_is_a_fault_of_a_plan_that_is_over_only() {
 #[cfg(target_os = "linux")]
 #[test]
 fn everything_that_goes_wrong_on_the_way_out_is_told_in_order() {
-    let script = [Act::Hears(Signal::Interrupt), Act::Fails("no answer")];
+    let script = [Act::Hears(Signal::INTERRUPT), Act::Fails("no answer")];
     let finish = Err("plot.svg cannot be written".to_owned());
     let stage = Stage { stop: Act::Fails("the line is dead"), finish, ..Stage::script(script) };
     insta::assert_snapshot!(way_out(&stage.run(&["--log", "/dev/full"])), @"
@@ -213,7 +213,7 @@ fn a_robot_that_cannot_be_opened_is_sent_nothing() {
 
 #[test]
 fn a_signal_at_the_start_stops_the_robot() {
-    let interrupted = |refusal| Stage { interrupted: Some(Signal::Interrupt), refusal, ..Stage::default() };
+    let interrupted = |refusal| Stage { interrupted: Some(Signal::INTERRUPT), refusal, ..Stage::default() };
     // A robot that does not look at the request.
     insta::assert_snapshot!(way_out(&interrupted(None).run(&[])), @"
     exchange 0, stop, finish

@@ -27,7 +27,7 @@ impl Robot for Seeded {
     fn exchange(&mut self, _: &u32) -> Result<Sensed, &'static str> {
         self.exchanges += 1;
         if let Some(signals) = self.signals.as_ref().filter(|_| self.seed == 4) {
-            signals.raise(Signal::Interrupt);
+            signals.raise(Signal::INTERRUPT);
         }
         match (self.seed % 9, self.exchanges == self.seed) {
             (6, true) => Err("a wheel came off"),

@@ -120,7 +120,7 @@ impl Stage {
         let surroundings = Surroundings {
             instants: ByHand(Rc::clone(&slept)),
             signals,
-            out: |_| Box::new(Shared(Rc::clone(&out))) as Box<dyn Write>,
+            out: || Box::new(Shared(Rc::clone(&out))) as Box<dyn Write>,
             err: &mut err,
             seen: None,
         };

@@ -1,0 +1,26 @@
+//! The panic hook: it tells where code panicked without making the robot wait for whoever reads that.
+
+use std::backtrace::{Backtrace, BacktraceStatus};
+use std::panic::{self, PanicHookInfo};
+use std::thread;
+
+use crate::outlet::Aside;
+use crate::safety::text;
+
+/// Has panics told through `outlet` from now on.
+pub(crate) fn tell_to(outlet: Aside) {
+    panic::set_hook(Box::new(move |panic| outlet.tell(told(panic))));
+}
+
+/// Returns the text that the library's own hook writes.
+fn told(panic: &PanicHookInfo<'_>) -> String {
+    let current = thread::current();
+    let thread = current.name().unwrap_or("<unnamed>");
+    let place = panic.location().map(|place| format!(" at {place}")).unwrap_or_default();
+    let mut told = format!("thread '{thread}' panicked{place}:\n{}\n", text(panic.payload()));
+    let backtrace = Backtrace::capture();
+    if backtrace.status() == BacktraceStatus::Captured {
+        told += &format!("stack backtrace:\n{backtrace}");
+    }
+    told
+}

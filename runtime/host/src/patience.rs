@@ -1,0 +1,63 @@
+//! How long a writer waits for its reader: as long as it takes, not at all while a robot drives, and not for ever afterwards.
+
+use std::sync::Arc;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use crate::stop_request::StopRequest;
+
+/// How long a reader that takes nothing is waited for once the run is to end.
+pub(crate) const AT_THE_END: Duration = Duration::from_secs(2);
+
+/// The phase of a run, as far as it decides how long writers wait.
+#[derive(Debug, Clone)]
+pub(crate) struct Patience {
+    request: StopRequest,
+    /// Whether a robot whose time is real has been driven.
+    is_real: Arc<AtomicBool>,
+    stopped: Arc<OnceLock<Stopped>>,
+}
+
+/// The moment at which the stop had been tried.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stopped {
+    /// When that was.
+    pub(crate) at: Instant,
+    /// The exit status as far as it was known then; `None` where only a signal ends the run.
+    pub(crate) status: Option<u8>,
+}
+
+impl Patience {
+    /// The patience of a run that has not begun, and that `request` ends.
+    pub(crate) fn new(request: StopRequest) -> Self {
+        Self { request, is_real: Arc::default(), stopped: Arc::default() }
+    }
+
+    /// From now on nobody is waited for.
+    pub(crate) fn robot_drives(&self) {
+        self.is_real.store(true, Ordering::SeqCst);
+    }
+
+    /// Readers are waited for again, but not for ever.
+    pub(crate) fn stop_was_tried(&self, status: Option<u8>) {
+        let _ = self.stopped.set(Stopped { at: Instant::now(), status });
+    }
+
+    /// When the stop had been tried, if it was.
+    pub(crate) fn stopped(&self) -> Option<Stopped> {
+        self.stopped.get().copied()
+    }
+
+    /// Returns how long a reader that takes nothing is waited for; `None` for as long as it takes.
+    pub(crate) fn limit(&self) -> Option<Duration> {
+        let is_real = self.is_real.load(Ordering::SeqCst);
+        if is_real && self.stopped().is_none() {
+            Some(Duration::ZERO)
+        } else if is_real || self.request.is_made() {
+            Some(AT_THE_END)
+        } else {
+            None
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! The second signal: it ends a program that hangs, but not before the stop was tried.
+
+use std::io;
+use std::thread::{self, Builder};
+use std::time::{Duration, Instant};
+
+use signal_hook::iterator::Signals as Incoming;
+use signal_hook::low_level;
+
+use crate::ending;
+use crate::outlet::STACK;
+use crate::patience::Stopped;
+use crate::signals::Signals;
+
+/// How long the program may go on after the stop was tried, once a second signal came.
+const AFTER_THE_STOP: Duration = Duration::from_secs(1);
+/// How long it may go on after the second signal when the stop is not tried at all: the robot's code hangs.
+const WITHOUT_A_STOP: Duration = Duration::from_secs(10);
+/// The time between two looks at whether the stop was tried.
+const LOOK: Duration = Duration::from_millis(10);
+
+/// Has the second signal end the program, with the status that it has by then. `leave_screen` gives the terminal back.
+///
+/// # Errors
+/// When the system does not let a signal be caught, or gives no thread.
+pub(crate) fn watch(signals: &Signals, leave_screen: fn()) -> io::Result<()> {
+    let mut incoming = Incoming::new(signals.noted().iter().map(|signal| i32::from(signal.number())))?;
+    let signals = signals.share();
+    let thread = Builder::new().name("signals".to_owned()).stack_size(STACK);
+    thread.spawn(move || {
+        if incoming.forever().filter(|_| !signals.are_deadly()).nth(1).is_some() {
+            end(&signals, leave_screen);
+        }
+    })?;
+    Ok(())
+}
+
+/// Ends the program when the stop was tried and a moment has passed, or the stop is not tried for too long.
+fn end(signals: &Signals, leave_screen: fn()) {
+    let begun = Instant::now();
+    let known = loop {
+        match signals.patience().stopped() {
+            Some(Stopped { at, status }) if at.elapsed() >= AFTER_THE_STOP => break status,
+            None if begun.elapsed() >= WITHOUT_A_STOP => break None,
+            Some(_) | None => thread::sleep(LOOK),
+        }
+    };
+    let of_the_signal = || signals.caught().map_or(ending::FAULT, |signal| 128_u8.saturating_add(signal.number()));
+    let status = known.unwrap_or_else(of_the_signal);
+    leave_screen();
+    // Not by way of what the libraries do at an exit: they write what is left, and nobody may read that.
+    low_level::exit(status.into());
+}

@@ -1,0 +1,74 @@
+//! The way out of a run: the robot is stopped, and then it is told why the run ended and what else went wrong.
+
+use std::io::{self, Write};
+
+use crate::ending::{Ending, Fault};
+use crate::log::Log;
+use crate::report::Report;
+use crate::safety::{Panicked, shielded};
+use crate::{Hosted, turns};
+
+/// A panic as an ending.
+pub(crate) fn bug(Panicked(message): Panicked) -> Ending {
+    Ending::Bug(message)
+}
+
+/// Stops the robot; the ending with what came of that, whether the robot's code can still be trusted, and what went wrong.
+///
+/// The null input is sent once more where the robot still listens, then the stop command in any case.
+pub(crate) fn stop<R: Hosted>(robot: &mut R, ending: Ending) -> (Ending, bool, Vec<Fault>) {
+    let last = if ending.robot_listens() {
+        let last = shielded(|| turns::exchange(robot, &R::Input::default()).map(drop));
+        last.unwrap_or_else(|panicked| Err(bug(panicked))).err()
+    } else {
+        None
+    };
+    let orderly = last.as_ref().unwrap_or(&ending).is_orderly();
+    let stopped = shielded(|| robot.stop().map_err(|fault| fault.to_string()));
+    let stopped = stopped.unwrap_or_else(|Panicked(message)| Err(format!("its code panicked: {message}")));
+    let (ending, stopped) = ending.with_stop(stopped.err());
+    let mut faults = Vec::new();
+    let stopped = match last {
+        Some(last) => {
+            let (last, stopped) = last.with_stop(stopped);
+            faults.push(Fault::Exchange(last));
+            stopped
+        }
+        None => stopped,
+    };
+    faults.extend(stopped.map(Fault::Stop));
+    (ending, orderly, faults)
+}
+
+/// The files that a run has written.
+pub(crate) struct Files {
+    pub(crate) log: Option<Log>,
+    /// Why the path could not be written.
+    pub(crate) path: Option<io::Error>,
+}
+
+/// Says why the run ended, and what else went wrong, once the robot was stopped; the exit status.
+pub(crate) fn tell<R: Hosted>(
+    robot: &mut R,
+    ending: Ending,
+    orderly: bool,
+    mut faults: Vec<Fault>,
+    report: &mut Report<'_>,
+    files: Files,
+    err: &mut dyn Write,
+) -> u8 {
+    // Without a word on a broken log the reader of a short one would take it for a whole run.
+    let logged = files.log.map_or(Ok(()), |mut log| log.flush());
+    faults.extend(logged.err().filter(|_| !matches!(ending, Ending::Log(_))).map(Fault::Log));
+    faults.extend(files.path.map(Fault::Path));
+    report.flush();
+    // Before the robot finishes, which may take a while.
+    ending.tell(err);
+    if orderly {
+        let finished = shielded(|| robot.finish());
+        let finished = finished.unwrap_or_else(|Panicked(message)| Err(format!("a panic: {message}")));
+        faults.extend(finished.err().map(Fault::Finish));
+    }
+    faults.iter().for_each(|fault| fault.tell(err));
+    ending.status(&faults)
+}

@@ -1,0 +1,77 @@
+//! The example `cart` as a program: real signals, closed and blocked pipes, exit statuses, panics.
+#![allow(clippy::unwrap_used, clippy::panic, reason = "what fails here is the test")]
+
+mod cart;
+mod signals;
+mod writers;
+
+use std::process::Output;
+
+use cart::{FAR, cart, is_no_refusal, is_no_timing, send, start, text, wait_until_it_moves};
+
+#[test]
+fn how_late_turns_are_is_told_on_sigusr1_and_at_the_end() {
+    let mut child = start(&FAR);
+    let mut lines = wait_until_it_moves(child.stderr.take().unwrap());
+    let table = ["     up to      late      took", "      most"];
+    for signal in ["USR1", "TERM"] {
+        send(&child, signal);
+        let head = lines.find(|line| !is_no_timing(line)).unwrap();
+        assert!(head.contains(" of 20ms, "), "{head}");
+        assert_eq!(lines.next().as_deref(), Some(table[0]));
+        assert!(lines.any(|line| line.starts_with(table[1])));
+    }
+    assert_eq!(lines.next(), None);
+    assert_eq!(child.wait().unwrap().code(), Some(143));
+}
+
+#[test]
+fn a_closed_pipe_disturbs_nothing() {
+    for arguments in [&["--speed", "max"][..], &["--period", "0.01", "--track", "0", "--turns", "10"], &["--help"]] {
+        let mut child = start(arguments);
+        drop(child.stdout.take());
+        let Output { status, stderr, .. } = child.wait_with_output().unwrap();
+        let limit = "stopped by --turns: the plan was not over after 10 turns\n9 turns of 10ms, ";
+        let told: String = text(&stderr).split_inclusive('\n').filter(|line| is_no_refusal(line)).collect();
+        match status.code() {
+            Some(0) => assert_eq!(told, ""),
+            code => assert!(code == Some(4) && told.starts_with(limit), "{code:?} {told}"),
+        }
+    }
+}
+
+#[test]
+fn a_panic_stops_the_cart() {
+    let Output { status, stderr, .. } = cart(&["--tell", "--speed", "max", "--panic-at", "2"]).output().unwrap();
+    assert_eq!(status.code(), Some(3));
+    let told = text(&stderr);
+    let told: Vec<_> = told.lines().filter(|line| line.starts_with("cart") || line.starts_with("error")).collect();
+    assert_eq!(
+        told,
+        [
+            "cart: 0 m/s",
+            "cart: 0.5 m/s",
+            "cart: 0.5 m/s",
+            "cart: stop",
+            "error: a fault stopped the robot: its code or the plan's panicked, which is a bug: the cart exploded",
+        ]
+    );
+}
+
+#[test]
+fn a_program_has_the_statuses_that_scripts_rely_on() {
+    let status = |arguments| cart(arguments).output().unwrap().status.code();
+    assert_eq!(status(&["--speed", "max"]), Some(0));
+    assert_eq!(status(&["--speed", "max", "--track", "-1"]), Some(2));
+    assert_eq!(status(&["--speed", "max", "--track=2000"]), Some(2));
+    assert_eq!(status(&["--speed", "max", "--fail-at", "3"]), Some(3));
+    assert_eq!(status(&["--speed", "max", "--timeout", "20"]), Some(4));
+}
+
+#[test]
+fn a_plan_says_what_it_does() {
+    let Output { stdout, .. } = cart(&["--speed", "max"]).output().unwrap();
+    let report = text(&stdout);
+    assert!(report.starts_with("2.000 s  atom 2 go -0.5  <- far (atom 1)\n4.000 s  atom 1 go 0.5  <- near (atom 2)\n"));
+    assert!(report.ends_with("\nplan over: wait 1000 (Shuttle)\n"), "{report}");
+}

@@ -1,0 +1,216 @@
+//! Everything that is written, to what is blocked, closed, full or limited: the robot drives on or stops, and waits for nobody.
+
+use std::fs::{self, File};
+use std::io::{self, Read, Write};
+use std::os::unix::fs::OpenOptionsExt as _;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use rustix::fs::{CWD, FileType, Mode, OFlags, fcntl_getfl, fcntl_setfl, mknodat};
+
+use crate::cart::{cart, lines, send, start};
+
+/// What is written to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Writer {
+    Out,
+    Err,
+    Log,
+    Path,
+}
+
+const WRITERS: [Writer; 4] = [Writer::Out, Writer::Err, Writer::Log, Writer::Path];
+
+/// A cart that tells what it is told through a pipe of its own.
+struct Cart {
+    folder: PathBuf,
+    command: Command,
+    journal: File,
+    /// What it was told so far.
+    told: String,
+    /// Pipes that nobody reads.
+    full: Vec<File>,
+}
+
+/// Makes a pipe with a name.
+fn fifo(path: &Path) {
+    mknodat(CWD, path, FileType::Fifo, Mode::RUSR | Mode::WUSR, 0).unwrap();
+}
+
+impl Cart {
+    /// With these options; it drives far.
+    fn new(test: &str, options: &[&str]) -> Self {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(&folder).unwrap();
+        let journal = folder.join("journal");
+        fifo(&journal);
+        let mut command = cart(&["--period", "0.01", "--track", "1000", "--journal"]);
+        command.arg(&journal).args(options).stdout(Stdio::null()).stderr(Stdio::null());
+        let flags = OFlags::NONBLOCK.bits() as i32;
+        let journal = File::options().read(true).custom_flags(flags).open(&journal).unwrap();
+        Self { folder, command, journal, told: String::new(), full: Vec::new() }
+    }
+
+    /// Has one of its writers write to this file.
+    fn to(&mut self, writer: Writer, file: &Path) {
+        let open = || fs::OpenOptions::new().write(true).create(true).truncate(false).open(file).unwrap();
+        match writer {
+            Writer::Out => self.command.stdout(open()),
+            Writer::Err => self.command.stderr(open()),
+            Writer::Log => self.command.arg("--log").arg(file),
+            Writer::Path => self.command.arg("--record-path").arg(file),
+        };
+    }
+
+    /// Has one of its writers write to a reader that reads nothing, whose pipe is full.
+    fn blocked(&mut self, writer: Writer) {
+        let fifo = self.folder.join(format!("{writer:?}"));
+        self::fifo(&fifo);
+        // Open for both, it waits for nobody.
+        let mut end = File::options().read(true).write(true).open(&fifo).unwrap();
+        let flags = fcntl_getfl(&end).unwrap();
+        fcntl_setfl(&end, flags | OFlags::NONBLOCK).unwrap();
+        while end.write(&[b'.'; 1]).is_ok() {}
+        self.full.push(end);
+        self.to(writer, &fifo);
+    }
+
+    /// Has one of its writers write to a reader that has gone.
+    fn closed(&mut self, writer: Writer) {
+        let (reader, end) = io::pipe().unwrap();
+        match writer {
+            Writer::Out => drop(self.command.stdout(end)),
+            Writer::Err => drop(self.command.stderr(end)),
+            Writer::Log | Writer::Path => panic!("a file that nobody can read has no name"),
+        }
+        drop(reader);
+    }
+
+    /// Has one of its writers write to a file that may not have a byte.
+    fn limited(&mut self, writer: Writer) {
+        let file = self.folder.join(format!("{writer:?}"));
+        self.to(writer, &file);
+        let mut shell = Command::new("sh");
+        shell
+            .args(["-c", "ulimit -f 0; exec \"$@\"", "sh"])
+            .arg(self.command.get_program())
+            .args(self.command.get_args());
+        let open =
+            |is_it| if is_it { Stdio::from(File::options().write(true).open(&file).unwrap()) } else { Stdio::null() };
+        shell.stdout(open(writer == Writer::Out)).stderr(open(writer == Writer::Err)).stdin(Stdio::null());
+        self.command = shell;
+    }
+
+    /// Takes in what it was told.
+    fn hear(&mut self) -> &str {
+        // There is nothing, or the cart has not opened it, or has ended.
+        let _ = self.journal.read_to_string(&mut self.told);
+        &self.told
+    }
+
+    /// Starts it and waits until it was told to move so many times.
+    fn moves(&mut self, times: usize) -> Child {
+        let child = self.command.spawn().unwrap();
+        self.moves_on(times);
+        child
+    }
+
+    fn moves_on(&mut self, times: usize) {
+        let begun = Instant::now();
+        while self.hear().matches("0.5 m/s").count() < times {
+            assert!(begun.elapsed() < Duration::from_secs(60), "it does not move: {}", self.told);
+            thread::sleep(Duration::from_millis(5));
+        }
+    }
+
+    /// Waits for its end; the status, and whether it stands.
+    fn end(&mut self, child: &mut Child) -> (Option<i32>, bool) {
+        let status = child.wait().unwrap().code();
+        (status, self.hear().ends_with("stop\n"))
+    }
+}
+
+/// How a cart ends that is stopped by a signal after a second of driving, in which it is asked how late it is.
+fn stopped(mut cart: Cart) -> (Option<i32>, bool) {
+    let mut child = cart.moves(10);
+    send(&child, "USR1");
+    cart.moves_on(20);
+    send(&child, "TERM");
+    cart.end(&mut child)
+}
+
+#[test]
+fn a_writer_that_is_blocked_holds_up_no_robot() {
+    // A log or a path that lacks its end is a fault.
+    for (writer, status) in WRITERS.into_iter().zip([143, 143, 3, 143]) {
+        let mut cart = Cart::new(&format!("blocked_{writer:?}"), &[]);
+        cart.blocked(writer);
+        assert_eq!(stopped(cart), (Some(status), true), "{writer:?}");
+    }
+    let mut all = Cart::new("blocked_all", &[]);
+    WRITERS.into_iter().for_each(|writer| all.blocked(writer));
+    assert_eq!(stopped(all), (Some(3), true));
+}
+
+#[test]
+fn a_writer_that_is_closed_full_or_limited_is_no_reason_to_drive_on() {
+    for (writer, status) in WRITERS.into_iter().zip([143, 143, 3, 143]) {
+        let mut cart = Cart::new(&format!("full_{writer:?}"), &[]);
+        cart.to(writer, Path::new("/dev/full"));
+        // A log that cannot be written stops it before the signal does.
+        if writer == Writer::Log {
+            let mut child = cart.command.spawn().unwrap();
+            assert_eq!(cart.end(&mut child), (Some(3), true));
+        } else {
+            assert_eq!(stopped(cart), (Some(status), true), "full {writer:?}");
+        }
+        let mut cart = Cart::new(&format!("limited_{writer:?}"), &[]);
+        cart.limited(writer);
+        let mut child = cart.command.spawn().unwrap();
+        if writer != Writer::Log {
+            cart.moves_on(20);
+            send(&child, "TERM");
+        }
+        assert_eq!(cart.end(&mut child), (Some(status), true), "limited {writer:?}");
+    }
+    for writer in [Writer::Out, Writer::Err] {
+        let mut cart = Cart::new(&format!("closed_{writer:?}"), &[]);
+        cart.closed(writer);
+        assert_eq!(stopped(cart), (Some(143), true), "closed {writer:?}");
+    }
+}
+
+#[test]
+fn a_log_that_nobody_reads_stops_the_robot() {
+    let mut cart = Cart::new("unread_log", &[]);
+    cart.blocked(Writer::Log);
+    let mut child = cart.command.stderr(Stdio::piped()).spawn().unwrap();
+    let lines: Vec<_> = lines(child.stderr.take().unwrap()).collect();
+    assert_eq!(lines[0], "error: the run log cannot be written, so the robot was stopped: nobody has taken it for 5 s");
+    assert_eq!(cart.end(&mut child), (Some(3), true));
+}
+
+#[test]
+fn a_panic_is_told_to_nobody_who_does_not_listen() {
+    let mut cart = Cart::new("panic", &["--panic-at", "5"]);
+    cart.blocked(Writer::Err);
+    let mut child = cart.command.spawn().unwrap();
+    assert_eq!(cart.end(&mut child), (Some(3), true));
+}
+
+#[test]
+fn a_reader_that_does_not_read_holds_up_no_robot() {
+    // On a track without length each turn makes as many transitions as it may, far more than a pipe holds.
+    let mut child = start(&["--tell", "--period", "0.01", "--track", "0"]);
+    let mut lines = lines(child.stderr.take().unwrap());
+    assert_eq!(lines.by_ref().take(10).filter(|line| line == "cart: 0 m/s").count(), 10);
+    send(&child, "TERM");
+    assert!(lines.by_ref().any(|line| line == "cart: stop"));
+    let mut report = String::new();
+    child.stdout.take().unwrap().read_to_string(&mut report).unwrap();
+    assert!(report.starts_with("0.000 s  atom 2 go -0.5  <- far (atom 1)\n"));
+    assert_eq!(child.wait().unwrap().code(), Some(143));
+}
