@@ -1,0 +1,64 @@
+//! A plan that drives ahead for a second, as the executables of two robots; the variable `ROBOT` says which.
+
+use std::process::ExitCode;
+
+use mdle_atrv::AtrvMini;
+use mdle_host::run;
+use mdle_runtime::fsm::{Atom, Bracket};
+use mdle_runtime::{Begin, Cause, Cursor, Fsm, MetersPerSecond, Nanos, Next, Plan, Sensed, Twist};
+use mdle_scout::SuperScout;
+
+fn main() -> ExitCode {
+    if std::env::var_os("ROBOT").is_some_and(|robot| robot == "scout") {
+        run::<SuperScout, _>("Ahead", || Ahead)
+    } else {
+        run::<AtrvMini, _>("Ahead", || Ahead)
+    }
+}
+
+/// `{ Ahead (wait 1s) (Atom (null) go 20 0) }`.
+struct Ahead;
+
+const SECOND: Nanos = Nanos(1_000_000_000);
+const FSM: Fsm<'static> = Fsm {
+    brackets: &[Bracket::scope(0, 0, 0, 0), Bracket::scope(1, 0, 0, 0)],
+    atoms: &[Atom::new(1, 1)],
+    termination: 2,
+};
+
+impl Plan for Ahead {
+    type Output = Sensed;
+    type Input = Twist;
+    type Entered = [Nanos; 2];
+    type Left = [u64; 0];
+
+    fn fsm(&self) -> Fsm<'_> {
+        FSM
+    }
+
+    fn slots(&self) -> ([Nanos; 2], [u64; 0]) {
+        ([Nanos::ZERO; 2], [])
+    }
+
+    fn enter(&mut self, _: u32, _: &Sensed, _: Begin) {}
+
+    fn next(&mut self, cursor: &mut Cursor<[Nanos; 2], [u64; 0]>, _: &Sensed, begin: Begin, _: bool) -> Next {
+        if cursor.since(0, begin.now) >= SECOND { Next::Ends(Cause::Fired(0).into()) } else { Next::Stays }
+    }
+
+    fn input(&mut self, _: &Sensed, _: Nanos) -> Twist {
+        Twist { v: MetersPerSecond(0.2), ..Twist::default() }
+    }
+
+    fn law(&self, _: u32) -> &str {
+        "go 20 0"
+    }
+
+    fn condition(&self, scope: u32) -> &str {
+        if scope == 0 { "wait 1s" } else { "null" }
+    }
+
+    fn name(&self, scope: u32) -> &str {
+        if scope == 0 { "Ahead" } else { "" }
+    }
+}
