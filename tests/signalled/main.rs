@@ -115,7 +115,7 @@ fn run<R: Emulated>(case: Case, folder: &Path, robot: R, pose: fn(&R) -> Pose) -
     let before = pose(&told.robot);
     (0..10).for_each(|_| told.pass(STEP).unwrap());
     let after = pose(&told.robot);
-    let moves = (after.x.0 - before.x.0).hypot(after.y.0 - before.y.0);
+    let moves = libm::hypot(after.x.0 - before.x.0, after.y.0 - before.y.0);
     Came { robot: told.robot, output, was_told: told.was_told, moves }
 }
 

@@ -99,6 +99,13 @@ pub(crate) fn load<T: Target>(matches: &ArgMatches, names: &[&'static str]) -> R
     Ok(PathStore::new(stored.collect::<Vec<_>>().leak()))
 }
 
+/// The files of the paths that a plan replays.
+pub(crate) fn files(matches: &ArgMatches, names: &[&'static str]) -> impl Iterator<Item = PathBuf> {
+    // A robot that replays none has no such option.
+    let folder = if names.is_empty() { None } else { matches.get_one::<PathBuf>("paths").cloned() };
+    names.iter().map(move |name| place(folder.as_deref(), name))
+}
+
 /// Hands a robot its paths.
 pub(crate) fn hand_over<T: Target>(robot: &mut T::Robot, store: PathStore) {
     if let Some(Replays { take, .. }) = T::PATHS {
@@ -118,10 +125,15 @@ pub(crate) fn in_batch<T: Target>(batch: Batch<T::Robot>, store: PathStore) -> B
     Batch { robot: Box::new(robot), ..batch }
 }
 
-/// Reads the path that a plan calls `name`: a name without an ending is that of a CSV file.
-fn read(folder: Option<&Path>, name: &str, fastest: Twist) -> Result<Vec<Setpoint>, String> {
+/// The file of the path that a plan calls `name`: a name without an ending is that of a CSV file.
+fn place(folder: Option<&Path>, name: &str) -> PathBuf {
     let file = if Path::new(name).extension().is_some() { name.to_owned() } else { format!("{name}.csv") };
-    let place = folder.map_or_else(|| PathBuf::from(&file), |folder| folder.join(&file));
+    folder.map_or_else(|| PathBuf::from(&file), |folder| folder.join(&file))
+}
+
+/// Reads the path that a plan calls `name`.
+fn read(folder: Option<&Path>, name: &str, fastest: Twist) -> Result<Vec<Setpoint>, String> {
+    let place = place(folder, name);
     let shown = place.display();
     let bytes = read_file(&place, LARGEST).map_err(|error| match (error.kind(), folder) {
         (ErrorKind::NotFound, None) => format!(

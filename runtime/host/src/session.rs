@@ -20,7 +20,7 @@ use crate::report::Report;
 use crate::safety::{Panicked, shielded};
 use crate::signals::Signals;
 use crate::turns::{self, Limits, Witnesses};
-use crate::{Hosted, Pace, Refusal, Target, Time, way_out};
+use crate::{Hosted, NamedFile, Pace, Refusal, Target, Time, named_file, way_out};
 
 /// What a run meets outside the program; a test brings its own.
 pub(crate) struct Surroundings<'e, I, O> {
@@ -61,9 +61,9 @@ where
         Ok(Some(answer)) => return answered(&answer, &mut *out()),
         Ok(None) => {}
     }
-    let store = match stored::<T, P>(&matches, plan) {
+    let (store, replayed) = match stored::<T, P>(&matches, plan) {
         Err(refusal) => return refusal.tell(err),
-        Ok(store) => store,
+        Ok(stored) => stored,
     };
     match batch::<T>(&matches, &options, store) {
         Err(refusal) => return refusal.tell(err),
@@ -77,7 +77,8 @@ where
         }
         Ok(None) => {}
     }
-    let Ready { mut robot, time, mut log, mut path } = match ready::<T>(&matches, &options, store, &signals) {
+    let Ready { mut robot, time, mut log, mut path } = match ready::<T>(&matches, &options, store, &replayed, &signals)
+    {
         Ok(ready) => ready,
         Err(Refusal::Ended(stopped)) => return ended_at_the_start(&signals, stopped, err),
         Err(refusal) => return refusal.tell(err),
@@ -138,9 +139,26 @@ fn warn_of_lateness(refused: &str, program: Option<&OsString>, err: &mut dyn Wri
     );
 }
 
-/// The paths that the plan replays, read.
-fn stored<T: Target, P: Plan>(matches: &ArgMatches, plan: &impl Fn() -> P) -> Result<PathStore, Refusal> {
-    shielded(|| paths::load::<T>(matches, plan().paths())).unwrap_or_else(bug_before)
+/// The paths that the plan replays, read, and their names.
+fn stored<T: Target, P: Plan>(
+    matches: &ArgMatches,
+    plan: &impl Fn() -> P,
+) -> Result<(PathStore, Vec<&'static str>), Refusal> {
+    let stored = shielded(|| {
+        let plan = plan();
+        paths::load::<T>(matches, plan.paths()).map(|store| (store, plan.paths().to_vec()))
+    });
+    stored.unwrap_or_else(bug_before)
+}
+
+/// The files that the options of a run name.
+fn named_files<T: Target>(matches: &ArgMatches, options: &Options, paths: &[&'static str]) -> Vec<NamedFile> {
+    let written = [("--log", &options.log), ("--record-path", &options.path)];
+    let written = written
+        .into_iter()
+        .filter_map(|(option, path)| path.clone().map(|path| NamedFile { option, path, is_written: true }));
+    let read = paths::files(matches, paths).map(|path| NamedFile { option: "the plan", path, is_written: false });
+    written.chain(read).chain(T::files(matches)).collect()
 }
 
 /// The runs of a batch, if these options ask for several.
@@ -213,10 +231,12 @@ fn ready<T: Target>(
     matches: &ArgMatches,
     options: &Options,
     store: PathStore,
+    paths: &[&'static str],
     signals: &Signals,
 ) -> Result<Ready<T::Robot>, Refusal> {
     let opened = shielded(|| {
         let time = T::time(matches).map_err(Refusal::Usage)?;
+        named_file::check(named_files::<T>(matches, options, paths))?;
         let log = untouched("run log", options.log.as_deref())?;
         let path = untouched("path", options.path.as_deref())?;
         paths::check_period(options)?;

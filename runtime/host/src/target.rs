@@ -5,7 +5,7 @@ use std::time::Duration;
 use clap::{ArgMatches, Command};
 use mdle_runtime::{Nanos, Robot};
 
-use crate::{Batch, Replays, StopRequest};
+use crate::{Batch, NamedFile, Replays, StopRequest};
 
 /// A robot that executables are built for; implemented once in each target crate.
 pub trait Target {
@@ -37,6 +37,11 @@ pub trait Target {
     /// # Errors
     /// Why there is no robot: a bad option (exit status 2), a fault (exit status 3), or `request`.
     fn connect(matches: &ArgMatches, period: Duration, request: &StopRequest) -> Result<Self::Robot, Refusal>;
+
+    /// Returns the files that the target's own options name: none is written that another option names as well.
+    fn files(_matches: &ArgMatches) -> Vec<NamedFile> {
+        Vec::new()
+    }
 
     /// What is printed instead of a run, if these options ask for something that needs none.
     ///

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use mdle_host::clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use mdle_host::{Pace, Time};
+use mdle_host::{NamedFile, Pace, Time};
 
 use crate::clock::Clock;
 
@@ -53,6 +53,13 @@ pub fn device(matches: &ArgMatches) -> Option<&str> {
 #[must_use]
 pub fn config(matches: &ArgMatches) -> Option<&Path> {
     matches.get_one::<PathBuf>("config").map(PathBuf::as_path)
+}
+
+/// Returns the files that these options name.
+#[must_use]
+pub fn files(matches: &ArgMatches) -> Vec<NamedFile> {
+    let config = config(matches).map(|path| NamedFile { option: "--config", path: path.to_owned(), is_written: false });
+    config.into_iter().collect()
 }
 
 /// Returns `true` if `--print-config` was given.

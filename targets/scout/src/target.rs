@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use mdle_host::clap::{ArgMatches, Command};
-use mdle_host::{Hosted, Refusal, Replays, StopRequest, Target, Time};
+use mdle_host::{Hosted, NamedFile, Refusal, Replays, StopRequest, Target, Time};
 use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Twist};
 use mdle_serial::{Clock, carries, options};
 
@@ -33,6 +33,10 @@ impl Target for SuperScout {
 
     fn time(matches: &ArgMatches) -> Result<Time, String> {
         Ok(options::time(matches))
+    }
+
+    fn files(matches: &ArgMatches) -> Vec<NamedFile> {
+        options::files(matches)
     }
 
     fn answer(matches: &ArgMatches) -> Result<Option<String>, Refusal> {

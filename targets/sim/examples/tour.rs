@@ -11,7 +11,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use mdle_host::clap::{Arg, ArgMatches, Command, value_parser};
-use mdle_host::{Batch, Hosted, Judgement, Refusal, Standing, StopRequest, Target, Time, run};
+use mdle_host::{Batch, Hosted, Judgement, NamedFile, Refusal, Standing, StopRequest, Target, Time, run};
 use mdle_runtime::{Nanos, Robot, Twist};
 use mdle_sim::{Fault, Observed, Sensed, Sim};
 
@@ -44,6 +44,14 @@ impl Target for Fragile {
 
     fn connect(matches: &ArgMatches, period: Duration, request: &StopRequest) -> Result<Breaking, Refusal> {
         Ok(Breaking { robot: Sim::connect(matches, period, request)?, left: matches.get_one("panic-at").copied() })
+    }
+
+    fn files(matches: &ArgMatches) -> Vec<NamedFile> {
+        Sim::files(matches)
+    }
+
+    fn leave_screen() {
+        Sim::leave_screen();
     }
 
     fn screen(matches: &ArgMatches) -> bool {

@@ -10,7 +10,7 @@ use crate::plot;
 use crate::robot::{Fault, Simulated};
 use crate::trail::Trail;
 use crate::watch::Watch;
-use crate::whole_file::WholeFile;
+use crate::whole_file::{Unfinished, WholeFile};
 use crate::world::World;
 
 /// A simulated robot and what is made of its run; it drives as it would unobserved.
@@ -32,16 +32,22 @@ struct Pictures {
     trail: Trail,
 }
 
-/// Where the robot was in each turn: a line of commas for each exchange.
+/// Where the robot was in each turn: a line of commas for each exchange, written as the run goes.
 struct Table {
     file: WholeFile,
-    lines: String,
+    /// From the first exchange on.
+    lines: Option<Unfinished>,
 }
 
 impl Table {
     fn went(&mut self, t: Nanos, pose: &Pose) {
         let Pose { x, y, theta } = pose;
-        self.lines += &format!("{},{},{},{}\n", t.seconds(), x.0, y.0, theta.degrees());
+        let lines = self.lines.get_or_insert_with(|| {
+            let mut lines = Unfinished::new(self.file.clone());
+            lines.write("t,x,y,heading\n");
+            lines
+        });
+        lines.write(&format!("{},{},{},{}\n", t.seconds(), x.0, y.0, theta.degrees()));
     }
 }
 
@@ -87,7 +93,7 @@ impl Observed {
 
     /// Has its way written down when the run is finished: `t,x,y,heading` in seconds, metres and degrees.
     pub(crate) fn written_down(mut self, file: Option<WholeFile>) -> Self {
-        self.table = file.map(|file| Table { file, lines: "t,x,y,heading\n".into() });
+        self.table = file.map(|file| Table { file, lines: None });
         self
     }
 }
@@ -169,8 +175,8 @@ impl Hosted for Observed {
     }
 
     fn finish(&mut self) -> Result<(), String> {
-        if let Some(Table { file, lines }) = &self.table {
-            file.write("trail", lines)?;
+        if let Some(lines) = self.table.take().and_then(|table| table.lines) {
+            lines.finish("trail")?;
         }
         let Some(Pictures { plot, record, world, trail }) = &self.pictures else { return Ok(()) };
         if let Some(file) = plot {

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use mdle_host::clap::parser::ValueSource;
 use mdle_host::clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use mdle_host::{Pace, Time, read_file};
+use mdle_host::{NamedFile, Pace, Time, read_file};
 
 use crate::model::{Body, PARTS};
 use crate::robot::Make;
@@ -261,4 +261,18 @@ pub(crate) fn given(matches: &ArgMatches) -> Vec<String> {
 /// The path of `--plot`, `--record` or `--trail`.
 pub(crate) fn file<'m>(matches: &'m ArgMatches, option: &str) -> Option<&'m Path> {
     matches.get_one::<PathBuf>(option).map(PathBuf::as_path)
+}
+
+/// The files that the options name.
+pub(crate) fn files(matches: &ArgMatches) -> Vec<NamedFile> {
+    let all = [
+        ("world", "--world", false),
+        ("plot", "--plot", true),
+        ("record", "--record", true),
+        ("trail", "--trail", true),
+    ];
+    let given = all.into_iter().filter_map(|(name, option, is_written)| {
+        file(matches, name).map(|path| NamedFile { option, path: path.to_owned(), is_written })
+    });
+    given.collect()
 }

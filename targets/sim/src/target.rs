@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use mdle_host::clap::{ArgMatches, Command};
-use mdle_host::{Batch, Refusal, Replays, StopRequest, Target, Time};
+use mdle_host::{Batch, NamedFile, Refusal, Replays, StopRequest, Target, Time};
 use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Twist};
 
 use crate::observed::Observed;
@@ -34,6 +34,14 @@ impl Target for Sim {
 
     fn connect(matches: &ArgMatches, period: Duration, _: &StopRequest) -> Result<Observed, Refusal> {
         setup::robot(matches, period).map_err(Refusal::Usage)
+    }
+
+    fn files(matches: &ArgMatches) -> Vec<NamedFile> {
+        options::files(matches)
+    }
+
+    fn leave_screen() {
+        crate::watch::leave_screen();
     }
 
     fn screen(matches: &ArgMatches) -> bool {

@@ -10,6 +10,10 @@ use crate::world::Place;
 
 /// Places nearer to the last than this, in metres, are not kept: less than a pixel.
 const APART: f64 = 0.01;
+/// The most places of the way that are kept; when there are more, every second one goes.
+const PLACES_MOST: usize = 100_000;
+/// The most atoms whose beginnings are kept.
+const MARKS_MOST: usize = 10_000;
 /// Of the echoes in a square with this side, in metres, one is kept: however long a run, a floor has only so many.
 const SQUARE: f64 = 0.04;
 
@@ -26,6 +30,11 @@ pub(crate) struct Trail {
     /// The way before the first atom began, then the way of each.
     pub(crate) before: Vec<Place>,
     pub(crate) marks: Vec<Mark>,
+    /// How many atoms began besides, whose ways are the last one's.
+    pub(crate) unmarked: usize,
+    /// How many places there are, and how far apart they are at least, in metres.
+    count: usize,
+    apart: f64,
     /// Where the sonars heard something, at most one in a square of 4 cm.
     pub(crate) echoes: Vec<Place>,
     heard: BTreeSet<(i64, i64)>,
@@ -58,6 +67,9 @@ impl Trail {
             things: Vec::new(),
             before: vec![Place::of(pose)],
             marks: Vec::new(),
+            unmarked: 0,
+            count: 1,
+            apart: APART,
             echoes: Vec::new(),
             heard: BTreeSet::new(),
             contacts: Vec::new(),
@@ -72,8 +84,27 @@ impl Trail {
         self.here = *pose;
         let place = Place::of(pose);
         let way = self.marks.last_mut().map_or(&mut self.before, |mark| &mut mark.way);
-        if way.last().is_none_or(|last| libm::hypot(last.x - place.x, last.y - place.y) >= APART) {
+        if way.last().is_none_or(|last| libm::hypot(last.x - place.x, last.y - place.y) >= self.apart) {
             way.push(place);
+            self.count += 1;
+        }
+        if self.count > PLACES_MOST {
+            self.thin();
+        }
+    }
+
+    /// Leaves out every second place, but for those where an atom began or ended.
+    fn thin(&mut self) {
+        self.apart *= 2.0;
+        self.count = 0;
+        for way in std::iter::once(&mut self.before).chain(self.marks.iter_mut().map(|mark| &mut mark.way)) {
+            let last = way.len().saturating_sub(1);
+            let mut number = 0;
+            way.retain(|_| {
+                number += 1;
+                number % 2 == 1 || number > last
+            });
+            self.count += way.len();
         }
     }
 
@@ -99,11 +130,17 @@ impl Trail {
 
     /// An atom begins where the robot is.
     pub(crate) fn began(&mut self, state: u64, law: &str, t: Nanos) {
+        if self.marks.len() >= MARKS_MOST {
+            self.unmarked = self.unmarked.saturating_add(1);
+            return;
+        }
         let way = self.marks.last_mut().map_or(&mut self.before, |mark| &mut mark.way);
         let place = Place::of(&self.here);
         if way.last() != Some(&place) {
             way.push(place);
+            self.count += 1;
         }
+        self.count += 1;
         self.marks.push(Mark { state, law: law.to_owned(), t, way: vec![place] });
     }
 
@@ -158,5 +195,20 @@ mod tests {
         assert!(then.distance(&pose(5.0, 4.5, 0.0)).0 < 1e-12 && (then.theta.degrees() - 90.0).abs() < 1e-12);
         let same = pose(0.3, -0.2, 17.0);
         assert_eq!(on_the_floor(&same, &same, &same), same);
+    }
+
+    #[test]
+    fn a_long_way_is_thinned_and_keeps_its_ends() {
+        let mut trail = Trail::from(&Pose::ORIGIN, 0.2);
+        let place = |x: f64| Pose { x: Meters(x), ..Pose::ORIGIN };
+        for metre in 0..20_000_u32 {
+            trail.began(1, "go 20 0", Nanos(0));
+            (0..50).for_each(|cm| trail.went(&place(f64::from(metre) + f64::from(cm) / 50.0)));
+        }
+        let kept = trail.places().count();
+        assert!((PLACES_MOST / 3..=PLACES_MOST + 1).contains(&kept), "{kept}");
+        assert_eq!((trail.marks.len(), trail.unmarked), (MARKS_MOST, 20_000 - MARKS_MOST));
+        let ends = (trail.before.first().map(|place| place.x), trail.places().last().map(|place| place.x));
+        assert_eq!(ends, (Some(0.0), Some(19_999.98)));
     }
 }

@@ -15,6 +15,11 @@ use crate::world::{Place, World};
 use map::Map;
 use screen::Screen;
 
+/// Gives the screen back, if it is taken, on whatever thread.
+pub(crate) fn leave_screen() {
+    screen::leave_at_once();
+}
+
 /// From one picture to the next, at least: faster than that nobody sees.
 const EVERY: Duration = Duration::from_millis(50);
 

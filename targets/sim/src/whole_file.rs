@@ -1,8 +1,8 @@
 //! A file that an option names: refused before the run when it could not be written, and written whole or not at all.
 
 use std::ffi::OsString;
-use std::fs;
-use std::io::ErrorKind;
+use std::fs::{self, File};
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 /// Where the file goes.
@@ -17,6 +17,9 @@ impl WholeFile {
     /// The file at `path`, as `option` names it, which can be written as far as can be told now. Leaves no file behind.
     pub(crate) fn at(option: &str, path: &Path) -> Result<Self, String> {
         let shown = path.display();
+        if path.as_os_str().as_encoded_bytes().ends_with(b"/") {
+            return Err(format!("--{option} {shown}: that is a folder; name a file in it"));
+        }
         // Through a link, or the rename would replace the link.
         let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
         match fs::metadata(&path) {
@@ -36,7 +39,8 @@ impl WholeFile {
         unfinished.push(name);
         unfinished.push(format!(".{}.tmp", std::process::id()));
         let unfinished = path.with_file_name(unfinished);
-        let tried = fs::File::create(&unfinished).and_then(|_| fs::remove_file(&unfinished));
+        // Never through a link that somebody has put there.
+        let tried = File::create_new(&unfinished).and_then(|_| fs::remove_file(&unfinished));
         tried.map_err(|error| {
             if error.kind() == ErrorKind::NotFound {
                 format!("--{option} {shown}: the folder does not exist; make it first")
@@ -49,11 +53,81 @@ impl WholeFile {
 
     /// Writes the file; `what` it is goes into the sentence of an error.
     pub(crate) fn write(&self, what: &str, text: &str) -> Result<(), String> {
-        let written = fs::write(&self.unfinished, text).and_then(|()| fs::rename(&self.unfinished, &self.path));
-        written.map_err(|error| {
+        let mut unfinished = Unfinished::new(self.clone());
+        unfinished.write(text);
+        unfinished.finish(what)
+    }
+}
+
+/// A file that is being written.
+#[derive(Debug)]
+pub(crate) struct Unfinished {
+    file: WholeFile,
+    /// Nothing more is written after an error, which is told in the end.
+    written: io::Result<BufWriter<File>>,
+    is_finished: bool,
+}
+
+impl Unfinished {
+    /// Begins the file.
+    pub(crate) fn new(file: WholeFile) -> Self {
+        let written = File::create_new(&file.unfinished).map(BufWriter::new);
+        // What is there already is not this program's to remove.
+        let is_finished = written.is_err();
+        Self { file, written, is_finished }
+    }
+
+    /// Writes more.
+    pub(crate) fn write(&mut self, text: &str) {
+        if let Ok(file) = &mut self.written
+            && let Err(error) = file.write_all(text.as_bytes())
+        {
+            self.written = Err(error);
+        }
+    }
+
+    /// Puts the file in its place; `what` it is goes into the sentence of an error.
+    pub(crate) fn finish(mut self, what: &str) -> Result<(), String> {
+        let written = std::mem::replace(&mut self.written, Err(ErrorKind::Other.into()));
+        let put = written.and_then(|mut file| file.flush());
+        let put = put.and_then(|()| fs::rename(&self.file.unfinished, &self.file.path));
+        self.is_finished |= put.is_ok();
+        put.map_err(|error| format!("the {what} {} cannot be written: {error}", self.file.path.display()))
+    }
+}
+
+impl Drop for Unfinished {
+    fn drop(&mut self) {
+        if !self.is_finished {
             // What could not be finished is not left lying about; if that fails too, the first error is the one to tell.
-            let _ = fs::remove_file(&self.unfinished);
-            format!("the {what} {} cannot be written: {error}", self.path.display())
-        })
+            let _ = fs::remove_file(&self.file.unfinished);
+        }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_link_in_the_place_of_the_unfinished_file_is_not_followed() {
+        let folder = std::env::temp_dir().join(format!("mdle-whole-file-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let (victim, path) = (folder.join("victim"), folder.join("plot.svg"));
+        fs::write(&victim, "precious").unwrap();
+        let file = WholeFile::at("plot", &path).unwrap();
+        std::os::unix::fs::symlink(&victim, &file.unfinished).unwrap();
+        let written = file.write("plot", "a picture");
+        assert!(written.unwrap_err().ends_with("cannot be written: File exists (os error 17)"));
+        assert!(WholeFile::at("plot", &path).is_err());
+        assert_eq!(fs::read_to_string(&victim).unwrap(), "precious");
+        fs::remove_file(&file.unfinished).unwrap();
+        file.write("plot", "a picture").unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "a picture");
+        assert!(
+            WholeFile::at("plot", &folder.join("new/")).unwrap_err().ends_with("that is a folder; name a file in it")
+        );
+        fs::remove_dir_all(&folder).unwrap();
     }
 }

@@ -120,7 +120,7 @@ fn lines(trail: &Trail) -> Vec<(String, String, String)> {
         .iter()
         .take(MARKS_MOST)
         .map(|mark| (mark.state.to_string(), shortened(&mark.law), format!("{:.1} s", mark.t.seconds())));
-    let left = trail.marks.len().saturating_sub(MARKS_MOST);
+    let left = trail.marks.len().saturating_sub(MARKS_MOST).saturating_add(trail.unmarked);
     let more = (left > 0).then(|| (String::new(), format!("and {left} more"), String::new()));
     listed.chain(more).collect()
 }

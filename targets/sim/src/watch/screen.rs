@@ -1,9 +1,14 @@
 //! The screen of a terminal, taken and given back: whatever happens, the terminal is left as it was found.
 
-use std::io::{IsTerminal, Write, stdout};
+use std::fs::File;
+use std::io::{self, IsTerminal, Write, stdout};
+use std::os::unix::fs::OpenOptionsExt as _;
 use std::panic;
-use std::sync::{Mutex, Once};
+use std::sync::{Mutex, MutexGuard, Once, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
 
+use rustix::fs::OFlags;
 use rustix::termios::{
     LocalModes, OptionalActions, QueueSelector, Termios, tcflush, tcgetattr, tcgetwinsize, tcsetattr,
 };
@@ -18,6 +23,19 @@ static FOUND: Mutex<Option<Found>> = Mutex::new(None);
 
 struct Found(Option<Termios>);
 
+/// The terminal, so that writing to it never waits, and what it has not yet taken of a picture.
+static TERMINAL: Mutex<Option<Terminal>> = Mutex::new(None);
+
+struct Terminal {
+    file: File,
+    left: Vec<u8>,
+}
+
+/// The most columns and rows that are drawn: a terminal may say that it has very many.
+const SIZE_MOST: (usize, usize) = (500, 200);
+/// How long the terminal may take to be given back.
+const LEAVING: Duration = Duration::from_millis(500);
+
 /// A screen that is taken; dropped, it is given back.
 #[derive(Debug)]
 pub(super) struct Screen;
@@ -30,7 +48,8 @@ pub(super) fn is_there() -> bool {
 /// The columns and rows of the terminal; the usual ones where it does not say.
 pub(super) fn size() -> (usize, usize) {
     let size = tcgetwinsize(stdout()).ok().map(|size| (usize::from(size.ws_col), usize::from(size.ws_row)));
-    size.filter(|(columns, rows)| *columns > 0 && *rows > 0).unwrap_or((80, 24))
+    size.filter(|(columns, rows)| *columns > 0 && *rows > 0)
+        .map_or((80, 24), |(columns, rows)| (columns.min(SIZE_MOST.0), rows.min(SIZE_MOST.1)))
 }
 
 impl Screen {
@@ -50,7 +69,8 @@ impl Screen {
             quiet.local_modes &= !(LocalModes::ECHO | LocalModes::ICANON);
             let _ = tcsetattr(stdout(), OptionalActions::Now, &quiet);
         }
-        *FOUND.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = Some(Found(found));
+        *FOUND.lock().unwrap_or_else(PoisonError::into_inner) = Some(Found(found));
+        *terminal() = opened();
         write(ENTER);
         Self
     }
@@ -77,8 +97,22 @@ impl Drop for Screen {
 
 /// Gives the screen back, if it is taken.
 fn leave() {
-    let Some(Found(found)) = FOUND.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).take() else { return };
-    write(LEAVE);
+    let Some(Found(found)) = FOUND.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
+    write_to_the_end(LEAVE);
+    restore(found);
+}
+
+/// Gives the screen back while the thread that has it hangs: nothing here waits for what that thread holds.
+pub(super) fn leave_at_once() {
+    if terminal().is_some() {
+        return leave();
+    }
+    let Some(Found(found)) = FOUND.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
+    restore(found);
+}
+
+/// Sets the terminal as it was found.
+fn restore(found: Option<Termios>) {
     if let Some(found) = found {
         // What was typed meanwhile was meant for nobody.
         let _ = tcflush(stdout(), QueueSelector::IFlush);
@@ -86,8 +120,58 @@ fn leave() {
     }
 }
 
-/// A terminal that is gone is no reason to stop a robot; its own signal says so.
+/// Opens the terminal once more, in a way that does not wait. Where that is not allowed, what is shown may wait.
+fn opened() -> Option<Terminal> {
+    let flags = (OFlags::NONBLOCK | OFlags::NOCTTY).bits() as i32;
+    let file = File::options().write(true).custom_flags(flags).open("/proc/self/fd/1").ok()?;
+    Some(Terminal { file, left: Vec::new() })
+}
+
+fn terminal() -> MutexGuard<'static, Option<Terminal>> {
+    TERMINAL.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Terminal {
+    /// Writes what is left, as much as the terminal takes; whether that was all, or no more can be.
+    fn push(&mut self) -> bool {
+        while !self.left.is_empty() {
+            match self.file.write(&self.left) {
+                Ok(count) => drop(self.left.drain(..count)),
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
+                Err(error) if error.kind() == io::ErrorKind::WouldBlock => return false,
+                // A terminal that is gone is no reason to stop a robot; its own signal says so.
+                Err(_) => self.left.clear(),
+            }
+        }
+        true
+    }
+}
+
+/// Shows a picture, unless the terminal has not yet taken the one before.
 fn write(text: &str) {
+    let mut terminal = terminal();
+    if let Some(terminal) = terminal.as_mut() {
+        if terminal.push() {
+            terminal.left.extend_from_slice(text.as_bytes());
+            terminal.push();
+        }
+        return;
+    }
+    drop(terminal);
     let mut out = stdout().lock();
     let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+}
+
+/// Writes this after what is left, for as long as giving the terminal back may take.
+fn write_to_the_end(text: &str) {
+    let mut terminal = terminal();
+    let Some(terminal) = terminal.as_mut() else {
+        drop(terminal);
+        return write(text);
+    };
+    terminal.left.extend_from_slice(text.as_bytes());
+    let begun = Instant::now();
+    while !terminal.push() && begun.elapsed() < LEAVING {
+        thread::sleep(Duration::from_millis(5));
+    }
 }

@@ -6,6 +6,7 @@ mod pseudo;
 use std::process::Command;
 
 use pseudo::Terminal;
+use rustix::process::Signal;
 
 const ENTER: &str = "\x1b[?1049h\x1b[?25l";
 const LEAVE: &str = "\x1b[0m\x1b[?25h\x1b[?1049l";
@@ -94,4 +95,40 @@ fn a_batch_that_is_interrupted_says_what_was_done() {
     let (_, behind) = seen.rsplit_once("\x1b[K").unwrap();
     assert!(behind.contains(" of 100000 runs, seeds 1 to 100000: "), "{behind:?}");
     assert!(behind.ends_with("stopped by SIGINT\r\n"), "{behind:?}");
+}
+
+#[test]
+fn every_signal_gives_the_terminal_back() {
+    let signals = [Signal::HUP, Signal::QUIT, Signal::ABORT, Signal::ALARM, Signal::TERM, Signal::USR2, Signal::XCPU];
+    for signal in signals {
+        let mut terminal = Terminal::start(tour(&["--watch"]), false);
+        terminal.wait_for("Ctrl-C stops the robot");
+        terminal.send(signal);
+        terminal.wait_for("stopped by SIG");
+        assert!(terminal.echoes(), "{signal:?}");
+        let (seen, status) = terminal.end();
+        behind_the_screen(&seen);
+        assert_eq!(status.code(), Some(128 + signal.as_raw()));
+    }
+}
+
+#[test]
+fn a_terminal_that_nobody_reads_holds_up_no_end() {
+    let mut terminal = Terminal::start(tour(&["--watch", "--speed", "50"]), false);
+    terminal.wait_for("Ctrl-C stops the robot");
+    // Full within a second or two, of which nothing is seen from outside.
+    std::thread::sleep(std::time::Duration::from_secs(2));
+    terminal.send(Signal::TERM);
+    assert_eq!(terminal.end_unread().code(), Some(143));
+    assert!(terminal.echoes());
+}
+
+#[test]
+fn a_terminal_that_says_it_is_very_large_takes_no_memory() {
+    let mut terminal = Terminal::sized(tour(&["--watch"]), false, u16::MAX, u16::MAX);
+    terminal.wait_for("Ctrl-C stops the robot");
+    let memory = terminal.memory();
+    assert!(memory < 100_000, "{memory} kB");
+    terminal.interrupt();
+    assert_eq!(terminal.end().1.code(), Some(130));
 }

@@ -20,19 +20,24 @@ pub(crate) struct Terminal {
 
 impl Terminal {
     /// Starts the program in a terminal of 100 columns and 30 rows; its standard output goes elsewhere if `piped`.
-    pub(crate) fn start(mut command: Command, piped: bool) -> Self {
+    pub(crate) fn start(command: Command, piped: bool) -> Self {
+        Self::sized(command, piped, 100, 30)
+    }
+
+    /// The same in a terminal of this size.
+    pub(crate) fn sized(mut command: Command, piped: bool, columns: u16, rows: u16) -> Self {
         let controller = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
         grantpt(&controller).unwrap();
         unlockpt(&controller).unwrap();
-        let size = Winsize { ws_row: 30, ws_col: 100, ws_xpixel: 0, ws_ypixel: 0 };
+        let size = Winsize { ws_row: rows, ws_col: columns, ws_xpixel: 0, ws_ypixel: 0 };
         tcsetwinsize(&controller, size).unwrap();
         let name = ptsname(&controller, Vec::new()).unwrap();
         let terminal = open(name.as_c_str(), OFlags::RDWR | OFlags::NOCTTY, Mode::empty()).unwrap();
+        let modes = tcgetattr(&controller).unwrap().local_modes;
         let side = || Stdio::from(terminal.try_clone().unwrap());
         let out = if piped { Stdio::null() } else { side() };
         let child = command.stdin(side()).stdout(out).stderr(side()).spawn().unwrap();
         let controller = File::from(controller);
-        let modes = tcgetattr(&controller).unwrap().local_modes;
         Self { child, controller, modes, seen: String::new() }
     }
 
@@ -45,7 +50,24 @@ impl Terminal {
 
     /// Sends Ctrl-C's signal.
     pub(crate) fn interrupt(&self) {
-        kill_process(Pid::from_child(&self.child), Signal::INT).unwrap();
+        self.send(Signal::INT);
+    }
+
+    /// Sends a signal.
+    pub(crate) fn send(&self, signal: Signal) {
+        kill_process(Pid::from_child(&self.child), signal).unwrap();
+    }
+
+    /// Waits for the end of a program of which nobody reads anything.
+    pub(crate) fn end_unread(&mut self) -> ExitStatus {
+        self.child.wait().unwrap()
+    }
+
+    /// The most memory that the program has used so far, in kB.
+    pub(crate) fn memory(&self) -> u64 {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).unwrap();
+        let most = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).unwrap();
+        most.trim().trim_end_matches(" kB").parse().unwrap()
     }
 
     /// Waits for the end; all that was written, and the exit status. The terminal is as it was.

@@ -1,0 +1,130 @@
+//! The files that options name: what a run writes is one file each, and none that it reads.
+
+use std::fs;
+use std::io;
+use std::os::unix::fs::MetadataExt as _;
+use std::path::{Path, PathBuf};
+
+use crate::Refusal;
+
+/// How many links are followed from a name.
+const LINKS: usize = 40;
+
+/// A file that an option names.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct NamedFile {
+    /// The option, as in `--log`.
+    pub option: &'static str,
+    /// The file's name, as given.
+    pub path: PathBuf,
+    /// Whether the run writes it; if not, it is read.
+    pub is_written: bool,
+}
+
+/// A file, whatever it is called.
+#[derive(Debug, PartialEq, Eq)]
+enum Identity {
+    /// One that is there: its device and its number on that.
+    Known(u64, u64),
+    /// One that will be in this place.
+    New(PathBuf),
+}
+
+/// Refuses outputs that name a file that another option names, or this program.
+///
+/// # Errors
+/// The sentence for the operator: which options name one file.
+pub(crate) fn check(mut files: Vec<NamedFile>) -> Result<(), Refusal> {
+    if let Ok(path) = std::env::current_exe() {
+        files.push(NamedFile { option: "", path, is_written: false });
+    }
+    let known: Vec<_> = files.iter().map(|file| identity(&file.path)).collect();
+    for (number, (file, own)) in files.iter().zip(&known).enumerate() {
+        let (Some(own), true) = (own, file.is_written) else { continue };
+        let same = files.iter().zip(&known).enumerate().find(|(other, (earlier, identity))| {
+            *other != number && identity.as_ref() == Some(own) && (*other < number || !earlier.is_written)
+        });
+        if let Some((_, (other, _))) = same {
+            return Err(Refusal::Usage(clash(file, other)));
+        }
+    }
+    Ok(())
+}
+
+/// The sentence about an output that is another file as well.
+fn clash(file: &NamedFile, other: &NamedFile) -> String {
+    let (option, path) = (file.option, file.path.display());
+    match other {
+        NamedFile { option: "", .. } => format!("{option} {path}: that is this program; name another file"),
+        NamedFile { is_written: true, .. } => {
+            format!("{option} {path}: {} writes the same file; name another one", other.option)
+        }
+        NamedFile { .. } => format!("{option} {path}: {} reads that file; name another one", other.option),
+    }
+}
+
+/// Which file a name leads to; `None` for what is no file, such as a device, and for what cannot be found out.
+fn identity(path: &Path) -> Option<Identity> {
+    match fs::metadata(path) {
+        Ok(found) => found.is_file().then(|| Identity::Known(found.dev(), found.ino())),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            let mut path = path.to_owned();
+            for _ in 0..LINKS {
+                let Ok(target) = fs::read_link(&path) else { break };
+                // An absolute one replaces the folder.
+                path = path.with_file_name("").join(target);
+            }
+            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+            Some(Identity::New(fs::canonicalize(folder).ok()?.join(path.file_name()?)))
+        }
+        Err(_) => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::os::unix::fs::symlink;
+
+    use super::*;
+
+    /// What is refused of two outputs with these names and an input `input` in a folder of its own.
+    fn refused(test: &str, log: &str, plot: &str) -> Option<String> {
+        let folder = std::env::temp_dir().join(format!("mdle-files-{test}-{}", std::process::id()));
+        let _ = fs::remove_dir_all(&folder);
+        fs::create_dir_all(folder.join("sub")).unwrap();
+        fs::write(folder.join("input"), "").unwrap();
+        fs::write(folder.join("old"), "").unwrap();
+        fs::hard_link(folder.join("old"), folder.join("hard")).unwrap();
+        symlink("new", folder.join("dangling")).unwrap();
+        symlink("input", folder.join("link")).unwrap();
+        let file = |option, name: &str, is_written| NamedFile { option, path: folder.join(name), is_written };
+        let files = vec![file("--log", log, true), file("--plot", plot, true), file("--world", "input", false)];
+        let checked = check(files);
+        let shown = format!("{}/", folder.display());
+        fs::remove_dir_all(&folder).unwrap();
+        let Err(Refusal::Usage(sentence)) = checked else { return None };
+        Some(sentence.replace(&shown, ""))
+    }
+
+    #[test]
+    fn an_output_is_a_file_of_its_own() {
+        assert_eq!(refused("two", "new", "old"), None);
+        let same = |plot: &str| Some(format!("--plot {plot}: --log writes the same file; name another one"));
+        assert_eq!(refused("same", "new", "new"), same("new"));
+        assert_eq!(refused("spelling", "new", "sub/../new"), same("sub/../new"));
+        assert_eq!(refused("dangling", "new", "dangling"), same("dangling"));
+        assert_eq!(refused("hard", "old", "hard"), same("hard"));
+        // What is no file can take as many as like.
+        assert_eq!(refused("device", "/dev/null", "/dev/null"), None);
+    }
+
+    #[test]
+    fn an_output_is_no_input_and_not_this_program() {
+        let read = |name: &str| Some(format!("--log {name}: --world reads that file; name another one"));
+        assert_eq!(refused("input", "input", "new"), read("input"));
+        assert_eq!(refused("link", "link", "new"), read("link"));
+        let this = std::env::current_exe().unwrap().display().to_string();
+        let said = refused("program", &this, "new").unwrap();
+        assert!(said.ends_with("that is this program; name another file"), "{said}");
+    }
+}
