@@ -109,8 +109,9 @@ impl Ending {
         }
     }
 
-    /// Says it on standard error; a plan that is over has said so on standard output.
-    pub(crate) fn tell(&self, err: &mut dyn Write) {
+    /// Says it on standard error, and whether that stopped the robot; a plan that is over has said so on standard output.
+    pub(crate) fn tell(&self, is_stopped: bool, err: &mut dyn Write) {
+        let came = if is_stopped { "a fault stopped the robot" } else { "a fault ended the plan" };
         match self {
             Self::Over => {}
             Self::Timeout(limit) => {
@@ -121,15 +122,13 @@ impl Ending {
                 say(err, format_args!("stopped by --turns: the plan was not over after {limit} {turns}"));
             }
             Self::Signal(signal) => say(err, format_args!("stopped by {}", signal.name())),
-            Self::Robot(fault) | Self::Overrun(fault) => {
-                say(err, format_args!("error: a fault stopped the robot: {fault}"))
-            }
+            Self::Robot(fault) | Self::Overrun(fault) => say(err, format_args!("error: {came}: {fault}")),
             Self::Suspended { gap, longest } => {
                 let [gap, longest] = [gap, longest].map(|nanos| Duration::from_nanos(*nanos).as_secs_f64());
                 say(
                     err,
                     format_args!(
-                        "error: a fault stopped the robot: it had no command for {gap:.1} s, and may go {longest} s \
+                        "error: {came}: it had no command for {gap:.1} s, and may go {longest} s \
                          without one: this program or this computer was suspended, or too busy; start the plan again"
                     ),
                 );
@@ -138,14 +137,12 @@ impl Ending {
                 say(err, format_args!("error: a fault ended the plan, and the robot may not have stopped: {fault}"));
             }
             Self::Log(fault) => {
-                say(err, format_args!("error: the run log cannot be written, so the robot was stopped: {fault}"))
+                let so = if is_stopped { ", so the robot was stopped" } else { "" };
+                say(err, format_args!("error: the run log cannot be written{so}: {fault}"));
             }
-            Self::Bug(message) => say(
-                err,
-                format_args!(
-                    "error: a fault stopped the robot: its code or the plan's panicked, which is a bug: {message}"
-                ),
-            ),
+            Self::Bug(message) => {
+                say(err, format_args!("error: {came}: its code or the plan's panicked, which is a bug: {message}"))
+            }
         }
     }
 }
@@ -159,20 +156,20 @@ pub(crate) enum Fault {
     Log(io::Error),
     /// The path that was driven could not be written whole.
     Path(io::Error),
-    /// The stop command could not be delivered: the robot's sentence.
+    /// The stop command could not be delivered, or the robot did not stop: the robot's sentence.
     Stop(String),
     /// What was asked for could not be written: the robot's sentence.
     Finish(String),
 }
 
 impl Fault {
-    /// Says it on standard error.
-    pub(crate) fn tell(&self, err: &mut dyn Write) {
+    /// Says it on standard error, of a robot that was stopped or not.
+    pub(crate) fn tell(&self, is_stopped: bool, err: &mut dyn Write) {
         match self {
-            Self::Exchange(ending) => ending.tell(err),
+            Self::Exchange(ending) => ending.tell(is_stopped, err),
             Self::Log(error) => say(err, format_args!("error: the run log cannot be written: {error}")),
             Self::Path(error) => say(err, format_args!("error: the path that was driven cannot be written: {error}")),
-            Self::Stop(fault) => say(err, format_args!("error: the robot could not be told to stop: {fault}")),
+            Self::Stop(fault) => say(err, format_args!("error: the robot may not have stopped: {fault}")),
             Self::Finish(sentence) => say(err, format_args!("error: {sentence}")),
         }
     }

@@ -193,7 +193,7 @@ where
     let progress = seen.map(|now| Progress::new(&mut *err, now));
     let (status, unwritten) = batch::run(batch, plan, terms, out, progress);
     if let Some(signal) = terms.signals.caught() {
-        Ending::Signal(signal).tell(err);
+        Ending::Signal(signal).tell(true, err);
     }
     if let Some(error) = unwritten.filter(|error| error.kind() != io::ErrorKind::BrokenPipe) {
         say(err, format_args!("warning: standard output could not be written: {error}"));
@@ -259,8 +259,8 @@ fn ended_at_the_start(signals: &Signals, stopped: Result<(), String>, err: &mut 
     let ending = Ending::Signal(signal);
     let faults: Vec<Fault> = stopped.err().map(Fault::Stop).into_iter().collect();
     signals.patience().stop_was_tried(Some(ending.status(&faults)));
-    ending.tell(err);
-    faults.iter().for_each(|fault| fault.tell(err));
+    ending.tell(faults.is_empty(), err);
+    faults.iter().for_each(|fault| fault.tell(faults.is_empty(), err));
     ending.status(&faults)
 }
 

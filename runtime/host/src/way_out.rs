@@ -57,18 +57,19 @@ pub(crate) fn tell<R: Hosted>(
     files: Files,
     err: &mut dyn Write,
 ) -> u8 {
+    let is_stopped = !faults.iter().any(|fault| matches!(fault, Fault::Stop(_)));
     // Without a word on a broken log the reader of a short one would take it for a whole run.
     let logged = files.log.map_or(Ok(()), |mut log| log.flush());
     faults.extend(logged.err().filter(|_| !matches!(ending, Ending::Log(_))).map(Fault::Log));
     faults.extend(files.path.map(Fault::Path));
     report.flush();
     // Before the robot finishes, which may take a while.
-    ending.tell(err);
+    ending.tell(is_stopped, err);
     if orderly {
         let finished = shielded(|| robot.finish());
         let finished = finished.unwrap_or_else(|Panicked(message)| Err(format!("a panic: {message}")));
         faults.extend(finished.err().map(Fault::Finish));
     }
-    faults.iter().for_each(|fault| fault.tell(err));
+    faults.iter().for_each(|fault| fault.tell(is_stopped, err));
     ending.status(&faults)
 }

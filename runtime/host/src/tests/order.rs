@@ -164,11 +164,11 @@ fn a_stop_that_fails_is_a_fault_whatever_came_before() {
     exchange 0, began 1 go 20 0 at 0, exchange 0, stop, finish
     status 3
     stopped by SIGINT
-    error: the robot could not be told to stop: the line is dead
+    error: the robot may not have stopped: the line is dead
     ");
     let run = Stage { stop: Act::Panics("oh"), ..Stage::script(script()) }.run(&[]);
     assert_eq!(run.status, 3);
-    assert!(run.err.ends_with("error: the robot could not be told to stop: its code panicked: oh\n"));
+    assert!(run.err.ends_with("error: the robot may not have stopped: its code panicked: oh\n"));
 }
 
 #[test]
@@ -230,6 +230,31 @@ fn a_signal_at_the_start_stops_the_robot() {
 
     status 3
     stopped by SIGINT
-    error: the robot could not be told to stop: the line is dead
+    error: the robot may not have stopped: the line is dead
     ");
+}
+
+#[test]
+fn no_fault_says_that_it_stopped_a_robot_that_may_not_have_stopped() {
+    let script = [quiet(), Act::Panics("index out of bounds")];
+    let run = Stage { stop: Act::Fails("the robot still moves"), ..Stage::script(script) }.run(&[]);
+    insta::assert_snapshot!(way_out(&run), @"
+    exchange 0, began 1 go 20 0 at 0, exchange 1, stop
+    status 3
+    error: a fault ended the plan: its code or the plan's panicked, which is a bug: index out of bounds
+    error: the robot may not have stopped: the robot still moves
+    ");
+}
+
+#[test]
+fn a_robot_that_may_not_have_stopped_is_a_fault_whatever_ended_the_run() {
+    let unstopped = |script: Vec<Act>, options: &[&str]| {
+        let run = Stage { stop: Act::Fails("the robot still moves"), ..Stage::script(script) }.run(options);
+        assert!(run.err.ends_with("error: the robot may not have stopped: the robot still moves\n"), "{}", run.err);
+        run.status
+    };
+    assert_eq!(unstopped(vec![Act::Senses(vec![(0, Fired(0))])], &[]), 3);
+    assert_eq!(unstopped(Vec::new(), &["--timeout", "1"]), 3);
+    assert_eq!(unstopped(Vec::new(), &["--turns", "3"]), 3);
+    assert_eq!(unstopped(vec![Act::Hears(Signal::TERMINATE)], &[]), 3);
 }

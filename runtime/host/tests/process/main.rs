@@ -75,3 +75,14 @@ fn a_plan_says_what_it_does() {
     assert!(report.starts_with("2.000 s  atom 2 go -0.5  <- far (atom 1)\n4.000 s  atom 1 go 0.5  <- near (atom 2)\n"));
     assert!(report.ends_with("\nplan over: wait 1000 (Shuttle)\n"), "{report}");
 }
+
+#[test]
+fn two_outputs_in_one_file_are_refused_before_anything_is_written() {
+    let path = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join("one_file");
+    let _ = std::fs::remove_file(&path);
+    let other = path.with_file_name("../tmp/one_file");
+    let output = cart(&["--speed", "max", "--log"]).arg(&path).arg("--record-path").arg(other).output().unwrap();
+    assert_eq!((output.status.code(), path.exists()), (Some(2), false));
+    let errors = text(&output.stderr);
+    assert!(errors.ends_with("/tmp/one_file: --log writes the same file; name another one\n"), "{errors}");
+}

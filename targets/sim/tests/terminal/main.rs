@@ -132,3 +132,20 @@ fn a_terminal_that_says_it_is_very_large_takes_no_memory() {
     terminal.interrupt();
     assert_eq!(terminal.end().1.code(), Some(130));
 }
+
+#[test]
+fn a_file_that_may_not_grow_is_an_error_of_that_file() {
+    for option in ["--plot", "--record", "--trail", "--log"] {
+        let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("limited{option}"));
+        let _ = std::fs::remove_dir_all(&folder);
+        std::fs::create_dir_all(&folder).unwrap();
+        let tour = tour(&["--speed", "max", "--turns", "50", option]);
+        let mut shell = Command::new("sh");
+        shell.args(["-c", "ulimit -f 0; exec \"$@\"", "sh"]).arg(tour.get_program()).args(tour.get_args());
+        let output = shell.arg(folder.join("file")).output().unwrap();
+        let errors = String::from_utf8(output.stderr).unwrap();
+        // A log that lacks its end is a fault of the run.
+        assert_eq!(output.status.code(), Some(if option == "--log" { 3 } else { 4 }), "{option} {errors}");
+        assert!(errors.contains("cannot be written") && errors.contains("File too large"), "{option} {errors}");
+    }
+}
