@@ -1,6 +1,8 @@
 //! Every signal that can be caught, at twenty moments of a run on both robots: the robot stands, and the status says why.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
+mod suspended;
+
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::os::unix::process::ExitStatusExt as _;
@@ -94,6 +96,17 @@ fn started(case: Case, device: &Path, folder: &Path) -> Child {
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
+/// Sends a signal to a process that may just have ended, and does not wait: a robot goes on meanwhile.
+fn send(signal: i32, process: u32) {
+    let kill = format!("kill -{signal} {process}");
+    thread::spawn(move || Command::new("sh").args(["-c", &kill]).stderr(Stdio::null()).status());
+}
+
+/// The distance between two poses, in metres.
+fn distance(one: &Pose, other: &Pose) -> f64 {
+    libm::hypot(one.x.0 - other.x.0, one.y.0 - other.y.0)
+}
+
 /// Makes the run of a case with this robot.
 fn run<R: Emulated>(case: Case, folder: &Path, robot: R, pose: fn(&R) -> Pose) -> Came<R> {
     let port = Port::open().unwrap();
@@ -103,9 +116,7 @@ fn run<R: Emulated>(case: Case, folder: &Path, robot: R, pose: fn(&R) -> Pose) -
     let goes_on = || {
         let mut child = child.lock().unwrap();
         if begun.elapsed() >= APART * case.moment && sent.set(()).is_ok() && child.try_wait().unwrap().is_none() {
-            let kill = format!("kill -{} {}", case.signal, child.id());
-            // It may just have ended. The robot goes on meanwhile.
-            thread::spawn(move || Command::new("sh").args(["-c", &kill]).stderr(Stdio::null()).status());
+            send(case.signal, child.id());
         }
         assert!(begun.elapsed() < Duration::from_secs(120), "{case:?} never ends");
         child.try_wait().unwrap().is_none()
@@ -115,7 +126,7 @@ fn run<R: Emulated>(case: Case, folder: &Path, robot: R, pose: fn(&R) -> Pose) -
     let before = pose(&told.robot);
     (0..10).for_each(|_| told.pass(STEP).unwrap());
     let after = pose(&told.robot);
-    let moves = libm::hypot(after.x.0 - before.x.0, after.y.0 - before.y.0);
+    let moves = distance(&before, &after);
     Came { robot: told.robot, output, was_told: told.was_told, moves }
 }
 
