@@ -23,7 +23,7 @@ Exit status:
   2      invalid option, world or start pose
   3      a fault stopped the robot
   4      timeout or turn limit
-  128+N  terminated by signal N (129, 130, 143)
+  128+N  terminated by signal N
 The robot is stopped in every case. On a real robot, SIGUSR1 prints how late turns began and how long they took.";
 
 /// The values of the options that all targets share.
