@@ -204,7 +204,7 @@ fn a_panic_is_told_to_nobody_who_does_not_listen() {
 #[test]
 fn a_reader_that_does_not_read_holds_up_no_robot() {
     // On a track without length each turn makes as many transitions as it may, far more than a pipe holds.
-    let mut child = start(&["--tell", "--period", "0.01", "--track", "0"]);
+    let mut child = start(&["--tell", "--period", "0.1", "--track", "0"]);
     let mut lines = lines(child.stderr.take().unwrap());
     assert_eq!(lines.by_ref().take(10).filter(|line| line == "cart: 0 m/s").count(), 10);
     send(&child, "TERM");
