@@ -2,6 +2,8 @@
 #![forbid(unsafe_code)]
 
 mod fault;
+mod faulty;
+mod orders;
 mod port;
 mod presence;
 mod program;
@@ -9,7 +11,9 @@ mod serve;
 mod several;
 mod staged;
 
-pub use fault::{Ailment, At, Fault, Faulty};
+pub use fault::{Ailment, At, Fault};
+pub use faulty::Faulty;
+pub use orders::{Order, Orders};
 pub use port::Port;
 pub use program::{Options, program};
 pub use serve::{Embodied, Emulated, Pace, STEP, serve};

@@ -12,7 +12,8 @@ use clap::Args;
 use mdle_sim::{Body, Make, Simulated, Start, StartError, World};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
-use crate::fault::{At, Faulty};
+use crate::fault::At;
+use crate::faulty::Faulty;
 use crate::port::Port;
 use crate::serve::{Embodied, Emulated, Pace};
 use crate::several::{Seat, Several};
@@ -44,11 +45,13 @@ pub struct Options {
     lockstep: Option<u64>,
     /// Fault to inject, and the time after which it begins, in seconds; repeatable
     ///
-    /// On the line: noise, dribble (byte by byte), check (one wrong bit per frame), lose (two frames of three), double,
-    /// silence, close. In the robot: stuck-wheel (the right one), dead-sonar (the front ones), bumper, emergency, low-battery,
-    /// plugged-in, no-pings, hang (it repeats the same state), and filler on the ATRV-mini. The time is that of the simulated
-    /// world since the robot was switched on. A fault affects all robots.
-    #[arg(long, value_name = "KIND@SECONDS")]
+    /// On the line: noise (noise=40: 40 bytes before each frame), dribble (byte by byte), check (one wrong bit per frame), lose
+    /// (two frames of three), double, late (late=100: each frame 100 ms late; not in lockstep), silence (the line from the robot
+    /// is cut), deaf (the line to the robot is cut), close. In the robot: runaway (it keeps its speed), stuck-wheel (the right
+    /// one), dead-sonar (the front ones), bumper, emergency, low-battery, plugged-in, no-pings, leap (positions leap by metres),
+    /// hang (it repeats the same state). On the ATRV-mini: filler, and no-bumpers, no-translation, no-rotation, no-status (these
+    /// reports stop). The time is that of the simulated world since the robot was switched on. A fault affects all robots.
+    #[arg(long, value_name = "KIND[=N]@SECONDS")]
     fault: Vec<At>,
 }
 

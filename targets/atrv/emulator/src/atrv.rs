@@ -4,7 +4,7 @@ mod telling;
 
 use std::time::Duration;
 
-use mdle_emulator::{Ailment, Embodied, Emulated, Pace, STEP};
+use mdle_emulator::{Ailment, Embodied, Emulated, Order, Orders, Pace, STEP};
 use mdle_runtime::{MetersPerSecond, Nanos, Pose, RadiansPerSecond, Robot as _, Twist};
 use mdle_sim::{Disc, Output, Simulated};
 
@@ -40,8 +40,10 @@ pub struct Atrv {
     /// What is still to be sent, and how many reports there have been.
     said: Vec<Vec<u8>>,
     count: u8,
-    /// What it has been told, forward and in turns, in its units a second.
+    /// What it has been told, forward and in turns, in its units a second, and what arrived last.
     told: (i32, i32),
+    asked: (i32, i32),
+    orders: Orders,
     /// How far each axis has gone, in its units.
     gone: (f64, f64),
     axes: Schedule,
@@ -77,6 +79,8 @@ impl Atrv {
             said: Vec::new(),
             count: 0,
             told: (0, 0),
+            asked: (0, 0),
+            orders: Orders::default(),
             gone: (0.0, 0.0),
             axes: Schedule::default(),
             inputs: Schedule::default(),
@@ -109,10 +113,20 @@ impl Atrv {
         self.is_braked || self.emergency
     }
 
+    /// Returns the motion commands that have reached it.
+    #[must_use]
+    pub fn orders(&self) -> &Orders {
+        &self.orders
+    }
+
     /// Does what it is told; whether that was to turn, which is the second half of a motion.
     fn does(&mut self, request: &Request) -> bool {
+        if self.has(Ailment::Deaf) {
+            return request.port == 2 && request.code == 7 && request.data.first() == Some(&1);
+        }
         self.silence = Duration::ZERO;
         match (request.port, request.code, &*request.data) {
+            (1, 1, _) if self.has(Ailment::NoStatus) => {}
             (1, 1, _) => {
                 let brake = [u8::from(self.is_braked())];
                 let battery = self.battery();
@@ -122,15 +136,15 @@ impl Atrv {
             (2, 7, [axis, v0, v1, v2, v3, .., direction]) if request.data.len() == 14 => {
                 let size = number(&[*v0, *v1, *v2, *v3]).min(i32::MAX as u32) as i32;
                 let velocity = if *direction == 0 { -size } else { size };
-                match axis {
-                    // As on the ATRV-Jr: nothing is no speed, so that the old one stays.
-                    0 if velocity == 0 => {}
-                    0 => self.told.0 = velocity,
-                    _ => self.told.1 = velocity,
-                }
+                self.moves(*axis, velocity);
                 return *axis == 1;
             }
-            (2, 11, _) => (self.told, self.is_braked) = ((0, 0), true),
+            (2, 11, _) => {
+                self.orders.push(self.age, Order::Brake);
+                if !self.has(Ailment::Runaway) {
+                    (self.told, self.is_braked) = ((0, 0), true);
+                }
+            }
             (2, 12, _) => self.is_braked = false,
             (2, 34, [p0, p1, p2, p3, _, _, _, axes]) => {
                 let period = if *axes == 3 { number(&[*p0, *p1, *p2, *p3]) } else { 0 };
@@ -150,11 +164,32 @@ impl Atrv {
         false
     }
 
+    /// Takes in a velocity of an axis. Rotation is the second half of a motion command.
+    fn moves(&mut self, axis: u8, velocity: i32) {
+        match axis {
+            0 => self.asked.0 = velocity,
+            _ => {
+                self.asked.1 = velocity;
+                // One unit is what drivers say for none.
+                let stands = self.asked.0.abs() <= 1 && velocity == 0;
+                self.orders.push(self.age, if stands { Order::Stand } else { Order::Drive });
+            }
+        }
+        match axis {
+            _ if self.has(Ailment::Runaway) => {}
+            // As on the ATRV-Jr: nothing is no speed, so that the old one stays.
+            0 if velocity == 0 => {}
+            0 => self.told.0 = velocity,
+            _ => self.told.1 = velocity,
+        }
+    }
+
     /// One step of the world, after which it is so old.
     fn tick(&mut self, age: Duration) -> Result<(), String> {
         self.silence += age.saturating_sub(self.age);
         self.age = age;
-        if self.silence >= self.failsafe || self.is_braked() {
+        let fails_safe = self.silence >= self.failsafe && !self.has(Ailment::Runaway);
+        if fails_safe || self.is_braked() {
             self.told = (0, 0);
         }
         // The body counts as well, and cuts off: a unit more leaves it these very numbers.
@@ -248,14 +283,21 @@ impl Emulated for Atrv {
     fn suffer(&mut self, ailment: Ailment) {
         match ailment {
             Ailment::Emergency => self.emergency = true,
-            Ailment::StuckWheel
+            Ailment::Deaf
+            | Ailment::Runaway
+            | Ailment::StuckWheel
             | Ailment::DeadSonar
             | Ailment::Bumper
             | Ailment::LowBattery
             | Ailment::PluggedIn
             | Ailment::Filler
             | Ailment::Hang
-            | Ailment::NoPings => self.ailments.push(ailment),
+            | Ailment::NoPings
+            | Ailment::NoBumpers
+            | Ailment::NoTranslation
+            | Ailment::NoRotation
+            | Ailment::NoStatus
+            | Ailment::Leap => self.ailments.push(ailment),
         }
     }
 }

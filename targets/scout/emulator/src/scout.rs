@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use mdle_emulator::{Ailment, Embodied, Emulated};
+use mdle_emulator::{Ailment, Embodied, Emulated, Order, Orders};
 use mdle_runtime::capability::{Odometry, SonarRing};
 use mdle_runtime::{MetersPerSecond, Pose, RadiansPerSecond, Robot as _, SonarId, Twist};
 use mdle_sim::{Disc, Output, Simulated};
@@ -18,6 +18,8 @@ const ROLLING: f64 = 120.0;
 /// What it measures of both supplies: at 11.5 V and 11.9 V, and when both are at 10.5 V.
 const CHARGED: [u8; 2] = [239, 222];
 const LOW: [u8; 2] = [202, 177];
+/// How far each position is from the one before when they leap, in tenths of an inch: 3 m.
+const LEAP: i64 = 1181;
 /// The answer to what a Scout does not know.
 const REFUSED: u8 = 8;
 
@@ -56,6 +58,13 @@ pub struct Scout {
     is_mute: bool,
     /// The state that it says again and again.
     hung: Option<Vec<u8>>,
+    is_cut_off: bool,
+    /// What the wheels keep to, whatever they are told.
+    runaway: Option<(i32, i32)>,
+    /// By how much its positions are off, and whether they leap.
+    off: i64,
+    leaps: bool,
+    orders: Orders,
 }
 
 impl Scout {
@@ -87,6 +96,11 @@ impl Scout {
             is_plugged: false,
             is_mute: false,
             hung: None,
+            is_cut_off: false,
+            runaway: None,
+            off: 0,
+            leaps: false,
+            orders: Orders::default(),
         };
         scout.listen();
         Ok(scout)
@@ -96,6 +110,29 @@ impl Scout {
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.body.pose()
+    }
+
+    /// Returns the motion commands that have reached it.
+    #[must_use]
+    pub fn orders(&self) -> &Orders {
+        &self.orders
+    }
+
+    /// Returns `true` if its wheels stand.
+    #[must_use]
+    pub fn stands(&self) -> bool {
+        self.rolling() == (0, 0)
+    }
+
+    /// Takes down a request that is a motion command.
+    fn note(&mut self, request: &Request) {
+        let order = match (request.command, &*request.data) {
+            (5, [r0, r1, l0, l1, ..]) if (number(*r0, *r1), number(*l0, *l1)) != (0, 0) => Order::Drive,
+            (5 | 9, _) => Order::Stand,
+            (10, _) => Order::LetGo,
+            _ => return,
+        };
+        self.orders.push(self.age, order);
     }
 
     /// The sonars that ping say what they heard last.
@@ -161,7 +198,7 @@ impl Scout {
         [
             &self.heard[..],
             &[switches as u8, (switches >> 8) as u8, (switches >> 16) as u8],
-            &two_bytes(tenths(x * cos + y * sin)),
+            &two_bytes(tenths(x * cos + y * sin) + self.off),
             &two_bytes(tenths(y * cos - x * sin)),
             &two_bytes((heading * 10.0).round() as i64 % 3600),
             &[0, 0],
@@ -192,6 +229,10 @@ impl Emulated for Scout {
 
     fn obey(&mut self) -> Option<bool> {
         let request = self.incoming.next_request()?;
+        if self.is_cut_off {
+            return Some(true);
+        }
+        self.note(&request);
         let is_known = self.does(&request);
         self.asked = Some((request, is_known));
         Some(true)
@@ -207,7 +248,7 @@ impl Emulated for Scout {
             let less = |wheel: i32| wheel - wheel.signum() * wheel.abs().min((ROLLING * period.as_secs_f64()) as i32);
             self.wheels = (less(self.wheels.0), less(self.wheels.1));
         }
-        let (right, left) = if self.emergency { (0, 0) } else { self.wheels };
+        let (right, left) = if self.emergency { (0, 0) } else { self.runaway.unwrap_or(self.wheels) };
         let right = if self.is_stuck { 0 } else { right };
         // The body counts in tenths of an inch as well, and cuts off: a hair more leaves it these very numbers.
         let inches = |wheel: i32| (f64::from(wheel) + 0.01 * f64::from(wheel.signum())) / 10.0;
@@ -223,6 +264,7 @@ impl Emulated for Scout {
     fn said(&mut self) -> Vec<Vec<u8>> {
         match self.asked.take() {
             Some((request, true)) => {
+                self.off += if self.leaps { LEAP } else { 0 };
                 let state = self.hung.clone().unwrap_or_else(|| self.state());
                 vec![answer(request.command, &state)]
             }
@@ -232,8 +274,23 @@ impl Emulated for Scout {
     }
 
     fn can_suffer(ailment: Ailment) -> bool {
-        // Each of its bytes means something.
-        ailment != Ailment::Filler
+        match ailment {
+            // Each of its bytes means something, and all that it tells comes in one frame.
+            Ailment::Filler | Ailment::NoBumpers | Ailment::NoTranslation | Ailment::NoRotation | Ailment::NoStatus => {
+                false
+            }
+            Ailment::Deaf
+            | Ailment::Runaway
+            | Ailment::StuckWheel
+            | Ailment::DeadSonar
+            | Ailment::Bumper
+            | Ailment::Emergency
+            | Ailment::LowBattery
+            | Ailment::PluggedIn
+            | Ailment::Hang
+            | Ailment::NoPings
+            | Ailment::Leap => true,
+        }
     }
 
     fn suffer(&mut self, ailment: Ailment) {
@@ -246,7 +303,11 @@ impl Emulated for Scout {
             Ailment::PluggedIn => self.is_plugged = true,
             Ailment::Hang => self.hung = Some(self.state()),
             Ailment::NoPings => self.is_mute = true,
-            Ailment::Filler => {}
+            Ailment::Deaf => self.is_cut_off = true,
+            Ailment::Runaway => self.runaway = Some(self.wheels),
+            Ailment::Leap => self.leaps = true,
+            Ailment::Filler | Ailment::NoBumpers | Ailment::NoTranslation | Ailment::NoRotation | Ailment::NoStatus => {
+            }
         }
         self.listen();
     }

@@ -14,6 +14,8 @@ const A_RANGE: f64 = 1550.0;
 const BOARDS: [u8; 4] = [0, 1, 3, 2];
 /// What it tells when it has heard nothing.
 const NOTHING: u16 = 32_766;
+/// How far each position is from the one before when they leap, in metres.
+const LEAP: f64 = 3.0;
 /// In every so many reports there is filler.
 const FILLED: u8 = 7;
 
@@ -28,12 +30,19 @@ pub(super) struct Schedule {
 impl Atrv {
     pub(super) fn tell_axes(&mut self) {
         if self.told_axes.is_empty() || !self.has(Ailment::Hang) {
+            if self.has(Ailment::Leap) {
+                self.gone.0 += LEAP * A_METRE;
+            }
             let Twist { v, omega } = self.sensed.velocity;
             let axes = [(0, self.gone.0, v.0 * A_METRE), (1, self.gone.1, omega.0 * A_RADIAN)];
             self.told_axes = axes.map(|(axis, gone, speed)| self.axis(axis, gone, speed)).to_vec();
         }
         let told = std::mem::take(&mut self.told_axes);
-        told.iter().for_each(|data| self.tell(2, 33, data));
+        for (data, ailment) in told.iter().zip([Ailment::NoTranslation, Ailment::NoRotation]) {
+            if !self.has(ailment) {
+                self.tell(2, 33, data);
+            }
+        }
         self.told_axes = told;
     }
 
@@ -67,6 +76,9 @@ impl Atrv {
     }
 
     pub(super) fn tell_bumpers(&mut self) {
+        if self.has(Ailment::NoBumpers) {
+            return;
+        }
         for bumper in 0..2_u8 {
             let is_pressed = bumper == 0 && self.has(Ailment::Bumper);
             let state = u8::from(is_pressed || self.sensed.switches & (1 << bumper) != 0);

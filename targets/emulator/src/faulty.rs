@@ -1,0 +1,245 @@
+//! A robot with which something goes wrong on command.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use mdle_sim::Disc;
+
+use crate::fault::{Ailment, At, Fault};
+use crate::serve::{Embodied, Emulated};
+
+/// What is on a line that nobody has shielded, again and again.
+const NOISE: [u8; 3] = [0xFF, 0x00, 0xA5];
+
+/// A robot with which something goes wrong.
+#[allow(missing_debug_implementations, reason = "a robot need not have one")]
+pub struct Faulty<R> {
+    robot: R,
+    /// What is still to come, and what goes wrong by now.
+    coming: Vec<At>,
+    begun: Vec<Fault>,
+    /// How long it has been on.
+    age: Duration,
+    /// How many frames it has had to say.
+    count: u32,
+    /// Pieces of frames that come late, each with the age at which it does.
+    late: VecDeque<(Duration, Vec<u8>)>,
+}
+
+impl<R: Emulated> Faulty<R> {
+    /// A robot that has just been switched on.
+    ///
+    /// # Errors
+    /// It cannot suffer one of these.
+    pub fn new(robot: R, faults: &[At]) -> Result<Self, String> {
+        let cannot = faults.iter().find(|at| matches!(at.fault, Fault::Body(ailment) if !R::can_suffer(ailment)));
+        if let Some(At { fault, .. }) = cannot {
+            return Err(format!("--fault {fault}: this robot cannot have that"));
+        }
+        let mut faulty = Self {
+            robot,
+            coming: faults.to_vec(),
+            begun: Vec::new(),
+            age: Duration::ZERO,
+            count: 0,
+            late: VecDeque::new(),
+        };
+        faulty.begin();
+        Ok(faulty)
+    }
+
+    /// The robot.
+    #[must_use]
+    pub fn robot(&self) -> &R {
+        &self.robot
+    }
+
+    /// Whether the line is closed.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        self.has(Fault::Close)
+    }
+
+    fn has(&self, fault: Fault) -> bool {
+        self.begun.contains(&fault)
+    }
+
+    /// Returns the number of the fault that `of` picks out, if that has begun.
+    fn number(&self, of: fn(Fault) -> Option<u32>) -> Option<u32> {
+        self.begun.iter().find_map(|fault| of(*fault))
+    }
+
+    /// Whatever is due begins.
+    fn begin(&mut self) {
+        for At { fault, .. } in self.coming.extract_if(.., |at| at.time <= self.age) {
+            self.begun.push(fault);
+            if let Fault::Body(ailment) = fault {
+                self.robot.suffer(ailment);
+            }
+        }
+    }
+
+    /// What becomes of a frame on the line, in the pieces in which it comes.
+    fn sent(&mut self, mut frame: Vec<u8>) -> Vec<Vec<u8>> {
+        self.count = self.count.wrapping_add(1);
+        if self.has(Fault::Silence) || self.has(Fault::Lose) && !self.count.is_multiple_of(3) {
+            return Vec::new();
+        }
+        let middle = frame.len() / 2;
+        if let Some(byte) = frame.get_mut(middle).filter(|_| self.begun.contains(&Fault::Check)) {
+            *byte ^= 1;
+        }
+        if let Some(count) = self.number(|fault| if let Fault::Noise(count) = fault { Some(count) } else { None }) {
+            frame.splice(..0, NOISE.into_iter().cycle().take(count as usize));
+        }
+        if self.has(Fault::Double) {
+            // At once: on a line the second would come right behind the first.
+            frame = frame.repeat(2);
+        }
+        let size = if self.has(Fault::Dribble) { 1 } else { frame.len().max(1) };
+        frame.chunks(size).map(<[u8]>::to_vec).collect()
+    }
+}
+
+impl<R: Emulated> Emulated for Faulty<R> {
+    fn push(&mut self, bytes: &[u8]) {
+        self.robot.push(bytes);
+    }
+
+    fn obey(&mut self) -> Option<bool> {
+        self.robot.obey()
+    }
+
+    fn pass(&mut self, time: Duration) -> Result<(), String> {
+        self.robot.pass(time)?;
+        self.age += time;
+        self.begin();
+        if self.is_closed() { Err("closed".to_owned()) } else { Ok(()) }
+    }
+
+    fn said(&mut self) -> Vec<Vec<u8>> {
+        let frames = self.robot.said();
+        let delay = self.number(|fault| if let Fault::Late(millis) = fault { Some(millis) } else { None });
+        let due = self.age + Duration::from_millis(u64::from(delay.unwrap_or(0)));
+        for frame in frames {
+            let pieces = self.sent(frame);
+            self.late.extend(pieces.into_iter().map(|piece| (due, piece)));
+        }
+        std::iter::from_fn(|| self.late.pop_front_if(|(due, _)| *due <= self.age)).map(|(_, piece)| piece).collect()
+    }
+
+    fn can_suffer(ailment: Ailment) -> bool {
+        R::can_suffer(ailment)
+    }
+
+    fn suffer(&mut self, ailment: Ailment) {
+        self.robot.suffer(ailment);
+    }
+}
+
+impl<R: Embodied> Embodied for Faulty<R> {
+    fn disc(&self) -> Disc {
+        self.robot.disc()
+    }
+
+    fn see(&mut self, others: &[Disc]) {
+        self.robot.see(others);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A robot that says the same frame in each period, and can suffer all but filler.
+    #[derive(Default)]
+    struct Robot(Vec<Ailment>);
+
+    impl Emulated for Robot {
+        fn push(&mut self, _: &[u8]) {}
+
+        fn obey(&mut self) -> Option<bool> {
+            None
+        }
+
+        fn pass(&mut self, _: Duration) -> Result<(), String> {
+            Ok(())
+        }
+
+        fn said(&mut self) -> Vec<Vec<u8>> {
+            vec![vec![1, 2, 3, 4]]
+        }
+
+        fn can_suffer(ailment: Ailment) -> bool {
+            ailment != Ailment::Filler
+        }
+
+        fn suffer(&mut self, ailment: Ailment) {
+            self.0.push(ailment);
+        }
+    }
+
+    /// The pieces of three frames with these faults.
+    fn said(faults: &[&str]) -> Vec<Vec<u8>> {
+        let faults: Vec<At> = faults.iter().map(|text| text.parse().expect("a fault")).collect();
+        let mut robot = Faulty::new(Robot::default(), &faults).expect("a robot");
+        (0..3).flat_map(|_| robot.said()).collect()
+    }
+
+    #[test]
+    fn frames_are_lost_and_doubled_and_damaged() {
+        let frame = vec![1, 2, 3, 4];
+        assert_eq!(said(&[]), vec![frame.clone(); 3]);
+        assert_eq!(said(&["silence"]), [[0_u8; 0]; 0]);
+        assert_eq!(said(&["lose"]), vec![frame.clone()]);
+        assert_eq!(said(&["double"]), vec![frame.repeat(2); 3]);
+        assert_eq!(said(&["check"]), vec![vec![1, 2, 2, 4]; 3]);
+        assert_eq!(said(&["noise"]), vec![vec![0xFF, 0x00, 0xA5, 1, 2, 3, 4]; 3]);
+        assert_eq!(said(&["noise=1"]), vec![vec![0xFF, 1, 2, 3, 4]; 3]);
+        assert_eq!(said(&["dribble", "lose"]), [[1], [2], [3], [4]]);
+        assert_eq!(said(&["silence@0.1", "close@1"]), vec![frame; 3]);
+    }
+
+    #[test]
+    fn a_late_frame_comes_in_time_and_in_order() {
+        let faults = ["late=200@0.1"].map(|text| text.parse().expect("a fault"));
+        let mut robot = Faulty::new(Robot::default(), &faults).expect("a robot");
+        let frames = [(); 5].map(|()| {
+            let count = robot.said().len();
+            robot.pass(Duration::from_millis(100)).expect("time");
+            count
+        });
+        assert_eq!(frames, [1, 0, 0, 1, 1]);
+    }
+
+    #[test]
+    fn a_fault_begins_when_it_is_due() {
+        let faults = ["bumper@0.2", "close@0.3", "emergency"].map(|text| text.parse().expect("a fault"));
+        let mut robot = Faulty::new(Robot::default(), &faults).expect("a robot");
+        let mut pass = || {
+            let passed = robot.pass(Duration::from_millis(100));
+            (robot.robot().0.clone(), passed.is_ok(), robot.is_closed())
+        };
+        let (first, both) = (vec![Ailment::Emergency], vec![Ailment::Emergency, Ailment::Bumper]);
+        assert_eq!([pass(), pass(), pass()], [(first, true, false), (both.clone(), true, false), (both, false, true)]);
+    }
+
+    #[test]
+    fn what_is_no_fault_or_none_of_this_robot_is_refused() {
+        for (text, said) in [
+            ("smoke@1", "the faults are noise, dribble, check,"),
+            ("bumper=1", "`bumper=1`: noise and late take a whole number"),
+            ("noise=", "`noise=`: noise and late take a whole number"),
+            ("late=60001", "`late=60001`: noise and late take a whole number"),
+            ("bumper@", "seconds are meant behind the @"),
+            ("bumper@-1", "seconds are meant behind the @"),
+            ("bumper@nan", "seconds are meant behind the @"),
+            ("bumper@1e9", "seconds are meant behind the @"),
+        ] {
+            assert!(text.parse::<At>().is_err_and(|error| error.starts_with(said)), "{text}");
+        }
+        let filler = ["filler@3"].map(|text| text.parse().expect("a fault"));
+        let refused = Faulty::new(Robot::default(), &filler).map(|_| ());
+        assert_eq!(refused, Err("--fault filler: this robot cannot have that".to_owned()));
+    }
+}

@@ -1,0 +1,45 @@
+//! The motion commands that an emulated robot has received: what a test asks for when a run is over.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+/// The most orders that are kept.
+const KEPT: usize = 64;
+
+/// What a motion command asks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Order {
+    /// To move.
+    Drive,
+    /// To stand.
+    Stand,
+    /// To leave the motors without current.
+    LetGo,
+    /// To set the brake.
+    Brake,
+}
+
+/// The orders that have arrived, the oldest first, each with the age of the robot's world. The last 64 are kept.
+#[derive(Debug, Clone, Default)]
+pub struct Orders(VecDeque<(Duration, Order)>);
+
+impl Orders {
+    /// Takes down an order that has arrived at this age.
+    pub fn push(&mut self, age: Duration, order: Order) {
+        if self.0.len() >= KEPT {
+            self.0.pop_front();
+        }
+        self.0.push_back((age, order));
+    }
+
+    /// Returns the orders that are kept.
+    pub fn iter(&self) -> impl DoubleEndedIterator<Item = (Duration, Order)> {
+        self.0.iter().copied()
+    }
+
+    /// Returns the last order, and the age at which it arrived.
+    #[must_use]
+    pub fn last(&self) -> Option<(Duration, Order)> {
+        self.0.back().copied()
+    }
+}
