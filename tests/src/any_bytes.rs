@@ -5,7 +5,7 @@
 
 use mdle_atrv::{Packet, Reader, Report};
 use mdle_atrv_emulator::wire as rflex;
-use mdle_scout::{Frame, State};
+use mdle_scout::{Frame, Reader as Answers, State};
 use mdle_scout_emulator::wire;
 
 /// No reader keeps more bytes than this of what may still become something.
@@ -39,24 +39,32 @@ pub fn scout(bytes: &[u8]) {
     assert_eq!(requests(&mut robot, [frame.bytes().as_slice()].into_iter()), [asked]);
 }
 
-/// What the driver makes of them: as its line does it, whatever is garbled throws away all that has come.
+/// Reads them as the driver does.
 fn answers(bytes: &[u8]) {
-    let mut waiting: Vec<u8> = Vec::new();
+    let whole: Vec<u8> = in_pieces(bytes).flatten().copied().collect();
+    let mut reader = Answers::default();
+    let check = |reader: &mut Answers, frame: Frame| {
+        let bytes = frame.bytes();
+        assert!(whole.windows(bytes.len()).any(|some| some == bytes.as_slice()), "{frame:?}");
+        assert_eq!(State::read(&frame.arguments).is_some(), frame.arguments.len() >= 42);
+        assert!(reader.kept() <= KEPT, "{} bytes", reader.kept());
+    };
     for piece in in_pieces(bytes) {
-        waiting.extend_from_slice(piece);
-        loop {
-            match Frame::read(&waiting) {
-                Ok(Some((frame, count))) => {
-                    assert_eq!(frame.bytes().as_slice(), &waiting[..count]);
-                    assert_eq!(State::read(&frame.arguments).is_some(), frame.arguments.len() >= 42);
-                    waiting.drain(..count);
-                }
-                Ok(None) => break,
-                Err(_) => waiting.clear(),
-            }
+        reader.push(piece);
+        while let Some(frame) = reader.next_frame() {
+            check(&mut reader, frame);
         }
-        assert!(waiting.len() <= KEPT, "{} bytes", waiting.len());
+        assert!(reader.kept() <= KEPT, "{} bytes", reader.kept());
     }
+    while let Some(frame) = reader.after_false_start(5) {
+        check(&mut reader, frame);
+    }
+    // Whatever came, the next answer is found.
+    let state = wire::answer(5, &[7; 42]);
+    reader.push(&state);
+    let found = std::iter::from_fn(|| reader.next_frame()).last();
+    let found = reader.after_false_start(5).or(found).map(|frame| frame.bytes().to_vec());
+    assert_eq!(found, Some(state));
 }
 
 /// What the emulator makes of them.

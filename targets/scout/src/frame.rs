@@ -3,7 +3,7 @@
 use arrayvec::ArrayVec;
 
 /// The first byte of each frame.
-const START: u8 = 0x01;
+pub(crate) const START: u8 = 0x01;
 /// The last.
 const END: u8 = 0x5C;
 /// What is in a frame besides its arguments: start, two bytes of length, type, sum, end.

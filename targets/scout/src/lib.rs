@@ -15,6 +15,7 @@ mod line;
 mod number;
 mod odometer;
 pub mod quarks;
+mod reader;
 mod ring;
 mod state;
 mod target;
@@ -31,6 +32,7 @@ pub use mdle_runtime::Sensed as Output;
 /// The robot's input.
 pub use mdle_runtime::Twist as Input;
 pub use mdle_serial::{Clock, LineFault};
+pub use reader::Reader;
 pub use state::State;
 pub use target::SuperScout;
 /// What the host runs a plan on.

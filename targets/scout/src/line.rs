@@ -7,11 +7,10 @@ use mdle_serial::LineFault;
 use crate::command::Command;
 use crate::fault::Fault;
 use crate::frame::Frame;
+use crate::reader::{CHUNK, Reader};
 
 /// Bits a second, 8N1.
 pub(crate) const SPEED: u32 = 38_400;
-/// The most that is read at once.
-const CHUNK: usize = 512;
 /// After so long without a byte, more than forty bytes' worth, nothing more comes of an answer.
 const QUIET: Duration = Duration::from_millis(20);
 /// The type of the answer to a command that the robot does not take.
@@ -21,8 +20,7 @@ const REFUSED: u8 = 8;
 #[derive(Debug)]
 pub(crate) struct Line {
     line: mdle_serial::Line,
-    /// What has come in and is no whole frame yet.
-    waiting: Vec<u8>,
+    reader: Reader,
 }
 
 impl Line {
@@ -31,25 +29,21 @@ impl Line {
     /// # Errors
     /// It is missing, busy, no terminal, or nobody listens.
     pub(crate) fn open(device: &str) -> Result<Self, Fault> {
-        Ok(Self { line: mdle_serial::Line::open(device, SPEED)?, waiting: Vec::with_capacity(2 * CHUNK) })
+        Ok(Self { line: mdle_serial::Line::open(device, SPEED)?, reader: Reader::default() })
     }
 
-    /// Says `command` and waits for its answer until `deadline`. What came in before is thrown away, as a Scout never
-    /// speaks first. A garbled answer is asked for once more, as each command can be said twice; silence is not, or an
-    /// answer that was only late would be taken for the next one's.
+    /// Sends `command` and waits for its answer until `deadline`. What came in before is thrown away, as a Scout never
+    /// speaks first, and noise around the answer is skipped. An answer with a wrong sum is asked for once more, as each
+    /// command can be sent twice; silence is not, or an answer that was only late would be taken for the next one's.
     ///
     /// # Errors
     /// The line is closed, or by the deadline there was no answer, or none that was whole.
     pub(crate) fn ask(&mut self, command: &Command, deadline: Instant) -> Result<Frame, Fault> {
         self.drain()?;
         match self.ask_once(command, deadline) {
-            Err(garbled @ Fault::Garbled(_)) => {
-                // The rest of it is nobody's answer.
-                if !self.settles(deadline)? {
-                    return Err(garbled);
-                }
+            Err(garbled @ Fault::Garbled(_)) if Instant::now() < deadline => {
                 match self.ask_once(command, deadline) {
-                    // It says more than the silence behind it.
+                    // It says more than the silence after it.
                     Err(Fault::Line(LineFault::Silent)) => Err(garbled),
                     other => other,
                 }
@@ -58,7 +52,7 @@ impl Line {
         }
     }
 
-    /// Says `command` without waiting for the answer.
+    /// Sends `command` without waiting for the answer.
     ///
     /// # Errors
     /// The line is closed, or takes nothing until `deadline`.
@@ -66,51 +60,43 @@ impl Line {
         Ok(self.line.write(&command.frame().bytes(), deadline)?)
     }
 
-    /// The same without a second question.
+    /// Sends `command` once. A whole answer that is wrong is an error as soon as the line is quiet, anything else at the
+    /// deadline.
     fn ask_once(&mut self, command: &Command, deadline: Instant) -> Result<Frame, Fault> {
+        self.reader.clear();
         self.say(command, deadline)?;
         let mut wrong = None;
         loop {
-            match self.frame(deadline) {
-                Ok(frame) if frame.kind == command.kind() => return Ok(frame),
-                Ok(Frame { kind: REFUSED, .. }) => return Err(Fault::Refused(command.kind())),
-                // The right answer may be behind it.
-                Ok(frame) => wrong = Some(frame.kind),
-                Err(Fault::Line(LineFault::Silent)) => {
-                    let wrong = wrong.map(|answered| Fault::Wrong { asked: command.kind(), answered });
-                    return Err(wrong.unwrap_or(Fault::Line(LineFault::Silent)));
+            while let Some(frame) = self.reader.next_frame() {
+                match frame.kind {
+                    kind if kind == command.kind() => return Ok(frame),
+                    REFUSED => return Err(Fault::Refused(command.kind())),
+                    // The right answer may come after it.
+                    other => wrong = Some(other),
                 }
-                Err(fault) => return Err(fault),
             }
-        }
-    }
-
-    /// Throws away what comes in until nothing has come for a while; whether that was before `deadline`.
-    fn settles(&mut self, deadline: Instant) -> Result<bool, Fault> {
-        loop {
-            self.waiting.clear();
             match self.line.hear(deadline.min(Instant::now() + QUIET)) {
-                Ok(()) => self.take_in()?,
-                Err(LineFault::Silent) => return Ok(Instant::now() < deadline),
-                Err(fault) => return Err(fault.into()),
-            };
-        }
-    }
-
-    /// The next frame.
-    fn frame(&mut self, deadline: Instant) -> Result<Frame, Fault> {
-        loop {
-            match Frame::read(&self.waiting).map_err(Fault::Garbled)? {
-                Some((frame, count)) => {
-                    self.waiting.drain(..count);
-                    return Ok(frame);
-                }
-                None => {
-                    self.line.hear(deadline)?;
+                Ok(()) => {
                     self.take_in()?;
                 }
+                Err(LineFault::Silent) => {
+                    if let Some(frame) = self.reader.after_false_start(command.kind()) {
+                        return Ok(frame);
+                    }
+                    if self.reader.was_whole() || Instant::now() >= deadline {
+                        return Err(self.unanswered(command, wrong));
+                    }
+                }
+                Err(fault) => return Err(fault.into()),
             }
         }
+    }
+
+    /// Returns why there is no answer to `command`, when one of type `wrong` came, if any.
+    fn unanswered(&self, command: &Command, wrong: Option<u8>) -> Fault {
+        let wrong = wrong.map(|answered| Fault::Wrong { asked: command.kind(), answered });
+        let garbled = self.reader.garbled().map(Fault::Garbled);
+        wrong.or(garbled).unwrap_or(Fault::Line(LineFault::Silent))
     }
 
     /// Throws away what has come in.
@@ -118,12 +104,11 @@ impl Line {
         // A robot that never stops talking is found out where its answer is read.
         let most = 64;
         for _ in 0..most {
-            self.waiting.clear();
+            self.reader.clear();
             if !self.take_in()? {
                 break;
             }
         }
-        self.waiting.clear();
         Ok(())
     }
 
@@ -131,7 +116,7 @@ impl Line {
     fn take_in(&mut self) -> Result<bool, Fault> {
         let mut chunk = [0; CHUNK];
         let count = self.line.read(&mut chunk)?;
-        self.waiting.extend_from_slice(chunk.get(..count).unwrap_or_default());
+        self.reader.push(chunk.get(..count).unwrap_or_default());
         Ok(count > 0)
     }
 }

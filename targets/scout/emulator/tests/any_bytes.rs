@@ -1,8 +1,8 @@
 //! Whatever bytes come, both readers go on, and what one of them writes the other one reads.
-#![allow(clippy::panic, reason = "a test fails by panicking")]
+#![allow(clippy::panic, clippy::indexing_slicing, reason = "a test fails by panicking")]
 #![allow(clippy::print_stdout, reason = "the seed is seen where a test fails")]
 
-use mdle_scout::{Command, Frame, State};
+use mdle_scout::{Command, Frame, Reader, State};
 use mdle_scout_emulator::wire::{Incoming, Request, answer};
 use proptest::collection::vec;
 use proptest::prelude::{Just, ProptestConfig, any, prop_oneof, proptest};
@@ -51,5 +51,42 @@ proptest! {
     fn an_answer_is_understood(kind: u8, body in vec(any::<u8>(), 0..=253)) {
         let bytes = answer(kind, &body);
         assert_eq!(Frame::read(&bytes), Ok(Some((Frame { kind, arguments: body.into_iter().collect() }, bytes.len()))));
+    }
+
+    #[test]
+    fn after_any_noise_an_answer_is_found(
+        noise in vec(prop_oneof![4 => any::<u8>(), 2 => Just(0x01), 2 => Just(0x00), 1 => Just(0x5C)], 0..300),
+        body in vec(any::<u8>(), 42),
+        kind in 1_u8..44,
+        size in 1_usize..80,
+    ) {
+        let mut reader = Reader::default();
+        let sent = [noise.clone(), answer(kind, &body)].concat();
+        let mut found = Vec::new();
+        for piece in sent.chunks(size) {
+            reader.push(piece);
+            found.extend(std::iter::from_fn(|| reader.next_frame()));
+        }
+        // The line is quiet.
+        found.extend(reader.after_false_start(kind));
+        let meant = Frame { kind, arguments: body.iter().copied().collect() };
+        assert!(found.contains(&meant), "{noise:02X?}");
+        // Whatever else is taken for a frame has a right sum.
+        for frame in found {
+            let bytes = frame.bytes();
+            assert!(sent.windows(bytes.len()).any(|some| some == bytes.as_slice()));
+        }
+    }
+
+    #[test]
+    fn an_answer_with_a_wrong_byte_is_not_taken(body in vec(any::<u8>(), 42), place in 0_usize..48, change in 1_u8..) {
+        let mut bytes = answer(5, &body);
+        bytes[place] ^= change;
+        let mut reader = Reader::default();
+        reader.push(&bytes);
+        let found = std::iter::from_fn(|| reader.next_frame()).collect::<Vec<_>>();
+        let late = reader.after_false_start(5);
+        // A part of what it says may be a frame, but no state.
+        assert!(found.iter().chain(&late).all(|frame| State::read(&frame.arguments).is_none()));
     }
 }
