@@ -28,6 +28,8 @@ pub struct Config {
     pub stale: u64,
     /// How far it may go while its sonars say the same, in metres; 0 for ever.
     pub frozen: f64,
+    /// How long it may move faster than it is told, or the other way, in milliseconds; 0 for ever.
+    pub disobey: u64,
     /// Which sonars ping, in which order.
     pub sonars: Vec<u8>,
     /// The time between two pings, in milliseconds.
@@ -51,6 +53,7 @@ struct File {
     answer: Option<u64>,
     stale: Option<u64>,
     frozen: Option<f64>,
+    disobey: Option<u64>,
     sonars: Option<Vec<u8>>,
     gap: Option<u64>,
     ring_radius: Option<f64>,
@@ -83,6 +86,12 @@ impl Configured {
             answer: made.value("answer", said.answer, 300, "ms that an answer may take"),
             stale: made.value("stale", said.stale, 500, "ms that its clock may stand, 0 for ever; unverified"),
             frozen: made.value("frozen", said.frozen, 1.0, "m of way on which its sonars may say the same, 0 for ever"),
+            disobey: made.value(
+                "disobey",
+                said.disobey,
+                500,
+                "ms that it may move faster than it is told, or the other way, 0 for ever; unverified",
+            ),
             sonars: made.value("sonars", said.sonars, ORDER.to_vec(), "which ping, in this order"),
             gap: made.value("gap", said.gap, 60, "ms between two pings"),
             ring_radius: made.value("ring-radius", said.ring_radius, 0.19, "m from the centre to a sonar; unverified"),
@@ -102,6 +111,7 @@ impl Config {
         within("answer", self.answer as f64, 50.0, 400.0)?;
         within("stale", self.stale as f64, 0.0, 60_000.0)?;
         within("frozen", self.frozen, 0.0, 100.0)?;
+        within("disobey", self.disobey as f64, 0.0, 60_000.0)?;
         within("gap", self.gap as f64, 4.0, 1020.0)?;
         within("ring-radius", self.ring_radius, 0.0, 0.5)?;
         within("low-battery", self.low_battery, 5.0, 12.0)?;

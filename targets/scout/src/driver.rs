@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use mdle_host::StopRequest;
 use mdle_runtime::{Meters, Nanos, PathStore, Robot, Sensed, Shape, Supply, Twist, Volts};
-use mdle_serial::{Clock, Times, time_of};
+use mdle_serial::{Clock, LineFault, Moment, Obedience, Times, time_of};
 
 use crate::command::Command;
 use crate::config::Config;
@@ -21,10 +21,12 @@ use crate::wheels::{self, WHEEL_BASE};
 const RADIUS: Meters = Meters(0.205);
 /// How many pings must agree that a way is free on a robot whose sonars fire in turn.
 const CONFIRMATION: usize = 2;
-/// How long the robot may take to stand before its motors are let go: from 1 m/s it takes half a second.
+/// The least time that the robot has to stand before its motors are let go: from 1 m/s it takes half a second.
 const STOPPING: Duration = Duration::from_millis(600);
-/// How long each answer may take meanwhile.
+/// How long its last answer may take when it has not answered before.
 const ANSWER: Duration = Duration::from_millis(150);
+/// A wheel that is held may jitter by this, in tenths of an inch per second.
+const JITTER: u16 = 4;
 /// The time between two looks at whether it stands.
 const LOOK: Duration = Duration::from_millis(20);
 /// The time between two times that a robot is told to stop which does not answer.
@@ -41,7 +43,10 @@ pub struct Scout {
     odometer: Odometer,
     ring: Ring,
     freshness: Freshness,
+    obedience: Obedience,
     times: Times,
+    /// When it was told last how to move in a turn.
+    told: Option<Moment>,
     /// What the plan can replay.
     paths: PathStore,
 }
@@ -61,8 +66,11 @@ impl Scout {
         let line = Line::open(&config.device)?;
         let ring = Ring::new(&config.sonars, Nanos(config.gap.saturating_mul(1_000_000)));
         let (odometer, freshness, times) = (Odometer::default(), Freshness::default(), Times::new(clock));
-        let paths = PathStore::EMPTY;
-        let mut scout = Self { line, config, clock, odometer, ring, freshness, times, paths };
+        // Each wheel brakes for both: where it goes forward and turns, half as hard for either.
+        let brakes = config.acceleration / 2.0;
+        let obedience = Obedience::new(brakes, brakes, Duration::from_millis(config.disobey));
+        let (told, paths) = (None, PathStore::EMPTY);
+        let mut scout = Self { line, config, clock, odometer, ring, freshness, obedience, times, told, paths };
         match scout.prepare(period, request) {
             Ok(()) => Ok(scout),
             Err(Fault::Ended(_)) => Err(Fault::Ended(scout.stop().err().map(Box::new))),
@@ -105,34 +113,63 @@ impl Scout {
         self.line.ask(&Command::Zero, Instant::now() + ZEROING.max(self.config.patience())).map(|_| ())
     }
 
-    /// Waits until the robot stands, or has had the time for it.
-    fn stands(&mut self, begun: Instant) -> Result<(), Fault> {
+    /// Waits until the robot stands.
+    ///
+    /// # Errors
+    /// It does not answer, or still moves in the state that it is asked for when it has had the time to stand.
+    fn stands(&mut self, begun: Instant, limit: Duration) -> Result<(), Fault> {
+        let mut was_slow = false;
         for looks in 1.. {
-            if self.clock.is_past(STOPPING, begun, looks) {
+            let is_last = self.clock.is_past(limit, begun, looks);
+            let frame = self.at_the_end(Command::State, self.config.patience())?;
+            let state = State::read(&frame.arguments).ok_or(Fault::Short(frame.arguments.len()))?;
+            let fastest = state.right.unsigned_abs().max(state.left.unsigned_abs());
+            let is_slow = fastest <= JITTER;
+            // One that still brakes has come to rest by the next look.
+            if fastest == 0 || was_slow && is_slow {
+                return Ok(());
+            }
+            if is_last {
                 break;
             }
-            let frame = self.at_the_end(Command::State)?;
-            if State::read(&frame.arguments).is_some_and(|state| (state.right, state.left) == (0, 0)) {
-                break;
-            }
+            was_slow = is_slow;
             self.clock.pass(LOOK);
         }
-        Ok(())
+        Err(Fault::Moves)
     }
 
-    /// Says a command on the way out.
-    fn at_the_end(&mut self, command: Command) -> Result<Frame, Fault> {
-        self.line.ask(&command, Instant::now() + self.clock.patience(ANSWER).min(self.config.patience()))
+    /// Sends a command on the way out, whose answer may take so long.
+    fn at_the_end(&mut self, command: Command, patience: Duration) -> Result<Frame, Fault> {
+        self.line.ask(&command, Instant::now() + patience)
     }
 
     /// Says "stop" to a robot that does not answer, for as long as it may take to stand: it may hear all the same.
-    fn insist(&mut self, begun: Instant) {
+    fn insist(&mut self, begun: Instant, limit: Duration) {
         for said in 1.. {
             let deadline = Instant::now() + AGAIN;
-            if self.clock.is_past(STOPPING, begun, said) || self.line.say(&Command::Stop, deadline).is_err() {
+            if self.clock.is_past(limit, begun, said) || self.line.say(&Command::Stop, deadline).is_err() {
                 break;
             }
             self.clock.pass(AGAIN);
+        }
+    }
+
+    /// Whether the robot has stopped itself since it was told to move: then it is not to be driven off again without a word.
+    fn has_overslept(&self) -> bool {
+        let watchdog = Duration::from_secs(u64::from(self.config.watchdog));
+        self.clock == Clock::Wall && self.told.is_some_and(|told| told.elapsed() >= watchdog)
+    }
+
+    /// Tells the wheels their speeds in a turn, and reads the state that answers.
+    fn move_on(&mut self, right: i16, left: i16) -> Result<State, Fault> {
+        if self.has_overslept() {
+            return Err(Fault::Overslept(self.config.watchdog));
+        }
+        self.told = Some(Moment::now());
+        match self.tell(Command::Velocities(right, left)) {
+            // This program was stopped while it waited.
+            Err(Fault::Line(LineFault::Silent)) if self.has_overslept() => Err(Fault::Overslept(self.config.watchdog)),
+            other => other,
         }
     }
 
@@ -158,9 +195,14 @@ impl Robot for Scout {
 
     fn exchange(&mut self, input: &Twist) -> Result<Sensed, Fault> {
         let (right, left) = wheels::speeds(input, self.config.fastest);
-        let state = self.tell(Command::Velocities(right, left))?;
-        let (at, odometry) = (self.times.now(), self.odometer.pose(&state));
+        let state = self.move_on(right, left)?;
+        let at = self.times.now();
+        let odometry = self.odometer.pose(&state, at, self.config.fastest)?;
         self.freshness.take(&state, at, odometry, &self.config)?;
+        let metres = |wheels: [i16; 2]| wheels.map(|wheel| f64::from(wheel) * wheels::UNIT);
+        if self.obedience.is_broken(at, metres([right, left]), metres([state.right, state.left])) {
+            return Err(Fault::Disobeys(self.config.disobey));
+        }
         Ok(Sensed {
             at,
             odometry,
@@ -180,15 +222,19 @@ impl Robot for Scout {
     }
 
     fn stop(&mut self) -> Result<(), Fault> {
-        let begun = Instant::now();
-        let stopped = self.at_the_end(Command::Stop);
+        self.told = None;
+        let (begun, limit) = (Instant::now(), self.obedience.time_to_stand(STOPPING));
+        let patience = self.config.patience();
+        let stopped = self.at_the_end(Command::Stop, patience);
         // Let go while it moves, it would roll on.
-        let stands = stopped.and_then(|_| self.stands(begun));
-        if stands.is_err() {
-            self.insist(begun);
+        let stands = stopped.and_then(|_| self.stands(begun, limit));
+        let answers = matches!(stands, Ok(()) | Err(Fault::Moves));
+        if !answers {
+            self.insist(begun, limit);
         }
         // Its motors are let go whether or not it has understood.
-        let let_go = self.at_the_end(Command::Limp);
+        let let_go =
+            self.at_the_end(Command::Limp, if answers { patience } else { self.clock.patience(ANSWER).min(patience) });
         stands.and(let_go.map(|_| ()))
     }
 }

@@ -32,6 +32,14 @@ pub enum Fault {
     Hung(u64),
     /// The sonars have said the same for so long that they no longer ping.
     Frozen,
+    /// It has moved faster than it was told, or the other way, for this many milliseconds.
+    Disobeys(u64),
+    /// Its positions are too far from each other, again and again.
+    Leaps,
+    /// It has stopped itself, as no command came for this many seconds.
+    Overslept(u8),
+    /// It has not come to rest after the stop command.
+    Moves,
 }
 
 impl From<LineFault> for Fault {
@@ -69,6 +77,21 @@ impl fmt::Display for Fault {
             Self::Frozen => f.write_str(
                 "the Scout's sonars say the same wherever it moves: are they on? `frozen` in the configuration says how \
                  far they may",
+            ),
+            Self::Disobeys(limit) => write!(
+                f,
+                "the Scout does not obey: for {limit} ms it has moved faster than it was told, or the other way; `disobey` in \
+                 the configuration says how long it may"
+            ),
+            Self::Leaps => f.write_str(
+                "the Scout's positions leap by metres, so where it is is not known: are its encoders and its line in order?",
+            ),
+            Self::Overslept(seconds) => write!(
+                f,
+                "the Scout has stopped itself, as no command came for {seconds} s: was this computer suspended, or too busy?"
+            ),
+            Self::Moves => f.write_str(
+                "the Scout still moved when its time to stand was over, and may not have stopped: press its emergency stop",
             ),
             Self::EmergencyStop => f.write_str("the Scout's emergency stop is pressed: release it and start again"),
         }

@@ -1,30 +1,52 @@
 //! Where a Scout is by its own reckoning, beyond the 83 m at which its numbers wrap.
 
-use mdle_runtime::{Meters, Pose, Radians};
+use mdle_runtime::{Meters, Nanos, Pose, Radians};
 
+use crate::fault::Fault;
 use crate::state::State;
 use crate::wheels::UNIT;
 
 /// How many numbers there are in sign and magnitude: those from -32767 to 32767.
 const NUMBERS: i32 = 65_535;
 
+/// No robot goes further than this between two states, in metres, besides what it can drive in the time between them.
+const LEAP: f64 = 1.0;
+/// A wheel may go so much faster than it is told.
+const FASTER: f64 = 2.0;
+/// After so many leaps more than steps its positions mean nothing.
+const LEAPS: u8 = 4;
+
 /// Follows the numbers of the line from state to state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) struct Odometer {
     last: Option<(i16, i16)>,
+    at: Nanos,
     x: i64,
     y: i64,
+    leaps: u8,
 }
 
 impl Odometer {
-    /// The pose that the robot has now. Between two states it moves less than half of what wraps.
-    pub(crate) fn pose(&mut self, state: &State) -> Pose {
-        let (x, y) = self.last.unwrap_or((0, 0));
-        self.x += unwrapped(x, state.x);
-        self.y += unwrapped(y, state.y);
-        self.last = Some((state.x, state.y));
+    /// Returns the pose of the robot in the state that came at `at`, of which no wheel is told to go faster than `fastest`
+    /// m/s. A leap moves the pose nowhere. Between two states the robot moves less than half of what wraps.
+    ///
+    /// # Errors
+    /// The positions leap again and again.
+    pub(crate) fn pose(&mut self, state: &State, at: Nanos, fastest: f64) -> Result<Pose, Fault> {
+        let (x, y) = self.last.replace((state.x, state.y)).unwrap_or((0, 0));
+        let (x, y) = (unwrapped(x, state.x), unwrapped(y, state.y));
+        let seconds = at.since(std::mem::replace(&mut self.at, at)).seconds();
+        if libm::hypot(x as f64, y as f64) * UNIT > LEAP + FASTER * fastest * seconds {
+            self.leaps = self.leaps.saturating_add(1);
+        } else {
+            self.leaps = self.leaps.saturating_sub(1);
+            (self.x, self.y) = (self.x + x, self.y + y);
+        }
+        if self.leaps > LEAPS {
+            return Err(Fault::Leaps);
+        }
         let heading = Radians::from_degrees(f64::from(state.heading) / 10.0).wrapped();
-        Pose { x: meters(self.x), y: meters(self.y), theta: heading }
+        Ok(Pose { x: meters(self.x), y: meters(self.y), theta: heading })
     }
 }
 
@@ -44,28 +66,26 @@ fn meters(units: i64) -> Meters {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
 
+    fn state(x: i16, y: i16) -> State {
+        State { x, y, ..State::read(&[0; 42]).unwrap() }
+    }
+
+    fn units(pose: Pose) -> [i32; 2] {
+        [pose.x, pose.y].map(|meters| libm::round(meters.0 / UNIT) as i32)
+    }
+
     #[test]
     fn the_way_goes_on_where_numbers_wrap() {
-        let still = State {
-            sonars: [255; 16],
-            bumper: 0,
-            x: 0,
-            y: 0,
-            heading: 0,
-            right: 0,
-            left: 0,
-            status: 0,
-            clock: 0,
-            cpu: 0,
-            motor: 0,
-        };
         let mut odometer = Odometer::default();
+        let mut at = 0;
         let mut units = |x: i16, y: i16| {
-            let pose = odometer.pose(&State { x, y, ..still });
-            [pose.x, pose.y].map(|meters| libm::round(meters.0 / UNIT) as i32)
+            // A robot that is fast enough for all of it.
+            at += 1_000_000_000;
+            units(odometer.pose(&state(x, y), Nanos(at), 1000.0).unwrap())
         };
         assert_eq!(units(20_000, -20_000), [20_000, -20_000]);
         assert_eq!(units(32_767, -32_767), [32_767, -32_767]);
@@ -73,5 +93,21 @@ mod tests {
         assert_eq!(units(-32_767, 32_767), [32_768, -32_768]);
         assert_eq!(units(0, 0), [65_535, -65_535]);
         assert_eq!(units(-20_000, 20_000), [45_535, -45_535]);
+    }
+
+    #[test]
+    fn leaps_move_the_pose_nowhere_and_many_are_a_fault() {
+        let mut odometer = Odometer::default();
+        let mut at = 0;
+        let mut after = |x: i16| {
+            at += 100_000_000;
+            odometer.pose(&state(x, 0), Nanos(at), 1.0).map(|pose| units(pose)[0])
+        };
+        // One number is another one's: what follows counts from where it ended.
+        assert_eq!([100, 9000, 110, 120].map(&mut after), [Ok(100), Ok(100), Ok(100), Ok(110)]);
+        // Half a metre in a tenth of a second is a state that came late.
+        assert_eq!(after(320), Ok(310));
+        let leaps = [1000, 2000, 3000, 4000, 5000, 6000].map(after);
+        assert_eq!(leaps.iter().position(|pose| *pose == Err(Fault::Leaps)), Some(4));
     }
 }

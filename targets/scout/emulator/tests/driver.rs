@@ -63,6 +63,15 @@ fn with_robot<T>(drive: impl FnOnce(&mut Scout) -> T) -> T {
 
 /// What an exchange comes to, after the start, with a robot that answers like this: the number of the request counts.
 fn exchanged(patience: u64, answers: impl Fn(usize, &Request, &Port) + Sync) -> Result<(), Fault> {
+    asked(patience, answers, |driver| driver.exchange(&Twist::default()).map(|_| ()))
+}
+
+/// What `drive` comes to, after the start, with such a robot.
+fn asked(
+    patience: u64,
+    answers: impl Fn(usize, &Request, &Port) + Sync,
+    drive: impl FnOnce(&mut Scout) -> Result<(), Fault>,
+) -> Result<(), Fault> {
     let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
     thread::scope(|scope| {
         scope.spawn(|| {
@@ -76,7 +85,7 @@ fn exchanged(patience: u64, answers: impl Fn(usize, &Request, &Port) + Sync) -> 
             }
         });
         let _ends = Ends(&over);
-        connected(&port, patience)?.exchange(&Twist::default()).map(|_| ())
+        drive(&mut connected(&port, patience)?)
     })
 }
 
@@ -150,6 +159,18 @@ fn a_robot_is_let_go_once_it_stands() {
         let y = driven(driver, 0.0, 0.0, 1);
         assert_near("speed", y.velocity().v.0, 0.0, 1e-9);
     });
+}
+
+#[test]
+fn a_robot_whose_wheels_jitter_stands() {
+    let stopped = |speed: u8| {
+        // Of both wheels, one forward and one back.
+        let mut state = [0; 42];
+        (state[27], state[29], state[30]) = (speed, speed, 0x80);
+        let answers = |_: usize, request: &Request, port: &Port| port.write(&answer(request.command, &state)).unwrap();
+        asked(LONG, answers, Scout::stop)
+    };
+    assert_eq!([stopped(0), stopped(4), stopped(5)], [Ok(()), Ok(()), Err(Fault::Moves)]);
 }
 
 #[test]

@@ -1,0 +1,174 @@
+//! Whether a robot moves as it was told: no faster, and not the other way.
+//!
+//! A robot that an obstacle holds, or one of whose sides is stuck, moves less than it was told, which is no disobedience. The
+//! measured speeds of both sides have to stay within what the commands so far allow: a band around zero that reaches to the
+//! last two commands at once, and leaves what was commanded before only as fast as the robot brakes.
+
+use std::time::Duration;
+
+use mdle_runtime::Nanos;
+
+/// A robot may brake with this part of the deceleration that it was told.
+const PART: f64 = 0.5;
+/// How far outside of the band a side may be, in m/s, and as a part of the fastest speed in the band.
+const ERROR: f64 = 0.05;
+const ERROR_PART: f64 = 0.2;
+/// The longest time that a robot is given to stand.
+const LONGEST: Duration = Duration::from_secs(5);
+/// The time that it may take until it begins to brake.
+const REACTION: Duration = Duration::from_millis(100);
+
+/// Compares measured speeds with commands, turn by turn.
+#[derive(Debug, Clone)]
+pub struct Obedience {
+    /// How long the speeds may be outside of the band; zero for ever.
+    limit: Nanos,
+    /// The speed of both sides together, and by how much they differ from it.
+    forward: Band,
+    turning: Band,
+    last: Option<Nanos>,
+    /// The fastest that a side was when it was measured last, in m/s.
+    measured: f64,
+    /// Since when the speeds have been outside of the band.
+    since: Option<Nanos>,
+}
+
+/// The speeds that commands allow, in m/s.
+#[derive(Debug, Clone, Copy)]
+struct Band {
+    /// At most zero, and at least zero.
+    low: f64,
+    high: f64,
+    /// The last command.
+    told: f64,
+    /// How fast the band narrows, in m/s².
+    brakes: f64,
+}
+
+impl Obedience {
+    /// Of a robot that stands, whose sides are told to brake with `forward` m/s² where both go the same way and with `turning`
+    /// m/s² where they go against each other. It may disobey for less than `limit`; for ever if that is zero.
+    #[must_use]
+    pub const fn new(forward: f64, turning: f64, limit: Duration) -> Self {
+        Self {
+            limit: Nanos(limit.as_millis() as u64 * 1_000_000),
+            forward: Band::new(forward * PART),
+            turning: Band::new(turning * PART),
+            last: None,
+            measured: 0.0,
+            since: None,
+        }
+    }
+
+    /// Takes in the speeds of the right and the left side at `at`, in m/s, with the command of this turn, and returns `true` if
+    /// the robot has disobeyed for the whole limit.
+    pub fn is_broken(&mut self, at: Nanos, told: [f64; 2], measured: [f64; 2]) -> bool {
+        let seconds = at.since(self.last.replace(at).unwrap_or(at)).seconds();
+        let [right, left] = told;
+        self.forward.tell((right + left) / 2.0, seconds);
+        self.turning.tell((right - left) / 2.0, seconds);
+        let [right, left] = measured;
+        self.measured = right.abs().max(left.abs());
+        let (forward, turning) = (self.forward, self.turning);
+        let error = ERROR + ERROR_PART * (forward.fastest() + turning.fastest());
+        let obeys = (forward.low + turning.low - error..=forward.high + turning.high + error).contains(&right)
+            && (forward.low - turning.high - error..=forward.high - turning.low + error).contains(&left);
+        let since = if obeys { None } else { Some(self.since.unwrap_or(at)) };
+        self.since = since;
+        self.limit > Nanos::ZERO && since.is_some_and(|since| at.since(since) >= self.limit)
+    }
+
+    /// Returns how long the robot may take to stand: twice as long as braking takes as it was told, from the fastest speed that
+    /// it may have, but at least `least` and at most five seconds.
+    #[must_use]
+    pub fn time_to_stand(&self, least: Duration) -> Duration {
+        let time = |band: &Band| band.fastest().max(self.measured) / band.brakes;
+        let seconds = time(&self.forward).max(if self.turning.fastest() > 0.0 { time(&self.turning) } else { 0.0 });
+        // A number that is none becomes the longest time.
+        let braking = Duration::try_from_secs_f64(seconds).unwrap_or(LONGEST);
+        (braking + REACTION).clamp(least.min(LONGEST), LONGEST)
+    }
+}
+
+impl Band {
+    const fn new(brakes: f64) -> Self {
+        Self { low: 0.0, high: 0.0, told: 0.0, brakes }
+    }
+
+    /// Narrows the band by what the robot brakes in so many seconds, but not within the last two commands.
+    fn tell(&mut self, command: f64, seconds: f64) {
+        let before = std::mem::replace(&mut self.told, command);
+        let by = self.brakes * seconds;
+        self.high = (self.high - by).max(before).max(command).max(0.0);
+        self.low = (self.low + by).min(before).min(command).min(0.0);
+    }
+
+    fn fastest(&self) -> f64 {
+        self.high.max(-self.low)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Returns the turn, of 100 ms each, in which a robot that brakes with 1 m/s² is found to disobey for half a second.
+    fn broken(turns: &[([f64; 2], [f64; 2])]) -> Option<usize> {
+        let mut obedience = Obedience::new(1.0, 1.0, Duration::from_millis(500));
+        turns.iter().enumerate().find_map(|(turn, (told, measured))| {
+            obedience.is_broken(Nanos(turn as u64 * 100_000_000), *told, *measured).then_some(turn)
+        })
+    }
+
+    const AHEAD: [f64; 2] = [0.2, 0.2];
+    const NONE: [f64; 2] = [0.0, 0.0];
+
+    #[test]
+    fn a_robot_that_moves_less_obeys() {
+        for held in [NONE, [0.0, 0.2], [0.2, 0.0], [0.1, 0.1], [0.24, -0.05]] {
+            assert_eq!(broken(&[(AHEAD, held); 50]), None, "{held:?}");
+        }
+        // Against a wall both wheels turn against each other.
+        assert_eq!(broken(&[([0.475, 0.025], [0.225, -0.225]); 50]), None);
+    }
+
+    #[test]
+    fn a_robot_that_goes_on_disobeys() {
+        let goes_on = |told| [[(AHEAD, AHEAD); 10], [(told, AHEAD); 10], [(told, AHEAD); 10]].concat();
+        // In the third turn it is faster than one that brakes may be, and half a second later still.
+        for told in [NONE, [-0.2, -0.2], [0.1, 0.1]] {
+            assert_eq!(broken(&goes_on(told)), Some(17), "{told:?}");
+        }
+        assert_eq!(broken(&goes_on([0.18, 0.18])), None);
+        let spins = [[([0.2, -0.2], [-0.2, 0.2]); 10]].concat();
+        assert_eq!(broken(&spins), Some(5));
+    }
+
+    #[test]
+    fn a_robot_that_brakes_half_as_hard_obeys() {
+        let braking = (0..40).map(|turn| (NONE, [0.5 - 0.05 * f64::from(turn); 2].map(|speed: f64| speed.max(0.0))));
+        let turns: Vec<_> = [([0.5; 2], [0.5; 2]); 10].into_iter().chain(braking).collect();
+        assert_eq!(broken(&turns), None);
+        // A jerk is shorter than the limit.
+        let jerk = [[(NONE, NONE); 5], [(NONE, AHEAD); 5], [(NONE, NONE); 5], [(NONE, AHEAD); 5]].concat();
+        assert_eq!(broken(&jerk), None);
+    }
+
+    #[test]
+    fn a_limit_of_zero_is_none() {
+        let mut obedience = Obedience::new(1.0, 1.0, Duration::ZERO);
+        assert!((0..100).all(|turn| !obedience.is_broken(Nanos(turn * 100_000_000), NONE, AHEAD)));
+    }
+
+    #[test]
+    fn a_fast_robot_has_longer_to_stand() {
+        let least = Duration::from_millis(600);
+        let after = |told: [f64; 2], measured| {
+            let mut obedience = Obedience::new(1.0, 1.0, Duration::ZERO);
+            obedience.is_broken(Nanos::ZERO, told, measured);
+            obedience.time_to_stand(least).as_millis()
+        };
+        assert_eq!([after(AHEAD, NONE), after([1.0; 2], NONE), after(NONE, [1.0; 2])], [600, 2100, 2100]);
+        assert_eq!([after([1.0, -1.0], NONE), after([100.0; 2], NONE)], [2100, 5000]);
+    }
+}

@@ -1,0 +1,62 @@
+//! What depends on time itself: a robot that answers late, and a driver that comes back too late.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::Duration;
+
+use mdle_emulator::{Faulty, Order, Pace, Port, serve};
+use mdle_runtime::{MetersPerSecond, Robot as _, Twist};
+use mdle_scout::{Clock, Config, Configured, Fault, Scout};
+use mdle_scout_emulator::scout::Scout as Emulated;
+use mdle_sim::{Body, Make, Simulated, World};
+
+const PERIOD: Duration = Duration::from_millis(100);
+const AHEAD: Twist = Twist { v: MetersPerSecond(0.2), omega: mdle_runtime::RadiansPerSecond(0.0) };
+
+/// Returns what `drive` makes of a robot with these faults, by the clock, and the robot.
+fn with_robot<T>(faults: &[&str], drive: impl FnOnce(&mut Scout) -> T) -> (T, Faulty<Emulated>) {
+    let world = World::office().unwrap();
+    let make = Make { body: Body::Scout, without: Vec::new(), seed: None };
+    let body = Simulated::with(&make, &world, world.start, Pace::Real.step()).unwrap();
+    let faults: Vec<_> = faults.iter().map(|fault| fault.parse().unwrap()).collect();
+    let mut robot = Faulty::new(Emulated::new(body).unwrap(), &faults).unwrap();
+    let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
+    let result = thread::scope(|scope| {
+        let serving = scope.spawn(|| serve(&mut robot, &port, Pace::Real, &|| !over.load(Ordering::Relaxed)));
+        // Longer than any machine takes.
+        let config = Config { answer: 20_000, gap: 8, ..Configured::read(None, port.path().to_str()).unwrap().config };
+        let mut driver = Scout::connect(config, Clock::Wall, PERIOD).unwrap();
+        let result = drive(&mut driver);
+        over.store(true, Ordering::Relaxed);
+        serving.join().unwrap().unwrap();
+        result
+    });
+    (result, robot)
+}
+
+#[test]
+fn a_robot_that_answers_late_is_stopped_in_good_order() {
+    let (stop, robot) = with_robot(&["late=300"], |driver| {
+        driver.exchange(&AHEAD).unwrap();
+        driver.stop()
+    });
+    let robot = robot.robot();
+    assert_eq!((stop, robot.stands()), (Ok(()), true));
+    assert_eq!(robot.orders().last().unwrap().1, Order::LetGo);
+}
+
+#[test]
+fn a_command_after_the_robot_has_stopped_itself_is_not_sent() {
+    let (results, robot) = with_robot(&[], |driver| {
+        driver.exchange(&AHEAD).unwrap();
+        // Its watchdog waits for a second.
+        thread::sleep(Duration::from_millis(1100));
+        [driver.exchange(&AHEAD).map(drop), driver.stop()]
+    });
+    let [too_late, stop] = results;
+    assert!(too_late.is_err_and(|fault: Fault| fault.to_string().contains("stopped itself")));
+    let orders: Vec<Order> = robot.robot().orders().iter().map(|(_, order)| order).collect();
+    assert_eq!(orders.iter().filter(|order| **order == Order::Drive).count(), 1, "{orders:?}");
+    assert_eq!((stop, robot.robot().stands()), (Ok(()), true));
+}
