@@ -53,6 +53,10 @@ pub struct Config {
     pub status: u64,
     /// How long it may say nothing, in milliseconds.
     pub answer: u64,
+    /// How long it may say nothing of a bumper, in milliseconds; 0 for ever.
+    pub inputs: u64,
+    /// How long it may move faster than it is told, or the other way, in milliseconds; 0 for ever.
+    pub disobey: u64,
     /// After how many milliseconds without a turn it is stopped.
     pub watchdog: u64,
     /// How long it is left alone after each command, in milliseconds.
@@ -91,6 +95,8 @@ struct File {
     reports: Option<u64>,
     status: Option<u64>,
     answer: Option<u64>,
+    inputs: Option<u64>,
+    disobey: Option<u64>,
     watchdog: Option<u64>,
     pause: Option<u64>,
     battery_offset: Option<f64>,
@@ -171,6 +177,13 @@ impl File {
             reports: made.value("reports", self.reports, 50, "ms between two reports of where it is"),
             status: made.value("status", self.status, 1000, "ms between two questions for its brake"),
             answer: made.value("answer", self.answer, 300, "ms that it may say nothing"),
+            inputs: made.value("inputs", self.inputs, 1000, "ms that a bumper may say nothing, 0 for ever; unverified"),
+            disobey: made.value(
+                "disobey",
+                self.disobey,
+                500,
+                "ms that it may move faster than it is told, or the other way, 0 for ever; unverified",
+            ),
             watchdog: made.value("watchdog", self.watchdog, 500, "ms without a turn until it is stopped"),
             pause: made.value("pause", self.pause, 1, "ms after each command"),
             battery_offset: made.value(
@@ -228,6 +241,8 @@ impl Config {
         within("reports", self.reports as f64, 20.0, 200.0)?;
         within("status", self.status as f64, 200.0, 60_000.0)?;
         within("answer", self.answer as f64, 50.0, 400.0)?;
+        within("inputs", self.inputs as f64, if self.inputs == 0 { 0.0 } else { 300.0 }, 60_000.0)?;
+        within("disobey", self.disobey as f64, 0.0, 60_000.0)?;
         within("watchdog", self.watchdog as f64, 150.0, 5000.0)?;
         within("pause", self.pause as f64, 0.0, 10.0)?;
         within("battery-offset", self.battery_offset, -5.0, 5.0)?;

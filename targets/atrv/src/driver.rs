@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 
 use mdle_host::StopRequest;
 use mdle_runtime::{Meters, Nanos, PathStore, Robot, Sensed, Shape, Twist};
-use mdle_serial::{Clock, Line, Times, time_of};
+use mdle_serial::{Clock, Line, LineFault, Obedience, Times, time_of};
 
 use crate::command::Command;
 use crate::config::Config;
@@ -23,9 +23,9 @@ const RADIUS: Meters = Meters(0.415);
 const CONFIRMATION: usize = 2;
 /// How long the robot may take to release its brake, and each of its sonars to ping a few times.
 const STARTING: Duration = Duration::from_millis(1000);
-/// How long it may take to stand before its brake is set: from 1 m/s it takes a second.
-const STOPPING: Duration = Duration::from_millis(1000);
-/// How long each of its reports may take meanwhile.
+/// The least time that it has to stand before its brake is set: from 0.2 m/s it takes a fifth of a second.
+const STOPPING: Duration = Duration::from_millis(800);
+/// How long its reports may take meanwhile in lockstep, and the line the last commands.
 const ANSWER: Duration = Duration::from_millis(150);
 /// The time between two looks at whether it stands.
 const LOOK: Duration = Duration::from_millis(50);
@@ -42,6 +42,7 @@ pub struct Atrv {
     clock: Clock,
     times: Times,
     hearing: Hearing,
+    obedience: Obedience,
     /// How often it tells where it is, and how many times in a turn in lockstep.
     reports: Duration,
     a_turn: u32,
@@ -83,11 +84,13 @@ impl Atrv {
                 (period / count, count)
             }
         };
-        let hearing = Hearing::new(&config);
+        let hearing = Hearing::new(&config, period);
+        let [forward, turning] = motion::brakes(&config);
+        let obedience = Obedience::new(forward, turning, Duration::from_millis(config.disobey));
         let mouth = Mouth::new(line, watchdog);
         let times = Times::new(clock);
         let (asked, paths) = (Nanos::ZERO, PathStore::EMPTY);
-        let mut atrv = Self { mouth, config, clock, times, hearing, reports, a_turn, asked, paths };
+        let mut atrv = Self { mouth, config, clock, times, hearing, obedience, reports, a_turn, asked, paths };
         match atrv.prepare(period, request) {
             Ok(()) => Ok(atrv),
             Err(Fault::Ended(_)) => Err(Fault::Ended(atrv.stop().err().map(Box::new))),
@@ -138,14 +141,15 @@ impl Atrv {
         }
     }
 
-    /// Tells the robot how to move.
-    fn move_on(&mut self, input: &Twist) -> Result<(), Fault> {
-        for command in motion::commands(input, &self.config) {
+    /// Tells the robot how to move; how fast that is of its right and its left side.
+    fn move_on(&mut self, input: &Twist) -> Result<[f64; 2], Fault> {
+        let commands = motion::commands(input, &self.config);
+        for command in &commands {
             let frame = command.frame(self.config.escape);
             self.mouth.say_motion(&frame, Instant::now() + self.config.patience())?;
             self.rest();
         }
-        Ok(())
+        Ok(motion::asked(&commands, &self.config))
     }
 
     /// Tells it something else.
@@ -165,21 +169,42 @@ impl Atrv {
         self.hearing.take(self.mouth.line(), at, self.a_turn, patience)
     }
 
-    /// Waits until the robot stands, or has had the time for it.
+    /// Tells the robot to stand, again and again, until it reports that it does.
+    ///
+    /// # Errors
+    /// The line is closed, or in all of its time to stand the robot has not reported, or not that it stands.
     fn stands(&mut self) -> Result<(), Fault> {
-        // Who has been stopped before tells nothing any more.
-        self.say(Command::Reports(self.reports.as_micros() as u32))?;
-        let begun = Instant::now();
+        let (begun, limit) = (Instant::now(), self.obedience.time_to_stand(STOPPING));
+        // What it has reported before is of another time.
+        self.hearing.forget(self.mouth.line())?;
+        // One that has been stopped before reports nothing any more. If the line does not take this, nor does it what follows.
+        let _ = self.say(Command::Reports(self.reports.as_micros() as u32));
+        // In lockstep time passes with commands only, but once it is silent there is nothing to wait for.
+        let mut patience = if self.clock == Clock::Wall { Duration::ZERO } else { self.clock.patience(ANSWER) };
         for looks in 1.. {
-            self.move_on(&Twist::default())?;
-            self.clock.pass(LOOK);
-            self.hear(Nanos::ZERO, self.clock.patience(ANSWER).min(self.config.patience()))?;
-            let Twist { v, omega } = self.hearing.velocity();
-            if (v.0.abs() < STANDS && omega.0.abs() < STANDS) || self.clock.is_past(STOPPING, begun, looks) {
-                break;
+            let fault = match self.stands_by_now(patience.min(self.config.patience())) {
+                Ok(true) => return Ok(()),
+                Ok(false) => Fault::Moves,
+                Err(fault @ Fault::Line(LineFault::Closed | LineFault::Failed(_))) => return Err(fault),
+                Err(fault) => {
+                    patience = Duration::ZERO;
+                    fault
+                }
+            };
+            if self.clock.is_past(limit, begun, looks) {
+                return Err(fault);
             }
         }
-        Ok(())
+        Err(Fault::Moves)
+    }
+
+    /// Tells the robot to stand; whether it reports that it does.
+    fn stands_by_now(&mut self, patience: Duration) -> Result<bool, Fault> {
+        self.move_on(&Twist::default())?;
+        self.clock.pass(LOOK);
+        let Twist { v, omega } =
+            self.hearing.speed(self.mouth.line(), self.a_turn.max(1), Instant::now() + patience)?;
+        Ok(v.0.abs() < STANDS && omega.0.abs() < STANDS)
     }
 }
 
@@ -194,9 +219,12 @@ impl Robot for Atrv {
             self.asked = at;
             self.say(Command::Status)?;
         }
-        self.move_on(input)?;
+        let told = self.move_on(input)?;
         self.hear(at, self.config.patience())?;
         self.hearing.fault(at)?;
+        if self.obedience.is_broken(at, told, motion::sides(&self.hearing.velocity(), &self.config)) {
+            return Err(Fault::Disobeys(self.config.disobey));
+        }
         Ok(Sensed {
             at,
             odometry: self.hearing.pose(),
@@ -221,9 +249,9 @@ impl Robot for Atrv {
         let stands = self.stands();
         self.mouth.ends();
         let last = [Command::Brake, Command::Deaf, Command::Inputs(0), Command::Reports(0), Command::Defaults];
+        let deadline = Instant::now() + self.clock.patience(ANSWER);
         // It is braked whether or not it has understood.
         last.into_iter().fold(stands, |before, command| {
-            let deadline = Instant::now() + self.clock.patience(ANSWER);
             let said = self.mouth.say(&command.frame(self.config.escape), deadline);
             self.rest();
             before.and(said)

@@ -4,6 +4,7 @@ use std::fmt;
 
 use mdle_serial::LineFault;
 
+use crate::command::Axis;
 use crate::frame::Garbled;
 use crate::report::Unreadable;
 
@@ -26,6 +27,18 @@ pub enum Fault {
     Deaf(u8),
     /// No command was given for so long that the watchdog has stopped the robot.
     Overslept,
+    /// It reports, but does not answer questions: the line to it is cut.
+    Unheard,
+    /// It does not report this axis.
+    Untold(Axis),
+    /// It does not report this bumper.
+    Numb(u8),
+    /// It has moved faster than it was told, or the other way, for this many milliseconds.
+    Disobeys(u64),
+    /// Its positions are too far from each other, again and again.
+    Leaps,
+    /// It has not come to rest after it was told to stand.
+    Moves,
 }
 
 impl From<LineFault> for Fault {
@@ -64,6 +77,33 @@ impl fmt::Display for Fault {
                 f,
                 "the ATRV's sonars in direction {sonar} of 16 say nothing: are they on, and is `sonars` right in the \
                  configuration?"
+            ),
+            Self::Unheard => f.write_str(
+                "the ATRV does not receive what it is told: it reports where it is, but does not answer; check the wires of the \
+                 cable that lead to it",
+            ),
+            Self::Untold(Axis::Translation) => f.write_str(
+                "the ATRV does not report how far it has gone, only how far it has turned: check the cable, or switch its controller off and on",
+            ),
+            Self::Untold(Axis::Rotation) => f.write_str(
+                "the ATRV does not report how far it has turned, only how far it has gone: check the cable, or switch its controller off and on",
+            ),
+            Self::Numb(bumper) => write!(
+                f,
+                "the ATRV does not report its {} bumper: is `bumpers` right in the configuration? If it reports contacts only, \
+                 set `inputs` to 0",
+                if *bumper == 0 { "front" } else { "rear" }
+            ),
+            Self::Disobeys(limit) => write!(
+                f,
+                "the ATRV does not obey: for {limit} ms it has moved faster than it was told, or the other way; `disobey` in \
+                 the configuration says how long it may"
+            ),
+            Self::Leaps => f.write_str(
+                "the ATRV's positions leap by metres, so where it is is not known: are its encoders and its line in order?",
+            ),
+            Self::Moves => f.write_str(
+                "the ATRV still moved when its time to stand was over, and may not have stopped: press its emergency stop",
             ),
             Self::Overslept => f.write_str(
                 "the ATRV was stopped because no command came in time: is this computer too busy, or `watchdog` too short?",

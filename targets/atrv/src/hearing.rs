@@ -15,6 +15,8 @@ use crate::ring::Ring;
 
 /// The most that is read at once.
 const CHUNK: usize = 512;
+/// How much longer than for two questions an answer is waited for.
+const LATE: Duration = Duration::from_millis(300);
 /// How many times something is read before it is looked whether that is enough: a robot may talk without end.
 const READS: usize = 64;
 
@@ -27,6 +29,8 @@ pub(crate) struct Hearing {
     told: Option<Instant>,
     /// What was wrong since then.
     trouble: Option<Fault>,
+    /// How long it may leave a question for its brake unanswered.
+    unanswered: Nanos,
 }
 
 /// What its reports say.
@@ -35,21 +39,25 @@ struct Known {
     config: Config,
     odometer: Odometer,
     ring: Ring,
-    /// Position and velocity along the way, which are told before those of the turn.
+    /// Position and velocity along the way, which are told before those of the turn; once used they are none.
     along: Option<(i32, i32)>,
     velocity: Twist,
     /// When it told where it is, by its own clock.
     time: Option<u32>,
     /// Bit 0 for the bumper before, bit 1 for the one behind.
     switches: u32,
-    /// Whether the brake is set, if that was told.
+    /// When it told each of them last.
+    felt: [Option<Nanos>; 2],
+    /// Whether the brake is set, if that was told, and when it was told last.
     is_braked: Option<bool>,
+    answered: Nanos,
     /// What its battery was at then.
     battery: Volts,
 }
 
 impl Hearing {
-    pub(crate) fn new(config: &Config) -> Self {
+    /// Before the first report, of a robot that is asked for its brake in every `period` at most.
+    pub(crate) fn new(config: &Config, period: Duration) -> Self {
         let known = Known {
             config: config.clone(),
             odometer: Odometer::default(),
@@ -58,10 +66,14 @@ impl Hearing {
             velocity: Twist::default(),
             time: None,
             switches: 0,
+            felt: [None; 2],
             is_braked: None,
+            answered: Nanos::ZERO,
             battery: Volts(0.0),
         };
-        Self { reader: Reader::default(), known, told: None, trouble: None }
+        let unanswered = Duration::from_millis(config.status).max(period).saturating_mul(2).saturating_add(LATE);
+        let unanswered = Nanos(u64::try_from(unanswered.as_nanos()).unwrap_or(u64::MAX));
+        Self { reader: Reader::default(), known, told: None, trouble: None, unanswered }
     }
 
     /// Takes in what has come, and waits until the robot has told `count` times where it is, or, for a `count` of 0, until
@@ -88,24 +100,67 @@ impl Hearing {
         }
     }
 
+    /// Forgets what it has told until now, but not what is known by that.
+    ///
+    /// # Errors
+    /// The line is closed.
+    pub(crate) fn forget(&mut self, line: &Line) -> Result<(), Fault> {
+        self.drain(line, Nanos::ZERO)?;
+        (self.told, self.trouble) = (None, None);
+        Ok(())
+    }
+
+    /// Takes in what has come, and until `deadline` waits for it to tell `count` times where it is. Returns how fast it moves by
+    /// what it has told since it was forgotten.
+    ///
+    /// # Errors
+    /// The line is closed, or it has told nothing since.
+    pub(crate) fn speed(&mut self, line: &Line, count: u32, deadline: Instant) -> Result<Twist, Fault> {
+        let mut told = 0;
+        loop {
+            told += self.drain(line, Nanos::ZERO)?;
+            if told >= count {
+                break;
+            }
+            match line.hear(deadline) {
+                Ok(()) => {}
+                Err(LineFault::Silent) => break,
+                Err(fault) => return Err(fault.into()),
+            }
+        }
+        let silent = || self.trouble.clone().unwrap_or(Fault::Line(LineFault::Silent));
+        if self.told.is_some() { Ok(self.velocity()) } else { Err(silent()) }
+    }
+
     /// What the start still waits for: the fault that it will be if it does not come.
     pub(crate) fn waits_for(&self) -> Option<Fault> {
         match self.known.is_braked {
-            None => Some(Fault::Line(LineFault::Silent)),
+            None => Some(Fault::Unheard),
             Some(true) => Some(Fault::Braked),
-            Some(false) => self.known.ring.unheard().map(Fault::Deaf),
+            Some(false) => {
+                let numb = self.known.numb(Nanos::ZERO).map(Fault::Numb);
+                numb.or_else(|| self.known.ring.unheard().map(Fault::Deaf))
+            }
         }
     }
 
     /// Whether the robot can go on at the time of this output.
     ///
     /// # Errors
-    /// It is braked, or some of its sonars have said nothing for too long.
+    /// It is braked, its positions leap, or it has not told something for too long.
     pub(crate) fn fault(&self, at: Nanos) -> Result<(), Fault> {
-        if self.known.is_braked == Some(true) {
+        let known = &self.known;
+        if known.is_braked == Some(true) {
             return Err(Fault::Braked);
         }
-        self.known.ring.deaf(at).map_or(Ok(()), |sonar| Err(Fault::Deaf(sonar)))
+        if known.odometer.leaps() {
+            return Err(Fault::Leaps);
+        }
+        if at.since(known.answered) > self.unanswered {
+            return Err(Fault::Unheard);
+        }
+        let silent = known.numb(at).map(Fault::Numb).or_else(|| known.ring.deaf(at).map(Fault::Deaf));
+        silent.map_or(Ok(()), Err)
     }
 
     /// Where it is.
@@ -169,25 +224,28 @@ impl Known {
     fn take(&mut self, packet: &Packet<'_>, at: Nanos) -> Result<bool, Fault> {
         match Report::read(packet).map_err(Fault::Unreadable)? {
             Report::Axis { axis: Axis::Translation, position, velocity, .. } => {
-                self.along = Some((position, velocity));
-            }
-            Report::Axis { axis: Axis::Rotation, time, .. } if self.time == Some(time) => return Err(Fault::Repeated),
-            Report::Axis { axis: Axis::Rotation, position, velocity, time } => {
-                self.time = Some(time);
-                if let Some((along, speed)) = self.along {
-                    self.odometer.take(along, position, &self.config);
-                    self.velocity = twist(speed, velocity, &self.config);
-                    return Ok(true);
+                if self.along.replace((position, velocity)).is_some() {
+                    return Err(Fault::Untold(Axis::Rotation));
                 }
+            }
+            Report::Axis { axis: Axis::Rotation, position, velocity, time } => {
+                let along = self.along.take();
+                if self.time.replace(time) == Some(time) {
+                    return Err(Fault::Repeated);
+                }
+                let (along, speed) = along.ok_or(Fault::Untold(Axis::Translation))?;
+                self.odometer.take(along, position, &self.config);
+                self.velocity = twist(speed, velocity, &self.config);
+                return Ok(true);
             }
             Report::Sonars(echoes) => {
                 for (sonar, counts) in echoes.each() {
                     self.ring.take(sonar, counts, at, self.odometer.pose);
                 }
             }
-            Report::Input { address, state } => self.feel(address, state),
+            Report::Input { address, state } => self.feel(address, state, at),
             Report::Status { battery, is_braked } => {
-                self.is_braked = Some(is_braked);
+                (self.is_braked, self.answered) = (Some(is_braked), at);
                 self.battery = Volts(f64::from(battery) / 100.0 + self.config.battery_offset);
             }
             Report::Other => {}
@@ -196,14 +254,25 @@ impl Known {
     }
 
     /// A digital input says this.
-    fn feel(&mut self, address: u8, state: u16) {
+    fn feel(&mut self, address: u8, state: u16, at: Nanos) {
         match (address.wrapping_sub(self.config.bumper_address), self.config.bumpers_are_bits) {
-            (0, true) => self.switches = u32::from(state & 0b11),
+            (0, true) => (self.switches, self.felt) = (u32::from(state & 0b11), [Some(at); 2]),
             (bumper @ (0 | 1), false) => {
                 let bit = 1 << bumper;
                 self.switches = if state == 0 { self.switches & !bit } else { self.switches | bit };
+                if let Some(felt) = self.felt.get_mut(usize::from(bumper)) {
+                    *felt = Some(at);
+                }
             }
             _ => {}
         }
+    }
+
+    /// The first bumper that has said nothing for too long, if that matters.
+    fn numb(&self, at: Nanos) -> Option<u8> {
+        let limit = Nanos(self.config.inputs.saturating_mul(1_000_000));
+        let is_old = |felt: &Option<Nanos>| felt.is_none_or(|felt| at.since(felt) > limit);
+        let numb = (0..).zip(&self.felt).find(|(_, felt)| is_old(felt)).map(|(bumper, _)| bumper);
+        numb.filter(|_| limit > Nanos::ZERO)
     }
 }

@@ -7,6 +7,8 @@ use crate::config::Config;
 
 /// No robot goes further than this between two reports, in metres; a number that says so is another one's.
 const LEAP: f64 = 1.0;
+/// After so many leaps more than steps its positions mean nothing.
+const LEAPS: u8 = 4;
 
 /// The commands for this input, translation first, no side above the fastest: both axes are slowed down alike, so that
 /// the robot stays on its curve. An input that is no number stops the robot.
@@ -37,6 +39,7 @@ pub(crate) fn commands(input: &Twist, config: &Config) -> [Command; 2] {
 pub(crate) struct Odometer {
     last: Option<(i32, i32)>,
     pub(crate) pose: Pose,
+    leaps: u8,
 }
 
 impl Odometer {
@@ -47,8 +50,35 @@ impl Odometer {
         let turn = f64::from(round.wrapping_sub(was_round)) / config.units_per_radian;
         if way.abs() <= LEAP && turn.abs() <= std::f64::consts::PI {
             self.pose = self.pose.moved(Meters(way), Radians(turn));
+            self.leaps = self.leaps.saturating_sub(1);
+        } else {
+            self.leaps = self.leaps.saturating_add(1);
         }
     }
+
+    /// Returns `true` if the positions leap again and again, so that they mean nothing.
+    pub(crate) fn leaps(&self) -> bool {
+        self.leaps > LEAPS
+    }
+}
+
+/// The speeds of the right and the left side of a robot that moves like this, in m/s.
+pub(crate) fn sides(motion: &Twist, config: &Config) -> [f64; 2] {
+    let across = motion.omega.0 * (config.wheel_base / 2.0);
+    [motion.v.0 + across, motion.v.0 - across]
+}
+
+/// The speeds of both sides that these commands ask for, in m/s.
+pub(crate) fn asked(commands: &[Command; 2], config: &Config) -> [f64; 2] {
+    let velocity = |command: &Command| if let Command::Move(_, motion) = command { motion.velocity } else { 0 };
+    let [along, round] = commands;
+    sides(&twist(velocity(along), velocity(round), config), config)
+}
+
+/// How hard both sides are told to brake where they go the same way and where they go against each other, in m/s².
+pub(crate) fn brakes(config: &Config) -> [f64; 2] {
+    let turning = f64::from(config.rotation_acceleration) / config.units_per_radian;
+    [config.acceleration, turning * (config.wheel_base / 2.0)]
 }
 
 /// The speed of the robot whose axes have these velocities.
@@ -115,5 +145,18 @@ mod tests {
         // A leap is none, and what follows counts from where it ended.
         assert_eq!(at(9000, 0), [500, -500, -1571]);
         assert_eq!(at(9100, 0), [500, -600, -1571]);
+    }
+
+    #[test]
+    fn leaps_again_and_again_mean_nothing() {
+        let config = Config { units_per_metre: 1000.0, ..config() };
+        // Of so many reports each is 3 m from the one before, and then none is.
+        let leaps = |leaps: i32, steps: i32| {
+            let mut odometer = Odometer::default();
+            let positions = (0..=leaps).map(|leap| leap * 3000).chain((1..=steps).map(|step| leaps * 3000 + step));
+            positions.for_each(|position| odometer.take(position, 0, &config));
+            odometer.leaps()
+        };
+        assert_eq!([leaps(4, 0), leaps(5, 0), leaps(5, 1), leaps(7, 2)], [false, true, false, true]);
     }
 }

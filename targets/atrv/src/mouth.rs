@@ -7,7 +7,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
-use mdle_serial::Line;
+use mdle_serial::{Line, Moment};
 
 use crate::fault::Fault;
 use crate::frame::Written;
@@ -20,6 +20,8 @@ const STOPPING: Duration = Duration::from_millis(100);
 pub(crate) struct Mouth {
     shared: Arc<Shared>,
     watching: Option<JoinHandle<()>>,
+    /// After how long without a motion the robot has been stopped.
+    limit: Option<Duration>,
 }
 
 #[derive(Debug)]
@@ -33,7 +35,7 @@ struct Shared {
 #[derive(Debug)]
 struct Watch {
     /// When the robot was told to move last; `None` while it need not be.
-    told: Option<Instant>,
+    told: Option<Moment>,
     /// Whether it has stopped the robot.
     has_bitten: bool,
     is_over: bool,
@@ -50,6 +52,7 @@ impl Mouth {
     /// On this line; with a limit, its watchdog says `stop` when after a motion no other one follows for so long.
     pub(crate) fn new(line: Line, watchdog: Option<(Duration, [Written; 2])>) -> Self {
         let watch = Watch { told: None, has_bitten: false, is_over: false };
+        let limit = watchdog.as_ref().map(|(limit, _)| *limit);
         let shared = Arc::new(Shared { line, watch: Mutex::new(watch), over: Condvar::new() });
         let watching = watchdog.and_then(|(limit, stop)| {
             let shared = Arc::clone(&shared);
@@ -57,7 +60,7 @@ impl Mouth {
             // Where there are no more threads the controller has to do.
             thread.spawn(move || keep_watch(&shared, limit, &stop)).ok()
         });
-        Self { shared, watching }
+        Self { shared, watching, limit }
     }
 
     /// The line, to listen to.
@@ -81,10 +84,12 @@ impl Mouth {
     /// The same, or the watchdog has stopped the robot meanwhile.
     pub(crate) fn say_motion(&self, frame: &Written, deadline: Instant) -> Result<(), Fault> {
         let mut watch = self.shared.watch();
-        if watch.has_bitten {
+        // Where this program, or the computer, was stopped, so was the watchdog.
+        let is_late = watch.told.zip(self.limit).is_some_and(|(told, limit)| told.elapsed() >= limit);
+        if watch.has_bitten || is_late {
             return Err(Fault::Overslept);
         }
-        watch.told = Some(Instant::now());
+        watch.told = Some(Moment::now());
         Ok(self.shared.line.write(frame.bytes(), deadline)?)
     }
 
@@ -110,7 +115,7 @@ impl Drop for Mouth {
 fn keep_watch(shared: &Shared, limit: Duration, stop: &[Written; 2]) {
     let mut watch = shared.watch();
     while !watch.is_over {
-        let silent = watch.told.map(|told| told.elapsed());
+        let silent = watch.told.map(Moment::elapsed);
         if silent.is_some_and(|silent| silent >= limit) {
             (watch.told, watch.has_bitten) = (None, true);
             let deadline = Instant::now() + STOPPING;

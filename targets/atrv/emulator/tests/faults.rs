@@ -1,4 +1,4 @@
-//! What the driver makes of each thing that can go wrong on command.
+//! What the driver makes of each thing that can go wrong on command, and what the robot received last.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use mdle_atrv::{Atrv, Clock, Config, Configured, Fault, Garbled, LineFault, Output};
 use mdle_atrv_emulator::atrv::{Atrv as Emulated, step};
-use mdle_emulator::{Faulty, Pace, Port, serve};
+use mdle_emulator::{At, Faulty, Order, Pace, Port, serve};
 use mdle_host::StopRequest;
 use mdle_runtime::capability::{Bumpers, Odometry, SonarRing};
 use mdle_runtime::{MetersPerSecond, Robot as _, SonarId, Twist};
@@ -19,36 +19,81 @@ const PACE: Pace = Pace::Lockstep(PERIOD);
 const ROOM: &str =
     "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[4, -3], [4, 3], [-3, 3], [-3, -3], [4, -3]]";
 
-/// What comes of this fault, three seconds after the robot was switched on, while it drives ahead for five: its last output.
-fn driven(fault: &str) -> Result<Output, Fault> {
+/// What became of a run.
+struct Ran {
+    /// Its last output, or why it ended.
+    output: Result<Output, Fault>,
+    /// What its stop came to.
+    stop: Result<(), Fault>,
+    robot: Faulty<Emulated>,
+}
+
+/// Returns what becomes of these faults while a driver asks for `speed`, in m/s, for fifty turns, and then stops.
+fn ran(faults: &[&str], speed: fn(turn: u32) -> f64) -> Ran {
     let world = World::parse("room", ROOM).unwrap();
     let make = Make { body: Body::Atrv, without: Vec::new(), seed: None };
     let body = Simulated::with(&make, &world, world.start, step(PACE)).unwrap();
-    let faults = [format!("{fault}@3").parse().unwrap()];
-    let mut robot = Faulty::new(Emulated::new(body, step(PACE), false).unwrap(), &faults).unwrap();
+    let at: Vec<At> = faults.iter().map(|fault| fault.parse().unwrap()).collect();
+    let mut robot = Faulty::new(Emulated::new(body, step(PACE), false).unwrap(), &at).unwrap();
     let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
-    let (device, is_closed) = (port.path().to_str().unwrap().to_owned(), fault == "close");
-    thread::scope(|scope| {
+    let device = port.path().to_str().unwrap().to_owned();
+    let (output, stop) = thread::scope(|scope| {
         let serving = scope.spawn(|| {
             let port = port;
             let served = serve(&mut robot, &port, PACE, &|| !over.load(Ordering::Relaxed));
-            assert_eq!(served.is_err(), is_closed, "{served:?}");
+            assert_eq!(served.is_err(), faults.iter().any(|fault| fault.starts_with("close")), "{served:?}");
         });
         // What is not going to come is waited for longer than any machine takes for what comes.
         let config = Config { answer: 3000, ..Configured::read(None, Some(&device)).unwrap().config };
         let mut driver = Atrv::connect(config, Clock::Stepped(PERIOD), PERIOD, &StopRequest::default()).unwrap();
-        let go = Twist { v: MetersPerSecond(0.2), ..Twist::default() };
-        let said = (0..50).try_fold(None, |_, _| driver.exchange(&go).map(Some)).map(Option::unwrap);
+        let input = |turn| Twist { v: MetersPerSecond(speed(turn)), ..Twist::default() };
+        let output = (0..50).try_fold(None, |_, turn| driver.exchange(&input(turn)).map(Some)).map(Option::unwrap);
         // As the host does, whatever has come.
-        let _ = driver.stop();
+        let stop = driver.stop();
         over.store(true, Ordering::Relaxed);
         serving.join().unwrap();
-        said
+        (output, stop)
+    });
+    Ran { output, stop, robot }
+}
+
+/// When faults have begun, by the time of the robot's world.
+const BEGUN: Duration = Duration::from_secs(3);
+
+/// Returns why a driver refuses a robot that has this fault from the beginning.
+fn refused(fault: &str) -> String {
+    let world = World::parse("room", ROOM).unwrap();
+    let make = Make { body: Body::Atrv, without: Vec::new(), seed: None };
+    let body = Simulated::with(&make, &world, world.start, step(PACE)).unwrap();
+    let mut robot = Faulty::new(Emulated::new(body, step(PACE), false).unwrap(), &[fault.parse().unwrap()]).unwrap();
+    let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
+    thread::scope(|scope| {
+        let serving = scope.spawn(|| serve(&mut robot, &port, PACE, &|| !over.load(Ordering::Relaxed)));
+        let config = Config { answer: 3000, ..Configured::read(None, port.path().to_str()).unwrap().config };
+        let refused = Atrv::connect(config, Clock::Stepped(PERIOD), PERIOD, &StopRequest::default()).map(drop);
+        over.store(true, Ordering::Relaxed);
+        serving.join().unwrap().unwrap();
+        sentence(refused)
     })
+}
+
+/// Returns the last output of a robot that drives ahead and has this fault after three seconds.
+fn driven(fault: &str) -> Result<Output, Fault> {
+    ran(&[&format!("{fault}@3")], ahead).output
 }
 
 fn fails(fault: &str) -> Fault {
     driven(fault).expect_err(fault)
+}
+
+/// Twenty centimetres a second.
+fn ahead(_: u32) -> f64 {
+    0.2
+}
+
+/// The same until the fault has begun, and no speed after it.
+fn ahead_then_none(turn: u32) -> f64 {
+    if turn < 30 { 0.2 } else { 0.0 }
 }
 
 #[test]
@@ -63,8 +108,8 @@ fn what_can_be_borne_is() {
 #[test]
 fn what_cannot_be_borne_is_told() {
     assert!(matches!(fails("check"), Fault::Garbled(Garbled::Check(..))));
-    // To tell where it is takes two frames, one behind the other.
-    assert_eq!(fails("lose"), Fault::Line(LineFault::Silent));
+    // To tell where it is takes two frames.
+    assert!(matches!(fails("lose"), Fault::Line(LineFault::Silent) | Fault::Untold(_)));
     assert_eq!(fails("silence"), Fault::Line(LineFault::Silent));
     assert_eq!(fails("close"), Fault::Line(LineFault::Closed));
 }
@@ -82,4 +127,79 @@ fn what_its_body_suffers_is_felt() {
     assert!((-170.0..-20.0).contains(&turned), "{turned}");
     // Whoever drives on would do so without knowing.
     assert_eq!(fails("emergency"), Fault::Braked);
+}
+
+/// Returns the sentence of a fault.
+fn sentence(fault: Result<(), Fault>) -> String {
+    fault.expect_err("a fault").to_string()
+}
+
+#[test]
+fn a_robot_that_keeps_moving_is_a_fault() {
+    // It does what it is told as long as that is what it does anyway.
+    let Ran { output, stop, robot } = ran(&["runaway@3"], ahead);
+    assert!(output.is_ok() && robot.robot().velocity().v.0 > 0.19, "{output:?}");
+    assert!(sentence(stop).contains("still moved"));
+    assert_eq!(robot.robot().orders().last().unwrap().1, Order::Brake);
+    // Told to stand, it has a second and a bit.
+    let Ran { output, stop, robot } = ran(&["runaway@3"], ahead_then_none);
+    assert!(sentence(output.map(drop)).contains("does not obey"));
+    assert!(sentence(stop).contains("still moved"));
+    let first = robot.robot().orders().iter().find(|(age, order)| *age > BEGUN && *order == Order::Stand).unwrap().0;
+    let last = robot.robot().orders().last().unwrap().0;
+    assert!(last - first < Duration::from_millis(2500), "{first:?} {last:?}");
+}
+
+#[test]
+fn a_robot_that_receives_nothing_is_a_fault() {
+    // The controller stops it after a second in which nothing came.
+    let Ran { output, stop, robot } = ran(&["deaf@3"], ahead);
+    assert!(sentence(output.map(drop)).contains("does not receive"));
+    assert_eq!((stop, robot.robot().velocity().v.0), (Ok(()), 0.0));
+    // One that does not stop by itself.
+    let Ran { output, stop, robot } = ran(&["deaf@3", "runaway@3"], ahead);
+    assert!(sentence(output.map(drop)).contains("does not receive"));
+    assert!(sentence(stop).contains("still moved"));
+    assert_eq!(robot.robot().orders().last().unwrap().1, Order::Drive);
+}
+
+#[test]
+fn each_kind_of_report_that_stops_is_a_fault() {
+    for (fault, words) in [
+        ("no-bumpers", "bumper"),
+        ("no-translation", "how far it has gone"),
+        ("no-rotation", "how far it has turned"),
+        ("no-status", "does not receive"),
+        ("leap", "leap"),
+    ] {
+        let Ran { output, stop, robot } = ran(&[&format!("{fault}@3")], ahead);
+        let sentence = sentence(output.map(drop));
+        assert!(sentence.contains(words), "{fault}: {sentence}");
+        // Without one of both it does not tell that it stands.
+        let tells = !["no-translation", "no-rotation"].contains(&fault);
+        assert_eq!(stop.is_ok(), tells, "{fault}: {stop:?}");
+        assert_eq!((robot.robot().is_braked(), robot.robot().velocity().v.0), (true, 0.0), "{fault}");
+    }
+}
+
+#[test]
+fn each_kind_of_report_is_waited_for_at_the_start() {
+    for (fault, words) in [
+        ("no-bumpers", "bumper"),
+        ("no-translation", "how far it has gone"),
+        ("no-rotation", "how far it has turned"),
+        ("no-status", "does not receive"),
+    ] {
+        let refused = refused(fault);
+        assert!(refused.contains(words), "{fault}: {refused}");
+    }
+}
+
+#[test]
+fn a_robot_that_falls_silent_stands_before_it_is_braked() {
+    let Ran { stop, robot, .. } = ran(&["silence@3"], ahead);
+    assert_eq!(stop, Err(Fault::Line(LineFault::Silent)));
+    assert_eq!((robot.robot().is_braked(), robot.robot().velocity().v.0), (true, 0.0));
+    let orders: Vec<Order> = robot.robot().orders().iter().map(|(_, order)| order).collect();
+    assert!(orders.ends_with(&[[Order::Stand; 8].as_slice(), &[Order::Brake]].concat()), "{orders:?}");
 }
