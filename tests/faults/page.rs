@@ -3,6 +3,8 @@
 use std::fmt::Write;
 use std::process::Output;
 
+use mdle_emulator::Order;
+
 use crate::watched::Way;
 
 /// What came of something.
@@ -12,11 +14,13 @@ pub(crate) struct Row {
     /// `None` when it was killed.
     pub(crate) status: Option<i32>,
     pub(crate) way: Way,
+    /// What the robot received last, if anything.
+    pub(crate) order: Option<Order>,
 }
 
 impl Row {
-    /// The executable has ended like this, and the body has gone that way since.
-    pub(crate) fn of(output: Output, way: Way) -> Self {
+    /// The executable has ended like this after this last order, and the body has gone that way since.
+    pub(crate) fn of(output: Output, way: Way, order: Option<Order>) -> Self {
         let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
         let said = match err.strip_prefix("error: ") {
             Some(error) => error.trim_end().to_owned(),
@@ -25,7 +29,7 @@ impl Row {
         // Which terminal it was chance decides.
         let said = said.split(' ').map(|word| if word.starts_with("/dev/pts/") { "/dev/pts/N:" } else { word });
         let said = said.collect::<Vec<_>>().join(" ");
-        Self { said, status: output.status.code(), way }
+        Self { said, status: output.status.code(), way, order }
     }
 }
 
@@ -34,13 +38,15 @@ pub(crate) fn text(plan: &str, robots: &[(&str, Vec<(String, Row)>)]) -> String 
     let mut text = format!(
         "# Faults\n\n\
         Whatever goes wrong, the robot is stopped, or its own watchdog is left to do it; the program says one sentence and \
-        ends with status 3, within a second and a half. What can be borne is borne. A plan never goes on with what its \
-        sensors said a while ago.\n\n\
+        ends with status 3, within a second and a half of the last thing that was in order. It takes longer to notice that \
+        a robot hears nothing while it speaks, on an ATRV two questions for its brake, which are two seconds and a half, and \
+        that one of its bumpers is silent, a second; and a robot that is told to stand and does not is given time to, at most \
+        five seconds. What can be borne is borne. A plan never goes on with what its sensors said a while ago.\n\n\
         The tables are written by a test, `tests/faults`: it runs the executable of this plan on the emulated robots.\n\n\
         ```mdle\n{plan}```\n\n\
         The robot drives at 20 cm/s when something goes wrong, 2 m before a wall. \"Moves on\" is how far its body then goes \
-        in its world, and \"for\" how long that takes, from the last good answer until it stands for good. What is borne \
-        ends as the plan says.\n\n\
+        in its world, and \"for\" how long that takes, from the last good answer until it stands for good. \"Told last\" is the \
+        last order that reached the robot. What is borne ends as the plan says.\n\n\
         The emulators are in lockstep, so that the figures are the same each time: a command lets 100 ms pass. While no \
         answer comes, the robot drives on for as long as a driver waits by its configuration, 300 ms. Once the program has \
         ended, it drives on until it stops itself: a Scout by its watchdog, which was set to a second; an ATRV by that of \
@@ -49,13 +55,24 @@ pub(crate) fn text(plan: &str, robots: &[(&str, Vec<(String, Row)>)]) -> String 
         At another speed the way is another.\n"
     );
     for (robot, rows) in robots {
-        write!(text, "\n## {robot}\n\n| what happens | what the program says | status | moves on | for |\n").unwrap();
-        writeln!(text, "|---|---|---|---|---|").unwrap();
-        for (what, Row { said, status, way }) in rows {
+        write!(
+            text,
+            "\n## {robot}\n\n| what happens | what the program says | status | told last | moves on | for |\n"
+        )
+        .unwrap();
+        writeln!(text, "|---|---|---|---|---|---|").unwrap();
+        for (what, Row { said, status, way, order }) in rows {
             let said = if said.is_empty() { "nothing" } else { said };
             let status = status.map_or("killed".to_owned(), |status| status.to_string());
+            let order = match order {
+                None => "nothing",
+                Some(Order::Drive) => "to drive",
+                Some(Order::Stand) => "to stand",
+                Some(Order::LetGo) => "to let go",
+                Some(Order::Brake) => "to brake",
+            };
             let (centimetres, seconds) = ((way.metres * 100.0).round(), way.time.as_secs_f64());
-            writeln!(text, "| {what} | {said} | {status} | {centimetres} cm | {seconds:.1} s |").unwrap();
+            writeln!(text, "| {what} | {said} | {status} | {order} | {centimetres} cm | {seconds:.1} s |").unwrap();
         }
     }
     text

@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::process::Child;
 use std::time::{Duration, Instant};
 
-use mdle_emulator::{Ailment, Emulated, Faulty};
+use mdle_emulator::{Ailment, Emulated, Faulty, Order, Orders};
 use mdle_runtime::Pose;
 
 use crate::PERIOD;
@@ -51,6 +51,8 @@ pub(crate) struct Way {
 pub(crate) struct Nature<R> {
     /// Where it really is.
     pub(crate) pose: fn(&R) -> Pose,
+    /// What has reached it.
+    pub(crate) orders: fn(&R) -> &Orders,
     /// What one of its frames becomes that answers something else.
     pub(crate) wrong: fn(&[u8]) -> Vec<u8>,
     /// For how many periods more a driver waits that has no answer, while the world of an emulator in lockstep stands.
@@ -95,6 +97,11 @@ impl<'a, R: Emulated> Watched<'a, R> {
             metres: way.metres + moved(two),
             time: two[1].0 - since,
         })
+    }
+
+    /// What it received last.
+    pub(crate) fn order(&self) -> Option<Order> {
+        (self.nature.orders)(self.robot.robot()).last().map(|(_, order)| order)
     }
 
     fn stands(&self) -> bool {
