@@ -54,6 +54,12 @@ impl<R: Emulated> Faulty<R> {
         &self.robot
     }
 
+    /// Hands the robot back.
+    #[must_use]
+    pub fn into_robot(self) -> R {
+        self.robot
+    }
+
     /// Whether the line is closed.
     #[must_use]
     pub fn is_closed(&self) -> bool {

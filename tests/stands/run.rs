@@ -1,0 +1,173 @@
+//! A run of the executable on an emulated robot, over a pseudo-terminal or TCP.
+
+use std::fs::{self, File};
+use std::io::{Read, Write};
+use std::net::TcpListener;
+use std::os::unix::fs::OpenOptionsExt as _;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use mdle_atrv_emulator::atrv::{Atrv, step};
+use mdle_emulator::{At, Emulated, Faulty, Order, Orders, Pace, Port, serve};
+use mdle_scout_emulator::scout::Scout;
+use mdle_sim::{Body, Make, Simulated, World};
+use mdle_tests::executable::{folder, run_mdlec};
+use rustix::fs::OFlags;
+
+/// It drives, stands for a while, and is over.
+const PLAN: &str = "{ Drive (bumper OR wait 6s) (Atom (wait 4s) (go 20 0)) (Atom (null) stop) }\n";
+const ROOM: &str =
+    "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[4, -2], [4, 2], [-2, 2], [-2, -2], [4, -2]]";
+/// When faults begin, by the time of the robot's world: it drives by then, and for two seconds more.
+pub(crate) const BEGINS: Duration = Duration::from_millis(3500);
+/// No machine is slower than this.
+const SLOW: Duration = Duration::from_secs(30);
+
+/// An emulated robot with what a test asks of it.
+pub(crate) trait Robot: Emulated + Send + Sized {
+    const TARGET: &'static str;
+
+    fn new() -> Self;
+    fn orders(&self) -> &Orders;
+    fn stands(&self) -> bool;
+}
+
+fn body(body: Body, step: Duration) -> Simulated {
+    let world = World::parse("room", ROOM).unwrap();
+    Simulated::with(&Make { body, without: Vec::new(), seed: None }, &world, world.start, step).unwrap()
+}
+
+impl Robot for Scout {
+    const TARGET: &'static str = "scout";
+
+    fn new() -> Self {
+        Self::new(body(Body::Scout, Pace::Real.step())).unwrap()
+    }
+
+    fn orders(&self) -> &Orders {
+        self.orders()
+    }
+
+    fn stands(&self) -> bool {
+        self.stands()
+    }
+}
+
+impl Robot for Atrv {
+    const TARGET: &'static str = "atrv";
+
+    fn new() -> Self {
+        Self::new(body(Body::Atrv, step(Pace::Real)), step(Pace::Real), false).unwrap()
+    }
+
+    fn orders(&self) -> &Orders {
+        self.orders()
+    }
+
+    fn stands(&self) -> bool {
+        self.velocity().v.0 == 0.0
+    }
+}
+
+/// The executable of the plan for this robot, built once.
+pub(crate) fn executable<R: Robot>() -> &'static Path {
+    static BUILT: [OnceLock<PathBuf>; 2] = [OnceLock::new(), OnceLock::new()];
+    BUILT[usize::from(R::TARGET == "atrv")].get_or_init(|| {
+        let folder = folder(&format!("stands_on_{}", R::TARGET));
+        fs::write(folder.join("drive.mdle"), PLAN).unwrap();
+        let output = run_mdlec(&folder, &["drive.mdle", "--target", R::TARGET]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        folder.join("drive")
+    })
+}
+
+/// What became of a run.
+pub(crate) struct Ran<R> {
+    /// What the program said at the end.
+    said: String,
+    status: Option<i32>,
+    /// How long after the beginning of the fault it had ended.
+    took: Duration,
+    pub(crate) robot: R,
+}
+
+impl<R: Robot> Ran<R> {
+    /// The last orders that the robot received, repeated ones once.
+    fn last_orders(&self) -> Vec<Order> {
+        let mut orders: Vec<Order> = self.robot.orders().iter().map(|(_, order)| order).collect();
+        orders.dedup();
+        orders
+    }
+
+    /// Holds the run to an end with this status and these words, of a robot that received these orders last.
+    pub(crate) fn assert(&self, status: i32, words: &[&str], orders: &[Order]) {
+        println!("{} s after the fault: {}", self.took.as_secs_f64(), self.said);
+        assert_eq!(self.status, Some(status), "{}", self.said);
+        assert!(words.iter().all(|word| self.said.contains(word)), "{}", self.said);
+        assert!(self.last_orders().ends_with(orders), "{:?}", self.last_orders());
+        assert!(self.took < SLOW, "{:?}", self.took);
+    }
+}
+
+/// Runs the executable on a robot with these faults. `meanwhile` has the running program at hand, and the time since the robot
+/// was switched on.
+pub(crate) fn ran<R: Robot>(
+    faults: &[&str],
+    arguments: &[&str],
+    is_tcp: bool,
+    meanwhile: impl FnOnce(&Child, Instant),
+) -> Ran<R> {
+    let at = |fault: &&str| format!("{fault}@{}", BEGINS.as_secs_f64()).parse().unwrap();
+    let faults: Vec<At> = faults.iter().map(at).collect();
+    let mut robot = Faulty::new(R::new(), &faults).unwrap();
+    let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
+    let executable = executable::<R>();
+    let device = if is_tcp { bridged(port.path()) } else { port.path().to_str().unwrap().to_owned() };
+    let (output, took) = thread::scope(|scope| {
+        let begun = Instant::now();
+        let serving = scope.spawn(|| serve(&mut robot, &port, Pace::Real, &|| !over.load(Ordering::Relaxed)));
+        let mut command = Command::new(executable);
+        let command = command.arg("--device").arg(device).args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let child = command.spawn().unwrap();
+        meanwhile(&child, begun);
+        let output = child.wait_with_output().unwrap();
+        let took = begun.elapsed().saturating_sub(BEGINS);
+        // What has been sent is to arrive.
+        thread::sleep(Duration::from_millis(200));
+        over.store(true, Ordering::Relaxed);
+        serving.join().unwrap().unwrap();
+        (output, took)
+    });
+    let Output { status, stdout, stderr } = output;
+    let said = String::from_utf8(stdout).unwrap() + &String::from_utf8(stderr).unwrap();
+    Ran { said, status: status.code(), took, robot: robot.into_robot() }
+}
+
+/// An address that leads to this device over TCP, for one connection.
+fn bridged(device: &Path) -> String {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listener.local_addr().unwrap();
+    let alone = OFlags::NOCTTY.bits() as i32;
+    let device = File::options().read(true).write(true).custom_flags(alone).open(device).unwrap();
+    thread::spawn(move || {
+        let (stream, _) = listener.accept().unwrap();
+        let (from, to) = (device.try_clone().unwrap(), stream.try_clone().unwrap());
+        thread::spawn(move || pumped(from, to));
+        pumped(stream, device);
+    });
+    format!("tcp:{address}")
+}
+
+/// Hands on bytes until either end is closed.
+fn pumped(mut from: impl Read, mut to: impl Write) {
+    let mut chunk = [0; 256];
+    while let Ok(count @ 1..) = from.read(&mut chunk) {
+        if to.write_all(&chunk[..count]).is_err() {
+            return;
+        }
+    }
+}
