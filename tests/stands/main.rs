@@ -14,10 +14,10 @@ use mdle_emulator::{Order, Orders};
 use mdle_scout_emulator::scout::Scout;
 use rustix::process::{Pid, Signal, kill_process};
 
-use run::{BEGINS, Ran, Robot, executable, ran};
+use run::{BEGINS, Ran, Robot, Way, executable, ran};
 
 fn alone<R: Robot>(faults: &[&str]) -> Ran<R> {
-    ran(faults, &[], false, |_, _| {})
+    ran(faults, &[], Way::Terminal, |_, _| {})
 }
 
 #[test]
@@ -34,7 +34,7 @@ fn an_atrv_that_receives_nothing_ends_the_plan() {
     let ran_out = alone::<Atrv>(&["deaf"]);
     ran_out.assert(3, &["a fault stopped the robot", "does not receive"], &[Order::Drive]);
     assert!(ran_out.robot.stands());
-    let drives_on = ran::<Atrv>(&["deaf", "runaway"], &[], true, |_, _| {});
+    let drives_on = ran::<Atrv>(&["deaf", "runaway"], &[], Way::Tcp, |_, _| {});
     drives_on.assert(3, &["may not have stopped", "does not"], &[Order::Drive]);
     assert!(!drives_on.robot.stands());
 }
@@ -59,8 +59,8 @@ fn a_robot_that_does_not_obey_ends_the_plan() {
 fn a_stop_without_rest_is_told() {
     // The limit comes while it still does what it is told.
     let arguments = ["--timeout", "3.5"];
-    let scout = ran::<Scout>(&["runaway"], &arguments, false, |_, _| {});
-    let atrv = ran::<Atrv>(&["runaway"], &arguments, false, |_, _| {});
+    let scout = ran::<Scout>(&["runaway"], &arguments, Way::Terminal, |_, _| {});
+    let atrv = ran::<Atrv>(&["runaway"], &arguments, Way::Terminal, |_, _| {});
     let said = ["--timeout", "still moved", "may not have stopped"];
     scout.assert(3, &said, &[Order::Drive, Order::Stand, Order::LetGo]);
     atrv.assert(3, &said, &[Order::Drive, Order::Stand, Order::Brake]);
@@ -93,7 +93,7 @@ fn a_scout_that_answers_late_ends_as_the_plan_says() {
     // Of the 400 ms that an answer may take, a busy machine has 200.
     fs::write(&file, "answer = 400\nwatchdog = 5\n").unwrap();
     let arguments = ["--period", "0.5", "--config", file.to_str().unwrap()];
-    let ran = ran::<Scout>(&["late=200"], &arguments, true, |_, _| {});
+    let ran = ran::<Scout>(&["late=200"], &arguments, Way::Tcp, |_, _| {});
     ran.assert(0, &["plan over"], &[Order::Drive, Order::Stand, Order::LetGo]);
     assert!(ran.robot.stands());
 }
@@ -106,6 +106,20 @@ fn an_atrv_that_falls_silent_stands_before_it_is_braked() {
     let drove = orders.iter().rposition(|(_, order)| *order == Order::Drive).unwrap();
     let (first, last) = (orders[drove + 1], orders[orders.len() - 1]);
     assert!(last.0 - first.0 >= Duration::from_millis(700), "{first:?} {last:?}");
+}
+
+#[test]
+fn a_robot_that_only_receives_stands_before_it_is_let_go() {
+    let atrv = ran::<Atrv>(&[], &[], Way::HalfClosed, |_, _| {});
+    atrv.assert(3, &["may not have stopped", "cut"], &[Order::Drive, Order::Stand, Order::Brake]);
+    let scout = ran::<Scout>(&[], &[], Way::HalfClosed, |_, _| {});
+    scout.assert(3, &["may not have stopped", "cut"], &[Order::Drive, Order::Stand, Order::LetGo]);
+    for orders in [atrv.robot.orders(), scout.robot.orders()] {
+        let orders: Vec<_> = orders.iter().collect();
+        let drove = orders.iter().rposition(|(_, order)| *order == Order::Drive).unwrap();
+        let (first, last) = (orders[drove + 1], orders[orders.len() - 1]);
+        assert!(last.0 - first.0 >= Duration::from_millis(400), "{first:?} {last:?}");
+    }
 }
 
 #[test]
@@ -125,9 +139,9 @@ fn suspended(child: &Child, begun: Instant) {
 
 #[test]
 fn a_robot_is_not_driven_off_after_a_suspension() {
-    let scout = ran::<Scout>(&[], &[], false, suspended);
+    let scout = ran::<Scout>(&[], &[], Way::Terminal, suspended);
     scout.assert(3, &["a fault stopped the robot"], &[Order::Drive, Order::Stand, Order::LetGo]);
-    let atrv = ran::<Atrv>(&[], &[], false, suspended);
+    let atrv = ran::<Atrv>(&[], &[], Way::Terminal, suspended);
     atrv.assert(3, &["a fault stopped the robot"], &[Order::Drive, Order::Stand, Order::Brake]);
     // No order to drive came after the pause.
     let drove = |orders: &Orders| orders.iter().rfind(|(_, order)| *order == Order::Drive).unwrap().0;

@@ -2,7 +2,7 @@
 
 use std::fs::{self, File};
 use std::io::{Read, Write};
-use std::net::TcpListener;
+use std::net::{Shutdown, TcpListener};
 use std::os::unix::fs::OpenOptionsExt as _;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
@@ -118,7 +118,7 @@ impl<R: Robot> Ran<R> {
 pub(crate) fn ran<R: Robot>(
     faults: &[&str],
     arguments: &[&str],
-    is_tcp: bool,
+    way: Way,
     meanwhile: impl FnOnce(&Child, Instant),
 ) -> Ran<R> {
     let at = |fault: &&str| format!("{fault}@{}", BEGINS.as_secs_f64()).parse().unwrap();
@@ -126,7 +126,10 @@ pub(crate) fn ran<R: Robot>(
     let mut robot = Faulty::new(R::new(), &faults).unwrap();
     let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
     let executable = executable::<R>();
-    let device = if is_tcp { bridged(port.path()) } else { port.path().to_str().unwrap().to_owned() };
+    let device = match way {
+        Way::Terminal => port.path().to_str().unwrap().to_owned(),
+        Way::Tcp | Way::HalfClosed => bridged(port.path(), way),
+    };
     let (output, took) = thread::scope(|scope| {
         let begun = Instant::now();
         let serving = scope.spawn(|| serve(&mut robot, &port, Pace::Real, &|| !over.load(Ordering::Relaxed)));
@@ -147,8 +150,19 @@ pub(crate) fn ran<R: Robot>(
     Ran { said, status: status.code(), took, robot: robot.into_robot() }
 }
 
+/// How the program is connected to the robot.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Way {
+    /// By a pseudo-terminal.
+    Terminal,
+    /// Over TCP.
+    Tcp,
+    /// Over TCP, of which the robot's end is shut down when faults begin: it still receives.
+    HalfClosed,
+}
+
 /// An address that leads to this device over TCP, for one connection.
-fn bridged(device: &Path) -> String {
+fn bridged(device: &Path, way: Way) -> String {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let address = listener.local_addr().unwrap();
     let alone = OFlags::NOCTTY.bits() as i32;
@@ -156,17 +170,22 @@ fn bridged(device: &Path) -> String {
     thread::spawn(move || {
         let (stream, _) = listener.accept().unwrap();
         let (from, to) = (device.try_clone().unwrap(), stream.try_clone().unwrap());
-        thread::spawn(move || pumped(from, to));
-        pumped(stream, device);
+        let limit = if way == Way::HalfClosed { BEGINS } else { Duration::MAX };
+        thread::spawn(move || {
+            pumped(from, &to, limit);
+            // Nobody is there any more if the program has ended.
+            let _ = to.shutdown(Shutdown::Write);
+        });
+        pumped(stream, device, Duration::MAX);
     });
     format!("tcp:{address}")
 }
 
-/// Hands on bytes until either end is closed.
-fn pumped(mut from: impl Read, mut to: impl Write) {
-    let mut chunk = [0; 256];
+/// Hands on bytes until either end is closed, or for so long.
+fn pumped(mut from: impl Read, mut to: impl Write, limit: Duration) {
+    let (begun, mut chunk) = (Instant::now(), [0; 256]);
     while let Ok(count @ 1..) = from.read(&mut chunk) {
-        if to.write_all(&chunk[..count]).is_err() {
+        if begun.elapsed() >= limit || to.write_all(&chunk[..count]).is_err() {
             return;
         }
     }

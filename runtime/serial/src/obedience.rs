@@ -10,7 +10,7 @@ use mdle_runtime::Nanos;
 
 /// A robot may brake with this part of the deceleration that it was told.
 const PART: f64 = 0.5;
-/// How far outside of the band a side may be, in m/s, and as a part of the fastest speed in the band.
+/// A side may be this far outside of the band: in m/s, and as a part of the fastest speed in the band.
 const ERROR: f64 = 0.05;
 const ERROR_PART: f64 = 0.2;
 /// The longest time that a robot is given to stand.
@@ -21,7 +21,7 @@ const REACTION: Duration = Duration::from_millis(100);
 /// Compares measured speeds with commands, turn by turn.
 #[derive(Debug, Clone)]
 pub struct Obedience {
-    /// How long the speeds may be outside of the band; zero for ever.
+    /// The longest time that the speeds may be outside of the band; zero for ever.
     limit: Nanos,
     /// The speed of both sides together, and by how much they differ from it.
     forward: Band,
@@ -41,7 +41,7 @@ struct Band {
     high: f64,
     /// The last command.
     told: f64,
-    /// How fast the band narrows, in m/s².
+    /// The rate at which the band narrows, in m/s².
     brakes: f64,
 }
 

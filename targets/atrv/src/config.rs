@@ -53,9 +53,9 @@ pub struct Config {
     pub status: u64,
     /// How long it may say nothing, in milliseconds.
     pub answer: u64,
-    /// How long it may say nothing of a bumper, in milliseconds; 0 for ever.
+    /// The longest time between two reports of a bumper, in milliseconds; 0 for ever.
     pub inputs: u64,
-    /// How long it may move faster than it is told, or the other way, in milliseconds; 0 for ever.
+    /// The longest time in which it moves faster than it is told, or the other way, in milliseconds; 0 for ever.
     pub disobey: u64,
     /// After how many milliseconds without a turn it is stopped.
     pub watchdog: u64,

@@ -25,7 +25,7 @@ const CONFIRMATION: usize = 2;
 const STARTING: Duration = Duration::from_millis(1000);
 /// The least time that it has to stand before its brake is set: from 0.2 m/s it takes a fifth of a second.
 const STOPPING: Duration = Duration::from_millis(800);
-/// How long its reports may take meanwhile in lockstep, and the line the last commands.
+/// The time that its reports may take meanwhile in lockstep, and the line for the last commands.
 const ANSWER: Duration = Duration::from_millis(150);
 /// The time between two looks at whether it stands.
 const LOOK: Duration = Duration::from_millis(50);
@@ -141,7 +141,7 @@ impl Atrv {
         }
     }
 
-    /// Tells the robot how to move; how fast that is of its right and its left side.
+    /// Tells the robot how to move, and returns the speeds of its right and its left side for that, in m/s.
     fn move_on(&mut self, input: &Twist) -> Result<[f64; 2], Fault> {
         let commands = motion::commands(input, &self.config);
         for command in &commands {
@@ -169,23 +169,27 @@ impl Atrv {
         self.hearing.take(self.mouth.line(), at, self.a_turn, patience)
     }
 
-    /// Tells the robot to stand, again and again, until it reports that it does.
+    /// Tells the robot to stand, again and again, until it reports that it does. It may hear even if it is not heard.
     ///
     /// # Errors
-    /// The line is closed, or in all of its time to stand the robot has not reported, or not that it stands.
+    /// Nothing can be sent, or in all of its time to stand the robot has not reported, or not that it stands.
     fn stands(&mut self) -> Result<(), Fault> {
         let (begun, limit) = (Instant::now(), self.obedience.time_to_stand(STOPPING));
-        // What it has reported before is of another time.
-        self.hearing.forget(self.mouth.line())?;
-        // One that has been stopped before reports nothing any more. If the line does not take this, nor does it what follows.
-        let _ = self.say(Command::Reports(self.reports.as_micros() as u32));
+        // What it has reported before is of another time. If nothing can be read any more, that is found out below.
+        let _ = self.hearing.forget(self.mouth.line());
+        // One that has been stopped before reports nothing any more.
+        let mut sent = self.say(Command::Reports(self.reports.as_micros() as u32));
         // In lockstep time passes with commands only, but once it is silent there is nothing to wait for.
         let mut patience = if self.clock == Clock::Wall { Duration::ZERO } else { self.clock.patience(ANSWER) };
         for looks in 1.. {
-            let fault = match self.stands_by_now(patience.min(self.config.patience())) {
+            sent = sent.and_then(|()| self.move_on(&Twist::default()).map(drop));
+            if let Err(cut @ Fault::Line(LineFault::Closed | LineFault::Failed(_))) = sent {
+                return Err(cut);
+            }
+            self.clock.pass(LOOK);
+            let fault = match self.is_at_rest(patience.min(self.config.patience())) {
                 Ok(true) => return Ok(()),
                 Ok(false) => Fault::Moves,
-                Err(fault @ Fault::Line(LineFault::Closed | LineFault::Failed(_))) => return Err(fault),
                 Err(fault) => {
                     patience = Duration::ZERO;
                     fault
@@ -194,16 +198,15 @@ impl Atrv {
             if self.clock.is_past(limit, begun, looks) {
                 return Err(fault);
             }
+            sent = Ok(());
         }
         Err(Fault::Moves)
     }
 
-    /// Tells the robot to stand; whether it reports that it does.
-    fn stands_by_now(&mut self, patience: Duration) -> Result<bool, Fault> {
-        self.move_on(&Twist::default())?;
-        self.clock.pass(LOOK);
-        let Twist { v, omega } =
-            self.hearing.speed(self.mouth.line(), self.a_turn.max(1), Instant::now() + patience)?;
+    /// Returns `true` if the robot stands by its reports since the stop began.
+    fn is_at_rest(&mut self, patience: Duration) -> Result<bool, Fault> {
+        let deadline = Instant::now() + patience;
+        let Twist { v, omega } = self.hearing.speed(self.mouth.line(), self.a_turn.max(1), deadline)?;
         Ok(v.0.abs() < STANDS && omega.0.abs() < STANDS)
     }
 }

@@ -15,7 +15,7 @@ use crate::ring::Ring;
 
 /// The most that is read at once.
 const CHUNK: usize = 512;
-/// How much longer than for two questions an answer is waited for.
+/// The time that an answer may take besides that for two questions.
 const LATE: Duration = Duration::from_millis(300);
 /// How many times something is read before it is looked whether that is enough: a robot may talk without end.
 const READS: usize = 64;
@@ -29,7 +29,7 @@ pub(crate) struct Hearing {
     told: Option<Instant>,
     /// What was wrong since then.
     trouble: Option<Fault>,
-    /// How long it may leave a question for its brake unanswered.
+    /// The longest time between two answers about its brake.
     unanswered: Nanos,
 }
 
@@ -46,7 +46,7 @@ struct Known {
     time: Option<u32>,
     /// Bit 0 for the bumper before, bit 1 for the one behind.
     switches: u32,
-    /// When it told each of them last.
+    /// The time at which it reported each of them last.
     felt: [Option<Nanos>; 2],
     /// Whether the brake is set, if that was told, and when it was told last.
     is_braked: Option<bool>,

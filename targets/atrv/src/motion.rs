@@ -62,20 +62,20 @@ impl Odometer {
     }
 }
 
-/// The speeds of the right and the left side of a robot that moves like this, in m/s.
+/// Returns the speeds of the right and the left side of a robot that moves like this, in m/s.
 pub(crate) fn sides(motion: &Twist, config: &Config) -> [f64; 2] {
     let across = motion.omega.0 * (config.wheel_base / 2.0);
     [motion.v.0 + across, motion.v.0 - across]
 }
 
-/// The speeds of both sides that these commands ask for, in m/s.
+/// Returns the speeds of both sides that these commands ask for, in m/s.
 pub(crate) fn asked(commands: &[Command; 2], config: &Config) -> [f64; 2] {
     let velocity = |command: &Command| if let Command::Move(_, motion) = command { motion.velocity } else { 0 };
     let [along, round] = commands;
     sides(&twist(velocity(along), velocity(round), config), config)
 }
 
-/// How hard both sides are told to brake where they go the same way and where they go against each other, in m/s².
+/// Returns the deceleration of both sides where they go the same way and where they go against each other, in m/s².
 pub(crate) fn brakes(config: &Config) -> [f64; 2] {
     let turning = f64::from(config.rotation_acceleration) / config.units_per_radian;
     [config.acceleration, turning * (config.wheel_base / 2.0)]

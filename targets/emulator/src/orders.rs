@@ -6,7 +6,7 @@ use std::time::Duration;
 /// The most orders that are kept.
 const KEPT: usize = 64;
 
-/// What a motion command asks for.
+/// The meaning of a motion command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Order {
     /// To move.

@@ -28,7 +28,7 @@ pub struct Config {
     pub stale: u64,
     /// How far it may go while its sonars say the same, in metres; 0 for ever.
     pub frozen: f64,
-    /// How long it may move faster than it is told, or the other way, in milliseconds; 0 for ever.
+    /// The longest time in which it moves faster than it is told, or the other way, in milliseconds; 0 for ever.
     pub disobey: u64,
     /// Which sonars ping, in which order.
     pub sonars: Vec<u8>,

@@ -23,7 +23,7 @@ const RADIUS: Meters = Meters(0.205);
 const CONFIRMATION: usize = 2;
 /// The least time that the robot has to stand before its motors are let go: from 1 m/s it takes half a second.
 const STOPPING: Duration = Duration::from_millis(600);
-/// How long its last answer may take when it has not answered before.
+/// The time that its last answer may take when it has not answered before.
 const ANSWER: Duration = Duration::from_millis(150);
 /// A wheel that is held may jitter by this, in tenths of an inch per second.
 const JITTER: u16 = 4;
@@ -154,7 +154,7 @@ impl Scout {
         }
     }
 
-    /// Whether the robot has stopped itself since it was told to move: then it is not to be driven off again without a word.
+    /// Returns `true` if the robot has stopped itself since it was told to move: it is not to be driven off again without a word.
     fn has_overslept(&self) -> bool {
         let watchdog = Duration::from_secs(u64::from(self.config.watchdog));
         self.clock == Clock::Wall && self.told.is_some_and(|told| told.elapsed() >= watchdog)
@@ -235,6 +235,10 @@ impl Robot for Scout {
         // Its motors are let go whether or not it has understood.
         let let_go =
             self.at_the_end(Command::Limp, if answers { patience } else { self.clock.patience(ANSWER).min(patience) });
+        if let_go == Err(Fault::Line(LineFault::Closed)) {
+            // One that cannot be heard may hear.
+            let _ = self.line.say(&Command::Limp, Instant::now() + ANSWER);
+        }
         stands.and(let_go.map(|_| ()))
     }
 }

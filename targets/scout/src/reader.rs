@@ -12,7 +12,7 @@ pub struct Reader {
     waiting: Vec<u8>,
     /// What was wrong first.
     garbled: Option<Garbled>,
-    /// Whether that was a frame as long as it says it is.
+    /// `true` once a frame was wrong that was as long as it says it is.
     was_whole: bool,
 }
 

@@ -18,7 +18,7 @@ const ROLLING: f64 = 120.0;
 /// What it measures of both supplies: at 11.5 V and 11.9 V, and when both are at 10.5 V.
 const CHARGED: [u8; 2] = [239, 222];
 const LOW: [u8; 2] = [202, 177];
-/// How far each position is from the one before when they leap, in tenths of an inch: 3 m.
+/// The distance of each position from the one before when they leap, in tenths of an inch: 3 m.
 const LEAP: i64 = 1181;
 /// The answer to what a Scout does not know.
 const REFUSED: u8 = 8;
@@ -59,7 +59,7 @@ pub struct Scout {
     /// The state that it says again and again.
     hung: Option<Vec<u8>>,
     is_cut_off: bool,
-    /// What the wheels keep to, whatever they are told.
+    /// The speeds that the wheels keep, whatever they are told.
     runaway: Option<(i32, i32)>,
     /// By how much its positions are off, and whether they leap.
     off: i64,

@@ -14,7 +14,7 @@ const A_RANGE: f64 = 1550.0;
 const BOARDS: [u8; 4] = [0, 1, 3, 2];
 /// What it tells when it has heard nothing.
 const NOTHING: u16 = 32_766;
-/// How far each position is from the one before when they leap, in metres.
+/// The distance of each position from the one before when they leap, in metres.
 const LEAP: f64 = 3.0;
 /// In every so many reports there is filler.
 const FILLED: u8 = 7;
