@@ -1,7 +1,7 @@
 //! Cargo as a child: the same flags whatever the environment says, and nothing of its output on the terminal.
 
 use std::ffi::{OsStr, OsString};
-use std::path::{Path, PathBuf};
+use std::path::{self, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::{env, io};
 
@@ -17,6 +17,31 @@ const NEEDED: &str = env!("CARGO_PKG_RUST_VERSION");
 const KEPT: [&str; 6] =
     ["CARGO_HOME", "CARGO_HTTP_", "CARGO_NET_", "CARGO_REGISTRIES_", "CARGO_REGISTRY_", "CARGO_BUILD_JOBS"];
 
+/// The folder that cargo and rustc run in. They search it, and every folder above it, for `.cargo/config.toml` and
+/// `rust-toolchain.toml`, which run code: here nobody but the owner of the machine can put one.
+const OUTSIDE: &str = "/";
+
+/// Settings of the profile, as cargo's `--config` takes them: neither a configuration file nor the environment overrides
+/// these. Under another profile executables would not do what they promise.
+const PROFILE: [&str; 13] = [
+    // A panic in a driver has to reach the code that stops the robot.
+    "profile.release.panic='unwind'",
+    // Executables compute the same on every machine, whatever is configured there.
+    "profile.release.overflow-checks=false",
+    "profile.release.debug-assertions=false",
+    "profile.release.package.'*'.overflow-checks=false",
+    "profile.release.package.'*'.debug-assertions=false",
+    "profile.release.opt-level=3",
+    "profile.release.codegen-units=1",
+    "profile.release.lto=false",
+    "profile.release.incremental=false",
+    "profile.release.debug=false",
+    "profile.release.rpath=false",
+    "profile.release.strip='symbols'",
+    // Options are read once, and are a seventh of an executable.
+    "profile.release.package.clap_builder.opt-level='s'",
+];
+
 /// The Rust that is installed.
 #[derive(Debug)]
 pub(super) struct Toolchain {
@@ -25,9 +50,9 @@ pub(super) struct Toolchain {
 }
 
 impl Toolchain {
-    /// Asks `rustc` in `folder`.
-    pub(super) fn find(folder: &Path) -> Result<Self, LinkError> {
-        let mut command = command("rustc", folder);
+    /// Asks `rustc`.
+    pub(super) fn find() -> Result<Self, LinkError> {
+        let mut command = command("rustc");
         command.arg("-vV");
         let found = output(command, "rustc")?;
         let said = String::from_utf8_lossy(&found.stdout);
@@ -95,12 +120,14 @@ impl Job<'_> {
 
     /// Cargo's command `name` about the plan.
     fn command(&self, name: &str) -> Command {
-        let mut command = command("cargo", &self.plan.folder);
+        let mut command = command("cargo");
         // With an explicit triple the flags are for the plan alone: a static procedural macro could not be loaded.
-        command
-            .args([name, "--release", "--target", &self.toolchain.host])
-            .arg("--target-dir")
-            .arg(self.cache.target());
+        command.args([name, "--release", "--color=never", "--target", &self.toolchain.host]);
+        command.arg("--manifest-path").arg(self.plan.manifest());
+        command.arg("--target-dir").arg(self.cache.target());
+        command.args(PROFILE.iter().flat_map(|setting| ["--config", setting]));
+        // Both win over cargo's configuration. What is compiled stays in the cache.
+        command.env("CARGO_BUILD_BUILD_DIR", self.cache.target()).env("CARGO_INCREMENTAL", "0");
         command
     }
 
@@ -112,7 +139,7 @@ impl Job<'_> {
     fn flags(&self) -> OsString {
         let mut flags = OsString::from("-Ctarget-feature=+crt-static\x1f-Crelocation-model=static");
         let home = env::home_dir();
-        let cargo_home = env::var_os("CARGO_HOME").map(PathBuf::from).or_else(|| Some(home.as_ref()?.join(".cargo")));
+        let cargo_home = absolute("CARGO_HOME").or_else(|| Some(home.as_ref()?.join(".cargo")));
         // The last that fits wins.
         let places = [(home, "~"), (cargo_home, "/cargo"), (Some(self.cache.folder().to_owned()), "/mdle")];
         for (place, name) in places {
@@ -126,15 +153,22 @@ impl Job<'_> {
     }
 }
 
-/// `tool` in `folder`, without what this process's environment says to cargo and rustc.
-pub(super) fn command(tool: &str, folder: &Path) -> Command {
+/// `tool`, without what this process's environment, or a file near where the user is, says to cargo and rustc.
+pub(super) fn command(tool: &str) -> Command {
     let mut command = Command::new(tool);
-    // Not where the user is: a `.cargo/config.toml` or a `rust-toolchain.toml` there is not about plans.
-    command.current_dir(folder).stdin(Stdio::null());
+    command.current_dir(OUTSIDE).stdin(Stdio::null());
     for (name, _) in env::vars_os().filter(|(name, _)| is_about_builds(name)) {
         command.env_remove(name);
     }
+    for name in ["CARGO_HOME", "RUSTUP_HOME"] {
+        command.envs(absolute(name).map(|folder| (name, folder)));
+    }
     command
+}
+
+/// The folder that the variable `name` holds, where a relative path begins at the folder that the user is in.
+fn absolute(name: &str) -> Option<PathBuf> {
+    env::var_os(name).filter(|folder| !folder.is_empty()).and_then(|folder| path::absolute(folder).ok())
 }
 
 /// Runs `command`, whose program is `tool`, to its end.

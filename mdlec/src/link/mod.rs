@@ -84,9 +84,9 @@ pub fn build(
 ) -> Result<Built, LinkError> {
     let destination = Destination::check(output, Some(package.plan_file))?;
     let locked = cache.lock(progress)?;
-    let toolchain = Toolchain::find(cache.folder())?;
+    let toolchain = Toolchain::find()?;
     let sources = Sources::unpack(cache)?;
-    let dependencies = target::dependencies(package.target, &sources, cache)?;
+    let dependencies = target::dependencies(package.target, &sources)?;
     let plan = package::write(cache, package, &dependencies)?;
     let job = Job { cache, toolchain: &toolchain, plan: &plan };
     let run = run(&job, package.target, progress)?;

@@ -98,9 +98,6 @@ fn manifest(name: &str, dependencies: &Dependencies) -> Result<String, LinkError
         let (source, package, folder) = (quoted(source), quoted(package), quoted(utf8(folder)?));
         let _ = write!(text, "\n[patch.{source}.{package}]\npath = {folder}\n");
     }
-    text.push_str("\n[profile.release]\ncodegen-units = 1\nstrip = \"symbols\"\n");
-    // Options are read once, and are a seventh of an executable.
-    text.push_str("\n[profile.release.package.clap_builder]\nopt-level = \"s\"\n");
     Ok(text)
 }
 

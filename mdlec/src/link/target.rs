@@ -9,7 +9,6 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use super::cache::Cache;
 use super::cargo;
 use super::sources::{self, SHARED, Sources};
 use super::{LinkError, package};
@@ -59,14 +58,10 @@ pub(super) struct Dependencies {
 }
 
 /// Finds out what a plan for `target` is built on.
-pub(super) fn dependencies(
-    target: &TargetCrate<'_>,
-    sources: &Sources,
-    cache: &Cache,
-) -> Result<Dependencies, LinkError> {
+pub(super) fn dependencies(target: &TargetCrate<'_>, sources: &Sources) -> Result<Dependencies, LinkError> {
     match target {
         TargetCrate::Builtin { name, crate_name } => builtin(name, crate_name, sources),
-        TargetCrate::Path { folder, crate_name } => by_path(folder, crate_name, sources, cache),
+        TargetCrate::Path { folder, crate_name } => by_path(folder, crate_name, sources),
     }
 }
 
@@ -88,9 +83,9 @@ fn builtin(name: &str, crate_name: &str, sources: &Sources) -> Result<Dependenci
 }
 
 /// The target's own choice.
-fn by_path(folder: &Path, crate_name: &str, sources: &Sources, cache: &Cache) -> Result<Dependencies, LinkError> {
+fn by_path(folder: &Path, crate_name: &str, sources: &Sources) -> Result<Dependencies, LinkError> {
     let manifest = folder.join("Cargo.toml").canonicalize().map_err(|_| LinkError::NotACrate(folder.to_owned()))?;
-    let metadata = read(&manifest, crate_name, cache)?;
+    let metadata = read(&manifest, crate_name)?;
     let own = metadata.packages.iter().find(|package| package.manifest_path == manifest);
     let own = own.ok_or_else(|| LinkError::NotACrate(folder.to_owned()))?;
     own.makes(folder, crate_name)?;
@@ -125,9 +120,11 @@ fn by_path(folder: &Path, crate_name: &str, sources: &Sources, cache: &Cache) ->
 }
 
 /// What cargo says of the package at `manifest`, with everything that it takes from its workspace filled in.
-fn read(manifest: &Path, crate_name: &str, cache: &Cache) -> Result<Metadata, LinkError> {
-    let mut command = cargo::command("cargo", cache.folder());
-    command.args(["metadata", "--no-deps", "--offline", "--format-version", "1", "--manifest-path"]).arg(manifest);
+fn read(manifest: &Path, crate_name: &str) -> Result<Metadata, LinkError> {
+    let mut command = cargo::command("cargo");
+    command
+        .args(["metadata", "--no-deps", "--offline", "--color=never", "--format-version=1", "--manifest-path"])
+        .arg(manifest);
     let refused = |text| LinkError::TargetRefused { crate_name: crate_name.to_owned(), text };
     let found = cargo::output(command, "cargo")?;
     if !found.status.success() {
@@ -224,7 +221,7 @@ mod tests {
         fs::write(folder.join("Cargo.lock"), "# theirs").unwrap();
 
         let target = TargetCrate::Path { folder: &folder, crate_name: "mdle_rover" };
-        let found = dependencies(&target, &sources, &cache).unwrap();
+        let found = dependencies(&target, &sources).unwrap();
         let names = ["mdle-runtime", "mdle-host", "mdle-rover"];
         let folders = [cache.folder().join("mine/core"), cache.folder().join("mine/host"), folder];
         let expected: Vec<_> = names.map(str::to_owned).into_iter().zip(folders).collect();
