@@ -176,3 +176,52 @@ fn more_passes_than_can_be_counted_are_an_error() {
         assert!(said.contains("error[E0501]: ") && said.ends_with("error: 1 error\nexit status 1\n"), "{said}");
     }
 }
+
+/// The inputs of a command that writes, each with the plan's file or one that it uses as the output.
+const OVER_AN_INPUT: [&[&str]; 9] = [
+    &["plan.mdle", "--target", "sim", "-o", "legs.mdle"],
+    &["plan.mdle", "--target", "sim", "-o", "./folder/../plan.mdle"],
+    &["plan.mdle", "--target", "sim", "-o", "link"],
+    &["plan.mdle", "--target", "sim", "-o", "second_name"],
+    &["plan.mdle", "--emit", "tree", "-o", "plan.mdle"],
+    &["plan.mdle", "--emit", "formal=legs.mdle"],
+    &["draw", "plan.mdle", "-o", "link"],
+    &["x1.mtx", "--emit", "matrices=."],
+    &["plan.mdle", "--target", "rover", "--emit", "plan=rover/alphabet.mdle"],
+];
+
+#[test]
+fn no_output_goes_over_an_input() {
+    let folder = with_plan("over_input", "use \"legs.mdle\"\n{ P Legs }\n");
+    fs::write(folder.join("legs.mdle"), "{ Legs (Atom (wait 1ms) stop) }\n").unwrap();
+    fs::write(folder.join("x1.mtx"), REST).unwrap();
+    fs::write(folder.join("matrices.json"), "[]").unwrap();
+    fs::create_dir(folder.join("folder")).unwrap();
+    std::os::unix::fs::symlink("plan.mdle", folder.join("link")).unwrap();
+    fs::hard_link(folder.join("plan.mdle"), folder.join("second_name")).unwrap();
+    assert_eq!(run_mdlec(&folder, &["new-target", "rover"]).status.code(), Some(0));
+    let texts = || ["plan.mdle", "legs.mdle", "x1.mtx", "rover/alphabet.mdle"].map(|file| fs::read(folder.join(file)));
+    let before = texts().map(Result::unwrap);
+    let told = OVER_AN_INPUT.map(|arguments| said(&folder, arguments)).join("\n");
+    assert_eq!(texts().map(Result::unwrap), before);
+    insta::assert_snapshot!(told);
+}
+
+#[test]
+fn an_executable_does_not_go_over_a_source_of_its_robot() {
+    let folder = with_plan("over_source", REST);
+    assert_eq!(run_mdlec(&folder, &["new-target", "rover"]).status.code(), Some(0));
+    let told = said(&folder, &["plan.mdle", "--target", "rover", "-o", "rover/src/lib.rs"]);
+    insta::assert_snapshot!(told);
+}
+
+#[test]
+fn a_plan_on_standard_input_is_not_written_over() {
+    let folder = with_plan("over_standard_input", REST);
+    let plan = fs::File::open(folder.join("plan.mdle")).unwrap();
+    let mut command = mdle_tests::executable::command(&folder, &["-", "--emit", "tree=plan.mdle"]);
+    let output = command.stdin(plan).output().unwrap();
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(told.starts_with("error: `plan.mdle` is an input of this command"), "{told}");
+    assert_eq!((output.status.code(), fs::read_to_string(folder.join("plan.mdle")).unwrap().as_str()), (Some(2), REST));
+}

@@ -26,7 +26,7 @@ pub(super) fn bind(options: &Bind) -> Result<(), Failure> {
     if options.check {
         return Err(Failure { status: 1, message: Some(out_of_date(file)) });
     }
-    link::write_whole(&bound, text.as_bytes())
+    link::write_whole(&bound, text.as_bytes(), std::slice::from_ref(file))
         .map_err(|error| Failure { status: error.exit_status(), message: Some(error.to_string()) })?;
     report::note(format_args!("{} is written", bound.display()));
     Ok(())

@@ -42,11 +42,12 @@ pub(super) fn build(options: &Build) -> Result<(), Failure> {
         let target = input::target(options.target.as_deref())?;
         let mut input = input::read_plan(path, &target)?;
         let compiled = compile_one(&mut input, &target, options.name.as_deref(), options.deny_warnings)?;
-        return matrices::matrices(&compiled.nondegenerate, options.combine, file.as_deref(), &input.sources);
+        let inputs = input.inputs(&target);
+        return matrices::matrices(&compiled.nondegenerate, options.combine, file.as_deref(), &input.sources, &inputs);
     }
-    let text = stage(options, path, kind)?;
+    let (text, inputs) = stage(options, path, kind)?;
     match file {
-        Some(file) => link::write_whole(&file, text.as_bytes()).map_err(|error| failure(&error)),
+        Some(file) => link::write_whole(&file, text.as_bytes(), &inputs).map_err(|error| failure(&error)),
         None if kind.is_for_people() => report::print(&text),
         None => report::print_exactly(&text),
     }
@@ -116,15 +117,15 @@ fn known_plan(input: &mut Input, name: &str) -> Result<(), Failure> {
     )))
 }
 
-/// A stage as text.
-fn stage(options: &Build, path: &Path, kind: EmitKind) -> Result<String, Failure> {
+/// A stage as text, with the files that were read for it.
+fn stage(options: &Build, path: &Path, kind: EmitKind) -> Result<(String, Vec<PathBuf>), Failure> {
     let target = input::target(options.target.as_deref())?;
     let mut input = input::read_plan(path, &target)?;
     if kind == EmitKind::Tree {
         let arena = syntax::Arena::new();
         let (tree, found) = syntax::parse(input.source, input.sources.text(input.source), &arena);
         let good = report::diagnostics(&input.sources, &found, options.deny_warnings);
-        return if good { Ok(outline::outline(&tree)) } else { Err(Failure::PLAN) };
+        return if good { Ok((outline::outline(&tree), input.inputs(&target))) } else { Err(Failure::PLAN) };
     }
     let compiled = compile_one(&mut input, &target, options.name.as_deref(), options.deny_warnings)?;
     let nondegenerate = &compiled.nondegenerate;
@@ -142,10 +143,11 @@ fn stage(options: &Build, path: &Path, kind: EmitKind) -> Result<String, Failure
             Ok(rust_of(&compiled, path, &target))
         }
     };
-    text.map_err(|too_large| {
+    let text = text.map_err(|too_large| {
         report::diagnostics(&input.sources, &[too_large], false);
         Failure::PLAN
-    })
+    })?;
+    Ok((text, input.inputs(&target)))
 }
 
 /// Rust is written for a robot.
@@ -191,7 +193,7 @@ fn rust_of(compiled: &Compiled, path: &Path, target: &Target) -> String {
 
 fn executable(options: &Build, path: &Path, output: Option<PathBuf>) -> Result<(), Failure> {
     let started = Instant::now();
-    let Emitted { target, plan_name, rust, .. } =
+    let Emitted { target, input, plan_name, rust } =
         emitted(path, options.target.as_deref(), options.name.as_deref(), options.deny_warnings)?;
     // Standard input has no name of its own.
     let stem = path.file_stem().filter(|stem| *stem != "-").map_or_else(|| PathBuf::from(&plan_name), PathBuf::from);
@@ -202,8 +204,14 @@ fn executable(options: &Build, path: &Path, output: Option<PathBuf>) -> Result<(
         Some(folder) => TargetCrate::Path { folder, crate_name },
     };
     let plan_type = rust::plan_type(&plan_name);
-    let package =
-        Package { plan_name: &plan_name, plan_file: path, plan_type: &plan_type, rust: &rust, target: &target_crate };
+    let package = Package {
+        plan_name: &plan_name,
+        plan_file: path,
+        inputs: &input.inputs(&target),
+        plan_type: &plan_type,
+        rust: &rust,
+        target: &target_crate,
+    };
     let mut shown = Shown { open: false };
     let built = Cache::of_user()
         .and_then(|cache| link::build(&cache, &package, &output, &mut |progress| shown.progress(&progress)));

@@ -14,7 +14,7 @@ pub(super) fn draw(options: &Draw) -> Result<(), Failure> {
     })?;
     match &options.output {
         None => report::print_exactly(&drawn),
-        Some(file) => link::write_whole(file, drawn.as_bytes())
+        Some(file) => link::write_whole(file, drawn.as_bytes(), &input.inputs(&target))
             .map_err(|error| Failure { status: error.exit_status(), message: Some(error.to_string()) }),
     }
 }

@@ -22,12 +22,40 @@ fn write(file: &Path, target: Option<&str>, plan: Option<&str>) -> Result<(), Fa
         ));
     };
     let Emitted { target, input, rust, .. } = emitted(file, target, plan, false)?;
+    let inputs = input.inputs(&target);
+    // The alphabets that came with mdlec change with it, and then cargo runs the build script again in any case.
+    let watched = inputs.iter().map(|file| watched(file)).collect::<Result<String, _>>()?;
     let mut name = OsString::from(file.file_stem().unwrap_or_default());
     name.push(".rs");
-    link::write_whole(&PathBuf::from(folder).join(name), rust.as_bytes()).map_err(|error| build::failure(&error))?;
-    // The alphabets that came with mdlec change with it, and then cargo runs the build script again in any case.
-    let of_target =
-        target.folder.iter().flat_map(|folder| ["alphabet.mdle", "src/alphabet.rs"].map(|file| folder.join(file)));
-    let read = input.files().map(Path::to_owned).chain(of_target);
-    report::print_exactly(&read.map(|file| format!("cargo::rerun-if-changed={}\n", file.display())).collect::<String>())
+    let output = PathBuf::from(folder).join(name);
+    link::write_whole(&output, rust.as_bytes(), &inputs).map_err(|error| build::failure(&error))?;
+    report::print_exactly(&watched)
+}
+
+/// The line that has cargo watch `file`. Cargo would take what follows a line break for an instruction of its own.
+fn watched(file: &Path) -> Result<String, Failure> {
+    let line = format!("cargo::rerun-if-changed={}", file.display());
+    if line.contains(['\n', '\r']) {
+        return Err(Failure::usage(format!(
+            "the name {file:?} holds a line break, so cargo cannot watch this file\nhelp: rename the file or its folder"
+        )));
+    }
+    Ok(line + "\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::watched;
+
+    #[test]
+    fn a_name_with_a_line_break_is_refused() {
+        assert_eq!(watched(Path::new("plans/round 1.mdle")).unwrap(), "cargo::rerun-if-changed=plans/round 1.mdle\n");
+        for name in ["a\ncargo::rustc-link-arg=b", "a\r\nb"] {
+            let refusal = watched(Path::new(name)).unwrap_err();
+            assert_eq!(refusal.status, 2);
+            assert!(refusal.message.unwrap().contains("holds a line break"));
+        }
+    }
 }

@@ -47,6 +47,6 @@ fn write(path: &Path, text: &str) -> Result<(), Failure> {
     if fs::metadata(path).is_ok_and(|found| found.permissions().readonly()) {
         return Err(Failure::usage(format!("`{}` is read-only", path.display())));
     }
-    link::write_whole(path, text.as_bytes())
+    link::write_whole(path, text.as_bytes(), &[])
         .map_err(|error| Failure { status: error.exit_status(), message: Some(error.to_string()) })
 }

@@ -20,6 +20,13 @@ pub(super) struct Target {
     sources: Vec<(String, String)>,
 }
 
+impl Target {
+    /// The files of the target that were read.
+    pub(super) fn files(&self) -> impl Iterator<Item = PathBuf> {
+        self.folder.iter().flat_map(|folder| ["alphabet.mdle", "src/alphabet.rs"].map(|file| folder.join(file)))
+    }
+}
+
 /// A plan file, with the alphabet's files and those that it uses beside it.
 pub(super) struct Input {
     pub(super) sources: Sources,
@@ -46,6 +53,12 @@ impl Input {
     /// The files that were read for it, its own first.
     pub(super) fn files(&self) -> impl Iterator<Item = &Path> {
         self.paths.values().map(PathBuf::as_path)
+    }
+
+    /// All files that were read for it and for `target`: no output may go over them.
+    pub(super) fn inputs(&self, target: &Target) -> Vec<PathBuf> {
+        let named = |path: &Path| if path == Path::new("-") { PathBuf::from("/dev/stdin") } else { path.to_owned() };
+        self.files().map(named).chain(target.files()).collect()
     }
 
     /// The names of its plans, those of the files that it uses included.

@@ -1,21 +1,22 @@
 //! `mdlec PLAN --emit matrices`: in the paper's notation to standard output, as MatrixMarket files into a folder.
 
-use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::{fs, io};
 
-use super::{Failure, report};
+use super::{Failure, build, report};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::fsm::{self, MatrixFiles};
 use crate::plan::Nondegenerate;
 use crate::{diagnostic::Sources, link};
 
-/// Prints the matrices, or writes them into a folder. A person reads a few small ones; files are for programs, however
-/// small the plan is.
+/// Prints the matrices, or writes them into a folder, over none of `inputs`. A person reads a few small ones; files are for
+/// programs, however small the plan is.
 pub(super) fn matrices(
     plan: &Nondegenerate,
     combined: bool,
     folder: Option<&Path>,
     sources: &Sources,
+    inputs: &[PathBuf],
 ) -> Result<(), Failure> {
     let refused = |found: Diagnostic| {
         report::diagnostics(sources, &[found], false);
@@ -40,7 +41,7 @@ pub(super) fn matrices(
         let help = "`--combine` makes one matrix of equal interrupts, and `--emit fsm` lists only what moves";
         refused(Diagnostic::new(Code::E0502, message, root, "this plan").help(help))
     })?;
-    let count = write(&files, folder)?;
+    let count = write(&files, folder, inputs)?;
     report::note(format_args!(
         "{count} {} of {} states as MatrixMarket files in `{}`; `{}` says which interrupt each belongs to",
         if count == 1 { "matrix" } else { "matrices" },
@@ -51,16 +52,19 @@ pub(super) fn matrices(
     Ok(())
 }
 
-/// Writes the files and then their list, and takes away those that an earlier list named; the number of matrices.
-fn write(files: &MatrixFiles<'_, '_>, folder: &Path) -> Result<usize, Failure> {
-    let failed = |error: std::io::Error| Failure::usage(format!("`{}` cannot be written: {error}", folder.display()));
+/// Writes the files and then their list, removes those that an earlier list named, and returns the number of matrices.
+fn write(files: &MatrixFiles<'_, '_>, folder: &Path, inputs: &[PathBuf]) -> Result<usize, Failure> {
+    let failed = |error: io::Error| Failure::usage(format!("`{}` cannot be written: {error}", folder.display()));
     fs::create_dir_all(folder).map_err(failed)?;
-    if folder.join(MatrixFiles::LIST).exists() {
-        forget(folder).map_err(failed)?;
+    let old = matrix_files_in(folder).map_err(failed)?;
+    let list = folder.join(MatrixFiles::LIST);
+    let lost = old.iter().chain([&list]).try_for_each(|file| link::must_not_be_read(file, inputs));
+    lost.map_err(|error| build::failure(&error))?;
+    if list.exists() {
+        old.iter().try_for_each(fs::remove_file).map_err(failed)?;
     }
     let put = |name: &str, text: &str| {
-        link::write_whole(&folder.join(name), text.as_bytes())
-            .map_err(|error| Failure { status: error.exit_status(), message: Some(error.to_string()) })
+        link::write_whole(&folder.join(name), text.as_bytes(), inputs).map_err(|error| build::failure(&error))
     };
     let mut count = 0;
     for (name, text) in files.files() {
@@ -71,16 +75,17 @@ fn write(files: &MatrixFiles<'_, '_>, folder: &Path) -> Result<usize, Failure> {
     Ok(count)
 }
 
-/// Removes matrices that were written here before: those of another plan would be taken for this one's.
-fn forget(folder: &Path) -> std::io::Result<()> {
+/// Returns the files of this folder that are named as matrices are: those of another plan would be taken for this one's.
+fn matrix_files_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let mut files = Vec::new();
     for entry in fs::read_dir(folder)? {
         let entry = entry?;
         let name = entry.file_name();
         let stem = name.to_str().and_then(|name| name.strip_suffix(".mtx"));
         let is_number = |digits: &str| !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
         if stem.is_some_and(|stem| stem == "completed" || stem.strip_prefix('x').is_some_and(is_number)) {
-            fs::remove_file(entry.path())?;
+            files.push(entry.path());
         }
     }
-    Ok(())
+    Ok(files)
 }

@@ -12,9 +12,9 @@ pub enum LinkError {
     /// The output is a device or the like.
     #[error("`{0}` is not a file: name a file for the executable with `-o FILE`")]
     OutputIsSpecial(PathBuf),
-    /// The output is the plan.
-    #[error("`{0}` is the plan itself: name another file for the executable with `-o FILE`")]
-    OutputIsPlan(PathBuf),
+    /// The output is a file that the command reads.
+    #[error("`{0}` is an input of this command and would be lost: name another file for the output")]
+    OutputIsInput(PathBuf),
     /// The folder of the output is not there.
     #[error("the folder `{0}` does not exist: make it, or name another with `-o FILE`")]
     OutputFolderMissing(PathBuf),
@@ -179,7 +179,7 @@ impl LinkError {
             | Self::TargetMisfit { .. }
             | Self::OutputIsFolder(_)
             | Self::OutputIsSpecial(_)
-            | Self::OutputIsPlan(_)
+            | Self::OutputIsInput(_)
             | Self::OutputFolderMissing(_)
             | Self::OutputRefused { .. }
             | Self::NoCacheFolder

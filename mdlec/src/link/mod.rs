@@ -32,11 +32,11 @@ mod sources;
 mod stop;
 mod target;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 pub use cache::Cache;
 pub use error::LinkError;
-pub use output::write_whole;
+pub use output::{must_not_be_read, write_whole};
 pub use progress::Progress;
 pub use sources::{Alphabet, alphabets};
 pub use stop::leave_nothing_behind;
@@ -60,6 +60,8 @@ pub struct Package<'a> {
     pub rust: &'a str,
     /// The robot's crate.
     pub target: &'a TargetCrate<'a>,
+    /// The files that the plan was read from, over none of which the executable may go.
+    pub inputs: &'a [PathBuf],
 }
 
 /// An executable.
@@ -82,7 +84,8 @@ pub fn build(
     output: &Path,
     progress: &mut dyn FnMut(Progress),
 ) -> Result<Built, LinkError> {
-    let destination = Destination::check(output, Some(package.plan_file))?;
+    let destination = Destination::check(output, package.inputs)?;
+    package.target.must_not_lose(output)?;
     let locked = cache.lock(progress)?;
     let toolchain = Toolchain::find()?;
     let sources = Sources::unpack(cache)?;

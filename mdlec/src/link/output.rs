@@ -3,6 +3,7 @@
 use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, Write};
+use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::process;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -10,12 +11,12 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use super::{LinkError, stop};
 
 /// Writes `bytes` to the file `output`, whole or not at all; into a device as it comes. A file that is written over keeps its
-/// permissions.
+/// permissions. `inputs` are the files that `bytes` were made from.
 ///
 /// # Errors
-/// When `output` is a folder or cannot be written.
-pub fn write_whole(output: &Path, bytes: &[u8]) -> Result<(), LinkError> {
-    match Destination::check(output, None) {
+/// When `output` is a folder, is one of `inputs`, or cannot be written.
+pub fn write_whole(output: &Path, bytes: &[u8], inputs: &[PathBuf]) -> Result<(), LinkError> {
+    match Destination::check(output, inputs) {
         Ok(destination) => destination.put(|new| {
             if let Ok(old) = fs::metadata(&destination.path) {
                 new.set_permissions(old.permissions())?;
@@ -29,6 +30,16 @@ pub fn write_whole(output: &Path, bytes: &[u8]) -> Result<(), LinkError> {
     }
 }
 
+/// Refuses an `output` that is one of `inputs`, by whatever path, link or name: writing would destroy what was read.
+///
+/// # Errors
+/// [`LinkError::OutputIsInput`].
+pub fn must_not_be_read(output: &Path, inputs: &[PathBuf]) -> Result<(), LinkError> {
+    let file = |path: &Path| fs::metadata(path).ok().map(|found| (found.dev(), found.ino()));
+    let is_input = file(output).is_some_and(|output| inputs.iter().any(|input| file(input) == Some(output)));
+    if is_input { Err(LinkError::OutputIsInput(output.to_owned())) } else { Ok(()) }
+}
+
 /// A file that can be written, or written over.
 #[derive(Debug)]
 pub(super) struct Destination {
@@ -39,8 +50,8 @@ pub(super) struct Destination {
 }
 
 impl Destination {
-    /// Looks whether a file can be put at `output`, so that nobody waits for a build in vain; it must not be `plan`.
-    pub(super) fn check(output: &Path, plan: Option<&Path>) -> Result<Self, LinkError> {
+    /// Looks whether a file can be put at `output`, before the build takes its time; it must not be one of `inputs`.
+    pub(super) fn check(output: &Path, inputs: &[PathBuf]) -> Result<Self, LinkError> {
         let shown = output.to_owned();
         let path = match fs::metadata(output) {
             Ok(found) if found.is_dir() => return Err(LinkError::OutputIsFolder(shown)),
@@ -49,9 +60,7 @@ impl Destination {
             Err(error) if error.kind() == io::ErrorKind::NotFound => output.to_owned(),
             Err(error) => return Err(LinkError::output(output, error)),
         };
-        if plan.and_then(|plan| plan.canonicalize().ok()).is_some_and(|plan| plan == path) {
-            return Err(LinkError::OutputIsPlan(shown));
-        }
+        must_not_be_read(output, inputs)?;
         if path.file_name().is_none() || output.as_os_str().as_encoded_bytes().ends_with(b"/") {
             return Err(LinkError::OutputIsFolder(shown));
         }
@@ -116,13 +125,13 @@ mod tests {
     #[test]
     fn a_place_that_is_no_file_is_refused_before_the_build() {
         let folder = folder("refused");
-        let check = |output: &Path| Destination::check(output, Some(&folder.join("nap.mdle"))).unwrap_err();
+        let check = |output: &Path| Destination::check(output, &[folder.join("nap.mdle")]).unwrap_err();
         fs::write(folder.join("nap.mdle"), "").unwrap();
         assert!(matches!(check(&folder), LinkError::OutputIsFolder(_)));
         assert!(matches!(check(&folder.join("none/nap")), LinkError::OutputFolderMissing(_)));
         assert!(matches!(check(&folder.join("nap/")), LinkError::OutputIsFolder(_)));
         assert!(matches!(check(Path::new("/dev/null")), LinkError::OutputIsSpecial(_)));
-        assert!(matches!(check(&folder.join("nap.mdle")), LinkError::OutputIsPlan(_)));
+        assert!(matches!(check(&folder.join("nap.mdle")), LinkError::OutputIsInput(_)));
         assert!(matches!(check(&folder.join("nap.mdle/nap")), LinkError::OutputRefused { .. }));
         assert_eq!(check(&folder).exit_status(), 2);
     }
@@ -131,12 +140,12 @@ mod tests {
     fn only_the_whole_file_appears() {
         let folder = folder("whole");
         let output = folder.join("nap");
-        Destination::check(&output, None).unwrap();
+        Destination::check(&output, &[]).unwrap();
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 0);
-        write_whole(&output, b"one").unwrap();
-        write_whole(&output, b"two").unwrap();
+        write_whole(&output, b"one", &[]).unwrap();
+        write_whole(&output, b"two", &[]).unwrap();
         assert_eq!(fs::read(&output).unwrap(), b"two");
-        let destination = Destination::check(&output, None).unwrap();
+        let destination = Destination::check(&output, &[]).unwrap();
         destination.copy(&folder.join("missing")).unwrap_err();
         assert_eq!(fs::read(&output).unwrap(), b"two");
         assert_eq!(fs::read_dir(&folder).unwrap().count(), 1);
@@ -147,7 +156,7 @@ mod tests {
         let folder = folder("linked");
         fs::write(folder.join("real"), "old").unwrap();
         std::os::unix::fs::symlink("real", folder.join("link")).unwrap();
-        write_whole(&folder.join("link"), b"new").unwrap();
+        write_whole(&folder.join("link"), b"new", &[]).unwrap();
         assert_eq!(fs::read(folder.join("real")).unwrap(), b"new");
     }
 }

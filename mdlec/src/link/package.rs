@@ -137,7 +137,14 @@ mod tests {
     const TARGET: TargetCrate<'static> = TargetCrate::Builtin { name: "sim", crate_name: "mdle_sim" };
 
     fn package<'a>(plan_file: &'a str, rust: &'a str) -> Package<'a> {
-        Package { plan_name: "Nap", plan_file: Path::new(plan_file), plan_type: "Nap", rust, target: &TARGET }
+        Package {
+            plan_name: "Nap",
+            plan_file: Path::new(plan_file),
+            plan_type: "Nap",
+            inputs: &[],
+            rust,
+            target: &TARGET,
+        }
     }
 
     fn dependencies() -> Dependencies {

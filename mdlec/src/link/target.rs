@@ -4,7 +4,8 @@
 //! target of a third party decides. What it has by path is taken from there for the plan as well; what it has by
 //! version or from git is replaced, in its crate too, by the sources that came with mdlec.
 
-use std::fs;
+use std::fs::{self, File};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
@@ -40,6 +41,22 @@ impl<'a> TargetCrate<'a> {
             Self::Builtin { crate_name, .. } | Self::Path { crate_name, .. } => crate_name,
         }
     }
+
+    /// Refuses an `output` that is a file of a third party's crate. An executable there may be written over: its folder is a
+    /// good place to build plans in.
+    pub(super) fn must_not_lose(&self, output: &Path) -> Result<(), LinkError> {
+        let Self::Path { folder, .. } = self else { return Ok(()) };
+        let is_inside = output.canonicalize().is_ok_and(|output| {
+            folder.canonicalize().is_ok_and(|folder| output.starts_with(folder)) && !is_executable(&output)
+        });
+        if is_inside { Err(LinkError::OutputIsInput(output.to_owned())) } else { Ok(()) }
+    }
+}
+
+/// Returns `true` if `file` begins as an executable of Linux does.
+fn is_executable(file: &Path) -> bool {
+    let mut start = [0; 4];
+    File::open(file).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == *b"\x7fELF"
 }
 
 /// What the package of a plan depends on.

@@ -45,7 +45,15 @@ impl Robot {
         fs::create_dir_all(plan_file.parent().unwrap()).unwrap();
         fs::write(&plan_file, "{ Nap (bumper) (Atom (null) stop) }").unwrap();
         let target = TargetCrate::Path { folder: &self.folder.join("rover"), crate_name: "mdle_rover" };
-        let package = Package { plan_name: "Nap", plan_file: &plan_file, plan_type: "Nap", rust, target: &target };
+        let inputs = [plan_file.clone()];
+        let package = Package {
+            plan_name: "Nap",
+            plan_file: &plan_file,
+            plan_type: "Nap",
+            inputs: &inputs,
+            rust,
+            target: &target,
+        };
         let output = plan_file.with_extension("");
         let built = build(&self.cache, &package, &output, &mut |_: Progress| {})?;
         Ok((built, output))
