@@ -3,10 +3,12 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs::{self, File};
+use std::io::{BufRead, BufReader};
+use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
-use mdle_tests::executable::{cache, command, folder, run_mdlec};
+use mdle_tests::executable::{cache, command, folder, run_mdlec, without_waiting};
 
 const BUILD: [&str; 3] = ["plan.mdle", "--target", "sim"];
 
@@ -40,7 +42,7 @@ fn refused(command: &mut Command) -> String {
     let said = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{said}");
     assert!(!said.contains("panicked"), "{said}");
-    said.replace("waiting for another mdlec to finish its build\n", "")
+    without_waiting(&said)
 }
 
 #[test]
@@ -116,6 +118,52 @@ fn a_place_that_cannot_be_a_cache_is_told() {
     fs::create_dir_all(folder.join("cache/lock")).unwrap();
     let said = refused(command(&folder, &BUILD).env("MDLEC_CACHE", "cache"));
     assert!(said.contains("/cache/lock` (") && said.contains("delete it"), "{said}");
+}
+
+#[test]
+fn a_cache_that_others_can_change_is_refused() {
+    let folder = with_plan("open_cache", 1);
+    let open = |path: &Path, mode| fs::set_permissions(path, fs::Permissions::from_mode(mode)).unwrap();
+    open(&folder, 0o777);
+    let said = refused(command(&folder, &BUILD).env("MDLEC_CACHE", "cache"));
+    let place = folder.display();
+    let start =
+        format!("error: the cache is not safe: others can write to `{place}`, and could put code into executables");
+    assert!(
+        said.starts_with(&start) && said.ends_with("or name another folder with the variable MDLEC_CACHE\n"),
+        "{said}"
+    );
+    open(&folder, 0o755);
+    // The cache itself is closed to others, and what they may have put there goes.
+    for folder in [folder.join("cache/target"), folder.join("cache/plans")] {
+        fs::create_dir_all(folder.join("strange")).unwrap();
+    }
+    open(&folder.join("cache"), 0o777);
+    let nowhere = folder.join("no_tools");
+    refused(command(&folder, &BUILD).env("MDLEC_CACHE", "cache").env("PATH", nowhere));
+    let mode = |path: PathBuf| fs::metadata(path).unwrap().permissions().mode() & 0o777;
+    assert_eq!((mode(folder.join("cache")), mode(folder.join("cache/lock"))), (0o700, 0o600));
+    assert!(!folder.join("cache/target").exists() && !folder.join("cache/plans").exists());
+}
+
+#[test]
+fn whom_a_build_waits_for_is_told() {
+    let folder = with_plan("waits", 5);
+    let heard = |lock: &Path, sentence: &str| {
+        let file = File::options().create(true).append(true).open(lock).unwrap();
+        file.lock().unwrap();
+        let mut child = command(&folder, &BUILD).stderr(Stdio::piped()).spawn().unwrap();
+        let mut said = BufReader::new(child.stderr.take().unwrap()).lines().map(Result::unwrap);
+        assert!(said.any(|line| line.starts_with(sentence)), "{sentence}");
+        drop(file);
+        said.for_each(drop);
+        assert_eq!(child.wait().unwrap().code(), Some(0));
+    };
+    assert_built(&run_mdlec(&folder, &BUILD));
+    heard(&cache().join("lock"), "waiting for another mdlec to finish its build (process ");
+    let locks = stored(&cache(), ".cargo-lock");
+    let of_builds = locks.iter().find(|lock| lock.ends_with("target/release/.cargo-lock")).unwrap();
+    heard(of_builds, "waiting for another cargo to finish, which uses the same libraries");
 }
 
 #[test]

@@ -6,11 +6,12 @@ use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader};
 use std::os::unix::fs::PermissionsExt;
+use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
-use std::thread;
+use std::process::{Child, Command, Output, Stdio};
+use std::thread::{self, JoinHandle};
 
-use mdle_tests::executable::{cache, command, folder, mdlec, run_mdlec};
+use mdle_tests::executable::{cache, command, folder, mdlec, run_mdlec, without_waiting};
 
 const PLAN: &str = "plan.mdle";
 
@@ -36,10 +37,6 @@ fn told(output: &Output) -> (Option<i32>, String) {
     (output.status.code(), without_waiting(&said))
 }
 
-fn without_waiting(said: &str) -> String {
-    said.replace("waiting for another mdlec to finish its build\n", "")
-}
-
 fn assert_builds(folder: &Path) {
     let output = run_mdlec(folder, &[PLAN, "--target", "sim", "-o", "afterwards"]);
     assert_eq!(output.status.code(), Some(0), "{}", told(&output).1);
@@ -47,19 +44,18 @@ fn assert_builds(folder: &Path) {
     assert_eq!(run.stdout, b"plan over: wait 0.001 (atom 1)\n");
 }
 
-fn assert_signal_ends_all(signal: &str, status: i32) {
-    let folder = with_plan(&format!("signal_{signal}"));
+/// `mdlec` in `folder` with [`CARGO`] at work, and what hears of that; what `mdlec` says comes when it has ended.
+fn with_cargo_at_work(folder: &Path) -> (Child, BufReader<File>, JoinHandle<String>) {
     let tools = folder.join("tools");
     fs::create_dir(&tools).unwrap();
     fs::write(tools.join("cargo"), CARGO).unwrap();
     fs::set_permissions(tools.join("cargo"), fs::Permissions::from_mode(0o755)).unwrap();
     let at_work = folder.join("at_work");
     assert!(Command::new("mkfifo").arg(&at_work).status().unwrap().success());
-    let before = listing(&folder);
 
     let path = std::env::var_os("PATH").unwrap();
     let path = std::env::join_paths(std::iter::once(tools).chain(std::env::split_paths(&path))).unwrap();
-    let mut command = command(&folder, &[PLAN, "--target", "sim"]);
+    let mut command = command(folder, &[PLAN, "--target", "sim"]);
     command.env("PATH", path).env("AT_WORK", &at_work).stdout(Stdio::null()).stderr(Stdio::piped());
     let mut child = command.spawn().unwrap();
     let stderr = child.stderr.take().unwrap();
@@ -74,15 +70,31 @@ fn assert_signal_ends_all(signal: &str, status: i32) {
     let mut line = String::new();
     heard.read_line(&mut line).unwrap();
     assert_eq!(line, "at work\n");
+    (child, heard, said)
+}
 
+fn assert_signal_ends_all(signal: &str, status: i32) {
+    let folder = with_plan(&format!("signal_{signal}"));
+    let (mut child, heard, said) = with_cargo_at_work(&folder);
     let kill = format!("kill -{signal} {}", child.id());
     assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
     let ended = child.wait().unwrap();
     assert_eq!((ended.code(), without_waiting(&said.join().unwrap())), (Some(status), String::new()), "{signal}");
     // The end of it comes when nobody is left who could write: neither cargo nor its child.
     assert_eq!(io::read_to_string(heard).unwrap(), "", "{signal}");
-    assert_eq!(listing(&folder), before, "{signal}");
+    assert_eq!(listing(&folder), ["at_work", PLAN, "tools"], "{signal}");
     assert_builds(&folder);
+}
+
+#[test]
+fn the_next_build_ends_the_cargo_of_one_that_was_killed() {
+    let folder = with_plan("killed");
+    let (mut child, heard, said) = with_cargo_at_work(&folder);
+    child.kill().unwrap();
+    assert_eq!(child.wait().unwrap().signal(), Some(9));
+    assert_eq!(without_waiting(&said.join().unwrap()), "");
+    assert_builds(&folder);
+    assert_eq!(io::read_to_string(heard).unwrap(), "", "cargo and its child have ended");
 }
 
 #[test]

@@ -100,6 +100,18 @@ fn libraries_that_are_damaged_are_built_anew() {
 }
 
 #[test]
+fn damage_that_makes_cargo_panic_is_mended() {
+    let (robot, _turn) = robot();
+    assert_builds(&robot, "morning");
+    let outputs = files(&robot.cache.folder().join("target"), &|name| name == "root-output");
+    assert!(!outputs.is_empty());
+    for output in outputs {
+        fs::write(output, b"\xFF").unwrap();
+    }
+    assert_builds(&robot, "noon");
+}
+
+#[test]
 fn a_fault_of_the_target_is_not_taken_for_damage() {
     let (robot, _turn) = robot();
     assert_builds(&robot, "morning");

@@ -69,6 +69,13 @@ pub fn command(folder: &Path, arguments: &[&str]) -> Command {
     command
 }
 
+/// What was said, but for the builds of other tests, which share the cache.
+#[must_use]
+pub fn without_waiting(said: &str) -> String {
+    let is_waiting = |line: &&str| line.starts_with("waiting for another ");
+    said.lines().filter(|line| !is_waiting(line)).fold(String::new(), |text, line| text + line + "\n")
+}
+
 /// The cache that the tests share.
 #[must_use]
 pub fn cache() -> PathBuf {

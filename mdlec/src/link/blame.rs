@@ -31,6 +31,9 @@ pub(super) fn fault(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>, dependen
         Ok(log) => log,
         Err(error) => return error,
     };
+    if run.is_cargo_broken() {
+        return LinkError::Cargo { log, cache: job.cache.folder().to_owned() };
+    }
     let errors = run.complaints.iter().filter(|complaint| complaint.is_error);
     if errors.clone().any(|error| LINKER.iter().any(|sign| error.text.starts_with(sign))) {
         return LinkError::Linker { log };
@@ -40,7 +43,9 @@ pub(super) fn fault(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>, dependen
     match errors.map(|error| &error.manifest).next() {
         Some(manifest) if *manifest == plan => emitted(target, log),
         Some(manifest) if manifest.starts_with(ours) => LinkError::Packed { folder: ours.clone(), log },
-        Some(_) | None => others(run, target, &text, log, &|manifest| *manifest == plan || manifest.starts_with(ours)),
+        Some(_) | None => {
+            others(job, run, target, &text, log, &|manifest| *manifest == plan || manifest.starts_with(ours))
+        }
     }
 }
 
@@ -55,6 +60,7 @@ fn emitted(target: &TargetCrate<'_>, log: PathBuf) -> LinkError {
 
 /// A crate that is not ours does not compile, or cargo did not even begin.
 fn others(
+    job: &Job<'_>,
     run: &Run,
     target: &TargetCrate<'_>,
     text: &str,
@@ -66,7 +72,7 @@ fn others(
             LinkError::NoLibraries { log }
         }
         TargetCrate::Builtin { .. } if !run.began && run.online => LinkError::NoLibraries { log },
-        TargetCrate::Builtin { .. } => LinkError::Cargo { log },
+        TargetCrate::Builtin { .. } => LinkError::Cargo { log, cache: job.cache.folder().to_owned() },
         TargetCrate::Path { crate_name, .. } if !run.began => {
             LinkError::TargetRefused { crate_name: (*crate_name).to_owned(), text: run.stderr.trim_end().to_owned() }
         }

@@ -2,14 +2,16 @@
 //!
 //! It is `mdlec` in the user's cache folder unless `MDLEC_CACHE` names another; it may be deleted at any time.
 
-use std::env;
 use std::fs::{self, File, TryLockError};
-use std::io;
+use std::io::{self, Write};
+use std::os::unix::fs::OpenOptionsExt;
 use std::path::{Path, PathBuf};
+use std::{env, process};
 
 use etcetera::BaseStrategy;
 
-use super::{LinkError, Progress};
+use super::access::{self, Private};
+use super::{LinkError, Progress, orphan};
 
 /// The folder that mdlec keeps between runs.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -32,14 +34,20 @@ impl Cache {
         }
     }
 
-    /// The one in `folder`, which is made if need be.
+    /// The one in `folder`, which is made if need be, and is closed to other users.
     ///
     /// # Errors
-    /// When `folder` cannot be made.
+    /// When `folder` cannot be made, or others can change it or put another in its place.
     pub fn at(folder: &Path) -> Result<Self, LinkError> {
         // Cargo shows paths without symbolic links; ours are compared with them.
-        let found = fs::create_dir_all(folder).and_then(|()| folder.canonicalize());
-        Ok(Self { folder: found.map_err(|error| LinkError::cache(folder, error))? })
+        let Private { folder, was_open } = access::private(folder)?;
+        let cache = Self { folder };
+        if was_open {
+            // Anybody may have put there what cargo would take for its own; the sources are compared.
+            remove(&cache.target())?;
+            remove(&cache.plans())?;
+        }
+        Ok(cache)
     }
 
     /// The folder.
@@ -70,15 +78,20 @@ impl Cache {
     pub(super) fn lock(&self, progress: &mut dyn FnMut(Progress)) -> Result<File, LinkError> {
         let path = self.folder.join("lock");
         let failed = |error| LinkError::cache(&path, error);
-        let file = File::options().create(true).append(true).open(&path).map_err(failed)?;
+        let mut options = File::options();
+        let mut file = options.create(true).append(true).mode(0o600).open(&path).map_err(failed)?;
         match file.try_lock() {
             Ok(()) => {}
             Err(TryLockError::WouldBlock) => {
-                progress(Progress::Waiting);
+                let holder = fs::read_to_string(&path).ok().and_then(|text| text.trim_end().parse().ok());
+                progress(Progress::Waiting(holder));
                 file.lock().map_err(failed)?;
             }
             Err(TryLockError::Error(error)) => return Err(failed(error)),
         }
+        // For those who wait; on a full disk they learn no number.
+        let _ = file.set_len(0).and_then(|()| writeln!(file, "{}", process::id()));
+        orphan::end(self);
         Ok(file)
     }
 }

@@ -7,7 +7,7 @@ use std::{env, io};
 
 use super::messages::{self, Run};
 use super::package::PlanPackage;
-use super::{Cache, LinkError, Progress, stop};
+use super::{Cache, LinkError, Progress, orphan, stop};
 
 /// The oldest Rust that the packed sources are for.
 const NEEDED: &str = env!("CARGO_PKG_RUST_VERSION");
@@ -107,6 +107,7 @@ impl Job<'_> {
         }
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
         let (child, _watched) = stop::spawn(&mut command).map_err(|error| unusable("cargo", &error))?;
+        let _noted = orphan::note(self.cache, &child);
         messages::follow(child, online, &self.plan.manifest(), progress).map_err(|error| unusable("cargo", &error))
     }
 

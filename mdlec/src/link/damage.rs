@@ -44,6 +44,10 @@ pub(super) fn found(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>) -> Optio
     if run.lacks_room() || run.status.signal().is_some() {
         return None;
     }
+    // It reads files there and takes them for its own.
+    if run.is_cargo_broken() {
+        return Some(Damage::Libraries);
+    }
     let folder = job.cache.target();
     let names_folder = folder.to_str().is_some_and(|folder| run.stderr.contains(folder));
     // A compiler that fails without a word is shown with its command line, which names the folder as well.

@@ -41,6 +41,23 @@ pub enum LinkError {
         /// What the system says.
         error: io::Error,
     },
+    /// The cache, or a folder above it, belongs to another user.
+    #[error(
+        "the cache is not safe: `{path}` belongs to user {owner}, who could put code into executables; name a folder of your \
+         own with the variable MDLEC_CACHE"
+    )]
+    CacheOfOther {
+        /// The folder.
+        path: PathBuf,
+        /// The number of the user.
+        owner: u32,
+    },
+    /// Others can write to a folder above the cache.
+    #[error(
+        "the cache is not safe: others can write to `{0}`, and could put code into executables; run `chmod go-w` on it, or \
+         name another folder with the variable MDLEC_CACHE"
+    )]
+    CacheOpen(PathBuf),
     /// No space is left.
     #[error("there is no room left at `{0}` (a full disk, a quota, or `ulimit -f`): make room, then try again")]
     DiskFull(PathBuf),
@@ -142,8 +159,13 @@ pub enum LinkError {
     #[error("the build was stopped by signal {0}")]
     Stopped(u8),
     /// Cargo fails for a reason that is not known here.
-    #[error("cargo failed; what it says is in `{log}`; if it makes no sense, please report it with that file")]
+    #[error(
+        "cargo failed; what it says is in `{log}`; if it makes no sense, delete the cache `{cache}` and try again; if this \
+         stays, please report it with that file"
+    )]
     Cargo {
+        /// The folder of the cache.
+        cache: PathBuf,
         /// What was said.
         log: PathBuf,
     },
@@ -184,6 +206,8 @@ impl LinkError {
             | Self::OutputRefused { .. }
             | Self::NoCacheFolder
             | Self::Cache { .. }
+            | Self::CacheOfOther { .. }
+            | Self::CacheOpen(_)
             | Self::DiskFull(_)
             | Self::NoRust { .. }
             | Self::OldRust { .. }

@@ -4,6 +4,7 @@ use std::io::{self, BufRead, BufReader, Read};
 use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, ExitStatus};
+use std::sync::mpsc;
 use std::thread;
 
 use serde::Deserialize;
@@ -13,6 +14,9 @@ use super::Progress;
 
 /// What the system says, through rustc or the linker, when a disk is full or a file would become too large.
 const FULL: [&str; 4] = ["No space left on device", "Disk quota exceeded", "File too large", "(signal: 25"];
+
+/// The start of cargo's line about a lock that another cargo holds.
+const BLOCKED: &[u8] = b"Blocking waiting for file lock";
 
 /// What came of a run of cargo.
 #[derive(Debug)]
@@ -64,12 +68,26 @@ impl Run {
         self.status.signal() == Some(SIGXFSZ) || FULL.iter().any(|sign| text.contains(sign))
     }
 
+    /// Whether cargo itself panicked. What a build script writes is indented where cargo quotes it, and rustc's panics are errors.
+    pub(super) fn is_cargo_broken(&self) -> bool {
+        let is_panic = |line: &str| line.starts_with("thread '") && line.contains("panicked at");
+        !self.status.success() && self.stderr.lines().any(|line| is_panic(line) && !line.starts_with("thread 'rustc'"))
+    }
+
     /// Everything that was said.
     pub(super) fn text(&self) -> String {
         let mut text: String = self.complaints.iter().map(|complaint| complaint.text.as_str()).collect();
         text.push_str(&self.stderr);
         text
     }
+}
+
+/// A line of cargo's.
+enum Heard {
+    /// From standard output.
+    Message(Vec<u8>),
+    /// From standard error: another cargo holds a lock.
+    Blocked,
 }
 
 /// Follows cargo, which may use the network if it is `online`, to its end; `plan` is the manifest of the plan.
@@ -80,19 +98,31 @@ pub(super) fn follow(
     progress: &mut dyn FnMut(Progress),
 ) -> io::Result<Run> {
     let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
+    let (sender, heard) = mpsc::channel();
     // Both pipes must be emptied, or cargo waits for us.
-    let said = thread::spawn(move || {
-        let mut said = Vec::new();
-        // What was read before an error is good enough for a message.
-        let _ = stderr.map(|mut stderr| stderr.read_to_end(&mut said));
-        String::from_utf8_lossy(&said).into_owned()
-    });
+    let said = {
+        let sender = sender.clone();
+        thread::spawn(move || {
+            let mut said = Vec::new();
+            each_line(stderr, |line| {
+                said.extend_from_slice(line);
+                said.push(b'\n');
+                !line.trim_ascii_start().starts_with(BLOCKED) || sender.send(Heard::Blocked).is_ok()
+            });
+            String::from_utf8_lossy(&said).into_owned()
+        })
+    };
+    thread::spawn(move || each_line(stdout, |line| sender.send(Heard::Message(line.to_owned())).is_ok()));
     let mut log = Log { plan, executable: None, complaints: Vec::new(), artifacts: 0, reused: false, compiled: 0 };
-    for line in stdout.map(BufReader::new).into_iter().flat_map(|lines| lines.split(b'\n')) {
-        let Ok(line) = line else { break };
-        // A line that is no message, such as a compiler wrapper's, is none of ours.
-        if let Ok(line) = serde_json::from_slice(&line) {
-            log.take(line, progress);
+    for heard in heard {
+        match heard {
+            Heard::Blocked => progress(Progress::Blocked),
+            // A line that is no message, such as a compiler wrapper's, is none of ours.
+            Heard::Message(line) => {
+                if let Ok(line) = serde_json::from_slice(&line) {
+                    log.take(line, progress);
+                }
+            }
         }
     }
     let status = child.wait()?;
@@ -100,6 +130,17 @@ pub(super) fn follow(
     let began = log.artifacts > 0 || !log.complaints.is_empty();
     let Log { reused, executable, complaints, .. } = log;
     Ok(Run { status, online, began, reused, executable, complaints, stderr })
+}
+
+/// Gives each line to `take` until there are no more, cannot be read, or `take` wants none.
+fn each_line(lines: Option<impl Read>, mut take: impl FnMut(&[u8]) -> bool) {
+    for line in lines.map(BufReader::new).into_iter().flat_map(|lines| lines.split(b'\n')) {
+        // What was read before an error is good enough for a message.
+        let Ok(line) = line else { break };
+        if !take(&line) {
+            break;
+        }
+    }
 }
 
 /// What was read so far.
@@ -120,7 +161,9 @@ impl Log<'_> {
                 self.reused |= fresh;
                 if manifest_path == self.plan {
                     self.executable = executable.map(|path| Executable { path, fresh });
-                } else if !fresh && !target.kind.iter().any(|kind| kind == "custom-build") {
+                    return;
+                }
+                if !fresh && !target.kind.iter().any(|kind| kind == "custom-build") {
                     self.compiled += 1;
                     progress(Progress::Compiling(self.compiled));
                 }

@@ -4,26 +4,29 @@
 //! there once, so that an installed mdlec needs no checkout and, when cargo has fetched the libraries once, no network:
 //!
 //! ```text
-//! lock                    held while one mdlec works
+//! lock                    held while one mdlec works, whose number it holds
+//! cargo                   which cargo is running: one that outlived its mdlec is ended
 //! src-VERSION-HASH/       the unpacked sources; those of versions that nobody uses any more are removed
 //! target/                 what cargo has compiled, for all plans
 //! tmp/                    temporary files of the build under way
 //! plans/plan-NAME-HASH/   the package of a plan; HASH is of the plan file's path, the plan and the target
 //! ```
 //!
-//! Damage in there mends: files of ours are compared to the last byte, an executable with the hash of what was built,
-//! and where libraries cannot be read, all are compiled anew.
+//! The cache is its user's alone. Damage in there mends: files of ours are compared to the last byte, an executable with the
+//! hash of what was built, and where libraries cannot be read, all are compiled anew.
 //!
 //! Versions are those of mdlec's own lock file, flags are set here whatever the environment says, and the paths of the
 //! cache, of cargo's home and of the user's home do not get into the executable.
 #![allow(clippy::disallowed_methods, reason = "what is done here is I/O")]
 
+mod access;
 mod blame;
 mod cache;
 mod cargo;
 mod damage;
 mod error;
 mod messages;
+mod orphan;
 mod output;
 mod package;
 mod progress;
@@ -54,14 +57,14 @@ pub struct Package<'a> {
     pub plan_name: &'a str,
     /// The file that it was written in.
     pub plan_file: &'a Path,
+    /// The files that the plan was read from, over none of which the executable may go.
+    pub inputs: &'a [PathBuf],
     /// The type that implements the plan, in the emitted text.
     pub plan_type: &'a str,
     /// The emitted text, without inner attributes.
     pub rust: &'a str,
     /// The robot's crate.
     pub target: &'a TargetCrate<'a>,
-    /// The files that the plan was read from, over none of which the executable may go.
-    pub inputs: &'a [PathBuf],
 }
 
 /// An executable.

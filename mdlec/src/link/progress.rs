@@ -5,8 +5,10 @@ use std::fmt;
 /// How far a build is; a build of which nothing is left to do but the plan tells nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Progress {
-    /// Another mdlec is building; this one goes on after it.
-    Waiting,
+    /// Another mdlec is building, the process of this number if it is known; this one goes on after it.
+    Waiting(Option<u32>),
+    /// Cargo waits for another cargo, which is not mdlec's.
+    Blocked,
     /// Libraries are not on this machine yet and are fetched.
     Fetching,
     /// The libraries in the cache are damaged, or something in their place is, and all are compiled anew.
@@ -20,7 +22,7 @@ impl Progress {
     #[must_use]
     pub fn is_first(&self) -> bool {
         match self {
-            Self::Waiting | Self::Fetching | Self::Mending | Self::Compiling(1) => true,
+            Self::Waiting(_) | Self::Blocked | Self::Fetching | Self::Mending | Self::Compiling(1) => true,
             Self::Compiling(_) => false,
         }
     }
@@ -29,7 +31,11 @@ impl Progress {
 impl fmt::Display for Progress {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Waiting => f.write_str("waiting for another mdlec to finish its build"),
+            Self::Waiting(None) => f.write_str("waiting for another mdlec to finish its build"),
+            Self::Waiting(Some(process)) => {
+                write!(f, "waiting for another mdlec to finish its build (process {process})")
+            }
+            Self::Blocked => f.write_str("waiting for another cargo to finish, which uses the same libraries"),
             Self::Fetching => f.write_str("fetching the libraries that plans are built on; only the first time"),
             Self::Mending => f.write_str("the cache is damaged: all that plans are built on is compiled anew"),
             Self::Compiling(1) => f.write_str("compiling what the plan is built on; only the first time takes long"),
