@@ -100,6 +100,26 @@ fn libraries_that_are_damaged_are_built_anew() {
 }
 
 #[test]
+fn a_library_that_another_was_put_in_place_of_is_not_used() {
+    let (robot, _turn) = robot();
+    assert_builds(&robot, "morning");
+    let host = files(&robot.cache.folder().join("target"), &|name| {
+        name.starts_with("libmdle_host-") && name.ends_with(".rlib")
+    });
+    let [host] = host.as_slice() else { panic!("{host:?}") };
+    let mut bytes = fs::read(host).unwrap();
+    let times = fs::metadata(host).unwrap().modified().unwrap();
+    // Its report, as another would have it: cargo and rustc see nothing, as the times and the size stay.
+    let words = b"plan over";
+    let places: Vec<_> = (0..bytes.len() - words.len()).filter(|at| bytes[*at..].starts_with(words)).collect();
+    assert!(!places.is_empty());
+    places.iter().for_each(|at| bytes[*at..*at + words.len()].copy_from_slice(b"plan ruin"));
+    fs::write(host, bytes).unwrap();
+    File::options().append(true).open(host).unwrap().set_modified(times).unwrap();
+    assert_builds(&robot, "noon");
+}
+
+#[test]
 fn damage_that_makes_cargo_panic_is_mended() {
     let (robot, _turn) = robot();
     assert_builds(&robot, "morning");

@@ -7,6 +7,7 @@ use std::{env, io};
 
 use super::messages::{self, Run};
 use super::package::PlanPackage;
+use super::seal::Seal;
 use super::{Cache, LinkError, Progress, orphan, stop};
 
 /// The oldest Rust that the packed sources are for.
@@ -86,17 +87,17 @@ pub(super) struct Job<'a> {
 
 impl Job<'_> {
     /// Builds, without the network if that is possible.
-    pub(super) fn build(&self, progress: &mut dyn FnMut(Progress)) -> Result<Run, LinkError> {
-        let run = self.attempt(false, progress)?;
+    pub(super) fn build(&self, seal: &mut Seal, progress: &mut dyn FnMut(Progress)) -> Result<Run, LinkError> {
+        let run = self.attempt(false, seal, progress)?;
         if !run.lacks_libraries() {
             return Ok(run);
         }
         progress(Progress::Fetching);
-        self.attempt(true, progress)
+        self.attempt(true, seal, progress)
     }
 
     /// Builds; fetches what is missing if it may go `online`.
-    fn attempt(&self, online: bool, progress: &mut dyn FnMut(Progress)) -> Result<Run, LinkError> {
+    fn attempt(&self, online: bool, seal: &mut Seal, progress: &mut dyn FnMut(Progress)) -> Result<Run, LinkError> {
         let mut command = self.command("build");
         command
             .arg("--message-format=json")
@@ -108,7 +109,8 @@ impl Job<'_> {
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
         let (child, _watched) = stop::spawn(&mut command).map_err(|error| unusable("cargo", &error))?;
         let _noted = orphan::note(self.cache, &child);
-        messages::follow(child, online, &self.plan.manifest(), progress).map_err(|error| unusable("cargo", &error))
+        messages::follow(child, online, &self.plan.manifest(), seal, progress)
+            .map_err(|error| unusable("cargo", &error))
     }
 
     /// Removes what was built of the plan itself.

@@ -11,6 +11,7 @@ use serde::Deserialize;
 use signal_hook::consts::SIGXFSZ;
 
 use super::Progress;
+use super::seal::Seal;
 
 /// What the system says, through rustc or the linker, when a disk is full or a file would become too large.
 const FULL: [&str; 4] = ["No space left on device", "Disk quota exceeded", "File too large", "(signal: 25"];
@@ -90,11 +91,13 @@ enum Heard {
     Blocked,
 }
 
-/// Follows cargo, which may use the network if it is `online`, to its end; `plan` is the manifest of the plan.
+/// Follows cargo, which may use the network if it is `online`, to its end; `plan` is the manifest of the plan. What cargo
+/// compiles is added to `seal` at once, so that a build that is stopped has not compiled it for nothing.
 pub(super) fn follow(
     mut child: Child,
     online: bool,
     plan: &Path,
+    seal: &mut Seal,
     progress: &mut dyn FnMut(Progress),
 ) -> io::Result<Run> {
     let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
@@ -113,7 +116,8 @@ pub(super) fn follow(
         })
     };
     thread::spawn(move || each_line(stdout, |line| sender.send(Heard::Message(line.to_owned())).is_ok()));
-    let mut log = Log { plan, executable: None, complaints: Vec::new(), artifacts: 0, reused: false, compiled: 0 };
+    let mut log =
+        Log { plan, seal, executable: None, complaints: Vec::new(), artifacts: 0, reused: false, compiled: 0 };
     for heard in heard {
         match heard {
             Heard::Blocked => progress(Progress::Blocked),
@@ -146,6 +150,7 @@ fn each_line(lines: Option<impl Read>, mut take: impl FnMut(&[u8]) -> bool) {
 /// What was read so far.
 struct Log<'a> {
     plan: &'a Path,
+    seal: &'a mut Seal,
     executable: Option<Executable>,
     complaints: Vec<Complaint>,
     artifacts: usize,
@@ -156,14 +161,19 @@ struct Log<'a> {
 impl Log<'_> {
     fn take(&mut self, line: Line, progress: &mut dyn FnMut(Progress)) {
         match line {
-            Line::Artifact { manifest_path, target, executable, fresh } => {
+            Line::Artifact { manifest_path, target, filenames, executable, fresh } => {
                 self.artifacts += 1;
                 self.reused |= fresh;
                 if manifest_path == self.plan {
                     self.executable = executable.map(|path| Executable { path, fresh });
                     return;
                 }
-                if !fresh && !target.kind.iter().any(|kind| kind == "custom-build") {
+                let is_script = target.kind.iter().any(|kind| kind == "custom-build");
+                match filenames.first() {
+                    Some(script) if is_script => self.seal.add_script(script, fresh),
+                    Some(_) | None => self.seal.add(&filenames, fresh),
+                }
+                if !fresh && !is_script {
                     self.compiled += 1;
                     progress(Progress::Compiling(self.compiled));
                 }
@@ -173,6 +183,7 @@ impl Log<'_> {
                 is_error: message.level.starts_with("error"),
                 text: message.rendered.unwrap_or_default(),
             }),
+            Line::Script { out_dir } => self.seal.add_script(&out_dir, false),
             Line::Other => {}
         }
     }
@@ -183,7 +194,15 @@ impl Log<'_> {
 #[serde(tag = "reason")]
 enum Line {
     #[serde(rename = "compiler-artifact")]
-    Artifact { manifest_path: PathBuf, target: Target, executable: Option<PathBuf>, fresh: bool },
+    Artifact {
+        manifest_path: PathBuf,
+        target: Target,
+        filenames: Vec<PathBuf>,
+        executable: Option<PathBuf>,
+        fresh: bool,
+    },
+    #[serde(rename = "build-script-executed")]
+    Script { out_dir: PathBuf },
     #[serde(rename = "compiler-message")]
     Message { manifest_path: PathBuf, message: Said },
     #[serde(other)]

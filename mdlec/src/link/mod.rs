@@ -6,14 +6,15 @@
 //! ```text
 //! lock                    held while one mdlec works, whose number it holds
 //! cargo                   which cargo is running: one that outlived its mdlec is ended
+//! compiled                the hashes of what is in target/
 //! src-VERSION-HASH/       the unpacked sources; those of versions that nobody uses any more are removed
 //! target/                 what cargo has compiled, for all plans
 //! tmp/                    temporary files of the build under way
 //! plans/plan-NAME-HASH/   the package of a plan; HASH is of the plan file's path, the plan and the target
 //! ```
 //!
-//! The cache is its user's alone. Damage in there mends: files of ours are compared to the last byte, an executable with the
-//! hash of what was built, and where libraries cannot be read, all are compiled anew.
+//! The cache is its user's alone. Damage in there mends: files of ours are compared to the last byte, what was compiled with
+//! its hash, and where cargo cannot make sense of the rest, all is compiled anew.
 //!
 //! Versions are those of mdlec's own lock file, flags are set here whatever the environment says, and the paths of the
 //! cache, of cargo's home and of the user's home do not get into the executable.
@@ -31,6 +32,7 @@ mod output;
 mod package;
 mod progress;
 mod record;
+mod seal;
 mod sources;
 mod stop;
 mod target;
@@ -48,6 +50,7 @@ pub use target::TargetCrate;
 use cargo::{Job, Toolchain};
 use messages::Run;
 use output::Destination;
+use seal::Seal;
 use sources::Sources;
 
 /// A plan as Rust.
@@ -110,8 +113,9 @@ pub fn build(
 /// Runs cargo, again where damage in the cache may have spoilt it.
 fn run(job: &Job<'_>, target: &TargetCrate<'_>, progress: &mut dyn FnMut(Progress)) -> Result<Run, LinkError> {
     let mut mended = Vec::new();
+    let mut seal = Seal::check(job.cache, progress)?;
     loop {
-        let run = job.build(progress)?;
+        let run = job.build(&mut seal, progress)?;
         match damage::found(job, &run, target) {
             Some(damage) if !mended.contains(&damage) => {
                 damage::clear(damage, job, progress)?;

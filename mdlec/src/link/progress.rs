@@ -13,6 +13,8 @@ pub enum Progress {
     Fetching,
     /// The libraries in the cache are damaged, or something in their place is, and all are compiled anew.
     Mending,
+    /// Compiled files in the cache are not as cargo wrote them, and are compiled anew.
+    Discarding,
     /// This many crates of what the plan is built on are compiled, counted from 1.
     Compiling(usize),
 }
@@ -22,7 +24,12 @@ impl Progress {
     #[must_use]
     pub fn is_first(&self) -> bool {
         match self {
-            Self::Waiting(_) | Self::Blocked | Self::Fetching | Self::Mending | Self::Compiling(1) => true,
+            Self::Waiting(_)
+            | Self::Blocked
+            | Self::Fetching
+            | Self::Mending
+            | Self::Discarding
+            | Self::Compiling(1) => true,
             Self::Compiling(_) => false,
         }
     }
@@ -36,6 +43,9 @@ impl fmt::Display for Progress {
                 write!(f, "waiting for another mdlec to finish its build (process {process})")
             }
             Self::Blocked => f.write_str("waiting for another cargo to finish, which uses the same libraries"),
+            Self::Discarding => {
+                f.write_str("compiled files in the cache are not as cargo wrote them: they are compiled anew")
+            }
             Self::Fetching => f.write_str("fetching the libraries that plans are built on; only the first time"),
             Self::Mending => f.write_str("the cache is damaged: all that plans are built on is compiled anew"),
             Self::Compiling(1) => f.write_str("compiling what the plan is built on; only the first time takes long"),

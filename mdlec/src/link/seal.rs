@@ -1,0 +1,249 @@
+//! Holds what is taken from the cache to its hash: libraries, procedural macros, build scripts and what these wrote.
+//!
+//! Cargo goes by the times of files. The list here names each file that was compiled, with the hash of its contents; before
+//! cargo runs, a file that is not listed or differs is removed, so that cargo compiles it anew. This finds damage, and what
+//! was put there while the folder was open to others. It does not stop somebody who can write to the cache, and so to the
+//! list: the cache is its user's alone for that.
+
+use std::collections::BTreeMap;
+use std::ffi::OsStr;
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+
+use super::cache::{remove, write_if_changed};
+use super::record::hash;
+use super::{Cache, LinkError, Progress};
+
+/// The list's name in the cache.
+const LIST: &str = "compiled";
+
+/// The files that cargo has compiled, with their hashes.
+#[derive(Debug)]
+pub(super) struct Seal {
+    /// The folder that the paths in the list begin at.
+    target: PathBuf,
+    list: PathBuf,
+    hashes: BTreeMap<String, String>,
+}
+
+impl Seal {
+    /// Reads the list and removes each compiled file that does not fit it. Call it with the cache locked.
+    pub(super) fn check(cache: &Cache, progress: &mut dyn FnMut(Progress)) -> Result<Self, LinkError> {
+        let (target, list) = (cache.target(), cache.folder().join(LIST));
+        let text = fs::read_to_string(&list).unwrap_or_default();
+        // What was compiled again is listed again: the last line counts.
+        let lines = text.lines().filter_map(|line| line.split_once(' '));
+        let hashes = lines.map(|(hash, path)| (path.to_owned(), hash.to_owned())).collect();
+        let mut seal = Self { target, list, hashes };
+
+        // A link leads out of the cache.
+        if seal.target.is_symlink() {
+            remove(&seal.target)?;
+        }
+        let mut files = Vec::new();
+        taken(&seal.target, false, &mut files).map_err(|error| LinkError::cache(&seal.target, error))?;
+        let (good, bad): (Vec<_>, Vec<_>) = files.iter().zip(seal.fit(&files)).partition(|(_, fits)| *fits);
+        // What a build that was stopped had compiled is not listed, and no damage.
+        if bad.iter().any(|(file, _)| seal.listed(file).is_some()) {
+            progress(Progress::Discarding);
+        }
+        bad.iter().try_for_each(|(file, _)| remove(file))?;
+        let good = good.iter().filter_map(|(file, _)| Some((seal.name(file)?.to_owned(), seal.listed(file)?.clone())));
+        seal.hashes = good.collect();
+        let text: String = seal.hashes.iter().map(|(path, hash)| format!("{hash} {path}\n")).collect();
+        write_if_changed(&seal.list, text.as_bytes())?;
+        Ok(seal)
+    }
+
+    /// Lists `files`, which cargo has just compiled, unless they were listed before and are `fresh`.
+    pub(super) fn add(&mut self, files: &[PathBuf], fresh: bool) {
+        let new = files.iter().filter(|file| !fresh || self.listed(file).is_none());
+        let lines: Vec<_> = new.filter_map(|file| Some((self.name(file)?.to_owned(), hash_of(file)?))).collect();
+        let text: String = lines.iter().map(|(path, hash)| format!("{hash} {path}\n")).collect();
+        // What cannot be listed is compiled anew the next time.
+        let _ = File::options()
+            .create(true)
+            .append(true)
+            .open(&self.list)
+            .and_then(|mut list| list.write_all(text.as_bytes()));
+        self.hashes.extend(lines);
+    }
+
+    /// Lists what is in the folder of a build script: the script under both of its names, or what it has written.
+    pub(super) fn add_script(&mut self, inside: &Path, fresh: bool) {
+        let mut files = Vec::new();
+        // What cannot be read is compiled anew the next time.
+        let _ = taken(inside.parent().unwrap_or(inside), false, &mut files);
+        self.add(&files, fresh);
+    }
+
+    /// Returns for each file whether it is listed and as it was.
+    fn fit(&self, files: &[PathBuf]) -> Vec<bool> {
+        let next = AtomicUsize::new(0);
+        let work = || {
+            let mut fitting = Vec::new();
+            while let Some((index, file)) =
+                Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|i| Some((i, files.get(i)?)))
+            {
+                let fits =
+                    !file.is_symlink() && self.listed(file).is_some_and(|hash| hash_of(file).as_ref() == Some(hash));
+                fitting.extend(fits.then_some(index));
+            }
+            fitting
+        };
+        let mut fits = vec![false; files.len()];
+        thread::scope(|scope| {
+            let workers: Vec<_> = (0..workers()).map(|_| scope.spawn(work)).collect();
+            for index in workers.into_iter().filter_map(|worker| worker.join().ok()).flatten() {
+                fits[index] = true;
+            }
+        });
+        fits
+    }
+
+    /// The hash that is listed for a file.
+    fn listed(&self, file: &Path) -> Option<&String> {
+        self.hashes.get(self.name(file)?)
+    }
+
+    /// A file's name in the list, if it can have one.
+    fn name<'f>(&self, file: &'f Path) -> Option<&'f str> {
+        file.strip_prefix(&self.target).ok()?.to_str().filter(|name| !name.contains('\n'))
+    }
+}
+
+fn hash_of(file: &Path) -> Option<String> {
+    fs::read(file).ok().map(|bytes| hash(&bytes))
+}
+
+/// The number of threads: files are read as fast as memory allows, which more do not speed up.
+fn workers() -> usize {
+    thread::available_parallelism().map_or(1, |all| all.get().min(4))
+}
+
+/// Adds the files below `folder` to `files` that a build takes: with `all` every one, and every link in any case.
+fn taken(folder: &Path, all: bool, files: &mut Vec<PathBuf>) -> io::Result<()> {
+    let entries = match fs::read_dir(folder) {
+        Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => return Ok(()),
+        entries => entries?,
+    };
+    for entry in entries {
+        let entry = entry?;
+        let (kind, path, name) = (entry.file_type()?, entry.path(), entry.file_name());
+        if kind.is_dir() {
+            // Cargo's notes on what is up to date are named like build scripts.
+            if name != ".fingerprint" {
+                taken(&path, all || name == "out", files)?;
+            }
+        } else if all || kind.is_symlink() || is_taken(&path, &name) {
+            files.push(path);
+        }
+    }
+    Ok(())
+}
+
+/// Returns `true` for a library, a procedural macro, a build script under both of its names, and its instructions to cargo.
+fn is_taken(path: &Path, name: &OsStr) -> bool {
+    let extension = path.extension().and_then(OsStr::to_str);
+    let is_library = extension.is_some_and(|extension| matches!(extension, "rlib" | "rmeta" | "so" | "a"));
+    let starts = |start: &str| name.as_encoded_bytes().starts_with(start.as_bytes());
+    let is_script = extension.is_none() && (starts("build-script-") || starts("build_script_"));
+    is_library || is_script || name == "output"
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::path::{Path, PathBuf};
+
+    use super::super::Cache;
+    use super::super::tests::cache;
+    use super::{Progress, Seal};
+
+    /// Files as cargo writes them, all listed.
+    fn sealed(test: &str) -> (Cache, [PathBuf; 4]) {
+        let cache = cache(test);
+        let names = ["deps/liba-1.rlib", "deps/libb-2.so", "build/c-3/build-script-build", "build/c-4/output"];
+        let files = names.map(|name| cache.target().join("release").join(name));
+        for file in &files {
+            fs::create_dir_all(file.parent().unwrap()).unwrap();
+            fs::write(file, file.as_os_str().as_encoded_bytes()).unwrap();
+        }
+        fs::create_dir_all(cache.target().join("release/build/c-4/out/deep")).unwrap();
+        fs::write(cache.target().join("release/build/c-4/out/deep/table.rs"), "table").unwrap();
+        let mut seal = Seal::check(&Cache::at(&cache.folder().join("elsewhere")).unwrap(), &mut |_| {}).unwrap();
+        (seal.target, seal.list) = (cache.target(), cache.folder().join("compiled"));
+        seal.add(&files[..3], false);
+        seal.add_script(&cache.target().join("release/build/c-4/out"), false);
+        (cache, files)
+    }
+
+    /// Checks the cache, and returns whether a file was found that differs.
+    fn differs(cache: &Cache) -> bool {
+        let mut progress = Vec::new();
+        Seal::check(cache, &mut |step| progress.push(step)).unwrap();
+        !progress.is_empty()
+    }
+
+    #[test]
+    fn what_is_as_it_was_compiled_stays() {
+        let (cache, files) = sealed("seal_good");
+        assert!(!differs(&cache) && !differs(&cache));
+        assert!(files.iter().all(|file| file.exists()));
+        assert!(cache.target().join("release/build/c-4/out/deep/table.rs").exists());
+    }
+
+    #[test]
+    fn what_differs_is_removed() {
+        let (cache, files) = sealed("seal_differs");
+        let written = cache.target().join("release/build/c-4/out/deep/table.rs");
+        for file in files.iter().chain([&written]) {
+            fs::write(file, "strange").unwrap();
+            assert!(differs(&cache), "{}", file.display());
+            assert!(!file.exists() && !differs(&cache), "{}", file.display());
+        }
+    }
+
+    #[test]
+    fn what_is_not_listed_is_removed() {
+        let (cache, files) = sealed("seal_unlisted");
+        let folder = files[0].parent().unwrap();
+        let link = |name: &str, to: &Path| std::os::unix::fs::symlink(to, folder.join(name)).unwrap();
+        fs::write(folder.join("libstrange-5.rlib"), "strange").unwrap();
+        fs::write(folder.join("liba-1.d"), "times").unwrap();
+        let note = cache.target().join("release/.fingerprint/c-3/build-script-build-script-build");
+        fs::create_dir_all(note.parent().unwrap()).unwrap();
+        fs::write(&note, "cargo's").unwrap();
+        link("anywhere", cache.folder());
+        assert!(!differs(&cache), "a build that was stopped leaves such files");
+        assert!(!folder.join("libstrange-5.rlib").exists() && !folder.join("anywhere").is_symlink());
+        assert!(folder.join("liba-1.d").exists() && note.exists() && cache.folder().exists());
+        // The same contents, elsewhere.
+        fs::rename(&files[0], cache.folder().join("moved")).unwrap();
+        link("liba-1.rlib", &cache.folder().join("moved"));
+        assert!(differs(&cache) && !files[0].is_symlink() && cache.folder().join("moved").exists());
+        fs::rename(cache.target(), cache.folder().join("elsewhere/target")).unwrap();
+        std::os::unix::fs::symlink("elsewhere/target", cache.target()).unwrap();
+        assert!(!differs(&cache) && !cache.target().exists() && cache.folder().join("elsewhere/target").exists());
+    }
+
+    #[test]
+    fn a_list_that_is_damaged_trusts_nothing() {
+        let (cache, files) = sealed("seal_list");
+        fs::write(cache.folder().join("compiled"), "garbage\n\u{FFFD} \n").unwrap();
+        assert!(!differs(&cache));
+        assert!(files.iter().all(|file| !file.exists()));
+    }
+
+    #[test]
+    fn a_file_that_was_compiled_again_has_its_new_hash() {
+        let (cache, files) = sealed("seal_again");
+        let mut seal = Seal::check(&cache, &mut |_: Progress| {}).unwrap();
+        fs::write(&files[0], "again").unwrap();
+        seal.add(&files[..1], false);
+        assert!(!differs(&cache) && files[0].exists());
+    }
+}
