@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::choices::When;
 use super::variables::Variable;
 use super::walk::{Found, Outcome, Reach, Skip, Walk};
-use super::world::{Wanted, World};
+use super::world::Wanted;
 use crate::plan::Condition;
 
 impl<'l> Walk<'l> {
@@ -84,8 +84,7 @@ impl<'l> Walk<'l> {
         {
             return Outcome::Repeated(*outer);
         }
-        let alone = World::new(self.world.lowered);
-        if !alone.is_possible(&[Wanted { any: vec![read], fired: true }], &BTreeMap::new()) {
+        if !self.alone.is_possible(&[Wanted { any: vec![read], fired: true }], &BTreeMap::new()) {
             return Outcome::Never;
         }
         let mut variables = BTreeSet::new();

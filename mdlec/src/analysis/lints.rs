@@ -13,7 +13,7 @@ use crate::plan::{Condition, condition_text};
 
 /// What is suspicious.
 pub(super) fn lints(lowered: &Lowered, found: &[Found]) -> Vec<Diagnostic> {
-    let lints = Lints { lowered };
+    let lints = Lints { lowered, alone: World::new(lowered) };
     let mut uses: BTreeMap<Span, usize> = BTreeMap::new();
     let mut told: BTreeMap<(Span, Code), (usize, Diagnostic)> = BTreeMap::new();
     for (number, (scope, found)) in (0_u32..).zip(lowered.scopes.iter().zip(found)) {
@@ -33,10 +33,12 @@ pub(super) fn lints(lowered: &Lowered, found: &[Found]) -> Vec<Diagnostic> {
 
 struct Lints<'l> {
     lowered: &'l Lowered,
+    /// What is known of a place without anything around it.
+    alone: World<'l>,
 }
 
-impl Lints<'_> {
-    fn scope(&self, number: u32, scope: &ScopeMeaning, found: &Found) -> Vec<Option<Diagnostic>> {
+impl<'l> Lints<'l> {
+    fn scope(&self, number: u32, scope: &'l ScopeMeaning, found: &Found) -> Vec<Option<Diagnostic>> {
         let operands = scope.interrupt.condition.operands().iter().zip(&found.operands);
         let mut lints: Vec<_> = operands.map(|(operand, outcome)| self.operand(scope, operand, *outcome)).collect();
         lints.push(self.skipped(number, scope, found));
@@ -69,12 +71,12 @@ impl Lints<'_> {
     }
 
     /// An element that is always skipped.
-    fn skipped(&self, number: u32, scope: &ScopeMeaning, found: &Found) -> Option<Diagnostic> {
+    fn skipped(&self, number: u32, scope: &'l ScopeMeaning, found: &Found) -> Option<Diagnostic> {
         let (span, text) = (scope.interrupt.span, &scope.interrupt.text);
         let behind = match found.skipped? {
             Skip::Inside => return None,
             // That is W0203's.
-            Skip::AtOnce if !World::new(self.lowered).stays(number, &scope.interrupt.condition, When::Entered) => {
+            Skip::AtOnce if !self.alone.stays(number, &scope.interrupt.condition, When::Entered) => {
                 return None;
             }
             Skip::AtOnce => {

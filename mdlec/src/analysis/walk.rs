@@ -97,6 +97,7 @@ pub(super) fn walk(lowered: &Lowered, one_turn: bool) -> Walked {
     }
     let mut walk = Walk {
         world: World::new(lowered),
+        alone: World::new(lowered),
         open: Vec::new(),
         found: Vec::with_capacity(lowered.brackets.len()),
         last_child,
@@ -122,6 +123,8 @@ pub(super) fn walk(lowered: &Lowered, one_turn: bool) -> Walked {
 
 pub(super) struct Walk<'l> {
     pub(super) world: World<'l>,
+    /// What is known of a place without anything around it.
+    pub(super) alone: World<'l>,
     open: Vec<Open>,
     found: Vec<Found>,
     last_child: Vec<u32>,

@@ -60,28 +60,30 @@ pub(super) fn compile_one(
     name: Option<&str>,
     deny_warnings: bool,
 ) -> Result<Compiled, Failure> {
-    compile_judged(input, target, name, deny_warnings, |_| Vec::new())
+    compile_judged(input, target, name, deny_warnings, |compiled| (compiled, Vec::new()))
 }
 
-/// The same, with more to say of what was compiled.
-pub(super) fn compile_judged(
+/// Compiles the one plan that is to be judged: `judge` takes it, so that it can let go of what it does not need.
+pub(super) fn compile_judged<T>(
     input: &mut Input,
     target: &Target,
     name: Option<&str>,
     deny_warnings: bool,
-    judge: impl FnMut(&Compiled) -> Vec<Diagnostic>,
-) -> Result<Compiled, Failure> {
+    judge: impl FnMut(Compiled) -> (T, Vec<Diagnostic>),
+) -> Result<T, Failure> {
     if let Some(name) = name {
         known_plan(input, name)?;
     }
-    let (mut compiled, mut found) = input.compile(&target.alphabet, name);
-    found.extend(compiled.iter().flat_map(judge));
+    let (compiled, mut found) = input.compile(&target.alphabet, name);
+    let names: Vec<_> = compiled.iter().map(|compiled| compiled.plan.root.name.clone()).collect();
+    let (mut judged, more): (Vec<_>, Vec<_>) = compiled.into_iter().map(judge).unzip();
+    found.extend(more.into_iter().flatten());
     sort(&mut found);
     found.dedup();
     if !report::diagnostics(&input.sources, &found, deny_warnings) {
         return Err(Failure::PLAN);
     }
-    match (compiled.pop(), compiled.len()) {
+    match (judged.pop(), judged.len()) {
         (Some(only), 0) => Ok(only),
         (None, _) => Err(Failure::usage(format!(
             "every plan of `{}` is used by another or takes parameters\nhelp: say which one, as in `{}`, or write one \
@@ -89,16 +91,12 @@ pub(super) fn compile_judged(
             input.sources.name(input.source),
             report::option("plan", "NAME"),
         ))),
-        (last, _) => {
-            let names = compiled.iter().chain(&last).map(|compiled| compiled.plan.root.name.as_str());
-            let names: Vec<_> = names.collect();
-            Err(Failure::usage(format!(
-                "`{}` holds several plans that no other refers to: {}\nhelp: say which one, as in `{}`",
-                input.sources.name(input.source),
-                names.join(", "),
-                report::option("plan", names.first().copied().unwrap_or("NAME")),
-            )))
-        }
+        (Some(_), _) => Err(Failure::usage(format!(
+            "`{}` holds several plans that no other refers to: {}\nhelp: say which one, as in `{}`",
+            input.sources.name(input.source),
+            names.join(", "),
+            report::option("plan", names.first().map_or("NAME", String::as_str)),
+        ))),
     }
 }
 
