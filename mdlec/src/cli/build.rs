@@ -138,7 +138,7 @@ fn stage(options: &Build, path: &Path, kind: EmitKind) -> Result<(String, Vec<Pa
         EmitKind::Scxml => picture::scxml(nondegenerate),
         EmitKind::Tree | EmitKind::Matrices | EmitKind::Rust | EmitKind::Exe => {
             needs_target(options.target.as_deref())?;
-            Ok(rust_of(&compiled, path, &target))
+            rust_of(&compiled, path, &target)
         }
     };
     let text = text.map_err(|too_large| {
@@ -179,14 +179,18 @@ pub(super) fn emitted(
     if let Some(folder) = &target.folder {
         bind::must_be_bound(folder, &target.alphabet)?;
     }
-    let rust = rust_of(&compiled, path, &target);
+    let rust = rust_of(&compiled, path, &target).map_err(|too_large| {
+        report::diagnostics(&input.sources, &[too_large], false);
+        Failure::PLAN
+    })?;
     Ok(Emitted { target, input, plan_name: compiled.plan.root.name, rust })
 }
 
-fn rust_of(compiled: &Compiled, path: &Path, target: &Target) -> String {
+fn rust_of(compiled: &Compiled, path: &Path, target: &Target) -> Result<String, Diagnostic> {
+    rust::fits(&compiled.lowered, compiled.plan.root.span)?;
     let file = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
     let header = Header { file: &file, plan: &compiled.plan.root.name };
-    rust::emit(&compiled.lowered, header, &target.alphabet)
+    Ok(rust::emit(&compiled.lowered, header, &target.alphabet))
 }
 
 fn executable(options: &Build, path: &Path, output: Option<PathBuf>) -> Result<(), Failure> {

@@ -123,6 +123,16 @@ impl Condition {
         }
     }
 
+    /// The number of its parts: quarks, timers, operators.
+    #[must_use]
+    pub fn parts(&self) -> usize {
+        match self {
+            Self::Null | Self::Quark(_) | Self::Wait { .. } | Self::Elapsed { .. } | Self::After(_) => 1,
+            Self::Or(operands) | Self::And(operands) => 1 + operands.iter().map(Self::parts).sum::<usize>(),
+            Self::Not(operand) | Self::Rising { operand, .. } => 1 + operand.parts(),
+        }
+    }
+
     /// Whether this is so of the condition or any of its operands.
     pub fn any(&self, is_so: &impl Fn(&Self) -> bool) -> bool {
         is_so(self)

@@ -20,6 +20,7 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 use crate::alphabet::Alphabet;
+use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::fsm::Lowered;
 pub use bind::bind;
 use kinds::Atoms;
@@ -48,6 +49,8 @@ pub enum Shape {
 impl Shape {
     /// The most scopes, loops and atoms of a plan that becomes code: what rustc compiles in half a second.
     const CODE: usize = 64;
+    /// The most parts of all conditions of a plan that becomes code: rustc takes another half a second for these.
+    const PARTS: usize = 512;
     /// The most parts that the arms of shared code have in all: what rustc compiles in as much.
     const SHARED: usize = 512;
     /// The most parts of one atom, so that tables do not grow with the depth of the plan.
@@ -58,7 +61,7 @@ impl Shape {
     pub fn of(lowered: &Lowered) -> Self {
         if lowered.memories > 0 {
             Self::Rows
-        } else if lowered.brackets.len() <= Self::CODE {
+        } else if lowered.brackets.len() <= Self::CODE && parts(lowered) <= Self::PARTS {
             Self::Code
         } else if Atoms::new(lowered).kinds(Self::SHARED, Self::WIDEST).is_some() {
             Self::Shared
@@ -66,6 +69,30 @@ impl Shape {
             Self::Rows
         }
     }
+}
+
+/// The most scopes, loops, atoms and parts of conditions of a plan that is emitted: rustc takes minutes for more.
+const EMITTED: usize = 1 << 18;
+
+/// Checks that a plan, which is defined at `place`, is not too large to be emitted.
+///
+/// # Errors
+/// E0501 for a plan that rustc would compile for minutes.
+pub fn fits(lowered: &Lowered, place: Span) -> Result<(), Diagnostic> {
+    let (brackets, parts) = (lowered.brackets.len(), parts(lowered));
+    if brackets.saturating_add(parts) <= EMITTED {
+        return Ok(());
+    }
+    let message = format!(
+        "this plan has {brackets} atoms, scopes and loops, and conditions of {parts} parts; Rust is emitted for {EMITTED} in all"
+    );
+    let help = "use a loop where the same is written many times, or cut the plan into several";
+    Err(Diagnostic::new(Code::E0501, message, place, "this plan").help(help))
+}
+
+/// The parts of all conditions.
+fn parts(lowered: &Lowered) -> usize {
+    lowered.scopes.iter().flatten().map(|scope| scope.interrupt.condition.parts()).sum()
 }
 
 /// Writes the file in the shape that suits its size. Its text depends on nothing but the arguments and the version of
@@ -192,7 +219,10 @@ mod tests {
     #[test]
     fn a_condition_of_many_operands_is_not_nested_as_deep() {
         let operands: Vec<_> = (1..=5_000).map(|seconds| format!("wait {seconds}")).collect();
-        let rust = rust(&format!("{{ P (Atom ({}) stop) }}", operands.join(" OR ")), "plan.mdle");
+        let compiled = compiled(&format!("{{ P (Atom ({}) stop) }}", operands.join(" OR "))).swap_remove(0);
+        let header = Header { file: "plan.mdle", plan: "P" };
+        // It would be rows.
+        let rust = emit_as(Shape::Code, &compiled.lowered, header, &alphabet(Some("sim")));
         assert!(syn::parse_file(&rust).is_ok());
         let dense: String = rust.split_whitespace().collect();
         assert_eq!(dense.matches("cursor.since(").count(), 5_000);
@@ -204,6 +234,9 @@ mod tests {
         let alike = |atoms: usize| shape(&"(Atom (wait 1) stop)".repeat(atoms));
         assert_eq!([63, 64].map(alike), [Shape::Code, Shape::Shared]);
         let atom = |operator: &str, count| format!("(Atom ({}) stop)", vec!["wait 1"; count].join(operator));
+        let long = |operands| shape(&atom(" OR ", operands));
+        // An operator, the operands, and the plan's own null interrupt.
+        assert_eq!([510, 511].map(long), [Shape::Code, Shape::Rows]);
         assert_eq!(shape("(Atom (RISING bumper) stop)"), Shape::Rows, "what remembers is rows however short it is");
         // A row has 32 parts at most: its scope, the operator and what follows beside the operands.
         let wide = |operands: usize| shape(&atom(" AND ", operands).repeat(64));
