@@ -2,31 +2,63 @@
 
 use super::algorithm1;
 use crate::diagnostic::{Code, Diagnostic, Span};
-use crate::plan::{Loop, Node, Nondegenerate, Scope};
+use crate::plan::{Atom, Interrupt, Loop, Node, Nondegenerate, Scope};
 
 /// The most states that an expanded form is made for.
 const EXPANDED: u64 = 100_000;
+/// The most parts of its conditions, and the most bytes of their texts and of names, unless the plan has more itself.
+const PARTS: u64 = 1 << 20;
+const TEXT: u64 = 1 << 26;
 
 /// The plan with its finite loops written out; a loop without end is left as it is.
 ///
 /// # Errors
-/// E0501 for a plan that cannot be lowered, E0502 for one of more than 100,000 states.
+/// E0501 for a plan that cannot be lowered, E0502 for one of more than 100,000 states, or of too many conditions in all of
+/// them.
 pub fn expand(plan: &Nondegenerate) -> Result<Nondegenerate, Diagnostic> {
     expanded_states(plan)?;
+    let parts = Count { unit: "parts of conditions", of: |element| element.interrupt().condition.parts() as u64 };
+    let text = Count {
+        unit: "bytes of text",
+        of: |element| {
+            let name = if let Element::Scope(scope) = element { scope.name.len() } else { 0 };
+            (element.interrupt().text.len() + name) as u64
+        },
+    };
+    for (count, limit) in [(parts, PARTS), (text, TEXT)] {
+        let written = Expanded::of(&plan.plan().root, &count, false).all;
+        let expanded = Expanded::of(&plan.plan().root, &count, true);
+        if expanded.all > limit.max(written) {
+            return Err(too_large(&expanded, &count, limit, plan));
+        }
+    }
     Ok(plan.map(expand_scope))
 }
 
 /// The number of states of a plan with its finite loops written out, the termination state included.
 ///
 /// # Errors
-/// As [`expand`]: E0501 for a plan that cannot be lowered, E0502 for one of more than 100,000 states.
+/// E0501 for a plan that cannot be lowered, E0502 for one of more than 100,000 states.
 pub fn expanded_states(plan: &Nondegenerate) -> Result<u64, Diagnostic> {
     let states = algorithm1(plan)?.termination;
-    if states > EXPANDED { Err(too_large(states, plan)) } else { Ok(states) }
+    if states <= EXPANDED {
+        return Ok(states);
+    }
+    let count = Count { unit: "states", of: |element| u64::from(matches!(element, Element::Atom(_))) };
+    let expanded = Expanded { all: states, ..Expanded::of(&plan.plan().root, &count, true) };
+    Err(too_large(&expanded, &count, EXPANDED, plan))
 }
 
 fn expand_scope(scope: &Scope) -> Scope {
-    Scope { body: expand_sequence(&scope.body), ..scope.clone() }
+    // Field by field: a copy of the whole would copy the body at each level.
+    Scope {
+        name: scope.name.clone(),
+        interrupt: scope.interrupt.clone(),
+        body: expand_sequence(&scope.body),
+        record: scope.record,
+        marks: scope.marks.clone(),
+        span: scope.span,
+    }
 }
 
 fn expand_sequence(body: &[Node]) -> Vec<Node> {
@@ -54,39 +86,73 @@ fn expand_sequence(body: &[Node]) -> Vec<Node> {
     expanded
 }
 
-fn too_large(states: u64, plan: &Nondegenerate) -> Diagnostic {
-    let message = format!("expanded, this plan has {states} states; an expanded form has at most {EXPANDED}");
+/// What expansion copies.
+enum Element<'p> {
+    Atom(&'p Atom),
+    Scope(&'p Scope),
+}
+
+impl<'p> Element<'p> {
+    fn interrupt(&self) -> &'p Interrupt {
+        match self {
+            Self::Atom(atom) => &atom.interrupt,
+            Self::Scope(scope) => &scope.interrupt,
+        }
+    }
+}
+
+/// Something that elements have, and how much of it one has.
+struct Count {
+    /// In the plural.
+    unit: &'static str,
+    of: fn(&Element<'_>) -> u64,
+}
+
+/// How much of something a plan has, and the loop that makes the most of it.
+#[derive(Default)]
+struct Expanded {
+    all: u64,
+    largest: Option<(u64, Span)>,
+}
+
+impl Expanded {
+    /// Counts in all passes of finite loops, or in one pass of each.
+    fn of(plan: &Scope, count: &Count, passes: bool) -> Self {
+        let inside = Self::sequence(&plan.body, count, passes);
+        Self { all: inside.all.saturating_add((count.of)(&Element::Scope(plan))), ..inside }
+    }
+
+    fn sequence(body: &[Node], count: &Count, passes: bool) -> Self {
+        body.iter().fold(Self::default(), |sum, node| {
+            let Self { all, largest } = match node {
+                Node::Atom(atom) => Self { all: (count.of)(&Element::Atom(atom)), largest: None },
+                Node::Scope(scope) => Self::of(scope, count, passes),
+                Node::Loop(Loop { times, body, span, .. }) => {
+                    let pass = Self::sequence(body, count, passes);
+                    let all = pass.all.saturating_mul(times.filter(|_| passes).unwrap_or(1));
+                    let is_repeated = times.is_some_and(|times| times > 1);
+                    Self { all, largest: if is_repeated { Some((all, *span)) } else { pass.largest } }
+                }
+            };
+            let size = |repeated: &Option<(u64, Span)>| repeated.map_or(0, |(size, _)| size);
+            let largest = if size(&largest) > size(&sum.largest) { largest } else { sum.largest };
+            Self { all: sum.all.saturating_add(all), largest }
+        })
+    }
+}
+
+fn too_large(expanded: &Expanded, count: &Count, limit: u64, plan: &Nondegenerate) -> Diagnostic {
+    let (all, unit) = (expanded.all, count.unit);
+    let message = format!("expanded, this plan has {all} {unit}; an expanded form has at most {limit}");
     let help = "the executable, `--emit rust` and `trace` with its usual machine need no expansion: their size does not \
                 depend on loop counts";
-    match largest_loop(&plan.plan().root.body).1 {
-        Some((states, span)) => {
-            let here = format!("this loop makes {states} of them");
+    match expanded.largest {
+        Some((size, span)) => {
+            let here = format!("this loop makes {size} of them");
             Diagnostic::new(Code::E0502, message, span, here).help(help)
         }
         None => {
             Diagnostic::new(Code::E0502, message, plan.plan().root.span, "this plan").help("cut it into several plans")
         }
     }
-}
-
-/// The states of a sequence, and the loop that makes the most of them, with its own.
-fn largest_loop(body: &[Node]) -> (u64, Option<(u64, Span)>) {
-    let mut all = 0_u64;
-    let mut largest: Option<(u64, Span)> = None;
-    for node in body {
-        let (states, inside) = match node {
-            Node::Atom(_) => (1, None),
-            Node::Scope(scope) => largest_loop(&scope.body),
-            Node::Loop(Loop { times, body, span, .. }) => {
-                let (pass, inside) = largest_loop(body);
-                let states = pass.saturating_mul(times.unwrap_or(1));
-                (states, if times.is_some_and(|times| times > 1) { Some((states, *span)) } else { inside })
-            }
-        };
-        all = all.saturating_add(states);
-        if inside.is_some_and(|(states, _)| largest.is_none_or(|(most, _)| states > most)) {
-            largest = inside;
-        }
-    }
-    (all, largest)
 }
