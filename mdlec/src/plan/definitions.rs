@@ -2,16 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use super::size::{self, DEPTH, Excess, Measure, Size};
 use crate::alphabet::{Alphabet, DeclarationKind};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::Files;
 use crate::syntax::tree::{self, Call, Element, Primary};
-
-/// The most atoms a plan may have once every plan by name is copied in, unless the file has more; loops are not expanded
-/// for this.
-const ATOMS: u64 = 1 << 19;
-/// The deepest nesting once every plan by name is copied in.
-const DEPTH: u32 = 512;
 
 /// The plans of a file and of those that it uses.
 #[derive(Debug)]
@@ -21,16 +16,25 @@ pub(super) struct Definitions<'a> {
     /// Their names.
     pub(super) names: Vec<&'a str>,
     by_name: BTreeMap<&'a str, usize>,
-    /// For each plan the plans it refers to, with the first place.
-    refers: Vec<BTreeMap<usize, Span>>,
+    /// For each plan the plans it refers to.
+    refers: Vec<BTreeMap<usize, Uses>>,
     /// The plans that are too large, or refer to one that is: the first is reported, those around it are not.
     too_large: BTreeSet<usize>,
     /// How many are of the file itself, not of one that it uses.
     own: usize,
     /// Whether a file is missing that may have more of them.
     pub(super) is_incomplete: bool,
-    /// The atoms of the files, as written.
-    written: u64,
+    /// The size of the files, as written.
+    written: Size,
+    /// The longest argument that a plan is given, in bytes.
+    longest: u64,
+}
+
+/// The places in one plan that refer to another.
+#[derive(Debug, Clone, Copy)]
+struct Uses {
+    first: Span,
+    count: u64,
 }
 
 impl<'a> Definitions<'a> {
@@ -60,7 +64,9 @@ impl<'a> Definitions<'a> {
             by_name.insert(name, index);
         }
         let plans: Vec<_> = files.plans.iter().collect();
-        let refers = plans.iter().map(|plan| references(plan, &by_name)).collect();
+        let calls = plans.iter().map(|plan| calls(plan, &by_name)).collect::<Vec<_>>();
+        let longest = size::longest(calls.iter().flatten().map(|(_, call)| *call));
+        let refers = calls.iter().map(|calls| references(calls)).collect();
         let names = by_name.keys().copied().collect();
         let mut definitions = Self {
             plans,
@@ -70,7 +76,8 @@ impl<'a> Definitions<'a> {
             too_large: BTreeSet::new(),
             own: files.own,
             is_incomplete: files.is_incomplete,
-            written: 0,
+            written: Size::default(),
+            longest,
         };
         definitions.measure(&mut found);
         (definitions, found)
@@ -103,15 +110,15 @@ impl<'a> Definitions<'a> {
             refers.keys().for_each(|target| referred_by[*target].push(index));
         }
         let mut ready: Vec<usize> = (0..self.plans.len()).filter(|index| waits[*index] == 0).collect();
-        let mut sizes = vec![Size { atoms: 0, depth: 0 }; self.plans.len()];
+        let mut sizes = vec![Size::default(); self.plans.len()];
         // With nothing copied in yet, the sizes are those of the text.
-        self.written = self.plans.iter().map(|plan| self.size_of(plan.elements, &sizes).atoms).sum();
+        self.written = self.plans.iter().fold(Size::default(), |sum, plan| sum.and(self.size_of(plan, &sizes)));
         let mut done = 0;
         while let Some(index) = ready.pop() {
             done += 1;
             let plan = self.plans[index];
-            sizes[index] = self.size_of(plan.elements, &sizes).deeper();
-            self.judge(index, sizes[index], found);
+            sizes[index] = self.size_of(plan, &sizes);
+            self.judge(index, &sizes, found);
             for user in &referred_by[index] {
                 waits[*user] -= 1;
                 if waits[*user] == 0 {
@@ -124,21 +131,17 @@ impl<'a> Definitions<'a> {
         }
     }
 
-    fn judge(&mut self, index: usize, size: Size, found: &mut Vec<Diagnostic>) {
+    fn judge(&mut self, index: usize, sizes: &[Size], found: &mut Vec<Diagnostic>) {
         if self.refers[index].keys().any(|target| self.too_large.contains(target)) {
             self.too_large.insert(index);
             return;
         }
         let plan = self.plans[index];
         let here = plan.name.span;
-        if size.atoms > ATOMS.max(self.written) {
+        if let Some(excess) = sizes[index].excess(&self.written) {
             self.too_large.insert(index);
-            let message = format!("`{}` has {} atoms once every plan by name is copied in", plan.name.node, size.atoms);
-            found.push(
-                Diagnostic::new(Code::E0501, message, here, "this plan")
-                    .help("use a loop where the same plan is named many times: `ExecPlan 1000 Name`"),
-            );
-        } else if size.depth > DEPTH {
+            found.push(self.explosion(index, &excess, sizes));
+        } else if sizes[index].depth > DEPTH {
             self.too_large.insert(index);
             let message = format!("`{}` nests scopes and loops more than {DEPTH} deep", plan.name.node);
             let label = "once every plan by name is copied in";
@@ -149,21 +152,30 @@ impl<'a> Definitions<'a> {
         }
     }
 
-    fn size_of(&self, elements: &[Element<'_>], sizes: &[Size]) -> Size {
-        elements.iter().fold(Size { atoms: 0, depth: 0 }, |sum, element| {
-            let size = match &element.primary {
-                Primary::Atom(_) | Primary::Broken => Size { atoms: 1, depth: 1 },
-                Primary::Plan(plan) => self.size_of(plan.elements, sizes).deeper(),
-                Primary::Ref(call) => {
-                    self.by_name.get(call.name).map_or(Size { atoms: 1, depth: 1 }, |index| sizes[*index])
-                }
-                Primary::Exec(exec) => self.size_of(exec.body, sizes).deeper(),
-                Primary::String(body) => self.size_of(body, sizes).deeper(),
-                Primary::Formal(formal) => self.size_of(formal.body, sizes).deeper(),
-            };
-            let size = if element.power().is_some() { size.deeper() } else { size };
-            Size { atoms: sum.atoms.saturating_add(size.atoms), depth: sum.depth.max(size.depth) }
-        })
+    /// A plan that has too much of something, with the plan that it uses and that has the most of it.
+    fn explosion(&self, index: usize, excess: &Excess, sizes: &[Size]) -> Diagnostic {
+        let Excess { unit, limit, .. } = excess;
+        let plan = self.plans[index];
+        let count = excess.count(&sizes[index]);
+        let message = format!(
+            "`{}` has {count} {unit} once every plan by name is copied in; the limit is {limit}",
+            plan.name.node
+        );
+        let report = Diagnostic::new(Code::E0501, message, plan.name.span, "this plan");
+        let share = |(target, uses): &(&usize, &Uses)| excess.count(&sizes[**target]).saturating_mul(uses.count);
+        let report = match self.refers[index].iter().max_by_key(share) {
+            Some((target, Uses { first, count })) => {
+                let (name, each) = (self.plans[*target].name.node, excess.count(&sizes[*target]));
+                let times = if *count == 1 { "once".to_owned() } else { format!("{count} times") };
+                report.also(*first, format!("`{name}` is used {times}, with {each} {unit} each time"))
+            }
+            None => report,
+        };
+        report.help("use a loop where the same plan is named many times: `ExecPlan 1000 Name`")
+    }
+
+    fn size_of(&self, plan: &tree::Plan<'_>, sizes: &[Size]) -> Size {
+        Measure { by_name: &self.by_name, sizes, longest: self.longest }.plan(plan)
     }
 
     fn report_cycles(&self, waits: &[usize], found: &mut Vec<Diagnostic>) {
@@ -192,7 +204,7 @@ impl<'a> Definitions<'a> {
         let names: Vec<_> = cycle.iter().chain([&first]).map(|index| format!("`{}`", name(*index))).collect();
         let place = |at: usize| {
             let next = cycle[(at + 1) % cycle.len()];
-            (self.refers[cycle[at]][&next], format!("`{}` runs `{}` here", name(cycle[at]), name(next)))
+            (self.refers[cycle[at]][&next].first, format!("`{}` runs `{}` here", name(cycle[at]), name(next)))
         };
         let (span, text) = place(0);
         let message = format!("plan `{}` contains itself: {}", name(first), names.join(" → "));
@@ -202,21 +214,9 @@ impl<'a> Definitions<'a> {
     }
 }
 
-/// How large a plan is once every plan by name is copied in.
-#[derive(Debug, Clone, Copy)]
-struct Size {
-    atoms: u64,
-    depth: u32,
-}
-
-impl Size {
-    fn deeper(self) -> Self {
-        Self { depth: self.depth.saturating_add(1), ..self }
-    }
-}
-
-fn references(plan: &tree::Plan, by_name: &BTreeMap<&str, usize>) -> BTreeMap<usize, Span> {
-    fn visit(elements: &[Element], refer: &mut impl FnMut(&Call)) {
+/// The places of a plan that refer to others, each with the other's number.
+fn calls<'a>(plan: &tree::Plan<'a>, by_name: &BTreeMap<&str, usize>) -> Vec<(usize, &'a Call<'a>)> {
+    fn visit<'a>(elements: &[Element<'a>], refer: &mut impl FnMut(&'a Call<'a>)) {
         for element in elements {
             match &element.primary {
                 Primary::Ref(call) => refer(call),
@@ -228,12 +228,17 @@ fn references(plan: &tree::Plan, by_name: &BTreeMap<&str, usize>) -> BTreeMap<us
             }
         }
     }
+    let mut calls = Vec::new();
+    visit(plan.elements, &mut |call| calls.extend(by_name.get(call.name).map(|index| (*index, call))));
+    calls
+}
+
+/// The plans that these places refer to.
+fn references(calls: &[(usize, &Call<'_>)]) -> BTreeMap<usize, Uses> {
     let mut references = BTreeMap::new();
-    visit(plan.elements, &mut |call| {
-        if let Some(index) = by_name.get(call.name) {
-            references.entry(*index).or_insert(call.name_span());
-        }
-    });
+    for (index, call) in calls {
+        references.entry(*index).or_insert(Uses { first: call.name_span(), count: 0 }).count += 1;
+    }
     references
 }
 

@@ -17,6 +17,7 @@ mod parameters;
 mod print;
 mod quarks;
 mod resolve;
+mod size;
 #[cfg(test)]
 mod tests;
 

@@ -1,0 +1,165 @@
+//! The size of a plan once every plan by name is copied in: it is found before anything is copied, and held to limits.
+//!
+//! Plans within plans multiply, so that a short text may ask for more than any computer has. What a file writes out itself is
+//! never too large.
+
+use std::collections::BTreeMap;
+
+use crate::diagnostic::Span;
+use crate::syntax::tree::{Arg, Call, Condition, ConditionNode, Element, Operand, Plan, Primary};
+
+/// The most atoms of a plan; loops are not expanded for this.
+const ATOMS: u64 = 1 << 19;
+/// The most operands of all its conditions.
+const OPERANDS: u64 = 1 << 20;
+/// The most bytes of its text, as `--emit plan` prints it.
+const TEXT: u64 = 1 << 26;
+/// The deepest nesting.
+pub(super) const DEPTH: u32 = 512;
+
+/// Bytes that the text of a quark, an atom or a scope has beside what is written: defaults, units, brackets.
+const BESIDE: u64 = 16;
+
+/// The size of a plan or of a part of one.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Size {
+    pub(super) atoms: u64,
+    operands: u64,
+    text: u64,
+    pub(super) depth: u32,
+}
+
+/// Something that a plan has too much of.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Excess {
+    of: fn(&Size) -> u64,
+    /// The unit of the count, in the plural.
+    pub(super) unit: &'static str,
+    pub(super) limit: u64,
+}
+
+impl Excess {
+    /// The count in a size.
+    pub(super) fn count(&self, size: &Size) -> u64 {
+        (self.of)(size)
+    }
+}
+
+impl Size {
+    /// The first limit that this size exceeds; files of the size `written` may have as much as they write out.
+    pub(super) fn excess(&self, written: &Self) -> Option<Excess> {
+        let limits: [Excess; 3] = [
+            Excess { of: |size| size.atoms, unit: "atoms", limit: ATOMS },
+            Excess { of: |size| size.operands, unit: "operands of conditions", limit: OPERANDS },
+            Excess { of: |size| size.text, unit: "bytes of text", limit: TEXT },
+        ];
+        limits.into_iter().find(|excess| excess.count(self) > excess.limit.max(excess.count(written)))
+    }
+
+    /// One part after the other.
+    pub(super) fn and(self, other: Self) -> Self {
+        Self {
+            atoms: self.atoms.saturating_add(other.atoms),
+            operands: self.operands.saturating_add(other.operands),
+            text: self.text.saturating_add(other.text),
+            depth: self.depth.max(other.depth),
+        }
+    }
+
+    /// In a scope or a loop, which indents each line.
+    fn nested(self) -> Self {
+        let text = self.text.saturating_add(self.atoms.saturating_mul(2)).saturating_add(BESIDE);
+        Self { text, depth: self.depth.saturating_add(1), ..self }
+    }
+
+    fn of_text(bytes: u64) -> Self {
+        Self { text: bytes.saturating_add(BESIDE), ..Self::default() }
+    }
+}
+
+/// Measures plans, those first that others use.
+pub(super) struct Measure<'m> {
+    pub(super) by_name: &'m BTreeMap<&'m str, usize>,
+    /// The sizes of the plans that were measured before.
+    pub(super) sizes: &'m [Size],
+    /// The longest argument that a plan is given, in bytes: as long may be what a parameter stands for.
+    pub(super) longest: u64,
+}
+
+impl Measure<'_> {
+    /// The size of a plan with everything that it uses.
+    pub(super) fn plan(&self, plan: &Plan<'_>) -> Size {
+        let own = plan.condition.as_ref().map_or(Size::default(), |condition| self.condition(condition));
+        let name = Size::of_text(plan.name.node.len() as u64);
+        own.and(name).and(self.elements(plan.elements)).nested()
+    }
+
+    fn elements(&self, elements: &[Element<'_>]) -> Size {
+        elements.iter().fold(Size::default(), |sum, element| {
+            let size = match &element.primary {
+                Primary::Broken => Size { atoms: 1, depth: 1, ..Size::default() },
+                Primary::Atom(atom) => self.condition(&atom.condition).and(self.atom(atom.control)),
+                Primary::Plan(plan) => self.plan(plan),
+                // In formal notation a law looks like a plan by name.
+                Primary::Ref(call) => match self.by_name.get(call.name) {
+                    Some(index) => self.sizes.get(*index).copied().unwrap_or_default(),
+                    None => self.atom(call),
+                },
+                Primary::Exec(exec) => self.elements(exec.body).nested(),
+                Primary::String(body) => self.elements(body).nested(),
+                Primary::Formal(formal) => {
+                    let time = formal.time.map_or(Size::default(), |time| self.operand(length(time.span()), 1));
+                    self.condition(&formal.condition).and(time).and(self.elements(formal.body)).nested()
+                }
+            };
+            sum.and(if element.power().is_some() { size.nested() } else { size })
+        })
+    }
+
+    fn atom(&self, law: &Call<'_>) -> Size {
+        Size { atoms: 1, depth: 1, ..self.quark(law) }
+    }
+
+    fn condition(&self, condition: &Condition<'_>) -> Size {
+        let one = Size { operands: 1, ..Size::default() };
+        match condition.node {
+            ConditionNode::Or(operands) | ConditionNode::And(operands) => {
+                operands.iter().fold(Size::default(), |sum, operand| sum.and(self.condition(operand)))
+            }
+            ConditionNode::Not(operand) | ConditionNode::Rising(operand) => one.and(self.condition(operand)),
+            ConditionNode::Call(call) => one.and(self.quark(call)),
+            ConditionNode::Comparison(compared) => {
+                let right = match compared.right {
+                    Operand::Signal(call) => self.quark(call),
+                    Operand::Number(_) | Operand::Infinity(_) => Size::default(),
+                };
+                self.operand(length(condition.span), 0).and(self.quark(compared.left)).and(right)
+            }
+            ConditionNode::After(_) | ConditionNode::Null | ConditionNode::Broken => {
+                self.operand(length(condition.span), 0)
+            }
+        }
+    }
+
+    /// An operand of so many bytes and so many arguments.
+    fn operand(&self, bytes: u64, arguments: usize) -> Size {
+        Size { operands: 1, ..Size::of_text(bytes.saturating_add(self.given(arguments))) }
+    }
+
+    fn quark(&self, call: &Call<'_>) -> Size {
+        Size::of_text(length(call.span).saturating_add(self.given(call.args.len())))
+    }
+
+    fn given(&self, arguments: usize) -> u64 {
+        self.longest.saturating_mul(arguments as u64)
+    }
+}
+
+/// The longest argument of these calls, in bytes.
+pub(super) fn longest<'c>(calls: impl Iterator<Item = &'c Call<'c>>) -> u64 {
+    calls.flat_map(|call| call.args).map(|arg: &Arg<'_>| length(arg.span())).max().unwrap_or(0)
+}
+
+fn length(span: Span) -> u64 {
+    u64::from(span.end.saturating_sub(span.start))
+}

@@ -1,0 +1,167 @@
+//! Inputs that ask for more than any computer has, through the real binaries: each ends within stated memory and time, with a
+//! result or with a message that names the limit.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::ffi::OsStr;
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use mdle_tests::executable::{cache, folder, mdlec};
+
+/// The address space that a process gets, in KiB: 1 GB.
+const MEMORY: u32 = 1 << 20;
+/// The processor time that a process gets, in seconds: generous, since tests run what is not optimised, beside each other.
+const SECONDS: u32 = 60;
+
+/// A program in `folder` under both limits.
+fn limited(folder: &Path, program: &Path, arguments: &[impl AsRef<OsStr>]) -> Output {
+    let limits = format!("ulimit -v {MEMORY} && ulimit -t {SECONDS} && exec \"$0\" \"$@\"");
+    let mut command = Command::new("sh");
+    command.arg("-c").arg(limits).arg(program).args(arguments);
+    command.current_dir(folder).env("MDLEC_CACHE", cache()).output().expect("a shell")
+}
+
+/// The exit status and the messages of a command, whose output may be anything.
+fn judged(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
+    let output = limited(folder, mdlec(), arguments);
+    (output.status.code(), String::from_utf8(output.stderr).expect("UTF-8"))
+}
+
+/// A plan `P` that uses a plan so often, which uses another so often, and so on down to `inmost`, which is called `NAME` there.
+fn multiplied(uses: &[usize], inmost: &str) -> String {
+    let name = |level: usize| if level == 0 { "P".to_owned() } else { format!("L{level}") };
+    let levels = uses.iter().enumerate().map(|(level, uses)| {
+        let used = vec![name(level + 1); *uses].join(" ");
+        format!("{{ {} {used} }}\n", name(level))
+    });
+    levels.collect::<String>() + &inmost.replace("NAME", &name(uses.len()))
+}
+
+/// A condition of so many operands.
+fn operands(count: usize) -> String {
+    let operands: Vec<_> = (1..=count).map(|number| format!("wait {number}ms")).collect();
+    operands.join(" OR ")
+}
+
+/// Every command that reads a plan, but those that only read its text.
+const COMMANDS: [&[&str]; 14] = [
+    &["check"],
+    &["check", "--target", "all"],
+    &["analyze"],
+    &["trace", "--script", "script.jsonl"],
+    &["trace", "--script", "script.jsonl", "--machine", "table"],
+    &["draw"],
+    &["--emit", "plan"],
+    &["--emit", "nondegenerate"],
+    &["--emit", "expanded"],
+    &["--emit", "fsm"],
+    &["--emit", "matrices=matrices"],
+    &["--emit", "scxml"],
+    &["--emit", "formal"],
+    &["--emit", "rust", "--target", "sim"],
+];
+
+fn with_plan(test: &str, plan: &str) -> std::path::PathBuf {
+    let folder = folder(test);
+    fs::write(folder.join("plan.mdle"), plan).unwrap();
+    fs::write(folder.join("script.jsonl"), "{\"t\": 0}\n{\"t\": 0.5, \"fired\": [\"bumper\"]}\n").unwrap();
+    folder
+}
+
+/// Every command says this of a plan, and nothing else.
+fn assert_refused(test: &str, plan: &str, message: &str) {
+    let folder = with_plan(test, plan);
+    for command in COMMANDS {
+        let (status, messages) = judged(&folder, &[command, &["plan.mdle"]].concat());
+        let start: String = messages.chars().take(1000).collect();
+        assert_eq!(status, Some(1), "{command:?}: {start}");
+        // `check --target all` has a table above it.
+        assert!(messages.contains(message) && messages.contains("error[E0501]: "), "{command:?}: {start}");
+    }
+}
+
+#[test]
+fn operands_that_plans_multiply_are_limited() {
+    let plan = multiplied(&[26; 4], &format!("{{ NAME (Atom ({}) stop) }}\n", operands(1000)));
+    let message = "`L1` has 17576000 operands of conditions once every plan by name is copied in; the limit is 1048576";
+    assert_refused("operands", &plan, message);
+    let plan = multiplied(&[10; 4], &format!("{{ NAME (Atom ({}) stop) }}\n", operands(1000)));
+    let message = "`P` has 10000000 operands of conditions";
+    assert_refused("fewer_operands", &plan, message);
+    // The place that multiplies.
+    assert_refused("fewer_operands", &plan, "`L1` is used 10 times, with 1000000 operands of conditions each time");
+}
+
+#[test]
+fn names_that_plans_multiply_are_limited() {
+    let long = "N".repeat(100_000);
+    let plan = multiplied(
+        &[26, 26, 26],
+        &format!("{{ NAME {} }}\n{{ {long} (Atom (wait 1) stop) }}\n", vec![&*long; 26].join(" ")),
+    );
+    assert_refused("names", &plan, "bytes of text once every plan by name is copied in; the limit is 67108864");
+    let text = format!("{{ NAME (Atom (wait 1) path \"{}\") }}\n", "f".repeat(100_000));
+    assert_refused("texts", &multiplied(&[26; 4], &text), "bytes of text");
+}
+
+#[test]
+fn arguments_that_plans_multiply_are_limited() {
+    let long = "f".repeat(100_000);
+    let uses = |name: &str, argument: &str| vec![format!("{name}({argument})"); 26].join(" ");
+    let plan = format!(
+        "{{ P {} }}\n{{ A(p: robot) {} }}\n{{ B(p: robot) {} }}\n{{ C(p: robot) (Atom (sync p) stop) }}\n",
+        uses("A", &long),
+        uses("B", "p"),
+        uses("C", "p")
+    );
+    assert_refused("arguments", &plan, "bytes of text");
+}
+
+/// These commands come to a result, or name a limit.
+fn assert_ends(test: &str, plan: &str, commands: &[&[&str]]) {
+    let folder = with_plan(test, plan);
+    for command in commands {
+        let (status, messages) = judged(&folder, &[command, &["plan.mdle"][..]].concat());
+        let start: String = messages.chars().take(1000).collect();
+        let is_told = status == Some(1) && (messages.contains("error[E0501]: ") || messages.contains("error[E0502]: "));
+        assert!(status == Some(0) || is_told, "{command:?}: {status:?}: {start}");
+    }
+}
+
+const ANALYZE: &[&str] = &["analyze"];
+const RUST: &[&str] = &["--emit", "rust", "--target", "sim"];
+
+#[test]
+fn the_most_atoms_come_to_a_result() {
+    let atom = |condition: &str| multiplied(&[26; 4], &format!("{{ NAME (Atom ({condition}) stop) }}\n"));
+    assert_ends("atoms", &atom("wait 1"), &[ANALYZE, RUST, &["--emit", "fsm"], &["draw"]]);
+    assert_ends("memories", &atom("RISING bumper"), &[&["check"]]);
+}
+
+#[test]
+fn the_most_operands_and_texts_come_to_a_result() {
+    let plan = multiplied(&[16, 16, 16, 1], &format!("{{ NAME (Atom ({}) stop) }}\n", operands(255)));
+    assert_ends("most_operands", &plan, &[ANALYZE, RUST]);
+    let long = "N".repeat(8000);
+    let plan = multiplied(&[20; 3], &format!("{{ NAME {long} }}\n{{ {long} (Atom (wait 1) stop) }}\n"));
+    assert_ends("most_text", &plan, &[ANALYZE, &["--emit", "plan"]]);
+}
+
+#[test]
+fn operands_that_cannot_fire_are_analysed_in_linear_time() {
+    let atom = "{ NAME (Atom (bumper AND NOT bumper OR wait 1) stop) }\n";
+    assert_ends("never", &multiplied(&[20; 4], atom), &[ANALYZE]);
+}
+
+#[test]
+fn loops_multiply_conditions_within_limits() {
+    let plan = format!("{{ P ExecPlan 90000 {{ (Atom ({}) stop) }} }}\n", operands(1000));
+    let folder = with_plan("loops", &plan);
+    for kind in ["expanded", "fsm", "scxml"] {
+        let (status, messages) = judged(&folder, &["plan.mdle", "--emit", kind]);
+        let is_told = messages.contains("error[E0502]: ");
+        assert!(status == Some(1) && is_told, "{kind}: {status:?}: {messages}");
+    }
+    assert_ends("loops", &plan, &[ANALYZE, RUST]);
+}
