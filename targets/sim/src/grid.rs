@@ -203,6 +203,11 @@ impl Grid {
         (entered <= left).then_some((entered, left))
     }
 
+    /// The number of segments in the cell of a place.
+    pub(crate) fn beside(&self, at: Place) -> u64 {
+        self.entries(self.column(at.x), self.row(at.y)).len() as u64
+    }
+
     /// Calls `take` with each segment that touches the cells within `reach` of `at`; one in several cells comes several
     /// times.
     pub(crate) fn near(&self, at: Place, reach: f64, mut take: impl FnMut(usize, &Segment)) {

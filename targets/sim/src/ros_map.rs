@@ -13,7 +13,7 @@ mod tests;
 use mdle_runtime::Pose;
 
 use crate::world::{Outline, Place, World};
-use crate::world_file::WorldError;
+use crate::world_file::{WorldError, count};
 use contours::contours;
 pub(crate) use header::Header;
 use image::Image;
@@ -29,8 +29,9 @@ impl Header {
                 (f64::from(column) * self.resolution, (image.height as f64 - f64::from(row)) * self.resolution);
             Place { x: self.x + x * cos - y * sin, y: self.y + x * sin + y * cos }
         };
-        let stands = |column, row| image.darkness(column, row, self.negate) > self.occupied;
-        let loops = contours(image.width, image.height, stands);
+        let dark = image.darker(self.occupied, self.negate);
+        let stands = |column, row| dark.get(row * image.width + column).copied().unwrap_or(false);
+        let loops = contours(image.width, image.height, stands).map_err(|what| WorldError::new(file, None, what))?;
         let outlines: Vec<_> = (1..)
             .zip(loops)
             .map(|(number, corners): (usize, Vec<_>)| Outline {
@@ -39,6 +40,8 @@ impl Header {
                 solid: false,
             })
             .collect();
-        Ok(World { contours: outlines.len(), outlines, things: Vec::new(), start: Pose::ORIGIN, goal: None })
+        let world = World { contours: outlines.len(), outlines, things: Vec::new(), start: Pose::ORIGIN, goal: None };
+        count(&world).map_err(|what| WorldError::new(file, None, what))?;
+        Ok(world)
     }
 }

@@ -65,7 +65,7 @@ impl Setup {
     fn of(matches: &ArgMatches, period: Duration) -> Result<Self, String> {
         let make = options::make(matches)?;
         let world = options::world(matches)?;
-        let walls = Walls::of(&world);
+        let walls = Walls::of_any(&world).map_err(|what| format!("--world: {what}"))?;
         let given = options::start(matches)?;
         let Start(start) = given.map_or(Start(world.start), |(_, start)| start);
         let said = |error: StartError| match given {

@@ -35,29 +35,56 @@ pub(crate) struct Surface {
 
 /// How each end of `segment` lies to `others`, itself among them or not.
 pub(crate) fn ends<'s>(segment: &Segment, others: impl Iterator<Item = &'s Segment>) -> Ends {
-    let places = [segment.from, segment.to()];
-    let mut ends = [End::Edge; 2];
-    for other in others.filter(|other| *other != segment) {
-        for (end, at) in ends.iter_mut().zip(places) {
-            if apart(other.nearest(at), at) > TOGETHER {
+    let mut meeting = Meeting::of(*segment);
+    others.for_each(|other| meeting.touched(other));
+    meeting.ends()
+}
+
+/// The ends of a segment, and what was met at each so far: it takes no memory, however much lies there.
+pub(crate) struct Meeting {
+    segment: Segment,
+    ends: [(End, Option<Segment>); 2],
+}
+
+impl Meeting {
+    pub(crate) fn of(segment: Segment) -> Self {
+        Self { segment, ends: [(End::Edge, None); 2] }
+    }
+
+    /// Takes another segment into account, which may come again.
+    pub(crate) fn touched(&mut self, other: &Segment) {
+        let places = [self.segment.from, self.segment.to()];
+        if *other == self.segment {
+            return;
+        }
+        for ((end, first), at) in self.ends.iter_mut().zip(places) {
+            if first.as_ref() == Some(other) || apart(other.nearest(at), at) > TOGETHER {
                 continue;
             }
-            let way = |sign: f64| {
-                let length = libm::hypot(other.along.x, other.along.y);
-                End::Meets(Place { x: sign * other.along.x / length, y: sign * other.along.y / length })
-            };
-            let found = if apart(other.from, at) <= TOGETHER {
-                way(1.0)
-            } else if apart(other.to(), at) <= TOGETHER {
-                way(-1.0)
-            } else {
-                End::Covered
-            };
             // Where three meet there is no edge to any side.
-            *end = if *end == End::Edge { found } else { End::Covered };
+            *end = if first.is_none() { met(other, at) } else { End::Covered };
+            *first = first.or(Some(*other));
         }
     }
-    ends
+
+    pub(crate) fn ends(&self) -> Ends {
+        self.ends.map(|(end, _)| end)
+    }
+}
+
+/// The end of a segment at `at`, where another one is.
+fn met(other: &Segment, at: Place) -> End {
+    let way = |sign: f64| {
+        let length = libm::hypot(other.along.x, other.along.y);
+        End::Meets(Place { x: sign * other.along.x / length, y: sign * other.along.y / length })
+    };
+    if apart(other.from, at) <= TOGETHER {
+        way(1.0)
+    } else if apart(other.to(), at) <= TOGETHER {
+        way(-1.0)
+    } else {
+        End::Covered
+    }
 }
 
 /// What a ray in the unit direction `way` that went `range` far finds at `at`.

@@ -5,8 +5,11 @@ use mdle_runtime::Radians;
 use crate::disc::Disc;
 use crate::grid::{Grid, Hit, Segment};
 use crate::moving::Moving;
-use crate::surfaces::{Ends, Surface, apart, ends, surface};
+use crate::surfaces::{Ends, Meeting, Surface, apart, surface};
 use crate::world::{Outline, Place, World};
+
+/// The most pairs of an end of a segment and what shares its cell: each is looked at once, in a second or so.
+const PAIRS_MOST: u64 = 100_000_000;
 
 /// The walls of a world at a time.
 #[derive(Debug, Clone)]
@@ -23,20 +26,38 @@ impl Walls {
     /// The walls and the sides of what stands in `world`; what moves is where it begins.
     #[must_use]
     pub fn of(world: &World) -> Self {
-        let segments: Vec<_> = world.segments().map(|(_, from, to)| Segment::between(from, to)).collect();
+        let segments = segments(world);
         let grid = Grid::of(&segments);
-        let near = |segment: &Segment| {
-            let mut others = Vec::new();
+        Self::in_grid(world, segments, grid)
+    }
+
+    /// The same, unless so much lies in one place that it would not be ready within seconds.
+    ///
+    /// # Errors
+    /// What there is too much of.
+    pub(crate) fn of_any(world: &World) -> Result<Self, String> {
+        let segments = segments(world);
+        let grid = Grid::of(&segments);
+        let pairs = segments.iter().map(|segment| grid.beside(segment.from) + grid.beside(segment.to())).sum::<u64>();
+        if pairs > PAIRS_MOST {
+            return Err(format!(
+                "{} walls and sides lie too close together for the size of the world: {pairs} pairs of them share a cell of \
+                 its grid, and at most {PAIRS_MOST} may; leave out long walls and what the robot never comes near",
+                segments.len()
+            ));
+        }
+        Ok(Self::in_grid(world, segments, grid))
+    }
+
+    fn in_grid(world: &World, segments: Vec<Segment>, grid: Grid) -> Self {
+        let meets = |segment: &Segment| {
+            let mut meeting = Meeting::of(*segment);
             for at in [segment.from, segment.to()] {
-                grid.near(at, 0.0, |_, other| {
-                    if !others.contains(other) {
-                        others.push(*other);
-                    }
-                });
+                grid.near(at, 0.0, |_, other| meeting.touched(other));
             }
-            ends(segment, others.iter())
+            meeting.ends()
         };
-        let ends = segments.iter().map(near).collect();
+        let ends = segments.iter().map(meets).collect();
         let moving = world.things.iter().map(Moving::of).collect();
         Self { segments, ends, grid, moving, others: Vec::new() }
     }
@@ -137,6 +158,10 @@ impl Walls {
             thing.advance(seconds, body, radius);
         }
     }
+}
+
+fn segments(world: &World) -> Vec<Segment> {
+    world.segments().map(|(_, from, to)| Segment::between(from, to)).collect()
 }
 
 /// The wall or box of `world` that is nearest to `at`, where it stands at the beginning.

@@ -6,6 +6,7 @@ use mdle_runtime::{Meters, Pose};
 
 use crate::goal::Goal;
 use crate::moving::Thing;
+use crate::ros_map::Header;
 use crate::world_file::{self, WorldError};
 
 /// The worlds that come with the simulator: first the floor of the paper's tour, box in the hallway included.
@@ -58,6 +59,15 @@ impl World {
     /// What is wrong with the text, and where.
     pub fn parse(file: &str, text: &str) -> Result<Self, WorldError> {
         world_file::parse(file, text)
+    }
+
+    /// The world of a map of ROS, as the text of its YAML file and the bytes of its image; `file` and `image` are what errors
+    /// call these.
+    ///
+    /// # Errors
+    /// What is wrong with either, and where.
+    pub fn of_map((file, text): (&str, &str), (image, bytes): (&str, &[u8])) -> Result<Self, WorldError> {
+        Header::parse(file, text)?.world(image, bytes)
     }
 
     /// The office floor of the paper's tour.

@@ -16,6 +16,8 @@ use text::WorldText;
 
 /// More walls and sides than this are refused: a million of them takes a second to make ready.
 const SEGMENTS_MOST: usize = 1_000_000;
+/// A longer text is refused: to be read it takes up to 70 times its bytes of memory.
+const BYTES_MOST: usize = 8 << 20;
 
 /// What is wrong with a world file: `file:line:column: sentence`.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -63,7 +65,21 @@ pub(crate) fn parse(file: &str, text: &str) -> Result<World, WorldError> {
     })
 }
 
+/// Checks that a world has no more walls and sides than can be made ready.
+pub(crate) fn count(world: &World) -> Result<(), String> {
+    match world.everything().count() {
+        count if count > SEGMENTS_MOST => {
+            Err(format!("{count} walls and sides are too many; expected at most {SEGMENTS_MOST}"))
+        }
+        _ => Ok(()),
+    }
+}
+
 fn read(text: &str) -> Result<World, Wrong> {
+    if text.len() > BYTES_MOST {
+        let bytes = text.len();
+        return Err(Wrong(None, format!("a world of {bytes} bytes is too large; expected at most {BYTES_MOST}")));
+    }
     let written: WorldText = toml::from_str(text).map_err(|error| {
         // In the words of whoever writes the file.
         let what = error.message().replace('\n', " ").replace("expected f64", "expected a number");
@@ -92,12 +108,8 @@ fn read(text: &str) -> Result<World, Wrong> {
         things.push(unit.door(number, door)?);
     }
     let world = World { outlines, things, start, goal, contours: 0 };
-    match world.everything().count() {
-        count if count > SEGMENTS_MOST => {
-            Err(Wrong(None, format!("{count} walls and sides are too many; expected at most {SEGMENTS_MOST}")))
-        }
-        _ => Ok(world),
-    }
+    count(&world).map_err(|what| Wrong(None, what))?;
+    Ok(world)
 }
 
 /// Line and column of a byte of `text`, from 1, columns in characters.

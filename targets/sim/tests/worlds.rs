@@ -214,3 +214,9 @@ fn many_walls_are_made_ready_and_more_than_a_million_are_refused() {
     assert!(Simulated::new(&many, many.start, None, Duration::from_secs(1)).is_ok());
     assert_eq!(fault(&discs(20_834)), "room.toml: 1000032 walls and sides are too many; expected at most 1000000");
 }
+
+#[test]
+fn a_world_of_too_much_text_is_refused_before_it_is_read() {
+    let long = format!("# {}\n", "x".repeat(9 << 20));
+    assert_eq!(fault(&long), "room.toml: a world of 9437187 bytes is too large; expected at most 8388608");
+}

@@ -1,25 +1,40 @@
 //! The lines between pixels that stand and pixels that do not, without the steps that pixels make of slanted lines.
 
-use std::collections::BTreeMap;
-
 /// How far a line may pass from the corners of pixels that it replaces, in pixels. The steps of a slanted line lie up to 1 off
 /// it, and a little more where it begins at the wrong one.
 const TOLERANCE: f64 = 1.25;
+/// The most sides of pixels where something stands on one side only: 200 km of walls at 5 cm.
+const SIDES_MOST: usize = 4_000_000;
+/// The most corners that are smoothed together: the time for these grows with their square.
+const TOGETHER: usize = 1024;
 
 /// A corner of pixels: column and row of lines between them.
 type Corner = (i32, i32);
 
+/// The steps from a corner, in the order in which one is taken where two lead on: that of the upper pixel first.
+const STEPS: [Corner; 4] = [(0, -1), (1, 0), (0, 1), (-1, 0)];
+
 /// Closed lines around what stands, each ending where it began, in an order that depends on nothing but the image.
-pub(super) fn contours(width: usize, height: usize, stands: impl Fn(usize, usize) -> bool) -> Vec<Vec<Corner>> {
-    let mut edges = edges(width, height, stands);
+///
+/// # Errors
+/// More sides than can be made ready.
+pub(super) fn contours(
+    width: usize,
+    height: usize,
+    stands: impl Fn(usize, usize) -> bool,
+) -> Result<Vec<Vec<Corner>>, String> {
+    let mut sides = Sides::of(width, height, stands)?;
     let mut loops = Vec::new();
-    while let Some((from, _)) = edges.first_key_value() {
-        let from = *from;
+    while let Some(from) = sides.first() {
         let mut line = vec![from];
         let (mut here, mut came) = (from, (0, 0));
-        while let Some(next) = taken(&mut edges, here, came) {
-            came = (next.0 - here.0, next.1 - here.1);
-            here = next;
+        while let Some(step) = sides.taken(here, came) {
+            let next = (here.0 + step.0, here.1 + step.1);
+            if step == came {
+                // On a straight line only the ends matter.
+                line.pop();
+            }
+            (came, here) = (step, next);
             line.push(here);
             if here == from {
                 break;
@@ -27,75 +42,125 @@ pub(super) fn contours(width: usize, height: usize, stands: impl Fn(usize, usize
         }
         loops.push(smoothed(&line));
     }
-    loops
+    Ok(loops)
 }
 
 /// The sides of pixels where something stands on the left only, as steps from each corner.
-fn edges(width: usize, height: usize, stands: impl Fn(usize, usize) -> bool) -> BTreeMap<Corner, Vec<Corner>> {
-    let mut edges: BTreeMap<Corner, Vec<Corner>> = BTreeMap::new();
-    let mut taken = |from: Corner, to: Corner| edges.entry(from).or_default().push(to);
-    for row in 0..height {
-        for column in (0..width).filter(|column| stands(*column, row)) {
-            // A pixel's number fits: there are at most 100 million.
-            let (x, y) = (column as i32, row as i32);
-            if row == 0 || !stands(column, row - 1) {
-                taken((x + 1, y), (x, y));
+struct Sides {
+    /// For each corner the steps from it, a bit each; column by column.
+    steps: Vec<u8>,
+    rows: usize,
+    /// The corners before this one have no steps left.
+    next: usize,
+}
+
+impl Sides {
+    fn of(width: usize, height: usize, stands: impl Fn(usize, usize) -> bool) -> Result<Self, String> {
+        let rows = height + 1;
+        let mut steps = vec![0_u8; (width + 1) * rows];
+        let mut count = 0_usize;
+        for row in 0..height {
+            for column in (0..width).filter(|column| stands(*column, row)) {
+                let mut leave = |column: usize, row: usize, step: u8| {
+                    steps[column * rows + row] |= 1 << step;
+                    count += 1;
+                };
+                if row == 0 || !stands(column, row - 1) {
+                    leave(column + 1, row, 3);
+                }
+                if row + 1 == height || !stands(column, row + 1) {
+                    leave(column, row + 1, 1);
+                }
+                if column == 0 || !stands(column - 1, row) {
+                    leave(column, row, 2);
+                }
+                if column + 1 == width || !stands(column + 1, row) {
+                    leave(column + 1, row + 1, 0);
+                }
             }
-            if row + 1 == height || !stands(column, row + 1) {
-                taken((x, y + 1), (x + 1, y + 1));
-            }
-            if column == 0 || !stands(column - 1, row) {
-                taken((x, y), (x, y + 1));
-            }
-            if column + 1 == width || !stands(column + 1, row) {
-                taken((x + 1, y + 1), (x + 1, y));
+            if count > SIDES_MOST {
+                return Err(format!(
+                    "what stands has more than {SIDES_MOST} sides of pixels; a map of walls has fewer, and `occupied_thresh` \
+                     says how dark a pixel of them is"
+                ));
             }
         }
+        Ok(Self { steps, rows, next: 0 })
     }
-    edges
+
+    /// The first corner that has steps left, by its column and then by its row.
+    fn first(&mut self) -> Option<Corner> {
+        let ahead = self.steps.get(self.next..)?.iter().position(|steps| *steps != 0)?;
+        self.next += ahead;
+        // There are at most 100 million pixels.
+        Some(((self.next / self.rows) as i32, (self.next % self.rows) as i32))
+    }
+
+    /// Takes the step that goes on from `here`; where two pixels touch at a corner, the one that stays with its pixel.
+    fn taken(&mut self, here: Corner, came: Corner) -> Option<Corner> {
+        let steps = self.steps.get_mut(here.0 as usize * self.rows + here.1 as usize)?;
+        let turns = |step: Corner| came.0 * step.1 - came.1 * step.0;
+        let open = STEPS.iter().enumerate().filter(|(bit, _)| *steps >> bit & 1 == 1);
+        let (bit, step) = open.min_by_key(|(_, step)| turns(**step))?;
+        *steps &= !(1 << bit);
+        Some(*step)
+    }
 }
 
-/// Takes the edge that goes on from `here`; where two pixels touch at a corner, the one that stays with its pixel.
-fn taken(edges: &mut BTreeMap<Corner, Vec<Corner>>, here: Corner, came: Corner) -> Option<Corner> {
-    let ways = edges.get_mut(&here)?;
-    let turns = |to: &Corner| came.0 * (to.1 - here.1) - came.1 * (to.0 - here.0);
-    let best = (0..ways.len()).min_by_key(|number| ways.get(*number).map(turns))?;
-    let next = ways.remove(best);
-    if ways.is_empty() {
-        edges.remove(&here);
-    }
-    Some(next)
-}
-
-/// The line through fewer of its corners that passes none further than the tolerance (Douglas and Peucker, 1973).
+/// The line through fewer of its corners that passes none further than the tolerance.
 fn smoothed(line: &[Corner]) -> Vec<Corner> {
     let far = |from: Corner| {
         let distance = |to: &Corner| i64::from(to.0 - from.0).pow(2) + i64::from(to.1 - from.1).pow(2);
         (0..line.len()).max_by_key(|number| line.get(*number).map_or(0, distance)).unwrap_or(0)
     };
     let Some(first) = line.first() else { return Vec::new() };
-    // A closed line is split where it is furthest from its beginning.
+    // A closed line is split where it is furthest from its beginning, and where it is long.
     let split = far(*first);
     let mut kept = vec![false; line.len()];
-    let mut open = vec![(0, split), (split, line.len() - 1)];
-    while let Some((from, to)) = open.pop() {
-        kept[from] = true;
-        kept[to] = true;
-        let off = |number: usize| distance(line[number], line[from], line[to]);
-        let Some(worst) = (from + 1..to).max_by(|one, other| off(*one).total_cmp(&off(*other))) else { continue };
-        if off(worst) > TOLERANCE {
-            open.extend([(from, worst), (worst, to)]);
+    for (from, to) in [(0, split), (split, line.len() - 1)] {
+        let mut begin = from;
+        loop {
+            let end = to.min(begin + TOGETHER);
+            keep(line, begin, end, &mut kept);
+            if end == to {
+                break;
+            }
+            begin = end;
         }
     }
     // What is thinner than the tolerance becomes a line there and back: a wall without thickness.
     line.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(corner, _)| *corner).collect()
 }
 
+/// Keeps what a line needs between two of its corners (Douglas and Peucker, 1973).
+fn keep(line: &[Corner], from: usize, to: usize, kept: &mut [bool]) {
+    let mut open = vec![(from, to)];
+    while let Some((from, to)) = open.pop() {
+        kept[from] = true;
+        kept[to] = true;
+        let off = distance(line[from], line[to]);
+        let mut worst = (0.0, None);
+        for (number, corner) in line.iter().enumerate().take(to).skip(from + 1) {
+            let off = off(*corner);
+            if off >= worst.0 {
+                worst = (off, Some(number));
+            }
+        }
+        if let (off, Some(worst)) = worst
+            && off > TOLERANCE
+        {
+            open.extend([(from, worst), (worst, to)]);
+        }
+    }
+}
+
 /// The distance of a corner from the line between two others.
-fn distance(at: Corner, from: Corner, to: Corner) -> f64 {
+fn distance(from: Corner, to: Corner) -> impl Fn(Corner) -> f64 {
     let number = |value: i32| f64::from(value);
     let (dx, dy) = (number(to.0 - from.0), number(to.1 - from.1));
-    let (x, y) = (number(at.0 - from.0), number(at.1 - from.1));
     let length = libm::hypot(dx, dy);
-    if length == 0.0 { libm::hypot(x, y) } else { (x * dy - y * dx).abs() / length }
+    move |at| {
+        let (x, y) = (number(at.0 - from.0), number(at.1 - from.1));
+        if length == 0.0 { libm::hypot(x, y) } else { (x * dy - y * dx).abs() / length }
+    }
 }

@@ -41,11 +41,16 @@ impl Image {
         Ok(Self { width, height, white, grey })
     }
 
-    /// How dark a pixel is, from 0 for white to 1 for black; the other way round with `negate`.
-    pub(super) fn darkness(&self, column: usize, row: usize, negate: bool) -> f64 {
-        let grey = self.grey.get(row * self.width + column).copied().unwrap_or(self.white);
-        let bright = f64::from(grey) / f64::from(self.white);
-        if negate { bright } else { 1.0 - bright }
+    /// For each pixel whether it is darker than this part of black; brighter with `negate`.
+    pub(super) fn darker(&self, than: f64, negate: bool) -> Vec<bool> {
+        let is_dark = |grey: u16| {
+            let bright = f64::from(grey) / f64::from(self.white);
+            let darkness = if negate { bright } else { 1.0 - bright };
+            darkness > than
+        };
+        // There are far more pixels than greys.
+        let greys: Vec<bool> = (0..=u16::MAX).map(is_dark).collect();
+        self.grey.iter().map(|grey| greys.get(usize::from(*grey)).copied().unwrap_or(false)).collect()
     }
 }
 

@@ -116,3 +116,28 @@ fn faults_are_told_with_their_place() {
     map.pgm: the image ends after 1 of its 2 pixels
     "#);
 }
+
+#[test]
+fn a_long_comb_has_its_corners_and_no_more() {
+    // One contour of three million sides: every tooth is one pixel wide, and so is what is between two.
+    let (width, height) = (3000, 1000);
+    let comb = |column: usize, row: usize| {
+        row == 0 || row + 1 == height || column + 1 == width || (column % 2 == 0 && (row + 2 < height || column == 0))
+    };
+    let world = header(HEADER).world("map.pgm", &map(width, height, comb)).expect("a good map");
+    let corners: usize = world.outlines.iter().map(|outline| outline.points.len()).sum();
+    assert!((3000..6100).contains(&corners), "{corners} corners");
+    assert!(Walls::of_any(&world).is_ok());
+}
+
+#[test]
+fn a_map_of_too_many_sides_is_refused() {
+    let fault = |pixels: usize| {
+        let dots = map(2 * pixels, 2 * pixels, |column, row| column % 2 == 1 && row % 2 == 1);
+        header(HEADER).world("map.pgm", &dots).expect_err("too many").to_string()
+    };
+    let message = "map.pgm: what stands has more than 4000000 sides of pixels; a map of walls has fewer";
+    assert!(fault(1010).starts_with(message), "{}", fault(1010));
+    let message = "map.pgm: 1280000 walls and sides are too many; expected at most 1000000";
+    assert_eq!(fault(800), message);
+}

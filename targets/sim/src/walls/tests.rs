@@ -7,6 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::*;
+use crate::surfaces::End;
 
 fn uniform(random: &mut ChaCha8Rng) -> f64 {
     (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
@@ -119,4 +120,35 @@ fn edges_are_where_a_surface_ends_or_turns_away() {
     assert!((edge(-1.0, 0.5, 0.0) - 0.5).abs() < 1e-9);
     // Where the wall goes straight on there is none.
     assert!((edge(1.0, 3.1, 180.0) - 2.9).abs() < 1e-9);
+}
+
+/// Parallel walls of 200 km, a millimetre from one to the next.
+fn bundle(count: usize) -> World {
+    let outline = |number: usize| {
+        let x = 5.0 + number as f64 / 1000.0;
+        let points = [-1e5, 1e5].map(|y| Place { x, y }).to_vec();
+        Outline { name: format!("wall {number}"), points, solid: false }
+    };
+    World { outlines: (0..count).map(outline).collect(), ..World::parse("empty", "").expect("a good world") }
+}
+
+#[test]
+fn long_walls_side_by_side_are_ready_or_refused() {
+    let walls = Walls::of_any(&bundle(1000)).expect("few enough");
+    let ray = walls.ray(Place { x: 0.0, y: 0.0 }, Radians(0.0), 10.0);
+    assert!(ray.is_some_and(|range| (range - 5.0).abs() < 1e-9), "{ray:?}");
+    let fault = Walls::of_any(&bundle(8000)).expect_err("too many");
+    assert!(fault.starts_with("8000 walls and sides lie too close together"), "{fault}");
+}
+
+#[test]
+fn walls_that_meet_in_one_point_cover_each_other() {
+    let spoke = |number: u32| {
+        let (sin, cos) = libm::sincos(f64::from(number));
+        let points = vec![Place { x: 5.0, y: 5.0 }, Place { x: 5.0 + 3.0 * cos, y: 5.0 + 3.0 * sin }];
+        Outline { name: String::new(), points, solid: false }
+    };
+    let world = World { outlines: (0..2000).map(spoke).collect(), ..World::parse("empty", "").expect("a good world") };
+    let walls = Walls::of_any(&world).expect("few enough");
+    assert!(walls.ends.iter().all(|[middle, _]| *middle == End::Covered));
 }
