@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use mdle_tests::executable::{cache, folder, mdlec};
+use mdle_tests::executable::{cache, folder, mdlec, run_mdlec};
 
 /// The address space that a process gets, in KiB: 1 GB.
 const MEMORY: u32 = 1 << 20;
@@ -164,4 +164,53 @@ fn loops_multiply_conditions_within_limits() {
         assert!(status == Some(1) && is_told, "{kind}: {status:?}: {messages}");
     }
     assert_ends("loops", &plan, &[ANALYZE, RUST]);
+}
+
+/// An image of so many pixels, black where `stands` says so.
+fn image(width: usize, height: usize, stands: impl Fn(usize, usize) -> bool) -> Vec<u8> {
+    let mut bytes = format!("P5\n{width} {height}\n255\n").into_bytes();
+    let pixels = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
+    bytes.extend(pixels.map(|(column, row)| if stands(column, row) { 0 } else { 254 }));
+    bytes
+}
+
+/// Walls of 200 km, so far from one to the next, in metres.
+fn long_walls(count: usize, apart: f64) -> String {
+    let wall = |number: usize| {
+        let x = 5.0 + number as f64 * apart;
+        format!("[[wall]]\npoints = [[{x}, -1e5], [{x}, 1e5]]\n")
+    };
+    (0..count).map(wall).collect()
+}
+
+#[test]
+fn worlds_are_ready_or_refused() {
+    let folder = folder("worlds_within_limits");
+    fs::write(folder.join("rest.mdle"), "{ Rest (Atom (wait 10ms) stop) }\n").unwrap();
+    let built = run_mdlec(&folder, &["rest.mdle", "--target", "sim"]);
+    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+    let map = |name: &str, image: &[u8]| {
+        let origin = "resolution: 0.05\norigin: [-500, -100, 0]\n";
+        fs::write(folder.join(format!("{name}.yaml")), format!("image: {name}.pgm\n{origin}")).unwrap();
+        fs::write(folder.join(format!("{name}.pgm")), image).unwrap();
+    };
+    let (width, height) = (3000, 1000);
+    let edge = |column, row| row == 0 || row + 1 == height || column == 0 || column + 1 == width;
+    map("comb", &image(width, height, |column, row| edge(column, row) || (column % 2 == 0 && row + 2 < height)));
+    map("dots", &image(4000, 4000, |column, row| column % 2 == 1 && row % 2 == 1));
+    fs::write(folder.join("long.toml"), long_walls(3000, 0.001)).unwrap();
+    fs::write(folder.join("longer.toml"), long_walls(20_000, 0.001)).unwrap();
+    fs::write(folder.join("large.toml"), "[[wall]]\npoints = [[2, 0], [3, 0]]\n".repeat(1_000_000)).unwrap();
+    for (world, status, message) in [
+        ("comb.yaml", 0, ""),
+        ("dots.yaml", 2, "dots.pgm: what stands has more than 4000000 sides of pixels"),
+        ("long.toml", 0, ""),
+        ("longer.toml", 2, "20000 walls and sides lie too close together for the size of the world"),
+        ("large.toml", 2, "a world of 35000000 bytes is too large; expected at most 8388608"),
+    ] {
+        let run = limited(&folder, &folder.join("rest"), &["--speed", "max", "--world", world]);
+        let messages = String::from_utf8(run.stderr).expect("UTF-8");
+        assert_eq!(run.status.code(), Some(status), "{world}: {messages}");
+        assert!(messages.contains(message), "{world}: {messages}");
+    }
 }

@@ -6,7 +6,7 @@
 use std::fs;
 
 use mdle_tests::repository::{files, root};
-use mdle_tests::{any_bytes, any_text};
+use mdle_tests::{any_bytes, any_file, any_text};
 use mdlec::diagnostic::Code;
 
 /// The texts, each with where it is from.
@@ -80,5 +80,27 @@ fn both_ends_of_a_line_read_on() {
             any_bytes::atrv(&line);
         });
         assert!(holds.is_ok(), "{line:02X?}");
+    }
+}
+
+#[test]
+fn files_that_are_no_plans_are_read_or_refused() {
+    let properties: [(&str, fn(&[u8])); 7] = [
+        ("alphabet", any_file::alphabet),
+        ("machine", any_file::machine),
+        ("script", any_file::script),
+        ("world", any_file::world),
+        ("map", any_file::map),
+        ("path", any_file::path),
+        ("configuration", any_file::configuration),
+    ];
+    for (folder, property) in properties {
+        let kept = fs::read_dir(root().join("tests/fuzz/files").join(folder)).unwrap();
+        let kept: Vec<_> = kept.map(|entry| entry.unwrap().path()).collect();
+        assert!(kept.len() > 1, "{folder}");
+        for path in kept {
+            let bytes = fs::read(&path).unwrap();
+            assert!(std::panic::catch_unwind(|| property(&bytes)).is_ok(), "{}", path.display());
+        }
     }
 }

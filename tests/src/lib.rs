@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test tool fails by panicking")]
 
 pub mod any_bytes;
+pub mod any_file;
 pub mod any_text;
 pub mod book;
 pub mod chance;

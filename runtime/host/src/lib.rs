@@ -46,7 +46,7 @@ pub use files::{read_file, read_text};
 use mdle_runtime::{Plan, Robot};
 pub use named_file::NamedFile;
 use outlet::{Keeps, Outlet};
-pub use paths::Replays;
+pub use paths::{Replays, setpoints};
 use patience::Patience;
 pub use stop_request::StopRequest;
 pub use target::{Around, Hosted, Judgement, Pace, Refusal, Standing, Target, Time};

@@ -145,9 +145,17 @@ fn read(folder: Option<&Path>, name: &str, fastest: Twist) -> Result<Vec<Setpoin
         }
         _ => format!("the path {shown} cannot be read: {error}; expected a CSV file"),
     })?;
-    let read = text::utf8(&bytes).and_then(|text| text::setpoints(text, fastest));
+    setpoints(&shown.to_string(), &bytes, fastest)
+}
+
+/// The setpoints of a path, by the bytes of its file, for a robot that is so fast; `file` is what errors call it.
+///
+/// # Errors
+/// What is wrong with the path, and where.
+pub fn setpoints(file: &str, bytes: &[u8], fastest: Twist) -> Result<Vec<Setpoint>, String> {
+    let read = text::utf8(bytes).and_then(|text| text::setpoints(text, fastest));
     read.map_err(|Wrong { place, what }| match place {
-        Some((line, column)) => format!("{shown}:{line}:{column}: {what}"),
-        None => format!("{shown}: {what}"),
+        Some((line, column)) => format!("{file}:{line}:{column}: {what}"),
+        None => format!("{file}: {what}"),
     })
 }

@@ -1,0 +1,7 @@
+//! Theorem 1 has an answer for every machine.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use mdle_tests::any_file;
+
+fuzz_target!(|bytes: &[u8]| any_file::machine(bytes));

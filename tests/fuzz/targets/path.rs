@@ -1,0 +1,7 @@
+//! A path is read or has an error, and goes on in time.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use mdle_tests::any_file;
+
+fuzz_target!(|bytes: &[u8]| any_file::path(bytes));

@@ -1,0 +1,142 @@
+//! What holds for all bytes whatever of a file that is no plan: an alphabet, a machine, a script, a world, a map, a path, a
+//! robot's configuration. libFuzzer looks for some for which it does not, and a test tries all that are kept.
+//!
+//! Each function panics where something does not hold.
+
+use std::fs;
+use std::sync::LazyLock;
+
+use mdle_host::setpoints;
+use mdle_runtime::{MetersPerSecond, Radians, RadiansPerSecond, Twist};
+use mdle_sim::{Place, Walls, World};
+use mdlec::alphabet::{self, AlphabetFile};
+use mdlec::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
+use mdlec::trace::{Counted, Script, run};
+use mdlec::{Compiled, compile, link, rust, theorem};
+
+use crate::any_text::text;
+use crate::pipeline::scripted;
+
+/// The most steps of the search for the plan of a machine.
+const STEPS: u64 = 2_000;
+
+/// Alphabets that targets share.
+static SHARED: LazyLock<Vec<AlphabetFile>> = LazyLock::new(|| {
+    let shared = link::alphabets().iter().filter(|file| !file.target);
+    shared.filter_map(|file| alphabet::read(SourceId(0), file.text).0).collect()
+});
+
+/// A plan that scripts are run against.
+static PLAN: LazyLock<Vec<Compiled>> = LazyLock::new(|| {
+    let plan = "{ P (a) ExecPlan inf { (Atom (b OR wait 1) idle) (Atom (RISING c) idle) } }";
+    compile(SourceId(0), plan, scripted(), None).0
+});
+
+/// An alphabet is read or has errors that can be shown; one without errors is bound as Rust.
+pub fn alphabet(bytes: &[u8]) {
+    let text = text(bytes);
+    let mut sources = Sources::default();
+    let source = sources.add("alphabet.mdle", text.as_str());
+    let (file, found) = alphabet::read(source, &text);
+    for label in found.iter().flat_map(|diagnostic| &diagnostic.labels) {
+        assert!(text.get(label.span.within(source)).is_some(), "{label:?}");
+    }
+    shown(&sources, &found);
+    assert!(file.is_some() || has_errors(&found), "no alphabet and no error");
+    let Some(file) = file.filter(|file| file.target.is_some() && !has_errors(&found)) else { return };
+    let (alphabet, found) = alphabet::combine(file, &SHARED);
+    if !has_errors(&found) {
+        let bound = rust::bind(&alphabet);
+        assert!(syn::parse_file(&bound).is_ok(), "{bound}");
+    }
+}
+
+/// A machine is read or has an error; of one that is read, Theorem 1 has an answer, and a plan can be made with `after`.
+pub fn machine(bytes: &[u8]) {
+    let Ok(machine) = theorem::read(&text(bytes)) else { return };
+    let answer = theorem::decompile(&machine, STEPS);
+    theorem::as_printed(&machine, &answer);
+    match &answer {
+        theorem::Answer::String(found) => assert!(!theorem::string(&machine, found).is_empty()),
+        theorem::Answer::None(broken) => assert!(broken.iter().all(|broken| !broken.sentence(&machine).is_empty())),
+        theorem::Answer::Stopped(steps) => assert!(*steps >= STEPS),
+    }
+    assert!(!theorem::augment(&machine).is_empty());
+}
+
+/// A script is read or has an error; one that is read can be run, and its time never goes back.
+pub fn script(bytes: &[u8]) {
+    let Ok(script) = Script::read(&text(bytes)) else { return };
+    assert!(script.turns().is_sorted_by_key(|turn| turn.t), "{script:?}");
+    for plan in PLAN.iter() {
+        let lines = run(Counted::new(&plan.lowered), &script);
+        assert!(lines.count() <= script.turns().len());
+    }
+}
+
+/// A world is read or has an error; in one that is read, distances are numbers.
+pub fn world(bytes: &[u8]) {
+    if let Ok(world) = World::parse("world.toml", &text(bytes)) {
+        stands(&world);
+    }
+}
+
+/// The same for a map: what comes before `P2` or `P5` is the YAML file.
+pub fn map(bytes: &[u8]) {
+    let begin = bytes.windows(2).position(|pair| [&b"P2"[..], b"P5"].contains(&pair));
+    let (header, image) = bytes.split_at(begin.unwrap_or(bytes.len()));
+    if let Ok(world) = World::of_map(("map.yaml", &text(header)), ("map.pgm", image)) {
+        stands(&world);
+    }
+}
+
+fn stands(world: &World) {
+    let walls = Walls::of(world);
+    let start = Place { x: world.start.x.0, y: world.start.y.0 };
+    assert!(walls.clearance(start, 5.0) >= 0.0);
+    for look in 0..8_u32 {
+        let range = walls.ray(start, Radians(f64::from(look)), 1e7);
+        assert!(range.is_none_or(|range| (0.0..1e7).contains(&range)), "{range:?}");
+    }
+}
+
+/// A path is read or has an error; one that is read goes on in time, and is not too fast.
+pub fn path(bytes: &[u8]) {
+    let fastest = Twist { v: MetersPerSecond(0.5), omega: RadiansPerSecond(1.0) };
+    let Ok(setpoints) = setpoints("path.csv", bytes, fastest) else { return };
+    assert!(setpoints.is_sorted_by(|one, other| one.at < other.at), "{setpoints:?}");
+    assert!(
+        setpoints.iter().all(|setpoint| setpoint.speed.0.abs() < 0.6 && setpoint.heading.0.is_finite()),
+        "{setpoints:?}"
+    );
+}
+
+/// A robot's configuration is read or has an error; what is shown of one that is read is the same configuration.
+pub fn configuration(bytes: &[u8]) {
+    let name = format!("mdle-any-file-{}-{:?}.toml", std::process::id(), std::thread::current().id());
+    let file = std::env::temp_dir().join(name);
+    let again = |shown: String| {
+        fs::write(&file, shown).expect("a temporary file");
+        file.as_path()
+    };
+    fs::write(&file, bytes).expect("a temporary file");
+    if let Ok(read) = mdle_scout::Configured::read(Some(file.as_path()), None) {
+        let second = mdle_scout::Configured::read(Some(again(read.to_string())), None);
+        assert_eq!(second.map(|second| second.config), Ok(read.config));
+    }
+    fs::write(&file, bytes).expect("a temporary file");
+    if let Ok(read) = mdle_atrv::Configured::read(Some(file.as_path()), None) {
+        let second = mdle_atrv::Configured::read(Some(again(read.to_string())), None);
+        assert_eq!(second.map(|second| second.config), Ok(read.config));
+    }
+    fs::remove_file(&file).expect("a temporary file");
+}
+
+/// Shows what was found, to people and to programs.
+fn shown(sources: &Sources, found: &[Diagnostic]) {
+    for diagnostic in found {
+        let shown = sources.render(diagnostic);
+        assert!(shown.starts_with("error[") || shown.starts_with("warning["), "{diagnostic:?}\n{shown}");
+        assert!(!sources.message(diagnostic).to_json().is_empty(), "{diagnostic:?}");
+    }
+}
