@@ -87,7 +87,7 @@ fn operands_that_plans_multiply_are_limited() {
     let message = "`L1` has 17576000 operands of conditions once every plan by name is copied in; the limit is 1048576";
     assert_refused("operands", &plan, message);
     let plan = multiplied(&[10; 4], &format!("{{ NAME (Atom ({}) stop) }}\n", operands(1000)));
-    let message = "`P` has 10000000 operands of conditions";
+    let message = "error[E0501]: `P` has 10000000 operands of conditions";
     assert_refused("fewer_operands", &plan, message);
     // The place that multiplies.
     assert_refused("fewer_operands", &plan, "`L1` is used 10 times, with 1000000 operands of conditions each time");
