@@ -83,9 +83,12 @@ fn both_ends_of_a_line_read_on() {
     }
 }
 
+/// Something that holds for all bytes.
+type Property = fn(&[u8]);
+
 #[test]
 fn files_that_are_no_plans_are_read_or_refused() {
-    let properties: [(&str, fn(&[u8])); 7] = [
+    let properties: [(&str, Property); 7] = [
         ("alphabet", any_file::alphabet),
         ("machine", any_file::machine),
         ("script", any_file::script),
