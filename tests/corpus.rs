@@ -5,30 +5,12 @@
 
 use std::fs;
 
-use mdle_tests::repository::{files, root};
-use mdle_tests::{any_bytes, any_file, any_text};
-use mdlec::diagnostic::Code;
-
-/// The texts, each with where it is from.
-fn texts() -> Vec<(String, String)> {
-    let kept = fs::read_dir(root().join("tests/fuzz/corpus")).unwrap().map(|entry| {
-        let path = entry.unwrap().path();
-        (path.display().to_string(), any_text::text(&fs::read(&path).unwrap()))
-    });
-    let plans = files(&[".mdle"]).into_iter().map(|file| (file.path, file.text));
-    let examples = Code::ALL.iter().flat_map(|code| {
-        let explanation = code.explanation();
-        let examples = [explanation.wrong(), explanation.right()].into_iter().flatten();
-        examples.map(move |example| (format!("the explanation of {code}"), example.text))
-    });
-    let mut texts: Vec<_> = kept.chain(plans).chain(examples).collect();
-    texts.sort();
-    texts
-}
+use mdle_tests::repository::root;
+use mdle_tests::{any_bytes, any_file, any_text, texts};
 
 /// Holds every text to this.
 fn assert_holds(property: fn(&str)) {
-    let texts = texts();
+    let texts = texts::kept();
     assert!(texts.len() > 200, "{} texts", texts.len());
     for (from, text) in texts {
         let holds = std::panic::catch_unwind(|| property(&text));

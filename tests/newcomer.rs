@@ -36,6 +36,60 @@ const MISTAKES: &[(&str, &str, &str)] = &[
         "{ Dock (bumper)\n  (Atom (go 20 0) (wait 20))\n}\n",
         "as in `(Atom (wait 10) go 20 0)`",
     ),
+    ("`Atom` in small letters", "{ Dock (bumper)\n  (atom (wait 5) stop)\n}\n", "the keyword is `Atom`"),
+    ("`Atom` with a letter too few", "{ Dock (bumper)\n  (Atm (wait 5) (go 20 0))\n}\n", "the keyword is `Atom`"),
+    ("a law alone", "{ Dock (bumper)\n  (go 20 0)\n}\n", "`(Atom (wait 5) (go 20 0))`"),
+    ("a condition alone", "{ Dock (bumper)\n  (r0 < 1m)\n}\n", "`(Atom (r0 < 1m) stop)`"),
+    ("`if`", "{ Dock (bumper)\n  if (r0 < 1m)\n}\n", "`{ Branch (NOT r0 < 1m) (Atom (wait 5) stop) }`"),
+    (
+        "`if` and `else`",
+        "{ Dock (bumper)\n  if (bumper) { (Atom (wait 5) stop) } else { (Atom (wait 5) (go 20 0)) }\n}\n",
+        "MDLe has no `else`",
+    ),
+    (
+        "`while`",
+        "{ Dock (bumper)\n  while (r0 > 1m) { (Atom (wait 5) (go 20 0)) }\n}\n",
+        "`{ Loop (NOT r0 > 1m) ExecPlan inf { (Atom (wait 5) stop) } }`",
+    ),
+    ("`repeat`", "{ Dock (bumper)\n  repeat 3 { (Atom (wait 5) (go 20 0)) }\n}\n", "`ExecPlan 3`"),
+    ("`import`", "import \"lib.mdle\"\n{ Dock (Atom (wait 5) stop) }\n", "the keyword is `use`"),
+    ("`use` without quotes", "use lib.mdle\n{ Dock (Atom (wait 5) stop) }\n", "written between double quotes"),
+    ("a product of a string", "{ Dock (bumper)\n  ((Atom (wait 5) (go 20 0)))*3\n}\n", "write `^3`"),
+    ("a unit of cars", "{ Dock (bumper)\n  (Atom (wait 5) (go 20km/h 0))\n}\n", "`5.5556m/s`"),
+    ("a unit that nobody knows", "{ Dock (bumper)\n  (Atom (wait 5) (go 20knots 0))\n}\n", "the units are `m`"),
+    (
+        "arguments that do not touch",
+        "{ Leg(d: length)\n  (Atom (null) (goAvoid 0 d))\n}\n{ Dock (bumper) Leg (3m) }\n",
+        "write `Leg(3m)`",
+    ),
+    (
+        "a parameter without a type",
+        "{ Leg(d)\n  (Atom (null) (goAvoid 0 d))\n}\n{ Dock (bumper) Leg(3m) }\n",
+        "`(d: length)`",
+    ),
+    (
+        "parameters without types",
+        "{ Leg(d, v)\n  (Atom (null) (goAvoid 0 d v))\n}\n{ Dock (bumper) Leg(3m, 10) }\n",
+        "`(d: length, v: speed)`",
+    ),
+    ("a unit for a type", "{ Leg(d: m)\n  (Atom (null) (goAvoid 0 d))\n}\n{ Dock Leg(3m) }\n", "`length`"),
+    ("an index", "{ Dock (bumper)\n  (Atom (r[0] < 1m) (go 20 0))\n}\n", "`r 0`"),
+    ("square brackets", "{ Dock (bumper)\n  (Atom [bumper] (go 20 0))\n}\n", "`(bumper)`"),
+    ("a decimal comma", "{ Dock (bumper)\n  (Atom (wait 0,5) (go 20 0))\n}\n", "`0.5`"),
+    ("a sum of signals", "{ Dock (bumper)\n  (Atom (r0 + r1 < 1) (go 20 0))\n}\n", "one signal on each side"),
+    ("a product of numbers", "{ Dock (bumper)\n  (Atom (wait 2*5) (go 20 0))\n}\n", "write the result: `10`"),
+    ("a name for a range", "{ Dock (bumper)\n  (Atom (null) (goAvoid 0 far))\n}\n", "expected a length"),
+    ("no range", "{ Dock (bumper)\n  (Atom (null) (goAvoid 0))\n}\n", "`goAvoid 0 1m`"),
+    (
+        "an interval turned inside out",
+        "{ Dock (bumper)\n  (Atom (r0 < 1 AND r0 > 2) (go 20 0))\n}\n",
+        "`r0 < 1 OR r0 > 2`",
+    ),
+    (
+        "a missing `}` of a loop",
+        "{ Dock (bumper)\n  ExecPlan 3 {\n    (Atom (wait 5) (go 20 0))\n  { Inner (wait 3)\n    (Atom (wait 5) stop)\n  }\n}\n",
+        "perhaps a `}` is missing before this",
+    ),
 ];
 
 #[test]
@@ -80,4 +134,21 @@ fn what_is_no_diagnostic_is_json_as_well() {
         said(&["plan.mdle", "--emit", "plan", json[0], json[1], "--target", "nowhere"]),
     ];
     insta::assert_snapshot!(said.concat());
+}
+
+#[test]
+fn a_signal_has_one_value() {
+    let folder = folder("newcomer_signal");
+    let plan = |low: &str| {
+        format!("{{ P\n  ExecPlan inf {{ (Atom (battery < {low}) stop) (Atom (battery > 12.8) (go 20 0)) }}\n}}\n")
+    };
+    let codes = |low: &str| {
+        fs::write(folder.join("plan.mdle"), plan(low)).unwrap();
+        let output = run_mdlec(&folder, &["check", "plan.mdle", "--message-format", "json"]);
+        let messages = String::from_utf8(output.stderr).unwrap();
+        let codes = messages.lines().map(|line| serde_json::from_str::<Value>(line).unwrap()["code"].to_string());
+        codes.collect::<Vec<_>>()
+    };
+    assert_eq!(codes("11.5"), [""; 0]);
+    assert_eq!(codes("13"), ["\"W0301\""]);
 }

@@ -1,6 +1,7 @@
 //! Diagnostics: a code, what is wrong, where, and what to type instead; rendered with codespan-reporting.
 
 mod explain;
+mod help;
 mod json;
 mod shown;
 mod sources;
@@ -9,6 +10,7 @@ use std::fmt;
 use std::ops::Range;
 
 pub use explain::{Example, Explanation};
+pub use help::{Edit, Help};
 pub use json::{Message, Place};
 pub use sources::Sources;
 
@@ -91,44 +93,44 @@ macro_rules! codes {
 }
 
 codes! {
-    E0101 "a character that no MDLe text has",
-    E0102 "something else could stand here",
-    E0103 "a bracket without its partner",
-    E0104 "a number that touches what follows it",
-    E0105 "a comment or string that does not end",
+    E0101 "unexpected character",
+    E0102 "unexpected token",
+    E0103 "unmatched bracket",
+    E0104 "malformed number",
+    E0105 "unterminated comment or text",
     E0106 "brackets nested too deep",
-    E0107 "a file without a plan",
-    E0108 "nothing to run",
-    E0109 "text that is not UTF-8",
-    E0201 "an unknown name",
-    E0202 "a plan that contains itself",
-    E0203 "a name that stands for two things",
-    E0204 "a quark of the other kind",
-    E0205 "a file that cannot be used",
-    E0206 "files that use each other",
-    E0207 "a cause that is none",
-    E0301 "the wrong number of arguments",
-    E0302 "an argument of the wrong type",
-    E0303 "a unit of the wrong kind",
-    E0304 "a value out of range",
-    E0305 "a loop count that is none",
-    E0401 "a robot that has not what this needs",
-    E0402 "a value that this robot cannot do",
-    E0501 "a plan of too many states",
-    E0502 "an expanded form that is too large",
-    E0601 "an alphabet that makes no sense",
-    E0901 "a machine that is not that of its plan",
-    W0101 "an interrupt that an outer one repeats",
-    W0201 "a plan that nothing ever ends",
-    W0202 "something that is never reached",
-    W0203 "a condition that is always or never true",
-    W0204 "a condition that an outer one shadows",
-    W0205 "a condition that is true only when an outer one is",
-    W0206 "a timer that an outer timer always beats",
-    W0301 "a loop that can be skipped whole in one turn",
-    W0302 "a neighbour that is always skipped",
-    W0303 "an element that is true at once wherever it is entered",
-    W0401 "a number that looks like another unit",
+    E0107 "missing plan",
+    E0108 "empty body",
+    E0109 "invalid UTF-8",
+    E0201 "unknown name",
+    E0202 "plan that contains itself",
+    E0203 "duplicate name",
+    E0204 "quark of the wrong kind",
+    E0205 "unusable file",
+    E0206 "circular use of files",
+    E0207 "invalid cause",
+    E0301 "wrong number of arguments",
+    E0302 "argument of the wrong type",
+    E0303 "unit of the wrong type",
+    E0304 "value out of range",
+    E0305 "invalid loop count",
+    E0401 "missing capability",
+    E0402 "value beyond the limits of the robot",
+    E0501 "too many states",
+    E0502 "expanded form too large",
+    E0601 "invalid alphabet",
+    E0901 "machine that differs from its plan",
+    W0101 "repeated interrupt",
+    W0201 "plan that never ends",
+    W0202 "unreachable element",
+    W0203 "condition that is always or never true",
+    W0204 "condition shadowed by an outer one",
+    W0205 "condition implied by an outer one",
+    W0206 "timer that an outer timer precedes",
+    W0301 "loop that can be skipped in one turn",
+    W0302 "element that is always skipped",
+    W0303 "element that is always true on entry",
+    W0401 "number with an implausible unit",
 }
 
 impl Code {
@@ -136,6 +138,14 @@ impl Code {
     #[must_use]
     pub fn severity(self) -> Severity {
         if self.name().starts_with('W') { Severity::Warning } else { Severity::Error }
+    }
+}
+
+impl Code {
+    /// Returns `true` for errors in the notation: text that is not MDLe.
+    #[must_use]
+    pub fn is_notation(self) -> bool {
+        self.name().starts_with("E01")
     }
 }
 
@@ -166,7 +176,7 @@ pub struct Diagnostic {
     /// Where: the primary place first.
     pub labels: Vec<Label>,
     /// What to do about it; each a line below the source.
-    pub help: Vec<String>,
+    pub help: Vec<Help>,
 }
 
 impl Diagnostic {
@@ -180,13 +190,6 @@ impl Diagnostic {
     #[must_use]
     pub fn also(mut self, span: Span, text: impl Into<String>) -> Self {
         self.labels.push(Label { span, text: text.into(), primary: false });
-        self
-    }
-
-    /// Also says what to do.
-    #[must_use]
-    pub fn help(mut self, text: impl Into<String>) -> Self {
-        self.help.push(text.into());
         self
     }
 

@@ -82,7 +82,8 @@ fn stages(
     keeps: bool,
 ) -> (Vec<Compiled>, Vec<Diagnostic>) {
     let arena = syntax::arena_for(text);
-    let (files, mut found) = syntax::parse_with(source, text, &arena, loader);
+    let (mut files, mut found) = syntax::parse_with(source, text, &arena, loader);
+    found.extend(plan::untyped::complete(&mut files, &arena, alphabet));
     let (plans, names) = plan::resolve(&files, alphabet, wanted);
     found.extend(names);
     let mut compiled = Vec::new();

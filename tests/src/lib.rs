@@ -25,4 +25,5 @@ pub mod random_script;
 pub mod repository;
 pub mod scxml;
 pub mod signals;
+pub mod texts;
 pub mod xml;

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::synonyms;
 use super::{AlphabetFile, Capability, Declaration, DeclarationKind};
 use crate::diagnostic::{Code, Diagnostic};
 
@@ -16,6 +17,8 @@ pub struct Alphabet {
     pub period: Option<u64>,
     /// What the robot can do.
     pub capabilities: Vec<Capability>,
+    /// The robots that messages may name instead, each with what it can do.
+    pub robots: Vec<(String, Vec<Capability>)>,
     /// Whether the robot can do everything: there is no target.
     everything: bool,
     declarations: Vec<Declaration>,
@@ -46,6 +49,7 @@ pub fn combine(target: AlphabetFile, shared: &[AlphabetFile]) -> (Alphabet, Vec<
         crate_name: head.as_ref().map(|head| head.crate_name.clone()).unwrap_or_default(),
         period: head.as_ref().and_then(|head| head.period),
         capabilities: head.map(|head| head.capabilities).unwrap_or_default(),
+        robots: Vec::new(),
         everything: false,
         declarations: in_order(declarations, shared),
     };
@@ -61,6 +65,7 @@ impl Alphabet {
             crate_name: String::new(),
             period: None,
             capabilities: Vec::new(),
+            robots: Vec::new(),
             everything: true,
             declarations: file.declarations,
         }
@@ -90,15 +95,24 @@ impl Alphabet {
     /// Whether the robot can do this, in at least this number.
     #[must_use]
     pub fn has(&self, needed: &Capability) -> bool {
-        let enough = |own: &Capability| own.name == needed.name && own.size >= needed.size;
-        self.everything || self.capabilities.iter().any(enough)
+        self.everything || is_among(needed, &self.capabilities)
+    }
+
+    /// The names of the robots that can do all this.
+    #[must_use]
+    pub fn robots_with(&self, needed: &[Capability]) -> Vec<&str> {
+        let can = |capabilities: &[Capability]| needed.iter().all(|needed| is_among(needed, capabilities));
+        self.robots.iter().filter(|(_, own)| can(own)).map(|(name, _)| name.as_str()).collect()
     }
 
     /// The name that `name` was probably meant to be, of this kind if one is given.
     #[must_use]
     pub fn nearest(&self, name: &str, kind: Option<DeclarationKind>) -> Option<&str> {
-        let of_kind = self.declarations.iter().filter(|found| kind.is_none_or(|kind| found.kind == kind));
-        nearest(name, of_kind.map(|declaration| declaration.name.as_str()))
+        let names = || {
+            let of_kind = self.declarations.iter().filter(|found| kind.is_none_or(|kind| found.kind == kind));
+            of_kind.map(|declaration| declaration.name.as_str())
+        };
+        nearest(name, names()).or_else(|| synonyms::meant(name).find_map(|meant| names().find(|name| *name == meant)))
     }
 
     /// A hash over the declarations as read: what a target was built for.
@@ -112,6 +126,11 @@ impl Alphabet {
         }
         hasher.finalize().as_bytes().first_chunk().copied().map_or(0, u64::from_be_bytes)
     }
+}
+
+/// Whether a robot with these capabilities can do this, in at least this number.
+fn is_among(needed: &Capability, capabilities: &[Capability]) -> bool {
+    capabilities.iter().any(|own| own.name == needed.name && own.size >= needed.size)
 }
 
 /// The most similar of these names, if one is similar enough to be meant.

@@ -6,6 +6,7 @@ mod combined;
 mod decimal;
 mod quantity;
 mod read;
+mod synonyms;
 #[cfg(test)]
 mod tests;
 mod token;

@@ -51,19 +51,22 @@ impl<'l> Lints<'l> {
         let text = condition_text(operand, &|id| self.lowered.quark(id).text.clone());
         let span = scope.interrupt.span;
         let only = scope.interrupt.condition.operands().len() == 1;
-        let help = if only { "write `(null)`, or another condition".to_owned() } else { format!("leave `{text}` out") };
+        let help = |lint: Diagnostic| match only {
+            true => lint.fix("write {}, or another condition", span, "(null)"),
+            false => lint.help(format!("remove `{text}`")),
+        };
         match outcome {
             Outcome::Beaten(outer) => {
                 let (whose, outer) = self.whose(outer);
-                let message = format!("`{text}` never ends this: {whose} has ended whenever it is true");
-                let lint = Diagnostic::new(Code::W0205, message, span, format!("`{text}` is read in vain"));
-                Some(lint.also(outer, format!("{whose} ends by this")).help(help))
+                let message = format!("`{text}` can never end this: {whose} always ends first");
+                let lint = Diagnostic::new(Code::W0205, message, span, format!("`{text}` has no effect"));
+                Some(help(lint.also(outer, format!("{whose} ends by this"))))
             }
             Outcome::Late(outer) => {
                 let (whose, outer) = self.whose(outer);
-                let message = format!("`{text}` never ends this: a timer of {whose} is always over before");
-                let lint = Diagnostic::new(Code::W0206, message, span, format!("`{text}` is read in vain"));
-                Some(lint.also(outer, format!("{whose} ends by this")).help(help))
+                let message = format!("`{text}` can never end this: a timer of {whose} always fires first");
+                let lint = Diagnostic::new(Code::W0206, message, span, format!("`{text}` has no effect"));
+                Some(help(lint.also(outer, format!("{whose} ends by this"))))
             }
             // The same text is W0204's, what is never true W0203's.
             Outcome::Possible | Outcome::Never | Outcome::Repeated(_) | Outcome::Unread => None,
@@ -90,10 +93,10 @@ impl<'l> Lints<'l> {
         if behind.interrupt.condition == scope.interrupt.condition {
             return None;
         }
-        let message = format!("`{text}` is true whenever what is before this ends, so this is always skipped");
+        let message = format!("`{text}` is true whenever the element before this ends, so this is always skipped");
         let lint = Diagnostic::new(Code::W0303, message, span, "true at once");
-        let lint = lint.also(behind.interrupt.span, "the one before it ends when this is true");
-        Some(lint.help(format!("wait here until it becomes true again: `RISING ({text})`")))
+        let lint = lint.also(behind.interrupt.span, "the element before it ends when this is true");
+        Some(lint.fix("wait here until it becomes true again: {}", span, format!("(RISING ({text}))")))
     }
 
     /// An element behind one that never ends before what is around both.
@@ -102,17 +105,17 @@ impl<'l> Lints<'l> {
         let lint = Diagnostic::new(Code::W0202, "this is never reached", place(scope), "never runs");
         let before = self.lowered.scopes[before as usize].as_ref().map(place);
         let lint = match before {
-            Some(before) => lint.also(before, "the one with this never ends before a scope around both does"),
+            Some(before) => lint.also(before, "the element with this never ends before an enclosing scope does"),
             None => lint,
         };
-        lint.help("let what is before it end earlier, or what is around both end later")
+        lint.help("let the element before it end earlier, or the enclosing scope end later")
     }
 
     /// The scope of a bracket as a sentence names it, and the place of its interrupt.
     fn whose(&self, bracket: u32) -> (String, Span) {
         let scope = self.lowered.scopes[bracket as usize].as_ref();
         let name = scope.map(|scope| scope.name.as_str()).filter(|name| !name.is_empty());
-        let whose = name.map_or_else(|| "the scope around it".to_owned(), |name| format!("`{name}`"));
+        let whose = name.map_or_else(|| "the enclosing scope".to_owned(), |name| format!("`{name}`"));
         (whose, scope.map_or(Span { start: 0, end: 0 }, |scope| scope.interrupt.span))
     }
 }

@@ -49,9 +49,9 @@ fn conditions_that_are_true_only_when_an_outer_one_is() {
   { R (NOT (sync ada OR wait 9) OR r1 == 1) (Atom (r1 == 1.01 OR wait 4) stop) }
 }"
     ), @"
-    W0205: `bumper AND sync ada` never ends this: `P` has ended whenever it is true [`P` ends by this]
-    W0205: `r0 <= 0.2` never ends this: `P` has ended whenever it is true [`P` ends by this]
-    W0205: `sync ada AND NOT sync bob AND atIsection 1000` never ends this: `Q` has ended whenever it is true [`Q` ends by this]
+    W0205: `bumper AND sync ada` can never end this: `P` always ends first [`P` ends by this]
+    W0205: `r0 <= 0.2` can never end this: `P` always ends first [`P` ends by this]
+    W0205: `sync ada AND NOT sync bob AND atIsection 1000` can never end this: `Q` always ends first [`Q` ends by this]
     ");
     assert_silent(&[
         "{ P (bumper AND sync ada) (Atom (bumper OR wait 5) stop) }",
@@ -73,9 +73,9 @@ fn timers_that_an_outer_one_beats() {
   { Q (wait 6) (Atom (wait 5) stop) (Atom (wait 5) stop) (Atom (wait 3 OR bumper) stop) }
 }"
     ), @"
-    W0206: `wait 11` never ends this: a timer of `P` is always over before [`P` ends by this]
-    W0206: `wait 5` never ends this: a timer of `Q` is always over before [`Q` ends by this]
-    W0202: this is never reached [the one with this never ends before a scope around both does]
+    W0206: `wait 11` can never end this: a timer of `P` always fires first [`P` ends by this]
+    W0206: `wait 5` can never end this: a timer of `Q` always fires first [`Q` ends by this]
+    W0202: this is never reached [the element with this never ends before an enclosing scope does]
     ");
     assert!(lints("{ R (wait 9) ((Atom (wait 2) stop))^4 (Atom (wait 1 OR bumper) stop) }").contains("W0206"));
     assert_silent(&[
@@ -98,10 +98,10 @@ fn what_is_cut_off_and_what_is_always_skipped() {
   (Atom (wait 5) stop)
 }"
     ), @"
-    W0303: `r0 < 0.5 OR wait 2` is true whenever what is before this ends, so this is always skipped [the one before it ends when this is true]
+    W0303: `r0 < 0.5 OR wait 2` is true whenever the element before this ends, so this is always skipped [the element before it ends when this is true]
     W0303: `NOT bumper` is true whenever this is entered, so it is always skipped
-    W0205: `bumper AND sync ada` never ends this: `P` has ended whenever it is true [`P` ends by this]
-    W0202: this is never reached [the one with this never ends before a scope around both does]
+    W0205: `bumper AND sync ada` can never end this: `P` always ends first [`P` ends by this]
+    W0202: this is never reached [the element with this never ends before an enclosing scope does]
     ");
     assert_silent(&[
         "{ P (Atom (r0 < 50cm) stop) (Atom (r0 < 30cm OR wait 2) stop) }",

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 
 use super::choices::Choices;
 use super::tables::Table;
-use crate::alphabet::{Kind, family_to_si};
-use crate::plan::{Compared, Comparison, Operator, Quark, QuarkId, RecordId, Value};
+use crate::plan::families::{Family, at_once, family};
+use crate::plan::{Quark, QuarkId, RecordId};
 
 /// Something that is true or not in a turn, as far as conditions say no more of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -25,45 +25,6 @@ pub(super) enum Variable {
     Fact(RecordId, u32),
     /// What it asked before an element ended.
     PastFact(RecordId, u32),
-}
-
-/// Interrupt quarks that speak of the same thing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Family {
-    /// Patterns of obstacles, of which one matches at most.
-    Patterns,
-    /// Comparisons of this signal with a value.
-    Signal(QuarkId),
-}
-
-/// The family of a quark; none if nothing is known of it.
-pub(super) fn family(quark: &Quark) -> Option<Family> {
-    match &quark.comparison {
-        // An angle comes round to where it was.
-        Some(comparison) => threshold(comparison).map(|_| Family::Signal(comparison.signal)),
-        None => (pattern(quark).is_some()).then_some(Family::Patterns),
-    }
-}
-
-/// The bits that all have to match.
-fn pattern(quark: &Quark) -> Option<&[bool]> {
-    match quark.args.as_slice() {
-        [Value::Bits(bits)] if quark.name == "atIsection" => Some(bits),
-        _ => None,
-    }
-}
-
-/// The value that a signal is compared with, and the tolerance, in SI units; nothing for an angle.
-fn threshold(comparison: &Comparison) -> Option<(f64, f64)> {
-    let si = |value: &Value| match value {
-        Value::Quantity { kind: Kind::Angle, .. } => None,
-        Value::Quantity { exact, family, .. } => Some(exact.to_f64() * family_to_si(family)),
-        Value::Infinity(_) | Value::Bits(_) | Value::Integer(_) | Value::Sonar(_) | Value::Name(..) => None,
-    };
-    match &comparison.with {
-        Compared::Value(value) => Some((si(value)?, si(&comparison.tolerance)?)),
-        Compared::Signal(_) => None,
-    }
 }
 
 /// Where the values of these variables can be so at once: `entered` says when a scope was entered at the earliest, and the
@@ -107,49 +68,4 @@ pub(super) fn possible(choices: &Choices, quarks: &[Quark], entered: &impl Fn(u3
         possible = possible.and(&some);
     }
     possible
-}
-
-/// What the quarks of one family can say at once.
-fn at_once<'q>(quarks: impl Iterator<Item = &'q Quark>) -> Vec<Vec<bool>> {
-    let quarks: Vec<&Quark> = quarks.collect();
-    let mut all = vec![vec![false; quarks.len()]];
-    // A signal that is no number makes every comparison false; no pattern need match.
-    for value in values(&quarks) {
-        all.push(quarks.iter().map(|quark| holds(quark, value)).collect());
-    }
-    for one in &quarks {
-        if let Some(bits) = pattern(one) {
-            all.push(quarks.iter().map(|other| pattern(other) == Some(bits)).collect());
-        }
-    }
-    all.sort_unstable();
-    all.dedup();
-    all
-}
-
-/// Values of a signal among which is one for everything that comparisons can say of it: all ends, and one between any two.
-fn values(quarks: &[&Quark]) -> Vec<f64> {
-    let compared = quarks.iter().filter_map(|quark| threshold(quark.comparison.as_ref()?));
-    let ends = compared.flat_map(|(value, tolerance)| [value - tolerance, value, value + tolerance]);
-    let mut ends: Vec<f64> = ends.flat_map(|end| [end.next_down(), end, end.next_up()]).collect();
-    ends.sort_by(f64::total_cmp);
-    let between: Vec<f64> = ends.iter().zip(ends.iter().skip(1)).map(|(low, high)| low + (high - low) / 2.0).collect();
-    ends.extend(between);
-    if !ends.is_empty() {
-        ends.extend([f64::NEG_INFINITY, f64::INFINITY]);
-    }
-    ends
-}
-
-/// Whether a comparison holds of a value.
-fn holds(quark: &Quark, signal: f64) -> bool {
-    let Some(comparison) = &quark.comparison else { return false };
-    let Some((value, tolerance)) = threshold(comparison) else { return false };
-    match comparison.operator {
-        Operator::Equal => (signal - value).abs() <= tolerance,
-        Operator::Less => signal < value,
-        Operator::LessOrEqual => signal <= value,
-        Operator::Greater => signal > value,
-        Operator::GreaterOrEqual => signal >= value,
-    }
 }

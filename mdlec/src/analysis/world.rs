@@ -7,8 +7,9 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::choices::{self, Choices, Read, When};
 use super::tables::VARIABLES;
-use super::variables::{self, Family, Variable, family};
+use super::variables::{self, Variable};
 use crate::fsm::Lowered;
+use crate::plan::families::{Family, family};
 use crate::plan::{Condition, QuarkId};
 
 /// The most conditions around a place that are looked at for each variable of a question.

@@ -86,13 +86,13 @@ pub(super) fn compile_judged<T>(
     match (judged.pop(), judged.len()) {
         (Some(only), 0) => Ok(only),
         (None, _) => Err(Failure::usage(format!(
-            "every plan of `{}` is used by another or takes parameters\nhelp: say which one, as in `{}`, or write one \
+            "every plan of `{}` is used by another or takes parameters\nhelp: name one of them, as in `{}`, or write a plan \
              that uses it",
             input.sources.name(input.source),
             report::option("plan", "NAME"),
         ))),
         (Some(_), _) => Err(Failure::usage(format!(
-            "`{}` holds several plans that no other refers to: {}\nhelp: say which one, as in `{}`",
+            "`{}` contains several plans that no other plan uses: {}\nhelp: name one of them, as in `{}`",
             input.sources.name(input.source),
             names.join(", "),
             report::option("plan", names.first().map_or("NAME", String::as_str)),

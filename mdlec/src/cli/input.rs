@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::{Failure, read, report};
-use crate::alphabet::{self, Alphabet, AlphabetFile, Declaration, DeclarationKind};
+use crate::alphabet::{self, Alphabet, AlphabetFile, Capability, Declaration, DeclarationKind};
 use crate::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
 use crate::plan::signature;
 use crate::{Compiled, check_with, compile_with, link, syntax};
@@ -225,8 +225,9 @@ fn read_alphabets(own: Option<(String, String)>, name: &str) -> Result<Target, F
     }
     let alphabet = match own {
         Some((file, text)) => reading.read(file, text).map(|file| {
-            let (alphabet, found) = alphabet::combine(file, &shared);
+            let (mut alphabet, found) = alphabet::combine(file, &shared);
             reading.found.extend(found);
+            alphabet.robots = robots();
             alphabet
         }),
         None => shared.into_iter().next().map(Alphabet::shared),
@@ -236,6 +237,16 @@ fn read_alphabets(own: Option<(String, String)>, name: &str) -> Result<Target, F
         Some(alphabet) if !has_errors(&reading.found) => Ok(Target { alphabet, folder: None, sources: reading.files }),
         Some(_) | None => Err(Failure::usage(format!("the alphabet of target `{name}` has errors"))),
     }
+}
+
+/// The robots that came with mdlec, each with what it can do.
+fn robots() -> Vec<(String, Vec<Capability>)> {
+    let targets = link::alphabets().iter().filter(|alphabet| alphabet.target);
+    let head = |builtin: &link::Alphabet| {
+        let (file, _) = alphabet::read(Sources::default().add(builtin.file, builtin.text), builtin.text);
+        Some((builtin.name.to_owned(), file?.target?.capabilities))
+    };
+    targets.filter_map(head).collect()
 }
 
 /// Alphabet files as they are read one after the other.

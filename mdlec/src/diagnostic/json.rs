@@ -67,7 +67,7 @@ impl Sources {
             },
             message: &diagnostic.message,
             spans: diagnostic.labels.iter().map(|label| self.place(label)).collect(),
-            help: diagnostic.help.iter().map(String::as_str).collect(),
+            help: diagnostic.help.iter().map(|help| help.text.as_str()).collect(),
         }
     }
 

@@ -166,7 +166,7 @@ impl Sources {
             .with_code(diagnostic.code.name())
             .with_message(PrintableLines(&diagnostic.message).to_string())
             .with_labels(labels.collect())
-            .with_notes(diagnostic.help.iter().map(|help| format!("help: {}", PrintableLines(help))).collect())
+            .with_notes(diagnostic.help.iter().map(|help| format!("help: {}", PrintableLines(&help.text))).collect())
     }
 }
 

@@ -4,6 +4,7 @@ use super::parameters::Parameters;
 use super::{Decimal, Value};
 use crate::alphabet::{Declaration, DeclarationKind, Kind, Origin, Param, Unit};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::syntax::nearest_unit;
 use crate::syntax::tree::{Arg, Call, Number};
 
 /// The largest whole number that an `f64` tells from its neighbours.
@@ -29,14 +30,17 @@ pub(super) fn fit(
 fn units_apart(call: &Call) -> Option<Vec<Diagnostic>> {
     let apart = call.args.windows(2).filter_map(|pair| match pair {
         [Arg::Number(number), Arg::Name(unit)] if number.unit().is_none() => {
-            Some((number, Unit::from_name(unit.node)?, unit))
+            Some((number, Unit::from_name(nearest_unit(unit.node)?)?, unit))
         }
         _ => None,
     });
     let found = apart.map(|(number, Unit { name, .. }, unit)| {
-        let message = format!("the unit `{name}` does not touch its number");
-        Diagnostic::new(Code::E0104, message, unit.span, "a blank too many before this")
-            .help(format!("write `{}{name}`", number.digits()))
+        let message = format!("there is a space between `{}` and its unit `{name}`", number.digits());
+        Diagnostic::new(Code::E0104, message, unit.span, "remove the space before this unit").fix(
+            "write {}",
+            number.span.to(unit.span),
+            format!("{}{name}", number.digits()),
+        )
     });
     let found: Vec<_> = found.collect();
     (!found.is_empty()).then_some(found)
@@ -75,6 +79,18 @@ fn fitted(
         }
     }
     if found.is_empty() { Ok(arguments) } else { Err(found) }
+}
+
+/// How much is wrong with a call if this declaration is meant: arguments that are missing, left over, or of another kind.
+pub(super) fn complaints(call: &Call, declaration: &Declaration, parameters: &Parameters<'_>) -> usize {
+    let params = &declaration.params;
+    let needed = params.iter().filter(|param| param.default.is_none()).count();
+    let fitting = Fitting { declaration, robot: "" };
+    let is_wrong = |(arg, param): &(&Arg, &Param)| {
+        fitting.given(arg, param, parameters).is_err_and(|found| !matches!(found.code, Code::E0304 | Code::E0402))
+    };
+    let wrong = call.args.iter().zip(params).filter(is_wrong).count();
+    wrong + needed.saturating_sub(call.args.len()) + call.args.len().saturating_sub(params.len())
 }
 
 /// How a quark is written: `go v ω`, with units.
@@ -166,7 +182,7 @@ impl Fitting<'_> {
             }
             (Arg::Name(name), Kind::Module) => Err(self
                 .mismatch(arg, param, format!("found the name `{}`", name.node))
-                .help(format!("if it is a module, say so: `{} module`", name.node))
+                .fix("if it is a module, write {}", name.span, format!("{} module", name.node))
                 .into()),
             (Arg::Number(_), Kind::Robot | Kind::Module | Kind::File) => {
                 Err(self.mismatch(arg, param, "found a number".into()).into())
@@ -181,7 +197,11 @@ impl Fitting<'_> {
     fn mismatch(&self, arg: &Arg, param: &Param, found: String) -> Diagnostic {
         let message = format!("expected {}, {found}", param.kind.words());
         let here = format!("`{}` of `{}` is {}", param.name, self.declaration.name, param.kind.words());
-        Diagnostic::new(Code::E0302, message, arg.span(), here)
+        let diagnostic = Diagnostic::new(Code::E0302, message, arg.span(), here);
+        match example(param) {
+            Some(example) => diagnostic.fix("for instance {}", arg.span(), example),
+            None => diagnostic,
+        }
     }
 
     fn quantity(&self, number: &Number, param: &Param, bare: Option<Unit>) -> Fitted {
@@ -314,16 +334,48 @@ fn wrong_count(call: &Call, declaration: &Declaration, needed: usize) -> Diagnos
         let message = format!("`{}` takes {takes}, {found}", declaration.name);
         Diagnostic::new(Code::E0301, message, span, here).help(format!("write it as `{}`", signature(declaration)))
     };
+    if let Some(pattern) = bits_apart(call, declaration) {
+        return report("bits are written together".into()).fix("write {}", call.span, pattern);
+    }
     if call.args.len() > most {
         return report("one too many".into());
     }
     let missing = declaration.params.get(call.args.len()..needed).unwrap_or_default();
     let names: Vec<_> = missing.iter().map(|param| format!("`{}`", param.name)).collect();
     let report = report(format!("{} {} missing", names.join(" and "), if names.len() == 1 { "is" } else { "are" }));
-    // With no speed, angle or length at all it is well-formed: something to begin with.
-    let can_be_0 = missing.iter().all(|param| param.unit.is_some()) && !call.args.is_empty();
-    let zeros = " 0".repeat(missing.len());
-    if can_be_0 { report.help(format!("for instance `{}{zeros}`", written(call))) } else { report }
+    let examples: Option<Vec<_>> = missing.iter().map(example).collect();
+    match examples {
+        Some(examples) => report.fix("for instance {}", call.span, format!("{} {}", written(call), examples.join(" "))),
+        None => report,
+    }
+}
+
+/// `atIsection 1 0 0 0` with its bits written together.
+fn bits_apart(call: &Call, declaration: &Declaration) -> Option<String> {
+    let [Param { kind: Kind::Bits(length), .. }] = declaration.params.as_slice() else { return None };
+    let bits = call.args.iter().map(|arg| match arg {
+        Arg::Number(number) if number.unit().is_none() && matches!(number.digits(), "0" | "1") => Some(number.digits()),
+        Arg::Number(_) | Arg::Infinity(_) | Arg::String(_) | Arg::Name(_) | Arg::Module(_) => None,
+    });
+    let bits = bits.collect::<Option<String>>()?;
+    (bits.len() == *length as usize).then(|| format!("{} {bits}", call.name))
+}
+
+/// A value that a parameter can have: something to begin with. `None` where only the writer knows a name.
+pub(super) fn example(param: &Param) -> Option<String> {
+    let value = match param.kind {
+        Kind::Length => "1m".to_owned(),
+        Kind::Speed => "20cm/s".to_owned(),
+        Kind::Angle => "90deg".to_owned(),
+        Kind::AngularRate | Kind::Number | Kind::Integer | Kind::Sonar => "0".to_owned(),
+        Kind::Time => "5s".to_owned(),
+        Kind::Voltage => "12V".to_owned(),
+        Kind::Frequency => "10Hz".to_owned(),
+        Kind::Count => "1".to_owned(),
+        Kind::Bits(length) => format!("1{}", "0".repeat((length as usize).saturating_sub(1))),
+        Kind::Robot | Kind::Module | Kind::File => return None,
+    };
+    Some(value)
 }
 
 fn not_a_number(number: &Number) -> Diagnostic {
@@ -343,7 +395,8 @@ fn bits(number: &Number, length: u32) -> Fitted {
         let here = match digits.iter().find(|digit| !matches!(digit, b'0' | b'1')) {
             Some(digit) => format!("`{}` is not a bit", char::from(*digit)),
             None if number.unit().is_some() => "bits have no unit".into(),
-            None => format!("these are {}", digits.len()),
+            None if digits.len() == 1 => "this is 1 digit".into(),
+            None => format!("these are {} digits", digits.len()),
         };
         let report = Diagnostic::new(Code::E0302, message, number.span, here);
         return Err(report.help("the bits are front, left, back, right; 1 where an obstacle is near: `0100`").into());

@@ -113,13 +113,13 @@ impl Labels {
         match &known.ends {
             Ends::Unknown => Ok(None),
             Ends::WithItsLast => {
-                let message = format!("`{label}` has no interrupt of its own, so nothing but its last element ends it");
+                let message = format!("`{label}` has no interrupt of its own: only its last element ends it");
                 Err(here(&message).help(format!("leave the cause out: `after {label}`")).into())
             }
             Ends::Operands(operands) => {
                 let place = (0..).zip(operands).find(|(_, operand)| *operand == cause).map(|(place, _)| place);
                 place.map(Some).ok_or_else(|| {
-                    let message = format!("`{cause}` is no operand of the interrupt of `{label}`");
+                    let message = format!("`{cause}` is not an operand of the interrupt of `{label}`");
                     let meant: BTreeSet<_> = operands.iter().map(|operand| cause_of(label, operand)).collect();
                     let meant: Vec<_> = meant.into_iter().collect();
                     here(&message).help(format!("write {}, or `after {label}`", meant.join(" or "))).into()
@@ -132,8 +132,8 @@ impl Labels {
         let message = format!("there is no label `{label}` in this plan");
         let found = Diagnostic::new(Code::E0201, message, span, "not a label");
         match alphabet::nearest(label, self.labels.keys().map(String::as_str)) {
-            Some(near) => found.help(format!("did you mean `{near}`?")),
-            None => found.help(format!("a label stands before an element of the same plan: `{label}: (Atom …)`")),
+            Some(near) => found.fix("did you mean {}?", span, near),
+            None => found.help(format!("a label is written before an element of the same plan: `{label}: (Atom …)`")),
         }
     }
 }

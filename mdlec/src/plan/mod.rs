@@ -8,6 +8,7 @@ mod comparisons;
 mod condition;
 mod conditions;
 mod definitions;
+pub(crate) mod families;
 mod formal;
 mod functions;
 mod labels;
@@ -20,6 +21,7 @@ mod resolve;
 mod size;
 #[cfg(test)]
 mod tests;
+pub(crate) mod untyped;
 
 pub use crate::syntax::tree::Comparison as Operator;
 pub use angle::{frame_text, in_degrees};

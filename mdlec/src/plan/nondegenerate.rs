@@ -87,16 +87,16 @@ impl Removal<'_> {
     }
 
     fn warning(&self, interrupt: &Interrupt, law: Option<QuarkId>, scope: &str, outer: Span) -> Diagnostic {
-        let whose = if scope.is_empty() { "the scope around it".to_owned() } else { format!("`{scope}`") };
+        let whose = if scope.is_empty() { "the enclosing scope".to_owned() } else { format!("`{scope}`") };
         let warning = Diagnostic::new(
             Code::W0101,
             format!("`{}` is repeated inside {whose}, which has the same interrupt", interrupt.text),
             interrupt.span,
-            "removed: it can never be the one that fires",
+            "removed: the outer one always fires first",
         )
-        .also(outer, format!("{whose} is ended by this one first"));
+        .also(outer, format!("{whose} ends by this first"));
         match law.and_then(|law| self.quarks.get(law.0 as usize)) {
-            Some(law) if law.completes => warning.help(format!("the atom now ends when `{}` is done", law.text)),
+            Some(law) if law.completes => warning.help(format!("the atom now ends when `{}` completes", law.text)),
             Some(law) => warning.help(format!(
                 "`{}` never ends by itself: give the atom another condition if something is to follow it",
                 law.text

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::arguments::fit;
+use super::arguments::{example, fit};
 use crate::alphabet::{self, Declaration, DeclarationKind, Kind, Origin, Param, Unit};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::tree::{self, Arg, Call, Name};
@@ -88,7 +88,8 @@ impl<'s> Parameters<'s> {
         if let Err(found) = fit(call, &declaration, "", around) {
             let told = |mut found: Diagnostic| {
                 if found.code == Code::E0301 {
-                    found.help = vec![usage(&declaration)];
+                    found.help.clear();
+                    found = usage(found, call, &declaration);
                 }
                 found.also(plan.name.span, format!("`{}` is written here", plan.name.node))
             };
@@ -148,8 +149,22 @@ fn kind_of(name: &str) -> Option<Kind> {
 fn unknown_type(name: Name<'_>) -> Diagnostic {
     let message = format!("there is no type of parameter called `{}`", name.node);
     let found = Diagnostic::new(Code::E0201, message, name.span, "not a type");
-    match alphabet::nearest(name.node, Kind::NAMES.iter().copied()) {
-        Some(near) => found.help(format!("did you mean `{near}`?")),
+    if let Some(unit) = Unit::from_name(name.node) {
+        let kind = Kind::NAMES.iter().find(|name| Kind::from_name(name) == Some(unit.kind));
+        return kind.iter().fold(found, |found, kind| found.fix("a type is what is measured: {}", name.span, **kind));
+    }
+    let meant = match name.node {
+        "distance" | "range" | "metres" | "meters" => Some("length"),
+        "float" | "double" | "real" | "num" => Some("number"),
+        "int" => Some("integer"),
+        "duration" | "seconds" => Some("time"),
+        "velocity" => Some("speed"),
+        "degrees" | "heading" => Some("angle"),
+        "string" | "path" => Some("file"),
+        other => alphabet::nearest(other, Kind::NAMES.iter().copied()),
+    };
+    match meant {
+        Some(near) => found.fix("did you mean {}?", name.span, near),
         None => found.help(format!("the types are {} and bits[N]", Kind::NAMES.join(", "))),
     }
 }
@@ -175,13 +190,20 @@ fn declaration(plan: &tree::Plan<'_>, parameters: &Parameters<'_>) -> Declaratio
     }
 }
 
-/// How a plan with these parameters is used.
-fn usage(declaration: &Declaration) -> String {
+/// Adds how a plan with these parameters is used.
+fn usage(found: Diagnostic, call: &Call<'_>, declaration: &Declaration) -> Diagnostic {
+    let name = &declaration.name;
     if declaration.params.is_empty() {
-        return format!("write it without parentheses: `{}`", declaration.name);
+        return found.fix("write it without parentheses: {}", call.span, name.as_str());
     }
     let params: Vec<_> = declaration.params.iter().map(|param| format!("<{}>", param.name)).collect();
-    format!("write it as `{}({})`", declaration.name, params.join(", "))
+    let found = found.help(format!("write it as `{name}({})`", params.join(", ")));
+    match declaration.params.iter().map(example).collect::<Option<Vec<_>>>() {
+        Some(examples) if call.args.is_empty() => {
+            found.fix("for instance {}", call.span, format!("{name}({})", examples.join(", ")))
+        }
+        _ => found,
+    }
 }
 
 /// A plan that takes parameters stands where nothing gives them.
@@ -190,7 +212,7 @@ pub(super) fn missing(plan: &tree::Plan<'_>, why: &str) -> Diagnostic {
     let first = plan.params.first().map_or(plan.name.span, |param| param.name.span);
     let message = format!("plan `{name}` takes parameters, and {why}");
     let params: Vec<_> = plan.params.iter().map(|param| format!("<{}>", param.name.node)).collect();
-    Diagnostic::new(Code::E0301, message, plan.name.span, "nothing says what they stand for")
+    Diagnostic::new(Code::E0301, message, plan.name.span, "nothing gives their values")
         .also(first, "the first one")
         .help(format!("write a plan that uses it by name: `{{ Main {name}({}) }}`", params.join(", ")))
 }
@@ -201,9 +223,9 @@ pub(super) fn no_count(name: Name<'_>, parameters: &Parameters<'_>) -> Diagnosti
         return parameter.mismatch(Kind::Count, name.span);
     }
     let message = format!("there is no parameter called `{}`", name.node);
-    let found = Diagnostic::new(Code::E0201, message, name.span, "how often is this?");
+    let found = Diagnostic::new(Code::E0201, message, name.span, "not a count");
     match alphabet::nearest(name.node, parameters.names()) {
-        Some(near) => found.help(format!("did you mean `{near}`?")),
-        None => found.help(format!("write a number, or declare it behind the plan's name: `({}: count)`", name.node)),
+        Some(near) => found.fix("did you mean {}?", name.span, near),
+        None => found.help(format!("write a number, or declare it after the plan's name: `({}: count)`", name.node)),
     }
 }

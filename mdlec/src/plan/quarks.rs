@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::arguments::{Arguments, fit, kind_words, signature, written};
+use super::arguments::{Arguments, complaints, fit, kind_words, signature, written};
 use super::parameters::Names;
 use super::{Quark, QuarkId, Value};
 use crate::alphabet::{Alphabet, Declaration, DeclarationKind};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::syntax::tree::{Arg, Call};
+use crate::syntax::tree::Call;
 
 /// The quarks met so far.
 #[derive(Debug)]
@@ -52,8 +52,8 @@ impl<'a> Quarks<'a> {
             }]);
         }
         // Declarations of one name differ in the kinds of their arguments; if none fits, what is wrong is told of the
-        // one that was probably meant.
-        candidates.sort_by_key(|(_, declaration)| !is_meant(call, declaration));
+        // one with the fewest complaints.
+        candidates.sort_by_key(|(_, declaration)| complaints(call, declaration, names.parameters));
         let mut wrong = None;
         for (overload, declaration) in candidates {
             let fitted = fit(call, declaration, &self.alphabet.name, names.parameters);
@@ -105,11 +105,21 @@ impl<'a> Quarks<'a> {
         let quark = &declaration.name;
         let missing = missing.join(" and ");
         let robot = &self.alphabet.name;
-        let message = format!("`{robot}` cannot run `{quark}`: it has no {missing}");
-        let here = format!("needs {missing}");
-        let help =
-            format!("choose a target that has {missing}; `mdlec check` without `--target` assumes one that has all");
-        Err(vec![Diagnostic::new(Code::E0401, message, call.span, here).help(help)])
+        let verb = match declaration.kind {
+            DeclarationKind::Control => "run",
+            DeclarationKind::Interrupt => "detect",
+            DeclarationKind::Signal => "measure",
+        };
+        let message = format!("`{robot}` cannot {verb} `{quark}`: it has no {missing}");
+        let report = Diagnostic::new(Code::E0401, message, call.span, format!("needs {missing}"));
+        let robots = self.alphabet.robots_with(&declaration.needs);
+        Err(vec![match robots.as_slice() {
+            [] if self.alphabet.robots.is_empty() => report.help("`mdlec targets` lists the robots and what each has"),
+            [] => report.help(format!(
+                "no robot that comes with mdlec has {missing}; without `--target`, `mdlec check` assumes one that has everything"
+            )),
+            robots => report.help(format!("robots that have {missing}: {}", robots.join(", "))),
+        }])
     }
 
     fn unknown(&self, call: &Call, kind: DeclarationKind, plans: &[&str]) -> Diagnostic {
@@ -120,19 +130,29 @@ impl<'a> Quarks<'a> {
             DeclarationKind::Signal => "signal",
         };
         if plans.contains(&name) {
-            let message = format!("`{name}` is a plan, but {} has to stand here", kind_words(kind));
+            let message = format!("`{name}` is a plan, but {} is expected here", kind_words(kind));
             let report = Diagnostic::new(Code::E0204, message, call.name_span(), "a plan");
             return match kind {
                 DeclarationKind::Control => report.help(format!("a plan is an element by itself, without `Atom`: `{name}`")),
                 DeclarationKind::Interrupt | DeclarationKind::Signal => report.help(
-                    "parentheses behind a plan's own name are its condition; write `(null)` before them if they are a string",
+                    "parentheses after a plan's own name are its condition; write `(null)` before them if they are a string",
                 ),
             };
         }
         let message = format!("there is no {what} called `{name}`");
         let report = Diagnostic::new(Code::E0201, message, call.name_span(), "not in the alphabet");
+        if matches!(name, "true" | "false" | "True" | "False") {
+            return report
+                .help("an interrupt is true or false by itself: `bumper` or `NOT bumper`; `null` is never true");
+        }
+        if matches!(name, "pi" | "PI" | "Pi" | "π") {
+            return report.fix("there are no constants; for an angle write {}", call.name_span(), "180deg");
+        }
         match self.alphabet.nearest(name, Some(kind)).and_then(|near| self.alphabet.declarations_of(near).next()) {
-            Some(near) => report.help(format!("did you mean `{}`?", signature(near))),
+            Some(near) => {
+                let words = format!("did you mean `{}`?", signature(near));
+                report.fix(&words, call.name_span(), near.name.as_str())
+            }
             None => report.help(format!("these are known: {}", self.known(kind))),
         }
     }
@@ -149,15 +169,9 @@ impl<'a> Quarks<'a> {
     }
 }
 
-/// Whether the arguments look as if this declaration were meant.
-fn is_meant(call: &Call, declaration: &Declaration) -> bool {
-    let by_module = declaration.params.iter().any(|param| param.kind == crate::alphabet::Kind::Module);
-    by_module == call.args.iter().any(|arg| matches!(arg, Arg::Module(_) | Arg::Name(_)))
-}
-
 fn wrong_kind(call: &Call, found: DeclarationKind, expected: DeclarationKind) -> Diagnostic {
     let (name, written) = (call.name, written(call));
-    let message = format!("`{name}` is {}, but {} has to stand here", kind_words(found), kind_words(expected));
+    let message = format!("`{name}` is {}, but {} is expected here", kind_words(found), kind_words(expected));
     let report = Diagnostic::new(Code::E0204, message, call.name_span(), kind_words(found));
     match (found, expected) {
         (DeclarationKind::Control, DeclarationKind::Interrupt) => report.help(format!(
@@ -166,7 +180,12 @@ fn wrong_kind(call: &Call, found: DeclarationKind, expected: DeclarationKind) ->
         (DeclarationKind::Interrupt, DeclarationKind::Control) => report.help(format!(
             "an atom is `(Atom (interrupt) law)`: write `(Atom ({written}) stop)` to wait for it at rest"
         )),
-        (DeclarationKind::Signal, DeclarationKind::Interrupt) => report.help(format!("compare it: `{name} < 1`")),
+        (DeclarationKind::Signal, DeclarationKind::Interrupt) => {
+            report.fix("compare it with a value: {}", call.span, format!("{written} < 1"))
+        }
+        (DeclarationKind::Interrupt, DeclarationKind::Signal) => {
+            report.help(format!("an interrupt is not compared: write `{written}` or `NOT {written}` alone"))
+        }
         (DeclarationKind::Signal | DeclarationKind::Control | DeclarationKind::Interrupt, _) => report,
     }
 }

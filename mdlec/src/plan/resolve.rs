@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::arguments::kind_words;
+use super::arguments::{kind_words, written};
 use super::conditions::{self, Around};
 use super::definitions::Definitions;
 use super::labels::{Ends, Labels};
@@ -11,8 +11,8 @@ use super::quarks::Quarks;
 use super::{Atom, Decimal, Interrupt, Loop, Node, Plan, RecordId, Scope};
 use crate::alphabet::{self, Alphabet, DeclarationKind, Kind, Unit};
 use crate::diagnostic::{Code, Diagnostic, Span, has_errors};
-use crate::syntax::Files;
 use crate::syntax::tree::{self, Arg, Call, ConditionNode, Count, Element, Formal, Number, Primary};
+use crate::syntax::{Files, foreign};
 
 /// The largest angle of a FRAME, in its unit: far beyond a full circle, and sums of it are still exact enough.
 const FRAME: f64 = 100_000.0;
@@ -286,22 +286,33 @@ impl<'r, 'a> Resolver<'r, 'a> {
         let name = call.name;
         let span = call.name_span();
         if let Some(quark) = self.quarks.alphabet().declarations_of(name).next() {
-            let message = format!("`{name}` is {}, but an atom or a plan has to stand here", kind_words(quark.kind));
-            let help = match quark.kind {
-                DeclarationKind::Control => format!("say when it ends: `(Atom (wait 10) {name} …)`"),
-                DeclarationKind::Interrupt => format!("say what runs until then: `(Atom ({name} …) stop)`"),
-                DeclarationKind::Signal => format!("compare it in an atom: `(Atom ({name} < 1) stop)`"),
+            let message = format!("`{name}` is {}, but an atom or a plan is expected here", kind_words(quark.kind));
+            let report = Diagnostic::new(Code::E0204, message, span, "a quark runs in an atom");
+            let written = written(call);
+            let (words, element) = match quark.kind {
+                DeclarationKind::Control => ("say when it ends: {}", format!("(Atom (wait 10) {written})")),
+                DeclarationKind::Interrupt => ("say what runs until then: {}", format!("(Atom ({written}) stop)")),
+                DeclarationKind::Signal => ("compare it in an atom: {}", format!("(Atom ({written} < 1) stop)")),
             };
-            let help = if quark.params.is_empty() { help.replace(" …", "") } else { help };
-            return Diagnostic::new(Code::E0204, message, span, "a quark runs in an atom").help(help);
+            let report = report.fix(words, call.span, element);
+            return match quark.kind {
+                DeclarationKind::Interrupt | DeclarationKind::Signal => report.help(
+                    "the condition of a plan is written in parentheses after the name of the plan: `{ Name (bumper) … }`",
+                ),
+                DeclarationKind::Control => report,
+            };
+        }
+        if let Some(advice) = foreign::advice(name) {
+            let message = format!("MDLe has no `{name}`, and there is no plan of this name");
+            return Diagnostic::new(Code::E0201, message, span, "no plan of this name").help(advice);
         }
         let message = format!("there is no plan called `{name}`");
         let report = Diagnostic::new(Code::E0201, message, span, "no plan of this name");
         if let Some(keyword) = ["Atom", "ExecPlan", "FRAME"].iter().find(|keyword| name.eq_ignore_ascii_case(keyword)) {
-            return report.help(format!("the keyword is spelled `{keyword}`"));
+            return report.fix("the keyword is spelled {}", span, *keyword);
         }
         match alphabet::nearest(name, self.definitions.names.iter().copied()) {
-            Some(near) => report.help(format!("did you mean `{near}`?")),
+            Some(near) => report.fix("did you mean {}?", span, near),
             None => report.help(format!("write it: `{{ {name} (Atom (wait 10) stop) }}`")),
         }
     }

@@ -1,8 +1,9 @@
 //! Balances brackets before the grammar sees them (language, end of section 3): afterwards every bracket has its partner, none is
 //! nested deeper than 256, and no atom holds an atom.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
+use super::indentation::{self, End};
 use super::regions::Regions;
 use super::source::{Place, Source};
 use super::token::{Lexed, Tok, Token};
@@ -22,21 +23,34 @@ pub(super) struct Balanced<'s> {
     pub(super) regions: Regions,
     /// The lexical errors and those of the brackets.
     pub(super) diagnostics: Vec<Diagnostic>,
+    /// Whether a brace is never closed.
+    is_open: bool,
+    /// Whether such braces are closed where they seem to end.
+    is_repaired: bool,
 }
 
-/// Balances the brackets of a text. A brace that is never closed is closed where its plan seems to end, if that leaves no other
-/// bracket over.
+/// Balances the brackets of a text. A brace that is never closed is closed where its indentation says so, else where its plan
+/// seems to end, if that leaves no other bracket over.
 pub(super) fn balance<'s>(source: Source<'s>, lexed: &Lexed<'s>) -> Balanced<'s> {
-    let (plain, ends) = pass(source, lexed, &BTreeSet::new());
-    if ends.is_empty() {
+    let (plain, ends) = pass(source, lexed, &BTreeMap::new());
+    if !plain.is_open {
         return plain;
     }
-    let (repaired, _) = pass(source, lexed, &ends);
-    if repaired.diagnostics.len() <= plain.diagnostics.len() { repaired } else { plain }
+    let by_plan = ends.into_iter().map(|end| (end, End::OfPlan)).collect();
+    let ways = [indentation::ends(source, &lexed.tokens), by_plan];
+    ways.into_iter().filter(|ends| !ends.is_empty()).map(|ends| pass(source, lexed, &ends).0).fold(
+        plain,
+        |best, next| {
+            // What closes a brace too early leaves a closing one over.
+            let is_better = next.diagnostics.len() <= best.diagnostics.len()
+                && !(best.is_repaired && best.diagnostics.len() == next.diagnostics.len());
+            if is_better { Balanced { is_repaired: true, ..next } } else { best }
+        },
+    )
 }
 
 /// Goes through the tokens once and closes all brackets before those of `ends`; also finds such ends for braces never closed.
-fn pass<'s>(source: Source<'s>, lexed: &Lexed<'s>, ends: &BTreeSet<usize>) -> (Balanced<'s>, BTreeSet<usize>) {
+fn pass<'s>(source: Source<'s>, lexed: &Lexed<'s>, ends: &BTreeMap<usize, End>) -> (Balanced<'s>, BTreeSet<usize>) {
     let mut errors = lexed.errors.iter().peekable();
     let mut docs = lexed.docs.iter().peekable();
     let mut pass = Pass {
@@ -53,8 +67,10 @@ fn pass<'s>(source: Source<'s>, lexed: &Lexed<'s>, ends: &BTreeSet<usize>) -> (B
         while let Some((_, error)) = errors.next_if(|(before, _)| *before <= index) {
             pass.lexical(error.clone());
         }
-        if ends.contains(&index) {
-            pass.close_all(token.place);
+        match ends.get(&index) {
+            Some(End::OfPlan) => pass.close_down_to(0, token.place),
+            Some(End::OfBrace(brace)) => pass.close_brace_of(*brace, token.place),
+            None => {}
         }
         if !pass.token(index, *token) {
             break;
@@ -264,7 +280,7 @@ impl<'s> Pass<'_, 's> {
         let span = self.source.span(token.place);
         let diagnostic =
             Diagnostic::new(Code::E0103, "this atom does not begin with `(`", span, "a `(` is missing before this");
-        self.spoil(diagnostic.help("an atom stands in parentheses: `(Atom (bumper) stop)`"));
+        self.spoil(diagnostic.help("an atom is written in parentheses: `(Atom (bumper) stop)`"));
         true
     }
 
@@ -279,9 +295,9 @@ impl<'s> Pass<'_, 's> {
         if colon.kind != Tok::Colon {
             return false;
         }
-        let message = format!("the label `{label}` stands inside of its atom");
+        let message = format!("the label `{label}` is inside its atom");
         let diagnostic = Diagnostic::new(Code::E0102, message, self.source.span(*place), "not expected here");
-        let diagnostic = diagnostic.help(format!("a label stands before what it names: `{label}: (Atom …)`"));
+        let diagnostic = diagnostic.help(format!("a label is written before its element: `{label}: (Atom …)`"));
         self.spoil(diagnostic);
         if let Some(open) = self.open.last_mut() {
             open.kind = Kind::Atom;
@@ -292,8 +308,12 @@ impl<'s> Pass<'_, 's> {
     /// A `use` inside of a plan, where no recovery could put it, becomes a name.
     fn inner_use(&mut self, token: Token<'s>) {
         let span = self.source.span(token.place);
-        let diagnostic =
-            Diagnostic::new(Code::E0102, "`use` stands between plans, not inside of one", span, "not expected here");
+        let diagnostic = Diagnostic::new(
+            Code::E0102,
+            "`use` is written between plans, not inside a plan",
+            span,
+            "not expected here",
+        );
         self.spoil(diagnostic.help("put it at the top of the file: `use \"corridors.mdle\"`"));
         self.push(Token { kind: Tok::Name("use"), ..token });
     }
@@ -324,7 +344,7 @@ impl<'s> Pass<'_, 's> {
             }
             let span = self.source.span(token.place);
             let diagnostic = Diagnostic::new(Code::E0103, "this `}` closes nothing", span, "no `{` is open here");
-            self.spoil(diagnostic.help("take it out, or open a plan: `{ Name (Atom (bumper) stop) }`"));
+            self.spoil(diagnostic.help("remove it, or open a plan: `{ Name (Atom (bumper) stop) }`"));
             return;
         }
         let above = self.open.iter().rev().take_while(|open| open.kind != Kind::Brace).count();
@@ -376,8 +396,14 @@ impl<'s> Pass<'_, 's> {
     }
 
     fn unclosed_brace(&mut self, open: Open, end: Place) {
+        self.balanced.is_open = true;
         if let Some(diagnostic) = open.stray.and_then(|stray| self.balanced.diagnostics.get_mut(stray)) {
-            diagnostic.help.push("a `{` is closed by `}`".to_owned());
+            let stray = diagnostic.span();
+            let told = diagnostic.clone();
+            *diagnostic = match stray {
+                Some(stray) => told.fix("a `{` is closed by {}", stray, "}"),
+                None => told.help("a `{` is closed by `}`"),
+            };
             return;
         }
         let begins = |token: &Token<'_>| {
@@ -401,9 +427,16 @@ impl<'s> Pass<'_, 's> {
         self.balanced.diagnostics.push(diagnostic.also(self.source.span(at), text));
     }
 
-    /// Closes what is open before a token that begins a plan of its own.
-    fn close_all(&mut self, at: Place) {
-        while let Some(open) = self.open.last().copied() {
+    /// Closes the brace that opens at this token of the text, and what is open inside it.
+    fn close_brace_of(&mut self, brace: usize, at: Place) {
+        if let Some(depth) = self.open.iter().position(|open| open.raw == brace && open.kind == Kind::Brace) {
+            self.close_down_to(depth, at);
+        }
+    }
+
+    /// Closes the brackets above this many before a token that seems to follow them.
+    fn close_down_to(&mut self, depth: usize, at: Place) {
+        while let Some(open) = self.open.last().copied().filter(|_| self.open.len() > depth) {
             if open.kind == Kind::Brace {
                 self.force();
                 self.report_brace(open, at, "perhaps a `}` is missing before this");

@@ -1,13 +1,17 @@
 //! The parser's errors in words: one for each region, the usual mistakes by their names, all others as what was expected and found.
 
+use std::cell::OnceCell;
+use std::collections::BTreeSet;
+
 use lalrpop_util::ParseError;
 
+use super::header;
 use super::mistakes;
 use super::nodes::Recovery;
 use super::regions::Regions;
 use super::source::{Place, Source};
 use super::token::{Tok, Token};
-use crate::diagnostic::{Code, Diagnostic};
+use crate::diagnostic::{Code, Diagnostic, Edit, Span};
 
 /// The messages about what the parser has recovered from.
 pub(super) fn told(
@@ -23,14 +27,28 @@ pub(super) fn told(
     let mut errors: Vec<_> = recoveries.into_iter().map(|recovery| place_of(recovery, end)).collect();
     errors.sort_by_key(|(at, _)| *at);
     let openers = openers(tokens);
+    let plans = OnceCell::new();
     let mut told = Vec::new();
     for (at, expected) in errors {
-        let site = Site { source, tokens, openers: &openers, at, expected };
+        let site = Site { source, tokens, openers: &openers, plans: &plans, at, expected };
         if !regions.is_spoiled_once(site.decisive()) {
-            told.push(mistakes::known(&site).unwrap_or_else(|| site.unexpected()));
+            let diagnostic = mistakes::known(&site).unwrap_or_else(|| site.unexpected());
+            rewritten(source, tokens, &diagnostic).for_each(|token| regions.spoil_at(token));
+            told.push(diagnostic);
         }
     }
     told
+}
+
+/// The tokens that an edit of this message replaces.
+fn rewritten(source: Source<'_>, tokens: &[Token<'_>], diagnostic: &Diagnostic) -> impl Iterator<Item = usize> {
+    let edits = diagnostic.help.iter().filter_map(|help| help.edit.as_ref());
+    let first = |edit: &Edit| {
+        let range = edit.span.within(source.id);
+        let first = tokens.partition_point(|token| token.place.start < range.start);
+        first..tokens.partition_point(|token| token.place.start < range.end)
+    };
+    edits.flat_map(first).collect::<Vec<_>>().into_iter()
 }
 
 /// Where the parser stopped, and what could have stood there.
@@ -66,6 +84,8 @@ pub(super) struct Site<'t, 's> {
     source: Source<'s>,
     tokens: &'t [Token<'s>],
     openers: &'t [Option<usize>],
+    /// The names of the plans of the text, once they are asked for.
+    plans: &'t OnceCell<BTreeSet<&'s str>>,
     /// The token that was not expected.
     pub(super) at: usize,
     expected: Vec<String>,
@@ -157,6 +177,68 @@ impl<'s> Site<'_, 's> {
         let (first, last) = (self.tokens.get(first)?, self.tokens.get(last)?);
         let text = self.source.slice(Place::new(first.place.start, last.place.end));
         (!text.is_empty() && text.len() <= 60 && !text.contains('\n')).then_some(text)
+    }
+
+    /// The stretch from one token to another.
+    pub(super) fn span(&self, first: usize, last: usize) -> Span {
+        self.source.span(Place::new(self.place(first).start, self.place(last).end))
+    }
+
+    /// The empty place before a token.
+    pub(super) fn before_token(&self, at: usize) -> Span {
+        let start = self.place(at).start;
+        self.source.span(Place::new(start, start))
+    }
+
+    /// The brace after a name and the parentheses that follow it.
+    pub(super) fn brace_after_group(&self, name: usize) -> Option<usize> {
+        let is_group = matches!(self.kind(name + 1), Some(Tok::LParen | Tok::TouchParen));
+        let brace = self.end_of_group(name + 1) + 1;
+        (is_group && self.kind(brace) == Some(Tok::LBrace)).then_some(brace)
+    }
+
+    /// Whether a plan of this name is in the text.
+    pub(super) fn has_plan(&self, name: &str) -> bool {
+        self.plans.get_or_init(|| header::names(self.tokens)).contains(name)
+    }
+
+    /// Whether these tokens look like quarks and comparisons: names, values, and operators between them.
+    pub(super) fn is_call(&self, first: usize, last: usize) -> bool {
+        let is_value = |at: usize| {
+            (first..=last).contains(&at)
+                && matches!(self.kind(at), Some(Tok::Name(_) | Tok::Number(_) | Tok::Infinity | Tok::Str(_)))
+        };
+        let is_negated = |at: usize| at <= last && matches!(self.kind(at), Some(Tok::Not | Tok::Rising));
+        let is_sound = |at: usize| match self.kind(at) {
+            Some(Tok::Not | Tok::Rising) => matches!(self.kind(at + 1), Some(Tok::Name(_))) && at < last,
+            Some(Tok::Or | Tok::And) => at > first && is_value(at - 1) && (is_value(at + 1) || is_negated(at + 1)),
+            Some(Tok::Less | Tok::LessOrEqual | Tok::Greater | Tok::GreaterOrEqual | Tok::Equal) => {
+                at > first && is_value(at - 1) && is_value(at + 1)
+            }
+            _ => is_value(at),
+        };
+        let begins = matches!(self.kind(first), Some(Tok::Name(_) | Tok::Not | Tok::Rising));
+        let is_comparison = |at: &usize| is_sound(*at) && !is_value(*at) && !is_negated(*at) && !self.joins(*at);
+        let operands = (first..=last).collect::<Vec<_>>();
+        let once = operands
+            .split(|at| self.joins(*at))
+            .all(|operand| operand.iter().copied().filter(is_comparison).count() <= 1);
+        begins && once && (first..=last).all(is_sound)
+    }
+
+    /// Whether this is OR or AND.
+    fn joins(&self, at: usize) -> bool {
+        matches!(self.kind(at), Some(Tok::Or | Tok::And))
+    }
+
+    /// The bracket that this closer closes, as a token.
+    pub(super) fn opener_of(&self, closer: usize) -> Option<usize> {
+        self.openers.get(closer).copied().flatten()
+    }
+
+    /// Whether a token touches the one after it.
+    pub(super) fn touches_next(&self, at: usize) -> bool {
+        at + 1 < self.tokens.len() && self.place(at).end == self.place(at + 1).start
     }
 
     /// A message about this token.

@@ -99,7 +99,7 @@ fn cycle(open: &[Open<'_>], source: SourceId) -> Option<Diagnostic> {
     let mut uses = cycle.iter().filter_map(|file| file.uses.get(file.done.checked_sub(1)?));
     let closing = uses.next_back()?;
     let message = if cycle.len() == 1 { "this file uses itself" } else { "these files use each other" };
-    let found = Diagnostic::new(Code::E0206, message, closing.span, "which is the file that this begins with");
+    let found = Diagnostic::new(Code::E0206, message, closing.span, "the first file of the circle");
     let found = uses.fold(found, |found, used| found.also(used.span, format!("`{}` is used here", used.node)));
-    Some(found.help("every file sees the plans of all that are used: leave one of these out"))
+    Some(found.help("every file sees the plans of all used files: remove one of these lines"))
 }

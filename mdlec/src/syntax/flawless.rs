@@ -7,6 +7,7 @@ use bumpalo::Bump;
 use logos::{Lexer, Logos};
 
 use super::brackets::MAX_DEPTH;
+use super::foreign;
 use super::header::{Begins, begins, is_element};
 use super::nodes::{Docs, Nodes};
 use super::source::{Location, Source};
@@ -37,6 +38,10 @@ struct Tokens<'t, 's> {
     header: Header,
     /// The end of the last token, if that is a name.
     name_ends: usize,
+    /// Whether the last token is a parenthesis.
+    is_after_paren: bool,
+    /// Whether files are used, whose plans may have any name.
+    uses: bool,
     is_defective: bool,
 }
 
@@ -68,6 +73,8 @@ impl<'t, 's> Tokens<'t, 's> {
             depth: 0,
             header: Header::Outside,
             name_ends: usize::MAX,
+            is_after_paren: false,
+            uses: false,
             is_defective: false,
         }
     }
@@ -93,6 +100,11 @@ impl<'t, 's> Tokens<'t, 's> {
             }
             _ => true,
         }
+    }
+
+    /// Whether a name is probably a word of another language, or a keyword misspelled.
+    fn is_foreign(&self, name: &str) -> bool {
+        foreign::is_word(name) || self.is_after_paren && foreign::is_like_atom(name)
     }
 
     /// The end of the tokens at a defect.
@@ -154,6 +166,14 @@ impl<'s> Iterator for Tokens<'_, 's> {
         if !self.is_sound(&mut token) {
             return self.defect();
         }
+        self.uses |= token == Tok::Use;
+        if let Tok::Name(name) = token
+            && !self.uses
+            && self.is_foreign(name)
+        {
+            return self.defect();
+        }
+        self.is_after_paren = matches!(token, Tok::LParen | Tok::TouchParen);
         // Most tokens are in no header, and begin none.
         if self.header != Header::Outside || matches!(token, Tok::LBrace | Tok::ExecPlan) {
             self.header = self.header_behind(token);

@@ -51,7 +51,7 @@ fn mark_header<'s>(tokens: &mut [Token<'s>], at: usize, plans: &mut Option<BTree
 }
 
 /// The names of all plans.
-fn names<'s>(tokens: &[Token<'s>]) -> BTreeSet<&'s str> {
+pub(super) fn names<'s>(tokens: &[Token<'s>]) -> BTreeSet<&'s str> {
     let named = tokens.windows(2).filter_map(|pair| match pair {
         [Token { kind: Tok::LBrace, .. }, Token { kind: Tok::Name(name), .. }] => Some(*name),
         _ => None,

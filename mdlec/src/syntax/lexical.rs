@@ -1,12 +1,17 @@
-//! What is said about text that is no token: unexpected characters, numbers that touch something, and what does not end.
+//! Messages about text that is no token: unexpected characters, malformed numbers, and what does not end.
 
+use super::arithmetic::{arithmetic, computed, foreign_unit};
 use super::source::{Place, Source};
+use super::token::split;
 use crate::alphabet::Unit;
-use crate::diagnostic::{Code, Diagnostic};
+use crate::diagnostic::{Code, Diagnostic, Span};
 
 /// A run of characters that no token begins with.
 pub(super) fn characters(source: Source<'_>, place: Place) -> Diagnostic {
     let found = source.slice(place);
+    if let Some(diagnostic) = arithmetic(source, found, place) {
+        return diagnostic;
+    }
     let (what, noun) = match found.chars().count() {
         1 => (shown(found), "character"),
         2..=12 => (shown(found), "text"),
@@ -14,36 +19,83 @@ pub(super) fn characters(source: Source<'_>, place: Place) -> Diagnostic {
     };
     let diagnostic =
         Diagnostic::new(Code::E0101, format!("unexpected {noun} {what}"), source.span(place), "not part of MDLe");
-    match characters_help(source, found, place) {
-        Some(help) => diagnostic.help(help),
-        None => diagnostic,
+    characters_help(diagnostic, source, found, place)
+}
+
+/// Adds what is usually meant by these characters.
+fn characters_help(diagnostic: Diagnostic, source: Source<'_>, found: &str, place: Place) -> Diagnostic {
+    let after = source.text.get(place.end..).unwrap_or("");
+    let next = after.chars().next();
+    let operator =
+        |diagnostic: Diagnostic, word| diagnostic.fix("write {}", source.span(place), apart(source, place, word));
+    match found {
+        "&&" | "&" | "∧" => operator(diagnostic, "AND"),
+        "||" | "|" | "∨" => operator(diagnostic, "OR"),
+        "!" if next == Some('=') => diagnostic.help("write `NOT` before an equality: `NOT r 3 == r 5`"),
+        "!" | "~" | "¬"
+            if begins_operand(source, place.start) && next.is_some_and(|c| c.is_alphabetic() || c == '(') =>
+        {
+            operator(diagnostic, "NOT")
+        }
+        "!" | "~" | "¬" => diagnostic.help("write `NOT` before a condition: `NOT bumper`"),
+        "≠" => diagnostic.help("write `NOT` before an equality: `NOT r 3 == r 5`"),
+        "#" | "%" if begins_line(source, place.start) => {
+            diagnostic.fix("a comment begins with {}", source.span(place), "//")
+        }
+        "#" | "%" => diagnostic.help("a comment begins with `//`"),
+        "'" | "“" | "”" | "„" | "‘" | "’" | "`" => {
+            diagnostic.help("text is written between plain double quotes: `\"path.txt\"`")
+        }
+        "−" | "–" | "—" => sign(diagnostic, source, "-", place),
+        "." if next.is_some_and(|c| c.is_ascii_digit()) && begins_operand(source, place.start) => {
+            let digits: String = after.chars().take_while(char::is_ascii_digit).take(12).collect();
+            let span = source.span(Place::new(place.start, place.end + digits.len()));
+            diagnostic.fix("a number has digits on both sides of its dot: {}", span, format!("0.{digits}"))
+        }
+        "-" | "+" => sign(diagnostic, source, found, place),
+        "°" => diagnostic.help("write `deg`, touching the number: `90deg`"),
+        "/" => diagnostic.help("a unit is written out and touches its number: `20cm/s`"),
+        "\\" => diagnostic.help(TYPESETTING),
+        _ => diagnostic,
     }
 }
 
-/// What is usually meant by these characters.
-fn characters_help(source: Source<'_>, found: &str, place: Place) -> Option<String> {
-    let next = source.text.get(place.end..).and_then(|rest| rest.chars().next());
-    Some(match found {
-        "&&" | "&" => "write `AND`: `(Atom (bumper AND wait 5) stop)`".into(),
-        "||" | "|" => "write `OR`: `(Atom (bumper OR wait 5) stop)`".into(),
-        "!" if next == Some('=') => "write `NOT` before an equality: `NOT r 3 == r 5`".into(),
-        "!" | "~" | "¬" => "write `NOT`: `(Atom (NOT bumper) stop)`".into(),
-        "≠" => "write `NOT` before an equality: `NOT r 3 == r 5`".into(),
-        "∧" => "write `AND`".into(),
-        "∨" => "write `OR`".into(),
-        "#" | "%" => "a comment begins with `//`".into(),
-        "'" | "“" | "”" | "„" | "‘" | "’" | "`" => "text stands between plain double quotes: `\"path.txt\"`".into(),
-        "−" | "–" | "—" => "the minus sign is a plain `-`".into(),
-        "." if next.is_some_and(|c| c.is_ascii_digit()) => {
-            let digits: String = source.text.get(place.end..)?.chars().take_while(char::is_ascii_digit).take(12).collect();
-            format!("a number has digits on both sides of its dot: `0.{digits}`")
-        }
-        "-" | "+" => "a sign touches its number: `-5`".into(),
-        "°" => "write `deg`, touching the number: `90deg`".into(),
-        "/" => "a unit is written out and touches its number: `20cm/s`".into(),
-        "\\" => "of typesetting only `\\\\`, `\\{`, `\\}`, `\\text{…}`, `\\infty`, `\\leq`, `\\geq`, `\\Gamma_{…}` and `\\sigma_{null}` are read".into(),
-        _ => return None,
-    })
+/// Whether only blanks are before this in its line.
+fn begins_line(source: Source<'_>, at: usize) -> bool {
+    let before = source.text.get(..at).unwrap_or("");
+    before.rsplit('\n').next().unwrap_or(before).trim().is_empty()
+}
+
+/// What is read of typesetting.
+const TYPESETTING: &str = "of typesetting only `\\\\`, `\\{`, `\\}`, `\\text{…}`, `\\infty`, `\\leq`, `\\geq`, `\\Gamma_{…}` and `\\sigma_{null}` are read";
+
+/// Whether an operand can begin here: after a blank, a bracket that opens, or a sign between operands.
+fn begins_operand(source: Source<'_>, at: usize) -> bool {
+    let before = source.text.get(..at).unwrap_or("");
+    before.is_empty() || before.ends_with(|c: char| c.is_whitespace() || "(,<>=".contains(c))
+}
+
+/// A sign that stands apart from its number.
+fn sign(diagnostic: Diagnostic, source: Source<'_>, found: &str, place: Place) -> Diagnostic {
+    let after = source.text.get(place.end..).unwrap_or("");
+    let spaces = after.len() - after.trim_start_matches([' ', '\t']).len();
+    let (number, _) = split(after.get(spaces..).unwrap_or(""));
+    if number.is_empty() || number.starts_with(['+', '-']) {
+        return diagnostic.help("a sign touches its number: `-5`");
+    }
+    let span = source.span(Place::new(place.start, place.end + spaces + number.len()));
+    let is_plain = source.slice(place).is_ascii();
+    let words = if is_plain { "a sign touches its number: {}" } else { "the minus sign is a plain `-`: {}" };
+    diagnostic.fix(words, span, format!("{found}{number}"))
+}
+
+/// A word in the place of characters that may touch others.
+fn apart(source: Source<'_>, place: Place, word: &str) -> String {
+    let is_blank = |c: Option<char>| c.is_none_or(char::is_whitespace);
+    let before = source.text.get(..place.start).and_then(|before| before.chars().next_back());
+    let after = source.text.get(place.end..).and_then(|after| after.chars().next());
+    let before = if is_blank(before) || before == Some('(') { "" } else { " " };
+    format!("{before}{word}{}", if is_blank(after) { "" } else { " " })
 }
 
 /// A typesetting command that means nothing in a plan.
@@ -56,17 +108,18 @@ pub(super) fn command(source: Source<'_>, place: Place) -> Diagnostic {
         "unknown command",
     );
     let name = found.trim_start_matches('\\').to_lowercase();
-    diagnostic.help(match name.as_str() {
-        "gamma" => "a label is written `\\Gamma_{from}^{to}` or `Γ_from^to`",
-        "sigma" => "the end of a plan is written `\\sigma_{null}` or `σ_null`",
-        "le" | "leqslant" => "write `\\leq` or `<=`",
-        "ge" | "geqslant" => "write `\\geq` or `>=`",
-        "wedge" | "land" => "write `AND`",
-        "vee" | "lor" => "write `OR`",
-        "neg" | "lnot" => "write `NOT`",
-        "inf" | "infinity" => "write `\\infty` or `inf`",
-        _ => "of typesetting only `\\\\`, `\\{`, `\\}`, `\\text{…}`, `\\infty`, `\\leq`, `\\geq`, `\\Gamma_{…}` and `\\sigma_{null}` are read",
-    })
+    let word = match name.as_str() {
+        "gamma" => return diagnostic.help("a label is written `\\Gamma_{from}^{to}` or `Γ_from^to`"),
+        "sigma" => return diagnostic.help("the end of a plan is written `\\sigma_{null}` or `σ_null`"),
+        "le" | "leqslant" => "<=",
+        "ge" | "geqslant" => ">=",
+        "wedge" | "land" => "AND",
+        "vee" | "lor" => "OR",
+        "neg" | "lnot" => "NOT",
+        "inf" | "infinity" => "inf",
+        _ => return diagnostic.help(TYPESETTING),
+    };
+    diagnostic.fix("write {}", source.span(place), apart(source, place, word))
 }
 
 /// A block comment that does not end.
@@ -79,66 +132,89 @@ pub(super) fn comment(source: Source<'_>, place: Place) -> Diagnostic {
 /// A string that does not end on its line.
 pub(super) fn string(source: Source<'_>, place: Place) -> Diagnostic {
     let opener = Place::new(place.start, place.start + 1);
-    Diagnostic::new(Code::E0105, "this text does not end on its line", source.span(opener), "begins here")
-        .help("end it with `\"`")
+    Diagnostic::new(Code::E0105, "this text does not end on its line", source.span(opener), "begins here").fix(
+        "end it with {}",
+        source.span(Place::new(place.end, place.end)),
+        "\"",
+    )
 }
 
 /// A `\text{` whose brace does not close.
 pub(super) fn text(source: Source<'_>, place: Place) -> Diagnostic {
     Diagnostic::new(Code::E0103, "this `\\text{` is never closed", source.span(place), "opened here")
-        .help("close it with `}`; no braces stand inside")
+        .help("close it with `}`; it contains no braces")
 }
 
 /// A number that touches something other than a unit.
 pub(super) fn number(source: Source<'_>, number: &str, tail: &str, place: Place) -> Diagnostic {
     let unit = tail.trim_start();
     let span = source.span(Place::new(place.end - unit.len(), place.end));
+    let whole = source.span(place);
     if unit.len() < tail.len() {
-        let message = format!("the unit `{unit}` does not touch its number");
-        return Diagnostic::new(Code::E0104, message, span, "a blank too many before this")
-            .help(format!("write `{number}{unit}`"));
+        let message = format!("there is a space between `{number}` and its unit `{unit}`");
+        return Diagnostic::new(Code::E0104, message, span, "remove the space before this unit").fix(
+            "write {}",
+            whole,
+            format!("{number}{unit}"),
+        );
     }
     if tail.starts_with('.') {
-        return dot(number, tail, span);
+        return dot(number, tail, span, whole);
     }
     if tail.starts_with(['+', '-']) {
         let message = format!("`{tail}` touches the number before it");
-        return Diagnostic::new(Code::E0104, message, span, "nothing is computed here")
-            .help(format!("for two numbers put a blank between them: `{number} {tail}`"));
+        let diagnostic = Diagnostic::new(Code::E0104, message, span, "MDLe has no arithmetic");
+        let diagnostic = match computed(number, tail.get(..1).unwrap_or(""), tail.get(1..).unwrap_or("")) {
+            Some(result) => diagnostic.fix("write the result: {}", whole, result),
+            None => diagnostic,
+        };
+        let (_, unit) = split(tail);
+        let words = "for two numbers put a space between them: {}";
+        return match unit.is_empty() || Unit::from_name(unit).is_some() {
+            true => diagnostic.fix(words, whole, format!("{number} {tail}")),
+            false => diagnostic,
+        };
     }
-    let near = nearest_unit(tail);
     let shown = if tail.len() > 40 { "…" } else { tail };
     let message = format!("`{shown}` is not a unit");
     let mut diagnostic = Diagnostic::new(Code::E0104, message, span, format!("touches the number `{number}`"));
-    if let Some(unit) = near {
-        diagnostic = diagnostic.help(format!("the nearest unit is `{unit}`: `{number}{unit}`"));
+    let near = match foreign_unit(number, tail) {
+        Some(converted) => Some(diagnostic.clone().fix("in a unit that MDLe has: {}", whole, converted)),
+        None => nearest_unit(tail).map(|unit| {
+            diagnostic.clone().fix(&format!("the nearest unit is `{unit}`: {{}}"), whole, format!("{number}{unit}"))
+        }),
+    };
+    let is_near = near.is_some();
+    diagnostic = near.unwrap_or(diagnostic);
+    if !is_near
+        && tail.len() <= 40
+        && tail.starts_with(|c: char| c.is_alphabetic() || c == '_')
+        && !tail.contains(['/', '.', '+', '-', '°'])
+    {
+        diagnostic = diagnostic.fix("if it is a name, put a space before it: {}", whole, format!("{number} {tail}"));
     }
-    if !tail.contains(['/', '.', '+', '-', '°']) {
-        diagnostic = diagnostic.help(format!("if it is a name, put a blank before it: `{number} {shown}`"));
-    }
-    if near.is_none() {
+    if !is_near {
         diagnostic = diagnostic.help(format!("the units are {}", units()));
     }
     diagnostic
 }
 
-/// A number with a dot too many, or without digits behind it.
-fn dot(number: &str, tail: &str, span: crate::diagnostic::Span) -> Diagnostic {
+/// A number with a dot too many, or without digits after it.
+fn dot(number: &str, tail: &str, span: Span, whole: Span) -> Diagnostic {
     let diagnostic =
         Diagnostic::new(Code::E0104, format!("`{number}{tail}` is not a number"), span, "not part of a number");
-    match tail.trim_start_matches('.') {
-        "" => diagnostic.help(format!("a number has digits on both sides of its dot: `{number}.0`")),
-        rest if Unit::from_name(rest).is_some() && !number.contains('.') => {
-            diagnostic.help(format!("a number has digits on both sides of its dot: `{number}.0{rest}`"))
-        }
-        _ => diagnostic.help("a number has one dot at most, with digits on both sides: `0.36`"),
+    let rest = tail.trim_start_matches('.');
+    if (rest.is_empty() || Unit::from_name(rest).is_some()) && !number.contains('.') {
+        return diagnostic.fix("a number has digits on both sides of its dot: {}", whole, format!("{number}.0{rest}"));
     }
+    diagnostic.help("a number has one dot at most, with digits on both sides: `0.36`")
 }
 
-/// The unit that was probably meant.
-pub(super) fn nearest_unit(written: &str) -> Option<&'static str> {
+/// A spelling of a unit that is probably meant.
+pub(crate) fn nearest_unit(written: &str) -> Option<&'static str> {
     let spelled = match written.to_lowercase().as_str() {
         "°" | "degree" | "degrees" => Some("deg"),
+        "°/s" | "deg/sec" | "dps" => Some("deg/s"),
         "radian" | "radians" => Some("rad"),
         "sec" | "secs" | "second" | "seconds" => Some("s"),
         "msec" | "millisecond" | "milliseconds" => Some("ms"),
@@ -153,18 +229,16 @@ pub(super) fn nearest_unit(written: &str) -> Option<&'static str> {
         _ => None,
     };
     spelled.or_else(|| {
-        if written.len() > 40 {
-            return None;
-        }
-        let names = Unit::ALL.iter().map(|unit| unit.name);
-        let near = names.map(|name| (distance(written, name), name)).min_by_key(|(distance, _)| *distance)?;
-        (near.0 <= (written.chars().count() / 2).max(1)).then_some(near.1)
+        let near = |name: &str| {
+            let is_like = written.len() > 1 && name.len() > 1 && written.chars().next() == name.chars().next();
+            written.eq_ignore_ascii_case(name)
+                || is_like
+                    && !written.contains(|c: char| c.is_ascii_digit())
+                    && strsim::damerau_levenshtein(written, name) <= 1
+        };
+        let names = || Unit::ALL.iter().map(|unit| unit.name);
+        names().find(|name| *name == written).or_else(|| names().find(|name| written.len() <= 40 && near(name)))
     })
-}
-
-/// How different they are; the case of a letter counts little.
-fn distance(written: &str, name: &str) -> usize {
-    if written.eq_ignore_ascii_case(name) { 0 } else { strsim::damerau_levenshtein(written, name) }
 }
 
 /// All units, for a sentence.

@@ -1,13 +1,22 @@
 //! The usual mistakes, each with a message of its own and something to type instead.
 
+mod atoms;
+mod calls;
+mod conditions;
+
 use super::errors::Site;
+use super::foreign;
 use super::token::{Tok, split};
-use crate::alphabet::Unit;
 use crate::diagnostic::Diagnostic;
+use atoms::{atom_condition, atom_law};
+use calls::{apart, bare_call, decimal_comma, element_touches, square_brackets, touching_parenthesis, unit_apart};
+use conditions::condition;
 
 /// The message about a mistake that is known; the first that fits.
 pub(super) fn known(site: &Site<'_, '_>) -> Option<Diagnostic> {
-    let mistakes: [fn(&Site<'_, '_>) -> Option<Diagnostic>; 16] = [
+    let mistakes: [fn(&Site<'_, '_>) -> Option<Diagnostic>; 19] = [
+        square_brackets,
+        decimal_comma,
         at_file_level,
         element_touches,
         plan_name,
@@ -19,6 +28,7 @@ pub(super) fn known(site: &Site<'_, '_>) -> Option<Diagnostic> {
         label_behind,
         keyword_argument,
         unit_apart,
+        apart,
         comma,
         condition,
         parameters,
@@ -27,7 +37,7 @@ pub(super) fn known(site: &Site<'_, '_>) -> Option<Diagnostic> {
     ];
     let known = mistakes.iter().find_map(|mistake| mistake(site))?;
     Some(match spelling(site) {
-        Some(keyword) => known.help(format!("the keyword is spelled `{keyword}`")),
+        Some((at, keyword)) => known.fix("the keyword is {}", site.span(at, at), keyword),
         None => known,
     })
 }
@@ -40,7 +50,7 @@ fn at_file_level(site: &Site<'_, '_>) -> Option<Diagnostic> {
             format!("`use` needs the name of a file, found {}", site.found_words()),
             "expected a text in quotes",
         );
-        return Some(diagnostic.help("the name of the file stands in quotes: `use \"corridors.mdle\"`"));
+        return Some(diagnostic.help("the name of a file is written between double quotes: `use \"corridors.mdle\"`"));
     }
     if !site.expects("use") {
         return None;
@@ -49,13 +59,44 @@ fn at_file_level(site: &Site<'_, '_>) -> Option<Diagnostic> {
     match site.found()? {
         Tok::Name(_) if site.kind(site.at + 1) == Some(Tok::LBrace) => Some(name_before_plan(site, site.at)),
         Tok::Name(name) if site.kind(site.at + 1) == Some(Tok::Assign) => Some(not_a_label(site, site.at, name)),
-        Tok::Name(name) if site.kind(site.at + 1) == Some(Tok::Colon) => Some(
-            site.about(site.at, format!("the label `{name}` stands outside of any plan"), "not expected here")
-                .help("a label names an element of a plan; a plan's own name is the first thing inside its braces"),
+        Tok::Name(name) if site.kind(site.at + 1) == Some(Tok::Colon) => {
+            Some(site.about(site.at, format!("the label `{name}` is outside of any plan"), "not expected here").fix(
+                "remove it: a label names an element of a plan; a plan's own name is the first thing inside its braces",
+                site.span(site.at, site.at + 1),
+                "",
+            ))
+        }
+        Tok::Name(name) if foreign::advice(name).is_some() => Some(
+            site.about(site.at, format!("MDLe has no `{name}`"), "not expected here")
+                .help(foreign::advice(name).unwrap_or_default()),
         ),
+        Tok::Name(name)
+            if matches!(site.kind(site.at + 1), Some(Tok::Name(_))) && site.kind(site.at + 2) == Some(Tok::LBrace) =>
+        {
+            let inner = site.name_at(site.at + 1).unwrap_or(name);
+            let diagnostic =
+                site.about(site.at, format!("expected a plan, found the name `{name}`"), "not expected here");
+            Some(diagnostic.fix(
+                "a plan begins with its brace: {} …",
+                site.span(site.at, site.at + 2),
+                format!("{{ {inner}"),
+            ))
+        }
+        Tok::Name(name) if site.brace_after_group(site.at).is_some() => {
+            let brace = site.brace_after_group(site.at)?;
+            let condition = site.text(site.at + 1, brace.checked_sub(1)?).unwrap_or("(…)");
+            let message = format!("the name `{name}` is before the brace of its plan");
+            let words = format!("the brace comes first: `{{ {name} {condition} … }}`");
+            Some(site.about(site.at, message, "put it inside the braces").fix(
+                &words,
+                site.span(site.at, brace),
+                format!("{{ {name} {condition}"),
+            ))
+        }
         Tok::LParen | Tok::ExecPlan | Tok::Name(_) | Tok::Frame => Some(
-            site.about(site.at, format!("expected a plan, found {}", site.found_words()), "outside of any plan")
-                .help("atoms, loops and names stand inside of a plan: `{ Name (Atom (bumper) stop) }`"),
+            site.about(site.at, format!("expected a plan, found {}", site.found_words()), "outside of any plan").help(
+                "a file consists of plans, and a plan has braces around its atoms: `{ Name (Atom (bumper) stop) }`",
+            ),
         ),
         _ => None,
     }
@@ -63,12 +104,23 @@ fn at_file_level(site: &Site<'_, '_>) -> Option<Diagnostic> {
 
 fn name_before_plan(site: &Site<'_, '_>, at: usize) -> Diagnostic {
     let name = site.name_at(at).unwrap_or("Name");
-    site.about(at, format!("the name `{name}` stands before its plan"), "put it inside the braces")
-        .help(format!("the name of a plan is the first thing inside: `{{ {name} … }}`"))
+    let words = format!("the name of a plan is the first thing inside: `{{ {name} … }}`");
+    site.about(at, format!("the name `{name}` is before the brace of its plan"), "put it inside the braces").fix(
+        &words,
+        site.span(at, at + 1),
+        format!("{{ {name}"),
+    )
 }
 
 /// A plan whose name is missing, or something that cannot be one.
 fn plan_name(site: &Site<'_, '_>) -> Option<Diagnostic> {
+    let is_single = site.kind(site.at + 1) != Some(Tok::Colon);
+    if site.found() == Some(Tok::Colon) && is_single && site.before(2) == Some(Tok::LBrace) && site.expects_element() {
+        let after = if site.kind(site.at + 1) == Some(Tok::LParen) { site.at + 1 } else { site.at };
+        let replacement = if after == site.at { "" } else { " (" };
+        let diagnostic = site.about(site.at, "no colon follows the name of a plan", "not expected here");
+        return Some(diagnostic.fix("remove it", site.span(site.at, after), replacement));
+    }
     if !site.is_plan_without_name() {
         return None;
     }
@@ -77,13 +129,14 @@ fn plan_name(site: &Site<'_, '_>) -> Option<Diagnostic> {
         let is_loop = brace >= 3 && site.kind(brace - 3) == Some(Tok::ExecPlan);
         let diagnostic = site.about(
             brace,
-            format!("this `{{` begins a plan without a name, behind `{name}`"),
-            "a name is missing behind it",
+            format!("this `{{` after `{name}` begins a plan without a name"),
+            "a name is missing after it",
         );
+        let words = format!("the name of a plan is the first thing inside: `{{ {name} … }}`");
         return Some(if is_loop {
             diagnostic.help("the body of an `ExecPlan` is a plan's name or braces, not both")
         } else {
-            diagnostic.help(format!("the name of a plan is the first thing inside: `{{ {name} … }}`"))
+            diagnostic.fix(&words, site.span(brace - 1, brace), format!("{{ {name}"))
         });
     }
     #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens cannot be meant as a name")]
@@ -99,7 +152,7 @@ fn plan_name(site: &Site<'_, '_>) -> Option<Diagnostic> {
             Some(site.about(site.at, message, "not a name").help("choose another name"))
         }
         _ => {
-            Some(site.about(brace, "this plan has no name", "a name is missing behind this").help(
+            Some(site.about(brace, "this plan has no name", "a name is missing after this").help(
                 "a plan begins with its name: `{ Name (bumper) … }`; elements without one are grouped by `( … )`",
             ))
         }
@@ -110,18 +163,27 @@ fn plan_name(site: &Site<'_, '_>) -> Option<Diagnostic> {
 fn label_and_equals(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if site.found() == Some(Tok::Assign) {
         if site.expects("==") {
-            return Some(
-                site.about(site.at, "`=` does not compare", "names a plan")
-                    .help("values are compared by `==`: `(r 3 == r 5)`"),
-            );
+            return Some(site.about(site.at, "`=` does not compare", "names a plan").fix(
+                "to compare, write {}",
+                site.span(site.at, site.at),
+                "==",
+            ));
+        }
+        if let Some(argument) = named_argument(site) {
+            return Some(argument);
         }
         let name = site.at.checked_sub(1).filter(|_| site.expects_element())?;
+        if let (Some(text), Some(_)) = (site.name_at(name), site.opener()) {
+            let help = "a plan may take parameters: `{ Leg(d: length) (Atom (null) (goAvoid 0 d)) }`";
+            let message = format!("`{text} =` is written in a plan, which has no variables");
+            return Some(site.about(site.at, message, "not expected here").help(help));
+        }
         return site.name_at(name).map(|text| not_a_label(site, name, text));
     }
     #[allow(clippy::wildcard_enum_match_arm, reason = "only labels and what follows them is looked at")]
     match site.before(1)? {
         Tok::Label(label) => {
-            let message = format!("expected `=` behind the label, found {}", site.found_words());
+            let message = format!("expected `=` after the label, found {}", site.found_words());
             let diagnostic = site.about(site.at, message, "not expected here");
             Some(if site.opener().is_some() {
                 diagnostic.help(format!("a plan is used by the name inside its braces, not by its label `{label}`"))
@@ -133,7 +195,7 @@ fn label_and_equals(site: &Site<'_, '_>) -> Option<Diagnostic> {
             Some(name_before_plan(site, site.at))
         }
         Tok::Assign if site.expects("{") => Some(
-            site.about(site.at, format!("expected `{{` behind `=`, found {}", site.found_words()), "not expected here")
+            site.about(site.at, format!("expected `{{` after `=`, found {}", site.found_words()), "not expected here")
                 .help("a label names a plan in braces: `Γ_from^to = { Name … }`"),
         ),
         _ => None,
@@ -141,89 +203,39 @@ fn label_and_equals(site: &Site<'_, '_>) -> Option<Diagnostic> {
 }
 
 fn not_a_label(site: &Site<'_, '_>, at: usize, name: &str) -> Diagnostic {
-    site.about(at, format!("`{name}` is not a label"), "the label of a plan begins with `Γ_` or `Gamma_`").help(
-        format!(
-            "write `Gamma_{name} = {{ … }}`, or leave out `{name} =`: the plan's own name stands inside its braces"
-        ),
-    )
+    site.about(at, format!("`{name}` is not a label"), "the label of a plan begins with `Γ_` or `Gamma_`")
+        .fix("write {}", site.span(at, at), format!("Gamma_{name}"))
+        .fix(&format!("or remove `{name} =`: a plan's own name is inside its braces"), site.span(at, at + 1), "")
 }
 
-/// `(Atom bumper stop)`: the condition of an atom without its parentheses.
-fn atom_condition(site: &Site<'_, '_>) -> Option<Diagnostic> {
-    if site.before(1) != Some(Tok::Atom) {
-        return None;
-    }
-    if site.found() == Some(Tok::RParen) {
-        let diagnostic = site.about(site.at - 1, "this atom is empty", "a condition and a law are missing");
-        return Some(diagnostic.help("an atom is a condition and a law: `(Atom (bumper) stop)`"));
-    }
-    if let (Some(label), Some(Tok::Colon)) = (site.name_at(site.at), site.kind(site.at + 1)) {
-        let message = format!("the label `{label}` stands inside of its atom");
-        let diagnostic = site.about(site.at, message, "not expected here");
-        return Some(diagnostic.help(format!("a label stands before what it names: `{label}: (Atom …)`")));
-    }
-    let last = end_of_call(site, site.at);
-    let diagnostic = site.about(site.at, "the condition of an atom stands in parentheses", "expected `(`");
-    let Some(call) = site.name_at(site.at).and_then(|_| site.text(site.at, last)) else {
-        return Some(diagnostic.help("an atom is a condition and a law: `(Atom (bumper) stop)`"));
-    };
-    let group = last + 1;
-    if site.kind(group) == Some(Tok::LParen) {
-        let end = site.end_of_group(group);
-        if let (Some(text), Some(Tok::RParen)) = (site.text(group, end), site.kind(end + 1)) {
-            let diagnostic = diagnostic.help(format!("write `(Atom ({call}) {text})`"));
-            return Some(diagnostic.help(format!("or, if `{call}` is the law, put it last: `(Atom {text} {call})`")));
-        }
-    }
-    Some(diagnostic.help(format!("write `(Atom ({call}) …)`")))
-}
-
-/// The last token of a name with numbers behind it.
-fn end_of_call(site: &Site<'_, '_>, name: usize) -> usize {
-    if site.kind(name + 1) == Some(Tok::TouchParen) {
-        return site.end_of_group(name + 1);
-    }
-    let is_literal = |at: &usize| matches!(site.kind(*at), Some(Tok::Number(_) | Tok::Infinity | Tok::Str(_)));
-    (name + 1..).take_while(is_literal).last().unwrap_or(name)
-}
-
-/// An atom without its law, or with something behind it.
-fn atom_law(site: &Site<'_, '_>) -> Option<Diagnostic> {
-    if !site.in_atom() || site.before(1) == Some(Tok::Atom) {
-        return None;
-    }
-    let atom = site.opener()? + 1;
-    if site.found() == Some(Tok::RParen) {
-        let diagnostic = site.about(site.at, "this atom has no law", "a law is missing before this");
-        return Some(
-            site.also(diagnostic, atom, "in this atom")
-                .help("an atom is a condition and a law: `(Atom (bumper) stop)`"),
-        );
-    }
-    if !site.expects(")") {
-        return None;
-    }
-    let diagnostic = site.about(
-        site.at,
-        format!("expected the `)` of this atom, found {}", site.found_words()),
-        "not expected here",
-    );
-    let diagnostic = site.also(diagnostic, atom, "in this atom");
-    #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens need no other hint")]
-    Some(match site.found()? {
-        Tok::Caret => diagnostic.help("a power stands behind the atom's parenthesis: `(Atom (wait 5) stop)^3`"),
-        Tok::Comma => diagnostic.help(
-            "arguments are separated by blanks, `go 5 0`, or stand in parentheses that touch the name, `go(5, 0)`",
-        ),
-        _ => diagnostic.help("an atom is one condition and one law: `(Atom (bumper) stop)`"),
+/// `Leg(d = 3m)`
+fn named_argument(site: &Site<'_, '_>) -> Option<Diagnostic> {
+    let name = site.at.checked_sub(1)?;
+    let text = site.name_at(name).filter(|_| site.opener_kind() == Some(Tok::TouchParen))?;
+    let (opener, plan) = (site.opener()?, site.opener()?.checked_sub(1)?);
+    let (words, before) = (format!("remove `{text} =`"), site.text(plan, name - 1));
+    let is_first = opener + 1 == name;
+    let diagnostic = site.about(site.at, "arguments have no names: they are given in order", "not expected here");
+    Some(match before.filter(|_| is_first) {
+        // The call is upset as well.
+        Some(before) => diagnostic.fix(&words, site.span(plan, site.at), before),
+        None => diagnostic.fix(&words, site.span(name, site.at), ""),
     })
 }
 
 /// `ExecPlan { … }` and what else is not a loop.
 fn loop_count(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if site.before(1) == Some(Tok::ExecPlan) {
+        if let (Some(Tok::LParen), Some(Tok::Number(_) | Tok::Infinity), Some(Tok::RParen), Some(Tok::LBrace)) =
+            (site.found(), site.kind(site.at + 1), site.kind(site.at + 2), site.kind(site.at + 3))
+        {
+            let count = site.text(site.at + 1, site.at + 1).unwrap_or("3");
+            let diagnostic = site.about(site.at, "the count of a loop has no parentheses", "not expected here");
+            let words = format!("write `ExecPlan {count} {{ … }}`");
+            return Some(diagnostic.fix(&words, site.span(site.at - 1, site.at + 3), format!("ExecPlan {count} {{")));
+        }
         let message = "this loop does not say how often";
-        let diagnostic = site.about(site.at - 1, message, "a count is missing behind this");
+        let diagnostic = site.about(site.at - 1, message, "a count is missing after this");
         return Some(diagnostic.help("write `ExecPlan 3 { … }`, or `ExecPlan inf { … }` for ever"));
     }
     if site.before(2) != Some(Tok::ExecPlan) {
@@ -236,46 +248,57 @@ fn loop_count(site: &Site<'_, '_>) -> Option<Diagnostic> {
     );
     Some(match (site.before(1), site.found()) {
         (Some(Tok::Name(name)), Some(Tok::Number(count))) => {
-            diagnostic.help(format!("the count comes first: `ExecPlan {} {name}`", split(count).0))
+            let replacement = format!("ExecPlan {} {name}", split(count).0);
+            diagnostic.fix("the count comes first: {}", site.span(site.at - 2, site.at), replacement)
+        }
+        (Some(Tok::Name(name)), Some(Tok::Infinity)) => {
+            let replacement = format!("ExecPlan inf {name}");
+            diagnostic.fix("the count comes first: {}", site.span(site.at - 2, site.at), replacement)
         }
         (Some(Tok::Name(name)), _) => {
-            diagnostic.help(format!("`{name}` stands where the count is; the count comes first: `ExecPlan 3 {name}`"))
+            let replacement = format!("ExecPlan 3 {name}");
+            diagnostic.fix("the count comes first: {}", site.span(site.at - 2, site.at - 1), replacement)
         }
         (_, _) => diagnostic.help("the body of a loop is in braces, `ExecPlan 3 { … }`, or a plan, `ExecPlan 3 Name`"),
     })
 }
 
-/// `^` without a count, or behind what is a condition.
+/// `^` without a count, or after a condition.
 fn power(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let behind = site.at.checked_sub(1).and_then(|closer| site.partner(closer));
     if site.found() == Some(Tok::Caret) && behind == Some(Tok::ConditionParen) {
         let message = "the parenthesis before this `^` is the condition of the plan";
         let diagnostic = site.about(site.at, message, "a condition has no power");
-        return Some(diagnostic.help("if it holds elements, put `(null)` before it: `{ Name (null) (Other)^3 }`"));
+        let insertion = site.opener_of(site.at - 1).map(|opener| site.before_token(opener));
+        let words = "if it contains elements, put {} before it: `{ Name (null) (Other)^3 }`";
+        return Some(match insertion {
+            Some(span) => diagnostic.fix(words, span, "(null) "),
+            None => diagnostic,
+        });
     }
     (site.before(1) == Some(Tok::Caret)).then(|| {
-        site.about(site.at, format!("expected a count behind `^`, found {}", site.found_words()), "expected a count")
+        site.about(site.at, format!("expected a count after `^`, found {}", site.found_words()), "expected a count")
             .help("write `^3` for three times, `^inf` for ever")
     })
 }
 
-/// A label with nothing behind it.
+/// A label with nothing after it.
 fn label_behind(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let label = site.at.checked_sub(2).and_then(|at| site.name_at(at))?;
     (site.before(1) == Some(Tok::Colon) && site.expects_element()).then(|| {
-        site.about(site.at - 2, format!("nothing stands behind the label `{label}`"), "it names what follows it")
-            .help(format!("a label stands before what it names: `{label}: (Atom (bumper) stop)`"))
+        site.about(site.at - 2, format!("nothing follows the label `{label}`"), "it names what follows it")
+            .help(format!("a label is written before its element: `{label}: (Atom (bumper) stop)`"))
     })
 }
 
-/// What some keywords need behind them.
+/// What some keywords need after them.
 fn keyword_argument(site: &Site<'_, '_>) -> Option<Diagnostic> {
     #[allow(clippy::wildcard_enum_match_arm, reason = "only keywords are looked at")]
     match site.before(1)? {
         Tok::Frame => Some(
             site.about(
                 site.at,
-                format!("expected an angle behind `FRAME`, found {}", site.found_words()),
+                format!("expected an angle after `FRAME`, found {}", site.found_words()),
                 "expected a number",
             )
             .help("write `FRAME 180deg Name`"),
@@ -283,36 +306,27 @@ fn keyword_argument(site: &Site<'_, '_>) -> Option<Diagnostic> {
         Tok::After => Some(
             site.about(
                 site.at,
-                format!("expected a label behind `after`, found {}", site.found_words()),
+                format!("expected a label after `after`, found {}", site.found_words()),
                 "expected a name",
             )
             .help("`after` names an element: `s1: (Atom (bumper) stop) (Atom (after s1) stop)`"),
         ),
         Tok::SigmaNull => Some(
-            site.about(site.at, format!("expected `}}`, found {}", site.found_words()), "behind the end of the plan")
+            site.about(site.at, format!("expected `}}`, found {}", site.found_words()), "after the end of the plan")
                 .help("`sigma_null` is the last thing in a plan"),
         ),
         _ => None,
     }
 }
 
-/// `0.5 m`: a unit that does not touch its number.
-fn unit_apart(site: &Site<'_, '_>) -> Option<Diagnostic> {
-    let (Some(Tok::Name(name)), Some(Tok::Number(number))) = (site.found(), site.before(1)) else { return None };
-    if !split(number).1.is_empty() {
-        return None;
-    }
-    Unit::from_name(name)?;
-    let diagnostic =
-        site.about(site.at, format!("the unit `{name}` does not touch its number"), "a blank too many before this");
-    Some(diagnostic.help(format!("write `{number}{name}`")))
-}
-
 /// Commas between elements.
 fn comma(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let between = |at: usize| {
-        site.about(at, "elements are not separated by commas", "not expected here")
-            .help("leave it out: a blank is enough")
+        site.about(at, "elements are not separated by commas", "not expected here").fix(
+            "remove it: a space is enough",
+            site.span(at, at),
+            "",
+        )
     };
     if site.found() == Some(Tok::Comma) && site.expects_element() {
         return Some(between(site.at));
@@ -325,53 +339,6 @@ fn comma(site: &Site<'_, '_>) -> Option<Diagnostic> {
     None
 }
 
-/// Something else where a condition could stand.
-fn condition(site: &Site<'_, '_>) -> Option<Diagnostic> {
-    if !site.expects_condition() {
-        return None;
-    }
-    #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are told as they are")]
-    match (site.before(1)?, site.found()?) {
-        (Tok::LParen | Tok::ConditionParen, Tok::RParen) => Some(
-            site.about(site.at, "this condition is empty", "an interrupt is missing before this")
-                .help("write an interrupt, such as `(bumper)`, or `(null)` for one that never fires"),
-        ),
-        (before @ (Tok::Or | Tok::And | Tok::Not | Tok::Rising), found) => {
-            let operator = operator(before);
-            let message = format!("expected a condition behind `{operator}`, found {}", site.found_words());
-            let diagnostic = site.about(site.at, message, "expected an interrupt, such as `bumper`");
-            Some(match found {
-                Tok::Not | Tok::Rising => diagnostic
-                    .help(format!("put it in parentheses: `{operator} ({} bumper)`", super::mistakes::operator(found))),
-                _ => diagnostic,
-            })
-        }
-        (_, Tok::Or | Tok::And) => Some(
-            site.about(
-                site.at,
-                format!("expected a condition before {}", site.found_words()),
-                "nothing to join before this",
-            )
-            .help("it joins two conditions: `(bumper OR wait 5)`"),
-        ),
-        (_, Tok::Number(_)) => Some(
-            site.about(site.at, format!("expected a condition, found {}", site.found_words()), "not a condition")
-                .help("a comparison begins with its signal: `(r 3 < 0.5m)`; a time is waited for: `(wait 5)`"),
-        ),
-        _ => None,
-    }
-}
-
-fn operator(token: Tok<'_>) -> &'static str {
-    #[allow(clippy::wildcard_enum_match_arm, reason = "called for operators only")]
-    match token {
-        Tok::Or => "OR",
-        Tok::And => "AND",
-        Tok::Rising => "RISING",
-        _ => "NOT",
-    }
-}
-
 /// What is wrong with a list of parameters.
 fn parameters(site: &Site<'_, '_>) -> Option<Diagnostic> {
     (site.opener_kind() == Some(Tok::ParamParen)).then(|| {
@@ -381,59 +348,12 @@ fn parameters(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// A quark where an element should be: `{ A go 5 0 }`, `((wait 5) stop)`.
-fn bare_call(site: &Site<'_, '_>) -> Option<Diagnostic> {
-    let formal = site.expects(",") && site.expects_argument() && site.opener_kind() == Some(Tok::LParen);
-    if formal {
-        let name = site.opener()? + 1;
-        let call = site.text(name, site.at.checked_sub(1)?).unwrap_or("this");
-        let diagnostic =
-            site.about(name, format!("`{call}` is not an element by itself"), "a quark outside of an atom");
-        return Some(diagnostic.help(format!("an interrupt is the condition of an atom: `(Atom ({call}) stop)`")));
-    }
-    let (Some(Tok::Number(_) | Tok::Infinity | Tok::Str(_)), Some(Tok::Name(name))) = (site.found(), site.before(1))
-    else {
-        return None;
-    };
-    let is_header = site.before(2) == Some(Tok::LBrace) && spelling(site).is_none();
-    if !site.expects_element() || is_header {
-        return None;
-    }
-    let last = end_of_call(site, site.at - 1);
-    let call = site.text(site.at - 1, last).unwrap_or(name);
-    let diagnostic =
-        site.about(site.at, format!("`{name}` takes no arguments without parentheses here"), "not expected here");
-    Some(if spelling(site).is_some() {
-        diagnostic
-    } else {
-        let args = call.strip_prefix(name).unwrap_or("").trim();
-        diagnostic
-            .help(format!("a law runs in an atom: `(Atom (bumper) ({call}))`"))
-            .help(format!("a plan's arguments stand in parentheses that touch its name: `{name}({args})`"))
-    })
-}
-
-/// A parenthesis that touches a name but is not its arguments.
-fn touching_parenthesis(site: &Site<'_, '_>) -> Option<Diagnostic> {
-    (site.found() == Some(Tok::TouchParen)).then(|| touches(site, site.at))
-}
-
-/// An element in parentheses that touch a name.
-fn element_touches(site: &Site<'_, '_>) -> Option<Diagnostic> {
-    let element = matches!(site.found(), Some(Tok::Atom | Tok::ExecPlan | Tok::LBrace | Tok::Frame));
-    let opener = site.opener().filter(|_| element && site.opener_kind() == Some(Tok::TouchParen))?;
-    Some(touches(site, opener))
-}
-
-fn touches(site: &Site<'_, '_>, at: usize) -> Diagnostic {
-    site.about(at, "this `(` touches the name before it", "read as the arguments of that name")
-        .help("put a blank before it, if it is something else")
-}
-
-/// The keyword that a name here was meant to be.
-fn spelling(site: &Site<'_, '_>) -> Option<&'static str> {
-    let names = [Some(site.at), site.at.checked_sub(1)].into_iter().flatten().filter_map(|at| site.name_at(at));
+/// A name here that is a keyword but for capitals, and that keyword.
+fn spelling(site: &Site<'_, '_>) -> Option<(usize, &'static str)> {
+    let places = [Some(site.at), site.at.checked_sub(1)].into_iter().flatten();
+    let names = places.filter_map(|at| Some((at, site.name_at(at)?)));
     let keywords =
         ["Atom", "ExecPlan", "FRAME", "OR", "AND", "NOT", "RISING", "use", "null", "module", "after", "sigma_null"];
-    names.into_iter().find_map(|name| keywords.into_iter().find(|keyword| keyword.eq_ignore_ascii_case(name)))
+    let keyword = |name: &str| keywords.into_iter().find(|keyword| keyword.eq_ignore_ascii_case(name));
+    names.into_iter().find_map(|(at, name)| Some((at, keyword(name)?)))
 }

@@ -1,13 +1,16 @@
 //! Text to tree: tokens, brackets, grammar (language, sections 2 and 3). Never fails: a tree and a list of diagnostics.
 
+mod arithmetic;
 mod brackets;
 mod broken;
 mod dropped;
 mod errors;
 mod files;
 mod flawless;
+pub(crate) mod foreign;
 mod format;
 mod header;
+mod indentation;
 mod lexical;
 mod mistakes;
 mod nodes;
@@ -51,6 +54,7 @@ use nodes::Nodes;
 use source::{Location, Place, Source};
 
 pub use format::format;
+pub(crate) use lexical::nearest_unit;
 pub use single::{is_law, operands};
 
 /// Where trees stand.
@@ -74,7 +78,9 @@ pub fn parse<'s>(source: SourceId, text: &'s str, arena: &'s Arena) -> (tree::Fi
 
 /// The same with all the care that a text needs in which something is wrong.
 fn recover<'s>(source: Source<'s>, arena: &'s Arena) -> (tree::File<'s>, Vec<Diagnostic>) {
-    let mut balanced = brackets::balance(source, &token::lex(source));
+    let mut lexed = token::lex(source);
+    foreign::replace(source, &mut lexed);
+    let mut balanced = brackets::balance(source, &lexed);
     header::mark(&mut balanced.tokens);
 
     let docs = balanced.docs.into();

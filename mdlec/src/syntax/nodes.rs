@@ -199,8 +199,8 @@ impl<'t, 's> Nodes<'t, 's> {
 
     pub(super) fn string(&mut self, start: Location, first: Option<First>, end: Location) -> Primary<'s> {
         if first.is_none() {
-            let (message, here) = ("these parentheses hold nothing to run", "no element inside");
-            let help = "put elements between the parentheses, or take these out";
+            let (message, here) = ("these parentheses are empty", "no element inside");
+            let help = "put elements between the parentheses, or remove these";
             self.empty((start, end), message, self.between(start, end), here, help);
         }
         let body = self.elements(first);

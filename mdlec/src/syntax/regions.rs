@@ -41,6 +41,11 @@ impl Regions {
         self.spoiled.get_mut(region).is_some_and(|spoiled| std::mem::replace(spoiled, true))
     }
 
+    /// The error that was told upsets the region of this token as well.
+    pub(super) fn spoil_at(&mut self, token: usize) {
+        self.is_spoiled_once(token);
+    }
+
     /// Whether an error has been told in the region of this token.
     pub(super) fn is_spoiled(&self, token: usize) -> bool {
         let region = self.of_token.get(token).copied();

@@ -3,7 +3,8 @@
 use std::collections::BTreeSet;
 
 use crate::diagnostic::{Code, Diagnostic};
-use crate::plan::{Condition, Interrupt, Plan, Quark, QuarkId, Value};
+use crate::plan::families::{at_once, family};
+use crate::plan::{Condition, Interrupt, Plan, Quark, QuarkId};
 
 /// Warns of them.
 pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
@@ -36,13 +37,21 @@ impl Constants<'_> {
         if let Some((one, other)) = self.contradiction(condition) {
             let message = format!("`{one}` and `{other}` are never true at once");
             let lint = Diagnostic::new(Code::W0203, message, *span, "so AND of the two is never true");
-            return Some(lint.help(format!("if one of them is enough, join them by OR: `{one} OR {other}`")));
+            let words = format!("if one of them is enough, join them by OR: `{one} OR {other}`");
+            let is_all = matches!(condition, Condition::And(operands) if operands.len() == 2);
+            return Some(match is_all {
+                true => lint.fix(&words, *span, format!("({one} OR {other})")),
+                false => lint.help(words),
+            });
         }
         Some(match self.value(condition)? {
             true => Diagnostic::new(Code::W0203, format!("`{text}` is always true: {skipped}"), *span, "always true")
                 .help("give it a condition that is not true at once, such as `(wait 1)`, or leave it out"),
-            false => Diagnostic::new(Code::W0203, format!("`{text}` is never true"), *span, "never true")
-                .help("if it is never to fire, write `(null)`"),
+            false => Diagnostic::new(Code::W0203, format!("`{text}` is never true"), *span, "never true").fix(
+                "if it is never to fire, write {}",
+                *span,
+                "(null)",
+            ),
         })
     }
 
@@ -78,12 +87,16 @@ impl Constants<'_> {
         negated.find(|id| plain.contains(id) && !self.quarks[id.0 as usize].remembers)
     }
 
-    /// Two patterns of which all operands are to be true, and only one can be.
-    fn patterns(&self, operands: &[Condition]) -> Option<(&str, &str)> {
-        let quarks = operands.iter().filter_map(quark).map(|id| &self.quarks[id.0 as usize]);
-        let mut patterns = quarks.filter_map(|quark| Some((pattern(quark)?, quark.text.as_str())));
-        let (bits, one) = patterns.next()?;
-        patterns.find(|(other, _)| *other != bits).map(|(_, other)| (one, other))
+    /// Two quarks of which all operands are to be true, and only one can be.
+    fn excluding(&self, operands: &[Condition]) -> Option<(&str, &str)> {
+        let quarks: Vec<&Quark> = operands.iter().filter_map(quark).map(|id| &self.quarks[id.0 as usize]).collect();
+        let pairs =
+            quarks.iter().enumerate().flat_map(|(at, one)| quarks.iter().skip(at + 1).map(move |other| (one, other)));
+        let mut excluding = pairs.filter(|(one, other)| {
+            let is_family = family(one).is_some() && family(one) == family(other);
+            is_family && !at_once([**one, **other].into_iter()).iter().any(|values| values.iter().all(|value| *value))
+        });
+        excluding.next().map(|(one, other)| (one.text.as_str(), other.text.as_str()))
     }
 
     /// Two operands of an AND somewhere in it that exclude each other: the usual mistake where OR was meant.
@@ -98,7 +111,7 @@ impl Constants<'_> {
             Condition::Or(operands) => operands.iter().find_map(|operand| self.contradiction(operand)),
             Condition::And(operands) => {
                 let inside = || operands.iter().find_map(|operand| self.contradiction(operand));
-                self.patterns(operands).or_else(inside)
+                self.excluding(operands).or_else(inside)
             }
         }
     }
@@ -107,12 +120,4 @@ impl Constants<'_> {
 /// The quark that a condition is.
 fn quark(condition: &Condition) -> Option<QuarkId> {
     if let Condition::Quark(id) = condition { Some(*id) } else { None }
-}
-
-/// The bits of `atIsection`, the one quark which all of its bits must match, so that two patterns exclude each other.
-pub(super) fn pattern(quark: &Quark) -> Option<&[bool]> {
-    match quark.args.as_slice() {
-        [Value::Bits(bits)] if quark.name == "atIsection" => Some(bits),
-        _ => None,
-    }
 }

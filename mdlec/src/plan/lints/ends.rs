@@ -67,7 +67,7 @@ impl<'p> Ends<'p, '_> {
             Some(atom) => {
                 let law = &self.plan.quark(atom.law).text;
                 let help = if atom.interrupt.removed {
-                    format!("its own interrupt `{0}` was removed: end `{law}` by another one, or take `{0}` from the scope around it", atom.interrupt.text)
+                    format!("its own interrupt `{0}` was removed: end `{law}` by another one, or remove `{0}` from the enclosing scope", atom.interrupt.text)
                 } else {
                     format!("say when `{law}` ends: `(Atom (wait 10) {law})`")
                 };
@@ -86,7 +86,7 @@ impl<'p> Ends<'p, '_> {
             Code::W0201,
             format!("nothing ever ends `{law}`, so the plan `{name}` never ends"),
             atom.span,
-            "has no interrupt, nor has any scope around it",
+            "neither this nor an enclosing scope has an interrupt",
         )
         .help(format!("say when it ends, `(Atom (wait 10) {law})`, or what ends the plan, `{{ {name} (bumper) … }}`"))
     }

@@ -21,7 +21,11 @@ pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
                         "wait until it is true no more: put `(Atom ({}) stop)` between the two",
                         not(skipped)
                     ))
-                    .help(format!("or wait here until it becomes true again: `{}`", rising(skipped)));
+                    .fix(
+                        "or wait here until it becomes true again: {}",
+                        skipped.span,
+                        format!("({})", rising(skipped)),
+                    );
                 found.push(lint);
             }
         }

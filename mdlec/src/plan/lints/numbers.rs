@@ -107,7 +107,8 @@ impl Numbers<'_> {
         let message = format!("{what} is {digits} {unit}, which is {why}");
         self.found.push(
             Diagnostic::new(Code::W0401, message, number.span, format!("a number without a unit is in {unit} here"))
-                .help(format!("write `{digits}{meant}` if that is meant, or `{digits}{unit}` if it is right")),
+                .fix("write {} if that is meant", number.span, format!("{digits}{meant}"))
+                .fix("or {} if the unit is right", number.span, format!("{digits}{unit}")),
         );
     }
 }

@@ -61,15 +61,15 @@ impl<'p> Shadows<'p, '_> {
             Operand::Fired(id) => self.plan.quark(id).text.clone(),
             Operand::NotFired(id) => format!("NOT {}", self.plan.quark(id).text),
         };
-        let whose = if scope.is_empty() { "the scope around it".to_owned() } else { format!("`{scope}`") };
-        let message = format!("`{text}` never ends this: {whose} ends by it first");
-        let lint = Diagnostic::new(Code::W0204, message, interrupt.span, format!("`{text}` is read in vain"));
-        let help = if interrupt.text == text {
-            "write `(null)`, or another condition".to_owned()
+        let whose = if scope.is_empty() { "the enclosing scope".to_owned() } else { format!("`{scope}`") };
+        let message = format!("`{text}` can never end this: {whose} ends by it first");
+        let lint = Diagnostic::new(Code::W0204, message, interrupt.span, format!("`{text}` has no effect"));
+        let lint = lint.also(outer, format!("{whose} ends by this"));
+        self.found.push(if interrupt.text == text {
+            lint.fix("write {}, or another condition", interrupt.span, "(null)")
         } else {
-            format!("leave `{text}` out")
-        };
-        self.found.push(lint.also(outer, format!("{whose} ends by this")).help(help));
+            lint.help(format!("remove `{text}`"))
+        });
     }
 
     /// The operands of which one is enough, as far as they are the same wherever they stand.

@@ -1,10 +1,10 @@
 //! W0301: loops that can be skipped whole in one turn, since nothing in a pass takes time while some conditions hold.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
-use super::conditions::pattern;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::plan::{Condition, Interrupt, Loop, Node, Plan, QuarkId, RecordId, Scope, Situation};
+use crate::plan::families::{Family, at_once, family};
+use crate::plan::{Condition, Interrupt, Loop, Node, Plan, Quark, QuarkId, RecordId, Scope, Situation};
 
 /// The most quarks of a loop of which every choice is tried; a loop that reads more is left alone.
 const QUARKS: usize = 8;
@@ -38,12 +38,12 @@ impl Skipped<'_, '_> {
             return false;
         }
         let Some(holding) = self.skips(&repeated.body) else { return false };
-        let message = format!("while `{holding}` holds, this loop is skipped whole in one turn");
-        let lint = Diagnostic::new(Code::W0301, message, repeated.span, "no pass takes any time then");
+        let message = format!("while `{holding}` is true, every pass of this loop is skipped in one turn");
+        let lint = Diagnostic::new(Code::W0301, message, repeated.span, "no pass takes time then");
         let rising = if holding.contains(' ') { format!("RISING ({holding})") } else { format!("RISING {holding}") };
         self.found.push(
             lint.help("let each pass take some time, as `(Atom (wait 0.5) stop)` does")
-                .help(format!("or let a pass wait until it begins to hold: `{rising}`")),
+                .help(format!("or let a pass wait until it becomes true: `{rising}`")),
         );
         true
     }
@@ -69,14 +69,14 @@ impl Skipped<'_, '_> {
         if choices().all(skips) {
             return None;
         }
-        let can_be = |choice: &u32| self.can_be(quarks.iter().filter(|id| said(*choice, **id)));
+        let can_be = |choice: &u32| self.can_be(quarks.iter().map(|id| (*id, said(*choice, *id))));
         let choice =
             choices().filter(|choice| skips(*choice) && can_be(choice)).min_by_key(|choice| choice.count_ones())?;
         // Only what matters is told: the rest may be as it likes.
         let mut matters = (1_u32 << quarks.len()) - 1;
         for bit in (0..quarks.len()).map(|bit| 1 << bit) {
             let without = matters & !bit;
-            if choices().filter(|other| (other ^ choice) & without == 0).all(skips) {
+            if choices().filter(|other| (other ^ choice) & without == 0 && can_be(other)).all(skips) {
                 matters = without;
             }
         }
@@ -88,10 +88,19 @@ impl Skipped<'_, '_> {
         Some(words.collect::<Vec<_>>().join(" AND "))
     }
 
-    /// Whether these can have fired at once.
-    fn can_be<'i>(&self, fired: impl Iterator<Item = &'i QuarkId>) -> bool {
-        let patterns: BTreeSet<_> = fired.filter_map(|id| pattern(self.plan.quark(*id))).collect();
-        patterns.len() <= 1
+    /// Whether these quarks can have these values in one turn.
+    fn can_be(&self, values: impl Iterator<Item = (QuarkId, bool)>) -> bool {
+        let mut families: BTreeMap<Family, Vec<(&Quark, bool)>> = BTreeMap::new();
+        for (id, value) in values {
+            let quark = self.plan.quark(id);
+            if let Some(family) = family(quark) {
+                families.entry(family).or_default().push((quark, value));
+            }
+        }
+        families.values().all(|members| {
+            let values: Vec<bool> = members.iter().map(|(_, value)| *value).collect();
+            at_once(members.iter().map(|(quark, _)| *quark)).contains(&values)
+        })
     }
 }
 

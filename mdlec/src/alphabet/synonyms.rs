@@ -1,0 +1,25 @@
+//! What people call quarks before they know the names of an alphabet.
+
+/// Names of quarks, each with other words for it.
+const SYNONYMS: &[(&str, &[&str])] = &[
+    ("go", &["forward", "drive", "move", "ahead", "straight", "forwards", "run", "velocity"]),
+    ("goAvoid", &["goto", "moveTo", "driveTo", "navigate", "avoid"]),
+    ("turn", &["left", "right", "spin", "rotateBy"]),
+    ("rotate", &["face", "heading", "turnTo"]),
+    ("stop", &["halt", "brake", "stand", "idle", "still"]),
+    ("Follow", &["follow", "chase"]),
+    ("wait", &["sleep", "delay", "pause", "timeout", "timer", "after_time"]),
+    ("bumper", &["bump", "contact", "touch", "collision", "hit", "crash"]),
+    ("lowBattery", &["batteryLow", "low"]),
+    ("r", &["range", "sonar", "distance", "dist", "obstacle"]),
+    ("t", &["time", "elapsed", "seconds", "clock"]),
+    ("theta", &["heading", "yaw", "angle", "orientation", "direction"]),
+    ("v", &["speed", "velocity"]),
+    ("battery", &["voltage", "volts"]),
+];
+
+/// The quarks that are known by other words, such as `name`.
+pub(super) fn meant(name: &str) -> impl Iterator<Item = &'static str> {
+    let is_meant = move |words: &[&str]| words.iter().any(|word| word.eq_ignore_ascii_case(name));
+    SYNONYMS.iter().filter(move |(_, words)| is_meant(words)).map(|(quark, _)| *quark)
+}

@@ -1,0 +1,123 @@
+//! Arithmetic, which MDLe does not have: messages that name the result, and values in units that MDLe does not have.
+
+use super::source::{Place, Source};
+use super::token::split;
+use crate::alphabet::Unit;
+use crate::diagnostic::{Code, Diagnostic};
+
+/// Units that others use: their names, and how much one of them is in a unit of ours.
+const FOREIGN: &[(&[&str], f64, &str)] = &[
+    (&["km/h", "kmh", "kph", "kmph"], 1.0 / 3.6, "m/s"),
+    (&["mph", "mi/h"], 0.447_04, "m/s"),
+    (&["m/min"], 100.0 / 60.0, "cm/s"),
+    (&["ft/s", "fps"], 0.304_8, "m/s"),
+    (&["dm/s"], 10.0, "cm/s"),
+    (&["km"], 1000.0, "m"),
+    (&["dm"], 10.0, "cm"),
+    (&["yd", "yards"], 0.914_4, "m"),
+    (&["mi", "miles"], 1609.344, "m"),
+    (&["rpm"], 6.0, "deg/s"),
+    (&["turns", "turn", "rev"], 360.0, "deg"),
+    (&["us", "µs", "μs"], 0.001, "ms"),
+    (&["d", "day", "days"], 24.0, "h"),
+    (&["mV", "mv"], 0.001, "V"),
+    (&["kHz", "khz"], 1000.0, "Hz"),
+];
+
+/// A number with a foreign unit, in a unit that MDLe has.
+pub(super) fn foreign_unit(number: &str, unit: &str) -> Option<String> {
+    let (_, factor, ours) = FOREIGN.iter().find(|(names, _, _)| names.contains(&unit))?;
+    Some(format!("{}{ours}", rounded(number.parse::<f64>().ok()? * factor)?))
+}
+
+/// The result of an operation on two numbers, where it can be written: one unit at most, or the same for a sum.
+pub(super) fn computed(left: &str, operator: &str, right: &str) -> Option<String> {
+    let ((left, left_unit), (right, right_unit)) = (split(left), split(right));
+    let is_unit = |unit: &str| unit.is_empty() || Unit::from_name(unit).is_some();
+    if !is_unit(left_unit) || !is_unit(right_unit) {
+        return None;
+    }
+    let (a, b) = (left.parse::<f64>().ok()?, right.parse::<f64>().ok()?);
+    let (value, unit) = match operator {
+        "+" if left_unit == right_unit => (a + b, left_unit),
+        "-" if left_unit == right_unit => (a - b, left_unit),
+        "*" if right_unit.is_empty() => (a * b, left_unit),
+        "*" if left_unit.is_empty() => (a * b, right_unit),
+        "/" if right_unit.is_empty() => (a / b, left_unit),
+        _ => return None,
+    };
+    Some(format!("{}{unit}", rounded(value)?))
+}
+
+/// A value with at most four decimals; none if nothing is left of it then.
+fn rounded(value: f64) -> Option<String> {
+    let rounded = (value * 1e4).round() / 1e4;
+    (value.abs() < 1e9 && (rounded != 0.0 || value == 0.0)).then(|| rounded.to_string())
+}
+
+/// The message about an operator of arithmetic, if these characters are one.
+pub(super) fn arithmetic(source: Source<'_>, found: &str, place: Place) -> Option<Diagnostic> {
+    let operator = if matches!(found, "+" | "-" | "*" | "/" | "**") { found } else { return None };
+    let before = source.text.get(..place.start)?.trim_end_matches([' ', '\t']);
+    let after = source.text.get(place.end..)?.trim_start_matches([' ', '\t']);
+    let report = |message: String| Diagnostic::new(Code::E0101, message, source.span(place), "MDLe has no arithmetic");
+    if operator.starts_with('*') && before.ends_with([')', '}']) {
+        return Some(power(source, place, after));
+    }
+    let left = word(before);
+    let left_start = before.len() - left.len();
+    let right = after.get(..after.find(|c: char| !is_in_word(c)).unwrap_or(after.len()))?;
+    let right_end = source.text.len() - after.len() + right.len();
+    if left.is_empty() || !(right.starts_with(char::is_alphanumeric) || after.starts_with('(')) {
+        return None;
+    }
+    let is_number = |text: &str| text.starts_with(|c: char| c.is_ascii_digit());
+    if operator == "*" && is_number(left) && right.is_empty() {
+        let message = format!("`{left} {operator}` does not repeat what follows");
+        return Some(
+            report(message).help(format!("the count follows what it repeats: `((Atom (wait 5) stop))^{left}`")),
+        );
+    }
+    if !is_number(left) || !is_number(right) {
+        // `go 5 - 3` means a sign, `Dock / 2` nobody knows.
+        let is_sum = matches!(operator, "+" | "*") || !is_number(right);
+        let message = format!("`{operator}` cannot be used here: nothing is computed in a plan");
+        let help = "a comparison has one signal on each side: `r0 < 1m AND r1 < 1m`";
+        return is_sum.then(|| report(message).help(help));
+    }
+    let diagnostic = report(format!("`{left} {operator} {right}` is not computed"));
+    let whole = source.span(Place::new(left_start, right_end));
+    Some(match computed(left, operator, right) {
+        Some(result) if matches!(operator, "+" | "-") => diagnostic.fix("write the result: {}", whole, result).fix(
+            "or, for two numbers, let the sign touch its number: {}",
+            whole,
+            format!("{left} {operator}{right}"),
+        ),
+        Some(result) => diagnostic.fix("write the result: {}", whole, result),
+        None => diagnostic.help("write the result as one number"),
+    })
+}
+
+/// `(…)*3`
+fn power(source: Source<'_>, place: Place, after: &str) -> Diagnostic {
+    let message = format!("`{}` does not repeat", source.slice(place));
+    let diagnostic = Diagnostic::new(Code::E0101, message, source.span(place), "not part of MDLe");
+    let (count, _) = split(after);
+    if count.is_empty() || !count.bytes().all(|byte| byte.is_ascii_digit()) {
+        return diagnostic.help("a count follows `^`: `((Atom (wait 5) stop))^3`");
+    }
+    let end = source.text.len() - after.len() + count.len();
+    let span = source.span(Place::new(place.start, end));
+    diagnostic.fix("to repeat what is before it, write {}", span, format!("^{count}"))
+}
+
+/// The word that a text ends with.
+fn word(text: &str) -> &str {
+    let start = text.char_indices().rev().take_while(|(_, c)| is_in_word(*c)).last().map_or(text.len(), |(at, _)| at);
+    text.get(start..).unwrap_or("")
+}
+
+/// Whether this is part of a number or a name; `/` is not, for `10/2` is two numbers.
+fn is_in_word(c: char) -> bool {
+    c.is_alphanumeric() || matches!(c, '_' | '.')
+}

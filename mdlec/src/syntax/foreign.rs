@@ -1,0 +1,373 @@
+//! Words of other languages and misspelled keywords: one message each, and tokens with which reading goes on as if the plan
+//! were written in MDLe.
+
+mod advice;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+pub(crate) use advice::advice;
+use advice::advice_for;
+pub(super) use advice::is_word;
+
+use super::header;
+use super::source::{Place, Source};
+use super::token::{Lexed, Tok, Token};
+use crate::diagnostic::{Code, Diagnostic};
+
+/// Returns `true` if a name is probably meant as the keyword `Atom`.
+pub(super) fn is_like_atom(name: &str) -> bool {
+    (3..=5).contains(&name.len())
+        && name.starts_with(['a', 'A'])
+        && strsim::damerau_levenshtein(&name.to_ascii_lowercase(), "atom") <= 1
+}
+
+/// Reports such words, and replaces them by what reading can go on with.
+pub(super) fn replace<'s>(source: Source<'s>, lexed: &mut Lexed<'s>) {
+    let is_foreign = |token: &Token<'_>| {
+        let is_word = |name: &str| is_word(name) || is_like_atom(name) || is_like_loop(name);
+        token.kind == Tok::Use || matches!(token.kind, Tok::Name(name) if is_word(name))
+    };
+    if !lexed.tokens.iter().any(is_foreign) {
+        return;
+    }
+    let plans = header::names(&lexed.tokens);
+    let old = std::mem::take(&mut lexed.tokens);
+    let mut rewriting = Rewriting {
+        source,
+        old: &old,
+        ends: ends(&old),
+        plans,
+        new: Vec::new(),
+        moved: Vec::new(),
+        open: Vec::new(),
+        found: Vec::new(),
+    };
+    rewriting.all();
+    let Rewriting { new, moved, found, .. } = rewriting;
+    let at = |before: usize| moved.get(before).copied().unwrap_or(new.len());
+    lexed.docs.iter_mut().for_each(|(before, _)| *before = at(*before));
+    lexed.errors.iter_mut().for_each(|(before, _)| *before = at(*before));
+    let is_inside = |error: &Diagnostic, place: &Place| {
+        error
+            .span()
+            .is_some_and(|span| place.start <= span.within(source.id).start && span.within(source.id).end <= place.end)
+    };
+    for (before, place, diagnostic) in found {
+        lexed.errors.retain(|(_, error)| !is_inside(error, &place));
+        lexed.errors.push((before, diagnostic));
+    }
+    lexed.errors.sort_by_key(|(before, error)| (*before, error.span()));
+    lexed.tokens = new;
+}
+
+/// `Execplan`, `ExecPlam`
+fn is_like_loop(name: &str) -> bool {
+    (7..=9).contains(&name.len())
+        && name.starts_with(['e', 'E'])
+        && strsim::damerau_levenshtein(&name.to_ascii_lowercase(), "execplan") <= 1
+}
+
+/// The bracket that closes each opening one, as far as they match.
+fn ends(tokens: &[Token<'_>]) -> BTreeMap<usize, usize> {
+    let (mut ends, mut open) = (BTreeMap::new(), Vec::new());
+    for (at, token) in tokens.iter().enumerate() {
+        #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are no brackets")]
+        match token.kind {
+            Tok::LParen | Tok::TouchParen => open.push((at, Tok::RParen)),
+            Tok::LBrace => open.push((at, Tok::RBrace)),
+            Tok::RParen | Tok::RBrace => match open.pop() {
+                Some((opener, closer)) if closer == token.kind => drop(ends.insert(opener, at)),
+                // What is around does not match either.
+                Some(_) | None => open.clear(),
+            },
+            _ => {}
+        }
+    }
+    ends
+}
+
+struct Rewriting<'t, 's> {
+    source: Source<'s>,
+    old: &'t [Token<'s>],
+    /// The bracket that closes each opening one.
+    ends: BTreeMap<usize, usize>,
+    /// The names of the plans of this file, which may be called like such words.
+    plans: BTreeSet<&'s str>,
+    new: Vec<Token<'s>>,
+    /// The place of each old token among the new ones.
+    moved: Vec<usize>,
+    /// The brackets that are open, as far as they matter, with the old token that closes those that are rewritten.
+    open: Vec<Open>,
+    /// The messages, with the new token that follows and the text that each is about.
+    found: Vec<(usize, Place, Diagnostic)>,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Open {
+    Brace,
+    /// A brace that is read as a parenthesis.
+    Rewritten,
+    Parenthesis,
+    Atom,
+}
+
+impl<'s> Rewriting<'_, 's> {
+    fn all(&mut self) {
+        let mut at = 0;
+        while at < self.old.len() {
+            let first = self.new.len();
+            at = self.next(at).max(at + 1);
+            // All tokens that were taken in at once have the same place.
+            self.moved.resize(at, first);
+        }
+    }
+
+    fn kind(&self, at: usize) -> Option<Tok<'s>> {
+        self.old.get(at).map(|token| token.kind)
+    }
+
+    fn before(&self, at: usize, back: usize) -> Option<Tok<'s>> {
+        at.checked_sub(back).and_then(|at| self.kind(at))
+    }
+
+    fn place(&self, first: usize, last: usize) -> Place {
+        let get = |at: usize| self.old.get(at).map_or(Place::new(0, 0), |token| token.place);
+        Place::new(get(first).start, get(last).end.max(get(first).end))
+    }
+
+    fn push(&mut self, kind: Tok<'s>, place: Place) {
+        self.new.push(Token { kind, place });
+    }
+
+    fn report(&mut self, place: Place, diagnostic: Diagnostic) {
+        self.found.push((self.new.len(), place, diagnostic));
+    }
+
+    /// Takes in what begins at `at`; the token to go on with.
+    fn next(&mut self, at: usize) -> usize {
+        let Some(token) = self.old.get(at).copied() else { return at + 1 };
+        let rewritten = if token.kind == Tok::Use {
+            self.used(at)
+        } else if let Tok::Name(name) = token.kind
+            && !self.plans.contains(name)
+        {
+            self.word(at, name)
+        } else {
+            None
+        };
+        if let Some(next) = rewritten {
+            return next;
+        }
+        let mut kind = token.kind;
+        #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are no brackets")]
+        match token.kind {
+            Tok::LBrace => self.open.push(Open::Brace),
+            Tok::LParen | Tok::TouchParen => {
+                let is_atom = match self.kind(at + 1) {
+                    Some(Tok::Atom) => true,
+                    Some(Tok::Name(name)) => self.is_atom(at + 1, name),
+                    Some(_) | None => false,
+                };
+                self.open.push(if is_atom { Open::Atom } else { Open::Parenthesis });
+            }
+            Tok::RParen => self.close(&[Open::Parenthesis, Open::Atom]),
+            Tok::RBrace => {
+                if self.open.last() == Some(&Open::Rewritten) {
+                    kind = Tok::RParen;
+                }
+                self.close(&[Open::Brace, Open::Rewritten]);
+            }
+            _ => {}
+        }
+        self.push(kind, token.place);
+        at + 1
+    }
+
+    fn close(&mut self, kinds: &[Open]) {
+        if self.open.last().is_some_and(|open| kinds.contains(open)) {
+            self.open.pop();
+        }
+    }
+
+    /// `(atom (…`
+    fn is_atom(&self, at: usize, name: &str) -> bool {
+        let is_open = |kind| matches!(kind, Some(Tok::LParen | Tok::TouchParen));
+        is_like_atom(name) && !self.plans.contains(name) && is_open(self.before(at, 1)) && is_open(self.kind(at + 1))
+    }
+
+    /// A name that is no plan of the file.
+    fn word(&mut self, at: usize, name: &'s str) -> Option<usize> {
+        let place = self.place(at, at);
+        if self.is_atom(at, name) {
+            let message = format!("`{name}` is not a keyword");
+            let span = self.source.span(place);
+            let diagnostic = Diagnostic::new(Code::E0102, message, span, "not expected here");
+            self.report(place, diagnostic.fix("the keyword is {}", span, "Atom"));
+            self.push(Tok::Atom, place);
+            let paren = self.old.get(at + 1)?.place;
+            self.push(Tok::LParen, paren);
+            self.open.push(Open::Parenthesis);
+            return Some(at + 2);
+        }
+        if matches!(name, "import" | "include" | "require") && self.open.is_empty() {
+            return self.import(at, name);
+        }
+        let is_plan_name = self.before(at, 1) == Some(Tok::LBrace) && self.open.last() == Some(&Open::Brace);
+        let is_loop_body = matches!(self.before(at, 2), Some(Tok::Number(_) | Tok::Infinity | Tok::Name(_)))
+            && self.before(at, 3) == Some(Tok::ExecPlan);
+        let inside = self.open.iter().rev().take_while(|open| **open != Open::Brace);
+        if is_plan_name && !is_loop_body || self.open.is_empty() || inside.into_iter().any(|open| *open == Open::Atom) {
+            return None;
+        }
+        if is_like_loop(name)
+            || matches!(name, "repeat" | "Repeat" | "REPEAT" | "loop" | "Loop" | "for" | "For" | "forever")
+        {
+            return self.repeat(at, name);
+        }
+        let condition = self.condition_at(at + 1);
+        let help = advice_for(name, condition.unwrap_or("r0 < 1m"))?;
+        let is_used =
+            !matches!(self.before(at, 1), Some(Tok::ExecPlan | Tok::After | Tok::Comma | Tok::Colon | Tok::Frame));
+        let follows =
+            matches!(self.kind(at + 1), Some(Tok::LParen | Tok::TouchParen | Tok::LBrace | Tok::Name(_) | Tok::Not));
+        if !is_used || !follows {
+            return None;
+        }
+        let message = format!("MDLe has no `{name}`");
+        self.report(
+            place,
+            Diagnostic::new(Code::E0102, message, self.source.span(place), "not expected here").help(help),
+        );
+        Some(self.past_condition(at + 1))
+    }
+
+    /// The condition in the parentheses that open here, if it is one that can be written elsewhere.
+    fn condition_at(&self, at: usize) -> Option<&'s str> {
+        let end = self.end_of(at).filter(|_| self.kind(at) != Some(Tok::LBrace))?;
+        let inside = self.old.get(at + 1..end)?;
+        let is_condition = |token: &Token<'_>| {
+            !matches!(token.kind, Tok::Atom | Tok::LBrace | Tok::RBrace | Tok::Assign | Tok::LBracket | Tok::Colon)
+        };
+        let text = self.source.slice(self.place(at + 1, end.checked_sub(1)?));
+        let is_balanced = text.matches('(').count() == text.matches(')').count();
+        let is_short = is_balanced
+            && !inside.is_empty()
+            && text.len() <= 60
+            && !text.contains(['\n', '!', '&', '|', '+', '*', '=']);
+        (is_short && inside.iter().all(is_condition)).then_some(text)
+    }
+
+    /// Leaves out the condition of a word, and reads the braces after it as parentheses.
+    fn past_condition(&mut self, at: usize) -> usize {
+        let mut next = at;
+        if matches!(self.kind(at), Some(Tok::LParen | Tok::TouchParen)) && self.kind(at + 1) != Some(Tok::Atom) {
+            let Some(end) = self.end_of(at) else { return at };
+            next = end + 1;
+        } else {
+            // `if bumper {`, `else if (…)`
+            let is_word = |kind| matches!(kind, Some(Tok::Name(_) | Tok::Not));
+            let words = (at..at + 8).take_while(|at| is_word(self.kind(*at))).count();
+            if self.kind(at + words) == Some(Tok::LBrace) && self.end_of(at + words).is_some() {
+                next = at + words;
+            }
+        }
+        let has_name = matches!(self.kind(next + 1), Some(Tok::Name(name)) if !is_word(name));
+        if self.kind(next) != Some(Tok::LBrace) || has_name || self.end_of(next).is_none() {
+            return next;
+        }
+        let place = self.place(next, next);
+        self.push(Tok::LParen, place);
+        self.open.push(Open::Rewritten);
+        next + 1
+    }
+
+    /// The bracket that closes the one at `at`.
+    fn end_of(&self, at: usize) -> Option<usize> {
+        self.ends.get(&at).copied()
+    }
+
+    /// `repeat 3 { … }`, `repeat(3) { … }`, `forever { … }`
+    fn repeat(&mut self, at: usize, name: &str) -> Option<usize> {
+        let is_count = |kind| matches!(kind, Some(Tok::Number(_) | Tok::Infinity));
+        let (count, next) = if is_count(self.kind(at + 1)) {
+            (Some(at + 1), at + 2)
+        } else if matches!(self.kind(at + 1), Some(Tok::LParen | Tok::TouchParen))
+            && is_count(self.kind(at + 2))
+            && self.kind(at + 3) == Some(Tok::RParen)
+        {
+            (Some(at + 2), at + 4)
+        } else {
+            (None, at + 1)
+        };
+        let times = match count {
+            Some(count) => self.source.slice(self.place(count, count)),
+            None => "inf",
+        };
+        let place = self.place(at, next - 1);
+        let span = self.source.span(self.place(at, at));
+        let message = match is_like_loop(name) {
+            true => format!("`{name}` is not a keyword"),
+            false => format!("MDLe has no `{name}`"),
+        };
+        let diagnostic = Diagnostic::new(Code::E0102, message, span, "not expected here");
+        if matches!(self.kind(next), Some(Tok::LBrace | Tok::Name(_)))
+            && (count.is_some() || self.kind(next) == Some(Tok::LBrace))
+        {
+            let whole = self.source.span(place);
+            self.report(
+                place,
+                diagnostic.fix("a loop is written {} and what it repeats", whole, format!("ExecPlan {times}")),
+            );
+            self.push(Tok::ExecPlan, self.place(at, at));
+            match count {
+                Some(count) => self.push(self.kind(count)?, self.place(count, count)),
+                None => self.push(Tok::Infinity, self.place(at, at)),
+            }
+            return Some(next);
+        }
+        let help = advice("repeat")?;
+        if count.is_none() && !matches!(self.kind(next), Some(Tok::LParen | Tok::TouchParen)) {
+            return None;
+        }
+        self.report(place, diagnostic.help(help));
+        Some(if count.is_some() { next } else { self.past_condition(next) })
+    }
+
+    /// `import "corridors.mdle"`
+    fn import(&mut self, at: usize, name: &str) -> Option<usize> {
+        let place = self.place(at, at);
+        if !matches!(self.kind(at + 1), Some(Tok::Str(_))) {
+            return None;
+        }
+        let span = self.source.span(place);
+        let diagnostic = Diagnostic::new(Code::E0102, format!("MDLe has no `{name}`"), span, "not expected here");
+        self.report(place, diagnostic.fix("the keyword is {}", span, "use"));
+        self.push(Tok::Use, place);
+        Some(at + 1)
+    }
+
+    /// `use corridors.mdle`: the name of the file without its quotes.
+    fn used(&mut self, at: usize) -> Option<usize> {
+        if matches!(self.kind(at + 1), Some(Tok::Str(_))) || !self.open.is_empty() {
+            return None;
+        }
+        let word = self.place(at, at);
+        let line = self.source.text.get(word.end..)?.lines().next().unwrap_or("");
+        let path = line.split("//").next().unwrap_or("").trim_end_matches([';', ' ', '\t', '\r']);
+        let path = path.trim_start();
+        let file = path.trim_matches(|c: char| "'`<>“”„‘’".contains(c));
+        if file.is_empty() || file.contains(|c: char| c.is_whitespace() || "{}()\"".contains(c)) {
+            return None;
+        }
+        let start = word.end + line.find(path)?;
+        let place = Place::new(start, start + path.len());
+        let span = self.source.span(place);
+        let message = "the name of a file is written between double quotes";
+        let diagnostic = Diagnostic::new(Code::E0102, message, span, "no quotes around this");
+        self.push(Tok::Use, word);
+        self.report(place, diagnostic.fix("write {}", span, format!("\"{file}\"")));
+        self.push(Tok::Str(file), place);
+        let inside = (at + 1..self.old.len()).take_while(|at| self.place(*at, *at).start < place.end).count();
+        Some(at + 1 + inside)
+    }
+}

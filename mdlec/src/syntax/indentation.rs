@@ -1,0 +1,63 @@
+//! Where braces that are never closed end by the indentation of their lines.
+
+use std::collections::BTreeMap;
+
+use super::source::Source;
+use super::token::{Tok, Token};
+
+/// What is closed before a token.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum End {
+    /// Everything: a plan of its own begins.
+    OfPlan,
+    /// The brace that opens at this token, and what is inside it.
+    OfBrace(usize),
+}
+
+/// A brace that is open.
+struct Open {
+    brace: usize,
+    /// The indentation of its line.
+    indentation: usize,
+    /// Whether a line inside it has been indented deeper.
+    is_deeper: bool,
+}
+
+/// The tokens before which a brace has to be closed: they begin a line that is indented no deeper than the line of the brace,
+/// though those between are.
+pub(super) fn ends(source: Source<'_>, tokens: &[Token<'_>]) -> BTreeMap<usize, End> {
+    let mut ends = BTreeMap::new();
+    let mut open: Vec<Open> = Vec::new();
+    let mut indentation = 0;
+    for (at, token) in tokens.iter().enumerate() {
+        let first_of_line = indentation_of(source, token.place.start);
+        if let Some(here) = first_of_line {
+            indentation = here;
+            let closes = token.kind == Tok::RBrace;
+            while let Some(inner) = open.last_mut() {
+                let is_behind = here < inner.indentation || here == inner.indentation && !closes;
+                if !is_behind || !inner.is_deeper {
+                    inner.is_deeper |= here > inner.indentation;
+                    break;
+                }
+                // The outermost that ends here.
+                ends.insert(at, End::OfBrace(inner.brace));
+                open.pop();
+            }
+        }
+        #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are no braces")]
+        match token.kind {
+            Tok::LBrace => open.push(Open { brace: at, indentation, is_deeper: false }),
+            Tok::RBrace => drop(open.pop()),
+            _ => {}
+        }
+    }
+    ends
+}
+
+/// The number of characters before this place in its line, if these are blanks only.
+fn indentation_of(source: Source<'_>, start: usize) -> Option<usize> {
+    let before = source.text.get(..start)?;
+    let line = before.rsplit('\n').next().unwrap_or(before);
+    line.chars().all(char::is_whitespace).then(|| line.chars().count())
+}

@@ -1,0 +1,90 @@
+//! Atoms: a condition or a law that is missing or in the wrong place.
+
+use crate::diagnostic::Diagnostic;
+use crate::syntax::errors::Site;
+use crate::syntax::token::Tok;
+
+/// `(Atom bumper stop)`: the condition of an atom without its parentheses.
+pub(super) fn atom_condition(site: &Site<'_, '_>) -> Option<Diagnostic> {
+    if site.before(1) != Some(Tok::Atom) {
+        return None;
+    }
+    if site.found() == Some(Tok::RParen) {
+        let diagnostic = site.about(site.at - 1, "this atom is empty", "a condition and a law are missing");
+        return Some(diagnostic.help("an atom is a condition and a law: `(Atom (bumper) stop)`"));
+    }
+    if let (Some(label), Some(Tok::Colon)) = (site.name_at(site.at), site.kind(site.at + 1)) {
+        let message = format!("the label `{label}` is inside its atom");
+        let diagnostic = site.about(site.at, message, "not expected here");
+        let words = format!("a label is written before its element: `{label}: (Atom …)`");
+        return Some(diagnostic.fix(&words, site.span(site.at - 2, site.at + 1), format!("{label}: (Atom")));
+    }
+    let last = end_of_call(site, site.at);
+    let diagnostic = site.about(site.at, "the condition of an atom is written in parentheses", "expected `(`");
+    let Some(call) = site.name_at(site.at).and_then(|_| site.text(site.at, last)) else {
+        return Some(diagnostic.help("an atom is a condition and a law: `(Atom (bumper) stop)`"));
+    };
+    let group = last + 1;
+    if site.kind(group) == Some(Tok::LParen) {
+        let end = site.end_of_group(group);
+        if let (Some(text), Some(Tok::RParen)) = (site.text(group, end), site.kind(end + 1)) {
+            let both = site.span(site.at - 1, end);
+            let diagnostic = diagnostic.fix("write {}", both, format!("Atom ({call}) {text}"));
+            if call == "wait" || call.starts_with("wait ") {
+                return Some(diagnostic);
+            }
+            let words = format!("or, if `{call}` is the law, put it last: {{}}");
+            return Some(diagnostic.fix(&words, both, format!("Atom {text} {call}")));
+        }
+    }
+    let span = site.span(site.at - 1, last);
+    Some(diagnostic.fix("write {} and a law", span, format!("Atom ({call})")))
+}
+
+/// The last token of a name with numbers behind it.
+pub(super) fn end_of_call(site: &Site<'_, '_>, name: usize) -> usize {
+    if site.kind(name + 1) == Some(Tok::TouchParen) {
+        return site.end_of_group(name + 1);
+    }
+    let is_literal = |at: &usize| matches!(site.kind(*at), Some(Tok::Number(_) | Tok::Infinity | Tok::Str(_)));
+    (name + 1..).take_while(is_literal).last().unwrap_or(name)
+}
+
+/// An atom without its law, or with something behind it.
+pub(super) fn atom_law(site: &Site<'_, '_>) -> Option<Diagnostic> {
+    if !site.in_atom() || site.before(1) == Some(Tok::Atom) {
+        return None;
+    }
+    let atom = site.opener()? + 1;
+    if site.found() == Some(Tok::RParen) {
+        let diagnostic = site.about(site.at, "this atom has no law", "a law is missing before this");
+        return Some(
+            site.also(diagnostic, atom, "in this atom")
+                .help("an atom is a condition and a law: `(Atom (bumper) stop)`"),
+        );
+    }
+    if site.found() == Some(Tok::LBrace) {
+        let diagnostic = site.about(site.at, "an atom runs a law, not a plan", "not expected here");
+        let help = "a behavior has a name and an interrupt of its own, and no `Atom`: `{ Inner (wait 5) (Atom (bumper) stop) }`";
+        return Some(site.also(diagnostic, atom, "in this atom").help(help));
+    }
+    if !site.expects(")") {
+        return None;
+    }
+    let diagnostic = site.about(
+        site.at,
+        format!("expected the `)` of this atom, found {}", site.found_words()),
+        "not expected here",
+    );
+    let diagnostic = site.also(diagnostic, atom, "in this atom");
+    #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens need no other hint")]
+    Some(match site.found()? {
+        Tok::Caret => diagnostic.help("a power follows the atom's parenthesis: `(Atom (wait 5) stop)^3`"),
+        Tok::Comma => diagnostic
+            .fix("remove the comma: arguments are separated by spaces, as in `go 5 0`", site.span(site.at, site.at), "")
+            .help("or write them in parentheses that touch the name: `go(5, 0)`"),
+        _ => diagnostic.help(
+            "an atom is one condition and one law; a second law needs an atom of its own: `(Atom (bumper) stop)`",
+        ),
+    })
+}

@@ -1,0 +1,88 @@
+//! Conditions: operators without an operand, and what is no condition.
+
+use crate::diagnostic::Diagnostic;
+use crate::syntax::errors::Site;
+use crate::syntax::token::Tok;
+
+/// Something else where a condition could stand.
+pub(super) fn condition(site: &Site<'_, '_>) -> Option<Diagnostic> {
+    if !site.expects_condition() {
+        return None;
+    }
+    #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are told as they are")]
+    match (site.before(1)?, site.found()?) {
+        (Tok::LParen | Tok::ConditionParen, Tok::RParen) => Some(
+            site.about(site.at, "this condition is empty", "an interrupt is missing before this")
+                .help("write an interrupt, such as `(bumper)`, or `(null)` for one that never fires"),
+        ),
+        (before @ (Tok::Or | Tok::And | Tok::Not | Tok::Rising), found) => {
+            let operator = operator(before);
+            let message = format!("expected a condition after `{operator}`, found {}", site.found_words());
+            let diagnostic = site.about(site.at, message, "expected an interrupt, such as `bumper`");
+            Some(match found {
+                Tok::Not | Tok::Rising => {
+                    diagnostic.help(format!("put it in parentheses: `{operator} ({} bumper)`", self::operator(found)))
+                }
+                _ => diagnostic,
+            })
+        }
+        (_, Tok::Or | Tok::And) => Some(
+            site.about(
+                site.at,
+                format!("expected a condition before {}", site.found_words()),
+                "nothing to join before this",
+            )
+            .help("it joins two conditions: `(bumper OR wait 5)`"),
+        ),
+        (_, Tok::Number(_)) if turned(site).is_some() => turned(site),
+        (_, Tok::Number(_)) => Some(
+            site.about(site.at, format!("expected a condition, found {}", site.found_words()), "not a condition")
+                .help("a comparison begins with its signal: `(r 3 < 0.5m)`; a time is waited for: `(wait 5)`"),
+        ),
+        _ => None,
+    }
+}
+
+/// `1m > r0`, `0.5 < r0 < 1`: the signal comes first.
+fn turned(site: &Site<'_, '_>) -> Option<Diagnostic> {
+    let (number, signal) = (site.text(site.at, site.at)?, site.at + 2);
+    #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens do not compare")]
+    let opposite = match site.kind(site.at + 1)? {
+        Tok::Less => ">",
+        Tok::LessOrEqual => ">=",
+        Tok::Greater => "<",
+        Tok::GreaterOrEqual => "<=",
+        Tok::Equal => "==",
+        _ => return None,
+    };
+    let last = match site.kind(signal + 1) {
+        Some(Tok::Number(_)) => signal + 1,
+        Some(Tok::TouchParen) => site.end_of_group(signal + 1),
+        _ => signal,
+    };
+    site.name_at(signal)?;
+    let name = site.text(signal, last)?;
+    let first = format!("{name} {opposite} {number}");
+    let is_comparison = matches!(
+        site.kind(last + 1),
+        Some(Tok::Less | Tok::LessOrEqual | Tok::Greater | Tok::GreaterOrEqual | Tok::Equal)
+    );
+    let (end, replacement) = match site.kind(last + 2) {
+        Some(Tok::Number(_)) if is_comparison => {
+            (last + 2, format!("{first} AND {name} {}", site.text(last + 1, last + 2)?))
+        }
+        _ => (last, first),
+    };
+    let diagnostic = site.about(site.at, "a comparison begins with its signal", "not expected here");
+    Some(diagnostic.fix("write {}", site.span(site.at, end), replacement))
+}
+
+fn operator(token: Tok<'_>) -> &'static str {
+    #[allow(clippy::wildcard_enum_match_arm, reason = "called for operators only")]
+    match token {
+        Tok::Or => "OR",
+        Tok::And => "AND",
+        Tok::Rising => "RISING",
+        _ => "NOT",
+    }
+}

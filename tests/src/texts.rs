@@ -1,0 +1,57 @@
+//! Texts of this repository that the compiler reads: plans, examples, what fuzzing kept, and what tests hold.
+
+use std::fs;
+
+use mdlec::diagnostic::Code;
+use proc_macro2::{TokenStream, TokenTree};
+
+use crate::any_text;
+use crate::repository::{files, root};
+
+/// What fuzzing found worth keeping, the plans, and the examples of explanations, each with where it is from.
+///
+/// # Panics
+/// If a file cannot be read.
+#[must_use]
+pub fn kept() -> Vec<(String, String)> {
+    let kept = fs::read_dir(root().join("tests/fuzz/corpus")).expect("a folder").map(|entry| {
+        let path = entry.expect("an entry").path();
+        (path.display().to_string(), any_text::text(&fs::read(&path).expect("a file")))
+    });
+    let plans = files(&[".mdle"]).into_iter().map(|file| (file.path, file.text));
+    let examples = Code::ALL.iter().flat_map(|code| {
+        let explanation = code.explanation();
+        let examples = [explanation.wrong(), explanation.right()].into_iter().flatten();
+        examples.map(move |example| (format!("the explanation of {code}"), example.text))
+    });
+    let mut texts: Vec<_> = kept.chain(plans).chain(examples).collect();
+    texts.sort();
+    texts
+}
+
+/// Every literal in the Rust of this repository that looks like a plan, such as the bad input of tests.
+#[must_use]
+pub fn literals() -> Vec<(String, String)> {
+    let mut texts = Vec::new();
+    for file in files(&[".rs"]) {
+        let Ok(tokens) = file.text.parse::<TokenStream>() else { continue };
+        let mut found = Vec::new();
+        strings(tokens, &mut found);
+        // A literal of `format!` doubles its braces.
+        let plans = found.into_iter().map(|text| text.replace("{{", "{").replace("}}", "}"));
+        texts.extend(plans.filter(|text| text.contains("{ ")).map(|text| (file.path.clone(), text)));
+    }
+    texts
+}
+
+fn strings(tokens: TokenStream, found: &mut Vec<String>) {
+    for token in tokens {
+        match token {
+            TokenTree::Group(group) => strings(group.stream(), found),
+            TokenTree::Literal(literal) => {
+                found.extend(syn::parse_str::<syn::LitStr>(&literal.to_string()).ok().map(|text| text.value()));
+            }
+            TokenTree::Ident(_) | TokenTree::Punct(_) => {}
+        }
+    }
+}
