@@ -27,7 +27,7 @@ const KINDS: [&str; 6] = ["tree", "plan", "nondegenerate", "expanded", "fsm", "r
 
 /// The script of the interfaces.
 const SCRIPT: &str = r#"{"t": 0.0, "fired": [], "completed": []}
-{"t": 0.1, "fired": ["atIsection 0100", "bumper"], "completed": ["rotate 90"]}
+{"t": 0.1, "fired": ["atIsection 0100", "bumper"], "completed": ["align 7 9"]}
 "#;
 
 /// The trace of the interfaces: what the plan from lab 2 to lab 1 makes of the script.

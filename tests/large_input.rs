@@ -22,7 +22,7 @@ const COMMANDS: [&[&str]; 5] = [
 /// The exit status, standard output and standard error of a command.
 fn said(folder: &Path, plan: &str, arguments: &[&str]) -> (Option<i32>, String, String) {
     fs::write(folder.join("plan.mdle"), plan).unwrap();
-    fs::write(folder.join("script.jsonl"), "{\"t\": 0}\n{\"t\": 0.5, \"fired\": [\"bumper\"]}\n").unwrap();
+    fs::write(folder.join("script.jsonl"), "{\"t\": 0}\n{\"t\": 0.5}\n").unwrap();
     let output = run_mdlec(folder, arguments);
     let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
     (output.status.code(), text(output.stdout), text(output.stderr))

@@ -22,6 +22,7 @@ mod size;
 #[cfg(test)]
 mod tests;
 pub(crate) mod untyped;
+mod words;
 
 pub use crate::syntax::tree::Comparison as Operator;
 pub use angle::{frame_text, in_degrees};
@@ -32,6 +33,7 @@ pub use conditions::condition_text;
 pub use functions::{Function, Functions};
 pub use nondegenerate::{Nondegenerate, remove_degeneracy};
 pub use resolve::resolve;
+pub(crate) use words::Words;
 
 use crate::alphabet::{Decimal, Kind};
 use crate::diagnostic::Span;

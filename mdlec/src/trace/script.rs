@@ -8,12 +8,15 @@ use std::fmt;
 use mdle_runtime::Nanos;
 use serde::Deserialize;
 
-use crate::alphabet::Decimal;
+use crate::alphabet::{Alphabet, Decimal};
+use crate::plan::{Plan, Words};
 
 /// A script as read.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Script {
     turns: Vec<Reports>,
+    /// The line of each turn, from 1.
+    lines: Vec<usize>,
 }
 
 /// What is reported in one turn: the output `y` of a robot that is only a script.
@@ -61,7 +64,7 @@ impl Script {
     /// # Errors
     /// At the first line that is not such an object, or whose time is before the one of the line before it.
     pub fn read(text: &str) -> Result<Self, ScriptError> {
-        let mut turns: Vec<Reports> = Vec::new();
+        let (mut turns, mut lines): (Vec<Reports>, Vec<usize>) = (Vec::new(), Vec::new());
         let mut start = None;
         for (line, content) in (1..).zip(text.lines()).filter(|(_, content)| !content.trim().is_empty()) {
             let refused = |message| ScriptError { line, message };
@@ -74,8 +77,25 @@ impl Script {
                 return Err(back());
             }
             turns.push(Reports { t, fired: written.fired, completed: written.completed });
+            lines.push(line);
         }
-        Ok(Self { turns })
+        Ok(Self { turns, lines })
+    }
+
+    /// The script in the texts of a plan: `r0<60cm` becomes `r0 < 0.6`.
+    ///
+    /// # Errors
+    /// At the first name that is no interrupt of the plan, or no law of it that completes.
+    pub fn in_words_of(mut self, plan: &Plan, alphabet: &Alphabet) -> Result<Self, ScriptError> {
+        let words = Words::new(plan, alphabet);
+        for (reports, line) in self.turns.iter_mut().zip(&self.lines) {
+            let refused = |message| ScriptError { line: *line, message };
+            let fired = std::mem::take(&mut reports.fired).into_iter();
+            reports.fired = fired.map(|text| words.interrupt(text)).collect::<Result<_, _>>().map_err(refused)?;
+            let completed = std::mem::take(&mut reports.completed).into_iter();
+            reports.completed = completed.map(|text| words.law(text)).collect::<Result<_, _>>().map_err(refused)?;
+        }
+        Ok(self)
     }
 
     /// Its turns, in order; the first is at time 0.

@@ -1,0 +1,123 @@
+//! The interrupts and laws of a plan as scripts name them.
+
+use std::collections::BTreeSet;
+
+use super::{Condition, Interrupt, Node, Plan, QuarkId, resolve};
+use crate::alphabet::{self, Alphabet};
+use crate::diagnostic::{SourceId, has_errors};
+use crate::syntax::{Arena, NoFiles, parse_with};
+
+/// The texts that mean something in a script for a plan.
+pub(crate) struct Words<'p> {
+    plan: &'p Plan,
+    alphabet: &'p Alphabet,
+    interrupts: BTreeSet<&'p str>,
+    timers: BTreeSet<&'p str>,
+    laws: BTreeSet<&'p str>,
+}
+
+impl<'p> Words<'p> {
+    /// The texts of this plan, which was resolved against `alphabet`.
+    pub(crate) fn new(plan: &'p Plan, alphabet: &'p Alphabet) -> Self {
+        let (interrupts, timers, laws) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
+        let mut words = Self { plan, alphabet, interrupts, timers, laws };
+        words.condition(&plan.root.interrupt);
+        words.sequence(&plan.root.body);
+        words
+    }
+
+    fn sequence(&mut self, body: &'p [Node]) {
+        for node in body {
+            match node {
+                Node::Atom(atom) => {
+                    self.condition(&atom.interrupt);
+                    self.laws.insert(&self.plan.quark(atom.law).text);
+                }
+                Node::Scope(scope) => {
+                    self.condition(&scope.interrupt);
+                    self.sequence(&scope.body);
+                }
+                Node::Loop(repeated) => self.sequence(&repeated.body),
+            }
+        }
+    }
+
+    fn condition(&mut self, interrupt: &'p Interrupt) {
+        let plan = self.plan;
+        interrupt.condition.each_quark(&mut |id| {
+            self.interrupts.insert(&plan.quark(id).text);
+        });
+        interrupt.condition.each_timer(&mut |id| {
+            self.timers.insert(&plan.quark(id).text);
+        });
+    }
+
+    /// The text of the interrupt that a script calls `written`.
+    pub(crate) fn interrupt(&self, written: String) -> Result<String, String> {
+        if self.interrupts.contains(written.as_str()) {
+            return Ok(written);
+        }
+        let law = self.laws.first().copied().unwrap_or("stop");
+        let read = self.read(&written, &format!("{{ Script ({written}) (Atom (null) {law}) }}"));
+        let text = read.map(|plan| plan.root.interrupt.text).unwrap_or_else(|| written.clone());
+        if self.timers.contains(text.as_str()) {
+            return Err(format!("`{written}` is a timer, which fires by the time `t` of the turns: leave it out"));
+        }
+        known(&written, text, &self.interrupts, ["interrupt", "interrupts"])
+    }
+
+    /// The text of the law that a script calls `written`.
+    pub(crate) fn law(&self, written: String) -> Result<String, String> {
+        if self.laws.contains(written.as_str()) {
+            return Ok(written);
+        }
+        let read = self.read(&written, &format!("{{ Script (Atom (null) ({written})) }}"));
+        let law = read.and_then(|plan| match plan.root.body.as_slice() {
+            [Node::Atom(atom)] => Some(plan.quark(atom.law).text.clone()),
+            _ => None,
+        });
+        known(&written, law.unwrap_or_else(|| written.clone()), &self.laws, ["law", "laws"])
+    }
+
+    /// A plan with what a script names, read as the compiler reads it; none if that is an error.
+    fn read(&self, written: &str, text: &str) -> Option<Plan> {
+        // What closes a bracket or begins a comment would be read as more than a name.
+        if written.contains(['{', '}', ';', '\n', '"']) || written.contains("//") || written.contains("/*") {
+            return None;
+        }
+        let arena = Arena::new();
+        let (files, found) = parse_with(SourceId(0), text, &arena, &mut NoFiles);
+        let (mut plans, more) = resolve(&files, self.alphabet, None);
+        (!has_errors(&found) && !has_errors(&more) && plans.len() == 1).then(|| plans.remove(0))
+    }
+}
+
+/// The text, if the plan has it; else a message that names the nearest, or all.
+fn known(written: &str, text: String, texts: &BTreeSet<&str>, [one, many]: [&str; 2]) -> Result<String, String> {
+    if texts.contains(text.as_str()) {
+        return Ok(text);
+    }
+    let message = format!("`{written}` is no {one} of the plan");
+    if texts.is_empty() {
+        return Err(format!("{message}, which has no {many} but timers"));
+    }
+    Err(match alphabet::nearest(&text, texts.iter().copied()) {
+        Some(near) => format!("{message}; did you mean `{near}`?"),
+        None => {
+            let texts: Vec<_> = texts.iter().map(|text| format!("`{text}`")).collect();
+            format!("{message}\nhelp: its {many} are {}", texts.join(", "))
+        }
+    })
+}
+
+impl Condition {
+    /// Visits the quark of every timer in it.
+    fn each_timer(&self, visit: &mut impl FnMut(QuarkId)) {
+        match self {
+            Self::Wait { quark, .. } | Self::Elapsed { quark, .. } => visit(*quark),
+            Self::Null | Self::Quark(_) | Self::After(_) => {}
+            Self::Or(operands) | Self::And(operands) => operands.iter().for_each(|operand| operand.each_timer(visit)),
+            Self::Not(operand) | Self::Rising { operand, .. } => operand.each_timer(visit),
+        }
+    }
+}
