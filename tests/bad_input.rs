@@ -42,6 +42,28 @@ fn a_plan_with_errors() {
 }
 
 #[test]
+fn commands_that_are_misspelled() {
+    let folder = with_plan("commands", REST);
+    let commands = [&["chekc", "plan.mdle"][..], &["chekc"], &["anlyze", "--json", "plan.mdle"], &["plan"]];
+    insta::assert_snapshot!(commands.map(|arguments| said(&folder, arguments)).join("\n"));
+}
+
+#[test]
+fn a_robot_that_lacks_something_names_those_that_have_it() {
+    let folder = with_plan("lacks", "{ P (battery < 11)\n  (Atom (lowBattery OR sync ada) stop)\n}\n");
+    insta::assert_snapshot!(said(&folder, &["check", "plan.mdle", "--target", "sim"]));
+}
+
+#[test]
+fn what_is_no_plan_is_a_few_messages() {
+    let source = fs::read_to_string(mdle_tests::repository::root().join("mdlec/src/lib.rs")).unwrap();
+    let folder = with_plan("no_plan", source);
+    let output = said(&folder, &["check", "plan.mdle"]);
+    assert_eq!(output.matches("\nerror[").count(), 10, "{output}");
+    assert!(output.contains("\n… and ") && output.ends_with(" errors\nexit status 1\n"), "{output}");
+}
+
+#[test]
 fn every_command_gives_a_plan_with_errors_the_same_status() {
     let folder = with_plan("status", "{ P (bumpr) (Atom (wait 1) stop) }");
     let check = said(&folder, &["check", "plan.mdle"]);
@@ -138,6 +160,21 @@ fn scripts_that_are_wrong() {
     let folder = with_plan("scripts", REST);
     fs::write(folder.join("script"), "{\"t\": 1.0, \"fired\": [], \"completed\": []}\n{\"t\": 0.5}\n").unwrap();
     fs::write(folder.join("nonsense"), "{\"t\": }\n").unwrap();
+    let turns = [
+        r#"{"t": 0, "fired": ["bumpr"]}"#,
+        r#"{"t": 0}\n{"t": 1, "fired": ["r0<0.7"]}"#,
+        r#"{"t": 0, "fired": ["sync ada"]}"#,
+        r#"{"t": 0, "fired": ["wait 5"]}"#,
+        r#"{"t": 0, "completed": ["turm 90"]}"#,
+        r#"{"t": 0, "fired": ["bumper) stop"]}"#,
+    ];
+    let plan = "{ P (bumper)\n  (Atom (r0 < 60cm OR wait 5) turn 90)\n}\n";
+    fs::write(folder.join("names.mdle"), plan).unwrap();
+    let names = turns.map(|turn| {
+        fs::write(folder.join("names"), turn.replace("\\n", "\n") + "\n").unwrap();
+        format!("{turn}\n{}", said(&folder, &["trace", "names.mdle", "--script", "names"]))
+    });
+    insta::assert_snapshot!("names_in_scripts_that_are_wrong", names.join("\n"));
     let scripts = ["script", "nonsense", "missing"];
     insta::assert_snapshot!(scripts.map(|file| said(&folder, &["trace", "plan.mdle", "--script", file])).join("\n"));
 }
@@ -224,4 +261,26 @@ fn a_plan_on_standard_input_is_not_written_over() {
     let told = String::from_utf8(output.stderr).unwrap();
     assert!(told.starts_with("error: `plan.mdle` is an input of this command"), "{told}");
     assert_eq!((output.status.code(), fs::read_to_string(folder.join("plan.mdle")).unwrap().as_str()), (Some(2), REST));
+}
+
+#[test]
+fn scripts_are_read_as_the_compiler_reads_plans() {
+    let folder = with_plan("script_words", "{ P (bumper)\n  (Atom (r0 < 60cm) turn 90)\n}\n");
+    let trace = |fired: &str, completed: &str| {
+        let script = format!("{{\"t\":0}}\n{{\"t\":1,\"fired\":{fired},\"completed\":{completed}}}\n");
+        fs::write(folder.join("script"), script).unwrap();
+        let output = run_mdlec(&folder, &["trace", "plan.mdle", "--script", "script"]);
+        assert_eq!((output.status.code(), &*output.stderr), (Some(0), &b""[..]));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let fired = trace(r#"["r0 < 0.6"]"#, "[]");
+    assert_eq!(fired.lines().count(), 2);
+    for text in ["r0<0.6", "r0 < 60cm", "r_0(t) < 0.60m", "r 0 < 600mm", " r0 <\t0.6 "] {
+        assert_eq!(trace(&serde_json::json!([text]).to_string(), "[]"), fired, "{text}");
+    }
+    let completed = trace("[]", r#"["turn 90"]"#);
+    assert_ne!(completed, fired);
+    for text in ["turn 90deg", "turn(90)", "turn 90.0"] {
+        assert_eq!(trace("[]", &serde_json::json!([text]).to_string()), completed, "{text}");
+    }
 }

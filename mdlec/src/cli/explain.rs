@@ -15,9 +15,10 @@ pub(super) fn explain(code: Option<&str>) -> Result<(), Failure> {
 }
 
 fn unknown(name: &str) -> Failure {
-    let similar = |code: &&Code| strsim::damerau_levenshtein(&name.to_uppercase(), code.name());
-    let near =
-        Code::ALL.iter().min_by_key(similar).map(|code| format!("; the nearest one is `{code}`, {}", code.title()));
-    let near = near.unwrap_or_default();
-    Failure::usage(format!("there is no code `{name}`{near}\nhelp: `mdlec explain` lists all codes"))
+    let distance = |code: &Code| strsim::damerau_levenshtein(&name.to_uppercase(), code.name());
+    let near = Code::ALL.iter().copied().filter(|code| distance(code) <= 1).min_by_key(distance);
+    let near = near.map(|code| format!("; did you mean `{code}`, {}?", code.title())).unwrap_or_default();
+    Failure::usage(format!(
+        "there is no code `{name}`{near}\nhelp: a code is a letter and four digits, as in `mdlec explain E0201`; `mdlec explain` lists all codes"
+    ))
 }

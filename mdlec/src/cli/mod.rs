@@ -24,7 +24,7 @@ use arguments::{
     Analyze, Bind, Build, Check, Cli, Command, Decompile, Draw, Emit, EmitKind, Fmt, Machine, MessageFormat, NewTarget,
     Trace,
 };
-use clap::Parser as _;
+use clap::{CommandFactory as _, Parser as _};
 pub(crate) use embed::embed;
 
 /// The message and the exit status of a command that failed.
@@ -58,7 +58,10 @@ impl Failure {
 pub fn main() -> ExitCode {
     let done = match Cli::try_parse() {
         Ok(cli) => run(cli),
-        Err(answer) => report::answer(&answer),
+        Err(answer) => match misspelled_command().filter(|_| answer.use_stderr()) {
+            Some(failure) => Err(failure),
+            None => report::answer(&answer),
+        },
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -66,11 +69,28 @@ pub fn main() -> ExitCode {
     }
 }
 
+/// A first argument that is like a command and no file, so that it was taken for a plan.
+fn misspelled_command() -> Option<Failure> {
+    let word = std::env::args().nth(1).filter(|word| !word.starts_with('-') && !word.contains(['.', '/']))?;
+    let cli = Cli::command();
+    let names: Vec<_> = cli.get_subcommands().map(clap::Command::get_name).collect();
+    if names.contains(&word.as_str()) || std::path::Path::new(&word).exists() {
+        return None;
+    }
+    let near = crate::alphabet::nearest(&word, names.iter().copied())?;
+    Some(Failure::usage(format!(
+        "there is no command `{word}`; did you mean `mdlec {near}`?\nhelp: `mdlec --help` lists all commands"
+    )))
+}
+
 /// Runs the command of `cli`.
 fn run(cli: Cli) -> Result<(), Failure> {
     report::choose(cli.message_format);
     match cli.command {
-        None => build::build(&cli.build),
+        None => match misspelled_command() {
+            Some(failure) => Err(failure),
+            None => build::build(&cli.build),
+        },
         Some(Command::Check(check)) => check::check(&check),
         Some(Command::Fmt(fmt)) => fmt::fmt(&fmt),
         Some(Command::Trace(trace)) => trace::trace(&trace),

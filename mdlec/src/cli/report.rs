@@ -37,8 +37,10 @@ pub(super) fn option(name: &str, value: &str) -> String {
     if is_build_script() { format!(".{name}({value:?})") } else { format!("--{name} {value}") }
 }
 
-/// The most diagnostics that a person is shown at once: nobody reads more.
+/// At most so many diagnostics are shown to a person.
 const SHOWN: usize = 100;
+/// At most so many where more than that are about the notation: such a file is hardly a plan.
+const SHOWN_OF_NO_PLAN: usize = 10;
 /// So much of the source is shown with them, in bytes, and with one at least: each shows its lines whole, however long.
 const SOURCE_SHOWN: usize = 500_000;
 
@@ -69,7 +71,9 @@ fn render(sources: &Sources, found: &[Diagnostic]) {
     let choice = if io::stderr().is_terminal() { ColorChoice::Auto } else { ColorChoice::Never };
     let mut out = StandardStream::stderr(choice);
     let mut source = 0;
-    let shown = found.iter().take(SHOWN).take_while(|diagnostic| {
+    let notation = found.iter().filter(|diagnostic| diagnostic.code.is_notation()).count();
+    let most = if notation > SHOWN_OF_NO_PLAN { SHOWN_OF_NO_PLAN } else { SHOWN };
+    let shown = found.iter().take(most).take_while(|diagnostic| {
         let is_shown = source <= SOURCE_SHOWN;
         source += sources.shown(diagnostic);
         is_shown

@@ -177,7 +177,11 @@ fn read(path: &Path) -> Result<World, String> {
 fn bytes(path: &Path) -> Result<Vec<u8>, String> {
     read_file(path, LARGEST).map_err(|error| {
         let shown = path.display();
-        format!("--world {shown}: the file cannot be read: {error}; without --world it is the office floor")
+        let worlds = World::names().collect::<Vec<_>>().join(", ");
+        if error.kind() == std::io::ErrorKind::NotFound {
+            return format!("--world {shown}: there is no such world or file; the worlds are {worlds}");
+        }
+        format!("--world {shown}: the file cannot be read: {error}; the worlds that need no file are {worlds}")
     })
 }
 
