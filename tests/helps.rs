@@ -72,7 +72,8 @@ fn edits_end_the_defect() {
         let (id, found) = judged(&text);
         let notation = found.iter().filter(|found| found.code.is_notation()).count();
         for diagnostic in &found {
-            let is_only = diagnostic.code.is_notation() && notation == 1;
+            // A bracket that finds its partner may let other errors be seen.
+            let is_only = diagnostic.code.is_notation() && diagnostic.code != Code::E0103 && notation == 1;
             for edit in diagnostic.help.iter().filter_map(|help| help.edit.as_ref()) {
                 edits += 1;
                 if let Some((edited, still)) = remaining(&text, id, diagnostic, edit, is_only) {

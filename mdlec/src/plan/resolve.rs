@@ -114,9 +114,32 @@ impl<'r, 'a> Resolver<'r, 'a> {
 
     fn scope(&mut self, plan: &tree::Plan<'a>, frame: f64) -> (Scope, Ends) {
         let (interrupt, ends) = self.interrupt(plan.condition.as_ref(), plan.name.span);
-        let body = self.sequence(plan.elements, frame);
+        let first = self.words_of_name(plan);
+        let body = self.sequence(plan.elements.get(first..).unwrap_or(&[]), frame);
         let (name, span) = (plan.name.node.to_owned(), plan.name.span);
         (Scope { name, interrupt, body, record: None, marks: Vec::new(), span }, ends)
+    }
+
+    /// Reports `{ My Plan (bumper) …`, a name of two words; the number of elements that were read from it.
+    fn words_of_name(&mut self, plan: &tree::Plan<'a>) -> usize {
+        let [Element { primary: Primary::Ref(word), .. }, Element { primary: Primary::String(group), .. }, ..] =
+            plan.elements
+        else {
+            return 0;
+        };
+        let [Element { primary: Primary::Ref(condition), .. }] = group else { return 0 };
+        let kind = |name| self.quarks.alphabet().declarations_of(name).next().map(|declaration| declaration.kind);
+        let is_plan = self.definitions.get(word.name).is_some() || self.definitions.is_incomplete;
+        let is_condition = kind(condition.name) == Some(DeclarationKind::Interrupt);
+        let is_beside = plan.condition.is_none() && word.span.start == plan.name.span.end + 1;
+        if is_plan || !is_condition || !is_beside || kind(word.name).is_some() {
+            return 0;
+        }
+        let name = format!("{}{}", plan.name.node, word.name);
+        let span = plan.name.span.to(word.span);
+        let found = Diagnostic::new(Code::E0201, "the name of a plan is one word", span, "two words");
+        self.found.push(found.fix("write {}", span, name));
+        2
     }
 
     fn interrupt(&mut self, condition: Option<&tree::Condition<'_>>, scope: Span) -> (Interrupt, Ends) {

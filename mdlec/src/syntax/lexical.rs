@@ -131,12 +131,12 @@ pub(super) fn comment(source: Source<'_>, place: Place) -> Diagnostic {
 
 /// A string that does not end on its line.
 pub(super) fn string(source: Source<'_>, place: Place) -> Diagnostic {
-    let opener = Place::new(place.start, place.start + 1);
-    Diagnostic::new(Code::E0105, "this text does not end on its line", source.span(opener), "begins here").fix(
-        "end it with {}",
-        source.span(Place::new(place.end, place.end)),
-        "\"",
-    )
+    let opener = source.span(Place::new(place.start, place.start + 1));
+    let diagnostic = Diagnostic::new(Code::E0105, "this text does not end on its line", opener, "begins here");
+    if place.end == place.start + 1 {
+        return diagnostic.help("end it with `\"`, or remove this quote");
+    }
+    diagnostic.fix("end it with {}", source.span(Place::new(place.end, place.end)), "\"")
 }
 
 /// A `\text{` whose brace does not close.

@@ -125,7 +125,9 @@ fn plan_name(site: &Site<'_, '_>) -> Option<Diagnostic> {
         return None;
     }
     let brace = site.at - 1;
-    if let Some(name) = brace.checked_sub(1).and_then(|at| site.name_at(at)) {
+    // The name of the plan around is no name for this one.
+    let is_own = brace < 2 || site.kind(brace - 2) != Some(Tok::LBrace);
+    if let Some(name) = brace.checked_sub(1).filter(|_| is_own).and_then(|at| site.name_at(at)) {
         let is_loop = brace >= 3 && site.kind(brace - 3) == Some(Tok::ExecPlan);
         let diagnostic = site.about(
             brace,
@@ -269,11 +271,12 @@ fn power(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if site.found() == Some(Tok::Caret) && behind == Some(Tok::ConditionParen) {
         let message = "the parenthesis before this `^` is the condition of the plan";
         let diagnostic = site.about(site.at, message, "a condition has no power");
-        let insertion = site.opener_of(site.at - 1).map(|opener| site.before_token(opener));
+        let has_count = matches!(site.kind(site.at + 1), Some(Tok::Number(_) | Tok::Infinity | Tok::Name(_)));
+        let insertion = site.opener_of(site.at - 1).filter(|_| has_count).map(|opener| site.before_token(opener));
         let words = "if it contains elements, put {} before it: `{ Name (null) (Other)^3 }`";
         return Some(match insertion {
             Some(span) => diagnostic.fix(words, span, "(null) "),
-            None => diagnostic,
+            None => diagnostic.help("a power follows an element: `(Atom (wait 5) stop)^3`"),
         });
     }
     (site.before(1) == Some(Tok::Caret)).then(|| {
