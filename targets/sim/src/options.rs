@@ -164,6 +164,10 @@ pub(crate) fn world(matches: &ArgMatches) -> Result<World, String> {
 
 fn read(path: &Path) -> Result<World, String> {
     let shown = path.display().to_string();
+    if !path.exists() {
+        let worlds = World::names().collect::<Vec<_>>().join(", ");
+        return Err(format!("--world {shown}: there is no such world or file; the worlds are {worlds}"));
+    }
     let text = String::from_utf8(bytes(path)?).map_err(|_| format!("--world {shown}: the file is not UTF-8 text"))?;
     let is_map = path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml");
     if !is_map {
@@ -175,14 +179,7 @@ fn read(path: &Path) -> Result<World, String> {
 }
 
 fn bytes(path: &Path) -> Result<Vec<u8>, String> {
-    read_file(path, LARGEST).map_err(|error| {
-        let shown = path.display();
-        let worlds = World::names().collect::<Vec<_>>().join(", ");
-        if error.kind() == std::io::ErrorKind::NotFound {
-            return format!("--world {shown}: there is no such world or file; the worlds are {worlds}");
-        }
-        format!("--world {shown}: the file cannot be read: {error}; the worlds that need no file are {worlds}")
-    })
+    read_file(path, LARGEST).map_err(|error| format!("--world {}: the file cannot be read: {error}", path.display()))
 }
 
 /// The pose of `--start`, as text and read.
