@@ -6,6 +6,7 @@ use std::thread;
 use std::time::Duration;
 
 use mdle_emulator::{Faulty, Order, Pace, Port, serve};
+use mdle_host::StopRequest;
 use mdle_runtime::{MetersPerSecond, Robot as _, Twist};
 use mdle_scout::{Clock, Config, Configured, Fault, Scout};
 use mdle_scout_emulator::scout::Scout as Emulated;
@@ -26,7 +27,7 @@ fn with_robot<T>(faults: &[&str], drive: impl FnOnce(&mut Scout) -> T) -> (T, Fa
         let serving = scope.spawn(|| serve(&mut robot, &port, Pace::Real, &|| !over.load(Ordering::Relaxed)));
         // Longer than any machine takes.
         let config = Config { answer: 20_000, gap: 8, ..Configured::read(None, port.path().to_str()).unwrap().config };
-        let mut driver = Scout::connect(config, Clock::Wall, PERIOD).unwrap();
+        let mut driver = Scout::connect(config, Clock::Wall, PERIOD, &StopRequest::default()).unwrap();
         let result = drive(&mut driver);
         over.store(true, Ordering::Relaxed);
         serving.join().unwrap().unwrap();
