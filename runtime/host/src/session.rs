@@ -81,7 +81,11 @@ where
     {
         Ok(ready) => ready,
         Err(Refusal::Ended(stopped)) => return ended_at_the_start(&signals, stopped, err),
-        Err(refusal) => return refusal.tell(err),
+        Err(refusal) => {
+            // A driver that refuses has stopped its robot, so the message is waited for.
+            signals.patience().stop_was_tried(None);
+            return refusal.tell(err);
+        }
     };
     let screen = T::screen(&matches);
     let mut out = out();
@@ -254,6 +258,7 @@ fn ready<T: Target>(
 /// Says that a signal ended the run while the robot was opened; the exit status.
 fn ended_at_the_start(signals: &Signals, stopped: Result<(), String>, err: &mut dyn Write) -> u8 {
     let Some(signal) = signals.caught() else {
+        signals.patience().stop_was_tried(None);
         return Refusal::Fault("the robot's code ended the start, and nothing asked for that".to_owned()).tell(err);
     };
     let ending = Ending::Signal(signal);

@@ -3,8 +3,8 @@
 use mdle_runtime::Cause::{Completed, Fired};
 
 use super::toy::{Act, Run, Stage};
-use crate::Refusal;
 use crate::signals::Signal;
+use crate::{Refusal, Time};
 
 fn quiet() -> Act {
     Act::Senses(vec![])
@@ -204,7 +204,7 @@ fn everything_that_goes_wrong_on_the_way_out_is_told_in_order() {
 
 #[test]
 fn a_robot_that_cannot_be_opened_is_sent_nothing() {
-    let refused = |refusal| way_out(&Stage { refusal: Some(refusal), ..Stage::default() }.run(&[]));
+    let refused = |refusal| way_out(&Stage { refusal: Some(refusal), time: Time::Wall, ..Stage::default() }.run(&[]));
     let usage = refused(Refusal::Usage("the start pose is inside a wall".to_owned()));
     let fault = refused(Refusal::Fault("nothing answers at /dev/ttyS0".to_owned()));
     assert_eq!(usage, "\nstatus 2\nerror: the start pose is inside a wall\n");

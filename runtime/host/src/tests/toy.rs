@@ -105,6 +105,7 @@ impl Stage {
     pub(super) fn run_to<W: Write + AsText + 'static>(self, arguments: &[&str], sink: W) -> Run {
         let journal = Rc::new(RefCell::new(Vec::new()));
         let signals = Signals::unheard();
+        let patience = signals.patience().clone();
         let toy = Toy {
             script: self.script.into(),
             stop: self.stop,
@@ -126,6 +127,8 @@ impl Stage {
         };
         let arguments = [&self.program].into_iter().chain(arguments).map(OsString::from);
         let status = session::<ToyTarget, _, _, _>("Lab", arguments, &|| self.plan.clone(), surroundings);
+        // Otherwise a program may end before its last message is written.
+        assert_ne!(patience.limit(), Some(Duration::ZERO), "readers are not waited for at the end");
         let text = out.borrow().text();
         let journal = journal.borrow().join(", ");
         Run { status, out: text, err: String::from_utf8(err).unwrap(), journal, slept: slept.get() }

@@ -122,7 +122,10 @@ fn a_long_comb_has_its_corners_and_no_more() {
     // One contour of three million sides: every tooth is one pixel wide, and so is what is between two.
     let (width, height) = (3000, 1000);
     let comb = |column: usize, row: usize| {
-        row == 0 || row + 1 == height || column + 1 == width || (column.is_multiple_of(2) && (row + 2 < height || column == 0))
+        row == 0
+            || row + 1 == height
+            || column + 1 == width
+            || (column.is_multiple_of(2) && (row + 2 < height || column == 0))
     };
     let world = header(HEADER).world("map.pgm", &map(width, height, comb)).expect("a good map");
     let corners: usize = world.outlines.iter().map(|outline| outline.points.len()).sum();
