@@ -109,7 +109,7 @@ fn standard_input_is_read_up_to_a_size() {
 fn a_pipe_in_the_place_of_a_plan_is_answered_with_what_to_type() {
     let folder = prepared("strange_pipe");
     let error = run_mdlec(&folder, &["check", "strange/pipe.toml"]).stderr;
-    let expected = "error: `strange/pipe.toml` is a pipe, and a file has to stand here\nhelp: `-` in its place reads standard input\n";
+    let expected = "error: `strange/pipe.toml` is a pipe, not a file\nhelp: `-` in its place reads standard input\n";
     assert_eq!(String::from_utf8(error).unwrap(), expected);
 }
 

@@ -43,9 +43,9 @@ impl Unread {
     /// Says it of the file that messages call `name`.
     pub(super) fn of(&self, name: impl fmt::Display) -> String {
         match self {
-            Self::Irregular(what) => format!("`{name}` is a {what}, and a file has to stand here"),
+            Self::Irregular(what) => format!("`{name}` is a {what}, not a file"),
             Self::TooLarge(most) => format!("`{name}` is larger than {} MB, which is the most", most / 1_000_000),
-            Self::Endless => format!("`{name}` does not end: a file has to stand here"),
+            Self::Endless => format!("`{name}` does not end: expected a file"),
             Self::System(error) => format!("cannot read `{name}`: {error}"),
         }
     }
