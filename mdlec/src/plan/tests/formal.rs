@@ -67,7 +67,7 @@ fn plans_by_name_are_neither_a_condition_nor_one_name() {
     { P (null)
       (Leg Leg_2)^2
       (stop, bumper)
-      ((Leg_3 (stop, null, 1s))^3 s2: Leg_4)^inf
+      ((Leg_3 (stop, null, 1s))^3 Leg_4)^inf
     }
     { Leg
       s1: (stop, bumper)
