@@ -83,7 +83,7 @@ fn what_is_said_never_to_happen_never_happens() {
     println!("{count:#?}");
     assert!(count.plans > 900 && count.turns > 500_000 && count.over > 10_000, "{count:?}");
     // Nearly all that never runs is foretold.
-    assert!(count.whole > 100 && count.idle > 40 && count.foretold * 10 >= count.idle * 9, "{count:?}");
+    assert!(count.whole > 100 && count.idle > 30 && count.foretold * 10 >= count.idle * 9, "{count:?}");
     assert!(count.never > 1000 && count.bounded > 300, "{count:?}");
 }
 

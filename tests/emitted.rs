@@ -194,14 +194,15 @@ fn bits(script: &str) -> String {
     let turns = outputs(&Script::read(script).expect("a script"));
     let lines = turns.iter().map(|(t, y)| {
         let signals = y.signals.map(|value| value.to_bits().to_string()).join(" ");
-        format!("{} {} {} {signals}", t.0, y.fired, y.completed)
+        let (way, heading) = (y.way.0, y.heading.0.to_bits());
+        format!("{} {} {} {way} {heading} {signals}", t.0, y.fired, y.completed)
     });
     lines.collect::<Vec<_>>().join("\n")
 }
 
 const MAIN: &str = r#"//! Runs the emitted plans on the scripts of a file.
 
-use mdle_runtime::Nanos;
+use mdle_runtime::{Nanometers, Nanos, Radians};
 use mdle_scripted::{Output, drive};
 
 fn main() {
@@ -218,8 +219,9 @@ fn main() {
 
 fn turn(line: &str) -> (Nanos, Output) {
     let numbers: Vec<u64> = line.split(' ').map(|number| number.parse().expect("a number")).collect();
-    let signals = std::array::from_fn(|signal| f64::from_bits(numbers[3 + signal]));
-    (Nanos(numbers[0]), Output { fired: numbers[1], completed: numbers[2], signals })
+    let signals = std::array::from_fn(|signal| f64::from_bits(numbers[5 + signal]));
+    let (way, heading) = (Nanometers(numbers[3]), Radians(f64::from_bits(numbers[4])));
+    (Nanos(numbers[0]), Output { fired: numbers[1], completed: numbers[2], signals, way, heading })
 }
 
 fn run(plan: usize, script: &[(Nanos, Output)], trace: &mut String) -> std::fmt::Result {

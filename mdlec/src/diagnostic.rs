@@ -127,6 +127,7 @@ codes! {
     W0204 "condition shadowed by an outer one",
     W0205 "condition implied by an outer one",
     W0206 "timer that an outer timer precedes",
+    W0207 "`FRAME here` without effect",
     W0301 "loop that can be skipped in one turn",
     W0302 "element that is always skipped",
     W0303 "element that is always true on entry",

@@ -39,6 +39,7 @@ pub struct Explorer<'p> {
 struct Frame {
     part: usize,
     entered: u64,
+    way: u64,
     left: u64,
     memories: Vec<bool>,
     facts: Vec<bool>,
@@ -50,6 +51,8 @@ pub struct Run {
     frames: Vec<Frame>,
     /// Nanoseconds since it began.
     pub now: u64,
+    /// Nanometres driven since then.
+    pub way: u64,
 }
 
 /// What a turn did.
@@ -80,6 +83,10 @@ impl Situation for At<'_, '_> {
 
     fn waited(&self, nanos: u64) -> bool {
         self.run.now - self.frame.entered >= nanos
+    }
+
+    fn driven(&self, nanometers: u64) -> bool {
+        self.run.way - self.frame.way >= nanometers
     }
 
     fn remembers(&self, memory: u32) -> bool {
@@ -133,7 +140,7 @@ impl<'p> Explorer<'p> {
     /// The plan as it begins.
     #[must_use]
     pub fn begin(&self) -> Run {
-        let mut run = Run { frames: Vec::new(), now: 0 };
+        let mut run = Run { frames: Vec::new(), now: 0, way: 0 };
         self.open(&mut run, 0);
         run
     }
@@ -150,6 +157,7 @@ impl<'p> Explorer<'p> {
             run.frames.push(Frame {
                 part,
                 entered: run.now,
+                way: run.way,
                 left: this.times.saturating_sub(1),
                 memories: vec![false; this.interrupt.map_or(0, |interrupt| interrupt.memories) as usize],
                 facts: vec![false; this.record.map_or(0, |record| record.facts) as usize],
@@ -260,26 +268,32 @@ impl<'p> Explorer<'p> {
     fn key(&self, run: &Run, longest: u64) -> Vec<u64> {
         let mut key = Vec::new();
         for frame in &run.frames {
-            key.extend([frame.part as u64, (run.now - frame.entered).min(longest), frame.left]);
+            let counted = [run.now - frame.entered, run.way - frame.way].map(|count| count.min(longest));
+            key.extend([frame.part as u64, frame.left].into_iter().chain(counted));
             key.extend(frame.memories.iter().chain(&frame.facts).map(|bit| u64::from(*bit)));
         }
         key
     }
 
     /// Visits every turn from every situation that can be reached, breadth first, with these choices of what quarks say and
-    /// these steps of time; at most so many situations. `true` if that were all.
+    /// these steps of time, with and without a step of the way where a condition asks for it; at most so many situations. `true` if that were all.
     pub fn explore(&self, said: &[Said], steps: &[u64], most: usize, visit: &mut impl FnMut(&Turn, &Run)) -> bool {
         /// How many transitions a situation may take in the mean: searches that are cut are long.
         const TRANSITIONS_EACH: usize = 500;
         let longest = 20_000_000_000;
+        let drives = self.parts.iter().any(|part| part.interrupt.is_some_and(|it| it.condition.drives()));
+        let ways: &[u64] = if drives { &[0, 200_000_000] } else { &[0] };
         let mut made = 0;
         let mut seen = BTreeSet::new();
         let mut waiting = VecDeque::from([(self.begin(), true)]);
         while let Some((run, is_first)) = waiting.pop_front() {
-            for step in if is_first { &[0] } else { steps } {
+            let steps = if is_first { &[0] } else { steps };
+            let steps = steps.iter().flat_map(|step| ways.iter().map(move |way| (step, way)));
+            for (step, way) in steps {
                 for said in said {
                     let mut next = run.clone();
                     next.now += step;
+                    next.way += if is_first { 0 } else { *way };
                     let turn = self.turn(&mut next, said);
                     made += turn.ended.len();
                     if made > most * TRANSITIONS_EACH {

@@ -3,7 +3,7 @@
 use mdle_runtime::fsm::Kind;
 use mdle_runtime::{
     Alphabet, Argument, Comparison, Condition, Guard, InRows, LawRow, MarkRow, Memories, Meters, MetersPerSecond,
-    Nanos, Operand, Operator, Radians, RadiansPerSecond, Rows, SonarId, Texts, Volts,
+    Nanometers, Nanos, Operand, Operator, Radians, RadiansPerSecond, Rows, SonarId, Stamp, Stamps, Texts, Volts,
 };
 use mdle_scripted::alphabet::{self as scripted, AnyControl, AnyInterrupt};
 use mdlec::alphabet::{self, family_to_si};
@@ -39,7 +39,8 @@ pub fn marks(facts: &[Facts]) -> Vec<MarkRow<'_>> {
 }
 
 /// A plan that borrows them: storage for levels and loops is made when its size is known.
-pub type LoadedPlan<'l> = InRows<'l, scripted::Alphabet, Box<[Nanos]>, Box<[u64]>, Memories<'l, Box<[bool]>>>;
+pub type LoadedPlan<'l> =
+    InRows<'l, scripted::Alphabet, Stamps<'l, Box<[Stamp]>>, Box<[u64]>, Memories<'l, Box<[bool]>>>;
 
 impl<'l> Loaded<'l> {
     /// Makes the rows of a plan. Without `foresight` they do not say what follows when a scope ends.
@@ -48,9 +49,9 @@ impl<'l> Loaded<'l> {
     /// If the alphabet does not know a quark of the plan.
     #[must_use]
     pub fn new(lowered: &'l Lowered, foresight: bool) -> Self {
-        let laws = lowered.laws.iter().map(|law| LawRow {
+        let laws = lowered.laws.iter().enumerate().map(|(atom, law)| LawRow {
             control: by_name(lowered.quark(law.quark), scripted::Alphabet::control),
-            frame: Radians(law.frame),
+            frame: Radians(lowered.turned(atom)),
         });
         let scopes = || lowered.scopes.iter().map(Option::as_ref);
         let texts = [
@@ -93,12 +94,13 @@ impl<'l> Loaded<'l> {
 
     /// The plan of these rows before it begins.
     #[must_use]
-    pub fn plan<'r>(&self, rows: &'r Rows<'r, scripted::Alphabet>, marks: &'r [MarkRow<'r>]) -> LoadedPlan<'r> {
+    pub fn plan<'r>(&'r self, rows: &'r Rows<'r, scripted::Alphabet>, marks: &'r [MarkRow<'r>]) -> LoadedPlan<'r> {
         let (levels, slots) = (self.lowered.levels, self.lowered.slots);
         // No plan has more levels than brackets.
         let memories = vec![false; self.lowered.brackets.len() * self.lowered.memories];
         let memory = Memories::new(u32::try_from(self.lowered.memories).unwrap(), marks, memories.into());
-        InRows::remembering(rows, vec![Nanos::ZERO; levels].into(), vec![0; slots].into(), memory)
+        let entered = Stamps::new(vec![Stamp::START; levels].into(), &self.lowered.frames);
+        InRows::remembering(rows, entered, vec![0; slots].into(), memory)
     }
 
     /// A condition; its operands go behind all operands that there are so far, and theirs behind them.
@@ -109,6 +111,9 @@ impl<'l> Loaded<'l> {
             plan::Condition::Wait { nanos, .. } => Condition::Wait(Nanos(*nanos)),
             plan::Condition::Elapsed { from, until, .. } => {
                 Condition::Elapsed(Nanos(*from), Nanos(until.unwrap_or(u64::MAX)))
+            }
+            plan::Condition::Driven { from, until, .. } => {
+                Condition::Driven(Nanometers(*from), Nanometers(until.unwrap_or(u64::MAX)))
             }
             plan::Condition::Rising { memory, operand } => {
                 Condition::Rising(*memory, self.operands(std::slice::from_ref(&**operand)).0)

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use mdle_runtime::Nanos;
 use mdle_scripted::{INTERRUPTS, LAWS, Output};
-use mdlec::trace::Script;
+use mdlec::trace::{Reports, Script};
 
 use crate::signals::values;
 
@@ -15,7 +15,8 @@ pub fn outputs(script: &Script) -> Vec<(Nanos, Output)> {
     turns
         .map(|reports| {
             let (fired, completed) = (bits(INTERRUPTS, &reports.fired), bits(LAWS, &reports.completed));
-            let output = Output { fired, completed, signals: values(&reports.fired) };
+            let Reports { way, heading, .. } = *reports;
+            let output = Output { fired, completed, signals: values(&reports.fired), way, heading };
             (reports.t, output)
         })
         .collect()

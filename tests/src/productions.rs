@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use mdlec::alphabet::Unit;
 use mdlec::diagnostic::{SourceId, Span};
-use mdlec::syntax::tree::{Arg, Atom, Call, Count, Element, Exec, File, Formal, Number, Param, Plan, Primary};
+use mdlec::syntax::tree::{Arg, Atom, Call, Count, Element, Exec, File, Formal, Frame, Number, Param, Plan, Primary};
 
 /// How often each production, and each unit, has been met.
 pub type Productions = BTreeMap<&'static str, u64>;
@@ -102,13 +102,19 @@ impl<'t> Counter<'t> {
     }
 
     fn element(&mut self, element: &Element<'_>) {
-        self.met("Element = (Name \":\")? (\"FRAME\" Number)? Primary (\"^\" Count)?");
+        self.met("Element = (Name \":\")? Frame? Primary (\"^\" Count)?");
         if element.label().is_some() {
             self.met("Element … (Name \":\")?");
         }
         if let Some(frame) = element.frame() {
-            self.met("Element … (\"FRAME\" Number)?");
-            self.number(frame);
+            self.met("Element … Frame?");
+            match frame {
+                Frame::Turned(angle) => {
+                    self.met("Frame = \"FRAME\" Number");
+                    self.number(angle);
+                }
+                Frame::Here => self.met("Frame = \"FRAME\" \"here\""),
+            }
         }
         if let Some(power) = element.power() {
             self.met("Element … (\"^\" Count)?");

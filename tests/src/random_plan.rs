@@ -86,7 +86,7 @@ const OF_PARAMETERS: &[&str] =
 const LAWS_OF_PARAMETERS: &[&str] = &["drive(v)", "chase(leader)", "replay(tune)"];
 
 /// The frames of elements.
-const FRAMES: &[&str] = &["90deg", "-45", "0.5rad", "180"];
+const FRAMES: &[&str] = &["90deg", "-45", "0.5rad", "180", "here", "here", "here"];
 
 /// What a plan may still grow to.
 struct Growth<'c> {
@@ -194,7 +194,7 @@ impl Growth<'_> {
 
     fn element(&mut self, depth: usize) -> Element {
         let label = self.chance.percent(25).then(|| self.label("s"));
-        let frame = self.chance.percent(10).then(|| self.chance.pick(FRAMES));
+        let frame = self.chance.percent(20).then(|| self.chance.pick(FRAMES));
         let element = self.unmarked(depth);
         let element = match frame {
             Some(angle) => Element::Framed(angle, Box::new(element)),

@@ -11,10 +11,19 @@ use crate::signals::Values;
 const STEPS: &[&str] =
     &["0", "0.05", "0.1", "0.1", "0.1", "0.099999999", "0.100000001", "0.25", "0.299999999", "1", "2.500000001", "7"];
 
+/// The ways driven between turns in metres, likewise.
+const WAYS: &[&str] =
+    &["0", "0", "0.05", "0.1", "0.1", "0.099999999", "0.100000001", "0.01", "0.25", "0.299999999", "1.000000001"];
+
+/// Headings in degrees.
+const HEADINGS: &[&str] = &["0", "90", "-90", "180", "-179.5", "33.25", "0.001"];
+
 /// A script of this many turns for the target `scripted`.
 pub fn script(chance: &mut Chance, turns: usize) -> String {
     let mut text = String::new();
     let mut nanos: u64 = if chance.percent(80) { 0 } else { 1_234_567_890 };
+    let mut way: u64 = if chance.percent(80) { 0 } else { 1_234_567_890 };
+    let mut heading = chance.pick(HEADINGS);
     let mut fired = vec![false; INTERRUPTS.len()];
     // Laws that never complete are listed as well: that must change nothing.
     let mut completed = vec![false; LAWS.len()];
@@ -30,13 +39,22 @@ pub fn script(chance: &mut Chance, turns: usize) -> String {
         }
         change(chance, &mut completed, done, restless);
         let (seconds, fraction) = (nanos / 1_000_000_000, nanos % 1_000_000_000);
+        let odometer = format!("\"way\": {}.{:09}, \"heading\": {heading}", way / 1_000_000_000, way % 1_000_000_000);
         let compared: String = values.texts().iter().map(|text| format!("{text:?}, ")).collect();
         let (fired, completed) = (quoted(INTERRUPTS, &fired), quoted(LAWS, &completed));
         let fired = if fired.is_empty() { compared.trim_end_matches(", ").to_owned() } else { compared + &fired };
-        writeln!(text, "{{\"t\": {seconds}.{fraction:09}, \"fired\": [{fired}], \"completed\": [{completed}]}}")
-            .unwrap();
+        writeln!(
+            text,
+            "{{\"t\": {seconds}.{fraction:09}, {odometer}, \"fired\": [{fired}], \"completed\": [{completed}]}}"
+        )
+        .unwrap();
         let step: f64 = chance.pick(STEPS).parse().unwrap();
         nanos += (step * 1e9).round() as u64;
+        let step: f64 = chance.pick(WAYS).parse().unwrap();
+        way += (step * 1e9).round() as u64;
+        if chance.percent(restless) {
+            heading = chance.pick(HEADINGS);
+        }
     }
     text
 }

@@ -54,8 +54,15 @@ const TIMES: &[&str] = &[
     "t < inf",
 ];
 
+/// Comparisons of `way`; among them the steps that scripts make.
+const WAYS: &[&str] =
+    &["way >= 0.25m", "way > 10cm", "way < 300mm", "way <= 0.05", "way == 0.1", "way(t) > 1", "way > 0", "way ≥ 0.2"];
+
 /// A comparison, as it stands in a condition.
 pub fn comparison(chance: &mut Chance) -> String {
+    if chance.percent(25) {
+        return chance.pick(WAYS).to_owned();
+    }
     if chance.percent(40) {
         return chance.pick(TIMES).to_owned();
     }

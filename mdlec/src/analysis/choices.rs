@@ -70,6 +70,11 @@ impl Choices {
             When::Later => column(Variable::Timer(bracket, nanos)),
             When::Past => column(Variable::Past(bracket, nanos)),
         };
+        let way = |nanometers: u64| match when {
+            When::Entered => self.constant(nanometers == 0),
+            When::Later => column(Variable::Way(bracket, nanometers)),
+            When::Past => column(Variable::PastWay(bracket, nanometers)),
+        };
         let inside = |operand| self.fired(Read { condition: operand, ..read }, lowered);
         match condition {
             Condition::Null => self.constant(false),
@@ -79,6 +84,10 @@ impl Choices {
             Condition::Elapsed { from, until, .. } => match until {
                 Some(until) => timer(*from).and(&timer(*until).not()),
                 None => timer(*from),
+            },
+            Condition::Driven { from, until, .. } => match until {
+                Some(until) => way(*from).and(&way(*until).not()),
+                None => way(*from),
             },
             Condition::Or(operands) => {
                 operands.iter().fold(self.constant(false), |all, operand| all.or(&inside(operand)))
@@ -104,6 +113,10 @@ pub(super) fn variables(read: Read<'_>, lowered: &Lowered, found: &mut BTreeSet<
         When::Entered | When::Later => Variable::Timer(bracket, nanos),
         When::Past => Variable::Past(bracket, nanos),
     };
+    let way = |nanometers| match when {
+        When::Entered | When::Later => Variable::Way(bracket, nanometers),
+        When::Past => Variable::PastWay(bracket, nanometers),
+    };
     let mut inside = |operand| variables(Read { condition: operand, ..read }, lowered, found);
     match condition {
         Condition::Null => return true,
@@ -123,6 +136,10 @@ pub(super) fn variables(read: Read<'_>, lowered: &Lowered, found: &mut BTreeSet<
         Condition::Elapsed { from, until, .. } => {
             found.insert(timer(*from));
             found.extend(until.map(timer));
+        }
+        Condition::Driven { from, until, .. } => {
+            found.insert(way(*from));
+            found.extend(until.map(way));
         }
         Condition::After(after) => drop(found.insert(fact(after, when))),
     }

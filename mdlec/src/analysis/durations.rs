@@ -103,7 +103,7 @@ fn certain(condition: &Condition, fired: bool) -> Option<u64> {
     };
     match condition {
         Condition::Null => (!fired).then_some(0),
-        Condition::Quark(_) | Condition::After(_) => None,
+        Condition::Quark(_) | Condition::Driven { .. } | Condition::After(_) => None,
         Condition::Wait { nanos, .. } => fired.then_some(*nanos),
         Condition::Elapsed { from, until: None, .. } => fired.then_some(*from),
         Condition::Elapsed { until: Some(until), .. } => (!fired).then_some(*until),

@@ -62,6 +62,7 @@ impl<'l> Walk<'l> {
             .filter_map(|variable| match variable {
                 Variable::Timer(_, nanos) if nanos > 0 => Some((variable, nanos)),
                 Variable::Timer(..) | Variable::Past(..) | Variable::Memory(..) => None,
+                Variable::Way(..) | Variable::PastWay(..) => None,
                 Variable::Quark(_) | Variable::Own(..) | Variable::Fact(..) | Variable::PastFact(..) => None,
             })
             .collect();

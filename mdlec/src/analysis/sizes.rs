@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use mdle_runtime::fsm::{Atom, Bracket, Kind};
-use mdle_runtime::{Frame, Nanos};
+use mdle_runtime::{Frame, Nanos, Stamp, Stamps};
 use serde::Serialize;
 
 use crate::fsm::Lowered;
@@ -28,7 +28,11 @@ pub struct Bytes {
 pub(super) fn bytes(lowered: &Lowered) -> Bytes {
     let number = |count: usize| u64::try_from(count).unwrap_or(u64::MAX);
     // A cursor begins with the number of its atom, in front of numbers of eight bytes.
-    let cursor = size_of::<u64>() + lowered.levels * size_of::<Nanos>() + lowered.slots * size_of::<u64>();
+    let entries = match lowered.stamps {
+        true => size_of::<Stamps<'_, [Stamp; 0]>>() + lowered.levels * size_of::<Stamp>(),
+        false => lowered.levels * size_of::<Nanos>(),
+    };
+    let cursor = size_of::<u64>() + entries + lowered.slots * size_of::<u64>();
     let scopes = lowered.brackets.iter().map(|bracket| match bracket.kind {
         Kind::Scope { level } => usize::from(level) + 1,
         Kind::Loop { .. } => 0,

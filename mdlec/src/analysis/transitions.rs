@@ -172,7 +172,8 @@ fn certainty(condition: &Condition, quarks: &[QuarkId], choice: usize, entered: 
             quarks.iter().position(|quark| quark == id).map_or(unknown, |bit| known(choice >> bit & 1 == 1))
         }
         Condition::Wait { nanos, .. } => timer(*nanos),
-        Condition::Elapsed { from, until, .. } => {
+        // Of the way, too, nothing has been driven at first.
+        Condition::Elapsed { from, until, .. } | Condition::Driven { from, until, .. } => {
             let (from, until) = (timer(*from), until.map_or(known(true), |until| not(timer(until))));
             Certainty { can: from.can && until.can, must: from.must && until.must }
         }

@@ -19,6 +19,10 @@ pub(super) enum Variable {
     Timer(u32, u64),
     /// The same of a scope that has ended.
     Past(u32, u64),
+    /// So many nanometres have been driven since the scope of this bracket was entered.
+    Way(u32, u64),
+    /// The same of a scope that has ended.
+    PastWay(u32, u64),
     /// A memory of the interrupt of this bracket.
     Memory(u32, u32),
     /// What `after` asks.
@@ -32,6 +36,7 @@ pub(super) enum Variable {
 pub(super) fn possible(choices: &Choices, quarks: &[Quark], entered: &impl Fn(u32) -> u64) -> Table {
     let mut possible = choices.constant(true);
     let mut timers: Vec<(u32, u64, &Table)> = Vec::new();
+    let mut ways: Vec<(u32, u64, &Table)> = Vec::new();
     let mut families: BTreeMap<Family, Vec<(&Quark, &Table)>> = BTreeMap::new();
     for (variable, column) in choices.columns() {
         match variable {
@@ -44,15 +49,18 @@ pub(super) fn possible(choices: &Choices, quarks: &[Quark], entered: &impl Fn(u3
                     families.entry(family).or_default().push((quark, column));
                 }
             }
-            Variable::Own(..) | Variable::Past(..) | Variable::Memory(..) => {}
+            Variable::Way(bracket, nanometers) => ways.push((*bracket, *nanometers, column)),
+            Variable::Own(..) | Variable::Past(..) | Variable::PastWay(..) | Variable::Memory(..) => {}
             Variable::Fact(..) | Variable::PastFact(..) => {}
         }
     }
-    for (inner, at, over) in &timers {
-        for (outer, until, column) in &timers {
-            // The outer one has run for longer.
-            if !std::ptr::eq(*over, *column) && outer <= inner && until <= at {
-                possible = possible.and(&(*over).clone().not().or(column));
+    for counted in [timers, ways] {
+        for (inner, at, over) in &counted {
+            for (outer, until, column) in &counted {
+                // The outer one has run for longer, and farther.
+                if !std::ptr::eq(*over, *column) && outer <= inner && until <= at {
+                    possible = possible.and(&(*over).clone().not().or(column));
+                }
             }
         }
     }

@@ -154,7 +154,7 @@ impl<'l> World<'l> {
         }
         for variable in variables {
             // Timers are met by way of the other variables: every scope has some.
-            if !matches!(variable, Variable::Timer(..)) {
+            if !matches!(variable, Variable::Timer(..) | Variable::Way(..)) {
                 self.clauses.entry(variable).or_default().push(read);
                 added.clauses.push(variable);
             }
@@ -182,6 +182,9 @@ impl<'l> World<'l> {
 
     /// The value that a variable has here, if it has only one.
     fn known(&self, variable: Variable) -> Option<bool> {
+        if let Variable::Way(_, 0) = variable {
+            return Some(true);
+        }
         let Variable::Timer(bracket, nanos) = variable else {
             return self.units.get(&variable).map(|(value, _)| *value);
         };

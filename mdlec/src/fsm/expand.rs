@@ -55,6 +55,7 @@ fn expand_scope(scope: &Scope) -> Scope {
         name: scope.name.clone(),
         interrupt: scope.interrupt.clone(),
         body: expand_sequence(&scope.body),
+        here: scope.here,
         record: scope.record,
         marks: scope.marks.clone(),
         span: scope.span,

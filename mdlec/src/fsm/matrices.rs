@@ -16,6 +16,8 @@ use crate::plan::{Atom, Interrupt, Mark, Node, Nondegenerate, QuarkId, Record, S
 pub struct Matrices<'p> {
     /// The law of each state but the last, which is the termination state.
     pub laws: Vec<QuarkId>,
+    /// The angle by which the frame of each of these is turned, in radians.
+    pub frames: Vec<f64>,
     /// The interrupts in pre-order, atoms' own ones included.
     pub transitions: Vec<Transition<'p>>,
 }
@@ -29,6 +31,8 @@ pub struct Transition<'p> {
     pub name: &'p str,
     /// How many scopes are around its scope.
     pub level: usize,
+    /// Whether its scope is entered in a frame of its own: `FRAME here`.
+    pub here: bool,
     /// Where it leads.
     pub matrix: Matrix,
     /// The first interrupt, in pre-order, whose scope starts afresh when this one has fired: from there on all do that
@@ -93,22 +97,23 @@ impl Mul<UnitVector> for &Matrix {
 /// E0501 and E0502, as [`expand`](super::expand) has them.
 pub fn matrices(plan: &Nondegenerate) -> Result<Matrices<'_>, Diagnostic> {
     expanded_states(plan)?;
-    let mut brackets = Brackets { all: Vec::new(), laws: Vec::new(), interrupts: 0 };
+    let mut brackets = Brackets { all: Vec::new(), laws: Vec::new(), frames: Vec::new(), interrupts: 0 };
     brackets.scope(&plan.plan().root, Place { around: None, level: 0 });
     let size = brackets.laws.len() + 1;
     let transitions = brackets.all.iter().filter_map(|bracket| {
-        let Kind::Scope { interrupt, name, level, record } = bracket.kind else { return None };
+        let Kind::Scope { interrupt, name, level, here, record } = bracket.kind else { return None };
         let Destination { row, afresh, ends_with } = brackets.destination(bracket);
         let matrix = Matrix { size, first: bracket.first, last: bracket.last, row };
-        Some(Transition { interrupt, name, level, matrix, afresh, record, marks: bracket.marks, ends_with })
+        Some(Transition { interrupt, name, level, here, matrix, afresh, record, marks: bracket.marks, ends_with })
     });
-    Ok(Matrices { transitions: transitions.collect(), laws: brackets.laws })
+    Ok(Matrices { transitions: transitions.collect(), laws: brackets.laws, frames: brackets.frames })
 }
 
 /// The scopes and the loops, in pre-order.
 struct Brackets<'p> {
     all: Vec<Bracket<'p>>,
     laws: Vec<QuarkId>,
+    frames: Vec<f64>,
     /// The interrupts so far.
     interrupts: usize,
 }
@@ -133,6 +138,7 @@ enum Kind<'p> {
         interrupt: &'p Interrupt,
         name: &'p str,
         level: usize,
+        here: bool,
         record: Option<Record>,
     },
     /// All passes of a finite loop, one after the other.
@@ -159,7 +165,7 @@ struct Destination<'p> {
 impl<'p> Brackets<'p> {
     fn scope(&mut self, scope: &'p Scope, place: Place) {
         let (interrupt, name) = (&scope.interrupt, scope.name.as_str());
-        let kind = Kind::Scope { interrupt, name, level: place.level, record: scope.record };
+        let kind = Kind::Scope { interrupt, name, level: place.level, here: scope.here, record: scope.record };
         let here = self.open(kind, place, &scope.marks);
         self.sequence(&scope.body, Place { around: Some(here), level: place.level + 1 });
         self.close(here);
@@ -183,9 +189,11 @@ impl<'p> Brackets<'p> {
     }
 
     fn atom(&mut self, atom: &'p Atom, place: Place) {
-        let kind = Kind::Scope { interrupt: &atom.interrupt, name: "", level: place.level, record: None };
+        let (interrupt, level, here) = (&atom.interrupt, place.level, atom.here);
+        let kind = Kind::Scope { interrupt, name: "", level, here, record: None };
         let here = self.open(kind, place, &atom.marks);
         self.laws.push(atom.law);
+        self.frames.push(atom.frame);
         self.close(here);
     }
 

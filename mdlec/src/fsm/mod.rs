@@ -24,8 +24,8 @@ pub use validation::validate;
 
 use std::collections::BTreeMap;
 
-use mdle_runtime::Fsm;
 use mdle_runtime::fsm::{Atom, Bracket, Kind};
+use mdle_runtime::{Fsm, Here, Radians};
 
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::plan::{self, Interrupt, Mark, Node, Nondegenerate, Quark, QuarkId, Record, RecordId, Scope};
@@ -46,6 +46,8 @@ pub struct Lowered {
     pub scopes: Vec<Option<ScopeMeaning>>,
     /// What each atom means.
     pub laws: Vec<LawMeaning>,
+    /// The frame of each atom that is inside a `FRAME here`.
+    pub frames: Vec<Option<Here>>,
     /// The labels of what ends with a bracket, where there are any.
     pub marks: BTreeMap<u32, Vec<Mark>>,
     /// Where the record of each use of a definition is kept that `after` asks.
@@ -55,8 +57,12 @@ pub struct Lowered {
     pub memories: usize,
     /// Every quark with its arguments.
     pub quarks: Vec<Quark>,
-    /// How many levels of scopes there are down to the last one that has a `wait`: those below need no entry time.
+    /// How many levels of scopes there are down to the last one that has a `wait`, a `way` or a `FRAME here`: nothing is
+    /// kept of the entry of those below.
     pub levels: usize,
+    /// Whether the odometer's reading and the heading are kept of the entry of scopes, and not the time alone: where there
+    /// is a `way` or a `FRAME here`.
+    pub stamps: bool,
     /// How many loops are around an atom at most.
     pub slots: usize,
 }
@@ -75,7 +81,7 @@ pub struct ScopeMeaning {
 pub struct LawMeaning {
     /// Its law.
     pub quark: QuarkId,
-    /// The angle by which its frame is turned, in radians.
+    /// The angle by which its frame is turned, in radians; from the innermost `FRAME here` on, if there is one.
     pub frame: f64,
 }
 
@@ -95,6 +101,16 @@ impl Lowered {
     #[must_use]
     pub fn tables(&self) -> Fsm<'_> {
         Fsm { brackets: &self.brackets, atoms: &self.atoms, termination: self.termination }
+    }
+
+    /// The angle by which the plan's own frame is turned for an atom, in radians; 0 inside a `FRAME here`, which the
+    /// machine minds.
+    #[must_use]
+    pub fn turned(&self, atom: usize) -> f64 {
+        match (self.laws.get(atom), self.frames.get(atom)) {
+            (Some(law), Some(None)) => law.frame,
+            _ => 0.0,
+        }
     }
 
     /// The quark of an id.
@@ -118,15 +134,17 @@ pub fn algorithm1(nondegenerate: &Nondegenerate) -> Result<Lowered, Diagnostic> 
             termination: 0,
             scopes: Vec::new(),
             laws: Vec::new(),
+            frames: Vec::new(),
             marks: BTreeMap::new(),
             records: BTreeMap::new(),
             memories: 0,
             quarks: plan.quarks.clone(),
             levels: 0,
+            stamps: false,
             slots: 0,
         },
     };
-    let states = lowering.scope(&plan.root, Place { parent: 0, level: 0, slot: 0, state: 1 })?;
+    let states = lowering.scope(&plan.root, Place { parent: 0, level: 0, slot: 0, state: 1, here: None })?;
     lowering.lowered.termination = states + 1;
     validate(nondegenerate, &lowering.lowered)?;
     observation1(&lowering.lowered)?;
@@ -144,6 +162,8 @@ struct Place {
     level: u16,
     slot: u16,
     state: u64,
+    /// The level of the innermost scope around it with `FRAME here`.
+    here: Option<u16>,
 }
 
 impl Lowering {
@@ -156,7 +176,8 @@ impl Lowering {
             self.lowered.records.insert(id, RecordPlace { level: place.level, first, facts });
             self.memories(first.saturating_add(facts));
         }
-        let inside = Place { parent: bracket, level: place.level.saturating_add(1), ..place };
+        let here = self.here(scope.here, place);
+        let inside = Place { parent: bracket, level: place.level.saturating_add(1), here, ..place };
         let states = self.sequence(&scope.body, inside, scope.span)?;
         self.close(bracket);
         Ok(states)
@@ -182,8 +203,20 @@ impl Lowering {
         let meaning = ScopeMeaning { name: String::new(), interrupt: atom.interrupt.clone() };
         let scope = self.bracket(Kind::Scope { level: place.level }, place.parent, Some(meaning), &atom.marks);
         self.lowered.atoms.push(Atom { scope, state: place.state });
+        let here = self.here(atom.here, place);
         self.lowered.laws.push(LawMeaning { quark: atom.law, frame: atom.frame });
+        self.lowered.frames.push(here.map(|level| Here { level, turned: Radians(atom.frame) }));
         1
+    }
+
+    /// The innermost scope with `FRAME here` for what is inside a scope at `place`, which may have one itself.
+    fn here(&mut self, is_here: bool, place: Place) -> Option<u16> {
+        if !is_here {
+            return place.here;
+        }
+        self.lowered.levels = self.lowered.levels.max(usize::from(place.level) + 1);
+        self.lowered.stamps = true;
+        Some(place.level)
     }
 
     fn repeated(&mut self, repeated: &plan::Loop, place: Place) -> Result<u64, Diagnostic> {
@@ -207,9 +240,10 @@ impl Lowering {
     fn bracket(&mut self, kind: Kind, parent: u32, meaning: Option<ScopeMeaning>, marks: &[Mark]) -> u32 {
         self.memories(meaning.as_ref().map_or(0, |meaning| meaning.interrupt.memories));
         if let (Kind::Scope { level }, Some(meaning)) = (kind, &meaning)
-            && meaning.interrupt.condition.waits()
+            && (meaning.interrupt.condition.waits() || meaning.interrupt.condition.drives())
         {
             self.lowered.levels = self.lowered.levels.max(usize::from(level) + 1);
+            self.lowered.stamps |= meaning.interrupt.condition.drives();
         }
         let number = u32::try_from(self.lowered.brackets.len()).unwrap_or(u32::MAX);
         let first = u32::try_from(self.lowered.atoms.len()).unwrap_or(u32::MAX);

@@ -9,6 +9,7 @@
 use std::fmt;
 
 use mdle_runtime::fsm::{Bracket, Kind};
+use mdle_runtime::{Here, Radians};
 
 use super::{Lowered, RecordPlace};
 use crate::diagnostic::{Code, Diagnostic, Span};
@@ -22,7 +23,7 @@ use crate::plan::{Interrupt, Mark, Node, Nondegenerate, Record, Scope};
 pub fn validate(plan: &Nondegenerate, lowered: &Lowered) -> Result<(), Diagnostic> {
     let root = &plan.plan().root;
     let mut walk = Walk { lowered, brackets: 0, atoms: 0 };
-    let states = walk.scope(root, Around { holder: 0, behind: None, scopes: 0, loops: 0, states: 0 })?;
+    let states = walk.scope(root, Around { holder: 0, behind: None, scopes: 0, loops: 0, states: 0, here: None })?;
     same(root.span, "its brackets", walk.brackets, lowered.brackets.len() as u32)?;
     same(root.span, "its atoms", walk.atoms, lowered.atoms.len() as u32)?;
     same(
@@ -47,6 +48,8 @@ struct Around {
     loops: u16,
     /// How many states of the expanded plan come before it, in the first pass of every loop.
     states: u128,
+    /// The level of the innermost scope around it that is entered in a frame of its own.
+    here: Option<u16>,
 }
 
 /// What happens when a node ends: one step outwards.
@@ -71,7 +74,12 @@ impl Walk<'_> {
     /// Holds a scope against the machine; the number of its states.
     fn scope(&mut self, scope: &Scope, around: Around) -> Result<u128, Diagnostic> {
         let (number, first) = self.met();
-        let inside = Around { holder: number, scopes: around.scopes.saturating_add(1), ..around };
+        let inside = Around {
+            holder: number,
+            scopes: around.scopes.saturating_add(1),
+            here: self.here(scope.here, around, scope.span)?,
+            ..around
+        };
         let states = self.sequence(&scope.body, inside)?;
         let kind = Kind::Scope { level: around.scopes };
         self.bracket(number, first, kind, around, scope.span)?;
@@ -127,9 +135,27 @@ impl Walk<'_> {
         let made = self.lowered.atoms.get(first as usize);
         let made = made.map(|made| (made.scope, u128::from(made.state)));
         same(atom.span, "its bracket and state", Some((number, around.states + 1)), made)?;
+        let here = self.here(atom.here, around, atom.span)?;
         let law = self.lowered.laws.get(first as usize).map(|law| (law.quark, law.frame.to_bits()));
         same(atom.span, "its law and frame", Some((atom.law, atom.frame.to_bits())), law)?;
+        let asked = here.map(|level| Here { level, turned: Radians(atom.frame) });
+        same(atom.span, "its frame", Some(&asked), self.lowered.frames.get(first as usize))?;
         Ok(1)
+    }
+
+    /// The innermost scope with `FRAME here` inside a scope that may have one itself, for which there must be a place.
+    fn here(&self, is_here: bool, around: Around, span: Span) -> Result<Option<u16>, Diagnostic> {
+        let Lowered { stamps, levels, .. } = *self.lowered;
+        match is_here {
+            true if stamps && usize::from(around.scopes) < levels => Ok(Some(around.scopes)),
+            true => Err(mismatch(
+                span,
+                "its heading",
+                &format!("one of level {}", around.scopes),
+                &format!("headings of {levels} levels"),
+            )),
+            false => Ok(around.here),
+        }
     }
 
     /// The number of the next bracket, and of the first atom in it.
@@ -194,6 +220,10 @@ impl Walk<'_> {
         if interrupt.condition.waits() && usize::from(around.scopes) >= levels {
             let asked = format!("one of level {}", around.scopes);
             return Err(mismatch(span, "its timer", &asked, &format!("timers of {levels} levels")));
+        }
+        if interrupt.condition.drives() && (usize::from(around.scopes) >= levels || !self.lowered.stamps) {
+            let asked = format!("one of level {}", around.scopes);
+            return Err(mismatch(span, "its way", &asked, &format!("ways of {levels} levels")));
         }
         Ok(())
     }

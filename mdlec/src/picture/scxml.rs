@@ -4,7 +4,7 @@
 //! atom of the expanded plan is a state, and has the transitions of all scopes around it in document order, the outermost
 //! first. What starts afresh with a state, which SCXML would tell by entering states, is told by assignments.
 //!
-//! An event `turn` brings what a line of a script has (`t`, `fired`, `completed`); afterwards transitions without an event
+//! An event `turn` brings what a line of a script has (`t`, `way`, `fired`, `completed`); afterwards transitions without an event
 //! are taken as long as there are any, at most [`TRANSITIONS_PER_TURN`], and `law` is what is applied.
 
 use std::collections::BTreeMap;
@@ -73,6 +73,11 @@ impl<'p> Machine<'_, 'p> {
         self.line(2, &format!("<data id=\"{id}\" expr=\"{value}\"/>"));
     }
 
+    /// Returns `true` if the plan asks how far the robot has driven.
+    fn drives(&self) -> bool {
+        self.made.transitions.iter().any(|transition| transition.interrupt.condition.drives())
+    }
+
     fn transition(&self, number: usize) -> &Transition<'p> {
         &self.made.transitions[number]
     }
@@ -84,12 +89,18 @@ impl<'p> Machine<'_, 'p> {
         self.line(0, &format!("<scxml {space} name=\"{name}\" initial=\"a1\">"));
         self.line(1, "<datamodel>");
         let data = [("n", BEFORE.to_string().as_str()), ("start", "0"), ("t", "0"), ("fired", "[]")].map(owned);
+        if self.drives() {
+            ["origin", "way"].iter().for_each(|id| self.data(id, "0"));
+        }
         let others = [("completed", "[]"), ("law", "null"), ("cause", "-1")].map(owned);
         data.into_iter().chain(others).for_each(|(id, value)| self.data(&id, &value));
         for number in 0..self.made.transitions.len() {
             let interrupt = self.transition(number).interrupt;
             if interrupt.condition.waits() {
                 self.data(&entered(number), "0");
+            }
+            if interrupt.condition.drives() {
+                self.data(&begun(number), "0");
             }
             (0..interrupt.memories).for_each(|memory| self.data(&risen(number, memory), "false"));
         }
@@ -155,8 +166,14 @@ impl<'p> Machine<'_, 'p> {
         }
         self.line(3, &format!("<if cond=\"n == {BEFORE}\">"));
         self.assign(4, "start", "_event.data.t");
+        if self.drives() {
+            self.assign(4, "origin", "_event.data.way || 0");
+        }
         self.line(3, "</if>");
         self.assign(3, "t", "_event.data.t - start");
+        if self.drives() {
+            self.assign(3, "way", "(_event.data.way || 0) - origin");
+        }
         self.assign(3, "fired", "_event.data.fired || []");
         self.assign(3, "completed", "_event.data.completed || []");
         self.assign(3, "n", "0");
@@ -178,6 +195,9 @@ impl<'p> Machine<'_, 'p> {
             let Transition { interrupt, record, .. } = &made.transitions[begun];
             if interrupt.condition.waits() {
                 self.assign(3, &entered(begun), "t");
+            }
+            if interrupt.condition.drives() {
+                self.assign(3, &self::begun(begun), "way");
             }
             (0..interrupt.memories).for_each(|memory| self.assign(3, &risen(begun, memory), "false"));
             if let Some(kept) = record {
@@ -229,6 +249,7 @@ impl<'p> Machine<'_, 'p> {
             format!("({})", operands.join(sign))
         };
         let waited = |nanos: &u64| format!("Math.round((t - {}) * 1000000000) >= {nanos}", entered(number));
+        let driven = |nanometers: &u64| format!("Math.round((way - {}) * 1000000000) >= {nanometers}", begun(number));
         match condition {
             Condition::Null => "false".into(),
             Condition::Quark(id) => format!("fired.indexOf({}) >= 0", text(self.plan.quark(*id))),
@@ -236,6 +257,10 @@ impl<'p> Machine<'_, 'p> {
             Condition::Elapsed { from, until: None, .. } => waited(from),
             Condition::Elapsed { from, until: Some(until), .. } => {
                 format!("({} && !({}))", waited(from), waited(until))
+            }
+            Condition::Driven { from, until: None, .. } => driven(from),
+            Condition::Driven { from, until: Some(until), .. } => {
+                format!("({} && !({}))", driven(from), driven(until))
             }
             Condition::Or(operands) => joined(operands, " || "),
             Condition::And(operands) => joined(operands, " && "),
@@ -259,6 +284,11 @@ fn owned((id, value): (&str, &str)) -> (String, String) {
 /// When the scope of an interrupt was entered.
 fn entered(number: usize) -> String {
     format!("entered{}", number + 1)
+}
+
+/// The odometer's reading when the scope of an interrupt was entered.
+fn begun(number: usize) -> String {
+    format!("begun{}", number + 1)
 }
 
 /// A memory of RISING.

@@ -1,4 +1,5 @@
-//! Comparisons of signals: which signals, in which unit, and `t`, the time since the scope was entered (language, section 3).
+//! Comparisons of signals: which signals, in which unit, and `t` and `way`, the time and the path driven since the scope was
+//! entered (language, section 3).
 
 use super::arguments::{Fitted, value};
 use super::parameters::{Names, Parameter};
@@ -10,6 +11,8 @@ use crate::syntax::tree::{self, Arg, Call, Number, Operand};
 
 /// The signal that is time.
 const TIME: &str = "t";
+/// The signal that is the length of the path driven.
+const WAY: &str = "way";
 
 type Resolved<T> = Result<T, Vec<Diagnostic>>;
 
@@ -38,6 +41,14 @@ pub fn is_time(declaration: &Declaration) -> bool {
     declaration.name == TIME
         && declaration.params.is_empty()
         && declaration.unit.is_some_and(|(unit, _)| unit.kind == Kind::Time)
+}
+
+/// Returns `true` if a declaration is the signal `way`, the length of the path driven since a scope was entered.
+#[must_use]
+pub fn is_way(declaration: &Declaration) -> bool {
+    declaration.name == WAY
+        && declaration.params.is_empty()
+        && declaration.unit.is_some_and(|(unit, _)| unit.kind == Kind::Length)
 }
 
 /// The condition that a comparison is.
@@ -86,7 +97,11 @@ pub(super) fn resolve(
     let left = quarks.get(signal.quark).map(|quark| quark.text.as_str()).unwrap_or_default();
     let text = format!("{left} {} {text}", operator.symbol());
     let comparison = Comparison { signal: signal.quark, operator, with, tolerance };
-    let elapsed = if is_time(signal.declaration) { Some(elapsed(&comparison, span)?) } else { None };
+    let counted = match signal.declaration {
+        time if is_time(time) => Some((Counted::Time, interval(&comparison, Counted::Time, span)?)),
+        way if is_way(way) => Some((Counted::Way, interval(&comparison, Counted::Way, span)?)),
+        _ => None,
+    };
     let quark = quarks.add(Quark {
         name: operator.symbol().to_owned(),
         overload: 0,
@@ -96,8 +111,9 @@ pub(super) fn resolve(
         comparison: Some(comparison),
         text,
     });
-    Ok(match elapsed {
-        Some((from, until)) => Condition::Elapsed { from, until, quark },
+    Ok(match counted {
+        Some((Counted::Time, (from, until))) => Condition::Elapsed { from, until, quark },
+        Some((Counted::Way, (from, until))) => Condition::Driven { from, until, quark },
         None => Condition::Quark(quark),
     })
 }
@@ -141,6 +157,10 @@ fn same_kind(one: Signal<'_>, other: Signal<'_>, span: Span) -> Resolved<Value> 
         let message = "`t`, the time since the scope was entered, is compared with a number".to_owned();
         return Err(refused(message, "as in `t > 5s`"));
     }
+    if is_way(one.declaration) || is_way(other.declaration) {
+        let message = "`way`, the path driven since the scope was entered, is compared with a number".to_owned();
+        return Err(refused(message, "as in `way > 3m`"));
+    }
     if one.unit.kind != other.unit.kind {
         let message = format!("{} cannot be compared with {}", one.unit.kind.words(), other.unit.kind.words());
         return Err(refused(message, ""));
@@ -152,8 +172,17 @@ fn same_kind(one: Signal<'_>, other: Signal<'_>, span: Span) -> Resolved<Value> 
     Ok(if si(one) >= si(other) { one.tolerance() } else { other.tolerance() })
 }
 
-/// The nanoseconds from which on, and until which, a comparison of `t` holds.
-fn elapsed(comparison: &Comparison, span: Span) -> Resolved<(u64, Option<u64>)> {
+/// What is counted from the entry of a scope on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Counted {
+    /// `t`, in nanoseconds.
+    Time,
+    /// `way`, in nanometres.
+    Way,
+}
+
+/// The count from which on, and until which, a comparison of `t` or `way` holds.
+fn interval(comparison: &Comparison, counted: Counted, span: Span) -> Resolved<(u64, Option<u64>)> {
     let nanos = |value: &Value| match value {
         Value::Quantity { exact, .. } => exact.to_nanos(),
         Value::Infinity(_) => Some(u64::MAX),
@@ -166,7 +195,12 @@ fn elapsed(comparison: &Comparison, span: Span) -> Resolved<(u64, Option<u64>)> 
         Compared::Signal(_) => None,
     };
     let (Some(time), Some(tolerance)) = (time, nanos(&comparison.tolerance)) else {
-        let message = "`t` is the time since the scope was entered: from 0 to some hundred years";
+        let message = match counted {
+            Counted::Time => "`t` is the time since the scope was entered: from 0 to some hundred years",
+            Counted::Way => {
+                "`way` is the length of the path driven since the scope was entered: from 0 to some million kilometres"
+            }
+        };
         return Err(vec![Diagnostic::new(Code::E0304, message, span, "out of range")]);
     };
     let behind = |time: u64| time.saturating_add(1);

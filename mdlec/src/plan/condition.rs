@@ -25,6 +25,16 @@ pub enum Condition {
         /// The comparison, for its text.
         quark: QuarkId,
     },
+    /// Fires while the length of the path driven since the scope of the interrupt was entered is in this interval: a
+    /// comparison of `way`.
+    Driven {
+        /// From so many nanometres on ...
+        from: u64,
+        /// ... and until so many have been driven.
+        until: Option<u64>,
+        /// The comparison, for its text.
+        quark: QuarkId,
+    },
     /// At least one of these, two or more.
     Or(Vec<Condition>),
     /// All of these, two or more.
@@ -59,6 +69,8 @@ pub trait Situation {
     fn quark(&self, quark: QuarkId) -> bool;
     /// Whether so many nanoseconds have passed since the scope was entered.
     fn waited(&self, nanos: u64) -> bool;
+    /// Returns `true` if so many nanometres have been driven since the scope was entered.
+    fn driven(&self, nanometers: u64) -> bool;
     /// Whether a memory of the scope's interrupt is set.
     fn remembers(&self, memory: u32) -> bool;
     /// Whether this is so of a record.
@@ -73,6 +85,7 @@ impl Condition {
             Self::Quark(id) => at.quark(*id),
             Self::Wait { nanos, .. } => at.waited(*nanos),
             Self::Elapsed { from, until, .. } => at.waited(*from) & !until.is_some_and(|until| at.waited(until)),
+            Self::Driven { from, until, .. } => at.driven(*from) & !until.is_some_and(|until| at.driven(until)),
             Self::Or(operands) => operands.iter().fold(false, |fired, operand| fired | operand.fired(at)),
             Self::And(operands) => operands.iter().fold(true, |fired, operand| fired & operand.fired(at)),
             Self::Not(operand) => !operand.fired(at),
@@ -98,10 +111,17 @@ impl Condition {
         self.any(&|part| matches!(part, Self::Wait { .. } | Self::Elapsed { .. }))
     }
 
+    /// Returns `true` if it asks where its scope was entered.
+    #[must_use]
+    pub fn drives(&self) -> bool {
+        self.any(&|part| matches!(part, Self::Driven { .. }))
+    }
+
     /// Visits every RISING in it: the number of its memory, and its operand.
     pub fn each_rising(&self, visit: &mut impl FnMut(u32, &Self)) {
         match self {
-            Self::Null | Self::Quark(_) | Self::Wait { .. } | Self::Elapsed { .. } | Self::After(_) => {}
+            Self::Null | Self::Quark(_) | Self::Wait { .. } | Self::Elapsed { .. } => {}
+            Self::Driven { .. } | Self::After(_) => {}
             Self::Or(operands) | Self::And(operands) => {
                 operands.iter().for_each(|operand| operand.each_rising(visit));
             }
@@ -116,7 +136,7 @@ impl Condition {
     /// Visits every quark in it; timers are none.
     pub fn each_quark(&self, visit: &mut impl FnMut(QuarkId)) {
         match self {
-            Self::Null | Self::Wait { .. } | Self::Elapsed { .. } | Self::After(_) => {}
+            Self::Null | Self::Wait { .. } | Self::Elapsed { .. } | Self::Driven { .. } | Self::After(_) => {}
             Self::Quark(id) => visit(*id),
             Self::Or(operands) | Self::And(operands) => operands.iter().for_each(|operand| operand.each_quark(visit)),
             Self::Not(operand) | Self::Rising { operand, .. } => operand.each_quark(visit),
@@ -127,7 +147,8 @@ impl Condition {
     #[must_use]
     pub fn parts(&self) -> usize {
         match self {
-            Self::Null | Self::Quark(_) | Self::Wait { .. } | Self::Elapsed { .. } | Self::After(_) => 1,
+            Self::Null | Self::Quark(_) | Self::Wait { .. } | Self::Elapsed { .. } => 1,
+            Self::Driven { .. } | Self::After(_) => 1,
             Self::Or(operands) | Self::And(operands) => 1 + operands.iter().map(Self::parts).sum::<usize>(),
             Self::Not(operand) | Self::Rising { operand, .. } => 1 + operand.parts(),
         }
@@ -137,7 +158,8 @@ impl Condition {
     pub fn any(&self, is_so: &impl Fn(&Self) -> bool) -> bool {
         is_so(self)
             || match self {
-                Self::Null | Self::Quark(_) | Self::Wait { .. } | Self::Elapsed { .. } | Self::After(_) => false,
+                Self::Null | Self::Quark(_) | Self::Wait { .. } | Self::Elapsed { .. } => false,
+                Self::Driven { .. } | Self::After(_) => false,
                 Self::Or(operands) | Self::And(operands) => operands.iter().any(|operand| operand.any(is_so)),
                 Self::Not(operand) | Self::Rising { operand, .. } => operand.any(is_so),
             }

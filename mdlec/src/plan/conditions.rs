@@ -54,7 +54,7 @@ fn without_infinite_waits(condition: Condition) -> Condition {
             Condition::Rising { memory, operand: Box::new(without_infinite_waits(*operand)) }
         }
         other @ (Condition::Null | Condition::Quark(_) | Condition::Wait { .. } | Condition::Elapsed { .. })
-        | other @ Condition::After(_) => other,
+        | other @ (Condition::Driven { .. } | Condition::After(_)) => other,
     }
 }
 
@@ -171,9 +171,10 @@ fn text(condition: &Condition, quark: &impl Fn(QuarkId) -> String, around: Prece
     };
     let (text, precedence) = match condition {
         Condition::Null => ("null".to_owned(), Precedence::Test),
-        Condition::Quark(id) | Condition::Wait { quark: id, .. } | Condition::Elapsed { quark: id, .. } => {
-            (quark(*id), Precedence::Test)
-        }
+        Condition::Quark(id)
+        | Condition::Wait { quark: id, .. }
+        | Condition::Elapsed { quark: id, .. }
+        | Condition::Driven { quark: id, .. } => (quark(*id), Precedence::Test),
         // An OR inside an OR needs no parentheses: the text is flattened, the condition stays as written.
         Condition::Or(operands) => (join(operands, " OR ", inside_or), Precedence::Or),
         Condition::And(operands) => (join(operands, " AND ", Precedence::And), Precedence::And),

@@ -4,7 +4,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::angle::frame_text;
+use super::angle::{HERE, frame_text};
 use super::{Atom, Interrupt, Mark, Node, Plan, Scope};
 
 /// The longest line, where there is a choice.
@@ -79,16 +79,18 @@ impl<'p> Writer<'p> {
             Some((name, arguments)) => format!("{name}({arguments})"),
             None => text.clone(),
         };
-        format!("{}({law}, {})", frame_text(atom.frame), interrupt(&atom.interrupt))
+        let frame = if atom.here { HERE.to_owned() } else { frame_text(atom.frame) };
+        format!("{frame}({law}, {})", interrupt(&atom.interrupt))
     }
 
     fn scope(&mut self, scope: &'p Scope) -> Vec<String> {
+        let here = if scope.here { HERE } else { "" };
         if scope.record.is_some() {
             let name = self.distinct(&scope.name);
             self.definition(name.clone(), scope);
-            return vec![name];
+            return vec![format!("{here}{name}")];
         }
-        around(self.sequence(&scope.body), "(", &format!(", {})", interrupt(&scope.interrupt)))
+        around(self.sequence(&scope.body), &format!("{here}("), &format!(", {})", interrupt(&scope.interrupt)))
     }
 
     /// A name like this one that no plan and no quark of the text has.

@@ -61,7 +61,7 @@ impl<'q> Functions<'q> {
             Condition::Null => true,
             Condition::Quark(id) => self.quarks.get(id.0 as usize).is_some_and(|quark| !quark.remembers),
             Condition::Wait { .. } => !under_not,
-            Condition::Elapsed { .. } | Condition::Rising { .. } => false,
+            Condition::Elapsed { .. } | Condition::Driven { .. } | Condition::Rising { .. } => false,
             // It is the same label of the same use of a plan, or it is another one.
             Condition::After(_) => true,
             Condition::Or(operands) | Condition::And(operands) => {
@@ -74,7 +74,10 @@ impl<'q> Functions<'q> {
     fn normal(&self, condition: &Condition) -> Normal {
         match condition {
             Condition::Null => Normal::Null,
-            Condition::Quark(id) | Condition::Wait { quark: id, .. } | Condition::Elapsed { quark: id, .. } => {
+            Condition::Quark(id)
+            | Condition::Wait { quark: id, .. }
+            | Condition::Elapsed { quark: id, .. }
+            | Condition::Driven { quark: id, .. } => {
                 Normal::Quark(self.same.get(id.0 as usize).copied().unwrap_or(*id))
             }
             Condition::Or(operands) => {

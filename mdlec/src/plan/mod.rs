@@ -25,9 +25,9 @@ pub(crate) mod untyped;
 mod words;
 
 pub use crate::syntax::tree::Comparison as Operator;
-pub use angle::{frame_text, in_degrees};
+pub use angle::{HERE, frame_text, in_degrees};
 pub use arguments::signature;
-pub use comparisons::is_time;
+pub use comparisons::{is_time, is_way};
 pub use condition::{After, Condition, Situation};
 pub use conditions::condition_text;
 pub use functions::{Function, Functions};
@@ -133,6 +133,8 @@ pub struct Scope {
     pub interrupt: Interrupt,
     /// What it runs, in order; never empty.
     pub body: Vec<Node>,
+    /// Whether its frame is the robot's heading at the moment it is entered: `FRAME here`.
+    pub here: bool,
     /// For the outermost scope of a plan in which `after` stands: the record of this use of it.
     pub record: Option<Record>,
     /// The labels of what ends with it.
@@ -159,8 +161,11 @@ pub struct Atom {
     pub law: QuarkId,
     /// Its interrupt.
     pub interrupt: Interrupt,
-    /// The angle by which its frame is turned, in radians, counter-clockwise.
+    /// The angle by which its frame is turned, in radians, counter-clockwise; from the innermost `FRAME here` on, if there
+    /// is one.
     pub frame: f64,
+    /// Whether its frame is the robot's heading at the moment it is entered: `FRAME here`.
+    pub here: bool,
     /// The labels of what ends with it.
     pub marks: Vec<Mark>,
     /// Where it is.

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::angle::frame_text;
+use super::angle::{HERE, frame_text};
 use super::{Atom, Interrupt, Node, Plan, Scope};
 
 impl fmt::Display for Plan {
@@ -43,7 +43,8 @@ impl Printer<'_> {
         let name = if scope.name.is_empty() { "_" } else { scope.name.as_str() };
         let condition = condition(&scope.interrupt);
         let condition = if condition == "null" { String::new() } else { format!(" ({condition})") };
-        self.line(&format!("{{ {name}{condition}"));
+        let here = if scope.here { HERE } else { "" };
+        self.line(&format!("{here}{{ {name}{condition}"));
         self.inside(&scope.body);
         self.line("}");
     }
@@ -67,7 +68,7 @@ impl Printer<'_> {
 
     fn atom(&mut self, atom: &Atom) {
         self.atoms += 1;
-        let frame = frame_text(atom.frame);
+        let frame = if atom.here { HERE.to_owned() } else { frame_text(atom.frame) };
         let number = if self.numbered { format!("  // a{}", self.atoms) } else { String::new() };
         let law = &self.plan.quark(atom.law).text;
         self.line(&format!("{frame}(Atom ({}) {law}){number}", condition(&atom.interrupt)));

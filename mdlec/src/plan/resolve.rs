@@ -11,7 +11,7 @@ use super::quarks::Quarks;
 use super::{Atom, Decimal, Interrupt, Loop, Node, Plan, RecordId, Scope};
 use crate::alphabet::{self, Alphabet, DeclarationKind, Kind, Unit};
 use crate::diagnostic::{Code, Diagnostic, Span, has_errors};
-use crate::syntax::tree::{self, Arg, Call, ConditionNode, Count, Element, Formal, Number, Primary};
+use crate::syntax::tree::{self, Arg, Call, ConditionNode, Count, Element, Formal, Frame, Number, Primary};
 use crate::syntax::{Files, foreign};
 
 /// The largest angle of a FRAME, in its unit: far beyond a full circle, and sums of it are still exact enough.
@@ -31,7 +31,7 @@ pub fn resolve(files: &Files, alphabet: &Alphabet, wanted: Option<&str>) -> (Vec
     for (index, plan) in definitions.plans.iter().enumerate() {
         let parameters = Parameters::declared(plan, &mut found);
         let mut resolver = Resolver::new(&definitions, alphabet, Uses::Check);
-        let (root, _) = resolver.plan(plan, parameters, 0.0);
+        let (root, _) = resolver.plan(plan, parameters, Framing::PLAN);
         found.append(&mut resolver.found);
         // Where no copy of another plan belongs, nothing is left to be done.
         if names.contains(plan.name.node) && definitions.stands_alone(index) {
@@ -50,7 +50,7 @@ pub fn resolve(files: &Files, alphabet: &Alphabet, wanted: Option<&str>) -> (Vec
             return (plan, Vec::new());
         }
         let mut resolver = Resolver::new(&definitions, alphabet, Uses::Copy);
-        let (root, _) = resolver.plan(plan, Parameters::default(), 0.0);
+        let (root, _) = resolver.plan(plan, Parameters::default(), Framing::PLAN);
         (Plan { root, quarks: resolver.quarks.into_vec() }, resolver.found)
     };
     let (plans, more): (Vec<_>, Vec<_>) = asked.iter().map(&mut copy).unzip();
@@ -69,6 +69,34 @@ enum Uses {
     Check,
     /// Put a copy there: safe once all plans are known to be good, and none to contain itself.
     Copy,
+}
+
+/// The frame of an element.
+#[derive(Clone, Copy)]
+struct Framing {
+    /// The sum of the angles by which it is turned, in radians, from the innermost `FRAME here` on.
+    turned: f64,
+    /// Whether `FRAME here` is written before this very element.
+    here: bool,
+}
+
+impl Framing {
+    /// That of a plan by itself.
+    const PLAN: Self = Self { turned: 0.0, here: false };
+
+    /// That of the elements inside.
+    fn inside(self) -> Self {
+        Self { here: false, ..self }
+    }
+}
+
+/// A sequence as a scope that is entered in a frame of its own; nothing where there is nothing to run.
+fn framed(body: Vec<Node>, span: Span) -> Vec<Node> {
+    if body.is_empty() {
+        return body;
+    }
+    let (name, interrupt) = (String::new(), Interrupt::none(span));
+    vec![Node::Scope(Scope { name, interrupt, body, here: true, record: None, marks: Vec::new(), span })]
 }
 
 struct Resolver<'r, 'a> {
@@ -92,7 +120,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
     }
 
     /// A plan of the file, with labels and parameters of its own.
-    fn plan(&mut self, plan: &tree::Plan<'a>, parameters: Parameters<'a>, frame: f64) -> (Scope, Ends) {
+    fn plan(&mut self, plan: &tree::Plan<'a>, parameters: Parameters<'a>, frame: Framing) -> (Scope, Ends) {
         let labels = std::mem::replace(&mut self.labels, Labels::new(RecordId(self.begun)));
         self.begun = self.begun.saturating_add(1);
         let parameters = std::mem::replace(&mut self.parameters, parameters);
@@ -103,7 +131,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
     }
 
     /// A behavior in place.
-    fn behavior(&mut self, plan: &tree::Plan<'a>, frame: f64) -> (Scope, Ends) {
+    fn behavior(&mut self, plan: &tree::Plan<'a>, frame: Framing) -> (Scope, Ends) {
         if !plan.params.is_empty() {
             self.found.push(parameters::missing(plan, "it is written in place"));
             let own = Parameters::declared(plan, &mut self.found);
@@ -112,12 +140,12 @@ impl<'r, 'a> Resolver<'r, 'a> {
         self.scope(plan, frame)
     }
 
-    fn scope(&mut self, plan: &tree::Plan<'a>, frame: f64) -> (Scope, Ends) {
+    fn scope(&mut self, plan: &tree::Plan<'a>, frame: Framing) -> (Scope, Ends) {
         let (interrupt, ends) = self.interrupt(plan.condition.as_ref(), plan.name.span);
         let first = self.words_of_name(plan);
         let body = self.sequence(plan.elements.get(first..).unwrap_or(&[]), frame);
         let (name, span) = (plan.name.node.to_owned(), plan.name.span);
-        (Scope { name, interrupt, body, record: None, marks: Vec::new(), span }, ends)
+        (Scope { name, interrupt, body, here: frame.here, record: None, marks: Vec::new(), span }, ends)
     }
 
     /// Reports `{ My Plan (bumper) …`, a name of two words; the number of elements that were read from it.
@@ -149,7 +177,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         (interrupt, Ends::Operands(operands))
     }
 
-    fn sequence(&mut self, elements: &[Element<'a>], frame: f64) -> Vec<Node> {
+    fn sequence(&mut self, elements: &[Element<'a>], frame: Framing) -> Vec<Node> {
         let mut nodes = Vec::with_capacity(elements.len());
         for element in elements {
             self.element(element, frame, &mut nodes);
@@ -157,13 +185,16 @@ impl<'r, 'a> Resolver<'r, 'a> {
         nodes
     }
 
-    fn element(&mut self, element: &Element<'a>, frame: f64, nodes: &mut Vec<Node>) {
+    fn element(&mut self, element: &Element<'a>, frame: Framing, nodes: &mut Vec<Node>) {
         let first = nodes.len();
         if let Some(label) = element.label() {
             self.labels.add(label, &mut self.found);
         }
-        let turned = element.frame().map_or(0.0, |number| self.angle(number));
-        let frame = frame + turned;
+        let frame = match element.frame() {
+            None => frame.inside(),
+            Some(Frame::Turned(number)) => Framing { turned: frame.turned + self.angle(number), here: false },
+            Some(Frame::Here) => Framing { turned: 0.0, here: true },
+        };
         let ends = match element.power() {
             None => self.primary(element, frame, nodes),
             Some(power) => self.power(power, element, frame, nodes),
@@ -178,23 +209,30 @@ impl<'r, 'a> Resolver<'r, 'a> {
     }
 
     /// Each form has a function of its own: plans are used in plans, and a level of them is to take little of the stack.
-    fn primary(&mut self, element: &Element<'a>, frame: f64, nodes: &mut Vec<Node>) -> Ends {
+    fn primary(&mut self, element: &Element<'a>, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
         match &element.primary {
             Primary::Atom(atom) => self.written(atom, element.span, frame, nodes),
             Primary::Plan(plan) => self.in_place(plan, frame, nodes),
             Primary::Ref(call) => self.used(call, frame, nodes),
             Primary::Exec(exec) => self.exec(exec, element.span, frame, nodes),
-            Primary::String(elements) => {
-                elements.iter().for_each(|inner| self.element(inner, frame, nodes));
-                Ends::WithItsLast
-            }
+            Primary::String(elements) => self.string(elements, element.span, frame, nodes),
             Primary::Formal(formal) => self.formal(formal, element.span, frame, nodes),
             Primary::Broken => Ends::Unknown,
         }
     }
 
+    /// `(s)`: an open string, which `FRAME here` makes a scope.
+    fn string(&mut self, elements: &[Element<'a>], span: Span, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
+        if frame.here {
+            nodes.extend(framed(self.sequence(elements, frame), span));
+        } else {
+            elements.iter().for_each(|inner| self.element(inner, frame, nodes));
+        }
+        Ends::WithItsLast
+    }
+
     /// `s^n`
-    fn power(&mut self, power: &Count, element: &Element<'a>, frame: f64, nodes: &mut Vec<Node>) -> Ends {
+    fn power(&mut self, power: &Count, element: &Element<'a>, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
         let mut body = Vec::new();
         self.primary(element, frame, &mut body);
         let times = self.count(power);
@@ -203,45 +241,56 @@ impl<'r, 'a> Resolver<'r, 'a> {
     }
 
     /// `ExecPlan n { s }`
-    fn exec(&mut self, exec: &tree::Exec<'a>, span: Span, frame: f64, nodes: &mut Vec<Node>) -> Ends {
+    fn exec(&mut self, exec: &tree::Exec<'a>, span: Span, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
         let times = self.count(&exec.count);
-        let body = self.sequence(exec.body, frame);
+        let mut body = self.sequence(exec.body, frame);
+        if frame.here {
+            // Anew in each pass.
+            body = framed(body, span);
+        }
         nodes.push(Node::Loop(Loop { times, body, marks: Vec::new(), span }));
         Ends::WithItsLast
     }
 
     /// `(Atom (ξ) u)`
-    fn written(&mut self, atom: &tree::Atom<'a>, span: Span, frame: f64, nodes: &mut Vec<Node>) -> Ends {
+    fn written(&mut self, atom: &tree::Atom<'a>, span: Span, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
         let (interrupt, ends) = self.interrupt(Some(&atom.condition), span);
         self.atom(atom.control, interrupt, frame, span, nodes);
         ends
     }
 
     /// `{ Behavior … }`
-    fn in_place(&mut self, plan: &tree::Plan<'a>, frame: f64, nodes: &mut Vec<Node>) -> Ends {
+    fn in_place(&mut self, plan: &tree::Plan<'a>, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
         let (scope, ends) = self.behavior(plan, frame);
         nodes.push(Node::Scope(scope));
         ends
     }
 
     /// A plan by name.
-    fn used(&mut self, call: &Call<'a>, frame: f64, nodes: &mut Vec<Node>) -> Ends {
+    fn used(&mut self, call: &Call<'a>, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
         let Some((plan, parameters)) = self.reference(call) else { return Ends::Unknown };
         let (scope, ends) = self.plan(plan, parameters, frame);
         nodes.push(Node::Scope(scope));
         ends
     }
 
-    fn atom(&mut self, law: &Call<'a>, interrupt: Interrupt, frame: f64, span: Span, nodes: &mut Vec<Node>) {
+    fn atom(&mut self, law: &Call<'a>, interrupt: Interrupt, frame: Framing, span: Span, nodes: &mut Vec<Node>) {
         let names = Names { plans: &self.definitions.names, parameters: &self.parameters };
         match self.quarks.resolve(law, DeclarationKind::Control, names) {
-            Ok(law) => nodes.push(Node::Atom(Atom { law, interrupt, frame, marks: Vec::new(), span })),
+            Ok(law) => nodes.push(Node::Atom(Atom {
+                law,
+                interrupt,
+                frame: frame.turned,
+                here: frame.here,
+                marks: Vec::new(),
+                span,
+            })),
             Err(found) => self.found.extend(found),
         }
     }
 
     /// `(u, ξ, T)` or `(s, ξ, T)`: an atom if what it runs is one law, else a scope without a name.
-    fn formal(&mut self, formal: &Formal<'a>, span: Span, frame: f64, nodes: &mut Vec<Node>) -> Ends {
+    fn formal(&mut self, formal: &Formal<'a>, span: Span, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
         let (interrupt, ends) = self.timed(formal, span);
         match formal.body {
             [Element { primary: Primary::Ref(law), marks: None, .. }] if self.is_law(law) => {
@@ -249,7 +298,8 @@ impl<'r, 'a> Resolver<'r, 'a> {
             }
             elements => {
                 let (name, body) = (String::new(), self.sequence(elements, frame));
-                nodes.push(Node::Scope(Scope { name, interrupt, body, record: None, marks: Vec::new(), span }));
+                let here = frame.here;
+                nodes.push(Node::Scope(Scope { name, interrupt, body, here, record: None, marks: Vec::new(), span }));
             }
         }
         ends

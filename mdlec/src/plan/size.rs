@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use crate::diagnostic::Span;
-use crate::syntax::tree::{Arg, Call, Condition, ConditionNode, Element, Operand, Plan, Primary};
+use crate::syntax::tree::{Arg, Call, Condition, ConditionNode, Element, Frame, Operand, Plan, Primary};
 
 /// The most atoms of a plan; loops are not expanded for this.
 const ATOMS: u64 = 1 << 19;
@@ -105,7 +105,11 @@ impl Measure<'_> {
                     Some(index) => self.sizes.get(*index).copied().unwrap_or_default(),
                     None => self.atom(call),
                 },
-                Primary::Exec(exec) => self.elements(exec.body).nested(),
+                Primary::Exec(exec) => {
+                    let size = self.elements(exec.body).nested();
+                    // Each pass becomes a scope.
+                    if element.frame() == Some(&Frame::Here) { size.nested() } else { size }
+                }
                 Primary::String(body) => self.elements(body).nested(),
                 Primary::Formal(formal) => {
                     let time = formal.time.map_or(Size::default(), |time| self.operand(length(time.span()), 1));

@@ -1,6 +1,6 @@
 //! The interrupts and laws of a plan as scripts name them.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Condition, Interrupt, Node, Plan, QuarkId, resolve};
 use crate::alphabet::{self, Alphabet};
@@ -12,15 +12,16 @@ pub(crate) struct Words<'p> {
     plan: &'p Plan,
     alphabet: &'p Alphabet,
     interrupts: BTreeSet<&'p str>,
-    timers: BTreeSet<&'p str>,
+    /// Conditions that a script never lists, with the reason.
+    counted: BTreeMap<&'p str, &'static str>,
     laws: BTreeSet<&'p str>,
 }
 
 impl<'p> Words<'p> {
     /// The texts of this plan, which was resolved against `alphabet`.
     pub(crate) fn new(plan: &'p Plan, alphabet: &'p Alphabet) -> Self {
-        let (interrupts, timers, laws) = (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
-        let mut words = Self { plan, alphabet, interrupts, timers, laws };
+        let (interrupts, counted, laws) = (BTreeSet::new(), BTreeMap::new(), BTreeSet::new());
+        let mut words = Self { plan, alphabet, interrupts, counted, laws };
         words.condition(&plan.root.interrupt);
         words.sequence(&plan.root.body);
         words
@@ -47,8 +48,8 @@ impl<'p> Words<'p> {
         interrupt.condition.each_quark(&mut |id| {
             self.interrupts.insert(&plan.quark(id).text);
         });
-        interrupt.condition.each_timer(&mut |id| {
-            self.timers.insert(&plan.quark(id).text);
+        interrupt.condition.each_counted(&mut |id, reason| {
+            self.counted.insert(&plan.quark(id).text, reason);
         });
     }
 
@@ -60,8 +61,8 @@ impl<'p> Words<'p> {
         let law = self.laws.first().copied().unwrap_or("stop");
         let read = self.read(&written, &format!("{{ Script ({written}) (Atom (null) {law}) }}"));
         let text = read.map(|plan| plan.root.interrupt.text).unwrap_or_else(|| written.clone());
-        if self.timers.contains(text.as_str()) {
-            return Err(format!("`{written}` is a timer, which fires by the time `t` of the turns: leave it out"));
+        if let Some(reason) = self.counted.get(text.as_str()) {
+            return Err(format!("`{written}` {reason}: leave it out"));
         }
         known(&written, text, &self.interrupts, ["interrupt", "interrupts"])
     }
@@ -111,13 +112,16 @@ fn known(written: &str, text: String, texts: &BTreeSet<&str>, [one, many]: [&str
 }
 
 impl Condition {
-    /// Visits the quark of every timer in it.
-    fn each_timer(&self, visit: &mut impl FnMut(QuarkId)) {
+    /// Visits every quark in it that fires by the time or the way of the turns, and why scripts leave it out.
+    fn each_counted(&self, visit: &mut impl FnMut(QuarkId, &'static str)) {
         match self {
-            Self::Wait { quark, .. } | Self::Elapsed { quark, .. } => visit(*quark),
+            Self::Wait { quark, .. } | Self::Elapsed { quark, .. } => {
+                visit(*quark, "is a timer, which fires by the time `t` of the turns");
+            }
+            Self::Driven { quark, .. } => visit(*quark, "fires by the `way` of the turns"),
             Self::Null | Self::Quark(_) | Self::After(_) => {}
-            Self::Or(operands) | Self::And(operands) => operands.iter().for_each(|operand| operand.each_timer(visit)),
-            Self::Not(operand) | Self::Rising { operand, .. } => operand.each_timer(visit),
+            Self::Or(operands) | Self::And(operands) => operands.iter().for_each(|operand| operand.each_counted(visit)),
+            Self::Not(operand) | Self::Rising { operand, .. } => operand.each_counted(visit),
         }
     }
 }

@@ -12,7 +12,7 @@ use super::layout::laid_out;
 use super::names::{Distinct, quark_type};
 use super::signatures::{argument_variant, signatures};
 use crate::alphabet::{Alphabet, Declaration, DeclarationKind, Kind, Origin};
-use crate::plan::{is_time, signature};
+use crate::plan::{is_time, is_way, signature};
 
 /// Writes `src/alphabet.rs` of the target: what its crate must have, and what plans need of it.
 ///
@@ -66,7 +66,7 @@ pub(super) struct Bound<'a> {
 }
 
 impl<'a> Bound<'a> {
-    /// All of them: `wait` and `t` are the machine's business, and a quark whose capability the robot lacks needs no code.
+    /// All of them: `wait`, `t` and `way` are the machine's business, and a quark whose capability the robot lacks needs no code.
     fn all(alphabet: &'a Alphabet) -> Vec<Self> {
         let mut overloads = BTreeMap::<&str, usize>::new();
         let mut quarks = Vec::new();
@@ -74,12 +74,12 @@ impl<'a> Bound<'a> {
             let overload = overloads.entry(&declaration.name).or_default();
             let kind = quark_type(&declaration.name, *overload);
             *overload += 1;
-            let is_time = match declaration.kind {
+            let is_counted = match declaration.kind {
                 DeclarationKind::Interrupt => declaration.name == "wait",
-                DeclarationKind::Signal => is_time(declaration),
+                DeclarationKind::Signal => is_time(declaration) || is_way(declaration),
                 DeclarationKind::Control => false,
             };
-            if !is_time && declaration.needs.iter().all(|need| alphabet.has(need)) {
+            if !is_counted && declaration.needs.iter().all(|need| alphabet.has(need)) {
                 quarks.push(Self { declaration, kind });
             }
         }

@@ -8,6 +8,7 @@ use quote::quote;
 
 use super::arguments::{angle, made, type_of};
 use super::names::{Distinct, atom_variant, quark_type};
+use super::tables::entries;
 use crate::fsm::{LawMeaning, Lowered};
 use crate::plan::{Compared, Condition, Quark, QuarkId, frame_text};
 
@@ -74,17 +75,18 @@ impl Parts {
 
     /// `impl Plan for LabTour`: what the machine asks of a plan.
     fn implementation(&self, plan: &Ident, lowered: &Lowered, paths: Option<&TokenStream>) -> TokenStream {
-        let [levels, slots] = [lowered.levels, lowered.slots].map(Literal::usize_unsuffixed);
+        let slots = Literal::usize_unsuffixed(lowered.slots);
+        let (entered, begins) = entries(lowered);
         let Self { enter, next, input, .. } = self;
         quote! {
             impl runtime::Plan for #plan {
                 type Output = Output;
                 type Input = Input;
-                type Entered = [Nanos; #levels];
+                type Entered = #entered;
                 type Left = [u64; #slots];
 
                 fn fsm(&self) -> Fsm<'_> { FSM }
-                fn slots(&self) -> (Self::Entered, Self::Left) { ([Nanos::ZERO; #levels], [0; #slots]) }
+                fn slots(&self) -> (Self::Entered, Self::Left) { (#begins, [0; #slots]) }
                 #enter
                 #next
                 #input
@@ -95,7 +97,7 @@ impl Parts {
             }
 
             #[doc = " The cursor of this plan: its levels of scopes and of loops are known."]
-            type At = Cursor<[Nanos; #levels], [u64; #slots]>;
+            type At = Cursor<#entered, [u64; #slots]>;
 
             fn text(texts: &'static [&'static str], index: u32) -> &'static str {
                 texts.get(index as usize).copied().unwrap_or("")
@@ -197,7 +199,7 @@ impl<'a> Meaning<'a> {
             let number = Literal::usize_unsuffixed(atom);
             let variant = atom_variant(atom);
             let constant = &self.constants[law.quark.0 as usize];
-            let begin = turned(law.frame);
+            let begin = turned(self.lowered.turned(atom));
             quote!(#number => Running::#variant(runtime::Control::begin(&#constant, y, #begin)))
         });
         quote! {

@@ -31,6 +31,10 @@ pub(super) enum Part {
     Wait(u64),
     /// Part of its condition: an interval of time, whose ends follow.
     Elapsed,
+    /// Part of its condition: an interval of the path driven, whose ends follow.
+    Driven,
+    /// Part of its condition: the nanometres.
+    Way(u64),
     /// Part of its condition: the number of operands.
     Or(usize),
     /// Part of its condition: the number of operands.
@@ -53,6 +57,8 @@ enum Mark {
     Quark(u32),
     Wait,
     Elapsed,
+    Driven,
+    Way,
     Or(usize),
     And(usize),
     Not,
@@ -114,7 +120,7 @@ impl<'l> Atoms<'l> {
                 return None;
             }
         }
-        parts.extend([Part::Law(law.quark), Part::Frame(law.frame)]);
+        parts.extend([Part::Law(law.quark), Part::Frame(self.lowered.turned(atom))]);
         Some(parts)
     }
 
@@ -150,6 +156,8 @@ impl<'l> Atoms<'l> {
             Part::Quark(QuarkId(id)) => Mark::Quark(self.declarations[id as usize]),
             Part::Wait(_) => Mark::Wait,
             Part::Elapsed => Mark::Elapsed,
+            Part::Driven => Mark::Driven,
+            Part::Way(_) => Mark::Way,
             Part::Or(count) => Mark::Or(count),
             Part::And(count) => Mark::And(count),
             Part::Not => Mark::Not,
@@ -180,6 +188,9 @@ fn conditions(condition: &Condition, parts: &mut Vec<Part>) {
         Condition::Wait { nanos, .. } => parts.push(Part::Wait(*nanos)),
         Condition::Elapsed { from, until, .. } => {
             parts.extend([Part::Elapsed, Part::Wait(*from), Part::Wait(until.unwrap_or(u64::MAX))]);
+        }
+        Condition::Driven { from, until, .. } => {
+            parts.extend([Part::Driven, Part::Way(*from), Part::Way(until.unwrap_or(u64::MAX))]);
         }
         Condition::Or(operands) | Condition::And(operands) => {
             let count = operands.len();

@@ -7,19 +7,21 @@ use quote::quote;
 
 use super::arguments::{angle, compared, made};
 use super::names::quark_type;
-use super::tables::{follows, level};
+use super::scopes::nanometers;
+use super::tables::{entries, follows, level};
 use crate::fsm::Lowered;
 use crate::plan::{Condition, Quark, QuarkId};
 
 /// The plan's type, which hands everything on to the runtime's, and its rows.
 pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered, paths: Option<&TokenStream>) -> TokenStream {
-    let [levels, slots] = [lowered.levels, lowered.slots].map(Literal::usize_unsuffixed);
+    let slots = Literal::usize_unsuffixed(lowered.slots);
+    let (entered, begins) = entries(lowered);
     let rows = rows(lowered);
-    let (memory, new, marks) = memory(lowered);
+    let (memory, new, marks) = memory(lowered, &begins);
     let told = told(lowered);
     quote! {
         #[doc = #doc]
-        pub struct #plan(runtime::InRows<'static, robot::Alphabet, [Nanos; #levels], [u64; #slots] #memory>);
+        pub struct #plan(runtime::InRows<'static, robot::Alphabet, #entered, [u64; #slots] #memory>);
 
         impl #plan {
             #[doc = " The plan before it begins."]
@@ -34,7 +36,7 @@ pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered, paths: Option<
         impl runtime::Plan for #plan {
             type Output = Output;
             type Input = Input;
-            type Entered = [Nanos; #levels];
+            type Entered = #entered;
             type Left = [u64; #slots];
 
             fn fsm(&self) -> Fsm<'_> { runtime::Plan::fsm(&self.0) }
@@ -84,9 +86,9 @@ fn told(lowered: &Lowered) -> Option<TokenStream> {
 }
 
 /// The type of the plan's memory, how the plan is made, and `static MARKS`: nothing of it for a plan that remembers nothing.
-fn memory(lowered: &Lowered) -> (Option<TokenStream>, TokenStream, Option<TokenStream>) {
-    let [levels, slots] = [lowered.levels, lowered.slots].map(Literal::usize_unsuffixed);
-    let slots = quote!([Nanos::ZERO; #levels], [0; #slots]);
+fn memory(lowered: &Lowered, begins: &TokenStream) -> (Option<TokenStream>, TokenStream, Option<TokenStream>) {
+    let slots = Literal::usize_unsuffixed(lowered.slots);
+    let slots = quote!(#begins, [0; #slots]);
     if lowered.memories == 0 {
         return (None, quote!(runtime::InRows::new(&ROWS, #slots)), None);
     }
@@ -140,9 +142,9 @@ fn rows(lowered: &Lowered) -> TokenStream {
         })
         .collect();
     let operands = operands.rows();
-    let laws = lowered.laws.iter().map(|law| {
+    let laws = lowered.laws.iter().enumerate().map(|(atom, law)| {
         let control = variant("AnyControl", lowered.quark(law.quark), &lowered.quarks);
-        let frame = angle(law.frame);
+        let frame = angle(lowered.turned(atom));
         quote!(runtime::LawRow { control: #control, frame: #frame })
     });
     quote! {
@@ -220,6 +222,10 @@ impl<'l> Operands<'l> {
             Condition::Elapsed { from, until, .. } => {
                 let [from, until] = [*from, until.unwrap_or(u64::MAX)].map(Literal::u64_unsuffixed);
                 quote!(Elapsed(Nanos(#from), Nanos(#until)))
+            }
+            Condition::Driven { from, until, .. } => {
+                let [from, until] = [*from, until.unwrap_or(u64::MAX)].map(nanometers);
+                quote!(Driven(#from, #until))
             }
             Condition::Or(operands) | Condition::And(operands) => {
                 self.waiting.extend(operands);

@@ -64,6 +64,7 @@ impl Meaning<'_> {
                 quote!(#constant)
             }
             Constant::Wait(nanos) => nanoseconds(nanos),
+            Constant::Way(length) => nanometers(length),
         };
         (*condition != Condition::Null).then(|| expression(condition, self.level(bracket), &mut constant))
     }
@@ -84,12 +85,20 @@ pub(super) enum Constant {
     Quark(QuarkId),
     /// The nanoseconds of a `wait`.
     Wait(u64),
+    /// The nanometres of a `way`.
+    Way(u64),
 }
 
 /// `Nanos(500)`.
 pub(super) fn nanoseconds(nanos: u64) -> TokenStream {
     let nanos = Literal::u64_unsuffixed(nanos);
     quote!(Nanos(#nanos))
+}
+
+/// `runtime::Nanometers(500)`.
+pub(super) fn nanometers(length: u64) -> TokenStream {
+    let length = Literal::u64_unsuffixed(length);
+    quote!(runtime::Nanometers(#length))
 }
 
 /// Whether a condition of a scope of this level has fired. `constant` says, from left to right, how each constant in it
@@ -102,9 +111,8 @@ pub(super) fn expression(
     let mut operand = |operand: &Condition| {
         let inner = expression(operand, level, constant);
         match operand {
-            Condition::Or(_) | Condition::And(_) | Condition::Wait { .. } | Condition::Elapsed { .. } => {
-                quote!((#inner))
-            }
+            Condition::Or(_) | Condition::And(_) | Condition::Wait { .. } => quote!((#inner)),
+            Condition::Elapsed { .. } | Condition::Driven { .. } => quote!((#inner)),
             Condition::Null | Condition::Quark(_) | Condition::Not(_) => inner,
             Condition::Rising { .. } | Condition::After(_) => inner,
         }
@@ -123,6 +131,10 @@ pub(super) fn expression(
         Condition::Elapsed { from, until, .. } => {
             let [from, until] = [*from, until.unwrap_or(u64::MAX)].map(|nanos| constant(Constant::Wait(nanos)));
             quote!((#from..#until).contains(&cursor.since(#level, t)))
+        }
+        Condition::Driven { from, until, .. } => {
+            let [from, until] = [*from, until.unwrap_or(u64::MAX)].map(|length| constant(Constant::Way(length)));
+            quote!((#from..#until).contains(&cursor.way(#level)))
         }
         Condition::Or(operands) => joined(operands.iter().map(operand).collect(), &quote!(|)),
         Condition::And(operands) => joined(operands.iter().map(operand).collect(), &quote!(&)),

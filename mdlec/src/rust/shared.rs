@@ -8,7 +8,7 @@ use super::arguments::{angle, made, type_of};
 use super::code::{Parts, atom_doc};
 use super::kinds::{Atoms, Kind, Part};
 use super::names::{Distinct, kind_table, kind_variant, quark_type};
-use super::scopes::{Constant, ending, expression, nanoseconds};
+use super::scopes::{Constant, ending, expression, nanometers, nanoseconds};
 use super::tables::{follows, level};
 use crate::fsm::Lowered;
 use crate::plan::{Condition, Quark};
@@ -92,10 +92,10 @@ impl<'l> Shared<'l> {
     fn constants(&self, atom: usize) -> Vec<Part> {
         let mut parts = self.atoms.parts(atom, usize::MAX).unwrap_or_default();
         parts.retain(|part| match part {
-            Part::Quark(_) | Part::Wait(_) | Part::Follows(Some(_)) | Part::Law(_) => true,
+            Part::Quark(_) | Part::Wait(_) | Part::Way(_) | Part::Follows(Some(_)) | Part::Law(_) => true,
             Part::Frame(angle) => *angle != 0.0,
-            Part::Scope { .. } | Part::Null | Part::Elapsed | Part::Or(_) | Part::And(_) | Part::Not => false,
-            Part::Follows(None) => false,
+            Part::Scope { .. } | Part::Null | Part::Elapsed | Part::Driven => false,
+            Part::Or(_) | Part::And(_) | Part::Not | Part::Follows(None) => false,
         });
         parts
     }
@@ -109,6 +109,7 @@ impl<'l> Shared<'l> {
                 (name, type_of(quark, quarks), made(quark, quarks))
             }
             Part::Wait(nanos) => ("wait", quote!(Nanos), nanoseconds(nanos)),
+            Part::Way(length) => ("way", quote!(runtime::Nanometers), nanometers(length)),
             Part::Follows(Some(follows)) => {
                 let atom = Literal::u32_unsuffixed(follows.atom);
                 ("next", quote!(u32), quote!(#atom))
@@ -118,6 +119,7 @@ impl<'l> Shared<'l> {
             | Part::Scope { .. }
             | Part::Null
             | Part::Elapsed
+            | Part::Driven
             | Part::Or(_)
             | Part::And(_)
             | Part::Not => unreachable!("what has no constant is left out"),
@@ -206,7 +208,7 @@ impl<'l> Shared<'l> {
         let arms = self.kinds.iter().zip(1_usize..).map(|((kind, columns), number)| {
             let (variant, table) = (kind_variant(number), kind_table(number));
             let number = Literal::usize_unsuffixed(number);
-            let turned = self.lowered.laws[kind.atoms[0]].frame != 0.0;
+            let turned = self.lowered.turned(kind.atoms[0]) != 0.0;
             let mut last = columns.iter().rev();
             let frame = if turned { last.next() } else { None };
             let begin = frame.map_or(quote!(begin), |frame| {
@@ -263,6 +265,7 @@ impl<'l> Shared<'l> {
         let mut constant = |constant: Constant| match constant {
             Constant::Quark(id) => made(self.lowered.quark(id), &self.lowered.quarks),
             Constant::Wait(nanos) => nanoseconds(nanos),
+            Constant::Way(length) => nanometers(length),
         };
         let fired = (*condition != Condition::Null).then(|| expression(condition, 0, &mut constant))?;
         let ending = ending(&quote!(Fired), 0, self.atoms.follows(0).map(follows));

@@ -2,16 +2,17 @@
 
 use std::collections::BTreeSet;
 
-use mdle_runtime::Follows;
 use mdle_runtime::fsm::{Bracket, Kind};
+use mdle_runtime::{Follows, Here};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
+use super::arguments::angle;
 use crate::alphabet::{Alphabet, Kind as ValueKind};
 use crate::fsm::Lowered;
 use crate::plan::{Quark, Value};
 
-/// `const FSM`, `LAWS`, `CONDITIONS`, `NAMES`.
+/// `const FSM`, `LAWS`, `CONDITIONS`, `NAMES`, and `HERE` for a plan with `FRAME here`.
 pub(super) fn tables(lowered: &Lowered) -> TokenStream {
     let brackets = lowered.brackets.iter().map(bracket);
     let atoms = lowered.atoms.iter().map(|atom| {
@@ -23,6 +24,7 @@ pub(super) fn tables(lowered: &Lowered) -> TokenStream {
     let scopes = || lowered.scopes.iter().map(Option::as_ref);
     let conditions = scopes().map(|scope| scope.map_or("", |scope| &scope.interrupt.text));
     let names = scopes().map(|scope| scope.map_or("", |scope| &scope.name));
+    let frames = frames(lowered);
     quote! {
         #[doc = " Scopes and loops in pre-order, the atoms as written, the termination state."]
         const FSM: Fsm<'static> = Fsm {
@@ -39,7 +41,41 @@ pub(super) fn tables(lowered: &Lowered) -> TokenStream {
 
         #[doc = " The name of each bracket; empty for an atom and a loop."]
         const NAMES: &[&str] = &[#(#names),*];
+
+        #frames
     }
+}
+
+/// `const HERE`: the frame of each atom that is inside a `FRAME here`; nothing for a plan without.
+fn frames(lowered: &Lowered) -> Option<TokenStream> {
+    let frames = lowered.frames.iter().map(|here| match here {
+        Some(Here { level, turned }) => {
+            let (level, turned) = (Literal::u16_unsuffixed(*level), angle(turned.0));
+            quote!(Some(runtime::Here { level: #level, turned: #turned }))
+        }
+        None => quote!(None),
+    });
+    has_frames(lowered).then(|| {
+        quote! {
+            #[doc = " The frame of each atom that is inside a `FRAME here`."]
+            const HERE: &[Option<runtime::Here>] = &[#(#frames),*];
+        }
+    })
+}
+
+fn has_frames(lowered: &Lowered) -> bool {
+    lowered.frames.iter().any(Option::is_some)
+}
+
+/// What is kept of the entry of scopes, as a type and as the value that it begins with.
+pub(super) fn entries(lowered: &Lowered) -> (TokenStream, TokenStream) {
+    let levels = Literal::usize_unsuffixed(lowered.levels);
+    if lowered.stamps {
+        let frames = if has_frames(lowered) { quote!(HERE) } else { quote!(&[]) };
+        let new = quote!(runtime::Stamps::new([runtime::Stamp::START; #levels], #frames));
+        return (quote!(runtime::Stamps<'static, [runtime::Stamp; #levels]>), new);
+    }
+    (quote!([Nanos; #levels]), quote!([Nanos::ZERO; #levels]))
 }
 
 /// `Bracket::scope(level, first, last, parent)` or `Bracket::repeat(times, slot, stride, first, last, parent)`.

@@ -42,6 +42,8 @@ struct Tokens<'t, 's> {
     is_after_paren: bool,
     /// Whether files are used, whose plans may have any name.
     uses: bool,
+    /// Whether the last token is `FRAME`.
+    is_frame: bool,
     is_defective: bool,
 }
 
@@ -75,6 +77,7 @@ impl<'t, 's> Tokens<'t, 's> {
             name_ends: usize::MAX,
             is_after_paren: false,
             uses: false,
+            is_frame: false,
             is_defective: false,
         }
     }
@@ -84,6 +87,10 @@ impl<'t, 's> Tokens<'t, 's> {
         #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are sound by themselves")]
         match token {
             Tok::Str(text) => self.lexer.slice().len() == text.len() + 2,
+            Tok::Name("here") if self.is_frame => {
+                *token = Tok::Here;
+                true
+            }
             // Typesetting that goes together with a brace is rare, and not worth the trouble.
             Tok::Text | Tok::Command | Tok::Comment => false,
             Tok::LParen => match self.parenthesis() {
@@ -180,6 +187,7 @@ impl<'s> Iterator for Tokens<'_, 's> {
         }
         let place = self.lexer.span();
         self.name_ends = if matches!(token, Tok::Name(_)) { place.end } else { usize::MAX };
+        self.is_frame = token == Tok::Frame;
         let start = Location { token: self.read, byte: place.start as u32 };
         self.read += 1;
         Some((start, token, Location { token: self.read, byte: place.end as u32 }))

@@ -301,10 +301,10 @@ fn keyword_argument(site: &Site<'_, '_>) -> Option<Diagnostic> {
         Tok::Frame => Some(
             site.about(
                 site.at,
-                format!("expected an angle after `FRAME`, found {}", site.found_words()),
-                "expected a number",
+                format!("expected an angle or `here` after `FRAME`, found {}", site.found_words()),
+                "expected a number or `here`",
             )
-            .help("write `FRAME 180deg Name`"),
+            .help("write `FRAME 180deg Name`, or `FRAME here Name` for the heading at its entry"),
         ),
         Tok::After => Some(
             site.about(

@@ -13,8 +13,8 @@ use lalrpop_util::ErrorRecovery;
 use super::source::{Location, Source};
 use super::token::{Tok, Token, label};
 use super::tree::{
-    Arg, Atom, Call, Condition, ConditionNode, Count, Element, Exec, File, Formal, Marks, Name, Number, Param, Plan,
-    Primary, Spanned,
+    Arg, Atom, Call, Condition, ConditionNode, Count, Element, Exec, File, Formal, Frame, Marks, Name, Number, Param,
+    Plan, Primary, Spanned,
 };
 use super::waiting::{First, Waiting, complete};
 use crate::diagnostic::{Code, Diagnostic, Span};
@@ -150,7 +150,7 @@ impl<'t, 's> Nodes<'t, 's> {
         &mut self,
         start: Location,
         label: Option<Name<'s>>,
-        frame: Option<Number<'s>>,
+        frame: Option<Frame<'s>>,
         primary: Primary<'s>,
         power: Option<&'s Count<'s>>,
         end: Location,

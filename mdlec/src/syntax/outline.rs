@@ -1,6 +1,8 @@
 //! The tree of a file as an outline: a line for each node, as written, nothing resolved.
 
-use super::tree::{Arg, Call, Condition, ConditionNode, Count, Element, File, Number, Operand, Param, Plan, Primary};
+use super::tree::{
+    Arg, Call, Condition, ConditionNode, Count, Element, File, Frame, Number, Operand, Param, Plan, Primary,
+};
 
 /// Writes the outline, two blanks deeper for each level.
 #[must_use]
@@ -39,7 +41,11 @@ impl Outline {
 
     fn element(&mut self, element: &Element<'_>) {
         let label = element.label().map(|label| format!("{}: ", label.node)).unwrap_or_default();
-        let frame = element.frame().map(|frame| format!("frame {} ", number(frame))).unwrap_or_default();
+        let frame = element.frame().map(|frame| match frame {
+            Frame::Turned(angle) => format!("frame {} ", number(angle)),
+            Frame::Here => "frame here ".to_owned(),
+        });
+        let frame = frame.unwrap_or_default();
         let power = element.power().map(|power| format!(" ^ {}", count(power))).unwrap_or_default();
         let head = format!("{label}{frame}");
         match &element.primary {

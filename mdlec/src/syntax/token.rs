@@ -51,6 +51,8 @@ pub(super) enum Tok<'s> {
     After,
     #[token("FRAME")]
     Frame,
+    /// `here` after `FRAME`; a name anywhere else.
+    Here,
     #[token("sigma_null")]
     #[token("σ_null")]
     #[regex(r"\\sigma_(null|\{\s*null\s*\}|\{\s*\\text\{\s*null\s*\}\s*\})")]
@@ -175,6 +177,7 @@ impl<'s> Reader<'s> {
             Tok::Doc(text) => self.lexed.docs.push((self.lexed.tokens.len(), text)),
             Tok::Command => self.report(lexical::command(self.source, token.place)),
             Tok::Comment => self.report(lexical::comment(self.source, token.place)),
+            Tok::Name("here") if self.after_frame() => self.push(Tok::Here, token.place),
             Tok::LParen if start == self.touches && self.after_name() => self.push(Tok::TouchParen, token.place),
             Tok::Str(text) => {
                 if end - start != text.len() + 2 {
@@ -197,6 +200,10 @@ impl<'s> Reader<'s> {
 
     fn after_name(&self) -> bool {
         matches!(self.lexed.tokens.last(), Some(Token { kind: Tok::Name(_), .. }))
+    }
+
+    fn after_frame(&self) -> bool {
+        matches!(self.lexed.tokens.last(), Some(Token { kind: Tok::Frame, .. }))
     }
 
     /// What touches a number and is no unit is reported and dropped.

@@ -54,7 +54,7 @@ pub struct Param<'s> {
     pub type_name: Name<'s>,
 }
 
-/// An element of a string: `[ NAME ":" ] [ "FRAME" NUMBER ] primary [ "^" count ]`.
+/// An element of a string: `[ NAME ":" ] [ frame ] primary [ "^" count ]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Element<'s> {
     /// What it is.
@@ -70,8 +70,8 @@ pub struct Element<'s> {
 pub struct Marks<'s> {
     /// Its label, for `after`.
     pub label: Option<Name<'s>>,
-    /// The angle that its frame is turned by.
-    pub frame: Option<Number<'s>>,
+    /// Its frame.
+    pub frame: Option<Frame<'s>>,
     /// How often it is run.
     pub power: Option<Count<'s>>,
 }
@@ -83,9 +83,9 @@ impl<'s> Element<'s> {
         self.marks?.label
     }
 
-    /// The angle that its frame is turned by.
+    /// Its frame.
     #[must_use]
-    pub fn frame(&self) -> Option<&'s Number<'s>> {
+    pub fn frame(&self) -> Option<&'s Frame<'s>> {
         self.marks?.frame.as_ref()
     }
 
@@ -94,6 +94,15 @@ impl<'s> Element<'s> {
     pub fn power(&self) -> Option<&'s Count<'s>> {
         self.marks?.power.as_ref()
     }
+}
+
+/// The frame of an element: `"FRAME" ( NUMBER | "here" )`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Frame<'s> {
+    /// The frame around it, turned by this angle.
+    Turned(Number<'s>),
+    /// The heading of the robot at the moment the element is entered.
+    Here,
 }
 
 /// What an element is: a reference, so that a list of elements is short.

@@ -2,7 +2,9 @@
 //! (semantics, section 9). It is what robots run, with a script in place of the robot.
 
 use mdle_runtime::fsm::Kind;
-use mdle_runtime::{Begin, Cause, Cursor, Ending, Fsm, Nanos, Next, Transition, Turn, Watch};
+use mdle_runtime::{
+    Begin, Cause, Cursor, Ending, Fsm, Nanometers, Nanos, Next, Pose, Stamp, Stamps, Transition, Turn, Watch,
+};
 
 use super::{Applied, Fired, Machine, Outcome, Reports};
 use crate::fsm::Lowered;
@@ -36,7 +38,8 @@ impl<'p> Machine<'p> for Counted<'p> {
             (Turn::Cut, _) => Applied::Cut,
             (Turn::Over, _) | (Turn::Law(()), None) => Applied::Over,
         };
-        Outcome { state: machine.state(), applied, fired: transitions.fired }
+        let frame = machine.frame().filter(|_| matches!(applied, Applied::Law(_)));
+        Outcome { state: machine.state(), applied, frame, fired: transitions.fired }
     }
 }
 
@@ -53,7 +56,15 @@ impl Watch for Transitions<'_> {
     }
 }
 
-impl mdle_runtime::Output for Reports {}
+impl mdle_runtime::Output for Reports {
+    fn here(&self) -> Pose {
+        Pose { theta: self.heading, ..Pose::ORIGIN }
+    }
+
+    fn way(&self) -> Option<Nanometers> {
+        Some(self.way)
+    }
+}
 
 /// What a lowered plan means where a script is the robot.
 #[derive(Debug)]
@@ -63,12 +74,12 @@ struct Scripted<'p> {
     memories: Vec<bool>,
 }
 
-type At = Cursor<Box<[Nanos]>, Box<[u64]>>;
+type At<'p> = Cursor<Stamps<'p, Box<[Stamp]>>, Box<[u64]>>;
 
 /// Where a condition is read.
 struct Read<'r, 'p> {
     scripted: &'r Scripted<'p>,
-    cursor: &'r At,
+    cursor: &'r At<'r>,
     level: u16,
     y: &'r Reports,
 }
@@ -80,6 +91,10 @@ impl Situation for Read<'_, '_> {
 
     fn waited(&self, nanos: u64) -> bool {
         self.cursor.since(self.level, self.y.t) >= Nanos(nanos)
+    }
+
+    fn driven(&self, nanometers: u64) -> bool {
+        self.cursor.way(self.level) >= Nanometers(nanometers)
     }
 
     fn remembers(&self, memory: u32) -> bool {
@@ -123,7 +138,7 @@ impl<'p> Scripted<'p> {
     }
 
     /// Which scope around the current atom ends, and why.
-    fn ending(&self, cursor: &At, y: &Reports) -> Option<Cause> {
+    fn ending(&self, cursor: &At<'_>, y: &Reports) -> Option<Cause> {
         let fired = |(level, interrupt): &(u16, &Interrupt)| {
             interrupt.condition.fired(&Read { scripted: self, cursor, level: *level, y })
         };
@@ -133,7 +148,7 @@ impl<'p> Scripted<'p> {
     }
 
     /// Writes down what ends when the scope that has this cause ends; what was inside is forgotten.
-    fn record(&mut self, cursor: &At, cause: Cause, y: &Reports) {
+    fn record(&mut self, cursor: &At<'_>, cause: Cause, y: &Reports) {
         let level = cause.level();
         let operand = match cause {
             Cause::Completed(_) => None,
@@ -166,10 +181,10 @@ impl<'p> Scripted<'p> {
     }
 }
 
-impl mdle_runtime::Plan for Scripted<'_> {
+impl<'p> mdle_runtime::Plan for Scripted<'p> {
     type Output = Reports;
     type Input = ();
-    type Entered = Box<[Nanos]>;
+    type Entered = Stamps<'p, Box<[Stamp]>>;
     type Left = Box<[u64]>;
 
     fn fsm(&self) -> Fsm<'_> {
@@ -177,22 +192,25 @@ impl mdle_runtime::Plan for Scripted<'_> {
     }
 
     fn slots(&self) -> (Self::Entered, Self::Left) {
-        (vec![Nanos::ZERO; self.lowered.levels].into(), vec![0; self.lowered.slots].into())
+        (
+            Stamps::new(vec![Stamp::START; self.lowered.levels].into(), &self.lowered.frames),
+            vec![0; self.lowered.slots].into(),
+        )
     }
 
     fn enter(&mut self, _: u32, _: &Reports, _: Begin) {}
 
-    fn next(&mut self, cursor: &mut At, y: &Reports, _: Begin, _: bool) -> Next {
+    fn next(&mut self, cursor: &mut At<'p>, y: &Reports, _: Begin, _: bool) -> Next {
         self.ending(cursor, y).map(Ending::from).into()
     }
 
-    fn leave(&mut self, cursor: &At, cause: Cause, y: &Reports, _: Nanos) {
+    fn leave(&mut self, cursor: &At<'p>, cause: Cause, y: &Reports, _: Nanos) {
         if self.lowered.memories > 0 {
             self.record(cursor, cause, y);
         }
     }
 
-    fn settle(&mut self, cursor: &At, y: &Reports, _: Nanos) {
+    fn settle(&mut self, cursor: &At<'p>, y: &Reports, _: Nanos) {
         if self.lowered.memories == 0 {
             return;
         }

@@ -5,8 +5,9 @@
 
 use std::collections::BTreeSet;
 
-use mdle_runtime::{Nanos, TRANSITIONS_PER_TURN};
+use mdle_runtime::{Frame, TRANSITIONS_PER_TURN};
 
+use super::script::Moment;
 use super::{Applied, Fired, Machine, Outcome, Reports};
 use crate::diagnostic::Diagnostic;
 use crate::fsm::{Matrices, Transition, UnitVector, matrices};
@@ -20,13 +21,15 @@ pub struct MatrixProduct<'p> {
     /// For each column the interrupts whose matrices list it, by number: the outermost first.
     listing: Vec<Vec<u32>>,
     /// When the scope of each interrupt was entered.
-    entered: Vec<Nanos>,
+    entered: Vec<Moment>,
     /// The memories of RISING that are set, by the number of their interrupt and their own.
     risen: BTreeSet<(usize, u32)>,
     /// What is so of the records of what ended last.
     facts: BTreeSet<(RecordId, u32)>,
     /// The product so far, applied to the first state.
     e: UnitVector,
+    /// Whether there was a first turn.
+    has_begun: bool,
 }
 
 /// Where the condition of an interrupt is read.
@@ -42,7 +45,11 @@ impl Situation for At<'_, '_> {
     }
 
     fn waited(&self, nanos: u64) -> bool {
-        self.y.t.since(self.product.entered[self.number]) >= Nanos(nanos)
+        self.product.entered[self.number].waited(nanos, self.y)
+    }
+
+    fn driven(&self, nanometers: u64) -> bool {
+        self.product.entered[self.number].driven(nanometers, self.y)
     }
 
     fn remembers(&self, memory: u32) -> bool {
@@ -55,7 +62,7 @@ impl Situation for At<'_, '_> {
 }
 
 impl<'p> MatrixProduct<'p> {
-    /// The empty product, at time 0.
+    /// The empty product, before the first turn.
     ///
     /// # Errors
     /// E0501 and E0502 for a plan of too many states.
@@ -65,9 +72,9 @@ impl<'p> MatrixProduct<'p> {
         for (number, Transition { matrix, .. }) in (0..).zip(&matrices.transitions) {
             matrix.listed().for_each(|column| listing[column].push(number));
         }
-        let entered = vec![Nanos::ZERO; matrices.transitions.len()];
+        let entered = vec![Moment::default(); matrices.transitions.len()];
         let (risen, facts, e) = (BTreeSet::new(), BTreeSet::new(), UnitVector { row: 0 });
-        Ok(Self { plan: plan.plan(), matrices, listing, entered, risen, facts, e })
+        Ok(Self { plan: plan.plan(), matrices, listing, entered, risen, facts, e, has_begun: false })
     }
 
     /// The interrupts whose matrices list the column of the state.
@@ -94,8 +101,16 @@ impl<'p> MatrixProduct<'p> {
         self.matrices.laws.get(self.e.row).map(|law| self.plan.quark(*law))
     }
 
+    /// The frame of the law, if a scope around the state is entered in a frame of its own: the innermost such scope is the
+    /// one of highest number.
+    fn frame(&self) -> Option<Frame> {
+        let turned = self.matrices.frames.get(self.e.row)?;
+        let anew = self.listed().rev().find(|number| self.matrices.transitions[*number].here)?;
+        Some(self.entered[anew].frame(*turned))
+    }
+
     /// Multiplies by the matrix of this interrupt.
-    fn multiply(&mut self, number: usize, operand: Option<u32>, t: Nanos) {
+    fn multiply(&mut self, number: usize, operand: Option<u32>, now: Moment) {
         let Transition { matrix, afresh, marks, ends_with, .. } = &self.matrices.transitions[number];
         let own = marks.iter().map(|mark| (mark, operand));
         let ended: Vec<_> = own.chain(ends_with.iter().map(|mark| (*mark, None))).collect();
@@ -107,7 +122,7 @@ impl<'p> MatrixProduct<'p> {
         self.e = matrix * self.e;
         let afresh = self.listing[self.e.row].iter().map(|number| *number as usize).filter(|number| number >= afresh);
         for number in afresh {
-            self.entered[number] = t;
+            self.entered[number] = now;
             self.risen.retain(|(interrupt, _)| *interrupt != number);
             if let Some(kept) = self.matrices.transitions[number].record {
                 self.facts.retain(|(record, _)| *record != kept.id);
@@ -137,17 +152,20 @@ impl<'p> MatrixProduct<'p> {
 
 impl<'p> Machine<'p> for MatrixProduct<'p> {
     fn turn(&mut self, y: &Reports) -> Outcome<'p> {
+        if !std::mem::replace(&mut self.has_begun, true) {
+            self.entered.fill(y.moment());
+        }
         let mut fired = Vec::new();
         while let Some((number, by, operand)) = self.fired(y) {
             if fired.len() == TRANSITIONS_PER_TURN as usize {
                 self.settle(y);
-                return Outcome { state: self.state(), applied: Applied::Cut, fired };
+                return Outcome { state: self.state(), applied: Applied::Cut, frame: None, fired };
             }
             fired.push(Fired { from: self.state(), level: self.matrices.transitions[number].level, by });
-            self.multiply(number, operand, y.t);
+            self.multiply(number, operand, y.moment());
         }
         self.settle(y);
         let applied = self.law().map_or(Applied::Over, |law| Applied::Law(&law.text));
-        Outcome { state: self.state(), applied, fired }
+        Outcome { state: self.state(), applied, frame: self.frame(), fired }
     }
 }

@@ -1,18 +1,18 @@
 //! Scripts: what interrupts and laws report, turn by turn, as JSON lines (semantics, section 9).
 //!
-//! Afterwards: times are nanoseconds since the first turn and never go back.
+//! Afterwards: times are nanoseconds since the first turn, ways are nanometres, and neither ever goes back.
 
 use std::collections::BTreeSet;
 use std::fmt;
 
-use mdle_runtime::Nanos;
+use mdle_runtime::{Frame, Nanometers, Nanos, Radians};
 use serde::Deserialize;
 
 use crate::alphabet::{Alphabet, Decimal};
 use crate::plan::{Plan, Words};
 
 /// A script as read.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Script {
     turns: Vec<Reports>,
     /// The line of each turn, from 1.
@@ -20,14 +20,50 @@ pub struct Script {
 }
 
 /// What is reported in one turn: the output `y` of a robot that is only a script.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Reports {
     /// The time since the first turn.
     pub t: Nanos,
+    /// The reading of the odometer: the length of the path driven so far.
+    pub way: Nanometers,
+    /// The heading by odometry.
+    pub heading: Radians,
     /// The quark texts of the interrupts that have fired.
     pub fired: BTreeSet<String>,
     /// The quark texts of the laws that are done.
     pub completed: BTreeSet<String>,
+}
+
+/// The moment at which a scope is entered, as the machines that walk by themselves keep it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Moment {
+    t: Nanos,
+    way: Nanometers,
+    heading: Radians,
+}
+
+impl Moment {
+    /// Returns `true` if so many nanoseconds have passed since then.
+    pub(super) fn waited(self, nanos: u64, now: &Reports) -> bool {
+        now.t.since(self.t) >= Nanos(nanos)
+    }
+
+    /// Returns `true` if so many nanometres have been driven since then.
+    pub(super) fn driven(self, nanometers: u64, now: &Reports) -> bool {
+        now.way.since(self.way) >= Nanometers(nanometers)
+    }
+
+    /// The heading of that moment as a frame, turned counter-clockwise by so many radians.
+    pub(super) fn frame(self, turned: f64) -> Frame {
+        Frame(self.heading).turned(Radians(turned))
+    }
+}
+
+impl Reports {
+    /// The moment of this turn.
+    pub(super) fn moment(&self) -> Moment {
+        Moment { t: self.t, way: self.way, heading: self.heading }
+    }
 }
 
 /// Why a script cannot be used.
@@ -52,6 +88,12 @@ impl std::error::Error for ScriptError {}
 #[serde(deny_unknown_fields)]
 struct Written {
     t: f64,
+    /// The odometer's reading, in metres.
+    #[serde(default)]
+    way: f64,
+    /// The heading by odometry, in degrees.
+    #[serde(default)]
+    heading: f64,
     #[serde(default)]
     fired: BTreeSet<String>,
     #[serde(default)]
@@ -76,7 +118,16 @@ impl Script {
             if turns.last().is_some_and(|before| t < before.t) {
                 return Err(back());
             }
-            turns.push(Reports { t, fired: written.fired, completed: written.completed });
+            let way = nanos(written.way).map(Nanometers);
+            let way = way.ok_or_else(|| refused(format!("{} is no way in metres", written.way)))?;
+            if turns.last().is_some_and(|before| way < before.way) {
+                let absent = "; a line without `way` counts as 0";
+                let absent = if written.way == 0.0 { absent } else { "" };
+                let message = format!("the way {} is less than that of the line before it{absent}", written.way);
+                return Err(refused(message));
+            }
+            let heading = Radians::from_degrees(written.heading);
+            turns.push(Reports { t, way, heading, fired: written.fired, completed: written.completed });
             lines.push(line);
         }
         Ok(Self { turns, lines })
@@ -105,7 +156,7 @@ impl Script {
     }
 }
 
-/// The time in nanoseconds. By way of the shortest decimal, which is what was written, so that nothing is rounded twice.
+/// The seconds or metres in thousand millionths. By way of the shortest decimal, which is what was written, so that nothing is rounded twice.
 fn nanos(seconds: f64) -> Option<u64> {
     Decimal::parse(&seconds.to_string())?.to_nanos()
 }
@@ -157,12 +208,35 @@ mod tests {
     }
 
     #[test]
+    fn ways_and_headings_are_read_and_0_where_they_are_left_out() {
+        let script =
+            Script::read("{\"t\":0}\n{\"t\":1,\"way\":0.3,\"heading\":-90}\n{\"t\":2,\"way\":1.0000000014}").unwrap();
+        let ways: Vec<_> = script.turns().iter().map(|reports| reports.way.0).collect();
+        assert_eq!(ways, [0, 300_000_000, 1_000_000_001]);
+        let headings: Vec<_> = script.turns().iter().map(|reports| reports.heading.degrees()).collect();
+        assert_eq!(headings, [0.0, -90.0, 0.0]);
+    }
+
+    #[test]
+    fn a_way_that_gets_shorter_is_refused_with_its_line() {
+        assert_eq!(
+            refused("{\"t\":0,\"way\":2}\n{\"t\":1,\"way\":1.5}"),
+            "line 2: the way 1.5 is less than that of the line before it"
+        );
+        assert_eq!(
+            refused("{\"t\":0,\"way\":2}\n{\"t\":1}"),
+            "line 2: the way 0 is less than that of the line before it; a line without `way` counts as 0"
+        );
+        assert_eq!(refused("{\"t\":0,\"way\":-1}"), "line 1: -1 is no way in metres");
+    }
+
+    #[test]
     fn what_is_no_line_of_a_script_is_refused() {
         assert_eq!(refused("{\"t\":-1}"), "line 1: -1 is no time in seconds");
         assert_eq!(refused("{\"t\":1e300}").split_at(8).0, "line 1: ");
         assert_eq!(
             refused("{\"t\":0,\"fire\":[]}"),
-            "line 1: unknown field `fire`, expected one of `t`, `fired`, `completed` (column 13)"
+            "line 1: unknown field `fire`, expected one of `t`, `way`, `heading`, `fired`, `completed` (column 13)"
         );
         for text in ["[]", "{}", "{\"t\":0", "{\"t\":\"0\"}", "{\"t\":0,\"t\":1}", "{\"t\":1e999}", "\u{feff}{\"t\":0}"]
         {

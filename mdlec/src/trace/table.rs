@@ -6,8 +6,9 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use mdle_runtime::{Nanos, TRANSITIONS_PER_TURN};
+use mdle_runtime::TRANSITIONS_PER_TURN;
 
+use super::script::Moment;
 use super::{Applied, Fired, Machine, Outcome, Reports};
 use crate::diagnostic::Diagnostic;
 use crate::fsm::expanded_states;
@@ -27,6 +28,8 @@ pub struct Table<'p> {
     records: BTreeMap<RecordId, Vec<bool>>,
     /// The place of the current state in `states`; behind them all when the plan is over.
     state: usize,
+    /// Whether there was a first turn.
+    has_begun: bool,
 }
 
 /// A state: an atom.
@@ -35,6 +38,10 @@ struct State<'p> {
     law: &'p Quark,
     /// The row of the atom's own interrupt.
     own: usize,
+    /// The angle by which its frame is turned.
+    turned: f64,
+    /// The row of the innermost scope around it that is entered in a frame of its own, if there is one.
+    here: Option<usize>,
 }
 
 /// What an interrupt does.
@@ -63,7 +70,7 @@ struct Next {
 /// What a scope remembers since it was entered.
 #[derive(Debug, Clone)]
 struct Memory {
-    entered: Nanos,
+    entered: Moment,
     /// The memories of RISING in its interrupt.
     rising: Vec<bool>,
 }
@@ -88,7 +95,11 @@ impl Situation for Reading<'_, '_> {
     }
 
     fn waited(&self, nanos: u64) -> bool {
-        self.reports.t.since(self.memory.entered) >= Nanos(nanos)
+        self.memory.entered.waited(nanos, self.reports)
+    }
+
+    fn driven(&self, nanometers: u64) -> bool {
+        self.memory.entered.driven(nanometers, self.reports)
     }
 
     fn remembers(&self, memory: u32) -> bool {
@@ -101,7 +112,7 @@ impl Situation for Reading<'_, '_> {
 }
 
 impl<'p> Table<'p> {
-    /// A table that is about to begin, at time 0.
+    /// A table that is about to begin.
     ///
     /// # Errors
     /// E0501 and E0502 for a plan of too many states.
@@ -109,16 +120,16 @@ impl<'p> Table<'p> {
         expanded_states(plan)?;
         let plan = plan.plan();
         let mut filling = Filling { plan, states: Vec::new(), rows: Vec::new(), ended: Vec::new(), begun: None };
-        filling.scope(&plan.root, None);
+        filling.scope(&plan.root, None, None);
         // What ends the plan leads behind its last state, where nothing starts afresh.
         filling.lead_to(&Next { state: filling.states.len(), afresh: 0..0 });
         let Filling { states, rows, .. } = filling;
         let fresh = |row: &Row<'_>| {
             let rising = vec![false; row.interrupt.memories as usize];
-            Memory { entered: Nanos::ZERO, rising }
+            Memory { entered: Moment::default(), rising }
         };
         let records = rows.iter().filter_map(|row| row.record).map(|record| (record.id, empty(record))).collect();
-        Ok(Self { plan, memories: rows.iter().map(fresh).collect(), records, states, rows, state: 0 })
+        Ok(Self { plan, memories: rows.iter().map(fresh).collect(), records, states, rows, state: 0, has_begun: false })
     }
 
     /// The rows of the scopes around the current state, outwards.
@@ -144,12 +155,12 @@ impl<'p> Table<'p> {
         done.then_some(Ending { row: state.own, by: Fired::COMPLETED, operand: None })
     }
 
-    fn follow(&mut self, ending: &Ending<'p>, t: Nanos) {
+    fn follow(&mut self, ending: &Ending<'p>, now: Moment) {
         self.record(ending);
         let Next { state, afresh } = self.rows[ending.row].next.clone();
         for row in afresh {
             let memory = &mut self.memories[row];
-            memory.entered = t;
+            memory.entered = now;
             memory.rising.fill(false);
             if let Some(record) = self.rows[row].record {
                 self.records.insert(record.id, empty(record));
@@ -196,18 +207,24 @@ impl<'p> Table<'p> {
 
 impl<'p> Machine<'p> for Table<'p> {
     fn turn(&mut self, reports: &Reports) -> Outcome<'p> {
+        if !std::mem::replace(&mut self.has_begun, true) {
+            // Whatever is entered later is entered anew.
+            self.memories.iter_mut().for_each(|memory| memory.entered = reports.moment());
+        }
         let mut fired = Vec::new();
         while let Some(ending) = self.fired(reports) {
             if fired.len() == TRANSITIONS_PER_TURN as usize {
                 self.settle(reports);
-                return Outcome { state: self.number(), applied: Applied::Cut, fired };
+                return Outcome { state: self.number(), applied: Applied::Cut, frame: None, fired };
             }
             fired.push(Fired { from: self.number(), level: self.rows[ending.row].level, by: ending.by });
-            self.follow(&ending, reports.t);
+            self.follow(&ending, reports.moment());
         }
         self.settle(reports);
-        let applied = self.states.get(self.state).map_or(Applied::Over, |state| Applied::Law(&state.law.text));
-        Outcome { state: self.number(), applied, fired }
+        let state = self.states.get(self.state);
+        let applied = state.map_or(Applied::Over, |state| Applied::Law(&state.law.text));
+        let frame = state.and_then(|state| Some(self.memories[state.here?].entered.frame(state.turned)));
+        Outcome { state: self.number(), applied, frame, fired }
     }
 }
 
@@ -228,41 +245,42 @@ struct Filling<'p> {
 }
 
 impl<'p> Filling<'p> {
-    fn scope(&mut self, scope: &'p Scope, around: Option<usize>) {
+    fn scope(&mut self, scope: &'p Scope, around: Option<usize>, here: Option<usize>) {
         let row = self.row(&scope.interrupt, around, &scope.marks);
         self.rows[row].record = scope.record;
-        self.sequence(&scope.body, row);
+        self.sequence(&scope.body, row, if scope.here { Some(row) } else { here });
         self.ends_too(&scope.marks);
         self.ended.push(row);
     }
 
     /// The elements of a scope, the finite loops among them written out.
-    fn sequence(&mut self, body: &'p [Node], around: usize) {
+    fn sequence(&mut self, body: &'p [Node], around: usize, here: Option<usize>) {
         for node in body {
             match node {
                 Node::Atom(atom) => {
                     let own = self.row(&atom.interrupt, Some(around), &atom.marks);
                     let from = self.begun.take().unwrap_or(own);
                     self.lead_to(&Next { state: self.states.len(), afresh: from..own + 1 });
-                    self.states.push(State { law: self.plan.quark(atom.law), own });
+                    let here = if atom.here { Some(own) } else { here };
+                    self.states.push(State { law: self.plan.quark(atom.law), own, turned: atom.frame, here });
                     self.ended.push(own);
                 }
-                Node::Scope(scope) => self.scope(scope, Some(around)),
+                Node::Scope(scope) => self.scope(scope, Some(around), here),
                 Node::Loop(repeated) => match repeated.times {
                     Some(times) => {
-                        (0..times).for_each(|_| self.sequence(&repeated.body, around));
+                        (0..times).for_each(|_| self.sequence(&repeated.body, around, here));
                         self.ends_too(&repeated.marks);
                     }
-                    None => self.without_end(&repeated.body, around),
+                    None => self.without_end(&repeated.body, around, here),
                 },
             }
         }
     }
 
     /// A loop without end is written once: what ends its pass leads back to its first state.
-    fn without_end(&mut self, body: &'p [Node], around: usize) {
+    fn without_end(&mut self, body: &'p [Node], around: usize, here: Option<usize>) {
         let (state, from) = (self.states.len(), self.rows.len());
-        self.sequence(body, around);
+        self.sequence(body, around, here);
         let own = self.states[state].own;
         self.lead_to(&Next { state, afresh: from..own + 1 });
     }

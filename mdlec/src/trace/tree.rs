@@ -1,8 +1,9 @@
 //! The machine `tree`: a direct walk over the plan as written, neither expanded nor without degeneracy
 //! (semantics, sections 2 to 6). The reference for all others, so it shares no stepping code with any of them.
 
-use mdle_runtime::{Nanos, TRANSITIONS_PER_TURN};
+use mdle_runtime::{Frame, TRANSITIONS_PER_TURN};
 
+use super::script::Moment;
 use super::{Applied, Fired, Machine, Outcome, Reports};
 use crate::plan::{Atom, Interrupt, Loop, Mark, Node, Plan, QuarkId, RecordId, Scope, Situation};
 
@@ -13,8 +14,10 @@ pub struct Tree<'p> {
     /// The plan's scopes, loops and atoms. Each stands before what it holds, the plan itself first: a flat list, because
     /// a plan may be nested deeper than the stack allows for recursion.
     elements: Vec<Element<'p>>,
-    /// What is open, outermost first; the last is the current atom. Empty when the plan is over.
+    /// What is open, outermost first; the last is the current atom. Empty before the first turn and when the plan is over.
     open: Vec<Open>,
+    /// Whether there was a first turn.
+    has_begun: bool,
 }
 
 /// A scope, a loop or an atom.
@@ -39,7 +42,7 @@ enum Kind<'p> {
 #[derive(Debug)]
 struct Open {
     element: usize,
-    entered: Nanos,
+    entered: Moment,
     /// The place in its body where the walk is.
     index: usize,
     /// For a loop: the number of the pass, from 1.
@@ -77,7 +80,11 @@ impl Situation for Read<'_, '_> {
     }
 
     fn waited(&self, nanos: u64) -> bool {
-        self.reports.t.since(self.open.entered) >= Nanos(nanos)
+        self.open.entered.waited(nanos, self.reports)
+    }
+
+    fn driven(&self, nanometers: u64) -> bool {
+        self.open.entered.driven(nanometers, self.reports)
     }
 
     fn remembers(&self, memory: u32) -> bool {
@@ -91,16 +98,14 @@ impl Situation for Read<'_, '_> {
 }
 
 impl<'p> Tree<'p> {
-    /// A walk that is about to begin, at time 0.
+    /// A walk that is about to begin.
     #[must_use]
     pub fn new(plan: &'p Plan) -> Self {
-        let mut tree = Self { plan, elements: flat(&plan.root), open: Vec::new() };
-        tree.enter(0, 1, Nanos::ZERO);
-        tree
+        Self { plan, elements: flat(&plan.root), open: Vec::new(), has_begun: false }
     }
 
     /// Enters an element and everything that opens with it, down to an atom.
-    fn enter(&mut self, element: usize, first: u64, t: Nanos) {
+    fn enter(&mut self, element: usize, first: u64, entered: Moment) {
         let mut next = Some(element);
         while let Some(element) = next {
             let Element { kind, body, held, .. } = self.elements[element];
@@ -110,7 +115,7 @@ impl<'p> Tree<'p> {
                 Kind::Scope(_) | Kind::Loop(_) | Kind::Atom(_) => 0,
             };
             let (memories, facts) = (vec![false; memories], vec![false; facts]);
-            self.open.push(Open { element, entered: t, index: 0, pass: 1, first, here: first, memories, facts });
+            self.open.push(Open { element, entered, index: 0, pass: 1, first, here: first, memories, facts });
             next = (!body.is_empty()).then_some(held);
         }
     }
@@ -155,6 +160,13 @@ impl<'p> Tree<'p> {
         }
     }
 
+    /// The frame of the current atom, if it is inside of what is entered in a frame of its own.
+    fn frame(&self) -> Option<Frame> {
+        let Kind::Atom(atom) = self.elements[self.open.last()?.element].kind else { return None };
+        let anew = self.open.iter().rev().find(|open| self.elements[open.element].kind.is_here())?;
+        Some(anew.entered.frame(atom.frame))
+    }
+
     /// The number of the current atom in the expanded plan, or of the termination state.
     fn state(&self) -> u64 {
         match self.open.last() {
@@ -164,7 +176,7 @@ impl<'p> Tree<'p> {
     }
 
     /// Ends a scope and goes outward to the first element that has a successor.
-    fn leave(&mut self, ending: &Ending<'p>, t: Nanos) {
+    fn leave(&mut self, ending: &Ending<'p>, now: Moment) {
         let mut ended = Vec::new();
         let first = self.elements[self.open[ending.place].element].kind;
         ended.push((first.marks(), ending.operand));
@@ -190,7 +202,7 @@ impl<'p> Tree<'p> {
             }
             let (next, first) = (held + open.index, open.here);
             self.record(&ended);
-            return self.enter(next, first, t);
+            return self.enter(next, first, now);
         }
     }
 
@@ -217,18 +229,21 @@ impl<'p> Tree<'p> {
 
 impl<'p> Machine<'p> for Tree<'p> {
     fn turn(&mut self, reports: &Reports) -> Outcome<'p> {
+        if !std::mem::replace(&mut self.has_begun, true) {
+            self.enter(0, 1, reports.moment());
+        }
         let mut fired = Vec::new();
         while let Some(ending) = self.fired(reports) {
             if fired.len() == TRANSITIONS_PER_TURN as usize {
                 self.settle(reports);
-                return Outcome { state: self.state(), applied: Applied::Cut, fired };
+                return Outcome { state: self.state(), applied: Applied::Cut, frame: None, fired };
             }
             fired.push(Fired { from: self.state(), level: ending.level, by: ending.by });
-            self.leave(&ending, reports.t);
+            self.leave(&ending, reports.moment());
         }
         self.settle(reports);
         let applied = self.law().map_or(Applied::Over, |law| Applied::Law(&law.text));
-        Outcome { state: self.state(), applied, fired }
+        Outcome { state: self.state(), applied, frame: self.frame(), fired }
     }
 }
 
@@ -239,6 +254,15 @@ impl<'p> Kind<'p> {
             Self::Scope(scope) => Some(&scope.interrupt),
             Self::Atom(atom) => Some(&atom.interrupt),
             Self::Loop(_) => None,
+        }
+    }
+
+    /// Whether it is entered in a frame of its own.
+    fn is_here(self) -> bool {
+        match self {
+            Self::Scope(scope) => scope.here,
+            Self::Atom(atom) => atom.here,
+            Self::Loop(_) => false,
         }
     }
 

@@ -2,12 +2,12 @@
 
 use std::fmt;
 
-use mdle_runtime::Nanos;
 use mdle_runtime::trace;
 pub use mdle_runtime::trace::Fired;
+use mdle_runtime::{Frame, Nanos};
 
 /// What came of one turn.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Line<'p> {
     /// The number of the turn, from 0.
     pub turn: usize,
@@ -18,12 +18,14 @@ pub struct Line<'p> {
 }
 
 /// What a machine did in one turn.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Outcome<'p> {
     /// The state it ended in, numbered in the expanded plan.
     pub state: u64,
     /// The input it ended with.
     pub applied: Applied<'p>,
+    /// The frame of the law, if one is applied and a `FRAME here` is around its atom.
+    pub frame: Option<Frame>,
     /// Its transitions, in order.
     pub fired: Vec<Fired<'p>>,
 }
@@ -41,13 +43,13 @@ pub enum Applied<'p> {
 
 impl fmt::Display for Line<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Outcome { state, applied, fired } = &self.outcome;
+        let Outcome { state, applied, frame, fired } = &self.outcome;
         let law = match applied {
             Applied::Law(text) => Some(*text),
             Applied::Cut | Applied::Over => None,
         };
         let fired = fired.iter().copied();
-        trace::Line { turn: self.turn as u64, t: self.t, state: *state, law, fired }.fmt(f)
+        trace::Line { turn: self.turn as u64, t: self.t, state: *state, law, frame: *frame, fired }.fmt(f)
     }
 }
 
@@ -57,14 +59,17 @@ mod tests {
 
     #[test]
     fn lines_look_as_the_interface_says() {
-        let outcome = Outcome { state: 1, applied: Applied::Law("goAvoid 90 40 20"), fired: Vec::new() };
+        let outcome = Outcome { state: 1, applied: Applied::Law("goAvoid 90 40 20"), frame: None, fired: Vec::new() };
         let line = Line { turn: 0, t: Nanos::ZERO, outcome };
         assert_eq!(line.to_string(), r#"{"turn":0,"t":0.0,"state":1,"law":"goAvoid 90 40 20","fired":[]}"#);
 
         let fired =
             vec![Fired { from: 1, level: 2, by: "completed" }, Fired { from: 2, level: 0, by: "bumper OR path \"x\"" }];
-        let line =
-            Line { turn: 1, t: Nanos(100_000_000), outcome: Outcome { state: 9, applied: Applied::Over, fired } };
+        let line = Line {
+            turn: 1,
+            t: Nanos(100_000_000),
+            outcome: Outcome { state: 9, applied: Applied::Over, frame: None, fired },
+        };
         assert_eq!(
             line.to_string(),
             concat!(

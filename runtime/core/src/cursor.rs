@@ -2,7 +2,7 @@
 //! (semantics, sections 5 and 6; the paper's third type of transition with its counter c(t)).
 
 use crate::fsm::{Bracket, Kind};
-use crate::{Follows, Fsm, Nanos};
+use crate::{Begin, Entries, Follows, Frame, Fsm, Here, Nanometers, Nanos, Output};
 
 /// Storage for one value a level or loop: an array in generated code, a boxed slice for a plan loaded at run time.
 pub trait Slots<T>: AsRef<[T]> + AsMut<[T]> {}
@@ -17,7 +17,7 @@ pub struct Cursor<E, P> {
     left: P,
 }
 
-impl<E: Slots<Nanos>, P: Slots<u64>> Cursor<E, P> {
+impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
     /// A cursor at the first atom of `fsm`, everything entered at `t`.
     ///
     /// `entered` needs a place for each level of scopes whose [`Cursor::since`] is asked, and `left` one for each level
@@ -35,7 +35,31 @@ impl<E: Slots<Nanos>, P: Slots<u64>> Cursor<E, P> {
 
     /// The time since the scope of this level around the current atom was entered.
     pub fn since(&self, level: u16, t: Nanos) -> Nanos {
-        t.since(self.entered.as_ref().get(usize::from(level)).copied().unwrap_or(t))
+        t.since(self.entered.time(level).unwrap_or(t))
+    }
+
+    /// The length of the path driven since the scope of this level around the current atom was entered.
+    pub fn way(&self, level: u16) -> Nanometers {
+        self.entered.way(level)
+    }
+
+    /// Takes the output of a turn, before anything in the turn is read or entered.
+    #[inline(always)]
+    pub(crate) fn observe<Y: Output>(&mut self, y: &Y) {
+        self.entered.observe(y);
+    }
+
+    /// The frame of the current atom, if a `FRAME here` is around it.
+    #[inline(always)]
+    pub(crate) fn frame(&self) -> Option<Frame> {
+        let Here { level, turned } = self.entered.here(self.atom)?;
+        Some(Frame(self.entered.heading(level)).turned(turned))
+    }
+
+    /// What the law of the current atom is told, where `begin` has the frame of the plan.
+    #[inline(always)]
+    pub(crate) fn begins(&self, begin: Begin) -> Begin {
+        self.frame().map_or(begin, |frame| Begin { frame, ..begin })
     }
 
     /// The bracket of the scope of this level around the current atom; the atom's own if there is none, and the plan's
@@ -107,11 +131,8 @@ impl<E: Slots<Nanos>, P: Slots<u64>> Cursor<E, P> {
     /// Moves to what follows a scope that has ended at time `t`, as [`Fsm::follows`] has said beforehand.
     pub fn follow(&mut self, follows: Follows, t: Nanos) {
         self.atom = follows.atom;
-        let levels = usize::from(follows.from)..usize::from(follows.to);
-        for level in levels {
-            if let Some(entered) = self.entered.as_mut().get_mut(level) {
-                *entered = t;
-            }
+        for level in follows.from..follows.to {
+            self.entered.note(level, t);
         }
     }
 
@@ -134,17 +155,13 @@ impl<E: Slots<Nanos>, P: Slots<u64>> Cursor<E, P> {
     fn open(&mut self, fsm: Fsm<'_>, atom: u32, kept: Option<u32>, t: Nanos) {
         self.atom = atom;
         // Known when the plan is compiled, and then nobody looks at the tables.
-        if self.entered.as_ref().is_empty() && self.left.as_ref().is_empty() {
+        if self.entered.is_empty() && self.left.as_ref().is_empty() {
             return;
         }
         let Some(own) = fsm.atoms.get(atom as usize) else { return };
         for (_, bracket) in fsm.outwards(own.scope).take_while(|(here, _)| kept != Some(*here)) {
             match bracket.kind {
-                Kind::Scope { level } => {
-                    if let Some(entered) = self.entered.as_mut().get_mut(usize::from(level)) {
-                        *entered = t;
-                    }
-                }
+                Kind::Scope { level } => self.entered.note(level, t),
                 Kind::Loop { times, slot, .. } => {
                     if let Some(left) = self.left.as_mut().get_mut(usize::from(slot)) {
                         *left = times.saturating_sub(1);

@@ -1,6 +1,6 @@
 //! One turn of a plan: interrupts outermost first, then the law of the atom that is left standing (semantics, section 5).
 
-use crate::{Begin, Cause, Cursor, Ending, Frame, Nanos, Next, Output as _, Plan};
+use crate::{Begin, Cause, Cursor, Ending, Entries as _, Frame, Nanos, Next, Output as _, Plan};
 
 /// The most transitions of one turn; the search for the next atom then goes on in the next turn.
 pub const TRANSITIONS_PER_TURN: u32 = 4096;
@@ -69,9 +69,10 @@ impl<P: Plan> Machine<P> {
     /// Begins `plan` at the first output `y` and its time; the turn itself is [`Machine::turn`], with the same two.
     pub fn begin(mut plan: P, y: &P::Output, t: Nanos) -> Self {
         let frame = Frame(y.here().theta);
-        let (entered, left) = plan.slots();
+        let (mut entered, left) = plan.slots();
+        entered.observe(y);
         let cursor = Cursor::start(plan.fsm(), entered, left, t);
-        plan.enter(0, y, Begin { now: t, frame });
+        plan.enter(0, y, cursor.begins(Begin { now: t, frame }));
         Self { plan, cursor, frame }
     }
 
@@ -80,6 +81,7 @@ impl<P: Plan> Machine<P> {
         if self.is_over() {
             return Turn::Over;
         }
+        self.cursor.observe(y);
         let begin = Begin { now: t, frame: self.frame };
         match self.plan.next(&mut self.cursor, y, begin, !W::LOOKS) {
             Next::Stays => self.law(y, t),
@@ -127,7 +129,7 @@ impl<P: Plan> Machine<P> {
             if self.is_over() {
                 return Turn::Over;
             }
-            self.plan.enter(self.cursor.atom(), y, begin);
+            self.plan.enter(self.cursor.atom(), y, self.cursor.begins(begin));
             made = made.saturating_add(1);
         }
     }
@@ -169,6 +171,11 @@ impl<P: Plan> Machine<P> {
     /// The current atom, as written, from 0; `None` when the plan is over.
     pub fn atom(&self) -> Option<u32> {
         (!self.is_over()).then_some(self.cursor.atom())
+    }
+
+    /// The frame of the current atom, if a `FRAME here` is around it; an atom in the plan's frame has none of its own.
+    pub fn frame(&self) -> Option<Frame> {
+        self.cursor.frame()
     }
 
     /// Where the plan is.

@@ -1,6 +1,6 @@
 //! What a plan answers the machine: which scope around the current atom ends, and why (semantics, section 5).
 
-use crate::{Begin, Cursor, Follows, Fsm, Nanos, Output, Slots};
+use crate::{Begin, Cursor, Entries, Follows, Fsm, Nanos, Output, Slots};
 
 /// What the atoms and the scopes of a plan mean on one robot: `mdlec` emits it, or it is loaded from text.
 ///
@@ -10,8 +10,8 @@ pub trait Plan {
     type Output: Output;
     /// The robot's input; its default is the null input.
     type Input: Default;
-    /// A place for the entry time of each level of scopes.
-    type Entered: Slots<Nanos>;
+    /// A place for what is kept of the entry of each level of scopes.
+    type Entered: Entries;
     /// A place for the counter of each level of loops.
     type Left: Slots<u64>;
 
@@ -48,7 +48,7 @@ pub trait Plan {
         if follows.is_over() {
             return Next::Over;
         }
-        self.enter(cursor.atom(), y, begin);
+        self.enter(cursor.atom(), y, cursor.begins(begin));
         Next::Moved
     }
 

@@ -1,6 +1,6 @@
 //! The kinetic state machine as the run-time system meets it (paper, Eq. 1: an output `y` for an input `u`).
 
-use crate::Pose;
+use crate::{Nanometers, Pose};
 
 /// A robot: takes an input, gives the output that follows it, and can be stopped.
 ///
@@ -32,5 +32,11 @@ pub trait Output {
     /// Where a plan that began now would put its frame: the pose by odometry; the origin on a robot without.
     fn here(&self) -> Pose {
         Pose::ORIGIN
+    }
+
+    /// The reading of an odometer that counts the path driven; `None` on a robot without, whose way the machine then sums
+    /// up from the distances between [`Output::here`] of successive turns.
+    fn way(&self) -> Option<Nanometers> {
+        None
     }
 }

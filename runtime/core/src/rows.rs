@@ -5,8 +5,8 @@
 
 use crate::fsm::Kind;
 use crate::{
-    Alphabet, Begin, Cause, Completes, Control, Cursor, Ending, Follows, Fsm, Interrupt, Law, Memory, Nanos, Next,
-    Plan, Radians, Slots,
+    Alphabet, Begin, Cause, Completes, Control, Cursor, Ending, Entries, Follows, Fsm, Interrupt, Law, Memory,
+    Nanometers, Nanos, Next, Plan, Radians, Slots,
 };
 
 /// What the brackets and atoms of a plan mean.
@@ -47,6 +47,8 @@ pub enum Condition<I> {
     Wait(Nanos),
     /// Fires from this time since its scope was entered until that one.
     Elapsed(Nanos, Nanos),
+    /// Fires from this length of path driven since its scope was entered until that one.
+    Driven(Nanometers, Nanometers),
     /// Fires when one of its operands does: the number of the first, and how many there are.
     Or(u32, u32),
     /// Fires when all of its operands do.
@@ -65,6 +67,8 @@ struct Reading<'r, I, Y, M> {
     /// The time since its scope was entered, and how many scopes are around that.
     since: Nanos,
     level: u16,
+    /// The length of the path driven since then.
+    way: Nanometers,
     operands: &'r [Condition<I>],
     memory: &'r M,
 }
@@ -86,6 +90,7 @@ impl<I> Condition<I> {
             Self::Quark(interrupt) => interrupt.fired(at.y),
             Self::Wait(time) => at.since >= *time,
             Self::Elapsed(from, until) => (*from..*until).contains(&at.since),
+            Self::Driven(from, until) => (*from..*until).contains(&at.way),
             Self::Or(first, count) => all(*first, *count).fold(false, |fired, operand| fired | operand),
             Self::And(first, count) => all(*first, *count).fold(true, |fired, operand| fired & operand),
             Self::Not(number) => !operand(*number),
@@ -113,7 +118,9 @@ impl<I> Condition<I> {
         I: Interrupt<Y>,
     {
         let inside = match self {
-            Self::Null | Self::Quark(_) | Self::Wait(_) | Self::Elapsed(..) | Self::After(..) => return,
+            Self::Null | Self::Quark(_) | Self::Wait(_) | Self::Elapsed(..) | Self::Driven(..) | Self::After(..) => {
+                return;
+            }
             Self::Or(first, count) | Self::And(first, count) => *first..first.saturating_add(*count),
             Self::Not(number) | Self::Rising(_, number) => *number..number.saturating_add(1),
         };
@@ -160,7 +167,7 @@ pub struct InRows<'a, A: Alphabet, E, P, M = ()> {
     own: u32,
 }
 
-impl<'a, A: Alphabet, E: Slots<Nanos>, P: Slots<u64>> InRows<'a, A, E, P> {
+impl<'a, A: Alphabet, E: Entries, P: Slots<u64>> InRows<'a, A, E, P> {
     /// The plan before it begins, with a place for each level of scopes and of loops; values do not matter.
     #[must_use]
     pub const fn new(rows: &'a Rows<'a, A>, entered: E, left: P) -> Self {
@@ -168,7 +175,7 @@ impl<'a, A: Alphabet, E: Slots<Nanos>, P: Slots<u64>> InRows<'a, A, E, P> {
     }
 }
 
-impl<'a, A: Alphabet, E: Slots<Nanos>, P: Slots<u64>, M: Memory<'a>> InRows<'a, A, E, P, M> {
+impl<'a, A: Alphabet, E: Entries, P: Slots<u64>, M: Memory<'a>> InRows<'a, A, E, P, M> {
     /// The same for a plan that remembers; its memories are empty.
     #[must_use]
     pub const fn remembering(rows: &'a Rows<'a, A>, entered: E, left: P, memory: M) -> Self {
@@ -186,6 +193,7 @@ impl<'a, A: Alphabet, E: Slots<Nanos>, P: Slots<u64>, M: Memory<'a>> InRows<'a, 
                 Condition::Quark(interrupt) => interrupt.fired(y),
                 Condition::Wait(time) => cursor.since(guard.level, t) >= *time,
                 Condition::Elapsed(..)
+                | Condition::Driven(..)
                 | Condition::Or(..)
                 | Condition::And(..)
                 | Condition::Not(_)
@@ -217,8 +225,8 @@ impl<'a, A: Alphabet, E: Slots<Nanos>, P: Slots<u64>, M: Memory<'a>> InRows<'a, 
         y: &'r A::Output,
         t: Nanos,
     ) -> Reading<'r, A::Interrupt, A::Output, M> {
-        let since = cursor.since(guard.level, t);
-        Reading { y, since, level: guard.level, operands: self.rows.operands, memory: &self.memory }
+        let (since, way) = (cursor.since(guard.level, t), cursor.way(guard.level));
+        Reading { y, since, way, level: guard.level, operands: self.rows.operands, memory: &self.memory }
     }
 
     /// Writes down what ends with the scope that has this cause, and forgets what was inside.
@@ -285,7 +293,7 @@ impl<'a, A: Alphabet, E: Slots<Nanos>, P: Slots<u64>, M: Memory<'a>> InRows<'a, 
     }
 }
 
-impl<'a, A: Alphabet, E: Slots<Nanos> + Clone, P: Slots<u64> + Clone, M: Memory<'a>> Plan for InRows<'a, A, E, P, M> {
+impl<'a, A: Alphabet, E: Entries + Clone, P: Slots<u64> + Clone, M: Memory<'a>> Plan for InRows<'a, A, E, P, M> {
     type Output = A::Output;
     type Input = A::Input;
     type Entered = E;

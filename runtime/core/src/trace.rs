@@ -2,10 +2,10 @@
 
 use core::fmt::{self, Write};
 
-use crate::{Cause, Nanos, Plan, Transition};
+use crate::{Cause, Frame, Nanos, Plan, Radians, Transition};
 
 /// A line of a trace, without the line break.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Line<'a, F> {
     /// The number of the turn, from 0.
     pub turn: u64,
@@ -15,6 +15,8 @@ pub struct Line<'a, F> {
     pub state: u64,
     /// The quark text of the law that was applied; `None` for the null input.
     pub law: Option<&'a str>,
+    /// The frame of the law, if a `FRAME here` is around its atom.
+    pub frame: Option<Frame>,
     /// Its transitions, in order: anything that gives [`Fired`].
     pub fired: F,
 }
@@ -65,6 +67,9 @@ impl<'a, F: IntoIterator<Item = Fired<'a>> + Clone> fmt::Display for Line<'_, F>
             Some(law) => write!(f, "{}", Json(law))?,
             None => f.write_str("null")?,
         }
+        if let Some(frame) = self.frame {
+            write!(f, ",\"frame\":{}", Degrees(frame.0))?;
+        }
         f.write_str(",\"fired\":[")?;
         for (place, Fired { from, level, by }) in self.fired.clone().into_iter().enumerate() {
             f.write_str(if place == 0 { "" } else { "," })?;
@@ -92,6 +97,22 @@ impl fmt::Display for Seconds {
                 return Ok(());
             }
         }
+    }
+}
+
+/// A direction as a JSON number of degrees, above -180 and up to 180, rounded to a millionth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Degrees(pub Radians);
+
+impl fmt::Display for Degrees {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        const HALF: i64 = 180_000_000;
+        let millionths = match libm::round(self.0.wrapped().degrees() * 1e6) as i64 {
+            turned if turned <= -HALF => HALF,
+            turned => turned,
+        };
+        let sign = if millionths < 0 { "-" } else { "" };
+        write!(f, "{sign}{}", Seconds(Nanos(millionths.unsigned_abs().saturating_mul(1000))))
     }
 }
 
@@ -127,19 +148,31 @@ mod tests {
 
     #[test]
     fn lines_look_as_the_interface_says() {
-        let line = Line { turn: 0, t: Nanos::ZERO, state: 1, law: Some("goAvoid 90 40 20"), fired: [] };
+        let line = Line { turn: 0, t: Nanos::ZERO, state: 1, law: Some("goAvoid 90 40 20"), frame: None, fired: [] };
         assert_eq!(line.to_string(), r#"{"turn":0,"t":0.0,"state":1,"law":"goAvoid 90 40 20","fired":[]}"#);
         let fired = [
             Fired { from: 1, level: 2, by: Fired::COMPLETED },
             Fired { from: 2, level: 0, by: "bumper OR path \"x\"" },
         ];
         assert_eq!(
-            Line { turn: 1, t: Nanos(100_000_000), state: 9, law: None, fired }.to_string(),
+            Line { turn: 1, t: Nanos(100_000_000), state: 9, law: None, frame: None, fired }.to_string(),
             concat!(
                 r#"{"turn":1,"t":0.1,"state":9,"law":null,"fired":[{"from":1,"level":2,"by":"completed"},"#,
                 r#"{"from":2,"level":0,"by":"bumper OR path \"x\""}]}"#
             )
         );
+    }
+
+    #[test]
+    fn frames_are_told_in_degrees() {
+        let line = |degrees: f64| {
+            let frame = Some(Frame(Radians::from_degrees(degrees)));
+            Line { turn: 0, t: Nanos::ZERO, state: 1, law: Some("stop"), frame, fired: [] }.to_string()
+        };
+        assert_eq!(line(90.0), r#"{"turn":0,"t":0.0,"state":1,"law":"stop","frame":90.0,"fired":[]}"#);
+        let told = [0.0, -22.5, 180.0, -180.0, 190.0, 720.25, 33.333_333_333, -1e-9];
+        let told = told.map(|degrees| Degrees(Radians::from_degrees(degrees)).to_string());
+        assert_eq!(told, ["0.0", "-22.5", "180.0", "180.0", "-170.0", "0.25", "33.333333", "0.0"]);
     }
 
     #[test]

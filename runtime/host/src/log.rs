@@ -5,7 +5,7 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use mdle_runtime::trace::Line;
-use mdle_runtime::{Nanos, Plan, Transition};
+use mdle_runtime::{Frame, Nanos, Plan, Transition};
 
 use crate::outlet::{Keeps, Outlet};
 use crate::patience::Patience;
@@ -30,6 +30,8 @@ pub(crate) struct Entry<'a, P> {
     pub(crate) state: u64,
     /// The atom whose law was applied, as written; `None` for the null input.
     pub(crate) applied: Option<u32>,
+    /// The frame of that law, if a `FRAME here` is around its atom.
+    pub(crate) frame: Option<Frame>,
     /// Its transitions, in order.
     pub(crate) transitions: &'a [Transition],
 }
@@ -99,10 +101,10 @@ impl Log {
     /// # Errors
     /// When the file cannot be written, such as when the disk is full.
     pub(crate) fn turn<P: Plan>(&mut self, entry: &Entry<'_, P>) -> io::Result<()> {
-        let Entry { plan, turn, t, state, applied, transitions } = *entry;
+        let Entry { plan, turn, t, state, applied, frame, transitions } = *entry;
         let law = applied.map(|atom| plan.law(atom));
         let fired = transitions.iter().map(|transition| transition.fired(plan));
-        writeln!(self.file, "{}", Line { turn, t, state, law, fired })?;
+        writeln!(self.file, "{}", Line { turn, t, state, law, frame, fired })?;
         if self.prompt { self.flush() } else { Ok(()) }
     }
 

@@ -163,7 +163,8 @@ impl<Y> Witnesses<'_, '_, Y> {
             Turn::Law(_) => machine.atom(),
             Turn::Cut | Turn::Over => None,
         };
-        log.turn(&Entry { plan, turn: number, t, state: machine.state(), applied, transitions })
+        let frame = machine.frame().filter(|_| applied.is_some());
+        log.turn(&Entry { plan, turn: number, t, state: machine.state(), applied, frame, transitions })
     }
 }
 

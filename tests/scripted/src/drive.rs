@@ -4,7 +4,7 @@ use alloc::vec::Vec;
 use core::fmt::{self, Write};
 
 use mdle_runtime::trace::Line;
-use mdle_runtime::{Machine, Nanos, Plan, Transition, Turn, Watch};
+use mdle_runtime::{Frame, Machine, Nanos, Plan, Transition, Turn, Watch};
 
 use crate::{Input, LAWS, Output};
 
@@ -31,6 +31,10 @@ where
             (began, computed) = (*t, 0);
         }
         let is_same = unwatched.turn(y, *t, &mut ()) == outcome && unwatched.cursor() == machine.cursor();
+        let given = match &outcome {
+            Turn::Law(input) => Some(Frame(input.frame)),
+            Turn::Cut | Turn::Over => None,
+        };
         let law = match outcome {
             _ if !is_same => Some("broken"),
             Turn::Law(input) => {
@@ -41,7 +45,9 @@ where
             Turn::Cut | Turn::Over => None,
         };
         let fired = transitions.0.iter().map(|transition| transition.fired(machine.plan()));
-        writeln!(trace, "{}", Line { turn, t: *t, state: machine.state(), law, fired })?;
+        // The law tells the frame that it was given; the machine tells whether it comes from a `FRAME here`.
+        let frame = machine.frame().and(given);
+        writeln!(trace, "{}", Line { turn, t: *t, state: machine.state(), law, frame, fired })?;
         if machine.is_over() {
             break;
         }

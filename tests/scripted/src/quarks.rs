@@ -125,7 +125,7 @@ macro_rules! laws {
             fn begin(&self, _: &Output, begin: Begin) -> $law {
                 let Self { $($arg),* } = *self;
                 let number = number(LAWS, $text, &[$($value.into()),*]);
-                $law(Input { law: number, began: begin.now, computed: 0 })
+                $law(Input { law: number, began: begin.now, frame: begin.frame.0, computed: 0 })
             }
         }
     )*};

@@ -1,6 +1,6 @@
 //! What a script can report, and what the robot can be told, as numbers of quark texts.
 
-use mdle_runtime::Nanos;
+use mdle_runtime::{Nanometers, Nanos, Pose, Radians};
 
 /// The quark texts of every interrupt that a script can report, with arguments where it takes some.
 pub const INTERRUPTS: &[&str] = &[
@@ -63,9 +63,21 @@ pub struct Output {
     pub completed: u64,
     /// The values of [`SIGNALS`], in SI units.
     pub signals: [f64; SIGNALS.len()],
+    /// The reading of the odometer.
+    pub way: Nanometers,
+    /// The heading by odometry.
+    pub heading: Radians,
 }
 
-impl mdle_runtime::Output for Output {}
+impl mdle_runtime::Output for Output {
+    fn here(&self) -> Pose {
+        Pose { theta: self.heading, ..Pose::ORIGIN }
+    }
+
+    fn way(&self) -> Option<Nanometers> {
+        Some(self.way)
+    }
+}
 
 impl Output {
     /// Whether the interrupt of this name with these arguments, in its default units, has fired.
@@ -86,12 +98,14 @@ impl Output {
 }
 
 /// The input of a turn: the law that computed it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Input {
     /// Its number among [`LAWS`]; `None` is the null input.
     pub law: Option<usize>,
     /// When its atom began.
     pub began: Nanos,
+    /// The frame in which it began.
+    pub frame: Radians,
     /// How many inputs it has computed since then, this one included.
     pub computed: u32,
 }

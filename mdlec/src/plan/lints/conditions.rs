@@ -59,8 +59,9 @@ impl Constants<'_> {
     fn value(&self, condition: &Condition) -> Option<bool> {
         match condition {
             Condition::Null => Some(false),
-            // Whoever compares `t` knows that it begins at 0.
-            Condition::Quark(_) | Condition::Elapsed { .. } | Condition::Rising { .. } | Condition::After(_) => None,
+            // Whoever compares `t` or `way` knows that they begin at 0.
+            Condition::Quark(_) | Condition::Elapsed { .. } | Condition::Driven { .. } => None,
+            Condition::Rising { .. } | Condition::After(_) => None,
             // A scope that is entered now has been entered for no time at all.
             Condition::Wait { nanos, .. } => (*nanos == 0).then_some(true),
             Condition::Or(operands) => self.joined(operands, true),
@@ -106,6 +107,7 @@ impl Constants<'_> {
             | Condition::Quark(_)
             | Condition::Wait { .. }
             | Condition::Elapsed { .. }
+            | Condition::Driven { .. }
             | Condition::After(_) => None,
             Condition::Not(operand) | Condition::Rising { operand, .. } => self.contradiction(operand),
             Condition::Or(operands) => operands.iter().find_map(|operand| self.contradiction(operand)),

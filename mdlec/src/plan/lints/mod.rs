@@ -4,6 +4,7 @@
 
 mod conditions;
 mod ends;
+mod frames;
 mod neighbours;
 mod numbers;
 mod shadows;
@@ -25,6 +26,7 @@ pub fn lints(plan: &Nondegenerate) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     conditions::check(plan, &mut found);
     ends::check(plan, &mut found);
+    frames::check(plan, &mut found);
     shadows::check(plan, &mut found);
     skipped::check(plan, &mut found);
     neighbours::check(plan, &mut found);

@@ -53,6 +53,7 @@ fn is_level(plan: &Plan, condition: &Condition) -> bool {
         Condition::Null
         | Condition::Wait { .. }
         | Condition::Elapsed { .. }
+        | Condition::Driven { .. }
         | Condition::Rising { .. }
         | Condition::After(_) => false,
         Condition::Quark(id) => !plan.quark(*id).remembers,

@@ -6,7 +6,7 @@ use crate::alphabet::{Alphabet, Kind, Param, Unit};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::parameters::Parameters;
 use crate::syntax::Files;
-use crate::syntax::tree::{self, Arg, Call, Condition, ConditionNode, Element, Number, Primary};
+use crate::syntax::tree::{self, Arg, Call, Condition, ConditionNode, Element, Frame, Number, Primary};
 
 /// Warns of them in every plan of files that resolve.
 #[must_use]
@@ -35,7 +35,7 @@ impl Numbers<'_> {
 
     fn elements(&mut self, elements: &[Element]) {
         for element in elements {
-            if let Some(number) = element.frame() {
+            if let Some(Frame::Turned(number)) = element.frame() {
                 self.number(number, Kind::Angle, "deg", "a frame");
             }
             match &element.primary {

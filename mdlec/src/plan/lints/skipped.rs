@@ -116,6 +116,10 @@ impl<F: Fn(QuarkId) -> bool> Situation for AtOnce<F> {
         nanos == 0
     }
 
+    fn driven(&self, nanometers: u64) -> bool {
+        nanometers == 0
+    }
+
     fn remembers(&self, _: u32) -> bool {
         false
     }
@@ -147,14 +151,21 @@ fn all(body: &[Node], left: &mut usize) -> Option<Condition> {
 /// The condition, if it is one that can be true at once.
 fn own(interrupt: &Interrupt) -> Option<Condition> {
     let condition = &interrupt.condition;
-    let never = matches!(condition, Condition::Null | Condition::Wait { nanos: 1.., .. } | Condition::Rising { .. });
+    let never = matches!(
+        condition,
+        Condition::Null
+            | Condition::Wait { nanos: 1.., .. }
+            | Condition::Driven { from: 1.., .. }
+            | Condition::Rising { .. }
+    );
     (!never).then(|| condition.clone())
 }
 
 /// The quarks that a condition reads.
 fn read(condition: &Condition, quarks: &mut BTreeSet<QuarkId>) {
     match condition {
-        Condition::Null | Condition::Wait { .. } | Condition::Elapsed { .. } | Condition::After(_) => {}
+        Condition::Null | Condition::Wait { .. } | Condition::Elapsed { .. } => {}
+        Condition::Driven { .. } | Condition::After(_) => {}
         Condition::Quark(id) => drop(quarks.insert(*id)),
         Condition::Or(operands) | Condition::And(operands) => operands.iter().for_each(|operand| read(operand, quarks)),
         Condition::Not(operand) | Condition::Rising { operand, .. } => read(operand, quarks),

@@ -6,7 +6,7 @@ use super::{Condition, Guard, InRows, LawRow, Reading, Rows, Texts};
 use crate::fsm::{Atom, Bracket};
 use crate::{
     Alphabet, Argument, Begin, Cause, Comparison, Completes, Control, Cursor, Follows, Frame, Fsm, Interrupt, Law,
-    Limit, MarkRow, Memories, Memory, Nanos, Next, NoSignal, Output, Plan, Radians,
+    Limit, MarkRow, Memories, Memory, Nanometers, Nanos, Next, NoSignal, Output, Plan, Radians,
 };
 
 /// The numbers of the interrupts that fire.
@@ -80,7 +80,7 @@ impl Alphabet for Toy {
 
 /// What a condition with these operands is read with, three nanoseconds after its scope was entered.
 fn at<'r, M>(operands: &'r [Condition<Fires>], y: &'r Sensed, memory: &'r M) -> Reading<'r, Fires, Sensed, M> {
-    Reading { y, since: Nanos(3), level: 0, operands, memory }
+    Reading { y, since: Nanos(3), level: 0, way: Nanometers(5), operands, memory }
 }
 
 #[test]

@@ -1,0 +1,68 @@
+//! W0207: a `FRAME here` inside which no law turns to a heading or drives at a bearing.
+
+use crate::alphabet::Kind;
+use crate::diagnostic::{Code, Diagnostic};
+use crate::plan::{Atom, Node, Plan, Quark, Value};
+
+/// Warns of them.
+pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
+    Frames { plan, found }.sequence(&plan.root.body);
+}
+
+struct Frames<'p, 'f> {
+    plan: &'p Plan,
+    found: &'f mut Vec<Diagnostic>,
+}
+
+impl<'p> Frames<'p, '_> {
+    /// Returns the first atom of a sequence, and whether a law in the sequence may use its frame.
+    fn sequence(&mut self, body: &'p [Node]) -> (Option<&'p Atom>, bool) {
+        body.iter().fold((None, false), |(first, is_used), node| {
+            let (own, uses) = self.node(node);
+            (first.or(own), is_used || uses)
+        })
+    }
+
+    fn node(&mut self, node: &'p Node) -> (Option<&'p Atom>, bool) {
+        let (span, here, (first, is_used)) = match node {
+            Node::Atom(atom) => (atom.span, atom.here, (Some(atom), names_a_direction(self.plan.quark(atom.law)))),
+            Node::Scope(scope) => (scope.span, scope.here, self.sequence(&scope.body)),
+            Node::Loop(repeated) => return self.sequence(&repeated.body),
+        };
+        if !here {
+            return (first, is_used);
+        }
+        if let Some(atom) = first.filter(|_| !is_used) {
+            let law = &self.plan.quark(atom.law).text;
+            let message = format!("`FRAME here` changes nothing: `{law}` has neither a heading nor a bearing");
+            self.found.push(
+                Diagnostic::new(Code::W0207, message, span, "no law in here uses its frame")
+                    .help("leave `FRAME here` out; laws such as `goAvoid` and `rotate` use it"),
+            );
+        }
+        // A frame inside hides the one around it.
+        (first, false)
+    }
+}
+
+/// Returns `true` if a law may mean a direction of its frame: it takes an angle, or a file or a module that has some.
+fn names_a_direction(law: &Quark) -> bool {
+    law.args.iter().any(|argument| match argument {
+        Value::Quantity { kind, .. } | Value::Name(kind, _) => match kind {
+            Kind::Angle | Kind::File | Kind::Module => true,
+            Kind::Length
+            | Kind::Speed
+            | Kind::AngularRate
+            | Kind::Time
+            | Kind::Voltage
+            | Kind::Frequency
+            | Kind::Number
+            | Kind::Integer
+            | Kind::Count
+            | Kind::Bits(_)
+            | Kind::Sonar
+            | Kind::Robot => false,
+        },
+        Value::Infinity(_) | Value::Bits(_) | Value::Integer(_) | Value::Sonar(_) => false,
+    })
+}

@@ -1,0 +1,179 @@
+//! What a cursor keeps of the entry of each scope: the time, and for plans with `way` or `FRAME here` the odometer's
+//! reading and the heading as well (semantics, 3.5 and 4).
+
+use crate::{Nanometers, Nanos, Output, Pose, Radians, Slots};
+
+/// Storage for what is kept of the entry of each level of scopes: times alone, or [`Stamps`].
+pub trait Entries {
+    /// Returns `true` if no level is kept.
+    fn is_empty(&self) -> bool;
+    /// Returns the time at which the scope of this level was entered; `None` if the level is not kept.
+    fn time(&self, level: u16) -> Option<Nanos>;
+    /// Notes that the scope of this level is entered at time `t`.
+    fn note(&mut self, level: u16, t: Nanos);
+    /// Takes the output of a turn, before anything in the turn is read or entered.
+    #[inline(always)]
+    fn observe<Y: Output>(&mut self, _y: &Y) {}
+    /// Returns the length of the path driven since the scope of this level was entered.
+    #[inline(always)]
+    fn way(&self, _level: u16) -> Nanometers {
+        Nanometers::ZERO
+    }
+    /// Returns the frame of an atom that is inside a `FRAME here`, by its number as written, from 0.
+    #[inline(always)]
+    fn here(&self, _atom: u32) -> Option<Here> {
+        None
+    }
+    /// Returns the heading, by odometry, at which the scope of this level was entered.
+    #[inline(always)]
+    fn heading(&self, _level: u16) -> Radians {
+        Radians(0.0)
+    }
+}
+
+/// Times alone.
+impl<S: AsRef<[Nanos]> + AsMut<[Nanos]>> Entries for S {
+    #[inline(always)]
+    fn is_empty(&self) -> bool {
+        self.as_ref().is_empty()
+    }
+
+    #[inline(always)]
+    fn time(&self, level: u16) -> Option<Nanos> {
+        self.as_ref().get(usize::from(level)).copied()
+    }
+
+    #[inline(always)]
+    fn note(&mut self, level: u16, t: Nanos) {
+        if let Some(entered) = self.as_mut().get_mut(usize::from(level)) {
+            *entered = t;
+        }
+    }
+}
+
+/// The frame of an atom inside a `FRAME here`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Here {
+    /// The level of the scope at whose entry the heading is taken.
+    pub level: u16,
+    /// The sum of the `FRAME a` inside that scope and around the atom, counter-clockwise.
+    pub turned: Radians,
+}
+
+/// The moment at which a scope was entered.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Stamp {
+    /// The time.
+    pub time: Nanos,
+    /// The odometer's reading.
+    pub way: Nanometers,
+    /// The heading by odometry.
+    pub heading: Radians,
+}
+
+impl Stamp {
+    /// The start of a plan, before the first output.
+    pub const START: Self = Self { time: Nanos::ZERO, way: Nanometers::ZERO, heading: Radians(0.0) };
+}
+
+/// The moments at which scopes were entered, and the odometer that they are read from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stamps<'a, S> {
+    slots: S,
+    /// The frame of each atom, in their order.
+    frames: &'a [Option<Here>],
+    /// The odometer and the heading in this turn; its time is that of no turn.
+    now: Stamp,
+    /// The pose in the turn before; `None` before the first.
+    last: Option<Pose>,
+}
+
+impl<'a, S: Slots<Stamp>> Stamps<'a, S> {
+    /// A stamp for each level that `slots` has room for, whose values do not matter; `frames` has the frame of each atom as
+    /// written, and may be empty in a plan without `FRAME here`.
+    #[must_use]
+    pub const fn new(slots: S, frames: &'a [Option<Here>]) -> Self {
+        Self { slots, frames, now: Stamp::START, last: None }
+    }
+}
+
+impl<S: Slots<Stamp>> Entries for Stamps<'_, S> {
+    fn is_empty(&self) -> bool {
+        self.slots.as_ref().is_empty()
+    }
+
+    fn time(&self, level: u16) -> Option<Nanos> {
+        self.slots.as_ref().get(usize::from(level)).map(|stamp| stamp.time)
+    }
+
+    fn note(&mut self, level: u16, t: Nanos) {
+        if let Some(stamp) = self.slots.as_mut().get_mut(usize::from(level)) {
+            *stamp = Stamp { time: t, ..self.now };
+        }
+    }
+
+    fn observe<Y: Output>(&mut self, y: &Y) {
+        let here = y.here();
+        let step = self.last.replace(here).map_or(Nanometers::ZERO, |last| Nanometers::round(last.distance(&here)));
+        self.now.way = y.way().unwrap_or(self.now.way.plus(step));
+        self.now.heading = here.theta;
+    }
+
+    fn way(&self, level: u16) -> Nanometers {
+        let entered = self.slots.as_ref().get(usize::from(level)).map_or(self.now.way, |stamp| stamp.way);
+        self.now.way.since(entered)
+    }
+
+    fn here(&self, atom: u32) -> Option<Here> {
+        self.frames.get(atom as usize).copied().flatten()
+    }
+
+    fn heading(&self, level: u16) -> Radians {
+        self.slots.as_ref().get(usize::from(level)).map_or(self.now.heading, |stamp| stamp.heading)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Meters;
+
+    /// A robot at a pose, perhaps with an odometer of its own.
+    struct At(Pose, Option<Nanometers>);
+
+    impl Output for At {
+        fn here(&self) -> Pose {
+            self.0
+        }
+
+        fn way(&self) -> Option<Nanometers> {
+            self.1
+        }
+    }
+
+    fn at(x: f64, y: f64, degrees: f64) -> At {
+        At(Pose { x: Meters(x), y: Meters(y), theta: Radians::from_degrees(degrees) }, None)
+    }
+
+    #[test]
+    fn the_way_is_the_sum_of_steps_there_and_back() {
+        let mut stamps = Stamps::new([Stamp::START; 2], &[]);
+        stamps.observe(&at(5.0, 0.0, 90.0));
+        stamps.note(0, Nanos(0));
+        stamps.observe(&at(5.3, 0.4, 90.0));
+        stamps.note(1, Nanos(1));
+        stamps.observe(&at(5.0, 0.0, 40.0));
+        assert_eq!([0, 1, 7].map(|level| stamps.way(level).0), [1_000_000_000, 500_000_000, 0]);
+        assert_eq!([0, 1, 7].map(|level| libm::round(stamps.heading(level).degrees())), [90.0, 90.0, 40.0]);
+        assert_eq!([0, 1, 7].map(|level| stamps.time(level)), [Some(Nanos(0)), Some(Nanos(1)), None]);
+    }
+
+    #[test]
+    fn a_robot_with_an_odometer_of_its_own_is_believed() {
+        let mut stamps = Stamps::new([Stamp::START; 1], &[]);
+        stamps.observe(&At(Pose::ORIGIN, Some(Nanometers(70))));
+        stamps.note(0, Nanos(0));
+        stamps.observe(&At(at(3.0, 0.0, 0.0).0, Some(Nanometers(100))));
+        assert_eq!(stamps.way(0), Nanometers(30));
+    }
+}

@@ -1,0 +1,51 @@
+//! Lengths of the path driven, as plans compare them: whole nanometres, so that every machine counts the same
+//! (semantics, 3.5).
+
+use crate::Meters;
+
+/// A length of path driven, in nanometres: a reading of an odometer, or the difference of two.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Hash)]
+pub struct Nanometers(pub u64);
+
+impl Nanometers {
+    /// No way at all.
+    pub const ZERO: Self = Self(0);
+
+    /// The length rounded to the nearest nanometre; zero for what is negative or no number.
+    #[must_use]
+    pub fn round(length: Meters) -> Self {
+        // Conversion to an integer saturates, and makes 0 of what is no number.
+        Self(libm::round(length.0 * 1e9) as u64)
+    }
+
+    /// The way from an `earlier` reading to this one; zero if that is larger.
+    #[must_use]
+    pub const fn since(self, earlier: Self) -> Self {
+        Self(self.0.saturating_sub(earlier.0))
+    }
+
+    /// This reading after another `length`.
+    #[must_use]
+    pub const fn plus(self, length: Self) -> Self {
+        Self(self.0.saturating_add(length.0))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lengths_are_rounded_to_whole_nanometres() {
+        let rounded = |length: f64| Nanometers::round(Meters(length)).0;
+        assert_eq!([0.0, 0.04, 1.0, 4e-10, 6e-10].map(rounded), [0, 40_000_000, 1_000_000_000, 0, 1]);
+        assert_eq!([-1.0, f64::NAN, f64::INFINITY].map(rounded), [0, 0, u64::MAX]);
+    }
+
+    #[test]
+    fn readings_neither_go_below_zero_nor_overflow() {
+        assert_eq!(Nanometers(7).since(Nanometers(3)), Nanometers(4));
+        assert_eq!(Nanometers(3).since(Nanometers(7)), Nanometers::ZERO);
+        assert_eq!(Nanometers(u64::MAX).plus(Nanometers(1)), Nanometers(u64::MAX));
+    }
+}
