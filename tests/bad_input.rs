@@ -165,10 +165,11 @@ fn scripts_that_are_wrong() {
         r#"{"t": 0}\n{"t": 1, "fired": ["r0<0.7"]}"#,
         r#"{"t": 0, "fired": ["sync ada"]}"#,
         r#"{"t": 0, "fired": ["wait 5"]}"#,
+        r#"{"t": 0, "fired": ["way>200cm"]}"#,
         r#"{"t": 0, "completed": ["turm 90"]}"#,
         r#"{"t": 0, "fired": ["bumper) stop"]}"#,
     ];
-    let plan = "{ P (bumper)\n  (Atom (r0 < 60cm OR wait 5) turn 90)\n}\n";
+    let plan = "{ P (bumper)\n  (Atom (r0 < 60cm OR wait 5 OR way > 2m) turn 90)\n}\n";
     fs::write(folder.join("names.mdle"), plan).unwrap();
     let names = turns.map(|turn| {
         fs::write(folder.join("names"), turn.replace("\\n", "\n") + "\n").unwrap();

@@ -13,6 +13,7 @@
 #[cfg(feature = "conformance")]
 extern crate std;
 
+mod advance;
 mod align;
 mod approach;
 mod at_isection;
@@ -34,6 +35,7 @@ mod tangent;
 mod trial;
 mod turn;
 
+pub use advance::{Advance, Advancing};
 pub use align::{Align, Aligning};
 pub use at_isection::AtIsection;
 pub use bumper::Bumper;

@@ -54,8 +54,11 @@ fn check_params(declaration: &Declaration, found: &mut Vec<Diagnostic>) {
             found.push(at(declaration, message));
         }
         has_default |= param.default.is_some();
-        let Some((least, most)) = param.range else { continue };
         let default = param.default.as_ref().and_then(|default| default.parse::<f64>().ok());
+        if param.except.is_some() && default == param.except {
+            found.push(at(declaration, format!("the default of `{name}` is the value that it may not have")));
+        }
+        let Some((least, most)) = param.range else { continue };
         if least > most {
             found.push(at(declaration, format!("the range of `{name}` ends before it begins")));
         } else if default.is_some_and(|default| default < least || default > most) {

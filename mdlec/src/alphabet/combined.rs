@@ -174,6 +174,9 @@ impl fmt::Display for Declaration {
         for param in &self.params {
             let unit = param.unit.map(|unit| unit.name);
             write!(f, "{}: {:?} {unit:?} {:?} {:?}, ", param.name, param.kind, param.default, param.range)?;
+            if let Some(except) = param.except {
+                write!(f, "not {except:?}, ")?;
+            }
         }
         let unit = self.unit.map(|(unit, tolerance)| (unit.name, tolerance));
         write!(f, ") {unit:?} {} {} {:?}", self.completes, self.remembers, self.needs)

@@ -109,4 +109,6 @@ pub struct Param {
     pub default: Option<String>,
     /// The values it may have, in that unit.
     pub range: Option<(f64, f64)>,
+    /// The one value that it may not have, in that unit.
+    pub except: Option<f64>,
 }

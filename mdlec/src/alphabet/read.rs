@@ -186,7 +186,7 @@ impl<'t> Reader<'t> {
         Ok(params)
     }
 
-    /// `NAME ":" type [ UNIT ] [ "=" NUMBER ] [ "in" NUMBER ".." NUMBER ]`.
+    /// `NAME ":" type [ UNIT ] [ "=" NUMBER ] [ "in" NUMBER ".." NUMBER ] [ "not" NUMBER ]`.
     fn param(&mut self) -> Read<Param> {
         let name = self.name()?.0;
         self.require(Token::Colon)?;
@@ -206,7 +206,7 @@ impl<'t> Reader<'t> {
             );
         };
         let unit = match self.peek_word() {
-            Some(word) if word != "in" => Some(self.unit(kind)?),
+            Some(word) if !matches!(word, "in" | "not") => Some(self.unit(kind)?),
             Some(_) | None => kind.base_unit(),
         };
         let default = if self.take(Token::Equals) { Some(self.number()?.0) } else { None };
@@ -217,7 +217,12 @@ impl<'t> Reader<'t> {
             self.require(Token::To)?;
             range = Some((least, self.value()?));
         }
-        Ok(Param { name, kind, unit, default, range })
+        let mut except = None;
+        if self.peek_word() == Some("not") {
+            self.at += 1;
+            except = Some(self.value()?);
+        }
+        Ok(Param { name, kind, unit, default, range, except })
     }
 
     fn unit(&mut self, kind: Kind) -> Read<Unit> {

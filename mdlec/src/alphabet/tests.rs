@@ -32,7 +32,7 @@ fn defects(text: &str) -> String {
 #[test]
 fn our_own_alphabets_are_read() {
     let atoms = good(ATOMS);
-    assert_eq!((atoms.name.as_str(), atoms.declarations.len()), ("atoms", 25));
+    assert_eq!((atoms.name.as_str(), atoms.declarations.len()), ("atoms", 27));
     let sim = good(SIM);
     let head = sim.target.unwrap();
     assert_eq!((head.crate_name.as_str(), head.period), ("mdle_sim", Some(100_000_000)));
@@ -107,6 +107,8 @@ fn alphabets_that_make_no_sense() {
         "alphabet a; control f(p: speed deg);",
         "alphabet a; control f(p: speed = 20 in 0..10);",
         "alphabet a; control f(p: speed in 10..0);",
+        "alphabet a; control f(p: speed = 0 in -1..1 not 0);",
+        "alphabet a; control f(p: speed not);",
         "alphabet a; control f(p: speed, p: time);",
         "alphabet a; control f(p: speed); interrupt f(q: speed);",
         "alphabet a; control f(p: speed = 1, q: time);",

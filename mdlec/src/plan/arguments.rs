@@ -125,7 +125,8 @@ pub fn signature(declaration: &Declaration) -> String {
 /// A number as a value of this unit's kind, with its text in this unit; what is wrong with it is told of `declaration`.
 /// A number without a unit has the unit `bare`.
 pub(super) fn value(number: &Number, bare: Unit, unit: Unit, declaration: &Declaration) -> Fitted {
-    let param = Param { name: String::new(), kind: unit.kind, unit: Some(unit), default: None, range: None };
+    let param =
+        Param { name: String::new(), kind: unit.kind, unit: Some(unit), default: None, range: None, except: None };
     let here = format!("`{}` is {}", declaration.name, unit.kind.words());
     Fitting { declaration, robot: "" }.quantity(number, &param, Some(bare)).map_err(|mut found| {
         found.labels.iter_mut().for_each(|label| label.text.clone_from(&here));
@@ -187,11 +188,22 @@ impl Fitting<'_> {
             (Arg::Number(_), Kind::Robot | Kind::Module | Kind::File) => {
                 Err(self.mismatch(arg, param, "found a number".into()).into())
             }
-            (Arg::Infinity(_), _) => Err(self.mismatch(arg, param, "found infinity".into()).into()),
+            (Arg::Infinity(_), _) => Err(self.endless(arg, param).into()),
             (Arg::Name(name), _) => Err(self.mismatch(arg, param, format!("found the name `{}`", name.node)).into()),
             (Arg::String(_), _) => Err(self.mismatch(arg, param, "found a text in quotes".into()).into()),
             (Arg::Module(_), _) => Err(self.mismatch(arg, param, "found a module".into()).into()),
         }
+    }
+
+    /// `inf` for what has an end.
+    fn endless(&self, arg: &Arg, param: &Param) -> Diagnostic {
+        let report = self.mismatch(arg, param, "found infinity".into());
+        let is_way = self.declaration.kind == DeclarationKind::Control && param.kind == Kind::Length;
+        if !is_way {
+            return report;
+        }
+        report
+            .help("only a time or a count is without end: to drive until an interrupt fires, write `go 20cm/s 0rad/s`")
     }
 
     fn mismatch(&self, arg: &Arg, param: &Param, found: String) -> Diagnostic {
@@ -268,6 +280,9 @@ impl Fitting<'_> {
             let message = format!("`{}` is too large a number", number.digits());
             return Err(Diagnostic::new(Code::E0304, message, number.span, "no robot can do that").into());
         }
+        if param.except == Some(value) {
+            return Err(self.excluded(number, param, value).into());
+        }
         let Some((least, most)) = param.range.filter(|(least, most)| value < *least || value > *most) else {
             return Ok(value);
         };
@@ -285,6 +300,16 @@ impl Fitting<'_> {
         }
         let message = format!("`{quark}` takes `{}` from {least} to {most}{unit}", param.name);
         Err(Diagnostic::new(Code::E0304, message, number.span, here).into())
+    }
+
+    /// The one value that a parameter may not have.
+    fn excluded(&self, number: &Number, param: &Param, value: f64) -> Diagnostic {
+        let unit = param.unit.map(|unit| unit.name).unwrap_or_default();
+        let (quark, name) = (&self.declaration.name, &param.name);
+        let message = format!("`{quark}` takes any `{name}` but {value}");
+        let here = format!("`{name}` is {value} {unit}");
+        let report = Diagnostic::new(Code::E0304, message, number.span, here.trim_end().to_owned());
+        report.help(format!("write another {}, such as `{quark} 1{unit}`", param.kind.words().replace("a ", "")))
     }
 
     fn wrong_unit(&self, number: &Number, param: &Param) -> Diagnostic {

@@ -174,7 +174,7 @@ fn declaration(plan: &tree::Plan<'_>, parameters: &Parameters<'_>) -> Declaratio
     let param = |param: &tree::Param<'_>| {
         let parameter = parameters.get(param.name.node)?;
         let (name, unit) = (param.name.node.to_owned(), parameter.unit());
-        Some(Param { name, kind: parameter.kind, unit, default: None, range: None })
+        Some(Param { name, kind: parameter.kind, unit, default: None, range: None, except: None })
     };
     Declaration {
         docs: String::new(),

@@ -2,7 +2,7 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 #![allow(unused_variables, reason = "not every alphabet has a quark that looks at all of this")]
 pub use crate::{Input, Output};
-pub use crate::quarks::{Go, GoAvoid};
+pub use crate::quarks::{Go, Advance, GoAvoid};
 pub use ::mdle_atoms::{
     Bumper, AtIsection, Stop, Rotate, Turn, Align, Path, R, Age, X, Y, Theta, V, Omega,
 };
@@ -12,7 +12,7 @@ pub const NAME: &str = "sim";
 /// The period of a turn, unless the operator says otherwise.
 pub const PERIOD: runtime::Nanos = runtime::Nanos(100000000);
 /// Tells this alphabet from any other: a plan that was compiled for another one does not compile.
-pub const HASH: u64 = 0x268c79ee069a3e9e;
+pub const HASH: u64 = 0xec0c461907af61e3;
 /// The quarks as plans make them: a crate whose quarks are otherwise does not compile.
 #[allow(dead_code, reason = "what stands here is to be compiled, not called")]
 mod signatures {
@@ -29,7 +29,7 @@ mod signatures {
         Bumper::new()
     }
 
-    /// `atIsection <4 bits>`: Fires when the four directions front, left, back, right are all as the bits say: 1 where an obstacle is near.
+    /// `atIsection <4 bits>`: Fires when the four directions front, left, back, right of the robot are all as the bits say: 1 where an obstacle is near.
     const fn at_isection(pattern: runtime::Bits<4>) -> AtIsection {
         AtIsection::new(pattern)
     }
@@ -44,17 +44,25 @@ mod signatures {
         Stop::new()
     }
 
-    /// `rotate <heading in deg>`: Turns to a heading in the current frame, the shortest way round.
+    /// `rotate <heading in deg>`: Turns to a heading relative to the frame, the shortest way round.
     const fn rotate(heading: runtime::Radians) -> Rotate {
         Rotate::new(heading)
     }
 
-    /// `turn <angle in deg>`: Turns by an angle, counter-clockwise positive.
+    /// `turn <angle in deg>`: Turns by an angle relative to the heading at which the atom began, counter-clockwise positive.
     const fn turn(angle: runtime::Radians) -> Turn {
         Turn::new(angle)
     }
 
-    /// `goAvoid <bearing in deg> <range in m> [speed in cm/s]`: Drives to the point at this bearing and range from where the atom began, round obstacles.
+    /// `advance <distance in m> [speed in cm/s]`: Drives straight by a distance along the heading at which the atom began, backwards if negative.
+    const fn advance(
+        distance: runtime::Meters,
+        speed: runtime::MetersPerSecond,
+    ) -> Advance {
+        Advance::new(distance, speed)
+    }
+
+    /// `goAvoid <bearing in deg> <range in m> [speed in cm/s]`: Drives to the point at this bearing relative to the frame, and this range from where the atom began, round obstacles.
     const fn go_avoid(
         bearing: runtime::Radians,
         range: runtime::Meters,
@@ -63,17 +71,17 @@ mod signatures {
         GoAvoid::new(bearing, range, speed)
     }
 
-    /// `align <sonar 0 to 15> <sonar 0 to 15>`: Turns until two sonars return equal ranges.
+    /// `align <sonar 0 to 15> <sonar 0 to 15>`: Turns until two sonars return equal ranges, whatever the frame is.
     const fn align(first: runtime::SonarId, second: runtime::SonarId) -> Align {
         Align::new(first, second)
     }
 
-    /// `path <file>`: Replays the headings and forward speeds of a file.
+    /// `path <file>`: Replays the headings, relative to the frame, and the forward speeds of a file.
     const fn path(file: &'static str) -> Path {
         Path::new(file)
     }
 
-    /// `r <sonar 0 to 15>`: The range that a sonar returns.
+    /// `r <sonar 0 to 15>`: The range that a sonar returns; sonars count counter-clockwise from the front of the robot.
     const fn r(which: runtime::SonarId) -> R {
         R::new(which)
     }
@@ -83,17 +91,17 @@ mod signatures {
         Age::new(which)
     }
 
-    /// `x`: Odometry, along the first axis.
+    /// `x`: Odometry, along the first of its own axes, whatever the frame is.
     const fn x() -> X {
         X::new()
     }
 
-    /// `y`: Odometry, along the second axis.
+    /// `y`: Odometry, along the second of its own axes, whatever the frame is.
     const fn y_2() -> Y {
         Y::new()
     }
 
-    /// `theta`: Odometry, the heading.
+    /// `theta`: Odometry, the heading relative to its own axes, whatever the frame is.
     const fn theta() -> Theta {
         Theta::new()
     }
@@ -114,7 +122,7 @@ mod signatures {
 pub enum AnyInterrupt {
     /// `bumper`: Fires on contact of any bumper.
     Bumper(Bumper),
-    /// `atIsection <4 bits>`: Fires when the four directions front, left, back, right are all as the bits say: 1 where an obstacle is near.
+    /// `atIsection <4 bits>`: Fires when the four directions front, left, back, right of the robot are all as the bits say: 1 where an obstacle is near.
     AtIsection(AtIsection),
     /// A comparison of signals.
     Comparison(runtime::Comparison<AnySignal, AnySignal>),
@@ -133,15 +141,15 @@ impl runtime::Interrupt<Output> for AnyInterrupt {
 /// Any signal of this robot with its arguments.
 #[derive(Debug)]
 pub enum AnySignal {
-    /// `r <sonar 0 to 15>`: The range that a sonar returns.
+    /// `r <sonar 0 to 15>`: The range that a sonar returns; sonars count counter-clockwise from the front of the robot.
     R(R),
     /// `age <sonar 0 to 15>`: How long ago a sonar pinged last; infinite before the first time.
     Age(Age),
-    /// `x`: Odometry, along the first axis.
+    /// `x`: Odometry, along the first of its own axes, whatever the frame is.
     X(X),
-    /// `y`: Odometry, along the second axis.
+    /// `y`: Odometry, along the second of its own axes, whatever the frame is.
     Y(Y),
-    /// `theta`: Odometry, the heading.
+    /// `theta`: Odometry, the heading relative to its own axes, whatever the frame is.
     Theta(Theta),
     /// `v`: The measured forward speed.
     V(V),
@@ -170,15 +178,17 @@ pub enum AnyControl {
     Go(Go),
     /// `stop`: Stands still, for ever.
     Stop(Stop),
-    /// `rotate <heading in deg>`: Turns to a heading in the current frame, the shortest way round.
+    /// `rotate <heading in deg>`: Turns to a heading relative to the frame, the shortest way round.
     Rotate(Rotate),
-    /// `turn <angle in deg>`: Turns by an angle, counter-clockwise positive.
+    /// `turn <angle in deg>`: Turns by an angle relative to the heading at which the atom began, counter-clockwise positive.
     Turn(Turn),
-    /// `goAvoid <bearing in deg> <range in m> [speed in cm/s]`: Drives to the point at this bearing and range from where the atom began, round obstacles.
+    /// `advance <distance in m> [speed in cm/s]`: Drives straight by a distance along the heading at which the atom began, backwards if negative.
+    Advance(Advance),
+    /// `goAvoid <bearing in deg> <range in m> [speed in cm/s]`: Drives to the point at this bearing relative to the frame, and this range from where the atom began, round obstacles.
     GoAvoid(GoAvoid),
-    /// `align <sonar 0 to 15> <sonar 0 to 15>`: Turns until two sonars return equal ranges.
+    /// `align <sonar 0 to 15> <sonar 0 to 15>`: Turns until two sonars return equal ranges, whatever the frame is.
     Align(Align),
-    /// `path <file>`: Replays the headings and forward speeds of a file.
+    /// `path <file>`: Replays the headings, relative to the frame, and the forward speeds of a file.
     Path(Path),
 }
 
@@ -193,15 +203,17 @@ pub enum AnyLaw {
     Go(<Go as runtime::Control<Output>>::Law),
     /// `stop`: Stands still, for ever.
     Stop(<Stop as runtime::Control<Output>>::Law),
-    /// `rotate <heading in deg>`: Turns to a heading in the current frame, the shortest way round.
+    /// `rotate <heading in deg>`: Turns to a heading relative to the frame, the shortest way round.
     Rotate(<Rotate as runtime::Control<Output>>::Law),
-    /// `turn <angle in deg>`: Turns by an angle, counter-clockwise positive.
+    /// `turn <angle in deg>`: Turns by an angle relative to the heading at which the atom began, counter-clockwise positive.
     Turn(<Turn as runtime::Control<Output>>::Law),
-    /// `goAvoid <bearing in deg> <range in m> [speed in cm/s]`: Drives to the point at this bearing and range from where the atom began, round obstacles.
+    /// `advance <distance in m> [speed in cm/s]`: Drives straight by a distance along the heading at which the atom began, backwards if negative.
+    Advance(<Advance as runtime::Control<Output>>::Law),
+    /// `goAvoid <bearing in deg> <range in m> [speed in cm/s]`: Drives to the point at this bearing relative to the frame, and this range from where the atom began, round obstacles.
     GoAvoid(<GoAvoid as runtime::Control<Output>>::Law),
-    /// `align <sonar 0 to 15> <sonar 0 to 15>`: Turns until two sonars return equal ranges.
+    /// `align <sonar 0 to 15> <sonar 0 to 15>`: Turns until two sonars return equal ranges, whatever the frame is.
     Align(<Align as runtime::Control<Output>>::Law),
-    /// `path <file>`: Replays the headings and forward speeds of a file.
+    /// `path <file>`: Replays the headings, relative to the frame, and the forward speeds of a file.
     Path(<Path as runtime::Control<Output>>::Law),
 }
 
@@ -213,6 +225,7 @@ impl runtime::Control<Output> for AnyControl {
             Self::Stop(law) => AnyLaw::Stop(runtime::Control::begin(law, y, begin)),
             Self::Rotate(law) => AnyLaw::Rotate(runtime::Control::begin(law, y, begin)),
             Self::Turn(law) => AnyLaw::Turn(runtime::Control::begin(law, y, begin)),
+            Self::Advance(law) => AnyLaw::Advance(runtime::Control::begin(law, y, begin)),
             Self::GoAvoid(law) => AnyLaw::GoAvoid(runtime::Control::begin(law, y, begin)),
             Self::Align(law) => AnyLaw::Align(runtime::Control::begin(law, y, begin)),
             Self::Path(law) => AnyLaw::Path(runtime::Control::begin(law, y, begin)),
@@ -228,6 +241,7 @@ impl runtime::Law<Output> for AnyLaw {
             Self::Stop(law) => runtime::Law::input(law, y, t),
             Self::Rotate(law) => runtime::Law::input(law, y, t),
             Self::Turn(law) => runtime::Law::input(law, y, t),
+            Self::Advance(law) => runtime::Law::input(law, y, t),
             Self::GoAvoid(law) => runtime::Law::input(law, y, t),
             Self::Align(law) => runtime::Law::input(law, y, t),
             Self::Path(law) => runtime::Law::input(law, y, t),
@@ -242,6 +256,7 @@ impl runtime::Completes<Output> for AnyLaw {
             Self::Stop(_) => false,
             Self::Rotate(law) => runtime::Completes::completed(law, y, t),
             Self::Turn(law) => runtime::Completes::completed(law, y, t),
+            Self::Advance(law) => runtime::Completes::completed(law, y, t),
             Self::GoAvoid(law) => runtime::Completes::completed(law, y, t),
             Self::Align(law) => runtime::Completes::completed(law, y, t),
             Self::Path(law) => runtime::Completes::completed(law, y, t),
@@ -278,6 +293,18 @@ impl runtime::Alphabet for Alphabet {
             parameter: "omega",
             least: -6.0,
             most: 6.0,
+        },
+        runtime::Limit {
+            quark: "advance",
+            parameter: "distance",
+            least: -1000.0,
+            most: 1000.0,
+        },
+        runtime::Limit {
+            quark: "advance",
+            parameter: "speed",
+            least: 0.001,
+            most: 1.0,
         },
         runtime::Limit {
             quark: "goAvoid",
@@ -348,6 +375,12 @@ impl runtime::Alphabet for Alphabet {
                 ("turn", &[runtime::Argument::Angle(angle)]) => {
                     AnyControl::Turn(Turn::new(angle))
                 }
+                (
+                    "advance",
+                    &[runtime::Argument::Length(distance),
+                    runtime::Argument::Speed(speed),
+                    ],
+                ) => AnyControl::Advance(Advance::new(distance, speed)),
                 (
                     "goAvoid",
                     &[runtime::Argument::Angle(bearing),

@@ -3,14 +3,14 @@
 #![allow(unused_variables, reason = "not every alphabet has a quark that looks at all of this")]
 pub use crate::{Input, Output};
 pub use crate::quarks::Go;
-pub use ::mdle_atoms::{Stop, Rotate, Turn, X, Y, Theta, V, Omega};
+pub use ::mdle_atoms::{Stop, Rotate, Turn, Advance, X, Y, Theta, V, Omega};
 use ::mdle_runtime as runtime;
 /// The target's name, as `mdlec --target` takes it.
 pub const NAME: &str = "template";
 /// The period of a turn, unless the operator says otherwise.
 pub const PERIOD: runtime::Nanos = runtime::Nanos(100000000);
 /// Tells this alphabet from any other: a plan that was compiled for another one does not compile.
-pub const HASH: u64 = 0xc8f30e114ab2b09b;
+pub const HASH: u64 = 0x05e60f75f1a1232f;
 /// The quarks as plans make them: a crate whose quarks are otherwise does not compile.
 #[allow(dead_code, reason = "what stands here is to be compiled, not called")]
 mod signatures {
@@ -28,27 +28,35 @@ mod signatures {
         Stop::new()
     }
 
-    /// `rotate <heading in deg>`: Turns to a heading in the current frame, the shortest way round.
+    /// `rotate <heading in deg>`: Turns to a heading relative to the frame, the shortest way round.
     const fn rotate(heading: runtime::Radians) -> Rotate {
         Rotate::new(heading)
     }
 
-    /// `turn <angle in deg>`: Turns by an angle, counter-clockwise positive.
+    /// `turn <angle in deg>`: Turns by an angle relative to the heading at which the atom began, counter-clockwise positive.
     const fn turn(angle: runtime::Radians) -> Turn {
         Turn::new(angle)
     }
 
-    /// `x`: Odometry, along the first axis.
+    /// `advance <distance in m> [speed in cm/s]`: Drives straight by a distance along the heading at which the atom began, backwards if negative.
+    const fn advance(
+        distance: runtime::Meters,
+        speed: runtime::MetersPerSecond,
+    ) -> Advance {
+        Advance::new(distance, speed)
+    }
+
+    /// `x`: Odometry, along the first of its own axes, whatever the frame is.
     const fn x() -> X {
         X::new()
     }
 
-    /// `y`: Odometry, along the second axis.
+    /// `y`: Odometry, along the second of its own axes, whatever the frame is.
     const fn y_2() -> Y {
         Y::new()
     }
 
-    /// `theta`: Odometry, the heading.
+    /// `theta`: Odometry, the heading relative to its own axes, whatever the frame is.
     const fn theta() -> Theta {
         Theta::new()
     }
@@ -82,11 +90,11 @@ impl runtime::Interrupt<Output> for AnyInterrupt {
 /// Any signal of this robot with its arguments.
 #[derive(Debug)]
 pub enum AnySignal {
-    /// `x`: Odometry, along the first axis.
+    /// `x`: Odometry, along the first of its own axes, whatever the frame is.
     X(X),
-    /// `y`: Odometry, along the second axis.
+    /// `y`: Odometry, along the second of its own axes, whatever the frame is.
     Y(Y),
-    /// `theta`: Odometry, the heading.
+    /// `theta`: Odometry, the heading relative to its own axes, whatever the frame is.
     Theta(Theta),
     /// `v`: The measured forward speed.
     V(V),
@@ -113,10 +121,12 @@ pub enum AnyControl {
     Go(Go),
     /// `stop`: Stands still, for ever.
     Stop(Stop),
-    /// `rotate <heading in deg>`: Turns to a heading in the current frame, the shortest way round.
+    /// `rotate <heading in deg>`: Turns to a heading relative to the frame, the shortest way round.
     Rotate(Rotate),
-    /// `turn <angle in deg>`: Turns by an angle, counter-clockwise positive.
+    /// `turn <angle in deg>`: Turns by an angle relative to the heading at which the atom began, counter-clockwise positive.
     Turn(Turn),
+    /// `advance <distance in m> [speed in cm/s]`: Drives straight by a distance along the heading at which the atom began, backwards if negative.
+    Advance(Advance),
 }
 
 /// Any law of this robot as it runs.
@@ -130,10 +140,12 @@ pub enum AnyLaw {
     Go(<Go as runtime::Control<Output>>::Law),
     /// `stop`: Stands still, for ever.
     Stop(<Stop as runtime::Control<Output>>::Law),
-    /// `rotate <heading in deg>`: Turns to a heading in the current frame, the shortest way round.
+    /// `rotate <heading in deg>`: Turns to a heading relative to the frame, the shortest way round.
     Rotate(<Rotate as runtime::Control<Output>>::Law),
-    /// `turn <angle in deg>`: Turns by an angle, counter-clockwise positive.
+    /// `turn <angle in deg>`: Turns by an angle relative to the heading at which the atom began, counter-clockwise positive.
     Turn(<Turn as runtime::Control<Output>>::Law),
+    /// `advance <distance in m> [speed in cm/s]`: Drives straight by a distance along the heading at which the atom began, backwards if negative.
+    Advance(<Advance as runtime::Control<Output>>::Law),
 }
 
 impl runtime::Control<Output> for AnyControl {
@@ -144,6 +156,7 @@ impl runtime::Control<Output> for AnyControl {
             Self::Stop(law) => AnyLaw::Stop(runtime::Control::begin(law, y, begin)),
             Self::Rotate(law) => AnyLaw::Rotate(runtime::Control::begin(law, y, begin)),
             Self::Turn(law) => AnyLaw::Turn(runtime::Control::begin(law, y, begin)),
+            Self::Advance(law) => AnyLaw::Advance(runtime::Control::begin(law, y, begin)),
         }
     }
 }
@@ -156,6 +169,7 @@ impl runtime::Law<Output> for AnyLaw {
             Self::Stop(law) => runtime::Law::input(law, y, t),
             Self::Rotate(law) => runtime::Law::input(law, y, t),
             Self::Turn(law) => runtime::Law::input(law, y, t),
+            Self::Advance(law) => runtime::Law::input(law, y, t),
         }
     }
 }
@@ -167,6 +181,7 @@ impl runtime::Completes<Output> for AnyLaw {
             Self::Stop(_) => false,
             Self::Rotate(law) => runtime::Completes::completed(law, y, t),
             Self::Turn(law) => runtime::Completes::completed(law, y, t),
+            Self::Advance(law) => runtime::Completes::completed(law, y, t),
         }
     }
 }
@@ -194,6 +209,18 @@ impl runtime::Alphabet for Alphabet {
             parameter: "omega",
             least: -2.0,
             most: 2.0,
+        },
+        runtime::Limit {
+            quark: "advance",
+            parameter: "distance",
+            least: -1000.0,
+            most: 1000.0,
+        },
+        runtime::Limit {
+            quark: "advance",
+            parameter: "speed",
+            least: 0.001,
+            most: 10.0,
         },
     ];
     fn interrupt(
@@ -238,6 +265,12 @@ impl runtime::Alphabet for Alphabet {
                 ("turn", &[runtime::Argument::Angle(angle)]) => {
                     AnyControl::Turn(Turn::new(angle))
                 }
+                (
+                    "advance",
+                    &[runtime::Argument::Length(distance),
+                    runtime::Argument::Speed(speed),
+                    ],
+                ) => AnyControl::Advance(Advance::new(distance, speed)),
                 _ => return None,
             },
         )

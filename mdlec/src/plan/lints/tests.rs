@@ -30,6 +30,22 @@ fn a_plan_that_nothing_ends() {
 }
 
 #[test]
+fn frames_that_no_law_uses() {
+    assert_judged!(
+        "{ P (bumper)
+  FRAME here (Atom (wait 5) align 7 9)
+  FRAME here { Q (wait 9) (Atom (wait 5) advance 1m) (Atom (wait 5) stop) }
+  FRAME here ((Atom (wait 5) go 20 0) FRAME here (Atom (wait 5) rotate 90))
+}"
+    );
+    assert_silent(&[
+        "{ P (bumper) FRAME here { Q (Atom (wait 5) stop) FRAME 90 (Atom (wait 9) (goAvoid 0 3m)) } }",
+        "{ P (bumper) FRAME here ExecPlan 3 { (Atom (wait 5) stop) (Atom (null) path walk) } }",
+        "{ P (bumper) FRAME 90deg (Atom (wait 5) align 7 9) }",
+    ]);
+}
+
+#[test]
 fn what_is_never_reached() {
     assert_judged!(
         "{ P (bumper)

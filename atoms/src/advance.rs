@@ -1,0 +1,148 @@
+//! `advance D v`: drives straight ahead, or back, by a length of way; ours, next to the paper's `goAvoid` (section IV-A).
+
+use mdle_runtime::capability::{DiffDrive, Odometry};
+use mdle_runtime::{Begin, Completes, Control, Law, Meters, MetersPerSecond, Nanos, Pose, Radians, Twist};
+
+use crate::heading::turning;
+
+/// The speed, in m/s, for each metre that is left: a body at full speed begins to brake so that it never goes too far.
+const GAIN: f64 = 1.0;
+/// The part of what is left that is driven at most until the law is asked again: an input acts a turn later, so that with
+/// more the robot would go to and fro.
+const AT_ONCE: f64 = 0.25;
+/// The distance, in metres, within which the robot has arrived; of a way shorter than twice that, half the way.
+const NEAR: f64 = 0.01;
+/// The speed, in m/s, below which the robot is at rest.
+const AT_REST: f64 = 0.02;
+
+/// `u_f = k(D − way so far)`, at most `v`, and `u_θ = k(θ_0 − θ)`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Advance {
+    distance: Meters,
+    speed: MetersPerSecond,
+}
+
+impl Advance {
+    /// The quark `advance distance speed`: along the heading at which the atom begins, backwards if the distance is
+    /// negative.
+    #[must_use]
+    pub const fn new(distance: Meters, speed: MetersPerSecond) -> Self {
+        Self { distance, speed }
+    }
+}
+
+/// The law of [`Advance`]: done within 1 cm of its distance along the heading at which it began, and at rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Advancing {
+    quark: Advance,
+    /// The pose by odometry at which the atom began.
+    from: Pose,
+    /// When the input was last asked for.
+    before: Option<Nanos>,
+}
+
+impl Advancing {
+    /// Returns the metres left along the heading at which the atom began; negative if the robot is to go back.
+    fn left<Y: Odometry>(&self, y: &Y) -> f64 {
+        let here = y.pose();
+        let (sin, cos) = libm::sincos(self.from.theta.0);
+        let so_far = (here.x.0 - self.from.x.0) * cos + (here.y.0 - self.from.y.0) * sin;
+        self.quark.distance.0 - so_far
+    }
+}
+
+impl<Y: DiffDrive + Odometry> Control<Y> for Advance {
+    type Law = Advancing;
+
+    fn begin(&self, y: &Y, _: Begin) -> Advancing {
+        Advancing { quark: *self, from: y.pose(), before: None }
+    }
+}
+
+impl<Y: DiffDrive + Odometry> Law<Y> for Advancing {
+    type Input = Twist;
+
+    fn input(&mut self, y: &Y, t: Nanos) -> Twist {
+        let before = self.before.replace(t);
+        let period = before.map_or(0.0, |before| t.since(before).seconds());
+        let gain = if GAIN * period > AT_ONCE { AT_ONCE / period } else { GAIN };
+        let fastest = self.quark.speed.0.abs();
+        let off = Radians(self.from.theta.0 - y.pose().theta.0).wrapped();
+        let v = MetersPerSecond((gain * self.left(y)).clamp(-fastest, fastest));
+        Twist { v, ..turning(off, y.steering().rotate, before, t) }
+    }
+}
+
+impl<Y: DiffDrive + Odometry> Completes<Y> for Advancing {
+    fn completed(&self, y: &Y, _: Nanos) -> bool {
+        let near = NEAR.min(self.quark.distance.0.abs() / 2.0);
+        self.left(y).abs() <= near && y.velocity().v.0.abs() < AT_REST
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trial::{PERIOD, Sensed, begun, framed};
+
+    /// Runs `advance` from a heading in degrees, with a push of so many degrees to the left in each of the first ten turns;
+    /// the turns that it took.
+    fn advanced(distance: f64, speed: f64, y: &mut Sensed, push: f64) -> u64 {
+        let mut law = Advance::new(Meters(distance), MetersPerSecond(speed)).begin(&*y, framed(77.0));
+        for number in 0..2000 {
+            let t = Nanos(number * 100_000_000);
+            if law.completed(&*y, t) {
+                return number;
+            }
+            let input = law.input(&*y, t);
+            assert!(input.v.0.abs() <= speed, "{input:?}");
+            y.drive(input);
+            y.pose.theta.0 += if number < 10 { push.to_radians() } else { 0.0 };
+            y.pose.theta = y.pose.theta.wrapped();
+        }
+        2000
+    }
+
+    #[test]
+    fn ends_its_distance_ahead_whatever_the_heading_and_the_frame() {
+        for distance in [1.0, -1.0, 0.005, 0.3, 5.0] {
+            for heading in [0.0, 100.0, -179.0] {
+                let mut y = Sensed::heading(heading);
+                let turns = advanced(distance, 0.2, &mut y, 0.0);
+                let goal = Pose::ORIGIN.towards(Radians::from_degrees(heading), Meters(distance));
+                let off = y.pose.distance(&goal).0;
+                assert!(off <= 0.01_f64.min(distance.abs() / 2.0), "{distance} at {heading}: {off} m off");
+                assert!(turns as f64 * PERIOD < distance.abs() / 0.2 + 6.0, "{distance}: {turns} turns");
+            }
+        }
+    }
+
+    #[test]
+    fn holds_its_heading_against_a_push() {
+        for push in [2.0, -2.0] {
+            let mut y = Sensed::heading(30.0);
+            advanced(2.0, 0.2, &mut y, push);
+            let off = Radians(y.pose.theta.0 - 30.0_f64.to_radians()).wrapped().degrees();
+            assert!(off.abs() < 0.5, "{off} degrees off");
+        }
+    }
+
+    #[test]
+    fn goes_back_where_it_has_gone_too_far() {
+        let mut y = Sensed::heading(0.0);
+        let mut law = Advance::new(Meters(1.0), MetersPerSecond(0.2)).begin(&y, begun());
+        y.pose.x = Meters(1.5);
+        assert!(!law.completed(&y, Nanos(0)));
+        assert_eq!(law.input(&y, Nanos(0)).v.0, -0.2);
+    }
+
+    #[test]
+    fn is_not_done_before_it_is_at_rest() {
+        let mut y = Sensed::heading(0.0);
+        let law = Advance::new(Meters(1.0), MetersPerSecond(0.2)).begin(&y, begun());
+        y.pose.x = Meters(1.0);
+        assert!(law.completed(&y, Nanos(0)));
+        y.velocity.v.0 = 0.05;
+        assert!(!law.completed(&y, Nanos(0)));
+    }
+}
