@@ -185,10 +185,10 @@ fn machines_written_from_the_rules_share_no_stepping_with_others() {
         let path = format!("mdlec/src/trace/{machine}.rs");
         let file = files(&[".rs"]).into_iter().find(|file| file.path == path).expect(&path);
         let used = [
-            (names_from(&file.text, "mdle_runtime"), &["Nanos", "TRANSITIONS_PER_TURN"][..]),
+            (names_from(&file.text, "mdle_runtime"), &["Frame", "TRANSITIONS_PER_TURN"][..]),
             (names_from(&file.text, "crate"), &["diagnostic", "fsm", "plan"]),
             (names_from(&file.text, "crate::fsm"), of_fsm),
-            (names_from(&file.text, "super"), &["Applied", "Fired", "Machine", "Outcome", "Reports"]),
+            (names_from(&file.text, "super"), &["Applied", "Fired", "Machine", "Moment", "Outcome", "Reports"]),
         ];
         for (names, allowed) in used {
             let others: Vec<_> = names.iter().filter(|name| !allowed.contains(&name.as_str())).collect();
@@ -205,7 +205,7 @@ fn the_lowering_is_validated_by_code_of_its_own() {
     let file = files(&[".rs"]).into_iter().find(|file| file.path == path).expect(path);
     // Of the lowering it may know what a machine is, and of the runtime what its tables are.
     assert_eq!(names_from(&file.text, "super"), ["Lowered", "RecordPlace"]);
-    assert_eq!(names_from(&file.text, "mdle_runtime"), ["fsm"]);
+    assert_eq!(names_from(&file.text, "mdle_runtime"), ["fsm", "Here", "Radians"]);
     assert_eq!(names_from(&file.text, "mdle_runtime::fsm"), ["Bracket", "Kind"]);
     assert_eq!(names_from(&file.text, "crate"), ["diagnostic", "plan"]);
 }

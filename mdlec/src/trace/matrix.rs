@@ -7,8 +7,7 @@ use std::collections::BTreeSet;
 
 use mdle_runtime::{Frame, TRANSITIONS_PER_TURN};
 
-use super::script::Moment;
-use super::{Applied, Fired, Machine, Outcome, Reports};
+use super::{Applied, Fired, Machine, Moment, Outcome, Reports};
 use crate::diagnostic::Diagnostic;
 use crate::fsm::{Matrices, Transition, UnitVector, matrices};
 use crate::plan::{Nondegenerate, Plan, Quark, QuarkId, RecordId, Situation};

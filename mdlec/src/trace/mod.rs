@@ -9,6 +9,7 @@ mod write;
 
 pub use counted::Counted;
 pub use matrix::MatrixProduct;
+use script::Moment;
 pub use script::{Reports, Script, ScriptError};
 pub use table::Table;
 pub use tree::Tree;

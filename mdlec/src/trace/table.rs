@@ -8,8 +8,7 @@ use std::ops::Range;
 
 use mdle_runtime::TRANSITIONS_PER_TURN;
 
-use super::script::Moment;
-use super::{Applied, Fired, Machine, Outcome, Reports};
+use super::{Applied, Fired, Machine, Moment, Outcome, Reports};
 use crate::diagnostic::Diagnostic;
 use crate::fsm::expanded_states;
 use crate::plan::{Interrupt, Mark, Node, Nondegenerate, Plan, Quark, QuarkId, Record, RecordId, Scope, Situation};

@@ -3,8 +3,7 @@
 
 use mdle_runtime::{Frame, TRANSITIONS_PER_TURN};
 
-use super::script::Moment;
-use super::{Applied, Fired, Machine, Outcome, Reports};
+use super::{Applied, Fired, Machine, Moment, Outcome, Reports};
 use crate::plan::{Atom, Interrupt, Loop, Mark, Node, Plan, QuarkId, RecordId, Scope, Situation};
 
 /// A plan that is walked.

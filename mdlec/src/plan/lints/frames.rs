@@ -37,7 +37,7 @@ impl<'p> Frames<'p, '_> {
             let message = format!("`FRAME here` changes nothing: `{law}` has neither a heading nor a bearing");
             self.found.push(
                 Diagnostic::new(Code::W0207, message, span, "no law in here uses its frame")
-                    .help("leave `FRAME here` out; laws such as `goAvoid` and `rotate` use it"),
+                    .help("remove `FRAME here`; laws such as `goAvoid` and `rotate` use it"),
             );
         }
         // A frame inside hides the one around it.

@@ -27,6 +27,7 @@ fn elements() {
         &[
             "{ A B C(5cm/s, inf) D() (E F)^3 ((G)) (Atom (b) u)^inf ExecPlan n E ExecPlan inf { A { B (c) D } } }",
             "{ A FRAME 180deg B s1: FRAME -90 C(1 2) s2: (D)^2 Γ_e = { E F } }",
+            "{ A FRAME here (B here)^2 s1: FRAME here(C) FRAME // then\nhere here FRAME here { here D } }",
             "{ A B σ_null } { B A sigma_null } { C A \\sigma_{null} }",
             "/* no doc */ /// One.\n/// Two.\n{ A /// inside\n B } //// none\n{ B A }",
         ],
