@@ -130,7 +130,7 @@ fn a_bound_alphabet_matches_over_what_there_is() {
 fn a_condition_of_many_operands_has_sixty_four_at_each_depth() {
     for operands in [64, 65, 5_000] {
         let waits: Vec<_> = (1..=operands).map(|seconds| format!("wait {seconds}")).collect();
-        let rust = dense(&format!("{{ Main (Atom ({}) idle) }}", waits.join(" OR ")));
+        let rust = dense_as(Shape::Code, &format!("{{ Main (Atom ({}) idle) }}", waits.join(" OR ")));
         let condition = rust.split("Running::Atom1(_)=>").nth(1).expect("the atom's arm");
         assert_eq!(operands_at_one_depth(condition), 64, "{operands} operands: {condition}");
         assert_eq!(rust.matches("cursor.since(").count(), operands);
