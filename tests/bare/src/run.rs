@@ -32,8 +32,9 @@ fn turns(plan: impl Plan<Output = Output, Input = Input>) -> fmt::Result {
             Turn::Cut | Turn::Over => None,
         };
         let fired = transitions.made.iter().flatten().map(|transition| transition.fired(machine.plan()));
+        let frame = machine.frame().filter(|_| law.is_some());
         let Input { v, omega } = outcome.input();
-        writeln!(Printed, "{}", Line { turn, t, state: machine.state(), law, fired })?;
+        writeln!(Printed, "{}", Line { turn, t, state: machine.state(), law, frame, fired })?;
         writeln!(Printed, "u {} {}", (v.0 * 1000.0) as i32, (omega.0 * 1000.0) as i32)?;
         turn = turn.saturating_add(1);
         next = bytes().map(|record| Sensed::read(&record));
