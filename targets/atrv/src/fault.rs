@@ -103,7 +103,7 @@ impl fmt::Display for Fault {
                 "the ATRV's positions leap by metres, so where it is is not known: are its encoders and its line in order?",
             ),
             Self::Moves => f.write_str(
-                "the ATRV still moved when its time to stand was over, and may not have stopped: press its emergency stop",
+                "the ATRV still moved when its time to stand was over: press its emergency stop",
             ),
             Self::Overslept => f.write_str(
                 "the ATRV was stopped because no command came in time: is this computer too busy, or `watchdog` too short?",

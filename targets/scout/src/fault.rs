@@ -91,7 +91,7 @@ impl fmt::Display for Fault {
                 "the Scout has stopped itself, as no command came for {seconds} s: was this computer suspended, or too busy?"
             ),
             Self::Moves => f.write_str(
-                "the Scout still moved when its time to stand was over, and may not have stopped: press its emergency stop",
+                "the Scout still moved when its time to stand was over: press its emergency stop",
             ),
             Self::EmergencyStop => f.write_str("the Scout's emergency stop is pressed: release it and start again"),
         }
