@@ -34,7 +34,8 @@ pub fn scxml(plan: &Nondegenerate) -> Result<String, Diagnostic> {
     let plan = plan.plan();
     let records = made.transitions.iter().filter_map(|transition| transition.record);
     let facts = records.map(|record| (record.id, record.facts)).collect();
-    let mut machine = Machine { plan, made: &made, listing, facts, text: String::new() };
+    let drives = made.transitions.iter().any(|transition| transition.interrupt.condition.drives());
+    let mut machine = Machine { plan, made: &made, drives, listing, facts, text: String::new() };
     machine.head();
     for state in 0..made.laws.len() {
         machine.state(state);
@@ -52,6 +53,8 @@ pub fn scxml(plan: &Nondegenerate) -> Result<String, Diagnostic> {
 struct Machine<'m, 'p> {
     plan: &'p Plan,
     made: &'m Matrices<'p>,
+    /// Whether the plan reads the length of the path driven; asked once, as the conditions of all states may be many.
+    drives: bool,
     /// For each state the interrupts whose scopes hold it, the outermost first.
     listing: Vec<Vec<usize>>,
     /// How many facts each record has.
@@ -73,11 +76,6 @@ impl<'p> Machine<'_, 'p> {
         self.line(2, &format!("<data id=\"{id}\" expr=\"{value}\"/>"));
     }
 
-    /// Returns `true` if the plan asks how far the robot has driven.
-    fn drives(&self) -> bool {
-        self.made.transitions.iter().any(|transition| transition.interrupt.condition.drives())
-    }
-
     fn transition(&self, number: usize) -> &Transition<'p> {
         &self.made.transitions[number]
     }
@@ -89,7 +87,7 @@ impl<'p> Machine<'_, 'p> {
         self.line(0, &format!("<scxml {space} name=\"{name}\" initial=\"a1\">"));
         self.line(1, "<datamodel>");
         let data = [("n", BEFORE.to_string().as_str()), ("start", "0"), ("t", "0"), ("fired", "[]")].map(owned);
-        if self.drives() {
+        if self.drives {
             ["origin", "way"].iter().for_each(|id| self.data(id, "0"));
         }
         let others = [("completed", "[]"), ("law", "null"), ("cause", "-1")].map(owned);
@@ -166,12 +164,12 @@ impl<'p> Machine<'_, 'p> {
         }
         self.line(3, &format!("<if cond=\"n == {BEFORE}\">"));
         self.assign(4, "start", "_event.data.t");
-        if self.drives() {
+        if self.drives {
             self.assign(4, "origin", "_event.data.way || 0");
         }
         self.line(3, "</if>");
         self.assign(3, "t", "_event.data.t - start");
-        if self.drives() {
+        if self.drives {
             self.assign(3, "way", "(_event.data.way || 0) - origin");
         }
         self.assign(3, "fired", "_event.data.fired || []");
