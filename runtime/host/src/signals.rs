@@ -5,6 +5,7 @@ use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
+use nix::sys::signal::SigSet;
 use rustix::process::Signal as Number;
 use signal_hook::flag;
 
@@ -120,6 +121,8 @@ impl Signals {
                 Ok(()) => signals.noted.push(signal),
             }
         }
+        // A program inherits the signals that its parent had blocked, and would never receive them.
+        SigSet::all().thread_unblock()?;
         Ok(signals)
     }
 

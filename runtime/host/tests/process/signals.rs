@@ -5,6 +5,8 @@ use std::sync::{Arc, Mutex};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use nix::sys::signal::{SigSet, SigmaskHow};
+
 use crate::cart::{FAR, cart, is_no_timing, lines, send, start, wait_until_it_moves};
 
 /// The signals that end a program by default and can be caught, but for SIGUSR1, SIGPIPE and SIGXFSZ, and two real-time ones.
@@ -153,4 +155,22 @@ fn a_signal_that_was_ignored_before_stays_ignored() {
     send(&child, "TERM");
     assert!(lines.any(|line| line == "stopped by SIGTERM"));
     assert_eq!(child.wait().unwrap().code(), Some(143));
+}
+
+#[test]
+fn a_signal_that_was_blocked_before_ends_the_run() {
+    for (number, name) in ENDING {
+        // A program inherits the mask of the thread that starts it.
+        let start = || {
+            let mask = SigSet::all().thread_swap_mask(SigmaskHow::SIG_BLOCK).unwrap();
+            let child = start(&FAR);
+            mask.thread_set_mask().unwrap();
+            child
+        };
+        let mut child = start();
+        let mut lines = wait_until_it_moves(child.stderr.take().unwrap());
+        send(&child, &number.to_string());
+        assert!(lines.any(|line| line == format!("stopped by {name}")), "{name}");
+        assert_eq!(child.wait().unwrap().code(), Some(128 + i32::from(number)));
+    }
 }
