@@ -2,9 +2,20 @@
 
 use std::io::{BufRead, BufReader};
 use std::process::{Child, ChildStderr, Command, Stdio};
+use std::sync::{Arc, Once};
+
+/// Gives SIGHUP its default effect in the programs that this one starts, also under `nohup`, which has it ignored by all of them:
+/// a signal that is caught has it again in another program.
+fn catch_hang_up() {
+    static CAUGHT: Once = Once::new();
+    CAUGHT.call_once(|| {
+        signal_hook::flag::register(signal_hook::consts::SIGHUP, Arc::default()).unwrap();
+    });
+}
 
 /// The example, which `cargo test` builds before it runs this.
 pub(crate) fn cart(arguments: &[&str]) -> Command {
+    catch_hang_up();
     let mut path = std::env::current_exe().unwrap();
     path.pop();
     path.pop();
