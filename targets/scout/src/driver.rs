@@ -45,8 +45,8 @@ pub struct Scout {
     freshness: Freshness,
     obedience: Obedience,
     times: Times,
-    /// When it was told last how to move in a turn.
-    told: Option<Moment>,
+    /// The moment of the last command, until the robot is stopped.
+    commanded: Option<Moment>,
     /// What the plan can replay.
     paths: PathStore,
 }
@@ -69,8 +69,8 @@ impl Scout {
         // Each wheel brakes for both: where it goes forward and turns, half as hard for either.
         let brakes = config.acceleration / 2.0;
         let obedience = Obedience::new(brakes, brakes, Duration::from_millis(config.disobey));
-        let (told, paths) = (None, PathStore::EMPTY);
-        let mut scout = Self { line, config, clock, odometer, ring, freshness, obedience, times, told, paths };
+        let (commanded, paths) = (None, PathStore::EMPTY);
+        let mut scout = Self { line, config, clock, odometer, ring, freshness, obedience, times, commanded, paths };
         match scout.prepare(period, request) {
             Ok(()) => Ok(scout),
             Err(Fault::Ended(_)) => Err(Fault::Ended(scout.stop().err().map(Box::new))),
@@ -110,7 +110,13 @@ impl Scout {
             self.tell(Command::State)?;
         }
         // It stands by now.
-        self.line.ask(&Command::Zero, Instant::now() + ZEROING.max(self.config.patience())).map(|_| ())
+        let (asked, limit) = (Moment::now(), ZEROING.max(self.config.patience()));
+        self.line.ask_while(&Command::Zero, Instant::now() + limit, &go_on)?;
+        if self.clock == Clock::Wall && asked.elapsed() > limit {
+            return Err(Fault::Overslept(self.config.watchdog));
+        }
+        self.commanded = Some(Moment::now());
+        Ok(())
     }
 
     /// Waits until the robot stands.
@@ -154,28 +160,24 @@ impl Scout {
         }
     }
 
-    /// Returns `true` if the robot has stopped itself since it was told to move: it is not to be driven off again without a word.
+    /// Returns `true` if the robot has stopped itself since the last command: it must not be driven off again without a word.
     fn has_overslept(&self) -> bool {
-        let watchdog = Duration::from_secs(u64::from(self.config.watchdog));
-        self.clock == Clock::Wall && self.told.is_some_and(|told| told.elapsed() >= watchdog)
+        self.clock == Clock::Wall && self.commanded.is_some_and(|last| last.elapsed() >= self.watchdog())
     }
 
-    /// Tells the wheels their speeds in a turn, and reads the state that answers.
-    fn move_on(&mut self, right: i16, left: i16) -> Result<State, Fault> {
+    /// Sends a command and reads the state that answers it.
+    fn tell(&mut self, command: Command) -> Result<State, Fault> {
         if self.has_overslept() {
             return Err(Fault::Overslept(self.config.watchdog));
         }
-        self.told = Some(Moment::now());
-        match self.tell(Command::Velocities(right, left)) {
-            // This program was stopped while it waited.
-            Err(Fault::Line(LineFault::Silent)) if self.has_overslept() => Err(Fault::Overslept(self.config.watchdog)),
-            other => other,
-        }
-    }
-
-    /// Says a command and reads the state that answers it.
-    fn tell(&mut self, command: Command) -> Result<State, Fault> {
-        let frame = self.line.ask(&command, Instant::now() + self.config.patience())?;
+        self.commanded = Some(Moment::now());
+        let frame = match self.line.ask(&command, Instant::now() + self.config.patience()) {
+            // This program was suspended while it waited.
+            Err(Fault::Line(LineFault::Silent)) if self.has_overslept() => {
+                return Err(Fault::Overslept(self.config.watchdog));
+            }
+            other => other?,
+        };
         let state = State::read(&frame.arguments).ok_or(Fault::Short(frame.arguments.len()))?;
         if state.is_stopped() { Err(Fault::EmergencyStop) } else { Ok(state) }
     }
@@ -195,7 +197,7 @@ impl Robot for Scout {
 
     fn exchange(&mut self, input: &Twist) -> Result<Sensed, Fault> {
         let (right, left) = wheels::speeds(input, self.config.fastest);
-        let state = self.move_on(right, left)?;
+        let state = self.tell(Command::Velocities(right, left))?;
         let at = self.times.now();
         let odometry = self.odometer.pose(&state, at, self.config.fastest)?;
         self.freshness.take(&state, at, odometry, &self.config)?;
@@ -222,7 +224,7 @@ impl Robot for Scout {
     }
 
     fn stop(&mut self) -> Result<(), Fault> {
-        self.told = None;
+        self.commanded = None;
         let (begun, limit) = (Instant::now(), self.obedience.time_to_stand(STOPPING));
         let patience = self.config.patience();
         let stopped = self.at_the_end(Command::Stop, patience);

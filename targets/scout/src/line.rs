@@ -39,10 +39,23 @@ impl Line {
     /// # Errors
     /// The line is closed, or by the deadline there was no answer, or none that was whole.
     pub(crate) fn ask(&mut self, command: &Command, deadline: Instant) -> Result<Frame, Fault> {
+        self.ask_while(command, deadline, &|| Ok(()))
+    }
+
+    /// Sends `command` and waits for its answer as [`Line::ask`] does, as long as `go_on` is no error.
+    ///
+    /// # Errors
+    /// Those of [`Line::ask`] and `go_on`.
+    pub(crate) fn ask_while(
+        &mut self,
+        command: &Command,
+        deadline: Instant,
+        go_on: &dyn Fn() -> Result<(), Fault>,
+    ) -> Result<Frame, Fault> {
         self.drain()?;
-        match self.ask_once(command, deadline) {
+        match self.ask_once(command, deadline, go_on) {
             Err(garbled @ Fault::Garbled(_)) if Instant::now() < deadline => {
-                match self.ask_once(command, deadline) {
+                match self.ask_once(command, deadline, go_on) {
                     // It says more than the silence after it.
                     Err(Fault::Line(LineFault::Silent)) => Err(garbled),
                     other => other,
@@ -62,7 +75,12 @@ impl Line {
 
     /// Sends `command` once. A whole answer that is wrong is an error as soon as the line is quiet, anything else at the
     /// deadline.
-    fn ask_once(&mut self, command: &Command, deadline: Instant) -> Result<Frame, Fault> {
+    fn ask_once(
+        &mut self,
+        command: &Command,
+        deadline: Instant,
+        go_on: &dyn Fn() -> Result<(), Fault>,
+    ) -> Result<Frame, Fault> {
         self.reader.clear();
         self.say(command, deadline)?;
         let mut wrong = None;
@@ -75,6 +93,7 @@ impl Line {
                     other => wrong = Some(other),
                 }
             }
+            go_on()?;
             match self.line.hear(deadline.min(Instant::now() + QUIET)) {
                 Ok(()) => {
                     self.take_in()?;
