@@ -137,7 +137,8 @@ fn a_stage_is_the_same_in_a_file() {
 fn an_fsm_file_has_the_keys_of_the_interfaces() {
     let folder = with_plan("fsm_keys", PLAN);
     let file: Value = serde_json::from_str(&emitted(&folder, "fsm")).expect("JSON");
-    assert_eq!(keys(&file), ["interrupts", "laws", "never", "scopes", "source", "states", "version"]);
+    assert_eq!(keys(&file), ["interrupts", "laws", "never", "scopes", "source", "start", "states", "version"]);
+    assert_eq!(file["start"], file["states"][0]);
     let states: BTreeSet<_> = file["states"].as_array().unwrap().iter().map(|state| state.as_str().unwrap()).collect();
     let interrupts = file["interrupts"].as_array().unwrap();
     assert!(!interrupts.is_empty());

@@ -19,6 +19,8 @@ pub struct FsmFile {
     pub source: String,
     /// The states; the last is the termination state.
     pub states: Vec<String>,
+    /// The state in which the plan begins.
+    pub start: String,
     /// The quark text of each state's law, without the termination state.
     pub laws: Vec<String>,
     /// The interrupts in pre-order of the expanded plan, then completion.
@@ -74,6 +76,7 @@ pub fn fsm_file(plan: &Nondegenerate) -> Result<FsmFile, Diagnostic> {
         version: VERSION,
         source: lowered.scopes.iter().flatten().next().map(|plan| plan.name.clone()).unwrap_or_default(),
         states: (0..=columns.atoms()).map(|atom| columns.state(atom)).collect(),
+        start: columns.state(0),
         laws: lowered.laws.iter().map(|law| lowered.quark(law.quark).text.clone()).collect(),
         interrupts: Vec::new(),
         never: Vec::new(),
