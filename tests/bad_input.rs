@@ -114,6 +114,18 @@ fn places_that_cannot_be_written() {
 }
 
 #[test]
+fn names_of_outputs_in_other_formats() {
+    let folder = with_plan("formats", "{ P (bumpr) (Atom (wait 1) stop) }");
+    let commands = [
+        &["draw", "plan.mdle", "-o", "plan.png"][..],
+        &["plan.mdle", "--target", "sim", "-o", "plan.PNG"],
+        &["plan.mdle", "--emit", "dot=out/plan.svg"],
+        &["plan.mdle", "--emit", "matrices", "-o", "plan.pdf"],
+    ];
+    insta::assert_snapshot!(commands.map(|arguments| said(&folder, arguments)).join("\n"));
+}
+
+#[test]
 fn options_that_are_wrong() {
     let folder = with_plan("options", REST);
     for arguments in [

@@ -10,7 +10,7 @@ use mdle_runtime::Printable;
 
 use super::bind;
 use super::input::{self, Input, Target};
-use super::{Build, Emit, EmitKind, Failure, matrices, report};
+use super::{Build, Emit, EmitKind, Failure, endings, matrices, report};
 use crate::diagnostic::{Diagnostic, sort};
 use crate::link::{self, Cache, LinkError, Package, Progress, TargetCrate};
 use crate::rust::{self, Header};
@@ -29,6 +29,9 @@ pub(super) fn build(options: &Build) -> Result<(), Failure> {
         }
         Some(Emit { kind, file }) => (*kind, file.clone().or_else(|| options.output.clone())),
     };
+    if let Some(file) = &file {
+        endings::no_picture(file, kind, path)?;
+    }
     if kind == EmitKind::Exe {
         return executable(options, path, file);
     }

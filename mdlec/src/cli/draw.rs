@@ -1,10 +1,13 @@
 //! `mdlec draw`: a plan as a picture.
 
-use super::{Draw, Failure, build, input, report};
+use super::{Draw, Failure, build, endings, input, report};
 use crate::{link, picture};
 
 /// Draws the plan, into a file or to standard output.
 pub(super) fn draw(options: &Draw) -> Result<(), Failure> {
+    if let Some(file) = &options.output {
+        endings::svg(file)?;
+    }
     let target = input::target(options.target.as_deref())?;
     let mut input = input::read_plan(&options.plan, &target)?;
     let compiled = build::compile_one(&mut input, &target, options.name.as_deref(), false)?;

@@ -8,6 +8,7 @@ mod check;
 mod decompile;
 mod draw;
 mod embed;
+mod endings;
 mod everywhere;
 mod explain;
 mod fmt;

@@ -1,6 +1,6 @@
 //! What the executable of a plan needs around its turns: arguments, clock, signals, safe stop, report and run log.
 //!
-//! For people who write a robot: [`Target`], [`Hosted`], [`Time`] and [`Refusal`], and [`Batch`] where it can be started over, [`Replays`] where it replays paths, [`read_file`] where its options name files. For generated code: [`run`].
+//! For people who write a robot: [`Target`], [`Hosted`], [`Time`] and [`Refusal`], and [`Batch`] where it can be started over, [`Replays`] where it replays paths, [`read_file`] and [`output_format`] where its options name files. For generated code: [`run`].
 //!
 //! Whatever happens, the robot is stopped: when the plan is over, when an exchange fails, when code panics, when a
 //! signal comes, when a limit is reached.
@@ -15,6 +15,7 @@ mod held;
 mod log;
 mod named_file;
 mod outlet;
+mod output_format;
 mod panic_hook;
 mod paths;
 mod patience;
@@ -46,6 +47,7 @@ pub use files::{read_file, read_text};
 use mdle_runtime::{Plan, Robot};
 pub use named_file::NamedFile;
 use outlet::{Keeps, Outlet};
+pub use output_format::output_format;
 pub use paths::{Replays, setpoints};
 use patience::Patience;
 pub use stop_request::StopRequest;

@@ -18,6 +18,7 @@ use text::{APART, Wrong};
 use crate::arguments::Options;
 use crate::files::read_file;
 use crate::log::Untouched;
+use crate::output_format::output_format;
 use crate::patience::Patience;
 use crate::{Batch, Refusal, Target};
 
@@ -36,12 +37,17 @@ pub struct Replays<R: Robot> {
 
 /// Adds the options of a target that replays paths.
 pub(crate) fn arguments(command: Command) -> Command {
-    let option = |name, value| Arg::new(name).long(name).value_name(value).value_parser(value_parser!(PathBuf));
+    let option = |name, value| Arg::new(name).long(name).value_name(value);
     command
-        .arg(option("paths", "FOLDER").help("Folder of the paths that the plan replays [default: the current folder]"))
+        .arg(
+            option("paths", "FOLDER")
+                .help("Folder of the paths that the plan replays [default: the current folder]")
+                .value_parser(value_parser!(PathBuf)),
+        )
         .arg(
             option("record-path", "FILE.csv")
-                .help("File for the headings and speeds driven, as a path that a plan can replay"),
+                .help("File for the headings and speeds driven, as a path that a plan can replay")
+                .value_parser(output_format("CSV", "csv")),
         )
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use mdle_host::clap::parser::ValueSource;
 use mdle_host::clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use mdle_host::{NamedFile, Pace, Time, read_file};
+use mdle_host::{NamedFile, Pace, Time, output_format, read_file};
 
 use crate::model::{Body, PARTS};
 use crate::robot::Make;
@@ -84,17 +84,17 @@ fn of_outputs(command: Command) -> Command {
         .arg(
             option("plot", "FILE.svg")
                 .help("Picture of the run: world, trail, start of each atom, echoes and contacts")
-                .value_parser(value_parser!(PathBuf)),
+                .value_parser(output_format("SVG", "svg")),
         )
         .arg(
             option("record", "FILE.svg")
                 .help("Animated picture of the run, for a browser")
-                .value_parser(value_parser!(PathBuf)),
+                .value_parser(output_format("SVG", "svg")),
         )
         .arg(
             option("trail", "FILE.csv")
                 .help("File for the pose in each turn: seconds, metres, degrees")
-                .value_parser(value_parser!(PathBuf)),
+                .value_parser(output_format("CSV", "csv")),
         )
 }
 

@@ -72,6 +72,21 @@ fn bad_worlds_are_refused() {
 }
 
 #[test]
+fn outputs_of_other_formats_are_refused() {
+    let error = |option: &str, file: &str| {
+        let command = Sim::arguments(Command::new("plan").no_binary_name(true));
+        let error = command.try_get_matches_from([option, file]).expect_err(file).to_string();
+        error.lines().next().unwrap_or_default().to_owned()
+    };
+    let outputs = [("--plot", "a.png"), ("--record", "out/a.mp4"), ("--trail", "a.xlsx")];
+    insta::assert_snapshot!(outputs.map(|(option, file)| error(option, file)).join("\n"), @"
+    error: invalid value 'a.png' for '--plot <FILE.svg>': this option writes SVG, not PNG; name the file `a.svg`
+    error: invalid value 'out/a.mp4' for '--record <FILE.svg>': this option writes SVG, not MP4; name the file `out/a.svg`
+    error: invalid value 'a.xlsx' for '--trail <FILE.csv>': this option writes CSV, not XLSX; name the file `a.csv`
+    ");
+}
+
+#[test]
 fn a_plot_that_could_not_be_written_is_refused_and_leaves_nothing() {
     let folder = folder("plots");
     let plot = |path: PathBuf| refused(&["--plot", path.to_str().expect("UTF-8")]);

@@ -1,0 +1,48 @@
+//! The names of output files: one whose ending promises another format than the command writes is refused before anything is read.
+
+use std::path::{Path, PathBuf};
+
+use super::{EmitKind, Failure};
+
+/// Endings of pictures.
+const PICTURES: [&str; 12] = ["svg", "png", "jpg", "jpeg", "gif", "webp", "bmp", "tif", "tiff", "pdf", "ps", "eps"];
+
+/// Refuses a name for the picture of `mdlec draw` that has another ending than `.svg`.
+pub(super) fn svg(file: &Path) -> Result<(), Failure> {
+    let Some(given) = file.extension().filter(|given| !given.eq_ignore_ascii_case("svg")) else { return Ok(()) };
+    let (shown, name) = (file.display(), file.with_extension("svg"));
+    Err(Failure::usage(format!(
+        "`{shown}`: `mdlec draw` writes SVG, not {}\nhelp: name the file `{}`",
+        given.to_string_lossy().to_uppercase(),
+        name.display()
+    )))
+}
+
+/// Refuses a name of a picture for an executable or another form of `plan`, none of which is a picture.
+pub(super) fn no_picture(file: &Path, kind: EmitKind, plan: &Path) -> Result<(), Failure> {
+    let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    if !PICTURES.iter().any(|picture| ending.eq_ignore_ascii_case(picture)) {
+        return Ok(());
+    }
+    let written = match kind {
+        EmitKind::Exe => "an executable",
+        EmitKind::Dot => "text for Graphviz",
+        EmitKind::Mermaid => "text for mermaid",
+        EmitKind::Matrices => "a folder of MatrixMarket files",
+        EmitKind::Tree
+        | EmitKind::Plan
+        | EmitKind::Nondegenerate
+        | EmitKind::Expanded
+        | EmitKind::Fsm
+        | EmitKind::Scxml
+        | EmitKind::Formal
+        | EmitKind::Rust => "text",
+    };
+    let picture: PathBuf = file.with_extension("svg");
+    Err(Failure::usage(format!(
+        "`{}`: this command writes {written}, not a picture\nhelp: `mdlec draw {} -o {}` draws the plan",
+        file.display(),
+        plan.display(),
+        picture.display()
+    )))
+}

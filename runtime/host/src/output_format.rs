@@ -1,0 +1,37 @@
+//! The names of output files: one whose ending promises another format than the option writes is refused.
+
+use std::path::{Path, PathBuf};
+
+use clap::builder::{PathBufValueParser, TypedValueParser};
+
+/// Returns a parser for the value of an option that writes a file in `format`, such as `SVG`, with the ending `ending`, such as
+/// `svg`. It accepts names with this ending, in small or capital letters, and names without an ending.
+pub fn output_format(format: &'static str, ending: &'static str) -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(move |path| match refusal(&path, format, ending) {
+        Some(sentence) => Err(sentence),
+        None => Ok(path),
+    })
+}
+
+/// Returns the sentence with which `path` is refused, if its ending is another one.
+fn refusal(path: &Path, format: &str, ending: &str) -> Option<String> {
+    let given = path.extension().filter(|given| !given.eq_ignore_ascii_case(ending))?;
+    let (given, name) = (given.to_string_lossy(), path.with_extension(ending));
+    Some(format!("this option writes {format}, not {}; name the file `{}`", given.to_uppercase(), name.display()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_ending_of_another_format_is_refused() {
+        let refusal = |path: &str| refusal(Path::new(path), "SVG", "svg");
+        for accepted in ["run.svg", "RUN.SVG", "run", "a.b/run", ".svg", "/dev/stdout", "../run.svg"] {
+            assert_eq!(refusal(accepted), None, "{accepted}");
+        }
+        let sentence = "this option writes SVG, not PNG; name the file `out/run.svg`";
+        assert_eq!(refusal("out/run.png").as_deref(), Some(sentence));
+        assert!(["run.svgz", "run.", "run.svg.png"].into_iter().all(|path| refusal(path).is_some()));
+    }
+}
