@@ -6,9 +6,12 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
+use mdle_host::Quantity;
+use mdle_runtime::Radians;
 use mdle_tests::executable::{folder, run_mdlec, run_mdlec_reading};
 use mdle_tests::golden::{judge, rust};
 use mdle_tests::repository::{TextFile, root};
+use mdlec::alphabet::{Kind, Unit};
 use mdlec::rust::Shape;
 use serde_json::Value;
 
@@ -151,6 +154,24 @@ fn an_fsm_file_has_the_keys_of_the_interfaces() {
     let named = |name: &Value| interrupts.iter().any(|interrupt| interrupt["name"] == *name);
     let never = file["never"].as_array().unwrap();
     assert!(never.len() == 2 && never.iter().all(named), "one in each pass: {never:?}");
+}
+
+#[test]
+fn options_have_the_units_of_plans() {
+    let mut count = 0;
+    for unit in Unit::ALL {
+        let (quantity, bare) = match unit.kind {
+            Kind::Time => (Quantity::Time, "s"),
+            Kind::Length => (Quantity::Length, "m"),
+            Kind::Angle => (Quantity::Angle, "deg"),
+            _ => continue,
+        };
+        let read = quantity.read(&format!("2.5{}", unit.name), bare).unwrap();
+        let read = if quantity == Quantity::Angle { Radians::from_degrees(read).0 } else { read };
+        assert!((read - unit.to_si(2.5)).abs() < 1e-12 * read, "{}: {read}", unit.name);
+        count += 1;
+    }
+    assert_eq!(count, 11);
 }
 
 fn keys(object: &Value) -> Vec<&str> {

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use clap::{Arg, ArgMatches, Command, value_parser};
 
-use crate::{Target, paths};
+use crate::{Quantity, Target, paths};
 
 /// The shortest period: a turn must leave time for the exchange.
 const PERIOD_LEAST: Duration = Duration::from_micros(100);
@@ -50,21 +50,22 @@ pub(crate) fn command<T: Target>(name: &str) -> Command {
         .after_help(STATUS)
         .after_long_help(STATUS_LONG)
         .arg(
-            option("period", "SECONDS")
-                .help(format!("Period of the control loop, in seconds [default: {seconds}]"))
+            option("period", "TIME")
+                .help(format!("Period of the control loop, in seconds or as in `50ms` [default: {seconds}]"))
                 .long_help(format!(
-                    "Period of the control loop, in seconds, from {} to {} [default: {seconds}]",
-                    PERIOD_LEAST.as_secs_f64(),
-                    PERIOD_MOST.as_secs_f64()
+                    "Period of the control loop, in seconds or with a unit, from {PERIOD_LEAST:?} to {PERIOD_MOST:?} \
+                     [default: {seconds}]"
                 ))
                 .allow_negative_numbers(true)
-                .value_parser(|text: &str| duration(text, PERIOD_LEAST, PERIOD_MOST)),
+                .value_parser(|text: &str| Quantity::duration(text, "s", PERIOD_LEAST, PERIOD_MOST)),
         )
         .arg(
-            option("timeout", "SECONDS")
-                .help("Maximum duration of the plan, in seconds; exit status 4 after it [default: none]")
+            option("timeout", "TIME")
+                .help(
+                    "Maximum duration of the plan, in seconds or as in `5min`; exit status 4 after it [default: none]",
+                )
                 .allow_negative_numbers(true)
-                .value_parser(|text: &str| duration(text, Duration::from_nanos(1), TIMEOUT_MOST)),
+                .value_parser(|text: &str| Quantity::duration(text, "s", Duration::from_nanos(1), TIMEOUT_MOST)),
         )
         .arg(
             option("turns", "N")
@@ -96,35 +97,19 @@ fn option(name: &'static str, value: &'static str) -> Arg {
     Arg::new(name).long(name).value_name(value)
 }
 
-/// Reads a number of seconds between two limits.
-fn duration(text: &str, least: Duration, most: Duration) -> Result<Duration, String> {
-    let read = text.parse().ok().and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
-    match read {
-        Some(duration) if duration >= least && duration <= most => Ok(duration),
-        Some(_) | None => {
-            Err(format!("expected a number of seconds from {} to {}", least.as_secs_f64(), most.as_secs_f64()))
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn a_period_is_a_sane_number_of_seconds() {
-        let period = |text| duration(text, PERIOD_LEAST, PERIOD_MOST);
+    fn a_period_is_a_sane_time() {
+        let period = |text| Quantity::duration(text, "s", PERIOD_LEAST, PERIOD_MOST);
         assert_eq!(period("0.1"), Ok(Duration::from_millis(100)));
         assert_eq!(period("1e-4"), Ok(Duration::from_micros(100)));
         assert_eq!(period("60"), Ok(Duration::from_secs(60)));
-        for wrong in ["0", "-0", "-1", "NaN", "inf", "-inf", "1e300", "60.1", "0.00001", "", " 1", "1s", "١"] {
+        assert_eq!(period("1min"), Ok(Duration::from_secs(60)));
+        for wrong in ["0", "-0", "-1", "NaN", "inf", "-inf", "1e300", "60.1", "0.00001", "", " 1", "2min", "١"] {
             assert!(period(wrong).is_err(), "{wrong}");
         }
-    }
-
-    #[test]
-    fn decimal_seconds_become_whole_nanoseconds() {
-        assert_eq!(duration("0.3", PERIOD_LEAST, PERIOD_MOST), Ok(Duration::from_nanos(300_000_000)));
-        assert_eq!(duration("86400.1", PERIOD_LEAST, TIMEOUT_MOST), Ok(Duration::from_millis(86_400_100)));
     }
 }

@@ -1,6 +1,6 @@
 //! What the executable of a plan needs around its turns: arguments, clock, signals, safe stop, report and run log.
 //!
-//! For people who write a robot: [`Target`], [`Hosted`], [`Time`] and [`Refusal`], and [`Batch`] where it can be started over, [`Replays`] where it replays paths, [`read_file`] and [`output_format`] where its options name files. For generated code: [`run`].
+//! For people who write a robot: [`Target`], [`Hosted`], [`Time`] and [`Refusal`], and [`Batch`] where it can be started over, [`Replays`] where it replays paths, [`read_file`] and [`output_format`] where its options name files, [`Quantity`] where they take lengths and times. For generated code: [`run`].
 //!
 //! Whatever happens, the robot is stopped: when the plan is over, when an exchange fails, when code panics, when a
 //! signal comes, when a limit is reached.
@@ -20,6 +20,7 @@ mod panic_hook;
 mod paths;
 mod patience;
 mod progress;
+mod quantity;
 mod report;
 mod safety;
 mod second_signal;
@@ -50,6 +51,7 @@ use outlet::{Keeps, Outlet};
 pub use output_format::output_format;
 pub use paths::{Replays, setpoints};
 use patience::Patience;
+pub use quantity::Quantity;
 pub use stop_request::StopRequest;
 pub use target::{Around, Hosted, Judgement, Pace, Refusal, Standing, Target, Time};
 

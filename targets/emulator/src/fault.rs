@@ -5,8 +5,10 @@ use std::mem::discriminant;
 use std::str::FromStr;
 use std::time::Duration;
 
-/// The longest time that can be given, in seconds.
-const LATEST: f64 = 1e6;
+use mdle_host::Quantity;
+
+/// The latest time at which a fault can begin.
+const LATEST: Duration = Duration::from_secs(1_000_000);
 /// The largest number that a fault takes: bytes of noise, milliseconds of delay.
 const MOST: u32 = 60_000;
 
@@ -108,17 +110,23 @@ pub struct At {
 }
 
 impl Fault {
-    /// Returns the fault with this number in place of its usual one; `None` if it takes none, or none so large.
-    fn numbered(self, number: u32) -> Option<Self> {
+    /// Returns the fault with the number of `text` in place of its usual one; `None` if it takes none, or none so large.
+    fn numbered(self, text: &str) -> Option<Self> {
         match self {
-            Self::Noise(_) => Some(Self::Noise(number)),
-            Self::Late(_) => Some(Self::Late(number)),
+            Self::Noise(_) => text.parse().ok().filter(|number| *number <= MOST).map(Self::Noise),
+            Self::Late(_) => milliseconds(text).map(Self::Late),
             Self::Dribble | Self::Check | Self::Lose | Self::Double | Self::Silence | Self::Close | Self::Body(_) => {
                 None
             }
         }
-        .filter(|_| number <= MOST)
     }
+}
+
+/// Reads a whole number of milliseconds up to [`MOST`], with a unit or without.
+fn milliseconds(text: &str) -> Option<u32> {
+    let most = Duration::from_millis(u64::from(MOST));
+    let time = Quantity::duration(text, "ms", Duration::ZERO, most).ok()?;
+    u32::try_from(time.as_millis()).ok().filter(|_| time.subsec_nanos().is_multiple_of(1_000_000))
 }
 
 impl fmt::Display for Fault {
@@ -136,20 +144,20 @@ impl FromStr for At {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (what, seconds) = text.split_once('@').unwrap_or((text, "0"));
+        let (what, time) = text.split_once('@').unwrap_or((text, "0"));
         let (name, number) = what.split_once('=').map_or((what, None), |(name, number)| (name, Some(number)));
         let fault = KINDS.iter().find(|(known, _)| *known == name).map(|(_, fault)| *fault);
         let fault = fault.ok_or_else(|| format!("the faults are {}", KINDS.map(|(name, _)| name).join(", ")))?;
         let fault = match number {
-            Some(number) => number.parse().ok().and_then(|number| fault.numbered(number)).ok_or_else(|| {
+            Some(number) => fault.numbered(number).ok_or_else(|| {
                 format!(
                     "`{what}`: noise and late take a whole number up to {MOST}, as in `late=250@2`, and no other fault"
                 )
             })?,
             None => fault,
         };
-        let seconds = seconds.parse().ok().filter(|seconds| (0.0..=LATEST).contains(seconds));
-        let seconds = seconds.ok_or("seconds are meant behind the @, as in `silence@2.5`")?;
-        Ok(Self { fault, time: Duration::from_secs_f64(seconds) })
+        let time = Quantity::duration(time, "s", Duration::ZERO, LATEST);
+        let time = time.map_err(|sentence| format!("after the @: {sentence}"))?;
+        Ok(Self { fault, time })
     }
 }

@@ -237,12 +237,18 @@ mod tests {
             ("bumper=1", "`bumper=1`: noise and late take a whole number"),
             ("noise=", "`noise=`: noise and late take a whole number"),
             ("late=60001", "`late=60001`: noise and late take a whole number"),
-            ("bumper@", "seconds are meant behind the @"),
-            ("bumper@-1", "seconds are meant behind the @"),
-            ("bumper@nan", "seconds are meant behind the @"),
-            ("bumper@1e9", "seconds are meant behind the @"),
+            ("bumper@", "after the @: `` is not a number with a unit"),
+            ("late=2s5", "`late=2s5`: noise and late take a whole number"),
+            ("late=1.5", "`late=1.5`: noise and late take a whole number"),
+            ("bumper@-1", "after the @: expected a time from 0ns to 1000000s"),
+            ("bumper@nan", "after the @: `nan` is not a number with a unit"),
+            ("bumper@2m", "after the @: `2m` is a length: expected a time in s, ms, min, h"),
+            ("bumper@1e9", "after the @: expected a time from 0ns"),
         ] {
             assert!(text.parse::<At>().is_err_and(|error| error.starts_with(said)), "{text}");
+        }
+        for (text, same) in [("late=2500ms@1500ms", "late=2500@1.5"), ("late=2.5s@1min", "late=2500@60")] {
+            assert_eq!(text.parse::<At>(), same.parse::<At>(), "{text}");
         }
         let filler = ["filler@3"].map(|text| text.parse().expect("a fault"));
         let refused = Faulty::new(Robot::default(), &filler).map(|_| ());

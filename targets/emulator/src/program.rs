@@ -9,6 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use clap::Args;
+use mdle_host::Quantity;
 use mdle_sim::{Body, Make, Simulated, Start, StartError, World};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
@@ -38,21 +39,26 @@ pub struct Options {
     /// Path for a symbolic link to the device
     #[arg(long, value_name = "PATH")]
     link: Option<PathBuf>,
-    /// Simulated time per command, in milliseconds, from 1 to 10000 [default: the time of the clock]
+    /// Simulated time per command, in milliseconds or as in `0.1s` [default: the time of the clock]
     ///
-    /// A run in lockstep is the same each time. Once every robot has a driver, several robots wait for each other's commands.
-    #[arg(long, value_name = "MS", value_parser = clap::value_parser!(u64).range(1..=10_000))]
-    lockstep: Option<u64>,
-    /// Fault to inject, and the time after which it begins, in seconds; repeatable
+    /// From 1 ms to 10 s. A run in lockstep is the same each time. Once every robot has a driver, several robots wait for each other's commands.
+    #[arg(long, value_name = "TIME", value_parser = step_of_lockstep)]
+    lockstep: Option<Duration>,
+    /// Fault to inject, and the time after which it begins, in seconds or with a unit; repeatable
     ///
     /// On the line: noise (noise=40: 40 bytes before each frame), dribble (byte by byte), check (one wrong bit per frame), lose
-    /// (two frames of three), double, late (late=100: each frame 100 ms late; not in lockstep), silence (the line from the robot
+    /// (two frames of three), double, late (late=100 or late=100ms: each frame 100 ms late; not in lockstep), silence (the line from the robot
     /// is cut), deaf (the line to the robot is cut), close. In the robot: runaway (it keeps its speed), stuck-wheel (the right
     /// one), dead-sonar (the front ones), bumper, emergency, low-battery, plugged-in, no-pings, leap (positions leap by metres),
     /// hang (it repeats the same state). On the ATRV-mini: filler, and no-bumpers, no-translation, no-rotation, no-status (these
     /// reports stop). The time is that of the simulated world since the robot was switched on. A fault affects all robots.
-    #[arg(long, value_name = "KIND[=N]@SECONDS")]
+    #[arg(long, value_name = "KIND[=N]@TIME")]
     fault: Vec<At>,
+}
+
+/// The time that a command lets pass with `--lockstep`.
+fn step_of_lockstep(text: &str) -> Result<Duration, String> {
+    Quantity::duration(text, "ms", Duration::from_millis(1), Duration::from_secs(10))
 }
 
 /// A robot's name and where it stands.
@@ -100,7 +106,7 @@ fn run<R: Emulated + Embodied>(
     made: impl Fn(Simulated, Duration) -> Result<R, String>,
 ) -> Result<(), String> {
     let world = world(&options.world)?;
-    let pace = options.lockstep.map_or(Pace::Real, |period| Pace::Lockstep(Duration::from_millis(period)));
+    let pace = options.lockstep.map_or(Pace::Real, Pace::Lockstep);
     let mut bodies = bodies(options, &world, body, step(pace))?;
     let over = over().map_err(|error| format!("signals cannot be caught: {error}"))?;
     let (mut seats, mut lines) = (Vec::new(), Vec::new());

@@ -35,15 +35,15 @@ fn of_the_world(command: Command) -> Command {
         )
         .arg(
             option("start", "X,Y,DEG")
-                .help("Start pose, in metres and degrees counter-clockwise [default: that of the world]")
+                .help("Start pose, in metres and degrees counter-clockwise or as in `50cm,1m,90deg` [default: that of the world]")
                 .allow_hyphen_values(true),
         )
         .arg(
             option("start-noise", "M,DEG")
                 .help("Maximum random offset of the start pose, in metres and degrees; needs --seed")
                 .long_help(
-                    "Maximum random offset of the start pose: in metres along each axis, up to 100, and in degrees, up to \
-                     180. Needs --seed or --runs [default: 0,0]",
+                    "Maximum random offset of the start pose: along each axis, in metres up to 100, and of the heading, in \
+                     degrees up to 180; or with units, as in `10cm,5deg`. Needs --seed or --runs [default: 0,0]",
                 )
                 .allow_hyphen_values(true),
         )
@@ -217,8 +217,7 @@ pub(crate) fn watch(matches: &ArgMatches) -> bool {
 /// The start noise of `--start-noise`.
 pub(crate) fn start_noise(matches: &ArgMatches) -> Result<Option<StartNoise>, String> {
     let Some(text) = matches.get_one::<String>("start-noise") else { return Ok(None) };
-    let sentence = "expected metres,degrees: up to 100 and 180, as in `0.1,5`";
-    StartNoise::read(text).map(Some).ok_or_else(|| format!("--start-noise {text}: {sentence}"))
+    StartNoise::read(text).map(Some).map_err(|sentence| format!("--start-noise {text}: {sentence}"))
 }
 
 /// The number of `--runs`.

@@ -3,6 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
+use mdle_host::Quantity;
 use mdle_runtime::{Meters, Pose, Radians};
 
 use crate::walls::{self, Walls};
@@ -22,6 +23,8 @@ pub struct Start(pub Pose);
 pub enum StartError {
     /// The text is not `x,y,deg`.
     Malformed,
+    /// A part of the text is not a number with a unit: a sentence with what to type instead.
+    Quantity(String),
     /// A body of this radius, in metres, would overlap this wall or box.
     Overlaps(f64, String),
     /// The centre is inside this box.
@@ -36,6 +39,7 @@ impl fmt::Display for StartError {
             Self::Malformed => {
                 write!(f, "expected x,y,heading: three numbers in metres and degrees, as in `0.1,-0.05,90`")
             }
+            Self::Quantity(sentence) => f.write_str(sentence),
             Self::Overlaps(radius, name) => {
                 write!(f, "the robot, {radius} m around its centre, would stand in {name:?}")
             }
@@ -51,14 +55,14 @@ impl FromStr for Start {
     type Err = StartError;
 
     fn from_str(text: &str) -> Result<Self, StartError> {
-        let numbers: Result<Vec<f64>, _> = text.split(',').map(|number| number.trim().parse()).collect();
-        match numbers.as_deref() {
-            Ok([x, y, degrees]) if [x, y, degrees].iter().all(|number| number.is_finite()) => {
-                let theta = Radians::from_degrees(*degrees).wrapped();
-                Ok(Self(Pose { x: Meters(*x), y: Meters(*y), theta }))
-            }
-            Ok(_) | Err(_) => Err(StartError::Malformed),
-        }
+        let [x, y, heading] = *text.split(',').map(str::trim).collect::<Vec<_>>() else {
+            return Err(StartError::Malformed);
+        };
+        let read = |kind: Quantity, text, bare| kind.read(text, bare).map_err(StartError::Quantity);
+        let x = Meters(read(Quantity::Length, x, "m")?);
+        let y = Meters(read(Quantity::Length, y, "m")?);
+        let theta = Radians::from_degrees(read(Quantity::Angle, heading, "deg")?).wrapped();
+        Ok(Self(Pose { x, y, theta }))
     }
 }
 
@@ -96,10 +100,12 @@ mod tests {
         let Ok(Start(pose)) = "-1.5, 2,90".parse() else { panic!("a good start") };
         assert_eq!((pose.x, pose.y), (Meters(-1.5), Meters(2.0)));
         assert!((pose.theta.degrees() - 90.0).abs() < 1e-9);
-        for text in
-            ["", "1", "1,2", "1,2,3,4", "a,b,c", "1;2;3", "nan,0,0", "0,inf,0", "0,0,1e999", "1,2,90deg", "1,,2"]
-        {
+        assert_eq!("-150cm,2m,90deg".parse(), Ok(Start(pose)));
+        for text in ["", "1", "1,2", "1,2,3,4", "1;2;3"] {
             assert_eq!(text.parse::<Start>(), Err(StartError::Malformed), "{text}");
+        }
+        for text in ["a,b,c", "nan,0,0", "0,inf,0", "0,0,1e999", "1,2,90m", "1,2s,90", "1,,2"] {
+            assert!(matches!(text.parse::<Start>(), Err(StartError::Quantity(_))), "{text}");
         }
     }
 

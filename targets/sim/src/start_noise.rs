@@ -1,5 +1,6 @@
 //! Start poses that are off the given one by chance: by how much, says `--start-noise`; which, says the seed.
 
+use mdle_host::Quantity;
 use mdle_runtime::{Meters, Pose, Radians};
 
 use crate::noise::{Noise, Purpose};
@@ -20,12 +21,17 @@ pub(crate) struct StartNoise {
 }
 
 impl StartNoise {
-    /// Read from `metres,degrees`.
-    pub(crate) fn read(text: &str) -> Option<Self> {
-        let (metres, degrees) = text.split_once(',')?;
-        let number =
-            |text: &str, most: f64| text.trim().parse().ok().filter(|number: &f64| (0.0..=most).contains(number));
-        Some(Self { metres: number(metres, MOST[0])?, degrees: number(degrees, MOST[1])? })
+    /// Reads `metres,degrees`.
+    ///
+    /// # Errors
+    /// The text is not a length and an angle within their limits: a sentence with what to type instead.
+    pub(crate) fn read(text: &str) -> Result<Self, String> {
+        let sentence = "expected metres,degrees: up to 100 and 180, as in `0.1,5`";
+        let (metres, degrees) = text.split_once(',').ok_or(sentence)?;
+        let metres = Quantity::Length.read(metres.trim(), "m")?;
+        let degrees = Quantity::Angle.read(degrees.trim(), "deg")?;
+        let is_within = (0.0..=MOST[0]).contains(&metres) && (0.0..=MOST[1]).contains(&degrees);
+        is_within.then_some(Self { metres, degrees }).ok_or_else(|| sentence.to_owned())
     }
 
     /// The start pose of `seed`: the first drawn around `start` at which a robot of this radius, in metres, can stand.
@@ -64,9 +70,11 @@ mod tests {
 
     #[test]
     fn two_numbers_and_nothing_else() {
-        assert_eq!(StartNoise::read("0.1, 5"), Some(StartNoise { metres: 0.1, degrees: 5.0 }));
-        for text in ["", "1", "1,2,3", "-0.1,5", "0.1,181", "nan,1", "0.1,inf", "0.1,5deg", "101,0"] {
-            assert_eq!(StartNoise::read(text), None, "{text}");
+        for text in ["0.1, 5", "10cm,5deg"] {
+            assert_eq!(StartNoise::read(text), Ok(StartNoise { metres: 0.1, degrees: 5.0 }));
+        }
+        for text in ["", "1", "1,2,3", "-0.1,5", "0.1,181", "nan,1", "0.1,inf", "0.1,5cm", "101,0"] {
+            assert!(StartNoise::read(text).is_err(), "{text}");
         }
     }
 

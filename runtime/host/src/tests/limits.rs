@@ -17,12 +17,12 @@ fn help_lists_all_options_and_opens_no_robot() {
     Usage: lab_tour [OPTIONS]
 
     Options:
-          --period <SECONDS>   Period of the control loop, in seconds [default: 0.1]
-          --timeout <SECONDS>  Maximum duration of the plan, in seconds; exit status 4 after it [default: none]
-          --turns <N>          Maximum number of turns; exit status 4 after them [default: none]
-          --log <FILE>         File for a log of the run, one JSON object per turn, in the format of `mdlec trace`
-          --device <PATH>      Where the toy is
-      -h, --help               Print help (see more with '--help')
+          --period <TIME>   Period of the control loop, in seconds or as in `50ms` [default: 0.1]
+          --timeout <TIME>  Maximum duration of the plan, in seconds or as in `5min`; exit status 4 after it [default: none]
+          --turns <N>       Maximum number of turns; exit status 4 after them [default: none]
+          --log <FILE>      File for a log of the run, one JSON object per turn, in the format of `mdlec trace`
+          --device <PATH>   Where the toy is
+      -h, --help            Print help (see more with '--help')
 
     Exit status: 0 the plan ended, 2 invalid option, world or start pose, 3 a fault stopped the robot,
     4 timeout or turn limit, 128+N terminated by signal N. The robot is stopped in every case.
@@ -37,7 +37,7 @@ fn long_help_lists_all_exit_statuses_and_opens_no_robot() {
     for status in ["  0 ", "  2 ", "  3 ", "  4 ", "  128+N "] {
         assert!(statuses.contains(status), "{status:?} is missing in {statuses}");
     }
-    assert!(run.out.contains("in seconds, from 0.0001 to 60 [default: 0.1]"), "{}", run.out);
+    assert!(run.out.contains("from 100µs to 60s [default: 0.1]"), "{}", run.out);
 }
 
 #[test]
@@ -71,7 +71,7 @@ fn a_bad_option_opens_no_robot() {
         assert!(run.err.starts_with("error: "), "{arguments:?}: {}", run.err);
     }
     insta::assert_snapshot!(Stage::default().run(&["--period=0"]).err, @"
-    error: invalid value '0' for '--period <SECONDS>': expected a number of seconds from 0.0001 to 60
+    error: invalid value '0' for '--period <TIME>': expected a time from 100µs to 60s
 
     For more information, try '--help'.
     ");
