@@ -77,3 +77,27 @@ fn executables_describe_their_options_in_a_line() {
     }
     insta::assert_snapshot!(shown);
 }
+
+#[test]
+fn a_version_names_what_was_built() {
+    let folder = folder("version");
+    let version = |plan: &str, texts: [&str; 2]| {
+        let place = folder.join(plan);
+        fs::create_dir_all(&place).unwrap();
+        fs::write(place.join("plan.mdle"), texts[0]).unwrap();
+        fs::write(place.join("legs.mdle"), texts[1]).unwrap();
+        let built = run_mdlec(&place, &["plan.mdle", "--target", "sim", "-o", "plan"]);
+        assert_eq!(built.status.code(), Some(0), "{}", String::from_utf8_lossy(&built.stderr));
+        text(Command::new(place.join("plan")).arg("--version").output().unwrap())
+    };
+    let texts = ["use \"legs.mdle\"\n{ Rest Legs }\n", "{ Legs (Atom (wait 1ms) stop) }\n"];
+    let first = version("first", texts);
+    let words: Vec<_> = first.split_whitespace().collect();
+    let ["Rest", "(text", own, "target", "sim,", "alphabet", alphabet, "mdlec", compiler] = *words else {
+        panic!("{first}")
+    };
+    assert_eq!((own.len(), alphabet.len(), compiler), (13, 13, "0.1.0)"));
+    assert_eq!(version("second", texts), first);
+    let used = version("third", [texts[0], "{ Legs (Atom (wait 2ms) stop) }\n"]);
+    assert!(used != first && used.ends_with(&first[first.find(", target").unwrap()..]), "{used}");
+}

@@ -10,6 +10,7 @@ use mdle_runtime::Printable;
 
 use super::bind;
 use super::input::{self, Input, Target};
+use super::version::version;
 use super::{Build, Emit, EmitKind, Failure, endings, matrices, report};
 use crate::diagnostic::{Diagnostic, sort};
 use crate::link::{self, Cache, LinkError, Package, Progress, TargetCrate};
@@ -211,6 +212,7 @@ fn executable(options: &Build, path: &Path, output: Option<PathBuf>) -> Result<(
     let plan_type = rust::plan_type(&plan_name);
     let package = Package {
         plan_name: &plan_name,
+        version: &version(&input, &target),
         plan_file: path,
         inputs: &input.inputs(&target),
         plan_type: &plan_type,

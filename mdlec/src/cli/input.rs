@@ -21,6 +21,11 @@ pub(super) struct Target {
 }
 
 impl Target {
+    /// The texts of its alphabet's files: the shared ones, then its own.
+    pub(super) fn texts(&self) -> impl Iterator<Item = &str> {
+        self.sources.iter().map(|(_, text)| text.as_str())
+    }
+
     /// The files of the target that were read.
     pub(super) fn files(&self) -> impl Iterator<Item = PathBuf> {
         self.folder.iter().flat_map(|folder| ["alphabet.mdle", "src/alphabet.rs"].map(|file| folder.join(file)))
@@ -53,6 +58,11 @@ impl Input {
     /// The files that were read for it, its own first.
     pub(super) fn files(&self) -> impl Iterator<Item = &Path> {
         self.paths.values().map(PathBuf::as_path)
+    }
+
+    /// The texts of the files that were read for it, its own first.
+    pub(super) fn texts(&self) -> impl Iterator<Item = &str> {
+        self.paths.keys().map(|source| self.sources.text(*source))
     }
 
     /// All files that were read for it and for `target`: no output may go over them.

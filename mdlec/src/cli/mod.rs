@@ -18,6 +18,7 @@ mod new_target;
 mod read;
 mod report;
 mod trace;
+mod version;
 
 use std::process::ExitCode;
 

@@ -58,6 +58,8 @@ use sources::Sources;
 pub struct Package<'a> {
     /// The plan's name, which the executable shows.
     pub plan_name: &'a str,
+    /// The answer of the executable to `--version`, after the plan's name.
+    pub version: &'a str,
     /// The file that it was written in.
     pub plan_file: &'a Path,
     /// The files that the plan was read from, over none of which the executable may go.

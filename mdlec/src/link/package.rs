@@ -103,14 +103,16 @@ fn manifest(name: &str, dependencies: &Dependencies) -> Result<String, LinkError
 
 /// `src/main.rs`.
 fn main(package: &Package<'_>) -> String {
-    let (target, plan, name) = (package.target.crate_name(), package.plan_type, package.plan_name);
+    let (target, plan) = (package.target.crate_name(), package.plan_type);
+    let (name, version) = (package.plan_name, package.version);
     format!(
         "//! Made by mdlec: runs the plan on its target.\n\n\
          // Included, as a build script's output is: emitted text must be fit for both.\n\
          #[forbid(unsafe_code)]\n\
          mod plan {{\n    include!(\"plan.rs\");\n}}\n\n\
          fn main() -> ::std::process::ExitCode {{\n    \
-             ::mdle_host::run::<::{target}::Target, _>({name:?}, plan::{plan}::new)\n\
+             let program = ::mdle_host::Program {{ plan: {name:?}, version: {version:?} }};\n    \
+             ::mdle_host::run::<::{target}::Target, _>(program, plan::{plan}::new)\n\
          }}\n"
     )
 }
@@ -139,6 +141,7 @@ mod tests {
     fn package<'a>(plan_file: &'a str, rust: &'a str) -> Package<'a> {
         Package {
             plan_name: "Nap",
+            version: "(text 0, target sim)",
             plan_file: Path::new(plan_file),
             plan_type: "Nap",
             inputs: &[],

@@ -48,6 +48,7 @@ impl Robot {
         let inputs = [plan_file.clone()];
         let package = Package {
             plan_name: "Nap",
+            version: "",
             plan_file: &plan_file,
             plan_type: "Nap",
             inputs: &inputs,

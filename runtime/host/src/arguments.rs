@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use clap::{Arg, ArgMatches, Command, value_parser};
 
-use crate::{Quantity, Target, paths};
+use crate::{Program, Quantity, Target, paths};
 
 /// The shortest period: a turn must leave time for the exchange.
 const PERIOD_LEAST: Duration = Duration::from_micros(100);
@@ -43,8 +43,9 @@ pub(crate) struct Options {
 
 /// Returns the command line of the executable of plan `name` for target `T`. The usage line names the executable's file, or
 /// the plan if the file name is unknown.
-pub(crate) fn command<T: Target>(name: &str) -> Command {
+pub(crate) fn command<T: Target>(program: Program<'_>) -> Command {
     let seconds = T::PERIOD.as_secs_f64();
+    let name = program.plan;
     let command = Command::new(name.to_owned())
         .about(format!("Run the plan {name} on the robot {}", T::NAME))
         .after_help(STATUS)
@@ -78,6 +79,7 @@ pub(crate) fn command<T: Target>(name: &str) -> Command {
                 .help("File for a log of the run, one JSON object per turn, in the format of `mdlec trace`")
                 .value_parser(value_parser!(PathBuf)),
         );
+    let command = if program.version.is_empty() { command } else { command.version(program.version.to_owned()) };
     T::arguments(if T::PATHS.is_some() { paths::arguments(command) } else { command })
 }
 

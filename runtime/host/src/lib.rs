@@ -19,6 +19,7 @@ mod output_format;
 mod panic_hook;
 mod paths;
 mod patience;
+mod program;
 mod progress;
 mod quantity;
 mod report;
@@ -51,18 +52,20 @@ use outlet::{Keeps, Outlet};
 pub use output_format::output_format;
 pub use paths::{Replays, setpoints};
 use patience::Patience;
+pub use program::Program;
 pub use quantity::Quantity;
 pub use stop_request::StopRequest;
 pub use target::{Around, Hosted, Judgement, Pace, Refusal, Standing, Target, Time};
 
 /// Runs the plan that `plan` makes on the robot of the target `T`, with the arguments of this process: what the `main` of an executable
-/// that mdlec builds calls. `name` is the plan's, for `--help`; its usage names the executable as it was called.
+/// that mdlec builds calls. `program` is the plan's name, for `--help`, whose usage names the executable as it was called; a [`Program`]
+/// also answers `--version`.
 ///
 /// Exit status: 0 the plan is over; 1 of several runs not all arrived; 2 a bad option, world or start pose; 3 a fault stopped the robot, or what was asked
 /// for could not be written; 4 `--timeout` or `--turns`; 128+N signal N. In every case the robot was stopped.
 ///
 /// It handles the signals of the process and replaces its panic hook by one that never makes the robot wait.
-pub fn run<T: Target, P>(name: &str, plan: impl Fn() -> P + Sync) -> ExitCode
+pub fn run<'a, T: Target, P>(program: impl Into<Program<'a>>, plan: impl Fn() -> P + Sync) -> ExitCode
 where
     P: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>,
 {
@@ -88,7 +91,7 @@ where
     let seen = io::stderr().is_terminal().then(|| Box::new(move || begun.elapsed()) as Box<dyn FnMut() -> _>);
     let (out, mut err) = (|| Box::new(out) as Box<dyn Write>, err);
     let surroundings = session::Surroundings { instants: clock::SinceBoot, signals, out, err: &mut err, seen };
-    ExitCode::from(session::session::<T, P, _, _>(name, std::env::args_os(), &plan, surroundings))
+    ExitCode::from(session::session::<T, P, _, _>(program.into(), std::env::args_os(), &plan, surroundings))
 }
 
 /// Standard output and standard error, each with a thread that writes to it. The library's own buffer of standard output is

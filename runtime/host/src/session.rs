@@ -20,7 +20,7 @@ use crate::report::Report;
 use crate::safety::{Panicked, shielded};
 use crate::signals::Signals;
 use crate::turns::{self, Limits, Witnesses};
-use crate::{Hosted, NamedFile, Pace, Refusal, Target, Time, named_file, way_out};
+use crate::{Hosted, NamedFile, Pace, Program, Refusal, Target, Time, named_file, way_out};
 
 /// What a run meets outside the program; a test brings its own.
 pub(crate) struct Surroundings<'e, I, O> {
@@ -38,7 +38,7 @@ pub(crate) struct Surroundings<'e, I, O> {
 
 /// Runs what `plan` makes on the robot of target `T` with these arguments, the program's own name first; the exit status.
 pub(crate) fn session<'o, T: Target, P, I, O>(
-    name: &str,
+    program: Program<'_>,
     arguments: impl IntoIterator<Item = OsString>,
     plan: &(impl Fn() -> P + Sync),
     surroundings: Surroundings<'_, I, O>,
@@ -50,7 +50,7 @@ where
 {
     let Surroundings { mut instants, signals, out, err, seen } = surroundings;
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    let matches = match arguments::command::<T>(name).try_get_matches_from(&arguments) {
+    let matches = match arguments::command::<T>(program).try_get_matches_from(&arguments) {
         Ok(matches) => matches,
         Err(error) => return unparsed(&error, out, err),
     };
@@ -71,7 +71,7 @@ where
             // Nothing has to be stopped.
             signals.robot_runs(Time::Stepped(Pace::Max));
             signals.patience().stop_was_tried(None);
-            let program = arguments.first().map_or_else(|| name.into(), |program| program.to_string_lossy());
+            let program = arguments.first().map_or_else(|| program.plan.into(), |called| called.to_string_lossy());
             let terms = Terms { period: options.period, limits, signals: &signals, program: &program };
             return several(&batch, plan, &terms, &mut *out(), err, seen);
         }

@@ -126,7 +126,7 @@ impl Stage {
             seen: None,
         };
         let arguments = [&self.program].into_iter().chain(arguments).map(OsString::from);
-        let status = session::<ToyTarget, _, _, _>("Lab", arguments, &|| self.plan.clone(), surroundings);
+        let status = session::<ToyTarget, _, _, _>("Lab".into(), arguments, &|| self.plan.clone(), surroundings);
         // Otherwise a program may end before its last message is written.
         assert_ne!(patience.limit(), Some(Duration::ZERO), "readers are not waited for at the end");
         let text = out.borrow().text();

@@ -1,0 +1,25 @@
+//! The answer of an executable to `--version`: what it was built from. It depends on texts alone, not on where or when.
+
+use super::input::{Input, Target};
+
+/// Returns the hash of the plan's text with that of the files it uses, the target, the hash of its alphabet with the shared ones,
+/// and the version of the compiler.
+pub(super) fn version(input: &Input, target: &Target) -> String {
+    format!(
+        "(text {}, target {}, alphabet {}, mdlec {})",
+        hash(input.texts()),
+        target.alphabet.name,
+        hash(target.texts()),
+        env!("CARGO_PKG_VERSION")
+    )
+}
+
+/// Returns twelve hexadecimal digits that no other sequence of texts has.
+fn hash<'t>(texts: impl Iterator<Item = &'t str>) -> String {
+    let mut hasher = blake3::Hasher::new();
+    for text in texts {
+        // The length keeps a text apart from the next.
+        hasher.update(&text.len().to_le_bytes()).update(text.as_bytes());
+    }
+    hasher.finalize().to_hex()[..12].to_owned()
+}
