@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use mdle_tests::book::{Fence, anchors, fences, links, messages, name, pages};
+use mdle_tests::book::{Fence, anchors, fences, leads_to, links, messages, name, pages};
 use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::repository::{TextFile, root};
 use serde_json::Value;
@@ -30,7 +30,7 @@ fn links_lead_to_a_page_and_a_heading_of_it() {
                 continue;
             }
             let (file, anchor) = link.split_once('#').unwrap_or((link, ""));
-            let file = if file.is_empty() { name(page) } else { file };
+            let file = leads_to(page, file);
             let target = pages.iter().find(|page| name(page) == file);
             let target = target.unwrap_or_else(|| panic!("{}: no page {file}", page.path));
             let is_there = anchor.is_empty() || anchors(target).iter().any(|heading| heading == anchor);
@@ -154,7 +154,9 @@ impl Walk<'_> {
 impl Walk<'_> {
     /// Holds the pictures of the page to what its commands have drawn.
     fn pictures(&self) {
-        for picture in links(self.page).into_iter().filter(|link| self.folder.join(link).exists()) {
+        for picture in
+            links(self.page).into_iter().filter(|link| link.ends_with(".svg") && self.folder.join(link).exists())
+        {
             let (drawn, shown) = (self.folder.join(picture), root().join("docs/src").join(picture));
             let drawn = fs::read(drawn).unwrap();
             if std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always") {

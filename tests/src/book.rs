@@ -41,6 +41,23 @@ pub fn name(page: &TextFile) -> &str {
     page.path.trim_start_matches("docs/src/")
 }
 
+/// Returns the name of the page that a link of `page` leads to, whose path begins at the page's folder.
+#[must_use]
+pub fn leads_to(page: &TextFile, link: &str) -> String {
+    if link.is_empty() {
+        return name(page).to_owned();
+    }
+    let mut parts: Vec<_> = name(page).split('/').collect();
+    parts.pop();
+    for part in link.split('/') {
+        match part {
+            ".." => drop(parts.pop()),
+            part => parts.push(part),
+        }
+    }
+    parts.join("/")
+}
+
 /// The fenced blocks of a page, in their order.
 #[must_use]
 pub fn fences(page: &TextFile) -> Vec<Fence> {
