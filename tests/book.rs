@@ -219,3 +219,16 @@ fn the_page_on_worlds_names_every_key() {
         assert!(page.contains(key), "docs/src/worlds.md does not name {key}");
     }
 }
+
+#[test]
+fn frames_of_the_protocols_are_tested_packets() {
+    let page = pages().into_iter().find(|page| name(page) == "reference/protocols.md").unwrap().text;
+    let tests = ["scout", "atrv"].map(|robot| root().join(format!("targets/{robot}/tests/packets.rs")));
+    let tested: String = tests.iter().map(|path| fs::read_to_string(path).unwrap()).collect();
+    let is_byte = |word: &str| word.len() == 2 && u8::from_str_radix(word, 16).is_ok();
+    let is_frame = |code: &&str| code.split(' ').count() > 4 && code.split(' ').all(is_byte);
+    let frames: Vec<_> = page.split('`').skip(1).step_by(2).filter(is_frame).collect();
+    assert!(frames.len() > 20, "{frames:?}");
+    let untested: Vec<_> = frames.into_iter().filter(|frame| !tested.contains(&format!("\"{frame}\""))).collect();
+    assert_eq!(untested, [""; 0]);
+}
