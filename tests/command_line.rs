@@ -28,12 +28,12 @@ const PLAN: &str = "\
 /// The kinds of `--emit` that are text.
 const KINDS: [&str; 6] = ["tree", "plan", "nondegenerate", "expanded", "fsm", "rust"];
 
-/// The script of the interfaces.
+/// A script (docs/src/reference/interfaces.md, 3).
 const SCRIPT: &str = r#"{"t": 0.0, "fired": [], "completed": []}
 {"t": 0.1, "fired": ["atIsection 0100", "bumper"], "completed": ["align 7 9"]}
 "#;
 
-/// The trace of the interfaces: what the plan from lab 2 to lab 1 makes of the script.
+/// Its trace (docs/src/reference/interfaces.md, 4): what the plan from lab 2 to lab 1 makes of the script.
 const TRACE: &str = r#"{"turn":0,"t":0.0,"state":1,"law":"goAvoid 90 40 20","fired":[]}
 {"turn":1,"t":0.1,"state":9,"law":null,"fired":[{"from":1,"level":0,"by":"bumper"}]}
 "#;

@@ -1,5 +1,5 @@
 //! Random plans on random scripts: every machine prints the same trace, and so do plans loaded at run time
-//! (semantics, section 9).
+//! (docs/src/reference/semantics.md, 9).
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 

@@ -1,4 +1,4 @@
-//! Emitted Rust, compiled: it does what the machines of the compiler do (semantics, section 9).
+//! Emitted Rust, compiled: it does what the machines of the compiler do (docs/src/reference/semantics.md, 9).
 //!
 //! Every plan is emitted in every shape. Each shape is one package, which is compiled once and run once.
 

@@ -1,4 +1,5 @@
-//! FSM files of loops without end: their moves written out by hand from the rules (semantics, section 8).
+//! FSM files of loops without end: their moves written out by hand from the rules (docs/src/reference/semantics.md,
+//! 8.3).
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use mdle_tests::golden::judge;

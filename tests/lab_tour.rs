@@ -49,7 +49,7 @@ fn apart(one: f64, other: f64) -> f64 {
     apart.min(360.0 - apart)
 }
 
-/// Where each atom has to end: zone and, after a turn, heading (`office-world.md`: zones, and 35 degrees after `go`).
+/// Where each atom has to end: zone and, after a turn, heading (docs/src/reference/office.md, 2).
 type Zone = ([f64; 4], Option<(f64, f64)>);
 
 const ROUND: f64 = 35.0;

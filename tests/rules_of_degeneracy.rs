@@ -1,4 +1,5 @@
-//! Removing degeneracy and writing loops out commute, and neither changes a trace (semantics, sections 6 to 8): random plans.
+//! Removing degeneracy and writing loops out commute, and neither changes a trace (docs/src/reference/semantics.md,
+//! 6.3, 7.4 and 8.1): random plans.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 

@@ -1,4 +1,5 @@
-//! The rules of loops (semantics, section 6) and of the limit of a turn (section 5), each by its smallest plan.
+//! The rules of loops (docs/src/reference/semantics.md, 6) and of the limit of a turn (docs/src/reference/semantics.md,
+//! 5.5), each by its smallest plan.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 

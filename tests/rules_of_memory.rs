@@ -1,4 +1,5 @@
-//! The rules of RISING (semantics, section 2) and of `after` (language, section 3), each by its smallest plan.
+//! The rules of RISING (docs/src/reference/semantics.md, 2.2) and of `after` (docs/src/reference/semantics.md, 2.3),
+//! each by its smallest plan.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 

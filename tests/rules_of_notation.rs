@@ -1,4 +1,5 @@
-//! Formal notation (language, section 3) means what the same plan in the notation of the experiments means.
+//! Formal notation (docs/src/reference/language.md, 3.2) means what the same plan in the notation of the experiments
+//! means.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 

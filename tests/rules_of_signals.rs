@@ -1,4 +1,4 @@
-//! The rules of comparisons over signals and of `t` (language, section 3), each by its smallest plan.
+//! The rules of comparisons over signals and of `t` (docs/src/reference/semantics.md, 2.4), each by its smallest plan.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 

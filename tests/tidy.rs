@@ -1,5 +1,7 @@
 //! What every file of the repository has to be like.
 
+use mdle_tests::book::pages;
+use mdle_tests::citations::{Citation, citations, dangling};
 use mdle_tests::repository::{TextFile, files, root};
 
 /// What mdlec wrote is as it is, and so is what stands for it in a test.
@@ -72,6 +74,62 @@ fn no_file_names_a_folder_of_one_machine() {
     let files = files(&[".rs", ".toml", ".mdle", ".lalrpop", ".md", ".snap", ".json", ".jsonl", ".lock"]);
     let named = files.iter().filter(|file| folders.iter().any(|folder| file.text.contains(folder)));
     assert_none(&named.map(|file| file.path.clone()).collect::<Vec<_>>());
+}
+
+#[test]
+fn citations_lead_to_a_section_of_a_page() {
+    let pages = pages();
+    let (mut breaches, mut count) = (Vec::new(), 0);
+    for file in files(&[".rs", ".lalrpop", ".toml", ".mdle"]) {
+        for citation in citations(&file.text) {
+            let is_whole = citation.sections.is_empty() && !citation.is_quoted;
+            if is_whole && citation.path.contains("/reference/") {
+                breaches.push(format!("{}: which section of {}?", file.path, citation.path));
+            }
+            breaches.extend(dangling(&citation, &pages).map(|why| format!("{}: {why}", file.path)));
+            count += citation.sections.len();
+        }
+    }
+    assert_none(&breaches);
+    assert!(count > 60, "{count} sections are cited");
+}
+
+#[test]
+fn dangling_citations_are_found() {
+    let page = |text: &str| TextFile { path: page_path("rules"), text: text.to_owned() };
+    let pages = [page("# Rules\n\n## 5. A turn\n\n### 5.2 The limit\n\n## 6. Loops\n")];
+    let whys = |text: &str| {
+        let found = citations(&text.replace("RULES", &page_path("rules")).replace("NONE", &page_path("none")));
+        found.iter().map(|citation| dangling(citation, &pages)).collect::<Vec<_>>()
+    };
+    assert_eq!(
+        whys("//! A turn (RULES, 5.2).\n/// Ends\n    /// (paper; RULES,\n    /// 5 and 6: both).\n"),
+        [None, None]
+    );
+    let is_missing = |text: &str, section: &str| {
+        assert_eq!(whys(text), [Some(format!("{} has no section {section}", page_path("rules")))], "{text}");
+    };
+    is_missing("// RULES, 5.1.", "5.1");
+    is_missing("// (RULES,\n// 5 to 7)", "7");
+    is_missing("# RULES, 5, 5.2, 52", "52");
+    assert_eq!(whys("see NONE, 5"), [Some(format!("there is no page {}", page_path("none")))]);
+    let cited = citations(&format!("open({:?}, 5)", page_path("rules")));
+    assert_eq!(cited, [Citation { path: page_path("rules"), sections: Vec::new(), is_quoted: true }]);
+}
+
+/// Returns the path of a page that does not exist, in parts, so that this file does not cite it.
+fn page_path(name: &str) -> String {
+    ["docs/", "src/", name, ".md"].concat()
+}
+
+#[test]
+fn comments_cite_only_documents_that_are_here() {
+    let elsewhere =
+        [("semantics", ", section"), ("(language", ", section"), ("interfaces", ", \""), ("of the ", "design")];
+    let elsewhere = elsewhere.map(|(start, end)| [start, end].concat());
+    let cite = |text: &str| elsewhere.iter().any(|words| text.contains(words));
+    let found = files(&[".rs", ".lalrpop", ".toml"]).into_iter().filter(|file| cite(&file.text));
+    assert_none(&found.map(|file| file.path).collect::<Vec<_>>());
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! `stop`: the null input, for ever (language, section 4).
+//! `stop`: the null input, for ever (docs/src/reference/language.md, 4).
 
 use mdle_runtime::capability::DiffDrive;
 use mdle_runtime::{Begin, Control, Law, Nanos, Twist};

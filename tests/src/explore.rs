@@ -1,5 +1,6 @@
 //! A plan run by brute force: from each situation it can be in, a turn for each choice of what its quarks say and of how
-//! much time goes by. Written from the rules (semantics, sections 3 to 6) alone; it shares no stepping with any machine.
+//! much time goes by. Written from the rules (docs/src/reference/semantics.md, 3 to 6) alone; it shares no stepping
+//! with any machine.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 

@@ -7,6 +7,7 @@ pub mod any_file;
 pub mod any_text;
 pub mod book;
 pub mod chance;
+pub mod citations;
 pub mod ecmascript;
 pub mod elf;
 pub mod emission;

@@ -1,4 +1,5 @@
-//! Theorem 1 straight from its statement (semantics, section 8): every numbering, every cut into runs, every family of loops.
+//! Theorem 1 straight from its statement (docs/src/reference/semantics.md, 8.5): every numbering, every cut into runs,
+//! every family of loops.
 //!
 //! It shares nothing with the compiler. What depends on the number of atoms only is written out once.
 

@@ -1,4 +1,5 @@
-//! Exact decimals: arguments are compared as they are written, before any rounding (semantics, section 7).
+//! Exact decimals: arguments are compared as they are written, before any rounding (docs/src/reference/semantics.md,
+//! 7.2).
 
 use std::fmt;
 

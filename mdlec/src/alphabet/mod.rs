@@ -1,5 +1,5 @@
 //! The alphabet 𝒜 = U ∪ B′ of a robot: its quarks with the types of their arguments, and what the robot can do
-//! (paper, Definition 1; language, section 6).
+//! (paper, Definition 1; docs/src/reference/language.md, 6).
 
 mod checks;
 mod combined;

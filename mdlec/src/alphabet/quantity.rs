@@ -1,4 +1,4 @@
-//! Kinds of values and their units (language, sections 2 and 6).
+//! Kinds of values and their units (docs/src/reference/language.md, 2.4 and 6.2).
 
 /// What kind of value a parameter takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -1,4 +1,5 @@
-//! Reads an alphabet file (language, section 6): a descent over its tokens that goes on behind the next `;` after a defect.
+//! Reads an alphabet file (docs/src/reference/language.md, 6.1): a descent over its tokens that goes on behind the next
+//! `;` after a defect.
 
 use logos::Logos;
 

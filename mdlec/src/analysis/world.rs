@@ -1,5 +1,5 @@
 //! What is known where a condition is read: no interrupt of a scope around it has fired, for these are read first
-//! (semantics, section 5).
+//! (docs/src/reference/semantics.md, 5.2).
 //!
 //! An answer "impossible" holds for every run; "possible" may be said of what is too much to look at.
 

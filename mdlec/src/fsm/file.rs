@@ -1,4 +1,5 @@
-//! The machine as an FSM file (interfaces, "FSM files"): states, interrupts with their moves, finite loops expanded.
+//! The machine as an FSM file (docs/src/reference/interfaces.md, 5): states, interrupts with their moves, finite loops
+//! expanded.
 
 use mdle_runtime::fsm::{Bracket, Kind};
 use serde::Serialize;

@@ -1,4 +1,5 @@
-//! The transition matrices of a plan (paper, Eqs. 2 to 4; semantics, section 8), its finite loops written out.
+//! The transition matrices of a plan (paper, Eqs. 2 to 4; docs/src/reference/semantics.md, 8.3), its finite loops
+//! written out.
 //!
 //! Afterwards: every column of a matrix is a standard basis vector (Observation 1), and interrupts are in pre-order, so
 //! that of those that list a column the outermost has the lowest number.

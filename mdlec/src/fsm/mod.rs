@@ -1,4 +1,5 @@
-//! Lowers a plan to its finite state machine (paper, Algorithm 1; semantics, section 8), loops as counters.
+//! Lowers a plan to its finite state machine (paper, Algorithm 1; docs/src/reference/semantics.md, 8.1), loops as
+//! counters.
 //!
 //! Afterwards: brackets are in pre-order, bracket 0 is the plan, the children of a bracket partition its atoms.
 

@@ -1,4 +1,5 @@
-//! The tables of a plan and the limit of its states, written out by hand from the rules (semantics, section 8).
+//! The tables of a plan and the limit of its states, written out by hand from the rules
+//! (docs/src/reference/semantics.md, 8.1).
 
 use mdle_runtime::fsm::{Atom, Bracket};
 

@@ -1,5 +1,5 @@
-//! Holds a machine against its plan: every transition is the one that the plan asks for (paper, Eq. 2; semantics, sections
-//! 5 and 8).
+//! Holds a machine against its plan: every transition is the one that the plan asks for (paper, Eq. 2;
+//! docs/src/reference/semantics.md, 5.3 and 8).
 //!
 //! It shares no code with the lowering. It walks the plan and says of each scope, loop and atom what follows when it ends,
 //! as the plan's own nesting has it; the machine says the same by its intervals of atoms. As each step outwards agrees, so

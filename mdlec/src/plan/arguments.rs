@@ -1,4 +1,4 @@
-//! Arguments against a signature: count, type, unit, range (language, section 5, E03xx and E0402).
+//! Arguments against a signature: count, type, unit, range (docs/src/reference/language.md, 6.2).
 
 use super::parameters::Parameters;
 use super::{Decimal, Value};

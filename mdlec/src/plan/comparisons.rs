@@ -1,5 +1,5 @@
 //! Comparisons of signals: which signals, in which unit, and `t` and `way`, the time and the path driven since the scope was
-//! entered (language, section 3).
+//! entered (docs/src/reference/semantics.md, 2.4).
 
 use super::arguments::{Fitted, value};
 use super::parameters::{Names, Parameter};

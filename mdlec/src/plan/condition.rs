@@ -1,4 +1,5 @@
-//! Conditions as a machine reads them (semantics, section 2): what they are made of, and their value in a situation.
+//! Conditions as a machine reads them (docs/src/reference/semantics.md, 2): what they are made of, and their value in a
+//! situation.
 
 use super::{QuarkId, RecordId};
 

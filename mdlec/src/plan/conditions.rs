@@ -1,4 +1,5 @@
-//! Conditions: quarks joined by AND, OR and NOT, and their text (semantics, section 2; language, section 7).
+//! Conditions: quarks joined by AND, OR and NOT, and their text (docs/src/reference/semantics.md, 2.1;
+//! docs/src/reference/language.md, 7).
 
 use super::labels::Labels;
 use super::parameters::Names;
@@ -155,7 +156,7 @@ fn is_or(condition: &Condition) -> bool {
     matches!(condition, Condition::Or(_))
 }
 
-/// The text of a condition (language, section 7), by the texts of its quarks.
+/// The text of a condition (docs/src/reference/language.md, 7), by the texts of its quarks.
 pub fn condition_text(condition: &Condition, quark: &impl Fn(QuarkId) -> String) -> String {
     text(condition, quark, Precedence::Or, Ors::Flattened)
 }

@@ -1,4 +1,5 @@
-//! Tells interrupts that are the same function wherever they stand (paper, Definition 4; semantics, section 7).
+//! Tells interrupts that are the same function wherever they stand (paper, Definition 4;
+//! docs/src/reference/semantics.md, 7.2 and 7.3).
 //!
 //! Whole interrupts are compared, by their normal form: AND and OR flattened, sorted and deduplicated, double NOT removed.
 

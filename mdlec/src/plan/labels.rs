@@ -1,4 +1,4 @@
-//! The labels of one use of a definition, and what `after` asks about them (language, section 3).
+//! The labels of one use of a definition, and what `after` asks about them (docs/src/reference/semantics.md, 2.3).
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -74,7 +74,7 @@ pub struct Quark {
     pub remembers: bool,
     /// For a comparison of signals: what it compares. Its name is then the operator.
     pub comparison: Option<Comparison>,
-    /// Its quark text (language, section 7).
+    /// Its quark text (docs/src/reference/language.md, 7).
     pub text: String,
 }
 

@@ -1,4 +1,5 @@
-//! Removes degeneracy (paper, Definition 4; semantics, section 7): afterwards no interrupt is repeated inside its scope.
+//! Removes degeneracy (paper, Definition 4; docs/src/reference/semantics.md, 7.1): afterwards no interrupt is repeated
+//! inside its scope.
 //!
 //! The outer interrupt is read first and so always wins; replacing the inner ones by the null interrupt changes no trace.
 

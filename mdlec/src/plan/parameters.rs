@@ -1,4 +1,5 @@
-//! The parameters of a plan: their types, and what they stand for where the plan is used (language, section 3).
+//! The parameters of a plan: their types, and what they stand for where the plan is used
+//! (docs/src/reference/language.md, 3.4).
 
 use std::collections::{BTreeMap, BTreeSet};
 

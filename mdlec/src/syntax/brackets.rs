@@ -1,5 +1,5 @@
-//! Balances brackets before the grammar sees them (language, end of section 3): afterwards every bracket has its partner, none is
-//! nested deeper than 256, and no atom holds an atom.
+//! Balances brackets before the grammar sees them (docs/src/reference/language.md, 3.7): afterwards every bracket has
+//! its partner, none is nested deeper than 256, and no atom holds an atom.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,4 +1,4 @@
-//! A file of plans together with those that it uses, each read once (language, section 3: `use`).
+//! A file of plans together with those that it uses, each read once (docs/src/reference/language.md, 1).
 
 use std::collections::BTreeSet;
 

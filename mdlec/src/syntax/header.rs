@@ -1,5 +1,5 @@
-//! Says what a parenthesis behind a plan's own name is (language, section 3): its parameters, its condition, or its first element.
-//! The grammar could not know before the end of it.
+//! Says what a parenthesis behind a plan's own name is (docs/src/reference/language.md, 3.1): its parameters, its
+//! condition, or its first element. The grammar could not know before the end of it.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,5 @@
-//! Text to tree: tokens, brackets, grammar (language, sections 2 and 3). Never fails: a tree and a list of diagnostics.
+//! Text to tree: tokens, brackets, grammar (docs/src/reference/language.md, 2 and 3). Never fails: a tree and a list of
+//! diagnostics.
 
 mod arithmetic;
 mod brackets;

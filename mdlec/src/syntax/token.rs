@@ -1,5 +1,5 @@
-//! Text to tokens (language, section 2): afterwards there are no blanks, no comments and no typesetting, and each parenthesis
-//! knows whether it touches a name.
+//! Text to tokens (docs/src/reference/language.md, 2): afterwards there are no blanks, no comments and no typesetting,
+//! and each parenthesis knows whether it touches a name.
 
 use std::borrow::Cow;
 

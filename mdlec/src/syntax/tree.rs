@@ -1,4 +1,5 @@
-//! The tree of a plan file as it is written (language, section 3): every node with its span, nothing resolved.
+//! The tree of a plan file as it is written (docs/src/reference/language.md, 3): every node with its span, nothing
+//! resolved.
 //!
 //! What is written is borrowed from the text, and the nodes stand in an arena, each once, where it stays: a parser that allocates
 //! and copies them spends most of its time on that.

@@ -1,4 +1,5 @@
-//! The conditions of Theorem 1 that a machine breaks (semantics, section 8, R1 to R4), each in a sentence.
+//! The conditions of Theorem 1 that a machine breaks (docs/src/reference/semantics.md, 8.5: R1 to R4), each in a
+//! sentence.
 
 use std::fmt::Write;
 

@@ -1,4 +1,5 @@
-//! Theorem 1 both ways (paper, Theorem 1; semantics, section 8): the MDLe string of a machine, or why there is none.
+//! Theorem 1 both ways (paper, Theorem 1; docs/src/reference/semantics.md, 8.5): the MDLe string of a machine, or why
+//! there is none.
 //!
 //! Afterwards: in what is found, the places of the states count from 0, the termination state has the last, and runs and loops
 //! are pairwise nested or disjoint.

@@ -1,4 +1,4 @@
-//! Reads FSM files (interfaces, "FSM files"): states, and interrupts with their moves.
+//! Reads FSM files (docs/src/reference/interfaces.md, 5): states, and interrupts with their moves.
 //!
 //! Afterwards: every move is between states of the file, and an interrupt has one destination for a state at most.
 

@@ -1,5 +1,5 @@
 //! The machine `counted`: the run-time system's own machine on a lowered plan, loops as the paper's counters
-//! (semantics, section 9). It is what robots run, with a script in place of the robot.
+//! (docs/src/reference/semantics.md, 9). It is what robots run, with a script in place of the robot.
 
 use mdle_runtime::fsm::Kind;
 use mdle_runtime::{

@@ -1,4 +1,5 @@
-//! The machine `matrix`: an execution as a product of transition matrices (paper, Eq. 4; semantics, sections 8 and 9).
+//! The machine `matrix`: an execution as a product of transition matrices (paper, Eq. 4;
+//! docs/src/reference/semantics.md, 8.4 and 9).
 //!
 //! Of the product `E_i(tm) … E_i(t2) E_i(t1)` of what has fired, in order, only the column of the first state is ever
 //! multiplied out: `e(t)` is that product applied to `e(0)`. What starts afresh with a state no matrix says.

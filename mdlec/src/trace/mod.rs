@@ -1,4 +1,5 @@
-//! The machines of `mdlec trace`: the same plan, run by ways of working that share no stepping code (semantics, section 9).
+//! The machines of `mdlec trace`: the same plan, run by ways of working that share no stepping code
+//! (docs/src/reference/semantics.md, 9).
 
 mod counted;
 mod matrix;

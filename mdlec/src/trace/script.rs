@@ -1,4 +1,4 @@
-//! Scripts: what interrupts and laws report, turn by turn, as JSON lines (semantics, section 9).
+//! Scripts: what interrupts and laws report, turn by turn, as JSON lines (docs/src/reference/interfaces.md, 3).
 //!
 //! Afterwards: times are nanoseconds since the first turn, ways are nanometres, and neither ever goes back.
 

@@ -1,4 +1,5 @@
-//! The machine `table`: the expanded FSM of Algorithm 1, a row for each interrupt (semantics, sections 8 and 9).
+//! The machine `table`: the expanded FSM of Algorithm 1, a row for each interrupt (docs/src/reference/semantics.md, 8
+//! and 9).
 //!
 //! Everything is computed beforehand: where an interrupt leads, which scopes start afresh there, and what ends on the way.
 //! A turn only looks up.

@@ -1,5 +1,6 @@
 //! The machine `tree`: a direct walk over the plan as written, neither expanded nor without degeneracy
-//! (semantics, sections 2 to 6). The reference for all others, so it shares no stepping code with any of them.
+//! (docs/src/reference/semantics.md, 2 to 6). The reference for all others, so it shares no stepping code with any of
+//! them.
 
 use mdle_runtime::{Frame, TRANSITIONS_PER_TURN};
 

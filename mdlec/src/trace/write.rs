@@ -1,4 +1,4 @@
-//! Traces as JSON lines: the one form in which every machine tells what it did (semantics, section 9).
+//! Traces as JSON lines: the one form in which every machine tells what it did (docs/src/reference/interfaces.md, 4).
 
 use std::fmt;
 

@@ -1,5 +1,5 @@
 //! The cursor that walks a plan's machine: what follows when a scope ends and what then starts afresh
-//! (semantics, sections 5 and 6; the paper's third type of transition with its counter c(t)).
+//! (docs/src/reference/semantics.md, 5.3 and 6; the paper's third type of transition with its counter c(t)).
 
 use crate::fsm::{Bracket, Kind};
 use crate::{Begin, Entries, Follows, Frame, Fsm, Here, Nanometers, Nanos, Output};

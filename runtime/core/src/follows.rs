@@ -1,5 +1,5 @@
-//! What follows when a scope ends, where that is known before the plan runs (semantics, section 5; Eq. 2: the one
-//! destination of a transition matrix).
+//! What follows when a scope ends, where that is known before the plan runs (docs/src/reference/semantics.md, 5.3; Eq.
+//! 2: the one destination of a transition matrix).
 
 use crate::Fsm;
 use crate::fsm::Kind;

@@ -1,4 +1,5 @@
-//! One turn of a plan: interrupts outermost first, then the law of the atom that is left standing (semantics, section 5).
+//! One turn of a plan: interrupts outermost first, then the law of the atom that is left standing
+//! (docs/src/reference/semantics.md, 5.1).
 
 use crate::{Begin, Cause, Cursor, Ending, Entries as _, Frame, Nanos, Next, Output as _, Plan};
 

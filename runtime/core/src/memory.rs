@@ -1,4 +1,5 @@
-//! What a plan remembers: RISING in each scope entered, and what has ended last, for `after` (semantics, section 2).
+//! What a plan remembers: RISING in each scope entered, and what has ended last, for `after`
+//! (docs/src/reference/semantics.md, 2.2 and 2.3).
 
 use crate::Slots;
 

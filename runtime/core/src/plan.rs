@@ -1,4 +1,5 @@
-//! What a plan answers the machine: which scope around the current atom ends, and why (semantics, section 5).
+//! What a plan answers the machine: which scope around the current atom ends, and why (docs/src/reference/semantics.md,
+//! 5.2).
 
 use crate::{Begin, Cursor, Entries, Follows, Fsm, Nanos, Output, Slots};
 

@@ -1,4 +1,5 @@
-//! Quarks as code: interrupts, control laws and their completion (paper, Definition 1; semantics, sections 1 and 4).
+//! Quarks as code: interrupts, control laws and their completion (paper, Definition 1; docs/src/reference/semantics.md,
+//! 1 and 4).
 
 use crate::{Frame, Nanos, Radians};
 

@@ -1,4 +1,4 @@
-//! Time as the plan sees it: nanoseconds since the plan started (semantics, section 3).
+//! Time as the plan sees it: nanoseconds since the plan started (docs/src/reference/semantics.md, 3.1).
 
 /// A time since the plan started, or a duration, in nanoseconds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Hash)]

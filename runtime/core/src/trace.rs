@@ -1,4 +1,5 @@
-//! The line of a trace: JSON, one object a turn, by which every machine tells what it did (semantics, section 9).
+//! The line of a trace: JSON, one object a turn, by which every machine tells what it did
+//! (docs/src/reference/interfaces.md, 4).
 
 use core::fmt::{self, Write};
 

@@ -1,5 +1,5 @@
 //! Lengths of the path driven, as plans compare them: whole nanometres, so that every machine counts the same
-//! (semantics, 3.5).
+//! (docs/src/reference/semantics.md, 3.3).
 
 use crate::Meters;
 

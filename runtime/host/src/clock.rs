@@ -1,4 +1,4 @@
-//! When turns begin and what time it is in them (semantics, section 3).
+//! When turns begin and what time it is in them (docs/src/reference/semantics.md, 3.1).
 //!
 //! Turns begin at absolute deadlines, so lateness never adds up. A real robot that was late skips ahead: it is never
 //! sent a burst of inputs. In stepped time no turn may be skipped; what scheduling cost is caught up there.

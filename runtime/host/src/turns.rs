@@ -1,4 +1,5 @@
-//! The turns of a plan on a robot: exchange, time, machine, and the wait for the next (semantics, section 5).
+//! The turns of a plan on a robot: exchange, time, machine, and the wait for the next (docs/src/reference/semantics.md,
+//! 5.1).
 
 use std::io::{self, Write};
 use std::time::Duration;

@@ -1,4 +1,5 @@
-//! Lints (language, section 5, W02xx to W04xx): plans that have a meaning, though hardly the one that was meant.
+//! Lints (docs/src/reference/language.md, 5: W02xx to W04xx): plans that have a meaning, though hardly the one that was
+//! meant.
 //!
 //! A lint speaks where something is useless for certain; what may be meant as it is written is left alone.
 

@@ -1,4 +1,5 @@
-//! What degeneracy removal leaves behind (semantics, section 7): traces cannot tell, for the outer interrupt always wins.
+//! What degeneracy removal leaves behind (docs/src/reference/semantics.md, 7.4): traces cannot tell, for the outer
+//! interrupt always wins.
 
 use crate::alphabet;
 use crate::diagnostic::SourceId;

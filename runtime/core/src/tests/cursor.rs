@@ -1,4 +1,4 @@
-//! Where a cursor goes when a scope ends, and what then starts afresh (semantics, sections 5 and 6).
+//! Where a cursor goes when a scope ends, and what then starts afresh (docs/src/reference/semantics.md, 5.3 and 6).
 
 use std::vec::Vec;
 

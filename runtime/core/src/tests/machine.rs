@@ -1,4 +1,4 @@
-//! What a turn comes to (semantics, section 5).
+//! What a turn comes to (docs/src/reference/semantics.md, 5).
 
 use std::vec::Vec;
 

@@ -1,4 +1,4 @@
-//! The tokens of the language (language, section 2), as mdlec has them.
+//! The tokens of the language (docs/src/reference/language.md, 2), as mdlec has them.
 
 use logos::Logos;
 
