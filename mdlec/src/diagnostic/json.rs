@@ -1,4 +1,5 @@
 //! Diagnostics as JSON, one object a line, for editors and other programs.
+//! See docs/src/reference/interfaces.md, 2.
 
 use serde::Serialize;
 

@@ -1,4 +1,5 @@
 //! A plan's machine as a Rust file: one construct of the file for each function here and in the files beside this one.
+//! See docs/src/reference/generated_code.md, 4.
 //!
 //! The file is one module: what atoms and scopes mean, as code or as rows, and the machine's tables. It grows with the
 //! text, never with loop counts.

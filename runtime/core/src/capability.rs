@@ -1,5 +1,6 @@
 //! What a robot can offer to quarks: one trait for each capability an alphabet can name, implemented by the robot's output.
 //! `state_link` and `modules` have none yet, so no robot can offer them.
+//! See docs/src/reference/interfaces.md, 7.2.
 
 use crate::{Meters, Nanos, Output, Pings, Pose, Setpoint, SonarId, Twist, Volts};
 

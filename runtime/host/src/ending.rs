@@ -1,4 +1,5 @@
 //! How a run ends: the exit status, and the sentence on standard error.
+//! See docs/src/reference/interfaces.md, 6.3.
 
 use std::fmt;
 use std::io::{self, Write};

@@ -1,4 +1,5 @@
 //! What a run says on standard output: one line a transition, and at last why the plan is over.
+//! See docs/src/reference/interfaces.md, 6.2.
 
 use std::fmt;
 use std::io::{self, Write};

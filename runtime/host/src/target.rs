@@ -1,4 +1,5 @@
 //! What a target gives the host: its options, its robot and how its time passes.
+//! See docs/src/reference/interfaces.md, 7.3.
 
 use std::time::Duration;
 

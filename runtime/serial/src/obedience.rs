@@ -1,4 +1,5 @@
 //! Whether a robot moves as it was told: no faster, and not the other way.
+//! See docs/src/reference/protocols.md, 3.
 //!
 //! A robot that an obstacle holds, or one of whose sides is stuck, moves less than it was told, which is no disobedience. The
 //! measured speeds of both sides have to stay within what the commands so far allow: a band around zero that reaches to the

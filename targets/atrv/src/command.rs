@@ -1,4 +1,5 @@
 //! What an rFLEX controller is told: the commands of its language that a driver needs, as frames.
+//! See docs/src/reference/protocols.md, 2.3.
 
 use crate::avoid::{ESCAPE, avoided};
 use crate::frame::{Packet, Written, check};

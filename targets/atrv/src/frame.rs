@@ -1,4 +1,5 @@
 //! Frames on the rFLEX line: start, port, id, opcode, length, data, check and end, with every 1B between them marked.
+//! See docs/src/reference/protocols.md, 2.2.
 //!
 //! A 1B that is a value is followed by 00; 1B 02 begins a frame, 1B 03 ends it, 1B 01 is filler and means nothing.
 

@@ -1,4 +1,5 @@
 //! Speeds of the robot in the controller's units, and the way that its positions tell.
+//! See docs/src/reference/protocols.md, 2.5.
 
 use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians, RadiansPerSecond, Twist};
 

@@ -1,4 +1,5 @@
 //! What an rFLEX controller tells: where its axes are, what its sonars hear, its bumpers, its brake.
+//! See docs/src/reference/protocols.md, 2.4.
 
 use crate::command::Axis;
 use crate::frame::Packet;

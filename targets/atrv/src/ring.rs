@@ -1,4 +1,5 @@
 //! From the reports of the boards to pings in the sixteen directions.
+//! See docs/src/reference/protocols.md, 2.6.
 
 use mdle_runtime::{Meters, Nanos, PINGS_KEPT, Ping, Pings, Pose, SONARS};
 

@@ -1,4 +1,5 @@
 //! What a Scout is told: the commands of its language that a driver needs, as frames.
+//! See docs/src/reference/protocols.md, 1.3.
 
 use crate::frame::{Arguments, Frame};
 use crate::number;

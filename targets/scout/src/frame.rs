@@ -1,4 +1,5 @@
 //! Frames on the Scout's line: start, length, type, arguments, sum and end, with no byte stuffing.
+//! See docs/src/reference/protocols.md, 1.2.
 
 use arrayvec::ArrayVec;
 

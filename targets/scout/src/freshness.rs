@@ -1,4 +1,5 @@
 //! Whether what a Scout says is new: its clock goes on, and its sonars say something else where they must.
+//! See docs/src/reference/protocols.md, 1.8.
 //!
 //! A state answers a command and is as old as that, unless the controller says the same one again; that its clock shows.
 //! No clock shows when the sonars pinged. But where the robot turns, or goes towards what it hears or away from it, one of

@@ -1,4 +1,5 @@
 //! Whole numbers as the Scout writes them: the low byte first, and negative ones as a sign beside a magnitude.
+//! See docs/src/reference/protocols.md, 1.2.
 
 /// The bit of a high byte that says "negative".
 const SIGN: u8 = 0x80;

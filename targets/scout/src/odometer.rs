@@ -1,4 +1,5 @@
 //! Where a Scout is by its own reckoning, beyond the 83 m at which its numbers wrap.
+//! See docs/src/reference/protocols.md, 1.8.
 
 use mdle_runtime::{Meters, Nanos, Pose, Radians};
 

@@ -1,4 +1,5 @@
 //! What a Scout says of itself in answer to almost any command: the state, 42 bytes in a fixed order.
+//! See docs/src/reference/protocols.md, 1.4.
 
 use mdle_runtime::Volts;
 

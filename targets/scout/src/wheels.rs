@@ -1,4 +1,5 @@
 //! Speeds of the robot and speeds of its wheels, in the units of the line.
+//! See docs/src/reference/protocols.md, 1.5.
 
 use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Twist};
 
