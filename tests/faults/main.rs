@@ -39,10 +39,10 @@ const ON_COMMAND: [(&str, &str); 23] = [
     ("check", "a bit of each frame is wrong"),
     ("lose", "two frames of three are lost"),
     ("double", "each frame comes twice"),
-    ("silence", "the line from the robot is cut: it says nothing, but hears"),
-    ("deaf", "the line to the robot is cut: it hears nothing, but speaks"),
+    ("silence", "the line from the robot is cut: it sends nothing, but receives"),
+    ("deaf", "the line to the robot is cut: it receives nothing, but sends"),
     ("close", "the line is closed"),
-    ("runaway", "the robot keeps its speed, whatever it is told"),
+    ("runaway", "the robot keeps its speed and ignores commands"),
     ("stuck-wheel", "the right side does not move"),
     ("dead-sonar", "the sonars in front hear nothing"),
     ("bumper", "a bumper is in contact"),
@@ -54,14 +54,14 @@ const ON_COMMAND: [(&str, &str); 23] = [
     ("no-bumpers", "the bumpers are no longer reported"),
     ("no-translation", "the way is no longer reported"),
     ("no-rotation", "the turn is no longer reported"),
-    ("no-status", "questions for the brake are no longer answered"),
+    ("no-status", "questions about the brake are no longer answered"),
     ("leap", "each position is 3 m away from the one before"),
-    ("hang", "the robot says the same again and again"),
+    ("hang", "the robot repeats the same data"),
 ];
 /// And what else.
 const BESIDES: [(Happening, &str); 4] = [
     (Happening::Garbage, "nothing but garbage for a minute"),
-    (Happening::WrongAnswers, "answers to what nobody asked"),
+    (Happening::WrongAnswers, "answers to other commands"),
     (Happening::DeadForAWhile, "the line dies in mid-frame, and is back after two seconds"),
     (Happening::Killed, "the program is killed (SIGKILL)"),
 ];
@@ -194,7 +194,7 @@ fn each_fault_stops_the_robot_or_is_borne() {
         let is_one_sentence = !row.said.is_empty() && !row.said.contains('\n');
         let is_over = row.status == Some(0) && row.said.starts_with("plan over: ");
         assert!(is_over || row.status == Some(3) && is_one_sentence || row.status.is_none(), "{what}: {row:?}");
-        // Whoever could be told was told to stand.
+        // A robot that could receive a command received one to stop.
         let is_cut = ["deaf", "close", "killed", "dies in mid-frame"].iter().any(|word| what.contains(word));
         assert!(is_cut || row.order != Some(Order::Drive), "{what}: {row:?}");
     }

@@ -37,16 +37,16 @@ impl Row {
 pub(crate) fn text(plan: &str, robots: &[(&str, Vec<(String, Row)>)]) -> String {
     let mut text = format!(
         "# Faults\n\n\
-        Whatever goes wrong, the robot is stopped, or its own watchdog is left to do it; the program says one sentence and \
-        ends with status 3, within a second and a half of the last thing that was in order. It takes longer to notice that \
-        a robot hears nothing while it speaks, on an ATRV two questions for its brake, which are two seconds and a half, and \
-        that one of its bumpers is silent, a second; and a robot that is told to stand and does not is given time to, at most \
-        five seconds. What can be borne is borne. A plan never goes on with what its sensors said a while ago.\n\n\
+        After every fault the robot is stopped, or its own watchdog stops it; the program reports one sentence and ends with \
+        exit status 3, within a second and a half of the last correct exchange. Some faults take longer to notice: an ATRV that \
+        receives nothing but still sends leaves two questions about its brake unanswered, which takes two and a half seconds, and \
+        a bumper that is no longer reported is noticed after a second. A robot that does not stop on command gets time to, at most \
+        five seconds. The plan continues where it can, but never with stale data.\n\n\
         The tables are written by a test, `tests/faults`: it runs the executable of this plan on the emulated robots.\n\n\
         ```mdle\n{plan}```\n\n\
-        The robot drives at 20 cm/s when something goes wrong, 2 m before a wall. \"Moves on\" is how far its body then goes \
-        in its world, and \"for\" how long that takes, from the last good answer until it stands for good. \"Told last\" is the \
-        last order that reached the robot. What is borne ends as the plan says.\n\n\
+        The robot drives at 20 cm/s when something goes wrong, 2 m before a wall. \"Moves on\" is the distance that its body \
+        then moves in its world, and \"for\" the time from the last correct answer until it has stopped. \"Last command\" is the \
+        last motion command that reached the robot. A plan that continues ends as usual.\n\n\
         The emulators are in lockstep, so that the figures are the same each time: a command lets 100 ms pass. While no \
         answer comes, the robot drives on for as long as a driver waits by its configuration, 300 ms. Once the program has \
         ended, it drives on until it stops itself: a Scout by its watchdog, which was set to a second; an ATRV by that of \
@@ -57,7 +57,7 @@ pub(crate) fn text(plan: &str, robots: &[(&str, Vec<(String, Row)>)]) -> String 
     for (robot, rows) in robots {
         write!(
             text,
-            "\n## {robot}\n\n| what happens | what the program says | status | told last | moves on | for |\n"
+            "\n## {robot}\n\n| what happens | what the program reports | status | last command | moves on | for |\n"
         )
         .unwrap();
         writeln!(text, "|---|---|---|---|---|---|").unwrap();

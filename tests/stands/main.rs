@@ -70,7 +70,7 @@ fn a_stop_without_rest_is_told() {
 fn each_kind_of_report_of_an_atrv_that_stops_ends_the_plan() {
     let kinds = [
         ("no-bumpers", "bumper"),
-        ("no-translation", "how far it has gone"),
+        ("no-translation", "how far it has moved"),
         ("no-rotation", "how far it has turned"),
         ("no-status", "does not receive"),
         ("no-pings", "sonars"),

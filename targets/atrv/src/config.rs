@@ -33,7 +33,7 @@ pub struct Config {
     pub translation_torque: u32,
     /// And in turns.
     pub rotation_torque: u32,
-    /// Whether a speed of 0 is told as 1 unit.
+    /// Whether a speed of 0 is sent as 1 unit.
     pub zero_as_one: bool,
     /// What is done about bytes that are 1B.
     pub escape: Escape,
@@ -55,7 +55,7 @@ pub struct Config {
     pub answer: u64,
     /// The longest time between two reports of a bumper, in milliseconds; 0 for ever.
     pub inputs: u64,
-    /// The longest time in which it moves faster than it is told, or the other way, in milliseconds; 0 for ever.
+    /// The longest time in which the robot moves faster than commanded, or in the opposite direction, in milliseconds; 0 for no limit.
     pub disobey: u64,
     /// After how many milliseconds without a turn it is stopped.
     pub watchdog: u64,
@@ -182,7 +182,7 @@ impl File {
                 "disobey",
                 self.disobey,
                 500,
-                "ms that it may move faster than it is told, or the other way, 0 for ever; unverified",
+                "ms that it may move faster than commanded, or in the opposite direction, 0 for no limit; unverified",
             ),
             watchdog: made.value("watchdog", self.watchdog, 500, "ms without a turn until it is stopped"),
             pause: made.value("pause", self.pause, 1, "ms after each command"),

@@ -19,9 +19,9 @@ pub enum Fault {
     Garbled(Garbled),
     /// What came says nothing that a driver understands.
     Unreadable(Unreadable),
-    /// It tells where it was again and again: its clock stands.
+    /// The robot repeats its last report of its position: its clock does not advance.
     Repeated,
-    /// The brake holds the robot, though it was told to release it.
+    /// The brake holds the robot, although the command to release it was sent.
     Braked,
     /// The sonars of this direction, of sixteen, say nothing.
     Deaf(u8),
@@ -33,11 +33,11 @@ pub enum Fault {
     Untold(Axis),
     /// It does not report this bumper.
     Numb(u8),
-    /// It has moved faster than it was told, or the other way, for this many milliseconds.
+    /// The robot has moved faster than commanded, or in the opposite direction, for this many milliseconds.
     Disobeys(u64),
-    /// Its positions are too far from each other, again and again.
+    /// Consecutive positions are too far from each other.
     Leaps,
-    /// It has not come to rest after it was told to stand.
+    /// The robot has not come to rest after the command to stop.
     Moves,
 }
 
@@ -67,8 +67,7 @@ impl fmt::Display for Fault {
                  robot?"
             ),
             Self::Repeated => f.write_str(
-                "the ATRV tells the same again and again, by its clock, so what it says is old: switch its controller off \
-                 and on",
+                "the ATRV's clock has not advanced: its data are stale; switch its controller off and on",
             ),
             Self::Braked => f.write_str(
                 "the ATRV's brake is set: release its emergency stop, or the brake at its display, and start again",
@@ -79,14 +78,14 @@ impl fmt::Display for Fault {
                  configuration?"
             ),
             Self::Unheard => f.write_str(
-                "the ATRV does not receive what it is told: it reports where it is, but does not answer; check the wires of the \
-                 cable that lead to it",
+                "the ATRV does not receive commands: it sends reports, but answers no question; check the wires of the cable that \
+                 lead to it",
             ),
             Self::Untold(Axis::Translation) => f.write_str(
-                "the ATRV does not report how far it has gone, only how far it has turned: check the cable, or switch its controller off and on",
+                "the ATRV does not report how far it has moved, only how far it has turned: check the cable, or switch its controller off and on",
             ),
             Self::Untold(Axis::Rotation) => f.write_str(
-                "the ATRV does not report how far it has turned, only how far it has gone: check the cable, or switch its controller off and on",
+                "the ATRV does not report how far it has turned, only how far it has moved: check the cable, or switch its controller off and on",
             ),
             Self::Numb(bumper) => write!(
                 f,
@@ -96,14 +95,14 @@ impl fmt::Display for Fault {
             ),
             Self::Disobeys(limit) => write!(
                 f,
-                "the ATRV does not obey: for {limit} ms it has moved faster than it was told, or the other way; `disobey` in \
-                 the configuration says how long it may"
+                "the ATRV does not obey: for {limit} ms it has moved faster than commanded, or in the opposite direction; \
+                 `disobey` in the configuration sets that time"
             ),
             Self::Leaps => f.write_str(
-                "the ATRV's positions leap by metres, so where it is is not known: are its encoders and its line in order?",
+                "the ATRV's positions leap by metres, so its position is unknown: are its encoders and its line in order?",
             ),
             Self::Moves => f.write_str(
-                "the ATRV still moved when its time to stand was over: press its emergency stop",
+                "the ATRV still moved when its time to stop was over: press its emergency stop",
             ),
             Self::Overslept => f.write_str(
                 "the ATRV was stopped because no command came in time: is this computer too busy, or `watchdog` too short?",

@@ -28,7 +28,7 @@ pub struct Config {
     pub stale: u64,
     /// How far it may go while its sonars say the same, in metres; 0 for ever.
     pub frozen: f64,
-    /// The longest time in which it moves faster than it is told, or the other way, in milliseconds; 0 for ever.
+    /// The longest time in which the robot moves faster than commanded, or in the opposite direction, in milliseconds; 0 for no limit.
     pub disobey: u64,
     /// Which sonars ping, in which order.
     pub sonars: Vec<u8>,
@@ -90,7 +90,7 @@ impl Configured {
                 "disobey",
                 said.disobey,
                 500,
-                "ms that it may move faster than it is told, or the other way, 0 for ever; unverified",
+                "ms that it may move faster than commanded, or in the opposite direction, 0 for no limit; unverified",
             ),
             sonars: made.value("sonars", said.sonars, ORDER.to_vec(), "which ping, in this order"),
             gap: made.value("gap", said.gap, 60, "ms between two pings"),

@@ -29,7 +29,7 @@ const ANSWER: Duration = Duration::from_millis(150);
 const JITTER: u16 = 4;
 /// The time between two looks at whether it stands.
 const LOOK: Duration = Duration::from_millis(20);
-/// The time between two times that a robot is told to stop which does not answer.
+/// The time between two stop commands to a robot that does not answer.
 const AGAIN: Duration = Duration::from_millis(100);
 /// How long it may take to set its position to zero: newer versions of its maker's library wait much longer for that.
 const ZEROING: Duration = Duration::from_secs(5);
@@ -95,7 +95,7 @@ impl Scout {
     fn prepare(&mut self, period: Duration, request: &StopRequest) -> Result<(), Fault> {
         let go_on = || if request.is_made() { Err(Fault::Ended(None)) } else { Ok(()) };
         go_on()?;
-        // Whoever drove it before may have left it moving.
+        // Another program may have left it moving.
         self.tell(Command::Velocities(0, 0))?;
         self.tell(Command::Watchdog(self.config.watchdog))?;
         let acceleration = libm::trunc(self.config.acceleration / wheels::UNIT) as u16;

@@ -28,13 +28,13 @@ pub enum Fault {
     Short(usize),
     /// The robot's emergency stop is pressed.
     EmergencyStop,
-    /// The robot's clock has stood for so many milliseconds: it says the same state again and again.
+    /// The robot's clock has not advanced for this many milliseconds: it repeats the same state.
     Hung(u64),
     /// The sonars have said the same for so long that they no longer ping.
     Frozen,
-    /// It has moved faster than it was told, or the other way, for this many milliseconds.
+    /// The robot has moved faster than commanded, or in the opposite direction, for this many milliseconds.
     Disobeys(u64),
-    /// Its positions are too far from each other, again and again.
+    /// Consecutive positions are too far from each other.
     Leaps,
     /// It has stopped itself, as no command came for this many seconds.
     Overslept(u8),
@@ -71,7 +71,7 @@ impl fmt::Display for Fault {
             }
             Self::Hung(stale) => write!(
                 f,
-                "the Scout's clock has stood for {stale} ms, so what it says is old: switch it off and on; if its clock \
+                "the Scout's clock has not advanced for {stale} ms: its data are stale; switch it off and on, or, if its clock \
                  never runs, set `stale` to 0 in the configuration"
             ),
             Self::Frozen => f.write_str(
@@ -80,18 +80,18 @@ impl fmt::Display for Fault {
             ),
             Self::Disobeys(limit) => write!(
                 f,
-                "the Scout does not obey: for {limit} ms it has moved faster than it was told, or the other way; `disobey` in \
-                 the configuration says how long it may"
+                "the Scout does not obey: for {limit} ms it has moved faster than commanded, or in the opposite direction; \
+                 `disobey` in the configuration sets that time"
             ),
             Self::Leaps => f.write_str(
-                "the Scout's positions leap by metres, so where it is is not known: are its encoders and its line in order?",
+                "the Scout's positions leap by metres, so its position is unknown: are its encoders and its line in order?",
             ),
             Self::Overslept(seconds) => write!(
                 f,
                 "the Scout has stopped itself, as no command came for {seconds} s: was this computer suspended, or too busy?"
             ),
             Self::Moves => f.write_str(
-                "the Scout still moved when its time to stand was over: press its emergency stop",
+                "the Scout still moved when its time to stop was over: press its emergency stop",
             ),
             Self::EmergencyStop => f.write_str("the Scout's emergency stop is pressed: release it and start again"),
         }

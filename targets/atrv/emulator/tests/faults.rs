@@ -167,7 +167,7 @@ fn a_robot_that_receives_nothing_is_a_fault() {
 fn each_kind_of_report_that_stops_is_a_fault() {
     for (fault, words) in [
         ("no-bumpers", "bumper"),
-        ("no-translation", "how far it has gone"),
+        ("no-translation", "how far it has moved"),
         ("no-rotation", "how far it has turned"),
         ("no-status", "does not receive"),
         ("leap", "leap"),
@@ -186,7 +186,7 @@ fn each_kind_of_report_that_stops_is_a_fault() {
 fn each_kind_of_report_is_waited_for_at_the_start() {
     for (fault, words) in [
         ("no-bumpers", "bumper"),
-        ("no-translation", "how far it has gone"),
+        ("no-translation", "how far it has moved"),
         ("no-rotation", "how far it has turned"),
         ("no-status", "does not receive"),
     ] {
