@@ -27,6 +27,10 @@ const STARTING: Duration = Duration::from_millis(1000);
 const STOPPING: Duration = Duration::from_millis(800);
 /// The time that its reports may take meanwhile in lockstep, and the line for the last commands.
 const ANSWER: Duration = Duration::from_millis(150);
+/// The longest time from the command to brake until the robot reports that its brake is set.
+const BRAKING: Duration = Duration::from_millis(500);
+/// The time between two commands to brake.
+const AGAIN: Duration = Duration::from_millis(100);
 /// The time between two looks at whether it stands.
 const LOOK: Duration = Duration::from_millis(50);
 /// It stands when it moves no faster than this, in m/s and rad/s.
@@ -115,7 +119,7 @@ impl Atrv {
     fn prepare(&mut self, period: Duration, request: &StopRequest) -> Result<(), Fault> {
         let go_on = || if request.is_made() { Err(Fault::Ended(None)) } else { Ok(()) };
         go_on()?;
-        // Whoever drove it before may have left it moving.
+        // Another program may have left it moving.
         self.move_on(&Twist::default())?;
         self.say(Command::Defaults)?;
         self.say(Command::Inputs(INPUTS))?;
@@ -164,7 +168,7 @@ impl Atrv {
         self.clock.pass(Duration::from_millis(self.config.pause));
     }
 
-    /// Takes in what the robot has told; in lockstep, all that it tells of this turn.
+    /// Takes in the reports of the robot; in lockstep, all of this turn.
     fn hear(&mut self, at: Nanos, patience: Duration) -> Result<(), Fault> {
         self.hearing.take(self.mouth.line(), at, self.a_turn, patience)
     }
@@ -201,6 +205,25 @@ impl Atrv {
             sent = Ok(());
         }
         Err(Fault::Moves)
+    }
+
+    /// Sets the brake, again and again, until the robot reports that it is set: reports that it stands may come from a robot that
+    /// receives no commands, and has stopped itself.
+    ///
+    /// # Errors
+    /// Nothing can be sent, or in all of its time the robot has not answered, or not that its brake is set.
+    fn brakes(&mut self) -> Result<(), Fault> {
+        self.hearing.forget_brake();
+        let end = Instant::now() + self.clock.patience(BRAKING);
+        loop {
+            self.say(Command::Brake)?;
+            self.say(Command::Status)?;
+            let next = end.min(Instant::now() + self.clock.patience(AGAIN));
+            match self.hearing.brake(self.mouth.line(), next) {
+                Err(Fault::Unheard | Fault::Unbraked) if next < end => {}
+                result => return result,
+            }
+        }
     }
 
     /// Returns `true` if the robot stands by its reports since the stop began.
@@ -251,13 +274,22 @@ impl Robot for Atrv {
         // Braked at speed it would slide.
         let stands = self.stands();
         self.mouth.ends();
-        let last = [Command::Brake, Command::Deaf, Command::Inputs(0), Command::Reports(0), Command::Defaults];
         let deadline = Instant::now() + self.clock.patience(ANSWER);
-        // It is braked whether or not it has understood.
-        last.into_iter().fold(stands, |before, command| {
-            let said = self.mouth.say(&command.frame(self.config.escape), deadline);
+        // It is braked whether or not it has answered.
+        let braked = match stands {
+            Ok(()) => self.brakes(),
+            Err(fault) => {
+                let _ = self.mouth.say(&Command::Brake.frame(self.config.escape), deadline);
+                self.rest();
+                Err(fault)
+            }
+        };
+        let last = [Command::Deaf, Command::Inputs(0), Command::Reports(0), Command::Defaults];
+        let deadline = Instant::now() + self.clock.patience(ANSWER);
+        last.into_iter().fold(braked, |before, command| {
+            let sent = self.mouth.say(&command.frame(self.config.escape), deadline);
             self.rest();
-            before.and(said)
+            before.and(sent)
         })
     }
 }

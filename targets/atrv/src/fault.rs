@@ -39,6 +39,8 @@ pub enum Fault {
     Leaps,
     /// The robot has not come to rest after the command to stop.
     Moves,
+    /// The brake was not set after the command to brake.
+    Unbraked,
 }
 
 impl From<LineFault> for Fault {
@@ -104,6 +106,7 @@ impl fmt::Display for Fault {
             Self::Moves => f.write_str(
                 "the ATRV still moved when its time to stop was over: press its emergency stop",
             ),
+            Self::Unbraked => f.write_str("the ATRV's brake is not set, although it got the command: press its emergency stop"),
             Self::Overslept => f.write_str(
                 "the ATRV was stopped because no command came in time: is this computer too busy, or `watchdog` too short?",
             ),

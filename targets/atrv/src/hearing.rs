@@ -132,6 +132,30 @@ impl Hearing {
         if self.told.is_some() { Ok(self.velocity()) } else { Err(silent()) }
     }
 
+    /// Forgets what the robot has reported of its brake.
+    pub(crate) fn forget_brake(&mut self) {
+        self.known.is_braked = None;
+    }
+
+    /// Waits until the robot reports that its brake is set.
+    ///
+    /// # Errors
+    /// The line is closed, or by `deadline` the robot has not reported its brake since it was forgotten, or that it is not set.
+    pub(crate) fn brake(&mut self, line: &Line, deadline: Instant) -> Result<(), Fault> {
+        loop {
+            self.drain(line, Nanos::ZERO)?;
+            if self.known.is_braked == Some(true) {
+                return Ok(());
+            }
+            match line.hear(deadline) {
+                Ok(()) => {}
+                Err(LineFault::Silent) if self.known.is_braked.is_some() => return Err(Fault::Unbraked),
+                Err(LineFault::Silent) => return Err(Fault::Unheard),
+                Err(fault) => return Err(fault.into()),
+            }
+        }
+    }
+
     /// What the start still waits for: the fault that it will be if it does not come.
     pub(crate) fn waits_for(&self) -> Option<Fault> {
         match self.known.is_braked {

@@ -1,13 +1,12 @@
 //! What the driver makes of each thing that can go wrong on command, and what the robot received last.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread;
+use std::path::Path;
 use std::time::Duration;
 
 use mdle_atrv::{Atrv, Clock, Config, Configured, Fault, Garbled, LineFault, Output};
 use mdle_atrv_emulator::atrv::{Atrv as Emulated, step};
-use mdle_emulator::{At, Faulty, Order, Pace, Port, serve};
+use mdle_emulator::{At, Driven, Faulty, Order, Pace, driven};
 use mdle_host::StopRequest;
 use mdle_runtime::capability::{Bumpers, Odometry, SonarRing};
 use mdle_runtime::{MetersPerSecond, Robot as _, SonarId, Twist};
@@ -28,62 +27,58 @@ struct Ran {
     robot: Faulty<Emulated>,
 }
 
-/// Returns what becomes of these faults while a driver asks for `speed`, in m/s, for fifty turns, and then stops.
+/// Returns the outcome of these faults while a driver asks for `speed`, in m/s, for fifty turns, and then stops.
 fn ran(faults: &[&str], speed: fn(turn: u32) -> f64) -> Ran {
+    ran_for(50, faults, speed)
+}
+
+/// Returns an emulated robot with these faults.
+fn emulated(faults: &[&str]) -> Faulty<Emulated> {
     let world = World::parse("room", ROOM).unwrap();
     let make = Make { body: Body::Atrv, without: Vec::new(), seed: None };
-    let body = Simulated::with(&make, &world, world.start, step(PACE)).unwrap();
-    let at: Vec<At> = faults.iter().map(|fault| fault.parse().unwrap()).collect();
-    let mut robot = Faulty::new(Emulated::new(body, step(PACE), false).unwrap(), &at).unwrap();
-    let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
-    let device = port.path().to_str().unwrap().to_owned();
-    let (output, stop) = thread::scope(|scope| {
-        let serving = scope.spawn(|| {
-            let port = port;
-            let served = serve(&mut robot, &port, PACE, &|| !over.load(Ordering::Relaxed));
-            assert_eq!(served.is_err(), faults.iter().any(|fault| fault.starts_with("close")), "{served:?}");
-        });
-        // What is not going to come is waited for longer than any machine takes for what comes.
-        let config = Config { answer: 3000, ..Configured::read(None, Some(&device)).unwrap().config };
-        let mut driver = Atrv::connect(config, Clock::Stepped(PERIOD), PERIOD, &StopRequest::default()).unwrap();
+    let body = |step| Simulated::with(&make, &world, world.start, step).unwrap();
+    let faults: Vec<At> = faults.iter().map(|fault| fault.parse().unwrap()).collect();
+    Faulty::new(Emulated::new(body(step(PACE)), step(PACE), false).unwrap(), &faults).unwrap()
+}
+
+/// Opens the robot at this device.
+fn connected(device: &Path) -> Result<Atrv, Fault> {
+    // No machine is so slow that an answer takes longer.
+    let config = Config { answer: 3000, ..Configured::read(None, device.to_str()).unwrap().config };
+    Atrv::connect(config, Clock::Stepped(PERIOD), PERIOD, &StopRequest::default())
+}
+
+/// Returns the outcome of these faults in a run of `turns` turns.
+fn ran_for(turns: u32, faults: &[&str], speed: fn(turn: u32) -> f64) -> Ran {
+    let Driven { result: (output, stop), served, robot } = driven(emulated(faults), PACE, |device| {
+        let mut driver = connected(device).unwrap();
         let input = |turn| Twist { v: MetersPerSecond(speed(turn)), ..Twist::default() };
-        let output = (0..50).try_fold(None, |_, turn| driver.exchange(&input(turn)).map(Some)).map(Option::unwrap);
+        let output = (0..turns).try_fold(None, |_, turn| driver.exchange(&input(turn)).map(Some)).map(Option::unwrap);
         // As the host does, whatever has come.
-        let stop = driver.stop();
-        over.store(true, Ordering::Relaxed);
-        serving.join().unwrap();
-        (output, stop)
-    });
+        (output, driver.stop())
+    })
+    .unwrap();
+    assert_eq!(served.is_err(), faults.iter().any(|fault| fault.starts_with("close")), "{served:?}");
     Ran { output, stop, robot }
 }
 
 /// When faults have begun, by the time of the robot's world.
 const BEGUN: Duration = Duration::from_secs(3);
 
-/// Returns why a driver refuses a robot that has this fault from the beginning.
+/// Returns the reason for which a driver refuses a robot that has this fault from the beginning.
 fn refused(fault: &str) -> String {
-    let world = World::parse("room", ROOM).unwrap();
-    let make = Make { body: Body::Atrv, without: Vec::new(), seed: None };
-    let body = Simulated::with(&make, &world, world.start, step(PACE)).unwrap();
-    let mut robot = Faulty::new(Emulated::new(body, step(PACE), false).unwrap(), &[fault.parse().unwrap()]).unwrap();
-    let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
-    thread::scope(|scope| {
-        let serving = scope.spawn(|| serve(&mut robot, &port, PACE, &|| !over.load(Ordering::Relaxed)));
-        let config = Config { answer: 3000, ..Configured::read(None, port.path().to_str()).unwrap().config };
-        let refused = Atrv::connect(config, Clock::Stepped(PERIOD), PERIOD, &StopRequest::default()).map(drop);
-        over.store(true, Ordering::Relaxed);
-        serving.join().unwrap().unwrap();
-        sentence(refused)
-    })
+    let Driven { result, served, .. } = driven(emulated(&[fault]), PACE, |device| connected(device).map(drop)).unwrap();
+    served.unwrap();
+    sentence(result)
 }
 
 /// Returns the last output of a robot that drives ahead and has this fault after three seconds.
-fn driven(fault: &str) -> Result<Output, Fault> {
+fn last_output(fault: &str) -> Result<Output, Fault> {
     ran(&[&format!("{fault}@3")], ahead).output
 }
 
 fn fails(fault: &str) -> Fault {
-    driven(fault).expect_err(fault)
+    last_output(fault).expect_err(fault)
 }
 
 /// Twenty centimetres a second.
@@ -99,7 +94,7 @@ fn ahead_then_none(turn: u32) -> f64 {
 #[test]
 fn what_can_be_borne_is() {
     for fault in ["noise", "dribble", "double", "filler"] {
-        let y = driven(fault).expect(fault);
+        let y = last_output(fault).expect(fault);
         let way = y.pose().x.0;
         assert!((way - 1.0).abs() < 0.03, "{fault}: {way} m");
     }
@@ -118,12 +113,12 @@ fn what_cannot_be_borne_is_told() {
 fn what_its_body_suffers_is_felt() {
     let heading = |y: Output| y.pose().theta.degrees();
     let ahead = |y: &Output| y.pings(SonarId::new(0)).newest_first().next().unwrap().range;
-    let well = driven("low-battery").unwrap();
+    let well = last_output("low-battery").unwrap();
     assert!(!well.pressed() && ahead(&well).is_some() && heading(well).abs() < 1.0);
-    assert!(driven("bumper").unwrap().pressed());
-    assert_eq!(ahead(&driven("dead-sonar").unwrap()), None);
+    assert!(last_output("bumper").unwrap().pressed());
+    assert_eq!(ahead(&last_output("dead-sonar").unwrap()), None);
     // The right side stands, so that it turns to the right.
-    let turned = heading(driven("stuck-wheel").unwrap());
+    let turned = heading(last_output("stuck-wheel").unwrap());
     assert!((-170.0..-20.0).contains(&turned), "{turned}");
     // Whoever drives on would do so without knowing.
     assert_eq!(fails("emergency"), Fault::Braked);
@@ -155,12 +150,25 @@ fn a_robot_that_receives_nothing_is_a_fault() {
     // The controller stops it after a second in which nothing came.
     let Ran { output, stop, robot } = ran(&["deaf@3"], ahead);
     assert!(sentence(output.map(drop)).contains("does not receive"));
-    assert_eq!((stop, robot.robot().velocity().v.0), (Ok(()), 0.0));
+    assert_eq!((stop, robot.robot().velocity().v.0), (Err(Fault::Unheard), 0.0));
     // One that does not stop by itself.
     let Ran { output, stop, robot } = ran(&["deaf@3", "runaway@3"], ahead);
     assert!(sentence(output.map(drop)).contains("does not receive"));
     assert!(sentence(stop).contains("still moved"));
     assert_eq!(robot.robot().orders().last().unwrap().1, Order::Drive);
+}
+
+#[test]
+fn a_robot_without_its_brake_was_not_stopped() {
+    // The run ends before an unanswered question is a fault, and after the robot has stopped itself.
+    let Ran { output, stop, robot } = ran_for(42, &["deaf@3"], ahead);
+    assert!(output.is_ok(), "{output:?}");
+    assert_eq!((stop, robot.robot().velocity().v.0, robot.robot().is_braked()), (Err(Fault::Unheard), 0.0, false));
+    // It answers, but its brake is not set.
+    let Ran { output, stop, robot } = ran_for(42, &["runaway@3"], |_| 0.0);
+    assert!(output.is_ok(), "{output:?}");
+    assert!(sentence(stop).contains("brake is not set"));
+    assert_eq!(robot.robot().orders().last().unwrap().1, Order::Brake);
 }
 
 #[test]
@@ -175,9 +183,9 @@ fn each_kind_of_report_that_stops_is_a_fault() {
         let Ran { output, stop, robot } = ran(&[&format!("{fault}@3")], ahead);
         let sentence = sentence(output.map(drop));
         assert!(sentence.contains(words), "{fault}: {sentence}");
-        // Without one of both it does not tell that it stands.
-        let tells = !["no-translation", "no-rotation"].contains(&fault);
-        assert_eq!(stop.is_ok(), tells, "{fault}: {stop:?}");
+        // Without an axis it does not report that it stands, without answers not that it is braked.
+        let reports = ["no-bumpers", "leap"].contains(&fault);
+        assert_eq!(stop.is_ok(), reports, "{fault}: {stop:?}");
         assert_eq!((robot.robot().is_braked(), robot.robot().velocity().v.0), (true, 0.0), "{fault}");
     }
 }
