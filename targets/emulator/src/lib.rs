@@ -1,6 +1,7 @@
 //! What emulated robots share, whatever their languages: the pseudo-terminal, how time passes, and their programs.
 #![forbid(unsafe_code)]
 
+mod driven;
 mod fault;
 mod faulty;
 mod orders;
@@ -11,6 +12,7 @@ mod serve;
 mod several;
 mod staged;
 
+pub use driven::{Driven, driven};
 pub use fault::{Ailment, At, Fault};
 pub use faulty::Faulty;
 pub use orders::{Order, Orders};

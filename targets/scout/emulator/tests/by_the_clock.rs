@@ -1,11 +1,10 @@
 //! What depends on time itself: a robot that answers late, and a driver that comes back too late.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::Duration;
 
-use mdle_emulator::{Faulty, Order, Pace, Port, serve};
+use mdle_emulator::{Driven, Faulty, Order, Pace, driven};
 use mdle_host::StopRequest;
 use mdle_runtime::{MetersPerSecond, Robot as _, Twist};
 use mdle_scout::{Clock, Config, Configured, Fault, Scout};
@@ -21,18 +20,14 @@ fn with_robot<T>(faults: &[&str], drive: impl FnOnce(&mut Scout) -> T) -> (T, Fa
     let make = Make { body: Body::Scout, without: Vec::new(), seed: None };
     let body = Simulated::with(&make, &world, world.start, Pace::Real.step()).unwrap();
     let faults: Vec<_> = faults.iter().map(|fault| fault.parse().unwrap()).collect();
-    let mut robot = Faulty::new(Emulated::new(body).unwrap(), &faults).unwrap();
-    let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
-    let result = thread::scope(|scope| {
-        let serving = scope.spawn(|| serve(&mut robot, &port, Pace::Real, &|| !over.load(Ordering::Relaxed)));
+    let robot = Faulty::new(Emulated::new(body).unwrap(), &faults).unwrap();
+    let Driven { result, served, robot } = driven(robot, Pace::Real, |device| {
         // Longer than any machine takes.
-        let config = Config { answer: 20_000, gap: 8, ..Configured::read(None, port.path().to_str()).unwrap().config };
-        let mut driver = Scout::connect(config, Clock::Wall, PERIOD, &StopRequest::default()).unwrap();
-        let result = drive(&mut driver);
-        over.store(true, Ordering::Relaxed);
-        serving.join().unwrap().unwrap();
-        result
-    });
+        let config = Config { answer: 20_000, gap: 8, ..Configured::read(None, device.to_str()).unwrap().config };
+        drive(&mut Scout::connect(config, Clock::Wall, PERIOD, &StopRequest::default()).unwrap())
+    })
+    .unwrap();
+    served.unwrap();
     (result, robot)
 }
 

@@ -1,11 +1,10 @@
 //! What the driver makes of each thing that can go wrong on command, and what the robot received last.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::thread;
+use std::path::Path;
 use std::time::Duration;
 
-use mdle_emulator::{At, Faulty, Order, Pace, Port, serve};
+use mdle_emulator::{At, Driven, Faulty, Order, Pace, driven};
 use mdle_host::StopRequest;
 use mdle_runtime::capability::{Bumpers, Odometry, SonarRing};
 use mdle_runtime::{MetersPerSecond, Robot as _, SonarId, Twist};
@@ -28,32 +27,33 @@ struct Ran {
     robot: Faulty<Emulated>,
 }
 
-/// Returns what becomes of these faults while a driver asks for `speed`, in m/s, for fifty turns, and then stops.
-fn ran(faults: &[&str], speed: fn(turn: u32) -> f64) -> Ran {
+/// Returns an emulated robot with these faults.
+fn emulated(faults: &[&str]) -> Faulty<Emulated> {
     let world = World::parse("room", ROOM).unwrap();
     let make = Make { body: Body::Scout, without: Vec::new(), seed: None };
-    let body = Simulated::with(&make, &world, world.start, PERIOD).unwrap();
-    let at: Vec<At> = faults.iter().map(|fault| fault.parse().unwrap()).collect();
-    let mut robot = Faulty::new(Emulated::new(body).unwrap(), &at).unwrap();
-    let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
-    let device = port.path().to_str().unwrap().to_owned();
-    let (output, stop) = thread::scope(|scope| {
-        let serving = scope.spawn(|| {
-            let port = port;
-            let served = serve(&mut robot, &port, PACE, &|| !over.load(Ordering::Relaxed));
-            assert_eq!(served.is_err(), faults.iter().any(|fault| fault.starts_with("close")), "{served:?}");
-        });
-        // What is not going to come is waited for longer than any machine takes for what comes.
-        let config = Config { answer: 3000, ..Configured::read(None, Some(&device)).unwrap().config };
-        let mut driver = Scout::connect(config, Clock::Stepped(PERIOD), PERIOD, &StopRequest::default()).unwrap();
+    let body = |step| Simulated::with(&make, &world, world.start, step).unwrap();
+    let faults: Vec<At> = faults.iter().map(|fault| fault.parse().unwrap()).collect();
+    Faulty::new(Emulated::new(body(PERIOD)).unwrap(), &faults).unwrap()
+}
+
+/// Opens the robot at this device.
+fn connected(device: &Path) -> Result<Scout, Fault> {
+    // No machine is so slow that an answer takes longer.
+    let config = Config { answer: 3000, ..Configured::read(None, device.to_str()).unwrap().config };
+    Scout::connect(config, Clock::Stepped(PERIOD), PERIOD, &StopRequest::default())
+}
+
+/// Returns the outcome of these faults while a driver asks for `speed`, in m/s, for fifty turns, and then stops.
+fn ran(faults: &[&str], speed: fn(turn: u32) -> f64) -> Ran {
+    let Driven { result: (output, stop), served, robot } = driven(emulated(faults), PACE, |device| {
+        let mut driver = connected(device).unwrap();
         let input = |turn| Twist { v: MetersPerSecond(speed(turn)), ..Twist::default() };
         let output = (0..50).try_fold(None, |_, turn| driver.exchange(&input(turn)).map(Some)).map(Option::unwrap);
         // As the host does, whatever has come.
-        let stop = driver.stop();
-        over.store(true, Ordering::Relaxed);
-        serving.join().unwrap();
-        (output, stop)
-    });
+        (output, driver.stop())
+    })
+    .unwrap();
+    assert_eq!(served.is_err(), faults.iter().any(|fault| fault.starts_with("close")), "{served:?}");
     Ran { output, stop, robot }
 }
 
@@ -61,12 +61,12 @@ fn ran(faults: &[&str], speed: fn(turn: u32) -> f64) -> Ran {
 const BEGUN: Duration = Duration::from_secs(3);
 
 /// Returns the last output of a robot that drives ahead and has this fault after three seconds.
-fn driven(fault: &str) -> Result<Output, Fault> {
+fn last_output(fault: &str) -> Result<Output, Fault> {
     ran(&[&format!("{fault}@3")], ahead).output
 }
 
 fn fails(fault: &str) -> Fault {
-    driven(fault).expect_err(fault)
+    last_output(fault).expect_err(fault)
 }
 
 /// Twenty centimetres a second.
@@ -82,7 +82,7 @@ fn ahead_then_none(turn: u32) -> f64 {
 #[test]
 fn what_can_be_borne_is() {
     for fault in ["dribble", "double", "noise", "noise=1", "noise=400"] {
-        let y = driven(fault).expect(fault);
+        let y = last_output(fault).expect(fault);
         let way = y.pose().x.0;
         assert!((way - 1.0).abs() < 0.03, "{fault}: {way} m");
     }
@@ -100,12 +100,12 @@ fn what_cannot_be_borne_is_told() {
 fn what_its_body_suffers_is_felt() {
     let heading = |y: Output| y.pose().theta.degrees();
     let ahead = |y: &Output| y.pings(SonarId::new(0)).newest_first().next().unwrap().range;
-    let well = driven("low-battery").unwrap();
+    let well = last_output("low-battery").unwrap();
     assert!(!well.pressed() && ahead(&well).is_some() && heading(well).abs() < 1.0);
-    assert!(driven("bumper").unwrap().pressed());
-    assert_eq!(ahead(&driven("dead-sonar").unwrap()), None);
+    assert!(last_output("bumper").unwrap().pressed());
+    assert_eq!(ahead(&last_output("dead-sonar").unwrap()), None);
     // The right side stands, so that it turns to the right.
-    let turned = heading(driven("stuck-wheel").unwrap());
+    let turned = heading(last_output("stuck-wheel").unwrap());
     assert!((-170.0..-20.0).contains(&turned), "{turned}");
     // Whoever drives on would do so without knowing.
     assert_eq!(fails("emergency"), Fault::EmergencyStop);

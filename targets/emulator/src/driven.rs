@@ -1,0 +1,54 @@
+//! An emulated robot that serves its line while a test drives it.
+
+use std::io;
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+
+use crate::port::Port;
+use crate::serve::{Emulated, Pace, serve};
+
+/// A robot that was driven.
+#[derive(Debug)]
+pub struct Driven<R, T> {
+    /// The result of the drive.
+    pub result: T,
+    /// The result of serving the line: an error if the robot closed it.
+    pub served: io::Result<()>,
+    /// The robot.
+    pub robot: R,
+}
+
+/// Sets the flag when it is dropped, also by a panic, which would otherwise wait for ever for the robot's thread.
+struct SetAtTheEnd<'f>(&'f AtomicBool);
+
+impl Drop for SetAtTheEnd<'_> {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Serves a line with `robot` on a thread while `drive`, which gets the path of its device, runs.
+///
+/// # Errors
+/// The system has no more pseudo-terminals.
+pub fn driven<R: Emulated + Send, T>(
+    mut robot: R,
+    pace: Pace,
+    drive: impl FnOnce(&Path) -> T,
+) -> io::Result<Driven<R, T>> {
+    let (port, over) = (Port::open()?, AtomicBool::new(false));
+    let device = port.path().to_owned();
+    let (result, served) = thread::scope(|scope| {
+        let serving = scope.spawn(|| {
+            // Dropped with this closure: a robot that closes its line closes it for its driver as well.
+            let port = port;
+            serve(&mut robot, &port, pace, &|| !over.load(Ordering::Relaxed))
+        });
+        let end = SetAtTheEnd(&over);
+        let result = drive(&device);
+        drop(end);
+        (result, serving.join().unwrap_or_else(|_| Err(io::Error::other("the robot's thread panicked"))))
+    });
+    Ok(Driven { result, served, robot })
+}
