@@ -1,7 +1,7 @@
 //! The program of an emulated robot: its options, its world, and its end.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
 use std::sync::Arc;
@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use clap::Args;
-use mdle_host::Quantity;
+use mdle_host::{Quantity, read_text};
 use mdle_sim::{Body, Make, Simulated, Start, StartError, World};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
@@ -18,6 +18,9 @@ use crate::faulty::Faulty;
 use crate::port::Port;
 use crate::serve::{Embodied, Emulated, Pace};
 use crate::several::{Seat, Several};
+
+/// The largest file of a world that is read, in bytes.
+const LARGEST: u64 = 64_000_000;
 
 /// The options of all robot emulators.
 #[derive(Debug, Args)]
@@ -91,7 +94,7 @@ pub fn program<R: Emulated + Embodied>(
     match run(name, body, options, step, made) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            // Whoever does not read it sees the status.
+            // The status says it as well.
             let _ = writeln!(std::io::stderr(), "error: {error}");
             ExitCode::from(2)
         }
@@ -124,7 +127,7 @@ fn run<R: Emulated + Embodied>(
         seats.push(Seat { robot, port });
     }
     let mut robots = Several::of(seats).map_err(|error| format!("the lines cannot be watched: {error}"))?;
-    // Whoever does not read it knows the link.
+    // Without a reader there is still the link.
     let _ = writeln!(std::io::stdout(), "{}", lines.join("\n"));
     let line = robots.serve(pace, &|| !over.load(Ordering::Relaxed));
     if robots.seats().iter().any(|seat| seat.robot.is_closed()) {
@@ -191,13 +194,19 @@ fn world(name: &str) -> Result<World, String> {
     if let Some(world) = World::named(name) {
         return world.map_err(|error| error.to_string());
     }
-    let text = std::fs::read_to_string(name).map_err(|error| format!("--world {name}: {error}"))?;
+    let text = read_text(Path::new(name), LARGEST).map_err(|error| format!("--world {name}: {error}"))?;
     World::parse(name, &text).map_err(|error| error.to_string())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_world_is_a_regular_file() {
+        let refusal = world("/dev/zero").map(drop).expect_err("a device");
+        assert_eq!(refusal, "--world /dev/zero: it is a device; expected a regular file");
+    }
 
     #[test]
     fn each_option_is_described_in_a_line() {
