@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use rustix::fs::{CWD, FileType, Mode, OFlags, fcntl_getfl, fcntl_setfl, mknodat};
 
-use crate::cart::{cart, lines, send, start};
+use crate::cart::{cart, is_no_timing, lines, send, start};
 
 /// What is written to.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -191,6 +191,48 @@ fn a_log_that_nobody_reads_stops_the_robot() {
     let lines: Vec<_> = lines(child.stderr.take().unwrap()).collect();
     assert_eq!(lines[0], "error: the run log cannot be written, so the robot was stopped: nobody has taken it for 5 s");
     assert_eq!(cart.end(&mut child), (Some(3), true));
+}
+
+/// Returns the errors and the end of a cart whose log or path has a reader that goes away after some turns; a signal ends it unless that does.
+fn deserted(writer: Writer, ends_the_run: bool) -> (String, (Option<i32>, bool)) {
+    let mut cart = Cart::new(&format!("deserted_{writer:?}"), &[]);
+    let pipe = cart.folder.join(format!("{writer:?}"));
+    fifo(&pipe);
+    // Opened without waiting for the writer, which opens it only if it has a reader.
+    let flags = OFlags::NONBLOCK.bits() as i32;
+    let reader = File::options().read(true).custom_flags(flags).open(&pipe).unwrap();
+    match writer {
+        Writer::Log => cart.command.arg("--log").arg(&pipe),
+        Writer::Path => cart.command.arg("--record-path").arg(&pipe),
+        Writer::Out | Writer::Err => panic!("these are pipes of their own"),
+    };
+    let mut child = cart.command.stderr(Stdio::piped()).spawn().unwrap();
+    let errors = child.stderr.take().unwrap();
+    cart.moves_on(10);
+    drop(reader);
+    if !ends_the_run {
+        cart.moves_on(30);
+        send(&child, "TERM");
+    }
+    let end = cart.end(&mut child);
+    (lines(errors).take_while(|line| is_no_timing(line)).collect::<Vec<_>>().join("\n"), end)
+}
+
+#[test]
+fn a_log_whose_reader_goes_away_stops_the_robot() {
+    let (errors, end) = deserted(Writer::Log, true);
+    assert_eq!(end, (Some(3), true), "{errors}");
+    assert_eq!(errors, "error: the run log cannot be written, so the robot was stopped: Broken pipe (os error 32)");
+}
+
+#[test]
+fn a_path_whose_reader_goes_away_is_reported() {
+    let (errors, end) = deserted(Writer::Path, false);
+    assert_eq!(end, (Some(143), true), "{errors}");
+    assert_eq!(
+        errors,
+        "stopped by SIGTERM\nerror: the path that was driven cannot be written: Broken pipe (os error 32)"
+    );
 }
 
 #[test]
