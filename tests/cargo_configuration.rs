@@ -125,7 +125,17 @@ fn a_panic_stops_the_robot_whatever_the_profile() {
 fn configuration_above_the_cache_and_the_target_has_no_effect() {
     let _alone = BUILDING.lock().unwrap_or_else(PoisonError::into_inner);
     let folder = with_rover("strangers", "");
-    assert_done(&mdlec_among_strangers(&folder, &["plan.mdle", "--target", "rover"]));
+    let build = || {
+        let output = mdlec_among_strangers(&folder, &["plan.mdle", "--target", "rover"]);
+        assert_done(&output);
+        String::from_utf8(output.stderr).unwrap()
+    };
+    // It is named once, where it would have had an effect.
+    let note = format!(
+        "{}/.cargo/config.toml has no effect: builds read the configuration in cargo's home only\n",
+        folder.display()
+    );
+    assert_eq!([build(), build()].map(|errors| errors.matches(&note).count()), [1, 0]);
     for strange in [above().join("strange"), folder.join("strange")] {
         assert!(!strange.exists(), "{}", strange.display());
     }

@@ -223,11 +223,26 @@ fn executable(options: &Build, path: &Path, output: Option<PathBuf>) -> Result<(
     let built = Cache::of_user()
         .and_then(|cache| link::build(&cache, &package, &output, &mut |progress| shown.progress(&progress)));
     shown.close();
+    if !built.as_ref().is_ok_and(|built| built.fresh) {
+        note_ignored(path, &target);
+    }
     let built = built.map_err(|error| failure(&error))?;
     let seconds = started.elapsed().as_secs_f64();
     let size = built.size as f64 / 1e6;
     report::note(format_args!("{}: built in {seconds:.2} s, {size:.1} MB", output.display()));
     if options.run { run(&output, &options.args) } else { Ok(()) }
+}
+
+/// Names a configuration near the target or the plan that would have had an effect on the build if cargo had been run there.
+fn note_ignored(plan: &Path, target: &Target) {
+    let beside = plan.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let folders: Vec<&Path> = target.folder.as_deref().into_iter().chain([beside]).collect();
+    if let Some(file) = link::ignored_configuration(&folders) {
+        report::note(format_args!(
+            "{} has no effect: builds read the configuration in cargo's home only",
+            file.display()
+        ));
+    }
 }
 
 /// Becomes the executable, so that its exit status and its signals are this process's.

@@ -170,7 +170,7 @@ pub(super) fn command(tool: &str) -> Command {
 }
 
 /// The folder that the variable `name` holds, where a relative path begins at the folder that the user is in.
-fn absolute(name: &str) -> Option<PathBuf> {
+pub(super) fn absolute(name: &str) -> Option<PathBuf> {
     env::var_os(name).filter(|folder| !folder.is_empty()).and_then(|folder| path::absolute(folder).ok())
 }
 

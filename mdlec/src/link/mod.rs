@@ -26,6 +26,7 @@ mod cache;
 mod cargo;
 mod damage;
 mod error;
+mod ignored;
 mod messages;
 mod orphan;
 mod output;
@@ -41,6 +42,7 @@ use std::path::{Path, PathBuf};
 
 pub use cache::Cache;
 pub use error::LinkError;
+pub use ignored::ignored_configuration;
 pub use output::{must_not_be_read, write_whole};
 pub use progress::Progress;
 pub use sources::{Alphabet, alphabets};

@@ -1,0 +1,50 @@
+//! Configuration of cargo and rustup that builds ignore, because it is not in cargo's home.
+
+use std::path::{Path, PathBuf};
+use std::{env, fs, path};
+
+use super::cargo::absolute;
+
+/// The files that cargo and rustup read in the folder of a build and in each folder above it.
+const NAMES: [&str; 4] = [".cargo/config.toml", ".cargo/config", "rust-toolchain.toml", "rust-toolchain"];
+
+/// Returns the first of these files in a folder of `folders` or above one, unless it is in cargo's home. No build reads it.
+#[must_use]
+pub fn ignored_configuration(folders: &[&Path]) -> Option<PathBuf> {
+    let home = absolute("CARGO_HOME").or_else(|| Some(env::home_dir()?.join(".cargo")));
+    first(folders, home.as_deref())
+}
+
+fn first(folders: &[&Path], home: Option<&Path>) -> Option<PathBuf> {
+    let home = home.and_then(|home| fs::canonicalize(home).ok());
+    let folders: Vec<PathBuf> = folders.iter().filter_map(|folder| path::absolute(folder).ok()).collect();
+    let files =
+        folders.iter().flat_map(|folder| folder.ancestors()).flat_map(|folder| NAMES.map(|name| folder.join(name)));
+    let is_in_home =
+        |file: &PathBuf| home.is_some() && file.parent().and_then(|folder| fs::canonicalize(folder).ok()) == home;
+    files.into_iter().find(|file| file.is_file() && !is_in_home(file))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use super::first;
+    use crate::link::tests::folder;
+
+    #[test]
+    fn configuration_in_the_home_of_cargo_is_not_ignored() {
+        let folder = folder("ignored");
+        let (home, plans) = (folder.join(".cargo"), folder.join("plans/new"));
+        fs::create_dir_all(&home).unwrap();
+        fs::create_dir_all(&plans).unwrap();
+        fs::write(home.join("config.toml"), "").unwrap();
+        // Something above may have a configuration of its own.
+        let above = first(&[&folder.join("..")], Some(&home));
+        assert_eq!(first(&[&plans], Some(&home)), above);
+        assert_eq!(first(&[&plans], None), Some(home.join("config.toml")));
+        let own = folder.join("plans/rust-toolchain.toml");
+        fs::write(&own, "").unwrap();
+        assert_eq!(first(&[&plans], Some(&home)), Some(own));
+    }
+}
