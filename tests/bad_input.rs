@@ -44,7 +44,8 @@ fn a_plan_with_errors() {
 #[test]
 fn commands_that_are_misspelled() {
     let folder = with_plan("commands", REST);
-    let commands = [&["chekc", "plan.mdle"][..], &["chekc"], &["anlyze", "--json", "plan.mdle"], &["plan"]];
+    let commands =
+        [&["chekc", "plan.mdle"][..], &["chekc"], &["anlyze", "--json", "plan.mdle"], &["rnu", "plan.mdle"], &["plan"]];
     insta::assert_snapshot!(commands.map(|arguments| said(&folder, arguments)).join("\n"));
 }
 
@@ -134,6 +135,10 @@ fn options_that_are_wrong() {
         &["plan.mdle", "extra"],
         &["trace", "plan.mdle"],
         &["plan.mdle", "--emit", "plan", "--run"],
+        &["run", "plan.mdle", "--emit", "plan"],
+        &["run"],
+        &["build"],
+        &["build", "plan.mdle", "--run"],
         &["plan.mdle", "--target", "sim", "arg"],
         &[],
     ] {

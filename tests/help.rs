@@ -8,8 +8,22 @@ use std::process::{Command, Output};
 use mdle_tests::executable::{folder, run_mdlec};
 
 /// The commands of `mdlec`; the first is the bare form, which builds.
-const COMMANDS: [&str; 12] =
-    ["", "check", "fmt", "trace", "analyze", "draw", "decompile", "explain", "targets", "quarks", "bind", "new-target"];
+const COMMANDS: [&str; 14] = [
+    "",
+    "build",
+    "run",
+    "check",
+    "fmt",
+    "trace",
+    "analyze",
+    "draw",
+    "decompile",
+    "explain",
+    "targets",
+    "quarks",
+    "bind",
+    "new-target",
+];
 
 /// First words that make a reader ask what the line is about.
 const OPENERS: [&str; 13] =

@@ -2,8 +2,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
+use std::io::{BufRead, BufReader};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
 
 use mdle_tests::executable::{folder, run_mdlec};
@@ -234,11 +235,34 @@ fn run_passes_on_the_status_of_the_executable() {
     let folder = folder("run");
     fs::write(folder.join("wait.mdle"), "{ Wait (Atom (wait 5) stop) }\n").unwrap();
     let run = |arguments: &[&str]| {
-        let all = [&["wait.mdle", "--target", "sim", "--run", "--", "--speed", "max"][..], arguments].concat();
-        run_mdlec(&folder, &all)
+        let bare = ["wait.mdle", "--target", "sim", "--run", "--", "--speed", "max"];
+        let command = ["run", "wait.mdle", "--target", "sim", "--", "--speed", "max"];
+        let outputs = [&bare, &command].map(|words| run_mdlec(&folder, &[&words[..], arguments].concat()));
+        let results = outputs.map(|output| (output.status.code(), String::from_utf8(output.stdout).unwrap()));
+        assert_eq!(results[0], results[1]);
+        results[0].clone()
     };
-    let over = run(&[]);
-    assert_eq!((over.status.code(), over.stdout.as_slice()), (Some(0), &b"plan over: wait 5 (atom 1)\n"[..]));
-    assert_eq!(run(&["--turns", "3"]).status.code(), Some(4));
-    assert_eq!(run(&["--start", "nowhere"]).status.code(), Some(2));
+    assert_eq!(run(&[]), (Some(0), "plan over: wait 5 (atom 1)\n".to_owned()));
+    assert_eq!(run(&["--turns", "3"]).0, Some(4));
+    assert_eq!(run(&["--start", "nowhere"]).0, Some(2));
+}
+
+#[test]
+fn run_passes_signals_to_the_executable() {
+    let folder = folder("run_signalled");
+    fs::write(folder.join("turns.mdle"), "{ Turns ((Atom (wait 1) (go 0 0.1)) (Atom (wait 1) stop))^inf }\n").unwrap();
+    for (signal, status) in [("TERM", 143), ("INT", 130)] {
+        let mut command = mdle_tests::executable::command(&folder, &["run", "turns.mdle", "--target", "sim"]);
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        // The plan runs once it has told of its second atom.
+        let mut line = String::new();
+        BufReader::new(child.stdout.as_mut().unwrap()).read_line(&mut line).unwrap();
+        assert!(line.contains("atom 2 stop"), "{line}");
+        let sent = Command::new("kill").args(["-s", signal, &child.id().to_string()]).status().unwrap();
+        assert!(sent.success());
+        let output = child.wait_with_output().unwrap();
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(status), "{said}");
+        assert!(said.ends_with(&format!("stopped by SIG{signal}\n")), "{said}");
+    }
 }

@@ -14,13 +14,13 @@ use crate::theorem::STEPS;
 /// ROBOT` checks the plan and builds one executable that runs it on that robot, or in the simulator with `--target sim`.
 #[derive(Debug, Parser)]
 #[command(name = "mdlec", version, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
-#[command(after_help = "Example: mdlec plan.mdle --target sim --run -- --speed max --plot run.svg")]
+#[command(after_help = "Example: mdlec run plan.mdle --target sim -- --speed max --plot run.svg")]
 #[command(after_long_help = "\
 Examples:
-  mdlec plan.mdle --target sim                    Build ./plan for the simulated robot
-  mdlec plan.mdle --target sim --run -- --watch   Build it, run it, and show the run in the terminal
-  mdlec check plan.mdle                           Report the errors of a plan
-  mdlec quarks --target sim                       List the laws and interrupts of a robot
+  mdlec plan.mdle --target sim                  Build ./plan for the simulated robot
+  mdlec run plan.mdle --target sim -- --watch   Build it, run it, and show the run in the terminal
+  mdlec check plan.mdle                         Report the errors of a plan
+  mdlec quarks --target sim                     List the laws and interrupts of a robot
 
 Exit status:
   0      success
@@ -28,12 +28,12 @@ Exit status:
   2      wrong usage, a target that does not compile, or a file that cannot be read or written
   101    a bug in mdlec
   128+N  terminated by signal N
-  With --run, the exit status of the executable.")]
+  With `run` and --run, the exit status of the executable.")]
 pub(super) struct Cli {
     #[command(subcommand)]
     pub(super) command: Option<Command>,
     #[command(flatten)]
-    pub(super) build: Build,
+    pub(super) bare: Bare,
     /// Format of messages [default: human]
     ///
     /// `human` is text for a terminal. `json` is one JSON object per line on standard error, with the code, severity,
@@ -64,6 +64,15 @@ pub(super) enum MessageFormat {
 /// The commands of `mdlec`.
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
+    /// Build the executable of a plan, as without a command
+    ///
+    /// Checks the plan and writes one static executable, or prints an intermediate form of the plan.
+    Build(Build),
+    /// Build the executable of a plan and run it
+    ///
+    /// `mdlec` becomes the executable: its exit status and its signals are those of the run. The executable stays where
+    /// `mdlec build` writes it.
+    Run(Run),
     /// Check plans and report their errors
     ///
     /// Reports all errors and warnings of a file in one run, each with its place and, where possible, a correction to type.
@@ -113,9 +122,48 @@ pub(super) enum Command {
     NewTarget(NewTarget),
 }
 
-/// Build the executable of a plan.
+/// Arguments of `mdlec` without a command.
+#[derive(Debug, Args)]
+pub(super) struct Bare {
+    #[command(flatten)]
+    pub(super) build: Build,
+    /// Run the executable after building it, with the arguments after `--`
+    #[arg(long)]
+    pub(super) run: bool,
+    /// Arguments for the executable, with `--run`; `-- --help` lists them
+    #[arg(last = true, requires = "run")]
+    pub(super) args: Vec<String>,
+}
+
+/// Arguments of `mdlec run`.
+#[derive(Debug, Args)]
+pub(super) struct Run {
+    #[command(flatten)]
+    pub(super) executable: Executable,
+    /// Arguments for the executable; `-- --help` lists them
+    #[arg(last = true)]
+    pub(super) args: Vec<String>,
+}
+
+/// Arguments of `mdlec build`.
 #[derive(Debug, Args)]
 pub(super) struct Build {
+    #[command(flatten)]
+    pub(super) executable: Executable,
+    /// Intermediate form to print instead of building
+    ///
+    /// One of tree, plan, nondegenerate, expanded, fsm, matrices, dot, mermaid, scxml, formal, rust and exe. Without `=FILE` it
+    /// goes to standard output; `matrices=FOLDER` writes MatrixMarket files into a folder.
+    #[arg(long, value_name = "KIND[=FILE]", value_parser = Emit::parse)]
+    pub(super) emit: Option<Emit>,
+    /// Merge the matrices of equal interrupts, with `--emit matrices`
+    #[arg(long)]
+    pub(super) combine: bool,
+}
+
+/// The plan that an executable is built of, and for which robot.
+#[derive(Debug, Args)]
+pub(super) struct Executable {
     /// File of the plan; `-` for standard input
     #[arg(required = true)]
     pub(super) plan: Option<PathBuf>,
@@ -130,24 +178,9 @@ pub(super) struct Build {
     /// Name of the plan to build [default: the only plan that no other plan uses]
     #[arg(long = "plan", value_name = "NAME")]
     pub(super) name: Option<String>,
-    /// Intermediate form to print instead of building
-    ///
-    /// One of tree, plan, nondegenerate, expanded, fsm, matrices, dot, mermaid, scxml, formal, rust and exe. Without `=FILE` it
-    /// goes to standard output; `matrices=FOLDER` writes MatrixMarket files into a folder.
-    #[arg(long, value_name = "KIND[=FILE]", value_parser = Emit::parse)]
-    pub(super) emit: Option<Emit>,
-    /// Merge the matrices of equal interrupts, with `--emit matrices`
-    #[arg(long)]
-    pub(super) combine: bool,
     /// Treat warnings as errors
     #[arg(long)]
     pub(super) deny_warnings: bool,
-    /// Run the executable after building it, with the arguments after `--`
-    #[arg(long)]
-    pub(super) run: bool,
-    /// Arguments for the executable, with `--run`; `-- --help` lists them
-    #[arg(last = true, requires = "run")]
-    pub(super) args: Vec<String>,
 }
 
 /// The argument of `--emit`.

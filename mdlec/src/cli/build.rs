@@ -1,60 +1,61 @@
-//! `mdlec PLAN`: the executable, or a stage on the way to it.
+//! `mdlec build`, and `mdlec` without a command: the executable of a plan, or a stage on the way to it.
 
-use std::io::{self, IsTerminal, Write};
-use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
-use std::process::Command;
-use std::time::Instant;
-
-use mdle_runtime::Printable;
 
 use super::bind;
 use super::input::{self, Input, Target};
-use super::version::version;
-use super::{Build, Emit, EmitKind, Failure, endings, matrices, report};
+use super::{Bare, Build, Emit, EmitKind, Executable, Failure, endings, executable, matrices, report};
 use crate::diagnostic::{Diagnostic, sort};
-use crate::link::{self, Cache, LinkError, Package, Progress, TargetCrate};
+use crate::link;
 use crate::rust::{self, Header};
 use crate::syntax::outline;
 use crate::{Compiled, fsm, picture, syntax};
 
 /// Does what the command line without a command asks for.
-pub(super) fn build(options: &Build) -> Result<(), Failure> {
-    link::leave_nothing_behind(Shown::wipe)
-        .map_err(|error| Failure::usage(format!("this system does not let signals be caught: {error}")))?;
-    let Some(path) = options.plan.as_deref() else { return Err(Failure::usage("no plan was given")) };
-    let (kind, file) = match &options.emit {
-        None => (EmitKind::Exe, options.output.clone()),
-        Some(Emit { file: Some(_), .. }) if options.output.is_some() => {
+pub(super) fn bare(options: &Bare) -> Result<(), Failure> {
+    let makes_none = options.build.emit.as_ref().is_some_and(|emit| emit.kind != EmitKind::Exe);
+    if options.run && makes_none {
+        return Err(Failure::usage("`--run` runs an executable, and this `--emit` makes none"));
+    }
+    let built = build(&options.build)?;
+    built.filter(|_| options.run).map_or(Ok(()), |built| executable::become_it(&built, &options.args))
+}
+
+/// Builds the executable of a plan, or prints another form of it. Returns the executable's path.
+pub(super) fn build(options: &Build) -> Result<Option<PathBuf>, Failure> {
+    let Build { executable: about, emit, combine } = options;
+    let path = executable::begin(about)?;
+    let (kind, file) = match emit {
+        None => (EmitKind::Exe, about.output.clone()),
+        Some(Emit { file: Some(_), .. }) if about.output.is_some() => {
             return Err(Failure::usage("there are two files to write to: one in `--emit` and one with `-o`"));
         }
-        Some(Emit { kind, file }) => (*kind, file.clone().or_else(|| options.output.clone())),
+        Some(Emit { kind, file }) => (*kind, file.clone().or_else(|| about.output.clone())),
     };
     if let Some(file) = &file {
         endings::no_picture(file, kind, path)?;
     }
     if kind == EmitKind::Exe {
-        return executable(options, path, file);
+        return executable::build(about, path, file).map(Some);
     }
-    if options.run {
-        return Err(Failure::usage("`--run` runs an executable, and this `--emit` makes none"));
-    }
-    if options.combine && kind != EmitKind::Matrices {
+    if *combine && kind != EmitKind::Matrices {
         return Err(Failure::usage("`--combine` sums matrices: it goes with `--emit matrices`"));
     }
     if kind == EmitKind::Matrices {
-        let target = input::target(options.target.as_deref())?;
+        let target = input::target(about.target.as_deref())?;
         let mut input = input::read_plan(path, &target)?;
-        let compiled = compile_one(&mut input, &target, options.name.as_deref(), options.deny_warnings)?;
+        let compiled = compile_one(&mut input, &target, about.name.as_deref(), about.deny_warnings)?;
         let inputs = input.inputs(&target);
-        return matrices::matrices(&compiled.nondegenerate, options.combine, file.as_deref(), &input.sources, &inputs);
+        matrices::matrices(&compiled.nondegenerate, *combine, file.as_deref(), &input.sources, &inputs)?;
+        return Ok(None);
     }
-    let (text, inputs) = stage(options, path, kind)?;
+    let (text, inputs) = stage(about, path, kind)?;
     match file {
-        Some(file) => link::write_whole(&file, text.as_bytes(), &inputs).map_err(|error| failure(&error)),
+        Some(file) => link::write_whole(&file, text.as_bytes(), &inputs).map_err(|error| executable::failure(&error)),
         None if kind.is_for_people() => report::print(&text),
         None => report::print_exactly(&text),
-    }
+    }?;
+    Ok(None)
 }
 
 /// Compiles the one plan that is to be run; messages go to standard error.
@@ -120,7 +121,7 @@ fn known_plan(input: &mut Input, name: &str) -> Result<(), Failure> {
 }
 
 /// A stage as text, with the files that were read for it.
-fn stage(options: &Build, path: &Path, kind: EmitKind) -> Result<(String, Vec<PathBuf>), Failure> {
+fn stage(options: &Executable, path: &Path, kind: EmitKind) -> Result<(String, Vec<PathBuf>), Failure> {
     let target = input::target(options.target.as_deref())?;
     let mut input = input::read_plan(path, &target)?;
     if kind == EmitKind::Tree {
@@ -195,100 +196,4 @@ fn rust_of(compiled: &Compiled, path: &Path, target: &Target) -> Result<String, 
     let file = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
     let header = Header { file: &file, plan: &compiled.plan.root.name };
     Ok(rust::emit(&compiled.lowered, header, &target.alphabet))
-}
-
-fn executable(options: &Build, path: &Path, output: Option<PathBuf>) -> Result<(), Failure> {
-    let started = Instant::now();
-    let Emitted { target, input, plan_name, rust } =
-        emitted(path, options.target.as_deref(), options.name.as_deref(), options.deny_warnings)?;
-    // Standard input has no name of its own.
-    let stem = path.file_stem().filter(|stem| *stem != "-").map_or_else(|| PathBuf::from(&plan_name), PathBuf::from);
-    let output = output.unwrap_or(stem);
-    let crate_name = &target.alphabet.crate_name;
-    let target_crate = match &target.folder {
-        None => TargetCrate::Builtin { name: &target.alphabet.name, crate_name },
-        Some(folder) => TargetCrate::Path { folder, crate_name },
-    };
-    let plan_type = rust::plan_type(&plan_name);
-    let package = Package {
-        plan_name: &plan_name,
-        version: &version(&input, &target),
-        plan_file: path,
-        inputs: &input.inputs(&target),
-        plan_type: &plan_type,
-        rust: &rust,
-        target: &target_crate,
-    };
-    let mut shown = Shown { open: false };
-    let built = Cache::of_user()
-        .and_then(|cache| link::build(&cache, &package, &output, &mut |progress| shown.progress(&progress)));
-    shown.close();
-    if !built.as_ref().is_ok_and(|built| built.fresh) {
-        note_ignored(path, &target);
-    }
-    let built = built.map_err(|error| failure(&error))?;
-    let seconds = started.elapsed().as_secs_f64();
-    let size = built.size as f64 / 1e6;
-    report::note(format_args!("{}: built in {seconds:.2} s, {size:.1} MB", output.display()));
-    if options.run { run(&output, &options.args) } else { Ok(()) }
-}
-
-/// Names a configuration near the target or the plan that would have had an effect on the build if cargo had been run there.
-fn note_ignored(plan: &Path, target: &Target) {
-    let beside = plan.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
-    let folders: Vec<&Path> = target.folder.as_deref().into_iter().chain([beside]).collect();
-    if let Some(file) = link::ignored_configuration(&folders) {
-        report::note(format_args!(
-            "{} has no effect: builds read the configuration in cargo's home only",
-            file.display()
-        ));
-    }
-}
-
-/// Becomes the executable, so that its exit status and its signals are this process's.
-fn run(output: &Path, args: &[String]) -> Result<(), Failure> {
-    let program = if output.is_absolute() { output.to_owned() } else { Path::new(".").join(output) };
-    let error = Command::new(&program).args(args).exec();
-    Err(Failure::usage(format!("cannot run `{}`: {error}", program.display())))
-}
-
-pub(super) fn failure(error: &LinkError) -> Failure {
-    Failure { status: error.exit_status(), message: Some(error.to_string()) }
-}
-
-/// The progress line: one that is written over on a terminal, else one for each thing worth saying.
-struct Shown {
-    open: bool,
-}
-
-impl Shown {
-    fn progress(&mut self, progress: &Progress) {
-        if report::is_json() {
-            return;
-        }
-        let mut out = io::stderr().lock();
-        // A closed standard error has nobody to wait for the build.
-        let _ = if out.is_terminal() {
-            self.open = true;
-            write!(out, "\r\x1b[K{}", Printable(progress))
-        } else if progress.is_first() {
-            writeln!(out, "{}", Printable(progress))
-        } else {
-            Ok(())
-        };
-    }
-
-    fn close(&mut self) {
-        if std::mem::take(&mut self.open) {
-            Self::wipe();
-        }
-    }
-
-    /// Empties the line that the cursor is in.
-    fn wipe() {
-        let mut out = io::stderr().lock();
-        if out.is_terminal() {
-            let _ = write!(out, "\r\x1b[K");
-        }
-    }
 }

@@ -4,8 +4,8 @@ use std::env;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use super::build::{self, Emitted, emitted};
-use super::{Failure, MessageFormat, report};
+use super::build::{Emitted, emitted};
+use super::{Failure, MessageFormat, executable, report};
 use crate::link;
 
 /// Writes `$OUT_DIR/STEM.rs` and tells cargo of warnings and of the files that were read. The exit status, if that is not
@@ -28,7 +28,7 @@ fn write(file: &Path, target: Option<&str>, plan: Option<&str>) -> Result<(), Fa
     let mut name = OsString::from(file.file_stem().unwrap_or_default());
     name.push(".rs");
     let output = PathBuf::from(folder).join(name);
-    link::write_whole(&output, rust.as_bytes(), &inputs).map_err(|error| build::failure(&error))?;
+    link::write_whole(&output, rust.as_bytes(), &inputs).map_err(|error| executable::failure(&error))?;
     report::print_exactly(&watched)
 }
 

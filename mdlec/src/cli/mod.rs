@@ -10,6 +10,7 @@ mod draw;
 mod embed;
 mod endings;
 mod everywhere;
+mod executable;
 mod explain;
 mod fmt;
 mod input;
@@ -23,8 +24,8 @@ mod version;
 use std::process::ExitCode;
 
 use arguments::{
-    Analyze, Bind, Build, Check, Cli, Command, Decompile, Draw, Emit, EmitKind, Fmt, Machine, MessageFormat, NewTarget,
-    Trace,
+    Analyze, Bare, Bind, Build, Check, Cli, Command, Decompile, Draw, Emit, EmitKind, Executable, Fmt, Machine,
+    MessageFormat, NewTarget, Run, Trace,
 };
 use clap::{CommandFactory as _, Parser as _};
 pub(crate) use embed::embed;
@@ -91,8 +92,10 @@ fn run(cli: Cli) -> Result<(), Failure> {
     match cli.command {
         None => match misspelled_command() {
             Some(failure) => Err(failure),
-            None => build::build(&cli.build),
+            None => build::bare(&cli.bare),
         },
+        Some(Command::Build(options)) => build::build(&options).map(drop),
+        Some(Command::Run(options)) => executable::run(&options),
         Some(Command::Check(check)) => check::check(&check),
         Some(Command::Fmt(fmt)) => fmt::fmt(&fmt),
         Some(Command::Trace(trace)) => trace::trace(&trace),

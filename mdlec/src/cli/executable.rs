@@ -1,0 +1,130 @@
+//! `mdlec run`: the executable of a plan, built with its progress shown, and run in the place of this process.
+
+use std::io::{self, IsTerminal, Write};
+use std::os::unix::process::CommandExt;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
+
+use mdle_runtime::Printable;
+
+use super::build::{Emitted, emitted};
+use super::input::Target;
+use super::version::version;
+use super::{EmitKind, Executable, Failure, Run, endings, report};
+use crate::link::{self, Cache, LinkError, Package, Progress, TargetCrate};
+use crate::rust;
+
+/// Builds the executable of a plan and becomes it.
+pub(super) fn run(options: &Run) -> Result<(), Failure> {
+    let path = begin(&options.executable)?;
+    let output = options.executable.output.clone();
+    if let Some(output) = &output {
+        endings::no_picture(output, EmitKind::Exe, path)?;
+    }
+    become_it(&build(&options.executable, path, output)?, &options.args)
+}
+
+/// Prepares for signals, which must leave nothing behind, and returns the file of the plan.
+pub(super) fn begin(options: &Executable) -> Result<&Path, Failure> {
+    link::leave_nothing_behind(Shown::wipe)
+        .map_err(|error| Failure::usage(format!("this system does not let signals be caught: {error}")))?;
+    options.plan.as_deref().ok_or_else(|| Failure::usage("no plan was given"))
+}
+
+/// Builds the executable of the plan in `path`, by default in the current folder. Returns its path.
+pub(super) fn build(options: &Executable, path: &Path, output: Option<PathBuf>) -> Result<PathBuf, Failure> {
+    let started = Instant::now();
+    let Emitted { target, input, plan_name, rust } =
+        emitted(path, options.target.as_deref(), options.name.as_deref(), options.deny_warnings)?;
+    // Standard input has no name of its own.
+    let stem = path.file_stem().filter(|stem| *stem != "-").map_or_else(|| PathBuf::from(&plan_name), PathBuf::from);
+    let output = output.unwrap_or(stem);
+    let crate_name = &target.alphabet.crate_name;
+    let target_crate = match &target.folder {
+        None => TargetCrate::Builtin { name: &target.alphabet.name, crate_name },
+        Some(folder) => TargetCrate::Path { folder, crate_name },
+    };
+    let plan_type = rust::plan_type(&plan_name);
+    let package = Package {
+        plan_name: &plan_name,
+        version: &version(&input, &target),
+        plan_file: path,
+        inputs: &input.inputs(&target),
+        plan_type: &plan_type,
+        rust: &rust,
+        target: &target_crate,
+    };
+    let mut shown = Shown { open: false };
+    let built = Cache::of_user()
+        .and_then(|cache| link::build(&cache, &package, &output, &mut |progress| shown.progress(&progress)));
+    shown.close();
+    if !built.as_ref().is_ok_and(|built| built.fresh) {
+        note_ignored(path, &target);
+    }
+    let built = built.map_err(|error| failure(&error))?;
+    let seconds = started.elapsed().as_secs_f64();
+    let size = built.size as f64 / 1e6;
+    report::note(format_args!("{}: built in {seconds:.2} s, {size:.1} MB", output.display()));
+    Ok(output)
+}
+
+/// Names a configuration near the target or the plan that would have had an effect on the build if cargo had been run there.
+fn note_ignored(plan: &Path, target: &Target) {
+    let beside = plan.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let folders: Vec<&Path> = target.folder.as_deref().into_iter().chain([beside]).collect();
+    if let Some(file) = link::ignored_configuration(&folders) {
+        report::note(format_args!(
+            "{} has no effect: builds read the configuration in cargo's home only",
+            file.display()
+        ));
+    }
+}
+
+/// Becomes the executable, so that its exit status and its signals are this process's.
+pub(super) fn become_it(output: &Path, args: &[String]) -> Result<(), Failure> {
+    let program = if output.is_absolute() { output.to_owned() } else { Path::new(".").join(output) };
+    let error = Command::new(&program).args(args).exec();
+    Err(Failure::usage(format!("cannot run `{}`: {error}", program.display())))
+}
+
+pub(super) fn failure(error: &LinkError) -> Failure {
+    Failure { status: error.exit_status(), message: Some(error.to_string()) }
+}
+
+/// The progress line: one that is written over on a terminal, else one for each thing worth saying.
+struct Shown {
+    open: bool,
+}
+
+impl Shown {
+    fn progress(&mut self, progress: &Progress) {
+        if report::is_json() {
+            return;
+        }
+        let mut out = io::stderr().lock();
+        // A closed standard error has nobody to wait for the build.
+        let _ = if out.is_terminal() {
+            self.open = true;
+            write!(out, "\r\x1b[K{}", Printable(progress))
+        } else if progress.is_first() {
+            writeln!(out, "{}", Printable(progress))
+        } else {
+            Ok(())
+        };
+    }
+
+    fn close(&mut self) {
+        if std::mem::take(&mut self.open) {
+            Self::wipe();
+        }
+    }
+
+    /// Empties the line that the cursor is in.
+    fn wipe() {
+        let mut out = io::stderr().lock();
+        if out.is_terminal() {
+            let _ = write!(out, "\r\x1b[K");
+        }
+    }
+}
