@@ -66,6 +66,27 @@ fn plans_of_one_name_at_once_each_get_their_own_executable() {
 }
 
 #[test]
+fn clean_removes_a_cache_and_nothing_else() {
+    let folder = folder("clean");
+    let cache = folder.join("cache");
+    fs::create_dir_all(cache.join("target/release")).unwrap();
+    fs::write(cache.join("target/release/plan"), [1; 1_000_000]).unwrap();
+    fs::write(cache.join("lock"), "").unwrap();
+    let clean = || command(&folder, &["clean"]).env("MDLEC_CACHE", "cache").output().unwrap();
+    fs::write(cache.join("notes.txt"), "mine").unwrap();
+    let refused = clean();
+    let said = "error: `cache` is not a cache of mdlec: it contains `notes.txt`, which mdlec did not write; nothing was removed\n";
+    assert_eq!((refused.status.code(), String::from_utf8(refused.stderr).unwrap().as_str()), (Some(2), said));
+    assert!(cache.join("target/release/plan").exists());
+    fs::remove_file(cache.join("notes.txt")).unwrap();
+    for said in ["cache: 1.0 MB freed\n", "cache: 0.0 MB freed\n"] {
+        let output = clean();
+        assert_eq!((output.status.code(), String::from_utf8(output.stderr).unwrap().as_str()), (Some(0), said));
+    }
+    assert_eq!(fs::read_dir(cache).unwrap().count(), 1, "the lock");
+}
+
+#[test]
 fn damage_is_mended_before_it_is_handed_out() {
     let folder = with_plan("damaged", 3);
     assert_built(&run_mdlec(&folder, &BUILD));

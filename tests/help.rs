@@ -8,7 +8,7 @@ use std::process::{Command, Output};
 use mdle_tests::executable::{folder, run_mdlec};
 
 /// The commands of `mdlec`; the first is the bare form, which builds.
-const COMMANDS: [&str; 14] = [
+const COMMANDS: [&str; 15] = [
     "",
     "build",
     "run",
@@ -23,6 +23,7 @@ const COMMANDS: [&str; 14] = [
     "quarks",
     "bind",
     "new-target",
+    "clean",
 ];
 
 /// First words that make a reader ask what the line is about.

@@ -120,6 +120,11 @@ pub(super) enum Command {
     ///
     /// The new target runs at once, with imaginary hardware; `src/hardware.rs` marks every place for your driver.
     NewTarget(NewTarget),
+    /// Remove everything that mdlec keeps in its cache
+    ///
+    /// Compiled libraries, unpacked sources and the packages of plans: the next build makes them again. The cache is the folder
+    /// `MDLEC_CACHE`, or `mdlec` in the user's cache folder; a folder that contains anything else is refused.
+    Clean,
 }
 
 /// Arguments of `mdlec` without a command.

@@ -55,7 +55,7 @@ pub(super) fn build(options: &Executable, path: &Path, output: Option<PathBuf>) 
         rust: &rust,
         target: &target_crate,
     };
-    let mut shown = Shown { open: false };
+    let mut shown = Shown::default();
     let built = Cache::of_user()
         .and_then(|cache| link::build(&cache, &package, &output, &mut |progress| shown.progress(&progress)));
     shown.close();
@@ -93,12 +93,13 @@ pub(super) fn failure(error: &LinkError) -> Failure {
 }
 
 /// The progress line: one that is written over on a terminal, else one for each thing worth saying.
-struct Shown {
+#[derive(Default)]
+pub(super) struct Shown {
     open: bool,
 }
 
 impl Shown {
-    fn progress(&mut self, progress: &Progress) {
+    pub(super) fn progress(&mut self, progress: &Progress) {
         if report::is_json() {
             return;
         }
@@ -114,7 +115,7 @@ impl Shown {
         };
     }
 
-    fn close(&mut self) {
+    pub(super) fn close(&mut self) {
         if std::mem::take(&mut self.open) {
             Self::wipe();
         }

@@ -5,6 +5,7 @@ mod arguments;
 mod bind;
 mod build;
 mod check;
+mod clean;
 mod decompile;
 mod draw;
 mod embed;
@@ -106,6 +107,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Targets) => input::print_targets(),
         Some(Command::Bind(bind)) => bind::bind(&bind),
         Some(Command::NewTarget(new_target)) => new_target::new_target(&new_target),
+        Some(Command::Clean) => clean::clean(),
         Some(Command::Quarks(quarks)) => input::print_quarks(quarks.target.as_deref()),
     }
 }

@@ -20,16 +20,25 @@ pub struct Cache {
 }
 
 impl Cache {
-    /// The user's: what `MDLEC_CACHE` names, else `mdlec` in the user's cache folder.
+    /// Returns the user's cache.
     ///
     /// # Errors
-    /// When neither the variable nor a home folder is there, or the folder cannot be made.
+    /// When there is no [`Cache::folder_of_user`], or it cannot be made.
     pub fn of_user() -> Result<Self, LinkError> {
+        Self::at(&Self::folder_of_user()?)
+    }
+
+    /// Returns the folder of the user's cache, which need not exist: what `MDLEC_CACHE` names, else `mdlec` in the user's cache
+    /// folder.
+    ///
+    /// # Errors
+    /// When neither the variable nor a home folder is there.
+    pub fn folder_of_user() -> Result<PathBuf, LinkError> {
         match env::var_os("MDLEC_CACHE").filter(|folder| !folder.is_empty()) {
-            Some(folder) => Self::at(Path::new(&folder)),
+            Some(folder) => Ok(PathBuf::from(folder)),
             None => {
                 let folders = etcetera::choose_base_strategy().map_err(|_| LinkError::NoCacheFolder)?;
-                Self::at(&folders.cache_dir().join("mdlec"))
+                Ok(folders.cache_dir().join("mdlec"))
             }
         }
     }

@@ -58,6 +58,14 @@ pub enum LinkError {
          name another folder with the variable MDLEC_CACHE"
     )]
     CacheOpen(PathBuf),
+    /// The folder is to be emptied, and is not a cache.
+    #[error("`{path}` is not a cache of mdlec: {why}; nothing was removed")]
+    NotACache {
+        /// The folder.
+        path: PathBuf,
+        /// What is there, or is not.
+        why: String,
+    },
     /// No space is left.
     #[error("there is no room left at `{0}` (a full disk, a quota, or `ulimit -f`): make room, then try again")]
     DiskFull(PathBuf),
@@ -208,6 +216,7 @@ impl LinkError {
             | Self::Cache { .. }
             | Self::CacheOfOther { .. }
             | Self::CacheOpen(_)
+            | Self::NotACache { .. }
             | Self::DiskFull(_)
             | Self::NoRust { .. }
             | Self::OldRust { .. }

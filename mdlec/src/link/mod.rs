@@ -24,6 +24,7 @@ mod access;
 mod blame;
 mod cache;
 mod cargo;
+mod clear;
 mod damage;
 mod error;
 mod ignored;
@@ -41,6 +42,7 @@ mod target;
 use std::path::{Path, PathBuf};
 
 pub use cache::Cache;
+pub use clear::clear;
 pub use error::LinkError;
 pub use ignored::ignored_configuration;
 pub use output::{must_not_be_read, write_whole};

@@ -83,6 +83,16 @@ impl Sources {
     }
 }
 
+/// Returns `true` if a folder of this name in a cache holds unpacked sources of some version: `src-VERSION-HASH`.
+pub(super) fn is_folder(name: &str) -> bool {
+    let parts = name.strip_prefix(PREFIX).and_then(|rest| rest.rsplit_once('-'));
+    parts.is_some_and(|(version, hash)| {
+        version.starts_with(|first: char| first.is_ascii_digit())
+            && hash.len() == embedded::HASH.len()
+            && hash.bytes().all(|digit| digit.is_ascii_hexdigit())
+    })
+}
+
 /// Removes the sources of versions that nobody has used for long, with all that was compiled: most of it is of theirs, and
 /// a version that is new to the cache has to compile its own in any case.
 fn forget_old_versions(cache: &Cache) -> Result<(), LinkError> {

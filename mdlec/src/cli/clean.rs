@@ -1,0 +1,16 @@
+//! `mdlec clean`: an empty cache.
+
+use super::executable::{Shown, failure};
+use super::{Failure, report};
+use crate::link::{self, Cache};
+
+/// Removes what mdlec keeps in its cache, and says how much that was.
+pub(super) fn clean() -> Result<(), Failure> {
+    let folder = Cache::folder_of_user().map_err(|error| failure(&error))?;
+    let mut shown = Shown::default();
+    let freed = link::clear(&folder, &mut |progress| shown.progress(&progress));
+    shown.close();
+    let freed = freed.map_err(|error| failure(&error))?;
+    report::note(format_args!("{}: {:.1} MB freed", folder.display(), freed as f64 / 1e6));
+    Ok(())
+}
