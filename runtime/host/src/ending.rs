@@ -110,6 +110,22 @@ impl Ending {
         }
     }
 
+    /// Returns a word or two for what ended a run before its plan was over.
+    pub(crate) fn brief(&self) -> String {
+        match self {
+            Self::Over => "plan over".to_owned(),
+            Self::Timeout(_) => "--timeout".to_owned(),
+            Self::Turns(_) => "--turns".to_owned(),
+            Self::Signal(signal) => signal.name().into_owned(),
+            Self::Robot(_)
+            | Self::Unstopped(_)
+            | Self::Log(_)
+            | Self::Overrun(_)
+            | Self::Suspended { .. }
+            | Self::Bug(_) => "a fault".to_owned(),
+        }
+    }
+
     /// Says it on standard error, and whether that stopped the robot; a plan that is over has said so on standard output.
     pub(crate) fn tell(&self, is_stopped: bool, err: &mut dyn Write) {
         let came = if is_stopped { "a fault stopped the robot" } else { "a fault ended the plan" };

@@ -55,7 +55,7 @@ use patience::Patience;
 pub use program::Program;
 pub use quantity::Quantity;
 pub use stop_request::StopRequest;
-pub use target::{Around, Hosted, Judgement, Pace, Refusal, Standing, Target, Time};
+pub use target::{Around, Ended, Hosted, Judgement, Pace, Refusal, Standing, Target, Time};
 
 /// Runs the plan that `plan` makes on the robot of the target `T`, with the arguments of this process: what the `main` of an executable
 /// that mdlec builds calls. `program` is the plan's name, for `--help`, whose usage names the executable as it was called; a [`Program`]

@@ -90,9 +90,9 @@ impl fmt::Display for Clocked {
 }
 
 /// What ended a scope, and which: `bumper (Lab2ToLab1Plan)`.
-struct CauseText<'a, P> {
-    plan: &'a P,
-    transition: &'a Transition,
+pub(crate) struct CauseText<'a, P> {
+    pub(crate) plan: &'a P,
+    pub(crate) transition: &'a Transition,
 }
 
 impl<P: Plan> fmt::Display for CauseText<'_, P> {

@@ -115,6 +115,19 @@ pub struct Standing<'a> {
     pub scopes: Vec<Around<'a>>,
 }
 
+/// The end of a run's turns, for a person.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Ended<'a> {
+    /// Name of the plan; empty if it has none.
+    pub plan: &'a str,
+    /// `true` if the plan is over, `false` if it was stopped before.
+    pub is_over: bool,
+    /// Cause of the end, such as `bumper (Patrol)` or `--timeout`.
+    pub by: &'a str,
+    /// Time of the last turn.
+    pub t: Nanos,
+}
+
 /// A scope around the current atom.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Around<'a> {
@@ -139,8 +152,12 @@ pub enum Judgement {
 
 /// A robot that an executable drives: besides the exchange it may follow what the plan does.
 pub trait Hosted: Robot {
-    /// The atom of state `state`, with this law, is the one that the turn at time `t` left standing, and was not before.
-    fn began(&mut self, _state: u64, _law: &str, _t: Nanos) {}
+    /// An atom began in the turn at time `t`, and its law is now applied. `number` is its state in the first pass of the loops
+    /// around it, so that every pass of an atom as written has one number.
+    fn began(&mut self, _number: u64, _law: &str, _t: Nanos) {}
+
+    /// The turns of the run have ended; the robot has not been stopped yet.
+    fn ended(&mut self, _ended: &Ended<'_>) {}
 
     /// Whether [`Hosted::turned`] is to be called.
     fn looks(&self) -> bool {

@@ -12,10 +12,10 @@ use crate::ending::{Ending, say};
 use crate::log::{Entry, Log};
 use crate::paths::Recorder;
 use crate::progress::Progress;
-use crate::report::Report;
+use crate::report::{CauseText, Report};
 use crate::signals::Signals;
 use crate::timing::Timing;
-use crate::{Around, Hosted, Standing};
+use crate::{Around, Ended, Hosted, Standing};
 
 /// When a plan that is not over is given up.
 #[derive(Debug, Clone, Copy)]
@@ -68,7 +68,7 @@ where
     // Whether the current atom has been entered since a law was applied last.
     let mut fresh = true;
     let mut number: u64 = 0;
-    loop {
+    let ending = loop {
         if let Some(path) = &mut witnesses.path {
             path.take(&y, t);
         }
@@ -76,34 +76,61 @@ where
         let turn = machine.turn(&y, t, &mut seen);
         fresh |= !seen.0.is_empty();
         if let Err(error) = witnesses.tell(&machine, &turn, number, t, &seen.0) {
-            return Ending::Log(error.to_string());
+            break Ending::Log(error.to_string());
         }
         match turn {
             Turn::Law(_) if std::mem::take(&mut fresh) => {
-                robot.began(machine.state(), machine.atom().map_or("", |atom| machine.plan().law(atom)), t);
+                began(robot, &machine, t);
             }
             Turn::Law(_) | Turn::Cut => {}
-            Turn::Over => return Ending::Over,
+            Turn::Over => break Ending::Over,
         }
         if robot.looks() {
             robot.turned(&standing(&machine, t));
         }
         number = number.saturating_add(1);
         if let Some(ending) = limits.reached(number, t) {
-            return ending;
+            break ending;
         }
         if signals.timing_is_asked_for() {
             witnesses.tell_timing(clock.timing());
         }
         if let Err(ending) = clock.next_turn(signals) {
-            return ending;
+            break ending;
         }
         y = match exchange(robot, &turn.input()) {
             Ok(output) => output,
-            Err(ending) => return ending,
+            Err(ending) => break ending,
         };
         t = clock.taken();
+    };
+    ended(robot, &machine, &ending, seen.0.last(), t);
+    ending
+}
+
+/// Tells the robot which atom has begun.
+fn began<R: Hosted, P: Plan>(robot: &mut R, machine: &Machine<P>, t: Nanos) {
+    let plan = machine.plan();
+    let atom = machine.atom().and_then(|atom| Some((atom, plan.fsm().atoms.get(atom as usize)?)));
+    if let Some((atom, written)) = atom {
+        robot.began(written.state, plan.law(atom), t);
     }
+}
+
+/// Tells the robot that its turns have ended, and by what.
+fn ended<R: Hosted, P: Plan>(
+    robot: &mut R,
+    machine: &Machine<P>,
+    ending: &Ending,
+    last: Option<&Transition>,
+    t: Nanos,
+) {
+    let plan = machine.plan();
+    let by = match (ending, last) {
+        (Ending::Over, Some(transition)) => CauseText { plan, transition }.to_string(),
+        (ending, _) => ending.brief(),
+    };
+    robot.ended(&Ended { plan: plan.name(0), is_over: *ending == Ending::Over, by: &by, t });
 }
 
 /// Where a plan stands that is not over.

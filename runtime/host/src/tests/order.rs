@@ -50,6 +50,7 @@ fn a_robot_that_looks_is_told_in_each_turn_where_the_plan_stands() {
     exchange 3
     3 stop in Lab[bumper] 0.2 Turn[wait 10] 0.1 [r3 < r5] 0.1
     exchange 3
+    Lab over at 0.3 by bumper (Lab)
     exchange 0
     stop
     finish
@@ -64,6 +65,18 @@ fn a_plan_that_is_over_in_its_first_turn_is_never_applied() {
     exchange 0, exchange 0, stop, finish
     status 0
     ");
+}
+
+#[test]
+fn a_robot_is_told_what_ended_its_turns() {
+    let ended = |acts: Vec<Act>, arguments: &[&str]| {
+        let run = Stage { looks: true, ..Stage::script(acts) }.run(arguments);
+        run.journal.split(", ").find(|line| line.contains(" by ")).unwrap_or_default().to_owned()
+    };
+    assert_eq!(ended(vec![quiet()], &["--turns", "3"]), "Lab stopped at 0.2 by --turns");
+    assert_eq!(ended(vec![quiet()], &["--timeout", "0.5"]), "Lab stopped at 0.5 by --timeout");
+    assert_eq!(ended(vec![quiet(), Act::Fails("no answer")], &[]), "Lab stopped at 0 by a fault");
+    assert_eq!(ended(vec![quiet(), quiet(), Act::Hears(Signal::TERMINATE)], &[]), "Lab stopped at 0.2 by SIGTERM");
 }
 
 #[test]

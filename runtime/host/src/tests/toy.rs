@@ -14,7 +14,7 @@ use super::plan::ToyPlan;
 use crate::clock::Instants;
 use crate::session::{Surroundings, session};
 use crate::signals::{Signal, Signals};
-use crate::{Around, Hosted, Pace, Refusal, Standing, StopRequest, Target, Time};
+use crate::{Around, Ended, Hosted, Pace, Refusal, Standing, StopRequest, Target, Time};
 
 /// An output: what fires while which atom, as written, is the current one.
 #[derive(Debug, Clone, Default)]
@@ -259,6 +259,15 @@ impl Hosted for Toy {
 
     fn looks(&self) -> bool {
         self.looks
+    }
+
+    fn ended(&mut self, ended: &Ended<'_>) {
+        // Of all runs, those in which it looks say enough of it.
+        if self.looks {
+            let Ended { plan, is_over, by, t } = ended;
+            let how = if *is_over { "over" } else { "stopped" };
+            self.note(format!("{plan} {how} at {} by {by}", t.seconds()));
+        }
     }
 
     fn turned(&mut self, standing: &Standing<'_>) {
