@@ -60,6 +60,13 @@ fn assert_well_drawn(lowered: &Lowered, picture: &Element) {
     let whole = edges(picture);
     let boxes = boxes(picture);
     assert_eq!(boxes.len(), lowered.brackets.len());
+    let outside_boxes =
+        picture.children.iter().filter(|child| child.name == "text" && child.attribute("class") == "quiet");
+    for text in outside_boxes.filter(|text| !text.attributes.contains_key("text-anchor")) {
+        let x: i64 = text.attribute("x").parse().unwrap();
+        let right = x + text.text.chars().count() as i64 * 73 / 10;
+        assert!(right <= whole[2], "{:?} leaves the picture", text.text);
+    }
     for (number, (group, here)) in boxes.iter().enumerate() {
         let bracket = &lowered.brackets[number];
         let around = if number == 0 { whole } else { boxes[bracket.parent as usize].1 };

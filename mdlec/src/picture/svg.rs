@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::can_be_shown;
 use super::layout::{Arrow, Line, MARGIN, arrows};
-use super::measure::LINE;
+use super::measure::{LINE, letters, wrapped};
 use super::places::{Placed, Style, places};
 use super::texts::{Texts, What};
 use super::xml::escaped;
@@ -15,8 +15,10 @@ use crate::fsm::Lowered;
 const STYLE: &str = include_str!("style.css");
 /// Above the plan's box, for the title.
 const TITLE: i64 = 46;
-/// Below it, for what the signs mean.
+/// Below it, with a line for what the signs mean.
 const FOOT: i64 = 40;
+/// The most lines of what the signs mean.
+const MEANINGS: usize = 4;
 /// How round a corner of a line is.
 const ROUND: i64 = 8;
 /// How many colours there are for scopes in scopes.
@@ -53,7 +55,9 @@ impl Picture<'_> {
 
     fn draw(&mut self) {
         let Some(root) = self.all.first() else { return };
-        let (width, height) = ((root.width + 2 * MARGIN).max(640), root.height + TITLE + FOOT);
+        let width = (root.width + 2 * MARGIN).max(640);
+        let meanings = wrapped(&self.meanings(), letters(width - MARGIN - root.x), MEANINGS);
+        let height = root.height + TITLE + FOOT + LINE * (meanings.len() as i64 - 1).max(0);
         let name = self.texts.0.scopes.iter().flatten().next().map(|plan| escaped(&plan.name)).unwrap_or_default();
         let count = self.texts.0.atoms.len();
         let atoms = if count == 1 { "1 atom".to_owned() } else { format!("{count} atoms") };
@@ -77,12 +81,12 @@ impl Picture<'_> {
         self.line(&format!("<text class=\"quiet\" x=\"{right}\" y=\"28\" text-anchor=\"end\">{atoms}</text>"));
         self.boxes();
         arrows(self.texts, self.all).iter().for_each(|line| self.arrow(line));
-        self.ends(root, height);
+        self.ends(root, height, &meanings);
         self.line("</svg>");
     }
 
     /// Where the plan begins and is over, and what the signs mean.
-    fn ends(&mut self, root: &Placed, height: i64) {
+    fn ends(&mut self, root: &Placed, height: i64, meanings: &[String]) {
         let (begin, end) = (root.x - MARGIN + 16, root.x + root.width + MARGIN - 12);
         self.line(&format!("<circle class=\"end\" cx=\"{begin}\" cy=\"{}\" r=\"6\"/>", root.y + root.enters));
         if root.ends {
@@ -90,10 +94,9 @@ impl Picture<'_> {
             self.line(&format!("<circle class=\"ring\" cx=\"{end}\" cy=\"{y}\" r=\"8\"/>"));
             self.line(&format!("<circle class=\"end\" cx=\"{end}\" cy=\"{y}\" r=\"4\"/>"));
         }
-        let (x, y) = (root.x, height - 14);
-        let meanings = self.meanings();
-        if !meanings.is_empty() {
-            self.line(&format!("<text class=\"quiet\" x=\"{x}\" y=\"{y}\">{meanings}</text>"));
+        for (number, line) in (1..).zip(meanings) {
+            let (x, y) = (root.x, height - 14 - LINE * (meanings.len() as i64 - number));
+            self.line(&format!("<text class=\"quiet\" x=\"{x}\" y=\"{y}\">{line}</text>"));
         }
     }
 
