@@ -11,7 +11,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use mdle_host::clap::{Arg, ArgMatches, Command, value_parser};
-use mdle_host::{Batch, Hosted, Judgement, NamedFile, Refusal, Standing, StopRequest, Target, Time, run};
+use mdle_host::{Batch, Ended, Hosted, Judgement, NamedFile, Refusal, Standing, StopRequest, Target, Time, run};
 use mdle_runtime::{Nanos, Robot, Twist};
 use mdle_sim::{Fault, Observed, Sensed, Sim};
 
@@ -89,8 +89,12 @@ impl Robot for Breaking {
 }
 
 impl Hosted for Breaking {
-    fn began(&mut self, state: u64, law: &str, t: Nanos) {
-        self.robot.began(state, law, t);
+    fn began(&mut self, number: u64, law: &str, t: Nanos) {
+        self.robot.began(number, law, t);
+    }
+
+    fn ended(&mut self, ended: &Ended<'_>) {
+        self.robot.ended(ended);
     }
 
     fn looks(&self) -> bool {

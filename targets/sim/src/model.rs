@@ -2,6 +2,8 @@
 
 mod figures;
 
+use std::fmt;
+
 use mdle_runtime::{Nanos, Radians, SonarId};
 
 use figures::{atrv, ideal, scout};
@@ -17,6 +19,16 @@ pub enum Body {
     Scout,
     /// An iRobot ATRV-mini, taken for the smallest disc around it: 24 sonars on four boards, skid steering.
     Atrv,
+}
+
+impl fmt::Display for Body {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Ideal => "ideal",
+            Self::Scout => "scout",
+            Self::Atrv => "atrv",
+        })
+    }
 }
 
 /// What of a body can be left out, to see what it does.

@@ -1,6 +1,6 @@
 //! The simulated robot with whoever looks on: its pictures, and the table of where it was.
 
-use mdle_host::{Hosted, Judgement, Standing};
+use mdle_host::{Ended, Hosted, Judgement, Standing};
 use mdle_runtime::capability::Bumpers as _;
 use mdle_runtime::{Nanos, PathStore, Pose, Robot, Sensed, Twist};
 
@@ -75,11 +75,18 @@ impl Observed {
         Self { goal, ..self }
     }
 
-    /// Has its way drawn when the run is finished: as a picture, and as one that moves.
-    pub(crate) fn drawn(mut self, plot: Option<WholeFile>, record: Option<WholeFile>, world: &World) -> Self {
+    /// Has its way drawn when the run is finished: as a picture, and as one that moves; `setup` names the world, the body and
+    /// the seed in their titles.
+    pub(crate) fn drawn(
+        mut self,
+        (plot, record): (Option<WholeFile>, Option<WholeFile>),
+        world: &World,
+        setup: String,
+    ) -> Self {
         if plot.is_some() || record.is_some() {
             let mut trail = Trail::from(&self.robot.pose(), self.robot.radius());
             trail.things.extend(self.robot.gone());
+            trail.about.setup = setup;
             trail.frames = record.is_some().then(Frames::new);
             self.pictures = Some(Pictures { plot, record, world: world.clone(), trail });
         }
@@ -142,9 +149,15 @@ impl Robot for Observed {
 }
 
 impl Hosted for Observed {
-    fn began(&mut self, state: u64, law: &str, t: Nanos) {
+    fn began(&mut self, number: u64, law: &str, t: Nanos) {
         if let Some(Pictures { trail, .. }) = &mut self.pictures {
-            trail.began(state, law, t);
+            trail.began(number, law, t);
+        }
+    }
+
+    fn ended(&mut self, ended: &Ended<'_>) {
+        if let Some(Pictures { trail, .. }) = &mut self.pictures {
+            trail.ended(ended);
         }
     }
 
@@ -204,7 +217,8 @@ mod tests {
         let robot = Simulated::with(&Make::default(), &world, Pose::ORIGIN, Duration::from_millis(100));
         let robot = Observed::from(robot.expect("a start on the floor"));
         let folder = std::env::temp_dir();
-        let mut robot = robot.drawn(WholeFile::at("plot", &folder.join("never written.svg")).ok(), None, &world);
+        let mut robot =
+            robot.drawn((WholeFile::at("plot", &folder.join("never written.svg")).ok(), None), &world, String::new());
         for _ in 0..turns {
             robot.exchange(&Twist { v: MetersPerSecond(0.2), omega: RadiansPerSecond(0.0) }).expect("finite inputs");
         }
@@ -228,7 +242,7 @@ mod tests {
         let make = Make { body: crate::model::Body::Scout, without: vec![crate::model::Part::Steps], seed: None };
         let robot = Simulated::with(&make, &world, Pose::ORIGIN, Duration::from_secs(1)).expect("a start");
         let file = WholeFile::at("plot", &std::env::temp_dir().join("never written.svg")).ok();
-        let mut robot = Observed::from(robot).drawn(file, None, &world);
+        let mut robot = Observed::from(robot).drawn((file, None), &world, String::new());
         for _ in 0..5 {
             robot.exchange(&Twist { v: MetersPerSecond(0.4), omega: RadiansPerSecond(0.0) }).expect("finite inputs");
         }

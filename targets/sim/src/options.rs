@@ -162,6 +162,12 @@ pub(crate) fn world(matches: &ArgMatches) -> Result<World, String> {
     }
 }
 
+/// The name of the world of `--world`, without the folders of a file.
+pub(crate) fn world_name(matches: &ArgMatches) -> String {
+    let name = file(matches, "world").map(|path| path.file_name().unwrap_or(path.as_os_str()));
+    name.map_or_else(|| "office".to_owned(), |name| name.display().to_string())
+}
+
 fn read(path: &Path) -> Result<World, String> {
     let shown = path.display().to_string();
     if !path.exists() {
@@ -191,12 +197,9 @@ pub(crate) fn start(matches: &ArgMatches) -> Result<Option<(&str, Start)>, Strin
 
 /// What `--body`, `--without` and `--seed` say is to be simulated.
 pub(crate) fn make(matches: &ArgMatches) -> Result<Make, String> {
-    let body = match matches.get_one::<String>("body").map_or("ideal", String::as_str) {
-        "ideal" => Body::Ideal,
-        "scout" => Body::Scout,
-        "atrv" => Body::Atrv,
-        other => return Err(format!("--body {other}: expected `ideal`, `scout` or `atrv`")),
-    };
+    let name = matches.get_one::<String>("body").map_or("ideal", String::as_str);
+    let body = [Body::Ideal, Body::Scout, Body::Atrv].into_iter().find(|body| body.to_string() == name);
+    let body = body.ok_or_else(|| format!("--body {name}: expected `ideal`, `scout` or `atrv`"))?;
     let text = matches.get_one::<String>("without").map_or("", String::as_str);
     let parts = text.split(',').map(str::trim).filter(|name| !name.is_empty());
     let without = parts.map(|name| {

@@ -8,10 +8,14 @@ mod labels;
 mod layout;
 mod legend;
 mod record;
+mod rows;
 mod shapes;
+mod strip;
 #[cfg(test)]
 mod tests;
 mod things;
+mod title;
+mod view;
 
 pub(crate) use drawing::svg;
 pub(crate) use record::animated;

@@ -8,6 +8,7 @@ use mdle_host::Batch;
 use mdle_host::clap::ArgMatches;
 use mdle_runtime::Pose;
 
+use crate::model::PARTS;
 use crate::observed::Observed;
 use crate::options;
 use crate::robot::{Make, Simulated};
@@ -35,7 +36,7 @@ pub(crate) fn robot(matches: &ArgMatches, period: Duration) -> Result<Observed, 
     let file = |option| options::file(matches, option).map(|path| WholeFile::at(option, path)).transpose();
     let watch = options::watch(matches).then(|| Watch::of(&setup.world, setup.make.radius())).transpose()?;
     let robot = robot.written_down(file("trail")?).watched(watch);
-    Ok(robot.drawn(file("plot")?, file("record")?, &setup.world))
+    Ok(robot.drawn((file("plot")?, file("record")?), &setup.world, setup.in_words(&options::world_name(matches))))
 }
 
 /// The runs that the options ask for, if they ask for several.
@@ -75,6 +76,17 @@ impl Setup {
         start::check(&start, make.radius(), &world, &walls).map_err(said)?;
         let noise = options::start_noise(matches)?;
         Ok(Self { world, walls, make, start, noise, period })
+    }
+
+    /// World, body and seed, as a title names them.
+    fn in_words(&self, world: &str) -> String {
+        let Make { body, without, seed } = &self.make;
+        let names =
+            without.iter().map(|part| PARTS.iter().find(|(_, known)| known == part).map_or("", |(name, _)| name));
+        let names: Vec<&str> = names.collect();
+        let without = if names.is_empty() { String::new() } else { format!(" without {}", names.join(", ")) };
+        let seed = seed.map_or("no seed".to_owned(), |seed| format!("seed {seed}"));
+        format!("world {world}, body {body}{without}, {seed}")
     }
 
     /// The robot whose errors and start are drawn by this seed.

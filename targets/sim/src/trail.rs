@@ -1,19 +1,17 @@
 //! What a run leaves behind for its pictures: the way, where each atom began, what the sonars heard, where the body touched.
 
+mod ways;
+
 use std::collections::BTreeSet;
 
+use mdle_host::Ended;
 use mdle_runtime::capability::{Odometry as _, SonarRing as _};
 use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, Sensed, SonarId};
 
 use crate::frames::{Frame, Frames};
 use crate::world::Place;
+pub(crate) use ways::{Atom, Mark, Ways};
 
-/// Places nearer to the last than this, in metres, are not kept: less than a pixel.
-const APART: f64 = 0.01;
-/// The most places of the way that are kept; when there are more, every second one goes.
-const PLACES_MOST: usize = 100_000;
-/// The most atoms whose beginnings are kept.
-const MARKS_MOST: usize = 10_000;
 /// Of the echoes in a square with this side, in metres, one is kept: however long a run, a floor has only so many.
 const SQUARE: f64 = 0.04;
 
@@ -27,14 +25,10 @@ pub(crate) struct Trail {
     pub(crate) here: Pose,
     /// How far each thing of the world has gone now; `None` for an open door.
     pub(crate) things: Vec<Option<Place>>,
-    /// The way before the first atom began, then the way of each.
-    pub(crate) before: Vec<Place>,
-    pub(crate) marks: Vec<Mark>,
-    /// How many atoms began besides, whose ways are the last one's.
-    pub(crate) unmarked: usize,
-    /// How many places there are, and how far apart they are at least, in metres.
-    count: usize,
-    apart: f64,
+    /// The way, by the atoms that drove it.
+    pub(crate) ways: Ways,
+    /// What a title says of the run.
+    pub(crate) about: About,
     /// Where the sonars heard something, at most one in a square of 4 cm.
     pub(crate) echoes: Vec<Place>,
     heard: BTreeSet<(i64, i64)>,
@@ -47,14 +41,15 @@ pub(crate) struct Trail {
     pub(crate) frames: Option<Frames>,
 }
 
-/// An atom that began, and the way driven in it.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Mark {
-    pub(crate) state: u64,
-    pub(crate) law: String,
-    pub(crate) t: Nanos,
-    /// From where it began.
-    pub(crate) way: Vec<Place>,
+/// A run in words.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(crate) struct About {
+    /// World, body and seed.
+    pub(crate) setup: String,
+    /// Name of the plan; empty if it has none, or before the run has ended.
+    pub(crate) plan: String,
+    /// Cause and time of the end; empty before that.
+    pub(crate) end: String,
 }
 
 impl Trail {
@@ -65,11 +60,8 @@ impl Trail {
             start: *pose,
             here: *pose,
             things: Vec::new(),
-            before: vec![Place::of(pose)],
-            marks: Vec::new(),
-            unmarked: 0,
-            count: 1,
-            apart: APART,
+            ways: Ways::from(Place::of(pose)),
+            about: About::default(),
             echoes: Vec::new(),
             heard: BTreeSet::new(),
             contacts: Vec::new(),
@@ -82,34 +74,12 @@ impl Trail {
     /// The robot has come to `pose`.
     pub(crate) fn went(&mut self, pose: &Pose) {
         self.here = *pose;
-        let place = Place::of(pose);
-        let way = self.marks.last_mut().map_or(&mut self.before, |mark| &mut mark.way);
-        if way.last().is_none_or(|last| libm::hypot(last.x - place.x, last.y - place.y) >= self.apart) {
-            way.push(place);
-            self.count += 1;
-        }
-        if self.count > PLACES_MOST {
-            self.thin();
-        }
-    }
-
-    /// Leaves out every second place, but for those where an atom began or ended.
-    fn thin(&mut self) {
-        self.apart *= 2.0;
-        self.count = 0;
-        for way in std::iter::once(&mut self.before).chain(self.marks.iter_mut().map(|mark| &mut mark.way)) {
-            let last = way.len().saturating_sub(1);
-            let mut number = 0;
-            way.retain(|_| {
-                number += 1;
-                number % 2 == 1 || number > last
-            });
-            self.count += way.len();
-        }
+        self.ways.went(Place::of(pose));
     }
 
     /// Where it is, it senses this, at time `t`.
     pub(crate) fn sensed(&mut self, sensed: &Sensed, t: Nanos) {
+        self.ways.passed(t);
         let echoes = echoes(&self.here, sensed, self.sensed.replace(t));
         for echo in echoes.into_iter().flatten() {
             if self.heard.insert(square(echo)) {
@@ -128,25 +98,22 @@ impl Trail {
         }
     }
 
-    /// An atom begins where the robot is.
-    pub(crate) fn began(&mut self, state: u64, law: &str, t: Nanos) {
-        if self.marks.len() >= MARKS_MOST {
-            self.unmarked = self.unmarked.saturating_add(1);
-            return;
-        }
-        let way = self.marks.last_mut().map_or(&mut self.before, |mark| &mut mark.way);
-        let place = Place::of(&self.here);
-        if way.last() != Some(&place) {
-            way.push(place);
-            self.count += 1;
-        }
-        self.count += 1;
-        self.marks.push(Mark { state, law: law.to_owned(), t, way: vec![place] });
+    /// An atom begins where the robot is; `number` is its state in the first pass of the loops around it.
+    pub(crate) fn began(&mut self, number: u64, law: &str, t: Nanos) {
+        self.ways.began(number, law, t, Place::of(&self.here));
+    }
+
+    /// The turns of the run have ended.
+    pub(crate) fn ended(&mut self, ended: &Ended<'_>) {
+        self.ways.ended(ended.t);
+        ended.plan.clone_into(&mut self.about.plan);
+        let how = if ended.is_over { "over" } else { "stopped" };
+        self.about.end = format!("{how} after {:.1} s: {}", ended.t.seconds(), ended.by);
     }
 
     /// All places kept.
     pub(crate) fn places(&self) -> impl Iterator<Item = Place> {
-        self.before.iter().chain(self.marks.iter().flat_map(|mark| &mark.way)).copied().chain([Place::of(&self.here)])
+        self.ways.places().chain([Place::of(&self.here)])
     }
 }
 
@@ -195,20 +162,5 @@ mod tests {
         assert!(then.distance(&pose(5.0, 4.5, 0.0)).0 < 1e-12 && (then.theta.degrees() - 90.0).abs() < 1e-12);
         let same = pose(0.3, -0.2, 17.0);
         assert_eq!(on_the_floor(&same, &same, &same), same);
-    }
-
-    #[test]
-    fn a_long_way_is_thinned_and_keeps_its_ends() {
-        let mut trail = Trail::from(&Pose::ORIGIN, 0.2);
-        let place = |x: f64| Pose { x: Meters(x), ..Pose::ORIGIN };
-        for metre in 0..20_000_u32 {
-            trail.began(1, "go 20 0", Nanos(0));
-            (0..50).for_each(|cm| trail.went(&place(f64::from(metre) + f64::from(cm) / 50.0)));
-        }
-        let kept = trail.places().count();
-        assert!((PLACES_MOST / 3..=PLACES_MOST + 1).contains(&kept), "{kept}");
-        assert_eq!((trail.marks.len(), trail.unmarked), (MARKS_MOST, 20_000 - MARKS_MOST));
-        let ends = (trail.before.first().map(|place| place.x), trail.places().last().map(|place| place.x));
-        assert_eq!(ends, (Some(0.0), Some(19_999.98)));
     }
 }

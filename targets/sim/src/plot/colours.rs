@@ -1,36 +1,93 @@
-//! The colours of a plot: atoms that follow each other can be told apart by everybody, those who see no red or green too.
+//! The colours of a plot on light and on dark pages: atoms that follow each other can be told apart by everybody, those who
+//! see no red or green too.
 
-pub(super) const INK: &str = "#262b33";
-/// For what is written on light colours.
-const DARK: &str = "#14171c";
-pub(super) const WHITE: &str = "#ffffff";
-pub(super) const FAINT: &str = "#7a828e";
-pub(super) const GRID: &str = "#eceef2";
-pub(super) const BOX: &str = "#cdd1d8";
-pub(super) const ECHO: &str = "#8a97a8";
-pub(super) const CONTACT: &str = "#c00020";
-pub(super) const GOAL: &str = "#e3f1e8";
+use std::fmt::Write as _;
 
-/// The colours of the atoms, over and over, each with what can be read on it.
-const COLOURS: [(&str, &str); 8] = [
-    ("#0072b2", WHITE),
-    ("#e69f00", DARK),
-    ("#882255", WHITE),
-    ("#c44e00", WHITE),
-    ("#00805e", WHITE),
-    ("#56b4e9", DARK),
-    ("#332288", WHITE),
-    ("#5f5f5f", WHITE),
-];
-
-/// The colour of the atom that began as this number, from 0.
-pub(super) fn of(number: usize) -> &'static str {
-    COLOURS[number % COLOURS.len()].0
+/// The colours of a picture.
+struct Palette {
+    ink: &'static str,
+    faint: &'static str,
+    paper: &'static str,
+    grid: &'static str,
+    /// Inside of boxes and discs.
+    solid: &'static str,
+    echo: &'static str,
+    contact: &'static str,
+    goal: &'static str,
+    /// The colours of the atoms, over and over, each with the colour of a number on it.
+    atoms: [(&'static str, &'static str); COUNT],
 }
 
-/// What can be read on it.
-pub(super) fn on(number: usize) -> &'static str {
-    COLOURS[number % COLOURS.len()].1
+/// Number of colours of atoms.
+const COUNT: usize = 8;
+
+const LIGHT: Palette = Palette {
+    ink: "#262b33",
+    faint: "#6b7380",
+    paper: "#ffffff",
+    grid: "#eceef2",
+    solid: "#cdd1d8",
+    echo: "#8a97a8",
+    contact: "#c00020",
+    goal: "#e3f1e8",
+    atoms: [
+        ("#0072b2", "#ffffff"),
+        ("#e69f00", "#14171c"),
+        ("#882255", "#ffffff"),
+        ("#c44e00", "#ffffff"),
+        ("#00805e", "#ffffff"),
+        ("#56b4e9", "#14171c"),
+        ("#332288", "#ffffff"),
+        ("#5f5f5f", "#ffffff"),
+    ],
+};
+
+const DARK: Palette = Palette {
+    ink: "#e6e9ee",
+    faint: "#9aa4b0",
+    paper: "#14181d",
+    grid: "#242a32",
+    solid: "#3a434e",
+    echo: "#7d8b9d",
+    contact: "#ff5468",
+    goal: "#1c3a29",
+    atoms: [
+        ("#4aa3df", "#14171c"),
+        ("#ff9a5c", "#14171c"),
+        ("#a8dcff", "#14171c"),
+        ("#f0b429", "#14171c"),
+        ("#27a882", "#14171c"),
+        ("#8f7ff5", "#14171c"),
+        ("#c95fb0", "#14171c"),
+        ("#c8c8c8", "#14171c"),
+    ],
+};
+
+/// The class of a line, `way`, of the inside of a disc, `disc`, or of the number on it, `on`, in the colour of this atom.
+pub(super) fn class(kind: &str, atom: usize) -> String {
+    format!("{kind}{}", atom % COUNT)
+}
+
+/// The style sheet of a picture, light and dark.
+pub(super) fn style() -> String {
+    format!("\n{}@media (prefers-color-scheme: dark) {{\n{}}}\n", rules(&LIGHT), rules(&DARK))
+}
+
+fn rules(palette: &Palette) -> String {
+    let Palette { ink, faint, paper, grid, solid, echo, contact, goal, atoms } = palette;
+    let mut rules = format!(
+        "text {{ fill: {ink} }}\n.quiet {{ fill: {faint} }}\n.paper {{ fill: {paper} }}\n.ink {{ stroke: {ink} }}\n\
+         .faint {{ stroke: {faint} }}\n.grid {{ stroke: {grid} }}\n.shade {{ fill: {grid} }}\n.solid {{ fill: {solid} }}\n\
+         .echo {{ stroke: {echo} }}\n.contact {{ stroke: {contact} }}\n.goal {{ fill: {goal} }}\n.halo {{ stroke: {paper} }}\n"
+    );
+    for (number, (colour, on)) in atoms.iter().enumerate() {
+        // Writing to a string cannot fail.
+        let _ = writeln!(
+            rules,
+            ".way{number} {{ stroke: {colour} }}\n.disc{number} {{ fill: {colour} }}\n.on{number} {{ fill: {on} }}"
+        );
+    }
+    rules
 }
 
 #[cfg(test)]
@@ -75,27 +132,45 @@ mod tests {
         [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
     }
 
+    fn contrast(one: &str, other: &str) -> f64 {
+        let [one, other] = [one, other].map(|colour| luminance(&linear(colour)));
+        (one.max(other) + 0.05) / (one.min(other) + 0.05)
+    }
+
     #[test]
     fn atoms_that_follow_each_other_look_different_in_every_eye() {
-        for number in 0..COLOURS.len() {
-            for eye in &EYES {
-                let seen = |number| {
-                    let rgb = linear(of(number));
-                    lab(&[0, 1, 2].map(|row: usize| times(&eye[row], &rgb).clamp(0.0, 1.0)))
-                };
-                let (one, other) = (seen(number), seen(number + 1));
-                let apart = libm::sqrt(one.iter().zip(other).map(|(one, other)| (one - other) * (one - other)).sum());
-                assert!(apart > 25.0, "{} and {}: {apart}", of(number), of(number + 1));
+        for palette in [&LIGHT, &DARK] {
+            for (number, (one, _)) in palette.atoms.iter().enumerate() {
+                let (other, _) = palette.atoms[(number + 1) % COUNT];
+                for eye in &EYES {
+                    let seen = |colour| {
+                        let rgb = linear(colour);
+                        lab(&[0, 1, 2].map(|row: usize| times(&eye[row], &rgb).clamp(0.0, 1.0)))
+                    };
+                    let (seen, beside) = (seen(one), seen(other));
+                    let apart = seen.iter().zip(beside).map(|(one, other)| (one - other) * (one - other)).sum();
+                    assert!(libm::sqrt(apart) > 25.0, "{one} and {other}: {}", libm::sqrt(apart));
+                }
             }
         }
     }
 
     #[test]
-    fn numbers_can_be_read_on_every_colour() {
-        for number in 0..COLOURS.len() {
-            let [one, other] = [of(number), on(number)].map(|colour| luminance(&linear(colour)));
-            let contrast = (one.max(other) + 0.05) / (one.min(other) + 0.05);
-            assert!(contrast >= 4.5, "{}: {contrast}", of(number));
+    fn texts_and_numbers_can_be_read_on_their_ground() {
+        for Palette { ink, faint, paper, grid, atoms, .. } in [&LIGHT, &DARK] {
+            let texts = [(ink, paper), (faint, paper), (ink, grid)];
+            for (text, ground) in texts.into_iter().chain(atoms.iter().map(|(disc, on)| (on, disc))) {
+                assert!(contrast(text, ground) >= 4.5, "{text} on {ground}: {}", contrast(text, ground));
+            }
+        }
+    }
+
+    #[test]
+    fn ways_and_signs_are_seen_on_the_floor() {
+        for Palette { contact, paper, atoms, .. } in [&LIGHT, &DARK] {
+            for colour in atoms.iter().map(|(colour, _)| colour).chain([contact]) {
+                assert!(contrast(colour, paper) >= 2.0, "{colour}: {}", contrast(colour, paper));
+            }
         }
     }
 }

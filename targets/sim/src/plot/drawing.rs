@@ -1,61 +1,80 @@
 //! The picture of a run that is over: the floor, the way coloured by atom, what was heard and touched, and the legend.
 
+use std::collections::BTreeSet;
+
 use mdle_runtime::{Meters, Pose};
 use svg::Document;
-use svg::node::element::{Group, Path, Title};
+use svg::node::element::{Group, Path, Style, Title};
 
-use super::colours::{self, ECHO, FAINT, INK};
-use super::layout::{Layout, MARKS_MOST};
-use super::shapes::{Pixel, badge, circle, cross, dots, line, polyline, tenths};
+use super::colours::{class, style};
+use super::layout::{LEFT, Layout, MARGIN};
+use super::rows::ROWS_MOST;
+use super::shapes::{Pixel, badge, circle, cross, dots, line, simplified, tenths, through};
 use super::{floor, labels, legend, things};
 use crate::trail::Trail;
 use crate::world::{Place, World};
 
+/// Between two places of the way that callouts keep clear of, in pixels.
+const STEP: f64 = 6.0;
+
+/// Of the echoes in a square with this side, in pixels, one is drawn.
+const SQUARE: f64 = 8.0;
+
 /// The plot of a trail on the floor of `world`.
 pub(crate) fn svg(world: &World, trail: &Trail) -> String {
     let layout = Layout::of(world, trail);
-    let dots = began(&layout, trail);
-    let document = document(&layout, layout.height, "The way of the robot on its floor")
+    let document = document(&layout, layout.height)
         .add(floor::drawn(&layout, world, layout.height))
-        .add(things::drawn(&layout, world, trail))
-        .add(echoes(&layout, trail))
-        .add(body(&layout, &trail.start, trail.radius, FAINT))
+        .add(floor::clipped().add(things::drawn(&layout, world, trail)).add(echoes(&layout, trail)))
+        .add(body(&layout, &trail.start, trail.radius, "faint"))
         .add(way(&layout, trail))
         .add(contacts(&layout, trail))
-        .add(body(&layout, &trail.here, trail.radius, INK))
-        .add(marks(&layout, &dots))
+        .add(body(&layout, &trail.here, trail.radius, "ink"))
+        .add(marks(&layout, trail))
         .add(legend::drawn(&layout, world, trail));
     format!("{document}\n")
 }
 
 /// An empty picture of this height.
-pub(super) fn document(layout: &Layout, height: f64, title: &str) -> Document {
+pub(super) fn document(layout: &Layout, height: f64) -> Document {
     let size = (0, 0, tenths(layout.width()), tenths(height));
     let document = Document::new().set("viewBox", size).set("width", size.2).set("height", size.3);
-    document.set("font-family", "sans-serif").set("font-size", 14).add(Title::new(title))
+    let document = document.set("font-family", "sans-serif").set("font-size", 14);
+    document.add(Title::new(&layout.title.whole)).add(Style::new(style()))
 }
 
+/// The echoes, at most one in a small square: more cannot be told apart.
 fn echoes(layout: &Layout, trail: &Trail) -> Path {
-    let places = trail.echoes.iter().filter(|place| layout.shows(**place)).map(|place| layout.at(*place));
-    let path = Path::new().set("d", dots(places)).set("fill", "none").set("stroke", ECHO).set("stroke-opacity", 0.55);
-    path.set("stroke-width", 1.6).set("stroke-linecap", "round")
+    let shown = trail.echoes.iter().filter(|place| layout.shows_any([**place].into_iter()));
+    let mut squares = BTreeSet::new();
+    let square = |pixels: f64| libm::floor(pixels / SQUARE) as i64;
+    let apart = shown.map(|place| layout.at(*place)).filter(|(x, y)| squares.insert((square(*x), square(*y))));
+    let path = Path::new().set("d", dots(apart)).set("fill", "none");
+    path.set("class", "echo").set("stroke-opacity", 0.55).set("stroke-width", 1.6).set("stroke-linecap", "round")
 }
 
-/// The way of each atom, on white so that it stays apart from what it crosses.
+/// The way of each atom as written, all its passes in one path.
 fn way(layout: &Layout, trail: &Trail) -> Group {
-    let line = |way: &[Place]| polyline(way.iter().map(|place| layout.at(*place)));
+    let data = |way: &[Place]| through(simplified(way.iter().map(|place| layout.at(*place))));
+    let ways = &trail.ways;
+    let mut before = data(&ways.before);
+    let mut atoms = vec![String::new(); ways.atoms.len()];
+    for mark in ways.marks.iter().filter(|mark| mark.way.len() > 1) {
+        *mark.atom.and_then(|atom| atoms.get_mut(atom)).unwrap_or(&mut before) += &data(&mark.way);
+    }
+    let path = |data: &str| Path::new().set("d", data).set("fill", "none");
     let group = Group::new().set("stroke-width", 2.5).set("stroke-linejoin", "round").set("stroke-linecap", "round");
-    let group = group.add(line(&trail.before).set("stroke", FAINT));
-    let ways = trail.marks.iter().enumerate().filter(|(_, mark)| mark.way.len() > 1);
-    ways.fold(group, |group, (number, mark)| group.add(line(&mark.way).set("stroke", colours::of(number))))
+    let group = group.add(path(&before).set("class", "faint"));
+    let driven = atoms.iter().enumerate().filter(|(_, data)| !data.is_empty());
+    driven.fold(group, |group, (atom, data)| group.add(path(data).set("class", class("way", atom))))
 }
 
 /// The body: a disc with a line to its front.
-pub(super) fn body(layout: &Layout, pose: &Pose, radius: f64, colour: &str) -> Group {
+pub(super) fn body(layout: &Layout, pose: &Pose, radius: f64, class: &str) -> Group {
     let centre = layout.at(Place::of(pose));
     let front = layout.at(Place::of(&pose.towards(pose.theta, Meters(radius))));
     let disc = circle(centre, radius * layout.scale).set("fill", "none");
-    Group::new().set("stroke", colour).set("stroke-width", 1.2).add(disc).add(line(centre, front))
+    Group::new().set("class", class).set("stroke-width", 1.2).add(disc).add(line(centre, front))
 }
 
 /// A cross where the body touched something.
@@ -64,21 +83,25 @@ fn contacts(layout: &Layout, trail: &Trail) -> Group {
     touched.fold(Group::new(), Group::add)
 }
 
-/// Where each of the atoms that are marked began.
-fn began(layout: &Layout, trail: &Trail) -> Vec<Pixel> {
-    let begins = trail.marks.iter().take(MARKS_MOST).filter_map(|mark| mark.way.first());
-    begins.map(|place| layout.at(*place)).collect()
-}
-
-fn marks(layout: &Layout, dots: &[Pixel]) -> Group {
-    let labels = labels::placed(dots, (layout.chart, layout.bottom()));
-    let mut lines = Group::new().set("stroke", FAINT);
-    let mut group = Group::new();
-    for (number, (dot, label)) in dots.iter().zip(&labels).enumerate() {
-        let state = layout.lines.get(number).map_or("", |(state, _, _)| state);
+/// A callout for each atom as written, at the place where it first began.
+fn marks(layout: &Layout, trail: &Trail) -> Group {
+    let atoms = || trail.ways.atoms.iter().take(ROWS_MOST);
+    let dots: Vec<Pixel> = atoms().map(|atom| layout.at(atom.place)).collect();
+    let mut ways: Vec<Pixel> = Vec::new();
+    for pixel in trail.places().map(|place| layout.at(place)) {
+        if ways.last().is_none_or(|last| libm::hypot(last.0 - pixel.0, last.1 - pixel.1) >= STEP) {
+            ways.push(pixel);
+        }
+    }
+    let room = ((MARGIN + LEFT, layout.chart - MARGIN), (layout.top, layout.bottom()));
+    let labels = labels::placed(&dots, &ways, room);
+    let mut lines = Group::new().set("class", "ink").set("stroke-width", 1);
+    let mut group = Group::new().set("stroke-width", 1.5);
+    for ((number, atom), (dot, label)) in atoms().enumerate().zip(dots.iter().zip(&labels)) {
         lines = lines.add(line(*dot, *label));
-        let dot = circle(*dot, labels::DOT).set("fill", colours::of(number));
-        group = group.add(dot).add(badge(*label, state, number));
+        let dot = circle(*dot, labels::DOT).set("class", format!("{} halo", class("disc", number)));
+        let halo = circle(*label, labels::RADIUS + 0.5).set("fill", "none").set("class", "halo");
+        group = group.add(dot).add(badge(*label, &atom.number.to_string(), number)).add(halo);
     }
     Group::new().add(lines).add(group)
 }

@@ -5,13 +5,15 @@ use svg::node::element::{Animate, AnimateTransform};
 
 use super::layout::round_step;
 use crate::frames::Frame;
-use crate::trail::Trail;
+use crate::trail::{Mark, Trail};
 use crate::world::Place;
 
 /// The longest film, in seconds, before the rest.
 const SHOWN_MOST: f64 = 20.0;
 /// The most places of a way that are written down one by one: some 200 m.
 const PLACES_MOST: usize = 20_000;
+/// The most atoms that begin and are all shown; of more, those that begin and end between two moments are left out.
+const ACTS_MOST: usize = 1000;
 /// The rest at the end, in seconds.
 const REST: f64 = 2.5;
 
@@ -19,7 +21,7 @@ const REST: f64 = 2.5;
 pub(super) struct Film<'f> {
     /// Its moments.
     pub(super) frames: &'f [Frame],
-    /// The atoms that run in it, in order; those that begin and end between two moments are left out.
+    /// The atoms that run in it, in order.
     pub(super) acts: Vec<Act>,
     /// How many times as fast as it happened it is shown.
     pub(super) times: f64,
@@ -42,27 +44,41 @@ pub(super) struct Act {
 impl<'f> Film<'f> {
     /// The film of these moments of a trail.
     pub(super) fn of(frames: &'f [Frame], trail: &Trail) -> Self {
+        let marks = &trail.ways.marks;
         let mut acts: Vec<Act> = Vec::new();
         let mut begun = 0;
         for (number, frame) in frames.iter().enumerate() {
-            while trail.marks.get(begun).is_some_and(|mark| mark.t <= frame.t) {
+            let before = begun;
+            while marks.get(begun).is_some_and(|mark| mark.t <= frame.t) {
                 begun += 1;
             }
-            let mark = begun.checked_sub(1);
-            match acts.last_mut() {
-                Some(act) if act.mark == mark => (act.to, act.last) = (frame.t, number),
-                previous => {
-                    let from = mark.and_then(|mark| trail.marks.get(mark)).map_or(frame.t, |mark| mark.t);
-                    if let Some(act) = previous {
-                        (act.to, act.last) = (from, number);
-                    }
-                    acts.push(Act { mark, from, to: frame.t, first: number, last: number });
-                }
+            let act = |mark, from| Act { mark, from, to: frame.t, first: number, last: number };
+            if acts.is_empty() && begun == 0 {
+                acts.push(act(None, frame.t));
+            }
+            if marks.len() > ACTS_MOST {
+                // The last alone of those that have begun.
+                acts.extend(newest(marks, before, begun).map(|(number, mark)| act(Some(number), mark.t)));
+            } else {
+                acts.extend((before..begun).filter_map(|mark| Some(act(Some(mark), marks.get(mark)?.t))));
+            }
+            if let Some(act) = acts.last_mut() {
+                (act.to, act.last) = (frame.t, number);
             }
         }
+        // Each ends where the next begins, and its last moment is the first of that.
+        let nexts: Vec<(Nanos, usize)> = acts.iter().skip(1).map(|next| (next.from, next.first)).collect();
+        for (act, next) in acts.iter_mut().zip(nexts) {
+            (act.to, act.last) = next;
+        }
         let seconds = frames.last().map_or(0.0, |frame| frame.t.seconds());
-        let smooth = trail.marks.iter().map(|mark| mark.way.len()).sum::<usize>() <= PLACES_MOST;
+        let smooth = trail.ways.marks.iter().map(|mark| mark.way.len()).sum::<usize>() <= PLACES_MOST;
         Self { frames, acts, times: round_step((seconds / SHOWN_MOST).max(1.0)), smooth }
+    }
+
+    /// The atom that runs in an act, by its position among those that began.
+    pub(super) fn atom(act: &Act, trail: &Trail) -> Option<usize> {
+        act.mark.and_then(|mark| trail.ways.marks.get(mark))?.atom
     }
 
     /// The moments of an act.
@@ -75,7 +91,7 @@ impl<'f> Film<'f> {
     pub(super) fn way(&self, act: &Act, trail: &Trail) -> Option<Vec<Place>> {
         let first = act.mark?;
         let next = self.acts.get(self.acts.partition_point(|other| other.mark <= act.mark)).and_then(|next| next.mark);
-        let marks = trail.marks.get(first..next.unwrap_or(trail.marks.len())).filter(|_| self.smooth)?;
+        let marks = trail.ways.marks.get(first..next.unwrap_or(trail.ways.marks.len())).filter(|_| self.smooth)?;
         Some(marks.iter().flat_map(|mark| &mark.way).copied().collect())
     }
 
@@ -91,8 +107,8 @@ impl<'f> Film<'f> {
     }
 
     /// How long it takes to be shown, with the rest, in seconds.
-    fn duration(&self) -> f64 {
-        self.end().seconds() / self.times + REST
+    pub(super) fn duration(&self) -> f64 {
+        libm::round((self.end().seconds() / self.times + REST) * 1e3) / 1e3
     }
 
     /// Where in a repetition the run's time `t` is, from 0 to 1, to a hundred-thousandth.
@@ -149,7 +165,19 @@ impl<'f> Film<'f> {
             values += between;
             values += value;
         }
-        let dur = format!("{}s", libm::round(self.duration() * 1e3) / 1e3);
+        let dur = format!("{}s", self.duration());
         [("keyTimes", times), ("values", values), ("dur", dur), ("repeatCount", "indefinite".to_owned())]
     }
+}
+
+/// The last of the marks in a range, with its number.
+fn newest(marks: &[Mark], before: usize, begun: usize) -> Option<(usize, &Mark)> {
+    let number = begun.checked_sub(1).filter(|number| *number >= before)?;
+    Some((number, marks.get(number)?))
+}
+
+/// Values without those that are as the one before.
+pub(super) fn changes<T>(values: impl Iterator<Item = (T, String)>) -> impl Iterator<Item = (T, String)> {
+    let mut last = None;
+    values.filter(move |(_, value)| last.replace(value.clone()).as_ref() != Some(value))
 }

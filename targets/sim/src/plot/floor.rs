@@ -1,8 +1,7 @@
 //! The floor of a plot: axes in metres, walls and boxes, and the zone in which a run is to end.
 
-use svg::node::element::{Group, Path, Rectangle};
+use svg::node::element::{ClipPath, Group, Path, Rectangle};
 
-use super::colours::{BOX, FAINT, GOAL, GRID, INK, WHITE};
 use super::layout::{LEFT, Layout, MARGIN, round_step};
 use super::shapes::{line, polyline, tenths, text, through};
 use crate::world::{Outline, Place, World};
@@ -10,35 +9,56 @@ use crate::world::{Outline, Place, World};
 /// Between two numbers of an axis, in pixels.
 const APART: f64 = 50.0;
 
-/// The floor on white.
+/// Name of the region in which anything of the floor is drawn.
+const REGION: &str = "floor";
+
+/// The ground of a picture of this height, its title, and the axes of its floor.
 pub(super) fn drawn(layout: &Layout, world: &World, height: f64) -> Group {
-    let background = Rectangle::new().set("width", layout.width()).set("height", height).set("fill", WHITE);
-    Group::new().add(background).add(axes(layout)).add(walls(layout, world))
+    let background = Rectangle::new().set("width", layout.width()).set("height", height).set("class", "paper");
+    let region = ClipPath::new().set("id", REGION).add(
+        Rectangle::new()
+            .set("x", MARGIN + LEFT)
+            .set("y", tenths(layout.top))
+            .set("width", tenths(layout.chart - 2.0 * MARGIN - LEFT))
+            .set("height", tenths(layout.bottom() - layout.top)),
+    );
+    Group::new()
+        .add(region)
+        .add(background)
+        .add(layout.title.drawn())
+        .add(axes(layout))
+        .add(clipped().add(walls(layout, world)))
+}
+
+/// A group of which only what lies on the floor that is shown is drawn.
+pub(super) fn clipped() -> Group {
+    Group::new().set("clip-path", format!("url(#{REGION})"))
 }
 
 fn axes(layout: &Layout) -> Group {
-    let (left, right, bottom) = (MARGIN + LEFT, layout.chart - MARGIN, layout.bottom());
+    let (left, right) = (MARGIN + LEFT, layout.chart - MARGIN);
+    let (top, bottom) = (layout.top, layout.bottom());
     let step = round_step(APART / layout.scale);
-    let mut grid = Group::new().set("stroke", GRID);
+    let mut grid = Group::new().set("class", "grid");
     let mut numbers = Group::new().set("font-size", 12);
-    for x in multiples(layout.x, step) {
+    for x in multiples(layout.view.x, step) {
         let (at, _) = layout.at(Place { x, y: 0.0 });
-        grid = grid.add(line((at, MARGIN), (at, bottom)));
+        grid = grid.add(line((at, top), (at, bottom)));
         numbers = numbers.add(text(&number(x, step), (at, bottom + 13.0), "middle"));
     }
-    for y in multiples(layout.y, step) {
+    for y in multiples(layout.view.y, step) {
         let (_, at) = layout.at(Place { x: 0.0, y });
         grid = grid.add(line((left, at), (right, at)));
         numbers = numbers.add(text(&number(y, step), (left - 8.0, at), "end"));
     }
-    let middle = ((left + right) / 2.0, (MARGIN + bottom) / 2.0);
+    let middle = ((left + right) / 2.0, (top + bottom) / 2.0);
     let turned = format!("rotate(-90 {} {})", tenths(MARGIN - 4.0), tenths(middle.1));
     let names = Group::new()
         .set("font-size", 13)
         .add(text("x in m", (middle.0, bottom + 34.0), "middle"))
         .add(text("y in m", (MARGIN - 4.0, middle.1), "middle").set("transform", turned));
-    let axis = polyline([(left, MARGIN), (left, bottom), (right, bottom)]).set("stroke", FAINT);
-    Group::new().set("fill", INK).add(grid).add(axis).add(numbers).add(names)
+    let axis = polyline([(left, top), (left, bottom), (right, bottom)]).set("class", "faint");
+    Group::new().add(grid).add(axis).add(numbers).add(names)
 }
 
 /// The multiples of `step` in a range.
@@ -62,16 +82,17 @@ fn walls(layout: &Layout, world: &World) -> Group {
         let (right, bottom) = layout.at(Place { x: zone.max.x, y: zone.min.y });
         let zone = Rectangle::new().set("x", tenths(left)).set("y", tenths(top));
         let zone = zone.set("width", tenths(right - left)).set("height", tenths(bottom - top));
-        group = group.add(zone.set("fill", GOAL));
+        group = group.add(zone.set("class", "goal"));
     }
     // Few paths for all outlines: a map has many, and viewers draw few long paths faster than many short ones.
     let (contours, outlines) = world.outlines.split_at(world.contours.min(world.outlines.len()));
     let (boxes, walls): (Vec<&Outline>, Vec<&Outline>) = outlines.iter().partition(|outline| outline.solid);
-    for (outlines, fill) in [(contours.iter().collect(), BOX), (boxes, BOX), (walls, "none")] {
-        let outlines = outlines.into_iter().map(|outline| outline.points.iter().map(|place| layout.at(*place)));
+    for (outlines, class) in [(contours.iter().collect(), "ink solid"), (boxes, "ink solid"), (walls, "ink")] {
+        let outlines = outlines.into_iter().filter(|outline| layout.shows_any(outline.points.iter().copied()));
+        let outlines = outlines.map(|outline| outline.points.iter().map(|place| layout.at(*place)));
         let data: String = outlines.map(through).collect();
         if !data.is_empty() {
-            let path = Path::new().set("d", data).set("stroke", INK).set("stroke-width", 3).set("fill", fill);
+            let path = Path::new().set("d", data).set("fill", "none").set("class", class).set("stroke-width", 3);
             group = group.add(path.set("stroke-linecap", "square"));
         }
     }

@@ -15,17 +15,23 @@ const DISTANCES: [f64; 6] = [22.0, 36.0, 50.0, 66.0, 84.0, 104.0];
 /// Between two labels.
 const APART: f64 = 3.0;
 
-/// A label for each of the `dots`, in order, clear of all dots and of the labels before it, inside `width` × `height`.
-pub(super) fn placed(dots: &[Pixel], (width, height): (f64, f64)) -> Vec<Pixel> {
+/// A rectangle: from left to right, and from top to bottom.
+pub(super) type Room = ((f64, f64), (f64, f64));
+
+/// Returns a label for each of the `dots`, in order, inside `room` and clear of all dots and of the labels before it; where
+/// that can be, also of the `lines`, given by places no farther apart than a label is wide.
+pub(super) fn placed(dots: &[Pixel], lines: &[Pixel], ((left, right), (top, bottom)): Room) -> Vec<Pixel> {
     let mut labels: Vec<Pixel> = Vec::with_capacity(dots.len());
     for dot in dots {
         let clear = |at: &Pixel| {
-            let inside = (RADIUS..width - RADIUS).contains(&at.0) && (RADIUS..height - RADIUS).contains(&at.1);
+            let inside =
+                (left + RADIUS..right - RADIUS).contains(&at.0) && (top + RADIUS..bottom - RADIUS).contains(&at.1);
             inside
                 && labels.iter().all(|label| distance(*at, *label) >= 2.0 * RADIUS + APART)
                 && dots.iter().all(|dot| distance(*at, *dot) >= RADIUS + DOT + APART)
         };
-        let found = around(*dot).find(clear);
+        let free = |at: &Pixel| lines.iter().all(|line| distance(*at, *line) >= RADIUS + APART);
+        let found = around(*dot).find(|at| clear(at) && free(at)).or_else(|| around(*dot).find(clear));
         labels.push(found.unwrap_or(*dot));
     }
     labels
@@ -51,9 +57,16 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_label_is_beside_a_line_where_there_is_room() {
+        let line: Vec<Pixel> = (0..60).map(|step| (f64::from(step) * 10.0, 300.0 - f64::from(step) * 2.0)).collect();
+        let [label] = placed(&[(300.0, 240.0)], &line, ((0.0, 600.0), (0.0, 600.0)))[..] else { panic!("one label") };
+        assert!(line.iter().all(|at| distance(*at, label) > RADIUS), "{label:?}");
+    }
+
+    #[test]
     fn labels_of_one_place_lie_apart() {
         let dots = [(300.0, 300.0); 24];
-        let labels = placed(&dots, (600.0, 600.0));
+        let labels = placed(&dots, &[], ((0.0, 600.0), (0.0, 600.0)));
         for (number, one) in labels.iter().enumerate() {
             assert!(distance(*one, (300.0, 300.0)) >= RADIUS + DOT);
             for other in &labels[number + 1..] {

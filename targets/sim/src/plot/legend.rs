@@ -2,11 +2,10 @@
 
 use svg::node::element::{Group, Path, Rectangle};
 
-use super::colours::{ECHO, FAINT, GOAL, INK};
 use super::labels::RADIUS;
 use super::layout::{LETTERS, Layout, MARGIN, round_step};
 use super::shapes::{badge, circle, cross, dots, polyline, text};
-use super::things;
+use super::{rows, things};
 use crate::trail::Trail;
 use crate::world::World;
 
@@ -17,17 +16,27 @@ const BAR_MOST: f64 = 100.0;
 pub(super) fn drawn(layout: &Layout, world: &World, trail: &Trail) -> Group {
     let (left, right) = (layout.chart, layout.width() - MARGIN);
     let indented = left + 2.0 * RADIUS + 10.0;
-    let mut legend = Group::new().set("font-size", LETTERS).set("fill", INK);
-    for (number, (state, law, t)) in layout.lines.iter().enumerate() {
-        let y = layout.line(number);
-        if !state.is_empty() {
-            legend = legend.add(badge((left + RADIUS, y), state, number));
+    let before_last = right - rows::last_column(&layout.rows);
+    let mut legend = Group::new().set("font-size", LETTERS);
+    if let Some(first) = layout.rows.first() {
+        let head = |name, x, anchor| text(name, (x, layout.line(0)), anchor).set("class", "quiet").set("font-size", 12);
+        legend = legend.add(head("atom", indented, "start")).add(head("total", right, "end"));
+        if !first.times.is_empty() {
+            legend = legend.add(head("times", before_last, "end"));
         }
-        legend = legend.add(text(law, (indented, y), "start")).add(text(t, (right, y), "end"));
     }
-    let signs = signs(left + RADIUS, world, trail);
+    for (atom, row) in layout.rows.iter().enumerate() {
+        let y = layout.line_of(atom);
+        if !row.number.is_empty() {
+            legend = legend.add(badge((left + RADIUS, y), &row.number, atom));
+        }
+        let figures = [(&row.times, before_last), (&row.total, right)].into_iter().filter(|(text, _)| !text.is_empty());
+        legend = legend.add(text(&row.law, (indented, y), "start"));
+        legend = figures.fold(legend, |legend, (figure, x)| legend.add(text(figure, (x, y), "end")));
+    }
+    let signs = signs(layout, left + RADIUS, world, trail);
     // A free line above them, if there is something to be free of.
-    let first = layout.lines.len() + usize::from(!layout.lines.is_empty());
+    let first = layout.rows.len() + if layout.rows.is_empty() { 0 } else { 2 };
     for (number, (sign, said)) in (first..).zip(signs) {
         let y = layout.line(number);
         let sign = sign.set("transform", format!("translate(0 {y})"));
@@ -37,22 +46,22 @@ pub(super) fn drawn(layout: &Layout, world: &World, trail: &Trail) -> Group {
 }
 
 /// The signs that occur, drawn around height 0, and what they mean.
-fn signs(x: f64, world: &World, trail: &Trail) -> Vec<(Group, &'static str)> {
-    let body = |colour| Group::new().add(circle((x, 0.0), 7.0).set("fill", "none").set("stroke", colour));
-    let mut signs = vec![(body(FAINT), "start"), (body(INK), "end")];
+fn signs(layout: &Layout, x: f64, world: &World, trail: &Trail) -> Vec<(Group, &'static str)> {
+    let body = |class| Group::new().add(circle((x, 0.0), 7.0).set("fill", "none").set("class", class));
+    let mut signs = vec![(body("faint"), "start"), (body("ink"), "end")];
     if !trail.echoes.is_empty() {
         let echoes = dots([(x - 6.0, 2.0), (x, -2.0), (x + 6.0, 1.0)]);
-        let echoes = Path::new().set("d", echoes).set("stroke", ECHO);
+        let echoes = Path::new().set("d", echoes).set("class", "echo");
         signs.push((Group::new().add(echoes.set("stroke-width", 2.4).set("stroke-linecap", "round")), "sonar echo"));
     }
     if !trail.contacts.is_empty() {
         signs.push((Group::new().add(cross((x, 0.0))), "contact"));
     }
-    if world.goal.is_some() {
+    if world.goal.is_some_and(|goal| layout.shows_any([goal.min, goal.max].into_iter())) {
         let zone = Rectangle::new().set("x", x - 9.0).set("y", -7).set("width", 18).set("height", 14);
-        signs.push((Group::new().add(zone.set("fill", GOAL).set("stroke", FAINT).set("stroke-width", 0.5)), "goal"));
+        signs.push((Group::new().add(zone.set("class", "goal faint").set("stroke-width", 0.5)), "goal"));
     }
-    signs.extend(things::signs(world).map(|sign| (sign.drawn(x), sign.said())));
+    signs.extend(things::signs(layout, world).map(|sign| (sign.drawn(x), sign.said())));
     signs
 }
 
@@ -63,5 +72,5 @@ fn scale_bar(layout: &Layout) -> Group {
     let right = left + metres * layout.scale;
     let bar = polyline([(left, y - 4.0), (left, y + 4.0), (left, y), (right, y), (right, y - 4.0), (right, y + 4.0)]);
     let label = text(&format!("{metres} m"), (right + 8.0, y), "start");
-    Group::new().add(bar.set("stroke", INK).set("stroke-width", 1.5)).add(label)
+    Group::new().add(bar.set("class", "ink").set("stroke-width", 1.5)).add(label)
 }

@@ -69,23 +69,58 @@ fn pair((x, y): (i64, i64)) -> String {
     if y < 0.0 { format!("{x}{y}") } else { format!("{x} {y}") }
 }
 
-/// The number of the state of an atom in a disc of the colour of the `number`th atom.
-pub(super) fn badge(at: Pixel, state: &str, number: usize) -> Group {
+/// Of places on a line, those without which it would lie no more than this many pixels elsewhere.
+const BESIDE: f64 = 0.2;
+
+/// The places of a line that is drawn as well without the others.
+pub(super) fn simplified(pixels: impl IntoIterator<Item = Pixel>) -> Vec<Pixel> {
+    let mut kept: Vec<Pixel> = Vec::new();
+    // The places since the last one kept.
+    let mut since: Vec<Pixel> = Vec::new();
+    for pixel in pixels {
+        let Some(anchor) = kept.last().copied() else {
+            kept.push(pixel);
+            continue;
+        };
+        let straight = since.len() < LONGEST && since.iter().all(|between| off(*between, anchor, pixel) <= BESIDE);
+        if let Some(last) = since.last().copied().filter(|_| !straight) {
+            kept.push(last);
+            since.clear();
+        }
+        since.push(pixel);
+    }
+    kept.extend(since.last());
+    kept
+}
+
+/// The most places that one straight line stands for, so that a long one takes no long time.
+const LONGEST: usize = 500;
+
+/// The distance of a place from a line between two others.
+fn off((x, y): Pixel, (x1, y1): Pixel, (x2, y2): Pixel) -> f64 {
+    let (dx, dy) = (x2 - x1, y2 - y1);
+    let length = dx * dx + dy * dy;
+    let along = if length > 0.0 { (((x - x1) * dx + (y - y1) * dy) / length).clamp(0.0, 1.0) } else { 0.0 };
+    libm::hypot(x - x1 - along * dx, y - y1 - along * dy)
+}
+
+/// The number of an atom in a disc of its colour.
+pub(super) fn badge(at: Pixel, number: &str, atom: usize) -> Group {
     // Long numbers in smaller letters.
-    let size = match state.len() {
+    let size = match number.len() {
         0..=2 => 12,
         3 => 9,
         _ => 7,
     };
-    let disc = circle(at, labels::RADIUS).set("fill", colours::of(number));
-    let text = text(state, at, "middle").set("fill", colours::on(number)).set("font-size", size);
+    let disc = circle(at, labels::RADIUS).set("class", colours::class("disc", atom));
+    let text = text(number, at, "middle").set("class", colours::class("on", atom)).set("font-size", size);
     Group::new().add(disc).add(text)
 }
 
 /// A cross that marks a contact.
 pub(super) fn cross((x, y): Pixel) -> Path {
     let data = format!("M{} {}l8 8m0-8l-8 8", tenths(x - 4.0), tenths(y - 4.0));
-    Path::new().set("d", data).set("fill", "none").set("stroke", colours::CONTACT).set("stroke-width", 2.5)
+    Path::new().set("d", data).set("fill", "none").set("class", "contact").set("stroke-width", 2.5)
 }
 
 #[cfg(test)]
@@ -105,6 +140,21 @@ mod tests {
         }
         let end = pixels.max_by(|one, other| one.0.total_cmp(&other.0)).unwrap();
         assert!((at.0 - end.0).abs() < 0.051 && (at.1 - end.1).abs() < 0.051, "{at:?} {end:?}");
+    }
+
+    #[test]
+    fn a_simplified_line_keeps_its_ends_and_corners() {
+        let square = (0..400).map(|step| {
+            let along = f64::from(step % 100) / 10.0;
+            [(along, 0.0), (10.0, along), (10.0 - along, 10.0), (0.0, 10.0 - along)][step as usize / 100]
+        });
+        let corners = simplified(square);
+        assert!(corners.len() <= 9, "{corners:?}");
+        for corner in [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0), (0.0, 0.1)] {
+            assert!(corners.iter().any(|at| libm::hypot(at.0 - corner.0, at.1 - corner.1) < 0.5), "{corner:?}");
+        }
+        // There and back is no straight line from the start to the start.
+        assert_eq!(simplified([(0.0, 0.0), (5.0, 0.0), (9.0, 0.0), (5.0, 0.0), (0.0, 0.0)]).len(), 3);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! Pictures of runs of all sorts: well-formed, everything inside, the same bytes again, and small.
 
+use mdle_host::Ended;
 use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS};
 use svg::parser::Event;
 
@@ -76,6 +77,75 @@ fn pictures_of_every_run_are_well_formed_and_say_what_ran() {
         }
         assert_eq!((plot, record), (svg(world, &trail), animated(world, &trail)));
     }
+}
+
+/// A run of passes of three atoms, each of one turn in ten.
+fn passes(passes: u64) -> Trail {
+    let mut trail = run(0, 1, "");
+    for turn in 0..30 * passes {
+        trail.went(&Pose { x: Meters(turn as f64 * 0.02), ..Pose::ORIGIN });
+        let t = Nanos(turn * 100_000_000);
+        let frame = Frame { t, pose: trail.here, echoes: [None; SONARS], things: Vec::new() };
+        trail.frames.as_mut().unwrap().push(frame);
+        trail.ways.passed(t);
+        if turn % 10 == 0 {
+            let law = ["go 20 0", "turn 90", "stop"][(turn / 10 % 3) as usize];
+            trail.began(turn / 10 % 3 + 4, law, t);
+        }
+    }
+    let t = Nanos(30 * passes * 100_000_000);
+    trail.ended(&Ended { plan: "Rounds", is_over: true, by: "completed (atom 6)", t });
+    trail
+}
+
+#[test]
+fn each_atom_of_a_loop_is_drawn_listed_and_called_out_once() {
+    let picture = svg(&World::parse("empty", "").unwrap(), &passes(50));
+    for number in 0..3 {
+        let class = format!("way{number}");
+        assert_eq!(values(&picture, "path", "class").iter().filter(|value| **value == class).count(), 1, "{class}");
+        let class = format!("on{number}");
+        assert_eq!(values(&picture, "text", "class").iter().filter(|value| **value == class).count(), 2, "{class}");
+    }
+    let (_, text) = read(&picture);
+    assert_eq!(text.matches("50 ×").count(), 3);
+    assert_eq!(text.matches("50.0 s").count() - text.matches("150.0 s").count(), 3, "{text}");
+    assert!(text.contains("Rounds") && text.contains("over after 150.0 s: completed (atom 6)"), "{text}");
+}
+
+#[test]
+fn a_record_shows_every_pass_in_the_colour_of_its_atom() {
+    // Of 200 passes, most atoms begin and end between two moments that are kept.
+    let picture = animated(&World::parse("empty", "").unwrap(), &passes(200));
+    for number in 0..3 {
+        let class = format!("way{number}");
+        // The line of time, and each pass.
+        let ways = values(&picture, "path", "class").into_iter().filter(|value| *value == class).count();
+        assert_eq!(ways, 201, "{class}");
+    }
+}
+
+#[test]
+fn the_script_of_a_record_finds_what_it_asks_for() {
+    let script = include_str!("film.js");
+    assert!(!script.contains(['<', '>', '&']), "XML would escape it");
+    let picture = animated(&World::office().unwrap(), &run(1400, 100, "stop"));
+    let classes: Vec<String> =
+        ["g", "path", "tspan"].into_iter().flat_map(|tag| values(&picture, tag, "class")).collect();
+    let asked = script.split("find('").skip(1).filter_map(|rest| rest.split('\'').next());
+    let asked: Vec<&str> = asked.collect();
+    assert_eq!(asked.len(), 5);
+    for class in asked {
+        let found = classes.iter().filter(|classes| classes.split(' ').any(|one| one == class)).count();
+        assert_eq!(found, 1, "{class}");
+    }
+    for name in script.split("number('").skip(1).filter_map(|rest| rest.split('\'').next()) {
+        let number = values(&picture, "g", &format!("data-{name}"));
+        assert!(matches!(&number[..], [number] if number.parse::<f64>().is_ok()), "{name}: {number:?}");
+    }
+    // Without a script there is no button, and the end of the run has its time.
+    assert!(picture.contains("class=\"button\" cursor=\"pointer\" visibility=\"hidden\""));
+    assert!(read(&picture).1.contains("139.9 s, shown 10 times as fast"));
 }
 
 #[test]

@@ -2,8 +2,7 @@
 
 use svg::node::element::{Group, Path};
 
-use super::colours::{BOX, FAINT, INK};
-use super::film::Film;
+use super::film::{Film, changes};
 use super::layout::Layout;
 use super::shapes::{Pixel, polyline, tenths};
 use crate::frames::Frame;
@@ -51,9 +50,11 @@ impl Sign {
     }
 }
 
-/// The signs that occur.
-pub(super) fn signs(world: &World) -> impl Iterator<Item = Sign> {
-    [Sign::Door, Sign::Moves].into_iter().filter(|sign| world.things.iter().any(|thing| Sign::of(thing) == *sign))
+/// The signs of what moves in the part of the floor that is shown.
+pub(super) fn signs(layout: &Layout, world: &World) -> impl Iterator<Item = Sign> {
+    let shown = |thing: &&Thing| layout.shows_any(thing.places());
+    let shown: Vec<Sign> = world.things.iter().filter(shown).map(Sign::of).collect();
+    [Sign::Door, Sign::Moves].into_iter().filter(move |sign| shown.contains(sign))
 }
 
 /// Everything that moves, where it is in the end.
@@ -74,7 +75,7 @@ pub(super) fn moving(layout: &Layout, world: &World, trail: &Trail, film: &Film<
             Sign::Door => {
                 let seen = |gone: Option<Place>| if gone.is_some() { "visible" } else { "hidden" };
                 let values = film.frames.iter().map(|frame| (frame.t, seen(gone(frame)).to_owned()));
-                let closed = polyline(pixels(layout, thing, NOWHERE)).set("stroke", INK).set("stroke-width", 3);
+                let closed = polyline(pixels(layout, thing, NOWHERE)).set("class", "ink").set("stroke-width", 3);
                 let closed = closed.set("visibility", seen(*end)).add(film.switch("visibility", changes(values)));
                 group.add(door(pixels(layout, thing, NOWHERE))).add(closed)
             }
@@ -103,21 +104,15 @@ fn ways(layout: &Layout, world: &World) -> Group {
 }
 
 fn way(pixels: impl IntoIterator<Item = Pixel>) -> Path {
-    polyline(pixels).set("stroke", FAINT)
+    polyline(pixels).set("class", "faint")
 }
 
 fn door(pixels: impl IntoIterator<Item = Pixel>) -> Path {
-    polyline(pixels).set("stroke", INK).set("stroke-width", 1.5).set("stroke-dasharray", DASHES)
+    polyline(pixels).set("class", "ink").set("stroke-width", 1.5).set("stroke-dasharray", DASHES)
 }
 
 fn outline(pixels: impl IntoIterator<Item = Pixel>) -> Path {
-    polyline(pixels).set("fill", BOX).set("stroke", INK).set("stroke-width", 1.5)
-}
-
-/// Values without those that are as the one before.
-fn changes<T>(values: impl Iterator<Item = (T, String)>) -> impl Iterator<Item = (T, String)> {
-    let mut last = None;
-    values.filter(move |(_, value)| last.replace(value.clone()).as_ref() != Some(value))
+    polyline(pixels).set("class", "ink solid").set("stroke-width", 1.5)
 }
 
 /// Values without those between two that are as they are.

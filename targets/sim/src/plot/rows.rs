@@ -1,0 +1,86 @@
+//! The rows of a legend: each atom as written once, with the number of times that it ran, and for how long in all.
+
+use mdle_runtime::Printable;
+
+use super::layout::{LETTER, LETTERS};
+use crate::trail::{Atom, Trail};
+
+/// The most atoms that are marked and listed.
+pub(super) const ROWS_MOST: usize = 40;
+/// The most letters of a law that are shown.
+const LAW_MOST: usize = 44;
+/// Between two columns, in pixels.
+const APART: f64 = 22.0;
+
+/// An atom in the legend.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Row {
+    /// Its number; empty for the line of those that are not listed.
+    pub(super) number: String,
+    pub(super) law: String,
+    /// Number of times that it ran; empty if each atom ran once.
+    pub(super) times: String,
+    /// The time for which it ran in all.
+    pub(super) total: String,
+}
+
+/// The rows of a run.
+pub(super) fn of(trail: &Trail) -> Vec<Row> {
+    let ways = &trail.ways;
+    let again = ways.atoms.iter().any(|atom| atom.times > 1);
+    let listed = ways.atoms.iter().take(ROWS_MOST).map(|atom| Row {
+        number: atom.number.to_string(),
+        law: shortened(&atom.law),
+        times: if again { format!("{} ×", atom.times) } else { String::new() },
+        total: total(atom),
+    });
+    let left = ways.atoms.len().saturating_sub(ROWS_MOST).saturating_add(ways.uncounted);
+    let more = (left > 0).then(|| Row {
+        number: String::new(),
+        law: format!("and {left} more"),
+        times: String::new(),
+        total: String::new(),
+    });
+    listed.chain(more).collect()
+}
+
+fn total(atom: &Atom) -> String {
+    format!("{:.1} s", atom.total.seconds())
+}
+
+/// The width of the column of totals, with the space before it, in pixels.
+pub(super) fn last_column(rows: &[Row]) -> f64 {
+    column(rows.iter().map(|row| &row.total))
+}
+
+/// The width of both columns of figures, in pixels.
+pub(super) fn columns(rows: &[Row]) -> f64 {
+    last_column(rows) + column(rows.iter().map(|row| &row.times))
+}
+
+fn column<'r>(texts: impl Iterator<Item = &'r String>) -> f64 {
+    let letters = texts.map(|text| text.chars().count()).max().unwrap_or(0);
+    if letters == 0 { 0.0 } else { letters as f64 * f64::from(LETTERS) * LETTER + APART }
+}
+
+/// A law as long as there is room for, its numbers to a thousandth.
+pub(super) fn shortened(law: &str) -> String {
+    let words = law.split(' ').map(|word| match (word.split_once('.'), word.parse::<f64>()) {
+        (Some((_, decimals)), Ok(number)) if decimals.len() > 3 => format!("{}", libm::round(number * 1e3) / 1e3),
+        (_, Ok(_) | Err(_)) => word.to_owned(),
+    });
+    let law = Printable(words.collect::<Vec<_>>().join(" ")).to_string();
+    if law.chars().count() <= LAW_MOST { law } else { law.chars().take(LAW_MOST - 1).chain(['…']).collect() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_laws_are_shown_to_a_thousandth() {
+        assert_eq!(shortened("go 20 -0.3490658503988659"), "go 20 -0.349");
+        assert_eq!(shortened("path \"a.bcdef 1.25\" 0.5"), "path \"a.bcdef 1.25\" 0.5");
+        assert_eq!(shortened(&"goAvoid 90 40 20 ".repeat(4)), "goAvoid 90 40 20 goAvoid 90 40 20 goAvoid 9…");
+    }
+}

@@ -1,0 +1,207 @@
+//! The way of a robot by the atoms that drove it: a bounded number of places, each pass of an atom apart.
+
+use std::collections::BTreeMap;
+
+use mdle_runtime::Nanos;
+
+use crate::world::Place;
+
+/// Places nearer to the last than this, in metres, are not kept: less than a pixel.
+const APART: f64 = 0.01;
+/// The most places of the way that are kept; when there are more, every second one goes.
+const PLACES_MOST: usize = 100_000;
+/// The most passes whose ways are kept apart, and the most atoms that are counted.
+const MARKS_MOST: usize = 10_000;
+
+/// The way driven, and the atoms that drove it.
+#[derive(Debug, Clone)]
+pub(crate) struct Ways {
+    /// The way before the first atom began.
+    pub(crate) before: Vec<Place>,
+    /// Each pass of an atom, in order.
+    pub(crate) marks: Vec<Mark>,
+    /// The atoms as written, in the order in which they first began.
+    pub(crate) atoms: Vec<Atom>,
+    /// Number of times that an atom began which is not among `atoms`.
+    pub(crate) uncounted: usize,
+    by_number: BTreeMap<u64, usize>,
+    /// The atom that runs, and the time from which its total is to be counted on.
+    running: Option<(usize, Nanos)>,
+    /// Number of places kept.
+    count: usize,
+    /// Least distance between two places kept, in metres.
+    apart: f64,
+}
+
+/// An atom as written.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Atom {
+    /// Its state in the first pass of the loops around it.
+    pub(crate) number: u64,
+    pub(crate) law: String,
+    /// The place where it first began.
+    pub(crate) place: Place,
+    /// Number of times that it began.
+    pub(crate) times: u64,
+    /// The time for which it ran in all.
+    pub(crate) total: Nanos,
+}
+
+/// A pass of an atom, and the way driven in it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Mark {
+    /// Position of the atom in [`Ways::atoms`]; `None` for the rest of a run of too many passes.
+    pub(crate) atom: Option<usize>,
+    pub(crate) t: Nanos,
+    /// From where it began.
+    pub(crate) way: Vec<Place>,
+}
+
+impl Ways {
+    /// A way that begins here.
+    pub(super) fn from(place: Place) -> Self {
+        Self {
+            before: vec![place],
+            marks: Vec::new(),
+            atoms: Vec::new(),
+            uncounted: 0,
+            by_number: BTreeMap::new(),
+            running: None,
+            count: 1,
+            apart: APART,
+        }
+    }
+
+    /// The robot has come to this place.
+    pub(super) fn went(&mut self, place: Place) {
+        let apart = self.apart;
+        let way = self.last();
+        if way.last().is_none_or(|last| libm::hypot(last.x - place.x, last.y - place.y) >= apart) {
+            way.push(place);
+            self.count += 1;
+        }
+        if self.count > PLACES_MOST {
+            self.thin();
+        }
+    }
+
+    /// The way that the robot is on.
+    fn last(&mut self) -> &mut Vec<Place> {
+        self.marks.last_mut().map_or(&mut self.before, |mark| &mut mark.way)
+    }
+
+    /// Leaves out every second place, but for those where an atom began or ended.
+    fn thin(&mut self) {
+        self.apart *= 2.0;
+        self.count = 0;
+        for way in std::iter::once(&mut self.before).chain(self.marks.iter_mut().map(|mark| &mut mark.way)) {
+            let last = way.len().saturating_sub(1);
+            let mut number = 0;
+            way.retain(|_| {
+                number += 1;
+                number % 2 == 1 || number > last
+            });
+            self.count += way.len();
+        }
+    }
+
+    /// An atom begins at this place.
+    pub(super) fn began(&mut self, number: u64, law: &str, t: Nanos, place: Place) {
+        self.passed(t);
+        let atom = self.atom(number, law, place);
+        self.running = atom.map(|atom| (atom, t));
+        match atom.and_then(|atom| self.atoms.get_mut(atom)) {
+            Some(atom) => atom.times = atom.times.saturating_add(1),
+            None => self.uncounted = self.uncounted.saturating_add(1),
+        }
+        // The last of the marks is the way of all passes that have none of their own.
+        if self.marks.len() > MARKS_MOST {
+            return;
+        }
+        let atom = atom.filter(|_| self.marks.len() < MARKS_MOST);
+        let way = self.last();
+        if way.last() != Some(&place) {
+            way.push(place);
+            self.count += 1;
+        }
+        self.count += 1;
+        self.marks.push(Mark { atom, t, way: vec![place] });
+    }
+
+    /// The position of an atom in the list, which it enters if there is room for it.
+    fn atom(&mut self, number: u64, law: &str, place: Place) -> Option<usize> {
+        let next = self.atoms.len();
+        let found = self.by_number.get(&number).copied();
+        found.or_else(|| {
+            (next < MARKS_MOST).then(|| {
+                self.by_number.insert(number, next);
+                self.atoms.push(Atom { number, law: law.to_owned(), place, times: 0, total: Nanos::ZERO });
+                next
+            })
+        })
+    }
+
+    /// Time has passed until `t`.
+    pub(crate) fn passed(&mut self, t: Nanos) {
+        if let Some((atom, since)) = &mut self.running
+            && let Some(atom) = self.atoms.get_mut(*atom)
+        {
+            atom.total = Nanos(atom.total.0.saturating_add(t.since(*since).0));
+            *since = t;
+        }
+    }
+
+    /// No atom runs any more.
+    pub(super) fn ended(&mut self, t: Nanos) {
+        self.passed(t);
+        self.running = None;
+    }
+
+    /// All places kept.
+    pub(super) fn places(&self) -> impl Iterator<Item = Place> {
+        self.before.iter().chain(self.marks.iter().flat_map(|mark| &mark.way)).copied()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn seconds(seconds: u64) -> Nanos {
+        Nanos(seconds * 1_000_000_000)
+    }
+
+    #[test]
+    fn passes_of_an_atom_are_counted_and_timed_together() {
+        let mut ways = Ways::from(Place { x: 0.0, y: 0.0 });
+        for pass in 0..3 {
+            let place = Place { x: pass as f64, y: 0.0 };
+            ways.began(1, "go 20 0", seconds(10 * pass), place);
+            ways.began(2, "turn 90", seconds(10 * pass + 7), place);
+            ways.passed(seconds(10 * pass + 8));
+        }
+        ways.ended(seconds(30));
+        ways.passed(seconds(40));
+        let counted: Vec<_> = ways.atoms.iter().map(|atom| (atom.number, atom.times, atom.total.seconds())).collect();
+        assert_eq!(counted, [(1, 3, 21.0), (2, 3, 9.0)]);
+        assert_eq!((ways.atoms[1].place, ways.marks.len()), (Place { x: 0.0, y: 0.0 }, 6));
+    }
+
+    #[test]
+    fn a_long_way_is_thinned_and_keeps_its_ends() {
+        let mut ways = Ways::from(Place { x: 0.0, y: 0.0 });
+        for metre in 0..20_000_u32 {
+            let place = |x: f64| Place { x, y: 0.0 };
+            ways.began(u64::from(metre % 3), "go 20 0", seconds(u64::from(metre)), place(f64::from(metre)));
+            (0..50).for_each(|cm| ways.went(place(f64::from(metre) + f64::from(cm) / 50.0)));
+        }
+        let kept = ways.places().count();
+        assert!((PLACES_MOST / 3..=PLACES_MOST + 1).contains(&kept), "{kept}");
+        assert_eq!((ways.marks.len(), ways.uncounted), (MARKS_MOST + 1, 0));
+        assert_eq!(ways.atoms.iter().map(|atom| atom.times).sum::<u64>(), 20_000);
+        assert_eq!(ways.before.first(), Some(&Place { x: 0.0, y: 0.0 }));
+        assert!(ways.places().last().is_some_and(|last| 19_999.98 - last.x < ways.apart), "{:?}", ways.places().last());
+        // Passes that have no way of their own are no atom's.
+        assert!(ways.marks.last().is_some_and(|mark| mark.atom.is_none()));
+    }
+}
