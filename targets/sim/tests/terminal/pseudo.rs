@@ -3,6 +3,7 @@
 use std::fs::File;
 use std::io::Read;
 use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::{Arc, Once};
 
 use rustix::fs::{Mode, OFlags, open};
 use rustix::process::{Pid, Signal, kill_process};
@@ -18,6 +19,15 @@ pub(crate) struct Terminal {
     pub(crate) seen: String,
 }
 
+/// Gives SIGHUP its default effect in the programs that this one starts, also under `nohup`, which has it ignored by all of them:
+/// a signal that is caught has it again in another program.
+fn catch_hang_up() {
+    static CAUGHT: Once = Once::new();
+    CAUGHT.call_once(|| {
+        signal_hook::flag::register(signal_hook::consts::SIGHUP, Arc::default()).unwrap();
+    });
+}
+
 impl Terminal {
     /// Starts the program in a terminal of 100 columns and 30 rows; its standard output goes elsewhere if `piped`.
     pub(crate) fn start(command: Command, piped: bool) -> Self {
@@ -26,6 +36,7 @@ impl Terminal {
 
     /// The same in a terminal of this size.
     pub(crate) fn sized(mut command: Command, piped: bool, columns: u16, rows: u16) -> Self {
+        catch_hang_up();
         let controller = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
         grantpt(&controller).unwrap();
         unlockpt(&controller).unwrap();
