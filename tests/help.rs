@@ -8,7 +8,7 @@ use std::process::{Command, Output};
 use mdle_tests::executable::{folder, run_mdlec};
 
 /// The commands of `mdlec`; the first is the bare form, which builds.
-const COMMANDS: [&str; 15] = [
+const COMMANDS: [&str; 17] = [
     "",
     "build",
     "run",
@@ -24,6 +24,8 @@ const COMMANDS: [&str; 15] = [
     "bind",
     "new-target",
     "clean",
+    "completions",
+    "man",
 ];
 
 /// First words that make a reader ask what the line is about.
@@ -66,6 +68,52 @@ fn every_command_describes_itself_in_a_line() {
     let listed: Vec<_> = listed.filter_map(|line| line.split_whitespace().next()).collect();
     assert_eq!(listed.split_last(), Some((&"help", &COMMANDS[1..])));
     insta::assert_snapshot!(shown);
+}
+
+#[test]
+fn shells_and_man_know_every_command() {
+    let folder = folder("manual");
+    for shell in ["bash", "elvish", "fish", "powershell", "zsh"] {
+        let script = text(run_mdlec(&folder, &["completions", shell]));
+        assert!(COMMANDS.iter().all(|command| script.contains(command)) && script.contains("deny-warnings"), "{shell}");
+    }
+    fs::write(folder.join("mdlec.bash"), text(run_mdlec(&folder, &["completions", "bash"]))).unwrap();
+    let typed = "COMP_WORDS=(mdlec co); COMP_CWORD=1; _mdlec mdlec co mdlec; echo ${COMPREPLY[@]}";
+    let script = format!("source ./mdlec.bash; {typed}");
+    let completed = Command::new("bash").args(["-c", &script]).current_dir(&folder).output().unwrap();
+    assert_eq!(text(completed), "completions\n");
+    let pages = ["", "decompile"].map(|command| {
+        let arguments: Vec<_> = ["man", command].into_iter().filter(|word| !word.is_empty()).collect();
+        text(run_mdlec(&folder, &arguments))
+    });
+    assert!(pages.iter().all(|page| page.starts_with(".ie ") && page.contains(".TH mdlec")), "{}", &pages[1][..300]);
+    assert!(COMMANDS[1..].iter().all(|command| pages[0].replace('\\', "").contains(&format!("mdlec-{command}(1)"))));
+    assert!(pages[1].replace('\\', "").contains("--augment"));
+}
+
+#[test]
+fn unknown_shells_and_commands_are_refused() {
+    let folder = folder("manual_unknown");
+    let refused =
+        [&["completions", "tcsh"][..], &["man", "decompil"], &["--color", "blue", "targets"]].map(|arguments| {
+            let output = run_mdlec(&folder, arguments);
+            assert_eq!((output.status.code(), output.stdout.as_slice()), (Some(2), &b""[..]));
+            format!("$ mdlec {}\n{}", arguments.join(" "), String::from_utf8(output.stderr).unwrap())
+        });
+    insta::assert_snapshot!(refused.join("\n"));
+}
+
+#[test]
+fn color_decides_about_messages_and_help() {
+    let folder = folder("color");
+    fs::write(folder.join("plan.mdle"), "{ P (bumpr) (Atom (wait 1) stop) }\n").unwrap();
+    for (color, is_colored) in [("always", true), ("auto", false), ("never", false)] {
+        for arguments in [&["check", "plan.mdle"][..], &["check"], &["--help"]] {
+            let output = run_mdlec(&folder, &[arguments, &["--color", color]].concat());
+            let all = [output.stdout, output.stderr].concat();
+            assert_eq!(all.contains(&0x1b), is_colored, "{color} {arguments:?}: {}", String::from_utf8_lossy(&all));
+        }
+    }
 }
 
 #[test]

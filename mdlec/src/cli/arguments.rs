@@ -5,6 +5,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
 
 use crate::theorem::STEPS;
 
@@ -47,6 +48,29 @@ pub(super) struct Cli {
         hide_default_value = true
     )]
     pub(super) message_format: MessageFormat,
+    /// Colours in messages and help [default: auto]
+    ///
+    /// `auto` is colours on a terminal, unless the variable NO_COLOR is set.
+    #[arg(
+        long,
+        value_enum,
+        global = true,
+        default_value_t = Color::Auto,
+        value_name = "WHEN",
+        hide_default_value = true
+    )]
+    pub(super) color: Color,
+}
+
+/// Argument of `--color`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(super) enum Color {
+    /// On a terminal
+    Auto,
+    /// Everywhere
+    Always,
+    /// Nowhere
+    Never,
 }
 
 /// Format of messages.
@@ -125,6 +149,14 @@ pub(super) enum Command {
     /// Compiled libraries, unpacked sources and the packages of plans: the next build makes them again. The cache is the folder
     /// `MDLEC_CACHE`, or `mdlec` in the user's cache folder; a folder that contains anything else is refused.
     Clean,
+    /// Print a script that completes the commands and options of mdlec in a shell
+    ///
+    /// For bash: `mdlec completions bash > ~/.local/share/bash-completion/completions/mdlec`.
+    Completions(Completions),
+    /// Print the manual page of mdlec or of a command
+    ///
+    /// The format is roff: `mdlec man > mdlec.1`, then `man ./mdlec.1`.
+    Man(Man),
 }
 
 /// Arguments of `mdlec` without a command.
@@ -392,4 +424,18 @@ pub(super) struct Bind {
 pub(super) struct NewTarget {
     /// Name of the robot and of its folder, which is created in the current folder
     pub(super) name: String,
+}
+
+/// Arguments of `mdlec completions`.
+#[derive(Debug, Args)]
+pub(super) struct Completions {
+    /// Shell to write the script for
+    pub(super) shell: Shell,
+}
+
+/// Arguments of `mdlec man`.
+#[derive(Debug, Args)]
+pub(super) struct Man {
+    /// Command to describe [default: mdlec itself]
+    pub(super) command: Option<String>,
 }

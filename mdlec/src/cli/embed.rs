@@ -5,13 +5,13 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use super::build::{Emitted, emitted};
-use super::{Failure, MessageFormat, executable, report};
+use super::{Color, Failure, MessageFormat, executable, report};
 use crate::link;
 
 /// Writes `$OUT_DIR/STEM.rs` and tells cargo of warnings and of the files that were read. The exit status, if that is not
 /// done; why not was said on standard error then.
 pub(crate) fn embed(file: &Path, target: Option<&str>, plan: Option<&str>) -> Result<(), u8> {
-    report::choose(MessageFormat::BuildScript);
+    report::choose(MessageFormat::BuildScript, Color::Auto);
     write(file, target, plan).map_err(|failure| failure.told())
 }
 

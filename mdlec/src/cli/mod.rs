@@ -15,6 +15,7 @@ mod executable;
 mod explain;
 mod fmt;
 mod input;
+mod manual;
 mod matrices;
 mod new_target;
 mod read;
@@ -25,10 +26,10 @@ mod version;
 use std::process::ExitCode;
 
 use arguments::{
-    Analyze, Bare, Bind, Build, Check, Cli, Command, Decompile, Draw, Emit, EmitKind, Executable, Fmt, Machine,
-    MessageFormat, NewTarget, Run, Trace,
+    Analyze, Bare, Bind, Build, Check, Cli, Color, Command, Completions, Decompile, Draw, Emit, EmitKind, Executable,
+    Fmt, Machine, Man, MessageFormat, NewTarget, Run, Trace,
 };
-use clap::{CommandFactory as _, Parser as _};
+use clap::{CommandFactory as _, FromArgMatches as _, ValueEnum as _};
 pub(crate) use embed::embed;
 
 /// The message and the exit status of a command that failed.
@@ -60,7 +61,13 @@ impl Failure {
 /// Runs the command line of this process.
 #[must_use]
 pub fn main() -> ExitCode {
-    let done = match Cli::try_parse() {
+    let command = Cli::command().color(match color_of_help() {
+        Color::Auto => clap::ColorChoice::Auto,
+        Color::Always => clap::ColorChoice::Always,
+        Color::Never => clap::ColorChoice::Never,
+    });
+    let parsed = command.try_get_matches().and_then(|matches| Cli::from_arg_matches(&matches));
+    let done = match parsed {
         Ok(cli) => run(cli),
         Err(answer) => match misspelled_command().filter(|_| answer.use_stderr()) {
             Some(failure) => Err(failure),
@@ -71,6 +78,17 @@ pub fn main() -> ExitCode {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => ExitCode::from(failure.told()),
     }
+}
+
+/// Returns the argument of `--color`, which decides about help and wrong usage too, where no arguments are parsed.
+fn color_of_help() -> Color {
+    let mut words = std::env::args().take_while(|word| word != "--").skip_while(|word| !word.starts_with("--color"));
+    let value = words.next().and_then(|word| match word.split_once('=') {
+        Some(("--color", value)) => Some(value.to_owned()),
+        Some(_) => None,
+        None => words.next(),
+    });
+    value.and_then(|value| Color::from_str(&value, false).ok()).unwrap_or(Color::Auto)
 }
 
 /// A first argument that is like a command and no file, so that it was taken for a plan.
@@ -89,7 +107,7 @@ fn misspelled_command() -> Option<Failure> {
 
 /// Runs the command of `cli`.
 fn run(cli: Cli) -> Result<(), Failure> {
-    report::choose(cli.message_format);
+    report::choose(cli.message_format, cli.color);
     match cli.command {
         None => match misspelled_command() {
             Some(failure) => Err(failure),
@@ -108,6 +126,8 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Bind(bind)) => bind::bind(&bind),
         Some(Command::NewTarget(new_target)) => new_target::new_target(&new_target),
         Some(Command::Clean) => clean::clean(),
+        Some(Command::Completions(completions)) => manual::completions(&completions),
+        Some(Command::Man(man)) => manual::man(&man),
         Some(Command::Quarks(quarks)) => input::print_quarks(quarks.target.as_deref()),
     }
 }

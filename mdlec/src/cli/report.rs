@@ -10,16 +10,20 @@ use codespan_reporting::term;
 use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
 use mdle_runtime::{Printable, PrintableLines, is_printable};
 
-use super::{Failure, MessageFormat};
+use super::{Color, Failure, MessageFormat};
 use crate::diagnostic::{Code, Diagnostic, Message, Severity, Sources, Span, has_errors};
 
 /// How this process says things. Said once, where the command line is read: every message goes through this file.
 static FORMAT: OnceLock<MessageFormat> = OnceLock::new();
 
+/// When messages have colours, chosen together with the format.
+static COLOR: OnceLock<Color> = OnceLock::new();
+
 /// Chooses how things are said from now on.
-pub(super) fn choose(format: MessageFormat) {
+pub(super) fn choose(format: MessageFormat, color: Color) {
     // There is one command line, so this is the first time.
     let _ = FORMAT.set(format);
+    let _ = COLOR.set(color);
 }
 
 /// Whether things are said as JSON.
@@ -68,7 +72,11 @@ pub(super) fn diagnostics(sources: &Sources, found: &[Diagnostic], deny_warnings
 
 /// Shows diagnostics to a person.
 fn render(sources: &Sources, found: &[Diagnostic]) {
-    let choice = if io::stderr().is_terminal() { ColorChoice::Auto } else { ColorChoice::Never };
+    let choice = match COLOR.get().unwrap_or(&Color::Auto) {
+        Color::Always => ColorChoice::Always,
+        Color::Auto if io::stderr().is_terminal() => ColorChoice::Auto,
+        Color::Auto | Color::Never => ColorChoice::Never,
+    };
     let mut out = StandardStream::stderr(choice);
     let mut source = 0;
     let notation = found.iter().filter(|diagnostic| diagnostic.code.is_notation()).count();

@@ -1,0 +1,37 @@
+//! `mdlec completions` and `mdlec man`: what shells and `man` show of the command line.
+
+use std::io;
+
+use clap::CommandFactory as _;
+
+use super::input::did_you_mean;
+use super::{Cli, Completions, Failure, Man, report};
+
+/// Prints the completions for a shell.
+pub(super) fn completions(options: &Completions) -> Result<(), Failure> {
+    let mut script = Vec::new();
+    clap_complete::generate(options.shell, &mut Cli::command(), "mdlec", &mut script);
+    report::print_exactly(&String::from_utf8_lossy(&script))
+}
+
+/// Prints the manual page of mdlec or of one of its commands.
+pub(super) fn man(options: &Man) -> Result<(), Failure> {
+    let mut mdlec = Cli::command();
+    mdlec.build();
+    let page = match &options.command {
+        None => mdlec,
+        Some(name) => command(&mdlec, name)?.clone(),
+    };
+    let mut text = Vec::new();
+    clap_mangen::Man::new(page).render(&mut text).map_err(|error: io::Error| Failure::usage(error.to_string()))?;
+    report::print_exactly(&String::from_utf8_lossy(&text))
+}
+
+/// Finds the command of this name.
+fn command<'c>(mdlec: &'c clap::Command, name: &str) -> Result<&'c clap::Command, Failure> {
+    mdlec.find_subcommand(name).ok_or_else(|| {
+        let names: Vec<_> = mdlec.get_subcommands().map(clap::Command::get_name).collect();
+        let near = did_you_mean(name, &names);
+        Failure::usage(format!("there is no command `{name}`{near}\nhelp: the commands are {}", names.join(", ")))
+    })
+}
