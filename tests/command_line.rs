@@ -158,14 +158,14 @@ fn an_fsm_file_has_the_keys_of_the_interfaces() {
 
 #[test]
 fn options_have_the_units_of_plans() {
+    let kinds = [
+        (Kind::Time, Quantity::Time, "s"),
+        (Kind::Length, Quantity::Length, "m"),
+        (Kind::Angle, Quantity::Angle, "deg"),
+    ];
     let mut count = 0;
     for unit in Unit::ALL {
-        let (quantity, bare) = match unit.kind {
-            Kind::Time => (Quantity::Time, "s"),
-            Kind::Length => (Quantity::Length, "m"),
-            Kind::Angle => (Quantity::Angle, "deg"),
-            _ => continue,
-        };
+        let Some((_, quantity, bare)) = kinds.into_iter().find(|(kind, ..)| *kind == unit.kind) else { continue };
         let read = quantity.read(&format!("2.5{}", unit.name), bare).unwrap();
         let read = if quantity == Quantity::Angle { Radians::from_degrees(read).0 } else { read };
         assert!((read - unit.to_si(2.5)).abs() < 1e-12 * read, "{}: {read}", unit.name);
