@@ -18,13 +18,16 @@ const PACE: Pace = Pace::Lockstep(PERIOD);
 /// It drives until its battery is low, and rests until somebody plugs it in.
 const PLAN: &str = "{ Home (charger OR wait 30s) (Atom (lowBattery OR battery < 5V) (go 10 0)) (Atom (null) stop) }\n";
 
-/// What the plan reports on this robot, whose battery is low after 5 s and which is plugged in after 10, times left out.
-fn reported<R: Emulated + Send>(target: &str, robot: R) -> Vec<String> {
-    let folder = folder(&format!("power_on_{target}"));
-    fs::write(folder.join("home.mdle"), PLAN).unwrap();
+/// Its battery is low after 5 s, and it is plugged in after 10.
+const FAULTS: [&str; 2] = ["low-battery@5", "plugged-in@10"];
+
+/// The report of a plan on this robot with these faults, without times.
+fn reported<R: Emulated + Send>(target: &str, plan: &str, faults: &[&str], robot: R) -> Vec<String> {
+    let folder = folder(&format!("power_on_{target}_{}", faults.len()));
+    fs::write(folder.join("home.mdle"), plan).unwrap();
     let output = run_mdlec(&folder, &["home.mdle", "--target", target]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let faults: Vec<At> = ["low-battery@5", "plugged-in@10"].map(|text| text.parse().expect("a fault")).into();
+    let faults: Vec<At> = faults.iter().map(|text| text.parse().expect("a fault")).collect();
     let mut robot = Faulty::new(robot, &faults).expect("a robot");
     let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
     let output = thread::scope(|scope| {
@@ -35,8 +38,38 @@ fn reported<R: Emulated + Send>(target: &str, robot: R) -> Vec<String> {
         output.unwrap()
     });
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let said = String::from_utf8(output.stdout).unwrap();
-    said.lines().map(|line| line.split_once(" s  ").map_or(line, |(_, transition)| transition).to_owned()).collect()
+    transitions(&output.stdout)
+}
+
+/// The lines of a report without their times.
+fn transitions(report: &[u8]) -> Vec<String> {
+    let report = String::from_utf8(report.to_vec()).unwrap();
+    report.lines().map(|line| line.split_once(" s  ").map_or(line, |(_, transition)| transition).to_owned()).collect()
+}
+
+/// A floor with a charger ahead of the start, and a plan that drives until it is on it.
+const FLOOR: &str = "charger = { at = [1, 0], heading = 0, reach = 0.15 }\n";
+const DOCK: &str = "{ Dock (wait 1min) (Atom (charger) (go 10 0)) (Atom (wait 2s) stop) }\n";
+
+#[test]
+fn every_robot_finds_the_charger_of_its_world() {
+    let world = World::parse("floor", FLOOR).unwrap();
+    let body = |body, step| {
+        Simulated::with(&Make { body, without: Vec::new(), seed: None }, &world, world.start, step).unwrap()
+    };
+    let scout = reported("scout", DOCK, &[], Scout::new(body(Body::Scout, PERIOD)).unwrap());
+    let step = step(PACE);
+    let atrv = reported("atrv", DOCK, &[], Atrv::new(body(Body::Atrv, step), step, false).unwrap());
+    assert_eq!(scout, ["atom 2 stop  <- charger (atom 1)", "plan over: wait 2 (atom 2)"]);
+    assert_eq!(atrv, scout);
+    let folder = folder("dock_of_sim");
+    fs::write(folder.join("home.mdle"), DOCK).unwrap();
+    fs::write(folder.join("floor.toml"), FLOOR).unwrap();
+    let output = run_mdlec(&folder, &["home.mdle", "--target", "sim"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let output =
+        Command::new(folder.join("home")).args(["--speed", "max", "--world"]).arg(folder.join("floor.toml")).output();
+    assert_eq!(transitions(&output.unwrap().stdout), scout);
 }
 
 #[test]
@@ -45,9 +78,9 @@ fn a_robot_stops_when_its_battery_is_low_and_is_done_when_it_is_plugged_in() {
         let (world, make) = (World::office().unwrap(), Make { body, without: Vec::new(), seed: None });
         Simulated::with(&make, &world, world.start, step).unwrap()
     };
-    let scout = reported("scout", Scout::new(body(Body::Scout, PERIOD)).unwrap());
+    let scout = reported("scout", PLAN, &FAULTS, Scout::new(body(Body::Scout, PERIOD)).unwrap());
     let step = step(PACE);
-    let atrv = reported("atrv", Atrv::new(body(Body::Atrv, step), step, false).unwrap());
+    let atrv = reported("atrv", PLAN, &FAULTS, Atrv::new(body(Body::Atrv, step), step, false).unwrap());
     assert_eq!(scout, ["atom 2 stop  <- lowBattery OR battery < 5 (atom 1)", "plan over: charger OR wait 30 (Home)"]);
     assert_eq!(atrv, scout);
 }

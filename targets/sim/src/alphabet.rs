@@ -4,7 +4,8 @@
 pub use crate::{Input, Output};
 pub use crate::quarks::{Go, Advance, GoAvoid};
 pub use ::mdle_atoms::{
-    Bumper, AtIsection, Stop, Rotate, Turn, Align, Path, R, Age, X, Y, Theta, V, Omega,
+    Bumper, AtIsection, LowBattery, Charger, Stop, Rotate, Turn, Align, Path, R, Age, X,
+    Y, Theta, V, Omega, Battery,
 };
 use ::mdle_runtime as runtime;
 /// The target's name, as `mdlec --target` takes it.
@@ -12,7 +13,7 @@ pub const NAME: &str = "sim";
 /// The period of a turn, unless the operator says otherwise.
 pub const PERIOD: runtime::Nanos = runtime::Nanos(100000000);
 /// Tells this alphabet from any other: a plan that was compiled for another one does not compile.
-pub const HASH: u64 = 0xec0c461907af61e3;
+pub const HASH: u64 = 0x2f2d6a68f3e7ec1a;
 /// The quarks as plans make them: a crate whose quarks are otherwise does not compile.
 #[allow(dead_code, reason = "what stands here is to be compiled, not called")]
 mod signatures {
@@ -21,7 +22,7 @@ mod signatures {
     const fn capable<
         Y: runtime::capability::DiffDrive + runtime::capability::SonarRing
             + runtime::capability::Bumpers + runtime::capability::Odometry
-            + runtime::capability::Paths,
+            + runtime::capability::Paths + runtime::capability::Power,
     >() {}
     const _: () = capable::<Output>();
     /// `bumper`: Fires on contact of any bumper.
@@ -32,6 +33,16 @@ mod signatures {
     /// `atIsection <4 bits>`: Fires when the four directions front, left, back, right of the robot are all as the bits say: 1 where an obstacle is near.
     const fn at_isection(pattern: runtime::Bits<4>) -> AtIsection {
         AtIsection::new(pattern)
+    }
+
+    /// `lowBattery`: Fires while the battery is low, by what is low on this robot.
+    const fn low_battery() -> LowBattery {
+        LowBattery::new()
+    }
+
+    /// `charger`: Fires while the robot is on its charger.
+    const fn charger() -> Charger {
+        Charger::new()
     }
 
     /// `go <v in cm/s> <omega in rad/s>`: Drives with a forward speed and a turn rate, counter-clockwise positive, for ever.
@@ -115,6 +126,11 @@ mod signatures {
     const fn omega() -> Omega {
         Omega::new()
     }
+
+    /// `battery`: The voltage of the battery.
+    const fn battery() -> Battery {
+        Battery::new()
+    }
 }
 
 /// Any interrupt of this robot with its arguments.
@@ -124,6 +140,10 @@ pub enum AnyInterrupt {
     Bumper(Bumper),
     /// `atIsection <4 bits>`: Fires when the four directions front, left, back, right of the robot are all as the bits say: 1 where an obstacle is near.
     AtIsection(AtIsection),
+    /// `lowBattery`: Fires while the battery is low, by what is low on this robot.
+    LowBattery(LowBattery),
+    /// `charger`: Fires while the robot is on its charger.
+    Charger(Charger),
     /// A comparison of signals.
     Comparison(runtime::Comparison<AnySignal, AnySignal>),
 }
@@ -133,6 +153,8 @@ impl runtime::Interrupt<Output> for AnyInterrupt {
         match self {
             Self::Bumper(interrupt) => runtime::Interrupt::fired(interrupt, y),
             Self::AtIsection(interrupt) => runtime::Interrupt::fired(interrupt, y),
+            Self::LowBattery(interrupt) => runtime::Interrupt::fired(interrupt, y),
+            Self::Charger(interrupt) => runtime::Interrupt::fired(interrupt, y),
             Self::Comparison(comparison) => runtime::Interrupt::fired(comparison, y),
         }
     }
@@ -155,6 +177,8 @@ pub enum AnySignal {
     V(V),
     /// `omega`: The measured turn rate.
     Omega(Omega),
+    /// `battery`: The voltage of the battery.
+    Battery(Battery),
 }
 
 impl runtime::Signal<Output> for AnySignal {
@@ -167,6 +191,7 @@ impl runtime::Signal<Output> for AnySignal {
             Self::Theta(signal) => runtime::Signal::value(signal, y),
             Self::V(signal) => runtime::Signal::value(signal, y),
             Self::Omega(signal) => runtime::Signal::value(signal, y),
+            Self::Battery(signal) => runtime::Signal::value(signal, y),
         }
     }
 }
@@ -280,6 +305,7 @@ impl runtime::Alphabet for Alphabet {
         "bumper",
         "odometry",
         "paths",
+        "power",
     ];
     const LIMITS: &'static [runtime::Limit] = &[
         runtime::Limit {
@@ -331,6 +357,8 @@ impl runtime::Alphabet for Alphabet {
                         AtIsection::new(runtime::Bits::from_slice(pattern)?),
                     )
                 }
+                ("lowBattery", &[]) => AnyInterrupt::LowBattery(LowBattery::new()),
+                ("charger", &[]) => AnyInterrupt::Charger(Charger::new()),
                 _ => return None,
             },
         )
@@ -348,6 +376,7 @@ impl runtime::Alphabet for Alphabet {
                 ("theta", &[]) => AnySignal::Theta(Theta::new()),
                 ("v", &[]) => AnySignal::V(V::new()),
                 ("omega", &[]) => AnySignal::Omega(Omega::new()),
+                ("battery", &[]) => AnySignal::Battery(Battery::new()),
                 _ => return None,
             },
         )

@@ -67,6 +67,11 @@ impl Body {
         }
     }
 
+    /// The mean speed of the wheels, in metres per second, whichever way they turn.
+    pub(crate) fn wheels(&self) -> f64 {
+        (self.left.abs() + self.right.abs()) / 2.0
+    }
+
     /// The bumper switches in contact: bit `i` for number `i` of this many, counted counter-clockwise from the front.
     pub(crate) fn pressed(&self, switches: u8, walls: &Walls) -> u32 {
         let (at, felt) = (Place::of(&self.pose), self.drive.radius + FEELS);

@@ -8,7 +8,9 @@
 #![forbid(unsafe_code)]
 
 pub mod alphabet;
+mod battery;
 mod body;
+mod charger;
 mod disc;
 mod frames;
 mod goal;
@@ -35,6 +37,7 @@ mod whole_file;
 mod world;
 mod world_file;
 
+pub use charger::Charger;
 pub use disc::Disc;
 pub use goal::Goal;
 pub use mdle_runtime::Sensed;

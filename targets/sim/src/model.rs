@@ -6,6 +6,7 @@ use std::fmt;
 
 use mdle_runtime::{Nanos, Radians, SonarId};
 
+use crate::battery::Pack;
 use figures::{atrv, ideal, scout};
 
 /// A body to simulate.
@@ -71,6 +72,7 @@ pub(crate) struct Model {
     pub(crate) hearing: Hearing,
     /// Bumper switches: number `i` of them lies at `i` parts of a circle counter-clockwise from the front.
     pub(crate) switches: u8,
+    pub(crate) pack: Pack,
 }
 
 /// Wheels and outline. Metres and seconds.

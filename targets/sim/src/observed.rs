@@ -4,6 +4,7 @@ use mdle_host::{Ended, Hosted, Judgement, Standing};
 use mdle_runtime::capability::Bumpers as _;
 use mdle_runtime::{Nanos, PathStore, Pose, Robot, Sensed, Twist};
 
+use crate::charger::Charger;
 use crate::frames::Frames;
 use crate::goal::Goal;
 use crate::plot;
@@ -63,6 +64,11 @@ impl Observed {
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.robot.pose()
+    }
+
+    /// Sees to its supply from now on: the charge of its battery, from 0 to 1, and the charger of its world.
+    pub fn supply(&mut self, charge: f64, charger: Option<Charger>) {
+        self.robot.supply(charge, charger);
     }
 
     /// Takes the paths that the plan replays.

@@ -67,6 +67,12 @@ fn of_the_world(command: Command) -> Command {
                 .value_parser(value_parser!(u64)),
         )
         .arg(
+            option("battery", "PERCENT")
+                .help("Charge of the battery at the start, in percent [default: 100]")
+                .allow_negative_numbers(true)
+                .value_parser(value_parser!(u64).range(..=100)),
+        )
+        .arg(
             option("speed", "real|max|N")
                 .help("Speed of the simulated time: that of the clock, maximum, or N times the clock [default: real]")
                 .allow_negative_numbers(true),
@@ -210,6 +216,11 @@ pub(crate) fn make(matches: &ArgMatches) -> Result<Make, String> {
         })
     });
     Ok(Make { body, without: without.collect::<Result<_, _>>()?, seed: matches.get_one("seed").copied() })
+}
+
+/// The charge of `--battery`, from 0 to 1.
+pub(crate) fn battery(matches: &ArgMatches) -> f64 {
+    matches.get_one("battery").map_or(1.0, |percent: &u64| *percent as f64 / 100.0)
 }
 
 /// Whether the run is to be shown as it goes.

@@ -6,7 +6,9 @@ use std::time::Duration;
 use mdle_runtime::capability::Steering;
 use mdle_runtime::{Meters, Nanos, PathStore, Pose, Robot, Sensed, Shape, Supply, Twist};
 
+use crate::battery::Battery;
 use crate::body::{Body, STEP};
+use crate::charger::Charger;
 use crate::disc::Disc;
 use crate::model::{self, Model, Part};
 use crate::sonar::{Heard, Ring};
@@ -20,6 +22,8 @@ pub struct Simulated {
     body: Body,
     ring: Ring,
     shape: Shape,
+    battery: Battery,
+    charger: Option<Charger>,
     /// What the plan can replay.
     pub(crate) paths: PathStore,
     /// How many bumper switches there are.
@@ -80,7 +84,7 @@ impl Simulated {
     /// When it cannot stand there.
     pub fn with(make: &Make, world: &World, start: Pose, period: Duration) -> Result<Self, StartError> {
         let walls = Walls::of(world);
-        let Model { drive, hearing, switches } = Model::of(make.body, &make.without);
+        let Model { drive, hearing, switches, pack } = Model::of(make.body, &make.without);
         start::check(&start, drive.radius, world, &walls)?;
         let shape = Shape {
             body_radius: Meters(drive.radius),
@@ -94,6 +98,8 @@ impl Simulated {
             body: Body::new(drive, start, make.seed),
             ring: Ring::new(hearing, make.seed),
             shape,
+            battery: Battery::new(pack, 1.0),
+            charger: world.charger,
             paths: PathStore::EMPTY,
             switches,
             period,
@@ -105,6 +111,29 @@ impl Simulated {
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.body.pose
+    }
+
+    /// Sets the charge of its battery, from 0 to 1; it is full at first.
+    #[must_use]
+    pub fn charged(mut self, charge: f64) -> Self {
+        self.battery.charge(charge);
+        self
+    }
+
+    /// Sees to its supply from now on: the charge of its battery, from 0 to 1, and the charger of its world.
+    pub fn supply(&mut self, charge: f64, charger: Option<Charger>) {
+        self.battery.charge(charge);
+        self.charger = charger;
+    }
+
+    /// Returns what it measures of its battery and its charger.
+    #[must_use]
+    pub fn supplied(&self) -> Supply {
+        self.battery.supply(self.is_plugged())
+    }
+
+    fn is_plugged(&self) -> bool {
+        self.charger.is_some_and(|charger| charger.holds(&self.body.pose))
     }
 
     /// Where it is in the world, as others see and touch it.
@@ -197,7 +226,12 @@ impl Robot for Simulated {
             return Err(Fault::Input);
         }
         let now = self.now();
-        self.drive(input, now);
+        let standstill = Twist::default();
+        self.drive(if self.battery.is_empty() { &standstill } else { input }, now);
+        if self.exchanges > 0 {
+            let (is_plugged, seconds) = (self.is_plugged(), self.period.as_secs_f64());
+            self.battery.passed(seconds, self.body.wheels() * seconds, is_plugged);
+        }
         self.exchanges = self.exchanges.saturating_add(1);
         Ok(Sensed {
             at: now,
@@ -205,7 +239,7 @@ impl Robot for Simulated {
             velocity: self.body.velocity(),
             switches: self.body.pressed(self.switches, &self.walls),
             pings: self.ring.pings,
-            supply: Supply::default(),
+            supply: self.supplied(),
             shape: self.shape,
             paths: self.paths,
         })

@@ -40,7 +40,14 @@ impl Header {
                 solid: false,
             })
             .collect();
-        let world = World { contours: outlines.len(), outlines, things: Vec::new(), start: Pose::ORIGIN, goal: None };
+        let world = World {
+            contours: outlines.len(),
+            outlines,
+            things: Vec::new(),
+            start: Pose::ORIGIN,
+            goal: None,
+            charger: None,
+        };
         count(&world).map_err(|what| WorldError::new(file, None, what))?;
         Ok(world)
     }

@@ -26,6 +26,8 @@ struct Setup {
     make: Make,
     start: Pose,
     noise: Option<StartNoise>,
+    /// Of the battery at the start, from 0 to 1.
+    charge: f64,
     period: Duration,
 }
 
@@ -75,7 +77,8 @@ impl Setup {
         };
         start::check(&start, make.radius(), &world, &walls).map_err(said)?;
         let noise = options::start_noise(matches)?;
-        Ok(Self { world, walls, make, start, noise, period })
+        let charge = options::battery(matches);
+        Ok(Self { world, walls, make, start, noise, charge, period })
     }
 
     /// World, body and seed, as a title names them.
@@ -99,7 +102,7 @@ impl Setup {
         };
         let robot = start.and_then(|start| Simulated::with(&make, &self.world, start, self.period));
         let robot = robot.map_err(|error| format!("no start could be found by chance: {error}"))?;
-        Ok(Observed::from(robot).judged_by(self.world.goal))
+        Ok(Observed::from(robot.charged(self.charge)).judged_by(self.world.goal))
     }
 }
 

@@ -4,6 +4,7 @@ use std::fmt;
 
 use mdle_runtime::{Meters, Pose};
 
+use crate::charger::Charger;
 use crate::goal::Goal;
 use crate::moving::Thing;
 use crate::ros_map::Header;
@@ -28,6 +29,8 @@ pub struct World {
     pub start: Pose,
     /// Where a plan is to leave the robot, if the world says so.
     pub goal: Option<Goal>,
+    /// The charger, if the world has one.
+    pub charger: Option<Charger>,
     /// So many of the first outlines are contours of a map: inside an odd number of them it is solid.
     pub(crate) contours: usize,
 }

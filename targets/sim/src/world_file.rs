@@ -10,6 +10,7 @@ use std::ops::Range;
 
 use toml::Spanned;
 
+use crate::body::RADIUS;
 use crate::world::World;
 use outlines::{Stands, Unit};
 use text::WorldText;
@@ -107,8 +108,14 @@ fn read(text: &str) -> Result<World, Wrong> {
     for (number, door) in (1..).zip(&written.doors) {
         things.push(unit.door(number, door)?);
     }
-    let world = World { outlines, things, start, goal, contours: 0 };
+    let charger = written.charger.as_ref().map(|charger| unit.charger(charger)).transpose()?;
+    let world = World { outlines, things, start, goal, charger, contours: 0 };
     count(&world).map_err(|what| Wrong(None, what))?;
+    let blocked = charger.and_then(|charger| charger.blocked(&world, RADIUS));
+    if let (Some(name), Some(text)) = (blocked, &written.charger) {
+        let what = format!("the charger is in {name:?}: a robot on it, {RADIUS} m around `at`, would overlap that");
+        return Err(Wrong::at(&text.get_ref().0.at, what));
+    }
     Ok(world)
 }
 

@@ -4,10 +4,10 @@
 
 use std::time::Duration;
 
-use mdle_atoms::conformance::{Room, Stage, Suite, Verdict};
+use mdle_atoms::conformance::{Room, Stage, Suite, Supplied, Verdict};
 use mdle_host::Target as _;
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, PathStore, Ping, Pings, Pose, Radians, Robot};
-use mdle_sim::{Body, Input, Make, Observed, Output, Simulated, Target, World, alphabet};
+use mdle_sim::{Body, Charger, Input, Make, Observed, Output, Simulated, Target, World, alphabet};
 
 /// A body in a world that the suite makes up.
 struct InWorld(Make);
@@ -29,6 +29,15 @@ impl Stage for InWorld {
         }
     }
 
+    fn supply(&mut self, robot: &mut Observed, supplied: Supplied) {
+        let here = Charger { pose: robot.pose(), reach: 10.0 };
+        match supplied {
+            Supplied::Well => {}
+            Supplied::Low => robot.supply(0.05, None),
+            Supplied::Plugged => robot.supply(1.0, Some(here)),
+        }
+    }
+
     fn truth(&self, robot: &Observed) -> Pose {
         robot.pose()
     }
@@ -43,7 +52,7 @@ impl Stage for InWorld {
 
 fn conforms(body: Body, seed: Option<u64>) {
     let mut stage = InWorld(Make { body, without: Vec::new(), seed });
-    let report = Suite::on(&mut stage).diff_drive().odometry().bumper().sonar().paths().report();
+    let report = Suite::on(&mut stage).diff_drive().odometry().bumper().sonar().paths().power().report();
     assert!(report.holds(), "{report}");
 }
 

@@ -58,6 +58,11 @@ fn faults_are_told_with_their_place() {
         "goal = { min = [0, 0], max = [0, 1] }",
         "goal = { min = [0, 0], max = [1, 1], heading = 90 }",
         "goal = { min = [0, 0], max = [1, 1], heading = 90, tolerance = -1 }",
+        "charger = { at = [1, 0], heading = 0 }\n[[wall]]\nname = \"rear\"\npoints = [[1.2, -1], [1.2, 1]]",
+        "units = \"cm\"\ncharger = { at = [50, 50], heading = 0 }\n[[box]]\nmin = [0, 0]\nmax = [100, 100]",
+        "charger = { at = [1, 0], heading = 0, reach = 0 }",
+        "charger = { at = [1, 0] }",
+        "charger = { at = [1, 0, 0], heading = 0 }",
         "units = \"miles\"",
         "units = \"ft\"\n[[wall]]\npoints = [[0, 0], [1e7, 0]]",
         "[[disc]]\ncentre = [0, 0]\nradius = 0",
@@ -78,7 +83,7 @@ fn faults_are_told_with_their_place() {
     .map(fault);
     insta::assert_snapshot!(faults.join("\n"), @r#"
     room.toml:3:1: missing comma between array elements, expected `,`
-    room.toml:1:3: unknown field `wal`, expected one of `units`, `start`, `goal`, `wall`, `box`, `disc`, `door`
+    room.toml:1:3: unknown field `wal`, expected one of `units`, `start`, `goal`, `charger`, `wall`, `box`, `disc`, `door`
     room.toml:2:1: unknown field `nmae`, expected `name` or `points`
     room.toml:1:1: missing field `points`
     room.toml:2:10: a wall needs at least two points, as in `points = [[0, 0], [2.5, 0]]`
@@ -101,6 +106,11 @@ fn faults_are_told_with_their_place() {
     room.toml:1:30: a goal without an inside: it would reach from (0, 0) to (0, 1)
     room.toml:1:8: a goal's `heading` needs a `tolerance` and the other way round, as in `heading = 90, tolerance = 15`
     room.toml:1:64: a tolerance is from 0 to 180 degrees
+    room.toml:1:18: the charger is in "rear": a robot on it, 0.205 m around `at`, would overlap that
+    room.toml:2:18: the charger is in "box 1": a robot on it, 0.205 m around `at`, would overlap that
+    room.toml:1:47: a charger without a reach: expected one above 0
+    room.toml:1:11: missing field `heading`
+    room.toml:1:18: `at` is two numbers, x and y in metres, not 3
     room.toml:1:9: "miles" is no unit of length; expected one of `m`, `cm`, `mm`, `in`, `ft`
     room.toml:3:20: 1e7 is no coordinate: expected a number, at most 1000 km
     room.toml:3:10: a disc without an inside: expected a radius above 0

@@ -16,8 +16,10 @@ const A_METRE: f64 = 139_654.7;
 const A_RADIAN: f64 = 49_784.5;
 /// After how long without a command it stops by itself, unless it is told otherwise.
 const FAILSAFE: Duration = Duration::from_secs(1);
-/// The battery, in hundredths of a volt less 1.82 V; one that is low; and on its charger.
-const BATTERY: u32 = 2430;
+/// By how much the battery is above what the controller tells, in volts.
+const ABOVE: f64 = 1.82;
+/// What it tells of a low battery and of one on its charger, in hundredths of a volt: the charger's voltage is higher than
+/// that of any battery.
 const LOW: u32 = 1850;
 const PLUGGED: u32 = 2650;
 /// The distance between its sides, in metres, as its body has it.
@@ -224,14 +226,15 @@ impl Atrv {
         self.gone = (self.gone.0 + way * A_METRE, self.gone.1 + turn * A_RADIAN);
     }
 
-    /// What it tells of its battery. On the charger that is no longer low.
+    /// What it tells of its battery, in hundredths of a volt. On the charger that is no longer low.
     fn battery(&self) -> u32 {
-        if self.has(Ailment::PluggedIn) {
+        let supply = self.body.supplied();
+        if self.has(Ailment::PluggedIn) || supply.is_plugged {
             PLUGGED
         } else if self.has(Ailment::LowBattery) {
             LOW
         } else {
-            BATTERY
+            ((supply.battery.0 - ABOVE) * 100.0).round().max(0.0) as u32
         }
     }
 

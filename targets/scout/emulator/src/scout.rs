@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use mdle_emulator::{Ailment, Embodied, Emulated, Order, Orders};
 use mdle_runtime::capability::{Odometry, SonarRing};
-use mdle_runtime::{MetersPerSecond, Pose, RadiansPerSecond, Robot as _, SonarId, Twist};
+use mdle_runtime::{MetersPerSecond, Pose, RadiansPerSecond, Robot as _, SonarId, Twist, Volts};
 use mdle_sim::{Disc, Output, Simulated};
 
 use crate::wire::{Incoming, Request, answer, number, two_bytes};
@@ -15,8 +15,7 @@ const INCH: f64 = 0.0254;
 const INCHES_A_DEGREE: f64 = 0.118_597;
 /// By how much a robot whose motors are limp gets slower, in tenths of an inch a second, each second: 0.3 m/s.
 const ROLLING: f64 = 120.0;
-/// What it measures of both supplies: at 11.5 V and 11.9 V, and when both are at 10.5 V.
-const CHARGED: [u8; 2] = [239, 222];
+/// What it measures of both supplies when they are at 10.5 V.
 const LOW: [u8; 2] = [202, 177];
 /// The distance of each position from the one before when they leap, in tenths of an inch: 3 m.
 const LEAP: i64 = 1181;
@@ -190,7 +189,9 @@ impl Scout {
         let (sin, cos) = libm::sincos(self.zero.theta.0);
         let tenths = |meters: f64| (meters / INCH * 10.0).round() as i64;
         let heading = (pose.theta.0 - self.zero.theta.0).to_degrees().rem_euclid(360.0);
-        let charge = if self.is_low { 0 } else { 0b1000 } | if self.is_plugged { 0b0011_0000 } else { 0 };
+        let is_low = self.is_low || self.sensed.supply.is_low;
+        let charge = if is_low { 0 } else { 0b1000 }
+            | if self.is_plugged || self.sensed.supply.is_plugged { 0b0011_0000 } else { 0 };
         let moving = |wheel: i32, bit: u8| if wheel == 0 { 0 } else { bit };
         let (right, left) = self.rolling();
         let status = moving(left, 1) | moving(right, 2) | charge | if self.emergency { 0b0100_0000 } else { 0 };
@@ -206,10 +207,15 @@ impl Scout {
             &two_bytes(i64::from(left)),
             &[0, 0, 0, 0, status],
             &(self.age.as_millis() as u32).to_le_bytes(),
-            if self.is_low { &LOW } else { &CHARGED },
+            &if self.is_low { LOW } else { volts(self.sensed.supply.battery) },
         ]
         .concat()
     }
+}
+
+/// A voltage as the supplies of its computer and of its motors are told: from 0 at two fifths of the scale to 255 at its end.
+fn volts(battery: Volts) -> [u8; 2] {
+    [12.0, 12.85].map(|range| ((battery.0 * 5.0 / range - 2.0) * (255.0 / 3.0)).round().clamp(0.0, 255.0) as u8)
 }
 
 impl Embodied for Scout {

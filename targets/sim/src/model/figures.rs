@@ -2,6 +2,8 @@
 
 use mdle_runtime::{Nanos, Radians, SonarId};
 
+use crate::battery::Pack;
+
 use super::{Drive, HALF_CONE, Hearing, Model, Order, Slip, Transducer};
 
 const INCH: f64 = 0.0254;
@@ -43,6 +45,7 @@ pub(super) fn ideal() -> Model {
             order: None,
         },
         switches: 6,
+        pack: Pack::SCOUT,
     }
 }
 
@@ -76,6 +79,7 @@ pub(super) fn scout() -> Model {
             ..ideal.hearing
         },
         switches: 6,
+        pack: Pack::SCOUT,
     }
 }
 
@@ -135,5 +139,6 @@ pub(super) fn atrv() -> Model {
             ..scout.hearing
         },
         switches: 2,
+        pack: Pack::ATRV,
     }
 }

@@ -14,6 +14,8 @@ struct Palette {
     echo: &'static str,
     contact: &'static str,
     goal: &'static str,
+    /// Inside of the sign of a charger.
+    charge: &'static str,
     /// The colours of the atoms, over and over, each with the colour of a number on it.
     atoms: [(&'static str, &'static str); COUNT],
 }
@@ -30,6 +32,7 @@ const LIGHT: Palette = Palette {
     echo: "#8a97a8",
     contact: "#c00020",
     goal: "#e3f1e8",
+    charge: "#ffd84d",
     atoms: [
         ("#0072b2", "#ffffff"),
         ("#e69f00", "#14171c"),
@@ -51,6 +54,7 @@ const DARK: Palette = Palette {
     echo: "#7d8b9d",
     contact: "#ff5468",
     goal: "#1c3a29",
+    charge: "#ffd84d",
     atoms: [
         ("#4aa3df", "#14171c"),
         ("#ff9a5c", "#14171c"),
@@ -74,11 +78,11 @@ pub(super) fn style() -> String {
 }
 
 fn rules(palette: &Palette) -> String {
-    let Palette { ink, faint, paper, grid, solid, echo, contact, goal, atoms } = palette;
+    let Palette { ink, faint, paper, grid, solid, echo, contact, goal, charge, atoms } = palette;
     let mut rules = format!(
         "text {{ fill: {ink} }}\n.quiet {{ fill: {faint} }}\n.paper {{ fill: {paper} }}\n.ink {{ stroke: {ink} }}\n\
          .faint {{ stroke: {faint} }}\n.grid {{ stroke: {grid} }}\n.shade {{ fill: {grid} }}\n.solid {{ fill: {solid} }}\n\
-         .echo {{ stroke: {echo} }}\n.contact {{ stroke: {contact} }}\n.goal {{ fill: {goal} }}\n.halo {{ stroke: {paper} }}\n"
+         .echo {{ stroke: {echo} }}\n.contact {{ stroke: {contact} }}\n.goal {{ fill: {goal} }}\n.charge {{ fill: {charge} }}\n.halo {{ stroke: {paper} }}\n"
     );
     for (number, (colour, on)) in atoms.iter().enumerate() {
         // Writing to a string cannot fail.

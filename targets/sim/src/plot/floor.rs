@@ -3,7 +3,7 @@
 use svg::node::element::{ClipPath, Group, Path, Rectangle};
 
 use super::layout::{LEFT, Layout, MARGIN, round_step};
-use super::shapes::{line, polyline, tenths, text, through};
+use super::shapes::{Pixel, line, polyline, tenths, text, through};
 use crate::world::{Outline, Place, World};
 
 /// Between two numbers of an axis, in pixels.
@@ -75,6 +75,13 @@ fn number(value: f64, step: f64) -> String {
     format!("{:.places$}", libm::round(value / step) * step + 0.0)
 }
 
+/// A charger: the circle that the centre of a robot has to be in, and a flash of lightning at its middle.
+pub(super) fn socket(circle: impl IntoIterator<Item = Pixel>, (x, y): Pixel) -> Group {
+    let flash = format!("M{} {}l-5 9h4l-3 7l8 -10h-4l4 -6z", tenths(x + 1.0), tenths(y - 8.0));
+    let flash = Path::new().set("d", flash).set("class", "ink charge").set("stroke-width", 1);
+    Group::new().add(polyline(circle).set("class", "ink").set("stroke-dasharray", "3 2")).add(flash)
+}
+
 fn walls(layout: &Layout, world: &World) -> Group {
     let mut group = Group::new();
     if let Some(zone) = &world.goal {
@@ -83,6 +90,9 @@ fn walls(layout: &Layout, world: &World) -> Group {
         let zone = Rectangle::new().set("x", tenths(left)).set("y", tenths(top));
         let zone = zone.set("width", tenths(right - left)).set("height", tenths(bottom - top));
         group = group.add(zone.set("class", "goal"));
+    }
+    if let Some(charger) = &world.charger {
+        group = group.add(socket(charger.circle().map(|place| layout.at(place)), layout.at(Place::of(&charger.pose))));
     }
     // Few paths for all outlines: a map has many, and viewers draw few long paths faster than many short ones.
     let (contours, outlines) = world.outlines.split_at(world.contours.min(world.outlines.len()));

@@ -26,7 +26,7 @@ pub(super) const LETTERS: u32 = 14;
 /// The average width of a sans-serif letter, as a part of its height.
 pub(super) const LETTER: f64 = 0.56;
 /// The lines of the legend besides the atoms: the heads of the columns, a free one, the signs, and the scale.
-pub(super) const KEY: usize = 8;
+pub(super) const KEY: usize = 9;
 /// The most signs of what moves.
 const SIGNS: usize = 2;
 /// The least width of a legend: that of its signs.

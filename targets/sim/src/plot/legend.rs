@@ -5,7 +5,7 @@ use svg::node::element::{Group, Path, Rectangle};
 use super::labels::RADIUS;
 use super::layout::{LETTERS, Layout, MARGIN, round_step};
 use super::shapes::{badge, circle, cross, dots, polyline, text};
-use super::{rows, things};
+use super::{floor, rows, things};
 use crate::trail::Trail;
 use crate::world::World;
 
@@ -60,6 +60,9 @@ fn signs(layout: &Layout, x: f64, world: &World, trail: &Trail) -> Vec<(Group, &
     if world.goal.is_some_and(|goal| layout.shows_any([goal.min, goal.max].into_iter())) {
         let zone = Rectangle::new().set("x", x - 9.0).set("y", -7).set("width", 18).set("height", 14);
         signs.push((Group::new().add(zone.set("class", "goal faint").set("stroke-width", 0.5)), "goal"));
+    }
+    if world.charger.is_some_and(|charger| layout.shows_any(charger.circle())) {
+        signs.push((floor::socket([], (x, 0.0)), "charger"));
     }
     signs.extend(things::signs(layout, world).map(|sign| (sign.drawn(x), sign.said())));
     signs

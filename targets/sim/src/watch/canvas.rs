@@ -7,6 +7,7 @@ pub(super) enum Ink {
     #[default]
     None,
     Goal,
+    Charger,
     Way,
     Wall,
     Echo,
@@ -18,6 +19,7 @@ impl Ink {
         match self {
             Self::None | Self::Wall => "\x1b[0m",
             Self::Goal => "\x1b[0;32m",
+            Self::Charger => "\x1b[0;35m",
             Self::Way => "\x1b[0;94m",
             Self::Echo => "\x1b[0;33m",
         }

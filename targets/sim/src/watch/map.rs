@@ -44,6 +44,9 @@ impl Map {
         if let Some(goal) = &world.goal {
             map.goal(goal.min, goal.max);
         }
+        if let Some(charger) = &world.charger {
+            charger.circle().for_each(|place| map.dot(place, Ink::Charger));
+        }
         for (_, from, to) in world.segments() {
             map.line(from, to, Ink::Wall);
         }

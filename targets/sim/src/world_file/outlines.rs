@@ -4,7 +4,8 @@ use mdle_runtime::{Meters, Pose, Radians};
 use toml::Spanned;
 
 use super::Wrong;
-use super::text::{BoxText, DiscText, DoorText, GoalText, Numbers, StartText, Table, WallText};
+use super::text::{BoxText, ChargerText, DiscText, DoorText, GoalText, Numbers, StartText, Table, WallText};
+use crate::charger::Charger;
 use crate::goal::Goal;
 use crate::moving::{Schedule, Stop, Thing};
 use crate::world::{Outline, Place};
@@ -13,6 +14,8 @@ use crate::world::{Outline, Place};
 const FURTHEST: f64 = 1e6;
 /// The corners of the polygon that a disc is taken for: at a radius of 1 m it is 2 mm off.
 const CORNERS: u32 = 48;
+/// The reach of a charger unless the file says otherwise, in metres.
+const REACH: f64 = 0.1;
 /// What lengths can be in, in metres.
 const UNITS: [(&str, f64); 5] = [("m", 1.0), ("cm", 0.01), ("mm", 0.001), ("in", 0.0254), ("ft", 0.3048)];
 
@@ -66,6 +69,17 @@ impl Unit {
             }
         };
         Ok(Goal { min, max, heading })
+    }
+
+    pub(super) fn charger(self, text: &Spanned<Table<ChargerText>>) -> Result<Charger, Wrong> {
+        let Table(ChargerText { at, heading, reach }) = text.get_ref();
+        let Place { x, y } = self.pair(at, "`at`")?;
+        let theta = Radians::from_degrees(Self(1.0).length(heading)?).wrapped();
+        let metres = reach.as_ref().map_or(Ok(REACH), |reach| self.length(reach))?;
+        match reach {
+            Some(reach) if metres <= 0.0 => Err(Wrong::at(reach, "a charger without a reach: expected one above 0")),
+            Some(_) | None => Ok(Charger { pose: Pose { x: Meters(x), y: Meters(y), theta }, reach: metres }),
+        }
     }
 
     pub(super) fn wall(self, number: usize, text: &WallText) -> Result<Outline, Wrong> {

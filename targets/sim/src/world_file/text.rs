@@ -19,6 +19,7 @@ pub(super) struct WorldText {
     #[serde(default)]
     pub(super) start: Table<StartText>,
     pub(super) goal: Option<Spanned<Table<GoalText>>>,
+    pub(super) charger: Option<Spanned<Table<ChargerText>>>,
     #[serde(default, rename = "wall")]
     pub(super) walls: Vec<Table<WallText>>,
     #[serde(default, rename = "box")]
@@ -44,6 +45,14 @@ pub(super) struct GoalText {
     pub(super) max: Numbers,
     pub(super) heading: Option<Spanned<f64>>,
     pub(super) tolerance: Option<Spanned<f64>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ChargerText {
+    pub(super) at: Numbers,
+    pub(super) heading: Spanned<f64>,
+    pub(super) reach: Option<Spanned<f64>>,
 }
 
 #[derive(Deserialize)]

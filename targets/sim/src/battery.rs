@@ -1,0 +1,102 @@
+//! The battery: driving and time discharge it, a charger charges it, and its voltage falls with its charge.
+
+use mdle_runtime::{Supply, Volts};
+
+/// A battery and what uses it. Watts, joules and volts.
+///
+/// The documents on the robots give no figures, so these are assumed: a pair of lead-acid batteries as this size of robot
+/// carries, and the power of a computer with its sonars. The energy of a metre is that of rolling friction (a twentieth of
+/// the weight) through motors with an efficiency of three tenths.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Pack {
+    /// Energy of the full battery, in joules.
+    pub(crate) capacity: f64,
+    /// Power that is used all the time, in watts.
+    pub(crate) standby: f64,
+    /// Energy for a metre of a wheel, in joules: the mean of both wheels counts.
+    pub(crate) metre: f64,
+    /// Power that the charger gives, in watts.
+    pub(crate) charger: f64,
+    /// Number of cells of lead and acid.
+    pub(crate) cells: f64,
+}
+
+/// Joules of a watt-hour.
+const WATT_HOUR: f64 = 3600.0;
+/// The voltage of an empty and of a full cell at rest, and of one that has to be charged: 10.8 V of a battery of six.
+const EMPTY: f64 = 1.75;
+const FULL: f64 = 2.12;
+const LOW: f64 = 1.8;
+
+impl Pack {
+    /// Of a robot of 25 kg: 12 V, 36 Ah.
+    pub(crate) const SCOUT: Self =
+        Self { capacity: 432.0 * WATT_HOUR, standby: 30.0, metre: 41.0, charger: 120.0, cells: 6.0 };
+    /// Of a robot of 40 kg: 24 V, 30 Ah.
+    pub(crate) const ATRV: Self =
+        Self { capacity: 720.0 * WATT_HOUR, standby: 40.0, metre: 65.0, charger: 200.0, cells: 12.0 };
+}
+
+/// A battery in use.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Battery {
+    pack: Pack,
+    /// From 0, empty, to 1, full.
+    charge: f64,
+}
+
+impl Battery {
+    /// A battery with this charge, from 0 to 1.
+    pub(crate) fn new(pack: Pack, charge: f64) -> Self {
+        Self { pack, charge: charge.clamp(0.0, 1.0) }
+    }
+
+    /// From now on it has this charge, from 0 to 1.
+    pub(crate) fn charge(&mut self, charge: f64) {
+        self.charge = charge.clamp(0.0, 1.0);
+    }
+
+    /// Some seconds have passed, in which the wheels rolled this far, in metres, on the charger or not.
+    pub(crate) fn passed(&mut self, seconds: f64, rolled: f64, is_plugged: bool) {
+        let Pack { capacity, standby, metre, charger, .. } = self.pack;
+        let given = if is_plugged { charger } else { 0.0 };
+        self.charge = (self.charge + ((given - standby) * seconds - metre * rolled) / capacity).clamp(0.0, 1.0);
+    }
+
+    /// Returns `true` if there is nothing left to drive by.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.charge <= 0.0
+    }
+
+    /// What the robot measures of it.
+    pub(crate) fn supply(&self, is_plugged: bool) -> Supply {
+        let cell = EMPTY + (FULL - EMPTY) * self.charge;
+        Supply { battery: Volts(cell * self.pack.cells), is_low: cell < LOW, is_plugged }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_full_battery_lasts_for_its_capacity() {
+        let mut battery = Battery::new(Pack::SCOUT, 1.0);
+        // An hour at 50 cm/s: 30 W and 20.5 W of 432 Wh.
+        (0..36_000).for_each(|_| battery.passed(0.1, 0.05, false));
+        assert!((battery.charge - (1.0 - 50.5 / 432.0)).abs() < 1e-9, "{battery:?}");
+        (0..360).for_each(|_| battery.passed(3600.0, 0.0, false));
+        assert!(battery.is_empty() && battery.supply(false).is_low);
+        assert!((battery.supply(false).battery.0 - 10.5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_charger_charges_until_the_battery_is_full() {
+        let mut battery = Battery::new(Pack::SCOUT, 0.1);
+        assert!(battery.supply(true).is_low);
+        battery.passed(3600.0, 0.0, true);
+        assert!((battery.charge - (0.1 + 90.0 / 432.0)).abs() < 1e-9 && !battery.supply(true).is_low);
+        battery.passed(1e6, 0.0, true);
+        assert!((battery.supply(true).battery.0 - 12.72).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,61 @@
+//! A charger: the pose in which a robot is on it, and by how much the robot may miss that.
+
+use mdle_runtime::{Meters, Pose, Radians};
+
+use crate::world::{Place, World};
+
+/// The most that the heading of a robot on its charger may be off, to either side.
+const HEADING: Radians = Radians::from_degrees(15.0);
+
+/// A charger on the floor.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Charger {
+    /// The centre of a robot on the charger, in metres, and its heading.
+    pub pose: Pose,
+    /// The greatest distance of the robot's centre from there, in metres; above 0.
+    pub reach: f64,
+}
+
+impl Charger {
+    /// Returns `true` if a robot at `pose` is on the charger: within reach, and with a heading at most 15 degrees off.
+    #[must_use]
+    pub fn holds(&self, pose: &Pose) -> bool {
+        let off = Radians(pose.theta.0 - self.pose.theta.0).wrapped();
+        pose.distance(&self.pose).0 <= self.reach && off.0.abs() <= HEADING.0
+    }
+
+    /// The wall, box or disc in which no robot can be on the charger: it surrounds that place, or is nearer than a body is wide.
+    pub(crate) fn blocked(&self, world: &World, radius: f64) -> Option<String> {
+        let place = Place::of(&self.pose);
+        let inside = world.solid(place).map(|outline| outline.name.clone());
+        let near = world.segments().find(|(_, from, to)| {
+            let (dx, dy) = (to.x - from.x, to.y - from.y);
+            let along = ((place.x - from.x) * dx + (place.y - from.y) * dy) / (dx * dx + dy * dy);
+            let along = along.clamp(0.0, 1.0);
+            libm::hypot(place.x - from.x - along * dx, place.y - from.y - along * dy) < radius
+        });
+        inside.or_else(|| near.map(|(outline, ..)| outline.name.clone()))
+    }
+
+    /// Corners of a sign: the circle within reach, and the place ahead of a robot on the charger.
+    pub(crate) fn circle(&self) -> impl Iterator<Item = Place> {
+        let at = self.pose;
+        let reach = Meters(self.reach);
+        (0..=24).map(move |corner| Place::of(&at.towards(Radians::from_degrees(f64::from(corner) * 15.0), reach)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_robot_is_on_its_charger_within_reach_and_heading() {
+        let pose = |x, degrees| Pose { x: Meters(x), y: Meters(2.0), theta: Radians::from_degrees(degrees) };
+        let charger = Charger { pose: pose(1.0, 180.0), reach: 0.1 };
+        assert!(charger.holds(&pose(1.0, 180.0)) && charger.holds(&pose(1.09, -166.0)));
+        assert!(
+            !charger.holds(&pose(1.11, 180.0)) && !charger.holds(&pose(1.0, 164.0)) && !charger.holds(&pose(1.0, 0.0))
+        );
+    }
+}
