@@ -52,7 +52,10 @@ fn commands_that_are_misspelled() {
 #[test]
 fn a_robot_that_lacks_something_names_those_that_have_it() {
     let folder = with_plan("lacks", "{ P (battery < 11)\n  (Atom (lowBattery OR sync ada) stop)\n}\n");
-    insta::assert_snapshot!(said(&folder, &["check", "plan.mdle", "--target", "sim"]));
+    fs::create_dir_all(folder.join("cart")).unwrap();
+    let cart = "target cart : crate cart, period 100ms;\ncapability diff_drive, odometry;\nuse atoms;\n";
+    fs::write(folder.join("cart/alphabet.mdle"), cart).unwrap();
+    insta::assert_snapshot!(said(&folder, &["check", "plan.mdle", "--target", "./cart"]));
 }
 
 #[test]
