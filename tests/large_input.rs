@@ -95,12 +95,26 @@ fn brackets_that_close_nothing_are_one_error() {
 }
 
 #[test]
+fn a_long_line_is_cut_around_its_mistake() {
+    let folder = folder("long_line");
+    let plan = format!("{{ P {}(Atom (bogus) stop) }}\n", "(Atom (wait 1) stop) ".repeat(60_000));
+    let (status, _, told) = said(&folder, &plan, &["check", "plan.mdle"]);
+    assert_eq!(status, Some(1));
+    let lines: Vec<_> = told.lines().collect();
+    assert!(told.len() < 1000 && lines[1].ends_with("plan.mdle:1:1260012"), "{}", &told[..told.len().min(2000)]);
+    let at = |line: &str, part: char| line.chars().position(|letter| letter == part);
+    assert_eq!(at(lines[4], '^'), lines[3].find("bogus").map(|byte| lines[3][..byte].chars().count()), "{told}");
+    let (_, _, told) = said(&folder, &plan, &["check", "plan.mdle", "--message-format", "json"]);
+    assert!(told.contains(r#""line":1,"column":1260012,"end_line":1,"end_column":1260017"#), "{told}");
+}
+
+#[test]
 fn errors_without_number_are_told_as_far_as_anybody_reads() {
     let folder = folder("without_number");
     let plan = format!("{{ P {} }}", "(} {) ".repeat(MANY / 2));
     let (status, _, told) = said(&folder, &plan, &["check", "plan.mdle"]);
     assert_eq!(status, Some(1));
-    assert!(told.len() < 2_000_000 && told.contains("\n… and "), "{} bytes", told.len());
+    assert!(told.len() < 10_000 && told.contains("\n… and "), "{} bytes", told.len());
     let (status, _, told) = said(&folder, &plan, &["check", "plan.mdle", "--message-format", "json"]);
     // A program is told all of them: each repetition has three mistakes.
     assert_eq!((status, told.lines().count()), (Some(1), MANY / 2 * 3));

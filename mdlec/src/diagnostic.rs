@@ -1,5 +1,6 @@
 //! Diagnostics: a code, what is wrong, where, and what to type instead; rendered with codespan-reporting.
 
+mod excerpt;
 mod explain;
 mod help;
 mod json;

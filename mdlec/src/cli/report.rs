@@ -6,7 +6,6 @@ use std::fmt::Display;
 use std::io::{self, IsTerminal, Write};
 use std::sync::OnceLock;
 
-use codespan_reporting::term;
 use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
 use mdle_runtime::{Printable, PrintableLines, is_printable};
 
@@ -45,8 +44,6 @@ pub(super) fn option(name: &str, value: &str) -> String {
 const SHOWN: usize = 100;
 /// At most so many where more than that are about the notation: such a file is hardly a plan.
 const SHOWN_OF_NO_PLAN: usize = 10;
-/// So much of the source is shown with them, in bytes, and with one at least: each shows its lines whole, however long.
-const SOURCE_SHOWN: usize = 500_000;
 
 /// Prints diagnostics in their order, then how many there were.
 ///
@@ -78,21 +75,13 @@ fn render(sources: &Sources, found: &[Diagnostic]) {
         Color::Auto | Color::Never => ColorChoice::Never,
     };
     let mut out = StandardStream::stderr(choice);
-    let mut source = 0;
     let notation = found.iter().filter(|diagnostic| diagnostic.code.is_notation()).count();
     let most = if notation > SHOWN_OF_NO_PLAN { SHOWN_OF_NO_PLAN } else { SHOWN };
-    let shown = found.iter().take(most).take_while(|diagnostic| {
-        let is_shown = source <= SOURCE_SHOWN;
-        source += sources.shown(diagnostic);
-        is_shown
-    });
-    let mut count = 0;
-    for diagnostic in shown {
-        count += 1;
+    for diagnostic in found.iter().take(most) {
         // Nobody is left to be told when standard error is closed.
-        let _ = term::emit_to_write_style(&mut out, &term::Config::default(), sources, &sources.report(diagnostic));
+        let _ = sources.write(diagnostic, &mut out);
     }
-    note_others(found.len(), count);
+    note_others(found.len(), most);
 }
 
 /// Says how many diagnostics are not shown.

@@ -3,13 +3,10 @@
 use std::cell::Cell;
 use std::ops::Range;
 
-use codespan_reporting::diagnostic as report;
 use codespan_reporting::files::{Error as FilesError, Files, SimpleFile, column_index};
-use codespan_reporting::term;
-use mdle_runtime::{Printable, PrintableLines};
 
 use super::shown::Shown;
-use super::{Diagnostic, Label, Severity, SourceId, Span};
+use super::{SourceId, Span};
 
 /// The files that spans point into.
 #[derive(Debug, Default)]
@@ -102,18 +99,6 @@ impl Sources {
         Some(Known { source, byte, line, column })
     }
 
-    /// How much of the files is shown with a diagnostic, in bytes: the lines of its places.
-    #[must_use]
-    pub fn shown(&self, diagnostic: &Diagnostic) -> usize {
-        let lines = |label: &Label| {
-            let (source, range) = self.range(label.span);
-            let file = self.written(source)?;
-            let line = |byte| file.line_index((), byte).and_then(|line| file.line_range((), line)).ok();
-            Some(line(range.end)?.end.saturating_sub(line(range.start)?.start))
-        };
-        diagnostic.labels.iter().filter_map(lines).sum()
-    }
-
     /// The text of a file.
     #[must_use]
     pub fn text(&self, source: SourceId) -> &str {
@@ -131,69 +116,20 @@ impl Sources {
     }
 
     /// A file as it is shown.
-    fn shown_file(&self, source: SourceId) -> Result<&SimpleFile<String, String>, FilesError> {
+    pub(super) fn shown_file(&self, source: SourceId) -> Result<&SimpleFile<String, String>, FilesError> {
         let (_, file) = self.file(source.0).ok_or(FilesError::FileMissing)?;
         Ok(file.shown.as_ref().map_or(&file.written, |shown| &shown.file))
     }
 
-    /// Where a byte of a file is shown.
-    fn shown_place(&self, source: SourceId, byte: usize) -> usize {
+    /// The byte that shows a byte of a file.
+    pub(super) fn shown_place(&self, source: SourceId, byte: usize) -> usize {
         let shown = self.file(source.0).and_then(|(_, file)| file.shown.as_ref());
         shown.map_or(byte, |shown| shown.place(byte))
     }
 
-    /// The diagnostic as plain text, as a terminal without colours shows it.
-    #[must_use]
-    pub fn render(&self, diagnostic: &Diagnostic) -> String {
-        term::emit_into_string(&term::Config::default(), self, &self.report(diagnostic))
-            .unwrap_or_else(|_| format!("{}: {}\n", diagnostic.code, PrintableLines(&diagnostic.message)))
-    }
-
-    /// The diagnostic as codespan-reporting takes it, for a terminal with colours.
-    #[must_use]
-    pub fn report(&self, diagnostic: &Diagnostic) -> report::Diagnostic<SourceId> {
-        let severity = match diagnostic.code.severity() {
-            Severity::Error => report::Severity::Error,
-            Severity::Warning => report::Severity::Warning,
-        };
-        let labels = diagnostic.labels.iter().map(|label| {
-            let style = if label.primary { report::LabelStyle::Primary } else { report::LabelStyle::Secondary };
-            let (source, range) = self.range(label.span);
-            let range = self.shown_place(source, range.start)..self.shown_place(source, range.end);
-            report::Label::new(style, source, range).with_message(PrintableLines(&label.text).to_string())
-        });
-        report::Diagnostic::new(severity)
-            .with_code(diagnostic.code.name())
-            .with_message(PrintableLines(&diagnostic.message).to_string())
-            .with_labels(labels.collect())
-            .with_notes(diagnostic.help.iter().map(|help| format!("help: {}", PrintableLines(&help.text))).collect())
-    }
-}
-
-/// The files as they are shown, with the columns that they have as they are written.
-impl<'a> Files<'a> for Sources {
-    type FileId = SourceId;
-    type Name = Printable<&'a str>;
-    type Source = &'a str;
-
-    fn name(&'a self, id: SourceId) -> Result<Printable<&'a str>, FilesError> {
-        self.shown_file(id).map(|file| Printable(file.name().as_str()))
-    }
-
-    fn source(&'a self, id: SourceId) -> Result<&'a str, FilesError> {
-        self.shown_file(id).map(|file| file.source().as_str())
-    }
-
-    fn line_index(&'a self, id: SourceId, byte: usize) -> Result<usize, FilesError> {
-        self.shown_file(id)?.line_index((), byte)
-    }
-
-    fn line_range(&'a self, id: SourceId, line: usize) -> Result<Range<usize>, FilesError> {
-        self.shown_file(id)?.line_range((), line)
-    }
-
-    fn column_number(&'a self, id: SourceId, line: usize, byte: usize) -> Result<usize, FilesError> {
-        let (_, file) = self.file(id.0).ok_or(FilesError::FileMissing)?;
+    /// The column, in characters from 1, of a byte of a file as it is shown, in a line from 0.
+    pub(super) fn column(&self, source: SourceId, line: usize, byte: usize) -> Result<usize, FilesError> {
+        let (_, file) = self.file(source.0).ok_or(FilesError::FileMissing)?;
         let byte = file.shown.as_ref().map_or(byte, |shown| shown.origin(byte));
         Ok(column_index(file.written.source(), file.written.line_range((), line)?, byte) + 1)
     }
@@ -201,6 +137,7 @@ impl<'a> Files<'a> for Sources {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Diagnostic;
     use super::*;
 
     /// A name for files that are told of only.

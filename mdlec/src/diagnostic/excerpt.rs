@@ -1,0 +1,287 @@
+//! The lines of the files that one message shows; long lines are cut around the places in them.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use codespan_reporting::diagnostic as report;
+use codespan_reporting::files::{Error as FilesError, Files};
+use codespan_reporting::term;
+use codespan_reporting::term::termcolor::WriteColor;
+use mdle_runtime::{Printable, PrintableLines};
+
+use super::{Diagnostic, Severity, SourceId, Sources};
+
+/// The longest line that is shown whole, in bytes.
+const WHOLE: usize = 240;
+/// Bytes of a longer line that are shown on either side of each place's start and end.
+const AROUND: usize = 60;
+/// Replaces each stretch of a line that is not shown.
+const CUT: &str = "…";
+
+/// A diagnostic as codespan-reporting takes it, with the lines that it shows.
+#[derive(Debug)]
+pub(super) struct Excerpt<'s> {
+    sources: &'s Sources,
+    files: BTreeMap<SourceId, Lines>,
+    report: report::Diagnostic<SourceId>,
+}
+
+/// The lines of one file that are shown, one after the other.
+#[derive(Debug, Default)]
+struct Lines {
+    text: String,
+    /// In the order of the file.
+    lines: Vec<Line>,
+}
+
+/// A line of a file, as far as it is shown.
+#[derive(Debug)]
+struct Line {
+    /// The number of the line in its file, from 0.
+    index: usize,
+    /// The bytes of the line in the excerpt.
+    range: Range<usize>,
+    /// The stretches of the file that are kept, each with the byte of the excerpt where it begins.
+    kept: Vec<(Range<usize>, usize)>,
+}
+
+impl Sources {
+    /// The diagnostic as plain text, as a terminal without colours shows it.
+    #[must_use]
+    pub fn render(&self, diagnostic: &Diagnostic) -> String {
+        let shown = Excerpt::new(self, diagnostic)
+            .and_then(|excerpt| term::emit_into_string(&term::Config::default(), &excerpt, &excerpt.report));
+        shown.unwrap_or_else(|_| format!("{}: {}\n", diagnostic.code, PrintableLines(&diagnostic.message)))
+    }
+
+    /// Writes the diagnostic to a terminal with colours.
+    ///
+    /// # Errors
+    /// When the terminal cannot be written to.
+    pub fn write(&self, diagnostic: &Diagnostic, out: &mut impl WriteColor) -> Result<(), FilesError> {
+        let excerpt = Excerpt::new(self, diagnostic)?;
+        term::emit_to_write_style(out, &term::Config::default(), &excerpt, &excerpt.report)
+    }
+
+    /// The diagnostic with its places in the files as they are shown.
+    fn report(&self, diagnostic: &Diagnostic) -> report::Diagnostic<SourceId> {
+        let severity = match diagnostic.code.severity() {
+            Severity::Error => report::Severity::Error,
+            Severity::Warning => report::Severity::Warning,
+        };
+        let labels = diagnostic.labels.iter().map(|label| {
+            let style = if label.primary { report::LabelStyle::Primary } else { report::LabelStyle::Secondary };
+            let (source, range) = self.range(label.span);
+            let range = self.shown_place(source, range.start)..self.shown_place(source, range.end);
+            report::Label::new(style, source, range).with_message(PrintableLines(&label.text).to_string())
+        });
+        report::Diagnostic::new(severity)
+            .with_code(diagnostic.code.name())
+            .with_message(PrintableLines(&diagnostic.message).to_string())
+            .with_labels(labels.collect())
+            .with_notes(diagnostic.help.iter().map(|help| format!("help: {}", PrintableLines(&help.text))).collect())
+    }
+}
+
+impl<'s> Excerpt<'s> {
+    /// Takes the lines that `diagnostic` shows out of their files.
+    fn new(sources: &'s Sources, diagnostic: &Diagnostic) -> Result<Self, FilesError> {
+        let mut report = sources.report(diagnostic);
+        let mut places: BTreeMap<SourceId, BTreeMap<usize, Vec<usize>>> = BTreeMap::new();
+        for label in &report.labels {
+            let file = sources.shown_file(label.file_id)?;
+            let lines = places.entry(label.file_id).or_default();
+            let [first, last] = [label.range.start, label.range.end].map(|byte| file.line_index((), byte));
+            let (first, last) = (first?, last?);
+            // A single line between two that are shown is shown as well.
+            for line in first..=last.saturating_add(1) {
+                lines.entry(line).or_default();
+            }
+            lines.entry(first).or_default().push(label.range.start);
+            lines.entry(last).or_default().push(label.range.end);
+        }
+        let mut files = BTreeMap::new();
+        for (source, places) in places {
+            let file = sources.shown_file(source)?;
+            let mut lines = Lines::default();
+            for (index, places) in places {
+                // The line after the last label may be missing.
+                if let Ok(range) = file.line_range((), index) {
+                    lines.add(index, file.source(), range, &places);
+                }
+            }
+            files.insert(source, lines);
+        }
+        for label in &mut report.labels {
+            if let Some(lines) = files.get(&label.file_id) {
+                label.range = lines.place(label.range.start)..lines.place(label.range.end);
+            }
+        }
+        Ok(Self { sources, files, report })
+    }
+
+    fn lines(&self, source: SourceId) -> Result<&Lines, FilesError> {
+        self.files.get(&source).ok_or(FilesError::FileMissing)
+    }
+}
+
+impl Lines {
+    /// Adds the line at `range` of a file, cut around `places`.
+    fn add(&mut self, index: usize, source: &str, range: Range<usize>, places: &[usize]) {
+        let start = self.text.len();
+        let line = source.get(range.clone()).unwrap_or_default().trim_end_matches('\n');
+        let mut kept = Vec::new();
+        let mut end = 0;
+        for stretch in stretches(line, places.iter().map(|place| place.saturating_sub(range.start))) {
+            if stretch.start > end {
+                self.text += CUT;
+            }
+            end = stretch.end;
+            kept.push((range.start + stretch.start..range.start + stretch.end, self.text.len()));
+            self.text += &line[stretch];
+        }
+        if end < line.len() {
+            self.text += CUT;
+        }
+        self.text.push('\n');
+        self.lines.push(Line { index, range: start..self.text.len(), kept });
+    }
+
+    /// The byte of the excerpt that shows a byte of the file.
+    fn place(&self, byte: usize) -> usize {
+        let kept = self.lines.iter().flat_map(|line| &line.kept).rev().find(|(range, _)| range.start <= byte);
+        kept.map_or(0, |(range, at)| at + byte.min(range.end).saturating_sub(range.start))
+    }
+
+    /// The byte of the file that a byte of the excerpt shows.
+    fn origin(&self, place: usize) -> usize {
+        let kept = self.lines.iter().flat_map(|line| &line.kept).rev().find(|(_, at)| *at <= place);
+        kept.map_or(0, |(range, at)| range.end.min(range.start + (place - at)))
+    }
+}
+
+/// The stretches of a line that are shown, in order and apart from each other.
+fn stretches(line: &str, places: impl Iterator<Item = usize>) -> Vec<Range<usize>> {
+    if line.len() <= WHOLE {
+        return std::iter::once(0..line.len()).collect();
+    }
+    let mut places: Vec<_> = places.collect();
+    places.sort_unstable();
+    if places.is_empty() {
+        places.push(0);
+    }
+    let mut stretches: Vec<Range<usize>> = Vec::new();
+    for place in places {
+        let from = line.floor_char_boundary(place.saturating_sub(AROUND));
+        let to = line.ceil_char_boundary(place.saturating_add(AROUND));
+        // What is no longer than the mark of a cut is not cut.
+        match stretches.last_mut() {
+            Some(last) if from <= last.end + CUT.len() => last.end = to,
+            None if from <= CUT.len() => stretches.push(0..to),
+            Some(_) | None => stretches.push(from..to),
+        }
+    }
+    if let Some(last) = stretches.last_mut().filter(|last| last.end + CUT.len() >= line.len()) {
+        last.end = line.len();
+    }
+    stretches
+}
+
+/// The lines of the excerpt, with the numbers and the columns that they have in the files as written.
+impl<'a> Files<'a> for Excerpt<'_> {
+    type FileId = SourceId;
+    type Name = Printable<&'a str>;
+    type Source = &'a str;
+
+    fn name(&'a self, id: SourceId) -> Result<Printable<&'a str>, FilesError> {
+        Ok(Printable(self.sources.name(id)))
+    }
+
+    fn source(&'a self, id: SourceId) -> Result<&'a str, FilesError> {
+        self.lines(id).map(|lines| lines.text.as_str())
+    }
+
+    fn line_index(&'a self, id: SourceId, byte: usize) -> Result<usize, FilesError> {
+        let lines = &self.lines(id)?.lines;
+        let after = lines.partition_point(|line| line.range.start <= byte);
+        after.checked_sub(1).and_then(|line| lines.get(line)).map(|line| line.index).ok_or(FilesError::FileMissing)
+    }
+
+    fn line_range(&'a self, id: SourceId, line: usize) -> Result<Range<usize>, FilesError> {
+        let lines = &self.lines(id)?.lines;
+        let found = lines.binary_search_by_key(&line, |line| line.index).ok().and_then(|place| lines.get(place));
+        let missing = FilesError::LineTooLarge { given: line, max: lines.last().map_or(0, |last| last.index) };
+        found.map(|line| line.range.clone()).ok_or(missing)
+    }
+
+    fn column_number(&'a self, id: SourceId, line: usize, byte: usize) -> Result<usize, FilesError> {
+        self.sources.column(id, line, self.lines(id)?.origin(byte))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Code, Diagnostic, Sources, Span};
+    use super::{AROUND, WHOLE};
+
+    /// A message about the first `first` and the first `last` of a plan, without trailing spaces.
+    fn shown(text: &str, first: &str, last: &str) -> String {
+        let mut sources = Sources::default();
+        let source = sources.add("long.mdle", text);
+        let [from, to] = [first, last].map(|part| text.find(part).unwrap());
+        let label = |at: usize, length: usize| Span::new(source, at, at + length);
+        let diagnostic =
+            Diagnostic::new(Code::E0201, "no", label(to, last.len()), "here").also(label(from, first.len()), "there");
+        let column = sources.message(&diagnostic).spans[0].column;
+        let lines: Vec<_> = sources.render(&diagnostic).lines().map(|line| line.trim_end().to_owned()).collect();
+        assert!(lines[1].ends_with(&format!(":{column}")), "{lines:?}");
+        lines.join("\n")
+    }
+
+    #[test]
+    fn a_long_line_is_cut_around_its_places() {
+        let text =
+            format!("{{ P {}\u{1b} ∞stöp {}∞rötate {} }}\n", "größe ".repeat(60), "a".repeat(500), "ω".repeat(300));
+        insta::assert_snapshot!(shown(&text, "stöp", "rötate"), @r#"
+        error[E0201]: no
+          ┌─ long.mdle:1:874
+          │
+        1 │ …e größe größe größe größe größe größe U+001B ∞stöp aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa…aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa∞rötate ωωωωωωωωωωωωωωωωωωωωωωωωωωωωωω…
+          │                                                ----                                                                                                                       ^^^^^^ here
+          │                                                │
+          │                                                there
+        "#);
+    }
+
+    #[test]
+    fn a_long_place_is_shown_from_both_ends() {
+        let text = format!("before\n{{ P\n{} }}\n\tafter\n", "( stop ) ".repeat(2000));
+        let all = text[text.find('(').unwrap()..text.find('\n').unwrap() + 5000].to_owned();
+        insta::assert_snapshot!(shown(&text, "before\n{ P", &all), @r#"
+        error[E0201]: no
+          ┌─ long.mdle:3:1
+          │
+        1 │ ╭ before
+        2 │ │ { P
+          │ ╰───' there
+        3 │   ( stop ) ( stop ) ( stop ) ( stop ) ( stop ) ( stop ) ( stop…top ) ( stop ) ( stop ) ( stop ) ( stop ) ( stop ) ( stop ) ( stop ) ( stop ) ( stop ) ( stop ) ( stop ) ( stop ) ( stop…
+          │   ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^ here
+        "#);
+    }
+
+    #[test]
+    fn a_line_is_cut_only_where_that_makes_it_shorter() {
+        for length in [WHOLE - 1, WHOLE, WHOLE + 1, 2 * WHOLE] {
+            for place in 0..length {
+                let line = format!("{}x{}", "ä".repeat(place), "b".repeat(length - place));
+                let text = format!("first\n{line}\nlast");
+                let shown = shown(&text, "x", "x");
+                let line_shown = shown.lines().nth(3).unwrap();
+                let carets = shown.lines().nth(4).unwrap();
+                let caret = carets.chars().position(|letter| letter == '^').unwrap();
+                assert_eq!(line_shown.chars().nth(caret), Some('x'), "{shown}");
+                assert!(line_shown.len() <= line.len() + 8 && line_shown.len() <= WHOLE + 2 * AROUND, "{shown}");
+            }
+        }
+    }
+}
