@@ -82,15 +82,23 @@ fn assert_refused(test: &str, plan: &str, message: &str) {
 }
 
 #[test]
+fn scopes_and_loops_that_plans_multiply_are_limited() {
+    let levels = (0..18).map(|level| format!("{{ P{level} (wait 9s) P{0} P{0}^2 }}\n", level + 1));
+    let plan = levels.collect::<String>() + "{ P18 (Atom (wait 9s) stop) }\n";
+    let message = "`P1` has 524286 atoms, scopes and loops once every plan by name is copied in; the limit is 262144";
+    assert_refused("levels", &plan, message);
+}
+
+#[test]
 fn operands_that_plans_multiply_are_limited() {
     let plan = multiplied(&[26; 4], &format!("{{ NAME (Atom ({}) stop) }}\n", operands(1000)));
-    let message = "`L1` has 17576000 operands of conditions once every plan by name is copied in; the limit is 1048576";
+    let message = "`L2` has 676000 operands of conditions once every plan by name is copied in; the limit is 524288";
     assert_refused("operands", &plan, message);
     let plan = multiplied(&[10; 4], &format!("{{ NAME (Atom ({}) stop) }}\n", operands(1000)));
-    let message = "error[E0501]: `P` has 10000000 operands of conditions";
+    let message = "error[E0501]: `L1` has 1000000 operands of conditions";
     assert_refused("fewer_operands", &plan, message);
     // The place that multiplies.
-    assert_refused("fewer_operands", &plan, "`L1` is used 10 times, with 1000000 operands of conditions each time");
+    assert_refused("fewer_operands", &plan, "`L2` is used 10 times, with 100000 operands of conditions each time");
 }
 
 #[test]
@@ -118,9 +126,11 @@ fn arguments_that_plans_multiply_are_limited() {
     assert_refused("arguments", &plan, "bytes of text");
 }
 
-/// These commands come to a result, or name a limit.
+/// A plan has no error, and these commands come to a result, or name a limit.
 fn assert_ends(test: &str, plan: &str, commands: &[&[&str]]) {
     let folder = with_plan(test, plan);
+    let (status, messages) = judged(&folder, &["check", "plan.mdle"]);
+    assert_eq!(status, Some(0), "{}", messages.chars().take(1000).collect::<String>());
     for command in commands {
         let (status, messages) = judged(&folder, &[command, &["plan.mdle"][..]].concat());
         let start: String = messages.chars().take(1000).collect();
@@ -134,14 +144,14 @@ const RUST: &[&str] = &["--emit", "rust", "--target", "sim"];
 
 #[test]
 fn the_most_atoms_come_to_a_result() {
-    let atom = |condition: &str| multiplied(&[26; 4], &format!("{{ NAME (Atom ({condition}) stop) }}\n"));
+    let atom = |condition: &str| multiplied(&[18; 4], &format!("{{ NAME (Atom ({condition}) stop) }}\n"));
     assert_ends("atoms", &atom("wait 1"), &[ANALYZE, RUST, &["--emit", "fsm"], &["draw"]]);
     assert_ends("memories", &atom("RISING bumper"), &[&["check"]]);
 }
 
 #[test]
 fn the_most_operands_and_texts_come_to_a_result() {
-    let plan = multiplied(&[16, 16, 16, 1], &format!("{{ NAME (Atom ({}) stop) }}\n", operands(255)));
+    let plan = multiplied(&[16, 16, 8, 1], &format!("{{ NAME (Atom ({}) stop) }}\n", operands(255)));
     assert_ends("most_operands", &plan, &[ANALYZE, RUST]);
     let long = "N".repeat(8000);
     let plan = multiplied(&[20; 3], &format!("{{ NAME {long} }}\n{{ {long} (Atom (wait 1) stop) }}\n"));
@@ -151,7 +161,7 @@ fn the_most_operands_and_texts_come_to_a_result() {
 #[test]
 fn operands_that_cannot_fire_are_analysed_in_linear_time() {
     let atom = "{ NAME (Atom (bumper AND NOT bumper OR wait 1) stop) }\n";
-    assert_ends("never", &multiplied(&[20; 4], atom), &[ANALYZE]);
+    assert_ends("never", &multiplied(&[18; 4], atom), &[ANALYZE]);
 }
 
 #[test]

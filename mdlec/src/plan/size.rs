@@ -8,10 +8,11 @@ use std::collections::BTreeMap;
 use crate::diagnostic::Span;
 use crate::syntax::tree::{Arg, Call, Condition, ConditionNode, Element, Frame, Operand, Plan, Primary};
 
-/// The most atoms of a plan; loops are not expanded for this.
-const ATOMS: u64 = 1 << 19;
-/// The most operands of all its conditions.
-const OPERANDS: u64 = 1 << 20;
+/// The most atoms, scopes and loops of a plan; loops are not expanded for this. `check` takes half a second for them, and
+/// `analyze` a whole one.
+const BRACKETS: u64 = 1 << 18;
+/// The most operands of all its conditions, which take as long.
+const OPERANDS: u64 = 1 << 19;
 /// The most bytes of its text, as `--emit plan` prints it.
 const TEXT: u64 = 1 << 26;
 /// The deepest nesting.
@@ -23,7 +24,8 @@ const BESIDE: u64 = 16;
 /// The size of a plan or of a part of one.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Size {
-    pub(super) atoms: u64,
+    /// Atoms, scopes and loops.
+    brackets: u64,
     operands: u64,
     text: u64,
     pub(super) depth: u32,
@@ -49,7 +51,7 @@ impl Size {
     /// The first limit that this size exceeds; files of the size `written` may have as much as they write out.
     pub(super) fn excess(&self, written: &Self) -> Option<Excess> {
         let limits: [Excess; 3] = [
-            Excess { of: |size| size.atoms, unit: "atoms", limit: ATOMS },
+            Excess { of: |size| size.brackets, unit: "atoms, scopes and loops", limit: BRACKETS },
             Excess { of: |size| size.operands, unit: "operands of conditions", limit: OPERANDS },
             Excess { of: |size| size.text, unit: "bytes of text", limit: TEXT },
         ];
@@ -59,16 +61,22 @@ impl Size {
     /// One part after the other.
     pub(super) fn and(self, other: Self) -> Self {
         Self {
-            atoms: self.atoms.saturating_add(other.atoms),
+            brackets: self.brackets.saturating_add(other.brackets),
             operands: self.operands.saturating_add(other.operands),
             text: self.text.saturating_add(other.text),
             depth: self.depth.max(other.depth),
         }
     }
 
-    /// In a scope or a loop, which indents each line.
+    /// In a scope or a loop.
     fn nested(self) -> Self {
-        let text = self.text.saturating_add(self.atoms.saturating_mul(2)).saturating_add(BESIDE);
+        let inside = self.indented();
+        Self { brackets: inside.brackets.saturating_add(1), ..inside }
+    }
+
+    /// In brackets, which indent each line.
+    fn indented(self) -> Self {
+        let text = self.text.saturating_add(self.brackets.saturating_mul(2)).saturating_add(BESIDE);
         Self { text, depth: self.depth.saturating_add(1), ..self }
     }
 
@@ -97,7 +105,7 @@ impl Measure<'_> {
     fn elements(&self, elements: &[Element<'_>]) -> Size {
         elements.iter().fold(Size::default(), |sum, element| {
             let size = match &element.primary {
-                Primary::Broken => Size { atoms: 1, depth: 1, ..Size::default() },
+                Primary::Broken => Size { brackets: 1, depth: 1, ..Size::default() },
                 Primary::Atom(atom) => self.condition(&atom.condition).and(self.atom(atom.control)),
                 Primary::Plan(plan) => self.plan(plan),
                 // In formal notation a law looks like a plan by name.
@@ -110,18 +118,27 @@ impl Measure<'_> {
                     // Each pass becomes a scope.
                     if element.frame() == Some(&Frame::Here) { size.nested() } else { size }
                 }
-                Primary::String(body) => self.elements(body).nested(),
+                // An open string is no scope of its own, except in `FRAME here`.
+                Primary::String(body) if element.frame() == Some(&Frame::Here) => self.elements(body).nested(),
+                Primary::String(body) => self.elements(body).indented(),
                 Primary::Formal(formal) => {
                     let time = formal.time.map_or(Size::default(), |time| self.operand(length(time.span()), 1));
-                    self.condition(&formal.condition).and(time).and(self.elements(formal.body)).nested()
+                    let size = self.condition(&formal.condition).and(time).and(self.elements(formal.body));
+                    // One law is an atom, which is counted already.
+                    if self.is_law(formal.body) { size.indented() } else { size.nested() }
                 }
             };
             sum.and(if element.power().is_some() { size.nested() } else { size })
         })
     }
 
+    /// Returns `true` if the body of a scope in formal notation is one law.
+    fn is_law(&self, body: &[Element<'_>]) -> bool {
+        matches!(body, [Element { primary: Primary::Ref(call), marks: None, .. }] if !self.by_name.contains_key(call.name))
+    }
+
     fn atom(&self, law: &Call<'_>) -> Size {
-        Size { atoms: 1, depth: 1, ..self.quark(law) }
+        Size { brackets: 1, depth: 1, ..self.quark(law) }
     }
 
     fn condition(&self, condition: &Condition<'_>) -> Size {
