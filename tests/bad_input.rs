@@ -114,7 +114,8 @@ fn places_that_cannot_be_written() {
     fs::create_dir(folder.join("taken")).unwrap();
     let build = |output: &str| said(&folder, &["plan.mdle", "--target", "sim", "-o", output]);
     let emit = said(&folder, &["plan.mdle", "--emit=plan=missing/plan.txt"]);
-    insta::assert_snapshot!([build("taken"), build("missing/plan"), build("plan.mdle"), emit].join("\n"));
+    let drawn = said(&folder, &["draw", "plan.mdle", "-o", "taken"]);
+    insta::assert_snapshot!([build("taken"), build("missing/plan"), build("plan.mdle"), emit, drawn].join("\n"));
 }
 
 #[test]

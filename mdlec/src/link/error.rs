@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 pub enum LinkError {
     /// The output is a folder.
-    #[error("`{0}` is a folder: name a file for the executable with `-o FILE`")]
+    #[error("`{0}` is a folder: name a file for the output with `-o FILE`")]
     OutputIsFolder(PathBuf),
     /// The output is a device or the like.
     #[error("`{0}` is not a file: name a file for the executable with `-o FILE`")]
@@ -19,7 +19,7 @@ pub enum LinkError {
     #[error("the folder `{0}` does not exist: make it, or name another with `-o FILE`")]
     OutputFolderMissing(PathBuf),
     /// The output cannot be written.
-    #[error("`{path}` cannot be written ({error}): name another file for the executable with `-o FILE`")]
+    #[error("`{path}` cannot be written ({error}): name another file for the output with `-o FILE`")]
     OutputRefused {
         /// The output.
         path: PathBuf,
