@@ -1,4 +1,4 @@
-//! What plans claim of the way that the robot drives, held against the trail of a run: the plans of `plans/` and those of the
+//! Compares the movements that plans claim with the trail of a run: the plans of `plans/` and those of the
 //! book that have a file name there.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -11,6 +11,13 @@ use mdle_tests::repository::root;
 
 /// A floor with one wall, far away.
 const FLOOR: &str = "[[wall]]\npoints = [[-20, -20], [20, -20]]\n";
+/// A room of 8 m by 6 m.
+const ROOM: &str = "[[wall]]\npoints = [[0, 0], [8, 0], [8, 6], [0, 6], [0, 0]]\n";
+/// A floor with a wall across the x axis at 3 m.
+const ACROSS: &str = "[[wall]]\npoints = [[3, -4], [3, 4]]\n[[wall]]\npoints = [[-20, -20], [20, -20]]\n";
+/// A floor with a post on the x axis, 60 cm wide, whose near side is at 1.7 m.
+const POST: &str =
+    "[[disc]]\nname = \"post\"\ncentre = [2, 0]\nradius = 0.3\n\n[[wall]]\npoints = [[-20, -20], [20, -20]]\n";
 
 /// A row of a trail: seconds, metres, metres, degrees.
 type Row = [f64; 4];
@@ -27,19 +34,29 @@ fn of_plans(name: &str) -> String {
     fs::read_to_string(root().join("plans").join(format!("{name}.mdle"))).unwrap()
 }
 
-/// A plan that a page of the book writes to this file.
-fn of_book(page: &str, file: &str) -> String {
+/// The blocks that a page of the book writes to this file, one after the other.
+fn all_of_book(page: &str, file: &str) -> Vec<String> {
     let text = fs::read_to_string(root().join("docs/src").join(page)).unwrap();
-    let blocks: Vec<_> = text.split(&format!("```mdle,{file}\n")).skip(1).collect();
-    let block = blocks.last().unwrap_or_else(|| panic!("{page} writes no {file}"));
-    block.split("```").next().unwrap().to_owned()
+    let language = file.rsplit('.').next().unwrap();
+    let fence = format!("```{language},{file}\n");
+    let blocks = text.split(&fence).skip(1);
+    let plans: Vec<_> = blocks.map(|block| block.split("```").next().unwrap().to_owned()).collect();
+    assert!(!plans.is_empty(), "{page} writes no {file}");
+    plans
+}
+
+/// The last block that a page of the book writes to this file.
+fn of_book(page: &str, file: &str) -> String {
+    all_of_book(page, file).pop().unwrap()
 }
 
 /// Builds a plan for the simulator.
 fn built(name: &str, text: &str) -> PathBuf {
     let folder = folder(&format!("movement_{name}"));
     fs::write(folder.join(format!("{name}.mdle")), text).unwrap();
-    fs::write(folder.join("floor.toml"), FLOOR).unwrap();
+    for (world, text) in [("floor", FLOOR), ("walled", ROOM), ("across", ACROSS), ("post", POST)] {
+        fs::write(folder.join(format!("{world}.toml")), text).unwrap();
+    }
     let output = run_mdlec(&folder, &[&format!("{name}.mdle"), "--target", "sim"]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     folder.join(name)
@@ -86,8 +103,8 @@ impl Run {
     }
 }
 
-/// How often the robot came to within 30 cm of the far end of a way of this length, and back to within 30 cm of the start,
-/// in turn; it never left the way by more than 30 cm.
+/// Counts how often the robot came to within 30 cm of the far end of a path of this length, and back to within 30 cm of the
+/// start, in turn; the robot never left the path by more than 30 cm.
 fn legs(trail: &[[f64; 3]], length: f64, name: &str) -> (u32, u32) {
     let (mut there, mut back, mut is_out) = (0, 0, false);
     for [ahead, left, _] in trail {
@@ -220,4 +237,119 @@ fn docking_ends_with_three_shakes_on_the_spot() {
     }
     let turned = trail[trail.len() - 1][2].rem_euclid(360.0);
     assert!((turned - 270.0).abs() <= 8.0, "{turned} degrees");
+}
+
+#[test]
+fn a_wall_on_the_left_is_followed_for_a_minute() {
+    let following = built("wall_following", &of_plans("wall_following"));
+    let run = run(&following, &["--world", "walled.toml", "--start", "2,5,0"]);
+    assert!(run.lines.last().unwrap().starts_with("plan over: bumper OR wait 60"), "{:?}", run.lines.last());
+    assert!(run.trail[run.trail.len() - 1][0] >= 59.8, "contact after {} s", run.trail[run.trail.len() - 1][0]);
+    let mut way = 0.0;
+    for pair in run.trail.windows(2) {
+        let ([_, x, y, heading], [t, to_x, to_y, _]) = (pair[0], pair[1]);
+        way += libm::hypot(to_x - x, to_y - y);
+        // The nearest wall with the direction in which it is, and its distance.
+        let walls = [(0.0, 8.0 - x), (90.0, 6.0 - y), (180.0, x), (-90.0, y)];
+        let (_, near) = walls.into_iter().min_by(|one, other| one.1.total_cmp(&other.1)).unwrap();
+        let on_the_left = walls.into_iter().any(|(direction, distance)| {
+            let bearing = (direction - heading + 180.0_f64).rem_euclid(360.0) - 180.0;
+            distance <= 1.5 && (20.0..=160.0).contains(&bearing)
+        });
+        assert!(t < 5.0 || (0.4..=1.2).contains(&near), "{near} m from the wall at {t} s, ({x}, {y}) {heading}");
+        assert!(t < 5.0 || on_the_left, "no wall on the left at {t} s, ({x}, {y}) {heading}");
+    }
+    assert!(way >= 8.0, "{way} m");
+}
+
+#[test]
+fn the_branching_plan_steps_aside_at_an_obstacle() {
+    let branching = built("branching_aside", &of_plans("branching"));
+    let run = run(&branching, &["--world", "post.toml", "--start", "0,0,0"]);
+    let trail = run.relative();
+    let [ahead, left, turned] = trail[trail.len() - 1];
+    assert!((ahead - (1.7 - 0.8 - 0.2)).abs() <= 0.15, "{ahead} m ahead");
+    assert!((left - 0.8).abs() <= 0.1 && turned.abs() <= 4.0, "{left} m to the left, turned by {turned} degrees");
+}
+
+#[test]
+fn the_first_plan_drives_ahead_and_turns_left() {
+    let first = built("first", &of_book("first_plan.md", "first.mdle"));
+    let run = run(&first, &["--world", "across.toml", "--start", "0,0,0"]);
+    let trail = run.relative();
+    let [ahead, left, turned] = trail[trail.len() - 1];
+    assert!((1.5..=2.2).contains(&ahead) && left.abs() <= 0.1, "{ahead} m ahead, {left} m to the left");
+    assert!((turned - 90.0).abs() <= 4.0, "{turned} degrees");
+}
+
+#[test]
+fn the_sides_of_the_guide_lead_where_they_say() {
+    let sides = all_of_book("own_plan.md", "side.mdle");
+    let [point, metre] = &sides[..] else { panic!("{} sides", sides.len()) };
+    for (name, text, length, quarter) in [("point", point, 1.5, 0.0), ("side", metre, 1.0, 90.0)] {
+        let run = run(&built(name, text), &["--world", "floor.toml", "--start", "6,5,30"]);
+        let trail = run.relative();
+        let [ahead, left, turned] = trail[trail.len() - 1];
+        assert!(libm::hypot(ahead - length, left) <= 0.15, "{name}: {ahead} m ahead, {left} m to the left");
+        assert!((turned - quarter).abs() <= 4.0, "{name}: {turned} degrees");
+    }
+}
+
+#[test]
+fn the_careful_square_turns_early_at_a_wall() {
+    let careful = built("careful", &of_book("own_plan.md", "careful.mdle"));
+    let sides = |world: &str| {
+        let run = run(&careful, &["--world", world, "--start", "2,0,0"]);
+        let (trail, turns) = (run.relative(), run.begins("turn 90"));
+        let corner = |side: usize| turns.get(side).map(|time| trail[run.at(*time)]);
+        [0_usize, 1].map(|side| {
+            let from = side.checked_sub(1).map_or(trail[0], |before| corner(before).unwrap());
+            let to = corner(side).unwrap();
+            libm::hypot(to[0] - from[0], to[1] - from[1])
+        })
+    };
+    let [first, second] = sides("floor.toml");
+    assert!((first - 1.0).abs() <= 0.1 && (second - 1.0).abs() <= 0.1, "{first} m and {second} m");
+    let [first, second] = sides("across.toml");
+    assert!((0.2..=0.6).contains(&first) && (second - 1.0).abs() <= 0.1, "{first} m and {second} m before a wall");
+}
+
+#[test]
+fn seven_metres_ahead_are_reached_round_obstacles() {
+    let ahead = built("seven", &of_book("simulator.md", "ahead.mdle"));
+    let worlds = [("floor.toml", "0,0,0", "ideal"), ("room", "0.7,0.7,45", "ideal"), ("hall", "1.5,5,20", "scout")];
+    for (world, start, body) in worlds.into_iter().chain([("maze", "4.2,0.6,120", "scout")]) {
+        let run = run(&ahead, &["--world", world, "--start", start, "--body", body, "--seed", "1"]);
+        let trail = run.relative();
+        let [ahead, left, _] = trail[trail.len() - 1];
+        // By odometry, which a body like the Scout's has with errors.
+        let near = if body == "ideal" { 0.15 } else { 0.5 };
+        assert!(libm::hypot(ahead - 7.0, left) <= near, "{world}: {ahead} m ahead, {left} m to the left");
+        assert!(run.lines.last().unwrap().starts_with("plan over: completed"), "{world}: {:?}", run.lines);
+    }
+}
+
+#[test]
+fn the_square_of_the_rover_has_four_sides_of_a_metre() {
+    let square = built("rover_square", &of_book("own_robot.md", "square.mdle"));
+    let run = run(&square, &["--world", "floor.toml", "--start", "6,5,30"]);
+    let (trail, turns) = (run.relative(), run.begins("turn 90"));
+    assert_eq!(turns.len(), 4);
+    for (time, [x, y]) in turns.iter().zip([[1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0]]) {
+        let [ahead, left, _] = trail[run.at(*time)];
+        assert!(libm::hypot(ahead - x, left - y) <= 0.25, "({ahead}, {left}) is not ({x}, {y})");
+    }
+}
+
+#[test]
+fn the_yard_is_crossed_and_the_robot_turns_left() {
+    let cross = built("cross", &of_book("worlds.md", "cross.mdle"));
+    fs::write(cross.with_file_name("yard.toml"), of_book("worlds.md", "yard.toml")).unwrap();
+    let run = run(&cross, &["--world", "yard.toml"]);
+    assert!(run.lines.last().unwrap().starts_with("plan over: completed"), "{:?}", run.lines);
+    let trail = run.relative();
+    let [_, _, turned] = trail[trail.len() - 1];
+    assert!((turned - 90.0).abs() <= 4.0, "{turned} degrees");
+    let through = run.trail.windows(2).find(|pair| pair[0][1] < 4.0 && pair[1][1] >= 4.0);
+    assert!(through.is_some_and(|pair| pair[1][2] > 1.5 && pair[1][2] < 3.0), "{through:?}");
 }

@@ -1,6 +1,9 @@
 //! `advance`, `way` and `FRAME here` as plans have them.
 
+use crate::alphabet;
+use crate::diagnostic::Sources;
 use crate::samples::{compiled, judged};
+use crate::{compile, link};
 
 #[test]
 fn ways_of_no_length_and_without_end() {
@@ -14,6 +17,47 @@ fn ways_of_no_length_and_without_end() {
 }",
         None
     ));
+}
+
+#[test]
+fn a_way_needs_odometry() {
+    let mut sources = Sources::default();
+    let atoms = link::alphabets().iter().find(|file| !file.target).expect("atoms");
+    let shared = alphabet::read(sources.add(atoms.file, atoms.text), atoms.text).0.expect("an alphabet");
+    let text = "target drum : crate drum; capability diff_drive; use atoms; control go;";
+    let own = alphabet::read(sources.add("alphabet.mdle", text), text).0.expect("an alphabet");
+    let (alphabet, _) = alphabet::combine(own, &[shared]);
+    let plan = "{ P (way > 20m)\n  (Atom (wait 1 OR NOT way < 3m) (go 20 0))\n}\n";
+    let source = sources.add("plan.mdle", plan);
+    let (compiled, found) = compile(source, plan, &alphabet, None);
+    assert_eq!(compiled.len(), 0);
+    insta::assert_snapshot!(found.iter().map(|diagnostic| sources.render(diagnostic)).collect::<String>(), @r#"
+        error[E0401]: `drum` cannot measure `way`: it has no `odometry`
+           ┌─ plan.mdle:1:6
+           │
+         1 │ { P (way > 20m)
+           │      ^^^ needs `odometry`
+           │
+           ┌─ atoms/alphabet.mdle:59:8
+           │
+        59 │ signal way unit m tolerance 0.01 needs odometry;
+           │        --- `way` is declared here
+           │
+           = help: `mdlec targets` lists the robots and what each has
+
+        error[E0401]: `drum` cannot measure `way`: it has no `odometry`
+           ┌─ plan.mdle:2:24
+           │
+         2 │   (Atom (wait 1 OR NOT way < 3m) (go 20 0))
+           │                        ^^^ needs `odometry`
+           │
+           ┌─ atoms/alphabet.mdle:59:8
+           │
+        59 │ signal way unit m tolerance 0.01 needs odometry;
+           │        --- `way` is declared here
+           │
+           = help: `mdlec targets` lists the robots and what each has
+        "#);
 }
 
 #[test]
