@@ -59,12 +59,12 @@ fn answers(bytes: &[u8]) {
     while let Some(frame) = reader.after_false_start(5) {
         check(&mut reader, frame);
     }
-    // Whatever came, the next answer is found.
+    // After any bytes the next answer is found, unless these bytes and the answer together have a right sum of eight bits.
     let state = wire::answer(5, &[7; 42]);
     reader.push(&state);
     let found = std::iter::from_fn(|| reader.next_frame()).last();
     let found = reader.after_false_start(5).or(found).map(|frame| frame.bytes().to_vec());
-    assert_eq!(found, Some(state));
+    assert!(found.as_ref().is_some_and(|found| found.ends_with(&state)), "{found:?}");
 }
 
 /// What the emulator makes of them.
