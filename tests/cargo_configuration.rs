@@ -37,7 +37,7 @@ overflow-checks = true
 debug-assertions = true
 "#;
 
-/// Where the cache is, below a folder that others could have put a configuration in. What is compiled outlives the tests.
+/// A folder above the cache, in which others could have put a configuration. Compiled libraries outlive the tests.
 fn above() -> PathBuf {
     let above = target().join("tmp/cargo_configuration");
     fs::create_dir_all(&above).unwrap();

@@ -13,7 +13,7 @@ use mdlec::{compile, link};
 
 static EVERYTHING: LazyLock<Alphabet> = LazyLock::new(|| alphabet(None));
 
-/// What is said of a text, and where its places begin.
+/// The diagnostics of a text, and the file in which their places are.
 fn judged(text: &str) -> (SourceId, Vec<Diagnostic>) {
     let mut sources = Sources::default();
     for file in link::alphabets() {
@@ -89,7 +89,7 @@ fn edits_end_the_defect() {
     assert!(edits > 300, "{edits} edits");
 }
 
-/// Whether a quoted text is MDLe where it would be written: a file, an element, a header, a condition or a law.
+/// Returns `true` if a quoted text is MDLe where it would be written: a file, an element, a header, a condition or a law.
 fn can_be_read(quoted: &str) -> bool {
     let fillings = [" (Atom (wait 5) stop) ", " (wait 5) stop", "wait 5", "stop"];
     let places = [

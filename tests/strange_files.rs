@@ -44,7 +44,7 @@ fn prepared(test: &str) -> PathBuf {
 
 const KINDS: [&str; 5] = ["folder.toml", "zero.toml", "pipe.toml", "kmsg.toml", "sparse.toml"];
 
-/// What a refusal says, without the name of the file.
+/// Asserts the kind of a refusal, without the name of the file.
 fn assert_refused(output: &Output, kind: &str) {
     let error = String::from_utf8(output.stderr.clone()).unwrap();
     let expected = match kind {

@@ -32,7 +32,7 @@ const PLAN: &str = "{ Approach (bumper OR wait 20s) (Atom (r0 < 50cm) (go 20 0))
 const ROOM: &str =
     "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[3, -2], [3, 2], [-2, 2], [-2, -2], [3, -2]]";
 
-/// What can be had with `--fault` in lockstep.
+/// The faults that `--fault` offers in lockstep.
 const ON_COMMAND: [(&str, &str); 23] = [
     ("noise", "bytes that mean nothing before each frame"),
     ("dribble", "frames come byte by byte"),
@@ -212,10 +212,10 @@ const FURTHER: f64 = 0.05;
 /// The time from a fault to the end of the program, in seconds.
 const SOON: f64 = 1.5;
 
-/// What ends a run, how soon, and how much further than in lockstep the body may move.
+/// The fault that ends a run, the time limit, and the distance that the body may move further than in lockstep.
 type End = (Option<Fault>, Happening, f64, f64);
 
-/// What ends it in its different ways on either robot.
+/// The faults that end a run in different ways on either robot.
 const ENDS: [End; 6] = [
     (Some(Fault::Silence), Happening::OnCommand, SOON, FURTHER),
     (Some(Fault::Check), Happening::OnCommand, SOON, FURTHER),

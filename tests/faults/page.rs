@@ -14,7 +14,7 @@ pub(crate) struct Row {
     /// `None` when it was killed.
     pub(crate) status: Option<i32>,
     pub(crate) way: Way,
-    /// What the robot received last, if anything.
+    /// The last order that the robot received.
     pub(crate) order: Option<Order>,
 }
 

@@ -51,7 +51,7 @@ pub(crate) struct Way {
 pub(crate) struct Nature<R> {
     /// Where it really is.
     pub(crate) pose: fn(&R) -> Pose,
-    /// What has reached it.
+    /// The orders that have reached the robot.
     pub(crate) orders: fn(&R) -> &Orders,
     /// What one of its frames becomes that answers something else.
     pub(crate) wrong: fn(&[u8]) -> Vec<u8>,
@@ -99,7 +99,7 @@ impl<'a, R: Emulated> Watched<'a, R> {
         })
     }
 
-    /// What it received last.
+    /// The last order that the robot received.
     pub(crate) fn order(&self) -> Option<Order> {
         (self.nature.orders)(self.robot.robot()).last().map(|(_, order)| order)
     }

@@ -1,7 +1,7 @@
-//! What holds for all bytes whatever of a file that is no plan: an alphabet, a machine, a script, a world, a map, a path, a
-//! robot's configuration. libFuzzer looks for some for which it does not, and a test tries all that are kept.
+//! The properties of all bytes of a file that is no plan: an alphabet, a machine, a script, a world, a map, a path, a
+//! robot's configuration. libFuzzer searches for bytes without these properties, and a test tries the corpus.
 //!
-//! Each function panics where something does not hold.
+//! Each function panics if a property does not hold.
 
 use std::fs;
 use std::sync::LazyLock;
@@ -82,7 +82,7 @@ pub fn world(bytes: &[u8]) {
     }
 }
 
-/// The same for a map: what comes before `P2` or `P5` is the YAML file.
+/// A map comes to a world or an error; the bytes before `P2` or `P5` are the YAML file.
 pub fn map(bytes: &[u8]) {
     let begin = bytes.windows(2).position(|pair| [&b"P2"[..], b"P5"].contains(&pair));
     let (header, image) = bytes.split_at(begin.unwrap_or(bytes.len()));

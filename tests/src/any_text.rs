@@ -1,6 +1,6 @@
-//! What holds for every text whatever: libFuzzer looks for one for which it does not, and a test tries all that are kept.
+//! The properties of every text: libFuzzer searches for a text without them, and a test tries the corpus.
 //!
-//! Each function panics where something does not hold.
+//! Each function panics if a property does not hold.
 
 use std::cell::RefCell;
 use std::sync::LazyLock;

@@ -69,7 +69,7 @@ pub fn command(folder: &Path, arguments: &[&str]) -> Command {
     command
 }
 
-/// What was said, but for the builds of other tests, which share the cache.
+/// The messages, without those about builds of other tests, which share the cache.
 #[must_use]
 pub fn without_waiting(said: &str) -> String {
     let is_waiting = |line: &&str| line.starts_with("waiting for another ");

@@ -8,7 +8,7 @@ use proc_macro2::{TokenStream, TokenTree};
 use crate::any_text;
 use crate::repository::{files, root};
 
-/// What fuzzing found worth keeping, the plans, and the examples of explanations, each with where it is from.
+/// The corpus of fuzzing, the plans, and the examples of explanations, each with its origin.
 ///
 /// # Panics
 /// If a file cannot be read.

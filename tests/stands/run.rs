@@ -85,12 +85,12 @@ pub(crate) fn executable<R: Robot>() -> &'static Path {
     })
 }
 
-/// What became of a run.
+/// The result of a run.
 pub(crate) struct Ran<R> {
-    /// What the program said at the end.
+    /// The program's messages at the end.
     said: String,
     status: Option<i32>,
-    /// How long after the beginning of the fault it had ended.
+    /// The time from the beginning of the fault to the end of the run.
     took: Duration,
     pub(crate) robot: R,
 }
@@ -150,7 +150,7 @@ pub(crate) fn ran<R: Robot>(
     Ran { said, status: status.code(), took, robot: robot.into_robot() }
 }
 
-/// How the program is connected to the robot.
+/// The connection of the program to the robot.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Way {
     /// By a pseudo-terminal.

@@ -158,7 +158,7 @@ fn the_letter_is_judged_as_if_everything_were_looked_at() {
     assert!(broken.iter().chain(&held).all(|count| *count > 1_000), "{broken:?} {held:?}");
 }
 
-/// Whether something leads back whatever the order of the states.
+/// Returns `true` if something leads back whatever the order of the states.
 fn leads_back(rows: &[Row]) -> bool {
     let mut left: Vec<usize> = (0..rows[0].len()).collect();
     let leads_inside = |from: usize, left: &[usize]| {

@@ -154,7 +154,7 @@ const PIECES: [&str; 20] = [
     "\n",
 ];
 
-/// Where interrupts lead, from state to state in their order.
+/// The transitions by interrupts, from state to state in their order.
 fn moves(file: &FsmFile) -> Vec<(usize, usize)> {
     let place: BTreeMap<_, _> = file.states.iter().zip(0..).collect();
     // Whether a law completes is its own matter.

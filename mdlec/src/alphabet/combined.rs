@@ -128,7 +128,7 @@ impl Alphabet {
     }
 }
 
-/// Whether a robot with these capabilities can do this, in at least this number.
+/// Returns `true` if `capabilities` contain the needed one, in at least the needed number.
 fn is_among(needed: &Capability, capabilities: &[Capability]) -> bool {
     capabilities.iter().any(|own| own.name == needed.name && own.size >= needed.size)
 }

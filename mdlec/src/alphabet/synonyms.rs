@@ -1,4 +1,4 @@
-//! What people call quarks before they know the names of an alphabet.
+//! Other words for quarks, which people use before they know an alphabet.
 
 /// Names of quarks, each with other words for it.
 const SYNONYMS: &[(&str, &[&str])] = &[

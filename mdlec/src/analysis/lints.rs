@@ -33,7 +33,7 @@ pub(super) fn lints(lowered: &Lowered, found: &[Found]) -> Vec<Diagnostic> {
 
 struct Lints<'l> {
     lowered: &'l Lowered,
-    /// What is known of a place without anything around it.
+    /// The knowledge about a place that no scope encloses.
     alone: World<'l>,
 }
 

@@ -17,11 +17,11 @@ pub(super) enum Variable {
     Own(u32, QuarkId),
     /// So many nanoseconds have passed since the scope of this bracket was entered.
     Timer(u32, u64),
-    /// The same of a scope that has ended.
+    /// This time has passed since a scope was entered that has ended.
     Past(u32, u64),
     /// So many nanometres have been driven since the scope of this bracket was entered.
     Way(u32, u64),
-    /// The same of a scope that has ended.
+    /// This length has been driven since a scope was entered that has ended.
     PastWay(u32, u64),
     /// A memory of the interrupt of this bracket.
     Memory(u32, u32),

@@ -123,7 +123,7 @@ pub(super) fn walk(lowered: &Lowered, one_turn: bool) -> Walked {
 
 pub(super) struct Walk<'l> {
     pub(super) world: World<'l>,
-    /// What is known of a place without anything around it.
+    /// The knowledge about a place that no scope encloses.
     pub(super) alone: World<'l>,
     open: Vec<Open>,
     found: Vec<Found>,

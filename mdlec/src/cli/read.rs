@@ -27,12 +27,12 @@ pub(super) enum Unread {
 }
 
 impl Unread {
-    /// Whether there is no such file.
+    /// Returns `true` if the file does not exist.
     pub(super) fn is_missing(&self) -> bool {
         matches!(self, Self::System(error) if error.kind() == io::ErrorKind::NotFound)
     }
 
-    /// What to do instead, where standard input can be read.
+    /// A hint for commands that can read standard input.
     pub(super) fn help(&self) -> &'static str {
         match self {
             Self::Irregular("pipe") | Self::Endless => "\nhelp: `-` in its place reads standard input",

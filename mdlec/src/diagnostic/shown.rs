@@ -6,14 +6,14 @@ use mdle_runtime::{Printable, is_printable};
 /// A file whose text has characters that are not printable, and what is shown instead of it.
 #[derive(Debug)]
 pub(super) struct Shown {
-    /// Its name as well as its text can be shown.
+    /// The file with printable name and text.
     pub(super) file: SimpleFile<String, String>,
     /// The byte after each replaced character, and after what replaces it.
     replaced: Vec<(usize, usize)>,
 }
 
 impl Shown {
-    /// What is shown instead of a text; `None` where that is the text itself.
+    /// The printable form of a text; `None` if the text is printable.
     pub(super) fn of(name: &str, text: &str) -> Option<Self> {
         let mut shown = String::new();
         let mut replaced = Vec::new();
@@ -36,7 +36,7 @@ impl Shown {
         Some(Self { file: SimpleFile::new(name.to_owned(), shown), replaced })
     }
 
-    /// Where a byte of the text is shown.
+    /// The byte of the printable text that shows a byte of the text.
     pub(super) fn place(&self, byte: usize) -> usize {
         let before = self.replaced.partition_point(|(text, _)| *text <= byte);
         before.checked_sub(1).map_or(byte, |last| self.replaced[last].1 + (byte - self.replaced[last].0))

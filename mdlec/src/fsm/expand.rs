@@ -87,7 +87,7 @@ fn expand_sequence(body: &[Node]) -> Vec<Node> {
     expanded
 }
 
-/// What expansion copies.
+/// A part of a plan that expansion copies.
 enum Element<'p> {
     Atom(&'p Atom),
     Scope(&'p Scope),
@@ -109,7 +109,7 @@ struct Count {
     of: fn(&Element<'_>) -> u64,
 }
 
-/// How much of something a plan has, and the loop that makes the most of it.
+/// The amount of something in a plan, and the loop that multiplies it most.
 #[derive(Default)]
 struct Expanded {
     all: u64,

@@ -32,7 +32,7 @@ pub struct Transition<'p> {
     pub name: &'p str,
     /// How many scopes are around its scope.
     pub level: usize,
-    /// Whether its scope is entered in a frame of its own: `FRAME here`.
+    /// `true` if the scope is entered in a frame of its own: `FRAME here`.
     pub here: bool,
     /// Where it leads.
     pub matrix: Matrix,

@@ -58,10 +58,10 @@ pub struct Lowered {
     pub memories: usize,
     /// Every quark with its arguments.
     pub quarks: Vec<Quark>,
-    /// How many levels of scopes there are down to the last one that has a `wait`, a `way` or a `FRAME here`: nothing is
+    /// Levels of scopes down to the last one that has a `wait`, a `way` or a `FRAME here`: nothing is
     /// kept of the entry of those below.
     pub levels: usize,
-    /// Whether the odometer's reading and the heading are kept of the entry of scopes, and not the time alone: where there
+    /// `true` if the machine keeps odometer and heading at the entry of scopes, and not the time alone: where there
     /// is a `way` or a `FRAME here`.
     pub stamps: bool,
     /// How many loops are around an atom at most.

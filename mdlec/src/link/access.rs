@@ -8,7 +8,7 @@ use rustix::process::geteuid;
 
 use super::LinkError;
 
-/// What the user of the cache may do in it, and nobody else anything.
+/// The mode of the cache: its user can do everything, and other users nothing.
 const OWN: u32 = 0o700;
 
 /// In a folder with this bit, such as a shared temporary one, nobody removes or renames what another owns.
@@ -19,7 +19,7 @@ const STICKY: u32 = 0o1000;
 pub(super) struct Private {
     /// The folder, without symbolic links.
     pub(super) folder: PathBuf,
-    /// Whether others could write to it until now.
+    /// `true` if other users could write to the cache until now.
     pub(super) was_open: bool,
 }
 

@@ -69,7 +69,7 @@ impl Run {
         self.status.signal() == Some(SIGXFSZ) || FULL.iter().any(|sign| text.contains(sign))
     }
 
-    /// Whether cargo itself panicked. What a build script writes is indented where cargo quotes it, and rustc's panics are errors.
+    /// Returns `true` if cargo itself panicked. Cargo indents the output of build scripts, and panics of rustc are errors.
     pub(super) fn is_cargo_broken(&self) -> bool {
         let is_panic = |line: &str| line.starts_with("thread '") && line.contains("panicked at");
         !self.status.success() && self.stderr.lines().any(|line| is_panic(line) && !line.starts_with("thread 'rustc'"))

@@ -53,7 +53,7 @@ pub fn scxml(plan: &Nondegenerate) -> Result<String, Diagnostic> {
 struct Machine<'m, 'p> {
     plan: &'p Plan,
     made: &'m Matrices<'p>,
-    /// Whether the plan reads the length of the path driven; asked once, as the conditions of all states may be many.
+    /// `true` if the plan reads the length of the path driven; asked once, as the conditions of all states may be many.
     drives: bool,
     /// For each state the interrupts whose scopes hold it, the outermost first.
     listing: Vec<Vec<usize>>,

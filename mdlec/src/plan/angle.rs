@@ -9,7 +9,7 @@ pub fn in_degrees(radians: f64) -> Option<f64> {
     ((Radians::from_degrees(degrees).0 - radians).abs() < 1e-12 * radians.abs().max(1.0)).then_some(degrees)
 }
 
-/// What stands before an element whose frame is the heading at which it is entered.
+/// Prefix of an element whose frame is the heading at which the element is entered.
 pub const HERE: &str = "FRAME here ";
 
 /// What stands before an element whose frame is turned by this angle: `FRAME 30deg `, or nothing.

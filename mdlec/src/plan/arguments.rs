@@ -81,7 +81,7 @@ fn fitted(
     if found.is_empty() { Ok(arguments) } else { Err(found) }
 }
 
-/// How much is wrong with a call if this declaration is meant: arguments that are missing, left over, or of another kind.
+/// Number of faults of a call if this declaration is meant: arguments that are missing, left over, or of another kind.
 pub(super) fn complaints(call: &Call, declaration: &Declaration, parameters: &Parameters<'_>) -> usize {
     let params = &declaration.params;
     let needed = params.iter().filter(|param| param.default.is_none()).count();

@@ -172,7 +172,7 @@ fn same_kind(one: Signal<'_>, other: Signal<'_>, span: Span) -> Resolved<Value> 
     Ok(if si(one) >= si(other) { one.tolerance() } else { other.tolerance() })
 }
 
-/// What is counted from the entry of a scope on.
+/// A signal that counts from the entry of a scope.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Counted {
     /// `t`, in nanoseconds.

@@ -143,12 +143,12 @@ enum Precedence {
     Test,
 }
 
-/// What becomes of an OR that is directly in an OR.
+/// The layout of an OR that is directly in an OR.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Ors {
-    /// Its operands stand among those of the outer one.
+    /// The operands of the inner OR are written among those of the outer one.
     Flattened,
-    /// It stands in parentheses, as it was written.
+    /// The inner OR is written in parentheses, as in the plan.
     Nested,
 }
 

@@ -75,7 +75,7 @@ fn values(quarks: &[&Quark]) -> Vec<f64> {
     ends
 }
 
-/// Whether a comparison holds of a value.
+/// Returns `true` if a comparison is true of this value of its signal.
 fn holds(quark: &Quark, signal: f64) -> bool {
     let Some(comparison) = &quark.comparison else { return false };
     let Some((value, tolerance)) = threshold(comparison) else { return false };

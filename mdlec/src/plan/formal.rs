@@ -26,7 +26,7 @@ struct Writer<'p> {
     plan: &'p Plan,
     /// The names that no further plan can have.
     taken: BTreeSet<String>,
-    /// How many plans are named after each name.
+    /// Number of plans that are named after each name.
     numbers: BTreeMap<String, usize>,
     /// The texts of the plans, the main one first.
     definitions: Vec<String>,

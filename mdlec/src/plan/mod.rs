@@ -133,7 +133,7 @@ pub struct Scope {
     pub interrupt: Interrupt,
     /// What it runs, in order; never empty.
     pub body: Vec<Node>,
-    /// Whether its frame is the robot's heading at the moment it is entered: `FRAME here`.
+    /// `true` if the frame is the robot's heading at the moment of the entry: `FRAME here`.
     pub here: bool,
     /// For the outermost scope of a plan in which `after` stands: the record of this use of it.
     pub record: Option<Record>,
@@ -164,7 +164,7 @@ pub struct Atom {
     /// The angle by which its frame is turned, in radians, counter-clockwise; from the innermost `FRAME here` on, if there
     /// is one.
     pub frame: f64,
-    /// Whether its frame is the robot's heading at the moment it is entered: `FRAME here`.
+    /// `true` if the frame is the robot's heading at the moment of the entry: `FRAME here`.
     pub here: bool,
     /// The labels of what ends with it.
     pub marks: Vec<Mark>,
@@ -244,7 +244,7 @@ pub struct Interrupt {
     pub condition: Condition,
     /// Its condition text, also where it was removed.
     pub text: String,
-    /// Its condition text with the ORs directly in an OR in parentheses; `None` where there is none.
+    /// Condition text with parentheses around each OR that is directly in an OR; `None` without such an OR.
     pub nested: Option<Box<str>>,
     /// How many memories of RISING it has in each scope entered.
     pub memories: u32,

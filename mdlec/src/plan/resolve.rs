@@ -76,7 +76,7 @@ enum Uses {
 struct Framing {
     /// The sum of the angles by which it is turned, in radians, from the innermost `FRAME here` on.
     turned: f64,
-    /// Whether `FRAME here` is written before this very element.
+    /// `true` if `FRAME here` is written before this element itself.
     here: bool,
 }
 

@@ -44,7 +44,7 @@ pub(crate) fn complete<'s>(files: &mut Files<'s>, arena: &'s Arena, alphabet: &A
     found
 }
 
-/// What stands in parentheses after the name of a plan, if it may be parameters.
+/// The parentheses after the name of a plan, if they may be parameters.
 struct Header<'s> {
     names: Vec<Name<'s>>,
     /// The type that is written before the only name.
@@ -109,7 +109,7 @@ fn called_with_arguments<'s>(elements: &[Element<'s>]) -> Vec<&'s str> {
     called
 }
 
-/// What the elements of a plan use names for.
+/// The uses of names in the elements of a plan.
 struct Uses<'a, 's> {
     alphabet: &'a Alphabet,
     elements: &'s [Element<'s>],

@@ -67,7 +67,7 @@ fn has_frames(lowered: &Lowered) -> bool {
     lowered.frames.iter().any(Option::is_some)
 }
 
-/// What is kept of the entry of scopes, as a type and as the value that it begins with.
+/// The type that keeps the entries of scopes, and its initial value.
 pub(super) fn entries(lowered: &Lowered) -> (TokenStream, TokenStream) {
     let levels = Literal::usize_unsuffixed(lowered.levels);
     if lowered.stamps {

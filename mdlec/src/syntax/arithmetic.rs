@@ -117,7 +117,7 @@ fn word(text: &str) -> &str {
     text.get(start..).unwrap_or("")
 }
 
-/// Whether this is part of a number or a name; `/` is not, for `10/2` is two numbers.
+/// Returns `true` if this is part of a number or a name; `/` is not, as `10/2` is two numbers.
 fn is_in_word(c: char) -> bool {
     c.is_alphanumeric() || matches!(c, '_' | '.')
 }

@@ -23,9 +23,9 @@ pub(super) struct Balanced<'s> {
     pub(super) regions: Regions,
     /// The lexical errors and those of the brackets.
     pub(super) diagnostics: Vec<Diagnostic>,
-    /// Whether a brace is never closed.
+    /// `true` if a brace is never closed.
     is_open: bool,
-    /// Whether such braces are closed where they seem to end.
+    /// `true` if such braces are closed where they seem to end.
     is_repaired: bool,
 }
 

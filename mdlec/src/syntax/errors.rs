@@ -197,12 +197,12 @@ impl<'s> Site<'_, 's> {
         (is_group && self.kind(brace) == Some(Tok::LBrace)).then_some(brace)
     }
 
-    /// Whether a plan of this name is in the text.
+    /// Returns `true` if a plan of this name is in the text.
     pub(super) fn has_plan(&self, name: &str) -> bool {
         self.plans.get_or_init(|| header::names(self.tokens)).contains(name)
     }
 
-    /// Whether these tokens look like quarks and comparisons: names, values, and operators between them.
+    /// Returns `true` if these tokens look like quarks and comparisons: names, values, and operators between them.
     pub(super) fn is_call(&self, first: usize, last: usize) -> bool {
         let is_value = |at: usize| {
             (first..=last).contains(&at)
@@ -226,7 +226,7 @@ impl<'s> Site<'_, 's> {
         begins && once && (first..=last).all(is_sound)
     }
 
-    /// Whether this is OR or AND.
+    /// Returns `true` if this token is OR or AND.
     fn joins(&self, at: usize) -> bool {
         matches!(self.kind(at), Some(Tok::Or | Tok::And))
     }
@@ -236,7 +236,7 @@ impl<'s> Site<'_, 's> {
         self.openers.get(closer).copied().flatten()
     }
 
-    /// Whether a token touches the one after it.
+    /// Returns `true` if a token touches the next one.
     pub(super) fn touches_next(&self, at: usize) -> bool {
         at + 1 < self.tokens.len() && self.place(at).end == self.place(at + 1).start
     }

@@ -38,11 +38,11 @@ struct Tokens<'t, 's> {
     header: Header,
     /// The end of the last token, if that is a name.
     name_ends: usize,
-    /// Whether the last token is a parenthesis.
+    /// `true` if the last token is a parenthesis.
     is_after_paren: bool,
-    /// Whether files are used, whose plans may have any name.
+    /// `true` if files are used, whose plans may have any name.
     uses: bool,
-    /// Whether the last token is `FRAME`.
+    /// `true` if the last token is `FRAME`.
     is_frame: bool,
     is_defective: bool,
 }
@@ -109,7 +109,7 @@ impl<'t, 's> Tokens<'t, 's> {
         }
     }
 
-    /// Whether a name is probably a word of another language, or a keyword misspelled.
+    /// Returns `true` if a name is probably a word of another language, or a misspelled keyword.
     fn is_foreign(&self, name: &str) -> bool {
         foreign::is_word(name) || self.is_after_paren && foreign::is_like_atom(name)
     }

@@ -1,11 +1,11 @@
-//! Where braces that are never closed end by the indentation of their lines.
+//! Finds the ends of braces that are never closed, by the indentation of their lines.
 
 use std::collections::BTreeMap;
 
 use super::source::Source;
 use super::token::{Tok, Token};
 
-/// What is closed before a token.
+/// Braces that end before a token.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum End {
     /// Everything: a plan of its own begins.
@@ -19,7 +19,7 @@ struct Open {
     brace: usize,
     /// The indentation of its line.
     indentation: usize,
-    /// Whether a line inside it has been indented deeper.
+    /// `true` if a line inside the brace is indented deeper.
     is_deeper: bool,
 }
 

@@ -60,16 +60,16 @@ fn characters_help(diagnostic: Diagnostic, source: Source<'_>, found: &str, plac
     }
 }
 
-/// Whether only blanks are before this in its line.
+/// Returns `true` if only spaces and tabs are before this place in its line.
 fn begins_line(source: Source<'_>, at: usize) -> bool {
     let before = source.text.get(..at).unwrap_or("");
     before.rsplit('\n').next().unwrap_or(before).trim().is_empty()
 }
 
-/// What is read of typesetting.
+/// The commands of typesetting that are read.
 const TYPESETTING: &str = "of typesetting only `\\\\`, `\\{`, `\\}`, `\\text{…}`, `\\infty`, `\\leq`, `\\geq`, `\\Gamma_{…}` and `\\sigma_{null}` are read";
 
-/// Whether an operand can begin here: after a blank, a bracket that opens, or a sign between operands.
+/// Returns `true` if an operand can begin here: after a space, an opening bracket, or a sign between operands.
 fn begins_operand(source: Source<'_>, at: usize) -> bool {
     let before = source.text.get(..at).unwrap_or("");
     before.is_empty() || before.ends_with(|c: char| c.is_whitespace() || "(,<>=".contains(c))

@@ -294,7 +294,7 @@ fn label_behind(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// What some keywords need after them.
+/// Reports a keyword without the argument that it needs.
 fn keyword_argument(site: &Site<'_, '_>) -> Option<Diagnostic> {
     #[allow(clippy::wildcard_enum_match_arm, reason = "only keywords are looked at")]
     match site.before(1)? {

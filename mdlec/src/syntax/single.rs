@@ -40,7 +40,7 @@ pub fn operands(text: &str) -> Option<Vec<&str>> {
     if is_condition { ranges.iter().map(operand).collect() } else { None }
 }
 
-/// Whether a text between these makes a plan of one element that is good, on one line and with a line break behind it: no
+/// Returns `true` if a text between these makes a plan of one good element, on one line and with a line break after it: no
 /// comment in it reaches further, and no bracket in it closes one that it did not open.
 fn is_alone(text: &str, before: &str, behind: &str, mut is_good: impl FnMut(&Element<'_>) -> bool) -> bool {
     text.chars().all(mdle_runtime::is_printable)

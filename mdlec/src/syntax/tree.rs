@@ -71,7 +71,7 @@ pub struct Element<'s> {
 pub struct Marks<'s> {
     /// Its label, for `after`.
     pub label: Option<Name<'s>>,
-    /// Its frame.
+    /// Frame of the element.
     pub frame: Option<Frame<'s>>,
     /// How often it is run.
     pub power: Option<Count<'s>>,
@@ -84,7 +84,7 @@ impl<'s> Element<'s> {
         self.marks?.label
     }
 
-    /// Its frame.
+    /// Frame of the element.
     #[must_use]
     pub fn frame(&self) -> Option<&'s Frame<'s>> {
         self.marks?.frame.as_ref()

@@ -28,7 +28,7 @@ pub struct MatrixProduct<'p> {
     facts: BTreeSet<(RecordId, u32)>,
     /// The product so far, applied to the first state.
     e: UnitVector,
-    /// Whether there was a first turn.
+    /// `true` once there was a first turn.
     has_begun: bool,
 }
 

@@ -28,7 +28,7 @@ pub struct Table<'p> {
     records: BTreeMap<RecordId, Vec<bool>>,
     /// The place of the current state in `states`; behind them all when the plan is over.
     state: usize,
-    /// Whether there was a first turn.
+    /// `true` once there was a first turn.
     has_begun: bool,
 }
 

@@ -14,9 +14,9 @@ pub struct Tree<'p> {
     /// The plan's scopes, loops and atoms. Each stands before what it holds, the plan itself first: a flat list, because
     /// a plan may be nested deeper than the stack allows for recursion.
     elements: Vec<Element<'p>>,
-    /// What is open, outermost first; the last is the current atom. Empty before the first turn and when the plan is over.
+    /// Open elements, outermost first; the last is the current atom. Empty before the first turn and when the plan is over.
     open: Vec<Open>,
-    /// Whether there was a first turn.
+    /// `true` once there was a first turn.
     has_begun: bool,
 }
 
@@ -257,7 +257,7 @@ impl<'p> Kind<'p> {
         }
     }
 
-    /// Whether it is entered in a frame of its own.
+    /// Returns `true` if the element is entered in a frame of its own.
     fn is_here(self) -> bool {
         match self {
             Self::Scope(scope) => scope.here,

@@ -56,7 +56,7 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         Some(Frame(self.entered.heading(level)).turned(turned))
     }
 
-    /// What the law of the current atom is told, where `begin` has the frame of the plan.
+    /// The beginning that the law of the current atom gets; `begin` has the frame of the plan.
     #[inline(always)]
     pub(crate) fn begins(&self, begin: Begin) -> Begin {
         self.frame().map_or(begin, |frame| Begin { frame, ..begin })

@@ -1,4 +1,4 @@
-//! What a cursor keeps of the entry of each scope: the time, and for plans with `way` or `FRAME here` the odometer's
+//! The entry of each scope, as a cursor keeps it: the time, and for plans with `way` or `FRAME here` the odometer's
 //! reading and the heading as well (docs/src/reference/semantics.md, 3.2 to 3.4).
 
 use crate::{Nanometers, Nanos, Output, Pose, Radians, Slots};

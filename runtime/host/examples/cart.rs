@@ -35,13 +35,13 @@ struct Cart {
     exchanges: u64,
     /// The exchange that does not work, and how.
     broken: Option<(u64, Breakdown)>,
-    /// Whether it tells what it is told, on standard error.
+    /// `true` if the cart prints its commands to standard error.
     tells: bool,
     /// The file in which it writes that down.
     journal: Option<File>,
 }
 
-/// How an exchange goes wrong.
+/// A fault of an exchange.
 #[derive(Debug, Clone, Copy)]
 enum Breakdown {
     Fails,

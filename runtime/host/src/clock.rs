@@ -18,7 +18,7 @@ const SLICE: Duration = Duration::from_millis(20);
 /// How much lateness stepped time catches up, in nanoseconds; after more, such as a suspended process, it goes on from now.
 const CATCH_UP: u64 = 250_000_000;
 
-/// How much later than it should a turn may begin on a robot that does not say how long it goes without a command.
+/// The maximum delay of a turn on a robot that does not say how long it can go without a command.
 const GAP: Duration = Duration::from_secs(2);
 
 /// Where real time comes from; a test drives it by hand.
@@ -70,7 +70,7 @@ pub(crate) struct Clock<I> {
     place: u64,
     /// When the current turn began, in real nanoseconds.
     begun: u64,
-    /// How long a robot in real time may go without a command, in nanoseconds.
+    /// The longest time that a robot in real time may go without a command, in nanoseconds.
     longest_gap: u64,
     timing: Timing,
 }

@@ -42,9 +42,9 @@ pub(crate) enum Ending {
     Overrun(String),
     /// The robot went without a command for `gap`, longer than for `longest`, both in nanoseconds.
     Suspended {
-        /// How long it was.
+        /// Length of the gap, in nanoseconds.
         gap: u64,
-        /// How long it may be.
+        /// Maximum length of a gap, in nanoseconds.
         longest: u64,
     },
     /// Code panicked: its message.

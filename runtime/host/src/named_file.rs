@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use crate::Refusal;
 
-/// How many links are followed from a name.
+/// The maximum number of links that are followed from a name.
 const LINKS: usize = 40;
 
 /// A file that an option names.
@@ -17,7 +17,7 @@ pub struct NamedFile {
     pub option: &'static str,
     /// The file's name, as given.
     pub path: PathBuf,
-    /// Whether the run writes it; if not, it is read.
+    /// `true` if the run writes the file, `false` if the run reads it.
     pub is_written: bool,
 }
 
@@ -87,7 +87,7 @@ mod tests {
 
     use super::*;
 
-    /// What is refused of two outputs with these names and an input `input` in a folder of its own.
+    /// Returns the refusal of two outputs with these names and an input `input`, in a folder of its own.
     fn refused(test: &str, log: &str, plot: &str) -> Option<String> {
         let folder = std::env::temp_dir().join(format!("mdle-files-{test}-{}", std::process::id()));
         let _ = fs::remove_dir_all(&folder);

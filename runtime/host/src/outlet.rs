@@ -13,18 +13,18 @@ use crate::patience::{AT_THE_END, Patience};
 
 /// The stack of a thread that only writes. All memory of a run is locked: this is as much as it takes.
 pub(crate) const STACK: usize = 128 * 1024;
-/// How much may wait for a slow reader, in bytes.
+/// The maximum that waits for a slow reader, in bytes.
 const WAITING: usize = 1 << 20;
 /// As much is handed over without being asked for, in bytes.
 const PIECE: usize = 1 << 16;
 /// As much is written at a time, in bytes: who takes that is no reader that takes nothing.
 const CHUNK: usize = 1 << 13;
-/// How long a file that must not lack anything may take nothing while a robot drives.
+/// The longest time that a file which must be complete may take nothing while a robot drives.
 const LAG: Duration = Duration::from_secs(5);
 /// The longest wait without a look at how long to wait.
 const LOOK: Duration = Duration::from_millis(20);
 
-/// What becomes of pieces that a slow reader leaves no room for while a robot drives.
+/// The treatment of pieces for which a slow reader leaves no room while a robot drives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Keeps {
     /// Lines for people: they are left out, and a line says so.
@@ -42,7 +42,7 @@ pub(crate) struct Outlet {
     patience: Patience,
     /// Whether pieces have been lost since the last one that was handed over.
     lost: bool,
-    /// Whether its reader has used up all patience.
+    /// `true` once the reader is not waited for any longer.
     given_up: bool,
     shared: Arc<Shared>,
 }
@@ -56,7 +56,7 @@ struct Shared {
 #[derive(Debug)]
 struct Queue {
     pieces: VecDeque<Vec<u8>>,
-    /// How many bytes wait or are being written.
+    /// Bytes that wait or are being written.
     bytes: usize,
     /// When the reader took something last, or something was handed over to one that waited.
     moved: Instant,
@@ -185,12 +185,12 @@ impl Outlet {
         }
     }
 
-    /// Whether a robot must not wait.
+    /// Returns `true` while a robot drives, which must not wait.
     fn is_driving(&self) -> bool {
         self.patience.limit() == Some(Duration::ZERO)
     }
 
-    /// Whether a reader that has taken nothing `since` then is not waited for any longer.
+    /// Returns `true` if a reader that has taken nothing `since` then is not waited for any longer.
     fn has_no_patience(&self, since: Instant) -> bool {
         self.given_up || self.patience.limit().is_some_and(|limit| since.elapsed() >= limit)
     }

@@ -157,7 +157,7 @@ fn read(folder: Option<&Path>, name: &str, fastest: Twist) -> Result<Vec<Setpoin
 /// The setpoints of a path, by the bytes of its file, for a robot that is so fast; `file` is what errors call it.
 ///
 /// # Errors
-/// What is wrong with the path, and where.
+/// A sentence that names the defect of the path and its line.
 pub fn setpoints(file: &str, bytes: &[u8], fastest: Twist) -> Result<Vec<Setpoint>, String> {
     let read = text::utf8(bytes).and_then(|text| text::setpoints(text, fastest));
     read.map_err(|Wrong { place, what }| match place {

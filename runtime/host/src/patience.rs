@@ -1,4 +1,5 @@
-//! How long a writer waits for its reader: as long as it takes, not at all while a robot drives, and not for ever afterwards.
+//! The time that a writer waits for its reader: as long as it takes before the run, not at all while a robot drives, and not
+//! for ever afterwards.
 
 use std::sync::Arc;
 use std::sync::OnceLock;
@@ -7,14 +8,14 @@ use std::time::{Duration, Instant};
 
 use crate::stop_request::StopRequest;
 
-/// How long a reader that takes nothing is waited for once the run is to end.
+/// The time that a reader which takes nothing is waited for once the run is to end.
 pub(crate) const AT_THE_END: Duration = Duration::from_secs(2);
 
 /// The phase of a run, as far as it decides how long writers wait.
 #[derive(Debug, Clone)]
 pub(crate) struct Patience {
     request: StopRequest,
-    /// Whether a robot whose time is real has been driven.
+    /// `true` once a robot in real time has been driven.
     is_real: Arc<AtomicBool>,
     stopped: Arc<OnceLock<Stopped>>,
 }

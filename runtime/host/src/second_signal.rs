@@ -12,9 +12,9 @@ use crate::outlet::STACK;
 use crate::patience::Stopped;
 use crate::signals::Signals;
 
-/// How long the program may go on after the stop was tried, once a second signal came.
+/// The time that the program may go on after the attempt to stop, once a second signal came.
 const AFTER_THE_STOP: Duration = Duration::from_secs(1);
-/// How long it may go on after the second signal when the stop is not tried at all: the robot's code hangs.
+/// The time that the program may go on after the second signal if the stop is not tried at all: the robot's code hangs.
 const WITHOUT_A_STOP: Duration = Duration::from_secs(10);
 /// The time between two looks at whether the stop was tried.
 const LOOK: Duration = Duration::from_millis(10);

@@ -157,12 +157,12 @@ impl Signals {
         &self.noted
     }
 
-    /// How long writers wait for their readers.
+    /// The time that writers wait for their readers.
     pub(crate) fn patience(&self) -> &Patience {
         &self.patience
     }
 
-    /// Whether a signal ends the program at once.
+    /// Returns `true` if a signal ends the program at once.
     pub(crate) fn are_deadly(&self) -> bool {
         self.deadly.load(Ordering::SeqCst)
     }

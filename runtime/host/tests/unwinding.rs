@@ -1,9 +1,9 @@
-//! Where panics abort, an executable is refused: its robot would not be stopped.
+//! An executable in which panics abort is refused: the robot would not be stopped.
 #![allow(clippy::unwrap_used, reason = "what fails here is the test")]
 
 use std::process::Command;
 
-/// Whether the check compiles where panics do this, and what rustc says.
+/// Returns `true` if the check compiles with this setting of panics, and the messages of rustc.
 fn compiled(panic: &str) -> (bool, String) {
     let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     let mut command = Command::new(rustc);

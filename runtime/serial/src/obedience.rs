@@ -1,4 +1,4 @@
-//! Whether a robot moves as it was told: no faster, and not the other way.
+//! Detects a robot that does not move as commanded: faster, or in the other direction.
 //! See docs/src/reference/protocols.md, 3.
 //!
 //! A robot that an obstacle holds, or one of whose sides is stuck, moves less than it was told, which is no disobedience. The

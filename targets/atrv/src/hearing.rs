@@ -48,7 +48,7 @@ struct Known {
     switches: u32,
     /// The time at which it reported each of them last.
     felt: [Option<Nanos>; 2],
-    /// Whether the brake is set, if that was told, and when it was told last.
+    /// `true` if the brake is set, `None` before the first report; and the time of the last report.
     is_braked: Option<bool>,
     answered: Nanos,
     /// What its battery was at then.

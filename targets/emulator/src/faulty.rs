@@ -8,19 +8,19 @@ use mdle_sim::Disc;
 use crate::fault::{Ailment, At, Fault};
 use crate::serve::{Embodied, Emulated};
 
-/// What is on a line that nobody has shielded, again and again.
+/// Noise of a line without shield, again and again.
 const NOISE: [u8; 3] = [0xFF, 0x00, 0xA5];
 
 /// A robot with which something goes wrong.
 #[allow(missing_debug_implementations, reason = "a robot need not have one")]
 pub struct Faulty<R> {
     robot: R,
-    /// What is still to come, and what goes wrong by now.
+    /// The faults that are still to come, and those that have begun.
     coming: Vec<At>,
     begun: Vec<Fault>,
-    /// How long it has been on.
+    /// The time since the robot was switched on.
     age: Duration,
-    /// How many frames it has had to say.
+    /// The number of frames that the robot has sent.
     count: u32,
     /// Pieces of frames that come late, each with the age at which it does.
     late: VecDeque<(Duration, Vec<u8>)>,
@@ -60,7 +60,7 @@ impl<R: Emulated> Faulty<R> {
         self.robot
     }
 
-    /// Whether the line is closed.
+    /// Returns `true` if the line is closed.
     #[must_use]
     pub fn is_closed(&self) -> bool {
         self.has(Fault::Close)
@@ -85,7 +85,7 @@ impl<R: Emulated> Faulty<R> {
         }
     }
 
-    /// What becomes of a frame on the line, in the pieces in which it comes.
+    /// Returns a frame as it arrives over the faulty line, in pieces.
     fn sent(&mut self, mut frame: Vec<u8>) -> Vec<Vec<u8>> {
         self.count = self.count.wrapping_add(1);
         if self.has(Fault::Silence) || self.has(Fault::Lose) && !self.count.is_multiple_of(3) {

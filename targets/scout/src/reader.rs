@@ -10,7 +10,7 @@ pub(crate) const CHUNK: usize = 512;
 pub struct Reader {
     /// Empty, or from where a frame may begin.
     waiting: Vec<u8>,
-    /// What was wrong first.
+    /// The first defect.
     garbled: Option<Garbled>,
     /// `true` once a frame was wrong that was as long as it says it is.
     was_whole: bool,

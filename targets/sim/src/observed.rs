@@ -33,7 +33,7 @@ struct Pictures {
     trail: Trail,
 }
 
-/// Where the robot was in each turn: a line of commas for each exchange, written as the run goes.
+/// A table of the robot's poses: one line of comma-separated values for each exchange, written during the run.
 struct Table {
     file: WholeFile,
     /// From the first exchange on.

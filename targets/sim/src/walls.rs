@@ -31,10 +31,10 @@ impl Walls {
         Self::in_grid(world, segments, grid)
     }
 
-    /// The same, unless so much lies in one place that it would not be ready within seconds.
+    /// The walls of a world that may have too many in one place to be ready within seconds.
     ///
     /// # Errors
-    /// What there is too much of.
+    /// A sentence that names what the world has too much of.
     pub(crate) fn of_any(world: &World) -> Result<Self, String> {
         let segments = segments(world);
         let grid = Grid::of(&segments);

@@ -68,7 +68,7 @@ impl World {
     /// call these.
     ///
     /// # Errors
-    /// What is wrong with either, and where.
+    /// The defect of either file, with its place.
     pub fn of_map((file, text): (&str, &str), (image, bytes): (&str, &[u8])) -> Result<Self, WorldError> {
         Header::parse(file, text)?.world(image, bytes)
     }

@@ -9,7 +9,7 @@ use mdle_runtime::{Begin, Completes, Control, Frame, Law, Meters, MetersPerSecon
 use mdle_sim::alphabet::Advance;
 use mdle_sim::{Body, Make, Simulated, World};
 
-/// How a way went, in metres by odometry and seconds.
+/// A path that was driven, in metres by odometry and seconds.
 #[derive(Debug)]
 struct Driven {
     /// Ahead, and to the left.
@@ -17,7 +17,7 @@ struct Driven {
     aside: f64,
     /// The farthest, on the side to which it was to go.
     furthest: f64,
-    /// How often the robot changed between ahead and back.
+    /// Number of changes between ahead and back.
     hunts: u32,
     seconds: f64,
 }

@@ -88,7 +88,7 @@ impl Skipped<'_, '_> {
         Some(words.collect::<Vec<_>>().join(" AND "))
     }
 
-    /// Whether these quarks can have these values in one turn.
+    /// Returns `true` if these quarks can have these values in one turn.
     fn can_be(&self, values: impl Iterator<Item = (QuarkId, bool)>) -> bool {
         let mut families: BTreeMap<Family, Vec<(&Quark, bool)>> = BTreeMap::new();
         for (id, value) in values {

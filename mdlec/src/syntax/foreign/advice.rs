@@ -49,12 +49,12 @@ pub(in crate::syntax) fn is_word(name: &str) -> bool {
     )
 }
 
-/// What MDLe has instead of a word of other languages.
+/// Names the form of MDLe that replaces a word of other languages.
 pub(crate) fn advice(word: &str) -> Option<String> {
     advice_for(word, "r0 < 1m")
 }
 
-/// What MDLe has instead of a word that is followed by this condition.
+/// Names the form of MDLe that replaces a word followed by this condition.
 pub(super) fn advice_for(word: &str, condition: &str) -> Option<String> {
     let is_joined = condition.contains(" OR ") || condition.contains(" AND ");
     let opposite = match condition.strip_prefix("NOT ") {

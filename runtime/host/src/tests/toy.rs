@@ -78,7 +78,7 @@ pub(super) struct Run {
 }
 
 thread_local! {
-    /// What [`ToyTarget::connect`] finds: a target has no other way to a test.
+    /// The robot that [`ToyTarget::connect`] finds: a target has no other way to a test.
     static READY: RefCell<Option<Ready>> = const { RefCell::new(None) };
 }
 

@@ -34,12 +34,12 @@ pub(crate) fn start(arguments: &[&str]) -> Child {
 /// Options with which the cart tells what it is told, and drives on for longer than any test takes.
 pub(crate) const FAR: [&str; 5] = ["--tell", "--period", "0.02", "--track", "1000"];
 
-/// What this computer may not permit is told before anything else.
+/// Returns `true` unless the line reports a permission that this computer lacks, which comes before anything else.
 pub(crate) fn is_no_refusal(line: &str) -> bool {
     !line.starts_with("warning: turns may be late")
 }
 
-/// What the cart tells, and what is told of it.
+/// The lines of the cart, and those about the cart.
 pub(crate) fn lines(stderr: ChildStderr) -> impl Iterator<Item = String> {
     BufReader::new(stderr).lines().map(Result::unwrap).filter(|line| is_no_refusal(line))
 }
@@ -57,7 +57,7 @@ pub(crate) fn send(child: &Child, signal: &str) {
     assert!(sent.success());
 }
 
-/// Whether a line is none of the last words, on how late turns were.
+/// Returns `true` unless the line is the last report, on how late turns were.
 pub(crate) fn is_no_timing(line: &str) -> bool {
     !line.contains(" turns of ") && !line.contains(" turn of ")
 }

@@ -12,7 +12,7 @@ use rustix::fs::{CWD, FileType, Mode, OFlags, fcntl_getfl, fcntl_setfl, mknodat}
 
 use crate::cart::{cart, is_no_timing, lines, send, start};
 
-/// What is written to.
+/// The output that is written to.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Writer {
     Out,
@@ -28,7 +28,7 @@ struct Cart {
     folder: PathBuf,
     command: Command,
     journal: File,
-    /// What it was told so far.
+    /// The commands that the cart got so far.
     told: String,
     /// Pipes that nobody reads.
     full: Vec<File>,
@@ -133,7 +133,7 @@ impl Cart {
     }
 }
 
-/// How a cart ends that is stopped by a signal after a second of driving, in which it is asked how late it is.
+/// Stops a cart by a signal after a second of driving, in which it reports its timing; returns how the cart ends.
 fn stopped(mut cart: Cart) -> (Option<i32>, bool) {
     let mut child = cart.moves(10);
     send(&child, "USR1");

@@ -42,7 +42,7 @@ pub struct Atrv {
     /// What is still to be sent, and how many reports there have been.
     said: Vec<Vec<u8>>,
     count: u8,
-    /// What it has been told, forward and in turns, in its units a second, and what arrived last.
+    /// The commands, forward and turning, in the robot's units per second, and the last command that arrived.
     told: (i32, i32),
     asked: (i32, i32),
     orders: Orders,

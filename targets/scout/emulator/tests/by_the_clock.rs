@@ -1,4 +1,4 @@
-//! What depends on time itself: a robot that answers late, and a driver that comes back too late.
+//! Tests in real time: a robot that answers late, and a driver that comes back too late.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::thread;

@@ -66,7 +66,7 @@ fn exchanged(patience: u64, answers: impl Fn(usize, &Request, &Port) + Sync) -> 
     asked(patience, answers, |driver| driver.exchange(&Twist::default()).map(|_| ()))
 }
 
-/// What `drive` comes to, after the start, with such a robot.
+/// The result of `drive`, after the start, with such a robot.
 fn asked(
     patience: u64,
     answers: impl Fn(usize, &Request, &Port) + Sync,

@@ -1,4 +1,4 @@
-//! What the driver makes of each thing that can go wrong on command, and what the robot received last.
+//! The driver's reaction to each fault that the emulator can make, and the last command that the robot received.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 use std::path::Path;
@@ -18,11 +18,11 @@ const PACE: Pace = Pace::Lockstep(PERIOD);
 const ROOM: &str =
     "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[4, -3], [4, 3], [-3, 3], [-3, -3], [4, -3]]";
 
-/// What became of a run.
+/// The result of a run.
 struct Ran {
-    /// Its last output, or why it ended.
+    /// The last output, or the fault that ended the run.
     output: Result<Output, Fault>,
-    /// What its stop came to.
+    /// The result of the stop.
     stop: Result<(), Fault>,
     robot: Faulty<Emulated>,
 }
@@ -74,7 +74,7 @@ fn ahead(_: u32) -> f64 {
     0.2
 }
 
-/// The same until the fault has begun, and no speed after it.
+/// Twenty centimetres a second until the fault has begun, and none after it.
 fn ahead_then_none(turn: u32) -> f64 {
     if turn < 30 { 0.2 } else { 0.0 }
 }

@@ -33,7 +33,7 @@ struct Terminal {
 
 /// The most columns and rows that are drawn: a terminal may say that it has very many.
 const SIZE_MOST: (usize, usize) = (500, 200);
-/// How long the terminal may take to be given back.
+/// The time that restoring the terminal may take.
 const LEAVING: Duration = Duration::from_millis(500);
 
 /// A screen that is taken; dropped, it is given back.

@@ -34,7 +34,7 @@ impl Terminal {
         Self::sized(command, piped, 100, 30)
     }
 
-    /// The same in a terminal of this size.
+    /// Runs a command in a terminal of this size.
     pub(crate) fn sized(mut command: Command, piped: bool, columns: u16, rows: u16) -> Self {
         catch_hang_up();
         let controller = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY).unwrap();
