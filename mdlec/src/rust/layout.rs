@@ -7,6 +7,8 @@ use quote::quote;
 
 /// The most elements of a list that are laid out at one time.
 const PIECE: usize = 256;
+/// The columns of a line, as prettyplease fills it.
+const WIDTH: usize = 89;
 /// Stands for elements that are laid out by themselves, with a number behind it. It is longer than a line, so it stands
 /// alone on one, as they do.
 const STAND_IN: &str =
@@ -81,9 +83,9 @@ fn list(line: &str) -> Option<usize> {
 /// Writes elements as they are laid out where a stand-in has this line.
 fn write_elements(elements: TokenStream, line: &str, text: &mut String) {
     let indent = line.len() - line.trim_start().len();
-    if let Some(strings) = strings(&elements) {
+    if let Some(plain) = strings(&elements).or_else(|| calls(&elements, WIDTH.saturating_sub(indent))) {
         let indent = &line[..indent];
-        strings.iter().for_each(|string| write_line(&format!("{indent}{string},"), text));
+        plain.iter().for_each(|element| write_line(&format!("{indent}{element},"), text));
         return;
     }
     let stand_in = stand_in(0);
@@ -100,6 +102,34 @@ fn write_elements(elements: TokenStream, line: &str, text: &mut String) {
 fn strings(elements: &TokenStream) -> Option<Vec<String>> {
     let tokens = elements.clone().into_iter().filter(|token| !is_comma(token)).map(|token| token.to_string());
     tokens.map(|token| token.starts_with('"').then_some(token)).collect()
+}
+
+/// The elements, if all are calls of a path with literals, and no longer than `width` with their commas. The tables of a
+/// machine are such lists.
+fn calls(elements: &TokenStream, width: usize) -> Option<Vec<String>> {
+    let mut calls = Vec::new();
+    let mut call = String::new();
+    for token in elements.clone() {
+        match token {
+            TokenTree::Ident(word) if !call.ends_with(')') => call += &word.to_string(),
+            TokenTree::Punct(colon) if colon.as_char() == ':' && !call.is_empty() => call.push(':'),
+            TokenTree::Group(group) if group.delimiter() == Delimiter::Parenthesis && !call.is_empty() => {
+                call += &format!("({})", literals(group.stream())?.join(", "));
+            }
+            TokenTree::Punct(comma) if comma.as_char() == ',' && call.ends_with(')') => {
+                calls.push(mem::take(&mut call))
+            }
+            TokenTree::Ident(_) | TokenTree::Punct(_) | TokenTree::Group(_) | TokenTree::Literal(_) => return None,
+        }
+    }
+    calls.extend(Some(call).filter(|call| !call.is_empty()));
+    calls.iter().all(|call| call.ends_with(')') && call.len() < width).then_some(calls)
+}
+
+/// The arguments, if all are literals.
+fn literals(arguments: TokenStream) -> Option<Vec<String>> {
+    let arguments = arguments.into_iter().filter(|token| !is_comma(token));
+    arguments.map(|token| matches!(token, TokenTree::Literal(_)).then(|| token.to_string())).collect()
 }
 
 fn is_comma(token: &TokenTree) -> bool {
@@ -135,7 +165,18 @@ mod tests {
     fn long_lists_look_as_if_they_were_laid_out_at_once() {
         let number = |number: usize| Literal::usize_unsuffixed(number * number);
         let text = |number: usize| format!("number \"{number}\"\n");
-        let elements: [&dyn Fn(usize) -> TokenStream; 4] = [
+        let elements: [&dyn Fn(usize) -> TokenStream; 6] = [
+            &|i| {
+                let number = number(i);
+                quote!(Bracket::scope(#number, 1, 2))
+            },
+            &|i| {
+                let name = quote::format_ident!(
+                    "a_name_that_fills_up_the_line_until_no_place_is_left_in_it{}",
+                    "_".repeat(i % 40)
+                );
+                quote!(a::#name(1))
+            },
             &|i| {
                 let text = text(i);
                 quote!(#text)
