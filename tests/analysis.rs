@@ -17,7 +17,7 @@ use mdle_tests::random_script::script;
 use mdle_tests::repository::{TextFile, files, root};
 use mdle_tests::signals::Values;
 use mdlec::Compiled;
-use mdlec::analysis::{Analysis, Reach, analyze};
+use mdlec::analysis::{Analysis, Reach, analyze, lints};
 use mdlec::plan::{Plan, Quark, condition_text};
 use mdlec::trace::{Applied, Counted, Line, Outcome, Script, run};
 
@@ -118,7 +118,7 @@ enum Part {
 
 impl<'c> Trial<'c> {
     fn new(seed: u64, text: &'c str, compiled: &'c Compiled) -> Self {
-        let (analysis, _) = analyze(&compiled.lowered);
+        let analysis = analyze(&compiled.lowered);
         let lowered = &compiled.lowered;
         let (mut atoms, mut scopes) = (0, 0);
         let parts = (0..lowered.brackets.len()).map(|number| {
@@ -217,7 +217,7 @@ fn runs_of_the_machine_take_as_long_as_is_said() {
         let text = RandomPlan::new(&mut chance, 2 + seed as usize % 12, long).to_string();
         let script = Script::read(&script(&mut chance, 12)).expect("a script");
         let Ok(compiled) = compile(&text) else { continue };
-        let (analysis, _) = analyze(&compiled.lowered);
+        let analysis = analyze(&compiled.lowered);
         let times: Vec<f64> = script.turns().iter().map(|turn| turn.t.0 as f64 / 1e9).collect();
         let gap = times.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
         for Line { turn, outcome: Outcome { applied, fired, .. }, .. } in run(Counted::new(&compiled.lowered), &script)
@@ -270,7 +270,7 @@ fn plans() -> Vec<TextFile> {
 fn analysis(path: &str) -> Analysis {
     let text = std::fs::read_to_string(root().join(path)).expect(path);
     let (compiled, said) = judge(&TextFile { path: path.into(), text }, None);
-    analyze(&compiled.first().expect(&said).lowered).0
+    analyze(&compiled.first().expect(&said).lowered)
 }
 
 #[test]
@@ -278,8 +278,8 @@ fn plans_are_analysed_without_a_false_alarm() {
     for file in plans() {
         let (compiled, _) = judge(&file, None);
         for compiled in compiled {
-            let (analysis, found) = analyze(&compiled.lowered);
-            assert_eq!(found, [], "{}", file.path);
+            let analysis = analyze(&compiled.lowered);
+            assert_eq!(lints(&compiled.lowered), [], "{}", file.path);
             assert!(analysis.atoms.iter().all(|atom| atom.reach == Reach::Runs && atom.ends), "{}", file.path);
             let never: Vec<_> = analysis.atoms.iter().filter(|atom| !atom.never_by.is_empty()).collect();
             assert_eq!(never.len(), 0, "{}", file.path);

@@ -95,7 +95,10 @@ fn stages(
             found.extend(warnings);
             found.extend(plan::lints::lints(&nondegenerate));
             match fsm::algorithm1(&nondegenerate) {
-                Ok(lowered) => compiled.extend(kept.map(|plan| Compiled { plan, nondegenerate, lowered })),
+                Ok(lowered) => {
+                    found.extend(analysis::lints(&lowered));
+                    compiled.extend(kept.map(|plan| Compiled { plan, nondegenerate, lowered }));
+                }
                 Err(too_large) => found.push(too_large),
             }
         }

@@ -96,7 +96,7 @@ pub fn check(text: &str) {
 
 /// An analysis comes to a result, and agrees with itself.
 fn analysed(lowered: &Lowered) {
-    let (analysis, _) = analyze(lowered);
+    let analysis = analyze(lowered);
     assert_eq!((analysis.states, analysis.atoms.len()), (lowered.termination, lowered.atoms.len()));
     let is_shorter = analysis.shortest.zip(analysis.longest.seconds).is_none_or(|(short, long)| short <= long);
     assert!(is_shorter && !analysis.to_json().is_empty(), "{}", analysis.to_text());

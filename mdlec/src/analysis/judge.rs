@@ -85,6 +85,11 @@ impl<'l> Walk<'l> {
         {
             return Outcome::Repeated(*outer);
         }
+        if let Condition::Driven { from, until: None, .. } = operand
+            && let Some((_, outer)) = self.world.distance(number).filter(|(shortest, _)| shortest == from)
+        {
+            return Outcome::Repeated(outer);
+        }
         if !self.alone.is_possible(&[Wanted { any: vec![read], fired: true }], &BTreeMap::new()) {
             return Outcome::Never;
         }

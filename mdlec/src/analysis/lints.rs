@@ -1,19 +1,21 @@
-//! W0202, W0205, W0206 and W0303: what an analysis finds suspicious that the lints of a plan, which compare texts, do not see.
+//! W0202 to W0206, W0302 and W0303: conditions with one value, operands that never end their scope, and elements that are
+//! always skipped or never reached.
 //!
 //! What stands in a plan that is used more than once is told only if it is so in every use.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::choices::When;
+use mdle_runtime::fsm::Atom;
+
+use super::constants::Constants;
 use super::walk::{Found, Outcome, Skip};
-use super::world::World;
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::fsm::{Lowered, ScopeMeaning};
-use crate::plan::{Condition, condition_text};
+use crate::plan::{Condition, Quark, condition_text};
 
 /// What is suspicious.
 pub(super) fn lints(lowered: &Lowered, found: &[Found]) -> Vec<Diagnostic> {
-    let lints = Lints { lowered, alone: World::new(lowered) };
+    let lints = Lints { lowered, constants: Constants::new(lowered), last: last_atoms(lowered) };
     let mut uses: BTreeMap<Span, usize> = BTreeMap::new();
     let mut told: BTreeMap<(Span, Code), (usize, Diagnostic)> = BTreeMap::new();
     for (number, (scope, found)) in (0_u32..).zip(lowered.scopes.iter().zip(found)) {
@@ -33,44 +35,63 @@ pub(super) fn lints(lowered: &Lowered, found: &[Found]) -> Vec<Diagnostic> {
 
 struct Lints<'l> {
     lowered: &'l Lowered,
-    /// The knowledge about a place that no scope encloses.
-    alone: World<'l>,
+    constants: Constants<'l>,
+    /// The brackets of the atoms that nothing follows in what is around them.
+    last: BTreeSet<u32>,
 }
 
 impl<'l> Lints<'l> {
     fn scope(&self, number: u32, scope: &'l ScopeMeaning, found: &Found) -> Vec<Option<Diagnostic>> {
         let operands = scope.interrupt.condition.operands().iter().zip(&found.operands);
-        let mut lints: Vec<_> = operands.map(|(operand, outcome)| self.operand(scope, operand, *outcome)).collect();
+        let mut lints: Vec<_> =
+            operands.map(|(operand, outcome)| self.operand(number, scope, operand, *outcome)).collect();
+        lints.push(self.constants.lint(number, scope));
         lints.push(self.skipped(number, scope, found));
         lints.push(found.cut_off_by.map(|before| self.cut_off(scope, before)));
         lints
     }
 
     /// An operand that never ends its scope.
-    fn operand(&self, scope: &ScopeMeaning, operand: &Condition, outcome: Outcome) -> Option<Diagnostic> {
+    fn operand(&self, number: u32, scope: &ScopeMeaning, operand: &Condition, outcome: Outcome) -> Option<Diagnostic> {
         let text = condition_text(operand, &|id| self.lowered.quark(id).text.clone());
         let span = scope.interrupt.span;
-        let only = scope.interrupt.condition.operands().len() == 1;
-        let help = |lint: Diagnostic| match only {
-            true => lint.fix("write {}, or another condition", span, "(null)"),
-            false => lint.help(format!("remove `{text}`")),
+        let (code, outer) = match outcome {
+            Outcome::Repeated(outer) => (Code::W0204, outer),
+            Outcome::Beaten(outer) => (Code::W0205, outer),
+            Outcome::Late(outer) => (Code::W0206, outer),
+            // What is never true is W0203's.
+            Outcome::Possible | Outcome::Never | Outcome::Unread => return None,
         };
-        match outcome {
-            Outcome::Beaten(outer) => {
-                let (whose, outer) = self.whose(outer);
-                let message = format!("`{text}` can never end this: {whose} always ends first");
-                let lint = Diagnostic::new(Code::W0205, message, span, format!("`{text}` has no effect"));
-                Some(help(lint.also(outer, format!("{whose} ends by this"))))
+        let (whose, outer) = self.whose(outer);
+        let why = match outcome {
+            Outcome::Repeated(_) => format!("{whose} ends by it first"),
+            Outcome::Late(_) => format!("a timer of {whose} always fires first"),
+            Outcome::Beaten(_) | Outcome::Possible | Outcome::Never | Outcome::Unread => {
+                format!("{whose} always ends first")
             }
-            Outcome::Late(outer) => {
-                let (whose, outer) = self.whose(outer);
-                let message = format!("`{text}` can never end this: a timer of {whose} always fires first");
-                let lint = Diagnostic::new(Code::W0206, message, span, format!("`{text}` has no effect"));
-                Some(help(lint.also(outer, format!("{whose} ends by this"))))
+        };
+        let message = format!("`{text}` can never end this: {why}");
+        let lint = Diagnostic::new(code, message, span, format!("`{text}` has no effect"));
+        let lint = lint.also(outer, format!("{whose} ends by this"));
+        Some(match scope.interrupt.condition.operands() {
+            [_] if self.goes_on(number) => {
+                lint.help("give it a condition that can be true earlier, or `(null)` where nothing follows it")
             }
-            // The same text is W0204's, what is never true W0203's.
-            Outcome::Possible | Outcome::Never | Outcome::Repeated(_) | Outcome::Unread => None,
-        }
+            [_] => lint.fix("write {}, or another condition", span, "(null)"),
+            _ => lint.help(format!("remove `{text}`")),
+        })
+    }
+
+    /// Returns `true` if a bracket is an atom whose law never completes, and something follows it.
+    fn goes_on(&self, number: u32) -> bool {
+        self.law(number).is_some_and(|law| !law.completes) && !self.last.contains(&number)
+    }
+
+    /// The law of a bracket that is an atom.
+    fn law(&self, number: u32) -> Option<&'l Quark> {
+        let first = self.lowered.brackets[number as usize].first as usize;
+        self.lowered.atoms.get(first).filter(|atom| atom.scope == number)?;
+        self.lowered.laws.get(first).map(|law| self.lowered.quark(law.quark))
     }
 
     /// An element that is always skipped.
@@ -79,9 +100,7 @@ impl<'l> Lints<'l> {
         let behind = match found.skipped? {
             Skip::Inside => return None,
             // That is W0203's.
-            Skip::AtOnce if !self.alone.stays(number, &scope.interrupt.condition, When::Entered) => {
-                return None;
-            }
+            Skip::AtOnce if !self.constants.stays(number, &scope.interrupt.condition) => return None,
             Skip::AtOnce => {
                 let message = format!("`{text}` is true whenever this is entered, so it is always skipped");
                 let lint = Diagnostic::new(Code::W0303, message, span, "true at once");
@@ -89,14 +108,35 @@ impl<'l> Lints<'l> {
             }
             Skip::Behind(before) => self.lowered.scopes[before as usize].as_ref()?,
         };
-        // Where both are the same, and level-triggered, it is W0302's.
         if behind.interrupt.condition == scope.interrupt.condition {
-            return None;
+            return Some(self.repeated(number, scope, behind));
         }
         let message = format!("`{text}` is true whenever the element before this ends, so this is always skipped");
         let lint = Diagnostic::new(Code::W0303, message, span, "true at once");
         let lint = lint.also(behind.interrupt.span, "the element before it ends when this is true");
         Some(lint.fix("wait here until it becomes true again: {}", span, format!("(RISING ({text}))")))
+    }
+
+    /// An element that is skipped since the one before it ends by the same condition.
+    fn repeated(&self, number: u32, scope: &ScopeMeaning, before: &ScopeMeaning) -> Diagnostic {
+        let (span, text) = (scope.interrupt.span, &scope.interrupt.text);
+        let message = format!("`{text}` ends the element before this as well, so this is always skipped");
+        let lint = Diagnostic::new(Code::W0302, message, span, "true at once")
+            .also(before.interrupt.span, "the element before it ends when this is true");
+        let lint = match self.law(number) {
+            Some(Quark { completes: true, name, .. }) => {
+                let words = format!("`{name}` completes by itself: to run it until then, write {{}}");
+                lint.fix(&words, span, "(null)")
+            }
+            _ => {
+                let opposite =
+                    text.strip_prefix("NOT ").filter(|_| matches!(scope.interrupt.condition, Condition::Not(_)));
+                let opposite = opposite.map_or_else(|| negated("NOT", scope), str::to_owned);
+                lint.fix("to run it while this is true, write {}", span, format!("({opposite})"))
+            }
+        };
+        let rising = format!("({})", negated("RISING", scope));
+        lint.fix("or wait here until it becomes true again: {}", span, rising)
     }
 
     /// An element behind one that never ends before what is around both.
@@ -117,5 +157,24 @@ impl<'l> Lints<'l> {
         let name = scope.map(|scope| scope.name.as_str()).filter(|name| !name.is_empty());
         let whose = name.map_or_else(|| "the enclosing scope".to_owned(), |name| format!("`{name}`"));
         (whose, scope.map_or(Span { start: 0, end: 0 }, |scope| scope.interrupt.span))
+    }
+}
+
+/// The brackets of the atoms that nothing follows in what is around them.
+fn last_atoms(lowered: &Lowered) -> BTreeSet<u32> {
+    let is_last = |atom: &&Atom| {
+        let bracket = &lowered.brackets[atom.scope as usize];
+        bracket.last == lowered.brackets[bracket.parent as usize].last
+    };
+    lowered.atoms.iter().filter(is_last).map(|atom| atom.scope).collect()
+}
+
+/// The condition of a scope behind a word that takes one operand.
+fn negated(word: &str, ScopeMeaning { interrupt, .. }: &ScopeMeaning) -> String {
+    let text = &interrupt.text;
+    if matches!(interrupt.condition, Condition::Quark(_)) {
+        format!("{word} {text}")
+    } else {
+        format!("{word} ({text})")
     }
 }

@@ -4,6 +4,7 @@
 //! What is said never to happen never happens, in no run; what is said to be possible may be too much to look at.
 
 mod choices;
+mod constants;
 mod durations;
 mod judge;
 mod lints;
@@ -112,9 +113,16 @@ pub struct AtomAnswer {
     pub ends: bool,
 }
 
-/// Analyses a machine; also says what is suspicious about it, beyond what the lints of a plan see.
+/// What is suspicious about a machine: W0202 to W0206, W0302 and W0303.
 #[must_use]
-pub fn analyze(lowered: &Lowered) -> (Analysis, Vec<Diagnostic>) {
+pub fn lints(lowered: &Lowered) -> Vec<Diagnostic> {
+    let most = transitions::most(lowered);
+    lints::lints(lowered, &walk::walk(lowered, !most.is_cut).found)
+}
+
+/// Analyses a machine.
+#[must_use]
+pub fn analyze(lowered: &Lowered) -> Analysis {
     let most = transitions::most(lowered);
     let walked = walk::walk(lowered, !most.is_cut);
     let longest = durations::longest(lowered, &walked.found, most);
@@ -125,7 +133,7 @@ pub fn analyze(lowered: &Lowered) -> (Analysis, Vec<Diagnostic>) {
         Kind::Scope { level } => usize::from(level) + 1,
         Kind::Loop { .. } => 0,
     });
-    let analysis = Analysis {
+    Analysis {
         plan: scopes().next().map(|plan| plan.name.clone()).unwrap_or_default(),
         states: lowered.termination,
         atom_count: lowered.atoms.len(),
@@ -139,8 +147,7 @@ pub fn analyze(lowered: &Lowered) -> (Analysis, Vec<Diagnostic>) {
         bytes: sizes::bytes(lowered),
         scopes: answers.scopes,
         atoms: answers.atoms,
-    };
-    (analysis, lints::lints(lowered, &walked.found))
+    }
 }
 
 /// The input that follows an interrupt is sent at the head of the next turn; a search that is cut goes on in that turn.

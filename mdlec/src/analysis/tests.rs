@@ -1,5 +1,7 @@
 //! What an analysis says of small plans, and what it leaves alone: each lint with a near miss.
 
+mod texts;
+
 use mdle_runtime::fsm::{Atom, Bracket};
 
 use super::{Reach, analyze};
@@ -9,7 +11,7 @@ use crate::samples::compiled;
 /// The lints of the first plan of a text, each with the place that it is about.
 fn lints(text: &str) -> String {
     let compiled = compiled(text).swap_remove(0);
-    let (_, found) = analyze(&compiled.lowered);
+    let found = super::lints(&compiled.lowered);
     let places = found.iter().map(|lint| {
         let notes: String = lint.labels.iter().skip(1).map(|label| format!(" [{}]", label.text)).collect();
         format!("{}: {}{notes}\n", lint.code, lint.message)
@@ -25,18 +27,18 @@ fn assert_silent(plans: &[&str]) {
 
 /// For each atom whether it runs, and what can end it by itself.
 fn atoms(text: &str) -> Vec<(Reach, String)> {
-    let (analysis, _) = analyze(&compiled(text)[0].lowered);
+    let analysis = analyze(&compiled(text)[0].lowered);
     analysis.atoms.into_iter().map(|atom| (atom.reach, atom.ended_by.join(", "))).collect()
 }
 
 /// The shortest and the longest time in seconds, and the turns beyond that.
 fn durations(text: &str) -> (Option<f64>, Option<f64>, Option<u64>) {
-    let (analysis, _) = analyze(&compiled(text)[0].lowered);
+    let analysis = analyze(&compiled(text)[0].lowered);
     (analysis.shortest, analysis.longest.seconds, analysis.longest.turns)
 }
 
 fn transitions(text: &str) -> u64 {
-    analyze(&compiled(text)[0].lowered).0.transitions
+    analyze(&compiled(text)[0].lowered).transitions
 }
 
 #[test]
@@ -172,7 +174,7 @@ fn nested(text: &str, depth: u32) -> Lowered {
 #[test]
 fn nesting_as_deep_as_you_like_comes_to_a_result() {
     for plan in ["{ P (bumper AND sync ada OR wait 5) (Atom (null) stop) }", "{ P (null) (Atom (null) stop) }"] {
-        let (analysis, _) = analyze(&nested(plan, 10_000));
+        let analysis = analyze(&nested(plan, 10_000));
         assert_eq!((analysis.depth, analysis.scopes.len(), analysis.atoms.len()), (10_001, 10_000, 1));
         assert!(analysis.to_text().len() > 100_000 && analysis.to_json().len() > 1_000_000);
     }
@@ -182,7 +184,7 @@ fn nesting_as_deep_as_you_like_comes_to_a_result() {
 fn loops_are_not_written_out() {
     let nested = |loops: u32| {
         let body = (0..loops).fold("(Atom (wait 1) stop)".to_owned(), |body, _| format!("ExecPlan 10 {{ {body} }}"));
-        analyze(&compiled(&format!("{{ P {body} }}"))[0].lowered).0
+        analyze(&compiled(&format!("{{ P {body} }}"))[0].lowered)
     };
     assert_eq!((nested(9).states, nested(9).shortest), (1_000_000_001, Some(1e9)));
     let analysis = nested(12);

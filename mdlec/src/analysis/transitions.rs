@@ -11,6 +11,7 @@ use mdle_runtime::fsm::Kind;
 use super::choices::Choices;
 use super::variables::{self, Variable};
 use crate::fsm::Lowered;
+use crate::plan::families::Readings;
 use crate::plan::{Condition, QuarkId};
 
 /// The most transitions of one turn: no more than the machine makes.
@@ -40,7 +41,8 @@ pub(super) fn most(lowered: &Lowered) -> Most {
     // The bits of a choice are in the order of the variables.
     quarks.sort_unstable();
     let variables: BTreeSet<Variable> = quarks.iter().map(|id| Variable::Quark(*id)).collect();
-    let possible = Choices::new(&variables, |_| None).map(|free| variables::possible(&free, &lowered.quarks, &|_| 0));
+    let possible = Choices::new(&variables, |_| None)
+        .map(|free| variables::possible(&free, &lowered.quarks, Readings::Any, &|_| 0));
     let is_possible = |choice: &usize| possible.as_ref().is_none_or(|possible| possible.holds(*choice));
     let choices = (0..1_usize << quarks.len()).filter(is_possible);
     let count = choices.map(|choice| longest(lowered, &quarks, choice)).max().unwrap_or(0);

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 
 use super::choices::Choices;
 use super::tables::Table;
-use crate::plan::families::{Family, at_once, family};
+use crate::plan::families::{Family, Readings, at_once, family};
 use crate::plan::{Quark, QuarkId, RecordId};
 
 /// Something that is true or not in a turn, as far as conditions say no more of it.
@@ -33,7 +33,12 @@ pub(super) enum Variable {
 
 /// Where the values of these variables can be so at once: `entered` says when a scope was entered at the earliest, and the
 /// brackets of timers hold one another, a smaller number the larger.
-pub(super) fn possible(choices: &Choices, quarks: &[Quark], entered: &impl Fn(u32) -> u64) -> Table {
+pub(super) fn possible(
+    choices: &Choices,
+    quarks: &[Quark],
+    readings: Readings,
+    entered: &impl Fn(u32) -> u64,
+) -> Table {
     let mut possible = choices.constant(true);
     let mut timers: Vec<(u32, u64, &Table)> = Vec::new();
     let mut ways: Vec<(u32, u64, &Table)> = Vec::new();
@@ -66,7 +71,7 @@ pub(super) fn possible(choices: &Choices, quarks: &[Quark], entered: &impl Fn(u3
     }
     for members in families.values().filter(|members| members.len() > 1) {
         let mut some = choices.constant(false);
-        for fired in at_once(members.iter().map(|(quark, _)| *quark)) {
+        for fired in at_once(members.iter().map(|(quark, _)| *quark), readings) {
             let mut one = choices.constant(true);
             for ((_, column), fired) in members.iter().zip(fired) {
                 one = if fired { one.and(column) } else { one.and(&(*column).clone().not()) };

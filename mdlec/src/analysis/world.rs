@@ -9,7 +9,7 @@ use super::choices::{self, Choices, Read, When};
 use super::tables::VARIABLES;
 use super::variables::{self, Variable};
 use crate::fsm::Lowered;
-use crate::plan::families::{Family, family};
+use crate::plan::families::{Family, Readings, family};
 use crate::plan::{Condition, QuarkId};
 
 /// The most conditions around a place that are looked at for each variable of a question.
@@ -32,9 +32,12 @@ pub(super) struct World<'l> {
     units: BTreeMap<Variable, (bool, u32)>,
     /// When a timer around is over, on the clock of `entered`, and its bracket: the first of them is the last.
     deadlines: Vec<(u64, u32)>,
+    /// The paths that end scopes around, in nanometres, with their brackets: each is shorter than those before it.
+    distances: Vec<(u64, u32)>,
     /// What else has not fired around, by the variables in it.
     clauses: BTreeMap<Variable, Vec<Read<'l>>>,
     families: BTreeMap<Family, BTreeSet<QuarkId>>,
+    readings: Readings,
 }
 
 /// What a scope has added to what is known inside it.
@@ -43,6 +46,7 @@ pub(super) struct Added {
     units: Vec<Variable>,
     clauses: Vec<Variable>,
     deadline: bool,
+    distance: bool,
 }
 
 impl<'l> World<'l> {
@@ -52,9 +56,16 @@ impl<'l> World<'l> {
             entered: vec![0; lowered.brackets.len()],
             units: BTreeMap::new(),
             deadlines: Vec::new(),
+            distances: Vec::new(),
             clauses: BTreeMap::new(),
             families: BTreeMap::new(),
+            readings: Readings::Any,
         }
+    }
+
+    /// Returns what is known of a place without anything around it, where every signal is a number.
+    pub(super) fn of_numbers(lowered: &'l Lowered) -> Self {
+        Self { readings: Readings::Numbers, ..Self::new(lowered) }
     }
 
     /// The time at which a timer around is over, and its bracket.
@@ -67,12 +78,25 @@ impl<'l> World<'l> {
         self.units.get(&variable).map(|(_, bracket)| *bracket)
     }
 
+    /// Returns the bracket at or around `bracket` whose interrupt ends it after the shortest path, and that path in
+    /// nanometres.
+    pub(super) fn distance(&self, bracket: u32) -> Option<(u64, u32)> {
+        self.distances.iter().rev().find(|(_, outer)| *outer <= bracket).copied()
+    }
+
     /// The brackets around this place whose conditions have something to do with these variables.
     pub(super) fn around(&self, variables: &BTreeSet<Variable>) -> Option<u32> {
         let unit = variables.iter().find_map(|variable| self.unit(*variable));
         let relative = || self.relatives(variables).iter().find_map(|variable| self.unit(*variable));
         let clause = || variables.iter().find_map(|variable| Some(self.clauses.get(variable)?.first()?.bracket));
-        unit.or_else(clause).or_else(relative)
+        let distance = || {
+            variables.iter().find_map(|variable| match variable {
+                Variable::Way(bracket, _) => self.distance(*bracket).map(|(_, outer)| outer),
+                Variable::Quark(_) | Variable::Own(..) | Variable::Timer(..) | Variable::Past(..) => None,
+                Variable::PastWay(..) | Variable::Memory(..) | Variable::Fact(..) | Variable::PastFact(..) => None,
+            })
+        };
+        unit.or_else(clause).or_else(relative).or_else(distance)
     }
 
     /// From now on the interrupt of this bracket has not fired.
@@ -80,6 +104,10 @@ impl<'l> World<'l> {
         let mut added = Added::default();
         for condition in flat(condition) {
             let read = Read { condition, bracket, when: When::Later };
+            if let Condition::Driven { from, until: None, .. } = condition {
+                self.add_distance(*from, bracket, &mut added);
+                continue;
+            }
             match self.unit_of(read) {
                 Some((Variable::Timer(_, nanos), false)) => {
                     let at = self.entered[bracket as usize].saturating_add(nanos);
@@ -122,6 +150,21 @@ impl<'l> World<'l> {
         }
         if added.deadline {
             self.deadlines.pop();
+        }
+        if added.distance {
+            self.distances.pop();
+        }
+    }
+
+    /// The scope of this bracket ends after a path of this length, as do those inside.
+    fn add_distance(&mut self, nanometers: u64, bracket: u32, added: &mut Added) {
+        match self.distances.last_mut() {
+            Some((shortest, _)) if *shortest <= nanometers => {}
+            Some((shortest, owner)) if *owner == bracket => *shortest = nanometers,
+            Some(_) | None => {
+                self.distances.push((nanometers, bracket));
+                added.distance = true;
+            }
         }
     }
 
@@ -182,8 +225,10 @@ impl<'l> World<'l> {
 
     /// The value that a variable has here, if it has only one.
     fn known(&self, variable: Variable) -> Option<bool> {
-        if let Variable::Way(_, 0) = variable {
-            return Some(true);
+        if let Variable::Way(bracket, nanometers) = variable {
+            // The path since an outer entry is as long at least.
+            let is_beyond = || self.distance(bracket).is_some_and(|(shortest, _)| nanometers >= shortest);
+            return if nanometers == 0 { Some(true) } else { is_beyond().then_some(false) };
         }
         let Variable::Timer(bracket, nanos) = variable else {
             return self.units.get(&variable).map(|(value, _)| *value);
@@ -191,6 +236,8 @@ impl<'l> World<'l> {
         let at = self.entered[bracket as usize].saturating_add(nanos);
         match self.deadline() {
             _ if nanos == 0 => Some(true),
+            // `inf`
+            _ if nanos == u64::MAX => Some(false),
             Some((deadline, _)) if at >= deadline => Some(false),
             Some(_) | None => None,
         }
@@ -217,7 +264,7 @@ impl<'l> World<'l> {
             (None, None) => return true,
         };
         let entered = |bracket: u32| self.entered[bracket as usize];
-        let mut table = variables::possible(&choices, &self.lowered.quarks, &entered);
+        let mut table = variables::possible(&choices, &self.lowered.quarks, self.readings, &entered);
         for read in clauses {
             table = table.and(&choices.fired(read, self.lowered).not());
         }

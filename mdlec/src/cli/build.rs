@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::bind;
 use super::input::{self, Input, Target};
 use super::{Bare, Build, Emit, EmitKind, Executable, Failure, endings, executable, matrices, report};
-use crate::diagnostic::{Diagnostic, sort};
+use crate::diagnostic::Diagnostic;
 use crate::link;
 use crate::rust::{self, Header};
 use crate::syntax::outline;
@@ -65,7 +65,7 @@ pub(super) fn compile_one(
     name: Option<&str>,
     deny_warnings: bool,
 ) -> Result<Compiled, Failure> {
-    compile_judged(input, target, name, deny_warnings, |compiled| (compiled, Vec::new()))
+    compile_judged(input, target, name, deny_warnings, |compiled| compiled)
 }
 
 /// Compiles the one plan that is to be judged: `judge` takes it, so that it can let go of what it does not need.
@@ -74,17 +74,14 @@ pub(super) fn compile_judged<T>(
     target: &Target,
     name: Option<&str>,
     deny_warnings: bool,
-    judge: impl FnMut(Compiled) -> (T, Vec<Diagnostic>),
+    judge: impl FnMut(Compiled) -> T,
 ) -> Result<T, Failure> {
     if let Some(name) = name {
         known_plan(input, name)?;
     }
-    let (compiled, mut found) = input.compile(&target.alphabet, name);
+    let (compiled, found) = input.compile(&target.alphabet, name);
     let names: Vec<_> = compiled.iter().map(|compiled| compiled.plan.root.name.clone()).collect();
-    let (mut judged, more): (Vec<_>, Vec<_>) = compiled.into_iter().map(judge).unzip();
-    found.extend(more.into_iter().flatten());
-    sort(&mut found);
-    found.dedup();
+    let mut judged: Vec<_> = compiled.into_iter().map(judge).collect();
     if !report::diagnostics(&input.sources, &found, deny_warnings) {
         return Err(Failure::PLAN);
     }

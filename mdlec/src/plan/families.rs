@@ -23,7 +23,7 @@ pub(crate) fn family(quark: &Quark) -> Option<Family> {
 }
 
 /// The bits of `atIsection`, which all have to match, so that two patterns exclude each other.
-pub(crate) fn pattern(quark: &Quark) -> Option<&[bool]> {
+fn pattern(quark: &Quark) -> Option<&[bool]> {
     match quark.args.as_slice() {
         [Value::Bits(bits)] if quark.name == "atIsection" => Some(bits),
         _ => None,
@@ -43,11 +43,21 @@ fn threshold(comparison: &Comparison) -> Option<(f64, f64)> {
     }
 }
 
+/// What a signal may be in a turn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Readings {
+    /// A number, or none: then every comparison is false.
+    Any,
+    /// A number, as a writer thinks of it.
+    Numbers,
+}
+
 /// The values that quarks of one family can have in one turn: one list for each possibility, in the order of the quarks.
-pub(crate) fn at_once<'q>(quarks: impl Iterator<Item = &'q Quark>) -> Vec<Vec<bool>> {
+pub(crate) fn at_once<'q>(quarks: impl Iterator<Item = &'q Quark>, readings: Readings) -> Vec<Vec<bool>> {
     let quarks: Vec<&Quark> = quarks.collect();
-    let mut all = vec![vec![false; quarks.len()]];
-    // A signal that is no number makes every comparison false; no pattern need match.
+    let are_numbers = readings == Readings::Numbers && quarks.iter().all(|quark| pattern(quark).is_none());
+    // No pattern need match.
+    let mut all = if are_numbers { Vec::new() } else { vec![vec![false; quarks.len()]] };
     for value in values(&quarks) {
         all.push(quarks.iter().map(|quark| holds(quark, value)).collect());
     }

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::diagnostic::{Code, Diagnostic};
-use crate::plan::families::{Family, at_once, family};
+use crate::plan::families::{Family, Readings, at_once, family};
 use crate::plan::{Condition, Interrupt, Loop, Node, Plan, Quark, QuarkId, RecordId, Scope, Situation};
 
 /// The most quarks of a loop of which every choice is tried; a loop that reads more is left alone.
@@ -13,21 +13,44 @@ const ELEMENTS: usize = 64;
 
 /// Warns of them.
 pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
-    Skipped { plan, found }.sequence(&plan.root.body);
+    let mut skipped = Skipped { plan, known: BTreeMap::new(), found };
+    skipped.inside(&plan.root);
 }
 
 struct Skipped<'p, 'f> {
     plan: &'p Plan,
+    /// The values of quarks with which no enclosing scope has ended.
+    known: BTreeMap<QuarkId, bool>,
     found: &'f mut Vec<Diagnostic>,
 }
 
 impl Skipped<'_, '_> {
+    /// Looks at the body of a scope, where no operand of its interrupt has fired.
+    fn inside(&mut self, scope: &Scope) -> bool {
+        let known = self.known.clone();
+        for operand in scope.interrupt.condition.operands() {
+            match operand {
+                Condition::Quark(id) => drop(self.known.insert(*id, false)),
+                Condition::Not(operand) => {
+                    if let Condition::Quark(id) = **operand {
+                        self.known.insert(id, true);
+                    }
+                }
+                Condition::Null | Condition::Wait { .. } | Condition::Elapsed { .. } | Condition::Driven { .. } => {}
+                Condition::Or(_) | Condition::And(_) | Condition::Rising { .. } | Condition::After(_) => {}
+            }
+        }
+        let told = self.sequence(&scope.body);
+        self.known = known;
+        told
+    }
+
     /// Whether a loop was told in it: one around it can be skipped because of that.
     fn sequence(&mut self, body: &[Node]) -> bool {
         body.iter().fold(false, |told, node| {
             told | match node {
                 Node::Atom(_) => false,
-                Node::Scope(Scope { body, .. }) => self.sequence(body),
+                Node::Scope(scope) => self.inside(scope),
                 Node::Loop(repeated) => self.sequence(&repeated.body) || self.repeated(repeated),
             }
         })
@@ -91,7 +114,13 @@ impl Skipped<'_, '_> {
     /// Returns `true` if these quarks can have these values in one turn.
     fn can_be(&self, values: impl Iterator<Item = (QuarkId, bool)>) -> bool {
         let mut families: BTreeMap<Family, Vec<(&Quark, bool)>> = BTreeMap::new();
+        let mut all = self.known.clone();
         for (id, value) in values {
+            if all.insert(id, value).is_some_and(|known| known != value) {
+                return false;
+            }
+        }
+        for (id, value) in all {
             let quark = self.plan.quark(id);
             if let Some(family) = family(quark) {
                 families.entry(family).or_default().push((quark, value));
@@ -99,7 +128,7 @@ impl Skipped<'_, '_> {
         }
         families.values().all(|members| {
             let values: Vec<bool> = members.iter().map(|(_, value)| *value).collect();
-            at_once(members.iter().map(|(quark, _)| *quark)).contains(&values)
+            at_once(members.iter().map(|(quark, _)| *quark), Readings::Any).contains(&values)
         })
     }
 }

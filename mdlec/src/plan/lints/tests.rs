@@ -59,39 +59,6 @@ fn what_is_never_reached() {
 }
 
 #[test]
-fn conditions_that_are_always_or_never_true() {
-    assert_judged!(
-        "{ P (NOT bumper OR bumper)
-  (Atom (wait 0) stop)
-  (Atom (bumper AND wait inf) stop)
-  (Atom (atIsection 1000 AND atIsection 0100) stop)
-  { Q (sync ada OR NOT (sync bob OR NOT null)) (Atom (wait 5) stop) }
-}"
-    );
-    assert_silent(&[
-        "{ P (Atom (rendezvous ada OR NOT rendezvous ada) stop) }",
-        "{ P (Atom (wait 5 AND NOT wait 9) stop) (Atom (wait inf OR bumper) stop) }",
-        "{ P (Atom (atIsection 1000 AND atIsection 1000) stop) }",
-    ]);
-}
-
-#[test]
-fn conditions_that_an_outer_one_shadows() {
-    assert_judged!(
-        "{ P (bumper OR wait 60)
-  (Atom (wait 20 OR bumper) go 20 0)
-  { Q (NOT sync ada) (Atom (wait 60) stop) ExecPlan 2 { (Atom (atIsection 1000 OR NOT sync ada) stop) } }
-}"
-    );
-    assert_silent(&[
-        "{ P (rendezvous ada) (Atom (rendezvous ada OR wait 5) stop) }",
-        "{ P (NOT wait 5) (Atom (bumper OR NOT wait 5) stop) }",
-        "{ P { Q (bumper) (Atom (wait 5) stop) } (Atom (bumper OR wait 5) stop) }",
-        "{ P (bumper) (Atom (bumper AND sync ada) stop) }",
-    ]);
-}
-
-#[test]
 fn loops_that_are_skipped_whole() {
     assert_judged!(
         "{ P
@@ -107,24 +74,6 @@ fn loops_that_are_skipped_whole() {
         "{ P ExecPlan 4 { (Atom (atIsection 1000) go 20 0) (Atom (atIsection 0100) stop) } }",
         "{ P ExecPlan 4 { (Atom (bumper) go 20 0) (Atom (null) turn 90) } }",
         "{ P ExecPlan 1 { (Atom (bumper) go 20 0) } }",
-    ]);
-}
-
-#[test]
-fn neighbours_that_are_always_skipped() {
-    assert_judged!(
-        "{ P
-  (Atom (bumper) go 20 0)
-  (Atom (bumper) go -10 0)
-  (Atom (atIsection 1000 AND NOT sync ada) stop)
-  { Q (atIsection 1000 AND NOT sync ada) (Atom (wait 5) stop) }
-}"
-    );
-    assert_silent(&[
-        // It may have ended because it was done; or the condition may be true no more.
-        "{ P (Atom (bumper) rotate 90) (Atom (bumper) go 5 0) }",
-        "{ P (Atom (wait 5) stop) (Atom (wait 5) stop) (Atom (bumper OR wait 5) stop) (Atom (bumper OR wait 5) stop) }",
-        "{ P (Atom (rendezvous ada) stop) (Atom (rendezvous ada) stop) }",
     ]);
 }
 

@@ -1,0 +1,197 @@
+//! W0203: conditions that are never true, or true whenever they are first read, whatever is around them.
+
+use std::collections::BTreeMap;
+
+use super::choices::{Read, When};
+use super::world::{Wanted, World};
+use crate::diagnostic::{Code, Diagnostic, Span};
+use crate::fsm::{Lowered, ScopeMeaning};
+use crate::plan::{Condition, condition_text};
+
+/// What is known of conditions by themselves, where every signal is a number.
+pub(super) struct Constants<'l> {
+    alone: World<'l>,
+}
+
+/// A condition that joins two others of which the value of both together is always the same.
+struct Pair {
+    one: String,
+    other: String,
+    /// Returns `true` if the other operator would leave a condition with two values.
+    may_be_joined_otherwise: bool,
+}
+
+impl<'l> Constants<'l> {
+    pub(super) fn new(lowered: &'l Lowered) -> Self {
+        Self { alone: World::of_numbers(lowered) }
+    }
+
+    /// Returns `true` if an interrupt may be one that has not fired when the scope of this bracket is entered.
+    pub(super) fn stays(&self, bracket: u32, condition: &'l Condition) -> bool {
+        self.alone.stays(bracket, condition, When::Entered)
+    }
+
+    /// Warns of an interrupt with one value. Leaves alone what never fires on purpose: `null` and `wait inf`.
+    pub(super) fn lint(&self, bracket: u32, scope: &'l ScopeMeaning) -> Option<Diagnostic> {
+        let condition = &scope.interrupt.condition;
+        let remembers =
+            |part: &Condition| matches!(part, Condition::Quark(id) if self.alone.lowered.quark(*id).remembers);
+        // What reads such a quark may change it.
+        if condition.any(&remembers) {
+            return None;
+        }
+        if !self.stays(bracket, condition) {
+            return Some(self.skipped(bracket, scope));
+        }
+        let operands = condition.operands();
+        let never = operands.iter().find(|operand| {
+            !is_open(operand)
+                && **operand != Condition::Null
+                && !self.is_possible(bracket, &[(*operand, true)], When::Later)
+        })?;
+        let text = if operands.len() == 1 { scope.interrupt.text.clone() } else { self.text(never) };
+        let span = scope.interrupt.span;
+        if let Some(Pair { one, other, may_be_joined_otherwise }) = self.pair(bracket, never, true) {
+            let message = format!("`{one}` and `{other}` are never true at once");
+            let lint = Diagnostic::new(Code::W0203, message, span, "so AND of the two is never true");
+            let words = format!("if one of them is enough, join them by OR: `{one} OR {other}`");
+            let is_all = matches!(condition, Condition::And(operands) if operands.len() == 2);
+            return Some(match may_be_joined_otherwise {
+                true if is_all => lint.fix(&words, span, format!("({one} OR {other})")),
+                true => lint.help(words),
+                false => never_true(lint, operands, &text, span),
+            });
+        }
+        let lint = Diagnostic::new(Code::W0203, format!("`{text}` is never true"), span, "never true");
+        Some(never_true(lint, operands, &text, span))
+    }
+
+    /// An interrupt that has fired whenever its scope is entered.
+    fn skipped(&self, bracket: u32, scope: &'l ScopeMeaning) -> Diagnostic {
+        let (condition, text, span) = (&scope.interrupt.condition, &scope.interrupt.text, scope.interrupt.span);
+        let (what, skipped) = self.what(bracket);
+        if !self.alone.stays(bracket, condition, When::Later) {
+            let lint = |message: String| Diagnostic::new(Code::W0203, message, span, "always true");
+            if let Some(Pair { one, other, may_be_joined_otherwise: true }) = self.pair(bracket, condition, false) {
+                let words = format!("if both are to hold, join them by AND: `{one} AND {other}`");
+                let lint = lint(format!("one of `{one}` and `{other}` is always true, so the {what} {skipped}"));
+                let is_all = condition.operands().len() == 2;
+                return match is_all {
+                    true => lint.fix(&words, span, format!("({one} AND {other})")),
+                    false => lint.help(words),
+                };
+            }
+            return lint(format!("`{text}` is always true, so the {what} {skipped}"))
+                .help("give it a condition that is not true at once, such as `(wait 1)`, or leave it out");
+        }
+        let message = format!("`{text}` is true when the {what} is entered, so the {what} {skipped}");
+        let lint = Diagnostic::new(Code::W0203, message, span, "true at once");
+        match self.opposite(bracket, condition) {
+            Some(opposite) => lint.fix(
+                &format!("a condition ends the {what}; to run it until this is no longer true, write {{}}"),
+                span,
+                format!("({opposite})"),
+            ),
+            None => lint.help(format!("a condition ends the {what}: give it one that is not true at once")),
+        }
+    }
+
+    /// The scope of a bracket in words, and what comes of it if its interrupt has fired at once.
+    fn what(&self, bracket: u32) -> (&'static str, &'static str) {
+        let lowered = self.alone.lowered;
+        let first = lowered.brackets[bracket as usize].first as usize;
+        let is_atom = lowered.atoms.get(first).is_some_and(|atom| atom.scope == bracket);
+        match bracket {
+            0 => ("plan", "is over before it begins"),
+            _ if is_atom => ("atom", "is always skipped"),
+            _ => ("behavior", "is always skipped"),
+        }
+    }
+
+    /// A condition with the opposites of those operands that are true at once.
+    fn opposite(&self, bracket: u32, condition: &'l Condition) -> Option<String> {
+        // Where each operand may be false at once, only what joins them is at fault.
+        if condition.operands().iter().all(|operand| self.stays(bracket, operand)) {
+            return None;
+        }
+        let opposites = condition.operands().iter().map(|operand| {
+            let (text, is_sound) = (self.text(operand), self.alone.stays(bracket, operand, When::Later));
+            if self.stays(bracket, operand) {
+                return Some(text);
+            }
+            is_sound.then(|| opposite(operand, &text))
+        });
+        Some(opposites.collect::<Option<Vec<_>>>()?.join(" OR "))
+    }
+
+    /// Two operands of an AND, `joined` by it, that are never true at once; or two of an OR of which one always is.
+    fn pair(&self, bracket: u32, condition: &'l Condition, joined: bool) -> Option<Pair> {
+        let operands = match (condition, joined) {
+            (Condition::And(operands), true) | (Condition::Or(operands), false) => operands,
+            (Condition::Not(operand) | Condition::Rising { operand, .. }, _) => {
+                return self.pair(bracket, operand, joined);
+            }
+            (Condition::And(operands) | Condition::Or(operands), _) => {
+                return operands.iter().find_map(|operand| self.pair(bracket, operand, joined));
+            }
+            (Condition::Null | Condition::Quark(_) | Condition::Wait { .. } | Condition::Elapsed { .. }, _)
+            | (Condition::Driven { .. } | Condition::After(_), _) => return None,
+        };
+        let pairs = operands
+            .iter()
+            .enumerate()
+            .flat_map(|(at, one)| operands.iter().skip(at + 1).map(move |other| (one, other)));
+        let mut pairs = pairs.filter(|(one, other)| {
+            let both = |value| self.is_possible(bracket, &[(*one, value), (*other, value)], When::Later);
+            let varies = |operand: &&'l Condition| {
+                [true, false].iter().all(|value| self.is_possible(bracket, &[(*operand, *value)], When::Later))
+            };
+            varies(one) && varies(other) && !both(joined)
+        });
+        let found = pairs.next().map(|(one, other)| Pair {
+            one: self.text(one),
+            other: self.text(other),
+            may_be_joined_otherwise: self.is_possible(bracket, &[(one, !joined), (other, !joined)], When::Entered),
+        });
+        found.or_else(|| operands.iter().find_map(|operand| self.pair(bracket, operand, joined)))
+    }
+
+    /// Returns `true` if these conditions may have these values in one turn.
+    fn is_possible(&self, bracket: u32, values: &[(&'l Condition, bool)], when: When) -> bool {
+        let wanted = values
+            .iter()
+            .map(|(condition, fired)| Wanted { any: vec![Read { condition, bracket, when }], fired: *fired });
+        self.alone.is_possible(&wanted.collect::<Vec<_>>(), &BTreeMap::new())
+    }
+
+    fn text(&self, condition: &Condition) -> String {
+        condition_text(condition, &|id| self.alone.lowered.quark(id).text.clone())
+    }
+}
+
+/// Returns `true` if a condition can be seen to have two values.
+fn is_open(condition: &Condition) -> bool {
+    matches!(condition, Condition::Quark(_) | Condition::Wait { nanos: 1.., .. } | Condition::After(_))
+}
+
+/// Proposes what to write for an operand that is never true.
+fn never_true(lint: Diagnostic, operands: &[Condition], text: &str, span: Span) -> Diagnostic {
+    match operands {
+        [_] => lint.fix("if it is never to fire, write {}", span, "(null)"),
+        _ => lint.help(format!("remove `{text}`")),
+    }
+}
+
+/// The text of the opposite of a condition with this text.
+fn opposite(condition: &Condition, text: &str) -> String {
+    #[allow(clippy::wildcard_enum_match_arm, reason = "all other conditions are negated as a whole")]
+    match condition {
+        Condition::Not(_) => text.strip_prefix("NOT ").unwrap_or(text).to_owned(),
+        Condition::Elapsed { .. } | Condition::Driven { .. } => {
+            let opposites = [(" < ", " >= "), (" <= ", " > "), (" > ", " <= "), (" >= ", " < ")];
+            let opposite = opposites.iter().find(|(operator, _)| text.contains(operator));
+            opposite.map_or_else(|| format!("NOT {text}"), |(operator, opposite)| text.replace(operator, opposite))
+        }
+        _ => format!("NOT ({text})"),
+    }
+}
