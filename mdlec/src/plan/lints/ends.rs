@@ -5,7 +5,8 @@ use crate::plan::{Atom, Condition, Interrupt, Node, Plan};
 
 /// Warns of both.
 pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
-    let mut ends = Ends { plan, found };
+    let mut ends = Ends { plan, pause: 10.0, found };
+    ends.enter(&plan.root.interrupt);
     if let (Some(Endless { atom: Some(atom), told: false }), Condition::Null) =
         (ends.sequence(&plan.root.body), &plan.root.interrupt.condition)
     {
@@ -16,6 +17,8 @@ pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
 
 struct Ends<'p, 'f> {
     plan: &'p Plan,
+    /// Seconds after which an atom may end before a timer of an enclosing scope does.
+    pause: f64,
     found: &'f mut Vec<Diagnostic>,
 }
 
@@ -29,6 +32,17 @@ struct Endless<'p> {
 }
 
 impl<'p> Ends<'p, '_> {
+    /// Keeps what is proposed inside a scope below the timers of its interrupt.
+    fn enter(&mut self, interrupt: &Interrupt) {
+        for operand in interrupt.condition.operands() {
+            if let Condition::Wait { nanos, .. } = operand
+                && *nanos as f64 / 1e9 <= self.pause
+            {
+                self.pause = *nanos as f64 / 2e9;
+            }
+        }
+    }
+
     /// What in a sequence never ends, if something does not.
     fn sequence(&mut self, body: &'p [Node]) -> Option<Endless<'p>> {
         let mut nodes = body.iter();
@@ -44,7 +58,13 @@ impl<'p> Ends<'p, '_> {
                 let ends = can_end(&atom.interrupt) || self.plan.quark(atom.law).completes;
                 (!ends).then_some(Endless { atom: Some(atom), told: false })
             }
-            Node::Scope(scope) => self.sequence(&scope.body).filter(|_| !can_end(&scope.interrupt)),
+            Node::Scope(scope) => {
+                let pause = self.pause;
+                self.enter(&scope.interrupt);
+                let endless = self.sequence(&scope.body).filter(|_| !can_end(&scope.interrupt));
+                self.pause = pause;
+                endless
+            }
             Node::Loop(repeated) => match (self.sequence(&repeated.body), repeated.times) {
                 (None, None) => Some(Endless { atom: None, told: false }),
                 (None, Some(_)) => None,
@@ -69,7 +89,7 @@ impl<'p> Ends<'p, '_> {
                 let help = if atom.interrupt.removed {
                     format!("its own interrupt `{0}` was removed: end `{law}` by another one, or remove `{0}` from the enclosing scope", atom.interrupt.text)
                 } else {
-                    format!("say when `{law}` ends: `(Atom (wait 10) {law})`")
+                    format!("say when `{law}` ends: `(Atom (wait {}) {law})`", self.pause)
                 };
                 lint.also(atom.span, format!("`{law}` never ends by itself")).help(help)
             }

@@ -47,22 +47,24 @@ impl<'p> Frames<'p, '_> {
 
 /// Returns `true` if a law may mean a direction of its frame: it takes an angle, or a file or a module that has some.
 fn names_a_direction(law: &Quark) -> bool {
-    law.args.iter().any(|argument| match argument {
-        Value::Quantity { kind, .. } | Value::Name(kind, _) => match kind {
-            Kind::Angle | Kind::File | Kind::Module => true,
-            Kind::Length
-            | Kind::Speed
-            | Kind::AngularRate
-            | Kind::Time
-            | Kind::Voltage
-            | Kind::Frequency
-            | Kind::Number
-            | Kind::Integer
-            | Kind::Count
-            | Kind::Bits(_)
-            | Kind::Sonar
-            | Kind::Robot => false,
-        },
-        Value::Infinity(_) | Value::Bits(_) | Value::Integer(_) | Value::Sonar(_) => false,
-    })
+    // The angle of `turn` counts from the heading at which its atom began.
+    law.name != "turn"
+        && law.args.iter().any(|argument| match argument {
+            Value::Quantity { kind, .. } | Value::Name(kind, _) => match kind {
+                Kind::Angle | Kind::File | Kind::Module => true,
+                Kind::Length
+                | Kind::Speed
+                | Kind::AngularRate
+                | Kind::Time
+                | Kind::Voltage
+                | Kind::Frequency
+                | Kind::Number
+                | Kind::Integer
+                | Kind::Count
+                | Kind::Bits(_)
+                | Kind::Sonar
+                | Kind::Robot => false,
+            },
+            Value::Infinity(_) | Value::Bits(_) | Value::Integer(_) | Value::Sonar(_) => false,
+        })
 }

@@ -2,11 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use crate::alphabet::{Alphabet, Kind, Param, Unit};
+use crate::alphabet::{Alphabet, DeclarationKind, Kind, Param, Unit};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::parameters::Parameters;
 use crate::syntax::Files;
-use crate::syntax::tree::{self, Arg, Call, Condition, ConditionNode, Element, Frame, Number, Primary};
+use crate::syntax::tree::{
+    self, Arg, Call, Compared, Condition, ConditionNode, Element, Frame, Number, Operand, Primary,
+};
 
 /// Warns of them in every plan of files that resolve.
 #[must_use]
@@ -19,6 +21,11 @@ pub fn bare_numbers(files: &Files, alphabet: &Alphabet) -> Vec<Diagnostic> {
     }
     numbers.found
 }
+
+/// A range in metres that no sonar measures.
+const SONAR: f64 = 20.0;
+/// A length in metres that hardly a plan drives.
+const FAR: f64 = 100.0;
 
 struct Numbers<'a> {
     alphabet: &'a Alphabet,
@@ -67,9 +74,27 @@ impl Numbers<'_> {
             }
             ConditionNode::Not(operand) | ConditionNode::Rising(operand) => self.condition(operand),
             ConditionNode::Call(call) => self.call(call),
-            // A compared value has the unit of its signal; what `after` names is written elsewhere as well.
-            ConditionNode::Comparison(_) | ConditionNode::After(_) => {}
-            ConditionNode::Null | ConditionNode::Broken => {}
+            ConditionNode::Comparison(compared) => self.compared(compared),
+            // What `after` names is written elsewhere as well.
+            ConditionNode::After(_) | ConditionNode::Null | ConditionNode::Broken => {}
+        }
+    }
+
+    /// A value that a signal is compared with.
+    fn compared(&mut self, compared: &Compared) {
+        let Operand::Number(number) = &compared.right else { return };
+        let name = compared.left.name;
+        let base = name.trim_end_matches(|letter: char| letter.is_ascii_digit() || letter == '_');
+        let declarations = [name, base].into_iter().flat_map(|name| self.alphabet.declarations_of(name));
+        let Some(signal) = declarations.into_iter().find(|found| found.kind == DeclarationKind::Signal) else { return };
+        let Some((unit, _)) = signal.unit else { return };
+        let is_sonar = matches!(signal.params.as_slice(), [Param { kind: Kind::Sonar, .. }]) && unit.name == "m";
+        let value = number.digits().parse::<f64>().unwrap_or(0.0);
+        let what = format!("the value of `{name}`");
+        if is_sonar && number.unit().is_none() && (SONAR..=FAR).contains(&value) {
+            self.doubtful(number, "m", &what, ("cm", "farther than a sonar measures"));
+        } else {
+            self.number(number, unit.kind, unit.name, &what);
         }
     }
 
@@ -103,7 +128,13 @@ impl Numbers<'_> {
     fn number(&mut self, number: &Number, kind: Kind, unit: &str, what: &str) {
         let digits = number.digits();
         let Some(value) = digits.parse::<f64>().ok().filter(|_| number.unit().is_none()) else { return };
-        let Some((meant, why)) = doubt(kind, unit, value) else { return };
+        if let Some(doubt) = doubt(kind, unit, value) {
+            self.doubtful(number, unit, what, doubt);
+        }
+    }
+
+    fn doubtful(&mut self, number: &Number, unit: &str, what: &str, (meant, why): (&str, &str)) {
+        let digits = number.digits();
         let message = format!("{what} is {digits} {unit}, which is {why}");
         self.found.push(
             Diagnostic::new(Code::W0401, message, number.span, format!("a number without a unit is in {unit} here"))
@@ -122,10 +153,11 @@ fn doubt(kind: Kind, unit: &str, value: f64) -> Option<(&'static str, &'static s
     Some(match () {
         () if size == 0.0 => return None,
         () if is("cm/s") && size < 1.0 => ("m/s", "slower than any robot drives"),
-        () if is("cm/s") && size > 500.0 => ("mm/s", "faster than a robot drives"),
+        () if is("cm/s") && size >= 500.0 => ("mm/s", "faster than a robot drives"),
         () if is("rad/s") && !is_circle => ("deg/s", "more than a full turn a second"),
         () if is("deg") && is_circle && value.fract() != 0.0 => ("rad", "a very small angle"),
         () if is("m") && size > 1000.0 => ("mm", "farther than a robot goes"),
+        () if is("m") && size > FAR => ("cm", "farther than a robot goes"),
         () if is("s") && size > 10_000.0 => ("ms", "more than two hours"),
         () => return None,
     })

@@ -36,6 +36,7 @@ fn frames_that_no_law_uses() {
   FRAME here (Atom (wait 5) align 7 9)
   FRAME here { Q (wait 9) (Atom (wait 5) advance 1m) (Atom (wait 5) stop) }
   FRAME here ((Atom (wait 5) go 20 0) FRAME here (Atom (wait 5) rotate 90))
+  FRAME here ((Atom (null) advance 1m) (Atom (null) turn 90))^4
 }"
     );
     assert_silent(&[
@@ -53,6 +54,7 @@ fn what_is_never_reached() {
   ExecPlan 3 { (Atom (wait 1) stop) { R (Atom (null) stop) } }
 }
 { S ((Atom (wait 5) go 20 0))^inf (Atom (wait 5) stop) }
+{ U (wait 10) (Atom (null) stop) { V (wait 3) (Atom (null) go 20 0) (Atom (wait 1) stop) } }
 { T (bumper) (Atom (bumper) stop) (Atom (wait 5) stop) }"
     );
     assert_silent(&["{ P (bumper) { Q (wait 9) (Atom (null) stop)^1 } (Atom (wait 5) stop) }"]);
@@ -65,7 +67,8 @@ fn loops_that_are_skipped_whole() {
   ExecPlan inf { (Atom (bumper) go 20 0) (Atom (NOT sync ada) turn 90) }
   ({ Leg (atIsection 1000 OR wait 20) (Atom (wait 5) go 20 0) })^3
 }
-{ Q (((Atom (bumper) go 20 0))^2 (Atom (sync ada) stop))^2 }"
+{ Q (((Atom (bumper) go 20 0))^2 (Atom (sync ada) stop))^2 }
+{ R (r0 < 1m) ExecPlan inf { (Atom (bumper) go 20 0) (Atom (r0 < 50cm OR wait 4) go -20 0) } }"
     );
     assert_silent(&[
         // A pass takes time, cannot be skipped, or is the only one.
@@ -85,10 +88,13 @@ fn numbers_that_look_like_another_unit() {
   (Atom (wait 5) rotate(1.57))
   (Atom (wait 5) goAvoid 90 4000 2000)
   FRAME 3.14 { Q (wait 86400) (Atom (wait 1) go -0.25 0.36) }
+  (Atom (r0 < 50 OR way > 300) advance 300)
+  (Atom (v > 500 OR NOT r 3 < 2000) goAvoid 0 400)
 }"
     );
     assert_silent(&[
         "{ P (Atom (wait 20000s) go 0.5cm/s 90rad/s) (Atom (wait 3600) rotate(1.57deg)) }",
+        "{ P (Atom (r0 < 50m OR way > 300m OR x > 90 OR r_3 < 3.5) advance 100) (Atom (age 3 > 50) stop) }",
         "{ P (Atom (wait 0.5) go 0 0.36) (Atom (wait 9) rotate 22.5) (Atom (wait 9) turn 3) (Atom (wait 9) goAvoid(heading module)) }",
     ]);
 }
