@@ -1,7 +1,7 @@
 //! One turn of a plan: interrupts outermost first, then the law of the atom that is left standing
 //! (docs/src/reference/semantics.md, 5.1).
 
-use crate::{Begin, Cause, Cursor, Ending, Entries as _, Frame, Nanos, Next, Output as _, Plan};
+use crate::{Begin, Cause, Cursor, Ending, Entries as _, Frame, Measured, Nanos, Next, Output as _, Plan};
 
 /// The most transitions of one turn; the search for the next atom then goes on in the next turn.
 pub const TRANSITIONS_PER_TURN: u32 = 4096;
@@ -25,6 +25,10 @@ pub struct Transition {
 pub trait Watch {
     /// Whether it looks at what it is told: the numbers of states need not be found out for one that does not.
     const LOOKS: bool = true;
+
+    /// The operand of this number, of the interrupt by which a scope ends, has fired: called for each of them, in their
+    /// order, before [`Watch::transition`].
+    fn operand(&mut self, _number: u32, _measured: Measured) {}
 
     /// A transition was made.
     fn transition(&mut self, transition: Transition);
@@ -144,9 +148,10 @@ impl<P: Plan> Machine<P> {
 
     /// Makes the transition that `ending` asks for.
     fn step<W: Watch>(&mut self, ending: Ending, y: &P::Output, t: Nanos, watch: &mut W) {
+        let level = ending.cause.level();
+        let looked = W::LOOKS.then(|| self.look(ending.cause, y, t, watch));
         self.plan.leave(&self.cursor, ending.cause, y, t);
-        let (fsm, level) = (self.plan.fsm(), ending.cause.level());
-        let looked = W::LOOKS.then(|| (self.cursor.state(fsm), self.cursor.scope(fsm, level)));
+        let fsm = self.plan.fsm();
         match ending.follows {
             Some(follows) => self.cursor.follow(follows, t),
             None => {
@@ -157,6 +162,19 @@ impl<P: Plan> Machine<P> {
             let to = self.cursor.state(self.plan.fsm());
             watch.transition(Transition { from, scope, cause: ending.cause, atom: self.atom(), to });
         }
+    }
+
+    /// The state and the scope that are about to be left, once `watch` has the operands that have fired.
+    fn look<W: Watch>(&self, cause: Cause, y: &P::Output, t: Nanos, watch: &mut W) -> (u64, u32) {
+        let fsm = self.plan.fsm();
+        let scope = self.cursor.scope(fsm, cause.level());
+        match cause {
+            Cause::Fired(_) => {
+                self.plan.operands(&self.cursor, scope, y, t, &mut |number, measured| watch.operand(number, measured));
+            }
+            Cause::Completed(_) => {}
+        }
+        (self.cursor.state(fsm), scope)
     }
 
     /// Whether the plan is over.

@@ -1,7 +1,7 @@
 //! What a plan answers the machine: which scope around the current atom ends, and why (docs/src/reference/semantics.md,
 //! 5.2).
 
-use crate::{Begin, Cursor, Entries, Follows, Fsm, Nanos, Output, Slots};
+use crate::{Begin, Cursor, Entries, Follows, Fsm, Measured, Nanos, Output, Slots, Source};
 
 /// What the atoms and the scopes of a plan mean on one robot: `mdlec` emits it, or it is loaded from text.
 ///
@@ -66,12 +66,30 @@ pub trait Plan {
     /// The input that the current atom's law computes.
     fn input(&mut self, y: &Self::Output, t: Nanos) -> Self::Input;
 
+    /// Calls `tell` with each operand that has fired of the interrupt of `scope`, which holds the current atom: its number,
+    /// in the order of [`Source::operands_of`], and its values. Only a [`Watch`](crate::Watch) has it asked, before the scope
+    /// is left; a plan written by hand may know no operands.
+    fn operands(
+        &self,
+        _cursor: &Cursor<Self::Entered, Self::Left>,
+        _scope: u32,
+        _y: &Self::Output,
+        _t: Nanos,
+        _tell: &mut dyn FnMut(u32, Measured),
+    ) {
+    }
+
     /// The quark text of an atom's law.
     fn law(&self, atom: u32) -> &str;
     /// The condition text of a scope's interrupt, by its bracket.
     fn condition(&self, scope: u32) -> &str;
     /// The name of a scope, by its bracket; empty for an atom.
     fn name(&self, scope: u32) -> &str;
+
+    /// The words and places of the plan's text, if it has one.
+    fn source(&self) -> Source<'_> {
+        Source::NONE
+    }
 
     /// The paths that its laws replay, as the plan names them: whoever runs it has them ready before it begins.
     fn paths(&self) -> &[&'static str] {

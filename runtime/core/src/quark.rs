@@ -1,12 +1,17 @@
 //! Quarks as code: interrupts, control laws and their completion (paper, Definition 1; docs/src/reference/semantics.md,
 //! 1 and 4).
 
-use crate::{Frame, Nanos, Radians};
+use crate::{Frame, Measured, Nanos, Radians};
 
 /// An interrupt quark: a condition on the output.
 pub trait Interrupt<Y: ?Sized> {
     /// Whether it has fired: true where the paper's active-low function is 0.
     fn fired(&self, y: &Y) -> bool;
+
+    /// Returns the values that it compares, for reports; not asked while nothing fires.
+    fn measured(&self, _y: &Y) -> Measured {
+        Measured::Nothing
+    }
 }
 
 /// What a law is told when its atom begins.

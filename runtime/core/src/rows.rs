@@ -5,8 +5,8 @@
 
 use crate::fsm::Kind;
 use crate::{
-    Alphabet, Begin, Cause, Completes, Control, Cursor, Ending, Entries, Follows, Fsm, Interrupt, Law, Memory,
-    Nanometers, Nanos, Next, Plan, Radians, Slots,
+    Alphabet, Begin, Cause, Completes, Control, Cursor, Ending, Entries, Follows, Fsm, Interrupt, Law, Measured,
+    Memory, Nanometers, Nanos, Next, Plan, Radians, Slots,
 };
 
 /// What the brackets and atoms of a plan mean.
@@ -62,21 +62,21 @@ pub enum Condition<I> {
 }
 
 /// What a condition is read with.
-struct Reading<'r, I, Y, M> {
-    y: &'r Y,
+pub(crate) struct Reading<'r, I, Y, M> {
+    pub(crate) y: &'r Y,
     /// The time since its scope was entered, and how many scopes are around that.
-    since: Nanos,
-    level: u16,
+    pub(crate) since: Nanos,
+    pub(crate) level: u16,
     /// The length of the path driven since then.
-    way: Nanometers,
-    operands: &'r [Condition<I>],
-    memory: &'r M,
+    pub(crate) way: Nanometers,
+    pub(crate) operands: &'r [Condition<I>],
+    pub(crate) memory: &'r M,
 }
 
 impl<I> Condition<I> {
     /// Whether it has fired; reads every operand, which stand from number `from` on. It calls itself as deep as the text's
     /// parentheses go.
-    fn fired<'m, Y, M: Memory<'m>>(&self, at: &Reading<'_, I, Y, M>, from: u32) -> bool
+    pub(crate) fn fired<'m, Y, M: Memory<'m>>(&self, at: &Reading<'_, I, Y, M>, from: u32) -> bool
     where
         I: Interrupt<Y>,
     {
@@ -351,6 +351,19 @@ impl<'a, A: Alphabet, E: Entries + Clone, P: Slots<u64> + Clone, M: Memory<'a>> 
 
     fn input(&mut self, y: &A::Output, t: Nanos) -> A::Input {
         self.running.as_mut().map_or_else(A::Input::default, |law| law.input(y, t))
+    }
+
+    fn operands(
+        &self,
+        cursor: &Cursor<E, P>,
+        scope: u32,
+        y: &A::Output,
+        t: Nanos,
+        tell: &mut dyn FnMut(u32, Measured),
+    ) {
+        if let Some(guard) = self.rows.guards.get(scope as usize) {
+            guard.condition.tell_fired(&self.reading(guard, cursor, y, t), tell);
+        }
     }
 
     fn law(&self, atom: u32) -> &str {

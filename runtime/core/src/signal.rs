@@ -1,6 +1,6 @@
 //! Signals, and comparisons of them as interrupt quarks (paper, Definition 1: an interrupt is a function of `y`).
 
-use crate::{Interrupt, Radians};
+use crate::{Interrupt, Measured, Radians};
 
 /// What comparisons read: a number of the output, in SI units.
 pub trait Signal<Y: ?Sized> {
@@ -77,6 +77,10 @@ impl<S, O> Comparison<S, O> {
 impl<Y: ?Sized, S: Signal<Y>, O: Signal<Y>> Interrupt<Y> for Comparison<S, O> {
     fn fired(&self, y: &Y) -> bool {
         self.operator.holds(self.signal.value(y), self.with.value(y))
+    }
+
+    fn measured(&self, y: &Y) -> Measured {
+        Measured::Compared { left: self.signal.value(y), operator: self.operator, right: self.with.value(y) }
     }
 }
 

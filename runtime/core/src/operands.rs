@@ -1,0 +1,89 @@
+//! Which operands of a condition have fired, and by which values: asked when a scope ends and somebody watches.
+//!
+//! The operands of a condition are the parts that AND and OR join, from left to right; NOT and RISING belong to theirs.
+
+use crate::fsm::Kind;
+use crate::rows::Reading;
+use crate::{Condition, Cursor, Entries, Fsm, Interrupt, Measured, Memory, Nanos, Slots};
+
+/// The conditions of a plan that is code, as rows: read only where a scope has ended and somebody watches.
+pub struct Conditions<'a, I> {
+    /// The condition of each bracket, in their order.
+    pub conditions: &'a [Condition<I>],
+    /// The operands of conditions; those of operands come after all of these.
+    pub operands: &'a [Condition<I>],
+}
+
+impl<I> Conditions<'_, I> {
+    /// Calls `tell` with the number and the values of each operand of the interrupt of `scope` that has fired.
+    pub fn fired<Y, E: Entries, P: Slots<u64>>(
+        &self,
+        fsm: Fsm<'_>,
+        cursor: &Cursor<E, P>,
+        scope: u32,
+        y: &Y,
+        t: Nanos,
+        tell: &mut dyn FnMut(u32, Measured),
+    ) where
+        I: Interrupt<Y>,
+    {
+        let bracket = fsm.brackets.get(scope as usize).map(|bracket| bracket.kind);
+        let (Some(Kind::Scope { level }), Some(condition)) = (bracket, self.conditions.get(scope as usize)) else {
+            return;
+        };
+        let (since, way) = (cursor.since(level, t), cursor.way(level));
+        condition.tell_fired(&Reading { y, since, way, level, operands: self.operands, memory: &() }, tell);
+    }
+}
+
+impl<I> Condition<I> {
+    /// Calls `tell` with the number and the values of each operand that has fired, in their order.
+    pub(crate) fn tell_fired<'m, Y, M: Memory<'m>>(
+        &self,
+        at: &Reading<'_, I, Y, M>,
+        tell: &mut dyn FnMut(u32, Measured),
+    ) where
+        I: Interrupt<Y>,
+    {
+        let mut number: u32 = 0;
+        self.each_operand(at.operands, 0, &mut |operand, from| {
+            if operand.fired(at, from) {
+                tell(number, operand.measured(at, from));
+            }
+            number = number.saturating_add(1);
+        });
+    }
+
+    /// Visits its operands, each with the number from which its own operands are.
+    fn each_operand(&self, operands: &[Self], from: u32, visit: &mut dyn FnMut(&Self, u32)) {
+        match self {
+            Self::Or(first, count) | Self::And(first, count) => {
+                for number in *first..first.saturating_add(*count) {
+                    let Some(operand) = operands.get(number as usize).filter(|_| number >= from) else { continue };
+                    operand.each_operand(operands, number.saturating_add(1), visit);
+                }
+            }
+            Self::Null | Self::Quark(_) | Self::Wait(_) | Self::Elapsed(..) | Self::Driven(..) | Self::Not(_) => {
+                visit(self, from);
+            }
+            Self::Rising(..) | Self::After(..) => visit(self, from),
+        }
+    }
+
+    /// The values of an operand; of what NOT and RISING are about, if that is no AND and no OR.
+    fn measured<'m, Y, M: Memory<'m>>(&self, at: &Reading<'_, I, Y, M>, from: u32) -> Measured
+    where
+        I: Interrupt<Y>,
+    {
+        match self {
+            Self::Quark(interrupt) => interrupt.measured(at.y),
+            Self::Wait(_) | Self::Elapsed(..) => Measured::Elapsed(at.since),
+            Self::Driven(..) => Measured::Driven(at.way),
+            Self::Not(number) | Self::Rising(_, number) => {
+                let operand = at.operands.get(*number as usize).filter(|_| *number >= from);
+                operand.map_or(Measured::Nothing, |operand| operand.measured(at, number.saturating_add(1)))
+            }
+            Self::Null | Self::Or(..) | Self::And(..) | Self::After(..) => Measured::Nothing,
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! The text of a plan as its writer has it: the words of conditions and operands, and the lines that they are in.
+
+/// The words and places of a plan, for reports.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Source<'a> {
+    /// The names of the files, without folders.
+    pub files: &'a [&'a str],
+    /// The words of each bracket, in their order.
+    pub brackets: &'a [BracketWords<'a>],
+    /// The operands of the conditions of all brackets, in their order.
+    pub operands: &'a [OperandWords<'a>],
+}
+
+/// A line of a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SourceLine {
+    /// The number of the file in [`Source::files`].
+    pub file: u16,
+    /// The line, from 1.
+    pub line: u32,
+}
+
+/// The words of a bracket.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BracketWords<'a> {
+    /// The line in which the atom or the scope begins; 0 for a loop.
+    pub at: SourceLine,
+    /// The condition of the scope as it is written; empty for a loop and for a scope without a condition.
+    pub condition: &'a str,
+    /// The first of its operands in [`Source::operands`].
+    pub first: u32,
+    /// The number of its operands.
+    pub count: u32,
+}
+
+/// The words of an operand: of a part of a condition that AND and OR join.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OperandWords<'a> {
+    /// The condition text, as traces have it.
+    pub text: &'a str,
+    /// The operand as it is written.
+    pub written: &'a str,
+    /// The line in which it begins.
+    pub at: SourceLine,
+    /// The places in the written words at which measured values are shown: of the signal, then of the signal that it is
+    /// compared with.
+    pub values: &'a [ValueWords<'a>],
+}
+
+/// A place in the words of an operand at which a measured value is shown.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ValueWords<'a> {
+    /// The number of bytes of the words before it.
+    pub after: u32,
+    /// The unit of the signal; empty for a number.
+    pub unit: &'a str,
+    /// The SI value of this unit.
+    pub scale: f64,
+}
+
+impl<'a> Source<'a> {
+    /// The source of a plan that has none, such as one that is written in Rust.
+    pub const NONE: Self = Self { files: &[], brackets: &[], operands: &[] };
+
+    /// Returns the operands of a bracket, in the order in which they are written.
+    #[must_use]
+    pub fn operands_of(&self, bracket: u32) -> &'a [OperandWords<'a>] {
+        let words = self.brackets.get(bracket as usize);
+        let operands = words.and_then(|words| {
+            let first = words.first as usize;
+            self.operands.get(first..first.checked_add(words.count as usize)?)
+        });
+        operands.unwrap_or(&[])
+    }
+
+    /// Returns the name of the file that a line is in; empty if there is none.
+    #[must_use]
+    pub fn file(&self, at: SourceLine) -> &'a str {
+        self.files.get(usize::from(at.file)).copied().unwrap_or("")
+    }
+}
