@@ -12,7 +12,7 @@ use std::process::Command;
 use mdle_scripted::{INTERRUPTS, LAWS};
 use mdle_tests::chance::Chance;
 use mdle_tests::outputs::outputs;
-use mdle_tests::pipeline::{Machines, compile_plan, scripted};
+use mdle_tests::pipeline::{Machines, compile_plan, scripted, sources};
 use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::random_script::script;
 use mdle_tests::repository::root;
@@ -141,7 +141,8 @@ impl Package {
         let mut arms = String::new();
         for (number, case) in cases.iter().enumerate() {
             let compiled = compile_plan(&case.text, case.root).unwrap_or_else(|report| panic!("{report}"));
-            let header = Header { file: "plan.mdle", plan: case.root };
+            let sources = sources(&case.text);
+            let header = Header { sources: &sources, file: "plan.mdle", plan: case.root };
             package.file(&format!("src/plan_{number}.rs"), &emit_as(shape, &compiled.lowered, header, scripted()));
             writeln!(library, "\n/// Plan {number}.\npub mod plan_{number};").unwrap();
             let plan = plan_type(case.root);

@@ -11,7 +11,7 @@ use mdle_tests::golden::alphabet;
 use mdle_tests::xml;
 use mdlec::alphabet::combine;
 use mdlec::compile;
-use mdlec::diagnostic::{SourceId, has_errors};
+use mdlec::diagnostic::{SourceId, Sources, has_errors};
 use mdlec::rust::{Header, Shape, bind, emit_as};
 
 /// Colours and clears a terminal, renames its window, rings, goes to the start of the line, and turns text around.
@@ -148,8 +148,10 @@ fn emitted_rust_is_printable_in_every_shape() {
     let text = format!("{{ P {} }}", atoms.repeat(3));
     let (compiled, found) = compile(SourceId(0), &text, &sim, None);
     assert!(!has_errors(&found), "{found:?}");
+    let mut sources = Sources::default();
+    sources.add(HOSTILE, text);
     for shape in [Shape::Code, Shape::Shared, Shape::Rows] {
-        let rust = emit_as(shape, &compiled[0].lowered, Header { file: HOSTILE, plan: "P" }, &sim);
+        let rust = emit_as(shape, &compiled[0].lowered, Header { sources: &sources, file: HOSTILE, plan: "P" }, &sim);
         assert!(rust.chars().all(|letter| letter == '\n' || is_printable(letter)), "{shape:?}: {rust:?}");
         assert!(syn::parse_file(&rust).is_ok_and(|file| !file.items.is_empty()), "{shape:?}: {rust}");
     }

@@ -94,6 +94,19 @@ mod machine {
         fn input(&mut self, y: &Output, t: Nanos) -> Input {
             runtime::Plan::input(&mut self.0, y, t)
         }
+        fn operands(
+            &self,
+            cursor: &Cursor<Self::Entered, Self::Left>,
+            scope: u32,
+            y: &Output,
+            t: Nanos,
+            tell: &mut dyn FnMut(u32, runtime::Measured),
+        ) {
+            runtime::Plan::operands(&self.0, cursor, scope, y, t, tell);
+        }
+        fn source(&self) -> runtime::Source<'_> {
+            SOURCE
+        }
         fn law(&self, atom: u32) -> &str {
             runtime::Plan::law(&self.0, atom)
         }
@@ -309,4 +322,228 @@ mod machine {
     ];
     /// The name of each bracket; empty for an atom and a loop.
     const NAMES: &[&str] = &["Branching", "", "Sidestep", "", "", "", "Return", "", ""];
+    /// The words and lines of the plan's text.
+    const SOURCE: runtime::Source<'static> = runtime::Source {
+        files: &["branching.mdle"],
+        brackets: &[
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 4,
+                },
+                condition: "bumper OR wait 2min",
+                first: 0,
+                count: 2,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 6,
+                },
+                condition: "r0 < 80cm OR wait 5s",
+                first: 2,
+                count: 2,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 8,
+                },
+                condition: "NOT after ahead (r0 < 80cm)",
+                first: 4,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 9,
+                },
+                condition: "null",
+                first: 5,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 10,
+                },
+                condition: "wait 4s OR r0 < 60cm",
+                first: 6,
+                count: 2,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 11,
+                },
+                condition: "null",
+                first: 8,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 14,
+                },
+                condition: "NOT after ahead (wait 5s)",
+                first: 9,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 15,
+                },
+                condition: "null",
+                first: 10,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 16,
+                },
+                condition: "wait 5s OR r0 < 60cm",
+                first: 11,
+                count: 2,
+            },
+        ],
+        operands: &[
+            runtime::OperandWords {
+                text: "bumper",
+                written: "bumper",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 4,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait 120",
+                written: "wait 2min",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 4,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "r0 < 0.8",
+                written: "r0 < 80cm",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 6,
+                },
+                values: &[
+                    runtime::ValueWords {
+                        after: 2,
+                        unit: "m",
+                        scale: 1.0,
+                    },
+                ],
+            },
+            runtime::OperandWords {
+                text: "wait 5",
+                written: "wait 5s",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 6,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "NOT after ahead (r0 < 0.8)",
+                written: "NOT after ahead (r0 < 80cm)",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 8,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "null",
+                written: "null",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 9,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait 4",
+                written: "wait 4s",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 10,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "r0 < 0.6",
+                written: "r0 < 60cm",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 10,
+                },
+                values: &[
+                    runtime::ValueWords {
+                        after: 2,
+                        unit: "m",
+                        scale: 1.0,
+                    },
+                ],
+            },
+            runtime::OperandWords {
+                text: "null",
+                written: "null",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 11,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "NOT after ahead wait 5",
+                written: "NOT after ahead (wait 5s)",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 14,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "null",
+                written: "null",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 15,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait 5",
+                written: "wait 5s",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 16,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "r0 < 0.6",
+                written: "r0 < 60cm",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 16,
+                },
+                values: &[
+                    runtime::ValueWords {
+                        after: 2,
+                        unit: "m",
+                        scale: 1.0,
+                    },
+                ],
+            },
+        ],
+    };
 }

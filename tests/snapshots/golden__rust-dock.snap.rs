@@ -159,6 +159,19 @@ mod machine {
                 Running::Atom3(law) => runtime::Law::input(law, y, t),
             }
         }
+        fn operands(
+            &self,
+            cursor: &At,
+            scope: u32,
+            y: &Output,
+            t: Nanos,
+            tell: &mut dyn FnMut(u32, runtime::Measured),
+        ) {
+            OPERANDS.fired(FSM, cursor, scope, y, t, tell);
+        }
+        fn source(&self) -> runtime::Source<'_> {
+            SOURCE
+        }
         fn law(&self, atom: u32) -> &str {
             text(LAWS, atom)
         }
@@ -196,6 +209,25 @@ mod machine {
         None
     }
 
+    /// The conditions of brackets once more, read when somebody asks what has fired.
+    static OPERANDS: runtime::Conditions<'static, robot::AnyInterrupt> = runtime::Conditions {
+        conditions: &[
+            runtime::Condition::Quark(robot::AnyInterrupt::Bumper(robot::Bumper::new())),
+            runtime::Condition::Or(0, 2),
+            runtime::Condition::Wait(Nanos(15000000000)),
+            runtime::Condition::Null,
+            runtime::Condition::Wait(Nanos(500000000)),
+            runtime::Condition::Null,
+        ],
+        operands: &[
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([true, false, false, false])),
+                ),
+            ),
+            runtime::Condition::Wait(Nanos(20000000000)),
+        ],
+    };
     /// Scopes and loops in pre-order, the atoms as written, the termination state.
     const FSM: Fsm<'static> = Fsm {
         brackets: &[
@@ -222,4 +254,120 @@ mod machine {
     ];
     /// The name of each bracket; empty for an atom and a loop.
     const NAMES: &[&str] = &["Dock", "", "Shake", "", "", ""];
+    /// The words and lines of the plan's text.
+    const SOURCE: runtime::Source<'static> = runtime::Source {
+        files: &["dock.mdle"],
+        brackets: &[
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 4,
+                },
+                condition: "bumper",
+                first: 0,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 5,
+                },
+                condition: "atIsection 1000 OR wait 20s",
+                first: 1,
+                count: 2,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 6,
+                },
+                condition: "wait 15s",
+                first: 3,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 0,
+                },
+                condition: "",
+                first: 4,
+                count: 0,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 7,
+                },
+                condition: "wait 500ms",
+                first: 4,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 7,
+                },
+                condition: "null",
+                first: 5,
+                count: 1,
+            },
+        ],
+        operands: &[
+            runtime::OperandWords {
+                text: "bumper",
+                written: "bumper",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 4,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "atIsection 1000",
+                written: "atIsection 1000",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 5,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait 20",
+                written: "wait 20s",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 5,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait 15",
+                written: "wait 15s",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 6,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait 0.5",
+                written: "wait 500ms",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 7,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "null",
+                written: "null",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 7,
+                },
+                values: &[],
+            },
+        ],
+    };
 }

@@ -538,6 +538,19 @@ mod machine {
                 Running::Atom13(law) => runtime::Law::input(law, y, t),
             }
         }
+        fn operands(
+            &self,
+            cursor: &At,
+            scope: u32,
+            y: &Output,
+            t: Nanos,
+            tell: &mut dyn FnMut(u32, runtime::Measured),
+        ) {
+            OPERANDS.fired(FSM, cursor, scope, y, t, tell);
+        }
+        fn source(&self) -> runtime::Source<'_> {
+            SOURCE
+        }
         fn law(&self, atom: u32) -> &str {
             text(LAWS, atom)
         }
@@ -579,6 +592,60 @@ mod machine {
         None
     }
 
+    /// The conditions of brackets once more, read when somebody asks what has fired.
+    static OPERANDS: runtime::Conditions<'static, robot::AnyInterrupt> = runtime::Conditions {
+        conditions: &[
+            runtime::Condition::Null,
+            runtime::Condition::Quark(robot::AnyInterrupt::Bumper(robot::Bumper::new())),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([false, true, false, false])),
+                ),
+            ),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([false, false, true, false])),
+                ),
+            ),
+            runtime::Condition::Null,
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([true, false, false, false])),
+                ),
+            ),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([false, true, false, false])),
+                ),
+            ),
+            runtime::Condition::Null,
+            runtime::Condition::Wait(Nanos(7000000000)),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([true, false, false, false])),
+                ),
+            ),
+            runtime::Condition::Quark(robot::AnyInterrupt::Bumper(robot::Bumper::new())),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([true, false, false, true])),
+                ),
+            ),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([false, false, true, true])),
+                ),
+            ),
+            runtime::Condition::Null,
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([false, true, false, false])),
+                ),
+            ),
+            runtime::Condition::Wait(Nanos(10000000000)),
+        ],
+        operands: &[],
+    };
     /// Scopes and loops in pre-order, the atoms as written, the termination state.
     const FSM: Fsm<'static> = Fsm {
         brackets: &[
@@ -670,4 +737,291 @@ mod machine {
         "",
         "",
     ];
+    /// The words and lines of the plan's text.
+    const SOURCE: runtime::Source<'static> = runtime::Source {
+        files: &["lab_tour.mdle"],
+        brackets: &[
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 7,
+                },
+                condition: "",
+                first: 0,
+                count: 0,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 13,
+                },
+                condition: "bumper",
+                first: 0,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 14,
+                },
+                condition: "atIsection 0100",
+                first: 1,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 15,
+                },
+                condition: "atIsection 0010",
+                first: 2,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 16,
+                },
+                condition: "wait inf",
+                first: 3,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 17,
+                },
+                condition: "atIsection 1000",
+                first: 4,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 18,
+                },
+                condition: "atIsection 0100",
+                first: 5,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 19,
+                },
+                condition: "wait inf",
+                first: 6,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 20,
+                },
+                condition: "wait 7",
+                first: 7,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 21,
+                },
+                condition: "atIsection 1000",
+                first: 8,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 25,
+                },
+                condition: "bumper",
+                first: 9,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 26,
+                },
+                condition: "atIsection 1001",
+                first: 10,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 27,
+                },
+                condition: "atIsection 0011",
+                first: 11,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 28,
+                },
+                condition: "wait inf",
+                first: 12,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 29,
+                },
+                condition: "atIsection 0100",
+                first: 13,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 30,
+                },
+                condition: "wait 10",
+                first: 14,
+                count: 1,
+            },
+        ],
+        operands: &[
+            runtime::OperandWords {
+                text: "bumper",
+                written: "bumper",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 13,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "atIsection 0100",
+                written: "atIsection 0100",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 14,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "atIsection 0010",
+                written: "atIsection 0010",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 15,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait inf",
+                written: "wait inf",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 16,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "atIsection 1000",
+                written: "atIsection 1000",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 17,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "atIsection 0100",
+                written: "atIsection 0100",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 18,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait inf",
+                written: "wait inf",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 19,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait 7",
+                written: "wait 7",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 20,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "atIsection 1000",
+                written: "atIsection 1000",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 21,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "bumper",
+                written: "bumper",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 25,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "atIsection 1001",
+                written: "atIsection 1001",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 26,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "atIsection 0011",
+                written: "atIsection 0011",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 27,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait inf",
+                written: "wait inf",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 28,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "atIsection 0100",
+                written: "atIsection 0100",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 29,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait 10",
+                written: "wait 10",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 30,
+                },
+                values: &[],
+            },
+        ],
+    };
 }

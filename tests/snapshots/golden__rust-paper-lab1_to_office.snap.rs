@@ -248,6 +248,19 @@ mod machine {
                 Running::Atom5(law) => runtime::Law::input(law, y, t),
             }
         }
+        fn operands(
+            &self,
+            cursor: &At,
+            scope: u32,
+            y: &Output,
+            t: Nanos,
+            tell: &mut dyn FnMut(u32, runtime::Measured),
+        ) {
+            OPERANDS.fired(FSM, cursor, scope, y, t, tell);
+        }
+        fn source(&self) -> runtime::Source<'_> {
+            SOURCE
+        }
         fn law(&self, atom: u32) -> &str {
             text(LAWS, atom)
         }
@@ -279,6 +292,30 @@ mod machine {
         None
     }
 
+    /// The conditions of brackets once more, read when somebody asks what has fired.
+    static OPERANDS: runtime::Conditions<'static, robot::AnyInterrupt> = runtime::Conditions {
+        conditions: &[
+            runtime::Condition::Quark(robot::AnyInterrupt::Bumper(robot::Bumper::new())),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([true, false, false, true])),
+                ),
+            ),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([false, false, true, true])),
+                ),
+            ),
+            runtime::Condition::Null,
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([false, true, false, false])),
+                ),
+            ),
+            runtime::Condition::Wait(Nanos(10000000000)),
+        ],
+        operands: &[],
+    };
     /// Scopes and loops in pre-order, the atoms as written, the termination state.
     const FSM: Fsm<'static> = Fsm {
         brackets: &[
@@ -317,4 +354,120 @@ mod machine {
     ];
     /// The name of each bracket; empty for an atom and a loop.
     const NAMES: &[&str] = &["Lab1ToOfficePlan", "", "", "", "", ""];
+    /// The words and lines of the plan's text.
+    const SOURCE: runtime::Source<'static> = runtime::Source {
+        files: &["lab1_to_office.mdle"],
+        brackets: &[
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 2,
+                },
+                condition: "bumper",
+                first: 0,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 3,
+                },
+                condition: "atIsection 1001",
+                first: 1,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 4,
+                },
+                condition: "atIsection 0011",
+                first: 2,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 5,
+                },
+                condition: "wait \\infty",
+                first: 3,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 6,
+                },
+                condition: "atIsection 0100",
+                first: 4,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 7,
+                },
+                condition: "wait 10",
+                first: 5,
+                count: 1,
+            },
+        ],
+        operands: &[
+            runtime::OperandWords {
+                text: "bumper",
+                written: "bumper",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 2,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "atIsection 1001",
+                written: "atIsection 1001",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 3,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "atIsection 0011",
+                written: "atIsection 0011",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 4,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait inf",
+                written: "wait \\infty",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 5,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "atIsection 0100",
+                written: "atIsection 0100",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 6,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait 10",
+                written: "wait 10",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 7,
+                },
+                values: &[],
+            },
+        ],
+    };
 }

@@ -321,6 +321,19 @@ mod machine {
                 Running::Atom8(law) => runtime::Law::input(law, y, t),
             }
         }
+        fn operands(
+            &self,
+            cursor: &At,
+            scope: u32,
+            y: &Output,
+            t: Nanos,
+            tell: &mut dyn FnMut(u32, runtime::Measured),
+        ) {
+            OPERANDS.fired(FSM, cursor, scope, y, t, tell);
+        }
+        fn source(&self) -> runtime::Source<'_> {
+            SOURCE
+        }
         fn law(&self, atom: u32) -> &str {
             text(LAWS, atom)
         }
@@ -348,6 +361,41 @@ mod machine {
         None
     }
 
+    /// The conditions of brackets once more, read when somebody asks what has fired.
+    static OPERANDS: runtime::Conditions<'static, robot::AnyInterrupt> = runtime::Conditions {
+        conditions: &[
+            runtime::Condition::Quark(robot::AnyInterrupt::Bumper(robot::Bumper::new())),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([false, true, false, false])),
+                ),
+            ),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([false, false, true, false])),
+                ),
+            ),
+            runtime::Condition::Null,
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([true, false, false, false])),
+                ),
+            ),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([false, true, false, false])),
+                ),
+            ),
+            runtime::Condition::Null,
+            runtime::Condition::Wait(Nanos(7000000000)),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::AtIsection(
+                    robot::AtIsection::new(runtime::Bits([true, false, false, false])),
+                ),
+            ),
+        ],
+        operands: &[],
+    };
     /// Scopes and loops in pre-order, the atoms as written, the termination state.
     const FSM: Fsm<'static> = Fsm {
         brackets: &[
@@ -398,4 +446,174 @@ mod machine {
     ];
     /// The name of each bracket; empty for an atom and a loop.
     const NAMES: &[&str] = &["Lab2ToLab1Plan", "", "", "", "", "", "", "", ""];
+    /// The words and lines of the plan's text.
+    const SOURCE: runtime::Source<'static> = runtime::Source {
+        files: &["lab2_to_lab1.mdle"],
+        brackets: &[
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 2,
+                },
+                condition: "bumper",
+                first: 0,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 3,
+                },
+                condition: "atIsection 0100",
+                first: 1,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 4,
+                },
+                condition: "atIsection 0010",
+                first: 2,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 5,
+                },
+                condition: "wait \\infty",
+                first: 3,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 6,
+                },
+                condition: "atIsection 1000",
+                first: 4,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 7,
+                },
+                condition: "atIsection 0100",
+                first: 5,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 8,
+                },
+                condition: "wait \\infty",
+                first: 6,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 9,
+                },
+                condition: "wait 7",
+                first: 7,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 10,
+                },
+                condition: "atIsection 1000",
+                first: 8,
+                count: 1,
+            },
+        ],
+        operands: &[
+            runtime::OperandWords {
+                text: "bumper",
+                written: "bumper",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 2,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "atIsection 0100",
+                written: "atIsection 0100",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 3,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "atIsection 0010",
+                written: "atIsection 0010",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 4,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait inf",
+                written: "wait \\infty",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 5,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "atIsection 1000",
+                written: "atIsection 1000",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 6,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "atIsection 0100",
+                written: "atIsection 0100",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 7,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait inf",
+                written: "wait \\infty",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 8,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait 7",
+                written: "wait 7",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 9,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "atIsection 1000",
+                written: "atIsection 1000",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 10,
+                },
+                values: &[],
+            },
+        ],
+    };
 }

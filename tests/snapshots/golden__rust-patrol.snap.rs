@@ -195,6 +195,19 @@ mod machine {
                 Running::Atom4(law) => runtime::Law::input(law, y, t),
             }
         }
+        fn operands(
+            &self,
+            cursor: &At,
+            scope: u32,
+            y: &Output,
+            t: Nanos,
+            tell: &mut dyn FnMut(u32, runtime::Measured),
+        ) {
+            OPERANDS.fired(FSM, cursor, scope, y, t, tell);
+        }
+        fn source(&self) -> runtime::Source<'_> {
+            SOURCE
+        }
         fn law(&self, atom: u32) -> &str {
             text(LAWS, atom)
         }
@@ -234,6 +247,25 @@ mod machine {
         None
     }
 
+    /// The conditions of brackets once more, read when somebody asks what has fired.
+    static OPERANDS: runtime::Conditions<'static, robot::AnyInterrupt> = runtime::Conditions {
+        conditions: &[
+            runtime::Condition::Or(0, 2),
+            runtime::Condition::Null,
+            runtime::Condition::Null,
+            runtime::Condition::Wait(Nanos(30000000000)),
+            runtime::Condition::Wait(Nanos(20000000000)),
+            runtime::Condition::Null,
+            runtime::Condition::Null,
+            runtime::Condition::Wait(Nanos(500000000)),
+            runtime::Condition::Null,
+            runtime::Condition::Wait(Nanos(30000000000)),
+        ],
+        operands: &[
+            runtime::Condition::Quark(robot::AnyInterrupt::Bumper(robot::Bumper::new())),
+            runtime::Condition::Wait(Nanos(600000000000)),
+        ],
+    };
     /// Scopes and loops in pre-order, the atoms as written, the termination state.
     const FSM: Fsm<'static> = Fsm {
         brackets: &[
@@ -268,4 +300,165 @@ mod machine {
     ];
     /// The name of each bracket; empty for an atom and a loop.
     const NAMES: &[&str] = &["Patrol", "", "Leg", "", "Look", "", "", "", "Leg", ""];
+    /// The words and lines of the plan's text.
+    const SOURCE: runtime::Source<'static> = runtime::Source {
+        files: &["patrol.mdle"],
+        brackets: &[
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 5,
+                },
+                condition: "bumper OR wait 10min",
+                first: 0,
+                count: 2,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 0,
+                },
+                condition: "",
+                first: 2,
+                count: 0,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 17,
+                },
+                condition: "",
+                first: 2,
+                count: 0,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 17,
+                },
+                condition: "wait 30s",
+                first: 2,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 8,
+                },
+                condition: "wait 20s",
+                first: 3,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 0,
+                },
+                condition: "",
+                first: 4,
+                count: 0,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 9,
+                },
+                condition: "null",
+                first: 4,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 9,
+                },
+                condition: "wait 500ms",
+                first: 5,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 17,
+                },
+                condition: "",
+                first: 6,
+                count: 0,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 17,
+                },
+                condition: "wait 30s",
+                first: 6,
+                count: 1,
+            },
+        ],
+        operands: &[
+            runtime::OperandWords {
+                text: "bumper",
+                written: "bumper",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 5,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait 600",
+                written: "wait 10min",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 5,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait 30",
+                written: "wait 30s",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 17,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait 20",
+                written: "wait 20s",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 8,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "null",
+                written: "null",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 9,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait 0.5",
+                written: "wait 500ms",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 9,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait 30",
+                written: "wait 30s",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 17,
+                },
+                values: &[],
+            },
+        ],
+    };
 }

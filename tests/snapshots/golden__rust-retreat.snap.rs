@@ -156,6 +156,19 @@ mod machine {
                 Running::Atom3(law) => runtime::Law::input(law, y, t),
             }
         }
+        fn operands(
+            &self,
+            cursor: &At,
+            scope: u32,
+            y: &Output,
+            t: Nanos,
+            tell: &mut dyn FnMut(u32, runtime::Measured),
+        ) {
+            OPERANDS.fired(FSM, cursor, scope, y, t, tell);
+        }
+        fn source(&self) -> runtime::Source<'_> {
+            SOURCE
+        }
         fn law(&self, atom: u32) -> &str {
             text(LAWS, atom)
         }
@@ -191,6 +204,18 @@ mod machine {
         None
     }
 
+    /// The conditions of brackets once more, read when somebody asks what has fired.
+    static OPERANDS: runtime::Conditions<'static, robot::AnyInterrupt> = runtime::Conditions {
+        conditions: &[
+            runtime::Condition::Wait(Nanos(120000000000)),
+            runtime::Condition::Null,
+            runtime::Condition::Quark(robot::AnyInterrupt::Bumper(robot::Bumper::new())),
+            runtime::Condition::Wait(Nanos(8000000000)),
+            runtime::Condition::Wait(Nanos(2000000000)),
+            runtime::Condition::Null,
+        ],
+        operands: &[],
+    };
     /// Scopes and loops in pre-order, the atoms as written, the termination state.
     const FSM: Fsm<'static> = Fsm {
         brackets: &[
@@ -210,4 +235,111 @@ mod machine {
     const CONDITIONS: &[&str] = &["wait 120", "", "bumper", "wait 8", "wait 2", "null"];
     /// The name of each bracket; empty for an atom and a loop.
     const NAMES: &[&str] = &["Explore", "", "", "Retreat", "", ""];
+    /// The words and lines of the plan's text.
+    const SOURCE: runtime::Source<'static> = runtime::Source {
+        files: &["retreat.mdle"],
+        brackets: &[
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 4,
+                },
+                condition: "wait 2min",
+                first: 0,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 0,
+                },
+                condition: "",
+                first: 1,
+                count: 0,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 6,
+                },
+                condition: "bumper",
+                first: 1,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 7,
+                },
+                condition: "wait 8s",
+                first: 2,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 9,
+                },
+                condition: "wait 2s",
+                first: 3,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 10,
+                },
+                condition: "null",
+                first: 4,
+                count: 1,
+            },
+        ],
+        operands: &[
+            runtime::OperandWords {
+                text: "wait 120",
+                written: "wait 2min",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 4,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "bumper",
+                written: "bumper",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 6,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait 8",
+                written: "wait 8s",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 7,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait 2",
+                written: "wait 2s",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 9,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "null",
+                written: "null",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 10,
+                },
+                values: &[],
+            },
+        ],
+    };
 }

@@ -123,6 +123,19 @@ mod machine {
                 Running::Atom2(law) => runtime::Law::input(law, y, t),
             }
         }
+        fn operands(
+            &self,
+            cursor: &At,
+            scope: u32,
+            y: &Output,
+            t: Nanos,
+            tell: &mut dyn FnMut(u32, runtime::Measured),
+        ) {
+            OPERANDS.fired(FSM, cursor, scope, y, t, tell);
+        }
+        fn source(&self) -> runtime::Source<'_> {
+            SOURCE
+        }
         fn law(&self, atom: u32) -> &str {
             text(LAWS, atom)
         }
@@ -152,6 +165,19 @@ mod machine {
         None
     }
 
+    /// The conditions of brackets once more, read when somebody asks what has fired.
+    static OPERANDS: runtime::Conditions<'static, robot::AnyInterrupt> = runtime::Conditions {
+        conditions: &[
+            runtime::Condition::Or(0, 2),
+            runtime::Condition::Null,
+            runtime::Condition::Null,
+            runtime::Condition::Wait(Nanos(2000000000)),
+        ],
+        operands: &[
+            runtime::Condition::Quark(robot::AnyInterrupt::Bumper(robot::Bumper::new())),
+            runtime::Condition::Wait(Nanos(3600000000000)),
+        ],
+    };
     /// Scopes and loops in pre-order, the atoms as written, the termination state.
     const FSM: Fsm<'static> = Fsm {
         brackets: &[
@@ -169,4 +195,84 @@ mod machine {
     const CONDITIONS: &[&str] = &["bumper OR wait 3600", "", "null", "wait 2"];
     /// The name of each bracket; empty for an atom and a loop.
     const NAMES: &[&str] = &["Sentry", "", "", ""];
+    /// The words and lines of the plan's text.
+    const SOURCE: runtime::Source<'static> = runtime::Source {
+        files: &["sentry.mdle"],
+        brackets: &[
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 4,
+                },
+                condition: "bumper OR wait 1h",
+                first: 0,
+                count: 2,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 0,
+                },
+                condition: "",
+                first: 2,
+                count: 0,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 7,
+                },
+                condition: "null",
+                first: 2,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 8,
+                },
+                condition: "wait 2s",
+                first: 3,
+                count: 1,
+            },
+        ],
+        operands: &[
+            runtime::OperandWords {
+                text: "bumper",
+                written: "bumper",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 4,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait 3600",
+                written: "wait 1h",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 4,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "null",
+                written: "null",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 7,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait 2",
+                written: "wait 2s",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 8,
+                },
+                values: &[],
+            },
+        ],
+    };
 }

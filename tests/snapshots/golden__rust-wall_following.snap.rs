@@ -183,6 +183,19 @@ mod machine {
                 Running::Atom3(law) => runtime::Law::input(law, y, t),
             }
         }
+        fn operands(
+            &self,
+            cursor: &At,
+            scope: u32,
+            y: &Output,
+            t: Nanos,
+            tell: &mut dyn FnMut(u32, runtime::Measured),
+        ) {
+            OPERANDS.fired(FSM, cursor, scope, y, t, tell);
+        }
+        fn source(&self) -> runtime::Source<'_> {
+            SOURCE
+        }
         fn law(&self, atom: u32) -> &str {
             text(LAWS, atom)
         }
@@ -212,6 +225,66 @@ mod machine {
         None
     }
 
+    /// The conditions of brackets once more, read when somebody asks what has fired.
+    static OPERANDS: runtime::Conditions<'static, robot::AnyInterrupt> = runtime::Conditions {
+        conditions: &[
+            runtime::Condition::Or(0, 2),
+            runtime::Condition::Null,
+            runtime::Condition::Not(2),
+            runtime::Condition::Or(3, 2),
+            runtime::Condition::Or(5, 2),
+        ],
+        operands: &[
+            runtime::Condition::Quark(robot::AnyInterrupt::Bumper(robot::Bumper::new())),
+            runtime::Condition::Wait(Nanos(60000000000)),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::Comparison(
+                    runtime::Comparison::new(
+                        robot::AnySignal::R(robot::R::new(runtime::SonarId::new(0))),
+                        runtime::Operator::Less,
+                        runtime::Operand::<robot::AnySignal>::Value(0.7),
+                    ),
+                ),
+            ),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::Comparison(
+                    runtime::Comparison::new(
+                        robot::AnySignal::R(robot::R::new(runtime::SonarId::new(2))),
+                        runtime::Operator::Less,
+                        runtime::Operand::<robot::AnySignal>::Value(1.0),
+                    ),
+                ),
+            ),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::Comparison(
+                    runtime::Comparison::new(
+                        robot::AnySignal::R(robot::R::new(runtime::SonarId::new(0))),
+                        runtime::Operator::Less,
+                        runtime::Operand::<robot::AnySignal>::Value(0.7),
+                    ),
+                ),
+            ),
+            runtime::Condition::Not(7),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::Comparison(
+                    runtime::Comparison::new(
+                        robot::AnySignal::R(robot::R::new(runtime::SonarId::new(0))),
+                        runtime::Operator::Less,
+                        runtime::Operand::<robot::AnySignal>::Value(0.7),
+                    ),
+                ),
+            ),
+            runtime::Condition::Quark(
+                robot::AnyInterrupt::Comparison(
+                    runtime::Comparison::new(
+                        robot::AnySignal::R(robot::R::new(runtime::SonarId::new(2))),
+                        runtime::Operator::Less,
+                        runtime::Operand::<robot::AnySignal>::Value(1.0),
+                    ),
+                ),
+            ),
+        ],
+    };
     /// Scopes and loops in pre-order, the atoms as written, the termination state.
     const FSM: Fsm<'static> = Fsm {
         brackets: &[
@@ -240,4 +313,150 @@ mod machine {
     ];
     /// The name of each bracket; empty for an atom and a loop.
     const NAMES: &[&str] = &["WallFollowing", "", "", "", ""];
+    /// The words and lines of the plan's text.
+    const SOURCE: runtime::Source<'static> = runtime::Source {
+        files: &["wall_following.mdle"],
+        brackets: &[
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 7,
+                },
+                condition: "bumper OR wait 60s",
+                first: 0,
+                count: 2,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 0,
+                },
+                condition: "",
+                first: 2,
+                count: 0,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 11,
+                },
+                condition: "NOT r0 < 70cm",
+                first: 2,
+                count: 1,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 12,
+                },
+                condition: "r2 < 1m OR r0 < 70cm",
+                first: 3,
+                count: 2,
+            },
+            runtime::BracketWords {
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 13,
+                },
+                condition: "NOT r2 < 1m OR r0 < 70cm",
+                first: 5,
+                count: 2,
+            },
+        ],
+        operands: &[
+            runtime::OperandWords {
+                text: "bumper",
+                written: "bumper",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 7,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "wait 60",
+                written: "wait 60s",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 7,
+                },
+                values: &[],
+            },
+            runtime::OperandWords {
+                text: "NOT r0 < 0.7",
+                written: "NOT r0 < 70cm",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 11,
+                },
+                values: &[
+                    runtime::ValueWords {
+                        after: 6,
+                        unit: "m",
+                        scale: 1.0,
+                    },
+                ],
+            },
+            runtime::OperandWords {
+                text: "r2 < 1",
+                written: "r2 < 1m",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 12,
+                },
+                values: &[
+                    runtime::ValueWords {
+                        after: 2,
+                        unit: "m",
+                        scale: 1.0,
+                    },
+                ],
+            },
+            runtime::OperandWords {
+                text: "r0 < 0.7",
+                written: "r0 < 70cm",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 12,
+                },
+                values: &[
+                    runtime::ValueWords {
+                        after: 2,
+                        unit: "m",
+                        scale: 1.0,
+                    },
+                ],
+            },
+            runtime::OperandWords {
+                text: "NOT r2 < 1",
+                written: "NOT r2 < 1m",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 13,
+                },
+                values: &[
+                    runtime::ValueWords {
+                        after: 6,
+                        unit: "m",
+                        scale: 1.0,
+                    },
+                ],
+            },
+            runtime::OperandWords {
+                text: "r0 < 0.7",
+                written: "r0 < 70cm",
+                at: runtime::SourceLine {
+                    file: 0,
+                    line: 13,
+                },
+                values: &[
+                    runtime::ValueWords {
+                        after: 2,
+                        unit: "m",
+                        scale: 1.0,
+                    },
+                ],
+            },
+        ],
+    };
 }

@@ -129,13 +129,16 @@ fn machine(lowered: &Lowered) -> String {
 
 /// The Rust of a plan is Rust, in every shape.
 pub fn emit(text: &str) {
+    let mut sources = Sources::default();
+    sources.add("plan.mdle", text);
     for alphabet in [&*SIMULATOR, scripted()] {
         for Compiled { plan, lowered, .. } in compiled(text, alphabet) {
+            let header = Header { sources: &sources, file: "plan.mdle", plan: &plan.root.name };
             for shape in [Shape::Code, Shape::Shared, Shape::Rows] {
                 if lowered.brackets.len() > EMITTED {
                     continue;
                 }
-                let rust = emit_as(shape, &lowered, Header { file: "plan.mdle", plan: &plan.root.name }, alphabet);
+                let rust = emit_as(shape, &lowered, header, alphabet);
                 if let Err(error) = syn::parse_file(&rust) {
                     panic!("{shape:?}: {error}\n{rust}");
                 }

@@ -1,13 +1,11 @@
 //! What the compiler emits for a plan of the target `scripted`, or of a robot with quarks of one's own.
 
 use mdlec::alphabet::{Alphabet, combine, read};
-use mdlec::diagnostic::SourceId;
+use mdlec::diagnostic::{SourceId, Sources};
 use mdlec::fsm::Lowered;
 use mdlec::rust::{Header, Shape, emit, emit_as};
 
 use crate::pipeline::scripted;
-
-const HEADER: Header<'_> = Header { file: "plan.mdle", plan: "Main" };
 
 /// The file of plan `Main` for the target `scripted`.
 #[must_use]
@@ -18,13 +16,15 @@ pub fn emitted(plan: &str) -> String {
 /// The same in this shape.
 #[must_use]
 pub fn emitted_as(shape: Shape, plan: &str) -> String {
-    emit_as(shape, &lowered(scripted(), plan), HEADER, scripted())
+    let sources = sources(plan);
+    emit_as(shape, &lowered(scripted(), plan), header(&sources), scripted())
 }
 
 /// The same for the robot of another alphabet, in the shape that suits the plan.
 #[must_use]
 pub fn emitted_for(alphabet: &Alphabet, plan: &str) -> String {
-    emit(&lowered(alphabet, plan), HEADER, alphabet)
+    let sources = sources(plan);
+    emit(&lowered(alphabet, plan), header(&sources), alphabet)
 }
 
 /// The alphabet of a robot that has these quarks.
@@ -43,4 +43,14 @@ fn lowered(alphabet: &Alphabet, plan: &str) -> Lowered {
     let (mut compiled, found) = mdlec::compile(SourceId(0), plan, alphabet, Some("Main"));
     assert!(!compiled.is_empty(), "{plan}: {found:?}");
     compiled.swap_remove(0).lowered
+}
+
+fn sources(plan: &str) -> Sources {
+    let mut sources = Sources::default();
+    sources.add("plan.mdle", plan);
+    sources
+}
+
+fn header(sources: &Sources) -> Header<'_> {
+    Header { sources, file: "plan.mdle", plan: "Main" }
 }

@@ -27,14 +27,20 @@ pub fn alphabet(target: Option<&str>) -> Alphabet {
 /// The plans of a file, and what is said of it, for a robot.
 #[must_use]
 pub fn judge(file: &TextFile, target: Option<&str>) -> (Vec<Compiled>, String) {
+    let (sources, source) = sources(file);
+    let (compiled, found) = compile(source, &file.text, &alphabet(target), None);
+    let said = found.iter().map(|diagnostic| sources.render(diagnostic)).collect();
+    (compiled, said)
+}
+
+/// A file after those of the alphabets.
+fn sources(file: &TextFile) -> (Sources, SourceId) {
     let mut sources = Sources::default();
     for alphabet in link::alphabets() {
         sources.add(alphabet.file, alphabet.text);
     }
     let source = sources.add(&file.path, &file.text);
-    let (compiled, found) = compile(source, &file.text, &alphabet(target), None);
-    let said = found.iter().map(|diagnostic| sources.render(diagnostic)).collect();
-    (compiled, said)
+    (sources, source)
 }
 
 /// The tree of a file as an outline.
@@ -63,5 +69,7 @@ pub fn machine(compiled: &Compiled) -> String {
 #[must_use]
 pub fn rust(file: &TextFile, compiled: &Compiled, shape: Shape) -> String {
     let name = file.path.rsplit('/').next().unwrap();
-    emit_as(shape, &compiled.lowered, Header { file: name, plan: &compiled.plan.root.name }, &alphabet(Some("sim")))
+    let sources = sources(file).0;
+    let header = Header { sources: &sources, file: name, plan: &compiled.plan.root.name };
+    emit_as(shape, &compiled.lowered, header, &alphabet(Some("sim")))
 }

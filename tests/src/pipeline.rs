@@ -46,16 +46,29 @@ pub fn compile(text: &str) -> Result<Compiled, String> {
 /// # Errors
 /// The text with the errors, as a person sees them.
 pub fn compile_plan(text: &str, name: &str) -> Result<Compiled, String> {
-    let mut sources = Sources::default();
-    sources.add("alphabet.mdle", SCRIPTED_FILE);
-    let mut library = Library(sources.add(LIBRARY_FILE, LIBRARY));
-    let source = sources.add("plan.mdle", text);
+    let (sources, library, source) = placed(text);
+    let mut library = Library(library);
     let (mut compiled, found) = mdlec::compile_with(source, text, scripted(), Some(name), &mut library);
     assert_eq!(compiled.is_empty(), has_errors(&found), "a plan or an error:\n{text}");
     match compiled.pop() {
         Some(compiled) => Ok(compiled),
         None => Err(rendered(&sources, &found)),
     }
+}
+
+/// The files of a plan for the target `scripted`, as [`compile`] takes them.
+#[must_use]
+pub fn sources(text: &str) -> Sources {
+    placed(text).0
+}
+
+/// The files, and which are the library and the plan.
+fn placed(text: &str) -> (Sources, SourceId, SourceId) {
+    let mut sources = Sources::default();
+    sources.add("alphabet.mdle", SCRIPTED_FILE);
+    let library = sources.add(LIBRARY_FILE, LIBRARY);
+    let plan = sources.add("plan.mdle", text);
+    (sources, library, plan)
 }
 
 /// Finds [`LIBRARY`] and nothing else.

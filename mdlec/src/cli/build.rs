@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::bind;
 use super::input::{self, Input, Target};
 use super::{Bare, Build, Emit, EmitKind, Executable, Failure, endings, executable, matrices, report};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::{Diagnostic, Sources};
 use crate::link;
 use crate::rust::{self, Header};
 use crate::syntax::outline;
@@ -140,7 +140,7 @@ fn stage(options: &Executable, path: &Path, kind: EmitKind) -> Result<(String, V
         EmitKind::Scxml => picture::scxml(nondegenerate),
         EmitKind::Tree | EmitKind::Matrices | EmitKind::Rust | EmitKind::Exe => {
             needs_target(options.target.as_deref())?;
-            rust_of(&compiled, path, &target)
+            rust_of(&compiled, path, &target, &input.sources)
         }
     };
     let text = text.map_err(|too_large| {
@@ -181,16 +181,16 @@ pub(super) fn emitted(
     if let Some(folder) = &target.folder {
         bind::must_be_bound(folder, &target.alphabet)?;
     }
-    let rust = rust_of(&compiled, path, &target).map_err(|too_large| {
+    let rust = rust_of(&compiled, path, &target, &input.sources).map_err(|too_large| {
         report::diagnostics(&input.sources, &[too_large], false);
         Failure::PLAN
     })?;
     Ok(Emitted { target, input, plan_name: compiled.plan.root.name, rust })
 }
 
-fn rust_of(compiled: &Compiled, path: &Path, target: &Target) -> Result<String, Diagnostic> {
+fn rust_of(compiled: &Compiled, path: &Path, target: &Target, sources: &Sources) -> Result<String, Diagnostic> {
     rust::fits(&compiled.lowered, compiled.plan.root.span)?;
     let file = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
-    let header = Header { file: &file, plan: &compiled.plan.root.name };
+    let header = Header { sources, file: &file, plan: &compiled.plan.root.name };
     Ok(rust::emit(&compiled.lowered, header, &target.alphabet))
 }

@@ -99,6 +99,21 @@ impl Sources {
         Some(Known { source, byte, line, column })
     }
 
+    /// Returns the name of the file that a stretch is in, and the line in which it begins, from 1.
+    #[must_use]
+    pub fn line(&self, span: Span) -> (&str, usize) {
+        let (source, range) = self.range(span);
+        let line = self.written(source).and_then(|file| file.line_index((), range.start).ok());
+        (self.name(source), line.map_or(0, |line| line + 1))
+    }
+
+    /// Returns what is written in a stretch; empty if there is no such file.
+    #[must_use]
+    pub fn slice(&self, span: Span) -> &str {
+        let (source, range) = self.range(span);
+        self.text(source).get(range).unwrap_or("")
+    }
+
     /// The text of a file.
     #[must_use]
     pub fn text(&self, source: SourceId) -> &str {

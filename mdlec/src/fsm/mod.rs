@@ -75,6 +75,8 @@ pub struct ScopeMeaning {
     pub name: String,
     /// Its interrupt.
     pub interrupt: Interrupt,
+    /// The place of the atom, or of the scope's definition.
+    pub span: Span,
 }
 
 /// What an atom does.
@@ -170,7 +172,7 @@ struct Place {
 impl Lowering {
     /// Lowers a scope and returns the number of its states.
     fn scope(&mut self, scope: &Scope, place: Place) -> Result<u64, Diagnostic> {
-        let meaning = ScopeMeaning { name: scope.name.clone(), interrupt: scope.interrupt.clone() };
+        let meaning = ScopeMeaning { name: scope.name.clone(), interrupt: scope.interrupt.clone(), span: scope.span };
         let bracket = self.bracket(Kind::Scope { level: place.level }, place.parent, Some(meaning), &scope.marks);
         if let Some(Record { id, facts }) = scope.record {
             let first = scope.interrupt.memories;
@@ -201,7 +203,7 @@ impl Lowering {
     }
 
     fn atom(&mut self, atom: &plan::Atom, place: Place) -> u64 {
-        let meaning = ScopeMeaning { name: String::new(), interrupt: atom.interrupt.clone() };
+        let meaning = ScopeMeaning { name: String::new(), interrupt: atom.interrupt.clone(), span: atom.span };
         let scope = self.bracket(Kind::Scope { level: place.level }, place.parent, Some(meaning), &atom.marks);
         self.lowered.atoms.push(Atom { scope, state: place.state });
         let here = self.here(atom.here, place);

@@ -106,6 +106,17 @@ impl Condition {
         (0..).zip(self.operands()).find(|(_, operand)| operand.fired(at)).map_or(0, |(number, _)| number)
     }
 
+    /// Returns the parts that AND and OR join, from left to right: what a report names of a condition that has fired. NOT
+    /// and RISING belong to their operands.
+    #[must_use]
+    pub fn joined(&self) -> Vec<&Self> {
+        match self {
+            Self::Or(operands) | Self::And(operands) => operands.iter().flat_map(Self::joined).collect(),
+            Self::Null | Self::Quark(_) | Self::Wait { .. } | Self::Elapsed { .. } | Self::Driven { .. } => vec![self],
+            Self::Not(_) | Self::Rising { .. } | Self::After(_) => vec![self],
+        }
+    }
+
     /// Whether it asks when its scope was entered.
     #[must_use]
     pub fn waits(&self) -> bool {

@@ -4,10 +4,10 @@
 use super::labels::Labels;
 use super::parameters::Names;
 use super::quarks::Quarks;
-use super::{After, Condition, Interrupt, QuarkId, Value, comparisons};
+use super::{After, Condition, Interrupt, OperandPlace, QuarkId, Value, comparisons};
 use crate::alphabet::DeclarationKind;
 use crate::diagnostic::{Diagnostic, Span};
-use crate::syntax::tree::{self, Call, Compared, ConditionNode};
+use crate::syntax::tree::{self, Call, Compared, ConditionNode, Operand};
 
 /// What conditions are resolved with.
 pub(super) struct Around<'r, 'a, 'n> {
@@ -36,8 +36,43 @@ pub(super) fn interrupt(
     let text = condition_text(&condition, &name);
     let has_nested = condition.any(&|part| matches!(part, Condition::Or(all) if all.iter().any(is_or)));
     let nested = has_nested.then(|| self::text(&condition, &name, Precedence::Or, Ors::Nested).into_boxed_str());
+    let mut places = Vec::new();
+    joined(written, &mut places);
+    for (place, part) in places.iter_mut().zip(condition.joined()) {
+        let is_infinite = part.any(&|part| matches!(part, Condition::Wait { nanos: FOR_EVER, .. }));
+        place.text = is_infinite.then(|| condition_text(part, &name).into_boxed_str());
+    }
+    let places = places.into();
     let condition = without_infinite_waits(condition);
-    (Interrupt { condition, text, nested, memories, removed: false, span: written.span }, operands)
+    (Interrupt { condition, text, nested, operands: places, memories, removed: false, span: written.span }, operands)
+}
+
+/// The places of the parts that AND and OR join.
+fn joined(written: &tree::Condition, places: &mut Vec<OperandPlace>) {
+    match written.node {
+        ConditionNode::Or(operands) | ConditionNode::And(operands) => {
+            operands.iter().for_each(|operand| joined(operand, places));
+        }
+        ConditionNode::Not(_) | ConditionNode::Rising(_) | ConditionNode::Call(_) | ConditionNode::Comparison(_) => {
+            places.push(OperandPlace { span: written.span, signals: signals(written), text: None });
+        }
+        ConditionNode::After(_) | ConditionNode::Null | ConditionNode::Broken => {
+            places.push(OperandPlace { span: written.span, signals: [None; 2], text: None });
+        }
+    }
+}
+
+/// The ends of the signals that an operand compares.
+fn signals(operand: &tree::Condition) -> [Option<u32>; 2] {
+    match operand.node {
+        ConditionNode::Comparison(Compared { left, right: Operand::Signal(right), .. }) => {
+            [Some(left.span.end), Some(right.span.end)]
+        }
+        ConditionNode::Comparison(Compared { left, .. }) => [Some(left.span.end), None],
+        ConditionNode::Not(inside) | ConditionNode::Rising(inside) => signals(inside),
+        ConditionNode::Or(_) | ConditionNode::And(_) | ConditionNode::Call(_) => [None; 2],
+        ConditionNode::After(_) | ConditionNode::Null | ConditionNode::Broken => [None; 2],
+    }
 }
 
 /// The nanoseconds of `wait inf`; no other wait may be as long.

@@ -246,6 +246,8 @@ pub struct Interrupt {
     pub text: String,
     /// Condition text with parentheses around each OR that is directly in an OR; `None` without such an OR.
     pub nested: Option<Box<str>>,
+    /// The places of its operands: of the [joined](Condition::joined) parts of its condition.
+    pub operands: Box<[OperandPlace]>,
     /// How many memories of RISING it has in each scope entered.
     pub memories: u32,
     /// Whether an outer scope repeats it, so that it was replaced by the null interrupt.
@@ -258,6 +260,33 @@ impl Interrupt {
     /// The interrupt of a scope at `scope` that has none: it never fires.
     #[must_use]
     pub fn none(scope: Span) -> Self {
-        Self { condition: Condition::Null, text: "null".into(), nested: None, memories: 0, removed: false, span: scope }
+        let operands = Box::default();
+        Self {
+            condition: Condition::Null,
+            text: "null".into(),
+            nested: None,
+            operands,
+            memories: 0,
+            removed: false,
+            span: scope,
+        }
     }
+
+    /// Returns the condition text of its operand of this number, the [joined](Condition::joined) part `part`, by the texts
+    /// of the quarks.
+    pub fn operand_text(&self, number: usize, part: &Condition, quark: &impl Fn(QuarkId) -> String) -> String {
+        let own = self.operands.get(number).and_then(|operand| operand.text.as_deref());
+        own.map_or_else(|| condition_text(part, quark), str::to_owned)
+    }
+}
+
+/// The place of an operand as it is written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OperandPlace {
+    /// From its first word to its last.
+    pub span: Span,
+    /// The ends of the signals that it compares, if it is a comparison, or NOT or RISING of one.
+    pub signals: [Option<u32>; 2],
+    /// Its condition text, where that of the condition is another: a `wait inf` in it has become null.
+    pub text: Option<Box<str>>,
 }

@@ -167,6 +167,17 @@ fn interrupt_types(interrupts: &[&Bound<'_>], compares: bool) -> TokenStream {
     let kinds: Vec<_> = interrupts.iter().map(|quark| &quark.kind).collect();
     let docs = interrupts.iter().map(|quark| quark.doc());
     let compared = compares.then(|| quote!(Self::Comparison(comparison) => runtime::Interrupt::fired(comparison, y),));
+    let measured = compares.then(|| {
+        let quarks = (!kinds.is_empty()).then(|| quote!(#(Self::#kinds(_))|* => runtime::Measured::Nothing,));
+        quote! {
+            fn measured(&self, y: &Output) -> runtime::Measured {
+                match self {
+                    Self::Comparison(comparison) => runtime::Interrupt::measured(comparison, y),
+                    #quarks
+                }
+            }
+        }
+    });
     let comparison = compares.then(|| {
         quote! {
             #[doc = " A comparison of signals."]
@@ -185,6 +196,7 @@ fn interrupt_types(interrupts: &[&Bound<'_>], compares: bool) -> TokenStream {
 
         impl runtime::Interrupt<Output> for AnyInterrupt {
             fn fired(&self, y: &Output) -> bool { #fired }
+            #measured
         }
     }
 }

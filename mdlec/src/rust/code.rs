@@ -8,6 +8,7 @@ use quote::quote;
 
 use super::arguments::{angle, made, type_of};
 use super::names::{Distinct, atom_variant, quark_type};
+use super::rows::conditions;
 use super::tables::entries;
 use crate::fsm::{LawMeaning, Lowered};
 use crate::plan::{Compared, Condition, Quark, QuarkId, frame_text};
@@ -52,6 +53,7 @@ impl Parts {
     ) -> TokenStream {
         let Self { before, behind, .. } = self;
         let implementation = self.implementation(plan, lowered, paths);
+        let conditions = conditions(lowered);
         quote! {
             #[doc = #doc]
             #[derive(Debug)]
@@ -70,6 +72,7 @@ impl Parts {
             #before
             #implementation
             #behind
+            #conditions
         }
     }
 
@@ -90,6 +93,17 @@ impl Parts {
                 #enter
                 #next
                 #input
+                fn operands(
+                    &self,
+                    cursor: &At,
+                    scope: u32,
+                    y: &Output,
+                    t: Nanos,
+                    tell: &mut dyn FnMut(u32, runtime::Measured),
+                ) {
+                    OPERANDS.fired(FSM, cursor, scope, y, t, tell);
+                }
+                fn source(&self) -> runtime::Source<'_> { SOURCE }
                 fn law(&self, atom: u32) -> &str { text(LAWS, atom) }
                 fn condition(&self, scope: u32) -> &str { text(CONDITIONS, scope) }
                 fn name(&self, scope: u32) -> &str { text(NAMES, scope) }

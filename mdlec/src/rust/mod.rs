@@ -14,6 +14,7 @@ mod rows;
 mod scopes;
 mod shared;
 mod signatures;
+mod source;
 mod tables;
 
 use mdle_runtime::Printable;
@@ -21,7 +22,7 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 use crate::alphabet::Alphabet;
-use crate::diagnostic::{Code, Diagnostic, Span};
+use crate::diagnostic::{Code, Diagnostic, Sources, Span};
 use crate::fsm::Lowered;
 pub use bind::bind;
 use kinds::Atoms;
@@ -30,6 +31,8 @@ pub use names::plan_type;
 /// What the head of the file says and the code refers to.
 #[derive(Debug, Clone, Copy)]
 pub struct Header<'a> {
+    /// The plan's text and that of the files that it uses, for reports.
+    pub sources: &'a Sources,
     /// The plan's file, without folders.
     pub file: &'a str,
     /// The plan's name.
@@ -118,6 +121,7 @@ pub fn emit_as(shape: Shape, lowered: &Lowered, header: Header<'_>, alphabet: &A
     };
     let same_alphabet = same_alphabet(alphabet);
     let tables = tables::tables(lowered);
+    let source = source::source(lowered, header.sources, alphabet);
     let file = quote! {
         #[allow(unreachable_pub, reason = "who includes this file says how far it reaches")]
         pub use machine::#plan;
@@ -136,6 +140,7 @@ pub fn emit_as(shape: Shape, lowered: &Lowered, header: Header<'_>, alphabet: &A
             #same_alphabet
             #machine
             #tables
+            #source
         }
     };
     format!("{}{}", heading(header, alphabet), layout::laid_out(file))
@@ -165,7 +170,8 @@ fn heading(header: Header<'_>, alphabet: &Alphabet) -> String {
 #[cfg(test)]
 mod tests {
     use super::{Header, Shape, bind, emit, emit_as};
-    use crate::samples::{alphabet, compiled};
+    use crate::diagnostic::Sources;
+    use crate::samples::{alphabet, compiled, sources};
 
     /// Every operator of conditions, one inside the other; frames too.
     const OPERATORS: &str = "{ P (bumper AND (wait 1 OR NOT wait 2) OR NOT bumper AND t < 3)
@@ -177,7 +183,8 @@ mod tests {
     fn conditions_in_every_shape() {
         let compiled = compiled(OPERATORS).swap_remove(0);
         for shape in [Shape::Code, Shape::Shared, Shape::Rows] {
-            let header = Header { file: "plan.mdle", plan: "P" };
+            let sources = Sources::default();
+            let header = Header { sources: &sources, file: "plan.mdle", plan: "P" };
             let rust = emit_as(shape, &compiled.lowered, header, &alphabet(Some("sim")));
             let body = rust.split_once("/// The plan `P`.").expect("a plan").1;
             insta::assert_snapshot!(format!("conditions-{shape:?}"), body.split_once("const FSM").expect("tables").0);
@@ -189,7 +196,8 @@ mod tests {
         let text = "{ P (bumper) (Atom (null) path hall) (Atom (null) path \"a b.csv\") (Atom (wait 5) path(hall)) }";
         let compiled = compiled(text).swap_remove(0);
         for shape in [Shape::Code, Shape::Shared, Shape::Rows] {
-            let header = Header { file: "plan.mdle", plan: "P" };
+            let sources = Sources::default();
+            let header = Header { sources: &sources, file: "plan.mdle", plan: "P" };
             let rust = emit_as(shape, &compiled.lowered, header, &alphabet(Some("sim")));
             let dense: String = rust.split_whitespace().collect();
             let paths = "fnpaths(&self)->&[&'staticstr]{&[\"ab.csv\",\"hall\"]}";
@@ -214,14 +222,17 @@ mod tests {
 
     fn rust(text: &str, file: &str) -> String {
         let compiled = compiled(text).swap_remove(0);
-        emit(&compiled.lowered, Header { file, plan: &compiled.plan.root.name }, &alphabet(Some("sim")))
+        let (mut sources, name) = (sources(), &compiled.plan.root.name);
+        sources.add("plan.mdle", text);
+        emit(&compiled.lowered, Header { sources: &sources, file, plan: name }, &alphabet(Some("sim")))
     }
 
     #[test]
     fn a_condition_of_many_operands_is_not_nested_as_deep() {
         let operands: Vec<_> = (1..=5_000).map(|seconds| format!("wait {seconds}")).collect();
         let compiled = compiled(&format!("{{ P (Atom ({}) stop) }}", operands.join(" OR "))).swap_remove(0);
-        let header = Header { file: "plan.mdle", plan: "P" };
+        let sources = Sources::default();
+        let header = Header { sources: &sources, file: "plan.mdle", plan: "P" };
         // It would be rows.
         let rust = emit_as(Shape::Code, &compiled.lowered, header, &alphabet(Some("sim")));
         assert!(syn::parse_file(&rust).is_ok());

@@ -54,6 +54,17 @@ pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered, paths: Option<
             }
             #told
             fn input(&mut self, y: &Output, t: Nanos) -> Input { runtime::Plan::input(&mut self.0, y, t) }
+            fn operands(
+                &self,
+                cursor: &Cursor<Self::Entered, Self::Left>,
+                scope: u32,
+                y: &Output,
+                t: Nanos,
+                tell: &mut dyn FnMut(u32, runtime::Measured),
+            ) {
+                runtime::Plan::operands(&self.0, cursor, scope, y, t, tell);
+            }
+            fn source(&self) -> runtime::Source<'_> { SOURCE }
             fn law(&self, atom: u32) -> &str { runtime::Plan::law(&self.0, atom) }
             fn condition(&self, scope: u32) -> &str { runtime::Plan::condition(&self.0, scope) }
             fn name(&self, scope: u32) -> &str { runtime::Plan::name(&self.0, scope) }
@@ -155,6 +166,21 @@ fn rows(lowered: &Lowered) -> TokenStream {
             operands: &[#(runtime::Condition::#operands),*],
             laws: &[#(#laws),*],
             texts: runtime::Texts { laws: LAWS, conditions: CONDITIONS, names: NAMES },
+        };
+    }
+}
+
+/// `static OPERANDS`: the conditions of a plan that is code, for whoever reports what has fired.
+pub(super) fn conditions(lowered: &Lowered) -> TokenStream {
+    let mut operands = Operands { lowered, waiting: VecDeque::new(), count: 0 };
+    let brackets = (0_u32..).zip(&lowered.brackets);
+    let conditions: Vec<_> = brackets.map(|(number, _)| operands.row(condition(lowered, number))).collect();
+    let operands = operands.rows();
+    quote! {
+        #[doc = " The conditions of brackets once more, read when somebody asks what has fired."]
+        static OPERANDS: runtime::Conditions<'static, robot::AnyInterrupt> = runtime::Conditions {
+            conditions: &[#(runtime::Condition::#conditions),*],
+            operands: &[#(runtime::Condition::#operands),*],
         };
     }
 }

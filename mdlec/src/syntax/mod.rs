@@ -15,6 +15,7 @@ mod indentation;
 mod lexical;
 mod mistakes;
 mod nodes;
+mod one_line;
 pub mod outline;
 mod regions;
 mod single;
@@ -56,6 +57,7 @@ use source::{Location, Place, Source};
 
 pub use format::format;
 pub(crate) use lexical::nearest_unit;
+pub use one_line::one_line;
 pub use single::{is_law, operands};
 
 /// Where trees stand.

@@ -158,6 +158,16 @@ impl runtime::Interrupt<Output> for AnyInterrupt {
             Self::Comparison(comparison) => runtime::Interrupt::fired(comparison, y),
         }
     }
+
+    fn measured(&self, y: &Output) -> runtime::Measured {
+        match self {
+            Self::Comparison(comparison) => runtime::Interrupt::measured(comparison, y),
+            Self::Bumper(_)
+            | Self::AtIsection(_)
+            | Self::LowBattery(_)
+            | Self::Charger(_) => runtime::Measured::Nothing,
+        }
+    }
 }
 
 /// Any signal of this robot with its arguments.

@@ -225,6 +225,27 @@ impl runtime::Interrupt<Output> for AnyInterrupt {
             Self::Comparison(comparison) => runtime::Interrupt::fired(comparison, y),
         }
     }
+
+    fn measured(&self, y: &Output) -> runtime::Measured {
+        match self {
+            Self::Comparison(comparison) => runtime::Interrupt::measured(comparison, y),
+            Self::A(_)
+            | Self::B(_)
+            | Self::C(_)
+            | Self::D(_)
+            | Self::E(_)
+            | Self::F(_)
+            | Self::FarOff(_)
+            | Self::Faster(_)
+            | Self::Facing(_)
+            | Self::Spinning(_)
+            | Self::LowBattery(_)
+            | Self::Pattern(_)
+            | Self::Echo(_)
+            | Self::Beyond(_)
+            | Self::Played(_) => runtime::Measured::Nothing,
+        }
+    }
 }
 
 /// Any signal of this robot with its arguments.

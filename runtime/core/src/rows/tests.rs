@@ -6,7 +6,7 @@ use super::{Condition, Guard, InRows, LawRow, Reading, Rows, Texts};
 use crate::fsm::{Atom, Bracket};
 use crate::{
     Alphabet, Argument, Begin, Cause, Comparison, Completes, Control, Cursor, Follows, Frame, Fsm, Interrupt, Law,
-    Limit, MarkRow, Memories, Memory, Nanometers, Nanos, Next, NoSignal, Output, Plan, Radians,
+    Limit, MarkRow, Measured, Memories, Memory, Nanometers, Nanos, Next, NoSignal, Output, Plan, Radians,
 };
 
 /// The numbers of the interrupts that fire.
@@ -162,6 +162,27 @@ fn the_cause_is_the_first_operand_of_an_or_that_has_fired() {
     assert_eq!(cause(Condition::Or(0, 1), &[&[1]]), 0, "it is not one of them");
     assert_eq!(cause(Condition::Or(0, 1), &[&[]]), 0);
     assert_eq!(cause(Condition::And(1, 2), &[&[1, 2]]), 0);
+}
+
+#[test]
+fn the_operands_that_have_fired_are_told_with_their_values() {
+    let operands = [
+        Condition::And(2, 2),
+        Condition::Wait(Nanos(3)),
+        Condition::Not(4),
+        Condition::Elapsed(Nanos(0), Nanos(9)),
+        Condition::Quark(Fires(0)),
+    ];
+    let told = |numbers: &'static [u8]| {
+        let mut told = Vec::new();
+        let sensed = Sensed(numbers);
+        let tell = &mut |number, measured| told.push((number, measured));
+        Condition::Or(0, 2).tell_fired(&at(&operands, &sensed, &()), tell);
+        told
+    };
+    let since = Measured::Elapsed(Nanos(3));
+    assert_eq!(told(&[]), [(0, Measured::Nothing), (1, since), (2, since)]);
+    assert_eq!(told(&[0]), [(1, since), (2, since)]);
 }
 
 #[test]

@@ -1,0 +1,73 @@
+//! A piece of a plan's text in one line, for reports that repeat the writer's words.
+
+use super::source::Source;
+use super::token::lex;
+use crate::diagnostic::SourceId;
+
+/// Returns the tokens of `text` in one line, without comments and typesetting, one space between two where there was
+/// something, and without the parentheses around the whole; and for each of the places `ends`, which are ends of tokens,
+/// its place in that line.
+#[must_use]
+pub fn one_line<const N: usize>(text: &str, ends: [Option<usize>; N]) -> (String, [Option<usize>; N]) {
+    let tokens = lex(Source { id: SourceId(0), text }).tokens;
+    let is = |index: usize, parenthesis: &str| {
+        tokens.get(index).and_then(|token| text.get(token.place.start..token.place.end)) == Some(parenthesis)
+    };
+    let mut range = 0..tokens.len();
+    while range.len() > 1 && is(range.start, "(") && closes(&range, &is) {
+        range = range.start + 1..range.end - 1;
+    }
+    let (mut line, mut places, mut last) = (String::new(), [None; N], None);
+    for token in tokens.get(range).into_iter().flatten() {
+        if last.is_some_and(|end| end < token.place.start) {
+            line.push(' ');
+        }
+        line += text.get(token.place.start..token.place.end).unwrap_or("");
+        last = Some(token.place.end);
+        for (place, end) in places.iter_mut().zip(ends) {
+            if end == last {
+                *place = Some(line.len());
+            }
+        }
+    }
+    (line, places)
+}
+
+/// Returns `true` if the parenthesis that opens `range` is closed by the last token of it.
+fn closes(range: &std::ops::Range<usize>, is: &impl Fn(usize, &str) -> bool) -> bool {
+    let mut depth = 0_usize;
+    for index in range.clone() {
+        if is(index, "(") {
+            depth += 1;
+        } else if is(index, ")") {
+            depth = depth.saturating_sub(1);
+        }
+        if depth == 0 {
+            return index + 1 == range.end;
+        }
+    }
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::one_line;
+
+    #[test]
+    fn words_are_joined_as_they_were_apart() {
+        let lines = |text| one_line(text, []).0;
+        assert_eq!(lines("bumper  OR // contact\n   wait 10min"), "bumper OR wait 10min");
+        assert_eq!(lines("( (r1<40cm))"), "r1<40cm");
+        assert_eq!(lines("(a) OR (b)"), "(a) OR (b)");
+        assert_eq!(lines("NOT (a OR b)"), "NOT (a OR b)");
+        assert_eq!(lines(""), "");
+    }
+
+    #[test]
+    fn places_move_with_their_words() {
+        let text = "RISING  (r1\n < r 5)";
+        assert_eq!(one_line(text, [Some(11), None]).1, [Some(10), None]);
+        let (line, [left, right]) = one_line("r1<r5", [Some(2), Some(5)]);
+        assert_eq!((line.as_str(), left, right), ("r1<r5", Some(2), Some(5)));
+    }
+}
