@@ -35,7 +35,7 @@ const SCRIPT: &str = r#"{"t": 0.0, "fired": [], "completed": []}
 
 /// Its trace (docs/src/reference/interfaces.md, 4): what the plan from lab 2 to lab 1 makes of the script.
 const TRACE: &str = r#"{"turn":0,"t":0.0,"state":1,"law":"goAvoid 90 40 20","fired":[]}
-{"turn":1,"t":0.1,"state":9,"law":null,"fired":[{"from":1,"level":0,"by":"bumper"}]}
+{"turn":1,"t":0.1,"state":9,"law":null,"fired":[{"from":1,"level":0,"by":"bumper","operands":["bumper"]}]}
 "#;
 
 fn with_plan(test: &str, plan: &str) -> PathBuf {
@@ -88,13 +88,13 @@ fn a_trace_ends_with_the_plan_and_counts_every_pass() {
     fs::write(folder.join("script.jsonl"), script).unwrap();
     let expected = [
         r#"{"turn":0,"t":0.0,"state":1,"law":"go 5 0","fired":[]}"#,
-        r#"{"turn":1,"t":0.5,"state":2,"law":"rotate 90","fired":[{"from":1,"level":2,"by":"wait 0.5"}]}"#,
-        r#"{"turn":2,"t":1.0,"state":3,"law":"go 5 0","fired":[{"from":2,"level":2,"by":"completed"}]}"#,
+        r#"{"turn":1,"t":0.5,"state":2,"law":"rotate 90","fired":[{"from":1,"level":2,"by":"wait 0.5","operands":["wait 0.5"]}]}"#,
+        r#"{"turn":2,"t":1.0,"state":3,"law":"go 5 0","fired":[{"from":2,"level":2,"by":"completed","operands":[]}]}"#,
         concat!(
             r#"{"turn":3,"t":1.5,"state":5,"law":"stop","#,
-            r#""fired":[{"from":3,"level":2,"by":"wait 0.5"},{"from":4,"level":2,"by":"completed"}]}"#
+            r#""fired":[{"from":3,"level":2,"by":"wait 0.5","operands":["wait 0.5"]},{"from":4,"level":2,"by":"completed","operands":[]}]}"#
         ),
-        r#"{"turn":4,"t":2.5,"state":6,"law":null,"fired":[{"from":5,"level":1,"by":"wait 1"}]}"#,
+        r#"{"turn":4,"t":2.5,"state":6,"law":null,"fired":[{"from":5,"level":1,"by":"wait 1","operands":["wait 1"]}]}"#,
     ];
     assert_trace(&folder, &expected.map(|line| format!("{line}\n")).concat());
 }

@@ -15,7 +15,7 @@ use mdle_tests::random_script::script;
 use mdlec::alphabet::Unit;
 use mdlec::diagnostic::SourceId;
 use mdlec::syntax::{arena_for, parse};
-use mdlec::trace::{Applied, Fired, Line, Outcome, Script};
+use mdlec::trace::{Applied, COMPLETED, Line, Outcome, Script};
 
 /// How many plans are tried.
 const PLANS: u64 = 10_000;
@@ -139,10 +139,11 @@ fn compare(seed: u64, foresight: bool, text: &str, script: &str, seen: &mut Seen
     }
     let expected: String = tree.iter().map(|line| format!("{line}\n")).collect();
     let loaded = Loaded::new(&compiled.lowered, foresight);
+    let words = loaded.words();
     let (rows, facts) = (loaded.rows(), loaded.facts());
     let marks = marks(&facts);
     let mut printed = String::new();
-    drive(|| loaded.plan(&rows, &marks), &outputs(&turns), &mut printed).expect("room for the trace");
+    drive(|| loaded.plan(&rows, &marks, &words), &outputs(&turns), &mut printed).expect("room for the trace");
     assert!(printed == expected, "seed {seed}\n{reference}:\n{expected}loaded:\n{printed}{text}\n{script}");
     let arena = arena_for(text);
     productions::count(text, &parse(SourceId(0), text, &arena).0, &mut seen.productions);
@@ -157,7 +158,7 @@ fn compare(seed: u64, foresight: bool, text: &str, script: &str, seen: &mut Seen
         seen.rising += by("RISING");
         seen.after += by("after s");
         seen.compared += by(" > ");
-        seen.completions += usize::from(fired.iter().any(|transition| transition.by == Fired::COMPLETED));
+        seen.completions += usize::from(fired.iter().any(|transition| transition.by == COMPLETED));
     }
 }
 

@@ -11,7 +11,7 @@ use mdle_tests::pipeline::compile;
 use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::random_script::script;
 use mdlec::fsm::{Terms, equation, matrix_files, most_states, terms};
-use mdlec::trace::{Fired, Line, Script, Table, run};
+use mdlec::trace::{COMPLETED, Fired, Line, Script, Table, run};
 use serde_json::Value;
 
 /// How many random plans are tried.
@@ -50,12 +50,12 @@ impl Matrices {
     fn follow(&self, trace: &[Line<'_>], combined: bool) -> usize {
         let (mut e, mut count) = (1, 0);
         for Line { turn, outcome, .. } in trace {
-            for Fired { from, level, by } in &outcome.fired {
+            for Fired { from, level, by, .. } in &outcome.fired {
                 assert_eq!(e as u64, *from, "turn {turn}");
                 let number = self.around(e)[*level];
                 let is_it = |read: &&Read| {
                     read.places.iter().any(|place| place.0 == number && holds(place, e))
-                        && (read.name == "completed") == (*by == Fired::COMPLETED)
+                        && (read.name == "completed") == (*by == COMPLETED)
                 };
                 let read = self.live.iter().find(is_it).unwrap_or_else(|| panic!("turn {turn}: {by} at e{e}"));
                 // Where it is counted once, it may be written otherwise in another place.

@@ -13,13 +13,13 @@ fn outer_interrupt_wins() {
         &[(0.0, "", ""), (0.1, "c, b, a", "")],
         &[
             r#"{"turn":0,"t":0.0,"state":1,"law":"idle","fired":[]}"#,
-            r#"{"turn":1,"t":0.1,"state":3,"law":null,"fired":[{"from":1,"level":0,"by":"a"}]}"#,
+            r#"{"turn":1,"t":0.1,"state":3,"law":null,"fired":[{"from":1,"level":0,"by":"a","operands":["a"]}]}"#,
         ],
     );
     assert_trace(
         "{ Main (a) { Inner (b) (Atom (c) idle) (Atom (c) seek) } (Atom (null) drift) }",
         &[(0.0, "c, b", "")],
-        &[r#"{"turn":0,"t":0.0,"state":3,"law":"drift","fired":[{"from":1,"level":1,"by":"b"}]}"#],
+        &[r#"{"turn":0,"t":0.0,"state":3,"law":"drift","fired":[{"from":1,"level":1,"by":"b","operands":["b"]}]}"#],
     );
 }
 
@@ -30,7 +30,7 @@ fn a_skipped_atom_is_never_computed() {
         &[(0.0, "a, b", "")],
         &[concat!(
             r#"{"turn":0,"t":0.0,"state":3,"law":"seek","#,
-            r#""fired":[{"from":1,"level":1,"by":"a"},{"from":2,"level":1,"by":"b"}]}"#
+            r#""fired":[{"from":1,"level":1,"by":"a","operands":["a"]},{"from":2,"level":1,"by":"b","operands":["b"]}]}"#
         )],
     );
 }
@@ -40,7 +40,7 @@ fn a_plan_whose_interrupt_has_fired_is_over_in_its_first_turn() {
     assert_trace(
         "{ Main (a) (Atom (b) idle) (Atom (c) drift) }",
         &[(0.0, "a", ""), (0.1, "", "")],
-        &[r#"{"turn":0,"t":0.0,"state":3,"law":null,"fired":[{"from":1,"level":0,"by":"a"}]}"#],
+        &[r#"{"turn":0,"t":0.0,"state":3,"law":null,"fired":[{"from":1,"level":0,"by":"a","operands":["a"]}]}"#],
     );
 }
 
@@ -53,7 +53,7 @@ fn completion_is_read_on_entry() {
             r#"{"turn":0,"t":0.0,"state":1,"law":"idle","fired":[]}"#,
             concat!(
                 r#"{"turn":1,"t":0.1,"state":3,"law":"drift","#,
-                r#""fired":[{"from":1,"level":1,"by":"a"},{"from":2,"level":1,"by":"completed"}]}"#
+                r#""fired":[{"from":1,"level":1,"by":"a","operands":["a"]},{"from":2,"level":1,"by":"completed","operands":[]}]}"#
             ),
         ],
     );
@@ -66,7 +66,7 @@ fn a_law_that_never_completes_cannot_be_completed_by_a_script() {
         &[(0.0, "", "idle"), (0.1, "a", "idle")],
         &[
             r#"{"turn":0,"t":0.0,"state":1,"law":"idle","fired":[]}"#,
-            r#"{"turn":1,"t":0.1,"state":2,"law":null,"fired":[{"from":1,"level":1,"by":"a"}]}"#,
+            r#"{"turn":1,"t":0.1,"state":2,"law":null,"fired":[{"from":1,"level":1,"by":"a","operands":["a"]}]}"#,
         ],
     );
 }
@@ -77,8 +77,8 @@ fn the_interrupt_is_named_when_completion_coincides() {
         "{ Main { P (b) (Atom (a) seek) (Atom (null) climb) } (Atom (null) drift) }",
         &[(0.0, "a", "seek"), (0.1, "b", "climb")],
         &[
-            r#"{"turn":0,"t":0.0,"state":2,"law":"climb","fired":[{"from":1,"level":2,"by":"a"}]}"#,
-            r#"{"turn":1,"t":0.1,"state":3,"law":"drift","fired":[{"from":2,"level":1,"by":"b"}]}"#,
+            r#"{"turn":0,"t":0.0,"state":2,"law":"climb","fired":[{"from":1,"level":2,"by":"a","operands":["a"]}]}"#,
+            r#"{"turn":1,"t":0.1,"state":3,"law":"drift","fired":[{"from":2,"level":1,"by":"b","operands":["b"]}]}"#,
         ],
     );
 }
@@ -90,11 +90,11 @@ fn conditions_combine_what_has_fired() {
         &[(0.0, "b, c", ""), (0.5, "b, a, c", ""), (1.0, "a", ""), (1.25, "", "")],
         &[
             r#"{"turn":0,"t":0.0,"state":1,"law":"idle","fired":[]}"#,
-            r#"{"turn":1,"t":0.5,"state":2,"law":"drift","fired":[{"from":1,"level":1,"by":"a OR b AND NOT c"}]}"#,
+            r#"{"turn":1,"t":0.5,"state":2,"law":"drift","fired":[{"from":1,"level":1,"by":"a OR b AND NOT c","operands":["a","b"]}]}"#,
             r#"{"turn":2,"t":1.0,"state":2,"law":"drift","fired":[]}"#,
             concat!(
-                r#"{"turn":3,"t":1.25,"state":4,"law":"climb","fired":[{"from":2,"level":1,"by":"NOT (a OR wait 1)"},"#,
-                r#"{"from":3,"level":1,"by":"NOT wait 1"}]}"#
+                r#"{"turn":3,"t":1.25,"state":4,"law":"climb","fired":[{"from":2,"level":1,"by":"NOT (a OR wait 1)","operands":["NOT (a OR wait 1)"]},"#,
+                r#"{"from":3,"level":1,"by":"NOT wait 1","operands":["NOT wait 1"]}]}"#
             ),
         ],
     );
@@ -107,9 +107,9 @@ fn wait_counts_from_its_own_scope() {
         &[(0.0, "", ""), (1.0, "", ""), (2.0, "", ""), (3.0, "", "")],
         &[
             r#"{"turn":0,"t":0.0,"state":1,"law":"idle","fired":[]}"#,
-            r#"{"turn":1,"t":1.0,"state":2,"law":"drift","fired":[{"from":1,"level":2,"by":"wait 1"}]}"#,
-            r#"{"turn":2,"t":2.0,"state":3,"law":"climb","fired":[{"from":2,"level":1,"by":"wait 2"}]}"#,
-            r#"{"turn":3,"t":3.0,"state":4,"law":null,"fired":[{"from":3,"level":0,"by":"wait 3"}]}"#,
+            r#"{"turn":1,"t":1.0,"state":2,"law":"drift","fired":[{"from":1,"level":2,"by":"wait 1","operands":["wait 1"]}]}"#,
+            r#"{"turn":2,"t":2.0,"state":3,"law":"climb","fired":[{"from":2,"level":1,"by":"wait 2","operands":["wait 2"]}]}"#,
+            r#"{"turn":3,"t":3.0,"state":4,"law":null,"fired":[{"from":3,"level":0,"by":"wait 3","operands":["wait 3"]}]}"#,
         ],
     );
 }
@@ -120,9 +120,9 @@ fn wait_is_over_to_the_nanosecond_and_wait_inf_never() {
         "{ Main (Atom (wait 0) idle) (Atom (wait 100ms) drift) (Atom (wait inf) seek) }",
         &[(5.0, "", ""), (5.099999999, "", ""), (5.1, "", ""), (1e9, "", "")],
         &[
-            r#"{"turn":0,"t":0.0,"state":2,"law":"drift","fired":[{"from":1,"level":1,"by":"wait 0"}]}"#,
+            r#"{"turn":0,"t":0.0,"state":2,"law":"drift","fired":[{"from":1,"level":1,"by":"wait 0","operands":["wait 0"]}]}"#,
             r#"{"turn":1,"t":0.099999999,"state":2,"law":"drift","fired":[]}"#,
-            r#"{"turn":2,"t":0.1,"state":3,"law":"seek","fired":[{"from":2,"level":1,"by":"wait 0.1"}]}"#,
+            r#"{"turn":2,"t":0.1,"state":3,"law":"seek","fired":[{"from":2,"level":1,"by":"wait 0.1","operands":["wait 0.1"]}]}"#,
             r#"{"turn":3,"t":999999995.0,"state":3,"law":"seek","fired":[]}"#,
         ],
     );
@@ -135,8 +135,8 @@ fn a_removed_interrupt_changes_no_trace() {
         &[(0.0, "", ""), (0.1, "", "seek"), (0.2, "b", "")],
         &[
             r#"{"turn":0,"t":0.0,"state":1,"law":"seek","fired":[]}"#,
-            r#"{"turn":1,"t":0.1,"state":2,"law":"drift","fired":[{"from":1,"level":2,"by":"completed"}]}"#,
-            r#"{"turn":2,"t":0.2,"state":3,"law":null,"fired":[{"from":2,"level":0,"by":"a OR b"}]}"#,
+            r#"{"turn":1,"t":0.1,"state":2,"law":"drift","fired":[{"from":1,"level":2,"by":"completed","operands":[]}]}"#,
+            r#"{"turn":2,"t":0.2,"state":3,"law":null,"fired":[{"from":2,"level":0,"by":"a OR b","operands":["b"]}]}"#,
         ],
     );
 }
@@ -151,7 +151,7 @@ fn four_hundred_scopes_around_an_atom_are_all_read_in_one_turn() {
         &[(0.0, "", ""), (0.1, "a, c", "")],
         &[
             r#"{"turn":0,"t":0.0,"state":1,"law":"idle","fired":[]}"#,
-            r#"{"turn":1,"t":0.1,"state":2,"law":"drift","fired":[{"from":1,"level":400,"by":"c"}]}"#,
+            r#"{"turn":1,"t":0.1,"state":2,"law":"drift","fired":[{"from":1,"level":400,"by":"c","operands":["c"]}]}"#,
         ],
     );
 }

@@ -16,15 +16,15 @@ fn loops_run_exactly_n_times() {
         &[(0.0, "", ""), (1.0, "", ""), (2.0, "", ""), (3.0, "", "")],
         &[
             r#"{"turn":0,"t":0.0,"state":1,"law":"idle","fired":[]}"#,
-            r#"{"turn":1,"t":1.0,"state":2,"law":"idle","fired":[{"from":1,"level":1,"by":"wait 1"}]}"#,
-            r#"{"turn":2,"t":2.0,"state":3,"law":"idle","fired":[{"from":2,"level":1,"by":"wait 1"}]}"#,
-            r#"{"turn":3,"t":3.0,"state":4,"law":"drift","fired":[{"from":3,"level":1,"by":"wait 1"}]}"#,
+            r#"{"turn":1,"t":1.0,"state":2,"law":"idle","fired":[{"from":1,"level":1,"by":"wait 1","operands":["wait 1"]}]}"#,
+            r#"{"turn":2,"t":2.0,"state":3,"law":"idle","fired":[{"from":2,"level":1,"by":"wait 1","operands":["wait 1"]}]}"#,
+            r#"{"turn":3,"t":3.0,"state":4,"law":"drift","fired":[{"from":3,"level":1,"by":"wait 1","operands":["wait 1"]}]}"#,
         ],
     );
     assert_trace(
         "{ Main ExecPlan 1 { (Atom (a) idle) } }",
         &[(0.0, "a", "")],
-        &[r#"{"turn":0,"t":0.0,"state":2,"law":null,"fired":[{"from":1,"level":1,"by":"a"}]}"#],
+        &[r#"{"turn":0,"t":0.0,"state":2,"law":null,"fired":[{"from":1,"level":1,"by":"a","operands":["a"]}]}"#],
     );
 }
 
@@ -32,7 +32,7 @@ fn loops_run_exactly_n_times() {
 fn loops_in_loops_multiply_also_where_a_scope_ends_both() {
     let after = |from: u64, to: u64, law: &str, level: u64, turn: u64| {
         format!(
-            r#"{{"turn":{turn},"t":{turn}.0,"state":{to},"law":{law},"fired":[{{"from":{from},"level":{level},"by":"wait 1"}}]}}"#
+            r#"{{"turn":{turn},"t":{turn}.0,"state":{to},"law":{law},"fired":[{{"from":{from},"level":{level},"by":"wait 1","operands":["wait 1"]}}]}}"#
         )
     };
     let seek = r#""seek""#;
@@ -58,7 +58,7 @@ fn an_interrupt_around_a_loop_leaves_it() {
         &[(0.0, "", ""), (0.5, "a", "")],
         &[
             r#"{"turn":0,"t":0.0,"state":1,"law":"idle","fired":[]}"#,
-            r#"{"turn":1,"t":0.5,"state":4,"law":"drift","fired":[{"from":1,"level":1,"by":"a AND wait 0.5"}]}"#,
+            r#"{"turn":1,"t":0.5,"state":4,"law":"drift","fired":[{"from":1,"level":1,"by":"a AND wait 0.5","operands":["a","wait 0.5"]}]}"#,
         ],
     );
 }
@@ -70,7 +70,7 @@ fn an_interrupt_inside_a_loop_starts_the_next_pass() {
         &[(0.0, "", ""), (0.5, "a", "")],
         &[
             r#"{"turn":0,"t":0.0,"state":1,"law":"idle","fired":[]}"#,
-            r#"{"turn":1,"t":0.5,"state":2,"law":"idle","fired":[{"from":1,"level":1,"by":"a AND wait 0.5"}]}"#,
+            r#"{"turn":1,"t":0.5,"state":2,"law":"idle","fired":[{"from":1,"level":1,"by":"a AND wait 0.5","operands":["a","wait 0.5"]}]}"#,
         ],
     );
 }
@@ -82,9 +82,9 @@ fn a_behavior_that_ends_a_pass_starts_afresh() {
         &[(0.0, "", ""), (0.5, "a", ""), (1.4, "", ""), (1.5, "", "")],
         &[
             r#"{"turn":0,"t":0.0,"state":1,"law":"idle","fired":[]}"#,
-            r#"{"turn":1,"t":0.5,"state":2,"law":"idle","fired":[{"from":1,"level":2,"by":"a AND wait 0.2"}]}"#,
+            r#"{"turn":1,"t":0.5,"state":2,"law":"idle","fired":[{"from":1,"level":2,"by":"a AND wait 0.2","operands":["a","wait 0.2"]}]}"#,
             r#"{"turn":2,"t":1.4,"state":2,"law":"idle","fired":[]}"#,
-            r#"{"turn":3,"t":1.5,"state":3,"law":"drift","fired":[{"from":2,"level":1,"by":"wait 1"}]}"#,
+            r#"{"turn":3,"t":1.5,"state":3,"law":"drift","fired":[{"from":2,"level":1,"by":"wait 1","operands":["wait 1"]}]}"#,
         ],
     );
 }
@@ -96,10 +96,10 @@ fn a_loop_that_is_entered_again_has_all_its_passes() {
         &[(0.0, "", ""), (1.0, "", ""), (1.0, "a, b", ""), (1.5, "", ""), (2.0, "", ""), (3.0, "", "")],
         &[
             r#"{"turn":0,"t":0.0,"state":1,"law":"idle","fired":[]}"#,
-            r#"{"turn":1,"t":1.0,"state":2,"law":"idle","fired":[{"from":1,"level":2,"by":"wait 1"}]}"#,
+            r#"{"turn":1,"t":1.0,"state":2,"law":"idle","fired":[{"from":1,"level":2,"by":"wait 1","operands":["wait 1"]}]}"#,
             concat!(
                 r#"{"turn":2,"t":1.0,"state":7,"law":"seek","#,
-                r#""fired":[{"from":2,"level":1,"by":"b"},{"from":4,"level":1,"by":"b"}]}"#
+                r#""fired":[{"from":2,"level":1,"by":"b","operands":["b"]},{"from":4,"level":1,"by":"b","operands":["b"]}]}"#
             ),
             r#"{"turn":3,"t":1.5,"state":7,"law":"seek","fired":[]}"#,
             r#"{"turn":4,"t":2.0,"state":7,"law":"seek","fired":[]}"#,
@@ -111,13 +111,13 @@ fn a_loop_that_is_entered_again_has_all_its_passes() {
         &[(0.0, "", ""), (1.0, "", ""), (2.0, "a", ""), (3.0, "", ""), (4.0, "", "")],
         &[
             r#"{"turn":0,"t":0.0,"state":1,"law":"idle","fired":[]}"#,
-            r#"{"turn":1,"t":1.0,"state":2,"law":"idle","fired":[{"from":1,"level":2,"by":"wait 1"}]}"#,
+            r#"{"turn":1,"t":1.0,"state":2,"law":"idle","fired":[{"from":1,"level":2,"by":"wait 1","operands":["wait 1"]}]}"#,
             concat!(
                 r#"{"turn":2,"t":2.0,"state":1,"law":"idle","#,
-                r#""fired":[{"from":2,"level":2,"by":"wait 1"},{"from":3,"level":2,"by":"a"}]}"#
+                r#""fired":[{"from":2,"level":2,"by":"wait 1","operands":["wait 1"]},{"from":3,"level":2,"by":"a","operands":["a"]}]}"#
             ),
-            r#"{"turn":3,"t":3.0,"state":2,"law":"idle","fired":[{"from":1,"level":2,"by":"wait 1"}]}"#,
-            r#"{"turn":4,"t":4.0,"state":3,"law":"drift","fired":[{"from":2,"level":2,"by":"wait 1"}]}"#,
+            r#"{"turn":3,"t":3.0,"state":2,"law":"idle","fired":[{"from":1,"level":2,"by":"wait 1","operands":["wait 1"]}]}"#,
+            r#"{"turn":4,"t":4.0,"state":3,"law":"drift","fired":[{"from":2,"level":2,"by":"wait 1","operands":["wait 1"]}]}"#,
         ],
     );
 }
@@ -126,7 +126,7 @@ fn a_loop_that_is_entered_again_has_all_its_passes() {
 fn passes_of_a_loop_without_end_share_their_states() {
     let line = |turn: usize, state: u64, law: &str, from: u64| {
         format!(
-            r#"{{"turn":{turn},"t":{turn}.0,"state":{state},"law":"{law}","fired":[{{"from":{from},"level":1,"by":"wait 1"}}]}}"#
+            r#"{{"turn":{turn},"t":{turn}.0,"state":{state},"law":"{law}","fired":[{{"from":{from},"level":1,"by":"wait 1","operands":["wait 1"]}}]}}"#
         )
     };
     assert_trace(
@@ -146,10 +146,10 @@ fn passes_of_a_loop_without_end_share_their_states() {
         &[0.0, 1.0, 2.0, 3.0, 4.0].map(|t| (t, "", "")),
         &[
             r#"{"turn":0,"t":0.0,"state":1,"law":"idle","fired":[]}"#,
-            r#"{"turn":1,"t":1.0,"state":1,"law":"idle","fired":[{"from":1,"level":2,"by":"wait 1"}]}"#,
-            r#"{"turn":2,"t":2.0,"state":2,"law":"idle","fired":[{"from":1,"level":1,"by":"wait 2"}]}"#,
-            r#"{"turn":3,"t":3.0,"state":2,"law":"idle","fired":[{"from":2,"level":2,"by":"wait 1"}]}"#,
-            r#"{"turn":4,"t":4.0,"state":3,"law":null,"fired":[{"from":2,"level":1,"by":"wait 2"}]}"#,
+            r#"{"turn":1,"t":1.0,"state":1,"law":"idle","fired":[{"from":1,"level":2,"by":"wait 1","operands":["wait 1"]}]}"#,
+            r#"{"turn":2,"t":2.0,"state":2,"law":"idle","fired":[{"from":1,"level":1,"by":"wait 2","operands":["wait 2"]}]}"#,
+            r#"{"turn":3,"t":3.0,"state":2,"law":"idle","fired":[{"from":2,"level":2,"by":"wait 1","operands":["wait 1"]}]}"#,
+            r#"{"turn":4,"t":4.0,"state":3,"law":null,"fired":[{"from":2,"level":1,"by":"wait 2","operands":["wait 2"]}]}"#,
         ],
     );
 }
@@ -159,7 +159,7 @@ fn by_a(from: impl Iterator<Item = u64>) -> String {
     let mut list = String::new();
     for from in from {
         let comma = if list.is_empty() { "" } else { "," };
-        write!(list, r#"{comma}{{"from":{from},"level":1,"by":"a"}}"#).unwrap();
+        write!(list, r#"{comma}{{"from":{from},"level":1,"by":"a","operands":["a"]}}"#).unwrap();
     }
     list
 }
@@ -207,7 +207,7 @@ fn a_turn_of_exactly_the_limit_is_not_cut() {
 
 #[test]
 fn a_law_that_is_done_can_be_what_the_limit_cuts() {
-    let completions = vec![r#"{"from":1,"level":1,"by":"completed"}"#; 4096].join(",");
+    let completions = vec![r#"{"from":1,"level":1,"by":"completed","operands":[]}"#; 4096].join(",");
     assert_trace(
         "{ Main ExecPlan inf { (Atom (null) seek) } }",
         &[(0.0, "", "seek"), (0.1, "", "")],

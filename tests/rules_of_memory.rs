@@ -6,12 +6,19 @@
 mod assert_trace;
 
 use assert_trace::{Turn, assert_trace};
+use mdlec::trace::COMPLETED;
 
-/// A line of a trace: the state and the law that it ends with, and the transitions as `from level by`.
+/// A line of a trace: the state and the law that it ends with, and the transitions as `from level by`, with the operands that
+/// had fired where these are not the whole condition: `a OR b | b`.
 fn line(turn: usize, t: &str, state: u64, law: Option<&str>, fired: &[(u64, usize, &str)]) -> String {
     let law = law.map_or("null".to_owned(), |law| format!("{law:?}"));
-    let fired: Vec<_> =
-        fired.iter().map(|(from, level, by)| format!("{{\"from\":{from},\"level\":{level},\"by\":{by:?}}}")).collect();
+    let fired = fired.iter().map(|(from, level, by)| {
+        let (by, operands) = by.split_once(" | ").unwrap_or((by, by));
+        let operands: Vec<_> = operands.split(", ").filter(|operand| *operand != COMPLETED).collect();
+        format!("{{\"from\":{from},\"level\":{level},\"by\":{by:?},\"operands\":{operands:?}}}")
+            .replace("\", \"", "\",\"")
+    });
+    let fired: Vec<_> = fired.collect();
     format!("{{\"turn\":{turn},\"t\":{t},\"state\":{state},\"law\":{law},\"fired\":[{}]}}", fired.join(","))
 }
 
@@ -58,7 +65,7 @@ fn rising_of_an_outer_scope_remembers_over_its_atoms() {
             (1, Some("idle"), &[]),
             (2, Some("drift"), &[(1, 1, "b")]),
             (2, Some("drift"), &[]),
-            (3, None, &[(2, 0, "RISING (a AND NOT d) OR RISING e")]),
+            (3, None, &[(2, 0, "RISING (a AND NOT d) OR RISING e | RISING (a AND NOT d)")]),
         ],
     );
 }
@@ -86,7 +93,7 @@ fn an_operand_is_remembered_whatever_the_others_say() {
         &[
             (1, Some("idle"), &[]),
             (1, Some("idle"), &[]),
-            (2, Some("drift"), &[(1, 1, "c AND RISING b OR d AND RISING a")]),
+            (2, Some("drift"), &[(1, 1, "c AND RISING b OR d AND RISING a | c, RISING b")]),
             (2, Some("drift"), &[]),
             // `e` had fired in the turn in which `b` had not.
             (2, Some("drift"), &[]),
@@ -107,20 +114,25 @@ fn a_turn_that_the_limit_cuts_sets_the_memory_as_well() {
 
 const FIGURE_4: &str = "{ Main s1: (Atom (a OR b) idle) (Atom (c OR NOT (after s1 a)) drift) (Atom (d OR NOT (after s1 b)) seek) \
                         (Atom (null) climb) }";
-const NOT_A: (u64, usize, &str) = (2, 1, "c OR NOT after s1 a");
-const NOT_B: (u64, usize, &str) = (3, 1, "d OR NOT after s1 b");
 
 #[test]
 fn after_tells_which_operand_ended_an_element_the_first_as_written() {
     assert_turns(
         FIGURE_4,
         &[("", ""), ("b, a", ""), ("c", "")],
-        &[(1, Some("idle"), &[]), (2, Some("drift"), &[(1, 1, "a OR b")]), (4, Some("climb"), &[NOT_A, NOT_B])],
+        &[
+            (1, Some("idle"), &[]),
+            (2, Some("drift"), &[(1, 1, "a OR b | a, b")]),
+            (4, Some("climb"), &[(2, 1, "c OR NOT after s1 a | c"), (3, 1, "d OR NOT after s1 b | NOT after s1 b")]),
+        ],
     );
     assert_turns(
         FIGURE_4,
         &[("b", ""), ("d", "")],
-        &[(3, Some("seek"), &[(1, 1, "a OR b"), NOT_A]), (4, Some("climb"), &[NOT_B])],
+        &[
+            (3, Some("seek"), &[(1, 1, "a OR b | b"), (2, 1, "c OR NOT after s1 a | NOT after s1 a")]),
+            (4, Some("climb"), &[(3, 1, "d OR NOT after s1 b | d")]),
+        ],
     );
 }
 
@@ -134,10 +146,22 @@ fn an_element_ends_by_completion_and_with_its_last_element_too() {
     assert_turns(
         plan,
         &[("a", "")],
-        &[(4, Some("climb"), &[(1, 2, "a OR c"), (2, 1, "after L b OR after M a"), (3, 1, "after L AND after M")])],
+        &[(
+            4,
+            Some("climb"),
+            &[
+                (1, 2, "a OR c | a"),
+                (2, 1, "after L b OR after M a | after M a"),
+                (3, 1, "after L AND after M | after L, after M"),
+            ],
+        )],
     );
     // Left by the scope around it: it has not ended.
-    assert_turns(plan, &[("b", "")], &[(3, Some("drift"), &[(1, 1, "b"), (2, 1, "after L b OR after M a")])]);
+    assert_turns(
+        plan,
+        &[("b", "")],
+        &[(3, Some("drift"), &[(1, 1, "b"), (2, 1, "after L b OR after M a | after L b")])],
+    );
 }
 
 #[test]
@@ -148,7 +172,7 @@ fn a_loop_ends_with_its_last_pass_and_a_string_with_its_last_element() {
         plan,
         &[("a, b", ""), ("c", "")],
         &[
-            (5, Some("seek"), &[(1, 1, "a OR after L"), (2, 1, "b"), (3, 1, "a OR after L"), (4, 1, "b")]),
+            (5, Some("seek"), &[(1, 1, "a OR after L | a"), (2, 1, "b"), (3, 1, "a OR after L | a"), (4, 1, "b")]),
             (8, Some("drift"), &[(5, 1, "c"), (6, 1, "after L"), (7, 1, "after N")]),
         ],
     );
@@ -181,23 +205,23 @@ fn each_use_of_a_plan_has_a_record_that_is_empty_when_it_is_entered() {
                 7,
                 Some("idle"),
                 &[
-                    (1, 2, "after s OR b"),
+                    (1, 2, "after s OR b | b"),
                     (2, 3, "a"),
                     (3, 2, "after s"),
-                    (4, 2, "after s OR b"),
+                    (4, 2, "after s OR b | b"),
                     (5, 3, "a"),
                     (6, 2, "after s"),
                 ],
             ),
             (8, Some("idle"), &[(7, 2, "c")]),
-            (9, Some("climb"), &[(8, 2, "NOT after L OR d")]),
+            (9, Some("climb"), &[(8, 2, "NOT after L OR d | d")]),
         ],
     );
     assert_turns(
         "{ Main ExecPlan 2 P (Atom (null) climb) } { P (Atom (after s OR b) drift) s: (Atom (a) idle) }",
         &[("b, a", ""), ("a", "")],
         &[
-            (5, Some("climb"), &[(1, 2, "after s OR b"), (2, 2, "a"), (3, 2, "after s OR b"), (4, 2, "a")]),
+            (5, Some("climb"), &[(1, 2, "after s OR b | b"), (2, 2, "a"), (3, 2, "after s OR b | b"), (4, 2, "a")]),
             (5, Some("climb"), &[]),
         ],
     );
@@ -205,14 +229,14 @@ fn each_use_of_a_plan_has_a_record_that_is_empty_when_it_is_entered() {
     assert_turns(
         "{ Main ExecPlan 2 P } { P (Atom (after s OR b) drift) s: (Atom (a) idle) }",
         &[("b, a", ""), ("", "")],
-        &[(5, None, &[(1, 2, "after s OR b"), (2, 2, "a"), (3, 2, "after s OR b"), (4, 2, "a")])],
+        &[(5, None, &[(1, 2, "after s OR b | b"), (2, 2, "a"), (3, 2, "after s OR b | b"), (4, 2, "a")])],
     );
     assert_turns(
         "{ Main ExecPlan 2 P } { P (Atom (after s OR RISING b) drift) s: (Atom (a) idle) }",
         &[("", ""), ("b, a", ""), ("", "")],
         &[
             (1, Some("drift"), &[]),
-            (3, Some("drift"), &[(1, 2, "after s OR RISING b"), (2, 2, "a")]),
+            (3, Some("drift"), &[(1, 2, "after s OR RISING b | RISING b"), (2, 2, "a")]),
             (3, Some("drift"), &[]),
         ],
     );

@@ -31,12 +31,12 @@ fn way_counts_from_its_own_scope_to_the_nanometre() {
         &[
             r#"{"turn":0,"t":0.0,"state":1,"law":"idle","fired":[]}"#,
             r#"{"turn":1,"t":1.0,"state":1,"law":"idle","fired":[]}"#,
-            r#"{"turn":2,"t":2.0,"state":2,"law":"drift","fired":[{"from":1,"level":2,"by":"way >= 1"}]}"#,
-            r#"{"turn":3,"t":3.0,"state":3,"law":"seek","fired":[{"from":2,"level":2,"by":"way == 1.5"}]}"#,
+            r#"{"turn":2,"t":2.0,"state":2,"law":"drift","fired":[{"from":1,"level":2,"by":"way >= 1","operands":["way >= 1"]}]}"#,
+            r#"{"turn":3,"t":3.0,"state":3,"law":"seek","fired":[{"from":2,"level":2,"by":"way == 1.5","operands":["way == 1.5"]}]}"#,
             r#"{"turn":4,"t":4.0,"state":3,"law":"seek","fired":[]}"#,
             concat!(
-                r#"{"turn":5,"t":5.0,"state":5,"law":null,"fired":[{"from":3,"level":1,"by":"way > 3"},"#,
-                r#"{"from":4,"level":1,"by":"way < 0.05"}]}"#
+                r#"{"turn":5,"t":5.0,"state":5,"law":null,"fired":[{"from":3,"level":1,"by":"way > 3","operands":["way > 3"]},"#,
+                r#"{"from":4,"level":1,"by":"way < 0.05","operands":["way < 0.05"]}]}"#
             ),
         ],
     );
@@ -49,10 +49,10 @@ fn way_begins_anew_in_each_pass() {
         &[r#"{"t":0}"#, r#"{"t":1,"way":1.2}"#, r#"{"t":2,"way":2.1}"#, r#"{"t":3,"way":2.2}"#, r#"{"t":4,"way":2.5}"#],
         &[
             r#"{"turn":0,"t":0.0,"state":1,"law":"idle","fired":[]}"#,
-            r#"{"turn":1,"t":1.0,"state":1,"law":"idle","fired":[{"from":1,"level":1,"by":"way >= 1"}]}"#,
+            r#"{"turn":1,"t":1.0,"state":1,"law":"idle","fired":[{"from":1,"level":1,"by":"way >= 1","operands":["way >= 1"]}]}"#,
             r#"{"turn":2,"t":2.0,"state":1,"law":"idle","fired":[]}"#,
-            r#"{"turn":3,"t":3.0,"state":1,"law":"idle","fired":[{"from":1,"level":1,"by":"way >= 1"}]}"#,
-            r#"{"turn":4,"t":4.0,"state":2,"law":null,"fired":[{"from":1,"level":0,"by":"way >= 2.5"}]}"#,
+            r#"{"turn":3,"t":3.0,"state":1,"law":"idle","fired":[{"from":1,"level":1,"by":"way >= 1","operands":["way >= 1"]}]}"#,
+            r#"{"turn":4,"t":4.0,"state":2,"law":null,"fired":[{"from":1,"level":0,"by":"way >= 2.5","operands":["way >= 2.5"]}]}"#,
         ],
     );
 }
@@ -64,7 +64,7 @@ fn rising_of_way_waits_until_it_was_low() {
         &[r#"{"t":0,"way":4}"#, r#"{"t":1,"way":5}"#, r#"{"t":2,"way":9}"#],
         &[
             r#"{"turn":0,"t":0.0,"state":1,"law":"idle","fired":[]}"#,
-            r#"{"turn":1,"t":1.0,"state":2,"law":"drift","fired":[{"from":1,"level":1,"by":"RISING way >= 1"}]}"#,
+            r#"{"turn":1,"t":1.0,"state":2,"law":"drift","fired":[{"from":1,"level":1,"by":"RISING way >= 1","operands":["RISING way >= 1"]}]}"#,
             r#"{"turn":2,"t":2.0,"state":2,"law":"drift","fired":[]}"#,
         ],
     );
@@ -91,12 +91,12 @@ fn a_frame_here_is_the_heading_at_the_entry_of_its_element() {
         ],
         &[
             r#"{"turn":0,"t":0.0,"state":1,"law":"idle","fired":[]}"#,
-            r#"{"turn":1,"t":1.0,"state":2,"law":"drift","frame":30.0,"fired":[{"from":1,"level":1,"by":"a"}]}"#,
+            r#"{"turn":1,"t":1.0,"state":2,"law":"drift","frame":30.0,"fired":[{"from":1,"level":1,"by":"a","operands":["a"]}]}"#,
             r#"{"turn":2,"t":2.0,"state":2,"law":"drift","frame":30.0,"fired":[]}"#,
-            r#"{"turn":3,"t":3.0,"state":3,"law":"climb","frame":120.0,"fired":[{"from":2,"level":2,"by":"b"}]}"#,
-            r#"{"turn":4,"t":4.0,"state":4,"law":"seek","frame":-80.0,"fired":[{"from":3,"level":2,"by":"c"}]}"#,
+            r#"{"turn":3,"t":3.0,"state":3,"law":"climb","frame":120.0,"fired":[{"from":2,"level":2,"by":"b","operands":["b"]}]}"#,
+            r#"{"turn":4,"t":4.0,"state":4,"law":"seek","frame":-80.0,"fired":[{"from":3,"level":2,"by":"c","operands":["c"]}]}"#,
             r#"{"turn":5,"t":5.0,"state":4,"law":"seek","frame":-80.0,"fired":[]}"#,
-            r#"{"turn":6,"t":6.0,"state":5,"law":"veer 90","fired":[{"from":4,"level":2,"by":"d"}]}"#,
+            r#"{"turn":6,"t":6.0,"state":5,"law":"veer 90","fired":[{"from":4,"level":2,"by":"d","operands":["d"]}]}"#,
         ],
     );
 }
@@ -117,17 +117,17 @@ fn a_frame_here_is_taken_anew_in_each_pass() {
         ("{ Main FRAME here (((Atom (a) idle) (Atom (b) drift))^2) }", "10.0"),
     ] {
         let third = format!(
-            r#"{{"turn":2,"t":2.0,"state":3,"law":"idle","frame":{again},"fired":[{{"from":2,"level":2,"by":"b"}}]}}"#
+            r#"{{"turn":2,"t":2.0,"state":3,"law":"idle","frame":{again},"fired":[{{"from":2,"level":2,"by":"b","operands":["b"]}}]}}"#
         );
         let last = format!(
-            r#"{{"turn":3,"t":3.0,"state":4,"law":"drift","frame":{again},"fired":[{{"from":3,"level":2,"by":"a"}}]}}"#
+            r#"{{"turn":3,"t":3.0,"state":4,"law":"drift","frame":{again},"fired":[{{"from":3,"level":2,"by":"a","operands":["a"]}}]}}"#
         );
         assert_trace(
             plan,
             &script,
             &[
                 r#"{"turn":0,"t":0.0,"state":1,"law":"idle","frame":10.0,"fired":[]}"#,
-                r#"{"turn":1,"t":1.0,"state":2,"law":"drift","frame":10.0,"fired":[{"from":1,"level":2,"by":"a"}]}"#,
+                r#"{"turn":1,"t":1.0,"state":2,"law":"drift","frame":10.0,"fired":[{"from":1,"level":2,"by":"a","operands":["a"]}]}"#,
                 &third,
                 &last,
             ],
@@ -143,9 +143,9 @@ fn a_string_or_a_pass_in_a_frame_here_is_a_scope() {
         &[r#"{"t":0}"#, r#"{"t":1,"fired":["a"]}"#, r#"{"t":2,"fired":["b"]}"#, r#"{"t":3,"fired":["c"]}"#],
         &[
             r#"{"turn":0,"t":0.0,"state":1,"law":"idle","frame":0.0,"fired":[]}"#,
-            r#"{"turn":1,"t":1.0,"state":2,"law":"drift","frame":0.0,"fired":[{"from":1,"level":2,"by":"a"}]}"#,
-            r#"{"turn":2,"t":2.0,"state":3,"law":"idle","frame":0.0,"fired":[{"from":2,"level":1,"by":"b"}]}"#,
-            r#"{"turn":3,"t":3.0,"state":4,"law":null,"fired":[{"from":3,"level":1,"by":"c"}]}"#,
+            r#"{"turn":1,"t":1.0,"state":2,"law":"drift","frame":0.0,"fired":[{"from":1,"level":2,"by":"a","operands":["a"]}]}"#,
+            r#"{"turn":2,"t":2.0,"state":3,"law":"idle","frame":0.0,"fired":[{"from":2,"level":1,"by":"b","operands":["b"]}]}"#,
+            r#"{"turn":3,"t":3.0,"state":4,"law":null,"fired":[{"from":3,"level":1,"by":"c","operands":["c"]}]}"#,
         ],
     );
 }

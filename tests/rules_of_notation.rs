@@ -18,11 +18,11 @@ fn the_papers_example_is_a_scope_with_a_timer_and_three_passes() {
             &[(0.0, "", ""), (1.0, "a", ""), (11.0, "b", ""), (12.0, "a, c", ""), (20.0, "b", ""), (22.0, "", "")],
             &[
                 r#"{"turn":0,"t":0.0,"state":1,"law":"idle","fired":[]}"#,
-                r#"{"turn":1,"t":1.0,"state":2,"law":"drift","fired":[{"from":1,"level":2,"by":"a"}]}"#,
-                r#"{"turn":2,"t":11.0,"state":3,"law":"idle","fired":[{"from":2,"level":1,"by":"c OR wait 10"}]}"#,
+                r#"{"turn":1,"t":1.0,"state":2,"law":"drift","fired":[{"from":1,"level":2,"by":"a","operands":["a"]}]}"#,
+                r#"{"turn":2,"t":11.0,"state":3,"law":"idle","fired":[{"from":2,"level":1,"by":"c OR wait 10","operands":["wait 10"]}]}"#,
                 concat!(
                     r#"{"turn":3,"t":12.0,"state":7,"law":null,"fired":["#,
-                    r#"{"from":3,"level":1,"by":"c OR wait 10"},{"from":5,"level":1,"by":"c OR wait 10"}]}"#
+                    r#"{"from":3,"level":1,"by":"c OR wait 10","operands":["c"]},{"from":5,"level":1,"by":"c OR wait 10","operands":["c"]}]}"#
                 ),
             ],
         );
@@ -36,7 +36,7 @@ fn a_timer_is_the_last_operand_and_may_be_a_cause() {
         &[(0.0, "", ""), (1.0, "", ""), (1.5, "", "")],
         &[
             r#"{"turn":0,"t":0.0,"state":1,"law":"idle","fired":[]}"#,
-            r#"{"turn":1,"t":1.0,"state":2,"law":"drift","fired":[{"from":1,"level":1,"by":"a OR b OR wait 1"}]}"#,
+            r#"{"turn":1,"t":1.0,"state":2,"law":"drift","fired":[{"from":1,"level":1,"by":"a OR b OR wait 1","operands":["wait 1"]}]}"#,
             r#"{"turn":2,"t":1.5,"state":2,"law":"drift","fired":[]}"#,
         ],
     );
@@ -47,7 +47,7 @@ fn a_timer_is_the_last_operand_and_may_be_a_cause() {
             r#"{"turn":0,"t":0.0,"state":1,"law":"seek","fired":[]}"#,
             concat!(
                 r#"{"turn":1,"t":2.0,"state":3,"law":"idle","fired":["#,
-                r#"{"from":1,"level":1,"by":"wait 2"},{"from":2,"level":1,"by":"after s2 wait 2"}]}"#
+                r#"{"from":1,"level":1,"by":"wait 2","operands":["wait 2"]},{"from":2,"level":1,"by":"after s2 wait 2","operands":["after s2 wait 2"]}]}"#
             ),
         ],
     );

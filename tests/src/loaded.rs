@@ -2,10 +2,12 @@
 
 use mdle_runtime::fsm::Kind;
 use mdle_runtime::{
-    Alphabet, Argument, Comparison, Condition, Guard, InRows, LawRow, MarkRow, Memories, Meters, MetersPerSecond,
-    Nanometers, Nanos, Operand, Operator, Radians, RadiansPerSecond, Rows, SonarId, Stamp, Stamps, Texts, Volts,
+    Alphabet, Argument, Begin, BracketWords, Cause, Comparison, Condition, Cursor, Fsm, Guard, InRows, LawRow, MarkRow,
+    Measured, Memories, Meters, MetersPerSecond, Nanometers, Nanos, Next, Operand, OperandWords, Operator, Plan,
+    Radians, RadiansPerSecond, Rows, SonarId, Source, SourceLine, Stamp, Stamps, Texts, Volts,
 };
 use mdle_scripted::alphabet::{self as scripted, AnyControl, AnyInterrupt};
+use mdle_scripted::{Input, Output};
 use mdlec::alphabet::{self, family_to_si};
 use mdlec::fsm::{Lowered, RecordPlace};
 use mdlec::plan::{self, Compared, Quark, Value};
@@ -17,6 +19,15 @@ pub struct Loaded<'l> {
     operands: Vec<Condition<AnyInterrupt>>,
     laws: Vec<LawRow<AnyControl>>,
     texts: [Vec<&'l str>; 3],
+    /// The texts of the operands of each bracket's condition, in order, and where each bracket's begin.
+    words: Vec<String>,
+    first: Vec<usize>,
+}
+
+/// The texts of operands, as rows borrow them.
+pub struct Words<'l> {
+    operands: Vec<OperandWords<'l>>,
+    brackets: Vec<BracketWords<'l>>,
 }
 
 /// The files and modules of the quarks that scripts report.
@@ -39,8 +50,70 @@ pub fn marks(facts: &[Facts]) -> Vec<MarkRow<'_>> {
 }
 
 /// A plan that borrows them: storage for levels and loops is made when its size is known.
-pub type LoadedPlan<'l> =
-    InRows<'l, scripted::Alphabet, Stamps<'l, Box<[Stamp]>>, Box<[u64]>, Memories<'l, Box<[bool]>>>;
+type InMemory<'l> = InRows<'l, scripted::Alphabet, Entered<'l>, Box<[u64]>, Memories<'l, Box<[bool]>>>;
+
+/// The entries of a plan's scopes.
+type Entered<'l> = Stamps<'l, Box<[Stamp]>>;
+
+/// A plan of rows, with the texts of its operands.
+pub struct LoadedPlan<'l>(InMemory<'l>, &'l Words<'l>);
+
+impl<'l> Plan for LoadedPlan<'l> {
+    type Output = Output;
+    type Input = Input;
+    type Entered = Entered<'l>;
+    type Left = Box<[u64]>;
+
+    fn fsm(&self) -> Fsm<'_> {
+        self.0.fsm()
+    }
+
+    fn slots(&self) -> (Self::Entered, Self::Left) {
+        self.0.slots()
+    }
+
+    fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
+        self.0.enter(atom, y, begin);
+    }
+
+    fn next(&mut self, cursor: &mut At<'l>, y: &Output, begin: Begin, direct: bool) -> Next {
+        self.0.next(cursor, y, begin, direct)
+    }
+
+    fn leave(&mut self, cursor: &At<'l>, cause: Cause, y: &Output, t: Nanos) {
+        self.0.leave(cursor, cause, y, t);
+    }
+
+    fn settle(&mut self, cursor: &At<'l>, y: &Output, t: Nanos) {
+        self.0.settle(cursor, y, t);
+    }
+
+    fn operands(&self, cursor: &At<'l>, scope: u32, y: &Output, t: Nanos, tell: &mut dyn FnMut(u32, Measured)) {
+        self.0.operands(cursor, scope, y, t, tell);
+    }
+
+    fn source(&self) -> Source<'_> {
+        Source { files: &[], brackets: &self.1.brackets, operands: &self.1.operands }
+    }
+
+    fn input(&mut self, y: &Output, t: Nanos) -> Input {
+        self.0.input(y, t)
+    }
+
+    fn law(&self, atom: u32) -> &str {
+        self.0.law(atom)
+    }
+
+    fn condition(&self, scope: u32) -> &str {
+        self.0.condition(scope)
+    }
+
+    fn name(&self, scope: u32) -> &str {
+        self.0.name(scope)
+    }
+}
+
+type At<'l> = Cursor<Entered<'l>, Box<[u64]>>;
 
 impl<'l> Loaded<'l> {
     /// Makes the rows of a plan. Without `foresight` they do not say what follows when a scope ends.
@@ -59,9 +132,23 @@ impl<'l> Loaded<'l> {
             scopes().map(|scope| scope.map_or("", |scope| scope.interrupt.text.as_str())).collect(),
             scopes().map(|scope| scope.map_or("", |scope| scope.name.as_str())).collect(),
         ];
-        let mut loaded = Self { lowered, guards: Vec::new(), operands: Vec::new(), laws: laws.collect(), texts };
+        let mut loaded = Self {
+            lowered,
+            guards: Vec::new(),
+            operands: Vec::new(),
+            laws: laws.collect(),
+            texts,
+            words: Vec::new(),
+            first: vec![0],
+        };
         for (number, scope) in (0..).zip(scopes()) {
-            let condition = loaded.condition(scope.map_or(&plan::Condition::Null, |scope| &scope.interrupt.condition));
+            let condition = scope.map_or(&plan::Condition::Null, |scope| &scope.interrupt.condition);
+            if let Some(interrupt) = scope.map(|scope| &scope.interrupt) {
+                let text = |(number, part)| interrupt.operand_text(number, part, &|id| lowered.quark(id).text.clone());
+                loaded.words.extend(condition.joined().into_iter().enumerate().map(text));
+            }
+            loaded.first.push(loaded.words.len());
+            let condition = loaded.condition(condition);
             let bracket = lowered.brackets[number as usize];
             let level = if let Kind::Scope { level } = bracket.kind { level } else { 0 };
             let follows = lowered.tables().follows(number).filter(|_| foresight);
@@ -79,6 +166,19 @@ impl<'l> Loaded<'l> {
         Rows { fsm: self.lowered.tables(), guards: &self.guards, operands: &self.operands, laws: &self.laws, texts }
     }
 
+    /// The texts of operands as rows take them.
+    #[must_use]
+    pub fn words(&self) -> Words<'_> {
+        const AT: SourceLine = SourceLine { file: 0, line: 0 };
+        let bracket = |range: &[usize]| {
+            let [first, count] = [range[0], range[1] - range[0]].map(|number| u32::try_from(number).unwrap());
+            BracketWords { at: AT, condition: "", first, count }
+        };
+        let operands = self.words.iter().map(|text| OperandWords { text, written: text, at: AT, values: &[] });
+        let brackets = self.first.windows(2).map(bracket);
+        Words { operands: operands.collect(), brackets: brackets.collect() }
+    }
+
     /// What ends with which bracket, with the facts of each label.
     #[must_use]
     pub fn facts(&self) -> Vec<Facts> {
@@ -94,13 +194,18 @@ impl<'l> Loaded<'l> {
 
     /// The plan of these rows before it begins.
     #[must_use]
-    pub fn plan<'r>(&'r self, rows: &'r Rows<'r, scripted::Alphabet>, marks: &'r [MarkRow<'r>]) -> LoadedPlan<'r> {
+    pub fn plan<'r>(
+        &'r self,
+        rows: &'r Rows<'r, scripted::Alphabet>,
+        marks: &'r [MarkRow<'r>],
+        words: &'r Words<'r>,
+    ) -> LoadedPlan<'r> {
         let (levels, slots) = (self.lowered.levels, self.lowered.slots);
         // No plan has more levels than brackets.
         let memories = vec![false; self.lowered.brackets.len() * self.lowered.memories];
         let memory = Memories::new(u32::try_from(self.lowered.memories).unwrap(), marks, memories.into());
         let entered = Stamps::new(vec![Stamp::START; levels].into(), &self.lowered.frames);
-        InRows::remembering(rows, entered, vec![0; slots].into(), memory)
+        LoadedPlan(InRows::remembering(rows, entered, vec![0; slots].into(), memory), words)
     }
 
     /// A condition; its operands go behind all operands that there are so far, and theirs behind them.

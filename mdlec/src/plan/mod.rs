@@ -53,6 +53,12 @@ impl Plan {
     pub fn quark(&self, id: QuarkId) -> &Quark {
         &self.quarks[id.0 as usize]
     }
+
+    /// Returns the texts of the operands of `interrupt` that have fired.
+    pub(crate) fn operands_fired(&self, interrupt: &Interrupt, at: &impl Situation) -> Vec<String> {
+        let parts = interrupt.condition.joined().into_iter().enumerate().filter(|(_, part)| part.fired(at));
+        parts.map(|(number, part)| interrupt.operand_text(number, part, &|id| self.quark(id).text.clone())).collect()
+    }
 }
 
 /// A quark with its arguments, among [`Plan::quarks`].

@@ -3,7 +3,7 @@
 
 use mdle_runtime::fsm::Kind;
 use mdle_runtime::{
-    Begin, Cause, Cursor, Ending, Fsm, Nanometers, Nanos, Next, Pose, Stamp, Stamps, Transition, Turn, Watch,
+    Begin, Cause, Cursor, Ending, Fsm, Measured, Nanometers, Nanos, Next, Pose, Stamp, Stamps, Transition, Turn, Watch,
 };
 
 use super::{Applied, Fired, Machine, Outcome, Reports};
@@ -31,7 +31,7 @@ impl<'p> Machine<'p> for Counted<'p> {
         let lowered = self.lowered;
         let begin = || mdle_runtime::Machine::begin(Scripted::new(lowered), reports, reports.t);
         let machine = self.machine.get_or_insert_with(begin);
-        let mut transitions = Transitions { lowered, fired: Vec::new() };
+        let mut transitions = Transitions { lowered, operands: Vec::new(), fired: Vec::new() };
         let turn = machine.turn(reports, reports.t, &mut transitions);
         let applied = match (turn, machine.atom()) {
             (Turn::Law(()), Some(atom)) => Applied::Law(&lowered.law(atom).text),
@@ -46,13 +46,25 @@ impl<'p> Machine<'p> for Counted<'p> {
 /// Takes down the transitions of a turn.
 struct Transitions<'p> {
     lowered: &'p Lowered,
+    /// The numbers of the operands by which the next one is made.
+    operands: Vec<usize>,
     fired: Vec<Fired<'p>>,
 }
 
 impl Watch for Transitions<'_> {
+    fn operand(&mut self, number: u32, _: Measured) {
+        self.operands.push(number as usize);
+    }
+
     fn transition(&mut self, Transition { from, scope, cause, .. }: Transition) {
         let by = cause.by(self.lowered.condition(scope));
-        self.fired.push(Fired { from, level: usize::from(cause.level()), by });
+        let operands = std::mem::take(&mut self.operands);
+        let operands = self.lowered.interrupt(scope).map_or_else(Vec::new, |interrupt| {
+            let parts = interrupt.condition.joined();
+            let quark = |id| self.lowered.quark(id).text.clone();
+            operands.iter().map(|number| interrupt.operand_text(*number, parts[*number], &quark)).collect()
+        });
+        self.fired.push(Fired { from, level: usize::from(cause.level()), by, operands });
     }
 }
 
@@ -226,6 +238,14 @@ impl<'p> mdle_runtime::Plan for Scripted<'p> {
         set.into_iter().for_each(|memory| self.memories[memory] = true);
     }
 
+    fn operands(&self, cursor: &At<'p>, scope: u32, y: &Reports, _: Nanos, tell: &mut dyn FnMut(u32, Measured)) {
+        let kind = self.lowered.brackets.get(scope as usize).map(|bracket| bracket.kind);
+        let (Some(Kind::Scope { level }), Some(interrupt)) = (kind, self.lowered.interrupt(scope)) else { return };
+        let read = Read { scripted: self, cursor, level, y };
+        let operands = (0..).zip(interrupt.condition.joined());
+        operands.filter(|(_, part)| part.fired(&read)).for_each(|(number, _)| tell(number, Measured::Nothing));
+    }
+
     fn input(&mut self, _: &Reports, _: Nanos) {}
 
     fn law(&self, atom: u32) -> &str {
@@ -246,8 +266,12 @@ impl Lowered {
         self.quark(self.laws[atom as usize].quark)
     }
 
+    fn interrupt(&self, scope: u32) -> Option<&Interrupt> {
+        self.scopes.get(scope as usize)?.as_ref().map(|scope| &scope.interrupt)
+    }
+
     fn condition(&self, scope: u32) -> &str {
-        self.scopes.get(scope as usize).and_then(Option::as_ref).map_or("", |scope| &scope.interrupt.text)
+        self.interrupt(scope).map_or("", |interrupt| &interrupt.text)
     }
 
     fn completed(&self, atom: u32, y: &Reports) -> Option<Cause> {

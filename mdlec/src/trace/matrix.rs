@@ -8,7 +8,7 @@ use std::collections::BTreeSet;
 
 use mdle_runtime::{Frame, TRANSITIONS_PER_TURN};
 
-use super::{Applied, Fired, Machine, Moment, Outcome, Reports};
+use super::{Applied, COMPLETED, Fired, Machine, Moment, Outcome, Reports};
 use crate::diagnostic::Diagnostic;
 use crate::fsm::{Matrices, Transition, UnitVector, matrices};
 use crate::plan::{Nondegenerate, Plan, Quark, QuarkId, RecordId, Situation};
@@ -30,6 +30,17 @@ pub struct MatrixProduct<'p> {
     e: UnitVector,
     /// `true` once there was a first turn.
     has_begun: bool,
+}
+
+/// An interrupt whose matrix comes next.
+struct Factor<'p> {
+    number: usize,
+    /// What a trace says of it.
+    by: &'p str,
+    /// The operands that have fired.
+    operands: Vec<String>,
+    /// The operand that was the cause.
+    operand: Option<u32>,
 }
 
 /// Where the condition of an interrupt is read.
@@ -82,18 +93,24 @@ impl<'p> MatrixProduct<'p> {
         self.listing[self.e.row].iter().map(|number| *number as usize)
     }
 
-    /// The interrupt of lowest number that has fired among these, or the atom's own if its law is done; with what a trace
-    /// says of it, and the operand that was the cause.
-    fn fired(&self, y: &Reports) -> Option<(usize, &'p str, Option<u32>)> {
+    /// The interrupt of lowest number that has fired among these, or the atom's own if its law is done.
+    fn fired(&self, y: &Reports) -> Option<Factor<'p>> {
         for number in self.listed() {
             let (interrupt, at) = (self.matrices.transitions[number].interrupt, At { product: self, number, y });
             if interrupt.condition.fired(&at) {
-                return Some((number, &interrupt.text, Some(interrupt.condition.cause(&at))));
+                let operands = self.plan.operands_fired(interrupt, &at);
+                return Some(Factor {
+                    number,
+                    by: &interrupt.text,
+                    operands,
+                    operand: Some(interrupt.condition.cause(&at)),
+                });
             }
         }
         let law = self.law()?;
         let done = law.completes && y.completed.contains(&law.text);
-        self.listed().next_back().filter(|_| done).map(|own| (own, Fired::COMPLETED, None))
+        let own = self.listed().next_back().filter(|_| done);
+        own.map(|number| Factor { number, by: COMPLETED, operands: Vec::new(), operand: None })
     }
 
     /// The law of the state; none when the plan is over.
@@ -156,12 +173,12 @@ impl<'p> Machine<'p> for MatrixProduct<'p> {
             self.entered.fill(y.moment());
         }
         let mut fired = Vec::new();
-        while let Some((number, by, operand)) = self.fired(y) {
+        while let Some(Factor { number, by, operands, operand }) = self.fired(y) {
             if fired.len() == TRANSITIONS_PER_TURN as usize {
                 self.settle(y);
                 return Outcome { state: self.state(), applied: Applied::Cut, frame: None, fired };
             }
-            fired.push(Fired { from: self.state(), level: self.matrices.transitions[number].level, by });
+            fired.push(Fired { from: self.state(), level: self.matrices.transitions[number].level, by, operands });
             self.multiply(number, operand, y.moment());
         }
         self.settle(y);

@@ -14,7 +14,7 @@ use script::Moment;
 pub use script::{Reports, Script, ScriptError};
 pub use table::Table;
 pub use tree::Tree;
-pub use write::{Applied, Fired, Line, Outcome};
+pub use write::{Applied, COMPLETED, Fired, Line, Outcome};
 
 /// A way of running a plan.
 pub trait Machine<'p> {

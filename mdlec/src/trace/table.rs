@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use mdle_runtime::TRANSITIONS_PER_TURN;
 
-use super::{Applied, Fired, Machine, Moment, Outcome, Reports};
+use super::{Applied, COMPLETED, Fired, Machine, Moment, Outcome, Reports};
 use crate::diagnostic::Diagnostic;
 use crate::fsm::expanded_states;
 use crate::plan::{Interrupt, Mark, Node, Nondegenerate, Plan, Quark, QuarkId, Record, RecordId, Scope, Situation};
@@ -75,10 +75,11 @@ struct Memory {
     rising: Vec<bool>,
 }
 
-/// What has fired: a row, its text, and the operand that was the cause; none where the law is done.
+/// What has fired: a row, its text, its operands that have, and the operand that was the cause; none where the law is done.
 struct Ending<'p> {
     row: usize,
     by: &'p str,
+    operands: Vec<String>,
     operand: Option<u32>,
 }
 
@@ -147,12 +148,13 @@ impl<'p> Table<'p> {
         let has_fired = |row: &usize| self.rows[*row].interrupt.condition.fired(&self.reading(*row, reports));
         if let Some(row) = self.around().filter(has_fired).last() {
             let interrupt = self.rows[row].interrupt;
-            let operand = interrupt.condition.cause(&self.reading(row, reports));
-            return Some(Ending { row, by: &interrupt.text, operand: Some(operand) });
+            let (condition, reading) = (&interrupt.condition, self.reading(row, reports));
+            let operands = self.plan.operands_fired(interrupt, &reading);
+            return Some(Ending { row, by: &interrupt.text, operands, operand: Some(condition.cause(&reading)) });
         }
         let state = self.states.get(self.state)?;
         let done = state.law.completes && reports.completed.contains(&state.law.text);
-        done.then_some(Ending { row: state.own, by: Fired::COMPLETED, operand: None })
+        done.then_some(Ending { row: state.own, by: COMPLETED, operands: Vec::new(), operand: None })
     }
 
     fn follow(&mut self, ending: &Ending<'p>, now: Moment) {
@@ -212,12 +214,13 @@ impl<'p> Machine<'p> for Table<'p> {
             self.memories.iter_mut().for_each(|memory| memory.entered = reports.moment());
         }
         let mut fired = Vec::new();
-        while let Some(ending) = self.fired(reports) {
+        while let Some(mut ending) = self.fired(reports) {
             if fired.len() == TRANSITIONS_PER_TURN as usize {
                 self.settle(reports);
                 return Outcome { state: self.number(), applied: Applied::Cut, frame: None, fired };
             }
-            fired.push(Fired { from: self.number(), level: self.rows[ending.row].level, by: ending.by });
+            let operands = std::mem::take(&mut ending.operands);
+            fired.push(Fired { from: self.number(), level: self.rows[ending.row].level, by: ending.by, operands });
             self.follow(&ending, reports.moment());
         }
         self.settle(reports);

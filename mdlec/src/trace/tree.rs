@@ -4,7 +4,7 @@
 
 use mdle_runtime::{Frame, TRANSITIONS_PER_TURN};
 
-use super::{Applied, Fired, Machine, Moment, Outcome, Reports};
+use super::{Applied, COMPLETED, Fired, Machine, Moment, Outcome, Reports};
 use crate::plan::{Atom, Interrupt, Loop, Mark, Node, Plan, QuarkId, RecordId, Scope, Situation};
 
 /// A plan that is walked.
@@ -63,6 +63,8 @@ struct Ending<'p> {
     level: usize,
     /// What a trace says of it.
     by: &'p str,
+    /// The operands of its interrupt that have fired.
+    operands: Vec<String>,
     /// The operand of its interrupt that was the cause; none where it was its law's completion.
     operand: Option<u32>,
 }
@@ -128,12 +130,14 @@ impl<'p> Tree<'p> {
             let read = Read { tree: self, open, reports };
             if interrupt.condition.fired(&read) {
                 let operand = Some(interrupt.condition.cause(&read));
-                return Some(Ending { place, level, by: &interrupt.text, operand });
+                let operands = self.plan.operands_fired(interrupt, &read);
+                return Some(Ending { place, level, by: &interrupt.text, operands, operand });
             }
             level += 1;
         }
         let done = self.law().is_some_and(|law| law.completes && reports.completed.contains(&law.text));
-        done.then(|| Ending { place: self.open.len() - 1, level: level - 1, by: Fired::COMPLETED, operand: None })
+        let (place, level) = (self.open.len().checked_sub(1)?, level.checked_sub(1)?);
+        done.then(|| Ending { place, level, by: COMPLETED, operands: Vec::new(), operand: None })
     }
 
     /// Sets the memory of every RISING around the current atom whose operand has not fired.
@@ -233,12 +237,13 @@ impl<'p> Machine<'p> for Tree<'p> {
             self.enter(0, 1, reports.moment());
         }
         let mut fired = Vec::new();
-        while let Some(ending) = self.fired(reports) {
+        while let Some(mut ending) = self.fired(reports) {
             if fired.len() == TRANSITIONS_PER_TURN as usize {
                 self.settle(reports);
                 return Outcome { state: self.state(), applied: Applied::Cut, frame: None, fired };
             }
-            fired.push(Fired { from: self.state(), level: ending.level, by: ending.by });
+            let operands = std::mem::take(&mut ending.operands);
+            fired.push(Fired { from: self.state(), level: ending.level, by: ending.by, operands });
             self.leave(&ending, reports.moment());
         }
         self.settle(reports);

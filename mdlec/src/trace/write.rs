@@ -2,9 +2,11 @@
 
 use std::fmt;
 
-use mdle_runtime::trace;
-pub use mdle_runtime::trace::Fired;
-use mdle_runtime::{Frame, Nanos};
+pub use mdle_runtime::trace::COMPLETED;
+use mdle_runtime::{Frame, Nanos, trace};
+
+/// A transition with the condition texts of the operands that had fired.
+pub type Fired<'p> = trace::Fired<'p, Vec<String>>;
 
 /// What came of one turn.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,7 +50,7 @@ impl fmt::Display for Line<'_> {
             Applied::Law(text) => Some(*text),
             Applied::Cut | Applied::Over => None,
         };
-        let fired = fired.iter().copied();
+        let fired = fired.iter().cloned();
         trace::Line { turn: self.turn as u64, t: self.t, state: *state, law, frame: *frame, fired }.fmt(f)
     }
 }
@@ -63,8 +65,10 @@ mod tests {
         let line = Line { turn: 0, t: Nanos::ZERO, outcome };
         assert_eq!(line.to_string(), r#"{"turn":0,"t":0.0,"state":1,"law":"goAvoid 90 40 20","fired":[]}"#);
 
-        let fired =
-            vec![Fired { from: 1, level: 2, by: "completed" }, Fired { from: 2, level: 0, by: "bumper OR path \"x\"" }];
+        let fired = vec![
+            Fired { from: 1, level: 2, by: "completed", operands: Vec::new() },
+            Fired { from: 2, level: 0, by: "bumper OR path \"x\"", operands: vec!["bumper".to_owned()] },
+        ];
         let line = Line {
             turn: 1,
             t: Nanos(100_000_000),
@@ -73,8 +77,8 @@ mod tests {
         assert_eq!(
             line.to_string(),
             concat!(
-                r#"{"turn":1,"t":0.1,"state":9,"law":null,"fired":[{"from":1,"level":2,"by":"completed"},"#,
-                r#"{"from":2,"level":0,"by":"bumper OR path \"x\""}]}"#
+                r#"{"turn":1,"t":0.1,"state":9,"law":null,"fired":[{"from":1,"level":2,"by":"completed","operands":[]},"#,
+                r#"{"from":2,"level":0,"by":"bumper OR path \"x\"","operands":["bumper"]}]}"#
             )
         );
     }

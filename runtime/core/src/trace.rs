@@ -24,19 +24,19 @@ pub struct Line<'a, F> {
 
 /// A transition as a trace tells it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Fired<'a> {
+pub struct Fired<'a, O> {
     /// The state left.
     pub from: u64,
     /// How many scopes are around the one that ended.
     pub level: usize,
-    /// The condition text of its interrupt, or [`Fired::COMPLETED`].
+    /// The condition text of its interrupt, or [`COMPLETED`].
     pub by: &'a str,
+    /// The condition texts of the operands of its interrupt that have fired, in order; none where the law completed.
+    pub operands: O,
 }
 
-impl Fired<'_> {
-    /// What a scope ended by where only its law's completion did it.
-    pub const COMPLETED: &'static str = "completed";
-}
+/// What a scope ended by where only its law's completion did it.
+pub const COMPLETED: &str = "completed";
 
 impl Cause {
     /// What a trace says of it, where the scope that ended has an interrupt of this condition text.
@@ -44,24 +44,28 @@ impl Cause {
     pub const fn by(self, condition: &str) -> &str {
         match self {
             Self::Fired(_) => condition,
-            Self::Completed(_) => Fired::COMPLETED,
+            Self::Completed(_) => COMPLETED,
         }
     }
 }
 
 impl Transition {
-    /// What a trace says ended the scope: the condition text of its interrupt, or [`Fired::COMPLETED`].
+    /// What a trace says ended the scope: the condition text of its interrupt, or [`COMPLETED`].
     pub fn by<'p, P: Plan>(&self, plan: &'p P) -> &'p str {
         self.cause.by(plan.condition(self.scope))
     }
 
-    /// This transition of `plan` as a trace tells it.
-    pub fn fired<'p, P: Plan>(&self, plan: &'p P) -> Fired<'p> {
-        Fired { from: self.from, level: usize::from(self.cause.level()), by: self.by(plan) }
+    /// This transition of `plan` as a trace tells it, with the texts of the operands that have fired.
+    pub fn fired<'p, P: Plan, O>(&self, plan: &'p P, operands: O) -> Fired<'p, O> {
+        Fired { from: self.from, level: usize::from(self.cause.level()), by: self.by(plan), operands }
     }
 }
 
-impl<'a, F: IntoIterator<Item = Fired<'a>> + Clone> fmt::Display for Line<'_, F> {
+impl<'a, F, O> fmt::Display for Line<'_, F>
+where
+    F: IntoIterator<Item = Fired<'a, O>> + Clone,
+    O: IntoIterator<Item: AsRef<str>>,
+{
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{{\"turn\":{},\"t\":{},\"state\":{},\"law\":", self.turn, Seconds(self.t), self.state)?;
         match self.law {
@@ -72,9 +76,13 @@ impl<'a, F: IntoIterator<Item = Fired<'a>> + Clone> fmt::Display for Line<'_, F>
             write!(f, ",\"frame\":{}", Degrees(frame.0))?;
         }
         f.write_str(",\"fired\":[")?;
-        for (place, Fired { from, level, by }) in self.fired.clone().into_iter().enumerate() {
+        for (place, Fired { from, level, by, operands }) in self.fired.clone().into_iter().enumerate() {
             f.write_str(if place == 0 { "" } else { "," })?;
-            write!(f, "{{\"from\":{from},\"level\":{level},\"by\":{}}}", Json(by))?;
+            write!(f, "{{\"from\":{from},\"level\":{level},\"by\":{},\"operands\":[", Json(by))?;
+            for (place, operand) in operands.into_iter().enumerate() {
+                write!(f, "{}{}", if place == 0 { "" } else { "," }, Json(operand.as_ref()))?;
+            }
+            f.write_str("]}")?;
         }
         f.write_str("]}")
     }
@@ -149,17 +157,18 @@ mod tests {
 
     #[test]
     fn lines_look_as_the_interface_says() {
-        let line = Line { turn: 0, t: Nanos::ZERO, state: 1, law: Some("goAvoid 90 40 20"), frame: None, fired: [] };
+        let none: [Fired<'_, [&str; 0]>; 0] = [];
+        let line = Line { turn: 0, t: Nanos::ZERO, state: 1, law: Some("goAvoid 90 40 20"), frame: None, fired: none };
         assert_eq!(line.to_string(), r#"{"turn":0,"t":0.0,"state":1,"law":"goAvoid 90 40 20","fired":[]}"#);
         let fired = [
-            Fired { from: 1, level: 2, by: Fired::COMPLETED },
-            Fired { from: 2, level: 0, by: "bumper OR path \"x\"" },
+            Fired { from: 1, level: 2, by: COMPLETED, operands: &[][..] },
+            Fired { from: 2, level: 0, by: "bumper OR path \"x\"", operands: &["bumper", "path \"x\""] },
         ];
         assert_eq!(
             Line { turn: 1, t: Nanos(100_000_000), state: 9, law: None, frame: None, fired }.to_string(),
             concat!(
-                r#"{"turn":1,"t":0.1,"state":9,"law":null,"fired":[{"from":1,"level":2,"by":"completed"},"#,
-                r#"{"from":2,"level":0,"by":"bumper OR path \"x\""}]}"#
+                r#"{"turn":1,"t":0.1,"state":9,"law":null,"fired":[{"from":1,"level":2,"by":"completed","operands":[]},"#,
+                r#"{"from":2,"level":0,"by":"bumper OR path \"x\"","operands":["bumper","path \"x\""]}]}"#
             )
         );
     }
@@ -168,7 +177,8 @@ mod tests {
     fn frames_are_told_in_degrees() {
         let line = |degrees: f64| {
             let frame = Some(Frame(Radians::from_degrees(degrees)));
-            Line { turn: 0, t: Nanos::ZERO, state: 1, law: Some("stop"), frame, fired: [] }.to_string()
+            let fired: [Fired<'_, [&str; 0]>; 0] = [];
+            Line { turn: 0, t: Nanos::ZERO, state: 1, law: Some("stop"), frame, fired }.to_string()
         };
         assert_eq!(line(90.0), r#"{"turn":0,"t":0.0,"state":1,"law":"stop","frame":90.0,"fired":[]}"#);
         let told = [0.0, -22.5, 180.0, -180.0, 190.0, 720.25, 33.333_333_333, -1e-9];

@@ -15,7 +15,7 @@ use mdle_runtime::{Nanos, Plan, PrintableLines};
 use crate::clock::{Clock, Instants};
 use crate::ending::Ending;
 use crate::progress::Progress;
-use crate::report::Report;
+use crate::report::{Over, Report};
 use crate::safety::{Panicked, shielded};
 use crate::signals::Signals;
 use crate::summary::Summary;
@@ -70,8 +70,8 @@ pub(crate) struct Done {
     pub(crate) outcome: Outcome,
     /// The plan's time at which it ended.
     pub(crate) t: Nanos,
-    /// What ended the plan; empty if nothing did.
-    pub(crate) by: String,
+    /// How the plan ended, if it did.
+    pub(crate) over: Option<Over>,
     pub(crate) contacts: u64,
 }
 
@@ -165,18 +165,21 @@ fn one<R: Hosted, P>(batch: &Batch<R>, seed: u64, plan: &impl Fn() -> P, terms: 
 where
     P: Plan<Output = R::Output, Input = R::Input>,
 {
-    let mut run = Done { seed, outcome: Outcome::Arrived, t: Nanos::ZERO, by: String::new(), contacts: 0 };
+    let mut run = Done { seed, outcome: Outcome::Arrived, t: Nanos::ZERO, over: None, contacts: 0 };
     let mut robot = match shielded(|| (batch.robot)(seed)).unwrap_or_else(panicked) {
         Ok(robot) => robot,
         Err(sentence) => return Some(Done { outcome: Outcome::Failed(sentence), ..run }),
     };
     let mut clock = Clock::begin(Standing, Time::Stepped(Pace::Max), terms.period, None);
-    let mut said = LastLine::default();
+    let mut nobody = std::io::sink();
+    let mut over = None;
     let limits = Limits { timeout: terms.limits.timeout.or(terms.by_default()), ..terms.limits };
     let ending = shielded(|| {
-        let mut report = Report::new(&mut said, false);
+        let mut report = Report::new(&mut nobody, false);
         let mut witnesses = Witnesses { report: &mut report, log: None, path: None, progress: None, err: None };
-        turns::run(&mut robot, plan(), limits, &mut clock, terms.signals, &mut witnesses)
+        let ending = turns::run(&mut robot, plan(), limits, &mut clock, terms.signals, &mut witnesses);
+        over = witnesses.report.over().cloned();
+        ending
     });
     run.t = clock.taken();
     let stopped = shielded(|| {
@@ -200,7 +203,7 @@ where
         Ok(_) if failure.is_some() => Outcome::Failed(failure.unwrap_or_default()),
         Ok(Ending::Timeout(_) | Ending::Turns(_)) => Outcome::TimedOut,
         Ok(Ending::Over) => {
-            run.by = said.line().trim_start_matches("plan over: ").to_owned();
+            run.over = over;
             match robot.judged() {
                 Judgement::Arrived => Outcome::Arrived,
                 Judgement::Bumped => Outcome::Bumped,
@@ -226,36 +229,4 @@ impl Instants for Standing {
     }
 
     fn sleep(&mut self, _: Duration) {}
-}
-
-/// Keeps the last line of what is written.
-#[derive(Debug, Default)]
-struct LastLine {
-    line: Vec<u8>,
-    complete: bool,
-}
-
-impl LastLine {
-    fn line(&self) -> String {
-        String::from_utf8_lossy(&self.line).into_owned()
-    }
-}
-
-impl Write for LastLine {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        for byte in bytes {
-            if std::mem::take(&mut self.complete) {
-                self.line.clear();
-            }
-            match byte {
-                b'\n' => self.complete = true,
-                byte => self.line.push(*byte),
-            }
-        }
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> std::io::Result<()> {
-        Ok(())
-    }
 }

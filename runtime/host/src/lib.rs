@@ -8,6 +8,7 @@
 
 mod arguments;
 mod batch;
+mod cause;
 mod clock;
 mod ending;
 mod files;
@@ -17,6 +18,7 @@ mod named_file;
 mod outlet;
 mod output_format;
 mod panic_hook;
+mod passes;
 mod paths;
 mod patience;
 mod program;
@@ -33,6 +35,7 @@ mod target;
 #[cfg(test)]
 mod tests;
 mod timing;
+mod transitions;
 mod turns;
 mod unwinding;
 mod urgency;

@@ -5,10 +5,11 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use mdle_runtime::trace::Line;
-use mdle_runtime::{Frame, Nanos, Plan, Transition};
+use mdle_runtime::{Frame, Nanos, Plan};
 
 use crate::outlet::{Keeps, Outlet};
 use crate::patience::Patience;
+use crate::transitions::{Operand, Transitions};
 
 /// A run log that is being written.
 #[derive(Debug)]
@@ -33,7 +34,7 @@ pub(crate) struct Entry<'a, P> {
     /// The frame of that law, if a `FRAME here` is around its atom.
     pub(crate) frame: Option<Frame>,
     /// Its transitions, in order.
-    pub(crate) transitions: &'a [Transition],
+    pub(crate) transitions: &'a Transitions,
 }
 
 /// A file that is to be written in a run, such as its log, open and still as it was found; dropped, it leaves no file where there was none.
@@ -103,7 +104,12 @@ impl Log {
     pub(crate) fn turn<P: Plan>(&mut self, entry: &Entry<'_, P>) -> io::Result<()> {
         let Entry { plan, turn, t, state, applied, frame, transitions } = *entry;
         let law = applied.map(|atom| plan.law(atom));
-        let fired = transitions.iter().map(|transition| transition.fired(plan));
+        let source = plan.source();
+        let fired = transitions.iter().map(|(transition, operands)| {
+            let texts = source.operands_of(transition.scope);
+            let text = |(number, _): &Operand| texts.get(*number as usize).map(|words| words.text);
+            transition.fired(plan, operands.iter().filter_map(text))
+        });
         writeln!(self.file, "{}", Line { turn, t, state, law, frame, fired })?;
         if self.prompt { self.flush() } else { Ok(()) }
     }

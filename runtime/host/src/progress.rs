@@ -30,12 +30,12 @@ impl<'e> Progress<'e> {
     }
 
     /// A run has come to time `t`, with this atom. What it has reported is shown first, if it is time to show anything.
-    pub(crate) fn run(&mut self, t: Nanos, state: u64, law: &str, report: &mut Report<'_>) {
+    pub(crate) fn run(&mut self, t: Nanos, law: &str, report: &mut Report<'_>) {
         let Some(now) = self.due() else { return };
         self.clear();
         report.flush();
         let times = t.seconds() / now.as_secs_f64();
-        self.show(&format!("{:.1} s  {times:.0} times as fast as real  atom {state} {}", t.seconds(), Printable(law)));
+        self.show(&format!("{:.1} s  {times:.0} times as fast as real  {}", t.seconds(), Printable(law)));
     }
 
     /// So many runs of all are done.
@@ -91,11 +91,11 @@ mod tests {
         let mut progress = Progress::new(&mut err, Box::new(|| time.get()));
         for (millis, t) in [(0, 0), (99, 50), (100, 60), (150, 80), (201, 100)] {
             time.set(Duration::from_millis(millis));
-            progress.run(Nanos(t * 1_000_000_000), 7, "goAvoid 0 40 20", &mut report);
+            progress.run(Nanos(t * 1_000_000_000), "goAvoid 0 40 20", &mut report);
         }
         drop(progress);
-        let shown = "60.0 s  600 times as fast as real  atom 7 goAvoid 0 40 20\x1b[K\r\x1b[K\
-                     100.0 s  498 times as fast as real  atom 7 goAvoid 0 40 20\x1b[K\r\x1b[K";
+        let shown = "60.0 s  600 times as fast as real  goAvoid 0 40 20\x1b[K\r\x1b[K\
+                     100.0 s  498 times as fast as real  goAvoid 0 40 20\x1b[K\r\x1b[K";
         assert_eq!(String::from_utf8(err).unwrap(), shown);
     }
 

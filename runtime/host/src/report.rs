@@ -4,7 +4,12 @@
 use std::fmt;
 use std::io::{self, Write};
 
-use mdle_runtime::{Nanos, Plan, Printable, Transition};
+use mdle_runtime::trace::COMPLETED;
+use mdle_runtime::{Cause, Nanos, Plan, Printable, Transition};
+
+use crate::cause::{CauseText, place};
+use crate::passes::Passes;
+use crate::transitions::{Operand, Transitions};
 
 /// The report of a run; goes quiet when nobody reads it any more.
 pub(crate) struct Report<'a> {
@@ -13,6 +18,25 @@ pub(crate) struct Report<'a> {
     prompt: bool,
     /// Nothing more is written after an error; it is kept unless it says that the reader has gone.
     state: State,
+    /// The passes of loops.
+    passes: Passes,
+    /// Why the current atom runs; empty for the plan's first.
+    since: String,
+    /// How the plan ended, if it has.
+    over: Option<Over>,
+}
+
+/// How a plan ended.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub(crate) struct Over {
+    /// The words of a report.
+    pub(crate) cause: String,
+    /// The condition text of the interrupt, or `completed`.
+    pub(crate) by: String,
+    /// The condition texts of the operands that had fired.
+    pub(crate) operands: Vec<String>,
+    /// The name of the scope that ended; empty for an atom and in formal notation.
+    pub(crate) scope: String,
 }
 
 /// Whether a report is still written.
@@ -24,23 +48,43 @@ enum State {
 impl<'a> Report<'a> {
     /// A report to `out`.
     pub(crate) fn new(out: &'a mut dyn Write, prompt: bool) -> Self {
-        Self { out, prompt, state: State::Open }
+        Self { out, prompt, state: State::Open, passes: Passes::default(), since: String::new(), over: None }
+    }
+
+    /// Returns how the plan ended, if it has.
+    pub(crate) fn over(&self) -> Option<&Over> {
+        self.over.as_ref()
+    }
+
+    /// Returns the passes of loops, as of the last turn.
+    pub(crate) fn passes(&self) -> &Passes {
+        &self.passes
+    }
+
+    /// Returns why the current atom runs; empty for the plan's first.
+    pub(crate) fn since(&self) -> &str {
+        &self.since
     }
 
     /// Reports the transitions of the turn at time `t`.
-    pub(crate) fn turn<P: Plan>(&mut self, plan: &P, t: Nanos, transitions: &[Transition]) {
-        for transition in transitions {
-            let cause = CauseText { plan, transition };
+    pub(crate) fn turn<P: Plan>(&mut self, plan: &P, t: Nanos, transitions: &Transitions) {
+        for (transition, operands) in transitions.iter() {
+            self.passes.step(plan.fsm(), transition);
+            let cause = Printable(CauseText { plan, transition, operands }).to_string();
             let written = match (&self.state, transition.atom) {
-                (State::Closed(_), _) => return,
+                (State::Closed(_), _) => Ok(()),
                 (State::Open, Some(atom)) => {
-                    let (to, law) = (transition.to, plan.law(atom));
-                    let (law, cause) = (Printable(law), Printable(cause));
-                    writeln!(self.out, "{}  atom {to} {law}  <- {cause}", Clocked(t))
+                    let (law, place) = (Printable(plan.law(atom)), place(plan, &self.passes, atom));
+                    let place = if place.is_empty() { place } else { format!(" ({place})") };
+                    writeln!(self.out, "{}  {law}{}  <- {cause}", Clocked(t), Printable(&place))
                 }
-                (State::Open, None) => writeln!(self.out, "plan over: {}", Printable(cause)),
+                (State::Open, None) => writeln!(self.out, "{}  plan over: {cause}", Clocked(t)),
             };
             self.note(written);
+            if transition.atom.is_none() {
+                self.over = Some(Over::of(plan, transition, operands, cause.clone()));
+            }
+            self.since = cause;
         }
         if self.prompt && !transitions.is_empty() {
             self.flush();
@@ -78,42 +122,39 @@ impl<'a> Report<'a> {
     }
 }
 
+impl Over {
+    /// How `plan` ended by this transition.
+    fn of<P: Plan>(plan: &P, transition: &Transition, operands: &[Operand], cause: String) -> Self {
+        let source = plan.source();
+        let texts = source.operands_of(transition.scope);
+        let operands = operands.iter().filter_map(|(number, _)| texts.get(*number as usize));
+        Self {
+            cause,
+            by: match transition.cause {
+                Cause::Fired(_) => transition.by(plan).to_owned(),
+                Cause::Completed(_) => COMPLETED.to_owned(),
+            },
+            operands: operands.map(|words| words.text.to_owned()).collect(),
+            scope: plan.name(transition.scope).to_owned(),
+        }
+    }
+}
+
 /// A time to the millisecond.
 struct Clocked(Nanos);
 
 impl fmt::Display for Clocked {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Nanos(nanos) = self.0;
-        let millis = nanos / 1_000_000 + u64::from(nanos % 1_000_000 >= 500_000);
-        write!(f, "{}.{:03} s", millis / 1000, millis % 1000)
+        write!(f, "{} s", rounded(self.0.0))
     }
 }
 
-/// What ended a scope, and which: `bumper (Lab2ToLab1Plan)`.
-pub(crate) struct CauseText<'a, P> {
-    pub(crate) plan: &'a P,
-    pub(crate) transition: &'a Transition,
-}
-
-impl<P: Plan> fmt::Display for CauseText<'_, P> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Transition { from, scope, .. } = *self.transition;
-        write!(f, "{} (", self.transition.by(self.plan))?;
-        let name = self.plan.name(scope);
-        let fsm = self.plan.fsm();
-        let bracket = fsm.brackets.get(scope as usize);
-        let first = bracket.and_then(|bracket| fsm.atoms.get(bracket.first as usize));
-        let last = bracket.and_then(|bracket| fsm.atoms.get(bracket.last as usize));
-        match (first, last) {
-            _ if !name.is_empty() => write!(f, "{name}")?,
-            // The formal notation names no scopes; loops around this one are counted in their first pass.
-            (Some(first), Some(last)) if first.scope != scope => {
-                write!(f, "scope of atoms {}-{}", first.state, last.state)?;
-            }
-            (Some(_) | None, Some(_) | None) => write!(f, "atom {from}")?,
-        }
-        write!(f, ")")
-    }
+/// Nanoseconds as seconds, or nanometres as metres: to the thousandth, with at least one decimal.
+pub(crate) fn rounded(nanos: u64) -> String {
+    let thousandths = nanos / 1_000_000 + u64::from(nanos % 1_000_000 >= 500_000);
+    let text = format!("{}.{:03}", thousandths / 1000, thousandths % 1000);
+    let short = text.trim_end_matches('0');
+    if short.ends_with('.') { format!("{short}0") } else { short.to_owned() }
 }
 
 #[cfg(test)]
@@ -123,10 +164,12 @@ mod tests {
     #[test]
     fn times_are_rounded_to_milliseconds() {
         let shown = |nanos| Clocked(Nanos(nanos)).to_string();
-        assert_eq!(shown(0), "0.000 s");
-        assert_eq!(shown(12_300_000_000), "12.300 s");
+        assert_eq!(shown(0), "0.0 s");
+        assert_eq!(shown(12_300_000_000), "12.3 s");
+        assert_eq!(shown(62_500_000), "0.063 s");
+        assert_eq!(shown(100_000_000_000), "100.0 s");
         assert_eq!(shown(999_499_999), "0.999 s");
-        assert_eq!(shown(999_500_000), "1.000 s");
-        assert_eq!(shown(u64::MAX), "18446744073.710 s");
+        assert_eq!(shown(999_500_000), "1.0 s");
+        assert_eq!(shown(u64::MAX), "18446744073.71 s");
     }
 }

@@ -8,6 +8,7 @@ use mdle_runtime::trace::{Json, Seconds};
 
 use crate::batch::{Done, Outcome};
 use crate::ending;
+use crate::report::Over;
 
 /// The runs of a batch, in the order of their seeds.
 pub(crate) struct Summary<'a> {
@@ -102,11 +103,15 @@ impl Summary<'_> {
         }
         json += ",\"each\":[";
         for (number, run) in self.runs.iter().enumerate() {
-            let Done { seed, outcome, t, by, contacts } = run;
+            let Done { seed, outcome, t, over, contacts } = run;
             let name = outcome.name().replace(' ', "_");
             let between = if number == 0 { "" } else { "," };
             let _ = write!(json, "{between}{{\"seed\":{seed},\"outcome\":{},\"t\":{}", Json(&name), Seconds(*t));
-            let _ = write!(json, ",\"by\":{},\"contacts\":{contacts}", Json(by));
+            let Over { cause, by, operands, .. } = over.clone().unwrap_or_default();
+            let operands: Vec<_> = operands.iter().map(|operand| Json(operand).to_string()).collect();
+            let (by, operands, cause) = (Json(&by), operands.join(","), Json(&cause));
+            let _ = write!(json, ",\"by\":{by},\"operands\":[{operands}],\"cause\":{cause}");
+            let _ = write!(json, ",\"contacts\":{contacts}");
             if let Outcome::Astray(said) | Outcome::Failed(said) = outcome {
                 let _ = write!(json, ",\"said\":{}", Json(said));
             }
@@ -154,7 +159,8 @@ struct Missed<'a>(&'a Done);
 
 impl fmt::Display for Missed<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Done { outcome, t, by, .. } = self.0;
+        let Done { outcome, t, over, .. } = self.0;
+        let by = over.as_ref().map_or("", |over| &over.cause);
         write!(f, "{} at {:.1} s", outcome.name(), t.seconds())?;
         match outcome {
             Outcome::Arrived | Outcome::TimedOut => Ok(()),

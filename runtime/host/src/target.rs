@@ -111,6 +111,11 @@ pub struct Standing<'a> {
     pub state: u64,
     /// The quark text of its law.
     pub law: &'a str,
+    /// Its line, the names of the scopes around it and the passes of loops: `patrol.mdle:12, Leg, pass 3 of 5`; empty for a
+    /// plan that was written in Rust.
+    pub place: String,
+    /// The reason for which it runs: the operands that fired, with their values; empty for the plan's first.
+    pub since: &'a str,
     /// The scopes around it, the plan first and the atom last.
     pub scopes: Vec<Around<'a>>,
 }

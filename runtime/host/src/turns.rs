@@ -5,16 +5,18 @@ use std::io::{self, Write};
 use std::time::Duration;
 
 use mdle_runtime::fsm::Kind;
-use mdle_runtime::{Machine, Nanos, Plan, Robot, Transition, Turn, Watch};
+use mdle_runtime::{Machine, Nanos, Plan, Robot, Turn};
 
+use crate::cause::place;
 use crate::clock::{Clock, Instants, nanos};
 use crate::ending::{Ending, say};
 use crate::log::{Entry, Log};
 use crate::paths::Recorder;
 use crate::progress::Progress;
-use crate::report::{CauseText, Report};
+use crate::report::Report;
 use crate::signals::Signals;
 use crate::timing::Timing;
+use crate::transitions::Transitions;
 use crate::{Around, Ended, Hosted, Standing};
 
 /// When a plan that is not over is given up.
@@ -64,7 +66,7 @@ where
     };
     let mut t = clock.zero();
     let mut machine = Machine::begin(plan, &y, t);
-    let mut seen = Seen::default();
+    let mut transitions = Transitions::default();
     // Whether the current atom has been entered since a law was applied last.
     let mut fresh = true;
     let mut number: u64 = 0;
@@ -72,10 +74,10 @@ where
         if let Some(path) = &mut witnesses.path {
             path.take(&y, t);
         }
-        seen.0.clear();
-        let turn = machine.turn(&y, t, &mut seen);
-        fresh |= !seen.0.is_empty();
-        if let Err(error) = witnesses.tell(&machine, &turn, number, t, &seen.0) {
+        transitions.clear();
+        let turn = machine.turn(&y, t, &mut transitions);
+        fresh |= !transitions.is_empty();
+        if let Err(error) = witnesses.tell(&machine, &turn, number, t, &transitions) {
             break Ending::Log(error.to_string());
         }
         match turn {
@@ -86,7 +88,7 @@ where
             Turn::Over => break Ending::Over,
         }
         if robot.looks() {
-            robot.turned(&standing(&machine, t));
+            robot.turned(&standing(&machine, t, witnesses.report));
         }
         number = number.saturating_add(1);
         if let Some(ending) = limits.reached(number, t) {
@@ -104,7 +106,7 @@ where
         };
         t = clock.taken();
     };
-    ended(robot, &machine, &ending, seen.0.last(), t);
+    ended(robot, &machine, &ending, witnesses.report, t);
     ending
 }
 
@@ -118,23 +120,13 @@ fn began<R: Hosted, P: Plan>(robot: &mut R, machine: &Machine<P>, t: Nanos) {
 }
 
 /// Tells the robot that its turns have ended, and by what.
-fn ended<R: Hosted, P: Plan>(
-    robot: &mut R,
-    machine: &Machine<P>,
-    ending: &Ending,
-    last: Option<&Transition>,
-    t: Nanos,
-) {
-    let plan = machine.plan();
-    let by = match (ending, last) {
-        (Ending::Over, Some(transition)) => CauseText { plan, transition }.to_string(),
-        (ending, _) => ending.brief(),
-    };
-    robot.ended(&Ended { plan: plan.name(0), is_over: *ending == Ending::Over, by: &by, t });
+fn ended<R: Hosted, P: Plan>(robot: &mut R, machine: &Machine<P>, ending: &Ending, report: &Report<'_>, t: Nanos) {
+    let by = report.over().map_or_else(|| ending.brief(), |over| over.cause.clone());
+    robot.ended(&Ended { plan: machine.plan().name(0), is_over: *ending == Ending::Over, by: &by, t });
 }
 
 /// Where a plan stands that is not over.
-fn standing<P: Plan>(machine: &Machine<P>, t: Nanos) -> Standing<'_> {
+fn standing<'m, P: Plan>(machine: &'m Machine<P>, t: Nanos, report: &'m Report<'_>) -> Standing<'m> {
     let (plan, fsm) = (machine.plan(), machine.plan().fsm());
     let atom = machine.atom().and_then(|atom| fsm.atoms.get(atom as usize));
     let own = atom.and_then(|atom| fsm.brackets.get(atom.scope as usize)).map(|bracket| bracket.kind);
@@ -147,7 +139,8 @@ fn standing<P: Plan>(machine: &Machine<P>, t: Nanos) -> Standing<'_> {
         Around { name: plan.name(scope), condition: plan.condition(scope), since: machine.cursor().since(level, t) }
     });
     let law = machine.atom().map_or("", |atom| plan.law(atom));
-    Standing { t, state: machine.state(), law, scopes: scopes.collect() }
+    let place = machine.atom().map_or_else(String::new, |atom| place(plan, report.passes(), atom));
+    Standing { t, state: machine.state(), law, place, since: report.since(), scopes: scopes.collect() }
 }
 
 /// Exchanges an input for the output that follows it.
@@ -178,13 +171,13 @@ impl<Y> Witnesses<'_, '_, Y> {
         turn: &Turn<P::Input>,
         number: u64,
         t: Nanos,
-        transitions: &[Transition],
+        transitions: &Transitions,
     ) -> io::Result<()> {
         let plan = machine.plan();
         self.report.turn(plan, t, transitions);
         if let Some(progress) = &mut self.progress {
             let law = machine.atom().map_or("", |atom| plan.law(atom));
-            progress.run(t, machine.state(), law, self.report);
+            progress.run(t, law, self.report);
         }
         let Some(log) = self.log.as_mut() else { return Ok(()) };
         let applied = match turn {
@@ -193,15 +186,5 @@ impl<Y> Witnesses<'_, '_, Y> {
         };
         let frame = machine.frame().filter(|_| applied.is_some());
         log.turn(&Entry { plan, turn: number, t, state: machine.state(), applied, frame, transitions })
-    }
-}
-
-/// The transitions of a turn. The plan, which has their texts, is not at hand while they are made.
-#[derive(Debug, Default)]
-struct Seen(Vec<Transition>);
-
-impl Watch for Seen {
-    fn transition(&mut self, transition: Transition) {
-        self.0.push(transition);
     }
 }

@@ -4,7 +4,7 @@ use core::ffi::c_int;
 use core::fmt::{self, Write};
 
 use mdle_runtime::trace::Line;
-use mdle_runtime::{Machine, Plan, Transition, Turn, Watch};
+use mdle_runtime::{Machine, Measured, Plan, Transition, Turn, Watch};
 
 use crate::sensed::Sensed;
 use crate::system::{Printed, bytes};
@@ -31,7 +31,12 @@ fn turns(plan: impl Plan<Output = Output, Input = Input>) -> fmt::Result {
             Turn::Law(_) => machine.atom().map(|atom| machine.plan().law(atom)),
             Turn::Cut | Turn::Over => None,
         };
-        let fired = transitions.made.iter().flatten().map(|transition| transition.fired(machine.plan()));
+        let source = machine.plan().source();
+        let fired = transitions.made.iter().flatten().map(|Made { transition, operands }| {
+            let texts = source.operands_of(transition.scope).iter().zip(0_u32..);
+            let fired = texts.filter(|(_, number)| operands.iter().flatten().any(|operand| operand == number));
+            transition.fired(machine.plan(), fired.map(|(words, _)| words.text))
+        });
         let frame = machine.frame().filter(|_| law.is_some());
         let Input { v, omega } = outcome.input();
         writeln!(Printed, "{}", Line { turn, t, state: machine.state(), law, frame, fired })?;
@@ -45,13 +50,28 @@ fn turns(plan: impl Plan<Output = Output, Input = Input>) -> fmt::Result {
 /// The first transitions of a turn.
 #[derive(Default)]
 struct Transitions {
-    made: [Option<Transition>; 8],
+    /// The operands of the next one.
+    operands: [Option<u32>; 8],
+    made: [Option<Made>; 8],
+}
+
+/// A transition, and the numbers of the first operands that have fired.
+struct Made {
+    transition: Transition,
+    operands: [Option<u32>; 8],
 }
 
 impl Watch for Transitions {
+    fn operand(&mut self, number: u32, _: Measured) {
+        if let Some(free) = self.operands.iter_mut().find(|place| place.is_none()) {
+            *free = Some(number);
+        }
+    }
+
     fn transition(&mut self, transition: Transition) {
+        let operands = core::mem::take(&mut self.operands);
         if let Some(free) = self.made.iter_mut().find(|place| place.is_none()) {
-            *free = Some(transition);
+            *free = Some(Made { transition, operands });
         }
     }
 }

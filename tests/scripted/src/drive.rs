@@ -2,9 +2,10 @@
 
 use alloc::vec::Vec;
 use core::fmt::{self, Write};
+use core::mem::take;
 
 use mdle_runtime::trace::Line;
-use mdle_runtime::{Frame, Machine, Nanos, Plan, Transition, Turn, Watch};
+use mdle_runtime::{Frame, Machine, Measured, Nanos, Plan, Transition, Turn, Watch};
 
 use crate::{Input, LAWS, Output};
 
@@ -25,9 +26,9 @@ where
     let mut unwatched = Machine::begin(plan(), first, *start);
     let (mut began, mut computed) = (*start, 0_u32);
     for (turn, (t, y)) in (0..).zip(script) {
-        let mut transitions = Transitions(Vec::new());
+        let mut transitions = Transitions { operands: Vec::new(), made: Vec::new() };
         let outcome = machine.turn(y, *t, &mut transitions);
-        if !transitions.0.is_empty() {
+        if !transitions.made.is_empty() {
             (began, computed) = (*t, 0);
         }
         let is_same = unwatched.turn(y, *t, &mut ()) == outcome && unwatched.cursor() == machine.cursor();
@@ -44,7 +45,12 @@ where
             }
             Turn::Cut | Turn::Over => None,
         };
-        let fired = transitions.0.iter().map(|transition| transition.fired(machine.plan()));
+        let source = machine.plan().source();
+        let fired = transitions.made.iter().map(|(transition, operands)| {
+            let texts = source.operands_of(transition.scope);
+            let text = |number: &u32| texts.get(*number as usize).map_or("unknown", |words| words.text);
+            transition.fired(machine.plan(), operands.iter().map(text).collect::<Vec<_>>())
+        });
         // The law tells the frame that it was given; the machine tells whether it comes from a `FRAME here`.
         let frame = machine.frame().and(given);
         writeln!(trace, "{}", Line { turn, t: *t, state: machine.state(), law, frame, fired })?;
@@ -63,11 +69,19 @@ fn applied(input: Input, named: &str, began: Nanos, computed: u32) -> &'static s
     }
 }
 
-/// The transitions of a turn.
-struct Transitions(Vec<Transition>);
+/// The transitions of a turn, each with the numbers of the operands that have fired.
+struct Transitions {
+    /// Those of the next one.
+    operands: Vec<u32>,
+    made: Vec<(Transition, Vec<u32>)>,
+}
 
 impl Watch for Transitions {
+    fn operand(&mut self, number: u32, _: Measured) {
+        self.operands.push(number);
+    }
+
     fn transition(&mut self, transition: Transition) {
-        self.0.push(transition);
+        self.made.push((transition, take(&mut self.operands)));
     }
 }

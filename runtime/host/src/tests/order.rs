@@ -118,7 +118,7 @@ fn a_fault_in_the_last_exchange_is_a_fault() {
     status 3
     error: a fault stopped the robot: no answer
     ");
-    assert_eq!(run.out, "plan over: bumper (Lab)\n");
+    assert_eq!(run.out, "0.0 s  plan over: bumper (Lab)\n");
 }
 
 #[test]

@@ -40,21 +40,10 @@ fn logged(stage: Stage, options: &[&str]) -> (Run, String) {
 #[test]
 fn each_transition_is_a_line() {
     insta::assert_snapshot!(tour().run(&[]).out, @r#"
-    0.100 s  atom 2 rotate 90  <- atIsection 0100 (atom 1)
-    0.100 s  atom 3 stop  <- completed (atom 2)
-    0.300 s  atom 4 null  <- wait 10 (Turn)
-    plan over: heard "stop" (atom 4)
-    "#);
-}
-
-#[test]
-fn a_scope_without_a_name_is_told_by_its_atoms() {
-    let run = Stage { plan: ToyPlan::lab().unnamed(), ..tour() }.run(&[]);
-    insta::assert_snapshot!(run.out, @r#"
-    0.100 s  atom 2 rotate 90  <- atIsection 0100 (atom 1)
-    0.100 s  atom 3 stop  <- completed (atom 2)
-    0.300 s  atom 4 null  <- wait 10 (scope of atoms 2-3)
-    plan over: heard "stop" (atom 4)
+    0.1 s  rotate 90 (Turn)  <- atIsection 0100
+    0.1 s  stop (Turn)  <- completed
+    0.3 s  null  <- wait 10 (Turn)
+    0.4 s  plan over: heard "stop"
     "#);
 }
 
@@ -64,10 +53,10 @@ fn the_log_is_a_trace() {
     assert_eq!((run.status, &*run.err), (0, ""));
     insta::assert_snapshot!(log, @r#"
     {"turn":0,"t":0.0,"state":1,"law":"go 20 0","fired":[]}
-    {"turn":1,"t":0.1,"state":3,"law":"stop","fired":[{"from":1,"level":1,"by":"atIsection 0100"},{"from":2,"level":2,"by":"completed"}]}
+    {"turn":1,"t":0.1,"state":3,"law":"stop","fired":[{"from":1,"level":1,"by":"atIsection 0100","operands":[]},{"from":2,"level":2,"by":"completed","operands":[]}]}
     {"turn":2,"t":0.2,"state":3,"law":"stop","fired":[]}
-    {"turn":3,"t":0.3,"state":4,"law":"null","fired":[{"from":3,"level":1,"by":"wait 10"}]}
-    {"turn":4,"t":0.4,"state":5,"law":null,"fired":[{"from":4,"level":1,"by":"heard \"stop\""}]}
+    {"turn":3,"t":0.3,"state":4,"law":"null","fired":[{"from":3,"level":1,"by":"wait 10","operands":[]}]}
+    {"turn":4,"t":0.4,"state":5,"law":null,"fired":[{"from":4,"level":1,"by":"heard \"stop\"","operands":[]}]}
     "#);
 }
 
@@ -78,9 +67,9 @@ fn a_cut_turn_sends_the_null_input_and_has_no_law() {
     assert_eq!(run.journal, "exchange 0, exchange 0, exchange 0, stop, finish");
     assert_eq!(run.out.lines().count(), 2 * 4096);
     let second = log.lines().nth(1).unwrap();
-    assert!(
-        second.starts_with(r#"{"turn":1,"t":0.1,"state":1,"law":null,"fired":[{"from":1,"level":1,"by":"always"},"#)
-    );
+    assert!(second.starts_with(
+        r#"{"turn":1,"t":0.1,"state":1,"law":null,"fired":[{"from":1,"level":1,"by":"always","operands":[]},"#
+    ));
     assert_eq!(second.matches("always").count(), 4096);
 }
 

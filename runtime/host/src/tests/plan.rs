@@ -42,11 +42,6 @@ impl ToyPlan {
         }
     }
 
-    /// The same plan in the formal notation, which names no scopes.
-    pub(super) fn unnamed(self) -> Self {
-        Self { names: vec![""; 6], ..self }
-    }
-
     /// The same plan, which replays a path as well.
     pub(super) fn replaying(self) -> Self {
         Self { paths: vec!["hall"], ..self }

@@ -72,8 +72,8 @@ fn a_program_has_the_statuses_that_scripts_rely_on() {
 fn a_plan_says_what_it_does() {
     let Output { stdout, .. } = cart(&["--speed", "max"]).output().unwrap();
     let report = text(&stdout);
-    assert!(report.starts_with("2.000 s  atom 2 go -0.5  <- far (atom 1)\n4.000 s  atom 1 go 0.5  <- near (atom 2)\n"));
-    assert!(report.ends_with("\nplan over: wait 1000 (Shuttle)\n"), "{report}");
+    assert!(report.starts_with("2.0 s  go -0.5 (pass 1)  <- far\n4.0 s  go 0.5 (pass 2)  <- near\n"));
+    assert!(report.ends_with(" s  plan over: wait 1000 (Shuttle)\n"), "{report}");
 }
 
 #[test]

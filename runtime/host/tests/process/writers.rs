@@ -253,6 +253,6 @@ fn a_reader_that_does_not_read_holds_up_no_robot() {
     assert!(lines.by_ref().any(|line| line == "cart: stop"));
     let mut report = String::new();
     child.stdout.take().unwrap().read_to_string(&mut report).unwrap();
-    assert!(report.starts_with("0.000 s  atom 2 go -0.5  <- far (atom 1)\n"));
+    assert!(report.starts_with("0.0 s  go -0.5 (pass 1)  <- far\n"));
     assert_eq!(child.wait().unwrap().code(), Some(143));
 }

@@ -32,7 +32,9 @@ impl Now {
     /// The plan stands here.
     pub(super) fn stands(&mut self, standing: &Standing<'_>) {
         self.seconds = standing.t.seconds();
-        self.atom = format!("atom {}  {}", standing.state, standing.law);
+        let place = if standing.place.is_empty() { String::new() } else { format!("  ({})", standing.place) };
+        let since = if standing.since.is_empty() { String::new() } else { format!("  <- {}", standing.since) };
+        self.atom = format!("{}{place}{since}", standing.law);
         self.scopes = standing.scopes.iter().map(Scope::of).collect();
         let middle = 1..self.scopes.len().saturating_sub(SCOPES_MOST - 2).max(1);
         if self.scopes.len() > SCOPES_MOST {
@@ -125,7 +127,8 @@ mod tests {
         };
         let scopes = (0..scopes).map(around).collect();
         let mut now = Now { contacts: 2, ..Now::default() };
-        now.stands(&Standing { t: Nanos(73_800_000_000), state: 5, law: "go 0 0.36", scopes });
+        let (place, since) = ("tour.mdle:12, pass 2 of 3".to_owned(), "wait 7s (tour.mdle:11)");
+        now.stands(&Standing { t: Nanos(73_800_000_000), state: 5, law: "go 0 0.36", place, since, scopes });
         now
     }
 

@@ -36,11 +36,13 @@ fn a_run_is_watched_to_its_limit_and_reported_behind_the_screen() {
     let terminal = Terminal::start(tour(&["--watch", "--speed", "max", "--turns", "500"]), false);
     let (seen, status) = terminal.end();
     assert_eq!(status.code(), Some(4));
-    for shown in ["atom 1  goAvoid 90 40 20", "until atIsection 0100", "heading 0", "Ctrl-C stops the robot", "⡇"] {
+    for shown in
+        ["goAvoid 90 40 20  (Lab2ToLab1Plan)", "until atIsection 0100", "heading 0", "Ctrl-C stops the robot", "⡇"]
+    {
         assert!(seen.contains(shown), "{shown}: {seen}");
     }
     let behind = behind_the_screen(&seen);
-    assert!(behind.starts_with("23.200 s  atom 2 go 0 0.36  <- atIsection 0100 (atom 1)\r\n"), "{behind}");
+    assert!(behind.starts_with("23.2 s  go 0 0.36 (Lab2ToLab1Plan)  <- atIsection 0100\r\n"), "{behind}");
     assert!(behind.ends_with("stopped by --turns: the plan was not over after 500 turns\r\n"), "{behind}");
 }
 

@@ -1,0 +1,168 @@
+//! The words of a transition: the operands that have fired with their values, in the writer's words, and where they are.
+
+use std::fmt::{self, Write as _};
+
+use mdle_runtime::fsm::Kind;
+use mdle_runtime::trace::COMPLETED;
+use mdle_runtime::{Cause, Measured, OperandWords, Operator, Plan, SourceLine, Transition, ValueWords};
+
+use crate::passes::{Passes, outwards};
+use crate::report::rounded;
+use crate::transitions::Operand;
+
+/// The decimals of a value that is shown, unless it takes more to tell it from what it is compared with.
+const DECIMALS: usize = 2;
+/// The most decimals of a value.
+const DECIMALS_MOST: usize = 9;
+
+/// Why a scope ended, as a report has it: `r1 = 0.38 m < 40cm (wall.mdle:7)`.
+pub(crate) struct CauseText<'a, P> {
+    pub(crate) plan: &'a P,
+    pub(crate) transition: &'a Transition,
+    pub(crate) operands: &'a [Operand],
+}
+
+impl<P: Plan> fmt::Display for CauseText<'_, P> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { plan, transition, operands } = *self;
+        let Transition { scope, cause, .. } = *transition;
+        let source = plan.source();
+        let Some(bracket) = source.brackets.get(scope as usize) else {
+            // A plan that was written in Rust has no text.
+            let name = plan.name(scope);
+            let by = transition.by(plan);
+            return if name.is_empty() { f.write_str(by) } else { write!(f, "{by} ({name})") };
+        };
+        if matches!(cause, Cause::Completed(_)) {
+            return write!(f, "{COMPLETED} ({})", Place(source.file(bracket.at), bracket.at));
+        }
+        let all = source.operands_of(scope);
+        let mut words: Vec<String> = Vec::new();
+        let mut at = bracket.at;
+        for (number, measured) in operands {
+            let Some(operand) = all.get(*number as usize) else { continue };
+            let text = measured_words(operand, *measured);
+            if words.is_empty() {
+                at = operand.at;
+            }
+            if !words.contains(&text) {
+                words.push(text);
+            }
+        }
+        write!(f, "{} ({}", words.join(" and "), Place(source.file(at), at))?;
+        if all.len() > 1 {
+            write!(f, ", of \"{}\"", bracket.condition)?;
+        }
+        f.write_char(')')
+    }
+}
+
+/// The place of the atom that a report names: its line, the names of the scopes around it and the passes of loops.
+pub(crate) fn place<P: Plan>(plan: &P, passes: &Passes, atom: u32) -> String {
+    let (fsm, source) = (plan.fsm(), plan.source());
+    let Some(own) = fsm.atoms.get(atom as usize).map(|atom| atom.scope) else { return String::new() };
+    let around = outwards(fsm, own).filter_map(|(number, bracket)| match bracket.kind {
+        // The plan itself is around every atom.
+        Kind::Scope { .. } => Some(plan.name(number)).filter(|name| number > 0 && !name.is_empty()).map(str::to_owned),
+        Kind::Loop { times: 0, .. } => Some(format!("pass {}", passes.of(number))),
+        Kind::Loop { times, .. } => Some(format!("pass {} of {times}", passes.of(number))),
+    });
+    let mut words: Vec<String> = around.collect();
+    words.extend(source.brackets.get(own as usize).map(|own| Place(source.file(own.at), own.at).to_string()));
+    words.reverse();
+    words.join(", ")
+}
+
+/// A line of a file: `wall.mdle:7`.
+struct Place<'a>(&'a str, SourceLine);
+
+impl fmt::Display for Place<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:{}", self.0, self.1.line)
+    }
+}
+
+/// The words of an operand with its values: `r1 = 0.38 m < 40cm`.
+fn measured_words(operand: &OperandWords<'_>, measured: Measured) -> String {
+    let values = match measured {
+        Measured::Nothing => [None, None],
+        Measured::Elapsed(t) => [Some(rounded(t.0)), None],
+        Measured::Driven(length) => [Some(rounded(length.0)), None],
+        Measured::Compared { left, operator, right } => compared(operand.values, left, operator, right),
+    };
+    let mut words = String::new();
+    let mut written = 0;
+    for (value, ValueWords { after, unit, .. }) in values.into_iter().flatten().zip(operand.values) {
+        let after = *after as usize;
+        words += operand.written.get(written..after).unwrap_or("");
+        let between = if unit.is_empty() { "" } else { " " };
+        let _ = write!(words, " = {value}{between}{unit}");
+        written = after;
+    }
+    words + operand.written.get(written..).unwrap_or("")
+}
+
+/// The values of both sides in the units of their signals, with so many decimals that the comparison is still as it was.
+fn compared(words: &[ValueWords<'_>], left: f64, operator: Operator, right: f64) -> [Option<String>; 2] {
+    let scale = |side: usize| words.get(side).map(|words| words.scale);
+    let Some(one) = scale(0) else { return [None, None] };
+    let text = |value: f64, scale: f64, decimals: usize| shown(value / scale, decimals);
+    let back = |text: &str, scale: f64| text.parse::<f64>().map_or(f64::NAN, |value| value * scale);
+    let so = operator.holds(left, right);
+    let stays = |decimals: &usize| {
+        let other = scale(1).map_or(right, |scale| back(&text(right, scale, *decimals), scale));
+        operator.holds(back(&text(left, one, *decimals), one), other) == so
+    };
+    let decimals = (DECIMALS..DECIMALS_MOST).find(stays).unwrap_or(DECIMALS_MOST);
+    [Some(text(left, one, decimals)), scale(1).map(|scale| text(right, scale, decimals))]
+}
+
+/// A number with at most so many decimals, no zeros at its end.
+fn shown(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
+    (if text == "-0" { "0" } else { text }).to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mdle_runtime::{Nanometers, Nanos};
+
+    const AT: SourceLine = SourceLine { file: 0, line: 7 };
+    const METRES: ValueWords<'static> = ValueWords { after: 2, unit: "m", scale: 1.0 };
+
+    fn words(written: &str, values: &[ValueWords<'_>], measured: Measured) -> String {
+        measured_words(&OperandWords { text: "", written, at: AT, values }, measured)
+    }
+
+    fn less(left: f64, right: f64) -> Measured {
+        Measured::Compared { left, operator: Operator::Less, right }
+    }
+
+    #[test]
+    fn values_stand_after_their_signals() {
+        assert_eq!(words("r1 < 40cm", &[METRES], less(0.38, 0.4)), "r1 = 0.38 m < 40cm");
+        assert_eq!(
+            words("RISING r1<40cm", &[ValueWords { after: 9, ..METRES }], less(0.1, 0.4)),
+            "RISING r1 = 0.1 m<40cm"
+        );
+        let both = [METRES, ValueWords { after: 7, ..METRES }];
+        assert_eq!(words("r3 < r5", &both, less(0.25, 1.0)), "r3 = 0.25 m < r5 = 1 m");
+        assert_eq!(words("r3 < r5", &both, less(1.5, f64::INFINITY)), "r3 = 1.5 m < r5 = inf m");
+        assert_eq!(words("bumper", &[], Measured::Nothing), "bumper");
+        assert_eq!(words("wait 10min", &[], Measured::Elapsed(Nanos(1))), "wait 10min");
+        let time = [ValueWords { after: 1, unit: "s", scale: 1.0 }];
+        assert_eq!(words("t > 3s", &time, Measured::Elapsed(Nanos(3_050_000_000))), "t = 3.05 s > 3s");
+        let way = [ValueWords { after: 3, ..METRES }];
+        assert_eq!(words("way > 2m", &way, Measured::Driven(Nanometers(2_013_400_000))), "way = 2.013 m > 2m");
+    }
+
+    #[test]
+    fn a_value_is_not_rounded_to_what_it_is_compared_with() {
+        assert_eq!(words("r1 < 40cm", &[METRES], less(0.399_97, 0.4)), "r1 = 0.39997 m < 40cm");
+        let centimetres = [ValueWords { after: 1, unit: "cm/s", scale: 0.01 }];
+        assert_eq!(words("v < 80", &centimetres, less(0.123_45, 0.8)), "v = 12.35 cm/s < 80");
+        assert_eq!(words("v < 80", &centimetres, less(-0.000_001, 0.8)), "v = 0 cm/s < 80");
+    }
+}

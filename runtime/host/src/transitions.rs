@@ -1,0 +1,44 @@
+//! The transitions of a turn, each with the operands by which it was made.
+
+use mdle_runtime::{Measured, Transition, Watch};
+
+/// The transitions of a turn. The plan, which has their texts, is not at hand while they are made.
+#[derive(Debug, Default)]
+pub(crate) struct Transitions {
+    /// In order, each with the number of operands up to its own.
+    made: Vec<(Transition, usize)>,
+    operands: Vec<Operand>,
+}
+
+/// An operand that has fired: its number in the interrupt of the scope that ended, and its values.
+pub(crate) type Operand = (u32, Measured);
+
+impl Transitions {
+    /// Forgets those of the turn before.
+    pub(crate) fn clear(&mut self) {
+        self.made.clear();
+        self.operands.clear();
+    }
+
+    /// Returns `true` if there are none.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.made.is_empty()
+    }
+
+    /// Returns the transitions in order, each with the operands that had fired.
+    pub(crate) fn iter(&self) -> impl Iterator<Item = (&Transition, &[Operand])> + Clone {
+        let begins = std::iter::once(0).chain(self.made.iter().map(|(_, end)| *end));
+        let operands = |first, end| self.operands.get(first..end).unwrap_or(&[]);
+        self.made.iter().zip(begins).map(move |((transition, end), first)| (transition, operands(first, *end)))
+    }
+}
+
+impl Watch for Transitions {
+    fn operand(&mut self, number: u32, measured: Measured) {
+        self.operands.push((number, measured));
+    }
+
+    fn transition(&mut self, transition: Transition) {
+        self.made.push((transition, self.operands.len()));
+    }
+}
