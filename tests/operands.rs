@@ -1,0 +1,185 @@
+//! Reports, logs, batches and traces name the operands that fired, exactly those, with their values and places.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::sync::OnceLock;
+
+use mdle_tests::chance::Chance;
+use mdle_tests::executable::{folder, run_mdlec};
+use mdle_tests::pipeline::compile;
+use mdle_tests::random_plan::RandomPlan;
+use mdle_tests::random_script::script;
+use mdlec::trace::{COMPLETED, Reports, Script, Tree, run};
+
+/// How many random plans are tried.
+const PLANS: u64 = 3_000;
+
+/// The operands of a condition text: what AND and OR join, whatever parentheses are around it.
+fn operands(text: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut operand = String::new();
+    // The depth of parentheses that belong to NOT, RISING or `after`.
+    let mut held = 0_usize;
+    let spaced = text.replace('(', " ( ").replace(')', " ) ");
+    for word in spaced.split_whitespace() {
+        let is_operator = operand.ends_with("NOT") || operand.ends_with("RISING") || operand.contains("after ");
+        match word {
+            "(" if held > 0 || is_operator => {
+                held += 1;
+                operand += if operand.ends_with('(') { "(" } else { " (" };
+            }
+            ")" if held > 0 => {
+                held -= 1;
+                operand += ")";
+            }
+            "(" | ")" => {}
+            "AND" | "OR" if held == 0 => found.push(std::mem::take(&mut operand)),
+            word => {
+                let between = if operand.is_empty() || operand.ends_with('(') { "" } else { " " };
+                operand += between;
+                operand += word;
+            }
+        }
+    }
+    found.push(operand);
+    found
+}
+
+/// What the text of an operand alone says of its value in a turn; `None` where it depends on more than this.
+fn value(operand: &str, reports: &Reports, since: f64) -> Option<bool> {
+    let now = reports.t.seconds();
+    let seconds = |text: &str| text.parse::<f64>().ok();
+    if let Some(inside) = operand.strip_prefix("NOT ") {
+        return if inside.starts_with('(') { None } else { value(inside, reports, since).map(|fired| !fired) };
+    }
+    if let Some(inside) = operand.strip_prefix("RISING ") {
+        // What does not fire does not rise.
+        let fired = if inside.starts_with('(') { None } else { value(inside, reports, since) };
+        return fired.filter(|fired| !fired);
+    }
+    if let Some(wait) = operand.strip_prefix("wait ") {
+        let Some(wait) = seconds(wait) else { return Some(false) };
+        // Its scope was entered by the last transition at the latest, and not before the plan began.
+        return if wait <= now - since - 1e-6 {
+            Some(true)
+        } else if wait > now + 1e-6 {
+            Some(false)
+        } else {
+            None
+        };
+    }
+    let word = operand.split(' ').next().unwrap_or_default();
+    let is_remembered = ["after", "t", "way"].contains(&word);
+    if is_remembered { None } else { Some(operand != "null" && reports.fired.contains(operand)) }
+}
+
+#[test]
+fn the_operands_named_are_exactly_those_that_fired() {
+    let (mut transitions, mut decided, mut all, mut several) = (0_u32, 0_u32, 0_u32, 0_u32);
+    for seed in 0..PLANS {
+        let mut chance = Chance::new(seed);
+        let text = RandomPlan::new(&mut chance, 2 + (seed % 12) as usize, false).to_string();
+        let script = script(&mut chance, 12);
+        let Ok(compiled) = compile(&text) else { continue };
+        let script = Script::read(&script).expect("a script");
+        let mut last = script.turns().first().map_or(0.0, |first| first.t.seconds());
+        for (line, reports) in run(Tree::new(&compiled.plan), &script).zip(script.turns()) {
+            for fired in &line.outcome.fired {
+                if fired.by == COMPLETED {
+                    assert!(fired.operands.is_empty(), "seed {seed}: {line}");
+                    last = reports.t.seconds();
+                    continue;
+                }
+                let written = operands(fired.by);
+                transitions += 1;
+                several += u32::from(fired.operands.len() > 1);
+                assert!(!fired.operands.is_empty(), "seed {seed}: {line}\n{text}");
+                assert!(fired.operands.iter().all(|operand| written.contains(operand)), "seed {seed}: {line}\n{text}");
+                for operand in written {
+                    all += 1;
+                    let Some(value) = value(&operand, reports, last) else { continue };
+                    decided += 1;
+                    assert_eq!(fired.operands.contains(&operand), value, "seed {seed}: {operand}: {line}\n{text}");
+                }
+                last = reports.t.seconds();
+            }
+        }
+    }
+    println!("{transitions} transitions, {several} with several operands; {decided} of {all} operands decided");
+    assert!(transitions > 3_000 && several > 100 && decided > all / 2, "{transitions} {several} {decided} {all}");
+}
+
+/// A wall follower that has everything a report names: operands with values, several at once, loops, behaviors.
+const PLAN: &str = "\
+{ Wall (bumper OR // contact
+        wait 10min)
+  ExecPlan 2 {
+    { Leg
+      (Atom (r0 < 60cm) (go 20 0))
+      (Atom (wait 1s AND NOT bumper OR t > 5s) stop)
+    }
+    (Atom (null) turn 180)
+    (Atom (RISING r0 < 1m) (go 20 0))
+  }
+  ((Atom (way > 20cm) (go 20 0)) (Atom (r0 < r8) turn 90))^inf
+}
+";
+
+/// It ends by contact, by time, or with its last atom.
+const PUSH: &str = "\
+{ Push (bumper OR wait 1min)
+  (Atom (r0 < 60cm OR wait 10s) (go 20 0))
+  (Atom (way > 1m) (go 20 0))
+}
+";
+
+fn plans() -> &'static Path {
+    static PLANS: OnceLock<PathBuf> = OnceLock::new();
+    PLANS.get_or_init(|| {
+        let folder = folder("operands");
+        for (name, plan) in [("wall", PLAN), ("push", PUSH)] {
+            let file = format!("{name}.mdle");
+            fs::write(folder.join(&file), plan).unwrap();
+            let output = run_mdlec(&folder, &[&file, "--target", "sim"]);
+            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        }
+        folder
+    })
+}
+
+/// The status of a plan in the hall, and what it printed.
+fn reported(plan: &str, options: &[&str]) -> (Option<i32>, String) {
+    let mut command = Command::new(format!("./{plan}"));
+    let output: Output = command.args(["--world", "hall"]).args(options).current_dir(plans()).output().unwrap();
+    (output.status.code(), String::from_utf8(output.stdout).unwrap())
+}
+
+/// A run of the wall follower at the fastest pace, until it turns for the second time.
+const TWICE: [&str; 5] = ["--start=1.5,5,0", "--speed", "max", "--timeout", "79"];
+
+#[test]
+fn a_report_names_operands_values_places_and_passes() {
+    let (status, report) = reported("wall", &TWICE);
+    assert_eq!(status, Some(4));
+    insta::assert_snapshot!(report);
+    let (status, report) = reported("push", &["--start=1.5,5,180", "--speed", "max"]);
+    assert_eq!(status, Some(0), "{report}");
+    insta::assert_snapshot!("report-of-the-end", report);
+}
+
+#[test]
+fn a_log_names_the_operands() {
+    reported("wall", &[&TWICE[..], &["--log", "log.jsonl"]].concat());
+    let log = fs::read_to_string(plans().join("log.jsonl")).unwrap();
+    let lines: Vec<_> = log.lines().filter(|line| !line.contains("\"fired\":[]")).collect();
+    insta::assert_snapshot!(lines.join("\n"));
+}
+
+#[test]
+fn a_batch_names_the_operands() {
+    let noise = ["--start=1.5,5,180", "--start-noise", "0.3,180", "--runs", "6"];
+    insta::assert_snapshot!(reported("push", &noise).1);
+    insta::assert_snapshot!("batch-as-json", reported("push", &[&noise[..], &["--json"]].concat()).1);
+}
