@@ -76,7 +76,7 @@ fn the_tour_ends_on_an_atrv_where_it_ends_in_the_simulator() {
     let run = run.args(["--body", "atrv", "--speed", "max", "--trail"]).arg(&trail).output().unwrap();
     assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
     assert_eq!(passed(&atrv), passed(&run));
-    assert_eq!(passed(&atrv).last().map(String::as_str), Some("plan over: completed (atom 13)"));
+    assert_eq!(passed(&atrv).last().map(String::as_str), Some("plan over: completed (lab_tour.mdle:30)"));
 
     let trail = fs::read_to_string(trail).unwrap();
     let end: Vec<f64> = trail.lines().last().unwrap().split(',').map(|number| number.parse().unwrap()).collect();

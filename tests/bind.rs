@@ -60,8 +60,8 @@ fn a_bound_target_runs_plans() {
     let ran = Command::new(folder.join("plan")).output().unwrap();
     let printed = String::from_utf8(ran.stdout).unwrap();
     insta::assert_snapshot!(printed, @r"
-    0.050 s  atom 2 count 5  <- low 13 (atom 1)
-    plan over: low 11 (Main)
+    0.05 s  count 5 (plan.mdle:1)  <- low 13 (plan.mdle:1)
+    0.15 s  plan over: low 11 (plan.mdle:1)
     ");
 }
 

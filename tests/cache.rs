@@ -33,7 +33,10 @@ fn assert_built(output: &Output) {
 /// Runs the executable in `folder`, which has to be that of the plan of so many seconds.
 fn assert_rests(folder: &Path, seconds: usize) {
     let run = Command::new(folder.join("plan")).args(["--speed", "max"]).output().unwrap();
-    assert_eq!(String::from_utf8(run.stdout).unwrap(), format!("plan over: wait {seconds} (atom 1)\n"));
+    assert_eq!(
+        String::from_utf8(run.stdout).unwrap(),
+        format!("{seconds}.0 s  plan over: wait {seconds} (plan.mdle:1)\n")
+    );
 }
 
 /// What is said of a plan that does not become an executable.

@@ -41,7 +41,7 @@ fn assert_builds(folder: &Path) {
     let output = run_mdlec(folder, &[PLAN, "--target", "sim", "-o", "afterwards"]);
     assert_eq!(output.status.code(), Some(0), "{}", told(&output).1);
     let run = Command::new(folder.join("afterwards")).args(["--speed", "max"]).output().unwrap();
-    assert_eq!(run.stdout, b"plan over: wait 0.001 (atom 1)\n");
+    assert_eq!(run.stdout, b"0.1 s  plan over: wait 1ms (plan.mdle:1)\n");
 }
 
 /// `mdlec` in `folder` with [`CARGO`] at work, and what hears of that; what `mdlec` says comes when it has ended.

@@ -96,15 +96,19 @@ fn it_goes_from_lab_2_past_lab_1_to_the_office() {
     let (ends, over) = said.trim_end().rsplit_once('\n').unwrap();
     let mut atoms = 0;
     for (line, atom) in ends.lines().zip(1..) {
-        let (t, entered) = line.split_once(" s  atom ").unwrap();
+        let (t, entered) = line.split_once(" s  ").unwrap();
         let t: f64 = t.parse().unwrap();
-        assert!(entered.starts_with(&format!("{} ", atom + 1)), "no atom is left out: {line}");
+        assert!(entered.starts_with(&format!("{} (", law(atom as u64 + 1))), "no atom is left out: {line}");
         let (_, place) = trail.iter().find(|(when, _)| (when - t).abs() < 1e-6).unwrap();
         assert_in_zone(atom, *place);
         atoms = atom;
     }
     assert_eq!(atoms, 12, "{said}");
-    assert!(["plan over: completed (atom 13)", "plan over: wait 10 (atom 13)"].contains(&over), "{over}");
+    let (_, over) = over.split_once(" s  ").unwrap();
+    let place = "(lab_tour.mdle:30)";
+    assert!(
+        [format!("plan over: completed {place}"), format!("plan over: wait 10 {place}")].contains(&over.to_owned())
+    );
     assert_in_zone(13, trail.last().unwrap().1);
     let record = fs::read_to_string(folder.join("record.svg")).unwrap();
     assert!(record.len() < 1_000_000 && record.contains("goAvoid 180 40 20"), "{} bytes", record.len());
@@ -242,7 +246,7 @@ fn run_passes_on_the_status_of_the_executable() {
         assert_eq!(results[0], results[1]);
         results[0].clone()
     };
-    assert_eq!(run(&[]), (Some(0), "plan over: wait 5 (atom 1)\n".to_owned()));
+    assert_eq!(run(&[]), (Some(0), "5.0 s  plan over: wait 5 (wait.mdle:1)\n".to_owned()));
     assert_eq!(run(&["--turns", "3"]).0, Some(4));
     assert_eq!(run(&["--start", "nowhere"]).0, Some(2));
 }
@@ -257,7 +261,7 @@ fn run_passes_signals_to_the_executable() {
         // The plan runs once it has told of its second atom.
         let mut line = String::new();
         BufReader::new(child.stdout.as_mut().unwrap()).read_line(&mut line).unwrap();
-        assert!(line.contains("atom 2 stop"), "{line}");
+        assert!(line.contains("  stop (turns.mdle:1"), "{line}");
         let sent = Command::new("kill").args(["-s", signal, &child.id().to_string()]).status().unwrap();
         assert!(sent.success());
         let output = child.wait_with_output().unwrap();

@@ -66,7 +66,7 @@ fn a_crate_that_does_not_compile_is_quoted_whole_and_serves_when_mended() {
     let output = run_mdlec(&folder, &["plan.mdle", "--target", "rover"]);
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     let run = Command::new(folder.join("plan")).args(["--speed", "max"]).output().unwrap();
-    assert_eq!(run.stdout, b"plan over: wait 0.001 (atom 1)\n");
+    assert_eq!(run.stdout, b"0.1 s  plan over: wait 1ms (plan.mdle:1)\n");
 }
 
 #[test]
@@ -98,8 +98,8 @@ fn a_new_target_drives_and_feels_contact_once_it_can() {
     let run = Command::new(folder.join("plan")).args(["--speed", "max", "--timeout", "60"]).output().unwrap();
     let printed = String::from_utf8(run.stdout).unwrap();
     insta::assert_snapshot!(printed, @r"
-    3.000 s  atom 2 go 10 0.5  <- wait 3 (atom 1)
-    plan over: bumper (Touch)
+    3.0 s  go 10 0.5 (plan.mdle:1)  <- wait 3 (plan.mdle:1)
+    7.7 s  plan over: bumper (plan.mdle:1)
     ");
 }
 

@@ -116,7 +116,10 @@ fn was_at(trail: &str, seconds: &str) -> At {
 #[test]
 fn a_plan_ends_when_its_path_does_and_where_the_setpoints_lead() {
     let said = good(&["--trail", "trail.csv", "--log", "log"]);
-    assert_eq!(said, "9.000 s  atom 2 path \"bend.csv\"  <- completed (atom 1)\nplan over: completed (atom 2)\n");
+    assert_eq!(
+        said,
+        "9.0 s  path \"bend.csv\" (twice.mdle:1)  <- completed (twice.mdle:1)\n18.0 s  plan over: completed (twice.mdle:1)\n"
+    );
     let log = fs::read_to_string(twice().join("log")).unwrap();
     assert!(log.lines().last().unwrap().contains("\"t\":18.0,"), "{log}");
     assert_near(was_at("trail.csv", "18"), twice_integrated(BEND), 0.03, 1.0);

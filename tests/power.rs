@@ -81,6 +81,12 @@ fn a_robot_stops_when_its_battery_is_low_and_is_done_when_it_is_plugged_in() {
     let scout = reported("scout", PLAN, &FAULTS, Scout::new(body(Body::Scout, PERIOD)).unwrap());
     let step = step(PACE);
     let atrv = reported("atrv", PLAN, &FAULTS, Atrv::new(body(Body::Atrv, step), step, false).unwrap());
-    assert_eq!(scout, ["atom 2 stop  <- lowBattery OR battery < 5 (atom 1)", "plan over: charger OR wait 30 (Home)"]);
+    assert_eq!(
+        scout,
+        [
+            "stop (plan.mdle:1)  <- lowBattery (plan.mdle:1, of \"lowBattery OR battery < 5V\")",
+            "plan over: charger (plan.mdle:1, of \"charger OR wait 30s\")",
+        ]
+    );
     assert_eq!(atrv, scout);
 }

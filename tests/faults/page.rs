@@ -24,7 +24,11 @@ impl Row {
         let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
         let said = match err.strip_prefix("error: ") {
             Some(error) => error.trim_end().to_owned(),
-            None => out.lines().last().unwrap_or_default().to_owned() + err.trim_end(),
+            None => {
+                let last = out.lines().last().unwrap_or_default();
+                // The time is that of the run, not of the fault.
+                last.split_once(" s  ").map_or(last, |(_, end)| end).to_owned() + err.trim_end()
+            }
         };
         // Which terminal it was chance decides.
         let said = said.split(' ').map(|word| if word.starts_with("/dev/pts/") { "/dev/pts/N:" } else { word });

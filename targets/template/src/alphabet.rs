@@ -85,6 +85,12 @@ impl runtime::Interrupt<Output> for AnyInterrupt {
             Self::Comparison(comparison) => runtime::Interrupt::fired(comparison, y),
         }
     }
+
+    fn measured(&self, y: &Output) -> runtime::Measured {
+        match self {
+            Self::Comparison(comparison) => runtime::Interrupt::measured(comparison, y),
+        }
+    }
 }
 
 /// Any signal of this robot with its arguments.
