@@ -140,7 +140,7 @@ fn what_is_recorded_is_a_path_that_leads_to_the_same_place() {
     // Nor does it matter that turns are otherwise, and that the robot hears and drives with errors.
     let options = ["--paths", "recorded", "--period", "0.07", "--trail", "replayed.csv"];
     let said = good(&options);
-    assert!(said.starts_with("9.030 s  atom 2"), "the first turn from 9 s on: {said}");
+    assert!(said.starts_with("9.03 s  path \"bend.csv\""), "the first turn from 9 s on: {said}");
     assert_near(was_at("replayed.csv", "18.06"), twice_integrated(&recorded), 0.06, 2.0);
     good(&[&options[..], &["--body", "scout", "--seed", "3"]].concat());
     assert_near(was_at("replayed.csv", "18.06"), twice_integrated(&recorded), 0.25, 8.0);
@@ -213,7 +213,7 @@ fn a_scout_replays_a_path_and_reads_it_before_it_looks_for_the_robot() {
         output.unwrap()
     });
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    assert_eq!(String::from_utf8(output.stdout).unwrap(), "plan over: completed (atom 1)\n");
+    assert_eq!(String::from_utf8(output.stdout).unwrap(), "9.0 s  plan over: completed (once.mdle:1)\n");
     let pose = robot.pose();
     let (end, _) = integrated(BEND, [1.0, 2.0, 30.0], 30.0);
     assert_near([pose.x.0, pose.y.0, pose.theta.degrees()], end, 0.06, 3.0);

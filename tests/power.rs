@@ -84,8 +84,8 @@ fn a_robot_stops_when_its_battery_is_low_and_is_done_when_it_is_plugged_in() {
     assert_eq!(
         scout,
         [
-            "stop (plan.mdle:1)  <- lowBattery (plan.mdle:1, of \"lowBattery OR battery < 5V\")",
-            "plan over: charger (plan.mdle:1, of \"charger OR wait 30s\")",
+            "stop (home.mdle:1)  <- lowBattery (home.mdle:1, of \"lowBattery OR battery < 5V\")",
+            "plan over: charger (home.mdle:1, of \"charger OR wait 30s\")",
         ]
     );
     assert_eq!(atrv, scout);

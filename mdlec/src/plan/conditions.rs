@@ -1,6 +1,8 @@
 //! Conditions: quarks joined by AND, OR and NOT, and their text (docs/src/reference/semantics.md, 2.1;
 //! docs/src/reference/language.md, 7).
 
+use std::num::NonZeroU32;
+
 use super::labels::Labels;
 use super::parameters::Names;
 use super::quarks::Quarks;
@@ -40,7 +42,7 @@ pub(super) fn interrupt(
     joined(written, &mut places);
     for (place, part) in places.iter_mut().zip(condition.joined()) {
         let is_infinite = part.any(&|part| matches!(part, Condition::Wait { nanos: FOR_EVER, .. }));
-        place.text = is_infinite.then(|| condition_text(part, &name).into_boxed_str());
+        place.text = is_infinite.then(|| Box::new(condition_text(part, &name)));
     }
     let places = places.into();
     let condition = without_infinite_waits(condition);
@@ -63,12 +65,12 @@ fn joined(written: &tree::Condition, places: &mut Vec<OperandPlace>) {
 }
 
 /// The ends of the signals that an operand compares.
-fn signals(operand: &tree::Condition) -> [Option<u32>; 2] {
+fn signals(operand: &tree::Condition) -> [Option<NonZeroU32>; 2] {
     match operand.node {
         ConditionNode::Comparison(Compared { left, right: Operand::Signal(right), .. }) => {
-            [Some(left.span.end), Some(right.span.end)]
+            [NonZeroU32::new(left.span.end), NonZeroU32::new(right.span.end)]
         }
-        ConditionNode::Comparison(Compared { left, .. }) => [Some(left.span.end), None],
+        ConditionNode::Comparison(Compared { left, .. }) => [NonZeroU32::new(left.span.end), None],
         ConditionNode::Not(inside) | ConditionNode::Rising(inside) => signals(inside),
         ConditionNode::Or(_) | ConditionNode::And(_) | ConditionNode::Call(_) => [None; 2],
         ConditionNode::After(_) | ConditionNode::Null | ConditionNode::Broken => [None; 2],

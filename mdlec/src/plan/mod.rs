@@ -35,6 +35,8 @@ pub use nondegenerate::{Nondegenerate, remove_degeneracy};
 pub use resolve::resolve;
 pub(crate) use words::Words;
 
+use std::num::NonZeroU32;
+
 use crate::alphabet::{Decimal, Kind};
 use crate::diagnostic::Span;
 
@@ -282,7 +284,7 @@ impl Interrupt {
     /// of the quarks.
     pub fn operand_text(&self, number: usize, part: &Condition, quark: &impl Fn(QuarkId) -> String) -> String {
         let own = self.operands.get(number).and_then(|operand| operand.text.as_deref());
-        own.map_or_else(|| condition_text(part, quark), str::to_owned)
+        own.map_or_else(|| condition_text(part, quark), String::clone)
     }
 }
 
@@ -292,7 +294,7 @@ pub struct OperandPlace {
     /// From its first word to its last.
     pub span: Span,
     /// The ends of the signals that it compares, if it is a comparison, or NOT or RISING of one.
-    pub signals: [Option<u32>; 2],
-    /// Its condition text, where that of the condition is another: a `wait inf` in it has become null.
-    pub text: Option<Box<str>>,
+    pub signals: [Option<NonZeroU32>; 2],
+    /// Its condition text, in a box that most do not have, where that of the condition is another: a `wait inf` in it has become null.
+    pub text: Option<Box<String>>,
 }

@@ -68,7 +68,7 @@ impl Writing<'_> {
     fn operand(&mut self, text: String, part: &Condition, place: &OperandPlace) -> TokenStream {
         let at = self.line(Some(place.span));
         let begins = place.span.start;
-        let ends = place.signals.map(|end| end.and_then(|end| end.checked_sub(begins)).map(|end| end as usize));
+        let ends = place.signals.map(|end| end.and_then(|end| end.get().checked_sub(begins)).map(|end| end as usize));
         let (written, ends) = match self.sources.slice(place.span) {
             "" => (text.clone(), [None; 2]),
             words => one_line(words, ends),
