@@ -80,6 +80,12 @@ pub(super) fn arithmetic(source: Source<'_>, found: &str, place: Place) -> Optio
     }
     if !is_number(left) || !is_number(right) {
         // `go 5 - 3` means a sign, `Dock / 2` nobody knows.
+        if let Some(name) = hyphenated(source, left, operator, right, place) {
+            let whole = source.span(Place::new(left_start, right_end));
+            let message = format!("`{left}-{right}` is not a name");
+            let diagnostic = Diagnostic::new(Code::E0101, message, source.span(place), "not part of a name");
+            return Some(diagnostic.fix("a name has letters, digits and `_`: {}", whole, name));
+        }
         let is_sum = matches!(operator, "+" | "*") || !is_number(right);
         let message = format!("`{operator}` cannot be used here: nothing is computed in a plan");
         let help = "a comparison has one signal on each side: `r0 < 1m AND r1 < 1m`";
@@ -96,6 +102,15 @@ pub(super) fn arithmetic(source: Source<'_>, found: &str, place: Place) -> Optio
         Some(result) => diagnostic.fix("write the result: {}", whole, result),
         None => diagnostic.help("write the result as one number"),
     })
+}
+
+/// `Return-Home` where a plan has its name, as it can be written.
+fn hyphenated(source: Source<'_>, left: &str, operator: &str, right: &str, place: Place) -> Option<String> {
+    let before = source.text.get(..place.start)?;
+    let touches = before.ends_with(left) && source.text.get(place.end..)?.starts_with(right);
+    let is_header = before.get(..before.len() - left.len())?.trim_end().ends_with('{');
+    let is_name = |text: &str| text.starts_with(char::is_alphabetic) && !text.contains('.');
+    (operator == "-" && touches && is_header && is_name(left) && is_name(right)).then(|| format!("{left}_{right}"))
 }
 
 /// `(…)*3`

@@ -1,12 +1,15 @@
 //! Balances brackets before the grammar sees them (docs/src/reference/language.md, 3.7): afterwards every bracket has
 //! its partner, none is nested deeper than 256, and no atom holds an atom.
 
+mod inside;
+
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::indentation::{self, End};
 use super::regions::Regions;
 use super::source::{Place, Source};
 use super::token::{Lexed, Tok, Token};
+use super::tree::Name;
 use crate::diagnostic::{Code, Diagnostic};
 
 /// How deep brackets nest at most.
@@ -23,6 +26,8 @@ pub(super) struct Balanced<'s> {
     pub(super) regions: Regions,
     /// The lexical errors and those of the brackets.
     pub(super) diagnostics: Vec<Diagnostic>,
+    /// The files that are named inside plans.
+    pub(super) uses: Vec<Name<'s>>,
     /// `true` if a brace is never closed.
     is_open: bool,
     /// `true` if such braces are closed where they seem to end.
@@ -153,7 +158,9 @@ impl<'s> Pass<'_, 's> {
                 }
                 self.push(token);
             }
-            Tok::Use if !self.open.is_empty() => self.inner_use(token),
+            Tok::Use if !self.open.is_empty() => self.inner_use(index, token),
+            Tok::Str(_) if self.balanced.uses.last().is_some_and(|file| self.source.span(token.place) == file.span) => {
+            }
             Tok::RBrace => self.close_brace(index, token),
             Tok::RParen => self.close_parenthesis(index, token),
             _ => self.push(token),
@@ -282,40 +289,6 @@ impl<'s> Pass<'_, 's> {
             Diagnostic::new(Code::E0103, "this atom does not begin with `(`", span, "a `(` is missing before this");
         self.spoil(diagnostic.help("an atom is written in parentheses: `(Atom (bumper) stop)`"));
         true
-    }
-
-    /// Whether a label stands between an atom's parenthesis and the `Atom` that comes now; then it is reported, and the
-    /// parenthesis is the atom's.
-    fn label_inside(&mut self) -> bool {
-        let [.., Token { kind: Tok::LParen | Tok::TouchParen, .. }, Token { kind: Tok::Name(label), place }, colon] =
-            self.balanced.tokens.as_slice()
-        else {
-            return false;
-        };
-        if colon.kind != Tok::Colon {
-            return false;
-        }
-        let message = format!("the label `{label}` is inside its atom");
-        let diagnostic = Diagnostic::new(Code::E0102, message, self.source.span(*place), "not expected here");
-        let diagnostic = diagnostic.help(format!("a label is written before its element: `{label}: (Atom …)`"));
-        self.spoil(diagnostic);
-        if let Some(open) = self.open.last_mut() {
-            open.kind = Kind::Atom;
-        }
-        true
-    }
-
-    /// A `use` inside of a plan, where no recovery could put it, becomes a name.
-    fn inner_use(&mut self, token: Token<'s>) {
-        let span = self.source.span(token.place);
-        let diagnostic = Diagnostic::new(
-            Code::E0102,
-            "`use` is written between plans, not inside a plan",
-            span,
-            "not expected here",
-        );
-        self.spoil(diagnostic.help("put it at the top of the file: `use \"corridors.mdle\"`"));
-        self.push(Token { kind: Tok::Name("use"), ..token });
     }
 
     /// Whether this closing bracket closes nothing as the one before it does; then the message is about both.

@@ -5,7 +5,7 @@ use bumpalo::Bump;
 
 use super::regions::Regions;
 use super::source::Source;
-use super::token::Token;
+use super::token::{Tok, Token};
 use super::tree::{Condition, ConditionNode, Element, Exec, File, Formal, Plan, Primary};
 use crate::diagnostic::Span;
 
@@ -18,7 +18,14 @@ pub(super) fn take_out<'s>(
     regions: &Regions,
 ) {
     let defects = Defects { source, arena, tokens, regions };
-    file.plans.retain(|plan| !plan.name.node.is_empty());
+    let count = file.plans.len();
+    // A name and a group before the brace are the head of something else.
+    let has_head = |plan: &Plan<'_>| {
+        let name = tokens.partition_point(|token| token.place.start < plan.name.span.within(source.id).start);
+        name.checked_sub(2).and_then(|before| tokens.get(before)).is_some_and(|before| before.kind == Tok::RParen)
+    };
+    file.plans.retain(|plan| !plan.name.node.is_empty() && !has_head(plan));
+    file.is_incomplete |= file.plans.len() < count;
     file.plans.iter_mut().for_each(|plan| *plan = defects.plan(*plan));
 }
 

@@ -39,7 +39,7 @@ pub struct Files<'s> {
     pub plans: Vec<Plan<'s>>,
     /// How many are its own.
     pub own: usize,
-    /// Whether a file that is used could not be read, so that plans may be missing.
+    /// Whether a file that is used, or the head of a plan, could not be read, so that plans may be missing.
     pub is_incomplete: bool,
 }
 
@@ -60,7 +60,7 @@ pub fn parse_with<'s>(
     loader: &mut dyn Loader,
 ) -> (Files<'s>, Vec<Diagnostic>) {
     let (file, mut found) = parse(source, text, arena);
-    let mut files = Files { own: file.plans.len(), plans: file.plans, is_incomplete: false };
+    let mut files = Files { own: file.plans.len(), plans: file.plans, is_incomplete: file.is_incomplete };
     let mut met = BTreeSet::from([source]);
     let mut open = vec![Open { source, uses: file.uses, done: 0 }];
     while let Some(here) = open.last_mut() {
@@ -77,6 +77,7 @@ pub fn parse_with<'s>(
             Ok(source) if met.insert(source) => {
                 let (file, more) = parse(source, arena.alloc_str(loader.text(source)), arena);
                 files.plans.extend(file.plans);
+                files.is_incomplete |= file.is_incomplete;
                 found.extend(more);
                 open.push(Open { source, uses: file.uses, done: 0 });
             }

@@ -35,10 +35,13 @@ fn characters_help(diagnostic: Diagnostic, source: Source<'_>, found: &str, plac
         "!" | "~" | "¬"
             if begins_operand(source, place.start) && next.is_some_and(|c| c.is_alphabetic() || c == '(') =>
         {
-            operator(diagnostic, "NOT")
+            diagnostic.fix("write {} and a space", source.span(place), apart(source, place, "NOT"))
         }
-        "!" | "~" | "¬" => diagnostic.help("write `NOT` before a condition: `NOT bumper`"),
+        "!" | "~" | "¬" => diagnostic.help("write `NOT` and a space before a condition: `NOT bumper`"),
         "≠" => diagnostic.help("write `NOT` before an equality: `NOT r 3 == r 5`"),
+        "/" | "--" if begins_line(source, place.start) => {
+            diagnostic.fix("a comment begins with {}", source.span(place), "//")
+        }
         "#" | "%" if begins_line(source, place.start) => {
             diagnostic.fix("a comment begins with {}", source.span(place), "//")
         }

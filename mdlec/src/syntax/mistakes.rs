@@ -7,6 +7,7 @@ mod conditions;
 use super::errors::Site;
 use super::foreign;
 use super::token::{Tok, split};
+use crate::alphabet::Kind;
 use crate::diagnostic::Diagnostic;
 use atoms::{atom_condition, atom_law};
 use calls::{apart, bare_call, decimal_comma, element_touches, square_brackets, touching_parenthesis, unit_apart};
@@ -22,6 +23,7 @@ pub(super) fn known(site: &Site<'_, '_>) -> Option<Diagnostic> {
         plan_name,
         label_and_equals,
         atom_condition,
+        comma,
         atom_law,
         loop_count,
         power,
@@ -29,7 +31,6 @@ pub(super) fn known(site: &Site<'_, '_>) -> Option<Diagnostic> {
         keyword_argument,
         unit_apart,
         apart,
-        comma,
         condition,
         parameters,
         bare_call,
@@ -65,6 +66,16 @@ fn at_file_level(site: &Site<'_, '_>) -> Option<Diagnostic> {
                 site.span(site.at, site.at + 1),
                 "",
             ))
+        }
+        Tok::Name(keyword @ ("plan" | "Plan" | "behavior" | "Behavior"))
+            if site.name_at(site.at + 1).is_some() && site.brace_after_group(site.at + 1).is_some() =>
+        {
+            let (brace, name) = (site.brace_after_group(site.at + 1)?, site.name_at(site.at + 1)?);
+            let group = site.text(site.at + 2, brace - 1).unwrap_or("(…)");
+            let message = format!("a plan begins with its brace, without `{keyword}`");
+            let header = format!("{{ {name} {group}");
+            let diagnostic = site.about(site.at, message, "not expected here");
+            Some(diagnostic.fix("its name is the first thing inside: {} …", site.span(site.at, brace), header))
         }
         Tok::Name(name) if foreign::advice(name).is_some() => Some(
             site.about(site.at, format!("MDLe has no `{name}`"), "not expected here")
@@ -163,7 +174,15 @@ fn plan_name(site: &Site<'_, '_>) -> Option<Diagnostic> {
 
 /// `=` without a label, a label without `=`, and `=` for `==`.
 fn label_and_equals(site: &Site<'_, '_>) -> Option<Diagnostic> {
+    if site.found() == Some(Tok::Colon)
+        && let Some(argument) = named_argument(site)
+    {
+        return Some(argument);
+    }
     if site.found() == Some(Tok::Assign) {
+        if let Some(parameter) = parameter_with_equals(site) {
+            return Some(parameter);
+        }
         if site.expects("==") {
             return Some(site.about(site.at, "`=` does not compare", "names a plan").fix(
                 "to compare, write {}",
@@ -210,12 +229,23 @@ fn not_a_label(site: &Site<'_, '_>, at: usize, name: &str) -> Diagnostic {
         .fix(&format!("or remove `{name} =`: a plan's own name is inside its braces"), site.span(at, at + 1), "")
 }
 
-/// `Leg(d = 3m)`
+/// `{ Leg (far = length) …`
+fn parameter_with_equals(site: &Site<'_, '_>) -> Option<Diagnostic> {
+    let name = site.name_at(site.at.checked_sub(1)?)?;
+    let kind = site.name_at(site.at + 1).filter(|kind| Kind::NAMES.contains(kind))?;
+    let is_header = site.opener()?.checked_sub(2).is_some_and(|brace| site.kind(brace) == Some(Tok::LBrace));
+    let diagnostic = site.about(site.at, format!("`{name} =` is not a parameter"), "expected a colon");
+    let words = "a parameter is its name, a colon and its type: {}";
+    is_header.then(|| diagnostic.fix(words, site.span(site.at - 1, site.at + 1), format!("{name}: {kind}")))
+}
+
+/// `Leg(d = 3m)`, `Leg(d: 3m)`
 fn named_argument(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let name = site.at.checked_sub(1)?;
     let text = site.name_at(name).filter(|_| site.opener_kind() == Some(Tok::TouchParen))?;
     let (opener, plan) = (site.opener()?, site.opener()?.checked_sub(1)?);
-    let (words, before) = (format!("remove `{text} =`"), site.text(plan, name - 1));
+    let sign = if site.found() == Some(Tok::Colon) { ":" } else { " =" };
+    let (words, before) = (format!("remove `{text}{sign}`"), site.text(plan, name - 1));
     let is_first = opener + 1 == name;
     let diagnostic = site.about(site.at, "arguments have no names: they are given in order", "not expected here");
     Some(match before.filter(|_| is_first) {
@@ -335,11 +365,51 @@ fn comma(site: &Site<'_, '_>) -> Option<Diagnostic> {
         return Some(between(site.at));
     }
     let element = matches!(site.found(), Some(Tok::Atom | Tok::ExecPlan | Tok::LBrace | Tok::Frame));
+    if site.found() == Some(Tok::Comma)
+        && let Some(found) = comma_in_atom(site)
+    {
+        return Some(found);
+    }
     if element && site.expects_condition() {
         let back = (1..=2).find(|back| site.before(*back) == Some(Tok::Comma))?;
         return Some(between(site.at - back).help("a comma makes `(s, ξ)`: a scope and its condition"));
     }
     None
+}
+
+/// A comma in the condition of an atom, behind it, or in the parentheses of its law.
+fn comma_in_atom(site: &Site<'_, '_>) -> Option<Diagnostic> {
+    let (opener, span) = (site.opener()?, site.span(site.at, site.at));
+    let before = opener.checked_sub(1)?;
+    let diagnostic = |message: &str| site.about(site.at, message, "not expected here");
+    let is_law = || {
+        site.partner(before).is_some()
+            && site.opener_of(opener).is_some_and(|atom| site.kind(atom + 1) == Some(Tok::Atom))
+    };
+    #[allow(clippy::wildcard_enum_match_arm, reason = "only parentheses of atoms are looked at")]
+    match site.kind(before)? {
+        Tok::Atom => Some(diagnostic("conditions are not separated by commas").fix(
+            "if one of them is enough, write {}",
+            span,
+            " OR",
+        )),
+        Tok::RParen if is_law() => {
+            let message = "a comma separates arguments only in parentheses that touch the name";
+            let words = "remove the comma: arguments are separated by spaces, as in `go 5 0`";
+            Some(
+                diagnostic(message)
+                    .fix(words, span, "")
+                    .help("or write them in parentheses that touch the name: `go(5, 0)`"),
+            )
+        }
+        _ if site.in_atom()
+            && site.before(1) == Some(Tok::RParen)
+            && site.partner(site.at - 1) == Some(Tok::LParen) =>
+        {
+            Some(diagnostic("no comma follows the condition of an atom").fix("remove it: a space is enough", span, ""))
+        }
+        _ => None,
+    }
 }
 
 /// What is wrong with a list of parameters.

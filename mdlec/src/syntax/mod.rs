@@ -96,8 +96,9 @@ fn recover<'s>(source: Source<'s>, arena: &'s Arena) -> (tree::File<'s>, Vec<Dia
     let (mut file, mut recoveries, empty) = (nodes.file, nodes.errors, nodes.empty);
     if let Err(error) = result {
         recoveries.push(nodes::Recovery { error, dropped_tokens: Vec::new() });
-        file = tree::File::default();
+        file = tree::File { is_incomplete: true, ..tree::File::default() };
     }
+    file.uses.append(&mut balanced.uses);
 
     let mut diagnostics = balanced.diagnostics;
     diagnostics.extend(errors::told(source, &balanced.tokens, &mut balanced.regions, recoveries));

@@ -25,6 +25,8 @@ pub struct File<'s> {
     pub uses: Vec<Name<'s>>,
     /// Its plans, in order.
     pub plans: Vec<Plan<'s>>,
+    /// Whether a plan is left out, since its head could not be read.
+    pub is_incomplete: bool,
 }
 
 /// A plan or a behavior: a closed string in braces.

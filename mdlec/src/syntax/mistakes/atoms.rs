@@ -38,7 +38,34 @@ pub(super) fn atom_condition(site: &Site<'_, '_>) -> Option<Diagnostic> {
         }
     }
     let span = site.span(site.at - 1, last);
+    if site.name_at(site.at).is_some_and(is_law) {
+        let message = format!("this atom has no condition: `{call}` is a law");
+        let diagnostic = site.about(site.at, message, "a condition is missing before this");
+        let both = format!("Atom ({}) {call}", condition_for(call));
+        return Some(diagnostic.fix("an atom is a condition and a law: {}", span, both));
+    }
     Some(diagnostic.fix("write {} and a law", span, format!("Atom ({call})")))
+}
+
+/// Laws that complete by themselves, and laws that never do.
+const LAWS: [&[&str]; 2] = [&["advance", "align", "Follow", "goAvoid", "path", "rotate", "turn"], &["go", "stop"]];
+
+/// Returns `true` if a name is that of a law of the paper or of ours: a parser knows no alphabet.
+fn is_law(name: &str) -> bool {
+    LAWS.iter().any(|laws| laws.contains(&name))
+}
+
+/// A condition to begin with for a call of such a law.
+fn condition_for(call: &str) -> &'static str {
+    let name = call.split(|letter: char| !letter.is_alphanumeric()).next().unwrap_or("");
+    if LAWS[0].contains(&name) { "null" } else { "wait 10" }
+}
+
+/// The only parentheses of an atom and the call in them, if that is one of a law.
+fn law_in_group<'s>(site: &Site<'_, 's>, group: usize) -> Option<(usize, &'s str)> {
+    let end = site.at.checked_sub(1).filter(|end| *end > group + 1 && site.end_of_group(group) == *end)?;
+    let is_only = site.kind(group) == Some(Tok::LParen) && site.name_at(group + 1).is_some_and(is_law);
+    site.text(group + 1, end - 1).filter(|_| is_only).map(|law| (group, law))
 }
 
 /// The last token of a name with numbers behind it.
@@ -57,6 +84,13 @@ pub(super) fn atom_law(site: &Site<'_, '_>) -> Option<Diagnostic> {
     }
     let atom = site.opener()? + 1;
     if site.found() == Some(Tok::RParen) {
+        if let Some((group, law)) = law_in_group(site, atom + 1) {
+            let message = format!("this atom has no condition: `{law}` is a law");
+            let diagnostic = site.about(group, message, "a condition is missing before this");
+            let words = "an atom is a condition and a law: {}";
+            let both = format!("({}) ({law})", condition_for(law));
+            return Some(diagnostic.fix(words, site.span(group, site.at - 1), both));
+        }
         let diagnostic = site.about(site.at, "this atom has no law", "a law is missing before this");
         return Some(
             site.also(diagnostic, atom, "in this atom")

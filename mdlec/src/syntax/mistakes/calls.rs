@@ -60,6 +60,14 @@ pub(super) fn apart(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if !is_literal || site.kind(paren) != Some(Tok::LParen) || site.expects_condition() {
         return None;
     }
+    if site.kind(site.at + 1) == Some(Tok::Colon) {
+        let value = site.text(site.at, site.at).unwrap_or("this");
+        let diagnostic = site.about(site.at, format!("`{value}` is not the name of a parameter"), "not a name");
+        return Some(
+            diagnostic
+                .help("a parameter is a name, a colon and a type: `{ Leg(d: length) (Atom (null) (advance d)) }`"),
+        );
+    }
     let end = site.end_of_group(paren);
     let arguments = site.text(paren, end).unwrap_or("(…)");
     let message = format!("the arguments of `{plan}` do not touch its name");
@@ -120,19 +128,37 @@ fn in_parentheses(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let inside = inside.and_then(|last| site.text(opener + 1, last)).filter(|_| site.kind(end) == Some(Tok::RParen));
     let call = inside.or_else(|| site.text(opener + 1, site.at.checked_sub(1)?)).unwrap_or("this");
     let diagnostic = site.about(opener + 1, format!("`{call}` is not an element by itself"), "outside of an atom");
+    if let Some(joined) = inside.and_then(|second| second_condition(site, opener, end, second)) {
+        return Some(joined);
+    }
     Some(match inside {
         Some(call) => element(diagnostic, site, (opener, end), call),
         None => diagnostic.help("an atom is a condition and a law: `(Atom (wait 5) (go 20 0))`"),
     })
 }
 
+/// `{ Name (bumper) (wait 10) …`: a second condition of a plan.
+fn second_condition(site: &Site<'_, '_>, opener: usize, end: usize, second: &str) -> Option<Diagnostic> {
+    let closer = opener
+        .checked_sub(1)
+        .filter(|closer| site.partner(*closer) == Some(Tok::ConditionParen) && is_condition(second))?;
+    let first = site.opener_of(closer)?;
+    // On a line of its own it is an element.
+    site.text(first, end)?;
+    let condition = site.text(first + 1, closer - 1)?;
+    let joined = match condition.contains(" AND ") || second.contains(" AND ") {
+        true => format!("(({condition}) OR ({second}))"),
+        false => format!("({condition} OR {second})"),
+    };
+    let diagnostic = site.about(opener, "a plan has one condition", "a second one");
+    Some(diagnostic.fix("if one of them is enough, join them: {}", site.span(first, end), joined))
+}
+
 /// Proposes the atom that a call may be meant as.
 fn element(diagnostic: Diagnostic, site: &Site<'_, '_>, (first, last): (usize, usize), call: &str) -> Diagnostic {
     let name = call.split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or("");
     let argument = call.strip_prefix(name).unwrap_or("").trim();
-    let is_bits = argument.len() >= 3 && argument.bytes().all(|byte| matches!(byte, b'0' | b'1'));
-    let is_condition = [" OR ", " AND ", "<", ">", "==", "NOT "].iter().any(|part| call.contains(part));
-    if name == "wait" || is_bits || is_condition {
+    if is_condition(call) {
         let atom = format!("(Atom ({call}) stop)");
         return diagnostic.fix("an interrupt is the condition of an atom: {}", site.span(first, last), atom);
     }
@@ -146,6 +172,14 @@ fn element(diagnostic: Diagnostic, site: &Site<'_, '_>, (first, last): (usize, u
     }
     let atom = format!("(Atom (wait 5) ({call}))");
     diagnostic.fix("a law runs in an atom, until its condition fires: {}", site.span(first, last), atom)
+}
+
+/// Returns `true` if a call can be seen to be a condition.
+fn is_condition(call: &str) -> bool {
+    let (name, argument) = call.split_once(' ').unwrap_or((call, ""));
+    let is_bits = argument.len() >= 3 && argument.bytes().all(|byte| matches!(byte, b'0' | b'1'));
+    let is_joined = [" OR ", " AND ", "<", ">", "==", "NOT "].iter().any(|part| call.contains(part));
+    name == "wait" || is_bits || is_joined
 }
 
 fn is_comparison(token: Option<Tok<'_>>) -> bool {
