@@ -84,7 +84,13 @@ impl syntax::Loader for Input {
         let folder = self.paths.get(&from).and_then(|path| path.parent()).unwrap_or(Path::new(""));
         let file = folder.join(path);
         let name = file.display().to_string();
-        let refused = |why: Unread| if why.is_missing() { format!("there is no file `{name}`") } else { why.of(&name) };
+        let refused = |why: Unread| match why.is_missing() {
+            true => format!(
+                "there is no file `{name}`{}",
+                like(&file).map_or_else(String::new, |like| format!("; did you mean `{like}`?"))
+            ),
+            false => why.of(&name),
+        };
         let place = file.canonicalize().map_err(|error| refused(Unread::System(error)))?;
         if let Some(source) = self.read.get(&place) {
             return Ok(*source);
@@ -301,6 +307,14 @@ pub(super) fn did_you_mean(name: &str, known: &[&str]) -> String {
 }
 
 /// A hint where only the ending was forgotten.
+/// The name of a plan file beside `path` that differs from its name in capitals or in the ending alone.
+fn like(path: &Path) -> Option<String> {
+    let name = path.file_name()?.to_str()?.to_lowercase();
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let files = std::fs::read_dir(folder).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    files.filter(|file| [name.clone(), format!("{name}.mdle")].contains(&file.to_lowercase())).min()
+}
+
 fn plan_nearby(path: &Path) -> String {
     let with_ending = path.with_extension("mdle");
     if with_ending.is_file() { format!("\nhelp: there is `{}`", with_ending.display()) } else { String::new() }

@@ -1,11 +1,15 @@
 //! Arguments against a signature: count, type, unit, range (docs/src/reference/language.md, 6.2).
 
+mod examples;
+
 use super::parameters::Parameters;
 use super::{Decimal, Value};
 use crate::alphabet::{Declaration, DeclarationKind, Kind, Origin, Param, Unit};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::nearest_unit;
 use crate::syntax::tree::{Arg, Call, Number};
+pub(super) use examples::example;
+use examples::{bits_apart, swapped};
 
 /// The largest whole number that an `f64` tells from its neighbours.
 const WHOLE: f64 = 9_007_199_254_740_992.0;
@@ -78,7 +82,11 @@ fn fitted(
             Err(diagnostic) => found.push(*diagnostic),
         }
     }
-    if found.is_empty() { Ok(arguments) } else { Err(found) }
+    match swapped(call, &found, |swapped| fitted(swapped, declaration, robot, parameters).is_ok()) {
+        Some(swapped) => Err(vec![swapped]),
+        None if found.is_empty() => Ok(arguments),
+        None => Err(found),
+    }
 }
 
 /// Number of faults of a call if this declaration is meant: arguments that are missing, left over, or of another kind.
@@ -369,38 +377,15 @@ fn wrong_count(call: &Call, declaration: &Declaration, needed: usize) -> Diagnos
     let names: Vec<_> = missing.iter().map(|param| format!("`{}`", param.name)).collect();
     let report = report(format!("{} {} missing", names.join(" and "), if names.len() == 1 { "is" } else { "are" }));
     let examples: Option<Vec<_>> = missing.iter().map(example).collect();
+    let are_sonars = declaration.params.iter().all(|param| param.kind == Kind::Sonar);
+    if are_sonars && call.args.iter().any(|arg| !matches!(arg, Arg::Number(_))) {
+        let sonars = (3..).step_by(2).take(most).map(|sonar| format!(" {sonar}")).collect::<String>();
+        return report.fix("for instance {}", call.span, format!("{}{sonars}", call.name));
+    }
     match examples {
         Some(examples) => report.fix("for instance {}", call.span, format!("{} {}", written(call), examples.join(" "))),
         None => report,
     }
-}
-
-/// `atIsection 1 0 0 0` with its bits written together.
-fn bits_apart(call: &Call, declaration: &Declaration) -> Option<String> {
-    let [Param { kind: Kind::Bits(length), .. }] = declaration.params.as_slice() else { return None };
-    let bits = call.args.iter().map(|arg| match arg {
-        Arg::Number(number) if number.unit().is_none() && matches!(number.digits(), "0" | "1") => Some(number.digits()),
-        Arg::Number(_) | Arg::Infinity(_) | Arg::String(_) | Arg::Name(_) | Arg::Module(_) => None,
-    });
-    let bits = bits.collect::<Option<String>>()?;
-    (bits.len() == *length as usize).then(|| format!("{} {bits}", call.name))
-}
-
-/// A value that a parameter can have: something to begin with. `None` where only the writer knows a name.
-pub(super) fn example(param: &Param) -> Option<String> {
-    let value = match param.kind {
-        Kind::Length => "1m".to_owned(),
-        Kind::Speed => "20cm/s".to_owned(),
-        Kind::Angle => "90deg".to_owned(),
-        Kind::AngularRate | Kind::Number | Kind::Integer | Kind::Sonar => "0".to_owned(),
-        Kind::Time => "5s".to_owned(),
-        Kind::Voltage => "12V".to_owned(),
-        Kind::Frequency => "10Hz".to_owned(),
-        Kind::Count => "1".to_owned(),
-        Kind::Bits(length) => format!("1{}", "0".repeat((length as usize).saturating_sub(1))),
-        Kind::Robot | Kind::Module | Kind::File => return None,
-    };
-    Some(value)
 }
 
 fn not_a_number(number: &Number) -> Diagnostic {

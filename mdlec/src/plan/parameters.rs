@@ -221,7 +221,7 @@ pub(super) fn missing(plan: &tree::Plan<'_>, why: &str) -> Diagnostic {
 /// A name stands where a count has to, and is no parameter that is one.
 pub(super) fn no_count(name: Name<'_>, parameters: &Parameters<'_>) -> Diagnostic {
     if let Some(parameter) = parameters.get(name.node) {
-        return parameter.mismatch(Kind::Count, name.span);
+        return parameter.mismatch(Kind::Count, name.span).help(format!("declare it as `{}: count`", name.node));
     }
     let message = format!("there is no parameter called `{}`", name.node);
     let found = Diagnostic::new(Code::E0201, message, name.span, "not a count");

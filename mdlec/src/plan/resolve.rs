@@ -1,18 +1,19 @@
 //! Tree to plan: every name, argument, unit and plan by name resolved, each use of a plan a copy of its own.
 
+mod misread;
+
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::arguments::{kind_words, written};
 use super::conditions::{self, Around};
 use super::definitions::Definitions;
 use super::labels::{Ends, Labels};
 use super::parameters::{self, Names, Parameter, Parameters};
 use super::quarks::Quarks;
 use super::{Atom, Decimal, Interrupt, Loop, Node, Plan, RecordId, Scope};
-use crate::alphabet::{self, Alphabet, DeclarationKind, Kind, Unit};
+use crate::alphabet::{Alphabet, DeclarationKind, Kind, Unit};
 use crate::diagnostic::{Code, Diagnostic, Span, has_errors};
+use crate::syntax::Files;
 use crate::syntax::tree::{self, Arg, Call, ConditionNode, Count, Element, Formal, Frame, Number, Primary};
-use crate::syntax::{Files, foreign};
 
 /// The largest angle of a FRAME, in its unit: far beyond a full circle, and sums of it are still exact enough.
 const FRAME: f64 = 100_000.0;
@@ -109,6 +110,8 @@ struct Resolver<'r, 'a> {
     labels: Labels,
     /// How many definitions have been begun.
     begun: u32,
+    /// The place of the element after the one that is being resolved.
+    next: Option<Span>,
     found: Vec<Diagnostic>,
 }
 
@@ -116,7 +119,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
     fn new(definitions: &'r Definitions<'a>, alphabet: &'r Alphabet, uses: Uses) -> Self {
         let quarks = Quarks::new(alphabet);
         let (parameters, labels) = (Parameters::default(), Labels::new(RecordId(0)));
-        Self { definitions, quarks, uses, parameters, labels, begun: 0, found: Vec::new() }
+        Self { definitions, quarks, uses, parameters, labels, begun: 0, next: None, found: Vec::new() }
     }
 
     /// A plan of the file, with labels and parameters of its own.
@@ -142,32 +145,10 @@ impl<'r, 'a> Resolver<'r, 'a> {
 
     fn scope(&mut self, plan: &tree::Plan<'a>, frame: Framing) -> (Scope, Ends) {
         let (interrupt, ends) = self.interrupt(plan.condition.as_ref(), plan.name.span);
-        let first = self.words_of_name(plan);
+        let first = self.words_of_name(plan).max(self.bare_condition(plan));
         let body = self.sequence(plan.elements.get(first..).unwrap_or(&[]), frame);
         let (name, span) = (plan.name.node.to_owned(), plan.name.span);
         (Scope { name, interrupt, body, here: frame.here, record: None, marks: Vec::new(), span }, ends)
-    }
-
-    /// Reports `{ My Plan (bumper) …`, a name of two words; the number of elements that were read from it.
-    fn words_of_name(&mut self, plan: &tree::Plan<'a>) -> usize {
-        let [Element { primary: Primary::Ref(word), .. }, Element { primary: Primary::String(group), .. }, ..] =
-            plan.elements
-        else {
-            return 0;
-        };
-        let [Element { primary: Primary::Ref(condition), .. }] = group else { return 0 };
-        let kind = |name| self.quarks.alphabet().declarations_of(name).next().map(|declaration| declaration.kind);
-        let is_plan = self.definitions.get(word.name).is_some() || self.definitions.is_incomplete;
-        let is_condition = kind(condition.name) == Some(DeclarationKind::Interrupt);
-        let is_beside = plan.condition.is_none() && word.span.start == plan.name.span.end + 1;
-        if is_plan || !is_condition || !is_beside || kind(word.name).is_some() {
-            return 0;
-        }
-        let name = format!("{}{}", plan.name.node, word.name);
-        let span = plan.name.span.to(word.span);
-        let found = Diagnostic::new(Code::E0201, "the name of a plan is one word", span, "two words");
-        self.found.push(found.fix("write {}", span, name));
-        2
     }
 
     fn interrupt(&mut self, condition: Option<&tree::Condition<'_>>, scope: Span) -> (Interrupt, Ends) {
@@ -179,7 +160,9 @@ impl<'r, 'a> Resolver<'r, 'a> {
 
     fn sequence(&mut self, elements: &[Element<'a>], frame: Framing) -> Vec<Node> {
         let mut nodes = Vec::with_capacity(elements.len());
-        for element in elements {
+        for (at, element) in elements.iter().enumerate() {
+            let next = elements.get(at + 1).filter(|_| element.marks.is_none());
+            self.next = next.map(|next| next.span);
             self.element(element, frame, &mut nodes);
         }
         nodes
@@ -254,6 +237,10 @@ impl<'r, 'a> Resolver<'r, 'a> {
 
     /// `(Atom (ξ) u)`
     fn written(&mut self, atom: &tree::Atom<'a>, span: Span, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
+        if let Some(swapped) = self.swapped(atom) {
+            self.found.push(swapped);
+            return Ends::Unknown;
+        }
         let (interrupt, ends) = self.interrupt(Some(&atom.condition), span);
         self.atom(atom.control, interrupt, frame, span, nodes);
         ends
@@ -352,41 +339,6 @@ impl<'r, 'a> Resolver<'r, 'a> {
                 self.found.extend(found);
                 None
             }
-        }
-    }
-
-    fn unknown_plan(&self, call: &Call) -> Diagnostic {
-        let name = call.name;
-        let span = call.name_span();
-        if let Some(quark) = self.quarks.alphabet().declarations_of(name).next() {
-            let message = format!("`{name}` is {}, but an atom or a plan is expected here", kind_words(quark.kind));
-            let report = Diagnostic::new(Code::E0204, message, span, "a quark runs in an atom");
-            let written = written(call);
-            let (words, element) = match quark.kind {
-                DeclarationKind::Control => ("say when it ends: {}", format!("(Atom (wait 10) {written})")),
-                DeclarationKind::Interrupt => ("say what runs until then: {}", format!("(Atom ({written}) stop)")),
-                DeclarationKind::Signal => ("compare it in an atom: {}", format!("(Atom ({written} < 1) stop)")),
-            };
-            let report = report.fix(words, call.span, element);
-            return match quark.kind {
-                DeclarationKind::Interrupt | DeclarationKind::Signal => report.help(
-                    "the condition of a plan is written in parentheses after the name of the plan: `{ Name (bumper) … }`",
-                ),
-                DeclarationKind::Control => report,
-            };
-        }
-        if let Some(advice) = foreign::advice(name) {
-            let message = format!("MDLe has no `{name}`, and there is no plan of this name");
-            return Diagnostic::new(Code::E0201, message, span, "no plan of this name").help(advice);
-        }
-        let message = format!("there is no plan called `{name}`");
-        let report = Diagnostic::new(Code::E0201, message, span, "no plan of this name");
-        if let Some(keyword) = ["Atom", "ExecPlan", "FRAME"].iter().find(|keyword| name.eq_ignore_ascii_case(keyword)) {
-            return report.fix("the keyword is spelled {}", span, *keyword);
-        }
-        match alphabet::nearest(name, self.definitions.names.iter().copied()) {
-            Some(near) => report.fix("did you mean {}?", span, near),
-            None => report.help(format!("write it: `{{ {name} (Atom (wait 10) stop) }}`")),
         }
     }
 

@@ -1,0 +1,48 @@
+//! Arguments to begin with, for helps.
+
+use super::written;
+use crate::alphabet::{Declaration, Kind, Param};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::syntax::tree::{Arg, Call};
+
+/// A value that a parameter can have: something to begin with. `None` where only the writer knows a name.
+pub(in crate::plan) fn example(param: &Param) -> Option<String> {
+    let value = match param.kind {
+        Kind::Length => "1m".to_owned(),
+        Kind::Speed => "20cm/s".to_owned(),
+        Kind::Angle => "90deg".to_owned(),
+        Kind::AngularRate | Kind::Number | Kind::Integer | Kind::Sonar => "0".to_owned(),
+        Kind::Time => "5s".to_owned(),
+        Kind::Voltage => "12V".to_owned(),
+        Kind::Frequency => "10Hz".to_owned(),
+        Kind::Count => "1".to_owned(),
+        Kind::Bits(length) => format!("1{}", "0".repeat((length as usize).saturating_sub(1))),
+        Kind::Robot | Kind::Module | Kind::File => return None,
+    };
+    Some(value)
+}
+
+/// `atIsection 1 0 0 0` with its bits written together.
+pub(super) fn bits_apart(call: &Call, declaration: &Declaration) -> Option<String> {
+    let [Param { kind: Kind::Bits(length), .. }] = declaration.params.as_slice() else { return None };
+    let bits = call.args.iter().map(|arg| match arg {
+        Arg::Number(number) if number.unit().is_none() && matches!(number.digits(), "0" | "1") => Some(number.digits()),
+        Arg::Number(_) | Arg::Infinity(_) | Arg::String(_) | Arg::Name(_) | Arg::Module(_) => None,
+    });
+    let bits = bits.collect::<Option<String>>()?;
+    (bits.len() == *length as usize).then(|| format!("{} {bits}", call.name))
+}
+
+/// Two arguments with the unit of each other, where they fit in the other order.
+pub(super) fn swapped(call: &Call, found: &[Diagnostic], fits: impl Fn(&Call) -> bool) -> Option<Diagnostic> {
+    let [first, second] = call.args else { return None };
+    if found.len() != 2 || found.iter().any(|found| found.code != Code::E0303) {
+        return None;
+    }
+    let args = [*second, *first];
+    let swapped = Call { args: &args, ..*call };
+    let span = first.span().to(second.span());
+    let message = format!("the arguments of `{}` are in the other order", call.name);
+    let arguments = written(&swapped).split_once(' ')?.1.to_owned();
+    fits(&swapped).then(|| Diagnostic::new(Code::E0303, message, span, "swap these").fix("write {}", span, arguments))
+}

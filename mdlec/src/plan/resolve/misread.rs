@@ -1,0 +1,110 @@
+//! Usual mistakes that can be parsed, and names that no plan has: messages about what was meant.
+
+use super::Resolver;
+use crate::alphabet::{self, DeclarationKind};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::plan::arguments::{kind_words, written};
+use crate::syntax::foreign;
+use crate::syntax::tree::{self, Call, ConditionNode, Element, Primary};
+
+impl<'a> Resolver<'_, 'a> {
+    /// Reports `{ My Plan (bumper) …`, a name of two words; the number of elements that were read from it.
+    pub(super) fn words_of_name(&mut self, plan: &tree::Plan<'a>) -> usize {
+        let [Element { primary: Primary::Ref(word), .. }, Element { primary: Primary::String(group), .. }, ..] =
+            plan.elements
+        else {
+            return 0;
+        };
+        let [Element { primary: Primary::Ref(condition), .. }] = group else { return 0 };
+        let kind = |name| self.quarks.alphabet().declarations_of(name).next().map(|declaration| declaration.kind);
+        let is_plan = self.definitions.get(word.name).is_some() || self.definitions.is_incomplete;
+        let is_condition = kind(condition.name) == Some(DeclarationKind::Interrupt);
+        let is_beside = plan.condition.is_none() && word.span.start == plan.name.span.end + 1;
+        if is_plan || !is_condition || !is_beside || kind(word.name).is_some() {
+            return 0;
+        }
+        let name = format!("{}{}", plan.name.node, word.name);
+        let span = plan.name.span.to(word.span);
+        let found = Diagnostic::new(Code::E0201, "the name of a plan is one word", span, "two words");
+        self.found.push(found.fix("write {}", span, name));
+        2
+    }
+
+    /// Reports `{ Plan bumper (Atom …`, a condition without parentheses; the number of elements that were read from it.
+    pub(super) fn bare_condition(&mut self, plan: &tree::Plan<'a>) -> usize {
+        let [Element { primary: Primary::Ref(call), marks: None, .. }, _, ..] = plan.elements else { return 0 };
+        let mut declarations = self.quarks.alphabet().declarations_of(call.name);
+        let is_interrupt = declarations.any(|declaration| declaration.kind == DeclarationKind::Interrupt);
+        let is_beside = plan.condition.is_none() && call.span.start == plan.name.span.end + 1;
+        if !is_interrupt || !is_beside || self.definitions.get(call.name).is_some() {
+            return 0;
+        }
+        let message = format!(
+            "`{}` is {}, but an atom or a plan is expected here",
+            call.name,
+            kind_words(DeclarationKind::Interrupt)
+        );
+        let found = Diagnostic::new(Code::E0204, message, call.span, "no parentheses around this");
+        let words = "the condition of a plan is written in parentheses after its name: {}";
+        self.found.push(found.fix(words, call.span, format!("({})", written(call))));
+        1
+    }
+
+    /// `(Atom (u) ξ)`: the law where the condition belongs, and the other way round.
+    pub(super) fn swapped(&self, atom: &tree::Atom<'a>) -> Option<Diagnostic> {
+        let ConditionNode::Call(law) = atom.condition.node else { return None };
+        let kind = |name| self.quarks.alphabet().declarations_of(name).next().map(|declaration| declaration.kind);
+        let is_swapped = kind(law.name) == Some(DeclarationKind::Control)
+            && kind(atom.control.name) == Some(DeclarationKind::Interrupt);
+        let message = format!("`{}` is a law, but an interrupt is expected here", law.name);
+        let found = Diagnostic::new(Code::E0204, message, law.name_span(), "a law");
+        let (law, interrupt) = (written(law), written(atom.control));
+        is_swapped.then(|| found.help(format!("the condition comes first: `(Atom ({interrupt}) ({law}))`")))
+    }
+
+    /// A name that no plan has, where an element is expected.
+    pub(super) fn unknown_plan(&self, call: &Call) -> Diagnostic {
+        let name = call.name;
+        let span = call.name_span();
+        if let Some(quark) = self.quarks.alphabet().declarations_of(name).next() {
+            let message = format!("`{name}` is {}, but an atom or a plan is expected here", kind_words(quark.kind));
+            let report = Diagnostic::new(Code::E0204, message, span, "a quark runs in an atom");
+            let written = written(call);
+            let (words, element) = match quark.kind {
+                DeclarationKind::Control => ("say when it ends: {}", format!("(Atom (wait 10) {written})")),
+                DeclarationKind::Interrupt => ("say what runs until then: {}", format!("(Atom ({written}) stop)")),
+                DeclarationKind::Signal => ("compare it in an atom: {}", format!("(Atom ({written} < 1) stop)")),
+            };
+            let report = report.fix(words, call.span, element);
+            return match quark.kind {
+                DeclarationKind::Interrupt | DeclarationKind::Signal => report.help(
+                    "the condition of a plan is written in parentheses after the name of the plan: `{ Name (bumper) … }`",
+                ),
+                DeclarationKind::Control => report,
+            };
+        }
+        if let Some(advice) = foreign::advice(name) {
+            let message = format!("MDLe has no `{name}`, and there is no plan of this name");
+            return Diagnostic::new(Code::E0201, message, span, "no plan of this name").help(advice);
+        }
+        let message = format!("there is no plan called `{name}`");
+        let report = Diagnostic::new(Code::E0201, message, span, "no plan of this name");
+        if let Some(keyword) = ["Atom", "ExecPlan", "FRAME"].iter().find(|keyword| name.eq_ignore_ascii_case(keyword)) {
+            return report.fix("the keyword is spelled {}", span, *keyword);
+        }
+        match alphabet::nearest(name, self.definitions.names.iter().copied()) {
+            Some(near) => report.fix("did you mean {}?", span, near),
+            None if name == "here" => report.help("`here` follows `FRAME`: `FRAME here (Atom (bumper) stop)`"),
+            None if is_joining(name) => report.fix("elements follow each other without a word: remove it", span, ""),
+            None if call.args.is_empty() && self.next.is_some_and(|next| next.start == span.end + 1) => {
+                report.fix("a label of what follows it has a colon: {}", span, format!("{name}:"))
+            }
+            None => report.help(format!("write a plan of this name: `{{ {name} (bumper) … }}`")),
+        }
+    }
+}
+
+/// Returns `true` if a name joins steps in other languages.
+fn is_joining(name: &str) -> bool {
+    ["then", "and", "next", "followed", "do", "begin", "end"].iter().any(|word| name.eq_ignore_ascii_case(word))
+}
