@@ -162,7 +162,10 @@ impl runtime::Interrupt<Output> for AnyInterrupt {
     fn measured(&self, y: &Output) -> runtime::Measured {
         match self {
             Self::Comparison(comparison) => runtime::Interrupt::measured(comparison, y),
-            Self::Bumper(_) | Self::AtIsection(_) => runtime::Measured::Nothing,
+            Self::Bumper(_)
+            | Self::AtIsection(_)
+            | Self::LowBattery(_)
+            | Self::Charger(_) => runtime::Measured::Nothing,
         }
     }
 }
