@@ -140,7 +140,7 @@ fn the_legs_of_the_book_lead_there_and_back() {
     let legs_of_book = built("legs", &of_book("names.md", "legs.mdle"));
     let run = run(&legs_of_book, &["--world", "floor.toml", "--start", "6,5,30"]);
     let trail = run.relative();
-    let short = run.at(run.begins("goAvoid 0 1 40")[0]);
+    let short = run.at(run.begins("advance 1 40")[0]);
     assert_eq!(legs(&trail[..short], 3.0, "the long leg"), (1, 1));
     let (there, back) = legs(&trail[short..], 1.0, "the short leg");
     assert!(there >= 4 && there - back <= 1, "{there} times there, {back} times back");
@@ -149,6 +149,10 @@ fn the_legs_of_the_book_lead_there_and_back() {
 #[test]
 fn a_frame_here_leads_ahead_and_back() {
     let ahead = built("ahead", &of_book("language.md", "ahead.mdle"));
+    let round = run(&ahead, &["--world", "post.toml", "--start", "0,0,0"]).relative();
+    assert!(round.iter().any(|[ahead, ..]| *ahead >= 2.7) && round.iter().any(|[_, left, _]| left.abs() > 0.3));
+    let [ahead_at, left, heading] = round[round.len() - 1];
+    assert!(libm::hypot(ahead_at, left) <= 0.3 && heading.abs() <= 5.0, "ends at {ahead_at}, {left}, {heading}");
     for start in ["6,5,30", "6,5,-100"] {
         assert_eq!(legs(&run(&ahead, &["--world", "floor.toml", "--start", start]).relative(), 3.0, start), (1, 1));
     }
