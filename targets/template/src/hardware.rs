@@ -16,7 +16,7 @@ const SHAPE: Shape = Shape {
     body_radius: Meters(0.2),
     wheel_base: Meters(0.35),
     ring_radius: Meters(0.2),
-    confirmation: 1,
+    confirmation: 3,
     steering: Steering::USUAL,
 };
 /// REPLACE by the speed that no law may exceed.
