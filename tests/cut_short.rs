@@ -121,11 +121,11 @@ fn no_room(path: &str) -> (Option<i32>, String) {
 fn no_room_in_the_cache_is_told_and_the_next_build_works() {
     let folder = with_plan("no_room_in_cache");
     assert_builds(&folder);
-    // Room for the sources of another plan, not for what is compiled from them.
+    // Room for the sources of another plan and the list of what is compiled, not for what is compiled from them.
     fs::write(folder.join(PLAN), "{ Rest (Atom (wait 1ms) (go 1 0)) }\n").unwrap();
     let before = listing(&folder);
     let shared = cache().canonicalize().unwrap();
-    assert_eq!(limited(&folder, 64, &[PLAN, "--target", "sim"], &shared), no_room(shared.to_str().unwrap()));
+    assert_eq!(limited(&folder, 400, &[PLAN, "--target", "sim"], &shared), no_room(shared.to_str().unwrap()));
     assert_eq!(listing(&folder), before);
     let built = run_mdlec(&folder, &[PLAN, "--target", "sim", "-o", "afterwards"]);
     assert_eq!(built.status.code(), Some(0), "{}", told(&built).1);
