@@ -143,7 +143,7 @@ fn the_legs_of_the_book_lead_there_and_back() {
     let short = run.at(run.begins("advance 1 40")[0]);
     assert_eq!(legs(&trail[..short], 3.0, "the long leg"), (1, 1));
     let (there, back) = legs(&trail[short..], 1.0, "the short leg");
-    assert!(there >= 4 && there - back <= 1, "{there} times there, {back} times back");
+    assert!(there >= 3 && there - back <= 1, "{there} times there, {back} times back");
 }
 
 #[test]
@@ -247,7 +247,7 @@ fn docking_ends_with_three_shakes_on_the_spot() {
 fn a_wall_on_the_left_is_followed_for_a_minute() {
     let following = built("wall_following", &of_plans("wall_following"));
     let run = run(&following, &["--world", "walled.toml", "--start", "2,5,0"]);
-    assert!(run.lines.last().unwrap().starts_with("plan over: bumper OR wait 60"), "{:?}", run.lines.last());
+    assert!(run.lines.last().unwrap().contains(" s  plan over: wait 60s "), "{:?}", run.lines.last());
     assert!(run.trail[run.trail.len() - 1][0] >= 59.8, "contact after {} s", run.trail[run.trail.len() - 1][0]);
     let mut way = 0.0;
     for pair in run.trail.windows(2) {
@@ -329,7 +329,7 @@ fn seven_metres_ahead_are_reached_round_obstacles() {
         // By odometry, which a body like the Scout's has with errors.
         let near = if body == "ideal" { 0.15 } else { 0.5 };
         assert!(libm::hypot(ahead - 7.0, left) <= near, "{world}: {ahead} m ahead, {left} m to the left");
-        assert!(run.lines.last().unwrap().starts_with("plan over: completed"), "{world}: {:?}", run.lines);
+        assert!(run.lines.last().unwrap().contains(" s  plan over: completed "), "{world}: {:?}", run.lines);
     }
 }
 
@@ -350,7 +350,7 @@ fn the_yard_is_crossed_and_the_robot_turns_left() {
     let cross = built("cross", &of_book("worlds.md", "cross.mdle"));
     fs::write(cross.with_file_name("yard.toml"), of_book("worlds.md", "yard.toml")).unwrap();
     let run = run(&cross, &["--world", "yard.toml"]);
-    assert!(run.lines.last().unwrap().starts_with("plan over: completed"), "{:?}", run.lines);
+    assert!(run.lines.last().unwrap().contains(" s  plan over: completed "), "{:?}", run.lines);
     let trail = run.relative();
     let [_, _, turned] = trail[trail.len() - 1];
     assert!((turned - 90.0).abs() <= 4.0, "{turned} degrees");

@@ -17,7 +17,7 @@ const SENTENCE: &str =
 fn with_rover(test: &str) -> PathBuf {
     let folder = folder(test);
     fs::write(folder.join("plan.mdle"), "{ Rest (Atom (wait 1ms) stop) }\n").unwrap();
-    for file in files(&[".rs", ".toml", ".mdle"]) {
+    for file in files(&[".rs", ".toml", ".mdle", ".js"]) {
         let Some(name) = file.path.strip_prefix("targets/sim/") else { continue };
         let path = folder.join("rover").join(name);
         fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -98,8 +98,8 @@ fn a_new_target_drives_and_feels_contact_once_it_can() {
     let run = Command::new(folder.join("plan")).args(["--speed", "max", "--timeout", "60"]).output().unwrap();
     let printed = String::from_utf8(run.stdout).unwrap();
     insta::assert_snapshot!(printed, @r"
-    3.0 s  go 10 0.5 (plan.mdle:1)  <- wait 3 (plan.mdle:1)
-    7.7 s  plan over: bumper (plan.mdle:1)
+    3.0 s  go 10 0.5 (plan.mdle:3)  <- wait 3s (plan.mdle:2)
+    5.7 s  plan over: bumper (plan.mdle:1)
     ");
 }
 
@@ -144,7 +144,9 @@ fn a_new_target_conforms_until_a_sign_is_wrong() {
 fn a_new_target_holds_every_file_of_the_template() {
     let folder = folder("new_target_files");
     assert_eq!(run_mdlec(&folder, &["new-target", "template"]).status.code(), Some(0));
-    for file in files(&[".rs", ".toml", ".mdle"]).iter().filter(|file| file.path.starts_with("targets/template/")) {
+    for file in
+        files(&[".rs", ".toml", ".mdle", ".js"]).iter().filter(|file| file.path.starts_with("targets/template/"))
+    {
         let written = fs::read_to_string(folder.join(file.path.trim_start_matches("targets/"))).expect(&file.path);
         assert!(written == file.text || file.path.ends_with("Cargo.toml"), "{}", file.path);
     }

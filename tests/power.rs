@@ -60,7 +60,7 @@ fn every_robot_finds_the_charger_of_its_world() {
     let scout = reported("scout", DOCK, &[], Scout::new(body(Body::Scout, PERIOD)).unwrap());
     let step = step(PACE);
     let atrv = reported("atrv", DOCK, &[], Atrv::new(body(Body::Atrv, step), step, false).unwrap());
-    assert_eq!(scout, ["atom 2 stop  <- charger (atom 1)", "plan over: wait 2 (atom 2)"]);
+    assert_eq!(scout, ["stop (home.mdle:1)  <- charger (home.mdle:1)", "plan over: wait 2s (home.mdle:1)"]);
     assert_eq!(atrv, scout);
     let folder = folder("dock_of_sim");
     fs::write(folder.join("home.mdle"), DOCK).unwrap();

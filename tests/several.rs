@@ -70,7 +70,13 @@ fn a_robot_stops_before_another_one_whose_driver_has_gone() {
     let folder = folder("several_stop");
     let (approach, stay) = (executable(&folder, "approach", APPROACH), executable(&folder, "stay", STAY));
     let (said, discs) = together([&approach, &stay]);
-    assert!(said[0].contains("plan over: r0 < 0.6") && said[0].ends_with("[0]"), "{}", said[0]);
+    assert!(
+        said[0].contains("plan over: r0 = ")
+            && said[0].contains(" m < 60cm (approach.mdle:1)")
+            && said[0].ends_with("[0]"),
+        "{}",
+        said[0]
+    );
     assert!(said[1].contains("plan over: wait 3") && said[1].ends_with("[0]"), "{}", said[1]);
     // Behind the last ping it has gone on for a round of its sonars at most.
     assert!((0.35..0.6).contains(&gap(discs)), "{}", gap(discs));

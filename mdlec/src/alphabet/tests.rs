@@ -38,7 +38,7 @@ fn our_own_alphabets_are_read() {
     assert_eq!((head.crate_name.as_str(), head.period), ("mdle_sim", Some(100_000_000)));
     assert_eq!(
         head.capabilities.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "),
-        "diff_drive sonar[16] bumper odometry paths"
+        "diff_drive sonar[16] bumper odometry paths power"
     );
 }
 
