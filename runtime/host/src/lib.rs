@@ -15,6 +15,8 @@ mod files;
 mod held;
 mod log;
 mod named_file;
+#[cfg_attr(not(test), expect(dead_code, reason = "the option `--require` comes with the next change"))]
+mod operand_text;
 mod outlet;
 mod output_format;
 mod panic_hook;

@@ -11,16 +11,25 @@ pub enum Quantity {
     Length,
     /// An angle, in degrees.
     Angle,
+    /// A speed, in metres per second.
+    Speed,
+    /// A turn rate, in degrees per second.
+    TurnRate,
+    /// A voltage, in volts.
+    Voltage,
+    /// A frequency, in hertz.
+    Frequency,
 }
 
 /// A unit: its name, and the factor and the divisor that convert a number of it into the unit of its [`Quantity`].
 type Unit = (&'static str, f64, f64);
 
 impl Quantity {
-    const ALL: [Self; 3] = [Self::Time, Self::Length, Self::Angle];
+    const ALL: [Self; 7] =
+        [Self::Time, Self::Length, Self::Angle, Self::Speed, Self::TurnRate, Self::Voltage, Self::Frequency];
 
-    /// Reads a finite number followed by a unit, such as `3s`; `bare` is the unit of a number alone. The result is in seconds,
-    /// metres or degrees.
+    /// Reads a finite number followed by a unit, such as `3s`; `bare` is the unit of a number alone. The result is in the
+    /// unit of the variant.
     ///
     /// # Errors
     /// The text is not a number with a unit of this kind: a sentence with what to type instead.
@@ -45,6 +54,14 @@ impl Quantity {
             .ok_or_else(|| format!("expected a time from {least:?} to {most:?}"))
     }
 
+    /// Returns the quantity that has this unit, and the factor and the divisor that convert a number of the unit.
+    pub(crate) fn of_unit(name: &str) -> Option<(Self, f64, f64)> {
+        Self::ALL.into_iter().find_map(|kind| {
+            let unit = kind.units().iter().find(|unit| unit.0 == name);
+            unit.map(|(_, factor, divisor)| (kind, *factor, *divisor))
+        })
+    }
+
     fn units(self) -> &'static [Unit] {
         match self {
             Self::Time => &[("s", 1.0, 1.0), ("ms", 1.0, 1000.0), ("min", 60.0, 1.0), ("h", 3600.0, 1.0)],
@@ -56,6 +73,10 @@ impl Quantity {
                 ("ft", 3048.0, 10_000.0),
             ],
             Self::Angle => &[("deg", 1.0, 1.0), ("rad", 180.0, std::f64::consts::PI)],
+            Self::Speed => &[("m/s", 1.0, 1.0), ("cm/s", 1.0, 100.0), ("mm/s", 1.0, 1000.0), ("in/s", 254.0, 10_000.0)],
+            Self::TurnRate => &[("deg/s", 1.0, 1.0), ("rad/s", 180.0, std::f64::consts::PI)],
+            Self::Voltage => &[("V", 1.0, 1.0)],
+            Self::Frequency => &[("Hz", 1.0, 1.0)],
         }
     }
 
@@ -65,6 +86,10 @@ impl Quantity {
             Self::Time => "a time",
             Self::Length => "a length",
             Self::Angle => "an angle",
+            Self::Speed => "a speed",
+            Self::TurnRate => "a turn rate",
+            Self::Voltage => "a voltage",
+            Self::Frequency => "a frequency",
         }
     }
 
