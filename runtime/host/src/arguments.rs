@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use clap::{Arg, ArgMatches, Command, value_parser};
 
-use crate::{Program, Quantity, Target, paths};
+use crate::{Program, Quantity, Target, paths, required};
 
 /// The shortest period: a turn must leave time for the exchange.
 const PERIOD_LEAST: Duration = Duration::from_micros(100);
@@ -14,17 +14,20 @@ const PERIOD_MOST: Duration = Duration::from_secs(60);
 /// The longest timeout, some 31 years: far below what nanoseconds in 64 bits can count.
 const TIMEOUT_MOST: Duration = Duration::from_secs(1_000_000_000);
 
-const STATUS: &str = "Exit status: 0 the plan ended, 2 invalid option, world or start pose, 3 a fault stopped the robot,\n\
-                      4 timeout or turn limit, 128+N terminated by signal N. The robot is stopped in every case.";
+/// The exit statuses and their meanings.
+const STATUSES: [(&str, &str); 7] = [
+    ("0", "the plan ended"),
+    ("1", "with --runs: not all runs ended as required"),
+    ("2", "invalid option, world or start pose"),
+    ("3", "a fault stopped the robot"),
+    ("4", "timeout or turn limit"),
+    ("5", "the plan ended otherwise than required"),
+    ("128+N", "terminated by signal N"),
+];
 
-const STATUS_LONG: &str = "\
-Exit status:
-  0      the plan ended
-  2      invalid option, world or start pose
-  3      a fault stopped the robot
-  4      timeout or turn limit
-  128+N  terminated by signal N
-The robot is stopped in every case. On a real robot, SIGUSR1 prints how late turns began and how long they took.";
+const STOPPED: &str = "The robot is stopped in every case.";
+
+const TIMING: &str = "On a real robot, SIGUSR1 prints how late turns began and how long they took.";
 
 /// The values of the options that all targets share.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -48,8 +51,6 @@ pub(crate) fn command<T: Target>(program: Program<'_>) -> Command {
     let name = program.plan;
     let command = Command::new(name.to_owned())
         .about(format!("Run the plan {name} on the robot {}", T::NAME))
-        .after_help(STATUS)
-        .after_long_help(STATUS_LONG)
         .arg(
             option("period", "TIME")
                 .help(format!("Period of the control loop, in seconds or as in `50ms` [default: {seconds}]"))
@@ -79,8 +80,19 @@ pub(crate) fn command<T: Target>(program: Program<'_>) -> Command {
                 .help("File for a log of the run, one JSON object per turn, in the format of `mdlec trace`")
                 .value_parser(value_parser!(PathBuf)),
         );
+    let command = required::argument(command);
     let command = if program.version.is_empty() { command } else { command.version(program.version.to_owned()) };
-    T::arguments(if T::PATHS.is_some() { paths::arguments(command) } else { command })
+    with_statuses(T::arguments(if T::PATHS.is_some() { paths::arguments(command) } else { command }))
+}
+
+/// Adds the exit statuses to the help of a command whose options are all there.
+fn with_statuses(command: Command) -> Command {
+    let has_runs = command.get_arguments().any(|argument| argument.get_id() == "runs");
+    let statuses = STATUSES.into_iter().filter(|(number, _)| *number != "1" || has_runs);
+    let lines = statuses.map(|(number, meaning)| format!("  {number:<5}  {meaning}\n")).collect::<String>();
+    command
+        .after_help(format!("Exit status:\n{lines}{STOPPED}"))
+        .after_long_help(format!("Exit status:\n{lines}{STOPPED} {TIMING}"))
 }
 
 /// Reads the common options.

@@ -16,6 +16,7 @@ use crate::clock::{Clock, Instants};
 use crate::ending::Ending;
 use crate::progress::Progress;
 use crate::report::{Over, Report};
+use crate::required::Required;
 use crate::safety::{Panicked, shielded};
 use crate::signals::Signals;
 use crate::summary::Summary;
@@ -51,12 +52,16 @@ impl<R> fmt::Debug for Batch<R> {
 /// How a run has gone.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Outcome {
-    /// The plan is over, and the robot where it was to come to.
+    /// The plan is over, and there was no goal.
+    Ended,
+    /// The plan is over, and the robot is in its goal.
     Arrived,
-    /// The plan was over in contact with something.
+    /// The plan is over, and the robot touches something.
     Bumped,
-    /// The plan is over, and the robot elsewhere.
+    /// The plan is over, and the robot is outside its goal: where.
     Astray(String),
+    /// The plan is over by another cause than those required.
+    Otherwise,
     /// The plan was given up.
     TimedOut,
     /// There was no such run, or a fault stopped it: why.
@@ -82,6 +87,8 @@ pub(crate) struct Terms<'a> {
     pub(crate) signals: &'a Signals,
     /// What the executable was called as.
     pub(crate) program: &'a str,
+    /// The causes by which the plan must end.
+    pub(crate) required: &'a Required,
 }
 
 impl Terms<'_> {
@@ -165,7 +172,7 @@ fn one<R: Hosted, P>(batch: &Batch<R>, seed: u64, plan: &impl Fn() -> P, terms: 
 where
     P: Plan<Output = R::Output, Input = R::Input>,
 {
-    let mut run = Done { seed, outcome: Outcome::Arrived, t: Nanos::ZERO, over: None, contacts: 0 };
+    let mut run = Done { seed, outcome: Outcome::Ended, t: Nanos::ZERO, over: None, contacts: 0 };
     let mut robot = match shielded(|| (batch.robot)(seed)).unwrap_or_else(panicked) {
         Ok(robot) => robot,
         Err(sentence) => return Some(Done { outcome: Outcome::Failed(sentence), ..run }),
@@ -202,12 +209,15 @@ where
         Ok(Ending::Suspended { .. }) => Outcome::Failed("it went without a command".to_owned()),
         Ok(_) if failure.is_some() => Outcome::Failed(failure.unwrap_or_default()),
         Ok(Ending::Timeout(_) | Ending::Turns(_)) => Outcome::TimedOut,
-        Ok(Ending::Over) => {
+        Ok(Ending::Over | Ending::Otherwise(_)) => {
             run.over = over;
-            match robot.judged() {
-                Judgement::Arrived => Outcome::Arrived,
-                Judgement::Bumped => Outcome::Bumped,
-                Judgement::Astray(place) => Outcome::Astray(place),
+            match shielded(|| Ok(robot.judged())).unwrap_or_else(panicked) {
+                Err(panic) => Outcome::Failed(panic),
+                Ok(_) if run.over.as_ref().is_some_and(|over| !terms.required.allows(over)) => Outcome::Otherwise,
+                Ok(None) => Outcome::Ended,
+                Ok(Some(Judgement::Arrived)) => Outcome::Arrived,
+                Ok(Some(Judgement::Bumped)) => Outcome::Bumped,
+                Ok(Some(Judgement::Astray(place))) => Outcome::Astray(place),
             }
         }
     };

@@ -12,7 +12,7 @@ use crate::signals::Signal;
 
 /// Exit status: the plan is over, whatever ended it.
 pub(crate) const OVER: u8 = 0;
-/// Exit status: of several runs, not all arrived.
+/// Exit status: of several runs, not all ended as required.
 pub(crate) const MISSED: u8 = 1;
 /// Exit status: a bad option, world or start pose.
 pub(crate) const USAGE: u8 = 2;
@@ -20,12 +20,16 @@ pub(crate) const USAGE: u8 = 2;
 pub(crate) const FAULT: u8 = 3;
 /// Exit status: timeout or turn limit.
 pub(crate) const LIMIT: u8 = 4;
+/// Exit status: the plan is over, and ended otherwise than required.
+pub(crate) const OTHERWISE: u8 = 5;
 
 /// Why a run ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Ending {
     /// The plan is over.
     Over,
+    /// The plan is over, and ended otherwise than `--require` or `--goal` ask: a sentence.
+    Otherwise(String),
     /// The plan was not over at this time.
     Timeout(Duration),
     /// The plan was not over after this many turns.
@@ -60,11 +64,12 @@ impl Ending {
     pub(crate) fn status(&self, faults: &[Fault]) -> u8 {
         let grave = faults.iter().any(|fault| match fault {
             Fault::Exchange(_) | Fault::Log(_) | Fault::Stop(_) => true,
-            Fault::Path(_) | Fault::Finish(_) => *self == Self::Over,
+            Fault::Path(_) | Fault::Finish(_) => matches!(self, Self::Over | Self::Otherwise(_)),
         });
         match self {
             _ if grave => FAULT,
             Self::Over => OVER,
+            Self::Otherwise(_) => OTHERWISE,
             Self::Timeout(_) | Self::Turns(_) => LIMIT,
             Self::Signal(signal) => 128 + signal.number(),
             Self::Robot(_)
@@ -89,7 +94,13 @@ impl Ending {
     /// nothing is known of it. Its stop command is sent all the same.
     pub(crate) fn robot_listens(&self) -> bool {
         match self {
-            Self::Over | Self::Timeout(_) | Self::Turns(_) | Self::Signal(_) | Self::Log(_) | Self::Overrun(_) => true,
+            Self::Over
+            | Self::Otherwise(_)
+            | Self::Timeout(_)
+            | Self::Turns(_)
+            | Self::Signal(_)
+            | Self::Log(_)
+            | Self::Overrun(_) => true,
             Self::Robot(_) | Self::Unstopped(_) | Self::Suspended { .. } | Self::Bug(_) => false,
         }
     }
@@ -98,6 +109,7 @@ impl Ending {
     pub(crate) fn is_orderly(&self) -> bool {
         match self {
             Self::Over
+            | Self::Otherwise(_)
             | Self::Timeout(_)
             | Self::Turns(_)
             | Self::Signal(_)
@@ -113,7 +125,7 @@ impl Ending {
     /// Returns a word or two for what ended a run before its plan was over.
     pub(crate) fn brief(&self) -> String {
         match self {
-            Self::Over => "plan over".to_owned(),
+            Self::Over | Self::Otherwise(_) => "plan over".to_owned(),
             Self::Timeout(_) => "--timeout".to_owned(),
             Self::Turns(_) => "--turns".to_owned(),
             Self::Signal(signal) => signal.name().into_owned(),
@@ -131,6 +143,7 @@ impl Ending {
         let came = if is_stopped { "a fault stopped the robot" } else { "a fault ended the plan" };
         match self {
             Self::Over => {}
+            Self::Otherwise(sentence) => say(err, format_args!("not as required: {sentence}")),
             Self::Timeout(limit) => {
                 say(err, format_args!("stopped by --timeout: the plan was not over after {} s", limit.as_secs_f64()));
             }

@@ -15,7 +15,6 @@ mod files;
 mod held;
 mod log;
 mod named_file;
-#[cfg_attr(not(test), expect(dead_code, reason = "the option `--require` comes with the next change"))]
 mod operand_text;
 mod outlet;
 mod output_format;
@@ -27,6 +26,7 @@ mod program;
 mod progress;
 mod quantity;
 mod report;
+mod required;
 mod safety;
 mod second_signal;
 mod session;
@@ -66,8 +66,9 @@ pub use target::{Around, Ended, Hosted, Judgement, Pace, Refusal, Standing, Targ
 /// that mdlec builds calls. `program` is the plan's name, for `--help`, whose usage names the executable as it was called; a [`Program`]
 /// also answers `--version`.
 ///
-/// Exit status: 0 the plan is over; 1 of several runs not all arrived; 2 a bad option, world or start pose; 3 a fault stopped the robot, or what was asked
-/// for could not be written; 4 `--timeout` or `--turns`; 128+N signal N. In every case the robot was stopped.
+/// Exit status: 0 the plan is over; 1 of several runs not all ended as required; 2 a bad option, world or start pose; 3 a fault stopped the robot, or what
+/// was asked for could not be written; 4 `--timeout` or `--turns`; 5 the plan is over and ended otherwise than required; 128+N signal N. In every case the
+/// robot was stopped.
 ///
 /// It handles the signals of the process and replaces its panic hook by one that never makes the robot wait.
 pub fn run<'a, T: Target, P>(program: impl Into<Program<'a>>, plan: impl Fn() -> P + Sync) -> ExitCode

@@ -5,8 +5,9 @@ use std::fmt;
 use std::io::{self, Write};
 
 use mdle_runtime::trace::COMPLETED;
-use mdle_runtime::{Cause, Nanos, Plan, Printable, Transition};
+use mdle_runtime::{Cause, Measured, Nanos, Plan, Printable, Transition};
 
+use crate::Judgement;
 use crate::cause::{CauseText, place};
 use crate::passes::Passes;
 use crate::transitions::{Operand, Transitions};
@@ -35,8 +36,12 @@ pub(crate) struct Over {
     pub(crate) by: String,
     /// The condition texts of the operands that had fired.
     pub(crate) operands: Vec<String>,
-    /// The name of the scope that ended; empty for an atom and in formal notation.
-    pub(crate) scope: String,
+    /// The words of a report without the values that were measured.
+    pub(crate) words: String,
+    /// The bracket of the scope that ended.
+    pub(crate) bracket: u32,
+    /// The numbers of the operands that had fired.
+    pub(crate) numbers: Vec<u32>,
 }
 
 /// Whether a report is still written.
@@ -91,6 +96,15 @@ impl<'a> Report<'a> {
         }
     }
 
+    /// Reports the result of a run that had a goal.
+    pub(crate) fn judged(&mut self, judgement: &Judgement) {
+        let written = match self.state {
+            State::Open => writeln!(self.out, "{}", Printable(judgement)),
+            State::Closed(_) => Ok(()),
+        };
+        self.note(written);
+    }
+
     /// Shows what has been written so far.
     pub(crate) fn flush(&mut self) {
         match self.state {
@@ -127,15 +141,20 @@ impl Over {
     fn of<P: Plan>(plan: &P, transition: &Transition, operands: &[Operand], cause: String) -> Self {
         let source = plan.source();
         let texts = source.operands_of(transition.scope);
-        let operands = operands.iter().filter_map(|(number, _)| texts.get(*number as usize));
+        let unmeasured: Vec<Operand> = operands.iter().map(|(number, _)| (*number, Measured::Nothing)).collect();
+        let words = Printable(CauseText { plan, transition, operands: &unmeasured }).to_string();
+        let numbers: Vec<u32> = operands.iter().map(|(number, _)| *number).collect();
+        let operands = numbers.iter().filter_map(|number| texts.get(*number as usize));
         Self {
             cause,
+            words,
             by: match transition.cause {
                 Cause::Fired(_) => transition.by(plan).to_owned(),
                 Cause::Completed(_) => COMPLETED.to_owned(),
             },
             operands: operands.map(|words| words.text.to_owned()).collect(),
-            scope: plan.name(transition.scope).to_owned(),
+            bracket: transition.scope,
+            numbers,
         }
     }
 }

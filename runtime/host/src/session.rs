@@ -17,6 +17,7 @@ use crate::log::{Log, Untouched};
 use crate::paths::{self, Recorder};
 use crate::progress::Progress;
 use crate::report::Report;
+use crate::required::Required;
 use crate::safety::{Panicked, shielded};
 use crate::signals::Signals;
 use crate::turns::{self, Limits, Witnesses};
@@ -61,9 +62,9 @@ where
         Ok(Some(answer)) => return answered(&answer, &mut *out()),
         Ok(None) => {}
     }
-    let (store, replayed) = match stored::<T, P>(&matches, plan) {
+    let Prepared { store, paths, required } = match prepared::<T, P>(&matches, plan) {
         Err(refusal) => return refusal.tell(err),
-        Ok(stored) => stored,
+        Ok(prepared) => prepared,
     };
     match batch::<T>(&matches, &options, store) {
         Err(refusal) => return refusal.tell(err),
@@ -72,13 +73,13 @@ where
             signals.robot_runs(Time::Stepped(Pace::Max));
             signals.patience().stop_was_tried(None);
             let program = arguments.first().map_or_else(|| program.plan.into(), |called| called.to_string_lossy());
-            let terms = Terms { period: options.period, limits, signals: &signals, program: &program };
+            let terms =
+                Terms { period: options.period, limits, signals: &signals, program: &program, required: &required };
             return several(&batch, plan, &terms, &mut *out(), err, seen);
         }
         Ok(None) => {}
     }
-    let Ready { mut robot, time, mut log, mut path } = match ready::<T>(&matches, &options, store, &replayed, &signals)
-    {
+    let Ready { mut robot, time, mut log, mut path } = match ready::<T>(&matches, &options, store, &paths, &signals) {
         Ok(ready) => ready,
         Err(Refusal::Ended(stopped)) => return ended_at_the_start(&signals, stopped, err),
         Err(refusal) => {
@@ -114,6 +115,8 @@ where
         turns::run(&mut robot, plan(), limits, &mut clock, &signals, &mut witnesses)
     });
     let (ending, orderly, faults) = way_out::stop(&mut robot, ending.unwrap_or_else(way_out::bug));
+    let ending = way_out::judge(&robot, ending, &required, &mut report);
+    let orderly = orderly && ending.is_orderly();
     signals.patience().stop_was_tried(Some(ending.status(&faults)));
     let files = way_out::Files {
         log: log.ok().flatten(),
@@ -143,16 +146,25 @@ fn warn_of_lateness(refused: &str, program: Option<&OsString>, err: &mut dyn Wri
     );
 }
 
-/// The paths that the plan replays, read, and their names.
-fn stored<T: Target, P: Plan>(
-    matches: &ArgMatches,
-    plan: &impl Fn() -> P,
-) -> Result<(PathStore, Vec<&'static str>), Refusal> {
-    let stored = shielded(|| {
+/// What the options say of the plan.
+struct Prepared {
+    /// The paths that the plan replays, read.
+    store: PathStore,
+    /// The names of these paths.
+    paths: Vec<&'static str>,
+    /// The causes by which the plan must end.
+    required: Required,
+}
+
+/// Reads the paths that the plan replays, and the causes by which it must end.
+fn prepared<T: Target, P: Plan>(matches: &ArgMatches, plan: &impl Fn() -> P) -> Result<Prepared, Refusal> {
+    let prepared = shielded(|| {
         let plan = plan();
-        paths::load::<T>(matches, plan.paths()).map(|store| (store, plan.paths().to_vec()))
+        let required = Required::of(matches, &plan).map_err(Refusal::Usage)?;
+        let store = paths::load::<T>(matches, plan.paths())?;
+        Ok(Prepared { store, paths: plan.paths().to_vec(), required })
     });
-    stored.unwrap_or_else(bug_before)
+    prepared.unwrap_or_else(bug_before)
 }
 
 /// The files that the options of a run name.

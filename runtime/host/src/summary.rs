@@ -1,4 +1,4 @@
-//! What is said of several runs: how many arrived and how fast, and how each of the others can be run again.
+//! The summary of several runs: how many ended how, how long they took, and a command that repeats the first of each kind.
 
 use std::fmt::{self, Write as _};
 use std::time::Duration;
@@ -26,16 +26,26 @@ pub(crate) struct Summary<'a> {
 }
 
 impl Outcome {
-    const NAMES: [&'static str; 5] = ["arrived", "bumped", "astray", "timed out", "failed"];
+    const NAMES: [&'static str; 7] = ["ended", "arrived", "bumped", "astray", "ended otherwise", "timed out", "failed"];
 
     fn name(&self) -> &'static str {
-        let [arrived, bumped, astray, timed_out, failed] = Self::NAMES;
+        let [ended, arrived, bumped, astray, otherwise, timed_out, failed] = Self::NAMES;
         match self {
+            Self::Ended => ended,
             Self::Arrived => arrived,
             Self::Bumped => bumped,
             Self::Astray(_) => astray,
+            Self::Otherwise => otherwise,
             Self::TimedOut => timed_out,
             Self::Failed(_) => failed,
+        }
+    }
+
+    /// Returns `true` if the run is as it was to be.
+    fn is_good(&self) -> bool {
+        match self {
+            Self::Ended | Self::Arrived => true,
+            Self::Bumped | Self::Astray(_) | Self::Otherwise | Self::TimedOut | Self::Failed(_) => false,
         }
     }
 }
@@ -45,7 +55,7 @@ impl Summary<'_> {
     pub(crate) fn status(&self) -> u8 {
         if self.count("failed") > 0 {
             ending::FAULT
-        } else if self.count("arrived") == self.asked {
+        } else if self.good().count() as u64 == self.asked {
             ending::OVER
         } else {
             ending::MISSED
@@ -62,15 +72,20 @@ impl Summary<'_> {
         (touched.clone().map(|run| run.contacts).sum(), touched.count())
     }
 
-    /// The median of the times of those that arrived, and the slowest of them.
+    /// The runs that are as they were to be.
+    fn good(&self) -> impl Iterator<Item = &Done> {
+        self.runs.iter().filter(|run| run.outcome.is_good())
+    }
+
+    /// The median of the times of the good runs, and the slowest of these.
     fn times(&self) -> Option<(Nanos, &Done)> {
-        let mut arrived: Vec<&Done> = self.runs.iter().filter(|run| run.outcome == Outcome::Arrived).collect();
+        let mut good: Vec<&Done> = self.good().collect();
         // The first of equals is the one with the first seed: sorting keeps their order.
-        arrived.sort_by_key(|run| run.t);
-        let worst = *arrived.last()?;
-        let worst = arrived.iter().find(|run| run.t == worst.t).copied().unwrap_or(worst);
-        let middle = |at: usize| arrived.get(at).map_or(Nanos::ZERO, |run| run.t);
-        let (low, high) = (middle((arrived.len() - 1) / 2), middle(arrived.len() / 2));
+        good.sort_by_key(|run| run.t);
+        let worst = *good.last()?;
+        let worst = good.iter().find(|run| run.t == worst.t).copied().unwrap_or(worst);
+        let middle = |at: usize| good.get(at).map_or(Nanos::ZERO, |run| run.t);
+        let (low, high) = (middle((good.len() - 1) / 2), middle(good.len() / 2));
         Some((Nanos(low.0 + (high.0 - low.0) / 2), worst))
     }
 
@@ -82,9 +97,16 @@ impl Summary<'_> {
         options.fold(quoted(self.program), |command, word| command + " " + &quoted(&word))
     }
 
-    /// The runs that did not arrive.
-    fn missed(&self) -> impl Iterator<Item = &Done> {
-        self.runs.iter().filter(|run| run.outcome != Outcome::Arrived)
+    /// Runs that went alike, in the order of their first seeds. Those that arrived need no second look.
+    fn groups(&self) -> Vec<Group<'_>> {
+        let mut groups: Vec<Group<'_>> = Vec::new();
+        for run in self.runs.iter().filter(|run| run.outcome != Outcome::Arrived) {
+            match groups.iter_mut().find(|group| group.holds(run)) {
+                Some(group) => group.count += 1,
+                None => groups.push(Group { first: run, count: 1 }),
+            }
+        }
+        groups
     }
 
     /// The summary as a JSON object, without the line break.
@@ -115,10 +137,7 @@ impl Summary<'_> {
             if let Outcome::Astray(said) | Outcome::Failed(said) = outcome {
                 let _ = write!(json, ",\"said\":{}", Json(said));
             }
-            if *outcome != Outcome::Arrived {
-                let _ = write!(json, ",\"command\":{}", Json(&self.command(run)));
-            }
-            json.push('}');
+            let _ = write!(json, ",\"command\":{}}}", Json(&self.command(run)));
         }
         json + "]}"
     }
@@ -131,42 +150,63 @@ impl fmt::Display for Summary<'_> {
         if done < self.asked {
             write!(f, "{done} of ")?;
         }
-        write!(f, "{}, seeds {} to {last}:", counted(self.asked, "run"), self.first)?;
-        let counts = Outcome::NAMES.map(|name| (name, self.count(name)));
-        // How many arrived is said whatever it is; the rest only where there is something to say.
-        let said = counts.iter().enumerate().filter(|(number, (_, count))| *number == 0 || *count > 0);
-        for (number, (name, count)) in said.map(|(_, count)| count).enumerate() {
-            write!(f, "{} {count} {name}", if number == 0 { "" } else { "," })?;
+        write!(f, "{}, seeds {} to {last}", counted(self.asked, "run"), self.first)?;
+        let counts = Outcome::NAMES.into_iter().map(|name| (name, self.count(name)));
+        for (number, (name, count)) in counts.filter(|(_, count)| *count > 0).enumerate() {
+            write!(f, "{} {count} {name}", if number == 0 { ":" } else { "," })?;
         }
         writeln!(f)?;
         if let Some((median, worst)) = self.times() {
             let (median, slowest) = (median.seconds(), worst.t.seconds());
-            writeln!(f, "time to arrive: median {median:.1} s, worst {slowest:.1} s (seed {})", worst.seed)?;
+            let what = if worst.outcome == Outcome::Arrived { "time to arrive" } else { "time" };
+            writeln!(f, "{what}: median {median:.1} s, worst {slowest:.1} s (seed {})", worst.seed)?;
         }
         let (contacts, runs) = self.contacts();
         if contacts > 0 {
             writeln!(f, "{} in {}", counted(contacts, "contact"), counted(runs as u64, "run"))?;
         }
-        for run in self.missed() {
-            writeln!(f, "\nseed {}: {}\n  {}", run.seed, Missed(run), self.command(run))?;
+        for group in self.groups() {
+            writeln!(f, "\n{group}\n  {}", self.command(group.first))?;
         }
         Ok(())
     }
 }
 
-/// How a run went that did not arrive.
-struct Missed<'a>(&'a Done);
+/// Runs with the same outcome, by the same cause.
+struct Group<'a> {
+    first: &'a Done,
+    count: u64,
+}
 
-impl fmt::Display for Missed<'_> {
+impl Group<'_> {
+    /// Returns `true` if a run went as those of the group. Measured values and places differ from run to run.
+    fn holds(&self, run: &Done) -> bool {
+        let is_alike = match (&self.first.outcome, &run.outcome) {
+            (Outcome::Astray(_), Outcome::Astray(_)) => true,
+            (one, other) => one == other,
+        };
+        is_alike && self.first.over.as_ref().map(|over| &over.words) == run.over.as_ref().map(|over| &over.words)
+    }
+}
+
+impl fmt::Display for Group<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Done { outcome, t, over, .. } = self.0;
-        let by = over.as_ref().map_or("", |over| &over.cause);
-        write!(f, "{} at {:.1} s", outcome.name(), t.seconds())?;
+        let Done { seed, outcome, t, over, .. } = self.first;
+        write!(f, "{} {}", self.count, outcome.name())?;
+        match (outcome, over) {
+            (Outcome::Failed(sentence), _) => write!(f, ": {sentence}")?,
+            (_, Some(over)) => write!(f, ", plan over: {}", over.words)?,
+            (_, None) => {}
+        }
+        write!(f, "; {}seed {seed} at {:.1} s", if self.count > 1 { "the first is " } else { "" }, t.seconds())?;
         match outcome {
-            Outcome::Arrived | Outcome::TimedOut => Ok(()),
-            Outcome::Bumped => write!(f, ", plan over: {by}"),
-            Outcome::Astray(place) => write!(f, ", {place}, plan over: {by}"),
-            Outcome::Failed(said) => write!(f, ": {said}"),
+            Outcome::Astray(place) => write!(f, ", {place}"),
+            Outcome::Ended
+            | Outcome::Arrived
+            | Outcome::Bumped
+            | Outcome::Otherwise
+            | Outcome::TimedOut
+            | Outcome::Failed(_) => Ok(()),
         }
     }
 }

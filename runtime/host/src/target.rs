@@ -1,6 +1,7 @@
 //! What a target gives the host: its options, its robot and how its time passes.
 //! See docs/src/reference/interfaces.md, 7.3.
 
+use std::fmt;
 use std::time::Duration;
 
 use clap::{ArgMatches, Command};
@@ -144,15 +145,25 @@ pub struct Around<'a> {
     pub since: Nanos,
 }
 
-/// How a run has gone whose plan is over.
+/// Result of a run whose plan is over, for a robot that was to come to a goal.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Judgement {
-    /// The robot is where it was to come to, or nothing was said about that.
+    /// The robot is in its goal, and touches nothing.
     Arrived,
-    /// Its plan was over because it had run into something, or anyhow while it touched it.
+    /// The robot touches something.
     Bumped,
-    /// It is somewhere else; a few words that say where.
+    /// The robot is outside its goal; a few words that say where.
     Astray(String),
+}
+
+impl fmt::Display for Judgement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Arrived => write!(f, "arrived"),
+            Self::Bumped => write!(f, "bumped"),
+            Self::Astray(place) => write!(f, "astray at {place}"),
+        }
+    }
 }
 
 /// A robot that an executable drives: besides the exchange it may follow what the plan does.
@@ -179,9 +190,10 @@ pub trait Hosted: Robot {
         None
     }
 
-    /// How a run has gone whose plan is over; asked after the robot was stopped.
-    fn judged(&self) -> Judgement {
-        Judgement::Arrived
+    /// Returns the result of a run whose plan is over; `None` if the robot was to come to no goal. Asked after the robot was
+    /// stopped.
+    fn judged(&self) -> Option<Judgement> {
+        None
     }
 
     /// How often the robot has come into contact with something so far.

@@ -5,8 +5,9 @@ use std::io::{self, Write};
 use crate::ending::{Ending, Fault};
 use crate::log::Log;
 use crate::report::Report;
+use crate::required::Required;
 use crate::safety::{Panicked, shielded};
-use crate::{Hosted, turns};
+use crate::{Hosted, Judgement, turns};
 
 /// A panic as an ending.
 pub(crate) fn bug(Panicked(message): Panicked) -> Ending {
@@ -38,6 +39,31 @@ pub(crate) fn stop<R: Hosted>(robot: &mut R, ending: Ending) -> (Ending, bool, V
     };
     faults.extend(stopped.map(Fault::Stop));
     (ending, orderly, faults)
+}
+
+/// Returns the ending of a plan that is over, or else an [`Ending::Otherwise`], by the causes that are required and by the
+/// robot's goal. The result of a goal is reported.
+pub(crate) fn judge<R: Hosted>(robot: &R, ending: Ending, required: &Required, report: &mut Report<'_>) -> Ending {
+    if ending != Ending::Over {
+        return ending;
+    }
+    let judgement = match shielded(|| robot.judged()) {
+        Ok(judgement) => judgement,
+        Err(panicked) => return bug(panicked),
+    };
+    if let Some(judgement) = &judgement {
+        report.judged(judgement);
+    }
+    if let Some(over) = report.over().filter(|over| !required.allows(over)) {
+        let (cause, asked) = (&over.cause, required.words());
+        return Ending::Otherwise(format!("the plan ended by {cause}, and --require asks for {asked}"));
+    }
+    match judgement {
+        None | Some(Judgement::Arrived) => Ending::Over,
+        Some(missed @ (Judgement::Bumped | Judgement::Astray(_))) => {
+            Ending::Otherwise(format!("the run is {missed}, and --goal asks for arrived"))
+        }
+    }
 }
 
 /// The files that a run has written.

@@ -105,7 +105,7 @@ impl Hosted for Breaking {
         self.robot.turned(standing);
     }
 
-    fn judged(&self) -> Judgement {
+    fn judged(&self) -> Option<Judgement> {
         self.robot.judged()
     }
 

@@ -177,16 +177,17 @@ impl Hosted for Observed {
         }
     }
 
-    fn judged(&self) -> Judgement {
+    fn judged(&self) -> Option<Judgement> {
         let pose = self.robot.pose();
-        if self.touches {
+        let goal = self.goal?;
+        Some(if self.touches {
             Judgement::Bumped
-        } else if self.goal.is_none_or(|goal| goal.holds(&pose)) {
+        } else if goal.holds(&pose) {
             Judgement::Arrived
         } else {
             let (x, y, heading) = (pose.x.0, pose.y.0, pose.theta.degrees());
             Judgement::Astray(format!("({x:.2}, {y:.2}) heading {:.0}", libm::round(heading) + 0.0))
-        }
+        })
     }
 
     fn contacts(&self) -> u64 {

@@ -17,15 +17,22 @@ fn help_lists_all_options_and_opens_no_robot() {
     Usage: lab_tour [OPTIONS]
 
     Options:
-          --period <TIME>   Period of the control loop, in seconds or as in `50ms` [default: 0.1]
-          --timeout <TIME>  Maximum duration of the plan, in seconds or as in `5min`; exit status 4 after it [default: none]
-          --turns <N>       Maximum number of turns; exit status 4 after them [default: none]
-          --log <FILE>      File for a log of the run, one JSON object per turn, in the format of `mdlec trace`
-          --device <PATH>   Where the toy is
-      -h, --help            Print help (see more with '--help')
+          --period <TIME>    Period of the control loop, in seconds or as in `50ms` [default: 0.1]
+          --timeout <TIME>   Maximum duration of the plan, in seconds or as in `5min`; exit status 4 after it [default: none]
+          --turns <N>        Maximum number of turns; exit status 4 after them [default: none]
+          --log <FILE>       File for a log of the run, one JSON object per turn, in the format of `mdlec trace`
+          --require <CAUSE>  Cause by which the plan must end, such as `bumper`; exit status 5 otherwise
+          --device <PATH>    Where the toy is
+      -h, --help             Print help (see more with '--help')
 
-    Exit status: 0 the plan ended, 2 invalid option, world or start pose, 3 a fault stopped the robot,
-    4 timeout or turn limit, 128+N terminated by signal N. The robot is stopped in every case.
+    Exit status:
+      0      the plan ended
+      2      invalid option, world or start pose
+      3      a fault stopped the robot
+      4      timeout or turn limit
+      5      the plan ended otherwise than required
+      128+N  terminated by signal N
+    The robot is stopped in every case.
     ");
 }
 

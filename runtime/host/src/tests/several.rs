@@ -3,11 +3,13 @@
 use std::num::{NonZeroU64, NonZeroUsize};
 use std::time::Duration;
 
+use clap::Command;
 use mdle_runtime::{Cause, Robot};
 
 use super::plan::ToyPlan;
 use super::toy::Sensed;
 use crate::batch::{self, Batch, Terms};
+use crate::required::{self, Required};
 use crate::signals::{Signal, Signals};
 use crate::turns::Limits;
 use crate::{Hosted, Judgement};
@@ -17,6 +19,7 @@ struct Seeded {
     seed: u64,
     exchanges: u64,
     signals: Option<Signals>,
+    has_goal: bool,
 }
 
 impl Robot for Seeded {
@@ -43,12 +46,12 @@ impl Robot for Seeded {
 }
 
 impl Hosted for Seeded {
-    fn judged(&self) -> Judgement {
-        match self.seed % 9 {
+    fn judged(&self) -> Option<Judgement> {
+        self.has_goal.then(|| match self.seed % 9 {
             2 => Judgement::Bumped,
-            3 => Judgement::Astray("in the \"yard\"".to_owned()),
+            3 => Judgement::Astray(format!("({}, 0) in the \"yard\"", self.seed)),
             _ => Judgement::Arrived,
-        }
+        })
     }
 
     fn contacts(&self) -> u64 {
@@ -56,55 +59,114 @@ impl Hosted for Seeded {
     }
 }
 
-/// The status of runs with the seeds from `first` on, and what is said of them.
-fn runs(first: u64, runs: u64, jobs: usize, json: bool, signals: &Signals) -> (u8, String) {
-    let heard = signals.share();
-    let heard = std::sync::Mutex::new(heard);
-    let batch = Batch {
-        first,
-        runs: NonZeroU64::new(runs).unwrap(),
-        jobs: NonZeroUsize::new(jobs).unwrap(),
-        json,
-        robot: Box::new(move |seed| {
-            let signals = Some(heard.lock().unwrap().share());
-            if seed == 14 { Err("no room".to_owned()) } else { Ok(Seeded { seed, exchanges: 0, signals }) }
-        }),
-        alone: Box::new(|seed| ["--world", "my floor.toml", "--seed", &seed.to_string()].map(str::to_owned).into()),
-    };
-    let limits = Limits { timeout: None, turns: Some(100) };
-    let terms = Terms { period: Duration::from_millis(100), limits, signals, program: "./it's" };
-    let mut out = Vec::new();
-    let (status, unwritten) = batch::run(&batch, &ToyPlan::lab, &terms, &mut out, None);
-    assert!(unwritten.is_none());
-    (status, String::from_utf8(out).unwrap())
+/// A batch with the seeds from `first` on.
+#[derive(Clone, Copy)]
+struct Several {
+    first: u64,
+    runs: u64,
+    jobs: usize,
+    json: bool,
+    has_goal: bool,
+    require: &'static [&'static str],
+}
+
+/// Five runs with a goal.
+const FIVE: Several = Several { first: 1, runs: 5, jobs: 1, json: false, has_goal: true, require: &[] };
+
+impl Several {
+    /// The status of the batch, and its summary.
+    fn run(self, signals: &Signals) -> (u8, String) {
+        let Self { first, runs, jobs, json, has_goal, require } = self;
+        let heard = signals.share();
+        let heard = std::sync::Mutex::new(heard);
+        let batch = Batch {
+            first,
+            runs: NonZeroU64::new(runs).unwrap(),
+            jobs: NonZeroUsize::new(jobs).unwrap(),
+            json,
+            robot: Box::new(move |seed| {
+                let signals = Some(heard.lock().unwrap().share());
+                let robot = Seeded { seed, exchanges: 0, signals, has_goal };
+                if seed == 14 { Err("no room".to_owned()) } else { Ok(robot) }
+            }),
+            alone: Box::new(|seed| ["--world", "my floor.toml", "--seed", &seed.to_string()].map(str::to_owned).into()),
+        };
+        let limits = Limits { timeout: None, turns: Some(100) };
+        let words = ["it"].iter().chain(require).copied();
+        let matches = required::argument(Command::new("it")).try_get_matches_from(words).unwrap();
+        let required = Required::of(&matches, &ToyPlan::lab()).unwrap();
+        let period = Duration::from_millis(100);
+        let terms = Terms { period, limits, signals, program: "./it's", required: &required };
+        let mut out = Vec::new();
+        let (status, unwritten) = batch::run(&batch, &ToyPlan::lab, &terms, &mut out, None);
+        assert!(unwritten.is_none());
+        (status, String::from_utf8(out).unwrap())
+    }
 }
 
 #[test]
-fn every_way_to_miss_is_told_with_the_command_to_see_it() {
-    let (status, said) = runs(5, 10, 1, false, &Signals::unheard());
+fn runs_that_went_alike_are_a_line_with_a_command() {
+    let (status, summary) = Several { first: 5, runs: 20, ..FIVE }.run(&Signals::unheard());
     assert_eq!(status, 3);
-    insta::assert_snapshot!(said);
+    insta::assert_snapshot!(summary);
+}
+
+#[test]
+fn without_a_goal_runs_are_grouped_by_their_cause() {
+    let (status, summary) = Several { first: 16, runs: 8, has_goal: false, ..FIVE }.run(&Signals::unheard());
+    assert_eq!(status, 3);
+    insta::assert_snapshot!(summary, @r#"
+    8 runs, seeds 16 to 23: 6 ended, 1 timed out, 1 failed
+    time: median 1.9 s, worst 2.2 s (seed 23)
+    9 contacts in 6 runs
+
+    1 failed: a panic, which is a bug: seven; seed 16 at 1.5 s
+      './it'\''s' --world 'my floor.toml' --seed 16
+
+    1 timed out; seed 17 at 9.9 s
+      './it'\''s' --world 'my floor.toml' --seed 17
+
+    6 ended, plan over: bumper (Lab); the first is seed 18 at 1.7 s
+      './it'\''s' --world 'my floor.toml' --seed 18
+    "#);
+}
+
+#[test]
+fn a_run_that_ends_otherwise_is_counted_as_such() {
+    let required =
+        |require, has_goal| Several { first: 18, runs: 4, has_goal, require, ..FIVE }.run(&Signals::unheard());
+    insta::assert_snapshot!(required(&["--require", "completed"], true).1, @r#"
+    4 runs, seeds 18 to 21: 4 ended otherwise
+    3 contacts in 2 runs
+
+    4 ended otherwise, plan over: bumper (Lab); the first is seed 18 at 1.7 s
+      './it'\''s' --world 'my floor.toml' --seed 18
+    "#);
+    let statuses = [(&["--require", "bumper"][..], false), (&["--require=heard \"stop\"", "--require=Lab"], false)];
+    assert_eq!(statuses.map(|(require, has_goal)| required(require, has_goal).0), [0, 0]);
+    assert_eq!(required(&["--require", "completed"], false).0, 1);
 }
 
 #[test]
 fn json_tells_of_each_run() {
-    let (status, said) = runs(9, 4, 1, true, &Signals::unheard());
+    let (status, json) = Several { first: 9, runs: 4, json: true, ..FIVE }.run(&Signals::unheard());
     assert_eq!(status, 1);
-    insta::assert_snapshot!(said);
+    insta::assert_snapshot!(json);
 }
 
 #[test]
 fn the_status_says_whether_all_arrived() {
-    let status = |first, count| runs(first, count, 2, false, &Signals::unheard()).0;
+    let status = |first, runs| Several { first, runs, jobs: 2, ..FIVE }.run(&Signals::unheard()).0;
     assert_eq!([status(18, 2), status(18, 4), status(24, 1)], [0, 1, 3]);
 }
 
 #[test]
 fn the_number_of_threads_changes_nothing() {
-    for json in [false, true] {
-        let once = runs(15, 200, 1, json, &Signals::unheard());
+    for (json, has_goal) in [(false, true), (true, true), (false, false)] {
+        let batch = Several { first: 15, runs: 200, json, has_goal, ..FIVE };
+        let once = batch.run(&Signals::unheard());
         for jobs in [2, 3, 64] {
-            assert_eq!(runs(15, 200, jobs, json, &Signals::unheard()), once);
+            assert_eq!(Several { jobs, ..batch }.run(&Signals::unheard()), once);
         }
     }
 }
@@ -113,7 +175,7 @@ fn the_number_of_threads_changes_nothing() {
 fn a_signal_ends_the_batch_and_what_was_done_is_told() {
     let signals = Signals::unheard();
     // Listens, as a process does.
-    let (status, said) = runs(1, 50, 1, false, &signals);
+    let (status, summary) = Several { runs: 50, ..FIVE }.run(&signals);
     assert_eq!(status, 130);
-    assert!(said.starts_with("3 of 50 runs, seeds 1 to 50: 1 arrived, 1 bumped, 1 astray\n"), "{said}");
+    assert!(summary.starts_with("3 of 50 runs, seeds 1 to 50: 1 arrived, 1 bumped, 1 astray\n"), "{summary}");
 }

@@ -14,7 +14,7 @@ use super::plan::ToyPlan;
 use crate::clock::Instants;
 use crate::session::{Surroundings, session};
 use crate::signals::{Signal, Signals};
-use crate::{Around, Ended, Hosted, Pace, Refusal, Standing, StopRequest, Target, Time};
+use crate::{Around, Ended, Hosted, Judgement, Pace, Refusal, Standing, StopRequest, Target, Time};
 
 /// An output: what fires while which atom, as written, is the current one.
 #[derive(Debug, Clone, Default)]
@@ -41,6 +41,8 @@ pub(super) struct Stage {
     pub(super) interrupted: Option<Signal>,
     pub(super) stop: Act,
     pub(super) finish: Result<(), String>,
+    /// The result of its run, if it has a goal.
+    pub(super) judgement: Option<Judgement>,
     /// Whether it looks where the plan stands.
     pub(super) looks: bool,
     pub(super) plan: ToyPlan,
@@ -58,6 +60,7 @@ impl Default for Stage {
             interrupted: None,
             stop: Act::Senses(vec![]),
             finish: Ok(()),
+            judgement: None,
             looks: false,
             plan: ToyPlan::lab(),
             program: "./lab_tour",
@@ -110,6 +113,7 @@ impl Stage {
             script: self.script.into(),
             stop: self.stop,
             finish: self.finish,
+            judgement: self.judgement,
             looks: self.looks,
             signals: signals.share(),
             journal: Rc::clone(&journal),
@@ -212,6 +216,7 @@ struct Toy {
     script: VecDeque<Act>,
     stop: Act,
     finish: Result<(), String>,
+    judgement: Option<Judgement>,
     looks: bool,
     signals: Signals,
     journal: Rc<RefCell<Vec<String>>>,
@@ -277,6 +282,13 @@ impl Hosted for Toy {
             .map(|Around { name, condition, since }| format!("{name}[{condition}] {}", since.seconds()))
             .collect();
         self.note(format!("{} {} in {}", standing.state, standing.law, scopes.join(" ")));
+    }
+
+    fn judged(&self) -> Option<Judgement> {
+        if self.judgement.is_some() {
+            self.note("judged".to_owned());
+        }
+        self.judgement.clone()
     }
 
     fn finish(&mut self) -> Result<(), String> {

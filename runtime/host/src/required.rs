@@ -1,0 +1,147 @@
+//! `--require`: the causes by which a plan must end.
+
+use clap::{Arg, ArgAction, ArgMatches, Command};
+use mdle_runtime::fsm::Kind;
+use mdle_runtime::trace::COMPLETED;
+use mdle_runtime::{Fsm, Plan};
+
+use crate::operand_text::{is_condition, is_operand};
+use crate::passes::outwards;
+use crate::report::Over;
+
+/// The least similarity, from 0 to 1, of a name that is proposed.
+const SIMILAR: f64 = 0.75;
+
+/// The causes of `--require`; empty if any end will do.
+#[derive(Debug, Default)]
+pub(crate) struct Required {
+    /// The causes as they were typed.
+    texts: Vec<String>,
+    causes: Vec<Cause>,
+}
+
+/// A cause of a plan's end.
+#[derive(Debug, PartialEq, Eq)]
+enum Cause {
+    /// The law of the last atom was done.
+    Completed,
+    /// The interrupt of this bracket fired.
+    Scope(u32),
+    /// This operand of the interrupt of this bracket had fired.
+    Operand(u32, u32),
+}
+
+/// Adds the option to `command`.
+pub(crate) fn argument(command: Command) -> Command {
+    command.arg(
+        Arg::new("require")
+            .long("require")
+            .value_name("CAUSE")
+            .action(ArgAction::Append)
+            .help("Cause by which the plan must end, such as `bumper`; exit status 5 otherwise")
+            .long_help(
+                "Cause by which the plan must end; exit status 5 if it ends otherwise. A part of an interrupt that AND and OR \
+                 join, such as `bumper` or `r0 < 60cm`; the name of a scope, whose interrupt must fire; or `completed`. \
+                 With several of these options, one of the causes is enough",
+            ),
+    )
+}
+
+impl Required {
+    /// Reads the causes, each of which must be one by which `plan` can end.
+    ///
+    /// # Errors
+    /// The plan cannot end by a cause: a sentence with what to type instead.
+    pub(crate) fn of<P: Plan>(matches: &ArgMatches, plan: &P) -> Result<Self, String> {
+        let texts: Vec<String> = matches.get_many("require").into_iter().flatten().cloned().collect();
+        let mut causes = Vec::new();
+        for text in &texts {
+            let found: Vec<Cause> = endings(plan, text.trim(), |scope| ends_plan(plan.fsm(), scope)).collect();
+            if found.is_empty() {
+                return Err(refused(plan, text));
+            }
+            causes.extend(found);
+        }
+        Ok(Self { texts, causes })
+    }
+
+    /// Returns `true` if a plan may end like this.
+    pub(crate) fn allows(&self, over: &Over) -> bool {
+        let is_cause = |cause: &Cause| match cause {
+            Cause::Completed => over.by == COMPLETED,
+            Cause::Scope(scope) => over.by != COMPLETED && over.bracket == *scope,
+            Cause::Operand(scope, number) => {
+                over.by != COMPLETED && over.bracket == *scope && over.numbers.contains(number)
+            }
+        };
+        self.causes.is_empty() || self.causes.iter().any(is_cause)
+    }
+
+    /// The causes as they were typed: `bumper` or `completed`.
+    pub(crate) fn words(&self) -> String {
+        self.texts.iter().map(|text| format!("`{text}`")).collect::<Vec<_>>().join(" or ")
+    }
+}
+
+/// The causes that are called `text`, by the scopes that `may` choose.
+fn endings<P: Plan>(plan: &P, text: &str, may: impl Fn(u32) -> bool) -> impl Iterator<Item = Cause> {
+    let completed = (text == COMPLETED).then_some(Cause::Completed);
+    let scopes = scopes(plan.fsm()).filter(|scope| may(*scope)).flat_map(|scope| {
+        let named = (!text.is_empty() && plan.name(scope) == text).then_some(Cause::Scope(scope));
+        let operands = plan.source().operands_of(scope);
+        // A plan that was written in Rust has conditions, and no operands.
+        let whole = (operands.is_empty() && is_condition(text, plan.condition(scope))).then_some(Cause::Scope(scope));
+        let parts = (0..).zip(operands).filter(|(_, operand)| is_operand(text, operand));
+        let parts: Vec<Cause> = parts.map(|(number, _)| Cause::Operand(scope, number)).collect();
+        named.into_iter().chain(whole).chain(parts)
+    });
+    completed.into_iter().chain(scopes).collect::<Vec<_>>().into_iter()
+}
+
+/// The brackets of scopes, in order.
+fn scopes(fsm: Fsm<'_>) -> impl Iterator<Item = u32> {
+    let is_scope = |kind| match kind {
+        Kind::Scope { .. } => true,
+        Kind::Loop { .. } => false,
+    };
+    (0..).zip(fsm.brackets).filter(move |(_, bracket)| is_scope(bracket.kind)).map(|(number, _)| number)
+}
+
+/// Returns `true` if nothing follows a scope when it ends, at least in the last pass of the loops around it.
+fn ends_plan(fsm: Fsm<'_>, scope: u32) -> bool {
+    let last = fsm.brackets.first().map(|plan| plan.last);
+    outwards(fsm, scope).all(|(_, around)| {
+        let is_endless = match around.kind {
+            Kind::Loop { times, .. } => times == 0,
+            Kind::Scope { .. } => false,
+        };
+        Some(around.last) == last && !is_endless
+    })
+}
+
+/// Says that the plan cannot end by this cause, and by which ones it can.
+fn refused<P: Plan>(plan: &P, text: &str) -> String {
+    let source = plan.source();
+    let mut known: Vec<String> = Vec::new();
+    for scope in scopes(plan.fsm()).filter(|scope| ends_plan(plan.fsm(), *scope)) {
+        let operands = source.operands_of(scope);
+        let whole = operands.is_empty().then(|| plan.condition(scope));
+        let parts = operands.iter().map(|operand| operand.written);
+        for word in parts.chain(whole).chain([plan.name(scope)]) {
+            if !word.is_empty() && word != "null" && !known.iter().any(|known| known == word) {
+                known.push(word.to_owned());
+            }
+        }
+    }
+    known.push(COMPLETED.to_owned());
+    let why = if endings(plan, text.trim(), |_| true).next().is_some() {
+        "that ends a part of the plan, and more follows"
+    } else {
+        "the plan has no such cause"
+    };
+    let likeness = |known: &String| strsim::jaro_winkler(&known.to_lowercase(), &text.to_lowercase());
+    let nearest = known.iter().max_by(|one, other| likeness(one).total_cmp(&likeness(other)));
+    let meant = nearest.filter(|known| likeness(known) > SIMILAR).map(|known| format!("; did you mean `{known}`?"));
+    let all: Vec<String> = known.iter().map(|known| format!("`{known}`")).collect();
+    format!("--require '{text}': {why}; it can end by {}{}", all.join(", "), meant.unwrap_or_default())
+}
