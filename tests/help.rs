@@ -38,9 +38,12 @@ fn text(output: Output) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// The descriptions in a short help text: the right column of its lists.
+/// The descriptions in a short help text: the right column of its lists of commands and options.
 fn descriptions(help: &str) -> impl Iterator<Item = &str> {
-    let lines = help.lines().filter(|line| line.starts_with("  ") && !line.contains("Print help"));
+    let lines = help
+        .lines()
+        .take_while(|line| *line != "Exit status:")
+        .filter(|line| line.starts_with("  ") && !line.contains("Print help"));
     lines.filter_map(|line| line.trim_start().split_once("  ").map(|(_, text)| text.trim()))
 }
 

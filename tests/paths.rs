@@ -149,7 +149,7 @@ fn what_is_recorded_is_a_path_that_leads_to_the_same_place() {
 #[test]
 fn each_of_several_runs_has_the_paths() {
     let said = good(&["--runs", "3", "--body", "scout", "--jobs", "2"]);
-    assert!(said.starts_with("3 runs, seeds 1 to 3: 3 arrived"), "{said}");
+    assert!(said.starts_with("3 runs, seeds 1 to 3: 3 ended"), "{said}");
 }
 
 #[test]

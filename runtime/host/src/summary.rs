@@ -195,6 +195,7 @@ impl fmt::Display for Group<'_> {
         write!(f, "{} {}", self.count, outcome.name())?;
         match (outcome, over) {
             (Outcome::Failed(sentence), _) => write!(f, ": {sentence}")?,
+            (Outcome::Ended, Some(over)) => write!(f, " by {}", over.words)?,
             (_, Some(over)) => write!(f, ", plan over: {}", over.words)?,
             (_, None) => {}
         }

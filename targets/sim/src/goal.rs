@@ -1,29 +1,103 @@
 //! Where a plan is to leave the robot: a zone of the floor, and perhaps a heading.
 
+use mdle_host::Quantity;
 use mdle_runtime::{Pose, Radians};
 
 use crate::world::Place;
 
-/// A zone along the axes of the floor, edges included.
+/// The furthest coordinate and the greatest radius, in metres, as in a world's file.
+const FURTHEST: f64 = 1e6;
+/// Dots of the edge of a circle on a map.
+const DOTS: u16 = 72;
+
+/// A zone of the floor in which a run is to end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Goal {
-    /// Its least coordinates.
-    pub min: Place,
-    /// Its greatest.
-    pub max: Place,
+    /// The places of the robot's centre.
+    pub zone: Zone,
     /// A heading and by how much, to either side, it may be missed.
     pub heading: Option<(Radians, Radians)>,
 }
 
+/// The form of a goal, edges included.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Zone {
+    /// A rectangle along the axes of the floor.
+    Rectangle {
+        /// Its least coordinates.
+        min: Place,
+        /// Its greatest.
+        max: Place,
+    },
+    /// A circle.
+    Circle {
+        /// Its middle.
+        center: Place,
+        /// Its radius, in metres; above 0.
+        radius: f64,
+    },
+}
+
 impl Goal {
+    /// Reads `x,y,radius` or `x,y,radius,heading,tolerance`.
+    ///
+    /// # Errors
+    /// The text is no such goal: a sentence with what to type instead.
+    pub(crate) fn read(text: &str) -> Result<Self, String> {
+        let sentence = "expected `world`, or x,y,radius in metres and perhaps heading,tolerance in degrees, as in \
+                        `7,3,0.5` or `7,3,50cm,90,15`";
+        let parts: Vec<&str> = text.split(',').map(str::trim).collect();
+        let length = |text| Quantity::Length.read(text, "m");
+        let angle = |text| Quantity::Angle.read(text, "deg");
+        let (x, y, radius, heading) = match *parts {
+            [x, y, radius] => (length(x)?, length(y)?, length(radius)?, None),
+            [x, y, radius, heading, tolerance] => {
+                (length(x)?, length(y)?, length(radius)?, Some((angle(heading)?, angle(tolerance)?)))
+            }
+            _ => return Err(sentence.to_owned()),
+        };
+        if [x, y].iter().any(|value| value.abs() > FURTHEST) || radius <= 0.0 || radius > FURTHEST {
+            return Err(format!("x and y are at most {FURTHEST} m, and the radius is above 0 and at most that"));
+        }
+        if heading.is_some_and(|(_, tolerance)| !(0.0..=180.0).contains(&tolerance)) {
+            return Err("a tolerance is from 0 to 180 degrees".to_owned());
+        }
+        let heading = heading
+            .map(|(heading, tolerance)| (Radians::from_degrees(heading).wrapped(), Radians::from_degrees(tolerance)));
+        Ok(Self { zone: Zone::Circle { center: Place { x, y }, radius }, heading })
+    }
+
     /// Whether a robot whose centre is at `pose` has arrived.
     #[must_use]
     pub fn holds(&self, pose: &Pose) -> bool {
         let Place { x, y } = Place::of(pose);
-        let inside = (self.min.x..=self.max.x).contains(&x) && (self.min.y..=self.max.y).contains(&y);
+        let inside = match self.zone {
+            Zone::Rectangle { min, max } => (min.x..=max.x).contains(&x) && (min.y..=max.y).contains(&y),
+            Zone::Circle { center, radius } => libm::hypot(x - center.x, y - center.y) <= radius,
+        };
         inside
             && self.heading.is_none_or(|(heading, most)| Radians(pose.theta.0 - heading.0).wrapped().0.abs() <= most.0)
     }
+}
+
+impl Zone {
+    /// The least and the greatest coordinates.
+    pub(crate) fn corners(&self) -> [Place; 2] {
+        match *self {
+            Self::Rectangle { min, max } => [min, max],
+            Self::Circle { center: Place { x, y }, radius } => {
+                [Place { x: x - radius, y: y - radius }, Place { x: x + radius, y: y + radius }]
+            }
+        }
+    }
+}
+
+/// Places on a circle, evenly spaced.
+pub(crate) fn edge(center: Place, radius: f64) -> impl Iterator<Item = Place> {
+    (0..DOTS).map(move |dot| {
+        let bearing = Radians::from_degrees(f64::from(dot) * (360.0 / f64::from(DOTS))).0;
+        Place { x: center.x + radius * libm::cos(bearing), y: center.y + radius * libm::sin(bearing) }
+    })
 }
 
 #[cfg(test)]
@@ -40,5 +114,36 @@ mod tests {
         assert!(holds(11.28, -0.01, 271.0) && holds(11.28, -0.01, -89.0) && holds(11.05, 0.9, -104.9));
         assert!(!holds(11.28, -0.01, 250.0) && !holds(11.28, -0.01, 286.0) && !holds(11.28, -0.01, 90.0));
         assert!(!holds(11.0, -0.01, 270.0) && !holds(11.28, -0.95, 270.0) && !holds(f64::NAN, 0.0, 270.0));
+    }
+
+    #[test]
+    fn a_goal_is_a_circle_and_perhaps_a_heading() {
+        let pose = |x, degrees| Pose { x: Meters(x), y: Meters(3.0), theta: Radians::from_degrees(degrees) };
+        let circle = Goal::read("7, 3, 50cm").expect("a goal");
+        assert!(circle.holds(&pose(7.5, 0.0)) && circle.holds(&pose(6.5, 123.0)) && !circle.holds(&pose(7.51, 0.0)));
+        let turned = Goal::read("7,3,0.5,-90deg,15").expect("a goal");
+        assert!(
+            turned.holds(&pose(7.0, 270.0)) && turned.holds(&pose(7.0, -104.9)) && !turned.holds(&pose(7.0, 250.0))
+        );
+        assert_eq!(Goal::read("-7m,3,5e-1,270,15"), Goal::read("-700cm,300cm,0.5m,270deg,15deg"));
+    }
+
+    #[test]
+    fn a_goal_that_is_none_is_refused() {
+        let texts =
+            ["", "7,3", "7,3,1,90", "7,3,1,90,5,6", "7,3,0", "7,3,-1", "7,3,1,90,181", "7,3,1s", "1e7,0,1", "here"];
+        let refused = texts.map(|text| Goal::read(text).expect_err(text));
+        insta::assert_snapshot!(refused.join("\n"), @"
+        expected `world`, or x,y,radius in metres and perhaps heading,tolerance in degrees, as in `7,3,0.5` or `7,3,50cm,90,15`
+        expected `world`, or x,y,radius in metres and perhaps heading,tolerance in degrees, as in `7,3,0.5` or `7,3,50cm,90,15`
+        expected `world`, or x,y,radius in metres and perhaps heading,tolerance in degrees, as in `7,3,0.5` or `7,3,50cm,90,15`
+        expected `world`, or x,y,radius in metres and perhaps heading,tolerance in degrees, as in `7,3,0.5` or `7,3,50cm,90,15`
+        x and y are at most 1000000 m, and the radius is above 0 and at most that
+        x and y are at most 1000000 m, and the radius is above 0 and at most that
+        a tolerance is from 0 to 180 degrees
+        `1s` is a time: expected a length in m, cm, mm, in, ft, or a number in m
+        x and y are at most 1000000 m, and the radius is above 0 and at most that
+        expected `world`, or x,y,radius in metres and perhaps heading,tolerance in degrees, as in `7,3,0.5` or `7,3,50cm,90,15`
+        ");
     }
 }

@@ -39,7 +39,7 @@ mod world_file;
 
 pub use charger::Charger;
 pub use disc::Disc;
-pub use goal::Goal;
+pub use goal::{Goal, Zone};
 pub use mdle_runtime::Sensed;
 /// Its output.
 pub use mdle_runtime::Sensed as Output;

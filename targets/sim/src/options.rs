@@ -7,6 +7,7 @@ use mdle_host::clap::parser::ValueSource;
 use mdle_host::clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use mdle_host::{NamedFile, Pace, Time, output_format, read_file};
 
+use crate::goal::Goal;
 use crate::model::{Body, PARTS};
 use crate::robot::Make;
 use crate::ros_map::Header;
@@ -44,6 +45,17 @@ fn of_the_world(command: Command) -> Command {
                 .long_help(
                     "Maximum random offset of the start pose: along each axis, in metres up to 100, and of the heading, in \
                      degrees up to 180; or with units, as in `10cm,5deg`. Needs --seed or --runs [default: 0,0]",
+                )
+                .allow_hyphen_values(true),
+        )
+        .arg(
+            option("goal", "world|X,Y,RADIUS")
+                .help("Place in which the plan must leave the robot: that of the world or a circle, as in `7,3,0.5`")
+                .long_help(
+                    "Place in which the plan must leave the robot: the goal of the world, or a circle in metres. A heading and \
+                     its tolerance in degrees may follow: `X,Y,RADIUS,DEG,TOLERANCE`, as in `7,3,50cm,90,15`. The run is `arrived` if the robot is there when \
+                     the plan is over, `bumped` if it touches something, and `astray` if it is elsewhere; exit status 5 if \
+                     it is not `arrived` [default: none]",
                 )
                 .allow_hyphen_values(true),
         )
@@ -108,11 +120,13 @@ fn of_runs(command: Command) -> Command {
     command
         .arg(
             option("runs", "N")
-                .help("Number of runs, with consecutive seeds; print how many arrived")
+                .help("Number of runs, with consecutive seeds; print how they ended")
                 .long_help(
-                    "Number of runs, with consecutive seeds from --seed on [default: 1]. Prints how many arrived, bumped, \
-                     went astray or timed out, the durations, and for each run that did not arrive the command that \
-                     repeats it. Exit status 0 if all arrived, 1 if not",
+                    "Number of runs, with consecutive seeds from --seed on [default: 1]. Prints how many ended by which cause, \
+                     or with --goal how many are `arrived`, `bumped` or `astray`; with --require how many `ended otherwise`; \
+                     how many are `timed out`, that is, stopped by --timeout, by --turns or else after an hour; the durations; \
+                     and for runs that went alike a command that repeats the first. Exit status 0 if all ended as required, \
+                     1 if not",
                 )
                 .allow_negative_numbers(true)
                 .value_parser(value_parser!(u64).range(1..))
@@ -166,6 +180,17 @@ pub(crate) fn world(matches: &ArgMatches) -> Result<World, String> {
         Some(world) => world.map_err(|error| error.to_string()),
         None => read(path),
     }
+}
+
+/// The goal of `--goal`: that of the world, or one of its own.
+pub(crate) fn goal(matches: &ArgMatches, world: &World) -> Result<Option<Goal>, String> {
+    let Some(text) = matches.get_one::<String>("goal") else { return Ok(None) };
+    if text == "world" {
+        let name = world_name(matches);
+        let none = || format!("--goal world: the world {name} has no goal; give one, as in `--goal 7,3,0.5`");
+        return world.goal.map(Some).ok_or_else(none);
+    }
+    Goal::read(text).map(Some).map_err(|sentence| format!("--goal {text}: {sentence}"))
 }
 
 /// The name of the world of `--world`, without the folders of a file.

@@ -8,6 +8,7 @@ use mdle_host::Batch;
 use mdle_host::clap::ArgMatches;
 use mdle_runtime::Pose;
 
+use crate::goal::Goal;
 use crate::model::PARTS;
 use crate::observed::Observed;
 use crate::options;
@@ -26,6 +27,8 @@ struct Setup {
     make: Make,
     start: Pose,
     noise: Option<StartNoise>,
+    /// The goal that judges the run.
+    goal: Option<Goal>,
     /// Of the battery at the start, from 0 to 1.
     charge: f64,
     period: Duration,
@@ -67,7 +70,10 @@ pub(crate) fn batch(matches: &ArgMatches, period: Duration) -> Result<Option<Bat
 impl Setup {
     fn of(matches: &ArgMatches, period: Duration) -> Result<Self, String> {
         let make = options::make(matches)?;
-        let world = options::world(matches)?;
+        let mut world = options::world(matches)?;
+        let goal = options::goal(matches, &world)?;
+        // Pictures show the goal that counts.
+        world.goal = goal.or(world.goal);
         let walls = Walls::of_any(&world).map_err(|what| format!("--world: {what}"))?;
         let given = options::start(matches)?;
         let Start(start) = given.map_or(Start(world.start), |(_, start)| start);
@@ -78,7 +84,7 @@ impl Setup {
         start::check(&start, make.radius(), &world, &walls).map_err(said)?;
         let noise = options::start_noise(matches)?;
         let charge = options::battery(matches);
-        Ok(Self { world, walls, make, start, noise, charge, period })
+        Ok(Self { world, walls, make, start, noise, goal, charge, period })
     }
 
     /// World, body and seed, as a title names them.
@@ -102,7 +108,7 @@ impl Setup {
         };
         let robot = start.and_then(|start| Simulated::with(&make, &self.world, start, self.period));
         let robot = robot.map_err(|error| format!("no start could be found by chance: {error}"))?;
-        Ok(Observed::from(robot.charged(self.charge)).judged_by(self.world.goal))
+        Ok(Observed::from(robot.charged(self.charge)).judged_by(self.goal))
     }
 }
 

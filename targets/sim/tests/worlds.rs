@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Robot, SonarId, Twist};
-use mdle_sim::{Body, Make, Simulated, World};
+use mdle_sim::{Body, Make, Simulated, World, Zone};
 
 /// What is wrong with a world.
 fn fault(text: &str) -> String {
@@ -141,7 +141,8 @@ fn lengths_are_in_the_unit_that_the_file_says() {
     assert!((feet.start.x.0 - 3.048).abs() < 1e-12 && (feet.start.theta.degrees() - 90.0).abs() < 1e-12);
     assert_eq!(feet.outlines[0].points[1].x, 0.3048);
     let goal = feet.goal.expect("a goal");
-    assert_eq!((goal.max.x, goal.max.y), (0.3048, 0.6096));
+    let Zone::Rectangle { max, .. } = goal.zone else { panic!("{goal:?}") };
+    assert_eq!((max.x, max.y), (0.3048, 0.6096));
     assert!((goal.heading.expect("a heading").0.degrees() - 90.0).abs() < 1e-12);
 }
 

@@ -126,7 +126,7 @@ fn without_a_goal_runs_are_grouped_by_their_cause() {
     1 timed out; seed 17 at 9.9 s
       './it'\''s' --world 'my floor.toml' --seed 17
 
-    6 ended, plan over: bumper (Lab); the first is seed 18 at 1.7 s
+    6 ended by bumper (Lab); the first is seed 18 at 1.7 s
       './it'\''s' --world 'my floor.toml' --seed 18
     "#);
 }

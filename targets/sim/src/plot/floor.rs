@@ -3,7 +3,8 @@
 use svg::node::element::{ClipPath, Group, Path, Rectangle};
 
 use super::layout::{LEFT, Layout, MARGIN, round_step};
-use super::shapes::{Pixel, line, polyline, tenths, text, through};
+use super::shapes::{Pixel, circle, line, polyline, tenths, text, through};
+use crate::goal::Zone;
 use crate::world::{Outline, Place, World};
 
 /// Between two numbers of an axis, in pixels.
@@ -84,12 +85,18 @@ pub(super) fn socket(circle: impl IntoIterator<Item = Pixel>, (x, y): Pixel) -> 
 
 fn walls(layout: &Layout, world: &World) -> Group {
     let mut group = Group::new();
-    if let Some(zone) = &world.goal {
-        let (left, top) = layout.at(Place { x: zone.min.x, y: zone.max.y });
-        let (right, bottom) = layout.at(Place { x: zone.max.x, y: zone.min.y });
-        let zone = Rectangle::new().set("x", tenths(left)).set("y", tenths(top));
-        let zone = zone.set("width", tenths(right - left)).set("height", tenths(bottom - top));
-        group = group.add(zone.set("class", "goal"));
+    match world.goal.map(|goal| goal.zone) {
+        Some(Zone::Rectangle { min, max }) => {
+            let (left, top) = layout.at(Place { x: min.x, y: max.y });
+            let (right, bottom) = layout.at(Place { x: max.x, y: min.y });
+            let zone = Rectangle::new().set("x", tenths(left)).set("y", tenths(top));
+            let zone = zone.set("width", tenths(right - left)).set("height", tenths(bottom - top));
+            group = group.add(zone.set("class", "goal"));
+        }
+        Some(Zone::Circle { center, radius }) => {
+            group = group.add(circle(layout.at(center), radius * layout.scale).set("class", "goal"));
+        }
+        None => {}
     }
     if let Some(charger) = &world.charger {
         group = group.add(socket(charger.circle().map(|place| layout.at(place)), layout.at(Place::of(&charger.pose))));

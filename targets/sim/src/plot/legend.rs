@@ -57,7 +57,7 @@ fn signs(layout: &Layout, x: f64, world: &World, trail: &Trail) -> Vec<(Group, &
     if !trail.contacts.is_empty() {
         signs.push((Group::new().add(cross((x, 0.0))), "contact"));
     }
-    if world.goal.is_some_and(|goal| layout.shows_any([goal.min, goal.max].into_iter())) {
+    if world.goal.is_some_and(|goal| layout.shows_any(goal.zone.corners().into_iter())) {
         let zone = Rectangle::new().set("x", x - 9.0).set("y", -7).set("width", 18).set("height", 14);
         signs.push((Group::new().add(zone.set("class", "goal faint").set("stroke-width", 0.5)), "goal"));
     }

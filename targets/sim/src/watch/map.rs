@@ -3,6 +3,7 @@
 use mdle_runtime::{Meters, Pose, Radians};
 
 use super::canvas::{Canvas, Ink};
+use crate::goal::{Zone, edge};
 use crate::moving::Thing;
 use crate::world::{Place, World};
 
@@ -41,8 +42,12 @@ impl Map {
         // In the middle.
         let corner = Place { x: (left + right) / 2.0 - wide / scale / 2.0, y: (low + high) / 2.0 + tall / scale / 2.0 };
         let mut map = Self { canvas: Canvas::new(columns, rows), corner, scale, went: 0 };
-        if let Some(goal) = &world.goal {
-            map.goal(goal.min, goal.max);
+        match world.goal.map(|goal| goal.zone) {
+            Some(Zone::Rectangle { min, max }) => map.rectangle(min, max),
+            Some(Zone::Circle { center, radius }) => {
+                edge(center, radius).for_each(|place| map.dot(place, Ink::Goal));
+            }
+            None => {}
         }
         if let Some(charger) = &world.charger {
             charger.circle().for_each(|place| map.dot(place, Ink::Charger));
@@ -132,8 +137,8 @@ impl Map {
         }
     }
 
-    /// Every other dot of the goal's edge.
-    fn goal(&mut self, min: Place, max: Place) {
+    /// Every other dot of the edge of a goal that is a rectangle.
+    fn rectangle(&mut self, min: Place, max: Place) {
         let ((left, low), (right, high)) = (self.at(min), self.at(max));
         let within = |value: f64, most: usize| value.clamp(0.0, most as f64) as i64;
         let (left, right) = (within(left, 2 * self.canvas.columns), within(right, 2 * self.canvas.columns));

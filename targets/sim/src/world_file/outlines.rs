@@ -6,7 +6,7 @@ use toml::Spanned;
 use super::Wrong;
 use super::text::{BoxText, ChargerText, DiscText, DoorText, GoalText, Numbers, StartText, Table, WallText};
 use crate::charger::Charger;
-use crate::goal::Goal;
+use crate::goal::{Goal, Zone};
 use crate::moving::{Schedule, Stop, Thing};
 use crate::world::{Outline, Place};
 
@@ -68,7 +68,7 @@ impl Unit {
                 return Err(Wrong::at(text, what));
             }
         };
-        Ok(Goal { min, max, heading })
+        Ok(Goal { zone: Zone::Rectangle { min, max }, heading })
     }
 
     pub(super) fn charger(self, text: &Spanned<Table<ChargerText>>) -> Result<Charger, Wrong> {
