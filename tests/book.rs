@@ -138,9 +138,8 @@ impl Walk<'_> {
         let words: Vec<_> = command.split(' ').collect();
         let output = match words[0] {
             "mdlec" => run_mdlec(&self.folder, &words[1..]),
-            program => {
-                Command::new(self.folder.join(program)).args(&words[1..]).current_dir(&self.folder).output().unwrap()
-            }
+            // By the name that is typed, which the program may print.
+            program => Command::new(program).args(&words[1..]).current_dir(&self.folder).output().unwrap(),
         };
         let said = said(&output);
         if expected.is_empty() {
