@@ -183,3 +183,19 @@ fn a_batch_names_the_operands() {
     insta::assert_snapshot!(reported("push", &noise).1);
     insta::assert_snapshot!("batch-as-json", reported("push", &[&noise[..], &["--json"]].concat()).1);
 }
+
+#[test]
+fn a_required_cause_is_read_as_the_compiler_reads_it() {
+    let status = |cause: &str| reported("push", &["--start=1.5,5,180", "--speed", "max", "--require", cause]).0;
+    // This start ends in contact.
+    for cause in ["bumper", " bumper ", "Push"] {
+        assert_eq!(status(cause), Some(0), "{cause}");
+    }
+    for cause in ["wait 1min", "wait 60", "wait 60000ms", "way > 1m", "way>100cm", "way > 1.0", "completed"] {
+        assert_eq!(status(cause), Some(5), "{cause}");
+    }
+    for cause in ["r0 < 60cm", "r0<0.6", "wait 10s", "wait 1m", "way > 1s", "way < 1m", "bumpr", "bumper OR wait 1min"]
+    {
+        assert_eq!(status(cause), Some(2), "{cause}");
+    }
+}
