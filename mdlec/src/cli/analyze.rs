@@ -1,12 +1,12 @@
 //! `mdlec analyze`: what is so of every run of a plan.
 
-use super::{Analyze, Failure, build, input, report};
+use super::{Analyze, Failure, build, input, report, settings};
 use crate::Compiled;
 use crate::analysis::analyze as analysis;
 
 /// Prints the analysis of a plan; what is suspicious goes to standard error.
 pub(super) fn analyze(options: &Analyze) -> Result<(), Failure> {
-    let target = input::target(options.target.as_deref())?;
+    let target = settings::target(&options.plan, options.target.as_deref())?;
     let mut input = input::read_plan(&options.plan, &target)?;
     // An analysis needs the machine alone, and of a long plan the rest is as large again.
     let judge = |Compiled { lowered, .. }: Compiled| analysis(&lowered);

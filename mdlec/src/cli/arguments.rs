@@ -95,7 +95,8 @@ pub(super) enum Command {
     /// Build the executable of a plan and run it
     ///
     /// `mdlec` becomes the executable: its exit status and its signals are those of the run. The executable stays where
-    /// `mdlec build` writes it.
+    /// `mdlec build` writes it. The file `mdle.toml` beside the plan may name `target`, `world` and, in the table `options`,
+    /// options of runs, such as `speed = "max"`; those of the command line win.
     Run(Run),
     /// Check plans and report their errors
     ///
@@ -206,7 +207,8 @@ pub(super) struct Executable {
     pub(super) plan: Option<PathBuf>,
     /// Robot to compile for: a name from `mdlec targets`, or a folder
     ///
-    /// A folder holds a target of your own: an `alphabet.mdle` and a crate. `mdlec new-target` creates one.
+    /// A folder holds a target of your own: an `alphabet.mdle` and a crate. `mdlec new-target` creates one. Without the option,
+    /// the `target` of an `mdle.toml` beside the plan.
     #[arg(long, value_name = "NAME|FOLDER")]
     pub(super) target: Option<String>,
     /// Executable to write [default: the plan's file name without its extension, in the current folder]
@@ -288,7 +290,7 @@ pub(super) struct Check {
     /// Files of the plans
     #[arg(required = true)]
     pub(super) plans: Vec<PathBuf>,
-    /// Robot to check for, or `all` for a table of all robots [default: a robot with every capability]
+    /// Robot to check for, or `all` for a table of all robots [default: that of mdle.toml, or one with every capability]
     #[arg(long, value_name = "NAME|FOLDER|all")]
     pub(super) target: Option<String>,
     /// Treat warnings as errors
@@ -324,7 +326,7 @@ pub(super) struct Trace {
     /// Name of the plan to run [default: the only plan that no other plan uses]
     #[arg(long = "plan", value_name = "NAME")]
     pub(super) name: Option<String>,
-    /// Robot to check the plan for [default: a robot with every capability]
+    /// Robot to check the plan for [default: that of mdle.toml, or one with every capability]
     #[arg(long, value_name = "NAME|FOLDER")]
     pub(super) target: Option<String>,
 }
@@ -340,7 +342,7 @@ pub(super) struct Draw {
     /// Name of the plan to draw [default: the only plan that no other plan uses]
     #[arg(long = "plan", value_name = "NAME")]
     pub(super) name: Option<String>,
-    /// Robot to check the plan for [default: a robot with every capability]
+    /// Robot to check the plan for [default: that of mdle.toml, or one with every capability]
     #[arg(long, value_name = "NAME|FOLDER")]
     pub(super) target: Option<String>,
 }
@@ -369,7 +371,7 @@ pub(super) struct Analyze {
     /// Name of the plan to analyze [default: the only plan that no other plan uses]
     #[arg(long = "plan", value_name = "NAME")]
     pub(super) name: Option<String>,
-    /// Robot to check the plan for [default: a robot with every capability]
+    /// Robot to check the plan for [default: that of mdle.toml, or one with every capability]
     #[arg(long, value_name = "NAME|FOLDER")]
     pub(super) target: Option<String>,
     /// Treat warnings as errors

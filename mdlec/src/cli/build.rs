@@ -3,8 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use super::bind;
+use super::executable::{self, Runnable};
 use super::input::{self, Input, Target};
-use super::{Bare, Build, Emit, EmitKind, Executable, Failure, endings, executable, matrices, report};
+use super::settings::{self, Settings};
+use super::{Bare, Build, Emit, EmitKind, Executable, Failure, endings, matrices, report};
 use crate::diagnostic::{Diagnostic, Sources};
 use crate::link;
 use crate::rust::{self, Header};
@@ -18,11 +20,13 @@ pub(super) fn bare(options: &Bare) -> Result<(), Failure> {
         return Err(Failure::usage("`--run` runs an executable, and this `--emit` makes none"));
     }
     let built = build(&options.build)?;
-    built.filter(|_| options.run).map_or(Ok(()), |built| executable::become_it(&built, &options.args))
+    built
+        .filter(|_| options.run)
+        .map_or(Ok(()), |built| built.become_it(options.build.executable.target.as_deref(), &options.args))
 }
 
-/// Builds the executable of a plan, or prints another form of it. Returns the executable's path.
-pub(super) fn build(options: &Build) -> Result<Option<PathBuf>, Failure> {
+/// Builds the executable of a plan, or prints another form of it. Returns the executable.
+pub(super) fn build(options: &Build) -> Result<Option<Runnable>, Failure> {
     let Build { executable: about, emit, combine } = options;
     let path = executable::begin(about)?;
     let (kind, file) = match emit {
@@ -42,7 +46,7 @@ pub(super) fn build(options: &Build) -> Result<Option<PathBuf>, Failure> {
         return Err(Failure::usage("`--combine` sums matrices: it goes with `--emit matrices`"));
     }
     if kind == EmitKind::Matrices {
-        let target = input::target(about.target.as_deref())?;
+        let target = settings::target(path, about.target.as_deref())?;
         let mut input = input::read_plan(path, &target)?;
         let compiled = compile_one(&mut input, &target, about.name.as_deref(), about.deny_warnings)?;
         let inputs = input.inputs(&target);
@@ -119,7 +123,8 @@ fn known_plan(input: &mut Input, name: &str) -> Result<(), Failure> {
 
 /// A stage as text, with the files that were read for it.
 fn stage(options: &Executable, path: &Path, kind: EmitKind) -> Result<(String, Vec<PathBuf>), Failure> {
-    let target = input::target(options.target.as_deref())?;
+    let settings = Settings::beside(path)?;
+    let target = settings.target(options.target.as_deref())?;
     let mut input = input::read_plan(path, &target)?;
     if kind == EmitKind::Tree {
         let arena = syntax::Arena::new();
@@ -139,7 +144,7 @@ fn stage(options: &Executable, path: &Path, kind: EmitKind) -> Result<(String, V
         EmitKind::Mermaid => picture::mermaid(&compiled.lowered),
         EmitKind::Scxml => picture::scxml(nondegenerate),
         EmitKind::Tree | EmitKind::Matrices | EmitKind::Rust | EmitKind::Exe => {
-            needs_target(options.target.as_deref())?;
+            needs_target(settings.names_target(options.target.as_deref()))?;
             rust_of(&compiled, path, &target, &input.sources)
         }
     };
@@ -150,13 +155,11 @@ fn stage(options: &Executable, path: &Path, kind: EmitKind) -> Result<(String, V
     Ok((text, input.inputs(&target)))
 }
 
-/// Rust is written for a robot.
-fn needs_target(target: Option<&str>) -> Result<(), Failure> {
-    let question = || {
-        let option = report::option("target", "sim");
-        Failure::usage(format!("for which robot? Name it, as in `{option}`; `mdlec targets` lists them"))
-    };
-    target.map(|_| ()).ok_or_else(question)
+/// Fails if no target is named: Rust is written for a robot.
+pub(super) fn needs_target(is_named: bool) -> Result<(), Failure> {
+    let option = report::option("target", "sim");
+    let question = format!("for which robot? Name it, as in `{option}`; `mdlec targets` lists them");
+    if is_named { Ok(()) } else { Err(Failure::usage(question)) }
 }
 
 /// A plan as Rust, and what it was made of.
@@ -170,12 +173,10 @@ pub(super) struct Emitted {
 /// Makes Rust of the one plan that is to be compiled with the crate of this target.
 pub(super) fn emitted(
     path: &Path,
-    target: Option<&str>,
+    target: Target,
     name: Option<&str>,
     deny_warnings: bool,
 ) -> Result<Emitted, Failure> {
-    needs_target(target)?;
-    let target = input::target(target)?;
     let mut input = input::read_plan(path, &target)?;
     let compiled = compile_one(&mut input, &target, name, deny_warnings)?;
     if let Some(folder) = &target.folder {

@@ -1,9 +1,11 @@
 //! `mdlec check`: diagnostics only.
 
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::path::{Path, PathBuf};
 
 use super::everywhere::{ALL, everywhere};
-use super::{Check, Failure, input, report};
+use super::{Check, Failure, input, report, settings};
 use crate::diagnostic::has_errors;
 
 /// Checks each plan file and says what is wrong with it.
@@ -11,9 +13,16 @@ pub(super) fn check(options: &Check) -> Result<(), Failure> {
     if options.target.as_deref() == Some(ALL) {
         return everywhere(options);
     }
-    let target = input::target(options.target.as_deref())?;
+    let named = options.target.as_deref().map(|name| input::target(Some(name))).transpose()?;
+    // Without the option each folder may have another one.
+    let mut beside = BTreeMap::new();
     each(&options.plans, |path| {
-        let mut input = input::read_plan(path, &target)?;
+        let target = match (&named, beside.entry(settings::file_beside(path))) {
+            (Some(named), _) => named,
+            (None, Entry::Occupied(known)) => known.into_mut(),
+            (None, Entry::Vacant(unknown)) => unknown.insert(settings::target(path, None)?),
+        };
+        let mut input = input::read_plan(path, target)?;
         let found = input.check(&target.alphabet);
         let good = report::diagnostics(&input.sources, &found, options.deny_warnings);
         if good && !has_errors(&found) { Ok(()) } else { Err(Failure::PLAN) }

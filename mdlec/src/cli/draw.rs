@@ -1,6 +1,6 @@
 //! `mdlec draw`: a plan as a picture.
 
-use super::{Draw, Failure, build, endings, input, report};
+use super::{Draw, Failure, build, endings, input, report, settings};
 use crate::{link, picture};
 
 /// Draws the plan, into a file or to standard output.
@@ -8,7 +8,7 @@ pub(super) fn draw(options: &Draw) -> Result<(), Failure> {
     if let Some(file) = &options.output {
         endings::svg(file)?;
     }
-    let target = input::target(options.target.as_deref())?;
+    let target = settings::target(&options.plan, options.target.as_deref())?;
     let mut input = input::read_plan(&options.plan, &target)?;
     let compiled = build::compile_one(&mut input, &target, options.name.as_deref(), false)?;
     let drawn = picture::svg(&compiled.lowered).map_err(|too_large| {

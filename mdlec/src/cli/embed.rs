@@ -4,8 +4,8 @@ use std::env;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-use super::build::{Emitted, emitted};
-use super::{Color, Failure, MessageFormat, executable, report};
+use super::build::{Emitted, emitted, needs_target};
+use super::{Color, Failure, MessageFormat, executable, input, report};
 use crate::link;
 
 /// Writes `$OUT_DIR/STEM.rs` and tells cargo of warnings and of the files that were read. The exit status, if that is not
@@ -21,7 +21,8 @@ fn write(file: &Path, target: Option<&str>, plan: Option<&str>) -> Result<(), Fa
             "the variable OUT_DIR is not set: plans are embedded by the build script of a package",
         ));
     };
-    let Emitted { target, input, rust, .. } = emitted(file, target, plan, false)?;
+    needs_target(target.is_some())?;
+    let Emitted { target, input, rust, .. } = emitted(file, input::target(target)?, plan, false)?;
     let inputs = input.inputs(&target);
     // The alphabets that came with mdlec change with it, and then cargo runs the build script again in any case.
     let watched = inputs.iter().map(|file| watched(file)).collect::<Result<String, _>>()?;

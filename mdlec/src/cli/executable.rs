@@ -8,8 +8,9 @@ use std::time::Instant;
 
 use mdle_runtime::Printable;
 
-use super::build::{Emitted, emitted};
+use super::build::{Emitted, emitted, needs_target};
 use super::input::Target;
+use super::settings::Settings;
 use super::version::version;
 use super::{EmitKind, Executable, Failure, Run, endings, report};
 use crate::link::{self, Cache, LinkError, Package, Progress, TargetCrate};
@@ -22,7 +23,7 @@ pub(super) fn run(options: &Run) -> Result<(), Failure> {
     if let Some(output) = &output {
         endings::no_picture(output, EmitKind::Exe, path)?;
     }
-    become_it(&build(&options.executable, path, output)?, &options.args)
+    build(&options.executable, path, output)?.become_it(options.executable.target.as_deref(), &options.args)
 }
 
 /// Prepares for signals, which must leave nothing behind, and returns the file of the plan.
@@ -32,11 +33,20 @@ pub(super) fn begin(options: &Executable) -> Result<&Path, Failure> {
     options.plan.as_deref().ok_or_else(|| Failure::usage("no plan was given"))
 }
 
-/// Builds the executable of the plan in `path`, by default in the current folder. Returns its path.
-pub(super) fn build(options: &Executable, path: &Path, output: Option<PathBuf>) -> Result<PathBuf, Failure> {
+/// An executable that was built, with the settings of its plan.
+pub(super) struct Runnable {
+    path: PathBuf,
+    settings: Settings,
+}
+
+/// Builds the executable of the plan in `path`, by default in the current folder.
+pub(super) fn build(options: &Executable, path: &Path, output: Option<PathBuf>) -> Result<Runnable, Failure> {
     let started = Instant::now();
+    let settings = Settings::beside(path)?;
+    needs_target(settings.names_target(options.target.as_deref()))?;
+    let target = settings.target(options.target.as_deref())?;
     let Emitted { target, input, plan_name, rust } =
-        emitted(path, options.target.as_deref(), options.name.as_deref(), options.deny_warnings)?;
+        emitted(path, target, options.name.as_deref(), options.deny_warnings)?;
     // Standard input has no name of its own.
     let stem = path.file_stem().filter(|stem| *stem != "-").map_or_else(|| PathBuf::from(&plan_name), PathBuf::from);
     let output = output.unwrap_or(stem);
@@ -66,7 +76,7 @@ pub(super) fn build(options: &Executable, path: &Path, output: Option<PathBuf>) 
     let seconds = started.elapsed().as_secs_f64();
     let size = built.size as f64 / 1e6;
     report::note(format_args!("{}: built in {seconds:.2} s, {size:.1} MB", output.display()));
-    Ok(output)
+    Ok(Runnable { path: output, settings })
 }
 
 /// Names a configuration near the target or the plan that would have had an effect on the build if cargo had been run there.
@@ -81,11 +91,21 @@ fn note_ignored(plan: &Path, target: &Target) {
     }
 }
 
-/// Becomes the executable, so that its exit status and its signals are this process's.
-pub(super) fn become_it(output: &Path, args: &[String]) -> Result<(), Failure> {
-    let program = if output.is_absolute() { output.to_owned() } else { Path::new(".").join(output) };
-    let error = Command::new(&program).args(args).exec();
-    Err(Failure::usage(format!("cannot run `{}`: {error}", program.display())))
+impl Runnable {
+    /// Becomes the executable, with the options of `mdle.toml` before `args`. `target` is that of the command line.
+    pub(super) fn become_it(&self, target: Option<&str>, args: &[String]) -> Result<(), Failure> {
+        let program = if self.path.is_absolute() { self.path.clone() } else { Path::new(".").join(&self.path) };
+        let options = self.settings.run_options(target, args)?;
+        options.iter().try_for_each(|option| option.must_fit(&program))?;
+        let options = options.iter().flat_map(|option| &option.arguments);
+        become_program(Command::new(&program).args(options).args(args))
+    }
+}
+
+/// Becomes a program, so that its exit status and its signals are those of this process.
+fn become_program(command: &mut Command) -> Result<(), Failure> {
+    let error = command.exec();
+    Err(Failure::usage(format!("cannot run `{}`: {error}", Path::new(command.get_program()).display())))
 }
 
 pub(super) fn failure(error: &LinkError) -> Failure {

@@ -16,6 +16,8 @@ pub(super) struct Target {
     pub(super) alphabet: Alphabet,
     /// The folder of a target that did not come with mdlec.
     pub(super) folder: Option<PathBuf>,
+    /// The `mdle.toml` beside the plan, if there is one.
+    pub(super) settings: Option<PathBuf>,
     /// The files its alphabet was read from, so that messages can show them.
     sources: Vec<(String, String)>,
 }
@@ -26,9 +28,11 @@ impl Target {
         self.sources.iter().map(|(_, text)| text.as_str())
     }
 
-    /// The files of the target that were read.
+    /// The files that were read for the target.
     pub(super) fn files(&self) -> impl Iterator<Item = PathBuf> {
-        self.folder.iter().flat_map(|folder| ["alphabet.mdle", "src/alphabet.rs"].map(|file| folder.join(file)))
+        let own =
+            self.folder.iter().flat_map(|folder| ["alphabet.mdle", "src/alphabet.rs"].map(|file| folder.join(file)));
+        own.chain(self.settings.clone())
     }
 }
 
@@ -112,7 +116,7 @@ impl syntax::Loader for Input {
 }
 
 /// A byte order mark is an editor's, and no part of a plan.
-fn without_mark(bytes: Vec<u8>) -> Vec<u8> {
+pub(super) fn without_mark(bytes: Vec<u8>) -> Vec<u8> {
     bytes.strip_prefix(b"\xEF\xBB\xBF").map(<[u8]>::to_vec).unwrap_or(bytes)
 }
 
@@ -250,7 +254,9 @@ fn read_alphabets(own: Option<(String, String)>, name: &str) -> Result<Target, F
     };
     report::diagnostics(&reading.sources, &reading.found, false);
     match alphabet {
-        Some(alphabet) if !has_errors(&reading.found) => Ok(Target { alphabet, folder: None, sources: reading.files }),
+        Some(alphabet) if !has_errors(&reading.found) => {
+            Ok(Target { alphabet, folder: None, settings: None, sources: reading.files })
+        }
         Some(_) | None => Err(Failure::usage(format!("the alphabet of target `{name}` has errors"))),
     }
 }
@@ -306,7 +312,6 @@ pub(super) fn did_you_mean(name: &str, known: &[&str]) -> String {
     near.map(|near| format!("; did you mean `{near}`?")).unwrap_or_default()
 }
 
-/// A hint where only the ending was forgotten.
 /// The name of a plan file beside `path` that differs from its name in capitals or in the ending alone.
 fn like(path: &Path) -> Option<String> {
     let name = path.file_name()?.to_str()?.to_lowercase();
@@ -315,6 +320,7 @@ fn like(path: &Path) -> Option<String> {
     files.filter(|file| [name.clone(), format!("{name}.mdle")].contains(&file.to_lowercase())).min()
 }
 
+/// A hint where only the ending was forgotten.
 fn plan_nearby(path: &Path) -> String {
     let with_ending = path.with_extension("mdle");
     if with_ending.is_file() { format!("\nhelp: there is `{}`", with_ending.display()) } else { String::new() }

@@ -20,6 +20,7 @@ mod matrices;
 mod new_target;
 mod read;
 mod report;
+mod settings;
 mod trace;
 mod version;
 

@@ -3,7 +3,7 @@
 use std::io::{self, BufWriter, Write};
 
 use super::read::LARGEST_DATA;
-use super::{Failure, Machine, Trace, input, report};
+use super::{Failure, Machine, Trace, input, report, settings};
 use crate::trace::{Counted, Line, MatrixProduct, Script, Table, Tree, run};
 
 /// Runs the plan and prints what it does, a line a turn.
@@ -11,7 +11,7 @@ pub(super) fn trace(options: &Trace) -> Result<(), Failure> {
     if options.plan.as_os_str() == "-" && options.script.as_os_str() == "-" {
         return Err(Failure::usage("standard input can be the plan or the script, but not both"));
     }
-    let target = input::target(options.target.as_deref())?;
+    let target = settings::target(&options.plan, options.target.as_deref())?;
     let mut input = input::read_plan(&options.plan, &target)?;
     let compiled = super::build::compile_one(&mut input, &target, options.name.as_deref(), false)?;
     let text = input::read_text(&options.script, LARGEST_DATA)?;
