@@ -181,6 +181,9 @@ fn scripts_that_are_wrong() {
     let folder = with_plan("scripts", REST);
     fs::write(folder.join("script"), "{\"t\": 1.0, \"fired\": [], \"completed\": []}\n{\"t\": 0.5}\n").unwrap();
     fs::write(folder.join("nonsense"), "{\"t\": }\n").unwrap();
+    fs::write(folder.join("list"), "[\n  {\"t\": 0}\n]\n").unwrap();
+    fs::write(folder.join("plain"), "0.5 bumper\n").unwrap();
+    fs::write(folder.join("unit"), "{\"t\": \"0s\"}\n").unwrap();
     let turns = [
         r#"{"t": 0, "fired": ["bumpr"]}"#,
         r#"{"t": 0}\n{"t": 1, "fired": ["r0<0.7"]}"#,
@@ -197,7 +200,7 @@ fn scripts_that_are_wrong() {
         format!("{turn}\n{}", said(&folder, &["trace", "names.mdle", "--script", "names"]))
     });
     insta::assert_snapshot!("names_in_scripts_that_are_wrong", names.join("\n"));
-    let scripts = ["script", "nonsense", "missing"];
+    let scripts = ["script", "nonsense", "list", "plain", "unit", "missing"];
     insta::assert_snapshot!(scripts.map(|file| said(&folder, &["trace", "plan.mdle", "--script", file])).join("\n"));
 }
 

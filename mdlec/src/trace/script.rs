@@ -110,7 +110,7 @@ impl Script {
         let mut start = None;
         for (line, content) in (1..).zip(text.lines()).filter(|(_, content)| !content.trim().is_empty()) {
             let refused = |message| ScriptError { line, message };
-            let written: Written = serde_json::from_str(content).map_err(|error| refused(reason(&error)))?;
+            let written = written(content).map_err(refused)?;
             let at = nanos(written.t).ok_or_else(|| refused(format!("{} is no time in seconds", written.t)))?;
             let start = *start.get_or_insert(at);
             let back = || refused(format!("the time {} is before that of the line before it", written.t));
@@ -161,13 +161,29 @@ fn nanos(seconds: f64) -> Option<u64> {
     Decimal::parse(&seconds.to_string())?.to_nanos()
 }
 
+/// Reads a line.
+fn written(line: &str) -> Result<Written, String> {
+    let expected = r#"expected one object per line, as in {"t": 0.0, "fired": ["bumper"]}"#;
+    // Without this check, a list of values would be read as an object with them.
+    match line.trim_start().chars().next() {
+        Some('{') => {}
+        Some('[') => return Err(format!("a script is no JSON list: {expected}")),
+        Some(_) | None => return Err(expected.to_owned()),
+    }
+    serde_json::from_str(line).map_err(|error| {
+        let reason = reason(&error);
+        // Messages about keys say which there are.
+        if reason.contains(" field `") { reason } else { format!("{reason}; {expected}") }
+    })
+}
+
 /// The reader's message with the column only: its line is always 1, since each line is read by itself.
 fn reason(error: &serde_json::Error) -> String {
     let message = error.to_string();
-    match message.split_once(" at line ") {
-        Some((message, _)) => format!("{message} (column {})", error.column()),
-        None => message,
-    }
+    let message = message.split_once(" at line ").map_or(&*message, |(message, _)| message);
+    let message =
+        message.replace("expected f64", "expected a number").replace("expected a sequence", "expected a list");
+    format!("{message} (column {})", error.column())
 }
 
 #[cfg(test)]
@@ -228,6 +244,25 @@ mod tests {
             "line 2: the way 0 is less than that of the line before it; a line without `way` counts as 0"
         );
         assert_eq!(refused("{\"t\":0,\"way\":-1}"), "line 1: -1 is no way in metres");
+    }
+
+    #[test]
+    fn what_is_no_object_is_refused_with_an_example() {
+        let expected = r#"expected one object per line, as in {"t": 0.0, "fired": ["bumper"]}"#;
+        for list in ["[", "[]", " [{\"t\": 0}, {\"t\": 1}]", "[0, 0, 0, [], []]"] {
+            assert_eq!(refused(list), format!("line 1: a script is no JSON list: {expected}"));
+        }
+        for plain in ["0.5 bumper", "bumper", "\"bumper\"", "7", "\u{feff}{\"t\":0}"] {
+            assert_eq!(refused(&format!("{{\"t\": 0}}\n{plain}")), format!("line 2: {expected}"));
+        }
+        let of_type = |text: &str, found: &str, column: usize| {
+            assert_eq!(refused(text), format!("line 1: invalid type: {found} (column {column}); {expected}"));
+        };
+        of_type(r#"{"t": "0s"}"#, r#"string "0s", expected a number"#, 10);
+        of_type(r#"{"t": 0, "fired": "bumper"}"#, r#"string "bumper", expected a list"#, 26);
+        of_type(r#"{"t": 0, "fired": [1]}"#, "integer `1`, expected a string", 20);
+        assert_eq!(refused("{"), format!("line 1: EOF while parsing an object (column 1); {expected}"));
+        assert_eq!(refused("{\"t\": 0},"), format!("line 1: trailing characters (column 9); {expected}"));
     }
 
     #[test]
