@@ -152,6 +152,21 @@ fn options_that_are_wrong() {
 }
 
 #[test]
+fn options_of_other_commands_name_these() {
+    let folder = with_plan("misplaced", REST);
+    let commands = [
+        &["check", "plan.mdle", "--plan", "Rest"][..],
+        &["check", "--run", "plan.mdle"],
+        &["check", "plan.mdle", "--emit=plan"],
+        &["check", "-o", "rest", "plan.mdle"],
+        &["fmt", "--deny-warnings", "plan.mdle"],
+        &["run", "plan.mdle", "--emit", "plan"],
+        &["check", "plan.mdle", "--nonsense"],
+    ];
+    insta::assert_snapshot!(commands.map(|arguments| said(&folder, arguments)).join("\n"));
+}
+
+#[test]
 fn warnings_can_be_denied() {
     let folder = with_plan("warnings", "{ P (bumper) (Atom (bumper) rotate 90) }\n");
     let allowed = said(&folder, &["check", "plan.mdle"]);

@@ -17,6 +17,7 @@ mod fmt;
 mod input;
 mod manual;
 mod matrices;
+mod mistyped;
 mod new_target;
 mod read;
 mod report;
@@ -70,10 +71,12 @@ pub fn main() -> ExitCode {
     let parsed = command.try_get_matches().and_then(|matches| Cli::from_arg_matches(&matches));
     let done = match parsed {
         Ok(cli) => run(cli),
-        Err(answer) => match misspelled_command().filter(|_| answer.use_stderr()) {
-            Some(failure) => Err(failure),
-            None => report::answer(&answer),
-        },
+        Err(answer) => {
+            match mistyped::command().or_else(|| mistyped::option(&answer)).filter(|_| answer.use_stderr()) {
+                Some(failure) => Err(failure),
+                None => report::answer(&answer),
+            }
+        }
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
@@ -92,25 +95,11 @@ fn color_of_help() -> Color {
     value.and_then(|value| Color::from_str(&value, false).ok()).unwrap_or(Color::Auto)
 }
 
-/// A first argument that is like a command and no file, so that it was taken for a plan.
-fn misspelled_command() -> Option<Failure> {
-    let word = std::env::args().nth(1).filter(|word| !word.starts_with('-') && !word.contains(['.', '/']))?;
-    let cli = Cli::command();
-    let names: Vec<_> = cli.get_subcommands().map(clap::Command::get_name).collect();
-    if names.contains(&word.as_str()) || std::path::Path::new(&word).exists() {
-        return None;
-    }
-    let near = crate::alphabet::nearest(&word, names.iter().copied())?;
-    Some(Failure::usage(format!(
-        "there is no command `{word}`; did you mean `mdlec {near}`?\nhelp: `mdlec --help` lists all commands"
-    )))
-}
-
 /// Runs the command of `cli`.
 fn run(cli: Cli) -> Result<(), Failure> {
     report::choose(cli.message_format, cli.color);
     match cli.command {
-        None => match misspelled_command() {
+        None => match mistyped::command() {
             Some(failure) => Err(failure),
             None => build::bare(&cli.bare),
         },
