@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
+use super::emit::Emit;
 use crate::theorem::STEPS;
 
 /// Compile plans in MDLe, the Motion Description Language, for robots
@@ -220,68 +221,6 @@ pub(super) struct Executable {
     /// Treat warnings as errors
     #[arg(long)]
     pub(super) deny_warnings: bool,
-}
-
-/// The argument of `--emit`.
-#[derive(Debug, Clone)]
-pub(super) struct Emit {
-    pub(super) kind: EmitKind,
-    /// `None` for standard output.
-    pub(super) file: Option<PathBuf>,
-}
-
-/// The kinds of `--emit`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum EmitKind {
-    /// Syntax tree
-    Tree,
-    /// Plan with all names resolved
-    Plan,
-    /// Plan without repeated interrupts
-    Nondegenerate,
-    /// Plan with finite loops unrolled and atoms numbered
-    Expanded,
-    /// Finite state machine, as JSON
-    Fsm,
-    /// Transition matrices, in the paper's notation or as MatrixMarket files
-    Matrices,
-    /// Picture for Graphviz
-    Dot,
-    /// Picture for mermaid, a `stateDiagram-v2`
-    Mermaid,
-    /// W3C SCXML machine that is equivalent to the plan
-    Scxml,
-    /// Plan in the paper's formal notation
-    Formal,
-    /// Generated Rust source
-    Rust,
-    /// Executable
-    Exe,
-}
-
-impl EmitKind {
-    /// Returns `true` if people rather than programs read this kind.
-    pub(super) fn is_for_people(self) -> bool {
-        match self {
-            Self::Tree | Self::Plan | Self::Nondegenerate | Self::Expanded | Self::Matrices | Self::Formal => true,
-            Self::Fsm | Self::Dot | Self::Mermaid | Self::Scxml | Self::Rust | Self::Exe => false,
-        }
-    }
-}
-
-impl Emit {
-    fn parse(text: &str) -> Result<Self, String> {
-        let (kind, file) = match text.split_once('=') {
-            Some((_, "")) => return Err("name a file after `=`, or leave `=` out".into()),
-            Some((kind, "-")) => (kind, None),
-            Some((kind, file)) => (kind, Some(PathBuf::from(file))),
-            None => (text, None),
-        };
-        let kinds: Vec<_> = EmitKind::value_variants().iter().filter_map(ValueEnum::to_possible_value).collect();
-        let names: Vec<_> = kinds.iter().map(|kind| kind.get_name().to_owned()).collect();
-        let kind = EmitKind::from_str(kind, false).map_err(|_| format!("the kinds are {}", names.join(", ")))?;
-        Ok(Self { kind, file })
-    }
 }
 
 /// Arguments of `mdlec check`.

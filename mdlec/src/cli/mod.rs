@@ -9,6 +9,7 @@ mod clean;
 mod decompile;
 mod draw;
 mod embed;
+mod emit;
 mod endings;
 mod everywhere;
 mod executable;
@@ -28,11 +29,12 @@ mod version;
 use std::process::ExitCode;
 
 use arguments::{
-    Analyze, Bare, Bind, Build, Check, Cli, Color, Command, Completions, Decompile, Draw, Emit, EmitKind, Executable,
-    Fmt, Machine, Man, MessageFormat, NewTarget, Run, Trace,
+    Analyze, Bare, Bind, Build, Check, Cli, Color, Command, Completions, Decompile, Draw, Executable, Fmt, Machine,
+    Man, MessageFormat, NewTarget, Run, Trace,
 };
 use clap::{CommandFactory as _, FromArgMatches as _, ValueEnum as _};
 pub(crate) use embed::embed;
+use emit::{Emit, EmitKind};
 
 /// The message and the exit status of a command that failed.
 #[derive(Debug)]
