@@ -152,6 +152,14 @@ fn options_that_are_wrong() {
 }
 
 #[test]
+fn emulators_that_are_none() {
+    let folder = with_plan("emulators", REST);
+    let commands =
+        [&["emulator", "scuot"][..], &["emulator", "sim"], &["emulator"], &["emulator", "scout", "--link", "line"]];
+    insta::assert_snapshot!(commands.map(|arguments| said(&folder, arguments)).join("\n"));
+}
+
+#[test]
 fn options_of_other_commands_name_these() {
     let folder = with_plan("misplaced", REST);
     let commands = [

@@ -8,7 +8,7 @@ use std::process::{Command, Output};
 use mdle_tests::executable::{folder, run_mdlec};
 
 /// The commands of `mdlec`; the first is the bare form, which builds.
-const COMMANDS: [&str; 17] = [
+const COMMANDS: [&str; 18] = [
     "",
     "build",
     "run",
@@ -23,6 +23,7 @@ const COMMANDS: [&str; 17] = [
     "quarks",
     "bind",
     "new-target",
+    "emulator",
     "clean",
     "completions",
     "man",

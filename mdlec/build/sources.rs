@@ -16,13 +16,21 @@ const LEFT_OUT: [&str; 5] = ["tests", "benches", "examples", "snapshots", "targe
 /// The folder below `targets` that is no robot: `mdlec new-target` makes one of it.
 const TEMPLATE: &str = "template";
 
-/// Writes `$OUT_DIR/sources.rs`: the files with their contents, a hash of them all, the targets and the alphabets.
+/// The folder of the package that robot emulators share, and below a target's folder that of its emulator.
+const EMULATOR: &str = "emulator";
+
+/// Writes `$OUT_DIR/sources.rs`: the files with their contents, a hash of them all, the targets, their emulators and the alphabets.
 pub(crate) fn pack() -> Result<(), Box<dyn Error>> {
     let root = Path::new(&env::var("CARGO_MANIFEST_DIR")?).join("..").canonicalize()?;
     let out = PathBuf::from(env::var("OUT_DIR")?);
     let targets = targets(&root)?;
-    let packages: Vec<String> =
-        SHARED.into_iter().map(str::to_owned).chain(targets.iter().map(|name| format!("targets/{name}"))).collect();
+    let emulated =
+        targets.iter().filter(|name| root.join("targets").join(name).join(EMULATOR).join("Cargo.toml").is_file());
+    let emulated: Vec<_> = emulated.cloned().collect();
+    let mut packages: Vec<_> = SHARED.into_iter().map(str::to_owned).collect();
+    packages.extend(targets.iter().map(|name| format!("targets/{name}")));
+    packages.push(format!("targets/{EMULATOR}"));
+    packages.extend(emulated.iter().map(|name| format!("targets/{name}/{EMULATOR}")));
 
     let manifest = out.join("workspace.toml");
     fs::write(&manifest, workspace(&root, &packages)?)?;
@@ -42,7 +50,7 @@ pub(crate) fn pack() -> Result<(), Box<dyn Error>> {
         }
     }
     files.sort();
-    fs::write(out.join("sources.rs"), table(&root, &files, &targets)?)?;
+    fs::write(out.join("sources.rs"), table(&root, &files, &targets, &emulated)?)?;
     Ok(())
 }
 
@@ -105,7 +113,12 @@ fn collect(folder: &Path, name: &str, files: &mut Vec<(String, PathBuf)>) -> Res
 }
 
 /// The Rust text of the table.
-fn table(root: &Path, files: &[(String, PathBuf)], targets: &[String]) -> Result<String, Box<dyn Error>> {
+fn table(
+    root: &Path,
+    files: &[(String, PathBuf)],
+    targets: &[String],
+    emulated: &[String],
+) -> Result<String, Box<dyn Error>> {
     let mut hasher = blake3::Hasher::new();
     let mut rust = "pub(super) static FILES: &[(&str, &[u8])] = &[\n".to_owned();
     for (name, path) in files {
@@ -119,6 +132,11 @@ fn table(root: &Path, files: &[(String, PathBuf)], targets: &[String]) -> Result
     rust.push_str("pub(super) static TARGETS: &[(&str, &str)] = &[\n");
     for name in targets {
         writeln!(rust, "    ({name:?}, {:?}),", package_name(&root.join("targets").join(name))?)?;
+    }
+    rust.push_str("];\npub(super) static EMULATORS: &[(&str, &str)] = &[\n");
+    for name in emulated {
+        let folder = root.join("targets").join(name).join(EMULATOR);
+        writeln!(rust, "    ({name:?}, {:?}),", package_name(&folder)?)?;
     }
     rust.push_str("];\npub(super) static ALPHABETS: &[super::Alphabet] = &[\n");
     let names = targets.iter().map(|name| (name.as_str(), format!("targets/{name}/alphabet.mdle"), true));

@@ -4,10 +4,12 @@
 
 use std::path::PathBuf;
 
+use clap::builder::PossibleValuesParser;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
 
 use super::emit::Emit;
+use crate::link;
 use crate::theorem::STEPS;
 
 /// Compile plans in MDLe, the Motion Description Language, for robots
@@ -146,6 +148,11 @@ pub(super) enum Command {
     ///
     /// The new target runs at once, with imaginary hardware; `src/hardware.rs` marks every place for your driver.
     NewTarget(NewTarget),
+    /// Build the emulator of a robot and run it
+    ///
+    /// Opens a pseudo-terminal, speaks the protocol of the robot on it, and moves a simulated body in a world. `mdlec` becomes the
+    /// emulator, which runs until a signal comes.
+    Emulator(Emulator),
     /// Remove everything that mdlec keeps in its cache
     ///
     /// Compiled libraries, unpacked sources and the packages of plans: the next build makes them again. The cache is the folder
@@ -365,6 +372,17 @@ pub(super) struct Bind {
 pub(super) struct NewTarget {
     /// Name of the robot and of its folder, which is created in the current folder
     pub(super) name: String,
+}
+
+/// Arguments of `mdlec emulator`.
+#[derive(Debug, Args)]
+pub(super) struct Emulator {
+    /// Robot to emulate
+    #[arg(value_parser = PossibleValuesParser::new(link::emulators()))]
+    pub(super) robot: String,
+    /// Arguments for the emulator; `-- --help` lists them
+    #[arg(last = true)]
+    pub(super) args: Vec<String>,
 }
 
 /// Arguments of `mdlec completions`.

@@ -28,9 +28,14 @@ pub(super) fn run(options: &Run) -> Result<(), Failure> {
 
 /// Prepares for signals, which must leave nothing behind, and returns the file of the plan.
 pub(super) fn begin(options: &Executable) -> Result<&Path, Failure> {
-    link::leave_nothing_behind(Shown::wipe)
-        .map_err(|error| Failure::usage(format!("this system does not let signals be caught: {error}")))?;
+    take_signals()?;
     options.plan.as_deref().ok_or_else(|| Failure::usage("no plan was given"))
+}
+
+/// Has signals end this process without leaving anything behind.
+pub(super) fn take_signals() -> Result<(), Failure> {
+    link::leave_nothing_behind(Shown::wipe)
+        .map_err(|error| Failure::usage(format!("this system does not let signals be caught: {error}")))
 }
 
 /// An executable that was built, with the settings of its plan.
@@ -103,7 +108,7 @@ impl Runnable {
 }
 
 /// Becomes a program, so that its exit status and its signals are those of this process.
-fn become_program(command: &mut Command) -> Result<(), Failure> {
+pub(super) fn become_program(command: &mut Command) -> Result<(), Failure> {
     let error = command.exec();
     Err(Failure::usage(format!("cannot run `{}`: {error}", Path::new(command.get_program()).display())))
 }

@@ -10,6 +10,7 @@ mod decompile;
 mod draw;
 mod embed;
 mod emit;
+mod emulator;
 mod endings;
 mod everywhere;
 mod executable;
@@ -29,8 +30,8 @@ mod version;
 use std::process::ExitCode;
 
 use arguments::{
-    Analyze, Bare, Bind, Build, Check, Cli, Color, Command, Completions, Decompile, Draw, Executable, Fmt, Machine,
-    Man, MessageFormat, NewTarget, Run, Trace,
+    Analyze, Bare, Bind, Build, Check, Cli, Color, Command, Completions, Decompile, Draw, Emulator, Executable, Fmt,
+    Machine, Man, MessageFormat, NewTarget, Run, Trace,
 };
 use clap::{CommandFactory as _, FromArgMatches as _, ValueEnum as _};
 pub(crate) use embed::embed;
@@ -117,6 +118,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Targets) => input::print_targets(),
         Some(Command::Bind(bind)) => bind::bind(&bind),
         Some(Command::NewTarget(new_target)) => new_target::new_target(&new_target),
+        Some(Command::Emulator(emulator)) => emulator::emulator(&emulator),
         Some(Command::Clean) => clean::clean(),
         Some(Command::Completions(completions)) => manual::completions(&completions),
         Some(Command::Man(man)) => manual::man(&man),

@@ -39,6 +39,7 @@ mod sources;
 mod stop;
 mod target;
 
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
 pub use cache::Cache;
@@ -47,15 +48,16 @@ pub use error::LinkError;
 pub use ignored::ignored_configuration;
 pub use output::{must_not_be_read, write_whole};
 pub use progress::Progress;
-pub use sources::{Alphabet, alphabets};
+pub use sources::{Alphabet, alphabets, emulators};
 pub use stop::leave_nothing_behind;
 pub use target::TargetCrate;
 
 use cargo::{Job, Toolchain};
-use messages::Run;
+use messages::{Executable, Run};
 use output::Destination;
 use seal::Seal;
 use sources::Sources;
+use target::Dependencies;
 
 /// A plan as Rust.
 #[derive(Debug, Clone, Copy)]
@@ -104,16 +106,54 @@ pub fn build(
     let dependencies = target::dependencies(package.target, &sources)?;
     let plan = package::write(cache, package, &dependencies)?;
     let job = Job { cache, toolchain: &toolchain, plan: &plan };
-    let run = run(&job, package.target, progress)?;
-    let executable = match &run.executable {
-        Some(executable) if run.status.success() => executable,
-        Some(_) | None => return Err(blame::fault(&job, &run, package.target, &dependencies)),
-    };
-    record::write(&plan, &executable.path)?;
+    let executable = make(&job, package.target, &dependencies, progress)?;
     let size = destination.copy(&executable.path)?;
     // Until here: another build of this plan would write over the executable.
     drop(locked);
     Ok(Built { size, fresh: executable.fresh })
+}
+
+/// A robot emulator in the cache.
+#[derive(Debug)]
+pub struct Emulator {
+    /// Path of the executable.
+    pub path: PathBuf,
+    /// Keeps other builds from writing over the executable. The lock is given up when this process becomes the emulator.
+    _locked: File,
+}
+
+/// Builds the emulator of `robot`, which is one of [`emulators`].
+///
+/// # Errors
+/// When this machine lacks what a build needs, or `robot` has no emulator.
+pub fn emulator(cache: &Cache, robot: &str, progress: &mut dyn FnMut(Progress)) -> Result<Emulator, LinkError> {
+    let locked = cache.lock(progress)?;
+    let toolchain = Toolchain::find()?;
+    let sources = Sources::unpack(cache)?;
+    let dependencies = target::emulator_dependencies(robot, &sources)?;
+    let crate_name: String = dependencies.packages.iter().map(|(package, _)| package.replace('-', "_")).collect();
+    let package = package::write_emulator(cache, robot, &crate_name, &dependencies)?;
+    let job = Job { cache, toolchain: &toolchain, plan: &package };
+    let target = TargetCrate::Builtin { name: robot, crate_name: &crate_name };
+    let executable = make(&job, &target, &dependencies, progress)?;
+    Ok(Emulator { path: executable.path, _locked: locked })
+}
+
+/// Makes the executable of a package in the cache.
+fn make(
+    job: &Job<'_>,
+    target: &TargetCrate<'_>,
+    dependencies: &Dependencies,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Executable, LinkError> {
+    let run = run(job, target, progress)?;
+    match &run.executable {
+        Some(executable) if run.status.success() => {
+            record::write(job.plan, &executable.path)?;
+            Ok(executable.clone())
+        }
+        Some(_) | None => Err(blame::fault(job, &run, target, dependencies)),
+    }
 }
 
 /// Runs cargo, again where damage in the cache may have spoilt it.

@@ -43,9 +43,33 @@ pub(super) fn write(
     dependencies: &Dependencies,
 ) -> Result<PlanPackage, LinkError> {
     let name = name(package, &dependencies.identity);
-    let folder = cache.plans().join(&name);
-    let (manifest, main, lock) = (manifest(&name, dependencies)?, main(package), dependencies.lock.as_str());
-    let files = [("Cargo.toml", &*manifest), ("src/main.rs", &main), ("src/plan.rs", package.rust)];
+    write_package(cache, &name, &[("src/main.rs", &main(package)), ("src/plan.rs", package.rust)], dependencies)
+}
+
+/// Writes the package of the emulator of `robot`, whose crate is `crate_name`.
+pub(super) fn write_emulator(
+    cache: &Cache,
+    robot: &str,
+    crate_name: &str,
+    dependencies: &Dependencies,
+) -> Result<PlanPackage, LinkError> {
+    let main = format!(
+        "//! Made by mdlec: runs a robot emulator.\n\n\
+         fn main() -> ::std::process::ExitCode {{\n    ::{crate_name}::main()\n}}\n"
+    );
+    write_package(cache, &format!("emulator-{robot}"), &[("src/main.rs", &main)], dependencies)
+}
+
+/// Writes the package `name`, with these source files.
+fn write_package(
+    cache: &Cache,
+    name: &str,
+    sources: &[(&str, &str)],
+    dependencies: &Dependencies,
+) -> Result<PlanPackage, LinkError> {
+    let folder = cache.plans().join(name);
+    let (manifest, lock) = (manifest(name, dependencies)?, dependencies.lock.as_str());
+    let files: Vec<_> = [("Cargo.toml", &*manifest)].into_iter().chain(sources.iter().copied()).collect();
     match write_files(&folder, &files, lock) {
         Ok(()) => {}
         Err(full @ LinkError::DiskFull(_)) => return Err(full),
@@ -55,8 +79,8 @@ pub(super) fn write(
             write_files(&folder, &files, lock)?;
         }
     }
-    let hash = record::hash([&manifest, &main, package.rust, lock].join("\0").as_bytes());
-    Ok(PlanPackage { folder, hash })
+    let texts: Vec<_> = files.iter().map(|(_, text)| *text).chain([lock]).collect();
+    Ok(PlanPackage { folder, hash: record::hash(texts.join("\0").as_bytes()) })
 }
 
 /// Writes `files` to `folder`, and `lock` for cargo to start from.

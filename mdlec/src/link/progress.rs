@@ -15,7 +15,7 @@ pub enum Progress {
     Mending,
     /// Compiled files in the cache are not as cargo wrote them, and are compiled anew.
     Discarding,
-    /// This many crates of what the plan is built on are compiled, counted from 1.
+    /// This many crates of what the program is built on are compiled, counted from 1.
     Compiling(usize),
 }
 
@@ -46,11 +46,11 @@ impl fmt::Display for Progress {
             Self::Discarding => {
                 f.write_str("compiled files in the cache are not as cargo wrote them: they are compiled anew")
             }
-            Self::Fetching => f.write_str("fetching the libraries that plans are built on; only the first time"),
-            Self::Mending => f.write_str("the cache is damaged: all that plans are built on is compiled anew"),
-            Self::Compiling(1) => f.write_str("compiling what the plan is built on; only the first time takes long"),
+            Self::Fetching => f.write_str("fetching the libraries that programs are built on; only the first time"),
+            Self::Mending => f.write_str("the cache is damaged: all that programs are built on is compiled anew"),
+            Self::Compiling(1) => f.write_str("compiling libraries; only the first time takes long"),
             Self::Compiling(done) => {
-                write!(f, "compiling what the plan is built on; only the first time takes long ({done} crates)")
+                write!(f, "compiling libraries; only the first time takes long ({done} crates)")
             }
         }
     }

@@ -46,6 +46,17 @@ pub(super) fn builtin(target: &str) -> Option<(String, &'static str)> {
     Some((format!("targets/{name}"), package))
 }
 
+/// The robots that have an emulator, in the order of their names.
+pub fn emulators() -> impl Iterator<Item = &'static str> {
+    embedded::EMULATORS.iter().map(|(robot, _)| *robot)
+}
+
+/// The folder and the package name of the emulator of a built-in target.
+pub(super) fn emulator(robot: &str) -> Option<(String, &'static str)> {
+    let (name, package) = embedded::EMULATORS.iter().find(|(name, _)| *name == robot)?;
+    Some((format!("targets/{name}/emulator"), package))
+}
+
 /// The text of a packed file.
 pub(super) fn text(name: &str) -> &'static str {
     let file = embedded::FILES.iter().find(|(file, _)| *file == name);
@@ -140,6 +151,17 @@ mod tests {
             assert_eq!(alphabet.text, text(alphabet.file));
             assert_eq!(builtin(alphabet.name).is_some(), alphabet.target);
         }
+    }
+
+    #[test]
+    fn emulators_are_packed() {
+        assert_eq!(super::emulators().collect::<Vec<_>>(), ["atrv", "scout"]);
+        for robot in super::emulators() {
+            let (folder, package) = super::emulator(robot).unwrap();
+            assert!(text(&format!("{folder}/Cargo.toml")).contains(&format!("name = \"{package}\"")));
+            assert!(text(&format!("{folder}/src/lib.rs")).contains("pub fn main()"));
+        }
+        assert_eq!(super::emulator("sim"), None);
     }
 
     #[test]

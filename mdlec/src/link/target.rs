@@ -99,6 +99,18 @@ fn builtin(name: &str, crate_name: &str, sources: &Sources) -> Result<Dependenci
     })
 }
 
+/// Finds out what the emulator of `robot` is built on.
+pub(super) fn emulator_dependencies(robot: &str, sources: &Sources) -> Result<Dependencies, LinkError> {
+    let (folder, package) = sources::emulator(robot).ok_or_else(|| LinkError::NoSuchTarget(robot.to_owned()))?;
+    Ok(Dependencies {
+        packages: vec![(package.to_owned(), sources.folder.join(folder))],
+        patches: Vec::new(),
+        lock: sources::text(sources::LOCK).to_owned(),
+        identity: robot.to_owned(),
+        ours: sources.folder.clone(),
+    })
+}
+
 /// The target's own choice.
 fn by_path(folder: &Path, crate_name: &str, sources: &Sources) -> Result<Dependencies, LinkError> {
     let manifest = folder.join("Cargo.toml").canonicalize().map_err(|_| LinkError::NotACrate(folder.to_owned()))?;

@@ -1,0 +1,20 @@
+//! `mdlec emulator`: the emulator of a robot, built in the cache and run in the place of this process.
+
+use std::os::unix::process::CommandExt;
+use std::process::Command;
+
+use super::executable::{Shown, become_program, failure, take_signals};
+use super::{Emulator, Failure};
+use crate::link::{self, Cache};
+
+/// Builds the emulator of a robot and becomes it.
+pub(super) fn emulator(options: &Emulator) -> Result<(), Failure> {
+    take_signals()?;
+    let robot = &options.robot;
+    let mut shown = Shown::default();
+    let built =
+        Cache::of_user().and_then(|cache| link::emulator(&cache, robot, &mut |progress| shown.progress(&progress)));
+    shown.close();
+    let built = built.map_err(|error| failure(&error))?;
+    become_program(Command::new(&built.path).arg0(format!("{robot}-emulator")).args(&options.args))
+}
