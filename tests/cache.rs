@@ -15,7 +15,7 @@ const BUILD: [&str; 3] = ["plan.mdle", "--target", "sim"];
 /// An address at which nobody listens.
 const NOWHERE: &str = "http://127.0.0.1:1";
 
-/// A plan that is over after so many seconds.
+/// A plan that is over after some seconds.
 fn plan(seconds: usize) -> String {
     format!("{{ Rest (Atom (wait {seconds}) stop) }}\n")
 }

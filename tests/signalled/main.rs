@@ -34,7 +34,7 @@ fn config(folder: &Path, robot: &str) -> std::path::PathBuf {
     file
 }
 
-/// Returns the run in which this signal comes after so many commands, if one comes at all.
+/// Returns the run in which this signal comes after this number of commands, if one comes at all.
 fn signalled<R: Robot>(config: &Path, pace: Pace, signal: Option<(i32, usize)>) -> Ran<R> {
     let mut left = signal;
     ran::<R>(config, pace, None, &mut |_, received, _| {

@@ -8,7 +8,7 @@ use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::fsm::{Lowered, ScopeMeaning};
 use crate::plan::{Condition, condition_text};
 
-/// What is known of conditions by themselves, where every signal is a number.
+/// Judges conditions by themselves, without their scopes; every signal counts as a number.
 pub(super) struct Constants<'l> {
     alone: World<'l>,
 }

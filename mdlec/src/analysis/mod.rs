@@ -113,7 +113,7 @@ pub struct AtomAnswer {
     pub ends: bool,
 }
 
-/// What is suspicious about a machine: W0202 to W0206, W0302 and W0303.
+/// Returns the warnings about a machine: W0202 to W0206, W0302 and W0303.
 #[must_use]
 pub fn lints(lowered: &Lowered) -> Vec<Diagnostic> {
     let most = transitions::most(lowered);

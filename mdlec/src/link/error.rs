@@ -63,7 +63,7 @@ pub enum LinkError {
     NotACache {
         /// The folder.
         path: PathBuf,
-        /// What is there, or is not.
+        /// The content that a cache does not have, or the lack of its lock file.
         why: String,
     },
     /// No space is left.

@@ -1,4 +1,4 @@
-//! Where what ends in a plan leads, with its loops as they are written (docs/src/reference/semantics.md, 5.3).
+//! The element that follows when an element of a plan ends, with loops as they are written (docs/src/reference/semantics.md, 5.3).
 
 use mdle_runtime::fsm::Kind;
 

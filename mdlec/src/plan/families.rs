@@ -43,7 +43,7 @@ fn threshold(comparison: &Comparison) -> Option<(f64, f64)> {
     }
 }
 
-/// What a signal may be in a turn.
+/// Values that an analysis lets a signal have in a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Readings {
     /// A number, or none: then every comparison is false.

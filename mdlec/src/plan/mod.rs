@@ -82,7 +82,7 @@ pub struct Quark {
     pub remembers: bool,
     /// For a comparison of signals: what it compares. Its name is then the operator.
     pub comparison: Option<Comparison>,
-    /// Its quark text (docs/src/reference/language.md, 7).
+    /// Quark text of the quark (docs/src/reference/language.md, 7).
     pub text: String,
 }
 
@@ -295,6 +295,7 @@ pub struct OperandPlace {
     pub span: Span,
     /// The ends of the signals that it compares, if it is a comparison, or NOT or RISING of one.
     pub signals: [Option<NonZeroU32>; 2],
-    /// Its condition text, in a box that most do not have, where that of the condition is another: a `wait inf` in it has become null.
+    /// Condition text of the operand where the condition has another one, as after a `wait inf` has become null. It is boxed
+    /// because most operands have none.
     pub text: Option<Box<String>>,
 }

@@ -170,7 +170,7 @@ fn rows(lowered: &Lowered) -> TokenStream {
     }
 }
 
-/// `static OPERANDS`: the conditions of a plan that is code, for whoever reports what has fired.
+/// `static OPERANDS`: the conditions of a plan that is code, for reports of the ones that fired.
 pub(super) fn conditions(lowered: &Lowered) -> TokenStream {
     let mut operands = Operands { lowered, waiting: VecDeque::new(), count: 0 };
     let brackets = (0_u32..).zip(&lowered.brackets);

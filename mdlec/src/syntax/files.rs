@@ -39,7 +39,7 @@ pub struct Files<'s> {
     pub plans: Vec<Plan<'s>>,
     /// How many are its own.
     pub own: usize,
-    /// Whether a file that is used, or the head of a plan, could not be read, so that plans may be missing.
+    /// `true` if a used file, or the head of a plan, could not be read, so that plans may be missing.
     pub is_incomplete: bool,
 }
 

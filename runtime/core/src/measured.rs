@@ -1,4 +1,4 @@
-//! The values that an operand of a condition was read from, for whoever reports why a plan went on.
+//! The values that an operand of a condition was read from: reports say them.
 
 use crate::{Nanometers, Nanos, Operator};
 

@@ -102,7 +102,8 @@ fn measured_words(operand: &OperandWords<'_>, measured: Measured) -> String {
     words + operand.written.get(written..).unwrap_or("")
 }
 
-/// The values of both sides in the units of their signals, with so many decimals that the comparison is still as it was.
+/// Returns the values of both sides in the units of their signals, with the fewest decimals for which the comparison still
+/// has the same result.
 fn compared(words: &[ValueWords<'_>], left: f64, operator: Operator, right: f64) -> [Option<String>; 2] {
     let scale = |side: usize| words.get(side).map(|words| words.scale);
     let Some(one) = scale(0) else { return [None, None] };
@@ -117,7 +118,7 @@ fn compared(words: &[ValueWords<'_>], left: f64, operator: Operator, right: f64)
     [Some(text(left, one, decimals)), scale(1).map(|scale| text(right, scale, decimals))]
 }
 
-/// A number with at most so many decimals, no zeros at its end.
+/// Formats a number with at most `decimals` decimals and no trailing zeros.
 fn shown(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };

@@ -1,4 +1,4 @@
-//! World files: the office has its walls (docs/src/reference/office.md, 1), and every fault is told with its place.
+//! World files: the office has its walls (docs/src/reference/office.md, 1), and every fault is reported with its place.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::time::Duration;

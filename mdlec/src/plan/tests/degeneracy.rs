@@ -1,4 +1,4 @@
-//! What degeneracy removal leaves behind (docs/src/reference/semantics.md, 7.4): traces cannot tell, for the outer
+//! Tests of the result of degeneracy removal (docs/src/reference/semantics.md, 7.4): traces cannot tell, for the outer
 //! interrupt always wins.
 
 use crate::alphabet;

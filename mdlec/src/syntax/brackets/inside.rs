@@ -6,8 +6,8 @@ use crate::syntax::token::{Tok, Token};
 use crate::syntax::tree::Name;
 
 impl<'s> Pass<'_, 's> {
-    /// Whether a label stands between an atom's parenthesis and the `Atom` that comes now; then it is reported, and the
-    /// parenthesis is the atom's.
+    /// Reports a label between an atom's parenthesis and the next token, `Atom`, and gives the parenthesis to the atom.
+    /// Returns `true` if there is one.
     pub(super) fn label_inside(&mut self) -> bool {
         let [.., Token { kind: Tok::LParen | Tok::TouchParen, .. }, Token { kind: Tok::Name(label), place }, colon] =
             self.balanced.tokens.as_slice()

@@ -58,7 +58,7 @@ pub struct Scout {
     /// The state that it says again and again.
     hung: Option<Vec<u8>>,
     is_cut_off: bool,
-    /// The speeds that the wheels keep, whatever they are told.
+    /// The speeds that the wheels keep, whatever is commanded.
     runaway: Option<(i32, i32)>,
     /// By how much its positions are off, and whether they leap.
     off: i64,
@@ -213,7 +213,7 @@ impl Scout {
     }
 }
 
-/// A voltage as the supplies of its computer and of its motors are told: from 0 at two fifths of the scale to 255 at its end.
+/// Converts a voltage of a supply into its byte in a report: 0 at two fifths of the scale, 255 at its end.
 fn volts(battery: Volts) -> [u8; 2] {
     [12.0, 12.85].map(|range| ((battery.0 * 5.0 / range - 2.0) * (255.0 / 3.0)).round().clamp(0.0, 255.0) as u8)
 }
