@@ -1,6 +1,8 @@
 //! The real `mdlec`, built from this checkout, and the executables that it builds.
 
+use std::ffi::OsStr;
 use std::io::Write;
+use std::panic::Location;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use std::sync::OnceLock;
@@ -33,19 +35,29 @@ pub fn target() -> PathBuf {
     this.ancestors().nth(3).expect("a target folder").to_owned()
 }
 
-/// A folder of its own for a test, empty.
+/// Returns an empty folder for a test. Tests in the same file have to name theirs differently; those of other files may use the
+/// same name.
 #[must_use]
+#[track_caller]
 pub fn folder(test: &str) -> PathBuf {
-    let folder = target().join("tmp/end_to_end").join(test);
+    // tests/PROGRAM/FILE.rs
+    let source = Path::new(Location::caller().file()).with_extension("");
+    let mut names: Vec<_> = source.iter().rev().take(2).filter_map(OsStr::to_str).collect();
+    names.reverse();
+    let folder = target().join("tmp/end_to_end").join(names.join("-")).join(test);
     let _ = std::fs::remove_dir_all(&folder);
     std::fs::create_dir_all(&folder).expect("a folder");
     folder.canonicalize().expect("a folder")
 }
 
-/// `mdlec` with these arguments in `folder`; its cache outlives the tests, so that only the first compiles the runtime.
+/// Runs `mdlec` with these arguments in `folder`, and returns its output without the messages about builds of other tests. Its cache
+/// outlives the tests, so that only the first compiles the runtime.
 #[must_use]
 pub fn run_mdlec(folder: &Path, arguments: &[&str]) -> Output {
-    command(folder, arguments).output().expect("mdlec runs")
+    let mut output = command(folder, arguments).output().expect("mdlec runs");
+    let lines = output.stderr.split_inclusive(|byte| *byte == b'\n');
+    output.stderr = lines.filter(|line| !line.starts_with(WAITING.as_bytes())).collect::<Vec<_>>().concat();
+    output
 }
 
 /// As [`run_mdlec`], with this text on standard input.
@@ -69,11 +81,13 @@ pub fn command(folder: &Path, arguments: &[&str]) -> Command {
     command
 }
 
-/// The messages, without those about builds of other tests, which share the cache.
+/// Start of the messages about builds of other tests, which share the cache.
+const WAITING: &str = "waiting for another ";
+
+/// The messages, without those about builds of other tests.
 #[must_use]
 pub fn without_waiting(said: &str) -> String {
-    let is_waiting = |line: &&str| line.starts_with("waiting for another ");
-    said.lines().filter(|line| !is_waiting(line)).fold(String::new(), |text, line| text + line + "\n")
+    said.lines().filter(|line| !line.starts_with(WAITING)).fold(String::new(), |text, line| text + line + "\n")
 }
 
 /// The cache that the tests share.

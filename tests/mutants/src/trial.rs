@@ -15,11 +15,26 @@ const COMPILER: Packages = &["--package", "mdlec", "--package", "mdle-tests"];
 /// The tests, as `cargo test` takes them: those first that catch much and are fast.
 pub(crate) const TESTS: &[(Packages, &[&str])] = &[
     (RUNTIME, &["--lib"]),
-    (COMPILER, &["--test", "golden", "--test", "emitted_*", "--test", "fsm_files"]),
-    (COMPILER, &["--test", "rules", "--test", "rules_of_*"]),
+    (COMPILER, &["--test", "machine", "--test", "emitted", "--", "golden::", "fsm_files::", "names::", "text::"]),
+    (COMPILER, RULES),
     (COMPILER, &["--lib", "--", "fsm::", "plan::", "rust::"]),
-    (COMPILER, &["--test", "differential"]),
-    (COMPILER, &["--test", "emitted"]),
+    (COMPILER, &["--test", "machine", "--", "differential::"]),
+    (COMPILER, &["--test", "emitted", "--", "machines::"]),
+];
+
+/// The tests of the rules of plans, each by its smallest plan.
+const RULES: &[&str] = &[
+    "--test",
+    "language",
+    "--",
+    "turns::",
+    "degeneracy::",
+    "loops::",
+    "memory::",
+    "motion::",
+    "notation::",
+    "parameters::",
+    "signals::",
 ];
 
 /// So many of them take seconds. The others take minutes, and the last one has rustc compile a runtime.

@@ -4,7 +4,7 @@
 
 use core::ffi::c_int;
 
-/// What mdlec emits: `tests/bare.rs` has it written where `PLANS` says.
+/// What mdlec emits: `tests/emitted/bare.rs` has it written where `PLANS` says.
 mod plan {
     include!(concat!(env!("PLANS"), "/every_quark.rs"));
 }

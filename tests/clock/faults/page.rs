@@ -1,0 +1,83 @@
+//! The page of the book that has the table.
+
+use std::fmt::Write;
+use std::process::Output;
+
+use mdle_emulator::Order;
+
+use super::watched::Way;
+
+/// What came of something.
+#[derive(Debug)]
+pub(crate) struct Row {
+    pub(crate) said: String,
+    /// `None` when it was killed.
+    pub(crate) status: Option<i32>,
+    pub(crate) way: Way,
+    /// The last order that the robot received.
+    pub(crate) order: Option<Order>,
+}
+
+impl Row {
+    /// The executable has ended like this after this last order, and the body has gone that way since.
+    pub(crate) fn of(output: Output, way: Way, order: Option<Order>) -> Self {
+        let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+        let said = match err.strip_prefix("error: ") {
+            Some(error) => error.trim_end().to_owned(),
+            None => {
+                let last = out.lines().last().unwrap_or_default();
+                // The time is that of the run, not of the fault.
+                last.split_once(" s  ").map_or(last, |(_, end)| end).to_owned() + err.trim_end()
+            }
+        };
+        // Which terminal it was chance decides.
+        let said = said.split(' ').map(|word| if word.starts_with("/dev/pts/") { "/dev/pts/N:" } else { word });
+        let said = said.collect::<Vec<_>>().join(" ");
+        Self { said, status: output.status.code(), way, order }
+    }
+}
+
+/// The whole page.
+pub(crate) fn text(plan: &str, robots: &[(&str, Vec<(String, Row)>)]) -> String {
+    let mut text = format!(
+        "# Faults\n\n\
+        After every fault the robot is stopped, or its own watchdog stops it; the program reports one sentence and ends with \
+        exit status 3, within a second and a half of the last correct exchange. Some faults take longer to notice: an ATRV that \
+        receives nothing but still sends leaves two questions about its brake unanswered, which takes two and a half seconds, and \
+        a bumper that is no longer reported is noticed after a second. A robot that does not stop on command gets time to, at most \
+        five seconds. The plan continues where it can, but never with stale data.\n\n\
+        The tables are written by a test, `tests/faults`: it runs the executable of this plan on the emulated robots.\n\n\
+        ```mdle\n{plan}```\n\n\
+        The robot drives at 20 cm/s when something goes wrong, 2 m before a wall. \"Moves on\" is the distance that its body \
+        then moves in its world, and \"for\" the time from the last correct answer until it has stopped. \"Last command\" is the \
+        last motion command that reached the robot. A plan that continues ends as usual.\n\n\
+        The emulators are in lockstep, so that the figures are the same each time: a command lets 100 ms pass. While no \
+        answer comes, the robot drives on for as long as a driver waits by its configuration, 300 ms. Once the program has \
+        ended, it drives on until it stops itself: a Scout by its watchdog, which was set to a second; an ATRV by that of \
+        its controller, of which nobody knows how long it takes, and the emulator's takes a second too. By the clock a \
+        fault may come a turn later, so that 0.1 s and 2 cm are to be added; the test holds the executables to that as well. \
+        At another speed the way is another.\n"
+    );
+    for (robot, rows) in robots {
+        write!(
+            text,
+            "\n## {robot}\n\n| what happens | what the program reports | status | last command | moves on | for |\n"
+        )
+        .unwrap();
+        writeln!(text, "|---|---|---|---|---|---|").unwrap();
+        for (what, Row { said, status, way, order }) in rows {
+            let said = if said.is_empty() { "nothing" } else { said };
+            let status = status.map_or("killed".to_owned(), |status| status.to_string());
+            let order = match order {
+                None => "nothing",
+                Some(Order::Drive) => "to drive",
+                Some(Order::Stand) => "to stand",
+                Some(Order::LetGo) => "to let go",
+                Some(Order::Brake) => "to brake",
+            };
+            let (centimetres, seconds) = ((way.metres * 100.0).round(), way.time.as_secs_f64());
+            writeln!(text, "| {what} | {said} | {status} | {order} | {centimetres} cm | {seconds:.1} s |").unwrap();
+        }
+    }
+    text
+}

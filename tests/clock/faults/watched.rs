@@ -1,0 +1,187 @@
+//! An emulated robot whose real way is taken down, and what can happen to it besides `--fault`.
+
+use std::cell::RefCell;
+use std::process::Child;
+use std::time::{Duration, Instant};
+
+use mdle_emulator::{Ailment, Emulated, Faulty, Order, Orders};
+use mdle_runtime::Pose;
+
+use super::PERIOD;
+
+/// When what happens begins, by the time of the robot's world: it drives by then.
+pub(crate) const BEGINS: Duration = Duration::from_secs(4);
+/// How long garbage comes, and how many bytes a second: as many as the slower line carries.
+const GARBAGE: Duration = Duration::from_secs(60);
+const GARBAGE_A_SECOND: u32 = 3840;
+/// How long a line is dead that comes back.
+const DEAD: Duration = Duration::from_secs(2);
+/// In lockstep a driver that waits in vain does so for longer than this, and one that does not for much less.
+const IN_VAIN: Duration = Duration::from_millis(2000);
+/// Less than this in a period is none, in metres.
+const STANDS: f64 = 1e-4;
+/// After so many periods without a move it stands for good: no watchdog takes longer.
+const FOR_GOOD: usize = 30;
+
+/// What happens.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Happening {
+    /// It was the wrong robot from the start.
+    Nothing,
+    /// What the robot or its line was told with `--fault`, if anything.
+    OnCommand,
+    /// Nothing but garbage comes for a minute.
+    Garbage,
+    /// What comes answers something else.
+    WrongAnswers,
+    /// The line dies in the middle of a frame, and comes back.
+    DeadForAWhile,
+    /// The program is killed.
+    Killed,
+}
+
+/// How far the body moved on, in metres, and for how long.
+#[derive(Debug)]
+pub(crate) struct Way {
+    pub(crate) metres: f64,
+    pub(crate) time: Duration,
+}
+
+/// What differs from robot to robot.
+pub(crate) struct Nature<R> {
+    /// Where it really is.
+    pub(crate) pose: fn(&R) -> Pose,
+    /// The orders that have reached the robot.
+    pub(crate) orders: fn(&R) -> &Orders,
+    /// What one of its frames becomes that answers something else.
+    pub(crate) wrong: fn(&[u8]) -> Vec<u8>,
+    /// For how many periods more a driver waits that has no answer, while the world of an emulator in lockstep stands.
+    pub(crate) waits: u32,
+    /// The steps in which it is told of time.
+    pub(crate) step: Duration,
+}
+
+/// The robot.
+pub(crate) struct Watched<'a, R> {
+    robot: Faulty<R>,
+    happening: Happening,
+    nature: Nature<R>,
+    child: &'a RefCell<Child>,
+    /// When it happened, by the clock.
+    pub(crate) begun: Option<Instant>,
+    age: Duration,
+    /// Where it was at the end of each period.
+    poses: Vec<(Duration, Pose)>,
+    /// When it was told something last.
+    told: Option<Instant>,
+    garbage: Vec<u8>,
+}
+
+impl<'a, R: Emulated> Watched<'a, R> {
+    pub(crate) fn new(robot: Faulty<R>, happening: Happening, nature: Nature<R>, child: &'a RefCell<Child>) -> Self {
+        let (age, poses, garbage) = (Duration::ZERO, Vec::new(), Vec::new());
+        Self { robot, happening, nature, child, begun: None, age, poses, told: None, garbage }
+    }
+
+    /// Nobody tells it anything any more: it moves on until its watchdog stops it. How far that was, from the last answer
+    /// before something happened.
+    pub(crate) fn left_alone(mut self) -> Way {
+        while !self.stands() {
+            // A closed line does not stop the world.
+            let _ = self.pass(self.nature.step);
+            assert!(self.age < Duration::from_secs(300), "it never stands");
+        }
+        let since = if self.happening == Happening::Nothing { Duration::ZERO } else { BEGINS - PERIOD };
+        let steps = self.poses.windows(2).filter(|two| two[0].0 >= since && moved(two) > STANDS);
+        steps.fold(Way { metres: 0.0, time: Duration::ZERO }, |way, two| Way {
+            metres: way.metres + moved(two),
+            time: two[1].0 - since,
+        })
+    }
+
+    /// The last order that the robot received.
+    pub(crate) fn order(&self) -> Option<Order> {
+        (self.nature.orders)(self.robot.robot()).last().map(|(_, order)| order)
+    }
+
+    fn stands(&self) -> bool {
+        self.poses.len() > FOR_GOOD && self.poses.windows(2).rev().take(FOR_GOOD).all(|two| moved(two) <= STANDS)
+    }
+
+    /// Whether this happens now.
+    fn is(&self, happening: Happening, lasts: Duration) -> bool {
+        self.happening == happening && self.age.checked_sub(BEGINS).is_some_and(|since| since < lasts)
+    }
+
+    /// A driver waits in vain by its own clock: the robot moves on meanwhile, though in lockstep nobody has told it to. It
+    /// waits for an end of garbage as it does for an end of silence, and gives up the first time.
+    fn waited(&mut self) {
+        let in_vain = self.told.replace(Instant::now()).is_some_and(|told| told.elapsed() >= IN_VAIN);
+        if in_vain || self.is(Happening::Garbage, GARBAGE) {
+            (0..std::mem::take(&mut self.nature.waits)).for_each(|_| drop(self.pass(PERIOD)));
+        }
+    }
+}
+
+/// How far it went from one pose to the next.
+fn moved(two: &[(Duration, Pose)]) -> f64 {
+    libm::hypot(two[1].1.x.0 - two[0].1.x.0, two[1].1.y.0 - two[0].1.y.0)
+}
+
+impl<R: Emulated> Emulated for Watched<'_, R> {
+    fn push(&mut self, bytes: &[u8]) {
+        self.waited();
+        if !self.is(Happening::DeadForAWhile, DEAD) {
+            self.robot.push(bytes);
+        }
+    }
+
+    fn obey(&mut self) -> Option<bool> {
+        self.robot.obey()
+    }
+
+    fn pass(&mut self, time: Duration) -> Result<(), String> {
+        let passed = self.robot.pass(time);
+        self.age += time;
+        if self.age >= BEGINS {
+            self.begun.get_or_insert_with(Instant::now);
+        }
+        self.poses.push((self.age, (self.nature.pose)(self.robot.robot())));
+        if self.is(Happening::Garbage, GARBAGE) {
+            // Any numbers will do that are the same each time.
+            let count = time.as_millis() as u32 * GARBAGE_A_SECOND / 1000;
+            let numbers = (0..count).scan(self.age.as_millis() as u32, |number, _| {
+                *number = number.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                Some((*number >> 24) as u8)
+            });
+            self.garbage.extend(numbers);
+        }
+        if self.is(Happening::Killed, time) {
+            let mut child = self.child.borrow_mut();
+            child.kill().and_then(|()| child.wait()).map_err(|error| error.to_string())?;
+        }
+        passed
+    }
+
+    fn said(&mut self) -> Vec<Vec<u8>> {
+        let frames = self.robot.said();
+        if self.is(Happening::Garbage, GARBAGE) {
+            return vec![std::mem::take(&mut self.garbage)];
+        }
+        if self.is(Happening::WrongAnswers, Duration::MAX) {
+            return frames.iter().map(|frame| (self.nature.wrong)(frame)).collect();
+        }
+        if self.is(Happening::DeadForAWhile, PERIOD) {
+            return frames.into_iter().take(1).map(|frame| frame[..frame.len() / 2].to_vec()).collect();
+        }
+        if self.is(Happening::DeadForAWhile, DEAD) { Vec::new() } else { frames }
+    }
+
+    fn can_suffer(ailment: Ailment) -> bool {
+        R::can_suffer(ailment)
+    }
+
+    fn suffer(&mut self, ailment: Ailment) {
+        self.robot.suffer(ailment);
+    }
+}

@@ -1,0 +1,67 @@
+//! A program that is suspended while its robot drives or is opened, and goes on much later: the robot is not driven (off again).
+
+use std::time::Duration;
+
+use mdle_atrv_emulator::atrv::Atrv;
+use mdle_emulator::Pace;
+use mdle_runtime::Pose;
+use mdle_scout_emulator::scout::Scout;
+use mdle_tests::executable::folder;
+
+use super::run::{AT_REST, Ran, Robot, distance, drove, ran, send};
+
+/// The robot drives once it has gone this far, in metres.
+const DRIVES: f64 = 0.03;
+/// The time for which the program is suspended: longer than any of the robots' watchdogs waits and than they take to stand.
+const SUSPENDED: Duration = Duration::from_millis(2500);
+
+/// Returns the run in which the program is suspended when `begins` is true of the robot, and the pose of the robot at the end of that.
+fn suspended<R: Robot>(name: &str, begins: fn(&R) -> bool) -> (Ran<R>, Option<Pose>) {
+    let folder = folder(&format!("suspended_{name}_{}", R::NAME));
+    let config = folder.join("config.toml");
+    std::fs::write(&config, "").unwrap();
+    let (mut suspended, mut resumed): (Option<Duration>, Option<Pose>) = (None, None);
+    let ran = ran::<R>(&config, Pace::Real, None, &mut |robot, received, time| match &mut suspended {
+        None if begins(robot) => {
+            send(19, received.process);
+            suspended = Some(Duration::ZERO);
+        }
+        None => {}
+        Some(passed) => {
+            *passed += time;
+            if *passed >= SUSPENDED && resumed.is_none() {
+                resumed = Some(robot.pose());
+                send(18, received.process);
+            }
+        }
+    });
+    (ran, resumed)
+}
+
+fn is_not_driven_off_again<R: Robot>() {
+    let origin = Pose::default();
+    let (ran, resumed) = suspended::<R>("driving", |robot| distance(&Pose::default(), &robot.pose()) >= DRIVES);
+    assert!(distance(&origin, &resumed.unwrap()) >= DRIVES);
+    let way = distance(&resumed.unwrap(), &ran.robot.pose());
+    assert!(way < AT_REST && ran.output.status.code() == Some(3), "{way} m, {}", ran.errors());
+    assert!(ran.errors().contains("a fault stopped the robot: "), "{}", ran.errors());
+}
+
+#[test]
+fn a_robot_is_not_driven_off_again_after_a_suspension() {
+    is_not_driven_off_again::<Scout>();
+    is_not_driven_off_again::<Atrv>();
+}
+
+/// Suspends the program after its first motion command, which is to stand.
+fn is_not_driven<R: Robot>(words: &str) {
+    let (ran, resumed) = suspended::<R>("opening", |robot| robot.orders().last().is_some());
+    assert!(resumed.is_some() && !drove(&ran.robot), "{:?}", ran.robot.orders());
+    assert!(ran.output.status.code() == Some(3) && ran.errors().contains(words), "{}", ran.errors());
+}
+
+#[test]
+fn a_robot_is_not_driven_after_a_suspended_start() {
+    is_not_driven::<Scout>("the Scout has stopped itself");
+    is_not_driven::<Atrv>("the ATRV was stopped because no command came in time");
+}

@@ -1,0 +1,160 @@
+//! A robot that does not hear, does not obey, answers late or stops telling something, and a program that was suspended: the
+//! executable on an emulated robot, by the clock. What counts is what the robot received last, and whether it stands.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+#![allow(clippy::print_stdout, reason = "how long it took is seen with --nocapture")]
+
+mod run;
+
+use std::process::Child;
+use std::time::{Duration, Instant};
+use std::{fs, thread};
+
+use mdle_atrv_emulator::atrv::Atrv;
+use mdle_emulator::{Order, Orders};
+use mdle_scout_emulator::scout::Scout;
+use rustix::process::{Pid, Signal, kill_process};
+
+use self::run::{BEGINS, Ran, Robot, Way, executable, ran};
+
+fn alone<R: Robot>(faults: &[&str]) -> Ran<R> {
+    ran(faults, &[], Way::Terminal, |_, _| {})
+}
+
+#[test]
+fn a_robot_without_a_fault_ends_as_the_plan_says() {
+    let (scout, atrv) = (alone::<Scout>(&[]), alone::<Atrv>(&[]));
+    scout.assert(0, &["plan over"], &[Order::Drive, Order::Stand, Order::LetGo]);
+    atrv.assert(0, &["plan over"], &[Order::Drive, Order::Stand, Order::Brake]);
+    assert!(scout.robot.stands() && atrv.robot.stands() && atrv.robot.is_braked());
+}
+
+#[test]
+fn an_atrv_that_receives_nothing_ends_the_plan() {
+    // One that stops by itself after a second, and one that does not; over a serial line and TCP.
+    let ran_out = alone::<Atrv>(&["deaf"]);
+    ran_out.assert(3, &["may not have stopped", "does not receive"], &[Order::Drive]);
+    assert!(ran_out.robot.stands() && !ran_out.robot.is_braked());
+    let drives_on = ran::<Atrv>(&["deaf", "runaway"], &[], Way::Tcp, |_, _| {});
+    drives_on.assert(3, &["may not have stopped", "does not"], &[Order::Drive]);
+    assert!(!drives_on.robot.stands());
+}
+
+#[test]
+fn an_atrv_that_is_not_braked_is_reported() {
+    // The run ends before an unanswered question is a fault; the robot stops by itself meanwhile.
+    let ran = ran::<Atrv>(&["deaf"], &["--timeout", "3.6"], Way::Terminal, |_, _| {});
+    ran.assert(3, &["--timeout", "may not have stopped", "does not receive"], &[Order::Drive]);
+    assert!(ran.robot.stands() && !ran.robot.is_braked());
+}
+
+#[test]
+fn a_scout_that_receives_nothing_ends_the_plan() {
+    let ran = alone::<Scout>(&["deaf"]);
+    ran.assert(3, &["may not have stopped", "does not answer"], &[Order::Drive]);
+    // Its own watchdog is what stops it.
+    assert!(ran.robot.stands());
+}
+
+#[test]
+fn a_robot_that_does_not_obey_ends_the_plan() {
+    let said = ["may not have stopped", "does not obey"];
+    let (scout, atrv) = (alone::<Scout>(&["runaway"]), alone::<Atrv>(&["runaway"]));
+    scout.assert(3, &said, &[Order::Drive, Order::Stand, Order::LetGo]);
+    atrv.assert(3, &said, &[Order::Drive, Order::Stand, Order::Brake]);
+}
+
+#[test]
+fn a_stop_without_rest_is_told() {
+    // The limit comes while it still does what it is told.
+    let arguments = ["--timeout", "3.5"];
+    let scout = ran::<Scout>(&["runaway"], &arguments, Way::Terminal, |_, _| {});
+    let atrv = ran::<Atrv>(&["runaway"], &arguments, Way::Terminal, |_, _| {});
+    let said = ["--timeout", "still moved", "may not have stopped"];
+    scout.assert(3, &said, &[Order::Drive, Order::Stand, Order::LetGo]);
+    atrv.assert(3, &said, &[Order::Drive, Order::Stand, Order::Brake]);
+}
+
+#[test]
+fn each_kind_of_report_of_an_atrv_that_stops_ends_the_plan() {
+    let kinds = [
+        ("no-bumpers", "bumper"),
+        ("no-translation", "how far it has moved"),
+        ("no-rotation", "how far it has turned"),
+        ("no-status", "does not receive"),
+        ("no-pings", "sonars"),
+        ("leap", "leap"),
+    ];
+    thread::scope(|scope| {
+        for (fault, words) in kinds {
+            scope.spawn(move || {
+                let ran = alone::<Atrv>(&[fault]);
+                ran.assert(3, &[words], &[Order::Drive, Order::Stand, Order::Brake]);
+                assert!(ran.robot.stands() && ran.robot.is_braked(), "{fault}");
+            });
+        }
+    });
+}
+
+#[test]
+fn a_scout_that_answers_late_ends_as_the_plan_says() {
+    let file = executable::<Scout>().with_file_name("late.toml");
+    // Of the 400 ms that an answer may take, a busy machine has 200.
+    fs::write(&file, "answer = 400\nwatchdog = 5\n").unwrap();
+    let arguments = ["--period", "0.5", "--config", file.to_str().unwrap()];
+    let ran = ran::<Scout>(&["late=200"], &arguments, Way::Tcp, |_, _| {});
+    ran.assert(0, &["plan over"], &[Order::Drive, Order::Stand, Order::LetGo]);
+    assert!(ran.robot.stands());
+}
+
+#[test]
+fn an_atrv_that_falls_silent_stands_before_it_is_braked() {
+    let ran = alone::<Atrv>(&["silence"]);
+    ran.assert(3, &["may not have stopped", "does not answer"], &[Order::Drive, Order::Stand, Order::Brake]);
+    let orders: Vec<_> = ran.robot.orders().iter().collect();
+    let drove = orders.iter().rposition(|(_, order)| *order == Order::Drive).unwrap();
+    let (first, last) = (orders[drove + 1], orders[orders.len() - 1]);
+    assert!(last.0 - first.0 >= Duration::from_millis(700), "{first:?} {last:?}");
+}
+
+#[test]
+fn a_robot_that_only_receives_stands_before_it_is_let_go() {
+    let atrv = ran::<Atrv>(&[], &[], Way::HalfClosed, |_, _| {});
+    atrv.assert(3, &["may not have stopped", "cut"], &[Order::Drive, Order::Stand, Order::Brake]);
+    let scout = ran::<Scout>(&[], &[], Way::HalfClosed, |_, _| {});
+    scout.assert(3, &["may not have stopped", "cut"], &[Order::Drive, Order::Stand, Order::LetGo]);
+    for orders in [atrv.robot.orders(), scout.robot.orders()] {
+        let orders: Vec<_> = orders.iter().collect();
+        let drove = orders.iter().rposition(|(_, order)| *order == Order::Drive).unwrap();
+        let (first, last) = (orders[drove + 1], orders[orders.len() - 1]);
+        assert!(last.0 - first.0 >= Duration::from_millis(400), "{first:?} {last:?}");
+    }
+}
+
+#[test]
+fn noise_on_the_line_of_a_scout_is_borne() {
+    let ran = alone::<Scout>(&["noise=40"]);
+    ran.assert(0, &["plan over"], &[Order::Drive, Order::Stand, Order::LetGo]);
+}
+
+/// Stops the program for longer than any watchdog waits, and lets it go on.
+fn suspended(child: &Child, begun: Instant) {
+    let signal = |signal| kill_process(Pid::from_child(child), signal).unwrap();
+    thread::sleep(BEGINS.saturating_sub(begun.elapsed()));
+    signal(Signal::STOP);
+    thread::sleep(Duration::from_secs(3));
+    signal(Signal::CONT);
+}
+
+#[test]
+fn a_robot_is_not_driven_off_after_a_suspension() {
+    let scout = ran::<Scout>(&[], &[], Way::Terminal, suspended);
+    scout.assert(3, &["a fault stopped the robot"], &[Order::Drive, Order::Stand, Order::LetGo]);
+    let atrv = ran::<Atrv>(&[], &[], Way::Terminal, suspended);
+    atrv.assert(3, &["a fault stopped the robot"], &[Order::Drive, Order::Stand, Order::Brake]);
+    // No order to drive came after the pause.
+    let drove = |orders: &Orders| orders.iter().rfind(|(_, order)| *order == Order::Drive).unwrap().0;
+    for last in [drove(scout.robot.orders()), drove(atrv.robot.orders())] {
+        assert!(last < BEGINS + Duration::from_secs(3), "{last:?}");
+    }
+    assert!(scout.robot.stands() && atrv.robot.stands());
+}

@@ -1,0 +1,15 @@
+//! The command line of `mdlec`: options, output, messages and limits, through the real binary.
+
+mod bad_input;
+mod budgets;
+mod command_line;
+mod cut_short;
+mod explain;
+mod help;
+mod hostile_text;
+mod large_input;
+mod newcomer;
+mod random_input;
+mod settings;
+mod strange_files;
+mod used_files;

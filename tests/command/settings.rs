@@ -1,0 +1,161 @@
+//! `mdle.toml` beside a plan (docs/src/reference/interfaces.md, 1.4): what commands take from it, and its errors.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::process::Output;
+
+use mdle_tests::executable::{folder, run_mdlec};
+
+/// A plan that any robot with a bumper can run.
+const PLAN: &str = "{ P (bumper)\n  (Atom (wait 1s) (go 20 0))\n}\n";
+
+/// A robot of one's own, without a bumper.
+const CART: &str = "target cart : crate cart, period 100ms;\ncapability diff_drive, odometry;\nuse atoms;\n";
+
+/// A world whose start is unlike that of any other.
+const WORLD: &str = "start = { x = 7.25, y = 1.5, heading = 90 }\n";
+
+/// A folder with the folder `home`, which has a plan, a robot, a world and these settings.
+fn home(test: &str, settings: &str) -> PathBuf {
+    let folder = folder(test);
+    for (name, text) in [("plan.mdle", PLAN), ("cart/alphabet.mdle", CART), ("rooms/own.toml", WORLD)] {
+        let file = folder.join("home").join(name);
+        fs::create_dir_all(file.parent().unwrap()).unwrap();
+        fs::write(file, text).unwrap();
+    }
+    fs::write(folder.join("home/mdle.toml"), settings).unwrap();
+    folder
+}
+
+/// Standard error and exit status, without what depends on earlier builds.
+fn said(folder: &Path, arguments: &[&str]) -> String {
+    let output = run_mdlec(folder, arguments);
+    assert_eq!(String::from_utf8_lossy(&output.stdout), "", "{arguments:?}");
+    let text = std::str::from_utf8(&output.stderr).unwrap();
+    let is_progress = |line: &&str| line.starts_with("compiling ") || line.contains(": built in ");
+    let text: String = text.lines().filter(|line| !is_progress(line)).map(|line| format!("{line}\n")).collect();
+    format!("$ mdlec {}\n{text}exit status {}\n", arguments.join(" "), output.status.code().unwrap())
+}
+
+fn assert_success(output: &Output) {
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+}
+
+/// The pose in the first turn of a run, as its trail has it.
+fn first_pose(folder: &Path) -> String {
+    let trail = fs::read_to_string(folder.join("trail.csv")).unwrap();
+    trail.lines().nth(1).unwrap().to_owned()
+}
+
+#[test]
+fn a_run_takes_its_robot_world_and_options() {
+    let settings = "target = \"sim\"\nworld = \"rooms/own.toml\"\n\
+                    [options]\nspeed = \"max\"\ntrail = \"trail.csv\"\nperiod = 0.25\nwatch = false\n";
+    let folder = home("settings_run", settings);
+    for arguments in [&["run", "home/plan.mdle"][..], &["home/plan.mdle", "--run"]] {
+        let output = run_mdlec(&folder, arguments);
+        assert_success(&output);
+        assert_eq!(String::from_utf8_lossy(&output.stdout), "1.0 s  plan over: wait 1s (plan.mdle:2)\n");
+        assert!(first_pose(&folder).starts_with("0,7.25,1.5,90"), "{}", first_pose(&folder));
+        let trail = fs::read_to_string(folder.join("trail.csv")).unwrap();
+        assert!(trail.contains("\n0.25,"), "a period of 0.25 s: {trail}");
+        fs::remove_file(folder.join("trail.csv")).unwrap();
+    }
+}
+
+#[test]
+fn options_of_the_command_line_win() {
+    let settings = "target = \"sim\"\nworld = \"rooms/own.toml\"\n\
+                    [options]\nspeed = \"max\"\ntrail = \"no/folder.csv\"\nturns = 2\n";
+    let folder = home("settings_win", settings);
+    let run = |arguments: &[&str]| run_mdlec(&folder, &[&["run", "home/plan.mdle", "--"][..], arguments].concat());
+    assert_success(&run(&["--trail", "trail.csv", "--turns=1000"]));
+    assert!(first_pose(&folder).starts_with("0,7.25,"), "{}", first_pose(&folder));
+    let cut_short = run(&["--trail=trail.csv", "--world", "home/rooms/own.toml", "--start", "1,2,0"]);
+    assert_eq!(cut_short.status.code(), Some(4), "{}", String::from_utf8_lossy(&cut_short.stderr));
+    assert!(first_pose(&folder).starts_with("0,1,2,0"), "{}", first_pose(&folder));
+}
+
+#[test]
+fn options_are_for_the_robot_of_the_file() {
+    let folder = home("settings_other", "target = \"./cart\"\n[options]\nturns = 1\nport = \"/dev/null\"\n");
+    let run = |target: &str| run_mdlec(&folder, &["run", "home/plan.mdle", "--target", target, "--", "--speed", "max"]);
+    assert_success(&run("sim"));
+    fs::write(folder.join("home/mdle.toml"), "[options]\nturns = 1\n").unwrap();
+    assert_eq!(run("sim").status.code(), Some(4), "options without a target are for every robot");
+}
+
+#[test]
+fn every_command_takes_the_robot_of_the_file() {
+    let folder = home("settings_commands", "target = \"cart\"\n");
+    fs::write(folder.join("script"), "{\"t\": 0}\n").unwrap();
+    for arguments in [
+        &["check"][..],
+        &["build"],
+        &["run"],
+        &["--emit", "plan"],
+        &["--emit", "rust"],
+        &["--emit", "matrices"],
+        &["analyze"],
+        &["draw"],
+        &["trace", "--script", "script"],
+    ] {
+        let refused = said(&folder, &[arguments, &["home/plan.mdle"]].concat());
+        assert!(refused.contains("error[E0401]: `cart` cannot") && refused.ends_with("status 1\n"), "{refused}");
+    }
+    let output = run_mdlec(&folder, &["check", "home/plan.mdle", "--target", "sim"]);
+    assert_success(&output);
+    fs::write(folder.join("plan.mdle"), PLAN).unwrap();
+    let both = said(&folder, &["check", "plan.mdle", "home/plan.mdle"]);
+    assert_eq!(both.matches("error[E0401]").count(), 1, "the other plan has no file beside it: {both}");
+}
+
+#[test]
+fn errors_name_the_file_and_the_line() {
+    let settings = [
+        "target = \"sim\"\ntagret = \"sim\"\n",
+        "target = 7\n",
+        "target = sim\n",
+        "target = \"sin\"\n",
+        "target = \"../rover\"\n",
+        "target = \"sim\"\nworld = \"rooms/other.toml\"\n",
+        "target = \"sim\"\n[options]\nsped = \"max\"\n",
+        "target = \"sim\"\n[options]\nspeed = \"max\"\nturns = 0\n",
+        "target = \"sim\"\n[options]\nwatch = \"yes\"\n",
+        "target = \"sim\"\n\n[options]\nworld = \"hall\"\n",
+        "\"\\u001b[2J\" = 1\n",
+    ];
+    let folder = home("settings_errors", "");
+    let messages = settings.map(|text| {
+        fs::write(folder.join("home/mdle.toml"), text).unwrap();
+        format!("{text}{}", said(&folder, &["run", "home/plan.mdle"]))
+    });
+    insta::assert_snapshot!(messages.join("\n"));
+    let unknown = said(&folder, &["check", "home/plan.mdle"]);
+    assert!(unknown.contains("home/mdle.toml:1: there is no key"), "a check reads it too: {unknown}");
+}
+
+#[test]
+fn the_file_is_a_regular_one_of_text() {
+    let folder = home("settings_files", "");
+    let file = folder.join("home/mdle.toml");
+    fs::write(&file, b"target = \"caf\xE9\"\n").unwrap();
+    let mut messages = vec![said(&folder, &["run", "home/plan.mdle"])];
+    File::create(&file).unwrap().set_len(1 << 40).unwrap();
+    messages.push(said(&folder, &["check", "home/plan.mdle"]));
+    fs::remove_file(&file).unwrap();
+    fs::create_dir(&file).unwrap();
+    messages.push(said(&folder, &["check", "home/plan.mdle"]));
+    insta::assert_snapshot!(messages.join("\n"));
+}
+
+#[test]
+fn no_output_goes_over_the_file() {
+    let folder = home("settings_output", "target = \"sim\"\n");
+    let build = said(&folder, &["build", "home/plan.mdle", "-o", "home/mdle.toml"]);
+    assert!(build.contains("home/mdle.toml") && build.ends_with("exit status 2\n"), "{build}");
+    let draw = said(&folder, &["draw", "home/plan.mdle", "-o", "home/cart/../mdle.toml"]);
+    assert!(draw.ends_with("exit status 2\n"), "{draw}");
+    assert_eq!(fs::read_to_string(folder.join("home/mdle.toml")).unwrap(), "target = \"sim\"\n");
+}

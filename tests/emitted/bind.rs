@@ -1,0 +1,117 @@
+//! `mdlec bind`: a target is held to its alphabet, and a plan to both, through the real binary.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use mdle_tests::executable::{folder, run_mdlec};
+use mdle_tests::repository::{files, root};
+
+const ALPHABET: &str = include_str!("../rover/alphabet.mdle");
+const MANIFEST: &str = "[workspace]\n\n[package]\nname = \"mdle-rover\"\nversion = \"0.1.0\"\nedition = \"2024\"\n\n\
+                        [dependencies]\nmdle-runtime = \"0.1\"\nmdle-host = \"0.1\"\n";
+const PLAN: &str = "{ Main (low 11) (Atom (low 13) count -3) (Atom (low) count 5) }\n";
+
+/// A plan, and the rover beside it with this alphabet; not bound yet.
+fn with_rover(test: &str, alphabet: &str) -> PathBuf {
+    let folder = folder(test);
+    fs::create_dir_all(folder.join("rover/src")).unwrap();
+    let write = |file: &str, text: &str| fs::write(folder.join(file), text).unwrap();
+    write("plan.mdle", PLAN);
+    write("rover/alphabet.mdle", alphabet);
+    write("rover/Cargo.toml", MANIFEST);
+    write("rover/src/lib.rs", include_str!("../rover/lib.rs"));
+    write("rover/src/quarks.rs", include_str!("../rover/quarks.rs"));
+    folder
+}
+
+fn bind(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
+    said(&run_mdlec(folder, &[&["bind", "rover/alphabet.mdle"], arguments].concat()))
+}
+
+fn built(folder: &Path) -> (Option<i32>, String) {
+    said(&run_mdlec(folder, &["plan.mdle", "--target", "rover"]))
+}
+
+fn said(output: &Output) -> (Option<i32>, String) {
+    (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
+#[test]
+fn the_alphabets_of_this_repository_are_bound() {
+    let own = files(&["alphabet.mdle"]).into_iter().filter(|file| file.text.contains("\ntarget "));
+    // The rover is bound in a folder of its own, below.
+    let own: Vec<_> = own.filter(|file| !file.path.starts_with("tests/rover/")).collect();
+    assert!(own.len() >= 2, "{own:?}");
+    for file in own {
+        let (status, said) = said(&run_mdlec(&root(), &["bind", "--check", &file.path]));
+        assert_eq!(status, Some(0), "{said}");
+    }
+}
+
+#[test]
+fn a_bound_target_runs_plans() {
+    let folder = with_rover("bound", ALPHABET);
+    assert_eq!(bind(&folder, &[]), (Some(0), "rover/src/alphabet.rs is written\n".into()));
+    assert_eq!(bind(&folder, &[]), (Some(0), "rover/src/alphabet.rs is up to date\n".into()));
+    let (status, said) = built(&folder);
+    assert_eq!(status, Some(0), "{said}");
+    let ran = Command::new(folder.join("plan")).output().unwrap();
+    let printed = String::from_utf8(ran.stdout).unwrap();
+    insta::assert_snapshot!(printed, @r"
+    0.05 s  count 5 (plan.mdle:1)  <- low 13 (plan.mdle:1)
+    0.15 s  plan over: low 11 (plan.mdle:1)
+    ");
+}
+
+#[test]
+fn a_target_that_is_not_bound_or_bound_to_another_alphabet_is_not_built() {
+    let folder = with_rover("unbound", ALPHABET);
+    let mut told = vec![("bind --check", bind(&folder, &["--check"])), ("plan", built(&folder))];
+    assert_eq!(bind(&folder, &[]).0, Some(0));
+    let changed = ALPHABET.replace("10.8", "11.5");
+    fs::write(folder.join("rover/alphabet.mdle"), changed).unwrap();
+    told.extend([("bind --check", bind(&folder, &["--check"])), ("plan", built(&folder))]);
+    let told: Vec<_> = told.iter().map(|(what, (status, said))| format!("$ {what}: {status:?}\n{said}")).collect();
+    insta::assert_snapshot!(told.join("\n"));
+    assert!(!folder.join("plan").exists());
+}
+
+#[test]
+fn an_alphabet_that_lies_fails_the_build_of_its_target() {
+    let folder = with_rover("lie", &ALPHABET.replace("limit: voltage V", "limit: length m"));
+    assert_eq!(bind(&folder, &[]).0, Some(0));
+    fs::write(folder.join("plan.mdle"), "{ Main (low 11) (Atom (low 13) count -3) }").unwrap();
+    let (status, said) = built(&folder);
+    assert_eq!(status, Some(2), "{said}");
+    let sentence = "error: the target crate `mdle_rover` does not compile; this is not a fault of your plan:\n";
+    assert!(said.contains(sentence), "{said}");
+    for told in
+        ["error[E0308]: mismatched types", "src/alphabet.rs", "Low::new(limit)", "expected `Volts`, found `Meters`"]
+    {
+        assert!(said.contains(told), "{told}:\n{said}");
+    }
+}
+
+#[test]
+fn a_wrong_plan_is_told_where_in_both_files() {
+    let folder = with_rover("misfit", ALPHABET);
+    fs::write(folder.join("plan.mdle"), "{ Main (low 2s) (Atom (null) count 0.5) }").unwrap();
+    let (status, said) = built(&folder);
+    assert_eq!(status, Some(1));
+    insta::assert_snapshot!(said);
+}
+
+#[test]
+fn what_cannot_be_bound_is_said() {
+    let folder = with_rover("no_target", "alphabet shared;\n/// Never.\ninterrupt never;\n");
+    let shared = bind(&folder, &[]);
+    fs::write(folder.join("rover/alphabet.mdle"), "target rover : crate mdle_rover;\ncontrol f(a: speed parsec);\n")
+        .unwrap();
+    let broken = bind(&folder, &[]);
+    fs::remove_file(folder.join("rover/alphabet.mdle")).unwrap();
+    let told: Vec<_> = [shared, broken, bind(&folder, &[])].map(|(status, said)| format!("{status:?}\n{said}")).into();
+    insta::assert_snapshot!(told.join("\n"));
+    assert!(!folder.join("rover/src/alphabet.rs").exists());
+}

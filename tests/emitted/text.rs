@@ -1,0 +1,156 @@
+//! What an emitted file says: arguments, conditions and tables as their rules have them (`machines.rs` says what it does).
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use mdle_tests::emission::{alphabet, emitted, emitted_as, emitted_for};
+use mdlec::rust::{Shape, bind};
+
+/// The same as if it were one line: without white space, and without a comma behind the last argument.
+fn one_line(rust: &str) -> String {
+    rust.split_whitespace().collect::<String>().replace(",)", ")")
+}
+
+fn dense(plan: &str) -> String {
+    one_line(&emitted(plan))
+}
+
+fn dense_as(shape: Shape, plan: &str) -> String {
+    one_line(&emitted_as(shape, plan))
+}
+
+#[test]
+fn an_atom_is_described_without_its_removed_interrupt() {
+    let rust = emitted("{ Main (a) (Atom (a) seek) (Atom (b) idle) }");
+    assert!(rust.contains("/// `(Atom (null) seek)`") && rust.contains("/// `(Atom (b) idle)`"), "{rust}");
+}
+
+#[test]
+fn arguments_are_what_their_texts_say() {
+    let laws = "(Atom (a) wander(1 inf)) (Atom (a) wander(1m, 2.5s)) (Atom (a) veer -90) (Atom (a) veer 1rad)";
+    let interrupts = "(Atom (beyond -0.5 0) idle) (Atom (beyond 2 -3) idle) (Atom (beyond 2 1) idle)";
+    let rust = dense(&format!("{{ Main {laws} {interrupts} }}"));
+    for argument in [
+        "Wander::new(runtime::Meters(1.0),runtime::Nanos::MAX)",
+        "Wander::new(runtime::Meters(1.0),runtime::Nanos(2500000000))",
+        "Veer::new(runtime::Radians::from_degrees(-90.0))",
+        "Veer::new(runtime::Radians(1.0))",
+        "Beyond::new(-0.5,0)",
+        "Beyond::new(2.0,-3)",
+        "Beyond::new(2.0,1)",
+    ] {
+        assert!(rust.contains(argument), "{argument} in {rust}");
+    }
+}
+
+#[test]
+fn comparisons_are_what_their_texts_say() {
+    let value = |number: &str| format!("runtime::Operand::<runtime::NoSignal>::Value({number})");
+    for (comparison, operator, with) in [
+        ("x < 2m", "Less", value("2.0")),
+        ("x <= 2m", "LessOrEqual", value("2.0")),
+        ("x > -50cm", "Greater", value("-0.5")),
+        ("x >= 2m", "GreaterOrEqual", value("2.0")),
+        ("x == 2m", "Equal(0.01)", value("2.0")),
+        ("x == r 3", "Equal(0.026)", "runtime::Operand::Signal(robot::R::new(runtime::SonarId::new(3)))".to_owned()),
+    ] {
+        let rust = dense(&format!("{{ Main (Atom ({comparison}) idle) }}"));
+        let new = format!("runtime::Comparison::new(robot::X::new(),runtime::Operator::{operator},{with});");
+        assert!(rust.contains(&new), "{new} in {rust}");
+        assert!(!rust.contains(":robot::X=") && !rust.contains(":robot::R="), "a signal is no constant: {rust}");
+    }
+    let clock = alphabet("signal age unit s tolerance 1; control halt;");
+    let rust = one_line(&emitted_for(&clock, "{ Leg (most: time) (Atom (age < most) halt) } { Main Leg(inf) }"));
+    assert!(rust.contains("Value(1797693134862315"), "the largest number: {rust}");
+    let rust = dense("{ Main (Atom (theta == 90deg) idle) }");
+    assert!(rust.contains("robot::Theta::new(),runtime::Operator::SameDirection("), "{rust}");
+}
+
+#[test]
+fn the_time_in_a_scope_is_an_interval_and_no_constant() {
+    for shape in [Shape::Code, Shape::Shared] {
+        let rust = dense_as(shape, "{ Main (Atom (t < 2s) idle) }");
+        assert!(rust.contains("(Nanos(0)..Nanos(2000000000)).contains(&cursor.since(1u16,t))"), "{rust}");
+        assert!(!rust.contains("runtime::Comparison"), "{rust}");
+    }
+    let rows = dense_as(Shape::Rows, "{ Main (Atom (t < 2s) idle) }");
+    assert!(rows.contains("Elapsed(Nanos(0),Nanos(2000000000))"), "{rows}");
+}
+
+#[test]
+fn what_never_fires_is_false_among_others() {
+    let rust = dense("{ Main (Atom (null OR a) idle) }");
+    assert!(rust.contains("iffalse|runtime::Interrupt::fired(&A,y)"), "{rust}");
+}
+
+#[test]
+fn a_plan_that_remembers_is_rows_with_a_memory_and_is_told_what_ends() {
+    for shape in [Shape::Code, Shape::Shared, Shape::Rows] {
+        let rust = dense_as(shape, "{ Main (a OR RISING b) (Atom (wait 1) idle) }");
+        // The operands of the plan's OR, then the one of RISING.
+        for part in ["Rising(0,2)", "InRows::remembering(", "fnleave(", "fnsettle("] {
+            assert!(rust.contains(part), "{part} in {rust}");
+        }
+        assert!(rust.contains("runtime::Memories<'static,[bool;2]>"), "a memory for each level of scopes: {rust}");
+    }
+    let rust = dense_as(Shape::Rows, "{ Main (a) (Atom (wait 1) idle) }");
+    assert!(rust.contains("InRows::new(&ROWS,"), "{rust}");
+    assert!(!rust.contains("fnleave(") && !rust.contains("Memories") && !rust.contains("MARKS"), "{rust}");
+}
+
+#[test]
+fn atoms_that_share_code_ask_the_plan_first_and_take_from_their_row_what_differs() {
+    let rust = dense_as(
+        Shape::Shared,
+        "{ Main (a OR wait 60) ExecPlan 2 { { Q (b) (Atom (echo 1) veer 10) } { Q (c) (Atom (echo 2) veer 20) } } (Atom (d) idle) }",
+    );
+    for part in [
+        "lett=begin.now;ifruntime::Interrupt::fired(&robot::A::new(),y)|(cursor.since(0u16,t)>=Nanos(60000000000)){\
+         returnNext::Ends(runtime::Cause::Fired(0u16).then(runtime::Follows::new(3,0,0)));}matchself.running",
+        // The second atom ends with the loop's body: what follows is not known, and no constant.
+        "runtime::Interrupt::fired(&robot::Echo::new(runtime::SonarId::new(2)),y)",
+        "staticPLACES:&[(u16,u32)]=&[(1,0),(2,0),(3,0)];",
+    ] {
+        assert!(rust.contains(part), "{part} in {rust}");
+    }
+}
+
+#[test]
+fn a_bound_alphabet_matches_over_what_there_is() {
+    let fired = |declarations: &str| {
+        let rust = one_line(&bind(&alphabet(declarations)));
+        let (_, fired) = rust.split_once("fnfired(&self,y:&Output)->bool{").expect("how an interrupt is asked");
+        fired.split_once(']').map_or(fired, |(fired, _)| fired)[..40].to_owned()
+    };
+    assert!(fired("control halt;").starts_with("match*self{}"));
+    assert!(fired("interrupt a; control halt;").starts_with("matchself{Self::A(interrupt)=>"));
+    assert!(fired("signal x unit m tolerance 1; control halt;").starts_with("matchself{Self::Comparison("));
+}
+
+#[test]
+fn a_condition_of_many_operands_has_sixty_four_at_each_depth() {
+    for operands in [64, 65, 5_000] {
+        let waits: Vec<_> = (1..=operands).map(|seconds| format!("wait {seconds}")).collect();
+        let rust = dense_as(Shape::Code, &format!("{{ Main (Atom ({}) idle) }}", waits.join(" OR ")));
+        let condition = rust.split("Running::Atom1(_)=>").nth(1).expect("the atom's arm");
+        assert_eq!(operands_at_one_depth(condition), 64, "{operands} operands: {condition}");
+        assert_eq!(rust.matches("cursor.since(").count(), operands);
+    }
+}
+
+/// The most operands of `|` between two parentheses.
+fn operands_at_one_depth(text: &str) -> usize {
+    let mut open = vec![1];
+    let mut most = 1;
+    for letter in text.chars() {
+        match letter {
+            '(' => open.push(1),
+            ')' => {
+                open.pop();
+            }
+            '|' => *open.last_mut().expect("as many open as are closed") += 1,
+            _ => {}
+        }
+        most = most.max(open.last().copied().unwrap_or(1));
+    }
+    most
+}

@@ -1,0 +1,357 @@
+//! What `mdlec analyze` says: of random plans, against brute force, where nothing that it says never happens does; of the
+//! plans in `plans/`; and of how large a machine is, against rustc.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::collections::BTreeSet;
+
+use mdle_runtime::{Cursor, Frame, Machine};
+use mdle_scripted::INTERRUPTS;
+use mdle_tests::chance::Chance;
+use mdle_tests::executable::{folder, run_mdlec};
+use mdle_tests::explore::{Explorer, Run, Said, Turn};
+use mdle_tests::golden::judge;
+use mdle_tests::pipeline::compile;
+use mdle_tests::random_plan::RandomPlan;
+use mdle_tests::random_script::script;
+use mdle_tests::repository::{TextFile, files, root};
+use mdle_tests::signals::Values;
+use mdlec::Compiled;
+use mdlec::analysis::{Analysis, Reach, analyze, lints};
+use mdlec::plan::{Plan, Quark, condition_text};
+use mdlec::trace::{Applied, Counted, Line, Outcome, Script, run};
+
+/// The Rust of two plans, as it is recorded and compiled.
+mod recorded {
+    pub(crate) mod lab_tour {
+        include!("snapshots/machine__golden__rust-lab_tour.snap.rs");
+    }
+    pub(crate) mod patrol {
+        include!("snapshots/machine__golden__rust-patrol.snap.rs");
+    }
+}
+
+/// How many plans are tried.
+const PLANS: u64 = 1000;
+/// The most choices of what quarks say of which all are tried; else so many by chance.
+const CHOICES: usize = 16;
+/// The most situations of a plan, if all choices are tried, and if they are not.
+const SITUATIONS: [usize; 2] = [1000, 80];
+/// Steps between turns, in nanoseconds: none, timers' own lengths and windows, and one longer than all timers.
+const STEPS: [u64; 4] = [0, 100_000_000, 1_000_000_000, 5_000_000_000];
+
+/// What came of all plans.
+#[derive(Debug, Default, Clone, Copy)]
+struct Count {
+    plans: usize,
+    turns: usize,
+    over: usize,
+    /// Plans of which every situation was tried.
+    whole: usize,
+    /// Atoms of these: all, those that never run, and those of which that was foretold.
+    atoms: usize,
+    idle: usize,
+    foretold: usize,
+    /// Operands that never end their scope, as foretold.
+    never: usize,
+    bounded: usize,
+}
+
+impl Count {
+    fn and(self, other: Self) -> Self {
+        Self {
+            plans: self.plans + other.plans,
+            turns: self.turns + other.turns,
+            over: self.over + other.over,
+            whole: self.whole + other.whole,
+            atoms: self.atoms + other.atoms,
+            idle: self.idle + other.idle,
+            foretold: self.foretold + other.foretold,
+            never: self.never + other.never,
+            bounded: self.bounded + other.bounded,
+        }
+    }
+}
+
+#[test]
+fn what_is_said_never_to_happen_never_happens() {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let count = std::thread::scope(|scope| {
+        let hands: Vec<_> = (0..cores).map(|hand| scope.spawn(move || seeds(hand, cores))).collect();
+        hands.into_iter().map(|hand| hand.join().expect("no difference")).fold(Count::default(), Count::and)
+    });
+    println!("{count:#?}");
+    assert!(count.plans > 900 && count.turns > 500_000 && count.over > 10_000, "{count:?}");
+    // Nearly all that never runs is foretold.
+    assert!(count.whole > 100 && count.idle > 30 && count.foretold * 10 >= count.idle * 9, "{count:?}");
+    assert!(count.never > 1000 && count.bounded > 300, "{count:?}");
+}
+
+fn seeds(first: usize, step: usize) -> Count {
+    let mut count = Count::default();
+    for seed in (first as u64..PLANS).step_by(step) {
+        let mut chance = Chance::new(seed);
+        let text = RandomPlan::new(&mut chance, 2 + (seed as usize) * 12 / (PLANS as usize), false).to_string();
+        if let Ok(compiled) = compile(&text) {
+            Trial::new(seed, &text, &compiled).run(&mut chance, &mut count);
+        }
+    }
+    count
+}
+
+/// A plan that is tried, and what is said of it.
+struct Trial<'c> {
+    seed: u64,
+    text: &'c str,
+    compiled: &'c Compiled,
+    analysis: Analysis,
+    /// For each part, in pre-order: the atom or the scope that it is.
+    parts: Vec<Part>,
+}
+
+#[derive(Clone, Copy)]
+enum Part {
+    Atom(usize),
+    Scope(usize),
+    Loop,
+}
+
+impl<'c> Trial<'c> {
+    fn new(seed: u64, text: &'c str, compiled: &'c Compiled) -> Self {
+        let analysis = analyze(&compiled.lowered);
+        let lowered = &compiled.lowered;
+        let (mut atoms, mut scopes) = (0, 0);
+        let parts = (0..lowered.brackets.len()).map(|number| {
+            if lowered.atoms.iter().any(|atom| atom.scope as usize == number) {
+                atoms += 1;
+                Part::Atom(atoms - 1)
+            } else if lowered.scopes[number].is_some() {
+                scopes += 1;
+                Part::Scope(scopes - 1)
+            } else {
+                Part::Loop
+            }
+        });
+        let parts = parts.collect();
+        Self { seed, text, compiled, analysis, parts }
+    }
+
+    fn run(&self, chance: &mut Chance, count: &mut Count) {
+        let plan = self.compiled.nondegenerate.plan();
+        let explorer = Explorer::new(plan);
+        let (said, all) = choices(plan, chance);
+        let mut applied = BTreeSet::new();
+        let whole = explorer.explore(&said, &STEPS, SITUATIONS[usize::from(!all)], &mut |turn, run| {
+            count.turns += 1;
+            count.over += usize::from(turn.over);
+            self.check(&explorer, turn, run);
+            if turn.applied {
+                applied.extend(turn.current.last().copied());
+            }
+        });
+        count.plans += 1;
+        count.bounded += usize::from(self.analysis.longest.seconds.is_some());
+        count.never += self.analysis.atoms.iter().map(|atom| atom.never_by.len()).sum::<usize>();
+        if whole && all {
+            count.whole += 1;
+            count.atoms += self.analysis.atoms.len();
+            let idle = self.parts.iter().enumerate().filter(|(number, _)| !applied.contains(number));
+            for (_, part) in idle {
+                let Part::Atom(atom) = part else { continue };
+                count.idle += 1;
+                count.foretold += usize::from(self.analysis.atoms[*atom].reach != Reach::Runs);
+            }
+        }
+    }
+
+    /// Holds what was said of a plan against one of its turns.
+    fn check(&self, explorer: &Explorer<'_>, turn: &Turn, run: &Run) {
+        for part in &turn.current {
+            let Part::Atom(atom) = self.parts[*part] else { panic!("an atom is current") };
+            self.holds(self.analysis.atoms[atom].reach != Reach::Never, &format!("atom {} is reached", atom + 1));
+        }
+        if let (true, Some(part)) = (turn.applied, turn.current.last()) {
+            let Part::Atom(atom) = self.parts[*part] else { panic!("an atom is current") };
+            self.holds(self.analysis.atoms[atom].reach == Reach::Runs, &format!("atom {} runs", atom + 1));
+        }
+        for (part, operands) in &turn.ended {
+            let (ends, ended_by) = match self.parts[*part] {
+                Part::Atom(atom) => (self.analysis.atoms[atom].ends, &self.analysis.atoms[atom].ended_by),
+                Part::Scope(scope) => (true, &self.analysis.scopes[scope].ended_by),
+                Part::Loop => panic!("a loop has no interrupt"),
+            };
+            let texts = operands.iter().map(|operand| {
+                let quark = |id| self.compiled.lowered.quark(id).text.clone();
+                condition_text(&explorer.operands(*part)[*operand], &quark)
+            });
+            let texts: Vec<_> = texts.collect();
+            let texts = if texts.is_empty() { vec!["completed".to_owned()] } else { texts };
+            for text in texts {
+                self.holds(ends && ended_by.contains(&text), &format!("part {part} ends by {text}"));
+            }
+        }
+        let most = usize::try_from(self.analysis.transitions).unwrap();
+        self.holds(turn.ended.len() <= most, &format!("{} transitions", turn.ended.len()));
+        if turn.over {
+            let (now, gap) = (run.now as f64 / 1e9, STEPS[3] as f64 / 1e9);
+            self.holds(self.analysis.shortest.is_some_and(|time| time <= now), &format!("it is over at {now} s"));
+            if let (Some(seconds), Some(turns)) = (self.analysis.longest.seconds, self.analysis.longest.turns) {
+                self.holds(now <= seconds + turns as f64 * gap, &format!("it takes {now} s"));
+            }
+        }
+    }
+
+    fn holds(&self, holds: bool, seen: &str) {
+        if !holds {
+            panic!("seed {}: {seen}\n{}\n{}", self.seed, self.text, self.analysis.to_text());
+        }
+    }
+}
+
+#[test]
+fn runs_of_the_machine_take_as_long_as_is_said() {
+    let (mut over, mut bounded) = (0, 0);
+    for seed in 0..4000 {
+        let mut chance = Chance::new(seed);
+        let long = seed % 100 >= 98;
+        let text = RandomPlan::new(&mut chance, 2 + seed as usize % 12, long).to_string();
+        let script = Script::read(&script(&mut chance, 12)).expect("a script");
+        let Ok(compiled) = compile(&text) else { continue };
+        let analysis = analyze(&compiled.lowered);
+        let times: Vec<f64> = script.turns().iter().map(|turn| turn.t.0 as f64 / 1e9).collect();
+        let gap = times.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+        for Line { turn, outcome: Outcome { applied, fired, .. }, .. } in run(Counted::new(&compiled.lowered), &script)
+        {
+            let now = times[turn];
+            let said = || format!("seed {seed}, turn {turn} at {now} s\n{text}\n{}", analysis.to_text());
+            assert!(fired.len() as u64 <= analysis.transitions, "{}", said());
+            // Nothing is written with more digits than these.
+            let longest = analysis.longest.seconds.zip(analysis.longest.turns);
+            let longest = longest.map(|(seconds, turns)| seconds + turns as f64 * gap + 1e-9);
+            assert!(longest.is_none_or(|longest| now <= longest), "{}", said());
+            if applied == Applied::Over {
+                over += 1;
+                bounded += usize::from(longest.is_some());
+                assert!(analysis.shortest.is_some_and(|shortest| shortest <= now + 1e-9), "{}", said());
+            }
+        }
+    }
+    assert!(over > 500 && bounded > 200, "{over} plans are over, {bounded} of them with a longest time");
+}
+
+/// Choices of what the quarks of a plan say, and whether these are all. Signals have values, so that their comparisons agree.
+fn choices(plan: &Plan, chance: &mut Chance) -> (Vec<Said>, bool) {
+    let is_free = |quark: &Quark| quark.completes || INTERRUPTS.contains(&quark.text.as_str());
+    let bits: Vec<usize> = (0..plan.quarks.len()).filter(|number| is_free(&plan.quarks[*number])).collect();
+    let is_compared = plan.quarks.iter().any(|quark| quark.comparison.is_some());
+    let all = 1 << bits.len().min(20) <= CHOICES && !is_compared;
+    let count = if all { 1 << bits.len() } else { CHOICES };
+    let said = (0..count).map(|number| {
+        let mut fired = vec![false; plan.quarks.len()];
+        for (place, bit) in bits.iter().enumerate() {
+            fired[*bit] = if all { number >> place & 1 == 1 } else { chance.percent(35) };
+        }
+        let completed = fired.clone();
+        let values = Values::new(chance).texts();
+        for (fired, quark) in fired.iter_mut().zip(&plan.quarks).filter(|(_, quark)| quark.comparison.is_some()) {
+            *fired = values.contains(&quark.text);
+        }
+        Said { fired, completed }
+    });
+    (said.collect(), all)
+}
+
+fn plans() -> Vec<TextFile> {
+    let plans: Vec<_> = files(&[".mdle"]).into_iter().filter(|file| file.path.starts_with("plans/")).collect();
+    assert!(plans.len() >= 11, "the plans are gone");
+    plans
+}
+
+fn analysis(path: &str) -> Analysis {
+    let text = std::fs::read_to_string(root().join(path)).expect(path);
+    let (compiled, said) = judge(&TextFile { path: path.into(), text }, None);
+    analyze(&compiled.first().expect(&said).lowered)
+}
+
+#[test]
+fn plans_are_analysed_without_a_false_alarm() {
+    for file in plans() {
+        let (compiled, _) = judge(&file, None);
+        for compiled in compiled {
+            let analysis = analyze(&compiled.lowered);
+            assert_eq!(lints(&compiled.lowered), [], "{}", file.path);
+            assert!(analysis.atoms.iter().all(|atom| atom.reach == Reach::Runs && atom.ends), "{}", file.path);
+            let never: Vec<_> = analysis.atoms.iter().filter(|atom| !atom.never_by.is_empty()).collect();
+            assert_eq!(never.len(), 0, "{}", file.path);
+        }
+    }
+}
+
+#[test]
+fn the_papers_plans_are_what_the_semantics_say_of_them() {
+    // `bumper` guards these plans, so their atoms lose it, and end by completion only.
+    for (path, laws) in
+        [("first_robot", ["path lastPath", "Follow robot2"]), ("second_robot", ["Follow robot1", "Follow robot3"])]
+    {
+        let analysis = analysis(&format!("plans/paper/{path}.mdle"));
+        for law in laws {
+            let atom = analysis.atoms.iter().find(|atom| atom.law == law).expect(law);
+            assert_eq!(atom.ended_by, ["completed"], "{law}");
+        }
+        assert_eq!(analysis.scopes[0].ended_by, ["bumper"]);
+    }
+    // `wait inf` never fires: `align` ends when it is done, and `goAvoid` with a module with the plan alone.
+    let aligned = analysis("plans/paper/lab2_to_lab1.mdle");
+    let align: Vec<_> = aligned.atoms.iter().filter(|atom| atom.law.starts_with("align")).collect();
+    assert!(align.len() == 2 && align.iter().all(|atom| atom.ended_by == ["completed"]));
+    let sound = analysis("plans/paper/sound_following.mdle");
+    assert!(sound.atoms[0].ended_by.is_empty() && sound.atoms[0].ends);
+    assert_eq!((sound.shortest, sound.longest.seconds), (Some(0.0), None));
+}
+
+#[test]
+fn an_analysis_is_printed_for_people_and_for_programs() {
+    let folder = folder("analyze");
+    let plan = "{ Outing (wait 20s OR bumper)\n  (Atom (bumper AND r0 < 1m OR wait 15s) (go 20 0))\n  \
+                ((Atom (null) turn 90) (Atom (wait 6s) stop))^2\n  (Atom (wait 9s) stop)\n}\n";
+    std::fs::write(folder.join("plan.mdle"), plan).unwrap();
+    let said = |arguments: &[&str]| {
+        let output = run_mdlec(&folder, &[&["analyze", "plan.mdle"], arguments].concat());
+        let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+        format!(
+            "$ mdlec analyze plan.mdle {}\n{err}{out}exit status {}\n",
+            arguments.join(" "),
+            output.status.code().unwrap()
+        )
+    };
+    insta::assert_snapshot!(
+        [said(&[]), said(&["--json"]), said(&["--deny-warnings"]), said(&["--plan", "P"])].join("\n")
+    );
+}
+
+/// Holds the bytes that are told of a plan to those of its compiled Rust.
+fn assert_bytes<P: mdle_runtime::Plan>(path: &str, plan: &P) {
+    let bytes = analysis(path).bytes;
+    let cursor = size_of::<Cursor<P::Entered, P::Left>>();
+    assert_eq!(bytes.state as usize, cursor + size_of::<Frame>(), "{path}");
+    assert_eq!(size_of::<Machine<P>>(), bytes.state as usize + size_of::<P>(), "{path}: the rest is the law that runs");
+    let fsm = plan.fsm();
+    assert_eq!(bytes.machine as usize, size_of_val(fsm.brackets) + size_of_val(fsm.atoms), "{path}");
+    let atoms = (0..u32::try_from(fsm.atoms.len()).unwrap()).map(|atom| plan.law(atom));
+    let scopes =
+        (0..u32::try_from(fsm.brackets.len()).unwrap()).flat_map(|scope| [plan.condition(scope), plan.name(scope)]);
+    let texts: Vec<&str> = atoms.chain(scopes).collect();
+    let different: BTreeSet<&str> = texts.iter().copied().collect();
+    let size = size_of_val(texts.as_slice()) + different.iter().map(|text| text.len()).sum::<usize>();
+    assert_eq!(bytes.texts as usize, size, "{path}");
+}
+
+#[test]
+fn bytes_are_those_of_the_compiled_machine() {
+    assert_bytes("plans/lab_tour.mdle", &recorded::lab_tour::LabTour::new());
+    assert_bytes("plans/patrol.mdle", &recorded::patrol::Patrol::new());
+    // What a plan remembers stands in its Rust.
+    let branching = include_str!("snapshots/machine__golden__rust-branching.snap.rs");
+    let memories = analysis("plans/branching.mdle").bytes.memories;
+    assert!(memories > 0 && branching.contains(&format!("[false; {memories}]")), "{memories}");
+}

@@ -1,0 +1,11 @@
+//! The state machines of plans: every interpreter agrees, and so do files, pictures, analysis and Theorem 1.
+
+mod analysis;
+mod differential;
+mod fsm_files;
+mod golden;
+mod matrices;
+mod pictures;
+mod scxml;
+mod theorem;
+mod validation;

@@ -1,0 +1,206 @@
+//! The printed conditions against their words: every numbering, on whole matrices; and where they differ from the exact ones.
+
+use mdle_tests::chance::Chance;
+use mdlec::theorem::{Answer, Machine, Named, STEPS, State, as_printed, decompile};
+
+use super::machines::{Row, Table, likely, machine};
+
+/// The row in which a column of a matrix has its 1.
+type Matrix = Vec<usize>;
+
+/// R1 and R2 as they are printed, R3 where the two overlap (`k1 < p2`); R4 speaks of what R2 forbids.
+fn hold(matrices: &[Matrix]) -> bool {
+    let states = matrices[0].len();
+    let moves = |matrix: &Matrix| -> Vec<_> { (0..states).filter(|column| matrix[*column] != *column).collect() };
+    let first = (0..states - 1).all(|k| {
+        let own = matrices.iter().filter(|matrix| moves(matrix) == [k] && matrix[k] == k + 1);
+        own.count() == 1
+    });
+    let second = matrices.iter().all(|matrix| {
+        moves(matrix).iter().all(|k| matrix[*k] >= *k && (*k..=matrix[*k]).all(|column| matrix[column] == matrix[*k]))
+    });
+    let third = matrices.iter().enumerate().all(|(i1, one)| {
+        let others = || matrices.iter().enumerate().filter(move |(i2, _)| *i2 != i1);
+        moves(one).iter().all(|k1| {
+            others().all(|(_, other)| {
+                moves(other).iter().all(|k2| {
+                    let (p1, p2) = (one[*k1], other[*k2]);
+                    let overlap = k2 <= k1 && *k1 < p2 && p2 < p1;
+                    !overlap || (*k2..=p1).all(|column| one[column] == p1)
+                })
+            })
+        })
+    });
+    first && second && third
+}
+
+/// Whether they hold in any numbering, the termination state last.
+fn hold_somewhere(atoms: usize, rows: &[Row]) -> bool {
+    let mut numberings = vec![vec![]];
+    for place in 0..atoms {
+        let longer = numberings.iter().flat_map(|one: &Vec<usize>| {
+            (0..=place).map(move |at| {
+                let mut longer = one.clone();
+                longer.insert(at, place);
+                longer
+            })
+        });
+        numberings = longer.collect();
+    }
+    numberings.iter().any(|places| {
+        let place = |state: usize| if state == atoms { atoms } else { places[state] };
+        let matrices = rows.iter().map(|row| {
+            let mut matrix: Matrix = (0..=atoms).collect();
+            (0..atoms).for_each(|atom| matrix[place(atom)] = place(row[atom].unwrap_or(atom)));
+            matrix
+        });
+        hold(&matrices.collect::<Vec<_>>())
+    })
+}
+
+#[test]
+fn they_are_judged_in_the_one_numbering_in_which_they_can_hold() {
+    let mut differ = Vec::new();
+    for (atoms, interrupts) in [(1, 1), (1, 2), (2, 1), (2, 2), (3, 2)] {
+        let count = Table::count(atoms);
+        for first in 0..count {
+            for second in if interrupts == 1 { 0..1 } else { first..count } {
+                let numbers = [first, second];
+                let rows: Vec<_> = numbers[..interrupts].iter().map(|number| Table::row(*number, atoms)).collect();
+                let machine = machine(atoms, &rows);
+                let exactly = decompile(&machine, STEPS);
+                let rules = as_printed(&machine, &exactly);
+                let meant = rules.iter().all(|rule| rule.meant.is_none());
+                assert_eq!(meant, hold_somewhere(atoms, &rows), "{rows:?}: {rules:?}");
+                // To the letter, R4 forbids whatever leads forwards.
+                assert!(rules.iter().any(|rule| rule.letter.is_some()), "{rows:?}: {rules:?}");
+                match exactly {
+                    Answer::String(found) if !meant => differ.push((atoms, rows, !found.loops.is_empty())),
+                    // As they are meant they never accept what has no string.
+                    Answer::None(_) => assert!(!meant, "{rows:?}: {rules:?}"),
+                    Answer::String(_) | Answer::Stopped(_) => {}
+                }
+            }
+        }
+    }
+    // The smallest machines that have a string though the printed conditions say that they have none: with a loop,
+    let with_loop = differ.iter().find(|(.., has_loop)| *has_loop).expect("one with a loop");
+    assert_eq!(with_loop, &(1, vec![vec![Some(0)]], true));
+    // without one, which has two interrupts for one atom,
+    let without = differ.iter().find(|(.., has_loop)| !has_loop).expect("one without");
+    assert_eq!(without, &(1, vec![vec![Some(1)], vec![Some(1)]], false));
+    // and with one interrupt in two places.
+    let places = differ.iter().find(|(_, rows, has_loop)| rows.len() == 1 && !has_loop).expect("one in two places");
+    assert_eq!(places, &(2, vec![vec![Some(2), Some(0)]], false));
+}
+
+/// A move: from one place to another, by an interrupt.
+type Move = (usize, usize, usize);
+
+/// The sentences of R2 and R3 to the letter, by looking at everything, for machines whose states are in the order of the file.
+fn sentences(atoms: usize, rows: &[Row]) -> [Option<String>; 2] {
+    let row = |interrupt: usize, column: usize| rows[interrupt].get(column).copied().flatten().unwrap_or(column);
+    let all = (0..atoms).flat_map(|from| (0..rows.len()).map(move |interrupt| (interrupt, from)));
+    let moves: Vec<Move> = all.map(|(interrupt, from)| (interrupt, from, row(interrupt, from))).collect();
+    let moves: Vec<_> = moves.into_iter().filter(|(_, from, to)| from != to).collect();
+    let second = moves.iter().find_map(|(x, from, to)| {
+        let other = (*from..=*to).find(|column| row(*x, *column) != *to)?;
+        let leads = format!("`x{}` leads from `s{}` to `s{}`", x + 1, from + 1, to + 1);
+        Some(match row(*x, other) {
+            stays if stays == other => format!("{leads}, but does not lead on from `s{}`", other + 1),
+            row => format!("{leads}, but from `s{}` to `s{}`", other + 1, row + 1),
+        })
+    });
+    let third = moves.iter().enumerate().find_map(|(number, (x, from, to))| {
+        let encloses = |column: usize| column < *from && (column..=*to).all(|column| row(*x, column) == *to);
+        let (other, column, at) =
+            moves[..number].iter().find(|(other, column, at)| other != x && at < to && !encloses(*column))?;
+        Some(format!(
+            "`x{}` leads from `s{}` to `s{}`, and so `x{}` would have to lead to `s{}` from there on as well",
+            other + 1,
+            column + 1,
+            at + 1,
+            x + 1,
+            to + 1
+        ))
+    });
+    [second, third]
+}
+
+#[test]
+fn the_letter_is_judged_as_if_everything_were_looked_at() {
+    let (mut broken, mut held) = ([0; 2], [0; 2]);
+    for seed in 0..20_000 {
+        let mut chance = Chance::new(seed);
+        let (atoms, interrupts) = (1 + chance.below(6), 1 + chance.below(5));
+        // All leads forwards, and from each state to the next: the order of the file is the only one.
+        let row = |chance: &mut Chance| -> Row {
+            let (first, length) = (chance.below(atoms), chance.below(atoms) + 1);
+            let to = (first + length).min(atoms);
+            let mut row: Row = (0..atoms).map(|place| (first..to).contains(&place).then_some(to)).collect();
+            if chance.below(3) == 0 {
+                let place = chance.below(atoms);
+                let to = place + 1 + chance.below(atoms - place);
+                row[place] = (chance.below(2) == 0).then_some(to);
+            }
+            row
+        };
+        let mut rows: Vec<Row> = (0..interrupts).map(|_| row(&mut chance)).collect();
+        rows.extend((0..atoms).map(|own| (0..atoms).map(|place| (place == own).then_some(place + 1)).collect()));
+        let machine = machine(atoms, &rows);
+        let rules = as_printed(&machine, &decompile(&machine, STEPS));
+        for (rule, (number, expected)) in rules[1..3].iter().zip(sentences(atoms, &rows).into_iter().enumerate()) {
+            broken[number] += usize::from(expected.is_some());
+            held[number] += usize::from(expected.is_none());
+            assert_eq!(rule.letter, expected, "{}: {rows:?}", rule.name);
+        }
+    }
+    assert!(broken.iter().chain(&held).all(|count| *count > 1_000), "{broken:?} {held:?}");
+}
+
+/// Returns `true` if something leads back whatever the order of the states.
+fn leads_back(rows: &[Row]) -> bool {
+    let mut left: Vec<usize> = (0..rows[0].len()).collect();
+    let leads_inside = |from: usize, left: &[usize]| {
+        rows.iter().any(|row| row[from].is_some_and(|to| to != from && left.contains(&to)))
+    };
+    while let Some(last) = left.iter().position(|from| !leads_inside(*from, &left)) {
+        left.remove(last);
+    }
+    !left.is_empty()
+}
+
+#[test]
+fn what_leads_back_is_judged_as_if_everything_were_looked_at() {
+    let mut seen = [0; 2];
+    for seed in 0..20_000 {
+        let mut chance = Chance::new(seed);
+        let (atoms, interrupts) = (2 + chance.below(4), 2 + chance.below(4));
+        let rows = likely(&mut chance, atoms, interrupts);
+        let machine = machine(atoms, &rows);
+        let Answer::String(found) = decompile(&machine, STEPS) else { continue };
+        // Only there the order is that of the string, and the places those of the file.
+        if !leads_back(&rows) || !found.order.iter().map(|state| state.0).is_sorted() {
+            continue;
+        }
+        let rules = as_printed(&machine, &Answer::String(found));
+        let [_, third] = sentences(atoms, &rows);
+        seen[usize::from(third.is_some())] += 1;
+        assert_eq!(rules[2].letter, third, "{rows:?}");
+    }
+    assert!(seen.iter().all(|count| *count > 100), "{seen:?}");
+}
+
+#[test]
+fn large_machines_are_judged_in_time_with_their_moves() {
+    const ATOMS: u32 = 30_000;
+    let named = |name: String| Named { name, text: None };
+    let moves = |first: u32, last: u32| (first..last).map(|from| (State(from), State(last))).collect();
+    // Everything is enclosed, and each hundred of atoms, and each atom: to look at every pair of moves would take hours.
+    let mut interrupts = vec![(named("all".into()), moves(0, ATOMS))];
+    interrupts.extend((0..ATOMS / 100).map(|part| (named(format!("w{part}")), moves(100 * part, 100 * part + 100))));
+    interrupts.extend((0..ATOMS).map(|atom| (named(format!("x{atom}")), moves(atom, atom + 1))));
+    let machine = Machine::new((0..=ATOMS).map(|state| format!("s{state}")).collect(), interrupts);
+    let rules = as_printed(&machine, &decompile(&machine, STEPS));
+    assert!(rules.iter().all(|rule| rule.meant.is_none()), "{rules:?}");
+}

@@ -1,0 +1,201 @@
+//! The theorem as the inverse of Algorithm 1: a plan's machine, its states in disorder, has a string, and the string's machine is
+//! that machine.
+
+use std::collections::BTreeMap;
+
+use mdle_tests::chance::Chance;
+use mdle_tests::pipeline::{compile, compile_plan};
+use mdle_tests::random_plan::RandomPlan;
+use mdlec::diagnostic::SourceId;
+use mdlec::fsm::{FsmFile, fsm_file};
+use mdlec::syntax::{arena_for, parse};
+use mdlec::theorem::{Answer, augment, decompile, read, string};
+
+use super::definition::assert_is_string;
+use super::loops::plan_of_loops;
+
+/// How many plans go round.
+const PLANS: usize = 1000;
+
+/// The most states of a plan that does.
+const STATES: usize = 200;
+
+/// How many steps the search may take.
+const STEPS: u64 = 20_000;
+
+/// What chance brought about.
+#[derive(Debug, Default)]
+struct Seen {
+    plans: usize,
+    states: usize,
+    with_loops: usize,
+    /// Those that ask labels, of which an FSM file does not say enough for a plan.
+    asking: usize,
+    /// Those for which the search takes too long.
+    stopped: usize,
+}
+
+/// The machine with its states in another order.
+fn disordered(file: &FsmFile, chance: &mut Chance) -> FsmFile {
+    let mut file = file.clone();
+    for place in (1..file.laws.len()).rev() {
+        let other = chance.below(place + 1);
+        file.states.swap(place, other);
+        file.laws.swap(place, other);
+    }
+    file
+}
+
+/// What a machine does, its states called by their places: laws, and for each condition from where to where.
+fn meaning(file: &FsmFile, place: &BTreeMap<String, usize>) -> (Vec<String>, Vec<(String, usize, usize)>) {
+    let mut laws = vec![String::new(); file.laws.len()];
+    for (state, law) in file.states.iter().zip(&file.laws) {
+        laws[place[state]].clone_from(law);
+    }
+    let mut moves: Vec<_> = Vec::new();
+    for interrupt in &file.interrupts {
+        let all = interrupt.moves.0.iter();
+        moves.extend(all.map(|(from, to)| (interrupt.text.clone(), place[from], place[to])));
+    }
+    moves.sort();
+    (laws, moves)
+}
+
+/// The plan of a machine in disorder, and its machine again.
+fn go_round(file: &FsmFile, chance: &mut Chance, what: &str, seen: &mut Seen) {
+    let disordered = disordered(file, chance);
+    let machine = read(&disordered.to_json()).unwrap_or_else(|error| panic!("{what}: {error:?}"));
+    let found = match decompile(&machine, STEPS) {
+        Answer::String(found) => found,
+        Answer::Stopped(_) => {
+            seen.stopped += 1;
+            return;
+        }
+        answer @ Answer::None(_) => panic!("{what}: {answer:?}"),
+    };
+    assert_is_string(&machine, &found);
+    assert_eq!(machine.states()[found.order[0].0 as usize], file.states[0], "{what}: the plan begins elsewhere");
+    seen.plans += 1;
+    seen.states += file.states.len();
+    seen.with_loops += usize::from(!found.loops.is_empty());
+    if file.interrupts.iter().any(|interrupt| interrupt.text.contains("after ")) {
+        seen.asking += 1;
+        return;
+    }
+    let text = string(&machine, &found);
+    let again = compile_plan(&text, "Decompiled").unwrap_or_else(|said| panic!("{what}\n{text}\n{said}"));
+    let again = fsm_file(&again.nondegenerate).expect("a small machine");
+    let numbers = found.order.iter().map(|state| machine.states()[state.0 as usize].clone()).zip(0..).collect();
+    let own = again.states.iter().cloned().zip(0..).collect();
+    // A plan's braces are a scope, whose interrupt is null where no other encloses everything.
+    let (laws, mut moves) = meaning(&again, &own);
+    let (expected_laws, expected) = meaning(file, &numbers);
+    if moves.len() != expected.len() {
+        let end = file.laws.len();
+        (0..end).for_each(|state| drop(moves.remove(moves.binary_search(&("null".into(), state, end)).unwrap())));
+    }
+    assert_eq!((laws, moves), (expected_laws, expected), "{what}\n{text}");
+}
+
+#[test]
+fn random_plans_go_round() {
+    let (mut seen, mut seed) = (Seen::default(), 0);
+    while seen.plans - seen.asking < PLANS {
+        seed += 1;
+        let mut chance = Chance::new(seed);
+        let text = RandomPlan::new(&mut chance, 2 + (seed % 20) as usize, false).to_string();
+        let Ok(compiled) = compile(&text) else { continue };
+        let Ok(file) = fsm_file(&compiled.nondegenerate) else { continue };
+        if file.states.len() <= STATES {
+            go_round(&file, &mut chance, &format!("seed {seed}\n{text}"), &mut seen);
+        }
+    }
+    println!("{seen:?}");
+    assert!(seen.stopped <= PLANS / 100, "{seen:?}");
+    assert!(seen.with_loops > PLANS / 20 && seen.asking > PLANS / 20, "{seen:?}");
+}
+
+#[test]
+fn plans_of_loops_without_end_go_round() {
+    let mut seen = Seen::default();
+    for seed in 0..PLANS as u64 {
+        let mut chance = Chance::new(seed);
+        let text = plan_of_loops(&mut chance, 2 + (seed % 16) as usize);
+        let compiled = compile(&text).unwrap_or_else(|said| panic!("seed {seed}\n{said}"));
+        let file = fsm_file(&compiled.nondegenerate).expect("a small machine");
+        go_round(&file, &mut chance, &format!("seed {seed}\n{text}"), &mut seen);
+    }
+    println!("{seen:?}");
+    assert!(seen.stopped <= PLANS / 100, "{seen:?}");
+    assert!(seen.with_loops > PLANS / 2, "{seen:?}");
+}
+
+/// Pieces of laws and conditions, good ones and such as reach beyond their place.
+const PIECES: [&str; 20] = [
+    "idle",
+    "drift",
+    "a",
+    "wait 3",
+    " OR ",
+    " AND ",
+    "NOT ",
+    "(",
+    ")",
+    ") idle) (Atom (a",
+    ") (Atom (null) idle",
+    ")^3 (",
+    " // ",
+    " /* ",
+    " */ ",
+    "\"",
+    ") } //",
+    "{ Q ",
+    "}",
+    "\n",
+];
+
+/// The transitions by interrupts, from state to state in their order.
+fn moves(file: &FsmFile) -> Vec<(usize, usize)> {
+    let place: BTreeMap<_, _> = file.states.iter().zip(0..).collect();
+    // Whether a law completes is its own matter.
+    let interrupts = file.interrupts.iter().filter(|interrupt| interrupt.name != "completed");
+    let all = interrupts.flat_map(|interrupt| &interrupt.moves.0);
+    let mut moves: Vec<_> = all.map(|(from, to)| (place[from], place[to])).collect();
+    moves.sort_unstable();
+    moves
+}
+
+#[test]
+fn texts_that_reach_further_are_refused_or_change_nothing() {
+    let compiled =
+        compile("{ Main (a) (Atom (wait 1) idle) { Q (wait 9) (Atom (wait 2) drift) (Atom (wait 4) idle) } }");
+    let file = fsm_file(&compiled.unwrap().nondegenerate).unwrap();
+    let (mut taken, mut refused) = (0, 0);
+    for seed in 0..20_000 {
+        let mut chance = Chance::new(seed);
+        let text: String = (0..=chance.below(4)).map(|_| PIECES[chance.below(PIECES.len())]).collect();
+        let mut hostile = file.clone();
+        let place = chance.below(hostile.laws.len() + hostile.interrupts.len());
+        match hostile.laws.get_mut(place) {
+            Some(law) => law.clone_from(&text),
+            None => hostile.interrupts[place - file.laws.len()].text.clone_from(&text),
+        }
+        let Ok(machine) = read(&hostile.to_json()) else {
+            refused += 1;
+            continue;
+        };
+        let Answer::String(found) = decompile(&machine, STEPS) else { panic!("{text:?}") };
+        let printed = string(&machine, &found);
+        for plan in [printed.clone(), augment(&machine)] {
+            let (id, arena) = (SourceId(0), arena_for(&plan));
+            let (_, wrong) = parse(id, &plan, &arena);
+            assert_eq!(wrong, [], "{text:?}\n{plan}");
+        }
+        // What names a quark of the robot's is a plan whose machine is the same.
+        let Ok(again) = compile_plan(&printed, "Decompiled") else { continue };
+        taken += 1;
+        let again = fsm_file(&again.nondegenerate).unwrap();
+        assert_eq!((moves(&again), again.laws.len()), (moves(&file), file.laws.len()), "{text:?}\n{printed}");
+    }
+    assert!(taken > 200 && refused > 1_000, "{taken} {refused}");
+}

@@ -1,0 +1,233 @@
+//! The book: its pages are linked, its links lead somewhere, and its examples do what it says.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use mdle_tests::book::{Fence, anchors, fences, leads_to, links, messages, name, pages};
+use mdle_tests::executable::{folder, run_mdlec};
+use mdle_tests::repository::{TextFile, root};
+use serde_json::Value;
+
+#[test]
+fn every_page_stands_in_the_summary_once() {
+    let (summary, pages): (Vec<_>, Vec<_>) = pages().into_iter().partition(|page| name(page) == "SUMMARY.md");
+    let mut listed = links(&summary[0]);
+    listed.sort_unstable();
+    assert_eq!(listed, pages.iter().map(name).collect::<Vec<_>>());
+    assert!(listed.len() > 10, "the pages are gone");
+}
+
+#[test]
+fn links_lead_to_a_page_and_a_heading_of_it() {
+    let pages = pages();
+    for page in &pages {
+        for link in links(page).into_iter().filter(|link| !link.starts_with("https://")) {
+            if link.ends_with(".svg") {
+                assert!(root().join("docs/src").join(link).exists(), "{}: no picture {link}", page.path);
+                continue;
+            }
+            let (file, anchor) = link.split_once('#').unwrap_or((link, ""));
+            let file = leads_to(page, file);
+            let target = pages.iter().find(|page| name(page) == file);
+            let target = target.unwrap_or_else(|| panic!("{}: no page {file}", page.path));
+            let is_there = anchor.is_empty() || anchors(target).iter().any(|heading| heading == anchor);
+            assert!(is_there, "{}: no heading {link}", page.path);
+        }
+    }
+}
+
+#[test]
+fn messages_are_as_they_are_explained() {
+    let path = root().join("docs/src/messages.md");
+    if std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always") {
+        fs::write(&path, messages()).unwrap();
+    }
+    let committed = fs::read_to_string(path).unwrap();
+    assert!(committed == messages(), "INSTA_UPDATE=always writes docs/src/messages.md");
+}
+
+/// A page's folder, into which its examples are written one after the other.
+struct Walk<'p> {
+    page: &'p TextFile,
+    folder: PathBuf,
+    plan: String,
+    script: String,
+}
+
+impl Walk<'_> {
+    fn write(&self, file: &str, fence: &Fence) -> String {
+        let path = self.folder.join(file);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, &fence.text).unwrap();
+        file.to_owned()
+    }
+
+    fn step(&mut self, fence: &Fence) {
+        match fence.words[0].as_str() {
+            "mdle" => {
+                self.plan = self.write(fence.file().unwrap_or("plan.mdle"), fence);
+                self.check(fence);
+            }
+            "script" => self.script = self.write(fence.file().unwrap_or("script.jsonl"), fence),
+            "trace" => self.trace(&fence.text),
+            "alphabet" => {
+                let file = self.write(fence.file().unwrap_or("./alphabet.mdle"), fence);
+                let target = file.strip_suffix("/alphabet.mdle").unwrap();
+                let output = run_mdlec(&self.folder, &["quarks", "--target", target]);
+                assert!(output.status.success(), "{}: {}", self.page.path, said(&output));
+            }
+            "diff" => self.patch(fence),
+            "console" => fence.text.split("$ ").skip(1).for_each(|command| self.run(command)),
+            "text" => self.compare(fence),
+            // Later commands of the page use these files; those of the two pages on applications, tests/emitted/embed.rs builds.
+            "csv" | "json" | "rust" | "toml" => drop(self.write(fence.file().unwrap(), fence)),
+            "sh" => {}
+            other => panic!("{}: what is `{other}`?", self.page.path),
+        }
+    }
+
+    /// Replaces lines of a file, as a reader does: those marked `-` by those marked `+` after them.
+    fn patch(&self, fence: &Fence) {
+        let path = self.folder.join(fence.file().expect("a file to change"));
+        let mut text = fs::read_to_string(&path).unwrap();
+        for change in fence.text.split("\n\n") {
+            let lines = |mark| {
+                let lines = change.lines().filter_map(|line| line.strip_prefix(mark));
+                lines.fold(String::new(), |text, line| text + line + "\n")
+            };
+            let (before, after) = (lines('-'), lines('+'));
+            assert_eq!(text.matches(&before).count(), 1, "{}: {before}", self.page.path);
+            text = text.replace(&before, &after);
+        }
+        fs::write(path, text).unwrap();
+    }
+
+    /// Holds a file, if the block has one, to what the page says has become of it.
+    fn compare(&self, fence: &Fence) {
+        let Some(file) = fence.file() else { return };
+        assert_eq!(fs::read_to_string(self.folder.join(file)).unwrap(), fence.text, "{}: {file}", self.page.path);
+    }
+
+    /// Holds a plan to the codes that are expected of it.
+    fn check(&self, fence: &Fence) {
+        let said = said(&run_mdlec(&self.folder, &["check", &self.plan, "--message-format", "json"]));
+        let codes = said.lines().filter_map(|line| {
+            let message: Value = serde_json::from_str(line).expect(line);
+            message["code"].as_str().map(str::to_owned)
+        });
+        let expected: BTreeSet<_> = fence.codes().into_iter().map(str::to_owned).collect();
+        assert_eq!(codes.collect::<BTreeSet<_>>(), expected, "{}\n{}\n{said}", self.page.path, fence.text);
+    }
+
+    /// Holds every machine to a trace of the last plan with the last script.
+    fn trace(&self, expected: &str) {
+        for machine in ["tree", "table", "matrix", "counted"] {
+            let arguments = ["trace", &self.plan, "--script", &self.script, "--machine", machine];
+            let output = run_mdlec(&self.folder, &arguments);
+            let trace = String::from_utf8_lossy(&output.stdout);
+            assert_eq!(trace, expected, "{}, machine {machine}: {}", self.page.path, said(&output));
+        }
+    }
+
+    /// Runs a command, as a reader types it, and holds it to what it says; without that, to success.
+    fn run(&self, command: &str) {
+        let (command, expected) = command.split_once('\n').unwrap();
+        let words: Vec<_> = command.split(' ').collect();
+        let output = match words[0] {
+            "mdlec" => run_mdlec(&self.folder, &words[1..]),
+            // By the name that is typed, which the program may print.
+            program => Command::new(program).args(&words[1..]).current_dir(&self.folder).output().unwrap(),
+        };
+        let said = said(&output);
+        if expected.is_empty() {
+            assert!(output.status.success(), "{}: {command}\n{said}", self.page.path);
+        } else {
+            assert!(is_alike(&said, expected), "{}: {command}\n{said}", self.page.path);
+        }
+    }
+}
+
+impl Walk<'_> {
+    /// Holds the pictures of the page to what its commands have drawn.
+    fn pictures(&self) {
+        for picture in
+            links(self.page).into_iter().filter(|link| link.ends_with(".svg") && self.folder.join(link).exists())
+        {
+            let (drawn, shown) = (self.folder.join(picture), root().join("docs/src").join(picture));
+            let drawn = fs::read(drawn).unwrap();
+            if std::env::var("INSTA_UPDATE").is_ok_and(|update| update == "always") {
+                fs::write(&shown, &drawn).unwrap();
+            }
+            assert!(fs::read(&shown).is_ok_and(|shown| shown == drawn), "INSTA_UPDATE=always writes {shown:?}");
+        }
+    }
+}
+
+fn said(output: &Output) -> String {
+    format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
+}
+
+/// Whether a text is as a page shows it: to the letter, but for what a line `…` leaves out.
+fn is_alike(said: &str, shown: &str) -> bool {
+    match shown.split_once("…\n") {
+        None => said == shown,
+        Some((start, end)) => said.len() > shown.len() && said.starts_with(start) && said.ends_with(end),
+    }
+}
+
+#[test]
+fn examples_do_what_the_book_says() {
+    let mut traces = 0;
+    for page in &pages() {
+        let folder = folder(&format!("book_{}", name(page)));
+        let mut walk = Walk { page, folder, plan: String::new(), script: String::new() };
+        let fences = fences(page);
+        fences.iter().for_each(|fence| walk.step(fence));
+        walk.pictures();
+        let count = |word: &str| fences.iter().filter(|fence| fence.words[0] == word).count();
+        assert_eq!(count("script"), count("trace") + usize::from(name(page) == "first_plan.md"), "{}", page.path);
+        traces += count("trace");
+    }
+    assert!(traces >= 20, "the book has {traces} traces");
+}
+
+#[test]
+fn the_book_shows_every_plan_to_learn_from() {
+    let shown = pages().into_iter().find(|page| name(page) == "plans.md").unwrap().text;
+    let plans = fs::read_dir(root().join("plans")).unwrap().map(|entry| entry.unwrap().path());
+    for plan in plans.filter(|plan| plan.is_file()) {
+        let file = Path::new(&plan).file_name().unwrap().to_str().unwrap();
+        assert!(shown.contains(&format!("{{{{#include ../../plans/{file}}}}}")), "{file} is not in docs/src/plans.md");
+    }
+}
+
+#[test]
+fn the_page_on_worlds_names_every_key() {
+    let page = pages().into_iter().find(|page| name(page) == "worlds.md").unwrap().text;
+    let format = fs::read_to_string(root().join("targets/sim/src/world_file/text.rs")).unwrap();
+    let obstacles = format.split("rename = \"").skip(1).filter_map(|rest| rest.split('"').next());
+    let obstacles: Vec<_> = obstacles.map(|kind| format!("`[[{kind}]]`")).collect();
+    let fields = format.lines().filter(|line| !line.contains("Vec<Table<") && !line.contains("Vec<Spanned<Table<"));
+    let keys = fields.filter_map(|line| line.trim().strip_prefix("pub(super) ")?.split_once(": "));
+    let keys: Vec<_> = keys.map(|(key, _)| format!("`{key}`")).collect();
+    assert!(obstacles.len() == 4 && keys.len() > 20, "{obstacles:?} {keys:?}");
+    for key in obstacles.iter().chain(&keys) {
+        assert!(page.contains(key), "docs/src/worlds.md does not name {key}");
+    }
+}
+
+#[test]
+fn frames_of_the_protocols_are_tested_packets() {
+    let page = pages().into_iter().find(|page| name(page) == "reference/protocols.md").unwrap().text;
+    let tests = ["scout", "atrv"].map(|robot| root().join(format!("targets/{robot}/tests/packets.rs")));
+    let tested: String = tests.iter().map(|path| fs::read_to_string(path).unwrap()).collect();
+    let is_byte = |word: &str| word.len() == 2 && u8::from_str_radix(word, 16).is_ok();
+    let is_frame = |code: &&str| code.split(' ').count() > 4 && code.split(' ').all(is_byte);
+    let frames: Vec<_> = page.split('`').skip(1).step_by(2).filter(is_frame).collect();
+    assert!(frames.len() > 20, "{frames:?}");
+    let untested: Vec<_> = frames.into_iter().filter(|frame| !tested.contains(&format!("\"{frame}\""))).collect();
+    assert_eq!(untested, [""; 0]);
+}

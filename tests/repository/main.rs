@@ -1,0 +1,8 @@
+//! The repository: its files, its directions, its book, and the table of what tests cover.
+
+mod book;
+mod codes;
+mod coverage;
+mod directions;
+mod readme;
+mod tidy;

@@ -1,0 +1,12 @@
+//! Executables on simulated and emulated robots, in simulated time.
+
+mod atrv;
+mod batches;
+mod emulators;
+mod lab_tour;
+mod movement;
+mod operands;
+mod paths;
+mod power;
+mod scout;
+mod several;
