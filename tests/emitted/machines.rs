@@ -42,11 +42,6 @@ fn plans_as_code_do_what_the_other_machines_do() {
 }
 
 #[test]
-fn plans_that_share_code_do_what_the_other_machines_do() {
-    compare(Shape::Shared);
-}
-
-#[test]
 fn plans_as_rows_do_what_the_other_machines_do() {
     compare(Shape::Rows);
 }

@@ -67,11 +67,9 @@ fn comparisons_are_what_their_texts_say() {
 
 #[test]
 fn the_time_in_a_scope_is_an_interval_and_no_constant() {
-    for shape in [Shape::Code, Shape::Shared] {
-        let rust = dense_as(shape, "{ Main (Atom (t < 2s) idle) }");
-        assert!(rust.contains("(Nanos(0)..Nanos(2000000000)).contains(&cursor.since(1u16,t))"), "{rust}");
-        assert!(!rust.contains("runtime::Comparison"), "{rust}");
-    }
+    let rust = dense_as(Shape::Code, "{ Main (Atom (t < 2s) idle) }");
+    assert!(rust.contains("(Nanos(0)..Nanos(2000000000)).contains(&cursor.since(1u16,t))"), "{rust}");
+    assert!(!rust.contains("runtime::Comparison"), "{rust}");
     let rows = dense_as(Shape::Rows, "{ Main (Atom (t < 2s) idle) }");
     assert!(rows.contains("Elapsed(Nanos(0),Nanos(2000000000))"), "{rows}");
 }
@@ -84,7 +82,7 @@ fn what_never_fires_is_false_among_others() {
 
 #[test]
 fn a_plan_that_remembers_is_rows_with_a_memory_and_is_told_what_ends() {
-    for shape in [Shape::Code, Shape::Shared, Shape::Rows] {
+    for shape in [Shape::Code, Shape::Rows] {
         let rust = dense_as(shape, "{ Main (a OR RISING b) (Atom (wait 1) idle) }");
         // The operands of the plan's OR, then the one of RISING.
         for part in ["Rising(0,2)", "InRows::remembering(", "fnleave(", "fnsettle("] {
@@ -95,23 +93,6 @@ fn a_plan_that_remembers_is_rows_with_a_memory_and_is_told_what_ends() {
     let rust = dense_as(Shape::Rows, "{ Main (a) (Atom (wait 1) idle) }");
     assert!(rust.contains("InRows::new(&ROWS,"), "{rust}");
     assert!(!rust.contains("fnleave(") && !rust.contains("Memories") && !rust.contains("MARKS"), "{rust}");
-}
-
-#[test]
-fn atoms_that_share_code_ask_the_plan_first_and_take_from_their_row_what_differs() {
-    let rust = dense_as(
-        Shape::Shared,
-        "{ Main (a OR wait 60) ExecPlan 2 { { Q (b) (Atom (echo 1) veer 10) } { Q (c) (Atom (echo 2) veer 20) } } (Atom (d) idle) }",
-    );
-    for part in [
-        "lett=begin.now;ifruntime::Interrupt::fired(&robot::A::new(),y)|(cursor.since(0u16,t)>=Nanos(60000000000)){\
-         returnNext::Ends(runtime::Cause::Fired(0u16).then(runtime::Follows::new(3,0,0)));}matchself.running",
-        // The second atom ends with the loop's body: what follows is not known, and no constant.
-        "runtime::Interrupt::fired(&robot::Echo::new(runtime::SonarId::new(2)),y)",
-        "staticPLACES:&[(u16,u32)]=&[(1,0),(2,0),(3,0)];",
-    ] {
-        assert!(rust.contains(part), "{part} in {rust}");
-    }
 }
 
 #[test]

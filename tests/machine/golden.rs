@@ -14,8 +14,8 @@ mod recorded {
     pub(crate) mod lab_tour {
         include!("snapshots/machine__golden__rust-lab_tour.snap.rs");
     }
-    pub(crate) mod shared_lab_tour {
-        include!("snapshots/machine__golden__rust-shared-lab_tour.snap.rs");
+    pub(crate) mod rows_lab_tour {
+        include!("snapshots/machine__golden__rust-rows-lab_tour.snap.rs");
     }
     pub(crate) mod dock {
         include!("snapshots/machine__golden__rust-dock.snap.rs");
@@ -78,10 +78,10 @@ fn rust_for_the_simulator() {
 }
 
 #[test]
-fn rust_that_alike_atoms_share() {
+fn rust_in_rows() {
     let file = plans().into_iter().find(|plan| name(plan) == "lab_tour").unwrap();
-    let text = rust(&file, &judge(&file, Some("sim")).0.swap_remove(0), Shape::Shared);
-    insta::assert_binary_snapshot!("rust-shared-lab_tour.rs", text.into_bytes());
+    let text = rust(&file, &judge(&file, Some("sim")).0.swap_remove(0), Shape::Rows);
+    insta::assert_binary_snapshot!("rust-rows-lab_tour.rs", text.into_bytes());
 }
 
 #[test]
@@ -91,7 +91,7 @@ fn recorded_rust_compiles_and_has_the_tables_of_its_plan() {
         judge(&file, Some("sim")).0.swap_remove(0).lowered
     };
     assert_eq!(recorded::lab_tour::LabTour::new().fsm(), tables("lab_tour").tables());
-    assert_eq!(recorded::shared_lab_tour::LabTour::new().fsm(), tables("lab_tour").tables());
+    assert_eq!(recorded::rows_lab_tour::LabTour::new().fsm(), tables("lab_tour").tables());
     assert_eq!(recorded::dock::Dock::new().fsm(), tables("dock").tables());
     let plan = recorded::lab2_to_lab1::Lab2ToLab1Plan::new();
     assert_eq!(plan.fsm(), tables("paper-lab2_to_lab1").tables());

@@ -134,7 +134,7 @@ pub fn emit(text: &str) {
     for alphabet in [&*SIMULATOR, scripted()] {
         for Compiled { plan, lowered, .. } in compiled(text, alphabet) {
             let header = Header { sources: &sources, file: "plan.mdle", plan: &plan.root.name };
-            for shape in [Shape::Code, Shape::Shared, Shape::Rows] {
+            for shape in [Shape::Code, Shape::Rows] {
                 if lowered.brackets.len() > EMITTED {
                     continue;
                 }

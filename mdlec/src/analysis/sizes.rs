@@ -12,7 +12,7 @@ use crate::rust::Shape;
 /// Bytes of the emitted machine, on a computer of 64 bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Bytes {
-    /// How it is written: `code`, `shared` or `rows`.
+    /// How it is written: `code` or `rows`.
     pub form: &'static str,
     /// What is kept from turn to turn beside the law that runs: where the plan is, when it began what, its frame.
     pub state: u64,
@@ -42,7 +42,6 @@ pub(super) fn bytes(lowered: &Lowered) -> Bytes {
     Bytes {
         form: match Shape::of(lowered) {
             Shape::Code => "code",
-            Shape::Shared => "shared",
             Shape::Rows => "rows",
         },
         state: number(cursor + size_of::<Frame>()),

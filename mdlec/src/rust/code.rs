@@ -18,105 +18,29 @@ pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered, paths: Option<
     let meaning = Meaning::new(lowered);
     let constants = meaning.constants();
     let running = meaning.running();
-    let parts = Parts {
-        before: quote!(#constants #running),
-        enter: meaning.enter(),
-        next: meaning.next(),
-        input: meaning.input(),
-        behind: meaning.scope_functions(),
-    };
-    parts.machine(plan, doc, lowered, paths)
-}
+    let implementation = meaning.implementation(plan, paths);
+    let scope_functions = meaning.scope_functions();
+    let conditions = conditions(lowered);
+    quote! {
+        #[doc = #doc]
+        #[derive(Debug)]
+        pub struct #plan { running: Running }
 
-/// What differs from plan to plan in code.
-pub(super) struct Parts {
-    /// What stands in front of the implementation: constants, `enum Running`.
-    pub(super) before: TokenStream,
-    /// `fn enter`.
-    pub(super) enter: TokenStream,
-    /// `fn next`.
-    pub(super) next: TokenStream,
-    /// `fn input`.
-    pub(super) input: TokenStream,
-    /// What stands behind it: functions, tables.
-    pub(super) behind: TokenStream,
-}
-
-impl Parts {
-    /// The plan's type and its implementation.
-    pub(super) fn machine(
-        &self,
-        plan: &Ident,
-        doc: &str,
-        lowered: &Lowered,
-        paths: Option<&TokenStream>,
-    ) -> TokenStream {
-        let Self { before, behind, .. } = self;
-        let implementation = self.implementation(plan, lowered, paths);
-        let conditions = conditions(lowered);
-        quote! {
-            #[doc = #doc]
-            #[derive(Debug)]
-            pub struct #plan { running: Running }
-
-            impl #plan {
-                #[doc = " The plan before it begins."]
-                #[must_use]
-                pub const fn new() -> Self { Self { running: Running::Idle } }
-            }
-
-            impl Default for #plan {
-                fn default() -> Self { Self::new() }
-            }
-
-            #before
-            #implementation
-            #behind
-            #conditions
+        impl #plan {
+            #[doc = " The plan before it begins."]
+            #[must_use]
+            pub const fn new() -> Self { Self { running: Running::Idle } }
         }
-    }
 
-    /// `impl Plan for LabTour`: what the machine asks of a plan.
-    fn implementation(&self, plan: &Ident, lowered: &Lowered, paths: Option<&TokenStream>) -> TokenStream {
-        let slots = Literal::usize_unsuffixed(lowered.slots);
-        let (entered, begins) = entries(lowered);
-        let Self { enter, next, input, .. } = self;
-        quote! {
-            impl runtime::Plan for #plan {
-                type Output = Output;
-                type Input = Input;
-                type Entered = #entered;
-                type Left = [u64; #slots];
-
-                fn fsm(&self) -> Fsm<'_> { FSM }
-                fn slots(&self) -> (Self::Entered, Self::Left) { (#begins, [0; #slots]) }
-                #enter
-                #next
-                #input
-                fn operands(
-                    &self,
-                    cursor: &At,
-                    scope: u32,
-                    y: &Output,
-                    t: Nanos,
-                    tell: &mut dyn FnMut(u32, runtime::Measured),
-                ) {
-                    OPERANDS.fired(FSM, cursor, scope, y, t, tell);
-                }
-                fn source(&self) -> runtime::Source<'_> { SOURCE }
-                fn law(&self, atom: u32) -> &str { text(LAWS, atom) }
-                fn condition(&self, scope: u32) -> &str { text(CONDITIONS, scope) }
-                fn name(&self, scope: u32) -> &str { text(NAMES, scope) }
-                #paths
-            }
-
-            #[doc = " The cursor of this plan: its levels of scopes and of loops are known."]
-            type At = Cursor<#entered, [u64; #slots]>;
-
-            fn text(texts: &'static [&'static str], index: u32) -> &'static str {
-                texts.get(index as usize).copied().unwrap_or("")
-            }
+        impl Default for #plan {
+            fn default() -> Self { Self::new() }
         }
+
+        #constants
+        #running
+        #implementation
+        #scope_functions
+        #conditions
     }
 }
 
@@ -203,6 +127,49 @@ impl<'a> Meaning<'a> {
                 #[doc = " Before the plan begins."]
                 Idle,
                 #(#variants,)*
+            }
+        }
+    }
+
+    /// `impl Plan for LabTour`: what the machine asks of a plan.
+    fn implementation(&self, plan: &Ident, paths: Option<&TokenStream>) -> TokenStream {
+        let slots = Literal::usize_unsuffixed(self.lowered.slots);
+        let (entered, begins) = entries(self.lowered);
+        let [enter, next, input] = [self.enter(), self.next(), self.input()];
+        quote! {
+            impl runtime::Plan for #plan {
+                type Output = Output;
+                type Input = Input;
+                type Entered = #entered;
+                type Left = [u64; #slots];
+
+                fn fsm(&self) -> Fsm<'_> { FSM }
+                fn slots(&self) -> (Self::Entered, Self::Left) { (#begins, [0; #slots]) }
+                #enter
+                #next
+                #input
+                fn operands(
+                    &self,
+                    cursor: &At,
+                    scope: u32,
+                    y: &Output,
+                    t: Nanos,
+                    tell: &mut dyn FnMut(u32, runtime::Measured),
+                ) {
+                    OPERANDS.fired(FSM, cursor, scope, y, t, tell);
+                }
+                fn source(&self) -> runtime::Source<'_> { SOURCE }
+                fn law(&self, atom: u32) -> &str { text(LAWS, atom) }
+                fn condition(&self, scope: u32) -> &str { text(CONDITIONS, scope) }
+                fn name(&self, scope: u32) -> &str { text(NAMES, scope) }
+                #paths
+            }
+
+            #[doc = " The cursor of this plan: its levels of scopes and of loops are known."]
+            type At = Cursor<#entered, [u64; #slots]>;
+
+            fn text(texts: &'static [&'static str], index: u32) -> &'static str {
+                texts.get(index as usize).copied().unwrap_or("")
             }
         }
     }

@@ -7,12 +7,10 @@
 mod arguments;
 mod bind;
 mod code;
-mod kinds;
 mod layout;
 mod names;
 mod rows;
 mod scopes;
-mod shared;
 mod signatures;
 mod source;
 mod tables;
@@ -25,7 +23,6 @@ use crate::alphabet::Alphabet;
 use crate::diagnostic::{Code, Diagnostic, Sources, Span};
 use crate::fsm::Lowered;
 pub use bind::bind;
-use kinds::Atoms;
 pub use names::plan_type;
 
 /// What the head of the file says and the code refers to.
@@ -44,9 +41,7 @@ pub struct Header<'a> {
 pub enum Shape {
     /// Code for each atom and scope: the fastest turn, and pleasant to read.
     Code,
-    /// Code for each kind of atom, and tables of what tells the atoms of a kind apart: as fast, for long plans.
-    Shared,
-    /// Rows of tables: rustc compiles them in no time, and a turn looks them up.
+    /// Rows of tables: rustc compiles them in no time, and a turn looks them up. For long plans and for memories.
     Rows,
 }
 
@@ -55,23 +50,12 @@ impl Shape {
     const CODE: usize = 64;
     /// The most parts of all conditions of a plan that becomes code: rustc takes another half a second for these.
     const PARTS: usize = 512;
-    /// The most parts that the arms of shared code have in all: what rustc compiles in as much.
-    const SHARED: usize = 512;
-    /// The most parts of one atom, so that tables do not grow with the depth of the plan.
-    const WIDEST: usize = 32;
 
     /// The shape that suits a plan.
     #[must_use]
     pub fn of(lowered: &Lowered) -> Self {
-        if lowered.memories > 0 {
-            Self::Rows
-        } else if lowered.brackets.len() <= Self::CODE && parts(lowered) <= Self::PARTS {
-            Self::Code
-        } else if Atoms::new(lowered).kinds(Self::SHARED, Self::WIDEST).is_some() {
-            Self::Shared
-        } else {
-            Self::Rows
-        }
+        let is_short = lowered.brackets.len() <= Self::CODE && parts(lowered) <= Self::PARTS;
+        if is_short && lowered.memories == 0 { Self::Code } else { Self::Rows }
     }
 }
 
@@ -116,7 +100,6 @@ pub fn emit_as(shape: Shape, lowered: &Lowered, header: Header<'_>, alphabet: &A
     // What a plan remembers is in rows, whatever is asked for.
     let machine = match if lowered.memories > 0 { Shape::Rows } else { shape } {
         Shape::Code => code::machine(&plan, &doc, lowered, paths.as_ref()),
-        Shape::Shared => shared::machine(&plan, &doc, lowered, paths.as_ref()),
         Shape::Rows => rows::machine(&plan, &doc, lowered, paths.as_ref()),
     };
     let same_alphabet = same_alphabet(alphabet);
@@ -182,7 +165,7 @@ mod tests {
     #[test]
     fn conditions_in_every_shape() {
         let compiled = compiled(OPERATORS).swap_remove(0);
-        for shape in [Shape::Code, Shape::Shared, Shape::Rows] {
+        for shape in [Shape::Code, Shape::Rows] {
             let sources = Sources::default();
             let header = Header { sources: &sources, file: "plan.mdle", plan: "P" };
             let rust = emit_as(shape, &compiled.lowered, header, &alphabet(Some("sim")));
@@ -195,7 +178,7 @@ mod tests {
     fn a_plan_says_once_which_paths_it_replays() {
         let text = "{ P (bumper) (Atom (null) path hall) (Atom (null) path \"a b.csv\") (Atom (wait 5) path(hall)) }";
         let compiled = compiled(text).swap_remove(0);
-        for shape in [Shape::Code, Shape::Shared, Shape::Rows] {
+        for shape in [Shape::Code, Shape::Rows] {
             let sources = Sources::default();
             let header = Header { sources: &sources, file: "plan.mdle", plan: "P" };
             let rust = emit_as(shape, &compiled.lowered, header, &alphabet(Some("sim")));
@@ -241,23 +224,14 @@ mod tests {
     }
 
     #[test]
-    fn a_plan_of_more_than_sixty_four_brackets_shares_code_if_its_atoms_are_alike() {
+    fn long_plans_and_memories_are_rows() {
         let shape = |atoms: &str| Shape::of(&compiled(&format!("{{ P {atoms} }}"))[0].lowered);
-        let alike = |atoms: usize| shape(&"(Atom (wait 1) stop)".repeat(atoms));
-        assert_eq!([63, 64].map(alike), [Shape::Code, Shape::Shared]);
-        let atom = |operator: &str, count| format!("(Atom ({}) stop)", vec!["wait 1"; count].join(operator));
-        let long = |operands| shape(&atom(" OR ", operands));
+        let atoms = |count: usize| shape(&"(Atom (wait 1) stop)".repeat(count));
+        assert_eq!([63, 64].map(atoms), [Shape::Code, Shape::Rows]);
+        let operands = |count| shape(&format!("(Atom ({}) stop)", vec!["wait 1"; count].join(" OR ")));
         // An operator, the operands, and the plan's own null interrupt.
-        assert_eq!([510, 511].map(long), [Shape::Code, Shape::Rows]);
-        assert_eq!(shape("(Atom (RISING bumper) stop)"), Shape::Rows, "what remembers is rows however short it is");
-        // A row has 32 parts at most: its scope, the operator and what follows beside the operands.
-        let wide = |operands: usize| shape(&atom(" AND ", operands).repeat(64));
-        assert_eq!([29, 30].map(wide), [Shape::Shared, Shape::Rows]);
-        // No two of these are alike. With the law and its frame, their kinds have five parts beside the operands, and with
-        // both kinds of `wait 1`, the last atom being one by itself, 512 parts are the most.
-        let differ: String = (2..=26).map(|operands| atom(" AND ", operands)).collect();
-        let kinds = |operands| shape(&[&differ, &*atom(" OR ", operands), &atom("", 1).repeat(64)].concat());
-        assert_eq!([22, 23].map(kinds), [Shape::Shared, Shape::Rows]);
+        assert_eq!([510, 511].map(operands), [Shape::Code, Shape::Rows]);
+        assert_eq!(shape("(Atom (RISING bumper) stop)"), Shape::Rows, "a memory in a short plan");
     }
 
     #[test]

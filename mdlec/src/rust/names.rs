@@ -53,16 +53,6 @@ pub(super) fn atom_variant(atom: usize) -> Ident {
     format_ident!("Atom{}", atom + 1)
 }
 
-/// The variant of a kind of atoms, and the type of their rows; numbered from 1.
-pub(super) fn kind_variant(kind: usize) -> Ident {
-    format_ident!("Kind{kind}")
-}
-
-/// The table of a kind of atoms.
-pub(super) fn kind_table(kind: usize) -> Ident {
-    format_ident!("KIND_{kind}")
-}
-
 /// Names that must differ from each other.
 #[derive(Debug)]
 pub(super) struct Distinct {

@@ -41,6 +41,7 @@ pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered, paths: Option<
 
             fn fsm(&self) -> Fsm<'_> { runtime::Plan::fsm(&self.0) }
             fn slots(&self) -> (Self::Entered, Self::Left) { runtime::Plan::slots(&self.0) }
+            #[inline(always)]
             fn enter(&mut self, atom: u32, y: &Output, begin: Begin) { runtime::Plan::enter(&mut self.0, atom, y, begin); }
             #[inline(always)]
             fn next(
@@ -53,6 +54,7 @@ pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered, paths: Option<
                 runtime::Plan::next(&mut self.0, cursor, y, begin, direct)
             }
             #told
+            #[inline(always)]
             fn input(&mut self, y: &Output, t: Nanos) -> Input { runtime::Plan::input(&mut self.0, y, t) }
             fn operands(
                 &self,

@@ -45,9 +45,14 @@ impl Meaning<'_> {
         None
     }
 
-    /// What the scope of this bracket answers when it ends.
+    /// What the scope of this bracket answers when it ends: `Cause::Fired(level).then(…)`, or without what follows where
+    /// that depends on a loop's count.
     pub(super) fn ending(&self, bracket: u32, cause: &TokenStream) -> TokenStream {
-        ending(cause, self.level(bracket), self.lowered.tables().follows(bracket).map(follows))
+        let level = self.level(bracket);
+        match self.lowered.tables().follows(bracket).map(follows) {
+            Some(follows) => quote!(runtime::Cause::#cause(#level).then(#follows)),
+            None => quote!(runtime::Cause::#cause(#level).into()),
+        }
     }
 
     fn level(&self, bracket: u32) -> u16 {
@@ -58,39 +63,51 @@ impl Meaning<'_> {
     pub(super) fn condition(&self, bracket: u32) -> Option<TokenStream> {
         let scope = self.lowered.scopes[bracket as usize].as_ref()?;
         let condition = &scope.interrupt.condition;
-        let mut constant = |constant: Constant| match constant {
-            Constant::Quark(QuarkId(id)) => {
-                let constant = &self.constants[id as usize];
-                quote!(#constant)
+        (*condition != Condition::Null).then(|| self.expression(condition, self.level(bracket)))
+    }
+
+    /// Whether a condition of a scope of this level has fired.
+    fn expression(&self, condition: &Condition, level: u16) -> TokenStream {
+        let operand = |operand: &Condition| {
+            let inner = self.expression(operand, level);
+            match operand {
+                Condition::Or(_) | Condition::And(_) | Condition::Wait { .. } => quote!((#inner)),
+                Condition::Elapsed { .. } | Condition::Driven { .. } => quote!((#inner)),
+                Condition::Null | Condition::Quark(_) | Condition::Not(_) => inner,
+                Condition::Rising { .. } | Condition::After(_) => inner,
             }
-            Constant::Wait(nanos) => nanoseconds(nanos),
-            Constant::Way(length) => nanometers(length),
         };
-        (*condition != Condition::Null).then(|| expression(condition, self.level(bracket), &mut constant))
+        match condition {
+            // A plan with these is rows.
+            Condition::Null | Condition::Rising { .. } | Condition::After(_) => quote!(false),
+            Condition::Quark(QuarkId(id)) => {
+                let quark = &self.constants[*id as usize];
+                quote!(runtime::Interrupt::fired(&#quark, y))
+            }
+            Condition::Wait { nanos, .. } => {
+                let nanos = nanoseconds(*nanos);
+                quote!(cursor.since(#level, t) >= #nanos)
+            }
+            Condition::Elapsed { from, until, .. } => {
+                let [from, until] = [*from, until.unwrap_or(u64::MAX)].map(nanoseconds);
+                quote!((#from..#until).contains(&cursor.since(#level, t)))
+            }
+            Condition::Driven { from, until, .. } => {
+                let [from, until] = [*from, until.unwrap_or(u64::MAX)].map(nanometers);
+                quote!((#from..#until).contains(&cursor.way(#level)))
+            }
+            Condition::Or(operands) => joined(operands.iter().map(operand).collect(), &quote!(|)),
+            Condition::And(operands) => joined(operands.iter().map(operand).collect(), &quote!(&)),
+            Condition::Not(inner) => {
+                let inner = operand(inner);
+                quote!(!#inner)
+            }
+        }
     }
-}
-
-/// `Cause::Fired(level).then(…)`, or without what follows where that depends on a loop's count.
-pub(super) fn ending(cause: &TokenStream, level: u16, follows: Option<TokenStream>) -> TokenStream {
-    match follows {
-        Some(follows) => quote!(runtime::Cause::#cause(#level).then(#follows)),
-        None => quote!(runtime::Cause::#cause(#level).into()),
-    }
-}
-
-/// What a condition is made of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Constant {
-    /// A quark with its arguments.
-    Quark(QuarkId),
-    /// The nanoseconds of a `wait`.
-    Wait(u64),
-    /// The nanometres of a `way`.
-    Way(u64),
 }
 
 /// `Nanos(500)`.
-pub(super) fn nanoseconds(nanos: u64) -> TokenStream {
+fn nanoseconds(nanos: u64) -> TokenStream {
     let nanos = Literal::u64_unsuffixed(nanos);
     quote!(Nanos(#nanos))
 }
@@ -99,50 +116,6 @@ pub(super) fn nanoseconds(nanos: u64) -> TokenStream {
 pub(super) fn nanometers(length: u64) -> TokenStream {
     let length = Literal::u64_unsuffixed(length);
     quote!(runtime::Nanometers(#length))
-}
-
-/// Whether a condition of a scope of this level has fired. `constant` says, from left to right, how each constant in it
-/// is written.
-pub(super) fn expression(
-    condition: &Condition,
-    level: u16,
-    constant: &mut impl FnMut(Constant) -> TokenStream,
-) -> TokenStream {
-    let mut operand = |operand: &Condition| {
-        let inner = expression(operand, level, constant);
-        match operand {
-            Condition::Or(_) | Condition::And(_) | Condition::Wait { .. } => quote!((#inner)),
-            Condition::Elapsed { .. } | Condition::Driven { .. } => quote!((#inner)),
-            Condition::Null | Condition::Quark(_) | Condition::Not(_) => inner,
-            Condition::Rising { .. } | Condition::After(_) => inner,
-        }
-    };
-    match condition {
-        // A plan with these is rows.
-        Condition::Null | Condition::Rising { .. } | Condition::After(_) => quote!(false),
-        Condition::Quark(id) => {
-            let quark = constant(Constant::Quark(*id));
-            quote!(runtime::Interrupt::fired(&#quark, y))
-        }
-        Condition::Wait { nanos, .. } => {
-            let nanos = constant(Constant::Wait(*nanos));
-            quote!(cursor.since(#level, t) >= #nanos)
-        }
-        Condition::Elapsed { from, until, .. } => {
-            let [from, until] = [*from, until.unwrap_or(u64::MAX)].map(|nanos| constant(Constant::Wait(nanos)));
-            quote!((#from..#until).contains(&cursor.since(#level, t)))
-        }
-        Condition::Driven { from, until, .. } => {
-            let [from, until] = [*from, until.unwrap_or(u64::MAX)].map(|length| constant(Constant::Way(length)));
-            quote!((#from..#until).contains(&cursor.way(#level)))
-        }
-        Condition::Or(operands) => joined(operands.iter().map(operand).collect(), &quote!(|)),
-        Condition::And(operands) => joined(operands.iter().map(operand).collect(), &quote!(&)),
-        Condition::Not(inner) => {
-            let inner = operand(inner);
-            quote!(!#inner)
-        }
-    }
 }
 
 /// Operands with an operator between them, in groups where there are many: Rust's syntax nests operators to the left, and

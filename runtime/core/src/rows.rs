@@ -307,6 +307,7 @@ impl<'a, A: Alphabet, E: Entries + Clone, P: Slots<u64> + Clone, M: Memory<'a>> 
         self.slots.clone()
     }
 
+    #[inline(always)]
     fn enter(&mut self, atom: u32, y: &A::Output, begin: Begin) {
         self.own = self.rows.fsm.atoms.get(atom as usize).map_or(0, |atom| atom.scope);
         let row = self.rows.laws.get(atom as usize);
@@ -349,6 +350,7 @@ impl<'a, A: Alphabet, E: Entries + Clone, P: Slots<u64> + Clone, M: Memory<'a>> 
         }
     }
 
+    #[inline(always)]
     fn input(&mut self, y: &A::Output, t: Nanos) -> A::Input {
         self.running.as_mut().map_or_else(A::Input::default, |law| law.input(y, t))
     }

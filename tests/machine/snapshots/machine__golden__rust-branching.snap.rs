@@ -61,6 +61,7 @@ mod machine {
         fn slots(&self) -> (Self::Entered, Self::Left) {
             runtime::Plan::slots(&self.0)
         }
+        #[inline(always)]
         fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
             runtime::Plan::enter(&mut self.0, atom, y, begin);
         }
@@ -91,6 +92,7 @@ mod machine {
         ) {
             runtime::Plan::settle(&mut self.0, cursor, y, t);
         }
+        #[inline(always)]
         fn input(&mut self, y: &Output, t: Nanos) -> Input {
             runtime::Plan::input(&mut self.0, y, t)
         }

@@ -25,7 +25,7 @@ pub struct Compiled<P: Plan>(Machine<P>);
 
 /// T(8): emitted as code with an arm for each atom.
 pub type Plan8 = Compiled<plan_8::T>;
-/// T(1000): emitted as code that alike atoms share.
+/// T(1000): emitted as rows of tables.
 #[cfg(feature = "thousands")]
 pub type Plan1000 = Compiled<plan_1000::T>;
 /// T(100000): the same.
