@@ -1,7 +1,7 @@
 //! The compiler of MDLe: text in, Rust out.
 //!
 //! ```text
-//! text ─syntax→ tree ─plan::resolve→ Plan ─plan::remove_degeneracy→ Nondegenerate ─fsm::algorithm1→ Lowered ─rust::emit→ Rust ─link→ executable
+//! text ─syntax→ tree ─plan::resolve→ Plan ─plan::remove_degeneracy→ Nondegenerate ─fsm::lower→ Machine ─rust::emit→ Rust ─link→ executable
 //! ```
 //!
 //! **A stage does no I/O**: only [`cli`], [`embed`] and [`link`] read and write files.
@@ -34,7 +34,7 @@ pub struct Compiled {
     /// Without repeated interrupts.
     pub nondegenerate: plan::Nondegenerate,
     /// As a machine.
-    pub lowered: fsm::Lowered,
+    pub lowered: fsm::Machine,
 }
 
 /// The compiler on one screen: takes the plan called `wanted`, or every plan that no other refers to, from text to
@@ -94,7 +94,7 @@ fn stages(
             let (nondegenerate, warnings) = plan::remove_degeneracy(plan);
             found.extend(warnings);
             found.extend(plan::lints::lints(&nondegenerate));
-            match fsm::algorithm1(&nondegenerate) {
+            match fsm::lower(&nondegenerate) {
                 Ok(lowered) => {
                     found.extend(analysis::lints(&lowered));
                     compiled.extend(kept.map(|plan| Compiled { plan, nondegenerate, lowered }));

@@ -249,7 +249,8 @@ fn memories_link_and_run() {
 /// The conditions of a plan that ended nothing in these turns.
 fn never_fired(plan: &str, turns: &str) -> Vec<String> {
     let (Compiled { lowered, .. }, _) = compiled(plan);
-    let conditions: BTreeSet<_> = lowered.scopes.iter().flatten().map(|scope| scope.interrupt.text.clone()).collect();
+    let interrupts = lowered.elements().filter_map(mdlec::fsm::Element::interrupt);
+    let conditions: BTreeSet<_> = interrupts.map(|interrupt| interrupt.text.clone()).collect();
     conditions.into_iter().filter(|text| !turns.contains(&format!("\"by\":\"{text}\""))).collect()
 }
 

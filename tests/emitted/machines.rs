@@ -76,7 +76,7 @@ fn random(seed: u64) -> Case {
         let text = RandomPlan::new(&mut chance, 4 + seed as usize / 10, seed % 40 == 39).named(root).to_string();
         // Loops in loops in loops can make too many states.
         let compiled = compile_plan(&text, root).ok()?;
-        if seed.is_multiple_of(2) && compiled.lowered.memories > 0 {
+        if seed.is_multiple_of(2) && compiled.lowered.sizes().memories > 0 {
             return None;
         }
         let scripts = (0..SCRIPTS).map(|_| script(&mut chance, 12)).collect();

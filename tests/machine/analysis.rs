@@ -18,6 +18,7 @@ use mdle_tests::repository::{TextFile, files, root};
 use mdle_tests::signals::Values;
 use mdlec::Compiled;
 use mdlec::analysis::{Analysis, Reach, analyze, lints};
+use mdlec::fsm::ElementKind;
 use mdlec::plan::{Plan, Quark, condition_text};
 use mdlec::trace::{Applied, Counted, Line, Outcome, Script, run};
 
@@ -121,16 +122,16 @@ impl<'c> Trial<'c> {
         let analysis = analyze(&compiled.lowered);
         let lowered = &compiled.lowered;
         let (mut atoms, mut scopes) = (0, 0);
-        let parts = (0..lowered.brackets.len()).map(|number| {
-            if lowered.atoms.iter().any(|atom| atom.scope as usize == number) {
+        let parts = lowered.elements().map(|element| match element.kind() {
+            ElementKind::Atom(_) => {
                 atoms += 1;
                 Part::Atom(atoms - 1)
-            } else if lowered.scopes[number].is_some() {
+            }
+            ElementKind::Scope => {
                 scopes += 1;
                 Part::Scope(scopes - 1)
-            } else {
-                Part::Loop
             }
+            ElementKind::Loop { .. } => Part::Loop,
         });
         let parts = parts.collect();
         Self { seed, text, compiled, analysis, parts }

@@ -18,7 +18,7 @@ use mdle_tests::random_script::script;
 use mdle_tests::repository::TextFile;
 use mdle_tests::xml::{Element, read};
 use mdlec::Compiled;
-use mdlec::fsm::{Lowered, algorithm1, expand};
+use mdlec::fsm::{Machine, expand, lower};
 use mdlec::picture::{dot, mermaid, svg};
 use mdlec::trace::{Line, Script, Table, run};
 
@@ -56,10 +56,10 @@ fn boxes(picture: &Element) -> Vec<(&Element, Edges)> {
 }
 
 /// Holds a picture to what a picture has to be.
-fn assert_well_drawn(lowered: &Lowered, picture: &Element) {
+fn assert_well_drawn(lowered: &Machine, picture: &Element) {
     let whole = edges(picture);
     let boxes = boxes(picture);
-    assert_eq!(boxes.len(), lowered.brackets.len());
+    assert_eq!(boxes.len(), lowered.elements().len());
     let outside_boxes =
         picture.children.iter().filter(|child| child.name == "text" && child.attribute("class") == "quiet");
     for text in outside_boxes.filter(|text| !text.attributes.contains_key("text-anchor")) {
@@ -67,12 +67,13 @@ fn assert_well_drawn(lowered: &Lowered, picture: &Element) {
         let right = x + text.text.chars().count() as i64 * 73 / 10;
         assert!(right <= whole[2], "{:?} leaves the picture", text.text);
     }
-    for (number, (group, here)) in boxes.iter().enumerate() {
-        let bracket = &lowered.brackets[number];
-        let around = if number == 0 { whole } else { boxes[bracket.parent as usize].1 };
+    for (element, (number, (group, here))) in lowered.elements().zip(boxes.iter().enumerate()) {
+        let parent = element.parent().map(|around| around.index());
+        let around = parent.map_or(whole, |parent| boxes[parent].1);
         assert!(is_inside(*here, around), "box {number} leaves the one around it: {here:?} {around:?}");
-        for (other, (_, there)) in boxes.iter().enumerate().take(number) {
-            let beside = lowered.brackets[other].parent == bracket.parent && other != bracket.parent as usize;
+        for (other, (_, there)) in lowered.elements().zip(&boxes).take(number) {
+            let beside = other.parent().map(|around| around.index()) == parent;
+            let other = other.number();
             let apart = here[0] >= there[2] || there[0] >= here[2] || here[1] >= there[3] || there[1] >= here[3];
             assert!(!beside || apart, "boxes {other} and {number} overlap");
         }
@@ -82,9 +83,8 @@ fn assert_well_drawn(lowered: &Lowered, picture: &Element) {
             let right = x + text.text.chars().count() as i64 * 73 / 10;
             assert!(right <= here[2], "{:?} is too long for its box", text.text);
         }
-        if let Some(scope) = lowered.scopes[number].as_ref().filter(|scope| scope.interrupt.text != "null") {
+        if let Some(interrupt) = element.interrupt().filter(|interrupt| interrupt.text != "null") {
             let title = &group.children[0].text;
-            let interrupt = &scope.interrupt;
             let is_told = title.contains(&interrupt.text) || interrupt.text == "wait inf" || title.contains("done");
             assert!(is_told, "{title:?} does not tell {}", interrupt.text);
         }
@@ -106,7 +106,7 @@ fn boxes_are_inside_each_other_and_beside_each_other_and_tell_everything() {
         let text = svg(&compiled.lowered).unwrap();
         assert_well_drawn(&compiled.lowered, &read(&text));
         assert_eq!(svg(&compiled.lowered).unwrap(), text);
-        atoms += compiled.lowered.atoms.len();
+        atoms += compiled.lowered.atoms().len();
     }
     assert!(atoms > 2000, "{atoms} atoms");
 }
@@ -157,7 +157,7 @@ fn graphs_have_the_transitions_of_the_plan() {
     let mut transitions = 0;
     for (seed, compiled, script) in plans() {
         let graph = read_dot(&dot(&compiled.lowered).unwrap());
-        assert_eq!(graph.nodes.len(), compiled.lowered.atoms.len() + 2);
+        assert_eq!(graph.nodes.len(), compiled.lowered.atoms().len() + 2);
         for (from, to, attributes) in &graph.edges {
             assert!(graph.nodes.contains_key(from) && graph.nodes.contains_key(to), "{from} -> {to}");
             if let Some(cluster) = attributes.get("ltail") {
@@ -168,7 +168,7 @@ fn graphs_have_the_transitions_of_the_plan() {
         if compiled.lowered.termination > 300 {
             continue;
         }
-        let expanded = algorithm1(&expand(&compiled.nondegenerate).unwrap()).unwrap();
+        let expanded = lower(&expand(&compiled.nondegenerate).unwrap()).unwrap();
         let graph = read_dot(&dot(&expanded).unwrap());
         let name = |state: u64| if state == expanded.termination { "over".into() } else { format!("a{state}") };
         let turns = Script::read(&script).unwrap();
@@ -211,7 +211,7 @@ fn diagrams_have_every_atom_and_lead_nowhere_outside() {
         let lowered = &compiled.lowered;
         let diagram = read_mermaid(&mermaid(lowered).unwrap());
         let states: BTreeSet<_> = diagram.states.values().flatten().collect();
-        assert_eq!(states.len(), lowered.brackets.len());
+        assert_eq!(states.len(), lowered.elements().len());
         // Each composite state has a begin.
         let begins = diagram.transitions.values().flatten().filter(|(from, ..)| from == "[*]");
         assert_eq!(begins.count(), diagram.transitions.len());

@@ -7,13 +7,13 @@ use mdle_tests::chance::Chance;
 use mdle_tests::pipeline::compile;
 use mdle_tests::random_plan::RandomPlan;
 use mdlec::diagnostic::Code;
-use mdlec::fsm::{Lowered, validate};
+use mdlec::fsm::{Draft, validate};
 
 /// How many mutated machines are tried.
 const MUTATIONS: usize = 500;
 
 /// Makes a machine wrong in a place that chance picks, or leaves it as it is.
-type Mutation = fn(&mut Lowered, &mut Chance);
+type Mutation = fn(&mut Draft, &mut Chance);
 
 /// What can go wrong with a machine.
 const WRONG: &[(&str, Mutation)] = &[
@@ -82,9 +82,9 @@ const WRONG: &[(&str, Mutation)] = &[
     ("labels", |machine, _| machine.marks = BTreeMap::new()),
     ("records", |machine, _| machine.records = BTreeMap::new()),
     ("places of records", |machine, _| machine.records.values_mut().for_each(|place| place.first += 1)),
-    ("timers", |machine, _| machine.levels = machine.levels.saturating_sub(1)),
-    ("counters", |machine, _| machine.slots = machine.slots.saturating_sub(1)),
-    ("memories", |machine, _| machine.memories = machine.memories.saturating_sub(1)),
+    ("timers", |machine, _| machine.sizes.levels = machine.sizes.levels.saturating_sub(1)),
+    ("counters", |machine, _| machine.sizes.slots = machine.sizes.slots.saturating_sub(1)),
+    ("memories", |machine, _| machine.sizes.memories = machine.sizes.memories.saturating_sub(1)),
 ];
 
 fn pick<'a, T>(all: &'a mut [T], chance: &mut Chance) -> &'a mut T {
@@ -114,11 +114,12 @@ fn every_mutated_machine_is_told_apart() {
         let mut chance = Chance::new(seed);
         let text = RandomPlan::new(&mut chance, 2 + (seed % 20) as usize, false).to_string();
         let Ok(compiled) = compile(&text) else { continue };
-        assert_eq!(validate(&compiled.nondegenerate, &compiled.lowered), Ok(()), "seed {seed}\n{text}");
+        let valid = compiled.lowered.draft();
+        assert_eq!(validate(&compiled.nondegenerate, &valid), Ok(()), "seed {seed}\n{text}");
         let (what, wrong) = WRONG[seed as usize % WRONG.len()];
-        let mut machine = compiled.lowered.clone();
+        let mut machine = valid.clone();
         wrong(&mut machine, &mut chance);
-        if machine == compiled.lowered {
+        if machine == valid {
             continue;
         }
         *tried.entry(what).or_default() += 1;

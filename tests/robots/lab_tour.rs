@@ -186,7 +186,7 @@ fn law(state: u64) -> &'static str {
         let path = "plans/lab_tour.mdle".to_owned();
         let text = fs::read_to_string(root().join(&path)).unwrap();
         let lowered = judge(&TextFile { path, text }, Some("sim")).0.swap_remove(0).lowered;
-        lowered.laws.iter().map(|law| lowered.quark(law.quark).text.clone()).collect()
+        lowered.atoms().map(|atom| atom.law().text.clone()).collect()
     });
     &laws[usize::try_from(state).unwrap() - 1]
 }

@@ -8,7 +8,7 @@ use std::sync::LazyLock;
 use mdlec::alphabet::Alphabet;
 use mdlec::analysis::analyze;
 use mdlec::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
-use mdlec::fsm::Lowered;
+use mdlec::fsm::{Element, Machine};
 use mdlec::plan::{Condition, RecordId};
 use mdlec::rust::{Header, Shape, emit_as};
 use mdlec::syntax::{arena_for, format, outline::outline, parse as read};
@@ -95,20 +95,18 @@ pub fn check(text: &str) {
 }
 
 /// An analysis comes to a result, and agrees with itself.
-fn analysed(lowered: &Lowered) {
+fn analysed(lowered: &Machine) {
     let analysis = analyze(lowered);
-    assert_eq!((analysis.states, analysis.atoms.len()), (lowered.termination, lowered.atoms.len()));
+    assert_eq!((analysis.states, analysis.atoms.len()), (lowered.states(), lowered.atoms().len()));
     let is_shorter = analysis.shortest.zip(analysis.longest.seconds).is_none_or(|(short, long)| short <= long);
     assert!(is_shorter && !analysis.to_json().is_empty(), "{}", analysis.to_text());
 }
 
 /// All that a machine does, without the names of its scopes and without the numbers of its records.
-fn machine(lowered: &Lowered) -> String {
-    let place = |record: &RecordId| lowered.records.get(record).map(|record| (record.level, record.first));
-    let marks: Vec<_> =
-        lowered.marks.iter().flat_map(|(bracket, marks)| marks.iter().map(move |mark| (bracket, mark))).collect();
-    let marks: Vec<_> =
-        marks.iter().map(|(bracket, mark)| (bracket, place(&mark.record), &mark.label, &mark.facts)).collect();
+fn machine(lowered: &Machine) -> String {
+    let place = |record: &RecordId| lowered.record(*record).map(|record| (record.level, record.first));
+    let marks = lowered.elements().flat_map(|element| element.marks().iter().map(move |mark| (element.number(), mark)));
+    let marks: Vec<_> = marks.map(|(element, mark)| (element, place(&mark.record), &mark.label, &mark.facts)).collect();
     let asks = |condition: &Condition| {
         let places = RefCell::new(Vec::new());
         condition.any(&|part| {
@@ -119,12 +117,12 @@ fn machine(lowered: &Lowered) -> String {
         });
         places.into_inner()
     };
-    let scopes: Vec<_> = lowered.scopes.iter().flatten().map(|scope| &scope.interrupt).collect();
+    let scopes = lowered.elements().filter_map(Element::interrupt);
     let scopes: Vec<_> =
-        scopes.iter().map(|own| (&own.text, &own.nested, own.memories, own.removed, asks(&own.condition))).collect();
-    let Lowered { brackets, atoms, laws, memories, .. } = lowered;
-    let quarks: Vec<_> = lowered.quarks.iter().map(|quark| &quark.text).collect();
-    format!("{brackets:?} {atoms:?} {scopes:?} {laws:?} {marks:?} {memories} {quarks:?}")
+        scopes.map(|own| (&own.text, &own.nested, own.memories, own.removed, asks(&own.condition))).collect();
+    let laws: Vec<_> = lowered.atoms().map(|atom| (atom.law_id(), atom.frame())).collect();
+    let quarks: Vec<_> = lowered.quarks().iter().map(|quark| &quark.text).collect();
+    format!("{:?} {scopes:?} {laws:?} {marks:?} {} {quarks:?}", lowered.tables(), lowered.sizes().memories)
 }
 
 /// The Rust of a plan is Rust, in every shape.
@@ -135,7 +133,7 @@ pub fn emit(text: &str) {
         for Compiled { plan, lowered, .. } in compiled(text, alphabet) {
             let header = Header { sources: &sources, file: "plan.mdle", plan: &plan.root.name };
             for shape in [Shape::Code, Shape::Rows] {
-                if lowered.brackets.len() > EMITTED {
+                if lowered.elements().len() > EMITTED {
                     continue;
                 }
                 let rust = emit_as(shape, &lowered, header, alphabet);
@@ -152,7 +150,7 @@ pub fn run(text: &str) {
     let seed = text.bytes().fold(0_u64, |seed, byte| seed.wrapping_mul(31).wrapping_add(u64::from(byte)));
     let script = script(&mut Chance::new(seed), TURNS);
     let turns = Script::read(&script).expect("a script");
-    for plan in compiled(text, scripted()).iter().filter(|plan| plan.lowered.brackets.len() <= RUN) {
+    for plan in compiled(text, scripted()).iter().filter(|plan| plan.lowered.elements().len() <= RUN) {
         let machines = Machines::new(plan);
         let traces = machines.traces(&turns);
         let (reference, tree) = &traces[0];

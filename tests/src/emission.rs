@@ -2,7 +2,7 @@
 
 use mdlec::alphabet::{Alphabet, combine, read};
 use mdlec::diagnostic::{SourceId, Sources};
-use mdlec::fsm::Lowered;
+use mdlec::fsm::Machine;
 use mdlec::rust::{Header, Shape, emit, emit_as};
 
 use crate::pipeline::scripted;
@@ -39,7 +39,7 @@ pub fn alphabet(declarations: &str) -> Alphabet {
     alphabet
 }
 
-fn lowered(alphabet: &Alphabet, plan: &str) -> Lowered {
+fn lowered(alphabet: &Alphabet, plan: &str) -> Machine {
     let (mut compiled, found) = mdlec::compile(SourceId(0), plan, alphabet, Some("Main"));
     assert!(!compiled.is_empty(), "{plan}: {found:?}");
     compiled.swap_remove(0).lowered

@@ -1,6 +1,5 @@
 //! Plans loaded at run time: rows whose quarks the bound alphabet of the target `scripted` makes by their names.
 
-use mdle_runtime::fsm::Kind;
 use mdle_runtime::{
     Alphabet, Argument, Begin, BracketWords, Cause, Comparison, Condition, Cursor, Fsm, Guard, InRows, LawRow, MarkRow,
     Measured, Memories, Meters, MetersPerSecond, Nanometers, Nanos, Next, Operand, OperandWords, Operator, Plan,
@@ -9,12 +8,12 @@ use mdle_runtime::{
 use mdle_scripted::alphabet::{self as scripted, AnyControl, AnyInterrupt};
 use mdle_scripted::{Input, Output};
 use mdlec::alphabet::{self, family_to_si};
-use mdlec::fsm::{Lowered, RecordPlace};
+use mdlec::fsm::{Element, Machine, RecordPlace};
 use mdlec::plan::{self, Compared, Quark, Value};
 
 /// A plan's rows, owned.
 pub struct Loaded<'l> {
-    lowered: &'l Lowered,
+    lowered: &'l Machine,
     guards: Vec<Guard<AnyInterrupt>>,
     operands: Vec<Condition<AnyInterrupt>>,
     laws: Vec<LawRow<AnyControl>>,
@@ -121,16 +120,15 @@ impl<'l> Loaded<'l> {
     /// # Panics
     /// If the alphabet does not know a quark of the plan.
     #[must_use]
-    pub fn new(lowered: &'l Lowered, foresight: bool) -> Self {
-        let laws = lowered.laws.iter().enumerate().map(|(atom, law)| LawRow {
-            control: by_name(lowered.quark(law.quark), scripted::Alphabet::control),
-            frame: Radians(lowered.turned(atom)),
+    pub fn new(lowered: &'l Machine, foresight: bool) -> Self {
+        let laws = lowered.atoms().map(|atom| LawRow {
+            control: by_name(atom.law(), scripted::Alphabet::control),
+            frame: Radians(atom.turned()),
         });
-        let scopes = || lowered.scopes.iter().map(Option::as_ref);
         let texts = [
-            lowered.laws.iter().map(|law| lowered.quark(law.quark).text.as_str()).collect(),
-            scopes().map(|scope| scope.map_or("", |scope| scope.interrupt.text.as_str())).collect(),
-            scopes().map(|scope| scope.map_or("", |scope| scope.name.as_str())).collect(),
+            lowered.atoms().map(|atom| atom.law().text.as_str()).collect(),
+            lowered.elements().map(Element::condition_text).collect(),
+            lowered.elements().map(Element::name).collect(),
         ];
         let mut loaded = Self {
             lowered,
@@ -141,19 +139,18 @@ impl<'l> Loaded<'l> {
             words: Vec::new(),
             first: vec![0],
         };
-        for (number, scope) in (0..).zip(scopes()) {
-            let condition = scope.map_or(&plan::Condition::Null, |scope| &scope.interrupt.condition);
-            if let Some(interrupt) = scope.map(|scope| &scope.interrupt) {
+        for element in lowered.elements() {
+            if let Some(interrupt) = element.interrupt() {
                 let text = |(number, part)| interrupt.operand_text(number, part, &|id| lowered.quark(id).text.clone());
-                loaded.words.extend(condition.joined().into_iter().enumerate().map(text));
+                loaded.words.extend(element.condition().joined().into_iter().enumerate().map(text));
             }
             loaded.first.push(loaded.words.len());
-            let condition = loaded.condition(condition);
-            let bracket = lowered.brackets[number as usize];
-            let level = if let Kind::Scope { level } = bracket.kind { level } else { 0 };
-            let follows = lowered.tables().follows(number).filter(|_| foresight);
-            // Every bracket around it is asked, whether it can fire or not.
-            loaded.guards.push(Guard { condition, level, around: bracket.parent, follows });
+            let condition = loaded.condition(element.condition());
+            let level = element.level().unwrap_or(0);
+            let follows = element.follows().filter(|_| foresight);
+            // Every element around it is asked, whether it can fire or not.
+            let around = element.parent().map_or(0, Element::number);
+            loaded.guards.push(Guard { condition, level, around, follows });
         }
         loaded
     }
@@ -182,12 +179,12 @@ impl<'l> Loaded<'l> {
     /// What ends with which bracket, with the facts of each label.
     #[must_use]
     pub fn facts(&self) -> Vec<Facts> {
-        let marks =
-            self.lowered.marks.iter().flat_map(|(bracket, marks)| marks.iter().map(move |mark| (bracket, mark)));
-        let facts = marks.filter_map(|(bracket, mark)| {
-            let record = *self.lowered.records.get(&mark.record)?;
+        let elements = self.lowered.elements();
+        let marks = elements.flat_map(|element| element.marks().iter().map(move |mark| (element.number(), mark)));
+        let facts = marks.filter_map(|(element, mark)| {
+            let record = self.lowered.record(mark.record)?;
             let facts = mark.facts.iter().map(|fact| (record.first + fact.number, fact.operand));
-            Some((*bracket, record, facts.collect()))
+            Some((element, record, facts.collect()))
         });
         facts.collect()
     }
@@ -200,11 +197,11 @@ impl<'l> Loaded<'l> {
         marks: &'r [MarkRow<'r>],
         words: &'r Words<'r>,
     ) -> LoadedPlan<'r> {
-        let (levels, slots) = (self.lowered.levels, self.lowered.slots);
+        let (levels, slots) = (self.lowered.sizes().levels, self.lowered.sizes().slots);
         // No plan has more levels than brackets.
-        let memories = vec![false; self.lowered.brackets.len() * self.lowered.memories];
-        let memory = Memories::new(u32::try_from(self.lowered.memories).unwrap(), marks, memories.into());
-        let entered = Stamps::new(vec![Stamp::START; levels].into(), &self.lowered.frames);
+        let memories = vec![false; self.lowered.brackets.len() * self.lowered.sizes().memories];
+        let memory = Memories::new(u32::try_from(self.lowered.sizes().memories).unwrap(), marks, memories.into());
+        let entered = Stamps::new(vec![Stamp::START; levels].into(), self.lowered.frames());
         LoadedPlan(InRows::remembering(rows, entered, vec![0; slots].into(), memory), words)
     }
 
@@ -224,7 +221,7 @@ impl<'l> Loaded<'l> {
                 Condition::Rising(*memory, self.operands(std::slice::from_ref(&**operand)).0)
             }
             plan::Condition::After(after) => {
-                let record = self.lowered.records[&after.record];
+                let record = self.lowered.record(after.record).unwrap();
                 Condition::After(record.level, record.first + after.fact)
             }
             plan::Condition::Or(operands) => {

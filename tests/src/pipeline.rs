@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use mdlec::Compiled;
 use mdlec::alphabet::{self, Alphabet};
 use mdlec::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
-use mdlec::fsm::{Lowered, algorithm1, expand};
+use mdlec::fsm::{Machine, expand, lower};
 use mdlec::syntax::Loader;
 use mdlec::trace::{Counted, Line, MatrixProduct, Script, Table, Tree, run};
 
@@ -93,15 +93,15 @@ fn rendered(sources: &Sources, found: &[Diagnostic]) -> String {
 pub struct Machines<'c> {
     compiled: &'c Compiled,
     /// With its finite loops written out, if that is not too long.
-    expanded: Option<Lowered>,
+    expanded: Option<Machine>,
 }
 
 impl<'c> Machines<'c> {
     /// The machines of a plan.
     #[must_use]
     pub fn new(compiled: &'c Compiled) -> Self {
-        let expand = || algorithm1(&expand(&compiled.nondegenerate)?);
-        let is_small = compiled.lowered.termination <= EXPANDED;
+        let expand = || lower(&expand(&compiled.nondegenerate)?);
+        let is_small = compiled.lowered.states() <= EXPANDED;
         Self { compiled, expanded: is_small.then(|| expand().expect("a small plan")) }
     }
 

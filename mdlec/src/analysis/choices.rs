@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::tables::{Table, VARIABLES};
 use super::variables::Variable;
-use crate::fsm::Lowered;
+use crate::fsm::Machine;
 use crate::plan::{After, Condition};
 
 /// When a condition is read.
@@ -62,7 +62,7 @@ impl Choices {
     }
 
     /// The choices in which a condition has fired. What is no variable here is not true.
-    pub(super) fn fired(&self, read: Read<'_>, lowered: &Lowered) -> Table {
+    pub(super) fn fired(&self, read: Read<'_>, lowered: &Machine) -> Table {
         let Read { condition, bracket, when } = read;
         let column = |variable| self.columns.get(&variable).cloned().unwrap_or_else(|| self.constant(false));
         let timer = |nanos: u64| match when {
@@ -105,7 +105,7 @@ impl Choices {
 }
 
 /// Adds the variables of a condition; `false` where there are too many.
-pub(super) fn variables(read: Read<'_>, lowered: &Lowered, found: &mut BTreeSet<Variable>) -> bool {
+pub(super) fn variables(read: Read<'_>, lowered: &Machine, found: &mut BTreeSet<Variable>) -> bool {
     /// More than can be tried, since some may have one value only.
     const MOST: usize = 4 * VARIABLES;
     let Read { condition, bracket, when } = read;

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::choices::{Read, When};
 use super::world::{Wanted, World};
 use crate::diagnostic::{Code, Diagnostic, Span};
-use crate::fsm::{Lowered, ScopeMeaning};
+use crate::fsm::{Machine, ScopeMeaning};
 use crate::plan::{Condition, condition_text};
 
 /// Judges conditions by themselves, without their scopes; every signal counts as a number.
@@ -22,7 +22,7 @@ struct Pair {
 }
 
 impl<'l> Constants<'l> {
-    pub(super) fn new(lowered: &'l Lowered) -> Self {
+    pub(super) fn new(lowered: &'l Machine) -> Self {
         Self { alone: World::of_numbers(lowered) }
     }
 

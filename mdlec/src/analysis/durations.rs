@@ -7,7 +7,7 @@ use mdle_runtime::fsm::Kind;
 
 use super::transitions::Most;
 use super::walk::{Found, Reach};
-use crate::fsm::Lowered;
+use crate::fsm::Machine;
 use crate::plan::Condition;
 
 /// The longest time of a plan.
@@ -58,7 +58,7 @@ impl Longest {
 }
 
 /// Adds up the longest times of all that is reached.
-pub(super) fn longest(lowered: &Lowered, found: &[Found], most: Most) -> Longest {
+pub(super) fn longest(lowered: &Machine, found: &[Found], most: Most) -> Longest {
     let mut inside = vec![Longest::NONE; lowered.brackets.len()];
     // The last bracket first: so what is inside of one is known, and what stands behind it.
     for (place, bracket) in lowered.brackets.iter().enumerate().rev() {
@@ -85,7 +85,7 @@ pub(super) fn longest(lowered: &Lowered, found: &[Found], most: Most) -> Longest
 
 /// With the turns in which a search is cut: each has made as many transitions as a turn makes, and each transition leads to
 /// another state.
-fn searched(longest: Longest, lowered: &Lowered, most: Most) -> Longest {
+fn searched(longest: Longest, lowered: &Machine, most: Most) -> Longest {
     match longest {
         Longest::Bounded { nanos, turns } if most.is_cut => {
             let cut = lowered.termination / u64::from(TRANSITIONS_PER_TURN);

@@ -10,11 +10,11 @@ use mdle_runtime::fsm::Atom;
 use super::constants::Constants;
 use super::walk::{Found, Outcome, Skip};
 use crate::diagnostic::{Code, Diagnostic, Span};
-use crate::fsm::{Lowered, ScopeMeaning};
+use crate::fsm::{Machine, ScopeMeaning};
 use crate::plan::{Condition, Quark, condition_text};
 
 /// What is suspicious.
-pub(super) fn lints(lowered: &Lowered, found: &[Found]) -> Vec<Diagnostic> {
+pub(super) fn lints(lowered: &Machine, found: &[Found]) -> Vec<Diagnostic> {
     let lints = Lints { lowered, constants: Constants::new(lowered), last: last_atoms(lowered) };
     let mut uses: BTreeMap<Span, usize> = BTreeMap::new();
     let mut told: BTreeMap<(Span, Code), (usize, Diagnostic)> = BTreeMap::new();
@@ -34,7 +34,7 @@ pub(super) fn lints(lowered: &Lowered, found: &[Found]) -> Vec<Diagnostic> {
 }
 
 struct Lints<'l> {
-    lowered: &'l Lowered,
+    lowered: &'l Machine,
     constants: Constants<'l>,
     /// The brackets of the atoms that nothing follows in what is around them.
     last: BTreeSet<u32>,
@@ -161,7 +161,7 @@ impl<'l> Lints<'l> {
 }
 
 /// The brackets of the atoms that nothing follows in what is around them.
-fn last_atoms(lowered: &Lowered) -> BTreeSet<u32> {
+fn last_atoms(lowered: &Machine) -> BTreeSet<u32> {
     let is_last = |atom: &&Atom| {
         let bracket = &lowered.brackets[atom.scope as usize];
         bracket.last == lowered.brackets[bracket.parent as usize].last

@@ -27,7 +27,7 @@ pub use walk::Reach;
 use walk::{Found, Outcome};
 
 use crate::diagnostic::Diagnostic;
-use crate::fsm::Lowered;
+use crate::fsm::Machine;
 use crate::plan::{Condition, condition_text};
 
 /// What is so of every run of a plan.
@@ -115,14 +115,14 @@ pub struct AtomAnswer {
 
 /// Returns the warnings about a machine: W0202 to W0206, W0302 and W0303.
 #[must_use]
-pub fn lints(lowered: &Lowered) -> Vec<Diagnostic> {
+pub fn lints(lowered: &Machine) -> Vec<Diagnostic> {
     let most = transitions::most(lowered);
     lints::lints(lowered, &walk::walk(lowered, !most.is_cut).found)
 }
 
 /// Analyses a machine.
 #[must_use]
-pub fn analyze(lowered: &Lowered) -> Analysis {
+pub fn analyze(lowered: &Machine) -> Analysis {
     let most = transitions::most(lowered);
     let walked = walk::walk(lowered, !most.is_cut);
     let longest = durations::longest(lowered, &walked.found, most);
@@ -139,7 +139,7 @@ pub fn analyze(lowered: &Lowered) -> Analysis {
         atom_count: lowered.atoms.len(),
         interrupts: scopes().filter(|scope| is_interrupt(&scope.interrupt.condition)).count(),
         depth: levels.max().unwrap_or(0),
-        loop_depth: lowered.slots,
+        loop_depth: lowered.sizes().slots,
         transitions: most.count,
         reaction_turns: reaction(lowered, most),
         shortest: walked.shortest.map(|nanos| seconds(nanos.into())),
@@ -151,7 +151,7 @@ pub fn analyze(lowered: &Lowered) -> Analysis {
 }
 
 /// The input that follows an interrupt is sent at the head of the next turn; a search that is cut goes on in that turn.
-fn reaction(lowered: &Lowered, most: transitions::Most) -> Option<u64> {
+fn reaction(lowered: &Machine, most: transitions::Most) -> Option<u64> {
     let endless = || lowered.brackets.iter().any(|bracket| matches!(bracket.kind, Kind::Loop { times: 0, .. }));
     match most.is_cut {
         false => Some(1),
@@ -160,7 +160,7 @@ fn reaction(lowered: &Lowered, most: transitions::Most) -> Option<u64> {
     }
 }
 
-fn duration(longest: Longest, lowered: &Lowered) -> Duration {
+fn duration(longest: Longest, lowered: &Machine) -> Duration {
     match longest {
         Longest::Bounded { nanos, turns } => {
             Duration { seconds: Some(seconds(nanos)), turns: Some(turns), because: None }
@@ -188,7 +188,7 @@ struct Answers {
 }
 
 impl Answers {
-    fn new(lowered: &Lowered, found: &[Found]) -> Self {
+    fn new(lowered: &Machine, found: &[Found]) -> Self {
         let mut answers = Self { scopes: Vec::new(), atoms: Vec::new() };
         // For each bracket the number of the innermost scope that it is or is in, and whether anything ends that.
         let mut scope_of: Vec<(usize, bool)> = Vec::with_capacity(found.len());
@@ -237,7 +237,7 @@ impl Answers {
 }
 
 /// The texts of the operands by which an interrupt can fire, and of those by which it cannot; `null` is none.
-fn by(condition: &Condition, found: &Found, lowered: &Lowered) -> (Vec<String>, Vec<String>) {
+fn by(condition: &Condition, found: &Found, lowered: &Machine) -> (Vec<String>, Vec<String>) {
     let (mut can, mut never) = (Vec::new(), Vec::new());
     for (operand, outcome) in condition.operands().iter().zip(&found.operands) {
         let text = || condition_text(operand, &|id| lowered.quark(id).text.clone());

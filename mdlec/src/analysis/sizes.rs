@@ -6,7 +6,7 @@ use mdle_runtime::fsm::{Atom, Bracket, Kind};
 use mdle_runtime::{Frame, Nanos, Stamp, Stamps};
 use serde::Serialize;
 
-use crate::fsm::Lowered;
+use crate::fsm::Machine;
 use crate::rust::Shape;
 
 /// Bytes of the emitted machine, on a computer of 64 bits.
@@ -25,14 +25,14 @@ pub struct Bytes {
 }
 
 /// Counts them.
-pub(super) fn bytes(lowered: &Lowered) -> Bytes {
+pub(super) fn bytes(lowered: &Machine) -> Bytes {
     let number = |count: usize| u64::try_from(count).unwrap_or(u64::MAX);
     // A cursor begins with the number of its atom, in front of numbers of eight bytes.
-    let entries = match lowered.stamps {
-        true => size_of::<Stamps<'_, [Stamp; 0]>>() + lowered.levels * size_of::<Stamp>(),
-        false => lowered.levels * size_of::<Nanos>(),
+    let entries = match lowered.sizes().stamps {
+        true => size_of::<Stamps<'_, [Stamp; 0]>>() + lowered.sizes().levels * size_of::<Stamp>(),
+        false => lowered.sizes().levels * size_of::<Nanos>(),
     };
-    let cursor = size_of::<u64>() + entries + lowered.slots * size_of::<u64>();
+    let cursor = size_of::<u64>() + entries + lowered.sizes().slots * size_of::<u64>();
     let scopes = lowered.brackets.iter().map(|bracket| match bracket.kind {
         Kind::Scope { level } => usize::from(level) + 1,
         Kind::Loop { .. } => 0,
@@ -45,13 +45,13 @@ pub(super) fn bytes(lowered: &Lowered) -> Bytes {
             Shape::Rows => "rows",
         },
         state: number(cursor + size_of::<Frame>()),
-        memories: number(scopes.max().unwrap_or(0) * lowered.memories),
+        memories: number(scopes.max().unwrap_or(0) * lowered.sizes().memories),
         machine: number(machine),
         texts: number(texts(lowered)),
     }
 }
 
-fn texts(lowered: &Lowered) -> usize {
+fn texts(lowered: &Machine) -> usize {
     let laws = lowered.laws.iter().map(|law| lowered.quark(law.quark).text.as_str());
     let scopes = || lowered.scopes.iter().map(Option::as_ref);
     let conditions = scopes().map(|scope| scope.map_or("", |scope| scope.interrupt.text.as_str()));

@@ -5,7 +5,7 @@ mod texts;
 use mdle_runtime::fsm::{Atom, Bracket};
 
 use super::{Reach, analyze};
-use crate::fsm::{LawMeaning, Lowered, ScopeMeaning};
+use crate::fsm::{LawMeaning, Machine, ScopeMeaning};
 use crate::samples::compiled;
 
 /// The lints of the first plan of a text, each with the place that it is about.
@@ -161,14 +161,16 @@ fn transitions_of_a_turn_are_counted_for_one_output_at_a_time() {
 }
 
 /// Ten thousand scopes, one in the other, each with the condition of the one scope of this plan, and one atom.
-fn nested(text: &str, depth: u32) -> Lowered {
-    let mut lowered = compiled(text).swap_remove(0).lowered;
-    let meaning: ScopeMeaning = lowered.scopes[0].clone().expect("a plan");
-    lowered.brackets = (0..=depth).map(|level| Bracket::scope(level as u16, 0, 0, level.saturating_sub(1))).collect();
-    lowered.scopes = vec![Some(meaning); depth as usize + 1];
-    lowered.atoms = vec![Atom::new(depth, 1)];
-    lowered.laws = vec![LawMeaning { quark: lowered.laws[0].quark, frame: 0.0 }];
-    lowered
+fn nested(text: &str, depth: u32) -> Machine {
+    let mut draft = compiled(text).swap_remove(0).lowered.draft();
+    let meaning: ScopeMeaning = draft.scopes[0].clone().expect("a plan");
+    draft.brackets = (0..=depth).map(|level| Bracket::scope(level as u16, 0, 0, level.saturating_sub(1))).collect();
+    draft.scopes = vec![Some(meaning); depth as usize + 1];
+    draft.spans = vec![draft.spans[0]; depth as usize + 1];
+    draft.atoms = vec![Atom::new(depth, 1)];
+    draft.laws = vec![LawMeaning { quark: draft.laws[0].quark, frame: 0.0 }];
+    draft.frames = vec![None];
+    Machine::unvalidated(draft)
 }
 
 #[test]

@@ -10,7 +10,7 @@ use mdle_runtime::fsm::Kind;
 
 use super::choices::Choices;
 use super::variables::{self, Variable};
-use crate::fsm::Lowered;
+use crate::fsm::Machine;
 use crate::plan::families::Readings;
 use crate::plan::{Condition, QuarkId};
 
@@ -23,7 +23,7 @@ pub(super) struct Most {
 }
 
 /// Counts them.
-pub(super) fn most(lowered: &Lowered) -> Most {
+pub(super) fn most(lowered: &Machine) -> Most {
     /// The most quarks of which every choice is counted, and the most brackets times choices.
     const QUARKS: usize = 8;
     const WORK: usize = 2_000_000;
@@ -119,7 +119,7 @@ fn plus(one: Option<u64>, other: Option<u64>) -> Option<u64> {
 }
 
 /// The longest chain of transitions where the quarks say what the bits of `choice` are.
-fn longest(lowered: &Lowered, quarks: &[QuarkId], choice: usize) -> u64 {
+fn longest(lowered: &Machine, quarks: &[QuarkId], choice: usize) -> u64 {
     let mut inside = vec![Chains::NONE; lowered.brackets.len()];
     // The last bracket first: so what is inside of one is known, and what stands behind it.
     for (number, bracket) in lowered.brackets.iter().enumerate().rev() {

@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use super::choices::{Read, When};
 use super::world::{Added, World};
-use crate::fsm::Lowered;
+use crate::fsm::Machine;
 use crate::plan::{Condition, QuarkId};
 
 /// Whether an atom comes to run.
@@ -90,7 +90,7 @@ pub(super) struct Walked {
 }
 
 /// Walks over a machine. `one_turn` says that every search for the next atom comes to its end in one turn.
-pub(super) fn walk(lowered: &Lowered, one_turn: bool) -> Walked {
+pub(super) fn walk(lowered: &Machine, one_turn: bool) -> Walked {
     let mut last_child = vec![0; lowered.brackets.len()];
     for (number, bracket) in (0_u32..).zip(&lowered.brackets) {
         last_child[bracket.parent as usize] = number;

@@ -8,7 +8,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::choices::{self, Choices, Read, When};
 use super::tables::VARIABLES;
 use super::variables::{self, Variable};
-use crate::fsm::Lowered;
+use crate::fsm::Machine;
 use crate::plan::families::{Family, Readings, family};
 use crate::plan::{Condition, QuarkId};
 
@@ -25,7 +25,7 @@ pub(super) struct Wanted<'l> {
 /// What is known at a place of a plan.
 #[derive(Debug)]
 pub(super) struct World<'l> {
-    pub(super) lowered: &'l Lowered,
+    pub(super) lowered: &'l Machine,
     /// When the scope of each bracket was entered at the earliest, in nanoseconds since the plan began.
     pub(super) entered: Vec<u64>,
     /// What has one value only, or a scope around would have ended; and the bracket of that scope.
@@ -50,7 +50,7 @@ pub(super) struct Added {
 }
 
 impl<'l> World<'l> {
-    pub(super) fn new(lowered: &'l Lowered) -> Self {
+    pub(super) fn new(lowered: &'l Machine) -> Self {
         Self {
             lowered,
             entered: vec![0; lowered.brackets.len()],
@@ -64,7 +64,7 @@ impl<'l> World<'l> {
     }
 
     /// Returns what is known of a place without anything around it, where every signal is a number.
-    pub(super) fn of_numbers(lowered: &'l Lowered) -> Self {
+    pub(super) fn of_numbers(lowered: &'l Machine) -> Self {
         Self { readings: Readings::Numbers, ..Self::new(lowered) }
     }
 

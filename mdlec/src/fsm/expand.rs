@@ -1,6 +1,6 @@
 //! Writes finite loops out (paper, section II-A: `(s1 s2)^3 → s1 s2 s1 s2 s1 s2`), so that every state has a number.
 
-use super::algorithm1;
+use super::lower;
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::plan::{Atom, Interrupt, Loop, Node, Nondegenerate, Scope};
 
@@ -40,7 +40,7 @@ pub fn expand(plan: &Nondegenerate) -> Result<Nondegenerate, Diagnostic> {
 /// # Errors
 /// E0501 for a plan that cannot be lowered, E0502 for one of more than 100,000 states.
 pub fn expanded_states(plan: &Nondegenerate) -> Result<u64, Diagnostic> {
-    let states = algorithm1(plan)?.termination;
+    let states = lower(plan)?.termination;
     if states <= EXPANDED {
         return Ok(states);
     }

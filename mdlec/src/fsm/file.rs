@@ -4,7 +4,7 @@
 use mdle_runtime::fsm::{Bracket, Kind};
 use serde::Serialize;
 
-use super::{Lowered, algorithm1, expand};
+use super::{Machine, expand, lower};
 use crate::diagnostic::Diagnostic;
 use crate::plan::{Condition, Nondegenerate};
 
@@ -71,7 +71,7 @@ pub struct ScopeEntry {
 /// # Errors
 /// E0501 and E0502, as [`expand`] has them.
 pub fn fsm_file(plan: &Nondegenerate) -> Result<FsmFile, Diagnostic> {
-    let lowered = algorithm1(&expand(plan)?)?;
+    let lowered = lower(&expand(plan)?)?;
     let columns = Columns(&lowered);
     let mut file = FsmFile {
         version: VERSION,
@@ -113,7 +113,7 @@ impl FsmFile {
 }
 
 /// The columns of the transition matrices of a machine whose finite loops are expanded.
-struct Columns<'a>(&'a Lowered);
+struct Columns<'a>(&'a Machine);
 
 impl Columns<'_> {
     fn atoms(&self) -> u32 {

@@ -7,7 +7,7 @@
 
 use std::collections::BTreeMap;
 
-use super::Lowered;
+use super::{Machine, Visit};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::{Function, Functions};
 
@@ -16,30 +16,25 @@ use crate::plan::{Function, Functions};
 ///
 /// # Errors
 /// E0901: the first interrupt that is repeated inside its scope. That is a defect of the compiler.
-pub fn observation1(lowered: &Lowered) -> Result<(), Diagnostic> {
-    let functions = Functions::new(&lowered.quarks);
-    // The brackets around the one at hand, with the interrupts that they brought.
-    let mut around: Vec<(u32, Option<Function>)> = Vec::new();
+pub fn observation1(machine: &Machine) -> Result<(), Diagnostic> {
+    let functions = Functions::new(machine.quarks());
     let mut open: BTreeMap<Function, &str> = BTreeMap::new();
-    for (number, (bracket, scope)) in (0..).zip(lowered.brackets.iter().zip(&lowered.scopes)) {
-        while let Some((_, ended)) = around.pop_if(|(holder, _)| *holder != bracket.parent) {
-            if let Some(function) = ended {
-                open.remove(&function);
-            }
-        }
-        let function = scope.as_ref().and_then(|scope| functions.function(&scope.interrupt.condition));
-        if let (Some(function), Some(scope)) = (&function, scope)
-            && let Some(outer) = open.insert(function.clone(), &scope.name)
-        {
+    for visit in machine.walk() {
+        let (Visit::Enter(element) | Visit::Leave(element)) = visit;
+        let (Some(interrupt), Some(function)) = (element.interrupt(), functions.function(element.condition())) else {
+            continue;
+        };
+        if let Visit::Leave(_) = visit {
+            open.remove(&function);
+        } else if let Some(outer) = open.insert(function, element.name()) {
             let message = format!(
                 "`{}` is repeated inside the scope `{outer}`, which has the same interrupt: its transition matrix would \
                  have a column that is no unit vector",
-                scope.interrupt.text
+                interrupt.text
             );
-            return Err(Diagnostic::new(Code::E0901, message, scope.interrupt.span, "this one was to be removed")
+            return Err(Diagnostic::new(Code::E0901, message, interrupt.span, "this one was to be removed")
                 .help("this is a defect of mdlec, not of the plan: please report it with the plan"));
         }
-        around.push((number, function));
     }
     Ok(())
 }
@@ -47,7 +42,7 @@ pub fn observation1(lowered: &Lowered) -> Result<(), Diagnostic> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fsm::algorithm1;
+    use crate::fsm::lower;
     use crate::samples::compiled;
 
     #[test]
@@ -61,7 +56,7 @@ mod tests {
             let compiled = compiled(text).swap_remove(0);
             assert_eq!(observation1(&compiled.lowered), Ok(()), "{text}");
             let degenerate = compiled.nondegenerate.map(|_| compiled.plan.root.clone());
-            let said = algorithm1(&degenerate).unwrap_err();
+            let said = lower(&degenerate).unwrap_err();
             assert!(said.code == Code::E0901 && said.message.contains("is repeated inside"), "{text}: {said:?}");
         }
     }

@@ -11,28 +11,23 @@ use std::fmt;
 use mdle_runtime::fsm::{Bracket, Kind};
 use mdle_runtime::{Here, Radians};
 
-use super::{Lowered, RecordPlace};
+use super::{Draft, RecordPlace, Sizes};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::plan::{Interrupt, Mark, Node, Nondegenerate, Record, Scope};
 
-/// Says whether `lowered` is the machine of `plan`.
+/// Says whether `draft` is the machine of `plan`.
 ///
 /// # Errors
 /// E0901: the first place at which it is not, with what the plan asks for and what the machine has. That is a defect of the
 /// compiler.
-pub fn validate(plan: &Nondegenerate, lowered: &Lowered) -> Result<(), Diagnostic> {
+pub fn validate(plan: &Nondegenerate, draft: &Draft) -> Result<(), Diagnostic> {
     let root = &plan.plan().root;
-    let mut walk = Walk { lowered, brackets: 0, atoms: 0 };
+    let mut walk = Walk { draft, brackets: 0, atoms: 0 };
     let states = walk.scope(root, Around { holder: 0, behind: None, scopes: 0, loops: 0, states: 0, here: None })?;
-    same(root.span, "its brackets", walk.brackets, lowered.brackets.len() as u32)?;
-    same(root.span, "its atoms", walk.atoms, lowered.atoms.len() as u32)?;
-    same(
-        root.span,
-        "its meanings",
-        (walk.brackets, walk.atoms),
-        (lowered.scopes.len() as u32, lowered.laws.len() as u32),
-    )?;
-    same(root.span, "its termination state", states + 1, u128::from(lowered.termination))
+    same(root.span, "its brackets", walk.brackets, draft.brackets.len() as u32)?;
+    same(root.span, "its atoms", walk.atoms, draft.atoms.len() as u32)?;
+    same(root.span, "its meanings", (walk.brackets, walk.atoms), (draft.scopes.len() as u32, draft.laws.len() as u32))?;
+    same(root.span, "its termination state", states + 1, u128::from(draft.termination))
 }
 
 /// What is around a node of the plan.
@@ -64,7 +59,7 @@ enum Step {
 }
 
 struct Walk<'l> {
-    lowered: &'l Lowered,
+    draft: &'l Draft,
     /// How many brackets and atoms of the plan have been met.
     brackets: u32,
     atoms: u32,
@@ -115,12 +110,12 @@ impl Walk<'_> {
         let kind = Kind::Loop { times, slot: around.loops, stride: stride as u64 };
         self.bracket(number, first, kind, around, repeated.span)?;
         self.meaning(number, None, &repeated.marks, around, repeated.span)?;
-        if usize::from(around.loops) >= self.lowered.slots {
+        if usize::from(around.loops) >= self.draft.sizes.slots {
             return Err(mismatch(
                 repeated.span,
                 "its counter",
                 "a place for it",
-                &format!("{} places", self.lowered.slots),
+                &format!("{} places", self.draft.sizes.slots),
             ));
         }
         Ok(pass * u128::from(times.max(1)))
@@ -132,20 +127,20 @@ impl Walk<'_> {
         self.atoms += 1;
         self.bracket(number, first, Kind::Scope { level: around.scopes }, around, atom.span)?;
         self.meaning(number, Some(("", &atom.interrupt)), &atom.marks, around, atom.span)?;
-        let made = self.lowered.atoms.get(first as usize);
+        let made = self.draft.atoms.get(first as usize);
         let made = made.map(|made| (made.scope, u128::from(made.state)));
         same(atom.span, "its bracket and state", Some((number, around.states + 1)), made)?;
         let here = self.here(atom.here, around, atom.span)?;
-        let law = self.lowered.laws.get(first as usize).map(|law| (law.quark, law.frame.to_bits()));
+        let law = self.draft.laws.get(first as usize).map(|law| (law.quark, law.frame.to_bits()));
         same(atom.span, "its law and frame", Some((atom.law, atom.frame.to_bits())), law)?;
         let asked = here.map(|level| Here { level, turned: Radians(atom.frame) });
-        same(atom.span, "its frame", Some(&asked), self.lowered.frames.get(first as usize))?;
+        same(atom.span, "its frame", Some(&asked), self.draft.frames.get(first as usize))?;
         Ok(1)
     }
 
     /// The innermost scope with `FRAME here` inside a scope that may have one itself, for which there must be a place.
     fn here(&self, is_here: bool, around: Around, span: Span) -> Result<Option<u16>, Diagnostic> {
-        let Lowered { stamps, levels, .. } = *self.lowered;
+        let Sizes { stamps, levels, .. } = self.draft.sizes;
         match is_here {
             true if stamps && usize::from(around.scopes) < levels => Ok(Some(around.scopes)),
             true => Err(mismatch(
@@ -166,7 +161,7 @@ impl Walk<'_> {
 
     /// Whether a bracket is of this kind, begins with this atom, and is followed by what follows it in the plan.
     fn bracket(&self, number: u32, first: u32, kind: Kind, around: Around, span: Span) -> Result<(), Diagnostic> {
-        let made = self.lowered.brackets.get(number as usize);
+        let made = self.draft.brackets.get(number as usize);
         same(span, "what it is", Some((kind, first)), made.map(|made| (made.kind, made.first)))?;
         let asked = match around.behind {
             None => Step::Over,
@@ -180,11 +175,10 @@ impl Walk<'_> {
     /// What the machine does when this bracket ends.
     fn step(&self, number: u32, bracket: &Bracket) -> Option<Step> {
         if number == 0 {
-            return (bracket.parent == 0 && bracket.last as usize + 1 == self.lowered.atoms.len())
-                .then_some(Step::Over);
+            return (bracket.parent == 0 && bracket.last as usize + 1 == self.draft.atoms.len()).then_some(Step::Over);
         }
         // Who asks outwards comes to the plan in the end.
-        let holder = self.lowered.brackets.get(bracket.parent as usize).filter(|_| bracket.parent < number)?;
+        let holder = self.draft.brackets.get(bracket.parent as usize).filter(|_| bracket.parent < number)?;
         Some(if bracket.last == holder.last {
             Step::Ends { bracket: bracket.parent }
         } else {
@@ -193,7 +187,7 @@ impl Walk<'_> {
     }
 
     fn stride(&self, number: u32) -> Option<u128> {
-        match self.lowered.brackets.get(number as usize)?.kind {
+        match self.draft.brackets.get(number as usize)?.kind {
             Kind::Loop { stride, .. } => Some(u128::from(stride)),
             Kind::Scope { .. } => None,
         }
@@ -208,12 +202,12 @@ impl Walk<'_> {
         around: Around,
         span: Span,
     ) -> Result<(), Diagnostic> {
-        let made = self.lowered.scopes.get(number as usize);
+        let made = self.draft.scopes.get(number as usize);
         let made = made.map(|made| made.as_ref().map(|made| (made.name.as_str(), &made.interrupt)));
         same(span, "its name and interrupt", Some(asked), made)?;
-        same(span, "its labels", marks, self.lowered.marks.get(&number).map_or(&[], Vec::as_slice))?;
+        same(span, "its labels", marks, self.draft.marks.get(&number).map_or(&[], Vec::as_slice))?;
         let Some((_, interrupt)) = asked else { return Ok(()) };
-        let (memories, levels) = (self.lowered.memories, self.lowered.levels);
+        let (memories, levels) = (self.draft.sizes.memories, self.draft.sizes.levels);
         if interrupt.memories as usize > memories {
             return Err(mismatch(span, "its memories", &interrupt.memories.to_string(), &memories.to_string()));
         }
@@ -221,7 +215,7 @@ impl Walk<'_> {
             let asked = format!("one of level {}", around.scopes);
             return Err(mismatch(span, "its timer", &asked, &format!("timers of {levels} levels")));
         }
-        if interrupt.condition.drives() && (usize::from(around.scopes) >= levels || !self.lowered.stamps) {
+        if interrupt.condition.drives() && (usize::from(around.scopes) >= levels || !self.draft.sizes.stamps) {
             let asked = format!("one of level {}", around.scopes);
             return Err(mismatch(span, "its way", &asked, &format!("ways of {levels} levels")));
         }
@@ -232,8 +226,8 @@ impl Walk<'_> {
     fn record(&self, record: Record, scope: &Scope, around: Around) -> Result<(), Diagnostic> {
         let (first, facts) = (scope.interrupt.memories, record.facts);
         let asked = RecordPlace { level: around.scopes, first, facts };
-        same(scope.span, "its record", Some(asked), self.lowered.records.get(&record.id).copied())?;
-        let (end, memories) = (first as usize + facts as usize, self.lowered.memories);
+        same(scope.span, "its record", Some(asked), self.draft.records.get(&record.id).copied())?;
+        let (end, memories) = (first as usize + facts as usize, self.draft.sizes.memories);
         if end > memories {
             Err(mismatch(scope.span, "its record", &end.to_string(), &memories.to_string()))
         } else {

@@ -8,7 +8,7 @@ use super::measure::wrapped;
 use super::texts::{Texts, What, bounded, exponent, passes};
 use super::{can_be_shown, too_many};
 use crate::diagnostic::Diagnostic;
-use crate::fsm::Lowered;
+use crate::fsm::Machine;
 use crate::plan::frame_text;
 
 /// How many letters a line of a label has, and how many lines it has.
@@ -21,7 +21,7 @@ const EDGES: usize = 10_000;
 ///
 /// # Errors
 /// E0502 for a plan of more than 1,000 atoms, or of as many scopes and loops.
-pub fn dot(lowered: &Lowered) -> Result<String, Diagnostic> {
+pub fn dot(lowered: &Machine) -> Result<String, Diagnostic> {
     can_be_shown(lowered)?;
     let mut graph = Graph { texts: Texts(lowered), text: String::new(), edges: 0 };
     graph.head();

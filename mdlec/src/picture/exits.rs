@@ -3,7 +3,7 @@
 use mdle_runtime::fsm::Kind;
 
 use super::texts::{Texts, What};
-use crate::fsm::Lowered;
+use crate::fsm::Machine;
 
 /// Where something leads when it ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -17,7 +17,7 @@ pub(super) enum Exit {
 }
 
 /// Where the bracket leads when it ends: to each loop outside it that ends with it, and behind all of these.
-pub(super) fn exits(lowered: &Lowered, bracket: usize) -> Vec<Exit> {
+pub(super) fn exits(lowered: &Machine, bracket: usize) -> Vec<Exit> {
     let (mut exits, mut here, mut last_pass) = (Vec::new(), bracket, false);
     loop {
         let ended = &lowered.brackets[here];

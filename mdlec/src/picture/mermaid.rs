@@ -10,7 +10,7 @@ use super::exits::ends;
 use super::measure::wrapped;
 use super::texts::{Texts, What, exponent, passes};
 use crate::diagnostic::Diagnostic;
-use crate::fsm::Lowered;
+use crate::fsm::Machine;
 use crate::plan::frame_text;
 
 /// How many letters of a condition or a law are shown: mermaid does not break the lines of labels.
@@ -20,7 +20,7 @@ const LETTERS: usize = 60;
 ///
 /// # Errors
 /// E0502 for a plan of more than 1,000 atoms, or of as many scopes and loops.
-pub fn mermaid(lowered: &Lowered) -> Result<String, Diagnostic> {
+pub fn mermaid(lowered: &Machine) -> Result<String, Diagnostic> {
     can_be_shown(lowered)?;
     let texts = Texts(lowered);
     let mut diagram = Diagram {
@@ -43,7 +43,7 @@ pub fn mermaid(lowered: &Lowered) -> Result<String, Diagnostic> {
 }
 
 /// What follows each bracket in the one around it.
-fn followers(lowered: &Lowered) -> Vec<Option<usize>> {
+fn followers(lowered: &Machine) -> Vec<Option<usize>> {
     let mut next = vec![None; lowered.brackets.len()];
     let mut latest: Vec<Option<usize>> = vec![None; lowered.brackets.len()];
     for (number, bracket) in lowered.brackets.iter().enumerate().skip(1) {

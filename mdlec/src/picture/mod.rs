@@ -20,13 +20,13 @@ pub use scxml::scxml;
 pub use svg::svg;
 
 use crate::diagnostic::{Code, Diagnostic, Span};
-use crate::fsm::Lowered;
+use crate::fsm::Machine;
 
 /// The most atoms, and the most scopes and loops, that a picture shows: a person does not find his way in more.
 const SHOWN: usize = 1000;
 
 /// Whether there are not too many atoms and brackets for a picture.
-fn can_be_shown(lowered: &Lowered) -> Result<(), Diagnostic> {
+fn can_be_shown(lowered: &Machine) -> Result<(), Diagnostic> {
     let atoms = lowered.atoms.len();
     let brackets = lowered.brackets.len().saturating_sub(atoms);
     let (count, what) = if atoms > SHOWN { (atoms, "atoms") } else { (brackets, "scopes and loops") };
@@ -34,14 +34,14 @@ fn can_be_shown(lowered: &Lowered) -> Result<(), Diagnostic> {
 }
 
 /// The diagnostic of a plan that has too much of something for a picture.
-fn too_many(lowered: &Lowered, count: usize, what: &str, most: usize) -> Diagnostic {
+fn too_many(lowered: &Machine, count: usize, what: &str, most: usize) -> Diagnostic {
     let message = format!("this plan has {count} {what}; a picture shows {most} at most");
     let help = "draw a part of it: `--plan NAME` takes any plan of the file, also one that others use";
     Diagnostic::new(Code::E0502, message, whole(lowered), "this plan").help(help)
 }
 
 /// The place of the plan, or of its interrupt.
-fn whole(lowered: &Lowered) -> Span {
+fn whole(lowered: &Machine) -> Span {
     lowered
         .scopes
         .iter()

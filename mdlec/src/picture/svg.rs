@@ -9,7 +9,7 @@ use super::places::{Placed, Style, places};
 use super::texts::{Texts, What};
 use super::xml::escaped;
 use crate::diagnostic::Diagnostic;
-use crate::fsm::Lowered;
+use crate::fsm::Machine;
 
 /// Colours for light and dark, and letters.
 const STYLE: &str = include_str!("style.css");
@@ -28,7 +28,7 @@ const COLOURS: usize = 4;
 ///
 /// # Errors
 /// E0502 for a plan of more than 1,000 atoms, or of as many scopes and loops.
-pub fn svg(lowered: &Lowered) -> Result<String, Diagnostic> {
+pub fn svg(lowered: &Machine) -> Result<String, Diagnostic> {
     can_be_shown(lowered)?;
     let texts = Texts(lowered);
     let mut all = places(texts);

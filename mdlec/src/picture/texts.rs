@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use mdle_runtime::fsm::Kind;
 
-use crate::fsm::{LawMeaning, Lowered, ScopeMeaning};
+use crate::fsm::{LawMeaning, Machine, ScopeMeaning};
 use crate::plan::{Condition, Interrupt, Mark, frame_text};
 
 /// The longest text that a tooltip holds, in characters: what is longer is no text for a person.
@@ -60,7 +60,7 @@ impl Until {
 
 /// What is written on the brackets of a machine.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Texts<'l>(pub(super) &'l Lowered);
+pub(super) struct Texts<'l>(pub(super) &'l Machine);
 
 /// What a bracket is.
 #[derive(Debug, Clone, Copy)]

@@ -10,11 +10,11 @@ use super::arguments::{angle, made, type_of};
 use super::names::{Distinct, atom_variant, quark_type};
 use super::rows::conditions;
 use super::tables::entries;
-use crate::fsm::{LawMeaning, Lowered};
+use crate::fsm::{LawMeaning, Machine};
 use crate::plan::{Compared, Condition, Quark, QuarkId, frame_text};
 
 /// The plan's type and its implementation, with an arm for each atom.
-pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered, paths: Option<&TokenStream>) -> TokenStream {
+pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Machine, paths: Option<&TokenStream>) -> TokenStream {
     let meaning = Meaning::new(lowered);
     let constants = meaning.constants();
     let running = meaning.running();
@@ -46,7 +46,7 @@ pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered, paths: Option<
 
 /// A plan's meaning with the names that its constants and functions have.
 pub(super) struct Meaning<'a> {
-    pub(super) lowered: &'a Lowered,
+    pub(super) lowered: &'a Machine,
     /// The constant of each quark.
     pub(super) constants: Vec<Ident>,
     /// The function of each bracket that is a scope with atoms inside and an interrupt that can fire.
@@ -54,7 +54,7 @@ pub(super) struct Meaning<'a> {
 }
 
 impl<'a> Meaning<'a> {
-    pub(super) fn new(lowered: &'a Lowered) -> Self {
+    pub(super) fn new(lowered: &'a Machine) -> Self {
         let mut names = Distinct::constants();
         let constants = lowered.quarks.iter().map(|quark| names.constant(&quark.text)).collect();
         let mut names = Distinct::functions();
@@ -133,7 +133,7 @@ impl<'a> Meaning<'a> {
 
     /// `impl Plan for LabTour`: what the machine asks of a plan.
     fn implementation(&self, plan: &Ident, paths: Option<&TokenStream>) -> TokenStream {
-        let slots = Literal::usize_unsuffixed(self.lowered.slots);
+        let slots = Literal::usize_unsuffixed(self.lowered.sizes().slots);
         let (entered, begins) = entries(self.lowered);
         let [enter, next, input] = [self.enter(), self.next(), self.input()];
         quote! {
@@ -180,7 +180,7 @@ impl<'a> Meaning<'a> {
             let number = Literal::usize_unsuffixed(atom);
             let variant = atom_variant(atom);
             let constant = &self.constants[law.quark.0 as usize];
-            let begin = turned(self.lowered.turned(atom));
+            let begin = turned(self.lowered.atom(atom as u32).turned());
             quote!(#number => Running::#variant(runtime::Control::begin(&#constant, y, #begin)))
         });
         quote! {
@@ -243,7 +243,7 @@ impl<'a> Meaning<'a> {
         self.lowered.laws.iter().enumerate().map(|(atom, law)| (atom, law, self.lowered.quark(law.quark)))
     }
 
-    fn is_atom(lowered: &Lowered, bracket: usize) -> bool {
+    fn is_atom(lowered: &Machine, bracket: usize) -> bool {
         let first = lowered.brackets[bracket].first as usize;
         lowered.atoms.get(first).is_some_and(|atom| atom.scope as usize == bracket)
     }
@@ -251,7 +251,7 @@ impl<'a> Meaning<'a> {
 
 /// `FRAME 90 (Atom (bumper) stop)`: an atom as written, for a comment, in which Rust has no carriage return alone and
 /// nothing that turns text around.
-pub(super) fn atom_doc(lowered: &Lowered, atom: usize) -> String {
+pub(super) fn atom_doc(lowered: &Machine, atom: usize) -> String {
     let (law, bracket) = (&lowered.laws[atom], lowered.atoms[atom].scope as usize);
     let interrupt = lowered.scopes[bracket].as_ref().map(|scope| &scope.interrupt);
     let condition = interrupt.filter(|interrupt| !interrupt.removed).map_or("null", |interrupt| &interrupt.text);

@@ -21,7 +21,7 @@ use quote::{format_ident, quote};
 
 use crate::alphabet::Alphabet;
 use crate::diagnostic::{Code, Diagnostic, Sources, Span};
-use crate::fsm::Lowered;
+use crate::fsm::Machine;
 pub use bind::bind;
 pub use names::plan_type;
 
@@ -53,9 +53,9 @@ impl Shape {
 
     /// The shape that suits a plan.
     #[must_use]
-    pub fn of(lowered: &Lowered) -> Self {
+    pub fn of(lowered: &Machine) -> Self {
         let is_short = lowered.brackets.len() <= Self::CODE && parts(lowered) <= Self::PARTS;
-        if is_short && lowered.memories == 0 { Self::Code } else { Self::Rows }
+        if is_short && lowered.sizes().memories == 0 { Self::Code } else { Self::Rows }
     }
 }
 
@@ -66,7 +66,7 @@ const EMITTED: usize = 1 << 18;
 ///
 /// # Errors
 /// E0501 for a plan that rustc would compile for minutes.
-pub fn fits(lowered: &Lowered, place: Span) -> Result<(), Diagnostic> {
+pub fn fits(lowered: &Machine, place: Span) -> Result<(), Diagnostic> {
     let (brackets, parts) = (lowered.brackets.len(), parts(lowered));
     if brackets.saturating_add(parts) <= EMITTED {
         return Ok(());
@@ -79,26 +79,26 @@ pub fn fits(lowered: &Lowered, place: Span) -> Result<(), Diagnostic> {
 }
 
 /// The parts of all conditions.
-fn parts(lowered: &Lowered) -> usize {
+fn parts(lowered: &Machine) -> usize {
     lowered.scopes.iter().flatten().map(|scope| scope.interrupt.condition.parts()).sum()
 }
 
 /// Writes the file in the shape that suits its size. Its text depends on nothing but the arguments and the version of
 /// the compiler.
 #[must_use]
-pub fn emit(lowered: &Lowered, header: Header<'_>, alphabet: &Alphabet) -> String {
+pub fn emit(lowered: &Machine, header: Header<'_>, alphabet: &Alphabet) -> String {
     emit_as(Shape::of(lowered), lowered, header, alphabet)
 }
 
 /// Writes the file in this shape.
 #[must_use]
-pub fn emit_as(shape: Shape, lowered: &Lowered, header: Header<'_>, alphabet: &Alphabet) -> String {
+pub fn emit_as(shape: Shape, lowered: &Machine, header: Header<'_>, alphabet: &Alphabet) -> String {
     let target = format_ident!("{}", alphabet.crate_name);
     let plan = format_ident!("{}", plan_type(header.plan));
     let doc = format!(" The plan `{}`.", header.plan);
     let paths = tables::paths(lowered, alphabet);
     // What a plan remembers is in rows, whatever is asked for.
-    let machine = match if lowered.memories > 0 { Shape::Rows } else { shape } {
+    let machine = match if lowered.sizes().memories > 0 { Shape::Rows } else { shape } {
         Shape::Code => code::machine(&plan, &doc, lowered, paths.as_ref()),
         Shape::Rows => rows::machine(&plan, &doc, lowered, paths.as_ref()),
     };

@@ -9,12 +9,12 @@ use super::arguments::{angle, compared, made};
 use super::names::quark_type;
 use super::scopes::nanometers;
 use super::tables::{entries, follows, level};
-use crate::fsm::Lowered;
+use crate::fsm::Machine;
 use crate::plan::{Condition, Quark, QuarkId};
 
 /// The plan's type, which hands everything on to the runtime's, and its rows.
-pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered, paths: Option<&TokenStream>) -> TokenStream {
-    let slots = Literal::usize_unsuffixed(lowered.slots);
+pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Machine, paths: Option<&TokenStream>) -> TokenStream {
+    let slots = Literal::usize_unsuffixed(lowered.sizes().slots);
     let (entered, begins) = entries(lowered);
     let rows = rows(lowered);
     let (memory, new, marks) = memory(lowered, &begins);
@@ -79,8 +79,8 @@ pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Lowered, paths: Option<
 }
 
 /// What the plan is told so that it can remember.
-fn told(lowered: &Lowered) -> Option<TokenStream> {
-    (lowered.memories > 0).then(|| {
+fn told(lowered: &Machine) -> Option<TokenStream> {
+    (lowered.sizes().memories > 0).then(|| {
         quote! {
             fn leave(
                 &mut self,
@@ -99,15 +99,15 @@ fn told(lowered: &Lowered) -> Option<TokenStream> {
 }
 
 /// The type of the plan's memory, how the plan is made, and `static MARKS`: nothing of it for a plan that remembers nothing.
-fn memory(lowered: &Lowered, begins: &TokenStream) -> (Option<TokenStream>, TokenStream, Option<TokenStream>) {
-    let slots = Literal::usize_unsuffixed(lowered.slots);
+fn memory(lowered: &Machine, begins: &TokenStream) -> (Option<TokenStream>, TokenStream, Option<TokenStream>) {
+    let slots = Literal::usize_unsuffixed(lowered.sizes().slots);
     let slots = quote!(#begins, [0; #slots]);
-    if lowered.memories == 0 {
+    if lowered.sizes().memories == 0 {
         return (None, quote!(runtime::InRows::new(&ROWS, #slots)), None);
     }
     let scopes = lowered.brackets.iter().map(|bracket| usize::from(level(bracket.kind)) + 1).max().unwrap_or(0);
-    let size = Literal::usize_unsuffixed(scopes * lowered.memories);
-    let width = Literal::usize_unsuffixed(lowered.memories);
+    let size = Literal::usize_unsuffixed(scopes * lowered.sizes().memories);
+    let width = Literal::usize_unsuffixed(lowered.sizes().memories);
     let marks = lowered.marks.iter().flat_map(|(bracket, marks)| marks.iter().map(move |mark| (bracket, mark)));
     let marks = marks.filter_map(|(bracket, mark)| {
         let record = lowered.records.get(&mark.record)?;
@@ -138,7 +138,7 @@ fn memory(lowered: &Lowered, begins: &TokenStream) -> (Option<TokenStream>, Toke
 }
 
 /// `static ROWS`: when each bracket ends, the operands of their conditions, the law of each atom.
-fn rows(lowered: &Lowered) -> TokenStream {
+fn rows(lowered: &Machine) -> TokenStream {
     let mut operands = Operands { lowered, waiting: VecDeque::new(), count: 0 };
     let around = around(lowered);
     let guards: Vec<_> = (0_u32..)
@@ -157,7 +157,7 @@ fn rows(lowered: &Lowered) -> TokenStream {
     let operands = operands.rows();
     let laws = lowered.laws.iter().enumerate().map(|(atom, law)| {
         let control = variant("AnyControl", lowered.quark(law.quark), &lowered.quarks);
-        let frame = angle(lowered.turned(atom));
+        let frame = angle(lowered.atom(atom as u32).turned());
         quote!(runtime::LawRow { control: #control, frame: #frame })
     });
     quote! {
@@ -173,7 +173,7 @@ fn rows(lowered: &Lowered) -> TokenStream {
 }
 
 /// `static OPERANDS`: the conditions of a plan that is code, for reports of the ones that fired.
-pub(super) fn conditions(lowered: &Lowered) -> TokenStream {
+pub(super) fn conditions(lowered: &Machine) -> TokenStream {
     let mut operands = Operands { lowered, waiting: VecDeque::new(), count: 0 };
     let brackets = (0_u32..).zip(&lowered.brackets);
     let conditions: Vec<_> = brackets.map(|(number, _)| operands.row(condition(lowered, number))).collect();
@@ -188,13 +188,13 @@ pub(super) fn conditions(lowered: &Lowered) -> TokenStream {
 }
 
 /// The condition of a bracket.
-fn condition(lowered: &Lowered, bracket: u32) -> &Condition {
+fn condition(lowered: &Machine, bracket: u32) -> &Condition {
     let scope = lowered.scopes[bracket as usize].as_ref();
     scope.map_or(&Condition::Null, |scope| &scope.interrupt.condition)
 }
 
 /// For each bracket the nearest one around it whose condition can fire; itself where there is none.
-fn around(lowered: &Lowered) -> Vec<u32> {
+fn around(lowered: &Machine) -> Vec<u32> {
     let mut around = Vec::with_capacity(lowered.brackets.len());
     for (number, bracket) in (0_u32..).zip(&lowered.brackets) {
         let parent = bracket.parent;
@@ -213,7 +213,7 @@ fn around(lowered: &Lowered) -> Vec<u32> {
 
 /// The operands of conditions, breadth first: so they stand side by side, and behind what they belong to.
 struct Operands<'l> {
-    lowered: &'l Lowered,
+    lowered: &'l Machine,
     waiting: VecDeque<&'l Condition>,
     /// How many have been given a number.
     count: usize,

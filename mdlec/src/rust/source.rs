@@ -9,12 +9,12 @@ use quote::quote;
 use super::arguments::number;
 use crate::alphabet::{Alphabet, Unit};
 use crate::diagnostic::{Sources, Span};
-use crate::fsm::Lowered;
+use crate::fsm::Machine;
 use crate::plan::{Compared, Condition, OperandPlace, Quark, QuarkId};
 use crate::syntax::one_line;
 
 /// `const SOURCE`: the words of each bracket, and those of each operand.
-pub(super) fn source(lowered: &Lowered, sources: &Sources, alphabet: &Alphabet) -> TokenStream {
+pub(super) fn source(lowered: &Machine, sources: &Sources, alphabet: &Alphabet) -> TokenStream {
     let mut writing = Writing { lowered, sources, alphabet, files: Vec::new(), operands: Vec::new() };
     let brackets: Vec<_> = (0..lowered.brackets.len()).map(|bracket| writing.bracket(bracket)).collect();
     let Writing { files, operands, .. } = writing;
@@ -29,7 +29,7 @@ pub(super) fn source(lowered: &Lowered, sources: &Sources, alphabet: &Alphabet) 
 }
 
 struct Writing<'a> {
-    lowered: &'a Lowered,
+    lowered: &'a Machine,
     sources: &'a Sources,
     alphabet: &'a Alphabet,
     /// The names of the files, in the order in which they are met.
@@ -42,7 +42,7 @@ impl Writing<'_> {
     fn bracket(&mut self, bracket: usize) -> TokenStream {
         let lowered = self.lowered;
         let scope = lowered.scopes.get(bracket).and_then(Option::as_ref);
-        let at = self.line(scope.map(|scope| scope.span));
+        let at = self.line(scope.map(|_| lowered.element(bracket as u32).span()));
         let first = Literal::usize_unsuffixed(self.operands.len());
         let Some(interrupt) = scope.map(|scope| &scope.interrupt) else {
             return quote!(runtime::BracketWords { at: #at, condition: "", first: #first, count: 0 });

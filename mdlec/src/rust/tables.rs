@@ -9,11 +9,11 @@ use quote::quote;
 
 use super::arguments::angle;
 use crate::alphabet::{Alphabet, Kind as ValueKind};
-use crate::fsm::Lowered;
+use crate::fsm::Machine;
 use crate::plan::{Quark, Value};
 
 /// `const FSM`, `LAWS`, `CONDITIONS`, `NAMES`, and `HERE` for a plan with `FRAME here`.
-pub(super) fn tables(lowered: &Lowered) -> TokenStream {
+pub(super) fn tables(lowered: &Machine) -> TokenStream {
     let brackets = lowered.brackets.iter().map(bracket);
     let atoms = lowered.atoms.iter().map(|atom| {
         let (scope, state) = (Literal::u32_unsuffixed(atom.scope), Literal::u64_unsuffixed(atom.state));
@@ -47,7 +47,7 @@ pub(super) fn tables(lowered: &Lowered) -> TokenStream {
 }
 
 /// `const HERE`: the frame of each atom that is inside a `FRAME here`; nothing for a plan without.
-fn frames(lowered: &Lowered) -> Option<TokenStream> {
+fn frames(lowered: &Machine) -> Option<TokenStream> {
     let frames = lowered.frames.iter().map(|here| match here {
         Some(Here { level, turned }) => {
             let (level, turned) = (Literal::u16_unsuffixed(*level), angle(turned.0));
@@ -63,14 +63,14 @@ fn frames(lowered: &Lowered) -> Option<TokenStream> {
     })
 }
 
-fn has_frames(lowered: &Lowered) -> bool {
+fn has_frames(lowered: &Machine) -> bool {
     lowered.frames.iter().any(Option::is_some)
 }
 
 /// The type that keeps the entries of scopes, and its initial value.
-pub(super) fn entries(lowered: &Lowered) -> (TokenStream, TokenStream) {
-    let levels = Literal::usize_unsuffixed(lowered.levels);
-    if lowered.stamps {
+pub(super) fn entries(lowered: &Machine) -> (TokenStream, TokenStream) {
+    let levels = Literal::usize_unsuffixed(lowered.sizes().levels);
+    if lowered.sizes().stamps {
         let frames = if has_frames(lowered) { quote!(HERE) } else { quote!(&[]) };
         let new = quote!(runtime::Stamps::new([runtime::Stamp::START; #levels], #frames));
         return (quote!(runtime::Stamps<'static, [runtime::Stamp; #levels]>), new);
@@ -111,7 +111,7 @@ pub(super) fn follows(follows: Follows) -> TokenStream {
 }
 
 /// `fn paths`: the files whose paths laws replay, each once; nothing for a plan that replays none.
-pub(super) fn paths(lowered: &Lowered, alphabet: &Alphabet) -> Option<TokenStream> {
+pub(super) fn paths(lowered: &Machine, alphabet: &Alphabet) -> Option<TokenStream> {
     let replays = |quark: &Quark| {
         let declaration = alphabet.declarations_of(&quark.name).nth(quark.overload);
         declaration.is_some_and(|declaration| declaration.needs.iter().any(|need| need.name == "paths"))

@@ -7,13 +7,13 @@ use mdle_runtime::{
 };
 
 use super::{Applied, Fired, Machine, Outcome, Reports};
-use crate::fsm::Lowered;
+use crate::fsm;
 use crate::plan::{Interrupt, Quark, QuarkId, RecordId, Situation};
 
 /// A lowered plan that is run.
 #[derive(Debug)]
 pub struct Counted<'p> {
-    lowered: &'p Lowered,
+    lowered: &'p fsm::Machine,
     /// None before the first turn, whose output the machine begins with.
     machine: Option<mdle_runtime::Machine<Scripted<'p>>>,
 }
@@ -21,7 +21,7 @@ pub struct Counted<'p> {
 impl<'p> Counted<'p> {
     /// A machine that is about to begin.
     #[must_use]
-    pub fn new(lowered: &'p Lowered) -> Self {
+    pub fn new(lowered: &'p fsm::Machine) -> Self {
         Self { lowered, machine: None }
     }
 }
@@ -45,7 +45,7 @@ impl<'p> Machine<'p> for Counted<'p> {
 
 /// Takes down the transitions of a turn.
 struct Transitions<'p> {
-    lowered: &'p Lowered,
+    lowered: &'p fsm::Machine,
     /// The numbers of the operands by which the next one is made.
     operands: Vec<usize>,
     fired: Vec<Fired<'p>>,
@@ -81,7 +81,7 @@ impl mdle_runtime::Output for Reports {
 /// What a lowered plan means where a script is the robot.
 #[derive(Debug)]
 struct Scripted<'p> {
-    lowered: &'p Lowered,
+    lowered: &'p fsm::Machine,
     /// The memories of every level of scopes, those of one level side by side.
     memories: Vec<bool>,
 }
@@ -120,17 +120,17 @@ impl Situation for Read<'_, '_> {
 }
 
 impl<'p> Scripted<'p> {
-    fn new(lowered: &'p Lowered) -> Self {
+    fn new(lowered: &'p fsm::Machine) -> Self {
         let levels = lowered.brackets.iter().map(|bracket| match bracket.kind {
             Kind::Scope { level } => usize::from(level) + 1,
             Kind::Loop { .. } => 0,
         });
-        let levels = if lowered.memories == 0 { 0 } else { levels.max().unwrap_or(0) };
-        Self { lowered, memories: vec![false; levels * lowered.memories] }
+        let levels = if lowered.sizes().memories == 0 { 0 } else { levels.max().unwrap_or(0) };
+        Self { lowered, memories: vec![false; levels * lowered.sizes().memories] }
     }
 
     fn place(&self, level: u16, memory: u32) -> usize {
-        usize::from(level) * self.lowered.memories + memory as usize
+        usize::from(level) * self.lowered.sizes().memories + memory as usize
     }
 
     /// The scopes around the current atom, from its own outwards: level and interrupt.
@@ -205,8 +205,8 @@ impl<'p> mdle_runtime::Plan for Scripted<'p> {
 
     fn slots(&self) -> (Self::Entered, Self::Left) {
         (
-            Stamps::new(vec![Stamp::START; self.lowered.levels].into(), &self.lowered.frames),
-            vec![0; self.lowered.slots].into(),
+            Stamps::new(vec![Stamp::START; self.lowered.sizes().levels].into(), &self.lowered.frames),
+            vec![0; self.lowered.sizes().slots].into(),
         )
     }
 
@@ -217,13 +217,13 @@ impl<'p> mdle_runtime::Plan for Scripted<'p> {
     }
 
     fn leave(&mut self, cursor: &At<'p>, cause: Cause, y: &Reports, _: Nanos) {
-        if self.lowered.memories > 0 {
+        if self.lowered.sizes().memories > 0 {
             self.record(cursor, cause, y);
         }
     }
 
     fn settle(&mut self, cursor: &At<'p>, y: &Reports, _: Nanos) {
-        if self.lowered.memories == 0 {
+        if self.lowered.sizes().memories == 0 {
             return;
         }
         let mut set = Vec::new();
@@ -261,7 +261,7 @@ impl<'p> mdle_runtime::Plan for Scripted<'p> {
     }
 }
 
-impl Lowered {
+impl fsm::Machine {
     fn law(&self, atom: u32) -> &Quark {
         self.quark(self.laws[atom as usize].quark)
     }

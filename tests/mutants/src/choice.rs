@@ -21,7 +21,7 @@ const AREAS: &[&[&str]] = &[
         "runtime/core/src/signal.rs",
     ],
     &["mdlec/src/plan/functions.rs", "mdlec/src/plan/nondegenerate.rs"],
-    &["mdlec/src/fsm/mod.rs"],
+    &["mdlec/src/fsm/lower.rs"],
     &["mdlec/src/rust"],
 ];
 
