@@ -1,75 +1,71 @@
-//! The element that follows when an element of a plan ends, with loops as they are written (docs/src/reference/semantics.md, 5.3).
+//! The elements that follow when an element of a plan ends, with loops as they are written
+//! (docs/src/reference/semantics.md, 5.3).
 
-use mdle_runtime::fsm::Kind;
+use super::texts::until;
+use crate::fsm::{Element, ElementKind, Exit, Machine};
 
-use super::texts::{Texts, What};
-use crate::fsm::Machine;
-
-/// Where something leads when it ends.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Exit {
-    /// To this atom, the first behind it; and whether only after the last pass of a loop.
-    Behind { atom: usize, last_pass: bool },
-    /// To the begin of this loop, for its next pass.
-    Again { bracket: usize, times: Option<u64> },
-    /// The plan is over; and whether only after the last pass of a loop.
+/// A destination of an element that ends.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Destination<'m> {
+    /// The element after it; `last_pass` where only the last pass of a loop leads there.
+    After { next: Element<'m>, last_pass: bool },
+    /// The beginning of this loop, for the next pass.
+    Again { repeated: Element<'m>, times: Option<u64> },
+    /// The end of the plan; `last_pass` where only the last pass of a loop leads there.
     Over { last_pass: bool },
 }
 
-/// Where the bracket leads when it ends: to each loop outside it that ends with it, and behind all of these.
-pub(super) fn exits(lowered: &Machine, bracket: usize) -> Vec<Exit> {
-    let (mut exits, mut here, mut last_pass) = (Vec::new(), bracket, false);
+/// Returns the destinations of an element: each loop that ends with it, and what comes after all of these.
+pub(super) fn destinations(element: Element<'_>) -> Vec<Destination<'_>> {
+    let (mut all, mut exit, mut last_pass) = (Vec::new(), element.exit(), false);
     loop {
-        let ended = &lowered.brackets[here];
-        let holder = ended.parent as usize;
-        // A bracket stands behind the one around it.
-        if holder >= here {
-            exits.push(Exit::Over { last_pass });
-            return exits;
-        }
-        let around = &lowered.brackets[holder];
-        if around.last != ended.last {
-            exits.push(Exit::Behind { atom: ended.last as usize + 1, last_pass });
-            return exits;
-        }
-        if let Kind::Loop { times, .. } = around.kind {
-            let times = (times > 0).then_some(times);
-            if times != Some(1) {
-                exits.push(Exit::Again { bracket: holder, times });
-                last_pass = true;
+        let parent = match exit {
+            Exit::Last(parent) => parent,
+            Exit::Next(next) => {
+                all.push(Destination::After { next, last_pass });
+                return all;
             }
+            Exit::Over => {
+                all.push(Destination::Over { last_pass });
+                return all;
+            }
+        };
+        if let ElementKind::Loop { times } = parent.kind()
+            && times != Some(1)
+        {
+            all.push(Destination::Again { repeated: parent, times });
+            last_pass = true;
             if times.is_none() {
-                return exits;
+                return all;
             }
         }
-        here = holder;
+        exit = parent.exit();
     }
 }
 
-/// How each bracket can end.
-#[derive(Debug, Clone)]
+/// The ways in which an element can end.
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Ends {
-    /// Whether it ends at all, by itself or with what it holds.
-    pub(super) ever: Vec<bool>,
-    /// Whether it ends with what it holds; of an atom, whether anything ends it.
-    pub(super) at_its_end: Vec<bool>,
+    /// `true` if it ends at all, by itself or with its last element.
+    pub(super) ever: bool,
+    /// `true` if it ends with its last element; of an atom, if anything ends it.
+    pub(super) at_its_end: bool,
 }
 
-/// How the brackets of a machine can end.
-pub(super) fn ends(texts: Texts<'_>) -> Ends {
-    let count = texts.0.brackets.len();
-    let mut ends = Ends { ever: vec![false; count], at_its_end: vec![false; count] };
-    // Whether the last of what each bracket holds ends: it comes first, for inner brackets stand behind outer ones.
-    let mut last = vec![None; count];
-    for number in (0..count).rev() {
-        let by_itself = texts.until(number).ends();
-        let at_its_end = match texts.what(number) {
-            What::Atom(..) => by_itself,
-            What::Loop(None) => false,
-            What::Loop(Some(_)) | What::Scope(_) => last[number] == Some(true),
+/// Returns the ways in which each element can end, by its number.
+pub(super) fn ends(machine: &Machine) -> Vec<Ends> {
+    let mut ends = vec![Ends::default(); machine.elements().len()];
+    // Inner elements come before those that hold them.
+    for element in machine.elements().rev() {
+        let by_itself = until(element).ends();
+        let at_its_end = match element.kind() {
+            ElementKind::Atom(_) => by_itself,
+            ElementKind::Loop { times: None } => false,
+            ElementKind::Loop { times: Some(_) } | ElementKind::Scope => {
+                element.children().last().is_some_and(|last| ends[last.index()].ever)
+            }
         };
-        (ends.ever[number], ends.at_its_end[number]) = (by_itself || at_its_end, at_its_end);
-        last[texts.0.brackets[number].parent as usize].get_or_insert(ends.ever[number]);
+        ends[element.index()] = Ends { ever: by_itself || at_its_end, at_its_end };
     }
     ends
 }

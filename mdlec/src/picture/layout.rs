@@ -1,7 +1,8 @@
 //! The arrows of a picture, between boxes that have their places: what follows what, and how a scope is left.
 
 use super::places::{GAP, Placed, SIDE};
-use super::texts::{Texts, What};
+use super::texts::until;
+use crate::fsm::{Element, ElementKind, Machine};
 
 /// What an arrow says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,7 +32,7 @@ pub(super) const MARGIN: i64 = 44;
 pub(super) const EXIT: i64 = 16;
 
 /// All arrows, in the order of their boxes.
-pub(super) fn arrows(texts: Texts<'_>, all: &[Placed]) -> Vec<Line> {
+pub(super) fn arrows(machine: &Machine, all: &[Placed]) -> Vec<Line> {
     let mut lines = Vec::new();
     if let Some(root) = all.first() {
         let (y, right) = (root.y + root.enters, root.x + root.width);
@@ -40,10 +41,10 @@ pub(super) fn arrows(texts: Texts<'_>, all: &[Placed]) -> Vec<Line> {
         if root.flows {
             lines.push(line(Arrow::Flow, 0, &[(right, end.1), end]));
         }
-        lines.extend(exit(texts, 0, root, (end.0 + 6, end.1 - 9), right + MARGIN - 12));
+        lines.extend(exit(machine.root(), root, (end.0 + 6, end.1 - 9), right + MARGIN - 12));
     }
-    for (number, placed) in all.iter().enumerate() {
-        inside(texts, number, placed, all, &mut lines);
+    for (element, placed) in machine.elements().zip(all) {
+        inside(element, placed, all, &mut lines);
     }
     lines
 }
@@ -53,38 +54,39 @@ fn line(arrow: Arrow, depth: usize, points: &[(i64, i64)]) -> Line {
 }
 
 /// The arrows between the children of a box, into the first and out of the last.
-fn inside(texts: Texts<'_>, number: usize, placed: &Placed, all: &[Placed], lines: &mut Vec<Line>) {
+fn inside(element: Element<'_>, placed: &Placed, all: &[Placed], lines: &mut Vec<Line>) {
     let depth = placed.depth + 1;
-    let (Some(first), Some(last)) = (placed.children.first(), placed.children.last()) else { return };
+    let (Some(first), Some(last)) = (element.children().next(), element.children().last()) else { return };
     let entry = placed.y + placed.enters;
-    lines.push(line(Arrow::Port, depth, &[(placed.x, entry), (all[*first].x, entry)]));
-    for pair in placed.children.windows(2) {
-        let (one, next) = (&all[pair[0]], &all[pair[1]]);
+    lines.push(line(Arrow::Port, depth, &[(placed.x, entry), (all[first.index()].x, entry)]));
+    for (before, after) in element.children().zip(element.children().skip(1)) {
+        let (one, next) = (&all[before.index()], &all[after.index()]);
         let (from, to) = ((one.x + one.width, one.y + one.leaves), (next.x, next.y + next.enters));
-        let is_below = placed.rows.contains(&pair[1]);
+        let is_below = placed.rows.contains(&after.index());
         if one.flows {
-            let points = if is_below { around(from, to, gap_above(pair[1], placed, all)) } else { beside(from, to) };
+            let points =
+                if is_below { around(from, to, gap_above(after.index(), placed, all)) } else { beside(from, to) };
             lines.push(line(Arrow::Flow, depth, &points));
         }
         if is_below {
-            let gap = gap_above(pair[1], placed, all);
-            lines.extend(exit_below(texts, pair[0], one, to, gap));
+            let gap = gap_above(after.index(), placed, all);
+            lines.extend(exit_below(before, one, to, gap));
         } else {
-            lines.extend(exit(texts, pair[0], one, to, from.0 + GAP / 2));
+            lines.extend(exit(before, one, to, from.0 + GAP / 2));
         }
     }
-    let end = &all[*last];
+    let end = &all[last.index()];
     let (from, right) = ((end.x + end.width, end.y + end.leaves), placed.x + placed.width);
-    let is_loop = matches!(texts.what(number), What::Loop(_));
+    let is_loop = matches!(element.kind(), ElementKind::Loop { .. });
     if is_loop && end.ends {
-        lines.push(again(placed, from, (all[*first].x, entry)));
+        lines.push(again(placed, from, (all[first.index()].x, entry)));
     }
-    let leads_on = !matches!(texts.what(number), What::Loop(None));
+    let leads_on = !matches!(element.kind(), ElementKind::Loop { times: None });
     let port = if leads_on { right } else { from.0 + SIDE / 2 };
     if end.flows && leads_on {
         lines.push(line(Arrow::Port, depth, &[from, (right, from.1)]));
     }
-    lines.extend(exit(texts, *last, end, (port, from.1), from.0 + SIDE / 2));
+    lines.extend(exit(last, end, (port, from.1), from.0 + SIDE / 2));
 }
 
 /// From one box to the one beside it, whose lines may be on other heights.
@@ -123,8 +125,8 @@ fn again(placed: &Placed, from: (i64, i64), to: (i64, i64)) -> Line {
 }
 
 /// How a scope is left by its own condition: from its head to where it leads.
-fn exit(texts: Texts<'_>, number: usize, placed: &Placed, to: (i64, i64), over: i64) -> Vec<Line> {
-    if !matches!(texts.what(number), What::Scope(_)) || !texts.until(number).ends() {
+fn exit(element: Element<'_>, placed: &Placed, to: (i64, i64), over: i64) -> Vec<Line> {
+    if !element.is_scope() || !until(element).ends() {
         return Vec::new();
     }
     let from = (placed.x + placed.width, placed.y + EXIT);
@@ -132,13 +134,13 @@ fn exit(texts: Texts<'_>, number: usize, placed: &Placed, to: (i64, i64), over: 
 }
 
 /// How a scope at the end of a row is left by its own condition: down to the arrow in the gap, which leads on.
-fn exit_below(texts: Texts<'_>, number: usize, placed: &Placed, to: (i64, i64), gap: i64) -> Vec<Line> {
+fn exit_below(element: Element<'_>, placed: &Placed, to: (i64, i64), gap: i64) -> Vec<Line> {
     let right = placed.x + placed.width;
     if placed.flows {
-        return exit(texts, number, placed, (right - 8, gap), right + GAP / 2);
+        return exit(element, placed, (right - 8, gap), right + GAP / 2);
     }
     // Nothing else draws the way to the next row.
-    let mut lines = exit(texts, number, placed, (to.0 - SIDE / 2, gap), right + GAP / 2);
+    let mut lines = exit(element, placed, (to.0 - SIDE / 2, gap), right + GAP / 2);
     lines.iter_mut().for_each(|line| line.points.extend([(to.0 - SIDE / 2, to.1), to]));
     lines
 }

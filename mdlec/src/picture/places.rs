@@ -2,7 +2,8 @@
 
 use super::exits::ends;
 use super::measure::{LINE, letters, width, wrapped};
-use super::texts::{Texts, Until, What, exponent, passes};
+use super::texts::{Until, exponent, labels, passes, until};
+use crate::fsm::{Atom, Element, ElementKind, Machine};
 use crate::plan::frame_text;
 
 /// How wide a picture is, if nothing in it needs more.
@@ -52,17 +53,18 @@ pub(super) struct Placed {
     pub(super) flows: bool,
 }
 
-/// The boxes of all brackets, by their numbers. No recursion: a bracket stands behind the one around it.
-pub(super) fn places(texts: Texts<'_>) -> Vec<Placed> {
-    let mut all = nested(texts);
-    let ends = ends(texts);
-    for (placed, (ever, at_its_end)) in all.iter_mut().zip(ends.ever.into_iter().zip(ends.at_its_end)) {
-        (placed.ends, placed.flows) = (ever, at_its_end);
+/// Returns the boxes of all elements, by their numbers. No recursion: an element comes after those that enclose it.
+pub(super) fn places(machine: &Machine) -> Vec<Placed> {
+    let mut all: Vec<Placed> = Vec::new();
+    for (element, ends) in machine.elements().zip(ends(machine)) {
+        let depth = element.parent().map_or(0, |parent| all[parent.index()].depth + 1);
+        let children = element.children().map(Element::index).collect();
+        all.push(Placed { depth, children, ends: ends.ever, flows: ends.at_its_end, ..Placed::default() });
     }
-    for number in (0..all.len()).rev() {
-        match texts.what(number) {
-            What::Atom(..) => atom(texts, number, &mut all[number]),
-            What::Scope(_) | What::Loop(_) => holder(texts, number, &mut all),
+    for element in machine.elements().rev() {
+        match element.kind() {
+            ElementKind::Atom(of) => atom(of, &mut all[element.index()]),
+            ElementKind::Scope | ElementKind::Loop { .. } => holder(element, &mut all),
         }
     }
     if let Some(root) = all.first_mut() {
@@ -78,27 +80,17 @@ pub(super) fn places(texts: Texts<'_>) -> Vec<Placed> {
     all
 }
 
-/// Boxes without a size, each with what it holds.
-fn nested(texts: Texts<'_>) -> Vec<Placed> {
-    let brackets = &texts.0.brackets;
-    let mut all = vec![Placed::default(); brackets.len()];
-    for (number, bracket) in brackets.iter().enumerate().skip(1) {
-        let around = bracket.parent as usize;
-        all[around].children.push(number);
-        all[number].depth = all[around].depth + 1;
-    }
-    all
-}
-
-fn atom(texts: Texts<'_>, number: usize, placed: &mut Placed) {
-    let What::Atom(_, _, law) = texts.what(number) else { return };
-    let until = texts.until(number);
-    let mut lines = Vec::new();
-    let labels = texts.labels(number);
-    lines.extend(wrapped(&labels, LETTERS, 1).into_iter().map(|line| (Style::Quiet, line)));
-    lines.extend(wrapped(&frame_text(law.frame), LETTERS, 1).into_iter().map(|line| (Style::Quiet, line)));
-    lines.extend(wrapped(texts.law(law), LETTERS, LINES).into_iter().map(|line| (Style::Law, line)));
-    lines.extend(until_lines(&until, LETTERS));
+fn atom(atom: Atom<'_>, placed: &mut Placed) {
+    let parts = [
+        (Style::Quiet, labels(atom.element()), 1),
+        (Style::Quiet, frame_text(atom.frame()), 1),
+        (Style::Law, atom.law().text.clone(), LINES),
+    ];
+    let wrap = |(style, text, most): (Style, String, usize)| {
+        wrapped(&text, LETTERS, most).into_iter().map(move |line| (style, line))
+    };
+    let mut lines: Vec<_> = parts.into_iter().flat_map(wrap).collect();
+    lines.extend(until_lines(&until(atom.element()), LETTERS));
     placed.width = widest(&lines).max(80) + 2 * PADDING;
     placed.height = lines.len() as i64 * LINE + 2 * PADDING;
     placed.enters = placed.height / 2;
@@ -122,13 +114,14 @@ fn widest(lines: &[(Style, String)]) -> i64 {
 }
 
 /// Places what a scope or a loop holds, whose sizes are known, and so finds its size.
-fn holder(texts: Texts<'_>, number: usize, all: &mut [Placed]) {
+fn holder(element: Element<'_>, all: &mut [Placed]) {
+    let number = element.index();
     let children = all[number].children.clone();
     let room = (PICTURE - 2 * SIDE * all[number].depth as i64).max(LEAST);
     let limit = even(&children, all, room);
     let rows = rows(&children, all, limit);
     let content = rows.iter().map(|row| row_width(row, all)).max().unwrap_or(0);
-    let lines = head(texts, number, content);
+    let lines = head(element, content);
     let inside = content.max(widest(&lines) - SIDE);
     let mut y = PADDING + lines.len() as i64 * LINE + PADDING;
     let (mut enters, mut leaves) = (y, y);
@@ -147,7 +140,7 @@ fn holder(texts: Texts<'_>, number: usize, all: &mut [Placed]) {
         leaves = row.last().map_or(leaves, |last| all[*last].y + all[*last].leaves);
         y = bottom + if place + 1 < rows.len() { BETWEEN_ROWS } else { 0 };
     }
-    let again = if matches!(texts.what(number), What::Loop(_)) { AGAIN } else { 0 };
+    let again = if matches!(element.kind(), ElementKind::Loop { .. }) { AGAIN } else { 0 };
     let placed = &mut all[number];
     placed.width = inside + 2 * SIDE;
     placed.height = y + BOTTOM + again;
@@ -156,19 +149,19 @@ fn holder(texts: Texts<'_>, number: usize, all: &mut [Placed]) {
 }
 
 /// What is written at the head of a scope or a loop.
-fn head(texts: Texts<'_>, number: usize, content: i64) -> Vec<(Style, String)> {
+fn head(element: Element<'_>, content: i64) -> Vec<(Style, String)> {
     let letters = letters(content + SIDE).max(34);
-    let labels = texts.labels(number);
+    let labels = labels(element);
     let named =
         |name: &str| wrapped(&format!("{labels}{name}"), letters, 1).into_iter().map(|line| (Style::Name, line));
-    match texts.what(number) {
-        What::Loop(times) => named(&format!("{} ({})", exponent(times), passes(times))).collect(),
-        What::Scope(scope) => {
-            let until = texts.until(number);
+    match element.kind() {
+        ElementKind::Loop { times } => named(&format!("{} ({})", exponent(times), passes(times))).collect(),
+        ElementKind::Scope => {
+            let until = until(element);
             let until = if until.ends() { until_lines(&until, letters) } else { Vec::new() };
-            named(&scope.name).chain(until).collect()
+            named(element.name()).chain(until).collect()
         }
-        What::Atom(..) => Vec::new(),
+        ElementKind::Atom(_) => Vec::new(),
     }
 }
 

@@ -6,10 +6,10 @@ use super::can_be_shown;
 use super::layout::{Arrow, Line, MARGIN, arrows};
 use super::measure::{LINE, letters, wrapped};
 use super::places::{Placed, Style, places};
-use super::texts::{Texts, What};
+use super::texts::{tooltip, until};
 use super::xml::escaped;
 use crate::diagnostic::Diagnostic;
-use crate::fsm::Machine;
+use crate::fsm::{Element, ElementKind, Machine};
 
 /// Colours for light and dark, and letters.
 const STYLE: &str = include_str!("style.css");
@@ -28,21 +28,20 @@ const COLOURS: usize = 4;
 ///
 /// # Errors
 /// E0502 for a plan of more than 1,000 atoms, or of as many scopes and loops.
-pub fn svg(lowered: &Machine) -> Result<String, Diagnostic> {
-    can_be_shown(lowered)?;
-    let texts = Texts(lowered);
-    let mut all = places(texts);
+pub fn svg(machine: &Machine) -> Result<String, Diagnostic> {
+    can_be_shown(machine)?;
+    let mut all = places(machine);
     for placed in &mut all {
         placed.x += MARGIN;
         placed.y += TITLE;
     }
-    let mut picture = Picture { texts, all: &all, text: String::new() };
+    let mut picture = Picture { machine, all: &all, text: String::new() };
     picture.draw();
     Ok(picture.text)
 }
 
 struct Picture<'p> {
-    texts: Texts<'p>,
+    machine: &'p Machine,
     all: &'p [Placed],
     text: String,
 }
@@ -58,8 +57,8 @@ impl Picture<'_> {
         let width = (root.width + 2 * MARGIN).max(640);
         let meanings = wrapped(&self.meanings(), letters(width - MARGIN - root.x), MEANINGS);
         let height = root.height + TITLE + FOOT + LINE * (meanings.len() as i64 - 1).max(0);
-        let name = self.texts.0.scopes.iter().flatten().next().map(|plan| escaped(&plan.name)).unwrap_or_default();
-        let count = self.texts.0.atoms.len();
+        let name = escaped(self.machine.root().name());
+        let count = self.machine.atoms().len();
         let atoms = if count == 1 { "1 atom".to_owned() } else { format!("{count} atoms") };
         self.line(&format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
@@ -80,7 +79,7 @@ impl Picture<'_> {
         let right = width - MARGIN;
         self.line(&format!("<text class=\"quiet\" x=\"{right}\" y=\"28\" text-anchor=\"end\">{atoms}</text>"));
         self.boxes();
-        arrows(self.texts, self.all).iter().for_each(|line| self.arrow(line));
+        arrows(self.machine, self.all).iter().for_each(|line| self.arrow(line));
         self.ends(root, height, &meanings);
         self.line("</svg>");
     }
@@ -102,13 +101,11 @@ impl Picture<'_> {
 
     /// What those of the signs mean that are in this picture.
     fn meanings(&self) -> String {
-        let all = || (0..self.all.len()).map(|number| (self.texts.what(number), number));
-        let leaves = |(what, number)| matches!(what, What::Scope(_)) && self.texts.until(number).ends();
         let mut meanings = Vec::new();
-        if all().any(leaves) {
+        if self.machine.elements().any(|element| element.is_scope() && until(element).ends()) {
             meanings.push("A red line leaves a box whose own condition fires, the outermost first.");
         }
-        if all().any(|(what, _)| matches!(what, What::Loop(_))) {
+        if self.machine.elements().any(|element| matches!(element.kind(), ElementKind::Loop { .. })) {
             meanings.push("A dashed line begins the next pass.");
         }
         meanings.join(" ")
@@ -116,26 +113,24 @@ impl Picture<'_> {
 
     /// All boxes, outer ones first, so that what they hold is drawn over them.
     fn boxes(&mut self) {
-        for number in 0..self.all.len() {
-            let placed = &self.all[number];
+        for (element, placed) in self.machine.elements().zip(self.all) {
             let (x, y, width, height) = (placed.x, placed.y, placed.width, placed.height);
-            let (class, round) = match self.texts.what(number) {
-                What::Atom(..) => ("atom".to_owned(), 6),
-                What::Loop(_) => ("loop".to_owned(), 18),
-                What::Scope(_) => (format!("scope s{}", placed.depth % COLOURS), 10),
+            let (class, round) = match element.kind() {
+                ElementKind::Atom(_) => ("atom".to_owned(), 6),
+                ElementKind::Loop { .. } => ("loop".to_owned(), 18),
+                ElementKind::Scope => (format!("scope s{}", placed.depth % COLOURS), 10),
             };
-            self.line(&format!("<g><title>{}</title>", escaped(&self.texts.tooltip(number))));
+            self.line(&format!("<g><title>{}</title>", escaped(&tooltip(element))));
             self.line(&format!(
                 "<rect class=\"{class}\" x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" rx=\"{round}\"/>"
             ));
-            self.words(number, placed);
+            self.words(element, placed);
             self.line("</g>");
         }
     }
 
     /// What is written in a box.
-    fn words(&mut self, number: usize, placed: &Placed) {
-        let is_atom = matches!(self.texts.what(number), What::Atom(..));
+    fn words(&mut self, element: Element<'_>, placed: &Placed) {
         for (place, (style, text)) in (0..).zip(&placed.lines) {
             let class = match style {
                 Style::Law => "law",
@@ -143,12 +138,12 @@ impl Picture<'_> {
                 Style::Until => "until",
                 Style::Quiet => "quiet",
             };
-            let x = placed.x + if is_atom { 10 } else { 14 };
+            let x = placed.x + if element.atom().is_some() { 10 } else { 14 };
             let y = placed.y + 10 + LINE * place + 12;
             self.line(&format!("<text class=\"{class}\" x=\"{x}\" y=\"{y}\">{}</text>", escaped(text)));
         }
-        if let What::Atom(atom, ..) = self.texts.what(number) {
-            let state = self.texts.state(atom).to_string();
+        if let Some(atom) = element.atom() {
+            let state = atom.state().to_string();
             let wide = 10 + 7 * state.len() as i64;
             let (x, y) = (placed.x + placed.width - wide + 6, placed.y - 8);
             self.line(&format!(

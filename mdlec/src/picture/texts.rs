@@ -1,11 +1,7 @@
 //! What is written on atoms, scopes and loops in a picture.
 
-use std::collections::BTreeMap;
-
-use mdle_runtime::fsm::Kind;
-
-use crate::fsm::{LawMeaning, Machine, ScopeMeaning};
-use crate::plan::{Condition, Interrupt, Mark, frame_text};
+use crate::fsm::{Atom, Element, ElementKind};
+use crate::plan::{Condition, Interrupt, frame_text};
 
 /// The longest text that a tooltip holds, in characters: what is longer is no text for a person.
 const TOOLTIP: usize = 4000;
@@ -58,83 +54,38 @@ impl Until {
     }
 }
 
-/// What is written on the brackets of a machine.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Texts<'l>(pub(super) &'l Machine);
-
-/// What a bracket is.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum What<'l> {
-    /// An atom: its number, its scope and its law.
-    Atom(usize, &'l ScopeMeaning, &'l LawMeaning),
-    /// A behavior, or the plan.
-    Scope(&'l ScopeMeaning),
-    /// A loop: its passes, or for ever.
-    Loop(Option<u64>),
+/// Returns what ends an element by itself; a loop has nothing that does.
+pub(super) fn until(element: Element<'_>) -> Until {
+    element.interrupt().map_or(Until::Never, |interrupt| Until::of(interrupt, element.completes()))
 }
 
-impl<'l> Texts<'l> {
-    /// What the bracket of this number is.
-    pub(super) fn what(self, bracket: usize) -> What<'l> {
-        let made = &self.0.brackets[bracket];
-        let atom = made.first as usize;
-        match (made.kind, &self.0.scopes[bracket]) {
-            (Kind::Loop { times, .. }, _) => What::Loop((times > 0).then_some(times)),
-            (Kind::Scope { .. }, None) => What::Loop(None),
-            (Kind::Scope { .. }, Some(scope)) if self.0.atoms[atom].scope as usize == bracket => {
-                What::Atom(atom, scope, &self.0.laws[atom])
-            }
-            (Kind::Scope { .. }, Some(scope)) => What::Scope(scope),
-        }
-    }
+/// Returns the labels of what ends with an element: `s1: `, or nothing.
+pub(super) fn labels(element: Element<'_>) -> String {
+    element.marks().iter().rev().map(|mark| format!("{}: ", mark.label)).collect()
+}
 
-    /// What ends a bracket by itself; a loop has nothing that does.
-    pub(super) fn until(self, bracket: usize) -> Until {
-        match self.what(bracket) {
-            What::Atom(_, scope, law) => Until::of(&scope.interrupt, self.0.quark(law.quark).completes),
-            What::Scope(scope) => Until::of(&scope.interrupt, false),
-            What::Loop(_) => Until::Never,
-        }
-    }
+/// Returns the text of an atom's frame and law: `FRAME 90deg go 20 0`.
+pub(super) fn law(atom: Atom<'_>) -> String {
+    format!("{}{}", frame_text(atom.frame()), atom.law().text)
+}
 
-    /// The labels of what ends with a bracket: `s1: `, or nothing.
-    pub(super) fn labels(self, bracket: usize) -> String {
-        let marks: &BTreeMap<u32, Vec<Mark>> = &self.0.marks;
-        let marks = u32::try_from(bracket).ok().and_then(|number| marks.get(&number));
-        marks.into_iter().flatten().rev().map(|mark| format!("{}: ", mark.label)).collect()
-    }
-
-    /// The quark text of an atom's law.
-    pub(super) fn law(self, law: &LawMeaning) -> &'l str {
-        &self.0.quark(law.quark).text
-    }
-
-    /// The number of an atom's state, as a trace has it in the first pass of every loop.
-    pub(super) fn state(self, atom: usize) -> u64 {
-        self.0.atoms[atom].state
-    }
-
-    /// Everything about a bracket, for who asks for it.
-    pub(super) fn tooltip(self, bracket: usize) -> String {
-        let labels = self.labels(bracket);
-        let text = match self.what(bracket) {
-            What::Atom(atom, _, law) => {
-                let until = self.until(bracket).text();
-                format!("{labels}atom {}: {}{}\nuntil {until}", self.state(atom), frame_text(law.frame), self.law(law))
-            }
-            What::Scope(scope) => {
-                let name = if scope.name.is_empty() { "a scope without a name" } else { &scope.name };
-                match self.until(bracket) {
-                    Until::Never => format!("{labels}{name}\nends with its last element"),
-                    until @ (Until::Fires(_) | Until::Done | Until::FiresOrDone(_) | Until::Removed(_)) => {
-                        format!("{labels}{name}\nuntil {}", until.text())
-                    }
+/// Returns everything about an element on a few lines, for a tooltip.
+pub(super) fn tooltip(element: Element<'_>) -> String {
+    let (labels, until) = (labels(element), until(element));
+    let text = match element.kind() {
+        ElementKind::Atom(atom) => format!("{labels}atom {}: {}\nuntil {}", atom.state(), law(atom), until.text()),
+        ElementKind::Scope => {
+            let name = if element.name().is_empty() { "a scope without a name" } else { element.name() };
+            match until {
+                Until::Never => format!("{labels}{name}\nends with its last element"),
+                until @ (Until::Fires(_) | Until::Done | Until::FiresOrDone(_) | Until::Removed(_)) => {
+                    format!("{labels}{name}\nuntil {}", until.text())
                 }
             }
-            What::Loop(times) => format!("{labels}{}", passes(times)),
-        };
-        bounded(&text)
-    }
+        }
+        ElementKind::Loop { times } => format!("{labels}{}", passes(times)),
+    };
+    bounded(&text)
 }
 
 /// `^3`, or `^inf`.
