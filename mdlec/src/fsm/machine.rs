@@ -281,6 +281,15 @@ impl<'m> Element<'m> {
         }
     }
 
+    /// Returns the place of a loop's counter, and the states of one pass in the expanded plan: 0 for a loop without end.
+    #[must_use]
+    pub fn counter(self) -> Option<(u16, u64)> {
+        match self.bracket().kind {
+            Kind::Scope { .. } => None,
+            Kind::Loop { slot, stride, .. } => Some((slot, stride)),
+        }
+    }
+
     /// Returns `true` if it is an atom whose law may complete.
     #[must_use]
     pub fn completes(self) -> bool {
@@ -301,9 +310,15 @@ impl<'m> Element<'m> {
         if parent.bracket().last == last {
             return Exit::Last(parent);
         }
-        // First atoms ascend in pre-order: the next element begins with the first atom after this one's last.
-        let next = self.machine.0.brackets.partition_point(|bracket| bracket.first <= last);
-        Exit::Next(self.machine.element(as_number(next)))
+        // First atoms ascend in pre-order: the next element begins with the first atom after this one's last. After an
+        // atom it is the next of all.
+        let after = self.index() + 1;
+        let rest = &self.machine.0.brackets[after..];
+        let skipped = match rest.first() {
+            Some(next) if next.first > last => 0,
+            _ => rest.partition_point(|bracket| bracket.first <= last),
+        };
+        Exit::Next(self.machine.element(as_number(after + skipped)))
     }
 
     /// Returns what follows when the element ends, as far as no loop decides that at run time.

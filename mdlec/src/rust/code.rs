@@ -9,18 +9,19 @@ use quote::quote;
 use super::arguments::{angle, made, type_of};
 use super::names::{Distinct, atom_variant, quark_type};
 use super::rows::conditions;
+use super::scopes::ending;
 use super::tables::entries;
-use crate::fsm::{LawMeaning, Machine};
-use crate::plan::{Compared, Condition, Quark, QuarkId, frame_text};
+use crate::fsm::{Atom, Element, Machine};
+use crate::plan::{Compared, Condition, QuarkId, frame_text};
 
 /// The plan's type and its implementation, with an arm for each atom.
-pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Machine, paths: Option<&TokenStream>) -> TokenStream {
-    let meaning = Meaning::new(lowered);
+pub(super) fn machine(plan: &Ident, doc: &str, machine: &Machine, paths: Option<&TokenStream>) -> TokenStream {
+    let meaning = Meaning::new(machine);
     let constants = meaning.constants();
     let running = meaning.running();
     let implementation = meaning.implementation(plan, paths);
     let scope_functions = meaning.scope_functions();
-    let conditions = conditions(lowered);
+    let conditions = conditions(machine);
     quote! {
         #[doc = #doc]
         #[derive(Debug)]
@@ -46,38 +47,38 @@ pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Machine, paths: Option<
 
 /// A plan's meaning with the names that its constants and functions have.
 pub(super) struct Meaning<'a> {
-    pub(super) lowered: &'a Machine,
+    pub(super) machine: &'a Machine,
     /// The constant of each quark.
     pub(super) constants: Vec<Ident>,
-    /// The function of each bracket that is a scope with atoms inside and an interrupt that can fire.
-    pub(super) functions: Vec<Option<Ident>>,
+    /// The function of each element that is a scope, but no atom, with an interrupt that can fire.
+    functions: Vec<Option<Ident>>,
 }
 
 impl<'a> Meaning<'a> {
-    pub(super) fn new(lowered: &'a Machine) -> Self {
+    pub(super) fn new(machine: &'a Machine) -> Self {
         let mut names = Distinct::constants();
-        let constants = lowered.quarks.iter().map(|quark| names.constant(&quark.text)).collect();
+        let constants = machine.quarks().iter().map(|quark| names.constant(&quark.text)).collect();
         let mut names = Distinct::functions();
-        let functions = lowered
-            .scopes
-            .iter()
-            .enumerate()
-            .map(|(bracket, scope)| {
-                let scope = scope.as_ref().filter(|scope| scope.interrupt.condition != Condition::Null)?;
-                (!Self::is_atom(lowered, bracket)).then(|| names.scope_function(&scope.name))
-            })
-            .collect();
-        Self { lowered, constants, functions }
+        let functions = machine.elements().map(|element| {
+            let has_function = element.is_scope() && *element.condition() != Condition::Null;
+            has_function.then(|| names.scope_function(element.name()))
+        });
+        Self { machine, constants, functions: functions.collect() }
+    }
+
+    /// The function of an element, if it has one.
+    pub(super) fn function(&self, element: Element<'_>) -> Option<&Ident> {
+        self.functions.get(element.index())?.as_ref()
     }
 
     /// `const GO_20_0: robot::Go = robot::Go::new(…);` for each quark that is not a `wait`.
     pub(super) fn constants(&self) -> TokenStream {
         let signals = self.signals();
-        let quarks = (0..).map(QuarkId).zip(&self.lowered.quarks).zip(&self.constants);
+        let quarks = (0..).map(QuarkId).zip(self.machine.quarks()).zip(&self.constants);
         let quarks = quarks.filter(|((id, quark), _)| quark.name != "wait" && !signals.contains(id));
         let constants = quarks.map(|((_, quark), constant)| {
-            let kind = type_of(quark, &self.lowered.quarks);
-            let value = made(quark, &self.lowered.quarks);
+            let kind = type_of(quark, self.machine.quarks());
+            let value = made(quark, self.machine.quarks());
             let doc = format!(" `{}`", Printable(&quark.text));
             quote! {
                 #[doc = #doc]
@@ -91,12 +92,12 @@ impl<'a> Meaning<'a> {
     fn signals(&self) -> BTreeSet<QuarkId> {
         let mut signals = BTreeSet::new();
         let mut used = BTreeSet::new();
-        for scope in self.lowered.scopes.iter().flatten() {
-            scope.interrupt.condition.each_quark(&mut |quark| {
+        for element in self.machine.elements() {
+            element.condition().each_quark(&mut |quark| {
                 used.insert(quark);
             });
         }
-        for (id, quark) in (0..).map(QuarkId).zip(&self.lowered.quarks) {
+        for (id, quark) in (0..).map(QuarkId).zip(self.machine.quarks()) {
             let Some(comparison) = &quark.comparison else { continue };
             signals.insert(comparison.signal);
             if let Compared::Signal(other) = comparison.with {
@@ -111,10 +112,10 @@ impl<'a> Meaning<'a> {
 
     /// `enum Running`: the law of the current atom with its state.
     pub(super) fn running(&self) -> TokenStream {
-        let variants = self.atoms().map(|(atom, _, quark)| {
-            let kind = quark_type(&quark.name, quark.overload);
-            let variant = atom_variant(atom);
-            let doc = format!(" `{}`", atom_doc(self.lowered, atom));
+        let variants = self.machine.atoms().map(|atom| {
+            let kind = quark_type(&atom.law().name, atom.law().overload);
+            let variant = atom_variant(atom.index());
+            let doc = format!(" `{}`", atom_doc(atom));
             quote! {
                 #[doc = #doc]
                 #variant(<robot::#kind as runtime::Control<Output>>::Law)
@@ -133,8 +134,8 @@ impl<'a> Meaning<'a> {
 
     /// `impl Plan for LabTour`: what the machine asks of a plan.
     fn implementation(&self, plan: &Ident, paths: Option<&TokenStream>) -> TokenStream {
-        let slots = Literal::usize_unsuffixed(self.lowered.sizes().slots);
-        let (entered, begins) = entries(self.lowered);
+        let slots = Literal::usize_unsuffixed(self.machine.sizes().slots);
+        let (entered, begins) = entries(self.machine);
         let [enter, next, input] = [self.enter(), self.next(), self.input()];
         quote! {
             impl runtime::Plan for #plan {
@@ -176,11 +177,11 @@ impl<'a> Meaning<'a> {
 
     /// `fn enter`: makes the law of the atom that is entered.
     pub(super) fn enter(&self) -> TokenStream {
-        let arms = self.atoms().map(|(atom, law, _)| {
-            let number = Literal::usize_unsuffixed(atom);
-            let variant = atom_variant(atom);
-            let constant = &self.constants[law.quark.0 as usize];
-            let begin = turned(self.lowered.atom(atom as u32).turned());
+        let arms = self.machine.atoms().map(|atom| {
+            let number = Literal::usize_unsuffixed(atom.index());
+            let variant = atom_variant(atom.index());
+            let constant = &self.constants[atom.law_id().0 as usize];
+            let begin = turned(atom.turned());
             quote!(#number => Running::#variant(runtime::Control::begin(&#constant, y, #begin)))
         });
         quote! {
@@ -196,21 +197,21 @@ impl<'a> Meaning<'a> {
     /// `fn next`: asks the plan's own interrupt, then has an arm for each atom, which asks the scope around it first and
     /// itself last.
     pub(super) fn next(&self) -> TokenStream {
-        let arms = self.atoms().map(|(atom, _, quark)| {
-            let variant = atom_variant(atom);
-            let bracket = self.lowered.atoms[atom].scope;
-            let around = self.around(bracket).map(asked_first);
+        let arms = self.machine.atoms().map(|atom| {
+            let (variant, element) = (atom_variant(atom.index()), atom.element());
+            let around = self.around(element).map(asked_first);
             let asked = |question: &TokenStream, cause: TokenStream| {
-                let ending = self.ending(bracket, &cause);
+                let ending = ending(element, &cause);
                 quote!(if #question { return runtime::Plan::end(self, cursor, #ending, y, begin, direct); })
             };
-            let interrupt = self.condition(bracket).map(|fired| asked(&fired, quote!(Fired)));
+            let completes = atom.law().completes;
+            let interrupt = self.condition(element).map(|fired| asked(&fired, quote!(Fired)));
             let completion =
-                quark.completes.then(|| asked(&quote!(runtime::Completes::completed(law, y, t)), quote!(Completed)));
-            let law = if quark.completes { quote!(law) } else { quote!(_) };
+                completes.then(|| asked(&quote!(runtime::Completes::completed(law, y, t)), quote!(Completed)));
+            let law = if completes { quote!(law) } else { quote!(_) };
             quote!(Running::#variant(#law) => { #around #interrupt #completion })
         });
-        let plan = self.functions.first().and_then(Option::as_ref).map(asked_first);
+        let plan = self.function(self.machine.root()).map(asked_first);
         quote! {
             #[inline(always)]
             fn next(&mut self, cursor: &mut At, y: &Output, begin: Begin, direct: bool) -> Next {
@@ -227,7 +228,7 @@ impl<'a> Meaning<'a> {
 
     /// `fn input`: the law of the current atom.
     pub(super) fn input(&self) -> TokenStream {
-        let variants = self.atoms().map(|(atom, _, _)| atom_variant(atom));
+        let variants = self.machine.atoms().map(|atom| atom_variant(atom.index()));
         quote! {
             fn input(&mut self, y: &Output, t: Nanos) -> Input {
                 match &mut self.running {
@@ -237,26 +238,14 @@ impl<'a> Meaning<'a> {
             }
         }
     }
-
-    /// The atoms as written: number from 0, meaning, law.
-    fn atoms(&self) -> impl Iterator<Item = (usize, &LawMeaning, &Quark)> {
-        self.lowered.laws.iter().enumerate().map(|(atom, law)| (atom, law, self.lowered.quark(law.quark)))
-    }
-
-    fn is_atom(lowered: &Machine, bracket: usize) -> bool {
-        let first = lowered.brackets[bracket].first as usize;
-        lowered.atoms.get(first).is_some_and(|atom| atom.scope as usize == bracket)
-    }
 }
 
 /// `FRAME 90 (Atom (bumper) stop)`: an atom as written, for a comment, in which Rust has no carriage return alone and
 /// nothing that turns text around.
-pub(super) fn atom_doc(lowered: &Machine, atom: usize) -> String {
-    let (law, bracket) = (&lowered.laws[atom], lowered.atoms[atom].scope as usize);
-    let interrupt = lowered.scopes[bracket].as_ref().map(|scope| &scope.interrupt);
-    let condition = interrupt.filter(|interrupt| !interrupt.removed).map_or("null", |interrupt| &interrupt.text);
-    let law_text = &lowered.quark(law.quark).text;
-    format!("{}(Atom ({}) {})", frame_text(law.frame), Printable(condition), Printable(law_text))
+pub(super) fn atom_doc(atom: Atom<'_>) -> String {
+    let interrupt = atom.element().interrupt().filter(|interrupt| !interrupt.removed);
+    let condition = interrupt.map_or("null", |interrupt| &interrupt.text);
+    format!("{}(Atom ({}) {})", frame_text(atom.frame()), Printable(condition), Printable(&atom.law().text))
 }
 
 /// Ends the scopes that this function asks for, before anything further inside is asked.

@@ -21,7 +21,7 @@ use quote::{format_ident, quote};
 
 use crate::alphabet::Alphabet;
 use crate::diagnostic::{Code, Diagnostic, Sources, Span};
-use crate::fsm::Machine;
+use crate::fsm::{Element, Machine};
 pub use bind::bind;
 pub use names::plan_type;
 
@@ -53,9 +53,9 @@ impl Shape {
 
     /// The shape that suits a plan.
     #[must_use]
-    pub fn of(lowered: &Machine) -> Self {
-        let is_short = lowered.brackets.len() <= Self::CODE && parts(lowered) <= Self::PARTS;
-        if is_short && lowered.sizes().memories == 0 { Self::Code } else { Self::Rows }
+    pub fn of(machine: &Machine) -> Self {
+        let is_short = machine.elements().len() <= Self::CODE && parts(machine) <= Self::PARTS;
+        if is_short && machine.sizes().memories == 0 { Self::Code } else { Self::Rows }
     }
 }
 
@@ -66,8 +66,8 @@ const EMITTED: usize = 1 << 18;
 ///
 /// # Errors
 /// E0501 for a plan that rustc would compile for minutes.
-pub fn fits(lowered: &Machine, place: Span) -> Result<(), Diagnostic> {
-    let (brackets, parts) = (lowered.brackets.len(), parts(lowered));
+pub fn fits(machine: &Machine, place: Span) -> Result<(), Diagnostic> {
+    let (brackets, parts) = (machine.elements().len(), parts(machine));
     if brackets.saturating_add(parts) <= EMITTED {
         return Ok(());
     }
@@ -79,32 +79,32 @@ pub fn fits(lowered: &Machine, place: Span) -> Result<(), Diagnostic> {
 }
 
 /// The parts of all conditions.
-fn parts(lowered: &Machine) -> usize {
-    lowered.scopes.iter().flatten().map(|scope| scope.interrupt.condition.parts()).sum()
+fn parts(machine: &Machine) -> usize {
+    machine.elements().filter_map(Element::interrupt).map(|interrupt| interrupt.condition.parts()).sum()
 }
 
 /// Writes the file in the shape that suits its size. Its text depends on nothing but the arguments and the version of
 /// the compiler.
 #[must_use]
-pub fn emit(lowered: &Machine, header: Header<'_>, alphabet: &Alphabet) -> String {
-    emit_as(Shape::of(lowered), lowered, header, alphabet)
+pub fn emit(machine: &Machine, header: Header<'_>, alphabet: &Alphabet) -> String {
+    emit_as(Shape::of(machine), machine, header, alphabet)
 }
 
 /// Writes the file in this shape.
 #[must_use]
-pub fn emit_as(shape: Shape, lowered: &Machine, header: Header<'_>, alphabet: &Alphabet) -> String {
+pub fn emit_as(shape: Shape, machine: &Machine, header: Header<'_>, alphabet: &Alphabet) -> String {
     let target = format_ident!("{}", alphabet.crate_name);
     let plan = format_ident!("{}", plan_type(header.plan));
     let doc = format!(" The plan `{}`.", header.plan);
-    let paths = tables::paths(lowered, alphabet);
+    let paths = tables::paths(machine, alphabet);
     // What a plan remembers is in rows, whatever is asked for.
-    let machine = match if lowered.sizes().memories > 0 { Shape::Rows } else { shape } {
-        Shape::Code => code::machine(&plan, &doc, lowered, paths.as_ref()),
-        Shape::Rows => rows::machine(&plan, &doc, lowered, paths.as_ref()),
+    let meaning = match if machine.sizes().memories > 0 { Shape::Rows } else { shape } {
+        Shape::Code => code::machine(&plan, &doc, machine, paths.as_ref()),
+        Shape::Rows => rows::machine(&plan, &doc, machine, paths.as_ref()),
     };
     let same_alphabet = same_alphabet(alphabet);
-    let tables = tables::tables(lowered);
-    let source = source::source(lowered, header.sources, alphabet);
+    let tables = tables::tables(machine);
+    let source = source::source(machine, header.sources, alphabet);
     let file = quote! {
         #[allow(unreachable_pub, reason = "who includes this file says how far it reaches")]
         pub use machine::#plan;
@@ -121,7 +121,7 @@ pub fn emit_as(shape: Shape, lowered: &Machine, header: Header<'_>, alphabet: &A
             use ::#target::alphabet::{self as robot, Input, Output};
 
             #same_alphabet
-            #machine
+            #meaning
             #tables
             #source
         }

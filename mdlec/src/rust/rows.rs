@@ -9,16 +9,16 @@ use super::arguments::{angle, compared, made};
 use super::names::quark_type;
 use super::scopes::nanometers;
 use super::tables::{entries, follows, level};
-use crate::fsm::Machine;
+use crate::fsm::{Element, Machine};
 use crate::plan::{Condition, Quark, QuarkId};
 
 /// The plan's type, which hands everything on to the runtime's, and its rows.
-pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Machine, paths: Option<&TokenStream>) -> TokenStream {
-    let slots = Literal::usize_unsuffixed(lowered.sizes().slots);
-    let (entered, begins) = entries(lowered);
-    let rows = rows(lowered);
-    let (memory, new, marks) = memory(lowered, &begins);
-    let told = told(lowered);
+pub(super) fn machine(plan: &Ident, doc: &str, machine: &Machine, paths: Option<&TokenStream>) -> TokenStream {
+    let slots = Literal::usize_unsuffixed(machine.sizes().slots);
+    let (entered, begins) = entries(machine);
+    let rows = rows(machine);
+    let (memory, new, marks) = memory(machine, &begins);
+    let told = told(machine);
     quote! {
         #[doc = #doc]
         pub struct #plan(runtime::InRows<'static, robot::Alphabet, #entered, [u64; #slots] #memory>);
@@ -79,8 +79,8 @@ pub(super) fn machine(plan: &Ident, doc: &str, lowered: &Machine, paths: Option<
 }
 
 /// What the plan is told so that it can remember.
-fn told(lowered: &Machine) -> Option<TokenStream> {
-    (lowered.sizes().memories > 0).then(|| {
+fn told(machine: &Machine) -> Option<TokenStream> {
+    (machine.sizes().memories > 0).then(|| {
         quote! {
             fn leave(
                 &mut self,
@@ -99,18 +99,17 @@ fn told(lowered: &Machine) -> Option<TokenStream> {
 }
 
 /// The type of the plan's memory, how the plan is made, and `static MARKS`: nothing of it for a plan that remembers nothing.
-fn memory(lowered: &Machine, begins: &TokenStream) -> (Option<TokenStream>, TokenStream, Option<TokenStream>) {
-    let slots = Literal::usize_unsuffixed(lowered.sizes().slots);
+fn memory(machine: &Machine, begins: &TokenStream) -> (Option<TokenStream>, TokenStream, Option<TokenStream>) {
+    let slots = Literal::usize_unsuffixed(machine.sizes().slots);
     let slots = quote!(#begins, [0; #slots]);
-    if lowered.sizes().memories == 0 {
+    if machine.sizes().memories == 0 {
         return (None, quote!(runtime::InRows::new(&ROWS, #slots)), None);
     }
-    let scopes = lowered.brackets.iter().map(|bracket| usize::from(level(bracket.kind)) + 1).max().unwrap_or(0);
-    let size = Literal::usize_unsuffixed(scopes * lowered.sizes().memories);
-    let width = Literal::usize_unsuffixed(lowered.sizes().memories);
-    let marks = lowered.marks.iter().flat_map(|(bracket, marks)| marks.iter().map(move |mark| (bracket, mark)));
-    let marks = marks.filter_map(|(bracket, mark)| {
-        let record = lowered.records.get(&mark.record)?;
+    let size = Literal::usize_unsuffixed(machine.depth() * machine.sizes().memories);
+    let width = Literal::usize_unsuffixed(machine.sizes().memories);
+    let marks = machine.elements().flat_map(|element| element.marks().iter().map(move |mark| (element, mark)));
+    let marks = marks.filter_map(|(element, mark)| {
+        let record = machine.record(mark.record)?;
         let facts = mark.facts.iter().map(|fact| {
             let memory = Literal::u32_unsuffixed(record.first.saturating_add(fact.number));
             let operand = match fact.operand.map(Literal::u32_unsuffixed) {
@@ -119,7 +118,7 @@ fn memory(lowered: &Machine, begins: &TokenStream) -> (Option<TokenStream>, Toke
             };
             quote!((#memory, #operand))
         });
-        let [bracket, first, count] = [*bracket, record.first, record.facts].map(Literal::u32_unsuffixed);
+        let [bracket, first, count] = [element.number(), record.first, record.facts].map(Literal::u32_unsuffixed);
         let level = Literal::u16_unsuffixed(record.level);
         Some(quote! {
             runtime::MarkRow {
@@ -138,16 +137,15 @@ fn memory(lowered: &Machine, begins: &TokenStream) -> (Option<TokenStream>, Toke
 }
 
 /// `static ROWS`: when each bracket ends, the operands of their conditions, the law of each atom.
-fn rows(lowered: &Machine) -> TokenStream {
-    let mut operands = Operands { lowered, waiting: VecDeque::new(), count: 0 };
-    let around = around(lowered);
-    let guards: Vec<_> = (0_u32..)
-        .zip(&lowered.brackets)
-        .map(|(number, bracket)| {
-            let condition = operands.row(condition(lowered, number));
-            let level = Literal::u16_unsuffixed(level(bracket.kind));
-            let around = Literal::u32_unsuffixed(around[number as usize]);
-            let follows = match lowered.tables().follows(number).map(follows) {
+fn rows(machine: &Machine) -> TokenStream {
+    let mut operands = Operands::new(machine);
+    let guards: Vec<_> = machine
+        .elements()
+        .map(|element| {
+            let condition = operands.row(element.condition());
+            let level = Literal::u16_unsuffixed(level(element));
+            let around = Literal::u32_unsuffixed(around(element).number());
+            let follows = match element.follows().map(follows) {
                 Some(follows) => quote!(Some(#follows)),
                 None => quote!(None),
             };
@@ -155,9 +153,9 @@ fn rows(lowered: &Machine) -> TokenStream {
         })
         .collect();
     let operands = operands.rows();
-    let laws = lowered.laws.iter().enumerate().map(|(atom, law)| {
-        let control = variant("AnyControl", lowered.quark(law.quark), &lowered.quarks);
-        let frame = angle(lowered.atom(atom as u32).turned());
+    let laws = machine.atoms().map(|atom| {
+        let control = variant("AnyControl", atom.law(), machine.quarks());
+        let frame = angle(atom.turned());
         quote!(runtime::LawRow { control: #control, frame: #frame })
     });
     quote! {
@@ -173,10 +171,9 @@ fn rows(lowered: &Machine) -> TokenStream {
 }
 
 /// `static OPERANDS`: the conditions of a plan that is code, for reports of the ones that fired.
-pub(super) fn conditions(lowered: &Machine) -> TokenStream {
-    let mut operands = Operands { lowered, waiting: VecDeque::new(), count: 0 };
-    let brackets = (0_u32..).zip(&lowered.brackets);
-    let conditions: Vec<_> = brackets.map(|(number, _)| operands.row(condition(lowered, number))).collect();
+pub(super) fn conditions(machine: &Machine) -> TokenStream {
+    let mut operands = Operands::new(machine);
+    let conditions: Vec<_> = machine.elements().map(|element| operands.row(element.condition())).collect();
     let operands = operands.rows();
     quote! {
         #[doc = " The conditions of brackets once more, read when somebody asks what has fired."]
@@ -187,39 +184,25 @@ pub(super) fn conditions(lowered: &Machine) -> TokenStream {
     }
 }
 
-/// The condition of a bracket.
-fn condition(lowered: &Machine, bracket: u32) -> &Condition {
-    let scope = lowered.scopes[bracket as usize].as_ref();
-    scope.map_or(&Condition::Null, |scope| &scope.interrupt.condition)
-}
-
-/// For each bracket the nearest one around it whose condition can fire; itself where there is none.
-fn around(lowered: &Machine) -> Vec<u32> {
-    let mut around = Vec::with_capacity(lowered.brackets.len());
-    for (number, bracket) in (0_u32..).zip(&lowered.brackets) {
-        let parent = bracket.parent;
-        around.push(if number == parent {
-            number
-        } else if *condition(lowered, parent) != Condition::Null {
-            parent
-        } else if around[parent as usize] == parent {
-            number
-        } else {
-            around[parent as usize]
-        });
-    }
-    around
+/// Returns the nearest enclosing element whose condition can fire; the element itself where there is none.
+fn around(element: Element<'_>) -> Element<'_> {
+    let can_fire = |enclosing: &Element<'_>| *enclosing.condition() != Condition::Null;
+    element.outwards().skip(1).find(can_fire).unwrap_or(element)
 }
 
 /// The operands of conditions, breadth first: so they stand side by side, and behind what they belong to.
 struct Operands<'l> {
-    lowered: &'l Machine,
+    machine: &'l Machine,
     waiting: VecDeque<&'l Condition>,
     /// How many have been given a number.
     count: usize,
 }
 
 impl<'l> Operands<'l> {
+    fn new(machine: &'l Machine) -> Self {
+        Self { machine, waiting: VecDeque::new(), count: 0 }
+    }
+
     /// The variant of a condition, whose operands are given the next numbers.
     fn row(&mut self, condition: &'l Condition) -> TokenStream {
         let first = Literal::usize_unsuffixed(self.count);
@@ -231,7 +214,7 @@ impl<'l> Operands<'l> {
                 let memory = Literal::u32_unsuffixed(*memory);
                 quote!(Rising(#memory, #first))
             }
-            Condition::After(after) => match self.lowered.records.get(&after.record) {
+            Condition::After(after) => match self.machine.record(after.record) {
                 Some(record) => {
                     let level = Literal::u16_unsuffixed(record.level);
                     let memory = Literal::u32_unsuffixed(record.first.saturating_add(after.fact));
@@ -240,7 +223,7 @@ impl<'l> Operands<'l> {
                 None => quote!(Null),
             },
             Condition::Quark(id) => {
-                let interrupt = interrupt(*id, &self.lowered.quarks);
+                let interrupt = interrupt(*id, self.machine.quarks());
                 quote!(Quark(#interrupt))
             }
             Condition::Wait { nanos, .. } => {

@@ -6,24 +6,24 @@ use quote::quote;
 
 use super::code::Meaning;
 use super::tables::{follows, level};
+use crate::fsm::Element;
 use crate::plan::{Condition, QuarkId};
 
 impl Meaning<'_> {
     /// For each scope with an interrupt: `fn shake(cursor, y, t) -> Option<runtime::Ending>`.
     pub(super) fn scope_functions(&self) -> TokenStream {
-        let functions = self.functions.iter().zip(0_u32..).filter_map(|(function, bracket)| {
-            let function = function.as_ref()?;
-            let scope = self.lowered.scopes[bracket as usize].as_ref()?;
-            let ending = self.ending(bracket, &quote!(Fired));
-            let fired = self.condition(bracket).map(|fired| quote!(if #fired { return Some(#ending); }));
-            let around = self.around(bracket).map(|function| {
+        let functions = self.machine.elements().filter_map(|element| {
+            let function = self.function(element)?;
+            let ending = ending(element, &quote!(Fired));
+            let fired = self.condition(element).map(|fired| quote!(if #fired { return Some(#ending); }));
+            let around = self.around(element).map(|function| {
                 quote! {
                     if let Some(ending) = #function(cursor, y, t) { return Some(ending); }
                 }
             });
             let order = if around.is_some() { ", and the scopes around it first" } else { "" };
-            let name = if scope.name.is_empty() { "A scope without a name" } else { &scope.name };
-            let doc = format!(" {name} ({}){order}.", Printable(&scope.interrupt.text));
+            let name = if element.name().is_empty() { "A scope without a name" } else { element.name() };
+            let doc = format!(" {name} ({}){order}.", Printable(element.condition_text()));
             Some(quote! {
                 #[doc = #doc]
                 fn #function(cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> { #around #fired None }
@@ -32,38 +32,17 @@ impl Meaning<'_> {
         quote!(#(#functions)*)
     }
 
-    /// The function of the nearest scope around this bracket that has an interrupt; not the plan's, which is asked
+    /// The function of the nearest scope that encloses this element and has an interrupt; not the plan's, which is asked
     /// before all others.
-    pub(super) fn around(&self, bracket: u32) -> Option<&Ident> {
-        let mut here = self.lowered.brackets[bracket as usize].parent;
-        while here != 0 {
-            if let Some(function) = &self.functions[here as usize] {
-                return Some(function);
-            }
-            here = self.lowered.brackets[here as usize].parent;
-        }
-        None
+    pub(super) fn around(&self, element: Element<'_>) -> Option<&Ident> {
+        let enclosing = element.outwards().skip(1).filter(|enclosing| enclosing.parent().is_some());
+        enclosing.filter_map(|enclosing| self.function(enclosing)).next()
     }
 
-    /// What the scope of this bracket answers when it ends: `Cause::Fired(level).then(…)`, or without what follows where
-    /// that depends on a loop's count.
-    pub(super) fn ending(&self, bracket: u32, cause: &TokenStream) -> TokenStream {
-        let level = self.level(bracket);
-        match self.lowered.tables().follows(bracket).map(follows) {
-            Some(follows) => quote!(runtime::Cause::#cause(#level).then(#follows)),
-            None => quote!(runtime::Cause::#cause(#level).into()),
-        }
-    }
-
-    fn level(&self, bracket: u32) -> u16 {
-        level(self.lowered.brackets[bracket as usize].kind)
-    }
-
-    /// Whether the interrupt of this scope has fired; `None` where it never does.
-    pub(super) fn condition(&self, bracket: u32) -> Option<TokenStream> {
-        let scope = self.lowered.scopes[bracket as usize].as_ref()?;
-        let condition = &scope.interrupt.condition;
-        (*condition != Condition::Null).then(|| self.expression(condition, self.level(bracket)))
+    /// Returns the expression that is true when the interrupt of this element has fired; `None` where it never does.
+    pub(super) fn condition(&self, element: Element<'_>) -> Option<TokenStream> {
+        let condition = element.condition();
+        (*condition != Condition::Null).then(|| self.expression(condition, level(element)))
     }
 
     /// Whether a condition of a scope of this level has fired.
@@ -103,6 +82,16 @@ impl Meaning<'_> {
                 quote!(!#inner)
             }
         }
+    }
+}
+
+/// The answer of the scope that this element is when it ends: `Cause::Fired(level).then(…)`, or without what follows
+/// where that depends on a loop's count.
+pub(super) fn ending(element: Element<'_>, cause: &TokenStream) -> TokenStream {
+    let level = level(element);
+    match element.follows().map(follows) {
+        Some(follows) => quote!(runtime::Cause::#cause(#level).then(#follows)),
+        None => quote!(runtime::Cause::#cause(#level).into()),
     }
 }
 

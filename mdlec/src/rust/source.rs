@@ -9,14 +9,14 @@ use quote::quote;
 use super::arguments::number;
 use crate::alphabet::{Alphabet, Unit};
 use crate::diagnostic::{Sources, Span};
-use crate::fsm::Machine;
+use crate::fsm::{Element, Machine};
 use crate::plan::{Compared, Condition, OperandPlace, Quark, QuarkId};
 use crate::syntax::one_line;
 
 /// `const SOURCE`: the words of each bracket, and those of each operand.
-pub(super) fn source(lowered: &Machine, sources: &Sources, alphabet: &Alphabet) -> TokenStream {
-    let mut writing = Writing { lowered, sources, alphabet, files: Vec::new(), operands: Vec::new() };
-    let brackets: Vec<_> = (0..lowered.brackets.len()).map(|bracket| writing.bracket(bracket)).collect();
+pub(super) fn source(machine: &Machine, sources: &Sources, alphabet: &Alphabet) -> TokenStream {
+    let mut writing = Writing { machine, sources, alphabet, files: Vec::new(), operands: Vec::new() };
+    let brackets: Vec<_> = machine.elements().map(|element| writing.bracket(element)).collect();
     let Writing { files, operands, .. } = writing;
     quote! {
         #[doc = " The words and lines of the plan's text."]
@@ -29,7 +29,7 @@ pub(super) fn source(lowered: &Machine, sources: &Sources, alphabet: &Alphabet) 
 }
 
 struct Writing<'a> {
-    lowered: &'a Machine,
+    machine: &'a Machine,
     sources: &'a Sources,
     alphabet: &'a Alphabet,
     /// The names of the files, in the order in which they are met.
@@ -39,12 +39,11 @@ struct Writing<'a> {
 
 impl Writing<'_> {
     /// `runtime::BracketWords { at: …, condition: "bumper OR wait 10min", first: 0, count: 2 }`.
-    fn bracket(&mut self, bracket: usize) -> TokenStream {
-        let lowered = self.lowered;
-        let scope = lowered.scopes.get(bracket).and_then(Option::as_ref);
-        let at = self.line(scope.map(|_| lowered.element(bracket as u32).span()));
+    fn bracket(&mut self, element: Element<'_>) -> TokenStream {
+        let machine = self.machine;
+        let at = self.line(element.interrupt().map(|_| element.span()));
         let first = Literal::usize_unsuffixed(self.operands.len());
-        let Some(interrupt) = scope.map(|scope| &scope.interrupt) else {
+        let Some(interrupt) = element.interrupt() else {
             return quote!(runtime::BracketWords { at: #at, condition: "", first: #first, count: 0 });
         };
         let parts = interrupt.condition.joined();
@@ -52,7 +51,7 @@ impl Writing<'_> {
         let operands = if parts.len() == interrupt.operands.len() { &*interrupt.operands } else { &[] };
         let count = Literal::usize_unsuffixed(operands.len());
         for (number, (part, place)) in parts.iter().zip(operands).enumerate() {
-            let text = interrupt.operand_text(number, part, &|id| lowered.quark(id).text.clone());
+            let text = interrupt.operand_text(number, part, &|id| machine.quark(id).text.clone());
             let operand = self.operand(text, part, place);
             self.operands.push(operand);
         }
@@ -93,7 +92,7 @@ impl Writing<'_> {
     fn units(&self, part: &Condition) -> [Option<Unit>; 2] {
         let quark = match part {
             Condition::Quark(id) | Condition::Elapsed { quark: id, .. } | Condition::Driven { quark: id, .. } => {
-                self.lowered.quark(*id)
+                self.machine.quark(*id)
             }
             Condition::Not(inside) | Condition::Rising { operand: inside, .. } => return self.units(inside),
             Condition::Null | Condition::Wait { .. } | Condition::Or(_) | Condition::And(_) => return [None; 2],
@@ -108,7 +107,7 @@ impl Writing<'_> {
     }
 
     fn unit(&self, signal: QuarkId) -> Option<Unit> {
-        let Quark { name, overload, .. } = self.lowered.quark(signal);
+        let Quark { name, overload, .. } = self.machine.quark(signal);
         self.alphabet.declarations_of(name).nth(*overload)?.unit.map(|(unit, _)| unit)
     }
 
