@@ -106,14 +106,50 @@ impl Condition {
         (0..).zip(self.operands()).find(|(_, operand)| operand.fired(at)).map_or(0, |(number, _)| number)
     }
 
+    /// The conditions that it is made of, from left to right; a quark, a timer or `after` has none.
+    #[must_use]
+    pub fn children(&self) -> &[Self] {
+        match self {
+            Self::Or(operands) | Self::And(operands) => operands,
+            Self::Not(operand) | Self::Rising { operand, .. } => std::slice::from_ref(operand),
+            Self::Null | Self::Quark(_) | Self::Wait { .. } | Self::Elapsed { .. } => &[],
+            Self::Driven { .. } | Self::After(_) => &[],
+        }
+    }
+
+    /// Folds over the condition and all that it is made of: an operator comes before its operands.
+    pub fn fold<'c, T>(&'c self, first: T, join: &mut impl FnMut(T, &'c Self) -> T) -> T {
+        let own = join(first, self);
+        self.children().iter().fold(own, |folded, operand| operand.fold(folded, join))
+    }
+
+    /// Returns `true` if this is so of the condition or of anything that it is made of.
+    pub fn any(&self, is_so: &impl Fn(&Self) -> bool) -> bool {
+        is_so(self) || self.children().iter().any(|operand| operand.any(is_so))
+    }
+
+    /// Replaces the condition and all that it is made of: operands before their operator.
+    #[must_use]
+    pub fn map(self, replace: &impl Fn(Self) -> Self) -> Self {
+        let all = |operands: Vec<Self>| operands.into_iter().map(|operand| operand.map(replace)).collect();
+        replace(match self {
+            Self::Or(operands) => Self::Or(all(operands)),
+            Self::And(operands) => Self::And(all(operands)),
+            Self::Not(operand) => Self::Not(Box::new(operand.map(replace))),
+            Self::Rising { memory, operand } => Self::Rising { memory, operand: Box::new(operand.map(replace)) },
+            leaf @ (Self::Null | Self::Quark(_) | Self::Wait { .. } | Self::Elapsed { .. }) => leaf,
+            leaf @ (Self::Driven { .. } | Self::After(_)) => leaf,
+        })
+    }
+
     /// Returns the parts that AND and OR join, from left to right: what a report names of a condition that has fired. NOT
     /// and RISING belong to their operands.
     #[must_use]
     pub fn joined(&self) -> Vec<&Self> {
-        match self {
-            Self::Or(operands) | Self::And(operands) => operands.iter().flat_map(Self::joined).collect(),
-            Self::Null | Self::Quark(_) | Self::Wait { .. } | Self::Elapsed { .. } | Self::Driven { .. } => vec![self],
-            Self::Not(_) | Self::Rising { .. } | Self::After(_) => vec![self],
+        if matches!(self, Self::Or(_) | Self::And(_)) {
+            self.children().iter().flat_map(Self::joined).collect()
+        } else {
+            vec![self]
         }
     }
 
@@ -131,49 +167,25 @@ impl Condition {
 
     /// Visits every RISING in it: the number of its memory, and its operand.
     pub fn each_rising(&self, visit: &mut impl FnMut(u32, &Self)) {
-        match self {
-            Self::Null | Self::Quark(_) | Self::Wait { .. } | Self::Elapsed { .. } => {}
-            Self::Driven { .. } | Self::After(_) => {}
-            Self::Or(operands) | Self::And(operands) => {
-                operands.iter().for_each(|operand| operand.each_rising(visit));
-            }
-            Self::Not(operand) => operand.each_rising(visit),
-            Self::Rising { memory, operand } => {
+        self.fold((), &mut |(), part| {
+            if let Self::Rising { memory, operand } = part {
                 visit(*memory, operand);
-                operand.each_rising(visit);
             }
-        }
+        });
     }
 
     /// Visits every quark in it; timers are none.
     pub fn each_quark(&self, visit: &mut impl FnMut(QuarkId)) {
-        match self {
-            Self::Null | Self::Wait { .. } | Self::Elapsed { .. } | Self::Driven { .. } | Self::After(_) => {}
-            Self::Quark(id) => visit(*id),
-            Self::Or(operands) | Self::And(operands) => operands.iter().for_each(|operand| operand.each_quark(visit)),
-            Self::Not(operand) | Self::Rising { operand, .. } => operand.each_quark(visit),
-        }
+        self.fold((), &mut |(), part| {
+            if let Self::Quark(id) = part {
+                visit(*id);
+            }
+        });
     }
 
     /// The number of its parts: quarks, timers, operators.
     #[must_use]
     pub fn parts(&self) -> usize {
-        match self {
-            Self::Null | Self::Quark(_) | Self::Wait { .. } | Self::Elapsed { .. } => 1,
-            Self::Driven { .. } | Self::After(_) => 1,
-            Self::Or(operands) | Self::And(operands) => 1 + operands.iter().map(Self::parts).sum::<usize>(),
-            Self::Not(operand) | Self::Rising { operand, .. } => 1 + operand.parts(),
-        }
-    }
-
-    /// Whether this is so of the condition or any of its operands.
-    pub fn any(&self, is_so: &impl Fn(&Self) -> bool) -> bool {
-        is_so(self)
-            || match self {
-                Self::Null | Self::Quark(_) | Self::Wait { .. } | Self::Elapsed { .. } => false,
-                Self::Driven { .. } | Self::After(_) => false,
-                Self::Or(operands) | Self::And(operands) => operands.iter().any(|operand| operand.any(is_so)),
-                Self::Not(operand) | Self::Rising { operand, .. } => operand.any(is_so),
-            }
+        self.fold(0, &mut |parts, _| parts + 1)
     }
 }

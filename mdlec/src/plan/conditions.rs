@@ -82,18 +82,7 @@ const FOR_EVER: u64 = u64::MAX;
 
 /// `wait inf` is the null interrupt, once its text is made.
 fn without_infinite_waits(condition: Condition) -> Condition {
-    let all = |operands: Vec<Condition>| operands.into_iter().map(without_infinite_waits).collect();
-    match condition {
-        Condition::Wait { nanos: FOR_EVER, .. } => Condition::Null,
-        Condition::Or(operands) => Condition::Or(all(operands)),
-        Condition::And(operands) => Condition::And(all(operands)),
-        Condition::Not(operand) => Condition::Not(Box::new(without_infinite_waits(*operand))),
-        Condition::Rising { memory, operand } => {
-            Condition::Rising { memory, operand: Box::new(without_infinite_waits(*operand)) }
-        }
-        other @ (Condition::Null | Condition::Quark(_) | Condition::Wait { .. } | Condition::Elapsed { .. })
-        | other @ (Condition::Driven { .. } | Condition::After(_)) => other,
-    }
+    condition.map(&|part| if matches!(part, Condition::Wait { nanos: FOR_EVER, .. }) { Condition::Null } else { part })
 }
 
 struct Resolving<'r, 'a, 'n> {

@@ -79,7 +79,9 @@ impl Skipped<'_, '_> {
             return None;
         }
         let mut quarks = BTreeSet::new();
-        read(&skip, &mut quarks);
+        skip.each_quark(&mut |id| {
+            quarks.insert(id);
+        });
         let quarks: Vec<QuarkId> = quarks.into_iter().collect();
         if quarks.is_empty() || quarks.len() > QUARKS {
             return None;
@@ -188,15 +190,4 @@ fn own(interrupt: &Interrupt) -> Option<Condition> {
             | Condition::Rising { .. }
     );
     (!never).then(|| condition.clone())
-}
-
-/// The quarks that a condition reads.
-fn read(condition: &Condition, quarks: &mut BTreeSet<QuarkId>) {
-    match condition {
-        Condition::Null | Condition::Wait { .. } | Condition::Elapsed { .. } => {}
-        Condition::Driven { .. } | Condition::After(_) => {}
-        Condition::Quark(id) => drop(quarks.insert(*id)),
-        Condition::Or(operands) | Condition::And(operands) => operands.iter().for_each(|operand| read(operand, quarks)),
-        Condition::Not(operand) | Condition::Rising { operand, .. } => read(operand, quarks),
-    }
 }
