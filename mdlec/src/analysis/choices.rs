@@ -62,7 +62,7 @@ impl Choices {
     }
 
     /// The choices in which a condition has fired. What is no variable here is not true.
-    pub(super) fn fired(&self, read: Read<'_>, lowered: &Machine) -> Table {
+    pub(super) fn fired(&self, read: Read<'_>, machine: &Machine) -> Table {
         let Read { condition, bracket, when } = read;
         let column = |variable| self.columns.get(&variable).cloned().unwrap_or_else(|| self.constant(false));
         let timer = |nanos: u64| match when {
@@ -75,10 +75,10 @@ impl Choices {
             When::Later => column(Variable::Way(bracket, nanometers)),
             When::Past => column(Variable::PastWay(bracket, nanometers)),
         };
-        let inside = |operand| self.fired(Read { condition: operand, ..read }, lowered);
+        let inside = |operand| self.fired(Read { condition: operand, ..read }, machine);
         match condition {
             Condition::Null => self.constant(false),
-            Condition::Quark(id) if lowered.quark(*id).remembers => column(Variable::Own(bracket, *id)),
+            Condition::Quark(id) if machine.quark(*id).remembers => column(Variable::Own(bracket, *id)),
             Condition::Quark(id) => column(Variable::Quark(*id)),
             Condition::Wait { nanos, .. } => timer(*nanos),
             Condition::Elapsed { from, until, .. } => match until {
@@ -105,7 +105,7 @@ impl Choices {
 }
 
 /// Adds the variables of a condition; `false` where there are too many.
-pub(super) fn variables(read: Read<'_>, lowered: &Machine, found: &mut BTreeSet<Variable>) -> bool {
+pub(super) fn variables(read: Read<'_>, machine: &Machine, found: &mut BTreeSet<Variable>) -> bool {
     /// More than can be tried, since some may have one value only.
     const MOST: usize = 4 * VARIABLES;
     let Read { condition, bracket, when } = read;
@@ -117,7 +117,7 @@ pub(super) fn variables(read: Read<'_>, lowered: &Machine, found: &mut BTreeSet<
         When::Entered | When::Later => Variable::Way(bracket, nanometers),
         When::Past => Variable::PastWay(bracket, nanometers),
     };
-    let mut inside = |operand| variables(Read { condition: operand, ..read }, lowered, found);
+    let mut inside = |operand| variables(Read { condition: operand, ..read }, machine, found);
     match condition {
         Condition::Null => return true,
         Condition::Or(operands) | Condition::And(operands) => return operands.iter().all(inside),
@@ -129,7 +129,7 @@ pub(super) fn variables(read: Read<'_>, lowered: &Machine, found: &mut BTreeSet<
             found.insert(Variable::Memory(bracket, *memory));
         }
         Condition::Quark(id) => {
-            let remembers = lowered.quark(*id).remembers;
+            let remembers = machine.quark(*id).remembers;
             found.insert(if remembers { Variable::Own(bracket, *id) } else { Variable::Quark(*id) });
         }
         Condition::Wait { nanos, .. } => drop(found.insert(timer(*nanos))),

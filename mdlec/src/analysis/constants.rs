@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use super::choices::{Read, When};
 use super::world::{Wanted, World};
 use crate::diagnostic::{Code, Diagnostic, Span};
-use crate::fsm::{Machine, ScopeMeaning};
-use crate::plan::{Condition, condition_text};
+use crate::fsm::Machine;
+use crate::plan::{Condition, Interrupt, condition_text};
 
 /// Judges conditions by themselves, without their scopes; every signal counts as a number.
 pub(super) struct Constants<'l> {
@@ -22,8 +22,8 @@ struct Pair {
 }
 
 impl<'l> Constants<'l> {
-    pub(super) fn new(lowered: &'l Machine) -> Self {
-        Self { alone: World::of_numbers(lowered) }
+    pub(super) fn new(machine: &'l Machine) -> Self {
+        Self { alone: World::of_numbers(machine) }
     }
 
     /// Returns `true` if an interrupt may be one that has not fired when the scope of this bracket is entered.
@@ -32,16 +32,16 @@ impl<'l> Constants<'l> {
     }
 
     /// Warns of an interrupt with one value. Leaves alone what never fires on purpose: `null` and `wait inf`.
-    pub(super) fn lint(&self, bracket: u32, scope: &'l ScopeMeaning) -> Option<Diagnostic> {
-        let condition = &scope.interrupt.condition;
+    pub(super) fn lint(&self, bracket: u32, interrupt: &'l Interrupt) -> Option<Diagnostic> {
+        let condition = &interrupt.condition;
         let remembers =
-            |part: &Condition| matches!(part, Condition::Quark(id) if self.alone.lowered.quark(*id).remembers);
+            |part: &Condition| matches!(part, Condition::Quark(id) if self.alone.machine.quark(*id).remembers);
         // What reads such a quark may change it.
         if condition.any(&remembers) {
             return None;
         }
         if !self.stays(bracket, condition) {
-            return Some(self.skipped(bracket, scope));
+            return Some(self.skipped(bracket, interrupt));
         }
         let operands = condition.operands();
         let never = operands.iter().find(|operand| {
@@ -49,8 +49,8 @@ impl<'l> Constants<'l> {
                 && **operand != Condition::Null
                 && !self.is_possible(bracket, &[(*operand, true)], When::Later)
         })?;
-        let text = if operands.len() == 1 { scope.interrupt.text.clone() } else { self.text(never) };
-        let span = scope.interrupt.span;
+        let text = if operands.len() == 1 { interrupt.text.clone() } else { self.text(never) };
+        let span = interrupt.span;
         if let Some(Pair { one, other, may_be_joined_otherwise }) = self.pair(bracket, never, true) {
             let message = format!("`{one}` and `{other}` are never true at once");
             let lint = Diagnostic::new(Code::W0203, message, span, "so AND of the two is never true");
@@ -67,8 +67,8 @@ impl<'l> Constants<'l> {
     }
 
     /// An interrupt that has fired whenever its scope is entered.
-    fn skipped(&self, bracket: u32, scope: &'l ScopeMeaning) -> Diagnostic {
-        let (condition, text, span) = (&scope.interrupt.condition, &scope.interrupt.text, scope.interrupt.span);
+    fn skipped(&self, bracket: u32, interrupt: &'l Interrupt) -> Diagnostic {
+        let (condition, text, span) = (&interrupt.condition, &interrupt.text, interrupt.span);
         let (what, skipped) = self.what(bracket);
         if !self.alone.stays(bracket, condition, When::Later) {
             let lint = |message: String| Diagnostic::new(Code::W0203, message, span, "always true");
@@ -98,12 +98,9 @@ impl<'l> Constants<'l> {
 
     /// The scope of a bracket in words, and what comes of it if its interrupt has fired at once.
     fn what(&self, bracket: u32) -> (&'static str, &'static str) {
-        let lowered = self.alone.lowered;
-        let first = lowered.brackets[bracket as usize].first as usize;
-        let is_atom = lowered.atoms.get(first).is_some_and(|atom| atom.scope == bracket);
         match bracket {
             0 => ("plan", "is over before it begins"),
-            _ if is_atom => ("atom", "is always skipped"),
+            _ if self.alone.machine.element(bracket).atom().is_some() => ("atom", "is always skipped"),
             _ => ("behavior", "is always skipped"),
         }
     }
@@ -128,14 +125,7 @@ impl<'l> Constants<'l> {
     fn pair(&self, bracket: u32, condition: &'l Condition, joined: bool) -> Option<Pair> {
         let operands = match (condition, joined) {
             (Condition::And(operands), true) | (Condition::Or(operands), false) => operands,
-            (Condition::Not(operand) | Condition::Rising { operand, .. }, _) => {
-                return self.pair(bracket, operand, joined);
-            }
-            (Condition::And(operands) | Condition::Or(operands), _) => {
-                return operands.iter().find_map(|operand| self.pair(bracket, operand, joined));
-            }
-            (Condition::Null | Condition::Quark(_) | Condition::Wait { .. } | Condition::Elapsed { .. }, _)
-            | (Condition::Driven { .. } | Condition::After(_), _) => return None,
+            _ => return condition.children().iter().find_map(|operand| self.pair(bracket, operand, joined)),
         };
         let pairs = operands
             .iter()
@@ -165,7 +155,7 @@ impl<'l> Constants<'l> {
     }
 
     fn text(&self, condition: &Condition) -> String {
-        condition_text(condition, &|id| self.alone.lowered.quark(id).text.clone())
+        condition_text(condition, &|id| self.alone.machine.quark(id).text.clone())
     }
 }
 

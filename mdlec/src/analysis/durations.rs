@@ -3,11 +3,10 @@
 //! A timer is read once a turn, so each may be over as much later as the time from one turn to the next.
 
 use mdle_runtime::TRANSITIONS_PER_TURN;
-use mdle_runtime::fsm::Kind;
 
 use super::transitions::Most;
 use super::walk::{Found, Reach};
-use crate::fsm::Machine;
+use crate::fsm::{ElementKind, Machine};
 use crate::plan::Condition;
 
 /// The longest time of a plan.
@@ -58,37 +57,36 @@ impl Longest {
 }
 
 /// Adds up the longest times of all that is reached.
-pub(super) fn longest(lowered: &Machine, found: &[Found], most: Most) -> Longest {
-    let mut inside = vec![Longest::NONE; lowered.brackets.len()];
-    // The last bracket first: so what is inside of one is known, and what stands behind it.
-    for (place, bracket) in lowered.brackets.iter().enumerate().rev() {
-        let number = u32::try_from(place).unwrap_or(u32::MAX);
-        let is_atom = lowered.atoms.get(bracket.first as usize).is_some_and(|atom| atom.scope == number);
-        let body = if is_atom { Longest::Unbounded(number) } else { inside[place] };
-        let element = match (bracket.kind, &lowered.scopes[place]) {
-            _ if found[place].reach != Reach::Runs => Longest::NONE,
-            (Kind::Loop { times, .. }, _) => body.times(times, number),
-            (Kind::Scope { .. }, scope) => {
-                let fires = scope.as_ref().and_then(|scope| certain(&scope.interrupt.condition, true));
-                let timer = fires.map(|nanos| Longest::Bounded { nanos: nanos.into(), turns: u64::from(nanos > 0) });
-                timer.map_or(body, |timer| timer.or(body))
-            }
+pub(super) fn longest(machine: &Machine, found: &[Found], most: Most) -> Longest {
+    let mut inside = vec![Longest::NONE; machine.elements().len()];
+    // The last element first: so what is inside of one is known, and what stands behind it.
+    for (element, found) in machine.elements().zip(found).rev() {
+        let number = element.number();
+        let body = match element.kind() {
+            ElementKind::Atom(_) => Longest::Unbounded(number),
+            ElementKind::Scope => inside[element.index()],
+            ElementKind::Loop { times } => inside[element.index()].times(times.unwrap_or(0), number),
         };
-        if number == 0 {
-            return searched(element, lowered, most);
-        }
-        let parent = bracket.parent as usize;
-        inside[parent] = element.then(inside[parent]);
+        // A loop has no interrupt, and so none that certainly fires.
+        let element_takes = if found.reach == Reach::Runs {
+            let fires = certain(element.condition(), true);
+            let timer = fires.map(|nanos| Longest::Bounded { nanos: nanos.into(), turns: u64::from(nanos > 0) });
+            timer.map_or(body, |timer| timer.or(body))
+        } else {
+            Longest::NONE
+        };
+        let Some(parent) = element.parent() else { return searched(element_takes, machine, most) };
+        inside[parent.index()] = element_takes.then(inside[parent.index()]);
     }
     Longest::NONE
 }
 
 /// With the turns in which a search is cut: each has made as many transitions as a turn makes, and each transition leads to
 /// another state.
-fn searched(longest: Longest, lowered: &Machine, most: Most) -> Longest {
+fn searched(longest: Longest, machine: &Machine, most: Most) -> Longest {
     match longest {
         Longest::Bounded { nanos, turns } if most.is_cut => {
-            let cut = lowered.termination / u64::from(TRANSITIONS_PER_TURN);
+            let cut = machine.states() / u64::from(TRANSITIONS_PER_TURN);
             Longest::Bounded { nanos, turns: turns.saturating_add(cut) }
         }
         Longest::Bounded { .. } | Longest::Unbounded(_) => longest,

@@ -12,7 +12,7 @@ impl<'l> Walk<'l> {
     /// Finds out what can end a scope that is reached, and when at the earliest.
     pub(super) fn judge(&mut self, number: u32, found: &mut Found) -> Option<u64> {
         let clock = self.clock?;
-        let condition = self.condition(number);
+        let condition = self.element(number).condition();
         // Where a search is cut, what it has come to is read again in the next turn.
         let when = if self.one_turn { When::Entered } else { When::Later };
         let none = Wanted { any: vec![self.read(condition, number, when)], fired: false };
@@ -35,7 +35,7 @@ impl<'l> Walk<'l> {
             found.operands = asked.collect();
             return Some(clock);
         }
-        found.completes = self.completes(number);
+        found.completes = self.element(number).completes();
         let mut earliest = found.completes.then_some(clock);
         for (operand, outcome) in condition.operands().iter().zip(&mut found.operands) {
             match self.earliest(operand, number) {

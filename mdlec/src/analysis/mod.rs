@@ -20,14 +20,13 @@ mod world;
 
 use durations::Longest;
 use mdle_runtime::TRANSITIONS_PER_TURN;
-use mdle_runtime::fsm::Kind;
 use serde::Serialize;
 pub use sizes::Bytes;
 pub use walk::Reach;
 use walk::{Found, Outcome};
 
 use crate::diagnostic::Diagnostic;
-use crate::fsm::Machine;
+use crate::fsm::{ElementKind, Machine};
 use crate::plan::{Condition, condition_text};
 
 /// What is so of every run of a plan.
@@ -115,62 +114,56 @@ pub struct AtomAnswer {
 
 /// Returns the warnings about a machine: W0202 to W0206, W0302 and W0303.
 #[must_use]
-pub fn lints(lowered: &Machine) -> Vec<Diagnostic> {
-    let most = transitions::most(lowered);
-    lints::lints(lowered, &walk::walk(lowered, !most.is_cut).found)
+pub fn lints(machine: &Machine) -> Vec<Diagnostic> {
+    let most = transitions::most(machine);
+    lints::lints(machine, &walk::walk(machine, !most.is_cut).found)
 }
 
 /// Analyses a machine.
 #[must_use]
-pub fn analyze(lowered: &Machine) -> Analysis {
-    let most = transitions::most(lowered);
-    let walked = walk::walk(lowered, !most.is_cut);
-    let longest = durations::longest(lowered, &walked.found, most);
-    let answers = Answers::new(lowered, &walked.found);
-    let is_interrupt = |condition: &Condition| *condition != Condition::Null;
-    let scopes = || lowered.scopes.iter().flatten();
-    let levels = lowered.brackets.iter().map(|bracket| match bracket.kind {
-        Kind::Scope { level } => usize::from(level) + 1,
-        Kind::Loop { .. } => 0,
-    });
+pub fn analyze(machine: &Machine) -> Analysis {
+    let most = transitions::most(machine);
+    let walked = walk::walk(machine, !most.is_cut);
+    let longest = durations::longest(machine, &walked.found, most);
+    let answers = Answers::new(machine, &walked.found);
     Analysis {
-        plan: scopes().next().map(|plan| plan.name.clone()).unwrap_or_default(),
-        states: lowered.termination,
-        atom_count: lowered.atoms.len(),
-        interrupts: scopes().filter(|scope| is_interrupt(&scope.interrupt.condition)).count(),
-        depth: levels.max().unwrap_or(0),
-        loop_depth: lowered.sizes().slots,
+        plan: machine.root().name().to_owned(),
+        states: machine.states(),
+        atom_count: machine.atoms().len(),
+        interrupts: machine.elements().filter(|element| *element.condition() != Condition::Null).count(),
+        depth: machine.depth(),
+        loop_depth: machine.sizes().slots,
         transitions: most.count,
-        reaction_turns: reaction(lowered, most),
+        reaction_turns: reaction(machine, most),
         shortest: walked.shortest.map(|nanos| seconds(nanos.into())),
-        longest: duration(longest, lowered),
-        bytes: sizes::bytes(lowered),
+        longest: duration(longest, machine),
+        bytes: sizes::bytes(machine),
         scopes: answers.scopes,
         atoms: answers.atoms,
     }
 }
 
 /// The input that follows an interrupt is sent at the head of the next turn; a search that is cut goes on in that turn.
-fn reaction(lowered: &Machine, most: transitions::Most) -> Option<u64> {
-    let endless = || lowered.brackets.iter().any(|bracket| matches!(bracket.kind, Kind::Loop { times: 0, .. }));
+fn reaction(machine: &Machine, most: transitions::Most) -> Option<u64> {
+    let endless = || machine.elements().any(|element| matches!(element.kind(), ElementKind::Loop { times: None }));
     match most.is_cut {
         false => Some(1),
         true if endless() => None,
-        true => Some(1 + lowered.termination / u64::from(TRANSITIONS_PER_TURN)),
+        true => Some(1 + machine.states() / u64::from(TRANSITIONS_PER_TURN)),
     }
 }
 
-fn duration(longest: Longest, lowered: &Machine) -> Duration {
+fn duration(longest: Longest, machine: &Machine) -> Duration {
     match longest {
         Longest::Bounded { nanos, turns } => {
             Duration { seconds: Some(seconds(nanos)), turns: Some(turns), because: None }
         }
         Longest::Unbounded(bracket) => {
-            let first = lowered.brackets[bracket as usize].first as usize;
-            let law = lowered.laws.get(first).map(|law| lowered.quark(law.quark).text.as_str()).unwrap_or_default();
-            let because = match lowered.scopes[bracket as usize] {
-                Some(_) => format!("no timer ends atom {}, `{law}`", first + 1),
-                None => format!("no timer ends the loop without end at atom {}, `{law}`", first + 1),
+            let element = machine.element(bracket);
+            let (atom, law) = (element.first().number() + 1, &element.first().law().text);
+            let because = match element.kind() {
+                ElementKind::Loop { .. } => format!("no timer ends the loop without end at atom {atom}, `{law}`"),
+                ElementKind::Scope | ElementKind::Atom(_) => format!("no timer ends atom {atom}, `{law}`"),
             };
             Duration { seconds: None, turns: None, because: Some(because) }
         }
@@ -188,59 +181,56 @@ struct Answers {
 }
 
 impl Answers {
-    fn new(lowered: &Machine, found: &[Found]) -> Self {
+    fn new(machine: &Machine, found: &[Found]) -> Self {
         let mut answers = Self { scopes: Vec::new(), atoms: Vec::new() };
         // For each bracket the number of the innermost scope that it is or is in, and whether anything ends that.
         let mut scope_of: Vec<(usize, bool)> = Vec::with_capacity(found.len());
-        for (number, (bracket, found)) in lowered.brackets.iter().zip(found).enumerate() {
-            let around = if number == 0 { (0, false) } else { scope_of[bracket.parent as usize] };
-            let Some(scope) = &lowered.scopes[number] else {
-                scope_of.push(around);
-                continue;
-            };
-            let first = bracket.first as usize;
-            let (ended_by, never_by) = by(&scope.interrupt.condition, found, lowered);
-            match lowered.atoms.get(first).filter(|atom| atom.scope as usize == number) {
-                Some(atom) => {
+        for (element, found) in machine.elements().zip(found) {
+            let around = element.parent().map_or((0, false), |parent| scope_of[parent.index()]);
+            let (ended_by, never_by) = by(element.condition(), found, machine);
+            let inside = match element.kind() {
+                ElementKind::Loop { .. } => around,
+                ElementKind::Atom(atom) => {
                     let own = ended_by.into_iter().chain(found.completes.then(|| "completed".to_owned()));
                     let ended_by: Vec<String> = own.collect();
-                    let ends = found.reach != Reach::Never && (around.1 || !ended_by.is_empty());
-                    scope_of.push(around);
                     answers.atoms.push(AtomAnswer {
-                        atom: first + 1,
-                        state: atom.state,
+                        atom: atom.index() + 1,
+                        state: atom.state(),
                         within: around.0,
-                        law: lowered.quark(lowered.laws[first].quark).text.clone(),
+                        law: atom.law().text.clone(),
                         reach: found.reach,
+                        ends: found.reach != Reach::Never && (around.1 || !ended_by.is_empty()),
                         ended_by,
                         never_by,
-                        ends,
                     });
+                    around
                 }
-                None => {
+                ElementKind::Scope => {
                     let number = answers.scopes.len() + 1;
-                    scope_of.push((number, around.1 || !ended_by.is_empty()));
+                    let ends = around.1 || !ended_by.is_empty();
                     answers.scopes.push(ScopeAnswer {
                         scope: number,
                         within: (number > 1).then_some(around.0),
-                        name: scope.name.clone(),
-                        atoms: [first + 1, bracket.last as usize + 1],
+                        name: element.name().to_owned(),
+                        atoms: [element.first().index() + 1, element.last().index() + 1],
                         reach: found.reach,
                         ended_by,
                         never_by,
                     });
+                    (number, ends)
                 }
-            }
+            };
+            scope_of.push(inside);
         }
         answers
     }
 }
 
 /// The texts of the operands by which an interrupt can fire, and of those by which it cannot; `null` is none.
-fn by(condition: &Condition, found: &Found, lowered: &Machine) -> (Vec<String>, Vec<String>) {
+fn by(condition: &Condition, found: &Found, machine: &Machine) -> (Vec<String>, Vec<String>) {
     let (mut can, mut never) = (Vec::new(), Vec::new());
     for (operand, outcome) in condition.operands().iter().zip(&found.operands) {
-        let text = || condition_text(operand, &|id| lowered.quark(id).text.clone());
+        let text = || condition_text(operand, &|id| machine.quark(id).text.clone());
         match outcome {
             _ if *operand == Condition::Null => {}
             Outcome::Possible => can.push(text()),

@@ -2,11 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use mdle_runtime::fsm::{Atom, Bracket, Kind};
+use mdle_runtime::fsm::{Atom, Bracket};
 use mdle_runtime::{Frame, Nanos, Stamp, Stamps};
 use serde::Serialize;
 
-use crate::fsm::Machine;
+use crate::fsm::{Element, Machine};
 use crate::rust::Shape;
 
 /// Bytes of the emitted machine, on a computer of 64 bits.
@@ -25,37 +25,33 @@ pub struct Bytes {
 }
 
 /// Counts them.
-pub(super) fn bytes(lowered: &Machine) -> Bytes {
+pub(super) fn bytes(machine: &Machine) -> Bytes {
     let number = |count: usize| u64::try_from(count).unwrap_or(u64::MAX);
     // A cursor begins with the number of its atom, in front of numbers of eight bytes.
-    let entries = match lowered.sizes().stamps {
-        true => size_of::<Stamps<'_, [Stamp; 0]>>() + lowered.sizes().levels * size_of::<Stamp>(),
-        false => lowered.sizes().levels * size_of::<Nanos>(),
+    let entries = match machine.sizes().stamps {
+        true => size_of::<Stamps<'_, [Stamp; 0]>>() + machine.sizes().levels * size_of::<Stamp>(),
+        false => machine.sizes().levels * size_of::<Nanos>(),
     };
-    let cursor = size_of::<u64>() + entries + lowered.sizes().slots * size_of::<u64>();
-    let scopes = lowered.brackets.iter().map(|bracket| match bracket.kind {
-        Kind::Scope { level } => usize::from(level) + 1,
-        Kind::Loop { .. } => 0,
-    });
-    let machine = size_of_val(lowered.brackets.as_slice()) + size_of_val(lowered.atoms.as_slice());
+    let cursor = size_of::<u64>() + entries + machine.sizes().slots * size_of::<u64>();
+    let tables = machine.tables();
+    let tables = size_of_val(tables.brackets) + size_of_val(tables.atoms);
     debug_assert!(align_of::<Bracket>() == 8 && align_of::<Atom>() == 8);
     Bytes {
-        form: match Shape::of(lowered) {
+        form: match Shape::of(machine) {
             Shape::Code => "code",
             Shape::Rows => "rows",
         },
         state: number(cursor + size_of::<Frame>()),
-        memories: number(scopes.max().unwrap_or(0) * lowered.sizes().memories),
-        machine: number(machine),
-        texts: number(texts(lowered)),
+        memories: number(machine.depth() * machine.sizes().memories),
+        machine: number(tables),
+        texts: number(texts(machine)),
     }
 }
 
-fn texts(lowered: &Machine) -> usize {
-    let laws = lowered.laws.iter().map(|law| lowered.quark(law.quark).text.as_str());
-    let scopes = || lowered.scopes.iter().map(Option::as_ref);
-    let conditions = scopes().map(|scope| scope.map_or("", |scope| scope.interrupt.text.as_str()));
-    let names = scopes().map(|scope| scope.map_or("", |scope| scope.name.as_str()));
+fn texts(machine: &Machine) -> usize {
+    let laws = machine.atoms().map(|atom| atom.law().text.as_str());
+    let conditions = machine.elements().map(Element::condition_text);
+    let names = machine.elements().map(Element::name);
     let (mut places, mut different) = (0, BTreeSet::new());
     for text in laws.chain(conditions).chain(names) {
         places += size_of::<&str>();

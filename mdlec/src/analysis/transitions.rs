@@ -6,13 +6,12 @@
 use std::collections::BTreeSet;
 
 use mdle_runtime::TRANSITIONS_PER_TURN;
-use mdle_runtime::fsm::Kind;
 
 use super::choices::Choices;
 use super::variables::{self, Variable};
-use crate::fsm::Machine;
+use crate::fsm::{ElementKind, Machine};
 use crate::plan::families::Readings;
-use crate::plan::{Condition, QuarkId};
+use crate::plan::{Condition, Interrupt, QuarkId};
 
 /// The most transitions of one turn: no more than the machine makes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,29 +22,29 @@ pub(super) struct Most {
 }
 
 /// Counts them.
-pub(super) fn most(lowered: &Machine) -> Most {
+pub(super) fn most(machine: &Machine) -> Most {
     /// The most quarks of which every choice is counted, and the most brackets times choices.
     const QUARKS: usize = 8;
     const WORK: usize = 2_000_000;
     let mut quarks: Vec<QuarkId> = Vec::new();
-    for scope in lowered.scopes.iter().flatten() {
-        scope.interrupt.condition.each_quark(&mut |id| {
-            if !lowered.quark(id).remembers && quarks.len() <= QUARKS && !quarks.contains(&id) {
+    for element in machine.elements() {
+        element.condition().each_quark(&mut |id| {
+            if !machine.quark(id).remembers && quarks.len() <= QUARKS && !quarks.contains(&id) {
                 quarks.push(id);
             }
         });
     }
-    if quarks.len() > QUARKS || lowered.brackets.len() << quarks.len() > WORK {
+    if quarks.len() > QUARKS || machine.elements().len() << quarks.len() > WORK {
         quarks.clear();
     }
     // The bits of a choice are in the order of the variables.
     quarks.sort_unstable();
     let variables: BTreeSet<Variable> = quarks.iter().map(|id| Variable::Quark(*id)).collect();
     let possible = Choices::new(&variables, |_| None)
-        .map(|free| variables::possible(&free, &lowered.quarks, Readings::Any, &|_| 0));
+        .map(|free| variables::possible(&free, machine.quarks(), Readings::Any, &|_| 0));
     let is_possible = |choice: &usize| possible.as_ref().is_none_or(|possible| possible.holds(*choice));
     let choices = (0..1_usize << quarks.len()).filter(is_possible);
-    let count = choices.map(|choice| longest(lowered, &quarks, choice)).max().unwrap_or(0);
+    let count = choices.map(|choice| longest(machine, &quarks, choice)).max().unwrap_or(0);
     let limit = u64::from(TRANSITIONS_PER_TURN);
     Most { count: count.min(limit), is_cut: count > limit }
 }
@@ -119,29 +118,27 @@ fn plus(one: Option<u64>, other: Option<u64>) -> Option<u64> {
 }
 
 /// The longest chain of transitions where the quarks say what the bits of `choice` are.
-fn longest(lowered: &Machine, quarks: &[QuarkId], choice: usize) -> u64 {
-    let mut inside = vec![Chains::NONE; lowered.brackets.len()];
-    // The last bracket first: so what is inside of one is known, and what stands behind it.
-    for (number, bracket) in lowered.brackets.iter().enumerate().rev() {
-        let chains = match (bracket.kind, &lowered.scopes[number]) {
-            (Kind::Loop { times, .. }, _) => inside[number].times(times),
-            (Kind::Scope { .. }, scope) => {
-                let condition = scope.as_ref().map_or(&Condition::Null, |scope| &scope.interrupt.condition);
-                let read = |is_entered| certainty(condition, quarks, choice, is_entered);
-                let asks_after = condition.any(&|part| matches!(part, Condition::After(_)));
-                let atom = lowered.atoms.get(bracket.first as usize).is_some_and(|atom| atom.scope as usize == number);
-                let law = lowered.laws.get(bracket.first as usize).filter(|_| atom);
-                let completes = law.is_some_and(|law| lowered.quark(law.quark).completes);
-                let done = completes.then_some(1);
-                let body = if atom { Chains { pass: done, last: done, ..Chains::NONE } } else { inside[number] };
-                body.within(read(true), read(false), asks_after)
+fn longest(machine: &Machine, quarks: &[QuarkId], choice: usize) -> u64 {
+    let mut inside = vec![Chains::NONE; machine.elements().len()];
+    // The last element first: so what is inside of one is known, and what stands behind it.
+    for element in machine.elements().rev() {
+        let body = match element.kind() {
+            ElementKind::Loop { times } => inside[element.index()].times(times.unwrap_or(0)),
+            ElementKind::Scope => inside[element.index()],
+            ElementKind::Atom(atom) => {
+                let done = atom.law().completes.then_some(1);
+                Chains { pass: done, last: done, ..Chains::NONE }
             }
         };
-        if number == 0 {
+        let chains = element.interrupt().map_or(body, |Interrupt { condition, .. }| {
+            let read = |is_entered| certainty(condition, quarks, choice, is_entered);
+            let asks_after = condition.any(&|part| matches!(part, Condition::After(_)));
+            body.within(read(true), read(false), asks_after)
+        });
+        let Some(parent) = element.parent() else {
             return chains.inside.max(chains.first).max(chains.pass.unwrap_or(0)).max(chains.last.unwrap_or(0));
-        }
-        let parent = bracket.parent as usize;
-        inside[parent] = chains.then(inside[parent]);
+        };
+        inside[parent.index()] = chains.then(inside[parent.index()]);
     }
     0
 }

@@ -5,13 +5,13 @@
 //! is counted on the way. A loop's body is walked over once: its first pass comes first.
 
 use std::collections::BTreeMap;
+use std::iter;
 
-use mdle_runtime::fsm::{Bracket, Kind};
 use serde::Serialize;
 
 use super::choices::{Read, When};
 use super::world::{Added, World};
-use crate::fsm::Machine;
+use crate::fsm::{Element, ElementKind, Machine, Visit};
 use crate::plan::{Condition, QuarkId};
 
 /// Whether an atom comes to run.
@@ -73,7 +73,6 @@ type Facts<'l> = Vec<Read<'l>>;
 
 /// A bracket that the walk is inside.
 struct Open {
-    bracket: u32,
     reach: Reach,
     /// When it is entered, and when it ends by itself, each at the earliest.
     clock: Option<u64>,
@@ -90,17 +89,12 @@ pub(super) struct Walked {
 }
 
 /// Walks over a machine. `one_turn` says that every search for the next atom comes to its end in one turn.
-pub(super) fn walk(lowered: &Machine, one_turn: bool) -> Walked {
-    let mut last_child = vec![0; lowered.brackets.len()];
-    for (number, bracket) in (0_u32..).zip(&lowered.brackets) {
-        last_child[bracket.parent as usize] = number;
-    }
+pub(super) fn walk(machine: &Machine, one_turn: bool) -> Walked {
     let mut walk = Walk {
-        world: World::new(lowered),
-        alone: World::new(lowered),
+        world: World::new(machine),
+        alone: World::new(machine),
         open: Vec::new(),
-        found: Vec::with_capacity(lowered.brackets.len()),
-        last_child,
+        found: Vec::with_capacity(machine.elements().len()),
         waits: BTreeMap::new(),
         clock: Some(0),
         facts: Vec::new(),
@@ -109,14 +103,11 @@ pub(super) fn walk(lowered: &Machine, one_turn: bool) -> Walked {
         before: None,
         one_turn,
     };
-    for (number, bracket) in (0_u32..).zip(&lowered.brackets) {
-        while number > 0 && walk.open.last().is_some_and(|open| open.bracket != bracket.parent) {
-            walk.close();
+    for visit in machine.walk() {
+        match visit {
+            Visit::Enter(element) => walk.enter(element),
+            Visit::Leave(element) => walk.leave(element),
         }
-        walk.enter(number, bracket);
-    }
-    while !walk.open.is_empty() {
-        walk.close();
     }
     Walked { found: walk.found, shortest: walk.clock }
 }
@@ -127,7 +118,6 @@ pub(super) struct Walk<'l> {
     pub(super) alone: World<'l>,
     open: Vec<Open>,
     found: Vec<Found>,
-    last_child: Vec<u32>,
     /// The timers that are operands of interrupts around, by their brackets.
     pub(super) waits: BTreeMap<QuarkId, Vec<u32>>,
     /// When the next element is entered at the earliest; `None` where it is not.
@@ -144,32 +134,19 @@ pub(super) struct Walk<'l> {
 }
 
 impl<'l> Walk<'l> {
-    pub(super) fn condition(&self, bracket: u32) -> &'l Condition {
-        let scope = self.world.lowered.scopes[bracket as usize].as_ref();
-        scope.map_or(&Condition::Null, |scope| &scope.interrupt.condition)
+    pub(super) fn element(&self, number: u32) -> Element<'l> {
+        self.world.machine.element(number)
     }
 
-    fn is_atom(&self, bracket: u32) -> bool {
-        let lowered = self.world.lowered;
-        let first = lowered.brackets[bracket as usize].first as usize;
-        lowered.atoms.get(first).is_some_and(|atom| atom.scope == bracket)
-    }
-
-    pub(super) fn completes(&self, bracket: u32) -> bool {
-        let lowered = self.world.lowered;
-        let law = lowered.laws.get(lowered.brackets[bracket as usize].first as usize);
-        self.is_atom(bracket) && law.is_some_and(|law| lowered.quark(law.quark).completes)
-    }
-
-    fn enter(&mut self, number: u32, bracket: &Bracket) {
+    fn enter(&mut self, element: Element<'l>) {
+        let (number, condition) = (element.number(), element.condition());
         let reach = match self.clock {
             Some(_) if self.skipping => Reach::Skipped,
             Some(_) => Reach::Runs,
             None => Reach::Never,
         };
         let is_cut_off = reach == Reach::Never && self.written;
-        self.world.entered[number as usize] = self.clock.unwrap_or(0);
-        let condition = self.condition(number);
+        self.world.entered[element.index()] = self.clock.unwrap_or(0);
         let mut found = Found {
             reach,
             operands: vec![Outcome::Unread; condition.operands().len()],
@@ -179,23 +156,22 @@ impl<'l> Walk<'l> {
         };
         // It is told once, for the first of what is never reached.
         let written = self.written && !is_cut_off;
-        let mut open = Open { bracket: number, reach, clock: self.clock, own: None, added: Added::default(), written };
+        let mut open = Open { reach, clock: self.clock, own: None, added: Added::default(), written };
         self.written = written;
-        match bracket.kind {
-            Kind::Loop { times, .. } if times != 1 && reach == Reach::Runs => self.repeat(number),
-            Kind::Loop { .. } => {}
-            Kind::Scope { .. } if reach == Reach::Runs => {
+        match element.kind() {
+            ElementKind::Loop { times } if times != Some(1) && reach == Reach::Runs => self.repeat(element),
+            ElementKind::Scope | ElementKind::Atom(_) if reach == Reach::Runs => {
                 open.own = self.judge(number, &mut found);
                 if found.reach == Reach::Skipped {
                     open.reach = Reach::Skipped;
                     self.skipping = true;
                     self.written = false;
-                } else if !self.is_atom(number) {
+                } else if element.is_scope() {
                     open.added = self.world.open(number, condition);
-                    self.wait_for(number, true);
+                    self.wait_for(element, true);
                 }
             }
-            Kind::Scope { .. } => {}
+            ElementKind::Loop { .. } | ElementKind::Scope | ElementKind::Atom(_) => {}
         }
         self.found.push(found);
         self.open.push(open);
@@ -203,8 +179,8 @@ impl<'l> Walk<'l> {
     }
 
     /// What has just fired where a loop's body begins: what leads there may be its own last element.
-    fn repeat(&mut self, number: u32) {
-        let again = self.exit(number);
+    fn repeat(&mut self, repeated: Element<'l>) {
+        let again = self.exit(repeated);
         if self.facts.is_empty() || again.is_empty() {
             self.facts.clear();
         } else {
@@ -217,12 +193,12 @@ impl<'l> Walk<'l> {
     }
 
     /// Counts the timers of a scope's interrupt among those around, or takes them out again.
-    fn wait_for(&mut self, number: u32, opened: bool) {
-        for operand in self.condition(number).operands() {
+    fn wait_for(&mut self, element: Element<'l>, opened: bool) {
+        for operand in element.condition().operands() {
             let Condition::Wait { quark, .. } = operand else { continue };
             let brackets = self.waits.entry(*quark).or_default();
             if opened {
-                brackets.push(number);
+                brackets.push(element.number());
             } else {
                 brackets.pop();
             }
@@ -230,51 +206,47 @@ impl<'l> Walk<'l> {
     }
 
     /// What has fired when an element has ended: one of these; nothing if that is not known.
-    fn exit(&self, number: u32) -> Facts<'l> {
+    fn exit(&self, element: Element<'l>) -> Facts<'l> {
         /// The most scopes that may end one with the other.
         const ENDING: usize = 8;
-        let (mut here, mut exits) = (number, Vec::new());
-        for _ in 0..ENDING {
-            if self.completes(here) || !self.one_turn {
+        let mut exits = Vec::new();
+        for here in iter::successors(Some(element), |here| here.children().last()).take(ENDING) {
+            if here.completes() || !self.one_turn {
                 return Vec::new();
             }
-            if self.world.lowered.scopes[here as usize].is_some() {
-                exits.push(self.read(self.condition(here), here, When::Past));
+            if here.interrupt().is_some() {
+                exits.push(self.read(here.condition(), here.number(), When::Past));
             }
-            if self.is_atom(here) {
+            if here.atom().is_some() {
                 return exits;
             }
-            here = self.last_child[here as usize];
         }
         Vec::new()
     }
 
-    /// Leaves the innermost bracket: what follows it is reached when it ends at the earliest.
-    fn close(&mut self) {
+    /// Leaves the innermost element: what follows it is reached when it ends at the earliest.
+    fn leave(&mut self, element: Element<'l>) {
         let Some(open) = self.open.pop() else { return };
-        let is_atom = self.is_atom(open.bracket);
-        let bracket = self.world.lowered.brackets[open.bracket as usize];
-        let is_null = *self.condition(open.bracket) == Condition::Null;
-        let inside = self.clock.filter(|_| !is_atom);
-        match bracket.kind {
-            Kind::Scope { .. } => {
-                let own = self.completes(open.bracket) || !is_null;
-                self.written = open.written && (own || (!is_atom && self.written));
-            }
-            Kind::Loop { times, .. } => self.written = open.written && self.written && times > 0,
-        }
-        self.before = Some(open.bracket);
+        let inside = self.clock.filter(|_| element.atom().is_none());
+        let ends_by_itself = element.completes() || *element.condition() != Condition::Null;
+        self.written = open.written
+            && match element.kind() {
+                ElementKind::Atom(_) => ends_by_itself,
+                ElementKind::Scope => ends_by_itself || self.written,
+                ElementKind::Loop { times } => self.written && times.is_some(),
+            };
+        self.before = Some(element.number());
         match open.reach {
             Reach::Never => self.clock = None,
             // The first atom of what is skipped is all that is met of it.
             Reach::Skipped => self.clock = open.own,
             Reach::Runs => {
-                self.clock = match bracket.kind {
-                    Kind::Scope { .. } => [open.own, inside].into_iter().flatten().min(),
-                    Kind::Loop { times, .. } => passes(open.clock, inside, times),
+                self.clock = match element.kind() {
+                    ElementKind::Scope | ElementKind::Atom(_) => [open.own, inside].into_iter().flatten().min(),
+                    ElementKind::Loop { times } => passes(open.clock, inside, times),
                 };
-                if !is_atom && bracket_is_scope(&bracket) {
-                    self.wait_for(open.bracket, false);
+                if element.is_scope() {
+                    self.wait_for(element, false);
                 }
                 self.world.close(open.added);
             }
@@ -283,16 +255,12 @@ impl<'l> Walk<'l> {
             self.skipping = false;
             self.written = open.written;
         }
-        self.facts = self.exit(open.bracket);
+        self.facts = self.exit(element);
     }
 }
 
-fn bracket_is_scope(bracket: &Bracket) -> bool {
-    matches!(bracket.kind, Kind::Scope { .. })
-}
-
 /// When a loop ends at the earliest, by when it is entered and when its first pass ends.
-fn passes(from: Option<u64>, pass: Option<u64>, times: u64) -> Option<u64> {
-    let (from, pass) = (from?, pass?);
-    (times > 0).then(|| from.saturating_add(pass.saturating_sub(from).saturating_mul(times)))
+fn passes(from: Option<u64>, pass: Option<u64>, times: Option<u64>) -> Option<u64> {
+    let (from, pass, times) = (from?, pass?, times?);
+    Some(from.saturating_add(pass.saturating_sub(from).saturating_mul(times)))
 }

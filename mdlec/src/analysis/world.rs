@@ -25,7 +25,7 @@ pub(super) struct Wanted<'l> {
 /// What is known at a place of a plan.
 #[derive(Debug)]
 pub(super) struct World<'l> {
-    pub(super) lowered: &'l Machine,
+    pub(super) machine: &'l Machine,
     /// When the scope of each bracket was entered at the earliest, in nanoseconds since the plan began.
     pub(super) entered: Vec<u64>,
     /// What has one value only, or a scope around would have ended; and the bracket of that scope.
@@ -50,10 +50,10 @@ pub(super) struct Added {
 }
 
 impl<'l> World<'l> {
-    pub(super) fn new(lowered: &'l Machine) -> Self {
+    pub(super) fn new(machine: &'l Machine) -> Self {
         Self {
-            lowered,
-            entered: vec![0; lowered.brackets.len()],
+            machine,
+            entered: vec![0; machine.elements().len()],
             units: BTreeMap::new(),
             deadlines: Vec::new(),
             distances: Vec::new(),
@@ -64,8 +64,8 @@ impl<'l> World<'l> {
     }
 
     /// Returns what is known of a place without anything around it, where every signal is a number.
-    pub(super) fn of_numbers(lowered: &'l Machine) -> Self {
-        Self { readings: Readings::Numbers, ..Self::new(lowered) }
+    pub(super) fn of_numbers(machine: &'l Machine) -> Self {
+        Self { readings: Readings::Numbers, ..Self::new(machine) }
     }
 
     /// The time at which a timer around is over, and its bracket.
@@ -170,7 +170,7 @@ impl<'l> World<'l> {
 
     fn relate(&mut self, variable: Variable, is_known: bool) {
         let Variable::Quark(id) = variable else { return };
-        let Some(family) = family(self.lowered.quark(id)) else { return };
+        let Some(family) = family(self.machine.quark(id)) else { return };
         let members = self.families.entry(family).or_default();
         if is_known {
             members.insert(id);
@@ -184,7 +184,7 @@ impl<'l> World<'l> {
         let mut found = Vec::new();
         for variable in variables {
             let Variable::Quark(id) = variable else { continue };
-            let members = family(self.lowered.quark(*id)).and_then(|family| self.families.get(&family));
+            let members = family(self.machine.quark(*id)).and_then(|family| self.families.get(&family));
             found.extend(members.into_iter().flatten().take(CLAUSES).map(|id| Variable::Quark(*id)));
         }
         found
@@ -220,7 +220,7 @@ impl<'l> World<'l> {
 
     /// Adds the variables of a condition, whatever is known of them; `false` where there are too many.
     pub(super) fn variables(&self, read: Read<'l>, found: &mut BTreeSet<Variable>) -> bool {
-        choices::variables(read, self.lowered, found)
+        choices::variables(read, self.machine, found)
     }
 
     /// The value that a variable has here, if it has only one.
@@ -264,13 +264,13 @@ impl<'l> World<'l> {
             (None, None) => return true,
         };
         let entered = |bracket: u32| self.entered[bracket as usize];
-        let mut table = variables::possible(&choices, &self.lowered.quarks, self.readings, &entered);
+        let mut table = variables::possible(&choices, self.machine.quarks(), self.readings, &entered);
         for read in clauses {
-            table = table.and(&choices.fired(read, self.lowered).not());
+            table = table.and(&choices.fired(read, self.machine).not());
         }
         for Wanted { any, fired } in wanted {
             let none = choices.constant(false);
-            let some = any.iter().fold(none, |some, read| some.or(&choices.fired(*read, self.lowered)));
+            let some = any.iter().fold(none, |some, read| some.or(&choices.fired(*read, self.machine)));
             table = table.and(&if *fired { some } else { some.not() });
         }
         table.is_possible()
