@@ -1,14 +1,13 @@
 //! The machine `counted`: the run-time system's own machine on a lowered plan, loops as the paper's counters
 //! (docs/src/reference/semantics.md, 9). It is what robots run, with a script in place of the robot.
 
-use mdle_runtime::fsm::Kind;
 use mdle_runtime::{
     Begin, Cause, Cursor, Ending, Fsm, Measured, Nanometers, Nanos, Next, Pose, Stamp, Stamps, Transition, Turn, Watch,
 };
 
 use super::{Applied, Fired, Machine, Outcome, Reports};
 use crate::fsm;
-use crate::plan::{Interrupt, Quark, QuarkId, RecordId, Situation};
+use crate::plan::{Interrupt, QuarkId, RecordId, Situation};
 
 /// A lowered plan that is run.
 #[derive(Debug)]
@@ -34,7 +33,7 @@ impl<'p> Machine<'p> for Counted<'p> {
         let mut transitions = Transitions { lowered, operands: Vec::new(), fired: Vec::new() };
         let turn = machine.turn(reports, reports.t, &mut transitions);
         let applied = match (turn, machine.atom()) {
-            (Turn::Law(()), Some(atom)) => Applied::Law(&lowered.law(atom).text),
+            (Turn::Law(()), Some(atom)) => Applied::Law(&lowered.atom(atom).law().text),
             (Turn::Cut, _) => Applied::Cut,
             (Turn::Over, _) | (Turn::Law(()), None) => Applied::Over,
         };
@@ -57,9 +56,9 @@ impl Watch for Transitions<'_> {
     }
 
     fn transition(&mut self, Transition { from, scope, cause, .. }: Transition) {
-        let by = cause.by(self.lowered.condition(scope));
+        let by = cause.by(self.lowered.element(scope).condition_text());
         let operands = std::mem::take(&mut self.operands);
-        let operands = self.lowered.interrupt(scope).map_or_else(Vec::new, |interrupt| {
+        let operands = self.lowered.element(scope).interrupt().map_or_else(Vec::new, |interrupt| {
             let parts = interrupt.condition.joined();
             let quark = |id| self.lowered.quark(id).text.clone();
             operands.iter().map(|number| interrupt.operand_text(*number, parts[*number], &quark)).collect()
@@ -114,19 +113,16 @@ impl Situation for Read<'_, '_> {
     }
 
     fn recorded(&self, record: RecordId, fact: u32) -> bool {
-        let Some(record) = self.scripted.lowered.records.get(&record) else { return false };
+        let Some(record) = self.scripted.lowered.record(record) else { return false };
         self.scripted.memories[self.scripted.place(record.level, record.first + fact)]
     }
 }
 
 impl<'p> Scripted<'p> {
     fn new(lowered: &'p fsm::Machine) -> Self {
-        let levels = lowered.brackets.iter().map(|bracket| match bracket.kind {
-            Kind::Scope { level } => usize::from(level) + 1,
-            Kind::Loop { .. } => 0,
-        });
-        let levels = if lowered.sizes().memories == 0 { 0 } else { levels.max().unwrap_or(0) };
-        Self { lowered, memories: vec![false; levels * lowered.sizes().memories] }
+        let memories = lowered.sizes().memories;
+        let levels = if memories == 0 { 0 } else { lowered.depth() };
+        Self { lowered, memories: vec![false; levels * memories] }
     }
 
     fn place(&self, level: u16, memory: u32) -> usize {
@@ -135,18 +131,8 @@ impl<'p> Scripted<'p> {
 
     /// The scopes around the current atom, from its own outwards: level and interrupt.
     fn scopes(&self, cursor: &At) -> impl Iterator<Item = (u16, &'p Interrupt)> + use<'p> {
-        let lowered = self.lowered;
-        let own = lowered.atoms.get(cursor.atom() as usize).map(|atom| atom.scope);
-        let outwards = std::iter::successors(own, |here| {
-            let parent = lowered.brackets.get(*here as usize)?.parent;
-            (parent != *here).then_some(parent)
-        });
-        outwards.filter_map(|here| {
-            match (lowered.brackets.get(here as usize)?.kind, lowered.scopes.get(here as usize)?) {
-                (Kind::Scope { level }, Some(scope)) => Some((level, &scope.interrupt)),
-                (Kind::Scope { .. } | Kind::Loop { .. }, _) => None,
-            }
-        })
+        let own = self.lowered.atom(cursor.atom()).element();
+        own.outwards().filter_map(|element| Some((element.level()?, element.interrupt()?)))
     }
 
     /// Which scope around the current atom ends, and why.
@@ -156,7 +142,14 @@ impl<'p> Scripted<'p> {
         };
         // Outwards, so that the last one found is the outermost.
         let outermost = self.scopes(cursor).filter(fired).last().map(|(level, _)| Cause::Fired(level));
-        outermost.or_else(|| self.lowered.completed(cursor.atom(), y))
+        outermost.or_else(|| self.completed(cursor, y))
+    }
+
+    /// The completion of the current atom's law.
+    fn completed(&self, cursor: &At<'_>, y: &Reports) -> Option<Cause> {
+        let atom = self.lowered.atom(cursor.atom());
+        let level = atom.element().level()?;
+        (atom.law().completes && y.completed.contains(&atom.law().text)).then_some(Cause::Completed(level))
     }
 
     /// Writes down what ends when the scope that has this cause ends; what was inside is forgotten.
@@ -171,13 +164,12 @@ impl<'p> Scripted<'p> {
         };
         let mut outermost = level;
         let (mut records, mut facts) = (Vec::new(), Vec::new());
-        for (place, (number, bracket)) in cursor.ending(self.lowered.tables(), level).enumerate() {
-            if let Kind::Scope { level } = bracket.kind {
-                outermost = level;
-            }
-            for mark in self.lowered.marks.get(&number).into_iter().flatten() {
-                let Some(record) = self.lowered.records.get(&mark.record) else { continue };
-                records.push(*record);
+        for (place, (number, _)) in cursor.ending(self.lowered.tables(), level).enumerate() {
+            let element = self.lowered.element(number);
+            outermost = element.level().unwrap_or(outermost);
+            for mark in element.marks() {
+                let Some(record) = self.lowered.record(mark.record) else { continue };
+                records.push(record);
                 let operand = operand.filter(|_| place == 0);
                 let hold = mark.facts.iter().filter(|fact| fact.holds(operand));
                 facts.extend(hold.map(|fact| self.place(record.level, record.first + fact.number)));
@@ -205,7 +197,7 @@ impl<'p> mdle_runtime::Plan for Scripted<'p> {
 
     fn slots(&self) -> (Self::Entered, Self::Left) {
         (
-            Stamps::new(vec![Stamp::START; self.lowered.sizes().levels].into(), &self.lowered.frames),
+            Stamps::new(vec![Stamp::START; self.lowered.sizes().levels].into(), self.lowered.frames()),
             vec![0; self.lowered.sizes().slots].into(),
         )
     }
@@ -239,8 +231,8 @@ impl<'p> mdle_runtime::Plan for Scripted<'p> {
     }
 
     fn operands(&self, cursor: &At<'p>, scope: u32, y: &Reports, _: Nanos, tell: &mut dyn FnMut(u32, Measured)) {
-        let kind = self.lowered.brackets.get(scope as usize).map(|bracket| bracket.kind);
-        let (Some(Kind::Scope { level }), Some(interrupt)) = (kind, self.lowered.interrupt(scope)) else { return };
+        let element = self.lowered.element(scope);
+        let (Some(level), Some(interrupt)) = (element.level(), element.interrupt()) else { return };
         let read = Read { scripted: self, cursor, level, y };
         let operands = (0..).zip(interrupt.condition.joined());
         operands.filter(|(_, part)| part.fired(&read)).for_each(|(number, _)| tell(number, Measured::Nothing));
@@ -249,35 +241,14 @@ impl<'p> mdle_runtime::Plan for Scripted<'p> {
     fn input(&mut self, _: &Reports, _: Nanos) {}
 
     fn law(&self, atom: u32) -> &str {
-        &self.lowered.law(atom).text
+        &self.lowered.atom(atom).law().text
     }
 
     fn condition(&self, scope: u32) -> &str {
-        self.lowered.condition(scope)
+        self.lowered.element(scope).condition_text()
     }
 
     fn name(&self, scope: u32) -> &str {
-        self.lowered.scopes.get(scope as usize).and_then(Option::as_ref).map_or("", |scope| &scope.name)
-    }
-}
-
-impl fsm::Machine {
-    fn law(&self, atom: u32) -> &Quark {
-        self.quark(self.laws[atom as usize].quark)
-    }
-
-    fn interrupt(&self, scope: u32) -> Option<&Interrupt> {
-        self.scopes.get(scope as usize)?.as_ref().map(|scope| &scope.interrupt)
-    }
-
-    fn condition(&self, scope: u32) -> &str {
-        self.interrupt(scope).map_or("", |interrupt| &interrupt.text)
-    }
-
-    fn completed(&self, atom: u32, y: &Reports) -> Option<Cause> {
-        let law = self.law(atom);
-        let bracket = self.brackets.get(self.atoms.get(atom as usize)?.scope as usize)?;
-        let Kind::Scope { level } = bracket.kind else { return None };
-        (law.completes && y.completed.contains(&law.text)).then_some(Cause::Completed(level))
+        self.lowered.element(scope).name()
     }
 }
