@@ -1,10 +1,9 @@
 //! The machine as an FSM file (docs/src/reference/interfaces.md, 5): states, interrupts with their moves, finite loops
 //! expanded.
 
-use mdle_runtime::fsm::{Bracket, Kind};
 use serde::Serialize;
 
-use super::{Machine, expand, lower};
+use super::{Transition, matrices};
 use crate::diagnostic::Diagnostic;
 use crate::plan::{Condition, Nondegenerate};
 
@@ -66,40 +65,40 @@ pub struct ScopeEntry {
     pub last: String,
 }
 
-/// The file of a plan.
+/// Returns the file of a plan: its transition matrices, with the columns that each lists.
 ///
 /// # Errors
-/// E0501 and E0502, as [`expand`] has them.
+/// E0501 and E0502, as [`expand`](super::expand) has them.
 pub fn fsm_file(plan: &Nondegenerate) -> Result<FsmFile, Diagnostic> {
-    let lowered = lower(&expand(plan)?)?;
-    let columns = Columns(&lowered);
+    let matrices = matrices(plan)?;
+    let plan = plan.plan();
+    let state = |number: usize| if number == matrices.laws.len() { "end".into() } else { format!("a{}", number + 1) };
     let mut file = FsmFile {
         version: VERSION,
-        source: lowered.scopes.iter().flatten().next().map(|plan| plan.name.clone()).unwrap_or_default(),
-        states: (0..=columns.atoms()).map(|atom| columns.state(atom)).collect(),
-        start: columns.state(0),
-        laws: lowered.laws.iter().map(|law| lowered.quark(law.quark).text.clone()).collect(),
+        source: plan.root.name.clone(),
+        states: (0..=matrices.laws.len()).map(state).collect(),
+        start: state(0),
+        laws: matrices.laws.iter().map(|law| plan.quark(*law).text.clone()).collect(),
         interrupts: Vec::new(),
         never: Vec::new(),
         scopes: Vec::new(),
     };
-    for (scope, bracket) in lowered.scopes.iter().zip(&lowered.brackets) {
-        let Some(scope) = scope else { continue };
-        let name = format!("x{}", file.interrupts.len() + 1);
-        let to = columns.state(columns.destination(bracket));
-        let moves = (bracket.first..=bracket.last).map(|atom| (columns.state(atom), to.clone())).collect();
-        if scope.interrupt.condition == Condition::Null {
-            file.never.push(name.clone());
+    for (number, Transition { interrupt, name, matrix, .. }) in (1..).zip(&matrices.transitions) {
+        let x = format!("x{number}");
+        let moves = matrix.listed().map(|from| (state(from), state(matrix.row()))).collect();
+        if interrupt.condition == Condition::Null {
+            file.never.push(x.clone());
         }
-        file.scopes.push(ScopeEntry {
-            interrupt: name.clone(),
-            name: scope.name.clone(),
-            first: columns.state(bracket.first),
-            last: columns.state(bracket.last),
-        });
-        file.interrupts.push(InterruptEntry { name, text: scope.interrupt.text.clone(), moves: Moves(moves) });
+        let [first, last] = [*matrix.listed().start(), *matrix.listed().end()].map(state);
+        file.scopes.push(ScopeEntry { interrupt: x.clone(), name: (*name).to_owned(), first, last });
+        file.interrupts.push(InterruptEntry { name: x, text: interrupt.text.clone(), moves: Moves(moves) });
     }
-    file.interrupts.extend(columns.completion());
+    let done = matrices.completion(plan);
+    let moves: Vec<_> = done.map(|(_, matrix)| (state(*matrix.listed().start()), state(matrix.row()))).collect();
+    if !moves.is_empty() {
+        let name = "completed".to_owned();
+        file.interrupts.push(InterruptEntry { text: name.clone(), name, moves: Moves(moves) });
+    }
     Ok(file)
 }
 
@@ -109,48 +108,5 @@ impl FsmFile {
     pub fn to_json(&self) -> String {
         // Only maps with keys that are no strings cannot be written, and there are none.
         serde_json::to_string_pretty(self).map(|text| text + "\n").unwrap_or_default()
-    }
-}
-
-/// The columns of the transition matrices of a machine whose finite loops are expanded.
-struct Columns<'a>(&'a Machine);
-
-impl Columns<'_> {
-    fn atoms(&self) -> u32 {
-        u32::try_from(self.0.atoms.len()).unwrap_or(u32::MAX)
-    }
-
-    /// Where the interrupt of a scope sends its columns: to the start of the innermost loop outside it that ends where
-    /// it ends, else behind its last atom.
-    fn destination(&self, scope: &Bracket) -> u32 {
-        let mut inside = scope;
-        loop {
-            let around = &self.0.brackets[inside.parent as usize];
-            if around.last != scope.last || std::ptr::eq(around, inside) {
-                return scope.last + 1;
-            }
-            if matches!(around.kind, Kind::Loop { .. }) {
-                return around.first;
-            }
-            inside = around;
-        }
-    }
-
-    fn state(&self, atom: u32) -> String {
-        if atom == self.atoms() { "end".into() } else { format!("a{}", atom + 1) }
-    }
-
-    /// The interrupt that laws raise when they are done.
-    fn completion(&self) -> Option<InterruptEntry> {
-        let atoms = self.0.laws.iter().zip(&self.0.atoms).zip(0..);
-        let moves: Vec<_> = atoms
-            .filter(|((law, _), _)| self.0.quark(law.quark).completes)
-            .map(|((_, atom), number)| {
-                let own = &self.0.brackets[atom.scope as usize];
-                (self.state(number), self.state(self.destination(own)))
-            })
-            .collect();
-        let name = "completed".to_owned();
-        (!moves.is_empty()).then(|| InterruptEntry { text: name.clone(), name, moves: Moves(moves) })
     }
 }

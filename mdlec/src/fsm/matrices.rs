@@ -10,7 +10,7 @@ use nalgebra::DMatrix;
 
 use super::expanded_states;
 use crate::diagnostic::Diagnostic;
-use crate::plan::{Atom, Interrupt, Mark, Node, Nondegenerate, QuarkId, Record, Scope};
+use crate::plan::{Atom, Interrupt, Mark, Node, Nondegenerate, Plan, QuarkId, Record, Scope};
 
 /// The transition matrices of a plan with `N` states.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +21,22 @@ pub struct Matrices<'p> {
     pub frames: Vec<f64>,
     /// The interrupts in pre-order, atoms' own ones included.
     pub transitions: Vec<Transition<'p>>,
+}
+
+impl<'p> Matrices<'p> {
+    /// Returns the atoms whose laws may complete, in order: the number of the atom's own interrupt among
+    /// [`transitions`](Self::transitions), and its matrix, by which the atom ends.
+    pub fn completion(&self, plan: &Plan) -> impl Iterator<Item = (usize, Matrix)> {
+        let mut own = vec![None; self.laws.len()];
+        // An atom is inside every scope that encloses it, so it comes last of those that list its column.
+        for (number, Transition { matrix, .. }) in self.transitions.iter().enumerate() {
+            if matrix.first == matrix.last {
+                own[matrix.first] = Some((number, *matrix));
+            }
+        }
+        let completes: Vec<_> = self.laws.iter().map(|law| plan.quark(*law).completes).collect();
+        own.into_iter().zip(completes).filter_map(|(own, completes)| own.filter(|_| completes))
+    }
 }
 
 /// An interrupt with its transition matrix.

@@ -102,17 +102,11 @@ pub fn terms(plan: &Nondegenerate, combined: bool) -> Result<Terms<'_>, Diagnost
 
 /// The interrupt that laws raise when they are done: it counts as their atoms' own.
 fn completion<'p>(plan: &'p Plan, made: &Matrices<'p>) -> Option<Term<'p>> {
-    let mut own = vec![None; made.laws.len()];
-    // An atom is inside every scope around it, so it comes last of those that list its column.
-    for (number, transition) in (1..).zip(&made.transitions) {
-        let column = *transition.matrix.listed().start();
-        if column == *transition.matrix.listed().end() {
-            let (scope, row) = (transition.name, transition.matrix.row());
-            own[column] = Some(Extent { number, scope, first: column, last: column, row });
-        }
-    }
-    let done = own.into_iter().zip(&made.laws).filter(|(_, law)| plan.quark(**law).completes);
-    let places: Vec<_> = done.filter_map(|(place, _)| place).collect();
+    let places = made.completion(plan).map(|(number, matrix)| {
+        let (scope, column) = (made.transitions[number].name, *matrix.listed().start());
+        Extent { number: number + 1, scope, first: column, last: column, row: matrix.row() }
+    });
+    let places: Vec<_> = places.collect();
     (!places.is_empty()).then(|| Term { name: "completed".into(), text: "completed", places })
 }
 
