@@ -15,6 +15,7 @@ extern crate std;
 
 mod advance;
 mod align;
+pub mod alphabet;
 mod approach;
 mod at_isection;
 mod bumper;

@@ -103,6 +103,7 @@ fn recorded_rust_compiles_and_has_the_tables_of_its_plan() {
 #[test]
 fn bound_alphabets_are_as_they_are_committed() {
     let committed = |target: &str| std::fs::read_to_string(root().join(target).join("src/alphabet.rs")).unwrap();
+    assert!(mdlec::rust::bind(&alphabet(None)) == committed("atoms"), "`mdlec bind` says what differs");
     assert!(mdlec::rust::bind(&alphabet(Some("sim"))) == committed("targets/sim"), "`mdlec bind` says what differs");
     assert!(mdlec::rust::bind(scripted()) == committed("tests/scripted"), "`mdlec bind` says what differs");
 }

@@ -11,12 +11,6 @@ use crate::{link, rust};
 pub(super) fn bind(options: &Bind) -> Result<(), Failure> {
     let file = &options.alphabet;
     let alphabet = input::alphabet(file)?;
-    if alphabet.crate_name.is_empty() {
-        return Err(Failure::usage(format!(
-            "`{}` is a shared alphabet, which targets `use`: only a target's own is bound to a crate",
-            file.display()
-        )));
-    }
     let text = rust::bind(&alphabet);
     let bound = bound(file);
     if read::file(&bound, LARGEST_PLAN).is_ok_and(|found| found == text.as_bytes()) {

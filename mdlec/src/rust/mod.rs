@@ -191,8 +191,11 @@ mod tests {
 
     #[test]
     fn quarks_of_one_name_are_numbered() {
-        let bound = bind(&alphabet(None));
-        assert_eq!(["GoAvoid2", "GoAvoid3"].map(|kind| bound.contains(kind)), [true, false]);
+        let text = "target t : crate t; control go(to: length m); control go(to: module); control go(to: angle deg);";
+        let own = crate::alphabet::read(crate::diagnostic::SourceId(0), text).0.expect("an alphabet");
+        let bound = bind(&crate::alphabet::combine(own, &[]).0);
+        let line = |quark: &str| bound.contains(&format!("        \"go\" => {quark},\n"));
+        assert_eq!(["Go(go)", "Go2(go2)", "Go3(go3)", "Go4(go4)"].map(line), [true, true, true, false]);
     }
 
     #[test]

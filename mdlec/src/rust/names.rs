@@ -72,6 +72,11 @@ impl Distinct {
         Self::beside(FUNCTIONS)
     }
 
+    /// Names of the functions that make a bound alphabet's quarks of their arguments.
+    pub(super) fn quark_functions() -> Self {
+        Self::beside(&["gen"])
+    }
+
     /// Names of a function's parameters.
     pub(super) fn parameters() -> Self {
         Self::beside(&[])

@@ -5,7 +5,8 @@ use crate::{
     RadiansPerSecond, Signal, SonarId, Volts,
 };
 
-/// The quarks of one robot, each kind as one type; `mdlec bind` writes it from the robot's `alphabet.mdle`.
+/// The quarks of one robot, each kind as one type; [`alphabet!`](crate::alphabet!) implements it for the tables that
+/// `mdlec bind` writes from the robot's `alphabet.mdle`.
 ///
 /// `wait` is not among its interrupts: time is the machine's business.
 pub trait Alphabet {
@@ -82,7 +83,147 @@ pub enum Argument<'a> {
 impl<const N: usize> Bits<N> {
     /// These bits, if there are `N`.
     #[must_use]
-    pub fn from_slice(bits: &[bool]) -> Option<Self> {
-        bits.try_into().ok().map(Self)
+    pub const fn from_slice(bits: &[bool]) -> Option<Self> {
+        match bits.first_chunk() {
+            Some(word) if bits.len() == N => Some(Self(*word)),
+            Some(_) | None => None,
+        }
     }
+}
+
+/// Declares `Alphabet`, `AnyInterrupt`, `AnySignal`, `AnyControl` and `AnyLaw` from the tables of a robot's alphabet, which
+/// `mdlec bind` writes.
+///
+/// `Output` and `Input` are the robot's, in scope. A capability names the trait that `Output` has to implement, if there is
+/// one. A limit is in SI units. A quark is its name, its type, and the constant function that makes it of its arguments,
+/// which returns `None` for arguments of another signature.
+#[macro_export]
+macro_rules! alphabet {
+    (
+        capabilities: [$($capability:literal $(as $needed:ident)?,)*];
+        limits: [$($quark:literal $parameter:literal in $least:literal..$most:literal,)*];
+        interrupts: [$($interrupt_name:literal => $interrupt:ident($interrupt_of:path),)*];
+        signals: [$($signal_name:literal => $signal:ident($signal_of:path),)*];
+        controls: [$($control_name:literal => $control:ident($control_of:path) $($completes:ident)?,)*];
+    ) => {
+        /// Any interrupt of this robot with its arguments.
+        #[derive(Debug)]
+        pub enum AnyInterrupt {
+            $(#[doc = concat!("`", $interrupt_name, "`.")] $interrupt($interrupt),)*
+            /// A comparison of signals.
+            Comparison($crate::Comparison<AnySignal, AnySignal>),
+        }
+
+        impl $crate::Interrupt<Output> for AnyInterrupt {
+            fn fired(&self, y: &Output) -> bool {
+                match self {
+                    $(Self::$interrupt(interrupt) => $crate::Interrupt::fired(interrupt, y),)*
+                    Self::Comparison(comparison) => $crate::Interrupt::fired(comparison, y),
+                }
+            }
+
+            fn measured(&self, y: &Output) -> $crate::Measured {
+                match self {
+                    $(Self::$interrupt(_) => $crate::Measured::Nothing,)*
+                    Self::Comparison(comparison) => $crate::Interrupt::measured(comparison, y),
+                }
+            }
+        }
+
+        /// Any signal of this robot with its arguments.
+        #[derive(Debug)]
+        pub enum AnySignal {
+            $(#[doc = concat!("`", $signal_name, "`.")] $signal($signal),)*
+        }
+
+        // Through the reference, so that an enum without variants is matched as well.
+        impl $crate::Signal<Output> for AnySignal {
+            fn value(&self, y: &Output) -> f64 {
+                match *self { $(Self::$signal(ref signal) => $crate::Signal::value(signal, y),)* }
+            }
+        }
+
+        /// Any law of this robot with its arguments.
+        #[derive(Debug)]
+        pub enum AnyControl {
+            $(#[doc = concat!("`", $control_name, "`.")] $control($control),)*
+        }
+
+        /// Any law of this robot as it runs: one at a time, so that there need be no allocator.
+        #[derive(Debug)]
+        pub enum AnyLaw {
+            $(#[doc = concat!("`", $control_name, "`.")] $control(<$control as $crate::Control<Output>>::Law),)*
+        }
+
+        impl $crate::Control<Output> for AnyControl {
+            type Law = AnyLaw;
+
+            fn begin(&self, y: &Output, begin: $crate::Begin) -> AnyLaw {
+                match *self {
+                    $(Self::$control(ref control) => AnyLaw::$control($crate::Control::begin(control, y, begin)),)*
+                }
+            }
+        }
+
+        impl $crate::Law<Output> for AnyLaw {
+            type Input = Input;
+
+            fn input(&mut self, y: &Output, t: $crate::Nanos) -> Input {
+                match *self { $(Self::$control(ref mut law) => $crate::Law::input(law, y, t),)* }
+            }
+        }
+
+        impl $crate::Completes<Output> for AnyLaw {
+            fn completed(&self, y: &Output, t: $crate::Nanos) -> bool {
+                match *self {
+                    $(Self::$control(ref law) => $crate::alphabet!(@completed law y t $($completes)?),)*
+                }
+            }
+        }
+
+        // The output has what the capabilities need.
+        const _: () = {
+            const fn capable<Y: $($($crate::capability::$needed +)?)*>() {}
+            capable::<Output>()
+        };
+
+        /// The quarks of this robot by their names.
+        #[derive(Debug)]
+        pub struct Alphabet;
+
+        impl $crate::Alphabet for Alphabet {
+            type Output = Output;
+            type Input = Input;
+            type Interrupt = AnyInterrupt;
+            type Signal = AnySignal;
+            type Control = AnyControl;
+            type Law = AnyLaw;
+
+            const CAPABILITIES: &'static [&'static str] = &[$($capability),*];
+            const LIMITS: &'static [$crate::Limit] = &[
+                $($crate::Limit { quark: $quark, parameter: $parameter, least: $least, most: $most }),*
+            ];
+
+            $crate::alphabet!(@by_name interrupt AnyInterrupt [$($interrupt_name $interrupt $interrupt_of,)*]);
+            $crate::alphabet!(@by_name signal AnySignal [$($signal_name $signal $signal_of,)*]);
+            $crate::alphabet!(@by_name control AnyControl [$($control_name $control $control_of,)*]);
+
+            fn comparison(
+                comparison: $crate::Comparison<AnySignal, AnySignal>,
+            ) -> ::core::option::Option<AnyInterrupt> {
+                ::core::option::Option::Some(AnyInterrupt::Comparison(comparison))
+            }
+        }
+    };
+    (@completed $law:ident $y:ident $t:ident) => { false };
+    (@completed $law:ident $y:ident $t:ident completes) => { $crate::Completes::completed($law, $y, $t) };
+    (@by_name $function:ident $any:ident [$($name:literal $kind:ident $of:path,)*]) => {
+        fn $function(name: &str, arguments: &[$crate::Argument<'_>]) -> ::core::option::Option<$any> {
+            // Several quarks may have one name.
+            $(if name == $name && let ::core::option::Option::Some(quark) = $of(arguments) {
+                return ::core::option::Option::Some($any::$kind(quark));
+            })*
+            ::core::option::Option::None
+        }
+    };
 }
