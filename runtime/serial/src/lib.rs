@@ -4,15 +4,22 @@
 
 mod capacity;
 mod clock;
+mod configuration;
 mod line;
 mod moment;
 mod obedience;
 pub mod options;
 mod settings;
+mod target;
 
 pub use capacity::{carries, time_of};
 pub use clock::{Clock, Times};
+pub use configuration::{Configuration, Configured, Key, Setting, one_of, within};
 pub use line::{Line, LineFault};
+pub use mdle_runtime::capability::Steering;
 pub use moment::Moment;
 pub use obedience::Obedience;
-pub use settings::{Settings, can_steer, within};
+#[doc(hidden)]
+pub use serde;
+pub use settings::Settings;
+pub use target::{SerialRobot, SerialTarget};

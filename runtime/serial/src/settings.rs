@@ -1,26 +1,27 @@
 //! A robot's configuration: a TOML file, the defaults, and where each value came from.
 
-use std::fmt::{self, Write as _};
+use std::fmt;
 use std::path::Path;
 
 use mdle_host::read_text;
 use mdle_runtime::capability::Steering;
 use serde::de::DeserializeOwned;
 
+use crate::configuration::{Key, Setting};
+
 /// The largest configuration that is read, in bytes.
 const LARGEST: u64 = 1_000_000;
 
-/// A value with a few words on it, and where it came from.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// A key with its value, and where that came from.
+#[derive(Debug, Clone, PartialEq)]
 struct Entry {
-    name: &'static str,
+    key: Key,
     value: String,
-    about: &'static str,
     from: String,
 }
 
 /// Takes down each value as it is chosen.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Settings {
     file: Option<String>,
     entries: Vec<Entry>,
@@ -39,35 +40,46 @@ impl Settings {
         Ok((said, Self { file: Some(name), entries: Vec::new() }))
     }
 
-    /// What the file says of this value, or the default.
-    pub fn value<T: fmt::Debug>(&mut self, name: &'static str, said: Option<T>, default: T, about: &'static str) -> T {
-        match (said, &self.file) {
-            (Some(value), Some(file)) => {
-                let from = file.clone();
-                self.noted(name, value, about, &from)
-            }
-            (Some(value), None) => self.noted(name, value, about, "default"),
-            (None, _) => self.noted(name, default, about, "default"),
-        }
+    /// Returns the value that the file has for this key, or the default.
+    ///
+    /// # Errors
+    /// The sentence that says why the key cannot have this value, after the file's name if there is one.
+    pub fn value<T: Setting>(
+        &mut self,
+        key: Key,
+        written: Option<T::Written>,
+        default: T::Written,
+    ) -> Result<T, String> {
+        let written = self.chosen(key, written, default);
+        T::of(&key, written).map_err(|why| self.blamed(&why))
     }
 
-    /// The device: what the command line says, else the file, else the first serial port.
-    pub fn device(&mut self, given: Option<&str>, said: Option<String>) -> String {
-        let about = "the serial port, or tcp:ADDRESS:PORT";
+    /// Returns the device: the one of the command line, else of the file, else the first serial port.
+    pub fn device(&mut self, given: Option<&str>, written: Option<String>) -> String {
+        let key = Key::of("device", "", "the serial port, or tcp:ADDRESS:PORT");
         match given {
-            Some(device) => self.noted("device", device.to_owned(), about, "--device"),
-            None => self.value("device", said, "/dev/ttyS0".to_owned(), about),
+            Some(device) => self.noted(key, device.to_owned(), "--device".to_owned()),
+            None => self.chosen(key, written, "/dev/ttyS0".to_owned()),
         }
     }
 
-    /// How hard laws steer: what the file says of it, for the rest what is usual.
-    pub fn steering(&mut self, rotate: Option<f64>, align: Option<f64>, avoid: Option<f64>) -> Steering {
+    /// Returns how hard laws steer: `rotate`, `align` and `avoid` of the file, for the rest the usual gains. With less than a
+    /// tenth a robot hardly turns, with more than ten it swings.
+    ///
+    /// # Errors
+    /// The sentence that says which gain is too small or too great.
+    pub fn steering(&mut self, [rotate, align, avoid]: [Option<f64>; 3]) -> Result<Steering, String> {
         let usual = Steering::USUAL;
-        Steering {
-            rotate: self.value("rotate-gain", rotate, usual.rotate, "rad/s for each radian, of rotate, turn and path"),
-            align: self.value("align-gain", align, usual.align, "rad/s for each metre, of align"),
-            avoid: self.value("avoid-gain", avoid, usual.avoid, "rad/s for each radian, of goAvoid"),
-        }
+        let gain = |name, help| Key { range: Some((0.1, 10.0)), ..Key::of(name, "rad/s", help) };
+        Ok(Steering {
+            rotate: self.value(
+                gain("rotate_gain", "for each radian, of rotate, turn and path"),
+                rotate,
+                usual.rotate,
+            )?,
+            align: self.value(gain("align_gain", "for each metre, of align"), align, usual.align)?,
+            avoid: self.value(gain("avoid_gain", "for each radian, of goAvoid"), avoid, usual.avoid)?,
+        })
     }
 
     /// What is wrong with a value, with the file's name if there is one.
@@ -76,8 +88,16 @@ impl Settings {
         self.file.as_ref().map_or_else(|| why.to_owned(), |file| format!("{file}: {why}"))
     }
 
-    fn noted<T: fmt::Debug>(&mut self, name: &'static str, value: T, about: &'static str, from: &str) -> T {
-        self.entries.push(Entry { name, value: format!("{value:?}"), about, from: from.to_owned() });
+    /// Returns what the file has, or else the default, and takes it down.
+    fn chosen<W: fmt::Debug>(&mut self, key: Key, written: Option<W>, default: W) -> W {
+        let file = self.file.as_deref().filter(|_| written.is_some());
+        let from = file.unwrap_or("default").to_owned();
+        self.noted(key, written.unwrap_or(default), from)
+    }
+
+    /// Returns `value`, once it is taken down with where it came from.
+    fn noted<W: fmt::Debug>(&mut self, key: Key, value: W, from: String) -> W {
+        self.entries.push(Entry { key, value: format!("{value:?}"), from });
         value
     }
 }
@@ -85,33 +105,10 @@ impl Settings {
 /// As TOML that can be given back with `--config`, with what each value means and where it came from.
 impl fmt::Display for Settings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for Entry { name, value, about, from } in &self.entries {
-            let mut line = String::new();
-            write!(line, "{name} = {value}")?;
-            writeln!(f, "{line:34} # {about} ({from})")?;
+        for Entry { key, value, from } in &self.entries {
+            let line = format!("{} = {value}", key.in_a_file());
+            writeln!(f, "{line:34} # {} ({from})", key.about())?;
         }
         Ok(())
-    }
-}
-
-/// Whether laws that steer so hard can hold a robot: one that steers less hardly turns, one that steers more swings.
-///
-/// # Errors
-/// The sentence that says which cannot.
-pub fn can_steer(steering: &Steering) -> Result<(), String> {
-    within("rotate-gain", steering.rotate, 0.1, 10.0)?;
-    within("align-gain", steering.align, 0.1, 10.0)?;
-    within("avoid-gain", steering.avoid, 0.1, 10.0)
-}
-
-/// Whether a value is from `least` to `most`.
-///
-/// # Errors
-/// The sentence that says that it is not.
-pub fn within(name: &str, value: f64, least: f64, most: f64) -> Result<(), String> {
-    if (least..=most).contains(&value) {
-        Ok(())
-    } else {
-        Err(format!("`{name}` is {value}, and has to be from {least} to {most}"))
     }
 }

@@ -53,7 +53,7 @@ pub struct Atrv {
     /// When it was asked for its brake last.
     asked: Nanos,
     /// What the plan can replay.
-    paths: PathStore,
+    pub(crate) paths: PathStore,
 }
 
 /// How long it takes in a turn to say all that a turn can say, and to leave the controllers alone after it.
@@ -109,11 +109,6 @@ impl Atrv {
     /// Returns the time without a command after which the robot is stopped.
     pub(crate) fn watchdog(&self) -> Duration {
         Duration::from_millis(self.config.watchdog)
-    }
-
-    /// Takes the paths that the plan replays.
-    pub(crate) fn take_paths(&mut self, paths: PathStore) {
-        self.paths = paths;
     }
 
     fn prepare(&mut self, period: Duration, request: &StopRequest) -> Result<(), Fault> {

@@ -6,7 +6,7 @@ use mdle_runtime::{Nanos, Pings, Pose, SONARS, Supply, Twist, Volts};
 use mdle_serial::{Line, LineFault};
 
 use crate::command::Axis;
-use crate::config::Config;
+use crate::config::{Bumpers, Config};
 use crate::fault::Fault;
 use crate::frame::{Packet, Reader};
 use crate::motion::{Odometer, twist};
@@ -279,9 +279,9 @@ impl Known {
 
     /// A digital input says this.
     fn feel(&mut self, address: u8, state: u16, at: Nanos) {
-        match (address.wrapping_sub(self.config.bumper_address), self.config.bumpers_are_bits) {
-            (0, true) => (self.switches, self.felt) = (u32::from(state & 0b11), [Some(at); 2]),
-            (bumper @ (0 | 1), false) => {
+        match (address.wrapping_sub(self.config.bumper_address), self.config.bumpers) {
+            (0, Bumpers::Bits) => (self.switches, self.felt) = (u32::from(state & 0b11), [Some(at); 2]),
+            (bumper @ (0 | 1), Bumpers::Addresses) => {
                 let bit = 1 << bumper;
                 self.switches = if state == 0 { self.switches & !bit } else { self.switches | bit };
                 if let Some(felt) = self.felt.get_mut(usize::from(bumper)) {

@@ -22,7 +22,7 @@ mod target;
 
 pub use avoid::avoided;
 pub use command::{Axis, Command, Escape, Motion};
-pub use config::{Config, Configured};
+pub use config::{Bumpers, Config, Configured};
 pub use driver::Atrv;
 pub use fault::Fault;
 pub use frame::{Garbled, Packet, Reader, Written};
@@ -33,6 +33,6 @@ pub use mdle_runtime::Sensed as Output;
 pub use mdle_runtime::Twist as Input;
 pub use mdle_serial::{Clock, LineFault};
 pub use report::{Echoes, Report, Unreadable};
-pub use target::AtrvMini;
-/// What the host runs a plan on.
-pub use target::AtrvMini as Target;
+
+/// The target that the host runs a plan on.
+pub type Target = mdle_serial::SerialTarget<Atrv>;

@@ -2,74 +2,50 @@
 
 use std::time::Duration;
 
-use mdle_host::clap::{ArgMatches, Command};
-use mdle_host::{Hosted, NamedFile, Refusal, Replays, StopRequest, Target, Time};
-use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Twist};
-use mdle_serial::{Clock, carries, options};
+use mdle_host::{Hosted, Refusal, StopRequest};
+use mdle_runtime::{MetersPerSecond, Nanos, PathStore, RadiansPerSecond, Twist};
+use mdle_serial::{Clock, SerialRobot};
 
 use crate::alphabet;
-use crate::config::Configured;
+use crate::config::Config;
 use crate::driver::{Atrv, turn_takes};
 use crate::fault::Fault;
 
 /// How much later than it should a turn may be before the watchdog stops the robot.
 const SLACK: Duration = Duration::from_millis(50);
 
-/// The target `atrv`.
-#[derive(Debug, Clone, Copy)]
-pub struct AtrvMini;
-
-impl Target for AtrvMini {
+impl SerialRobot for Atrv {
     const NAME: &'static str = alphabet::NAME;
-    const PERIOD: Duration = Duration::from_nanos(alphabet::PERIOD.0);
-    type Robot = Atrv;
-    const PATHS: Option<Replays<Atrv>> = Some(Replays {
-        // As `go` in the alphabet.
-        fastest: Twist { v: MetersPerSecond(1.0), omega: RadiansPerSecond(6.0) },
-        take: Atrv::take_paths,
-        speed: |sensed| sensed.velocity.v,
-    });
+    const PERIOD: Nanos = alphabet::PERIOD;
+    const FASTEST: Twist = Twist { v: MetersPerSecond(1.0), omega: RadiansPerSecond(6.0) };
+    type Config = Config;
 
-    fn arguments(command: Command) -> Command {
-        options::arguments(command)
+    fn connect(config: Config, clock: Clock, period: Duration, request: &StopRequest) -> Result<Self, Fault> {
+        Self::connect(config, clock, period, request)
     }
 
-    fn time(matches: &ArgMatches) -> Result<Time, String> {
-        Ok(options::time(matches))
+    fn take_paths(&mut self, paths: PathStore) {
+        self.paths = paths;
     }
 
-    fn files(matches: &ArgMatches) -> Vec<NamedFile> {
-        options::files(matches)
+    fn turn_takes(config: &Config) -> Duration {
+        turn_takes(config)
     }
 
-    fn answer(matches: &ArgMatches) -> Result<Option<String>, Refusal> {
-        options::prints_config(matches)
-            .then(|| configured(matches).map(|configured| configured.to_string()))
-            .transpose()
+    fn answer(config: &mut Config) -> &mut u64 {
+        &mut config.answer
     }
 
-    fn connect(matches: &ArgMatches, period: Duration, request: &StopRequest) -> Result<Atrv, Refusal> {
-        let clock = options::clock(matches, period);
-        let mut config = configured(matches)?.config;
-        match clock {
-            Clock::Stepped(_) => config.answer = clock.patience(config.patience()).as_millis() as u64,
-            Clock::Wall if period + SLACK >= Duration::from_millis(config.watchdog) => {
-                return Err(Refusal::Usage(format!(
-                    "with a period of {} s the robot would be stopped between two commands: its watchdog waits for {} ms; \
-                     shorten the period, or set `watchdog` in the configuration",
-                    period.as_secs_f64(),
-                    config.watchdog
-                )));
-            }
-            Clock::Wall => carries(period, turn_takes(&config)).map_err(Refusal::Usage)?,
+    fn outlasts(config: &Config, period: Duration) -> Result<(), String> {
+        if period + SLACK < Duration::from_millis(config.watchdog) {
+            return Ok(());
         }
-        Atrv::connect(config, clock, period, request).map_err(|fault| {
-            if let Fault::Ended(unstopped) = fault {
-                Refusal::Ended(unstopped.map_or(Ok(()), |fault| Err(fault.to_string())))
-            } else {
-                Refusal::Fault(fault.to_string())
-            }
-        })
+        Err(format!(
+            "with a period of {} s the robot would be stopped between two commands: its watchdog waits for {} ms; \
+             shorten the period, or set `watchdog` in the configuration",
+            period.as_secs_f64(),
+            config.watchdog
+        ))
     }
 }
 
@@ -79,9 +55,13 @@ impl Hosted for Atrv {
     }
 }
 
-/// The configuration that the options ask for.
-fn configured(matches: &ArgMatches) -> Result<Configured, Refusal> {
-    Configured::read(options::config(matches), options::device(matches)).map_err(Refusal::Usage)
+impl From<Fault> for Refusal {
+    fn from(fault: Fault) -> Self {
+        match fault {
+            Fault::Ended(unstopped) => Self::Ended(unstopped.map_or(Ok(()), |fault| Err(fault.to_string()))),
+            other => Self::Fault(other.to_string()),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -91,16 +71,16 @@ mod tests {
     use mdle_host::clap::Command;
     use mdle_host::{Refusal, StopRequest, Target as _};
 
-    use super::AtrvMini;
+    use crate::Target;
 
     #[test]
     fn a_period_that_the_line_cannot_carry_is_refused() {
         let matches = |more: &[&str]| {
             let arguments = ["plan", "--device", "/nowhere"].iter().chain(more);
-            AtrvMini::arguments(Command::new("plan")).get_matches_from(arguments)
+            Target::arguments(Command::new("plan")).get_matches_from(arguments)
         };
         let connected = |micros, more| {
-            AtrvMini::connect(&matches(more), Duration::from_micros(micros), &StopRequest::default()).map(drop)
+            Target::connect(&matches(more), Duration::from_micros(micros), &StopRequest::default()).map(drop)
         };
         let Err(Refusal::Usage(sentence)) = connected(7_000, &[]) else { panic!("7000 µs are enough") };
         assert_eq!(

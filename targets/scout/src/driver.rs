@@ -48,7 +48,7 @@ pub struct Scout {
     /// The moment of the last command, until the robot is stopped.
     commanded: Option<Moment>,
     /// What the plan can replay.
-    paths: PathStore,
+    pub(crate) paths: PathStore,
 }
 
 /// How long the line takes in a turn: for a command and the state that answers it.
@@ -85,11 +85,6 @@ impl Scout {
     /// Returns the time without a command after which the robot stops itself.
     pub(crate) fn watchdog(&self) -> Duration {
         Duration::from_secs(self.config.watchdog.into())
-    }
-
-    /// Takes the paths that the plan replays.
-    pub(crate) fn take_paths(&mut self, paths: PathStore) {
-        self.paths = paths;
     }
 
     fn prepare(&mut self, period: Duration, request: &StopRequest) -> Result<(), Fault> {

@@ -34,6 +34,6 @@ pub use mdle_runtime::Twist as Input;
 pub use mdle_serial::{Clock, LineFault};
 pub use reader::Reader;
 pub use state::State;
-pub use target::SuperScout;
-/// What the host runs a plan on.
-pub use target::SuperScout as Target;
+
+/// The target that the host runs a plan on.
+pub type Target = mdle_serial::SerialTarget<Scout>;

@@ -2,72 +2,47 @@
 
 use std::time::Duration;
 
-use mdle_host::clap::{ArgMatches, Command};
-use mdle_host::{Hosted, NamedFile, Refusal, Replays, StopRequest, Target, Time};
-use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Twist};
-use mdle_serial::{Clock, carries, options};
+use mdle_host::{Hosted, Refusal, StopRequest};
+use mdle_runtime::{MetersPerSecond, Nanos, PathStore, RadiansPerSecond, Twist};
+use mdle_serial::{Clock, SerialRobot};
 
 use crate::alphabet;
-use crate::config::Configured;
+use crate::config::Config;
 use crate::driver::{Scout, turn_takes};
 use crate::fault::Fault;
 
-/// The target `scout`.
-#[derive(Debug, Clone, Copy)]
-pub struct SuperScout;
-
-impl Target for SuperScout {
+impl SerialRobot for Scout {
     const NAME: &'static str = alphabet::NAME;
-    const PERIOD: Duration = Duration::from_nanos(alphabet::PERIOD.0);
-    type Robot = Scout;
-    const PATHS: Option<Replays<Scout>> = Some(Replays {
-        // As `go` in the alphabet.
-        fastest: Twist { v: MetersPerSecond(1.0), omega: RadiansPerSecond(6.0) },
-        take: Scout::take_paths,
-        speed: |sensed| sensed.velocity.v,
-    });
+    const PERIOD: Nanos = alphabet::PERIOD;
+    const FASTEST: Twist = Twist { v: MetersPerSecond(1.0), omega: RadiansPerSecond(6.0) };
+    type Config = Config;
 
-    fn arguments(command: Command) -> Command {
-        options::arguments(command)
+    fn connect(config: Config, clock: Clock, period: Duration, request: &StopRequest) -> Result<Self, Fault> {
+        Self::connect(config, clock, period, request)
     }
 
-    fn time(matches: &ArgMatches) -> Result<Time, String> {
-        Ok(options::time(matches))
+    fn take_paths(&mut self, paths: PathStore) {
+        self.paths = paths;
     }
 
-    fn files(matches: &ArgMatches) -> Vec<NamedFile> {
-        options::files(matches)
+    fn turn_takes(_: &Config) -> Duration {
+        turn_takes()
     }
 
-    fn answer(matches: &ArgMatches) -> Result<Option<String>, Refusal> {
-        options::prints_config(matches)
-            .then(|| configured(matches).map(|configured| configured.to_string()))
-            .transpose()
+    fn answer(config: &mut Config) -> &mut u64 {
+        &mut config.answer
     }
 
-    fn connect(matches: &ArgMatches, period: Duration, request: &StopRequest) -> Result<Scout, Refusal> {
-        let clock = options::clock(matches, period);
-        let mut config = configured(matches)?.config;
-        let watchdog = Duration::from_secs(u64::from(config.watchdog));
-        match clock {
-            Clock::Stepped(_) => config.answer = clock.patience(config.patience()).as_millis() as u64,
-            Clock::Wall if period + config.patience() >= watchdog => {
-                return Err(Refusal::Usage(format!(
-                    "with a period of {} s the robot would stop itself between two commands: its watchdog waits for {} s; \
-                     shorten the period, or set `watchdog` in the configuration",
-                    period.as_secs_f64(),
-                    config.watchdog
-                )));
-            }
-            Clock::Wall => carries(period, turn_takes()).map_err(Refusal::Usage)?,
+    fn outlasts(config: &Config, period: Duration) -> Result<(), String> {
+        if period + config.patience() < Duration::from_secs(u64::from(config.watchdog)) {
+            return Ok(());
         }
-        Scout::connect(config, clock, period, request).map_err(|fault| {
-            if let Fault::Ended(unstopped) = fault {
-                Refusal::Ended(unstopped.map_or(Ok(()), |fault| Err(fault.to_string())))
-            } else {
-                Refusal::Fault(fault.to_string())
-            }
-        })
+        Err(format!(
+            "with a period of {} s the robot would stop itself between two commands: its watchdog waits for {} s; \
+             shorten the period, or set `watchdog` in the configuration",
+            period.as_secs_f64(),
+            config.watchdog
+        ))
     }
 }
 
@@ -77,9 +52,13 @@ impl Hosted for Scout {
     }
 }
 
-/// The configuration that the options ask for.
-fn configured(matches: &ArgMatches) -> Result<Configured, Refusal> {
-    Configured::read(options::config(matches), options::device(matches)).map_err(Refusal::Usage)
+impl From<Fault> for Refusal {
+    fn from(fault: Fault) -> Self {
+        match fault {
+            Fault::Ended(unstopped) => Self::Ended(unstopped.map_or(Ok(()), |fault| Err(fault.to_string()))),
+            other => Self::Fault(other.to_string()),
+        }
+    }
 }
 
 #[cfg(test)]
@@ -89,16 +68,16 @@ mod tests {
     use mdle_host::clap::Command;
     use mdle_host::{Refusal, StopRequest, Target as _};
 
-    use super::SuperScout;
+    use crate::Target;
 
     #[test]
     fn a_period_that_the_line_cannot_carry_is_refused() {
         let matches = |more: &[&str]| {
             let arguments = ["plan", "--device", "/nowhere"].iter().chain(more);
-            SuperScout::arguments(Command::new("plan")).get_matches_from(arguments)
+            Target::arguments(Command::new("plan")).get_matches_from(arguments)
         };
         let connected = |micros, more| {
-            SuperScout::connect(&matches(more), Duration::from_micros(micros), &StopRequest::default()).map(drop)
+            Target::connect(&matches(more), Duration::from_micros(micros), &StopRequest::default()).map(drop)
         };
         let Err(Refusal::Usage(sentence)) = connected(15_000, &[]) else { panic!("15000 µs are enough") };
         assert_eq!(

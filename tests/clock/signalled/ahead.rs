@@ -2,17 +2,17 @@
 
 use std::process::ExitCode;
 
-use mdle_atrv::AtrvMini;
+use mdle_atrv::Target as Atrv;
 use mdle_host::run;
 use mdle_runtime::fsm::{Atom, Bracket};
 use mdle_runtime::{Begin, Cause, Cursor, Fsm, MetersPerSecond, Nanos, Next, Plan, Sensed, Twist};
-use mdle_scout::SuperScout;
+use mdle_scout::Target as Scout;
 
 fn main() -> ExitCode {
     if std::env::var_os("ROBOT").is_some_and(|robot| robot == "scout") {
-        run::<SuperScout, _>("Ahead", || Ahead)
+        run::<Scout, _>("Ahead", || Ahead)
     } else {
-        run::<AtrvMini, _>("Ahead", || Ahead)
+        run::<Atrv, _>("Ahead", || Ahead)
     }
 }
 

@@ -1,0 +1,101 @@
+//! A robot on a serial line as a target: its options, its configuration, and its connection.
+
+use std::marker::PhantomData;
+use std::time::Duration;
+
+use mdle_host::clap::{ArgMatches, Command};
+use mdle_host::{Hosted, NamedFile, Refusal, Replays, StopRequest, Target, Time};
+use mdle_runtime::{Nanos, PathStore, Robot, Sensed, Twist};
+
+use crate::capacity::carries;
+use crate::clock::Clock;
+use crate::configuration::{Configuration, Configured};
+use crate::options;
+
+/// A robot on a serial line, as its driver implements it.
+pub trait SerialRobot: Robot<Output = Sensed, Input = Twist, Error: Into<Refusal>> + Hosted + Sized + 'static {
+    /// The name of the target, as `mdlec --target` takes it.
+    const NAME: &'static str;
+    /// The period of a turn unless `--period` says otherwise.
+    const PERIOD: Nanos;
+    /// The highest speed and turn rate of a path, as those of `go` in the alphabet.
+    const FASTEST: Twist;
+    /// The values by which robots of this kind differ.
+    type Config: Configuration;
+
+    /// Opens the line and prepares the robot, which stands.
+    ///
+    /// # Errors
+    /// There is no line, no robot, one that cannot drive, or `request` was made.
+    fn connect(
+        config: Self::Config,
+        clock: Clock,
+        period: Duration,
+        request: &StopRequest,
+    ) -> Result<Self, Self::Error>;
+
+    /// Takes the paths that the plan replays.
+    fn take_paths(&mut self, paths: PathStore);
+
+    /// Returns the time for which the line is busy in a turn.
+    fn turn_takes(config: &Self::Config) -> Duration;
+
+    /// Returns the time that an answer may take, in milliseconds.
+    fn answer(config: &mut Self::Config) -> &mut u64;
+
+    /// Checks that the watchdog does not stop the robot between two commands, by the clock.
+    ///
+    /// # Errors
+    /// The sentence that says how long the watchdog waits.
+    fn outlasts(config: &Self::Config, period: Duration) -> Result<(), String>;
+}
+
+/// The target of a robot on a serial line.
+#[derive(Debug, Clone, Copy)]
+pub struct SerialTarget<R>(PhantomData<R>);
+
+impl<R: SerialRobot> Target for SerialTarget<R> {
+    const NAME: &'static str = R::NAME;
+    const PERIOD: Duration = Duration::from_nanos(R::PERIOD.0);
+    type Robot = R;
+    const PATHS: Option<Replays<R>> =
+        Some(Replays { fastest: R::FASTEST, take: R::take_paths, speed: |sensed| sensed.velocity.v });
+
+    fn arguments(command: Command) -> Command {
+        options::arguments(command)
+    }
+
+    fn time(matches: &ArgMatches) -> Result<Time, String> {
+        Ok(options::time(matches))
+    }
+
+    fn files(matches: &ArgMatches) -> Vec<NamedFile> {
+        options::files(matches)
+    }
+
+    fn answer(matches: &ArgMatches) -> Result<Option<String>, Refusal> {
+        options::prints_config(matches)
+            .then(|| configured::<R>(matches).map(|configured| configured.to_string()))
+            .transpose()
+    }
+
+    fn connect(matches: &ArgMatches, period: Duration, request: &StopRequest) -> Result<R, Refusal> {
+        let clock = options::clock(matches, period);
+        let mut config = configured::<R>(matches)?.config;
+        match clock {
+            Clock::Stepped(_) => {
+                let answer = R::answer(&mut config);
+                *answer = clock.patience(Duration::from_millis(*answer)).as_millis() as u64;
+            }
+            Clock::Wall => R::outlasts(&config, period)
+                .and_then(|()| carries(period, R::turn_takes(&config)))
+                .map_err(Refusal::Usage)?,
+        }
+        R::connect(config, clock, period, request).map_err(Into::into)
+    }
+}
+
+/// Returns the configuration that the options ask for.
+fn configured<R: SerialRobot>(matches: &ArgMatches) -> Result<Configured<R::Config>, Refusal> {
+    Configured::read(options::config(matches), options::device(matches)).map_err(Refusal::Usage)
+}
