@@ -3,14 +3,23 @@
 use core::f64::consts::TAU;
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
-use mdle_runtime::{Begin, Completes, Control, Law, Meters, Nanos, RadiansPerSecond, SONARS, SonarId, Twist};
+use mdle_runtime::{Begin, Completes, Control, Law, Nanos, Ping, Radians, RadiansPerSecond, SONARS, SonarId, Twist};
 
 use crate::gains::Gains;
 
 /// The slowest turn, in rad/s: less would not get the wheels moving.
 const SLOWEST: f64 = 0.08;
-/// Ranges that differ by this much or less are equal: one inch, the resolution of the paper's sonars.
-const EQUAL: Meters = Meters(0.026);
+/// Ranges that differ by this much or less, in metres, are equal: 2° in a hallway 1.5 m wide, to sonars of 25°.
+const EQUAL: f64 = 0.008;
+/// Differences of opposite sign that lie no further apart than this, in metres, have equal ranges between them; further
+/// apart, one of the sonars looks past an edge, or has strayed.
+const CONTINUOUS: f64 = 0.1;
+/// After the sign of the difference has changed this often without equal ranges, there are none to be found.
+const CHANGES: u8 = 3;
+/// A full circle at the slowest turn, in seconds: by then every heading has been tried.
+const LONGEST: f64 = TAU / SLOWEST;
+/// The robot stands at a heading that is no further off than this.
+const NEAR: Radians = Radians::from_degrees(1.0);
 
 /// `u_θ = k(r_i − r_j)`, `u_f = 0`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,24 +36,75 @@ impl Align {
     }
 }
 
-/// The law of [`Align`]: done when both sonars hear an echo and their ranges are equal.
+/// The law of [`Align`]: done when it stands at the heading at which the ranges were equal.
+///
+/// Beside a jamb, a corner or a door no heading may have equal ranges: one side of it the first range is longer, the other
+/// side the second one. Then it is done at the heading at which the ranges differed least; the signals `r` of the two sonars
+/// have the difference that is left.
 ///
 /// A sonar that misses an echo now and then is waited for. While one hears nothing for longer, the robot looks for the wall,
 /// once round at most: then it stands still and is not done, and what ends the atom is for the plan to say.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Aligning {
     sonars: Align,
     began: Nanos,
     /// When both sonars were last heard.
     heard: Option<Nanos>,
+    last: Option<Sample>,
+    /// The last one with the least difference.
+    best: Option<Sample>,
+    /// How often the sign of the difference has changed.
+    changes: u8,
+    end: Option<End>,
+}
+
+/// What both sonars heard.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Sample {
+    /// How much further the first sonar's echo is, in metres.
+    difference: f64,
+    /// Between the headings at which they pinged: where the ranges change evenly, this is the one with that difference.
+    heading: Radians,
+}
+
+/// The heading at which it ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct End {
+    heading: Radians,
+    /// Whether the robot was there and was asked to stand.
+    stands: bool,
 }
 
 impl Aligning {
-    /// How much further the first sonar's echo is, by the same confirmation as in `atIsection`; `None` when either
-    /// hears nothing.
-    fn difference<Y: SonarRing>(&self, y: &Y) -> Option<Meters> {
-        let range = |sonar| y.pings(sonar).nearest(y.confirmation());
-        Some(Meters(range(self.sonars.first)?.0 - range(self.sonars.second)?.0))
+    /// What both sonars heard, by the same confirmation as in `atIsection`; `None` when either hears nothing.
+    fn sample<Y: SonarRing>(&self, y: &Y) -> Option<Sample> {
+        let Align { first, second } = self.sonars;
+        let ((first, near), (second, far)) = (nearest(y, first)?, nearest(y, second)?);
+        let (from, to) = (first.pose.theta, second.pose.theta);
+        Some(Sample { difference: near - far, heading: between(from, to, 0.5) })
+    }
+
+    /// Decides whether the law has found the heading at which it ends.
+    fn take(&mut self, sample: Sample) {
+        let Some(last) = self.last.replace(sample).filter(|last| *last != sample) else {
+            self.best = self.best.or(Some(sample));
+            return;
+        };
+        if self.best.is_none_or(|best| sample.difference.abs() <= best.difference.abs()) {
+            self.best = Some(sample);
+        }
+        if last.difference * sample.difference >= 0.0 {
+            return;
+        }
+        self.changes = self.changes.saturating_add(1);
+        let apart = (last.difference - sample.difference).abs();
+        if apart <= CONTINUOUS {
+            self.ends_at(between(last.heading, sample.heading, last.difference.abs() / apart));
+        }
+    }
+
+    fn ends_at(&mut self, heading: Radians) {
+        self.end = self.end.or(Some(End { heading, stands: false }));
     }
 
     /// Which way to turn when only one of them hears an echo: towards the one that does.
@@ -58,9 +118,15 @@ impl Aligning {
         match (heard(self.sonars.first), heard(self.sonars.second)) {
             (false, true) => fastest,
             (true, false) => -fastest,
-            // Nothing to align with; both heard is the business of `difference`.
+            // Nothing to align with; both heard is the business of `sample`.
             (false, false) | (true, true) => 0.0,
         }
+    }
+
+    /// The turn rate towards equal ranges, where it is not known yet where it ends.
+    fn towards<Y: DiffDrive + SonarRing>(&self, y: &Y, sample: Option<Sample>, t: Nanos) -> f64 {
+        let rate = sample.map_or_else(|| self.unheard(y, t), |sample| y.steering().align * sample.difference);
+        self.sense() * bounded(rate, Gains::of(y).align_fastest)
     }
 
     /// 1 when the second sonar lies counter-clockwise of the first, as in all of the paper's plans; else -1, since the
@@ -71,11 +137,28 @@ impl Aligning {
     }
 }
 
+/// The ping of least range among those that confirm each other, and its range in metres.
+fn nearest<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<(&Ping, f64)> {
+    let pings = y.pings(sonar).newest_first().take(y.confirmation());
+    let heard = pings.filter_map(|ping| ping.range.map(|range| (ping, range.0)));
+    heard.reduce(|one, other| if other.1 < one.1 { other } else { one })
+}
+
+/// The heading this part of the shorter way from one to another.
+fn between(from: Radians, to: Radians, part: f64) -> Radians {
+    Radians(from.0 + part * Radians(to.0 - from.0).wrapped().0)
+}
+
+/// A turn rate that gets the wheels moving, and is not too fast; nothing stays nothing.
+fn bounded(rate: f64, fastest: f64) -> f64 {
+    if rate == 0.0 { 0.0 } else { rate.abs().clamp(SLOWEST, fastest) * rate.signum() }
+}
+
 impl<Y: DiffDrive + SonarRing> Control<Y> for Align {
     type Law = Aligning;
 
     fn begin(&self, _: &Y, begin: Begin) -> Aligning {
-        Aligning { sonars: *self, began: begin.now, heard: None }
+        Aligning { sonars: *self, began: begin.now, heard: None, last: None, best: None, changes: 0, end: None }
     }
 }
 
@@ -83,25 +166,38 @@ impl<Y: DiffDrive + SonarRing> Law<Y> for Aligning {
     type Input = Twist;
 
     fn input(&mut self, y: &Y, t: Nanos) -> Twist {
-        let rate = match self.difference(y) {
-            Some(Meters(difference)) => {
-                self.heard = Some(t);
-                y.steering().align * difference
+        let sample = self.sample(y);
+        if let Some(sample) = sample {
+            self.heard = Some(t);
+            self.take(sample);
+            if sample.difference.abs() <= EQUAL {
+                self.ends_at(sample.heading);
             }
-            None => self.unheard(y, t),
+        }
+        if let Some(best) = self.best.filter(|_| self.changes >= CHANGES || t.since(self.began).seconds() > LONGEST) {
+            self.ends_at(best.heading);
+        }
+        let Some(end) = &mut self.end else {
+            let omega = RadiansPerSecond(self.towards(y, sample, t));
+            return Twist { omega, ..Twist::default() };
         };
-        let fastest = Gains::of(y).align_fastest;
-        let omega = match rate.abs() {
-            0.0 => 0.0,
-            size => self.sense() * size.clamp(SLOWEST, fastest) * rate.signum(),
-        };
-        Twist { omega: RadiansPerSecond(omega), ..Twist::default() }
+        let left = Radians(end.heading.0 - y.here().theta.0).wrapped();
+        end.stands = left.0.abs() <= NEAR.0;
+        let rate = if end.stands { 0.0 } else { bounded(y.steering().rotate * left.0, Gains::of(y).align_fastest) };
+        Twist { omega: RadiansPerSecond(rate), ..Twist::default() }
     }
 }
 
 impl<Y: DiffDrive + SonarRing> Completes<Y> for Aligning {
     fn completed(&self, y: &Y, _: Nanos) -> bool {
-        self.difference(y).is_some_and(|difference| difference.0.abs() <= EQUAL.0)
+        let is_near = |heading: Radians| Radians(heading.0 - y.here().theta.0).wrapped().0.abs() <= NEAR.0;
+        match self.end {
+            Some(end) => end.stands,
+            None => {
+                let equal = self.sample(y).filter(|sample| sample.difference.abs() <= EQUAL);
+                equal.is_some_and(|sample| is_near(sample.heading))
+            }
+        }
     }
 }
 
@@ -178,9 +274,7 @@ mod tests {
             for (first, second, wall) in [(7, 9, 180.0), (3, 5, 90.0), (11, 13, 270.0), (15, 1, 0.0)] {
                 for confirmation in [3, 2] {
                     let end = aligned(first, second, wall, off, confirmation);
-                    // Pings that come once a second are of where it was.
-                    let most = if confirmation == 3 { 4.0 } else { 5.0 };
-                    assert!(end.abs() < most, "align {first} {second} from {off}: {end}");
+                    assert!(end.abs() < 2.0, "align {first} {second} from {off}: {end}");
                 }
             }
         }
@@ -188,14 +282,14 @@ mod tests {
 
     #[test]
     fn the_order_of_the_sonars_does_not_matter() {
-        assert!(aligned(9, 7, 180.0, 20.0, 3).abs() < 4.0);
+        assert!(aligned(9, 7, 180.0, 20.0, 3).abs() < 2.0);
     }
 
     #[test]
     fn turns_towards_the_sonar_that_hears_the_wall() {
         // 75 degrees off, sonar 7 looks past the wall.
-        assert!(aligned(7, 9, 180.0, -75.0, 3).abs() < 4.0);
-        assert!(aligned(7, 9, 180.0, 75.0, 3).abs() < 4.0);
+        assert!(aligned(7, 9, 180.0, -75.0, 3).abs() < 2.0);
+        assert!(aligned(7, 9, 180.0, 75.0, 3).abs() < 2.0);
     }
 
     #[test]
@@ -206,9 +300,8 @@ mod tests {
                     let off = 8.0 * ((seed % 9) as f64 - 4.0);
                     let wall = Wall { misses, error: 0.02, confirmation, ..EXACT };
                     let (end, done) = ended(wall, off, seed + 4);
-                    // Two ranges that are 2 cm wrong make 3 degrees, and pings that come once a second are of where it was.
-                    let most = if confirmation == 3 { 5.0 } else { 10.0 };
-                    assert!(done && end.abs() < most, "from {off}, misses {misses:?}, {confirmation}: {end}, {done}");
+                    // Two ranges that are 2 cm wrong make 3 degrees.
+                    assert!(done && end.abs() < 5.0, "from {off}, misses {misses:?}, {confirmation}: {end}, {done}");
                 }
             }
         }
@@ -232,6 +325,52 @@ mod tests {
             assert!((-365.0..=-355.0).contains(&turned), "{turned}");
             assert_eq!(y.velocity, Twist::default());
         }
+    }
+
+    /// Runs `align` by the ranges that its two sonars return at a heading in degrees, for three minutes: when it is done, in
+    /// seconds, and at which heading.
+    fn done(sonars: [u8; 2], off: f64, ranges: impl Fn(f64) -> [f64; 2]) -> Option<(u64, f64)> {
+        let sonars = sonars.map(SonarId::new);
+        let mut y = Sensed::heading(off);
+        let mut law = Align::new(sonars[0], sonars[1]).begin(&y, begun());
+        for turn in 0..1800 {
+            let heading = y.pose.theta.wrapped().degrees();
+            for (sonar, range) in sonars.into_iter().zip(ranges(heading)) {
+                y.ping(sonar, Some(range));
+            }
+            let t = Nanos(turn * 100_000_000);
+            if law.completed(&y, t) {
+                assert_eq!(y.velocity, Twist::default(), "it stands");
+                return Some((turn / 10, heading));
+            }
+            let input = law.input(&y, t);
+            y.drive(input);
+        }
+        None
+    }
+
+    #[test]
+    fn beside_an_edge_it_ends_where_ranges_differ_least() {
+        // Up to one degree the second sonar hears a jamb, beyond it the wall of the room behind. A jamb is believed for three
+        // pings, while the robot turns on.
+        for off in [-20.0, 0.0, 3.0, 20.0] {
+            let (seconds, heading) =
+                done([7, 9], off, |heading| [0.9, if heading < 1.0 { 0.6 } else { 2.0 }]).expect("an end");
+            assert!(seconds < 30 && (-3.0..=5.0).contains(&heading), "from {off}: {heading} after {seconds} s");
+        }
+    }
+
+    #[test]
+    fn where_one_range_is_always_longer_it_ends_too() {
+        let longer = |heading: f64| [1.0 + 0.3 * libm::cos((heading - 50.0).to_radians()), 0.6];
+        let (seconds, heading) = done([7, 9], 0.0, longer).expect("an end");
+        assert!(seconds < 120 && (heading + 130.0).abs() < 5.0, "{heading} after {seconds} s");
+    }
+
+    #[test]
+    fn one_sonar_twice_is_equal_and_opposite_ones_end() {
+        assert_eq!(done([7, 7], 10.0, |_| [0.5, 0.5]), Some((0, 10.0)));
+        assert!(done([4, 12], 10.0, |_| [0.5, 0.9]).is_some());
     }
 
     #[test]

@@ -195,6 +195,13 @@ fn a_start_that_is_a_little_off_arrives_too() {
     assert_eq!(arrived(0..100, false), 100);
 }
 
+/// Beside a jamb no heading has equal ranges: from this start `align 11 13` never ended.
+#[test]
+fn a_tour_past_a_jamb_ends() {
+    let start = Pose { x: Meters(-0.08), y: Meters(0.06), theta: Radians::from_degrees(-4.0) };
+    assert_eq!(faults(&tour(start, None)), Vec::<String>::new());
+}
+
 #[test]
 fn noisy_sonars_arrive_too() {
     assert_eq!(arrived(0..3, true), 3);
