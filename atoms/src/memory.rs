@@ -46,7 +46,11 @@ impl Memory {
     /// Keeps a place in the stead of the same one, of a free one, or of the oldest.
     fn keep(&mut self, heard: Heard) {
         let same = |place: &Option<Heard>| {
-            place.is_some_and(|place| libm::hypot(place.x - heard.x, place.y - heard.y) < ONE_PLACE)
+            place.is_some_and(|place| {
+                let (x, y) = (place.x - heard.x, place.y - heard.y);
+                // One axis alone tells most places apart.
+                x.abs() < ONE_PLACE && y.abs() < ONE_PLACE && libm::hypot(x, y) < ONE_PLACE
+            })
         };
         if let Some(place) = self.places.iter_mut().find(|place| same(place)).and_then(Option::as_mut) {
             place.at = place.at.max(heard.at);

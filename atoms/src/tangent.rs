@@ -19,7 +19,8 @@ const EXTENDS: [f64; 3] = [0.25, 0.5, 0.75];
 const APART: f64 = 0.15;
 /// The cosine of the angle from a sonar's axis at which a wall is heard at least: 60°.
 const ACROSS: f64 = 0.5;
-const POINTS: usize = SONARS * (ARC.len() + EXTENDS.len());
+/// The points taken of what is heard, and those of what was heard before.
+const POINTS: usize = SONARS * (ARC.len() + EXTENDS.len()) + PLACES;
 /// Kept around the body whatever it costs, in metres.
 const MARGIN: f64 = 0.06;
 /// What a way that lacks free length costs, in radians of detour for the whole look-ahead.
@@ -33,6 +34,8 @@ const CHANGE_COSTS: f64 = 0.15;
 const CHANGE_COSTS_ON_A_DETOUR: f64 = 0.6;
 /// Further than this from the goal's direction no detour leads: beyond, it would go in circles.
 const TURNED_MOST: Radians = Radians::from_degrees(215.0);
+/// Costs differ by less than this through the order in which they are added up.
+const ROUNDING: f64 = 1e-9;
 /// Free way is not counted beyond this, in metres.
 const FREE_MOST: f64 = 3.0;
 /// How far back and ahead of the robot, in metres, points count as beside its way.
@@ -48,9 +51,9 @@ struct Point {
 /// What the sonars last heard around the robot, and how wide a way it needs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Obstacles {
-    points: [Option<Point>; POINTS],
-    /// What was heard before and is not heard now.
-    remembered: [Option<Point>; PLACES],
+    points: [Point; POINTS],
+    /// The number of points in use, from the first one on.
+    count: usize,
     hard: f64,
     soft: f64,
     room_at: f64,
@@ -70,6 +73,15 @@ pub(crate) struct Wish {
     pub(crate) side: Option<Side>,
     /// Whether it goes along an obstacle rather than to the goal.
     pub(crate) along: bool,
+}
+
+impl Wish {
+    /// The cost of another direction than that of the turn before, so that two ways that are equally good do not take turns.
+    fn turns(&self, offset: f64) -> f64 {
+        let costs = if self.along { CHANGE_COSTS_ON_A_DETOUR } else { CHANGE_COSTS };
+        let change = |previous: Radians| Radians(self.goal.0 + offset - previous.0).wrapped().0.abs();
+        self.previous.map_or(0.0, |previous| costs * change(previous))
+    }
 }
 
 /// A side on which to pass.
@@ -95,30 +107,36 @@ impl Side {
 impl Obstacles {
     /// The points that the sonars of `y` saw, around the body at `here`.
     pub(crate) fn seen<Y: DiffDrive + SonarRing>(y: &Y, here: Pose) -> Self {
-        let mut points = [None; POINTS];
-        let (arcs, walls) = points.split_at_mut(SONARS * ARC.len());
-        for (number, arc) in (0..).zip(arcs.chunks_exact_mut(ARC.len())) {
-            let sonar = SonarId::new(number);
-            let Some((ping, range)) = heard(y, sonar) else { continue };
-            for (point, off_axis) in arc.iter_mut().zip(ARC) {
-                *point = Some(echo(&ping, range, sonar, off_axis, y.ring_radius(), here));
-            }
-        }
-        if fire_in_turn(y) {
-            for (number, ahead) in (0..).zip(walls.chunks_exact_mut(EXTENDS.len())) {
-                extended(y, SonarId::new(number), here, ahead);
-            }
-        }
         let radius = y.body_radius().0;
         let Gains { soft_margin, room_at, beyond, .. } = *Gains::of(y);
         let (hard, soft) = (radius + MARGIN, radius + soft_margin);
-        Self { points, remembered: [None; PLACES], hard, soft, room_at, beyond }
+        let points = [Point { x: 0.0, y: 0.0 }; POINTS];
+        let mut seen = Self { points, count: 0, hard, soft, room_at, beyond };
+        for sonar in (0..SONARS as u8).map(SonarId::new) {
+            if let Some((ping, range)) = heard(y, sonar) {
+                on_arc(&ping, range, sonar, y.ring_radius(), here, ARC).into_iter().for_each(|point| seen.push(point));
+            }
+        }
+        if fire_in_turn(y) {
+            for sonar in (0..SONARS as u8).map(SonarId::new) {
+                extended(y, sonar, here).into_iter().flatten().for_each(|point| seen.push(point));
+            }
+        }
+        seen
+    }
+
+    fn push(&mut self, point: Point) {
+        if let Some(place) = self.points.get_mut(self.count) {
+            *place = point;
+            self.count += 1;
+        }
     }
 
     /// The same with what was heard before.
-    pub(crate) fn with(self, memory: &Memory, here: Pose, now: Nanos) -> Self {
-        let remembered = memory.around(here, now).map(|place| place.map(|(x, y)| Point { x, y }));
-        Self { remembered, ..self }
+    pub(crate) fn with(mut self, memory: &Memory, here: Pose, now: Nanos) -> Self {
+        let remembered = memory.around(here, now).into_iter().flatten();
+        remembered.for_each(|(x, y)| self.push(Point { x, y }));
+        self
     }
 
     /// The same for a robot that may go along walls as close as it can.
@@ -144,28 +162,39 @@ impl Obstacles {
     fn beside(&self, direction: Radians, free: Meters) -> f64 {
         let (back, ahead) = (BESIDE.0, BESIDE.1.min(free.0 + self.beyond));
         let place = self.room_at.min(free.0).max(0.0);
-        let near = self.along(direction).filter(|(along, _)| back < *along && *along < ahead);
-        near.fold(f64::INFINITY, |least, (along, across)| least.min(libm::hypot(along - place, across)))
+        let mut least = f64::INFINITY;
+        for (along, across) in self.along(direction).filter(|(along, _)| back < *along && *along < ahead) {
+            // Most points lie further away by one axis alone, which is quickly seen.
+            if (along - place).abs() < least && across.abs() < least {
+                least = least.min(libm::hypot(along - place, across));
+            }
+        }
+        least
     }
 
     /// The direction of least cost, as an angle from the goal's direction counted round the side to keep to.
     pub(crate) fn best(&self, wish: &Wish) -> Radians {
-        let mut best = (f64::INFINITY, 0.0);
-        for step in -DIRECTIONS / 2..DIRECTIONS / 2 {
+        let mut best = (f64::INFINITY, 0, 0.0);
+        for number in 0..DIRECTIONS {
+            // From the goal's direction outwards, so that most others are known to be worse without a look at any point.
+            let step = if number % 2 == 0 { number / 2 } else { -(number + 1) / 2 };
             let offset = Radians::from_degrees(f64::from(step) * (360.0 / f64::from(DIRECTIONS))).0;
             let counted = wish.side.map_or(offset, |side| side.counted(offset));
-            if wish.along && counted.abs() > TURNED_MOST.0 {
+            let turns = wish.turns(counted);
+            if wish.along && counted.abs() > TURNED_MOST.0 || counted.abs() + turns > best.0 + ROUNDING {
                 continue;
             }
-            let cost = self.cost(counted, wish);
-            if cost < best.0 {
-                best = (cost, counted);
+            let cost = self.cost(counted, turns, wish);
+            // Of two that are equally good, the one further clockwise.
+            if cost < best.0 || cost == best.0 && step < best.1 {
+                best = (cost, step, counted);
             }
         }
-        Radians(best.1)
+        Radians(best.2)
     }
 
-    fn cost(&self, offset: f64, wish: &Wish) -> f64 {
+    /// The cost of a direction, of which `turns` is what the change from the turn before costs.
+    fn cost(&self, offset: f64, turns: f64, wish: &Wish) -> f64 {
         let direction = Radians(wish.goal.0 + offset);
         let mut cost = offset.abs();
         let Meters(look_ahead) = wish.look_ahead;
@@ -177,40 +206,34 @@ impl Obstacles {
         if beside < self.soft {
             cost += CLOSE_COSTS * (self.soft - beside) / (self.soft - self.hard);
         }
-        if let Some(previous) = wish.previous {
-            // So that two ways that are equally good do not take turns.
-            let costs = if wish.along { CHANGE_COSTS_ON_A_DETOUR } else { CHANGE_COSTS };
-            cost += costs * Radians(direction.0 - previous.0).wrapped().0.abs();
-        }
-        cost
+        cost + turns
     }
 
     /// Every point as its distance along a direction and its distance to the left of it.
     fn along(&self, direction: Radians) -> impl Iterator<Item = (f64, f64)> {
         let (sin, cos) = libm::sincos(direction.0);
-        let points = self.points.iter().chain(&self.remembered).flatten();
-        points.map(move |point| (point.x * cos + point.y * sin, point.y * cos - point.x * sin))
+        self.points
+            .iter()
+            .take(self.count)
+            .map(move |point| (point.x * cos + point.y * sin, point.y * cos - point.x * sin))
     }
 }
 
 /// Where the wall goes on that a sonar heard in all its pings kept: surfaces ahead are not heard, since they are not faced.
-fn extended<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose, ahead: &mut [Option<Point>]) {
+fn extended<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose) -> Option<[Point; EXTENDS.len()]> {
     let mut echoes = y.pings(sonar).newest_first().map(|ping| {
         let range = ping.range.filter(|range| range.0 < SEEN_WITHIN)?;
-        Some(echo(ping, range, sonar, Radians(0.0), y.ring_radius(), here))
+        let [on_axis] = on_arc(ping, range, sonar, y.ring_radius(), here, [Radians(0.0)]);
+        Some(on_axis)
     });
-    let (Some(Some(new)), Some(Some(_)), Some(Some(old))) = (echoes.next(), echoes.next(), echoes.next()) else {
-        return;
-    };
+    let (new, _, old) = (echoes.next()??, echoes.next()??, echoes.next()??);
     let (along, up) = (new.x - old.x, new.y - old.y);
     let length = libm::hypot(along, up);
     let (sin, cos) = libm::sincos(here.theta.0 + sonar.bearing().0);
     if length < APART || (along * cos + up * sin).abs() > ACROSS * length {
-        return;
+        return None;
     }
-    for (point, further) in ahead.iter_mut().zip(EXTENDS) {
-        *point = Some(Point { x: new.x + further * along / length, y: new.y + further * up / length });
-    }
+    Some(EXTENDS.map(|further| Point { x: new.x + further * along / length, y: new.y + further * up / length }))
 }
 
 /// The newest ping of a sonar, or the one before if that heard nothing, when it is near enough to matter.
@@ -220,11 +243,22 @@ fn heard<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<(Ping, Meters)> {
     (range.0 < SEEN_WITHIN).then_some((ping, range))
 }
 
-/// A point of a ping's arc, seen from `here`: the arc lies around the transducer, where that was at the time.
-fn echo(ping: &Ping, range: Meters, sonar: SonarId, off_axis: Radians, ring: Meters, here: Pose) -> Point {
+/// Points of a ping's arc, at these angles off its axis, seen from `here`: the arc lies around the transducer, where that was
+/// at the time.
+fn on_arc<const N: usize>(
+    ping: &Ping,
+    range: Meters,
+    sonar: SonarId,
+    ring: Meters,
+    here: Pose,
+    off_axis: [Radians; N],
+) -> [Point; N] {
     let axis = Radians(ping.pose.theta.0 + sonar.bearing().0);
-    let point = ping.pose.towards(axis, ring).towards(Radians(axis.0 + off_axis.0), range);
-    Point { x: point.x.0 - here.x.0, y: point.y.0 - here.y.0 }
+    let transducer = ping.pose.towards(axis, ring);
+    off_axis.map(|off_axis| {
+        let point = transducer.towards(Radians(axis.0 + off_axis.0), range);
+        Point { x: point.x.0 - here.x.0, y: point.y.0 - here.y.0 }
+    })
 }
 
 #[cfg(test)]
