@@ -206,3 +206,14 @@ fn which_robots_can_run_which_plan_is_a_table() {
         "{told}"
     );
 }
+
+#[test]
+fn options_of_all_commands_may_come_before_the_command() {
+    let folder = with_plan("options_first", PLAN);
+    printed(run_mdlec(&folder, &["--color", "never", "check", "plan.mdle"]));
+    let json = run_mdlec(&folder, &["--message-format=json", "check", "missing.mdle"]);
+    assert_eq!(json.status.code(), Some(2));
+    assert!(String::from_utf8(json.stderr).unwrap().starts_with('{'));
+    let misspelled = run_mdlec(&folder, &["--color", "never", "chekc", "plan.mdle"]);
+    assert!(String::from_utf8(misspelled.stderr).unwrap().contains("did you mean `mdlec check`?"));
+}

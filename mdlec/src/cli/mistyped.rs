@@ -6,13 +6,15 @@ use std::path::Path;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, Command, CommandFactory as _};
 
+use super::words::words;
 use super::{Cli, Failure};
 use crate::alphabet;
 
 /// Returns the error of a first argument that is similar to a command and no file, so that it was taken for a plan.
 pub(super) fn command() -> Option<Failure> {
-    let word = env::args().nth(1).filter(|word| !word.starts_with('-') && !word.contains(['.', '/']))?;
     let cli = Cli::command();
+    let word = words(&cli).into_iter().nth(1).and_then(|word| word.into_string().ok());
+    let word = word.filter(|word| !word.starts_with('-') && !word.contains(['.', '/']))?;
     let names: Vec<_> = cli.get_subcommands().map(Command::get_name).collect();
     if names.contains(&word.as_str()) || Path::new(&word).exists() {
         return None;

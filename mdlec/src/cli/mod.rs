@@ -26,6 +26,7 @@ mod report;
 mod settings;
 mod trace;
 mod version;
+mod words;
 
 use std::process::ExitCode;
 
@@ -71,7 +72,10 @@ pub fn main() -> ExitCode {
         Color::Always => clap::ColorChoice::Always,
         Color::Never => clap::ColorChoice::Never,
     });
-    let parsed = command.try_get_matches().and_then(|matches| Cli::from_arg_matches(&matches));
+    let parsed = command
+        .clone()
+        .try_get_matches_from(words::words(&command))
+        .and_then(|matches| Cli::from_arg_matches(&matches));
     let done = match parsed {
         Ok(cli) => run(cli),
         Err(answer) => {
