@@ -154,6 +154,78 @@ const MISTAKES: &[(&str, &str, &str)] = &[
         "{ Dock\n  (Atom (bumper) (go 20 0))\n  (Atom (bumper) (advance -50cm))\n}\n",
         "write `(null)`",
     ),
+    (
+        "an atom in square brackets",
+        "{ Dock (bumper)\n  [Atom (wait 5s) (go 20 0)]\n}\n",
+        "`(Atom (wait 5s) (go 20 0))`",
+    ),
+    ("two units apart", "{ Dock (bumper)\n  (Atom (wait 5 s) (go 20 cm/s 0))\n}\n", "write `5s`"),
+    ("another unit apart", "{ Dock (bumper)\n  (Atom (null) (advance 1 m/s))\n}\n", "its unit is m, cm"),
+    (
+        "an operator at the end",
+        "{ Dock (bumper)\n  (Atom (bumper OR) stop)\n  (Atom (NOT) stop)\n}\n",
+        "or remove `OR`",
+    ),
+    ("a law outside of its atom", "{ Dock (bumper)\n  (Atom (r0 < 50cm)) (go 20 0)\n}\n", "behind the law"),
+    ("`int` for a count", "{ Dock Leg(4) }\n{ Leg (n: int)\n  (Atom (null) turn 90)^n\n}\n", "write `count`"),
+    (
+        "a missing `)` before a behavior",
+        "{ Dock (bumper)\n  (Atom (null) (go 20 0)\n  { Inner (wait 10)\n    (Atom (null) turn 90)\n  }\n}\n",
+        "a `)` is missing before this",
+    ),
+    (
+        "a file in single quotes",
+        "{ Dock (bumper)\n  (Atom (null) path 'home.csv')\n}\n",
+        "this text is not between double quotes",
+    ),
+    (
+        "a path of Windows",
+        "{ Dock (bumper)\n  (Atom (null) path C:\\home.csv)\n}\n",
+        "this text is not between double quotes",
+    ),
+    (
+        "words for a movement",
+        "{ Dock (bumper)\n  (Atom (null) (turnRight 90))\n  (Atom (null) (backup 50cm))\n  (Atom (bumper) (forward 20))\n  (Atom (null) (drive 1m))\n}\n",
+        "`turn -90`",
+    ),
+    ("a time for `stop`", "{ Dock (bumper)\n  (Atom (null) (stop 5s))\n}\n", "`(Atom (wait 5s) stop)`"),
+    (
+        "a word before a cause",
+        "{ Dock\n  ahead: (Atom (bumper OR wait 5) stop)\n  (Atom (NOT after ahead by wait 5) stop)\n}\n",
+        "write `wait 5`",
+    ),
+    (
+        "a colon after the label of `after`",
+        "{ Dock\n  ahead: (Atom (bumper OR wait 5) stop)\n  (Atom (NOT after ahead: wait 5) stop)\n}\n",
+        "a space is enough",
+    ),
+    (
+        "a label of `after` in parentheses and in quotes",
+        "{ Dock\n  ahead: (Atom (bumper) stop)\n  (Atom (after (ahead)) stop)\n  (Atom (after \"ahead\") stop)\n}\n",
+        "write `after ahead`",
+    ),
+    ("a plan without a name", "{ Dock\n  { (wait 5s) (Atom (null) turn 90) }\n}\n", "a plan begins with its name"),
+    ("a robot in quotes", "{ Dock\n  (Atom (sync \"robot2\") stop)\n}\n", "no quotes: `robot2`"),
+    ("a robot with a space", "{ Dock\n  (Atom (sync robot 2) stop)\n}\n", "`sync robot2`"),
+    ("two laws", "{ Dock\n  (Atom (wait 5s) ((go 20 0) (turn 90)))\n}\n", "a second law needs an atom of its own"),
+    ("`times` in a loop", "{ Dock\n  ExecPlan 3 times { (Atom (wait 5s) stop) }\n}\n", "remove it"),
+    ("two files of one `use`", "use \"a.mdle\" \"b.mdle\"\n{ Dock (Atom (wait 5) stop) }\n", "a `use` of its own"),
+    ("another name of a file", "use \"a.mdle\" as a\n{ Dock a.Leg(3m) }\n", "called by their names alone"),
+    ("`#include`", "#include \"lib.mdle\"\n{ Dock (Atom (wait 5) stop) }\n", "the keyword is `use`"),
+    ("a label that begins with a digit", "{ Dock\n  1st: (Atom (wait 3s) stop)\n}\n", "begins with a letter: `st1`"),
+    ("`=` for the colon of a label", "{ Dock\n  look = (Atom (null) turn 90)\n}\n", "a label has a colon: `look:`"),
+    ("a label in quotes", "{ Dock\n  \"there\": (Atom (null) turn 90)\n}\n", "write `there:`"),
+    (
+        "`after` a behavior",
+        "{ Dock\n  { Look (wait 9s) (Atom (null) turn 90) }\n  (Atom (NOT after Look) stop)\n}\n",
+        "give it a label",
+    ),
+    ("a plan in parentheses", "( Dock (bumper)\n  (Atom (null) turn 180)\n)\n", "`{ Dock … }`"),
+    (
+        "a heading beyond half a turn",
+        "{ Dock (bumper)\n  (Atom (theta > 400) (go 20 0))\n}\n",
+        "the same heading is `40deg`",
+    ),
 ];
 
 #[test]

@@ -1,12 +1,12 @@
 //! Arguments against a signature: count, type, unit, range (docs/src/reference/language.md, 6.2).
 
 mod examples;
+mod units;
 
 use super::parameters::Parameters;
 use super::{Decimal, Value};
 use crate::alphabet::{Declaration, DeclarationKind, Kind, Origin, Param, Unit};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::syntax::nearest_unit;
 use crate::syntax::tree::{Arg, Call, Number};
 pub(super) use examples::example;
 use examples::{bits_apart, swapped};
@@ -27,27 +27,8 @@ pub(super) fn fit(
     robot: &str,
     parameters: &Parameters<'_>,
 ) -> Result<Arguments, Vec<Diagnostic>> {
-    fitted(call, declaration, robot, parameters).map_err(|found| units_apart(call).unwrap_or(found))
-}
-
-/// A unit that does not touch its number was read as an argument of its own, and is what is wrong.
-fn units_apart(call: &Call) -> Option<Vec<Diagnostic>> {
-    let apart = call.args.windows(2).filter_map(|pair| match pair {
-        [Arg::Number(number), Arg::Name(unit)] if number.unit().is_none() => {
-            Some((number, Unit::from_name(nearest_unit(unit.node)?)?, unit))
-        }
-        _ => None,
-    });
-    let found = apart.map(|(number, Unit { name, .. }, unit)| {
-        let message = format!("there is a space between `{}` and its unit `{name}`", number.digits());
-        Diagnostic::new(Code::E0104, message, unit.span, "remove the space before this unit").fix(
-            "write {}",
-            number.span.to(unit.span),
-            format!("{}{name}", number.digits()),
-        )
-    });
-    let found: Vec<_> = found.collect();
-    (!found.is_empty()).then_some(found)
+    let fits = |call: &Call| fitted(call, declaration, robot, parameters);
+    fits(call).map_err(|found| units::apart(call, fits).unwrap_or(found))
 }
 
 fn fitted(
@@ -218,9 +199,12 @@ impl Fitting<'_> {
         let message = format!("expected {}, {found}", param.kind.words());
         let here = format!("`{}` of `{}` is {}", param.name, self.declaration.name, param.kind.words());
         let diagnostic = Diagnostic::new(Code::E0302, message, arg.span(), here);
-        match example(param) {
-            Some(example) => diagnostic.fix("for instance {}", arg.span(), example),
-            None => diagnostic,
+        match (example(param), arg) {
+            (Some(example), _) => diagnostic.fix("for instance {}", arg.span(), example),
+            (None, Arg::String(name)) if param.kind == Kind::Robot && is_name(name.node) => {
+                diagnostic.fix("the name of a robot has no quotes: {}", arg.span(), name.node)
+            }
+            (None, _) => diagnostic,
         }
     }
 
@@ -371,7 +355,18 @@ fn wrong_count(call: &Call, declaration: &Declaration, needed: usize) -> Diagnos
         return report("bits are written together".into()).fix("write {}", call.span, pattern);
     }
     if call.args.len() > most {
-        return report("one too many".into());
+        let report = report("one too many".into());
+        return match (call.args, declaration.params.as_slice()) {
+            ([Arg::Number(time)], []) if declaration.kind == DeclarationKind::Control && is_time(time) => {
+                let time = format!("{}{}", time.digits(), time.unit().unwrap_or_default());
+                report.help(format!("a time is waited for: `(Atom (wait {time}) {})`", call.name))
+            }
+            ([Arg::Name(robot), Arg::Number(number)], [Param { kind: Kind::Robot, .. }]) => {
+                let name = format!("{} {}{}", call.name, robot.node, number.digits());
+                report.fix("a name has no space: {}", call.span, name)
+            }
+            _ => report,
+        };
     }
     let missing = declaration.params.get(call.args.len()..needed).unwrap_or_default();
     let names: Vec<_> = missing.iter().map(|param| format!("`{}`", param.name)).collect();
@@ -386,6 +381,16 @@ fn wrong_count(call: &Call, declaration: &Declaration, needed: usize) -> Diagnos
         Some(examples) => report.fix("for instance {}", call.span, format!("{} {}", written(call), examples.join(" "))),
         None => report,
     }
+}
+
+/// Returns `true` if a number has a unit of time.
+fn is_time(number: &Number) -> bool {
+    number.unit().and_then(Unit::from_name).is_some_and(|unit| unit.kind == Kind::Time)
+}
+
+/// Returns `true` if a text can be a name in a plan.
+fn is_name(text: &str) -> bool {
+    text.starts_with(|c: char| c.is_alphabetic() || c == '_') && text.chars().all(|c| c.is_alphanumeric() || c == '_')
 }
 
 fn not_a_number(number: &Number) -> Diagnostic {

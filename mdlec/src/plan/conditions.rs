@@ -3,13 +3,14 @@
 
 use std::num::NonZeroU32;
 
+use super::arguments::written;
 use super::labels::Labels;
 use super::parameters::Names;
 use super::quarks::Quarks;
 use super::{After, Condition, Interrupt, OperandPlace, QuarkId, Value, comparisons};
 use crate::alphabet::DeclarationKind;
-use crate::diagnostic::{Diagnostic, Span};
-use crate::syntax::tree::{self, Call, Compared, ConditionNode, Operand};
+use crate::diagnostic::{Code, Diagnostic, Span};
+use crate::syntax::tree::{self, Arg, Call, Compared, ConditionNode, Operand};
 
 /// What conditions are resolved with.
 pub(super) struct Around<'r, 'a, 'n> {
@@ -112,8 +113,18 @@ impl Resolving<'_, '_, '_> {
     fn after(&mut self, after: &tree::After) -> Condition {
         // Only its text tells which operand of the label's interrupt it is, so the memories in it are not its own.
         let memories = self.memories;
+        let is_unknown = |call: &Call| self.around.quarks.alphabet().declarations_of(call.name).next().is_none();
+        if let Some(by) = after.cause.as_ref().and_then(|cause| by_word(cause, is_unknown)) {
+            self.around.found.push(by);
+            return Condition::Null;
+        }
+        let before = self.around.found.len();
         let cause = after.cause.as_ref().map(|cause| (self.condition(cause), cause));
         self.memories = memories;
+        if self.around.found.len() > before {
+            // A cause that cannot be resolved is no operand either.
+            return Condition::Null;
+        }
         let cause = cause.map(|(cause, written)| {
             let quarks = &self.around.quarks;
             let words =
@@ -159,6 +170,18 @@ impl Resolving<'_, '_, '_> {
             }
         }
     }
+}
+
+/// Reports `after ahead by wait 5`: a cause follows its label without a word.
+fn by_word(cause: &tree::Condition, is_unknown: impl Fn(&Call) -> bool) -> Option<Diagnostic> {
+    let ConditionNode::Call(call) = cause.node else { return None };
+    let [Arg::Name(name), args @ ..] = call.args else { return None };
+    let is_word =
+        matches!(call.name, "by" | "because" | "with" | "from" | "due" | "through" | "via") && is_unknown(call);
+    let inside = Call { name: name.node, args, span: call.span };
+    let message = format!("no word is between a label and its cause, found `{}`", call.name);
+    let diagnostic = Diagnostic::new(Code::E0207, message, call.name_span(), "not a cause");
+    is_word.then(|| diagnostic.fix("write {}", call.span, written(&inside)))
 }
 
 /// What binds how tightly, loosest first.

@@ -88,7 +88,7 @@ impl Labels {
                 Ok(operand) => {
                     facts.entry(label.as_str()).or_default().push(Fact { number: asked.number, operand });
                 }
-                Err(wrong) => found.push(*wrong),
+                Err(wrong) => found.push(for_behavior(*wrong, label, scope)),
             }
         }
         if !self.asked.is_empty() {
@@ -136,6 +136,21 @@ impl Labels {
             None => found.help(format!("a label is written before an element of the same plan: `{label}: (Atom …)`")),
         }
     }
+}
+
+/// Says where a label belongs if it is the name of a behavior in this use.
+fn for_behavior(found: Diagnostic, label: &str, scope: &Scope) -> Diagnostic {
+    let is_behavior = |node: &Node| matches!(node, Node::Scope(inner) if inner.name == label);
+    if found.code != Code::E0201 || !scope.body.iter().any(is_behavior) {
+        return found;
+    }
+    let mut found = found;
+    found.help.clear();
+    let lower = label.to_lowercase();
+    let own = if lower == label { "s1" } else { lower.as_str() };
+    found.help(format!(
+        "`{label}` is a behavior; give it a label and ask for that: `{own}: {{ {label} … }}`, `after {own}`"
+    ))
 }
 
 /// `after s1 bumper`, with parentheses where the operand is more than a quark.

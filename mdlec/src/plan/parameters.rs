@@ -154,10 +154,16 @@ fn unknown_type(name: Name<'_>) -> Diagnostic {
         let kind = Kind::NAMES.iter().find(|name| Kind::from_name(name) == Some(unit.kind));
         return kind.iter().fold(found, |found, kind| found.fix("a type is what is measured: {}", name.span, **kind));
     }
+    if matches!(name.node, "int" | "Int" | "uint" | "unsigned" | "u32" | "i32" | "times" | "repeats") {
+        return found.fix("if it is how often something is repeated, write {}", name.span, "count").fix(
+            "for another whole number write {}",
+            name.span,
+            "integer",
+        );
+    }
     let meant = match name.node {
         "distance" | "range" | "metres" | "meters" => Some("length"),
         "float" | "double" | "real" | "num" => Some("number"),
-        "int" => Some("integer"),
         "duration" | "seconds" => Some("time"),
         "velocity" => Some("speed"),
         "degrees" | "heading" => Some("angle"),

@@ -1,5 +1,7 @@
 //! Quarks by name: which declaration a call means, whether the robot has it, and one id for equal calls.
 
+mod moves;
+
 use std::collections::BTreeMap;
 
 use super::arguments::{Arguments, complaints, fit, kind_words, signature, written};
@@ -147,6 +149,12 @@ impl<'a> Quarks<'a> {
         }
         if matches!(name, "pi" | "PI" | "Pi" | "π") {
             return report.fix("there are no constants; for an angle write {}", call.name_span(), "180deg");
+        }
+        if let Some(law) = moves::meant(call).filter(|_| kind == DeclarationKind::Control) {
+            let is_known = self.alphabet.declarations_of(law.name).next().is_some();
+            if is_known {
+                return report.fix(law.words, call.span, law.call);
+            }
         }
         match self.alphabet.nearest(name, Some(kind)).and_then(|near| self.alphabet.declarations_of(near).next()) {
             Some(near) => {

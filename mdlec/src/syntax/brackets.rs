@@ -142,7 +142,12 @@ impl<'s> Pass<'_, 's> {
     fn token(&mut self, index: usize, token: Token<'s>) -> bool {
         #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are treated alike")]
         match token.kind {
-            Tok::LBrace => return self.open(Kind::Brace, index, token),
+            Tok::LBrace => {
+                if self.in_complete_atom() {
+                    self.close_atom(token.place);
+                }
+                return self.open(Kind::Brace, index, token);
+            }
             Tok::LParen | Tok::TouchParen => {
                 let atom = matches!(self.raw.get(index + 1), Some(Token { kind: Tok::Atom, .. }));
                 if atom {
@@ -191,6 +196,26 @@ impl<'s> Pass<'_, 's> {
     fn spoil(&mut self, diagnostic: Diagnostic) {
         self.balanced.regions.spoil();
         self.balanced.diagnostics.push(diagnostic);
+    }
+
+    /// Returns `true` in an atom that has its condition and its law.
+    fn in_complete_atom(&self) -> bool {
+        if self.open.last().is_none_or(|open| open.kind != Kind::Atom) {
+            return false;
+        }
+        let (mut depth, mut groups, mut others) = (0_usize, 0, 0);
+        for token in self.balanced.tokens.iter().rev().take_while(|token| token.kind != Tok::Atom) {
+            #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are no brackets")]
+            match token.kind {
+                Tok::RParen | Tok::RBrace => depth += 1,
+                Tok::LParen | Tok::TouchParen | Tok::LBrace => {
+                    depth = depth.saturating_sub(1);
+                    groups += usize::from(depth == 0);
+                }
+                _ => others += usize::from(depth == 0),
+            }
+        }
+        groups > 1 || groups == 1 && others > 0
     }
 
     fn after_parenthesis(&self) -> bool {

@@ -31,6 +31,10 @@ pub(super) fn told(
     let mut told = Vec::new();
     for (at, expected) in errors {
         let site = Site { source, tokens, openers: &openers, plans: &plans, at, expected };
+        if site.in_nameless_head() {
+            // That the plan has no name was reported.
+            continue;
+        }
         if !regions.is_spoiled_once(site.decisive()) {
             let diagnostic = mistakes::known(&site).unwrap_or_else(|| site.unexpected());
             rewritten(source, tokens, &diagnostic).for_each(|token| regions.spoil_at(token));
@@ -138,6 +142,16 @@ impl<'s> Site<'_, 's> {
     /// Whether a plan lacks its name here.
     pub(super) fn is_plan_without_name(&self) -> bool {
         self.before(1) == Some(Tok::LBrace) && self.expects("name") && !self.expects("ExecPlan")
+    }
+
+    /// Returns `true` in the condition of a plan that has no name, which looks like a scope in formal notation.
+    fn in_nameless_head(&self) -> bool {
+        let Some(paren) = self.opener().filter(|at| *at > 0 && self.kind(*at) == Some(Tok::LParen)) else {
+            return false;
+        };
+        let is_loop = paren >= 3 && self.kind(paren - 3) == Some(Tok::ExecPlan);
+        let is_condition = self.expects(",") && self.expects_argument() && self.name_at(paren + 1).is_some();
+        self.kind(paren - 1) == Some(Tok::LBrace) && is_condition && !is_loop
     }
 
     /// The token whose region the defect is in: a plan without a name is one where its brace is, not where the name should be.

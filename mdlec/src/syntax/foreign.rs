@@ -25,7 +25,7 @@ pub(super) fn is_like_atom(name: &str) -> bool {
 pub(super) fn replace<'s>(source: Source<'s>, lexed: &mut Lexed<'s>) {
     let is_foreign = |token: &Token<'_>| {
         let is_word = |name: &str| is_word(name) || is_like_atom(name) || is_like_loop(name);
-        token.kind == Tok::Use || matches!(token.kind, Tok::Name(name) if is_word(name))
+        matches!(token.kind, Tok::Use | Tok::LBracket) || matches!(token.kind, Tok::Name(name) if is_word(name))
     };
     if !lexed.tokens.iter().any(is_foreign) {
         return;
@@ -75,7 +75,8 @@ fn ends(tokens: &[Token<'_>]) -> BTreeMap<usize, usize> {
         match token.kind {
             Tok::LParen | Tok::TouchParen => open.push((at, Tok::RParen)),
             Tok::LBrace => open.push((at, Tok::RBrace)),
-            Tok::RParen | Tok::RBrace => match open.pop() {
+            Tok::LBracket => open.push((at, Tok::RBracket)),
+            Tok::RParen | Tok::RBrace | Tok::RBracket => match open.pop() {
                 Some((opener, closer)) if closer == token.kind => drop(ends.insert(opener, at)),
                 // What is around does not match either.
                 Some(_) | None => open.clear(),
@@ -109,6 +110,8 @@ enum Open {
     Rewritten,
     Parenthesis,
     Atom,
+    /// A square bracket that is read as the parenthesis of an atom.
+    Bracket,
 }
 
 impl<'s> Rewriting<'_, 's> {
@@ -148,6 +151,8 @@ impl<'s> Rewriting<'_, 's> {
         let Some(token) = self.old.get(at).copied() else { return at + 1 };
         let rewritten = if token.kind == Tok::Use {
             self.used(at)
+        } else if token.kind == Tok::LBracket {
+            self.atom_in_brackets(at)
         } else if let Tok::Name(name) = token.kind
             && !self.plans.contains(name)
         {
@@ -171,6 +176,10 @@ impl<'s> Rewriting<'_, 's> {
                 self.open.push(if is_atom { Open::Atom } else { Open::Parenthesis });
             }
             Tok::RParen => self.close(&[Open::Parenthesis, Open::Atom]),
+            Tok::RBracket if self.open.last() == Some(&Open::Bracket) => {
+                kind = Tok::RParen;
+                self.close(&[Open::Bracket]);
+            }
             Tok::RBrace => {
                 if self.open.last() == Some(&Open::Rewritten) {
                     kind = Tok::RParen;
@@ -210,13 +219,16 @@ impl<'s> Rewriting<'_, 's> {
             return Some(at + 2);
         }
         if matches!(name, "import" | "include" | "require") && self.open.is_empty() {
-            return self.import(at, name);
+            return self.import(at);
         }
         let is_plan_name = self.before(at, 1) == Some(Tok::LBrace) && self.open.last() == Some(&Open::Brace);
         let is_loop_body = matches!(self.before(at, 2), Some(Tok::Number(_) | Tok::Infinity | Tok::Name(_)))
             && self.before(at, 3) == Some(Tok::ExecPlan);
         let inside = self.open.iter().rev().take_while(|open| **open != Open::Brace);
-        if is_plan_name && !is_loop_body || self.open.is_empty() || inside.into_iter().any(|open| *open == Open::Atom) {
+        if is_plan_name && !is_loop_body
+            || self.open.is_empty()
+            || inside.into_iter().any(|open| matches!(open, Open::Atom | Open::Bracket))
+        {
             return None;
         }
         if is_like_loop(name)
@@ -333,15 +345,40 @@ impl<'s> Rewriting<'_, 's> {
         Some(if count.is_some() { next } else { self.past_condition(next) })
     }
 
+    /// `[Atom (bumper) stop]`; what closes it is left for when it is reached.
+    fn atom_in_brackets(&mut self, at: usize) -> Option<usize> {
+        let next = self.kind(at + 1)?;
+        let is_atom = next == Tok::Atom || matches!(next, Tok::Name(name) if is_like_atom(name));
+        let end = self.end_of(at).filter(|_| is_atom)?;
+        let (opener, closer) = (self.place(at, at), self.place(end, end));
+        let span = self.source.span(opener);
+        let diagnostic = Diagnostic::new(Code::E0102, "an atom is written in parentheses", span, "not expected here");
+        let inside = self.source.slice(Place::new(opener.end, closer.start));
+        let diagnostic = match inside.len() <= 60 && !inside.contains('\n') {
+            true => {
+                let whole = self.source.span(self.place(at, end));
+                diagnostic.fix("write {}", whole, format!("({inside})"))
+            }
+            false => diagnostic.help("`(` and `)` are around an atom: `(Atom (bumper) stop)`"),
+        };
+        self.report(opener, diagnostic);
+        self.push(Tok::LParen, opener);
+        self.open.push(Open::Bracket);
+        Some(at + 1)
+    }
+
     /// `import "corridors.mdle"`
-    fn import(&mut self, at: usize, name: &str) -> Option<usize> {
+    fn import(&mut self, at: usize) -> Option<usize> {
         let place = self.place(at, at);
         if !matches!(self.kind(at + 1), Some(Tok::Str(_))) {
             return None;
         }
-        let span = self.source.span(place);
+        let is_hashed = self.source.slice(Place::new(0, place.start)).ends_with('#');
+        let written = Place::new(place.start - usize::from(is_hashed), place.end);
+        let span = self.source.span(written);
+        let name = self.source.slice(written);
         let diagnostic = Diagnostic::new(Code::E0102, format!("MDLe has no `{name}`"), span, "not expected here");
-        self.report(place, diagnostic.fix("the keyword is {}", span, "use"));
+        self.report(written, diagnostic.fix("the keyword is {}", span, "use"));
         self.push(Tok::Use, place);
         Some(at + 1)
     }

@@ -50,6 +50,9 @@ fn characters_help(diagnostic: Diagnostic, source: Source<'_>, found: &str, plac
             diagnostic.help("text is written between plain double quotes: `\"path.txt\"`")
         }
         "−" | "–" | "—" => sign(diagnostic, source, "-", place),
+        "." if ends_name(source, place.start) && next.is_some_and(char::is_alphabetic) => {
+            diagnostic.help("a plan of a file that is used is called by its name alone: `Leg(3m)`")
+        }
         "." if next.is_some_and(|c| c.is_ascii_digit()) && begins_operand(source, place.start) => {
             let digits: String = after.chars().take_while(char::is_ascii_digit).take(12).collect();
             let span = source.span(Place::new(place.start, place.end + digits.len()));
@@ -76,6 +79,18 @@ const TYPESETTING: &str = "of typesetting only `\\\\`, `\\{`, `\\}`, `\\text{…
 fn begins_operand(source: Source<'_>, at: usize) -> bool {
     let before = source.text.get(..at).unwrap_or("");
     before.is_empty() || before.ends_with(|c: char| c.is_whitespace() || "(,<>=".contains(c))
+}
+
+/// Returns `true` if a name may end here.
+fn ends_name(source: Source<'_>, at: usize) -> bool {
+    source.text.get(..at).is_some_and(|before| before.ends_with(|c: char| c.is_alphanumeric() || c == '_'))
+}
+
+/// A file name that is not between double quotes.
+pub(super) fn file(source: Source<'_>, place: Place, name: &str) -> Diagnostic {
+    let span = source.span(place);
+    let diagnostic = Diagnostic::new(Code::E0101, "this text is not between double quotes", span, "not part of MDLe");
+    diagnostic.fix("write {}", span, format!("\"{name}\""))
 }
 
 /// A sign that stands apart from its number.
@@ -150,17 +165,8 @@ pub(super) fn text(source: Source<'_>, place: Place) -> Diagnostic {
 
 /// A number that touches something other than a unit.
 pub(super) fn number(source: Source<'_>, number: &str, tail: &str, place: Place) -> Diagnostic {
-    let unit = tail.trim_start();
-    let span = source.span(Place::new(place.end - unit.len(), place.end));
+    let span = source.span(Place::new(place.end - tail.len(), place.end));
     let whole = source.span(place);
-    if unit.len() < tail.len() {
-        let message = format!("there is a space between `{number}` and its unit `{unit}`");
-        return Diagnostic::new(Code::E0104, message, span, "remove the space before this unit").fix(
-            "write {}",
-            whole,
-            format!("{number}{unit}"),
-        );
-    }
     if tail.starts_with('.') {
         return dot(number, tail, span, whole);
     }
@@ -177,6 +183,13 @@ pub(super) fn number(source: Source<'_>, number: &str, tail: &str, place: Place)
             true => diagnostic.fix(words, whole, format!("{number} {tail}")),
             false => diagnostic,
         };
+    }
+    let is_label = source.text.get(place.end..).is_some_and(|after| after.trim_start_matches(' ').starts_with(':'));
+    if is_label && tail.len() <= 40 && tail.chars().all(|c| c.is_alphanumeric() || c == '_') {
+        let message = format!("`{number}{tail}` is not a name");
+        let diagnostic = Diagnostic::new(Code::E0104, message, whole, "begins with a digit");
+        let digits = number.trim_start_matches(['+', '-']).replace('.', "_");
+        return diagnostic.fix("a name begins with a letter: {}", whole, format!("{tail}{digits}"));
     }
     let shown = if tail.len() > 40 { "…" } else { tail };
     let message = format!("`{shown}` is not a unit");

@@ -3,19 +3,21 @@
 mod atoms;
 mod calls;
 mod conditions;
+mod files;
+mod labels;
 
 use super::errors::Site;
-use super::foreign;
 use super::token::{Tok, split};
-use crate::alphabet::Kind;
 use crate::diagnostic::Diagnostic;
 use atoms::{atom_condition, atom_law};
 use calls::{apart, bare_call, decimal_comma, element_touches, square_brackets, touching_parenthesis, unit_apart};
 use conditions::condition;
+use files::at_file_level;
+use labels::{label_and_equals, label_behind, label_in_quotes, label_of_after};
 
 /// The message about a mistake that is known; the first that fits.
 pub(super) fn known(site: &Site<'_, '_>) -> Option<Diagnostic> {
-    let mistakes: [fn(&Site<'_, '_>) -> Option<Diagnostic>; 19] = [
+    let mistakes: [fn(&Site<'_, '_>) -> Option<Diagnostic>; 20] = [
         square_brackets,
         decimal_comma,
         at_file_level,
@@ -27,6 +29,7 @@ pub(super) fn known(site: &Site<'_, '_>) -> Option<Diagnostic> {
         atom_law,
         loop_count,
         power,
+        label_in_quotes,
         label_behind,
         keyword_argument,
         unit_apart,
@@ -41,86 +44,6 @@ pub(super) fn known(site: &Site<'_, '_>) -> Option<Diagnostic> {
         Some((at, keyword)) => known.fix("the keyword is {}", site.span(at, at), keyword),
         None => known,
     })
-}
-
-/// Between plans: no element, no name, no file without quotes.
-fn at_file_level(site: &Site<'_, '_>) -> Option<Diagnostic> {
-    if site.before(1) == Some(Tok::Use) {
-        let diagnostic = site.about(
-            site.at,
-            format!("`use` needs the name of a file, found {}", site.found_words()),
-            "expected a text in quotes",
-        );
-        return Some(diagnostic.help("the name of a file is written between double quotes: `use \"corridors.mdle\"`"));
-    }
-    if !site.expects("use") {
-        return None;
-    }
-    #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are told as they are")]
-    match site.found()? {
-        Tok::Name(_) if site.kind(site.at + 1) == Some(Tok::LBrace) => Some(name_before_plan(site, site.at)),
-        Tok::Name(name) if site.kind(site.at + 1) == Some(Tok::Assign) => Some(not_a_label(site, site.at, name)),
-        Tok::Name(name) if site.kind(site.at + 1) == Some(Tok::Colon) => {
-            Some(site.about(site.at, format!("the label `{name}` is outside of any plan"), "not expected here").fix(
-                "remove it: a label names an element of a plan; a plan's own name is the first thing inside its braces",
-                site.span(site.at, site.at + 1),
-                "",
-            ))
-        }
-        Tok::Name(keyword @ ("plan" | "Plan" | "behavior" | "Behavior"))
-            if site.name_at(site.at + 1).is_some() && site.brace_after_group(site.at + 1).is_some() =>
-        {
-            let (brace, name) = (site.brace_after_group(site.at + 1)?, site.name_at(site.at + 1)?);
-            let group = site.text(site.at + 2, brace - 1).unwrap_or("(…)");
-            let message = format!("a plan begins with its brace, without `{keyword}`");
-            let header = format!("{{ {name} {group}");
-            let diagnostic = site.about(site.at, message, "not expected here");
-            Some(diagnostic.fix("its name is the first thing inside: {} …", site.span(site.at, brace), header))
-        }
-        Tok::Name(name) if foreign::advice(name).is_some() => Some(
-            site.about(site.at, format!("MDLe has no `{name}`"), "not expected here")
-                .help(foreign::advice(name).unwrap_or_default()),
-        ),
-        Tok::Name(name)
-            if matches!(site.kind(site.at + 1), Some(Tok::Name(_))) && site.kind(site.at + 2) == Some(Tok::LBrace) =>
-        {
-            let inner = site.name_at(site.at + 1).unwrap_or(name);
-            let diagnostic =
-                site.about(site.at, format!("expected a plan, found the name `{name}`"), "not expected here");
-            Some(diagnostic.fix(
-                "a plan begins with its brace: {} …",
-                site.span(site.at, site.at + 2),
-                format!("{{ {inner}"),
-            ))
-        }
-        Tok::Name(name) if site.brace_after_group(site.at).is_some() => {
-            let brace = site.brace_after_group(site.at)?;
-            let condition = site.text(site.at + 1, brace.checked_sub(1)?).unwrap_or("(…)");
-            let message = format!("the name `{name}` is before the brace of its plan");
-            let words = format!("the brace comes first: `{{ {name} {condition} … }}`");
-            Some(site.about(site.at, message, "put it inside the braces").fix(
-                &words,
-                site.span(site.at, brace),
-                format!("{{ {name} {condition}"),
-            ))
-        }
-        Tok::LParen | Tok::ExecPlan | Tok::Name(_) | Tok::Frame => Some(
-            site.about(site.at, format!("expected a plan, found {}", site.found_words()), "outside of any plan").help(
-                "a file consists of plans, and a plan has braces around its atoms: `{ Name (Atom (bumper) stop) }`",
-            ),
-        ),
-        _ => None,
-    }
-}
-
-fn name_before_plan(site: &Site<'_, '_>, at: usize) -> Diagnostic {
-    let name = site.name_at(at).unwrap_or("Name");
-    let words = format!("the name of a plan is the first thing inside: `{{ {name} … }}`");
-    site.about(at, format!("the name `{name}` is before the brace of its plan"), "put it inside the braces").fix(
-        &words,
-        site.span(at, at + 1),
-        format!("{{ {name}"),
-    )
 }
 
 /// A plan whose name is missing, or something that cannot be one.
@@ -146,6 +69,11 @@ fn plan_name(site: &Site<'_, '_>) -> Option<Diagnostic> {
             "a name is missing after it",
         );
         let words = format!("the name of a plan is the first thing inside: `{{ {name} … }}`");
+        if is_loop && matches!(name, "times" | "Times" | "TIMES" | "x" | "time" | "loops" | "passes") {
+            let diagnostic =
+                site.about(brace - 1, format!("no `{name}` follows the count of a loop"), "not expected here");
+            return Some(diagnostic.fix("remove it", site.span(brace - 1, brace - 1), ""));
+        }
         return Some(if is_loop {
             diagnostic.help("the body of an `ExecPlan` is a plan's name or braces, not both")
         } else {
@@ -170,89 +98,6 @@ fn plan_name(site: &Site<'_, '_>) -> Option<Diagnostic> {
             ))
         }
     }
-}
-
-/// `=` without a label, a label without `=`, and `=` for `==`.
-fn label_and_equals(site: &Site<'_, '_>) -> Option<Diagnostic> {
-    if site.found() == Some(Tok::Colon)
-        && let Some(argument) = named_argument(site)
-    {
-        return Some(argument);
-    }
-    if site.found() == Some(Tok::Assign) {
-        if let Some(parameter) = parameter_with_equals(site) {
-            return Some(parameter);
-        }
-        if site.expects("==") {
-            return Some(site.about(site.at, "`=` does not compare", "names a plan").fix(
-                "to compare, write {}",
-                site.span(site.at, site.at),
-                "==",
-            ));
-        }
-        if let Some(argument) = named_argument(site) {
-            return Some(argument);
-        }
-        let name = site.at.checked_sub(1).filter(|_| site.expects_element())?;
-        if let (Some(text), Some(_)) = (site.name_at(name), site.opener()) {
-            let help = "a plan may take parameters: `{ Leg(d: length) (Atom (null) (goAvoid 0 d)) }`";
-            let message = format!("`{text} =` is written in a plan, which has no variables");
-            return Some(site.about(site.at, message, "not expected here").help(help));
-        }
-        return site.name_at(name).map(|text| not_a_label(site, name, text));
-    }
-    #[allow(clippy::wildcard_enum_match_arm, reason = "only labels and what follows them is looked at")]
-    match site.before(1)? {
-        Tok::Label(label) => {
-            let message = format!("expected `=` after the label, found {}", site.found_words());
-            let diagnostic = site.about(site.at, message, "not expected here");
-            Some(if site.opener().is_some() {
-                diagnostic.help(format!("a plan is used by the name inside its braces, not by its label `{label}`"))
-            } else {
-                diagnostic.help(format!("a label names the plan that follows: `{label} = {{ Name … }}`"))
-            })
-        }
-        Tok::Assign if site.name_at(site.at).is_some() && site.kind(site.at + 1) == Some(Tok::LBrace) => {
-            Some(name_before_plan(site, site.at))
-        }
-        Tok::Assign if site.expects("{") => Some(
-            site.about(site.at, format!("expected `{{` after `=`, found {}", site.found_words()), "not expected here")
-                .help("a label names a plan in braces: `Γ_from^to = { Name … }`"),
-        ),
-        _ => None,
-    }
-}
-
-fn not_a_label(site: &Site<'_, '_>, at: usize, name: &str) -> Diagnostic {
-    site.about(at, format!("`{name}` is not a label"), "the label of a plan begins with `Γ_` or `Gamma_`")
-        .fix("write {}", site.span(at, at), format!("Gamma_{name}"))
-        .fix(&format!("or remove `{name} =`: a plan's own name is inside its braces"), site.span(at, at + 1), "")
-}
-
-/// `{ Leg (far = length) …`
-fn parameter_with_equals(site: &Site<'_, '_>) -> Option<Diagnostic> {
-    let name = site.name_at(site.at.checked_sub(1)?)?;
-    let kind = site.name_at(site.at + 1).filter(|kind| Kind::NAMES.contains(kind))?;
-    let is_header = site.opener()?.checked_sub(2).is_some_and(|brace| site.kind(brace) == Some(Tok::LBrace));
-    let diagnostic = site.about(site.at, format!("`{name} =` is not a parameter"), "expected a colon");
-    let words = "a parameter is its name, a colon and its type: {}";
-    is_header.then(|| diagnostic.fix(words, site.span(site.at - 1, site.at + 1), format!("{name}: {kind}")))
-}
-
-/// `Leg(d = 3m)`, `Leg(d: 3m)`
-fn named_argument(site: &Site<'_, '_>) -> Option<Diagnostic> {
-    let name = site.at.checked_sub(1)?;
-    let text = site.name_at(name).filter(|_| site.opener_kind() == Some(Tok::TouchParen))?;
-    let (opener, plan) = (site.opener()?, site.opener()?.checked_sub(1)?);
-    let sign = if site.found() == Some(Tok::Colon) { ":" } else { " =" };
-    let (words, before) = (format!("remove `{text}{sign}`"), site.text(plan, name - 1));
-    let is_first = opener + 1 == name;
-    let diagnostic = site.about(site.at, "arguments have no names: they are given in order", "not expected here");
-    Some(match before.filter(|_| is_first) {
-        // The call is upset as well.
-        Some(before) => diagnostic.fix(&words, site.span(plan, site.at), before),
-        None => diagnostic.fix(&words, site.span(name, site.at), ""),
-    })
 }
 
 /// `ExecPlan { … }` and what else is not a loop.
@@ -315,17 +160,12 @@ fn power(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// A label with nothing after it.
-fn label_behind(site: &Site<'_, '_>) -> Option<Diagnostic> {
-    let label = site.at.checked_sub(2).and_then(|at| site.name_at(at))?;
-    (site.before(1) == Some(Tok::Colon) && site.expects_element()).then(|| {
-        site.about(site.at - 2, format!("nothing follows the label `{label}`"), "it names what follows it")
-            .help(format!("a label is written before its element: `{label}: (Atom (bumper) stop)`"))
-    })
-}
-
 /// Reports a keyword without the argument that it needs.
 fn keyword_argument(site: &Site<'_, '_>) -> Option<Diagnostic> {
+    if site.found() == Some(Tok::Colon) && site.before(2) == Some(Tok::After) && site.name_at(site.at - 1).is_some() {
+        let diagnostic = site.about(site.at, "no colon follows the label of `after`", "not expected here");
+        return Some(diagnostic.fix("remove it: a space is enough", site.span(site.at, site.at), ""));
+    }
     #[allow(clippy::wildcard_enum_match_arm, reason = "only keywords are looked at")]
     match site.before(1)? {
         Tok::Frame => Some(
@@ -336,6 +176,7 @@ fn keyword_argument(site: &Site<'_, '_>) -> Option<Diagnostic> {
             )
             .help("write `FRAME 180deg Name`, or `FRAME here Name` for the heading at its entry"),
         ),
+        Tok::After if label_of_after(site).is_some() => label_of_after(site),
         Tok::After => Some(
             site.about(
                 site.at,

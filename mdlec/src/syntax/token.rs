@@ -139,9 +139,13 @@ pub(super) struct Lexed<'s> {
 
 /// The tokens of a text, its doc comments and its lexical errors.
 pub(super) fn lex(source: Source<'_>) -> Lexed<'_> {
-    let mut reader = Reader { source, lexed: Lexed::default(), text_ends: usize::MAX, touches: 0, run: None };
+    let mut reader =
+        Reader { source, lexed: Lexed::default(), text_ends: usize::MAX, touches: 0, run: None, skipped: 0 };
     for (token, range) in Tok::lexer(source.text).spanned() {
         let place = Place::new(range.start, range.end);
+        if place.start < reader.skipped || reader.file(token.as_ref().ok(), place) {
+            continue;
+        }
         match token {
             Ok(kind) => reader.token(Token { kind, place }),
             Err(()) => match split(source.slice(place)) {
@@ -164,9 +168,33 @@ struct Reader<'s> {
     touches: usize,
     /// The unexpected characters that have just been read.
     run: Option<Place>,
+    /// The end of a file name that was read although it is not between double quotes.
+    skipped: usize,
 }
 
 impl<'s> Reader<'s> {
+    /// Takes in `'home.csv'` or `C:\home.csv`, if that begins with this token.
+    fn file(&mut self, token: Option<&Tok<'s>>, place: Place) -> bool {
+        let (start, name, end) = match token {
+            None => match quoted(self.source.text, place) {
+                Some((name, end)) => (place.start, name, end),
+                None => return false,
+            },
+            Some(Tok::Command) => match drive(self.source.text, place) {
+                Some((start, name)) => (start, name, start + name.len()),
+                None => return false,
+            },
+            Some(_) => return false,
+        };
+        self.end_run();
+        let whole = Place::new(start, end);
+        self.lexed.tokens.retain(|token| token.place.start < start);
+        self.report(lexical::file(self.source, whole, name));
+        self.push(Tok::Str(name), whole);
+        self.skipped = end;
+        true
+    }
+
     fn token(&mut self, token: Token<'s>) {
         self.end_run();
         let Place { start, end } = token.place;
@@ -206,9 +234,17 @@ impl<'s> Reader<'s> {
         matches!(self.lexed.tokens.last(), Some(Token { kind: Tok::Frame, .. }))
     }
 
-    /// What touches a number and is no unit is reported and dropped.
+    /// What touches a number and is no unit is reported and dropped; a unit that does not touch it is a name.
     fn number(&mut self, number: &'s str, tail: &'s str, place: Place) {
         self.end_run();
+        let unit = tail.trim_start();
+        if unit.len() < tail.len() {
+            // It is a name, as units without a `/` are, so that the quark can say what it takes.
+            let (end, start) = (place.start + number.len(), place.end - unit.len());
+            self.push(Tok::Number(number), Place::new(place.start, end));
+            self.push(Tok::Name(unit), Place::new(start, place.end));
+            return;
+        }
         self.report(lexical::number(self.source, number, tail, place));
         self.push(Tok::Number(number), place);
     }
@@ -244,6 +280,30 @@ impl<'s> Reader<'s> {
             self.report(lexical::characters(self.source, run));
         }
     }
+}
+
+/// The text between quotes that are no double quotes, and the end of both.
+fn quoted(text: &str, opener: Place) -> Option<(&str, usize)> {
+    let closers: &[char] = match text.get(opener.start..opener.end)? {
+        "'" | "‘" | "`" => &['\'', '’', '`', '‘'],
+        "“" | "”" | "„" => &['“', '”'],
+        _ => return None,
+    };
+    let line = text.get(opener.end..)?.lines().next()?;
+    let length = line.find(closers)?;
+    let (name, closer) = (line.get(..length)?, line.get(length..)?.chars().next()?);
+    let is_name = !name.is_empty() && !name.contains(['"', '(', ')', '{', '}']);
+    is_name.then_some((name, opener.end + length + closer.len_utf8()))
+}
+
+/// The start and the text of a path of Windows, whose first backslash is at `backslash`.
+fn drive(text: &str, backslash: Place) -> Option<(usize, &str)> {
+    let start = backslash.start.checked_sub(2)?;
+    let is_drive = text.get(start..backslash.start)?.starts_with(|c: char| c.is_ascii_alphabetic());
+    let is_word = text.get(..start)?.ends_with([' ', '(', '\t']);
+    let rest = text.get(start..)?;
+    let path = rest.split(|c: char| c.is_whitespace() || "(){}\"".contains(c)).next()?;
+    (is_drive && is_word && path.get(1..2) == Some(":")).then_some((start, path))
 }
 
 /// The text of a label, normalized: `Γ_from^to`.

@@ -91,6 +91,13 @@ impl Numbers<'_> {
         let is_sonar = matches!(signal.params.as_slice(), [Param { kind: Kind::Sonar, .. }]) && unit.name == "m";
         let value = number.digits().parse::<f64>().unwrap_or(0.0);
         let what = format!("the value of `{name}`");
+        if name == "theta"
+            && unit.kind == Kind::Angle
+            && let Some(found) = beyond_half_a_turn(number, value)
+        {
+            self.found.push(found);
+            return;
+        }
         if is_sonar && number.unit().is_none() && (SONAR..=FAR).contains(&value) {
             self.doubtful(number, "m", &what, ("cm", "farther than a sonar measures"));
         } else {
@@ -142,6 +149,26 @@ impl Numbers<'_> {
                 .fix("or {} if the unit is right", number.span, format!("{digits}{unit}")),
         );
     }
+}
+
+/// Warns of a heading that `theta` never has: its values are between -180 and 180 degrees.
+fn beyond_half_a_turn(number: &Number, value: f64) -> Option<Diagnostic> {
+    let (half, unit) = match number.unit() {
+        None | Some("deg") => (180.0, "deg"),
+        Some("rad") => (std::f64::consts::PI, "rad"),
+        Some(_) => return None,
+    };
+    if value.abs() <= half {
+        return None;
+    }
+    let digits = number.digits();
+    let message = format!("`theta` is a heading between -180 and 180 deg, and never {digits} {unit}");
+    let found = Diagnostic::new(Code::W0401, message, number.span, "outside of the values of `theta`");
+    if unit != "deg" || value.abs() > 1e6 {
+        return Some(found.help("write the heading in deg, such as `theta > 90deg`"));
+    }
+    let same = ((value + 180.0).rem_euclid(360.0) * 1e4).round() / 1e4 - 180.0;
+    Some(found.fix("the same heading is {}", number.span, format!("{same}deg")))
 }
 
 /// The unit that was probably meant, and what is odd about a value of this kind in that unit.

@@ -68,6 +68,19 @@ fn law_in_group<'s>(site: &Site<'_, 's>, group: usize) -> Option<(usize, &'s str
     site.text(group + 1, end - 1).filter(|_| is_only).map(|law| (group, law))
 }
 
+/// `(Atom (bumper)) (go 20 0)`: the law follows the atom.
+fn law_outside(site: &Site<'_, '_>) -> Option<Diagnostic> {
+    let first = site.at + 1;
+    let (name, last) = match site.kind(first)? == Tok::LParen {
+        true => (first + 1, site.end_of_group(first)),
+        false => (first, end_of_call(site, first)),
+    };
+    let is_call = site.kind(first) == Some(Tok::Name(site.name_at(name)?)) || site.is_call(name, last.checked_sub(1)?);
+    let law = site.text(first, last).filter(|_| is_call && site.name_at(name).is_some_and(is_law))?;
+    let diagnostic = site.about(site.at, "the law of this atom is outside of its parentheses", "closes the atom");
+    Some(diagnostic.fix("move this `)` behind the law: {}", site.span(site.at, last), format!(" {law})")))
+}
+
 /// The last token of a name with numbers behind it.
 pub(super) fn end_of_call(site: &Site<'_, '_>, name: usize) -> usize {
     if site.kind(name + 1) == Some(Tok::TouchParen) {
@@ -77,8 +90,21 @@ pub(super) fn end_of_call(site: &Site<'_, '_>, name: usize) -> usize {
     (name + 1..).take_while(is_literal).last().unwrap_or(name)
 }
 
+/// `(Atom (wait 5) ((go 20 0) (turn 90)))`
+fn several_laws(site: &Site<'_, '_>) -> Option<Diagnostic> {
+    let (group, is_law) = (site.opener()?, site.expects("name") && !site.expects_condition());
+    let in_atom = site.kind(site.opener_of(group)? + 1) == Some(Tok::Atom) && site.kind(group - 1) == Some(Tok::RParen);
+    (site.found() == Some(Tok::LParen) && site.before(1) == Some(Tok::LParen) && is_law && in_atom).then(|| {
+        let diagnostic = site.about(site.at, "the law of an atom has one pair of parentheses", "not expected here");
+        diagnostic.help("an atom has one law; a second law needs an atom of its own: `(Atom (bumper) stop)`")
+    })
+}
+
 /// An atom without its law, or with something behind it.
 pub(super) fn atom_law(site: &Site<'_, '_>) -> Option<Diagnostic> {
+    if let Some(laws) = several_laws(site) {
+        return Some(laws);
+    }
     if !site.in_atom() || site.before(1) == Some(Tok::Atom) {
         return None;
     }
@@ -90,6 +116,9 @@ pub(super) fn atom_law(site: &Site<'_, '_>) -> Option<Diagnostic> {
             let words = "an atom is a condition and a law: {}";
             let both = format!("({}) ({law})", condition_for(law));
             return Some(diagnostic.fix(words, site.span(group, site.at - 1), both));
+        }
+        if let Some(outside) = law_outside(site) {
+            return Some(outside);
         }
         let diagnostic = site.about(site.at, "this atom has no law", "a law is missing before this");
         return Some(

@@ -23,6 +23,12 @@ pub(super) fn condition(site: &Site<'_, '_>) -> Option<Diagnostic> {
                 Tok::Not | Tok::Rising => {
                     diagnostic.help(format!("put it in parentheses: `{operator} ({} bumper)`", self::operator(found)))
                 }
+                Tok::RParen if matches!(before, Tok::Or | Tok::And) => diagnostic.fix(
+                    &format!("write a second condition after it, or remove `{operator}`"),
+                    site.span(site.at - 1, site.at - 1),
+                    "",
+                ),
+                Tok::RParen => diagnostic.help(format!("it is written before a condition: `{operator} bumper`")),
                 _ => diagnostic,
             })
         }

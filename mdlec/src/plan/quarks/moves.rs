@@ -1,0 +1,58 @@
+//! Movements in the words of other languages: what they are in the laws of the paper and ours.
+
+use crate::alphabet::{Kind, Unit};
+use crate::syntax::tree::{Arg, Call, Number};
+
+/// A law that is probably meant.
+pub(super) struct Meant {
+    pub(super) name: &'static str,
+    pub(super) call: String,
+    /// The help, where `{}` is the call.
+    pub(super) words: &'static str,
+}
+
+/// The law that a call such as `turnLeft 90`, `backup 50cm` or `forward 20` means.
+pub(super) fn meant(call: &Call) -> Option<Meant> {
+    let word = call.name.to_ascii_lowercase().replace('_', "");
+    let number = match call.args {
+        [] => None,
+        [Arg::Number(number)] => Some(number),
+        _ => return None,
+    };
+    let amount = |number: &Number<'_>| format!("{}{}", number.digits(), number.unit().unwrap_or_default());
+    let is = |kinds: &[Kind]| {
+        let kind = number.and_then(|number| number.unit()).map(|unit| Unit::from_name(unit).map(|unit| unit.kind));
+        kind.is_none_or(|kind| kind.is_some_and(|kind| kinds.contains(&kind)))
+    };
+    let is_positive = number.is_none_or(|number| !number.digits().starts_with(['-', '+']));
+    let law = |name, call, words| Some(Meant { name, call, words });
+    match word.as_str() {
+        "left" | "turnleft" | "rotateleft" if is(&[Kind::Angle]) && is_positive => {
+            let angle = number.map_or("90deg".to_owned(), amount);
+            law("turn", format!("turn {angle}"), "a turn to the left is positive: {}")
+        }
+        "right" | "turnright" | "rotateright" if is(&[Kind::Angle]) && is_positive => {
+            let angle = number.map_or("90deg".to_owned(), amount);
+            law("turn", format!("turn -{angle}"), "a turn to the right is negative: {}")
+        }
+        "back" | "backup" | "backward" | "backwards" | "reverse" | "retreat" if is(&[Kind::Length]) && is_positive => {
+            let way = number.map_or("50cm".to_owned(), amount);
+            law("advance", format!("advance -{way}"), "a way back is negative: {}")
+        }
+        "forward" | "forwards" | "ahead" | "straight" | "drive" | "move" => {
+            let number = number?;
+            match number.unit().and_then(Unit::from_name).map(|unit| unit.kind) {
+                Some(Kind::Length) => {
+                    law("advance", format!("advance {}", amount(number)), "a way straight ahead is {}")
+                }
+                None | Some(Kind::Speed) => law(
+                    "go",
+                    format!("go {} 0", amount(number)),
+                    "a speed and a turn rate are the arguments of `go`: {}",
+                ),
+                Some(_) => None,
+            }
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,133 @@
+//! Labels, colons and equals signs.
+
+use super::files::name_before_plan;
+use crate::alphabet::Kind;
+use crate::diagnostic::Diagnostic;
+use crate::syntax::errors::Site;
+use crate::syntax::token::Tok;
+
+/// `=` without a label, a label without `=`, and `=` for `==`.
+pub(super) fn label_and_equals(site: &Site<'_, '_>) -> Option<Diagnostic> {
+    if site.found() == Some(Tok::Colon)
+        && let Some(argument) = named_argument(site)
+    {
+        return Some(argument);
+    }
+    if site.found() == Some(Tok::Assign) {
+        if let Some(parameter) = parameter_with_equals(site) {
+            return Some(parameter);
+        }
+        if site.expects("==") {
+            return Some(site.about(site.at, "`=` does not compare", "names a plan").fix(
+                "to compare, write {}",
+                site.span(site.at, site.at),
+                "==",
+            ));
+        }
+        if let Some(argument) = named_argument(site) {
+            return Some(argument);
+        }
+        let name = site.at.checked_sub(1).filter(|_| site.expects_element())?;
+        let begins = matches!(site.kind(site.at + 1), Some(Tok::LParen | Tok::LBrace | Tok::ExecPlan | Tok::Frame));
+        // The first name is that of the plan.
+        let is_first = site.before(2) == Some(Tok::LBrace);
+        if let (Some(text), true, Some(_)) = (site.name_at(name), begins && !is_first, site.opener()) {
+            let diagnostic = site.about(site.at, format!("`{text} =` is not a label"), "expected a colon");
+            let words = "a label has a colon: {}";
+            return Some(diagnostic.fix(words, site.span(name, site.at), format!("{text}:")));
+        }
+        if let (Some(text), Some(_)) = (site.name_at(name), site.opener()) {
+            let help = "a plan may take parameters: `{ Leg(d: length) (Atom (null) (goAvoid 0 d)) }`";
+            let message = format!("`{text} =` is written in a plan, which has no variables");
+            return Some(site.about(site.at, message, "not expected here").help(help));
+        }
+        return site.name_at(name).map(|text| not_a_label(site, name, text));
+    }
+    #[allow(clippy::wildcard_enum_match_arm, reason = "only labels and what follows them is looked at")]
+    match site.before(1)? {
+        Tok::Label(label) => {
+            let message = format!("expected `=` after the label, found {}", site.found_words());
+            let diagnostic = site.about(site.at, message, "not expected here");
+            Some(if site.opener().is_some() {
+                diagnostic.help(format!("a plan is used by the name inside its braces, not by its label `{label}`"))
+            } else {
+                diagnostic.help(format!("a label names the plan that follows: `{label} = {{ Name … }}`"))
+            })
+        }
+        Tok::Assign if site.name_at(site.at).is_some() && site.kind(site.at + 1) == Some(Tok::LBrace) => {
+            Some(name_before_plan(site, site.at))
+        }
+        Tok::Assign if site.expects("{") => Some(
+            site.about(site.at, format!("expected `{{` after `=`, found {}", site.found_words()), "not expected here")
+                .help("a label names a plan in braces: `Γ_from^to = { Name … }`"),
+        ),
+        _ => None,
+    }
+}
+
+pub(super) fn not_a_label(site: &Site<'_, '_>, at: usize, name: &str) -> Diagnostic {
+    site.about(at, format!("`{name}` is not a label"), "the label of a plan begins with `Γ_` or `Gamma_`")
+        .fix("write {}", site.span(at, at), format!("Gamma_{name}"))
+        .fix(&format!("or remove `{name} =`: a plan's own name is inside its braces"), site.span(at, at + 1), "")
+}
+
+/// `{ Leg (far = length) …`
+fn parameter_with_equals(site: &Site<'_, '_>) -> Option<Diagnostic> {
+    let name = site.name_at(site.at.checked_sub(1)?)?;
+    let kind = site.name_at(site.at + 1).filter(|kind| Kind::NAMES.contains(kind))?;
+    let is_header = site.opener()?.checked_sub(2).is_some_and(|brace| site.kind(brace) == Some(Tok::LBrace));
+    let diagnostic = site.about(site.at, format!("`{name} =` is not a parameter"), "expected a colon");
+    let words = "a parameter is its name, a colon and its type: {}";
+    is_header.then(|| diagnostic.fix(words, site.span(site.at - 1, site.at + 1), format!("{name}: {kind}")))
+}
+
+/// `Leg(d = 3m)`, `Leg(d: 3m)`
+fn named_argument(site: &Site<'_, '_>) -> Option<Diagnostic> {
+    let name = site.at.checked_sub(1)?;
+    let text = site.name_at(name).filter(|_| site.opener_kind() == Some(Tok::TouchParen))?;
+    let (opener, plan) = (site.opener()?, site.opener()?.checked_sub(1)?);
+    let sign = if site.found() == Some(Tok::Colon) { ":" } else { " =" };
+    let (words, before) = (format!("remove `{text}{sign}`"), site.text(plan, name - 1));
+    let is_first = opener + 1 == name;
+    let diagnostic = site.about(site.at, "arguments have no names: they are given in order", "not expected here");
+    Some(match before.filter(|_| is_first) {
+        // The call is upset as well.
+        Some(before) => diagnostic.fix(&words, site.span(plan, site.at), before),
+        None => diagnostic.fix(&words, site.span(name, site.at), ""),
+    })
+}
+
+/// `"there": (Atom …)`
+pub(super) fn label_in_quotes(site: &Site<'_, '_>) -> Option<Diagnostic> {
+    let Some(Tok::Str(text)) = site.found() else { return None };
+    let is_name = text.starts_with(char::is_alphabetic) && text.chars().all(|c| c.is_alphanumeric() || c == '_');
+    let is_label = site.kind(site.at + 1) == Some(Tok::Colon) && site.expects_element();
+    (is_name && is_label).then(|| {
+        let diagnostic = site.about(site.at, "a label is a name, and has no quotes", "not expected here");
+        diagnostic.fix("write {}", site.span(site.at, site.at + 1), format!("{text}:"))
+    })
+}
+
+/// A label with nothing after it.
+pub(super) fn label_behind(site: &Site<'_, '_>) -> Option<Diagnostic> {
+    let label = site.at.checked_sub(2).and_then(|at| site.name_at(at))?;
+    (site.before(1) == Some(Tok::Colon) && site.expects_element()).then(|| {
+        site.about(site.at - 2, format!("nothing follows the label `{label}`"), "it names what follows it")
+            .help(format!("a label is written before its element: `{label}: (Atom (bumper) stop)`"))
+    })
+}
+
+/// `after (ahead)`, `after "ahead"`
+pub(super) fn label_of_after(site: &Site<'_, '_>) -> Option<Diagnostic> {
+    #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens hold no name")]
+    let (label, last) = match site.found()? {
+        Tok::Str(text) => (text, site.at),
+        Tok::LParen if site.kind(site.at + 2) == Some(Tok::RParen) => (site.name_at(site.at + 1)?, site.at + 2),
+        _ => return None,
+    };
+    let is_name = label.starts_with(char::is_alphabetic) && label.chars().all(|c| c.is_alphanumeric() || c == '_');
+    is_name.then(|| {
+        let diagnostic = site.about(site.at, "the label after `after` is a plain name", "expected a name");
+        diagnostic.fix("write {}", site.span(site.at - 1, last), format!("after {label}"))
+    })
+}
