@@ -5,7 +5,7 @@ use super::token::split;
 use crate::alphabet::Unit;
 use crate::diagnostic::{Code, Diagnostic};
 
-/// Units that others use: their names, and how much one of them is in a unit of ours.
+/// Units that MDLe does not have: their names, and their size in a unit of MDLe.
 const FOREIGN: &[(&[&str], f64, &str)] = &[
     (&["km/h", "kmh", "kph", "kmph"], 1.0 / 3.6, "m/s"),
     (&["mph", "mi/h"], 0.447_04, "m/s"),
@@ -24,13 +24,14 @@ const FOREIGN: &[(&[&str], f64, &str)] = &[
     (&["kHz", "khz"], 1000.0, "Hz"),
 ];
 
-/// A number with a foreign unit, in a unit that MDLe has.
+/// Converts a number with a foreign unit to a unit of MDLe.
 pub(super) fn foreign_unit(number: &str, unit: &str) -> Option<String> {
     let (_, factor, ours) = FOREIGN.iter().find(|(names, _, _)| names.contains(&unit))?;
     Some(format!("{}{ours}", rounded(number.parse::<f64>().ok()? * factor)?))
 }
 
-/// The result of an operation on two numbers, where it can be written: one unit at most, or the same for a sum.
+/// Result of an operation on two numbers, if MDLe can express it: at most one unit, or equal units in a sum or
+/// difference.
 pub(super) fn computed(left: &str, operator: &str, right: &str) -> Option<String> {
     let ((left, left_unit), (right, right_unit)) = (split(left), split(right));
     let is_unit = |unit: &str| unit.is_empty() || Unit::from_name(unit).is_some();
@@ -49,13 +50,13 @@ pub(super) fn computed(left: &str, operator: &str, right: &str) -> Option<String
     Some(format!("{}{unit}", rounded(value)?))
 }
 
-/// A value with at most four decimals; none if nothing is left of it then.
+/// Rounds a value to four decimals; `None` if that makes a small value zero, or if the value is 10⁹ or more.
 fn rounded(value: f64) -> Option<String> {
     let rounded = (value * 1e4).round() / 1e4;
     (value.abs() < 1e9 && (rounded != 0.0 || value == 0.0)).then(|| rounded.to_string())
 }
 
-/// The message about an operator of arithmetic, if these characters are one.
+/// Returns the message about an operator of arithmetic, if `found` is one.
 pub(super) fn arithmetic(source: Source<'_>, found: &str, place: Place) -> Option<Diagnostic> {
     let operator = if matches!(found, "+" | "-" | "*" | "/" | "**") { found } else { return None };
     let before = source.text.get(..place.start)?.trim_end_matches([' ', '\t']);
@@ -104,7 +105,7 @@ pub(super) fn arithmetic(source: Source<'_>, found: &str, place: Place) -> Optio
     })
 }
 
-/// `Return-Home` where a plan has its name, as it can be written.
+/// Proposes a name for `Return-Home` in the place of a plan's name.
 fn hyphenated(source: Source<'_>, left: &str, operator: &str, right: &str, place: Place) -> Option<String> {
     let before = source.text.get(..place.start)?;
     let touches = before.ends_with(left) && source.text.get(place.end..)?.starts_with(right);
@@ -113,7 +114,7 @@ fn hyphenated(source: Source<'_>, left: &str, operator: &str, right: &str, place
     (operator == "-" && touches && is_header && is_name(left) && is_name(right)).then(|| format!("{left}_{right}"))
 }
 
-/// `(…)*3`
+/// Reports `(…)*3`, which is not a loop in MDLe.
 fn power(source: Source<'_>, place: Place, after: &str) -> Diagnostic {
     let message = format!("`{}` does not repeat", source.slice(place));
     let diagnostic = Diagnostic::new(Code::E0101, message, source.span(place), "not part of MDLe");
@@ -126,13 +127,13 @@ fn power(source: Source<'_>, place: Place, after: &str) -> Diagnostic {
     diagnostic.fix("to repeat what is before it, write {}", span, format!("^{count}"))
 }
 
-/// The word that a text ends with.
+/// Word at the end of a text.
 fn word(text: &str) -> &str {
     let start = text.char_indices().rev().take_while(|(_, c)| is_in_word(*c)).last().map_or(text.len(), |(at, _)| at);
     text.get(start..).unwrap_or("")
 }
 
-/// Returns `true` if this is part of a number or a name; `/` is not, as `10/2` is two numbers.
+/// Returns `true` if a character is part of a number or a name; `/` is not, as `10/2` is two numbers.
 fn is_in_word(c: char) -> bool {
     c.is_alphanumeric() || matches!(c, '_' | '.')
 }

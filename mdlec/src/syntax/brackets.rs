@@ -12,7 +12,7 @@ use super::token::{Lexed, Tok, Token};
 use super::tree::Name;
 use crate::diagnostic::{Code, Diagnostic};
 
-/// How deep brackets nest at most.
+/// Maximum nesting depth of brackets.
 pub(super) const MAX_DEPTH: usize = 256;
 
 /// Tokens whose brackets match.
@@ -22,7 +22,7 @@ pub(super) struct Balanced<'s> {
     pub(super) tokens: Vec<Token<'s>>,
     /// The doc comments, each with the token that follows it.
     pub(super) docs: Vec<(usize, &'s str)>,
-    /// Which tokens are so close that one defect may upset them all.
+    /// Regions of the tokens: one defect may upset all tokens of a region.
     pub(super) regions: Regions,
     /// The lexical errors and those of the brackets.
     pub(super) diagnostics: Vec<Diagnostic>,
@@ -30,7 +30,7 @@ pub(super) struct Balanced<'s> {
     pub(super) uses: Vec<Name<'s>>,
     /// `true` if a brace is never closed.
     is_open: bool,
-    /// `true` if such braces are closed where they seem to end.
+    /// `true` if the braces that are never closed were closed where they seem to end.
     is_repaired: bool,
 }
 
@@ -54,7 +54,8 @@ pub(super) fn balance<'s>(source: Source<'s>, lexed: &Lexed<'s>) -> Balanced<'s>
     )
 }
 
-/// Goes through the tokens once and closes all brackets before those of `ends`; also finds such ends for braces never closed.
+/// Goes through the tokens once and closes open brackets before the tokens of `ends`; also returns the tokens before
+/// which braces that are never closed seem to end.
 fn pass<'s>(source: Source<'s>, lexed: &Lexed<'s>, ends: &BTreeMap<usize, End>) -> (Balanced<'s>, BTreeSet<usize>) {
     let mut errors = lexed.errors.iter().peekable();
     let mut docs = lexed.docs.iter().peekable();
@@ -92,7 +93,7 @@ fn pass<'s>(source: Source<'s>, lexed: &Lexed<'s>, ends: &BTreeMap<usize, End>) 
     (pass.balanced, pass.ends)
 }
 
-/// What an open bracket is.
+/// Kind of an open bracket.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Brace,
@@ -104,20 +105,20 @@ enum Kind {
 #[derive(Debug, Clone, Copy)]
 struct Open {
     kind: Kind,
-    /// Its place; `None` if it was inserted.
+    /// Place of the bracket; `None` if it was inserted.
     place: Option<Place>,
-    /// The token of the text that it is, or that it was inserted before.
+    /// Index of the bracket in the text's tokens, or of the token before which it was inserted.
     raw: usize,
-    /// The message about a `)` where the `}` should be.
+    /// Index of the message about a `)` where the `}` should be.
     stray: Option<usize>,
 }
 
-/// Closing brackets one behind the other that close nothing.
+/// A run of closing brackets that close nothing.
 #[derive(Debug, Clone, Copy)]
 struct Strays {
-    /// The message about them.
+    /// Index of the message about them.
     message: usize,
-    /// The last of them.
+    /// Index of the last bracket of the run.
     last: usize,
     count: usize,
 }
@@ -127,18 +128,18 @@ struct Pass<'t, 's> {
     raw: &'t [Token<'s>],
     balanced: Balanced<'s>,
     open: Vec<Open>,
-    /// How many of the open brackets are braces.
+    /// Number of open braces.
     braces: usize,
-    /// The closing brackets that were read last and closed nothing.
+    /// The last run of closing brackets that closed nothing.
     strays: Option<Strays>,
-    /// How far the text has been looked through for ends of lines.
+    /// Byte offset up to which the text has been searched for line ends.
     reached: usize,
-    /// Where braces that are never closed seem to end, as tokens of the text.
+    /// Tokens before which braces that are never closed seem to end.
     ends: BTreeSet<usize>,
 }
 
 impl<'s> Pass<'_, 's> {
-    /// Takes in one token; false if reading stops there.
+    /// Processes one token; returns `false` if reading stops there.
     fn token(&mut self, index: usize, token: Token<'s>) -> bool {
         #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are treated alike")]
         match token.kind {
@@ -180,7 +181,7 @@ impl<'s> Pass<'_, 's> {
         self.balanced.tokens.push(token);
     }
 
-    /// A line begins where one ends on the way to `start`.
+    /// Begins a line of regions if the text up to `start` contains a line end.
     fn reach(&mut self, start: usize) {
         if self.source.slice(Place::new(self.reached, start)).contains('\n') {
             self.balanced.regions.begin_line();
@@ -268,7 +269,7 @@ impl<'s> Pass<'_, 's> {
         self.close(Token { kind, place: Place::new(end, end) })
     }
 
-    /// Closes the parentheses above this many open brackets, and says so once.
+    /// Closes the parentheses above the first `depth` open brackets, with one message.
     fn force_down_to(&mut self, depth: usize, missing_at: Place, before: &str) {
         let mut unclosed = Vec::new();
         let mut atom = false;
@@ -295,7 +296,7 @@ impl<'s> Pass<'_, 's> {
         });
     }
 
-    /// An atom that begins inside of an atom ends that one.
+    /// Closes the atom inside which another atom begins.
     fn close_atom(&mut self, at: Place) {
         let inside = self.open.iter().rev().take_while(|open| open.kind != Kind::Brace);
         if let Some(up) = inside.enumerate().filter(|(_, open)| open.kind == Kind::Atom).map(|(up, _)| up).last() {
@@ -303,7 +304,7 @@ impl<'s> Pass<'_, 's> {
         }
     }
 
-    /// An `Atom` without its parenthesis gets one.
+    /// Inserts the parenthesis of an `Atom` that lacks it.
     fn lone_atom(&mut self, index: usize, token: Token<'s>) -> bool {
         let place = Place::new(token.place.start, token.place.start);
         if !self.open(Kind::Atom, index, Token { kind: Tok::LParen, place }) {
@@ -316,7 +317,8 @@ impl<'s> Pass<'_, 's> {
         true
     }
 
-    /// Whether this closing bracket closes nothing as the one before it does; then the message is about both.
+    /// Returns `true` if this closing bracket continues a run of brackets that close nothing; the run's message then
+    /// covers it.
     fn is_one_more(&mut self, index: usize, token: Token<'s>) -> bool {
         let is_alike = |last: usize| self.raw.get(last).is_some_and(|last| last.kind == token.kind);
         let strays = self.strays.as_mut().filter(|strays| strays.last + 1 == index && is_alike(strays.last));
@@ -373,7 +375,7 @@ impl<'s> Pass<'_, 's> {
         }
     }
 
-    /// The end of the text closes what is open.
+    /// Closes all brackets that are open at the end of the text.
     fn end(&mut self) {
         let stopped = self.balanced.diagnostics.iter().any(|diagnostic| diagnostic.code == Code::E0106);
         let end = self.balanced.tokens.last().map_or(Place::new(0, 0), |token| token.place);
@@ -425,14 +427,14 @@ impl<'s> Pass<'_, 's> {
         self.balanced.diagnostics.push(diagnostic.also(self.source.span(at), text));
     }
 
-    /// Closes the brace that opens at this token of the text, and what is open inside it.
+    /// Closes the brace that opens at token `brace` of the text, and all brackets open inside it.
     fn close_brace_of(&mut self, brace: usize, at: Place) {
         if let Some(depth) = self.open.iter().position(|open| open.raw == brace && open.kind == Kind::Brace) {
             self.close_down_to(depth, at);
         }
     }
 
-    /// Closes the brackets above this many before a token that seems to follow them.
+    /// Closes the brackets above the first `depth` before a token that seems to follow them.
     fn close_down_to(&mut self, depth: usize, at: Place) {
         while let Some(open) = self.open.last().copied().filter(|_| self.open.len() > depth) {
             if open.kind == Kind::Brace {

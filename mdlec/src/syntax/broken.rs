@@ -1,5 +1,5 @@
-//! Takes out of the tree what a defect has upset: where the parser has lost its way, it may have read names where none were meant,
-//! and later stages must not complain about those. What stands beside a defect stays.
+//! Removes from the tree what a defect has upset: where the parser has lost its way, it may have read names where none
+//! were meant, and later stages must not complain about those. Elements beside a defect stay.
 
 use bumpalo::Bump;
 
@@ -9,7 +9,7 @@ use super::token::{Tok, Token};
 use super::tree::{Condition, ConditionNode, Element, Exec, File, Formal, Plan, Primary};
 use crate::diagnostic::Span;
 
-/// Takes out what stands where an error has been told, and plans without a name.
+/// Removes nodes in regions with a reported error, and plans without a name.
 pub(super) fn take_out<'s>(
     file: &mut File<'s>,
     source: Source<'s>,
@@ -73,7 +73,7 @@ impl<'s> Defects<'_, 's> {
         Element { primary, ..element }
     }
 
-    /// Whether an error has been told in the region where this begins.
+    /// Returns `true` if an error has been reported in the region where `span` begins.
     fn are_at(&self, span: Span) -> bool {
         let start = span.within(self.source.id).start;
         self.regions.is_spoiled(self.tokens.partition_point(|token| token.place.start < start))

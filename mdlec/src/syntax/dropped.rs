@@ -1,4 +1,4 @@
-//! What stands in the tree where the parser has dropped tokens: constructors for the alternatives of the grammar that recover.
+//! Constructors for the alternatives of the grammar that recover from errors: tree nodes in place of dropped tokens.
 
 use super::nodes::{Head, Nodes, Recovery};
 use super::source::{Location, Place};
@@ -7,7 +7,7 @@ use super::waiting::First;
 use crate::diagnostic::Span;
 
 impl<'s> Nodes<'_, 's> {
-    /// What was read behind `start` and not finished is not part of any list.
+    /// Forgets the unfinished nodes read after `start`, so that they are not part of any list.
     pub(super) fn dropped(&mut self, start: Location, error: Recovery<'s>) {
         self.errors.push(error);
         self.waiting.forget(self.between(start, start));
@@ -18,18 +18,18 @@ impl<'s> Nodes<'_, 's> {
         self.put(Head::default())
     }
 
-    /// The parameters that were read are kept.
+    /// Keeps the parameters that were read.
     pub(super) fn broken_params(&mut self, error: Recovery<'s>) {
         self.errors.push(error);
     }
 
-    /// Arguments in parentheses of their own: those that were read count for nothing.
+    /// Drops the arguments that were read in parentheses of their own.
     pub(super) fn broken_group(&mut self, start: Location, error: Recovery<'s>) -> First {
         self.dropped(start, error);
         self.waiting.args.len()
     }
 
-    /// The arguments that were read are kept.
+    /// Keeps the arguments that were read.
     pub(super) fn broken_args(
         &mut self,
         start: Location,
@@ -63,7 +63,7 @@ impl<'s> Nodes<'_, 's> {
         None
     }
 
-    /// The stretch from one token to the one before another: what was dropped may begin and end between two tokens.
+    /// Span from one token to the one before another: dropped text may begin and end between two tokens.
     fn around(&self, start: Location, end: Location) -> Span {
         let first = self.tokens.get(start.token as usize).map_or(self.source.text.len(), |token| token.place.start);
         let last = (end.token as usize).checked_sub(1).and_then(|last| self.tokens.get(last));

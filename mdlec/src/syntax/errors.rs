@@ -1,4 +1,5 @@
-//! The parser's errors in words: one for each region, the usual mistakes by their names, all others as what was expected and found.
+//! Turns the parser's errors into messages: one for each region; usual mistakes by name, all others as expected and
+//! found.
 
 use std::cell::OnceCell;
 use std::collections::BTreeSet;
@@ -13,7 +14,7 @@ use super::source::{Place, Source};
 use super::token::{Tok, Token};
 use crate::diagnostic::{Code, Diagnostic, Edit, Span};
 
-/// The messages about what the parser has recovered from.
+/// Returns the messages about the errors from which the parser recovered.
 pub(super) fn told(
     source: Source<'_>,
     tokens: &[Token<'_>],
@@ -44,7 +45,7 @@ pub(super) fn told(
     told
 }
 
-/// The tokens that an edit of this message replaces.
+/// Indices of the tokens that an edit of this message replaces.
 fn rewritten(source: Source<'_>, tokens: &[Token<'_>], diagnostic: &Diagnostic) -> impl Iterator<Item = usize> {
     let edits = diagnostic.help.iter().filter_map(|help| help.edit.as_ref());
     let first = |edit: &Edit| {
@@ -55,7 +56,7 @@ fn rewritten(source: Source<'_>, tokens: &[Token<'_>], diagnostic: &Diagnostic) 
     edits.flat_map(first).collect::<Vec<_>>().into_iter()
 }
 
-/// Where the parser stopped, and what could have stood there.
+/// Index of the token where the parser stopped, with the terminals that it expected there.
 fn place_of(recovery: Recovery<'_>, end: usize) -> (usize, Vec<String>) {
     match recovery.error {
         ParseError::UnrecognizedToken { token: (at, _, _), expected } => (at.token as usize, expected),
@@ -66,7 +67,7 @@ fn place_of(recovery: Recovery<'_>, end: usize) -> (usize, Vec<String>) {
     }
 }
 
-/// The innermost bracket that is open before each token, and behind the last.
+/// Innermost bracket that is open before each token and after the last.
 fn openers(tokens: &[Token<'_>]) -> Vec<Option<usize>> {
     let mut open = Vec::new();
     let mut openers = Vec::with_capacity(tokens.len() + 1);
@@ -88,30 +89,30 @@ pub(super) struct Site<'t, 's> {
     source: Source<'s>,
     tokens: &'t [Token<'s>],
     openers: &'t [Option<usize>],
-    /// The names of the plans of the text, once they are asked for.
+    /// Names of the plans of the text, computed on first use.
     plans: &'t OnceCell<BTreeSet<&'s str>>,
-    /// The token that was not expected.
+    /// Index of the unexpected token.
     pub(super) at: usize,
     expected: Vec<String>,
 }
 
 impl<'s> Site<'_, 's> {
-    /// The token that was not expected; `None` at the end of the text.
+    /// The unexpected token; `None` at the end of the text.
     pub(super) fn found(&self) -> Option<Tok<'s>> {
         self.kind(self.at)
     }
 
-    /// The token so many places before it.
+    /// The token `back` places before the unexpected one.
     pub(super) fn before(&self, back: usize) -> Option<Tok<'s>> {
         self.at.checked_sub(back).and_then(|at| self.kind(at))
     }
 
-    /// What this token is.
+    /// Kind of the token at `at`.
     pub(super) fn kind(&self, at: usize) -> Option<Tok<'s>> {
         self.tokens.get(at).map(|token| token.kind)
     }
 
-    /// The name that stands there.
+    /// The name at `at`; `None` if the token there is not a name.
     pub(super) fn name_at(&self, at: usize) -> Option<&'s str> {
         match self.kind(at) {
             Some(Tok::Name(name)) => Some(name),
@@ -119,27 +120,27 @@ impl<'s> Site<'_, 's> {
         }
     }
 
-    /// The bracket that this one closes.
+    /// Kind of the opening bracket that the one at `closer` closes.
     pub(super) fn partner(&self, closer: usize) -> Option<Tok<'s>> {
         self.openers.get(closer).copied().flatten().and_then(|at| self.kind(at))
     }
 
-    /// The innermost bracket that is open here.
+    /// Innermost bracket that is open before the unexpected token.
     pub(super) fn opener(&self) -> Option<usize> {
         self.openers.get(self.at).copied().flatten()
     }
 
-    /// What that bracket is.
+    /// Kind of the innermost bracket that is open before the unexpected token.
     pub(super) fn opener_kind(&self) -> Option<Tok<'s>> {
         self.opener().and_then(|at| self.kind(at))
     }
 
-    /// Whether the innermost open bracket is that of an atom.
+    /// Returns `true` if the innermost open bracket belongs to an atom.
     pub(super) fn in_atom(&self) -> bool {
         self.opener().is_some_and(|at| self.kind(at + 1) == Some(Tok::Atom))
     }
 
-    /// Whether a plan lacks its name here.
+    /// Returns `true` if the name of a plan is missing here.
     pub(super) fn is_plan_without_name(&self) -> bool {
         self.before(1) == Some(Tok::LBrace) && self.expects("name") && !self.expects("ExecPlan")
     }
@@ -154,64 +155,65 @@ impl<'s> Site<'_, 's> {
         self.kind(paren - 1) == Some(Tok::LBrace) && is_condition && !is_loop
     }
 
-    /// The token whose region the defect is in: a plan without a name is one where its brace is, not where the name should be.
+    /// Token whose region the defect belongs to: for a plan without a name its brace, not the token where the name is
+    /// missing.
     fn decisive(&self) -> usize {
         if self.is_plan_without_name() { self.at - 1 } else { self.at }
     }
 
-    /// Where the group closes whose bracket opens at `at`.
+    /// Index of the last token of the group whose bracket opens at `at`.
     pub(super) fn end_of_group(&self, at: usize) -> usize {
         let around = self.openers.get(at).copied().flatten();
         let inside = |next: &usize| self.openers.get(*next).is_some_and(|opener| *opener != around);
         (at + 1..self.openers.len()).take_while(inside).last().unwrap_or(at)
     }
 
-    /// Whether this could have stood here: a terminal of the grammar.
+    /// Returns `true` if the grammar allows this terminal here.
     pub(super) fn expects(&self, terminal: &str) -> bool {
         self.expected.iter().any(|expected| expected.trim_matches('"') == terminal)
     }
 
-    /// Whether an element could have stood here.
+    /// Returns `true` if the grammar allows an element here.
     pub(super) fn expects_element(&self) -> bool {
         self.expects("ExecPlan")
     }
 
-    /// Whether a condition could have stood here.
+    /// Returns `true` if the grammar allows a condition here.
     pub(super) fn expects_condition(&self) -> bool {
         self.expects("null")
     }
 
-    /// Whether an argument could have stood here.
+    /// Returns `true` if the grammar allows an argument here.
     pub(super) fn expects_argument(&self) -> bool {
         self.expects("string") && self.expects("number")
     }
 
-    /// What is written from one token to another, if that is short enough for a sentence.
+    /// Source text from token `first` to token `last`, if it is short enough for a sentence and on one line.
     pub(super) fn text(&self, first: usize, last: usize) -> Option<&'s str> {
         let (first, last) = (self.tokens.get(first)?, self.tokens.get(last)?);
         let text = self.source.slice(Place::new(first.place.start, last.place.end));
         (!text.is_empty() && text.len() <= 60 && !text.contains('\n')).then_some(text)
     }
 
-    /// The stretch from one token to another.
+    /// Span from one token to another.
     pub(super) fn span(&self, first: usize, last: usize) -> Span {
         self.source.span(Place::new(self.place(first).start, self.place(last).end))
     }
 
-    /// The empty place before a token.
+    /// Empty span before a token.
     pub(super) fn before_token(&self, at: usize) -> Span {
         let start = self.place(at).start;
         self.source.span(Place::new(start, start))
     }
 
-    /// The brace after a name and the parentheses that follow it.
+    /// Index of the brace after a name and the group that follows the name.
     pub(super) fn brace_after_group(&self, name: usize) -> Option<usize> {
         let is_group = matches!(self.kind(name + 1), Some(Tok::LParen | Tok::TouchParen));
         let brace = self.end_of_group(name + 1) + 1;
         (is_group && self.kind(brace) == Some(Tok::LBrace)).then_some(brace)
     }
 
-    /// Returns `true` if a plan of this name is in the text.
+    /// Returns `true` if the text has a plan of this name.
     pub(super) fn has_plan(&self, name: &str) -> bool {
         self.plans.get_or_init(|| header::names(self.tokens)).contains(name)
     }
@@ -245,7 +247,7 @@ impl<'s> Site<'_, 's> {
         matches!(self.kind(at), Some(Tok::Or | Tok::And))
     }
 
-    /// The bracket that this closer closes, as a token.
+    /// Index of the bracket that this closer closes.
     pub(super) fn opener_of(&self, closer: usize) -> Option<usize> {
         self.openers.get(closer).copied().flatten()
     }
@@ -255,12 +257,12 @@ impl<'s> Site<'_, 's> {
         at + 1 < self.tokens.len() && self.place(at).end == self.place(at + 1).start
     }
 
-    /// A message about this token.
+    /// Returns a message about the token at `at`.
     pub(super) fn about(&self, at: usize, message: impl Into<String>, here: impl Into<String>) -> Diagnostic {
         Diagnostic::new(Code::E0102, message, self.source.span(self.place(at)), here)
     }
 
-    /// The message, pointing at this token as well.
+    /// Adds a label for the token at `at` to the message.
     pub(super) fn also(&self, diagnostic: Diagnostic, at: usize, text: &str) -> Diagnostic {
         diagnostic.also(self.source.span(self.place(at)), text)
     }
@@ -270,7 +272,7 @@ impl<'s> Site<'_, 's> {
         self.tokens.get(at).map_or(Place::new(end, end), |token| token.place)
     }
 
-    /// What was expected and what was found.
+    /// Reports the expected terminals and the token that was found instead.
     fn unexpected(&self) -> Diagnostic {
         let message = format!("expected {}, found {}", self.expectation(), self.found_words());
         self.about(self.at, message, "not expected here")
@@ -290,7 +292,7 @@ impl<'s> Site<'_, 's> {
         }
     }
 
-    /// What could have stood here, in words.
+    /// Describes in words the terminals that the grammar allows here.
     pub(super) fn expectation(&self) -> String {
         let mut left: Vec<&str> = self.expected.iter().map(|terminal| terminal.trim_matches('"')).collect();
         let mut words: Vec<String> = Vec::new();
@@ -312,7 +314,7 @@ impl<'s> Site<'_, 's> {
     }
 }
 
-/// What stands for several terminals: those that tell it, its name, and those that begin it.
+/// Names for sets of terminals: the terminals that reveal the set, its name, and the terminals that it covers.
 const WHOLES: &[(&[&str], &str, &[&str])] = &[
     (&["ExecPlan"], "an element", &["name", "{", "(", "ExecPlan", "FRAME", "label"]),
     (&["use", "{"], "a plan", &["use", "label", "{"]),

@@ -6,19 +6,19 @@ use super::tree::{Name, Plan};
 use super::{Arena, parse};
 use crate::diagnostic::{Code, Diagnostic, SourceId, sort};
 
-/// Gets the files that plans use: a stage of the compiler reads none itself.
+/// Finds and reads the files that plans use: no stage of the compiler reads a file itself.
 pub trait Loader {
-    /// The file that `path` means in the file `from`; a file has one number, however it is reached.
+    /// Finds the file that `path` names in the file `from`; a file has one number, however it is reached.
     ///
     /// # Errors
-    /// Why it cannot be read, in one line without a full stop.
+    /// Returns the reason why the file cannot be read, in one line without a full stop.
     fn find(&mut self, from: SourceId, path: &str) -> Result<SourceId, String>;
 
-    /// The text of a file that was found.
+    /// Returns the text of a file that `find` has returned.
     fn text(&self, source: SourceId) -> &str;
 }
 
-/// There are no files: a text stands by itself.
+/// A loader without files, for a text that uses none.
 #[derive(Debug, Clone, Copy)]
 pub struct NoFiles;
 
@@ -35,9 +35,9 @@ impl Loader for NoFiles {
 /// The plans of a file and of those that it uses.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Files<'s> {
-    /// Its own first, in order.
+    /// Plans, those of the file itself first, in order.
     pub plans: Vec<Plan<'s>>,
-    /// How many are its own.
+    /// Number of plans of the file itself.
     pub own: usize,
     /// `true` if a used file, or the head of a plan, could not be read, so that plans may be missing.
     pub is_incomplete: bool,
@@ -47,11 +47,11 @@ pub struct Files<'s> {
 struct Open<'s> {
     source: SourceId,
     uses: Vec<Name<'s>>,
-    /// How many of them have been looked at.
+    /// Number of uses that have been followed.
     done: usize,
 }
 
-/// The trees of a text and of all files that it uses, and all that is wrong with them.
+/// Parses a text and all files that it uses: returns their trees and all diagnostics.
 #[must_use]
 pub fn parse_with<'s>(
     source: SourceId,
@@ -93,7 +93,7 @@ fn unusable(used: Name<'_>, reason: String) -> Diagnostic {
         .help("a path is looked up from the folder of the file that uses it")
 }
 
-/// What is wrong where the last file that is open uses `source`, if that is open as well.
+/// Returns the diagnostic of a circular use: the last open file uses `source`, which is open as well.
 fn cycle(open: &[Open<'_>], source: SourceId) -> Option<Diagnostic> {
     let from = open.iter().position(|file| file.source == source)?;
     let cycle = open.get(from..)?;

@@ -1,5 +1,5 @@
-//! Words of other languages and misspelled keywords: one message each, and tokens with which reading goes on as if the plan
-//! were written in MDLe.
+//! Reports words of other languages and misspelled keywords, with one message each, and replaces them by tokens with
+//! which parsing continues as if the plan were written in MDLe.
 
 mod advice;
 
@@ -21,7 +21,7 @@ pub(super) fn is_like_atom(name: &str) -> bool {
         && strsim::damerau_levenshtein(&name.to_ascii_lowercase(), "atom") <= 1
 }
 
-/// Reports such words, and replaces them by what reading can go on with.
+/// Reports words of other languages, and replaces them by tokens with which parsing continues.
 pub(super) fn replace<'s>(source: Source<'s>, lexed: &mut Lexed<'s>) {
     let is_foreign = |token: &Token<'_>| {
         let is_word = |name: &str| is_word(name) || is_like_atom(name) || is_like_loop(name);
@@ -60,14 +60,14 @@ pub(super) fn replace<'s>(source: Source<'s>, lexed: &mut Lexed<'s>) {
     lexed.tokens = new;
 }
 
-/// `Execplan`, `ExecPlam`
+/// Returns `true` for misspellings of `ExecPlan`, such as `Execplan` or `ExecPlam`.
 fn is_like_loop(name: &str) -> bool {
     (7..=9).contains(&name.len())
         && name.starts_with(['e', 'E'])
         && strsim::damerau_levenshtein(&name.to_ascii_lowercase(), "execplan") <= 1
 }
 
-/// The bracket that closes each opening one, as far as they match.
+/// Index of the closing bracket for each opening one, as far as they match.
 fn ends(tokens: &[Token<'_>]) -> BTreeMap<usize, usize> {
     let (mut ends, mut open) = (BTreeMap::new(), Vec::new());
     for (at, token) in tokens.iter().enumerate() {
@@ -90,12 +90,12 @@ fn ends(tokens: &[Token<'_>]) -> BTreeMap<usize, usize> {
 struct Rewriting<'t, 's> {
     source: Source<'s>,
     old: &'t [Token<'s>],
-    /// The bracket that closes each opening one.
+    /// Index of the closing bracket for each opening one.
     ends: BTreeMap<usize, usize>,
-    /// The names of the plans of this file, which may be called like such words.
+    /// Names of the plans of this file, which may be words of other languages.
     plans: BTreeSet<&'s str>,
     new: Vec<Token<'s>>,
-    /// The place of each old token among the new ones.
+    /// Index of each old token among the new ones.
     moved: Vec<usize>,
     /// The brackets that are open, as far as they matter, with the old token that closes those that are rewritten.
     open: Vec<Open>,
@@ -146,7 +146,7 @@ impl<'s> Rewriting<'_, 's> {
         self.found.push((self.new.len(), place, diagnostic));
     }
 
-    /// Takes in what begins at `at`; the token to go on with.
+    /// Processes the word at `at`; returns the token to continue with.
     fn next(&mut self, at: usize) -> usize {
         let Some(token) = self.old.get(at).copied() else { return at + 1 };
         let rewritten = if token.kind == Tok::Use {
@@ -198,13 +198,13 @@ impl<'s> Rewriting<'_, 's> {
         }
     }
 
-    /// `(atom (…`
+    /// Returns `true` for `(atom (…`, a misspelled atom.
     fn is_atom(&self, at: usize, name: &str) -> bool {
         let is_open = |kind| matches!(kind, Some(Tok::LParen | Tok::TouchParen));
         is_like_atom(name) && !self.plans.contains(name) && is_open(self.before(at, 1)) && is_open(self.kind(at + 1))
     }
 
-    /// A name that is no plan of the file.
+    /// Processes a name that is not a plan of the file.
     fn word(&mut self, at: usize, name: &'s str) -> Option<usize> {
         let place = self.place(at, at);
         if self.is_atom(at, name) {
@@ -253,7 +253,7 @@ impl<'s> Rewriting<'_, 's> {
         Some(self.past_condition(at + 1))
     }
 
-    /// The condition in the parentheses that open here, if it is one that can be written elsewhere.
+    /// The condition in the parentheses that open at `at`, if it can be written elsewhere.
     fn condition_at(&self, at: usize) -> Option<&'s str> {
         let end = self.end_of(at).filter(|_| self.kind(at) != Some(Tok::LBrace))?;
         let inside = self.old.get(at + 1..end)?;
@@ -293,12 +293,12 @@ impl<'s> Rewriting<'_, 's> {
         next + 1
     }
 
-    /// The bracket that closes the one at `at`.
+    /// Index of the bracket that closes the one at `at`.
     fn end_of(&self, at: usize) -> Option<usize> {
         self.ends.get(&at).copied()
     }
 
-    /// `repeat 3 { … }`, `repeat(3) { … }`, `forever { … }`
+    /// Processes `repeat 3 { … }`, `repeat(3) { … }` and `forever { … }`.
     fn repeat(&mut self, at: usize, name: &str) -> Option<usize> {
         let is_count = |kind| matches!(kind, Some(Tok::Number(_) | Tok::Infinity));
         let (count, next) = if is_count(self.kind(at + 1)) {
@@ -367,7 +367,7 @@ impl<'s> Rewriting<'_, 's> {
         Some(at + 1)
     }
 
-    /// `import "corridors.mdle"`
+    /// Processes `import "corridors.mdle"`.
     fn import(&mut self, at: usize) -> Option<usize> {
         let place = self.place(at, at);
         if !matches!(self.kind(at + 1), Some(Tok::Str(_))) {
@@ -383,7 +383,7 @@ impl<'s> Rewriting<'_, 's> {
         Some(at + 1)
     }
 
-    /// `use corridors.mdle`: the name of the file without its quotes.
+    /// Processes `use corridors.mdle`: a file name without its quotes.
     fn used(&mut self, at: usize) -> Option<usize> {
         if matches!(self.kind(at + 1), Some(Tok::Str(_))) || !self.open.is_empty() {
             return None;

@@ -1,6 +1,4 @@
-//! Text to the same text in the one canonical layout: two blanks for each level, an element a line where a scope has several.
-//!
-//! The tokens stay, and so does every comment at its place among them; the tree only says where lines may break.
+//! Formats a text in the canonical layout: two spaces for each level, one element per line in a scope with several.
 
 mod comments;
 mod lines;
@@ -15,16 +13,16 @@ use comments::Before;
 use lines::Lines;
 use pieces::Pieces;
 
-/// How many columns a line has; only what cannot be broken is longer.
+/// Maximum columns of a line; only text that cannot be broken is longer.
 const WIDTH: usize = 100;
 
-/// The blanks of a level.
+/// Spaces per level.
 const INDENT: usize = 2;
 
-/// The text in the canonical layout; or what is wrong with it.
+/// Returns the text in the canonical layout, or its diagnostics.
 ///
 /// # Errors
-/// When the text has errors: where the parser had to guess, nothing is moved.
+/// Fails if the text has errors: where the parser had to guess, nothing is moved.
 pub fn format(id: SourceId, text: &str) -> Result<String, Vec<Diagnostic>> {
     let arena = arena_for(text);
     let (file, found) = parse(id, text, &arena);
@@ -37,11 +35,11 @@ pub fn format(id: SourceId, text: &str) -> Result<String, Vec<Diagnostic>> {
     Ok(layout.lines.text())
 }
 
-/// Puts one piece after the other into lines.
+/// Writes the pieces into lines, in order.
 struct Layout<'s> {
     id: SourceId,
     pieces: Pieces<'s>,
-    /// The piece that comes next.
+    /// The next piece.
     at: usize,
     lines: Lines,
     depth: usize,
@@ -67,7 +65,7 @@ impl Layout<'_> {
         self.boundary(Before::Close);
     }
 
-    /// A plan, on one line if it is small.
+    /// Writes a plan, on one line if it is small.
     fn plan(&mut self, plan: &Plan<'_>) {
         let end = self.behind(plan.span);
         if breaks(plan) || !self.fits(end) {
@@ -96,7 +94,7 @@ impl Layout<'_> {
         self.flow(end);
     }
 
-    /// What stands before these elements, and each of them on lines of its own.
+    /// Writes the pieces before these elements, then each element on lines of its own.
     fn list(&mut self, elements: &[Element<'_>]) {
         let Some(first) = elements.first() else { return };
         self.flow(self.first(first.span));
@@ -115,29 +113,30 @@ impl Layout<'_> {
         self.boundary(Before::Close);
     }
 
-    /// Whether what comes next, up to this piece, fits into the line that is being written.
+    /// Returns `true` if the pieces before `end` fit into the current line.
     fn fits(&self, end: usize) -> bool {
         let column = self.lines.width() + usize::from(!self.lines.is_blank());
         !self.pieces.have_comments(self.at + 1, end) && column + self.pieces.width(self.at, end) <= WIDTH
     }
 
-    /// Whether a loop's body stands in braces, and is not a plan by name.
+    /// Returns `true` if the body of a loop is in braces and is not a plan by name.
     fn is_braced(&self, body: &[Element<'_>]) -> bool {
         let first = body.first().map_or(0, |element| self.first(element.span));
         first.checked_sub(1).and_then(|before| self.pieces.kind(before)) == Some(Tok::LBrace)
     }
 
-    /// The first piece of a place in the text.
+    /// First piece of a span.
     fn first(&self, span: Span) -> usize {
         self.pieces.at_byte(span.within(self.id).start)
     }
 
-    /// The piece behind a place in the text.
+    /// First piece after a span.
     fn behind(&self, span: Span) -> usize {
         self.pieces.at_byte(span.within(self.id).end)
     }
 
-    /// Puts the pieces before `end` behind each other; lines that would be too long go on before an operator or a law.
+    /// Writes the pieces before `end` one after the other; a line that would be too long breaks before an operator or a
+    /// law.
     fn flow(&mut self, end: usize) {
         let further = INDENT * self.depth + 2 * INDENT;
         while self.at < end {
@@ -153,12 +152,12 @@ impl Layout<'_> {
     }
 }
 
-/// Whether a plan stands on several lines however short it is.
+/// Returns `true` if a plan takes several lines even if it is short.
 fn breaks(plan: &Plan<'_>) -> bool {
     plan.elements.len() > 1 || plan.elements.iter().any(is_broken)
 }
 
-/// Whether a body is a law, or a plan by name, and no string of several elements.
+/// Returns `true` if a body is a law or a plan by name, and not a string of several elements.
 fn is_one_call(body: &[Element<'_>]) -> bool {
     matches!(body, [Element { primary: Primary::Ref(_), .. }])
 }

@@ -1,4 +1,4 @@
-//! Says what a parenthesis behind a plan's own name is (docs/src/reference/language.md, 3.1): its parameters, its
+//! Decides what a parenthesis after a plan's own name is (docs/src/reference/language.md, 3.1): its parameters, its
 //! condition, or its first element. The grammar could not know before the end of it.
 
 use std::collections::BTreeSet;
@@ -6,14 +6,14 @@ use std::collections::BTreeSet;
 use super::token::{Tok, Token};
 use crate::alphabet::Kind;
 
-/// What begins behind a parenthesis in a header.
+/// Content that begins after a parenthesis in a header.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Begins<'s> {
     /// Parameters.
     Parameters,
-    /// Nothing with a type.
+    /// No parameters.
     Others,
-    /// `(v: spead)`: a parameter whose type is none, unless a plan has this name: then that, with a label.
+    /// `(v: spead)`: a parameter with an unknown type or, if a plan has this name, that plan with a label.
     Either(&'s str),
 }
 
@@ -27,8 +27,8 @@ pub(super) fn mark(tokens: &mut [Token<'_>]) {
     }
 }
 
-/// Marks the parenthesis at `at`, and the next one if this holds parameters; `plans` are the names of the file's plans, once
-/// somebody has asked for them.
+/// Marks the parenthesis at `at`, and the next one if the first holds parameters; `plans` caches the names of the
+/// file's plans.
 fn mark_header<'s>(tokens: &mut [Token<'s>], at: usize, plans: &mut Option<BTreeSet<&'s str>>) {
     if !is_parenthesis(tokens, at) {
         return;
@@ -50,7 +50,7 @@ fn mark_header<'s>(tokens: &mut [Token<'s>], at: usize, plans: &mut Option<BTree
     set(tokens, condition, kind);
 }
 
-/// The names of all plans.
+/// Returns the names of all plans.
 pub(super) fn names<'s>(tokens: &[Token<'s>]) -> BTreeSet<&'s str> {
     let named = tokens.windows(2).filter_map(|pair| match pair {
         [Token { kind: Tok::LBrace, .. }, Token { kind: Tok::Name(name), .. }] => Some(*name),
@@ -59,8 +59,8 @@ pub(super) fn names<'s>(tokens: &[Token<'s>]) -> BTreeSet<&'s str> {
     named.collect()
 }
 
-/// Whether parameters begin here, behind a parenthesis, and not a string whose first element has a label: a type follows the
-/// name, or what has to be one.
+/// Returns whether the tokens after a parenthesis begin parameters: a name and a colon with a type, or with a name that
+/// must be one. A string whose first element has a label begins alike.
 pub(super) fn begins<'s>(mut behind: impl Iterator<Item = Tok<'s>>) -> Begins<'s> {
     if !matches!((behind.next(), behind.next()), (Some(Tok::Name(_)), Some(Tok::Colon))) {
         return Begins::Others;
@@ -80,8 +80,8 @@ pub(super) fn begins<'s>(mut behind: impl Iterator<Item = Tok<'s>>) -> Begins<'s
     }
 }
 
-/// Whether the group that begins here, behind its parenthesis, holds what no condition does: a colon, or a comma that stands
-/// between no arguments, however deep.
+/// Returns `true` if the group whose parenthesis is before `behind` contains something that no condition does, at any
+/// depth: an element, a colon, or a comma that is not between arguments.
 pub(super) fn is_element<'s>(behind: impl Iterator<Item = Tok<'s>>) -> bool {
     let mut depth = 1_usize;
     // How deep the parenthesis is in which arguments stand, and whether one of those may come next.
@@ -113,7 +113,7 @@ pub(super) fn is_element<'s>(behind: impl Iterator<Item = Tok<'s>>) -> bool {
     false
 }
 
-/// Whether the brace belongs to an `ExecPlan`, whose first name is not its own.
+/// Returns `true` if the brace belongs to an `ExecPlan`, so that the first name in it is not the name of a plan.
 fn is_loop(tokens: &[Token<'_>], brace: usize) -> bool {
     let before = |back: usize| brace.checked_sub(back).and_then(|at| tokens.get(at)).map(|token| token.kind);
     match (before(2), before(1)) {
@@ -123,7 +123,7 @@ fn is_loop(tokens: &[Token<'_>], brace: usize) -> bool {
     }
 }
 
-/// Where the group that opens at `at` closes.
+/// Index of the token that closes the group opened at `at`.
 fn end_of_group(tokens: &[Token<'_>], at: usize) -> usize {
     let mut depth = 0_usize;
     for (offset, token) in tokens.get(at..).unwrap_or(&[]).iter().enumerate() {
@@ -138,7 +138,7 @@ fn end_of_group(tokens: &[Token<'_>], at: usize) -> usize {
     tokens.len()
 }
 
-/// What stands behind the token at `at`.
+/// Kinds of the tokens after the one at `at`.
 fn behind<'s>(tokens: &[Token<'s>], at: usize) -> impl Iterator<Item = Tok<'s>> {
     tokens.get(at + 1..).unwrap_or(&[]).iter().map(|token| token.kind)
 }

@@ -8,9 +8,9 @@ use super::token::{Tok, Token};
 /// Braces that end before a token.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum End {
-    /// Everything: a plan of its own begins.
+    /// All open braces: a plan of its own begins.
     OfPlan,
-    /// The brace that opens at this token, and what is inside it.
+    /// The brace that opens at this token, and the brackets inside it.
     OfBrace(usize),
 }
 
@@ -23,8 +23,8 @@ struct Open {
     is_deeper: bool,
 }
 
-/// The tokens before which a brace has to be closed: they begin a line that is indented no deeper than the line of the brace,
-/// though those between are.
+/// Tokens before which a brace must be closed: each begins a line that is indented no deeper than the line of the
+/// brace, though the lines between are.
 pub(super) fn ends(source: Source<'_>, tokens: &[Token<'_>]) -> BTreeMap<usize, End> {
     let mut ends = BTreeMap::new();
     let mut open: Vec<Open> = Vec::new();
@@ -55,7 +55,7 @@ pub(super) fn ends(source: Source<'_>, tokens: &[Token<'_>]) -> BTreeMap<usize, 
     ends
 }
 
-/// The number of characters before this place in its line, if these are blanks only.
+/// Number of characters before this place in its line, if all are spaces or tabs.
 fn indentation_of(source: Source<'_>, start: usize) -> Option<usize> {
     let before = source.text.get(..start)?;
     let line = before.rsplit('\n').next().unwrap_or(before);

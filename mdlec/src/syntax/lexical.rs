@@ -1,4 +1,5 @@
-//! Messages about text that is no token: unexpected characters, malformed numbers, and what does not end.
+//! Messages about text that is not a token: unexpected characters, malformed numbers, and unterminated comments and
+//! strings.
 
 use super::arithmetic::{arithmetic, computed, foreign_unit};
 use super::source::{Place, Source};
@@ -22,7 +23,7 @@ pub(super) fn characters(source: Source<'_>, place: Place) -> Diagnostic {
     characters_help(diagnostic, source, found, place)
 }
 
-/// Adds what is usually meant by these characters.
+/// Adds help about the usual meaning of these characters.
 fn characters_help(diagnostic: Diagnostic, source: Source<'_>, found: &str, place: Place) -> Diagnostic {
     let after = source.text.get(place.end..).unwrap_or("");
     let next = after.chars().next();
@@ -93,7 +94,7 @@ pub(super) fn file(source: Source<'_>, place: Place, name: &str) -> Diagnostic {
     diagnostic.fix("write {}", span, format!("\"{name}\""))
 }
 
-/// A sign that stands apart from its number.
+/// A sign that does not touch its number.
 fn sign(diagnostic: Diagnostic, source: Source<'_>, found: &str, place: Place) -> Diagnostic {
     let after = source.text.get(place.end..).unwrap_or("");
     let spaces = after.len() - after.trim_start_matches([' ', '\t']).len();
@@ -116,7 +117,7 @@ fn apart(source: Source<'_>, place: Place, word: &str) -> String {
     format!("{before}{word}{}", if is_blank(after) { "" } else { " " })
 }
 
-/// A typesetting command that means nothing in a plan.
+/// A typesetting command that has no meaning in a plan.
 pub(super) fn command(source: Source<'_>, place: Place) -> Diagnostic {
     let found = source.slice(place);
     let diagnostic = Diagnostic::new(
@@ -215,7 +216,7 @@ pub(super) fn number(source: Source<'_>, number: &str, tail: &str, place: Place)
     diagnostic
 }
 
-/// A number with a dot too many, or without digits after it.
+/// A number with too many dots, or without digits after a dot.
 fn dot(number: &str, tail: &str, span: Span, whole: Span) -> Diagnostic {
     let diagnostic =
         Diagnostic::new(Code::E0104, format!("`{number}{tail}` is not a number"), span, "not part of a number");
@@ -257,13 +258,13 @@ pub(crate) fn nearest_unit(written: &str) -> Option<&'static str> {
     })
 }
 
-/// All units, for a sentence.
+/// All units, as a list for a sentence.
 fn units() -> String {
     let names: Vec<String> = Unit::ALL.iter().map(|unit| format!("`{}`", unit.name)).collect();
     names.join(" ")
 }
 
-/// Characters in quotes, those that cannot be seen by their number.
+/// Characters in quotes; invisible ones by their number.
 fn shown(text: &str) -> String {
     let shown: String = text
         .chars()

@@ -1,4 +1,4 @@
-//! The usual mistakes, each with a message of its own and something to type instead.
+//! Messages about usual mistakes, each with something to type instead.
 
 mod atoms;
 mod calls;
@@ -15,7 +15,7 @@ use conditions::condition;
 use files::at_file_level;
 use labels::{label_and_equals, label_behind, label_in_quotes, label_of_after};
 
-/// The message about a mistake that is known; the first that fits.
+/// Returns the message about the first known mistake that fits.
 pub(super) fn known(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let mistakes: [fn(&Site<'_, '_>) -> Option<Diagnostic>; 20] = [
         square_brackets,
@@ -100,7 +100,7 @@ fn plan_name(site: &Site<'_, '_>) -> Option<Diagnostic> {
     }
 }
 
-/// `ExecPlan { … }` and what else is not a loop.
+/// `ExecPlan { … }` and other malformed loops.
 fn loop_count(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if site.before(1) == Some(Tok::ExecPlan) {
         if let (Some(Tok::LParen), Some(Tok::Number(_) | Tok::Infinity), Some(Tok::RParen), Some(Tok::LBrace)) =
@@ -218,7 +218,7 @@ fn comma(site: &Site<'_, '_>) -> Option<Diagnostic> {
     None
 }
 
-/// A comma in the condition of an atom, behind it, or in the parentheses of its law.
+/// A comma in the condition of an atom, after it, or in the parentheses of its law.
 fn comma_in_atom(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let (opener, span) = (site.opener()?, site.span(site.at, site.at));
     let before = opener.checked_sub(1)?;
@@ -253,7 +253,7 @@ fn comma_in_atom(site: &Site<'_, '_>) -> Option<Diagnostic> {
     }
 }
 
-/// What is wrong with a list of parameters.
+/// A malformed list of parameters.
 fn parameters(site: &Site<'_, '_>) -> Option<Diagnostic> {
     (site.opener_kind() == Some(Tok::ParamParen)).then(|| {
         let expected = if site.before(1) == Some(Tok::Comma) { "a parameter".to_owned() } else { site.expectation() };
@@ -262,7 +262,7 @@ fn parameters(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// A name here that is a keyword but for capitals, and that keyword.
+/// Index of a name that is a keyword except for capitals, with that keyword.
 fn spelling(site: &Site<'_, '_>) -> Option<(usize, &'static str)> {
     let places = [Some(site.at), site.at.checked_sub(1)].into_iter().flatten();
     let names = places.filter_map(|at| Some((at, site.name_at(at)?)));

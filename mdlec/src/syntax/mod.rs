@@ -26,7 +26,7 @@ mod token;
 pub mod tree;
 mod waiting;
 
-/// Takes in what lalrpop has made of the grammar.
+/// Includes the parser that lalrpop generates from a grammar.
 macro_rules! parser {
     ($module:ident, $path:literal) => {
         lalrpop_util::lalrpop_mod!(
@@ -60,16 +60,16 @@ pub(crate) use lexical::nearest_unit;
 pub use one_line::one_line;
 pub use single::{is_law, operands};
 
-/// Where trees stand.
+/// Arena that holds the nodes of a tree.
 pub type Arena = bumpalo::Bump;
 
-/// An arena with room for the tree of this text: most trees are shorter than that, and get all of it at once.
+/// Returns an arena with room for the tree of `text`: most trees fit, and are allocated at once.
 #[must_use]
 pub fn arena_for(text: &str) -> Arena {
     Arena::with_capacity(6 * text.len())
 }
 
-/// The tree of a text, and all that is wrong with it, in the order of the text.
+/// Parses a text: returns its tree and all its diagnostics, in the order of the text.
 #[must_use]
 pub fn parse<'s>(source: SourceId, text: &'s str, arena: &'s Arena) -> (tree::File<'s>, Vec<Diagnostic>) {
     let source = Source::new(source, text);
@@ -79,7 +79,7 @@ pub fn parse<'s>(source: SourceId, text: &'s str, arena: &'s Arena) -> (tree::Fi
     }
 }
 
-/// The same with all the care that a text needs in which something is wrong.
+/// Parses a text with error recovery, for texts that contain errors.
 fn recover<'s>(source: Source<'s>, arena: &'s Arena) -> (tree::File<'s>, Vec<Diagnostic>) {
     let mut lexed = token::lex(source);
     foreign::replace(source, &mut lexed);

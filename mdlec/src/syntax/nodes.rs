@@ -1,7 +1,7 @@
 //! Makes the nodes of the tree: one constructor for each action of the grammar.
 //!
-//! The parser's own stack holds small things that need no dropping, since it moves what it holds with every token: what is large is
-//! in the arena already, and what is to be in a list waits elsewhere until the list is complete.
+//! The parser's own stack holds small values that need no dropping, since it moves them with every token: large nodes
+//! are in the arena already, and members of a list wait elsewhere until the list is complete.
 
 use std::borrow::Cow;
 use std::cell::RefCell;
@@ -22,10 +22,10 @@ use crate::diagnostic::{Code, Diagnostic, Span};
 /// An error that the parser has recovered from.
 pub(super) type Recovery<'s> = ErrorRecovery<Location, Tok<'s>, std::convert::Infallible>;
 
-/// The doc comments read so far, each with the token that follows it.
+/// Doc comments read so far, each with the index of the token after it.
 pub(super) type Docs<'s> = RefCell<Vec<(usize, &'s str)>>;
 
-/// What stands before the elements of a plan.
+/// Head of a plan: everything before its elements.
 #[derive(Default, Clone, Copy)]
 pub(super) struct Head<'s> {
     pub(super) name: Option<Name<'s>>,
@@ -33,32 +33,32 @@ pub(super) struct Head<'s> {
     pub(super) condition: Option<Condition<'s>>,
 }
 
-/// What the constructors know, and what they find out.
+/// State of the constructors: their input, and the nodes and errors that they collect.
 pub(super) struct Nodes<'t, 's> {
     pub(super) source: Source<'s>,
-    /// Where the tree stands.
+    /// Arena of the tree.
     arena: &'s Bump,
-    /// The tokens, for what is broken; without them there is nothing to say about that.
+    /// The tokens, for messages about broken text; empty where no messages are needed.
     pub(super) tokens: &'t [Token<'s>],
     docs: &'t Docs<'s>,
-    /// What waits for its list.
+    /// Nodes whose list is not complete.
     pub(super) waiting: Waiting<'s>,
     /// The tree.
     pub(super) file: File<'s>,
     /// The parser's errors, in the order of the text.
     pub(super) errors: Vec<Recovery<'s>>,
-    /// The bodies that are empty, each with its tokens.
+    /// Messages about empty bodies, each with the tokens of the body.
     pub(super) empty: Vec<(Range<usize>, Diagnostic)>,
 }
 
 impl<'t, 's> Nodes<'t, 's> {
-    /// Constructors for the tokens of a text.
+    /// Returns constructors for the tokens of a text.
     pub(super) fn new(source: Source<'s>, arena: &'s Bump, tokens: &'t [Token<'s>], docs: &'t Docs<'s>) -> Self {
         let (waiting, file) = (Waiting::new(), File::default());
         Self { source, arena, tokens, docs, waiting, file, errors: Vec::new(), empty: Vec::new() }
     }
 
-    /// A node in its place.
+    /// Allocates a node in the arena.
     pub(super) fn put<T: Copy>(&self, node: T) -> &'s T {
         self.arena.alloc(node)
     }
@@ -111,14 +111,14 @@ impl<'t, 's> Nodes<'t, 's> {
         self.waiting.params.push(Param { name, type_name });
     }
 
-    /// The name before a brace, `A { … }`: reported already, but others may refer to it.
+    /// The name before a brace, `A { … }`: reported already, but other plans may refer to it.
     fn name_before(&self, brace: Location) -> Option<Name<'s>> {
         let before = self.tokens.get((brace.token as usize).checked_sub(1)?)?;
         let Tok::Name(name) = before.kind else { return None };
         Some(Spanned { node: name, span: self.source.span(before.place) })
     }
 
-    /// The doc comment directly before a plan.
+    /// Doc comment directly before a plan.
     fn docs_of(&self, start: Location) -> &'s [&'s str] {
         let (docs, start) = (self.docs.borrow(), start.token as usize);
         if docs.last().is_none_or(|(last, _)| *last < start) {
@@ -161,7 +161,7 @@ impl<'t, 's> Nodes<'t, 's> {
         self.waiting.element(Element { primary, marks, span })
     }
 
-    /// The elements from the first of a list on.
+    /// Completes a list of elements, which begins at `first`.
     fn elements(&mut self, first: Option<First>) -> &'s [Element<'s>] {
         first.map_or(&[][..], |first| complete(&mut self.waiting.elements, first, self.arena))
     }
@@ -250,7 +250,7 @@ impl<'t, 's> Nodes<'t, 's> {
         self.waiting.condition(operand)
     }
 
-    /// Several operands joined by one operator: the first, and those from the first of the rest on.
+    /// Joins operands by one operator: `first` is the index of the second operand.
     pub(super) fn joined(
         &mut self,
         first: Condition<'s>,
@@ -265,7 +265,7 @@ impl<'t, 's> Nodes<'t, 's> {
 
     // ---- Calls ----
 
-    /// A call with the arguments from `first` on.
+    /// Makes a call with the arguments that wait from `first` on.
     pub(super) fn call(
         &mut self,
         start: Location,
@@ -304,7 +304,7 @@ impl<'t, 's> Nodes<'t, 's> {
     }
 }
 
-/// An element that is a call and nothing else.
+/// Makes an element from a call alone.
 fn single<'s>(call: &'s Call<'s>) -> Element<'s> {
     Element { primary: Primary::Ref(call), marks: None, span: call.span }
 }

@@ -1,4 +1,4 @@
-//! A piece of a plan's text in one line, for reports that repeat the writer's words.
+//! Writes a piece of a plan's text in one line, for reports that repeat the user's words.
 
 use super::source::Source;
 use super::token::lex;
@@ -33,7 +33,7 @@ pub fn one_line<const N: usize>(text: &str, ends: [Option<usize>; N]) -> (String
     (line, places)
 }
 
-/// Returns `true` if the parenthesis that opens `range` is closed by the last token of it.
+/// Returns `true` if the last token of `range` closes the parenthesis that opens it.
 fn closes(range: &std::ops::Range<usize>, is: &impl Fn(usize, &str) -> bool) -> bool {
     let mut depth = 0_usize;
     for index in range.clone() {

@@ -1,10 +1,10 @@
-//! The tree of a file as an outline: a line for each node, as written, nothing resolved.
+//! Prints the tree of a file as an outline: one line for each node, as written, without resolving names.
 
 use super::tree::{
     Arg, Call, Condition, ConditionNode, Count, Element, File, Frame, Number, Operand, Param, Plan, Primary,
 };
 
-/// Writes the outline, two blanks deeper for each level.
+/// Writes the outline, two spaces deeper for each level.
 #[must_use]
 pub fn outline(file: &File<'_>) -> String {
     let mut outline = Outline { text: String::new(), depth: 0 };

@@ -1,10 +1,10 @@
-//! One law or one condition by itself, as a file of another format has it.
+//! Recognizes a single law or condition, as files of other formats contain them.
 
 use super::tree::{Condition, ConditionNode, Element, Primary};
 use super::{Arena, arena_for, parse};
 use crate::diagnostic::SourceId;
 
-/// Returns `true` if a text is one law with its arguments and nothing else: in an atom it changes nothing around it.
+/// Returns `true` if a text is one law with its arguments and nothing else, so that it can be inserted into an atom.
 #[must_use]
 pub fn is_law(text: &str) -> bool {
     is_alone(text, "{ P (Atom (null) ", ") }", |element| match element {
@@ -40,8 +40,8 @@ pub fn operands(text: &str) -> Option<Vec<&str>> {
     if is_condition { ranges.iter().map(operand).collect() } else { None }
 }
 
-/// Returns `true` if a text between these makes a plan of one good element, on one line and with a line break after it: no
-/// comment in it reaches further, and no bracket in it closes one that it did not open.
+/// Returns `true` if a text between `before` and `behind` makes a plan of one good element, on one line and with a line
+/// break after it: no comment or bracket in the text reaches beyond it.
 fn is_alone(text: &str, before: &str, behind: &str, mut is_good: impl FnMut(&Element<'_>) -> bool) -> bool {
     text.chars().all(mdle_runtime::is_printable)
         && ["", "\n"].iter().all(|end| {

@@ -2,12 +2,12 @@
 
 use crate::diagnostic::{SourceId, Span};
 
-/// A text with the file that it is.
+/// The text of a file with the file's identifier.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Source<'s> {
-    /// The file.
+    /// Identifier of the file.
     pub(super) id: SourceId,
-    /// Its text.
+    /// Text of the file.
     pub(super) text: &'s str,
 }
 
@@ -16,11 +16,11 @@ pub(super) struct Source<'s> {
 pub(super) struct Place {
     /// The first byte.
     pub(super) start: usize,
-    /// The byte behind the last.
+    /// The byte after the last.
     pub(super) end: usize,
 }
 
-/// Where a token begins or the one before it ends: how many tokens and how many bytes are before that.
+/// Boundary between tokens, as the number of tokens and of bytes before it.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Location {
     /// The number of tokens.
@@ -30,13 +30,14 @@ pub(super) struct Location {
 }
 
 impl Location {
-    /// The location before this token, which begins at `byte`, or behind the token before it, which ends there.
+    /// Location before token number `token`, which begins at `byte`, or after the token before it, which ends at
+    /// `byte`.
     pub(super) fn new(token: usize, byte: usize) -> Self {
         Self { token: offset(token), byte: offset(byte) }
     }
 }
 
-/// As trees and diagnostics have it.
+/// Converts an offset to the 32 bits of spans and locations.
 fn offset(number: usize) -> u32 {
     u32::try_from(number).unwrap_or(u32::MAX)
 }
@@ -47,36 +48,36 @@ impl Place {
         Self { start, end }
     }
 
-    /// Whether nothing is written there.
+    /// Returns `true` if the place holds no text.
     pub(super) fn is_empty(self) -> bool {
         self.start == self.end
     }
 }
 
 impl<'s> Source<'s> {
-    /// A text. One that ends behind 4 GB is the first of its files to messages, for places have no more bits.
+    /// Makes a source. Spans have 32 bits, so messages place a text that ends beyond 4 GiB in the first of the files.
     pub(super) fn new(id: SourceId, text: &'s str) -> Self {
         let fits = u32::try_from(text.len()).is_ok_and(|length| id.0.checked_add(length).is_some());
         Self { id: if fits { id } else { SourceId(0) }, text }
     }
 
-    /// The place as trees and diagnostics have it.
+    /// Converts a place to a span, as in trees and diagnostics.
     pub(super) fn span(self, place: Place) -> Span {
         Span::new(self.id, place.start, place.end)
     }
 
-    /// The stretch between these two.
+    /// Span between two locations.
     pub(super) fn between(self, start: Location, end: Location) -> Span {
         let first = self.id.0;
         Span { start: first + start.byte, end: first + end.byte.max(start.byte) }
     }
 
-    /// What is written there.
+    /// Text at a place.
     pub(super) fn slice(self, place: Place) -> &'s str {
         self.text.get(place.start..place.end).unwrap_or("")
     }
 
-    /// Whether it is the first thing of its line.
+    /// Returns `true` if the place begins its line.
     pub(super) fn is_column_one(self, place: Place) -> bool {
         self.text.get(..place.start).is_some_and(|before| before.is_empty() || before.ends_with('\n'))
     }

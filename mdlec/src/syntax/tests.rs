@@ -1,4 +1,4 @@
-//! What the front end reads and says, source beside result.
+//! Snapshots of the parser: each source beside its outline and messages.
 
 mod format;
 mod forms;
@@ -11,7 +11,7 @@ use super::source::Source;
 use super::{Arena, parse, recover};
 use crate::diagnostic::Sources;
 
-/// Compares the sources, each with its outline and its messages, with what is recorded.
+/// Compares sources, each with its outline and its messages, with the recorded snapshot.
 fn check(name: &str, texts: &[&str]) {
     let shown = texts.iter().map(|text| one(text)).collect::<Vec<_>>().join("\n════════\n");
     let mut settings = insta::Settings::clone_current();

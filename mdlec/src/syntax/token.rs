@@ -1,5 +1,5 @@
-//! Text to tokens (docs/src/reference/language.md, 2): afterwards there are no blanks, no comments and no typesetting,
-//! and each parenthesis knows whether it touches a name.
+//! Splits text into tokens (docs/src/reference/language.md, 2): they have no spaces, comments or typesetting, and each
+//! parenthesis records whether it touches a name.
 
 use std::borrow::Cow;
 
@@ -10,16 +10,16 @@ use super::source::{Place, Source};
 use crate::alphabet::Unit;
 use crate::diagnostic::Diagnostic;
 
-/// A token where it is written.
+/// A token with its place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Token<'s> {
-    /// What it is.
+    /// Kind of the token.
     pub(super) kind: Tok<'s>,
-    /// Where.
+    /// Place of the token in the text.
     pub(super) place: Place,
 }
 
-/// What a token is.
+/// Kind of a token.
 #[derive(Logos, Debug, Clone, Copy, PartialEq)]
 #[logos(skip(r"[\s;$\u{feff}]+"))]
 #[logos(skip(r"\\\\"))]
@@ -121,12 +121,12 @@ pub(super) enum Tok<'s> {
     /// A block comment, not terminated; a terminated one is skipped.
     #[token("/*", comment)]
     Comment,
-    /// A typesetting command that means nothing here; never reaches the parser.
+    /// A typesetting command that is not part of MDLe; never reaches the parser.
     #[regex(r"\\[A-Za-z]+", priority = 1)]
     Command,
 }
 
-/// What the lexer makes of a text.
+/// Output of the lexer.
 #[derive(Debug, Default)]
 pub(super) struct Lexed<'s> {
     /// The tokens, in order.
@@ -162,11 +162,11 @@ pub(super) fn lex(source: Source<'_>) -> Lexed<'_> {
 struct Reader<'s> {
     source: Source<'s>,
     lexed: Lexed<'s>,
-    /// Where the brace of the current `\text{…}` is.
+    /// Byte offset of the brace that closes the current `\text{…}`.
     text_ends: usize,
-    /// The end of the last token, and of the typesetting that touches it.
+    /// End of the last token and of the typesetting that touches it.
     touches: usize,
-    /// The unexpected characters that have just been read.
+    /// Place of the unexpected characters just read, not yet reported.
     run: Option<Place>,
     /// The end of a file name that was read although it is not between double quotes.
     skipped: usize,
@@ -249,7 +249,7 @@ impl<'s> Reader<'s> {
         self.push(Tok::Number(number), place);
     }
 
-    /// The braces of `\text{…}` vanish, and do not come between a name and its parenthesis.
+    /// Drops the braces of `\text{…}`, so that a name in them still touches the parenthesis after them.
     fn text(&mut self, place: Place) {
         match text_end(self.source.text, place.end) {
             Some(end) => self.text_ends = end,
@@ -264,7 +264,7 @@ impl<'s> Reader<'s> {
         }
     }
 
-    /// Unexpected characters are reported once for a run of them.
+    /// Collects neighbouring unexpected characters, which are reported together.
     fn character(&mut self, place: Place) {
         match &mut self.run {
             Some(run) if run.end == place.start => run.end = place.end,
@@ -320,7 +320,8 @@ pub(super) fn label(text: &str) -> Cow<'_, str> {
     Cow::Owned(label)
 }
 
-/// Where the `\text{` that ends before `from` is closed; it holds no other braces than escaped ones.
+/// Byte offset of the brace that closes the `\text{` ending at `from`; `None` if there is none, or if another brace
+/// opens before it.
 fn text_end(text: &str, from: usize) -> Option<usize> {
     let mut bytes = text.bytes().enumerate().skip(from);
     while let Some((at, byte)) = bytes.next() {
@@ -334,7 +335,7 @@ fn text_end(text: &str, from: usize) -> Option<usize> {
     None
 }
 
-/// A number with what touches it, if that is a unit.
+/// Reads a number with the text that touches it, if that text is a unit.
 fn number<'s>(lexer: &mut Lexer<'s, Tok<'s>>) -> Result<&'s str, ()> {
     let rest = lexer.remainder();
     let tail = match rest.as_bytes() {
@@ -348,7 +349,7 @@ fn number<'s>(lexer: &mut Lexer<'s, Tok<'s>>) -> Result<&'s str, ()> {
     if is_sound { Ok(lexer.slice()) } else { Err(()) }
 }
 
-/// The number that a text begins with, empty if it begins with none, and what touches that.
+/// Splits a text into the number that it begins with (perhaps empty) and the text that touches that number.
 pub(super) fn split(text: &str) -> (&str, &str) {
     let digits = |from: usize| text.bytes().skip(from).take_while(u8::is_ascii_digit).count();
     let is = |at: usize, any: &[u8]| text.as_bytes().get(at).is_some_and(|byte| any.contains(byte));
@@ -369,7 +370,7 @@ pub(super) fn split(text: &str) -> (&str, &str) {
     text.split_at_checked(end).unwrap_or((text, ""))
 }
 
-/// How long the text is that touches a number.
+/// Length in bytes of the text that touches a number.
 fn touching(rest: &str) -> usize {
     let mut chars = rest.chars();
     while let Some(c) = chars.next() {
@@ -386,7 +387,8 @@ fn touching(rest: &str) -> usize {
     rest.len()
 }
 
-/// How long the blanks and the unit are that follow a number, if it is a unit with a `/`, which nothing else has.
+/// Length in bytes of the spaces and the unit after a number, if the unit contains `/`; only units do, so a space may
+/// precede them.
 fn unit_apart(rest: &str) -> usize {
     let blanks = rest.bytes().take_while(|byte| matches!(byte, b' ' | b'\t')).count();
     let behind = rest.get(blanks..).unwrap_or("");
@@ -401,7 +403,7 @@ fn unit_apart(rest: &str) -> usize {
     Unit::ALL.iter().find(|unit| follows(unit)).map_or(0, |unit| blanks + unit.name.len())
 }
 
-/// The text between the quotes; one that does not end on its line takes what could be the name of a file.
+/// Returns the text between the quotes; a string that does not end on its line takes what could be a file name.
 fn string<'s>(lexer: &mut Lexer<'s, Tok<'s>>) -> &'s str {
     let rest = lexer.remainder();
     let stop = rest.find(['"', '\n']).unwrap_or(rest.len());
@@ -413,7 +415,7 @@ fn string<'s>(lexer: &mut Lexer<'s, Tok<'s>>) -> &'s str {
     text
 }
 
-/// The text behind the slashes; four of them make no doc comment.
+/// Returns the text after the slashes; four slashes are not a doc comment.
 fn doc<'s>(lexer: &mut Lexer<'s, Tok<'s>>) -> FilterResult<&'s str, ()> {
     match lexer.slice().strip_prefix("///") {
         Some(text) if !text.starts_with('/') => FilterResult::Emit(text.trim_end()),

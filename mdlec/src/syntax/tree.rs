@@ -1,17 +1,17 @@
-//! The tree of a plan file as it is written (docs/src/reference/language.md, 3): every node with its span, nothing
+//! Tree of a plan file as it is written (docs/src/reference/language.md, 3): every node has its span, and no name is
 //! resolved.
 //!
-//! What is written is borrowed from the text, and the nodes stand in an arena, each once, where it stays: a parser that allocates
-//! and copies them spends most of its time on that.
+//! Nodes borrow their text from the source and are allocated once, in an arena: a parser that allocates and copies each
+//! node spends most of its time on that.
 
 use crate::diagnostic::Span;
 
-/// Something with the place where it is written.
+/// A node with the place where it is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Spanned<T> {
-    /// The thing.
+    /// The node.
     pub node: T,
-    /// Its place.
+    /// Span of the node.
     pub span: Span,
 }
 
@@ -21,11 +21,11 @@ pub type Name<'s> = Spanned<&'s str>;
 /// A file: `{ use | plan }`.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct File<'s> {
-    /// The files it uses, as written between the quotes.
+    /// The used files, as written between the quotes.
     pub uses: Vec<Name<'s>>,
-    /// Its plans, in order.
+    /// The plans of the file, in order.
     pub plans: Vec<Plan<'s>>,
-    /// Whether a plan is left out, since its head could not be read.
+    /// `true` if a plan is missing because its head could not be read.
     pub is_incomplete: bool,
 }
 
@@ -36,51 +36,51 @@ pub struct Plan<'s> {
     pub docs: &'s [&'s str],
     /// `Γ_from^to`, normalized: `Γ_`, then the text without braces and typesetting marks.
     pub label: Option<Name<'s>>,
-    /// Its name.
+    /// Name of the plan.
     pub name: Name<'s>,
-    /// Its parameters.
+    /// Parameters of the plan.
     pub params: &'s [Param<'s>],
-    /// Its interrupt; without one it has the null interrupt.
+    /// Interrupt of the plan; `None` is the null interrupt.
     pub condition: Option<Condition<'s>>,
-    /// Its elements, in order.
+    /// Elements of the plan, in order.
     pub elements: &'s [Element<'s>],
-    /// From its label or brace to its closing brace.
+    /// From the plan's label or brace to its closing brace.
     pub span: Span,
 }
 
 /// A parameter of a plan: `NAME ":" TYPE`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Param<'s> {
-    /// Its name.
+    /// Name of the parameter.
     pub name: Name<'s>,
-    /// Its type as written, such as `speed` or `bits[4]`.
+    /// Type of the parameter as written, such as `speed` or `bits[4]`.
     pub type_name: Name<'s>,
 }
 
 /// An element of a string: `[ NAME ":" ] [ frame ] primary [ "^" count ]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Element<'s> {
-    /// What it is.
+    /// The element without its label, frame and count.
     pub primary: Primary<'s>,
-    /// What stands before and behind that; most elements have nothing there.
+    /// Label, frame and count of the element; `None` for most elements.
     pub marks: Option<&'s Marks<'s>>,
-    /// From its first token to its last.
+    /// From the element's first token to its last.
     pub span: Span,
 }
 
-/// What an element may have besides what it is.
+/// Optional parts of an element: label, frame and loop count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Marks<'s> {
-    /// Its label, for `after`.
+    /// Label that `after` refers to.
     pub label: Option<Name<'s>>,
     /// Frame of the element.
     pub frame: Option<Frame<'s>>,
-    /// How often it is run.
+    /// Count of `^`: the element runs this many times.
     pub power: Option<Count<'s>>,
 }
 
 impl<'s> Element<'s> {
-    /// Its label, for `after`.
+    /// Label that `after` refers to.
     #[must_use]
     pub fn label(&self) -> Option<Name<'s>> {
         self.marks?.label
@@ -92,7 +92,7 @@ impl<'s> Element<'s> {
         self.marks?.frame.as_ref()
     }
 
-    /// How often it is run.
+    /// Count of `^`: the element runs this many times.
     #[must_use]
     pub fn power(&self) -> Option<&'s Count<'s>> {
         self.marks?.power.as_ref()
@@ -102,13 +102,13 @@ impl<'s> Element<'s> {
 /// The frame of an element: `"FRAME" ( NUMBER | "here" )`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Frame<'s> {
-    /// The frame around it, turned by this angle.
+    /// The enclosing frame, turned by this angle.
     Turned(Number<'s>),
     /// The heading of the robot at the moment the element is entered.
     Here,
 }
 
-/// What an element is: a reference, so that a list of elements is short.
+/// Main part of an element, by reference, so that a list of elements is short.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Primary<'s> {
     /// `(Atom condition control)`.
@@ -123,7 +123,7 @@ pub enum Primary<'s> {
     String(&'s &'s [Element<'s>]),
     /// Formal notation `(s, ξ, T)`, and `(u, ξ, T)` where `u` is one call.
     Formal(&'s Formal<'s>),
-    /// What could not be read; a diagnostic says why.
+    /// Text that could not be read; a diagnostic gives the reason.
     Broken,
 }
 
@@ -132,14 +132,14 @@ pub enum Primary<'s> {
 pub struct Atom<'s> {
     /// The atom's interrupt.
     pub condition: Condition<'s>,
-    /// Its law.
+    /// Law of the atom.
     pub control: &'s Call<'s>,
 }
 
-/// A loop.
+/// A loop: `ExecPlan` with its count and its body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Exec<'s> {
-    /// How often.
+    /// Number of passes.
     pub count: Count<'s>,
     /// The body; a plan by name is a single element.
     pub body: &'s [Element<'s>],
@@ -150,31 +150,31 @@ pub struct Exec<'s> {
 pub struct Formal<'s> {
     /// The string, or a single [`Primary::Ref`] that may be a law.
     pub body: &'s [Element<'s>],
-    /// Its interrupt.
+    /// Interrupt of the scope or atom.
     pub condition: Condition<'s>,
-    /// Its timer.
+    /// Timer of the scope or atom.
     pub time: Option<Arg<'s>>,
 }
 
 /// A condition: quarks joined by AND, OR and NOT.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Condition<'s> {
-    /// What it is.
+    /// The condition without its place.
     pub node: ConditionNode<'s>,
-    /// Its place, parentheses included where they are its own.
+    /// Span of the condition, with the parentheses that belong to it.
     pub span: Span,
 }
 
-/// What a condition is; OR and AND hold two operands or more.
+/// Kind of a condition; OR and AND have at least two operands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ConditionNode<'s> {
-    /// At least one has fired.
+    /// OR: at least one operand holds.
     Or(&'s &'s [Condition<'s>]),
-    /// All have fired.
+    /// AND: all operands hold.
     And(&'s &'s [Condition<'s>]),
-    /// It has not fired.
+    /// NOT: the operand does not hold.
     Not(&'s Condition<'s>),
-    /// It has fired, and once since the scope was entered it had not.
+    /// RISING: the operand holds and has been false at some time since the scope was entered.
     Rising(&'s Condition<'s>),
     /// An interrupt quark.
     Call(&'s Call<'s>),
@@ -184,7 +184,7 @@ pub enum ConditionNode<'s> {
     Null,
     /// `after LABEL [cause]`.
     After(&'s After<'s>),
-    /// What could not be read; a diagnostic says why.
+    /// Text that could not be read; a diagnostic gives the reason.
     Broken,
 }
 
@@ -193,9 +193,9 @@ pub enum ConditionNode<'s> {
 pub struct Compared<'s> {
     /// The signal.
     pub left: &'s Call<'s>,
-    /// How it is compared.
+    /// Operator of the comparison.
     pub operator: Comparison,
-    /// With what.
+    /// The right side.
     pub right: Operand<'s>,
 }
 
@@ -204,7 +204,7 @@ pub struct Compared<'s> {
 pub struct After<'s> {
     /// The label of the element that has to have ended.
     pub label: Name<'s>,
-    /// The operand that has to be the cause.
+    /// Operand that must have caused the end of that element.
     pub cause: Option<Condition<'s>>,
 }
 
@@ -219,7 +219,7 @@ pub enum Operand<'s> {
     Infinity(Span),
 }
 
-/// How a signal is compared.
+/// Operator of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Comparison {
     /// `==`, within the signal's tolerance.
@@ -235,7 +235,7 @@ pub enum Comparison {
 }
 
 impl Comparison {
-    /// As it is written.
+    /// Returns the operator as it is written.
     #[must_use]
     pub fn symbol(self) -> &'static str {
         match self {
@@ -260,7 +260,7 @@ pub struct Call<'s> {
 }
 
 impl Call<'_> {
-    /// The place of its name, which it begins with.
+    /// Span of the name, with which the call begins.
     #[must_use]
     pub fn name_span(&self) -> Span {
         let length = u32::try_from(self.name.len()).unwrap_or(u32::MAX);
@@ -271,20 +271,20 @@ impl Call<'_> {
 /// An argument.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Arg<'s> {
-    /// A number, or bits where these are asked for.
+    /// A number, or bits where the parameter has that type.
     Number(Number<'s>),
     /// `inf` and its other spellings.
     Infinity(Span),
-    /// A string in quotes, without them.
+    /// A string, without its quotes.
     String(Name<'s>),
-    /// A robot, a file, a parameter.
+    /// The name of a robot, a file or a parameter.
     Name(Name<'s>),
     /// `NAME module`.
     Module(Name<'s>),
 }
 
 impl Arg<'_> {
-    /// Its place.
+    /// Span of the argument.
     #[must_use]
     pub fn span(&self) -> Span {
         match self {
@@ -298,9 +298,9 @@ impl Arg<'_> {
 /// A number as written: digits are kept, since `0100` may be four bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Number<'s> {
-    /// Its digits and its unit.
+    /// Digits and unit as written.
     text: &'s str,
-    /// Its place, unit included.
+    /// Span of the number, unit included.
     pub span: Span,
 }
 
@@ -318,7 +318,7 @@ impl<'s> Number<'s> {
         self.text.trim_end_matches(|c: char| !c.is_ascii_digit())
     }
 
-    /// The unit that touches it.
+    /// Unit that touches the digits.
     #[must_use]
     pub fn unit(&self) -> Option<&'s str> {
         self.text.get(self.digits().len()..).filter(|unit| !unit.is_empty())
@@ -330,14 +330,14 @@ impl<'s> Number<'s> {
 pub enum Count<'s> {
     /// Digits as written.
     Number(Number<'s>),
-    /// For ever.
+    /// `inf`: the loop never ends.
     Infinity(Span),
     /// A parameter.
     Name(Name<'s>),
 }
 
 impl Count<'_> {
-    /// Its place.
+    /// Span of the count.
     #[must_use]
     pub fn span(&self) -> Span {
         match self {

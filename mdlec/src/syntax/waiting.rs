@@ -1,14 +1,14 @@
-//! What waits for the list that it is in to be complete.
+//! Stacks of nodes whose enclosing list is still being parsed.
 
 use bumpalo::Bump;
 
 use super::tree::{Arg, Condition, Element, Param};
 use crate::diagnostic::Span;
 
-/// Where a list begins among those of its kind that wait.
+/// Index of a list's first node in its stack.
 pub(super) type First = usize;
 
-/// The nodes that wait, in the order of the text: a list that is inside another one is complete before that is.
+/// Stacks of waiting nodes, in the order of the text: a nested list is complete before the list around it.
 pub(super) struct Waiting<'s> {
     pub(super) args: Vec<Arg<'s>>,
     pub(super) conditions: Vec<Condition<'s>>,
@@ -24,7 +24,7 @@ pub(super) fn complete<'s, T: Copy>(waiting: &mut Vec<T>, first: First, arena: &
 }
 
 impl<'s> Waiting<'s> {
-    /// Nothing yet, with room for as much as waits in most plans.
+    /// Returns empty stacks, with room for the nodes that wait in most plans.
     pub(super) fn new() -> Self {
         Self {
             args: Vec::with_capacity(8),
@@ -49,7 +49,7 @@ impl<'s> Waiting<'s> {
         self.elements.len() - 1
     }
 
-    /// Forgets what begins at this empty place or behind it. What is empty there ends there as well, and stays.
+    /// Forgets nodes that begin at this empty place or after it; an empty node at the place ends there and stays.
     pub(super) fn forget(&mut self, at: Span) {
         forget(&mut self.args, at, Arg::span);
         forget(&mut self.conditions, at, |condition| condition.span);

@@ -27,7 +27,7 @@ impl<'s> Pass<'_, 's> {
         true
     }
 
-    /// A `use` inside of a plan, where no recovery could put it: its file is taken as used.
+    /// Reports a `use` inside a plan, where no recovery could place it; its file counts as used.
     pub(super) fn inner_use(&mut self, index: usize, token: Token<'s>) {
         let span = self.source.span(token.place);
         let diagnostic = Diagnostic::new(

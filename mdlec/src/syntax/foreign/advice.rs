@@ -1,6 +1,6 @@
-//! Words of other languages, and what MDLe has instead.
+//! Words of other languages, and the forms of MDLe that replace them.
 
-/// Returns `true` if a name is a word of other languages, so that a plan with it needs care.
+/// Returns `true` if a name is a word of other languages, so that it may have to be replaced.
 pub(in crate::syntax) fn is_word(name: &str) -> bool {
     matches!(
         name,

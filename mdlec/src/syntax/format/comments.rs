@@ -1,34 +1,34 @@
-//! Where comments go: one that ends a line stays on that line, one that has a line of its own keeps it.
+//! Places comments: a comment at the end of a line stays there, one on a line of its own keeps its line.
 
 use super::{INDENT, Layout};
 
-/// A comment, and how it stands in the text.
+/// A comment with the line ends before it.
 #[derive(Debug)]
 pub(super) struct Comment<'s> {
-    /// All of it, with its slashes.
+    /// The whole comment, with its slashes.
     text: &'s str,
-    /// How many line ends there are between what is before it and it.
+    /// Number of line ends between the preceding token or comment and this one.
     lines: usize,
 }
 
 impl Comment<'_> {
-    /// Whether nothing can follow it on its line.
+    /// Returns `true` if nothing can follow the comment on its line.
     fn ends_line(&self) -> bool {
         self.text.starts_with("//")
     }
 
-    /// Without blanks at the ends of its lines.
+    /// Returns the comment without spaces at the ends of its lines.
     fn trimmed(&self) -> String {
         self.text.lines().map(str::trim_end).collect::<Vec<_>>().join("\n")
     }
 }
 
-/// What stands between two tokens.
+/// Comments and line ends between two tokens.
 #[derive(Debug, Default)]
 pub(super) struct Gap<'s> {
     /// The comments, in order.
     pub(super) comments: Vec<Comment<'s>>,
-    /// How many line ends there are behind the last comment.
+    /// Number of line ends after the last comment.
     lines: usize,
 }
 
@@ -55,14 +55,14 @@ fn line_ends(blank: &str) -> usize {
     blank.matches('\n').count()
 }
 
-/// What begins on a line of its own.
+/// Kind of piece that begins a line of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Before {
     /// The first of several: no empty line comes before it.
     First,
     /// The next: an empty line before it stays.
     Next,
-    /// A plan behind others: an empty line comes before it.
+    /// A plan after others: an empty line comes before it.
     Apart,
     /// A closing bracket or the end: no empty line comes before it.
     Close,
@@ -106,7 +106,7 @@ impl Layout<'_> {
         }
     }
 
-    /// Begins a line, perhaps behind an empty one.
+    /// Begins a line, after an empty one if `behind_empty`.
     fn line(&mut self, indent: usize, behind_empty: bool) {
         if behind_empty {
             self.lines.skip();
@@ -114,7 +114,7 @@ impl Layout<'_> {
         self.lines.start(indent);
     }
 
-    /// Puts the comments before the next piece, which is in the midst of an element.
+    /// Writes the comments before the next piece, which is inside an element.
     pub(super) fn comments_inside(&mut self, further: usize) {
         for comment in self.pieces.take_gap(self.at).comments {
             let is_apart = comment.ends_line() && comment.lines > 0 && !self.lines.is_blank();

@@ -1,15 +1,15 @@
-//! Lines as they are written: code, and behind it a comment; those of neighbouring lines of a level stand below each other.
+//! Lines of code, each with its trailing comment; trailing comments of neighbouring lines of a level are aligned.
 
-/// How far the longest of neighbouring lines is from its comment.
+/// Columns between the longest of neighbouring lines and its comment.
 const GAP: usize = 4;
 
 /// A line.
 #[derive(Debug, Default)]
 struct Line {
     code: String,
-    /// The comment behind it, or nothing.
+    /// The trailing comment, or nothing.
     comment: String,
-    /// Whether it ends here: nothing can stand behind a comment that ends with its line.
+    /// `true` if nothing can follow on this line, since its comment ends with the line.
     is_closed: bool,
 }
 
@@ -21,7 +21,7 @@ pub(super) struct Lines {
 }
 
 impl Lines {
-    /// Begins a line that is indented so far.
+    /// Begins a line that is indented by `indent` columns.
     pub(super) fn start(&mut self, indent: usize) {
         self.done.extend(self.line.take());
         self.line = Some(Line { code: " ".repeat(indent), ..Line::default() });
@@ -33,7 +33,7 @@ impl Lines {
         self.line = Some(Line::default());
     }
 
-    /// Puts a word behind what stands on the line.
+    /// Appends a word to the line.
     pub(super) fn word(&mut self, text: &str, is_glued: bool) {
         let is_first = self.is_blank();
         let code = &mut self.line.get_or_insert_default().code;
@@ -62,27 +62,27 @@ impl Lines {
         line.is_closed = true;
     }
 
-    /// Whether there is no line yet.
+    /// Returns `true` if no line has begun.
     pub(super) fn is_empty(&self) -> bool {
         self.line.is_none()
     }
 
-    /// Whether nothing stands on the line yet.
+    /// Returns `true` if the line has no code yet.
     pub(super) fn is_blank(&self) -> bool {
         self.line.as_ref().is_none_or(|line| line.code.trim_start_matches(' ').is_empty())
     }
 
-    /// Whether nothing can stand behind what is on the line.
+    /// Returns `true` if nothing can follow on the line.
     pub(super) fn is_closed(&self) -> bool {
         self.line.as_ref().is_some_and(|line| line.is_closed)
     }
 
-    /// How many columns are taken.
+    /// Columns that the line's code takes.
     pub(super) fn width(&self) -> usize {
         self.line.as_ref().map_or(0, |line| width(&line.code))
     }
 
-    /// The text, each line with its end.
+    /// Returns the text, each line with its line end.
     pub(super) fn text(mut self) -> String {
         self.done.extend(self.line.take());
         let mut text = String::new();
@@ -101,7 +101,7 @@ impl Lines {
     }
 }
 
-/// Whether the comments of two neighbours stand below each other.
+/// Returns `true` if the comments of two neighbouring lines are aligned.
 fn are_aligned(one: &Line, next: &Line) -> bool {
     let indent = |line: &Line| line.code.len() - line.code.trim_start_matches(' ').len();
     is_commented(one) && is_commented(next) && indent(one) == indent(next)
@@ -111,7 +111,7 @@ fn is_commented(line: &Line) -> bool {
     !line.comment.is_empty()
 }
 
-/// The columns of what stands on the last line of this.
+/// Columns of the last line of `code`.
 fn width(code: &str) -> usize {
     code.rsplit('\n').next().unwrap_or("").chars().count()
 }

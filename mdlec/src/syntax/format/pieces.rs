@@ -10,32 +10,32 @@ use super::comments::{Gap, gap};
 /// A token as it is printed.
 #[derive(Debug)]
 pub(super) struct Piece<'s> {
-    /// Its text, in the canonical spelling.
+    /// Text of the token, in the canonical spelling.
     pub(super) text: Cow<'s, str>,
-    /// Whether it touches the piece before it.
+    /// `true` if the piece touches the one before it.
     pub(super) is_glued: bool,
     kind: Tok<'s>,
-    /// Where it begins in the source.
+    /// Byte offset of the token in the source.
     start: usize,
-    /// What stands before it.
+    /// Comments and line ends before the piece.
     gap: Gap<'s>,
-    /// Whether a line that would be too long may go on before it.
+    /// `true` if a line that would be too long may break before the piece.
     may_break: bool,
-    /// How wide everything before it is on one line.
+    /// Columns that all pieces before this one take on one line.
     left: usize,
-    /// How many comments there are before it.
+    /// Number of comments before the piece, from the start of the text.
     comments: usize,
 }
 
 /// Pieces that belong on one line.
 pub(super) struct Chunk {
-    /// Whether a line may break before it.
+    /// `true` if a line may break before the chunk.
     pub(super) may_break: bool,
-    /// How many columns it needs.
+    /// Columns that the chunk needs.
     pub(super) width: usize,
 }
 
-/// All of a text; the last piece is its end, and empty.
+/// All pieces of a text; the last one is empty and marks the end.
 pub(super) struct Pieces<'s>(Vec<Piece<'s>>);
 
 impl<'s> Pieces<'s> {
@@ -69,17 +69,17 @@ impl<'s> Pieces<'s> {
         &self.0[at.min(last)]
     }
 
-    /// What the piece is; nothing at the end.
+    /// Kind of the piece's token; `None` at the end.
     pub(super) fn kind(&self, at: usize) -> Option<Tok<'s>> {
         (at + 1 < self.0.len()).then(|| self.get(at).kind)
     }
 
-    /// The first piece at this byte of the source or behind it.
+    /// Index of the first piece at or after this byte of the source.
     pub(super) fn at_byte(&self, byte: usize) -> usize {
         self.0.partition_point(|piece| piece.start < byte)
     }
 
-    /// Takes what stands before a piece.
+    /// Takes the comments and line ends before a piece.
     pub(super) fn take_gap(&mut self, at: usize) -> Gap<'s> {
         self.0.get_mut(at).map(|piece| std::mem::take(&mut piece.gap)).unwrap_or_default()
     }
@@ -90,13 +90,13 @@ impl<'s> Pieces<'s> {
         }
     }
 
-    /// How many columns the pieces from `first` to before `end` need on one line.
+    /// Columns that the pieces from `first` to before `end` need on one line.
     pub(super) fn width(&self, first: usize, end: usize) -> usize {
         let last = self.get(end.saturating_sub(1));
         last.left + last.text.chars().count() - self.get(first).left
     }
 
-    /// Whether a comment stands before any of the pieces from `first` to before `end`.
+    /// Returns `true` if a comment precedes any of the pieces from `first` to before `end`.
     pub(super) fn have_comments(&self, first: usize, end: usize) -> bool {
         self.get(end.saturating_sub(1)).comments > self.get(first.saturating_sub(1)).comments
     }
@@ -114,7 +114,7 @@ impl<'s> Pieces<'s> {
     }
 }
 
-/// A token as it is spelled: words and numbers as they are written, and without typesetting.
+/// Spells a token: words and numbers as they are written, and without typesetting.
 fn text<'s>(source: Source<'s>, token: Token<'s>) -> Cow<'s, str> {
     let written = source.slice(token.place);
     #[allow(clippy::wildcard_enum_match_arm, reason = "all others are written as they are")]
@@ -134,7 +134,7 @@ fn text<'s>(source: Source<'s>, token: Token<'s>) -> Cow<'s, str> {
     })
 }
 
-/// A label without typesetting, if it still is one then.
+/// Returns a label without typesetting, if it remains a label then.
 fn plain_label(written: &str) -> Cow<'_, str> {
     let plain = label(written);
     let is_label = |text: &str| {
@@ -144,7 +144,7 @@ fn plain_label(written: &str) -> Cow<'_, str> {
     if is_label(&plain) { plain } else { Cow::Borrowed(written) }
 }
 
-/// Whether no blank stands between two tokens.
+/// Returns `true` if no space comes between two tokens.
 fn touch(before: Tok<'_>, token: Tok<'_>) -> bool {
     let opens = matches!(
         before,

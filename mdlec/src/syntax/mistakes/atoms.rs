@@ -50,18 +50,18 @@ pub(super) fn atom_condition(site: &Site<'_, '_>) -> Option<Diagnostic> {
 /// Laws that complete by themselves, and laws that never do.
 const LAWS: [&[&str]; 2] = [&["advance", "align", "Follow", "goAvoid", "path", "rotate", "turn"], &["go", "stop"]];
 
-/// Returns `true` if a name is that of a law of the paper or of ours: a parser knows no alphabet.
+/// Returns `true` if a name is that of a law of the paper or of `mdle-atoms`: the parser knows no alphabet.
 fn is_law(name: &str) -> bool {
     LAWS.iter().any(|laws| laws.contains(&name))
 }
 
-/// A condition to begin with for a call of such a law.
+/// Example condition for a call of such a law.
 fn condition_for(call: &str) -> &'static str {
     let name = call.split(|letter: char| !letter.is_alphanumeric()).next().unwrap_or("");
     if LAWS[0].contains(&name) { "null" } else { "wait 10" }
 }
 
-/// The only parentheses of an atom and the call in them, if that is one of a law.
+/// The only parentheses of an atom with the call in them, if it is the call of a law.
 fn law_in_group<'s>(site: &Site<'_, 's>, group: usize) -> Option<(usize, &'s str)> {
     let end = site.at.checked_sub(1).filter(|end| *end > group + 1 && site.end_of_group(group) == *end)?;
     let is_only = site.kind(group) == Some(Tok::LParen) && site.name_at(group + 1).is_some_and(is_law);
@@ -81,7 +81,7 @@ fn law_outside(site: &Site<'_, '_>) -> Option<Diagnostic> {
     Some(diagnostic.fix("move this `)` behind the law: {}", site.span(site.at, last), format!(" {law})")))
 }
 
-/// The last token of a name with numbers behind it.
+/// Index of the last token of a name and the numbers after it.
 pub(super) fn end_of_call(site: &Site<'_, '_>, name: usize) -> usize {
     if site.kind(name + 1) == Some(Tok::TouchParen) {
         return site.end_of_group(name + 1);
@@ -100,7 +100,7 @@ fn several_laws(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// An atom without its law, or with something behind it.
+/// An atom without its law, or with something after the law.
 pub(super) fn atom_law(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if let Some(laws) = several_laws(site) {
         return Some(laws);

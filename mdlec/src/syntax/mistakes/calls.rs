@@ -1,4 +1,4 @@
-//! Calls: laws, interrupts and plans with their arguments, where they are not expected or not written so.
+//! Mistakes with calls: laws, interrupts and plans that are not expected here, or are written in another way.
 
 use super::atoms::end_of_call;
 use super::spelling;

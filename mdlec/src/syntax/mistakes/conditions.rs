@@ -4,7 +4,7 @@ use crate::diagnostic::Diagnostic;
 use crate::syntax::errors::Site;
 use crate::syntax::token::Tok;
 
-/// Something else where a condition could stand.
+/// Something other than a condition where a condition is allowed.
 pub(super) fn condition(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if !site.expects_condition() {
         return None;

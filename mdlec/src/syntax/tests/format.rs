@@ -1,4 +1,4 @@
-//! The canonical layout: what it looks like, and that it keeps the tree and every comment.
+//! The canonical layout: examples, and proof that it keeps the tree and every comment.
 
 use proptest::prelude::*;
 
@@ -9,7 +9,7 @@ use super::properties::config;
 use super::{Arena, listings, outline, parse};
 use crate::diagnostic::SourceId;
 
-/// Every form of the language, twice: as people write it, and as nobody does.
+/// Every form of the language, in usual and in unusual layout.
 const FORMS: &str = "use \"corridors.mdle\";use \"doors.mdle\"
 {Tour(v:speed,mask:bits[4])(bumper or wait(5)and not sync ada)
 Leg(15cm/s,0100) FRAME 180deg Leg()  here:ExecPlan n Leg
@@ -67,7 +67,7 @@ fn formatted(text: &str) -> String {
     format(SourceId(7), text).unwrap_or_else(|found| panic!("{text}\n{found:#?}"))
 }
 
-/// The tree of a text without errors, places left out.
+/// Tree of a text without errors, without the places.
 fn tree(text: &str) -> String {
     let arena = Arena::new();
     let (file, found) = parse(SourceId(0), text, &arena);
@@ -75,7 +75,7 @@ fn tree(text: &str) -> String {
     outline(&file)
 }
 
-/// The comments of a text without strings that look like some, without blanks at the ends of their lines.
+/// Comments of a text whose strings contain none, without spaces at the ends of their lines.
 fn comments(text: &str) -> Vec<String> {
     let mut found = Vec::new();
     let mut rest = text;
@@ -96,7 +96,7 @@ fn comments(text: &str) -> Vec<String> {
     found
 }
 
-/// Holds a text to what the layout promises; returns it laid out.
+/// Checks that the layout keeps a text's tree and comments; returns the formatted text.
 fn assert_kept(text: &str) -> String {
     let formatted = formatted(text);
     assert_eq!(tree(&formatted), tree(text), "{text}\n────\n{formatted}");
@@ -154,7 +154,7 @@ fn a_label_of_blanks_only_stays_as_it_is() {
     assert_kept("Γ_{ }^{a b} = { A B }\n\\Gamma_{ a  b } = { B A }");
 }
 
-/// What may stand between two tokens.
+/// Text that is allowed between two tokens.
 const GAPS: &[&str] = &[
     " ",
     "\n",
@@ -171,7 +171,7 @@ const GAPS: &[&str] = &[
     "\n////\n",
 ];
 
-/// A text with something more between its tokens, but for parentheses that touch a name.
+/// Inserts gaps between the tokens of a text, except before parentheses that touch a name.
 fn odd(text: &str, gaps: &[(proptest::sample::Index, &str)]) -> String {
     let tokens = lex(Source { id: SourceId(0), text }).tokens;
     let mut places: Vec<_> = tokens.iter().filter(|token| token.kind != Tok::TouchParen).collect();

@@ -1,4 +1,4 @@
-//! Every form of the language, and what it is read as.
+//! Every form of the language, with its tree.
 
 use super::check;
 

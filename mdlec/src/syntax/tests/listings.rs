@@ -9,7 +9,7 @@ const LAB1_TO_OFFICE: &str = include_str!("../../../../plans/paper/lab1_to_offic
 const ROBOT1: &str = include_str!("../../../../plans/paper/first_robot.mdle");
 const ROBOT2: &str = include_str!("../../../../plans/paper/second_robot.mdle");
 
-/// In the order of the paper.
+/// The listings in the order of the paper.
 pub(super) const ALL: [&str; 5] = [SOUND_FOLLOW, LAB2_TO_LAB1, LAB1_TO_OFFICE, ROBOT1, ROBOT2];
 
 #[test]

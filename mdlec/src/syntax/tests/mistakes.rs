@@ -1,4 +1,4 @@
-//! What is said about defects: one message each, and something to type.
+//! Messages about defects: one for each, with something to type.
 
 use super::{Arena, check, one, parse};
 use crate::diagnostic::{Code, SourceId};

@@ -1,4 +1,4 @@
-//! What holds for every text whatever.
+//! Properties that hold for every text.
 
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -10,7 +10,7 @@ use super::super::token::{Tok, lex};
 use super::{Arena, outline, parse, recover};
 use crate::diagnostic::{SourceId, Sources};
 
-/// The seed of all chance here: a run that fails, fails again. `PROPTEST_RNG_SEED` names another one.
+/// Seed of all random tests here, so that a failure repeats; `PROPTEST_RNG_SEED` overrides it.
 const SEED: u64 = 2003;
 
 /// Pieces of plans.
@@ -84,7 +84,7 @@ fn soup() -> impl Strategy<Value = String> {
     })
 }
 
-/// What each test is run with; it prints the seed, which is seen where the test fails.
+/// Configuration of each test; prints the seed, which appears where a test fails.
 pub(super) fn config() -> ProptestConfig {
     let default = ProptestConfig::default();
     let rng_seed = match default.rng_seed {
@@ -95,7 +95,7 @@ pub(super) fn config() -> ProptestConfig {
     ProptestConfig { cases: 400, failure_persistence: None, rng_seed, ..default }
 }
 
-/// Reads a text, renders all that is said, and looks whether it makes sense.
+/// Parses a text, renders all its messages, and checks them.
 fn reads(text: &str) {
     let mut sources = Sources::default();
     sources.add("before.mdle", "Γ");
@@ -165,7 +165,7 @@ proptest! {
         prop_assert!(open.is_empty());
     }
 
-    /// A defect in one atom is told once and does not reach the other elements.
+    /// Checks that a defect in one atom is reported once and does not affect the other elements.
     #[test]
     fn one_broken_atom_is_one_message(piece in proptest::sample::select(&["=", ":", "^", "==", "[", "]", "use", "FRAME", "7x", "@", "Γ_a", ","][..]), place in 0_usize..6) {
         let mut atom = ["(Atom", "(", "wait 5", ")", "(go 5 0)", ")"].map(str::to_owned);
