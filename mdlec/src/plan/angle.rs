@@ -1,8 +1,9 @@
-//! Angles as people write them: degrees where these say exactly the same.
+//! Writes angles in degrees where these represent the angle exactly.
 
 use mdle_runtime::Radians;
 
-/// The degrees, to a millionth, that are this angle but for the rounding of a sum, if there are such.
+/// Returns the degrees, to a millionth, that equal this angle except for the rounding of a sum; `None` if there are
+/// none.
 #[must_use]
 pub fn in_degrees(radians: f64) -> Option<f64> {
     let degrees = (radians.to_degrees() * 1e6).round() / 1e6;
@@ -12,7 +13,7 @@ pub fn in_degrees(radians: f64) -> Option<f64> {
 /// Prefix of an element whose frame is the heading at which the element is entered.
 pub const HERE: &str = "FRAME here ";
 
-/// What stands before an element whose frame is turned by this angle: `FRAME 30deg `, or nothing.
+/// Prefix of an element whose frame is turned by this angle: `FRAME 30deg `, or nothing for zero.
 #[must_use]
 pub fn frame_text(radians: f64) -> String {
     match in_degrees(radians) {

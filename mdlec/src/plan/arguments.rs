@@ -1,4 +1,4 @@
-//! Arguments against a signature: count, type, unit, range (docs/src/reference/language.md, 6.2).
+//! Checks arguments against a signature: count, type, unit, range (docs/src/reference/language.md, 6.2).
 
 mod examples;
 mod units;
@@ -11,16 +11,16 @@ use crate::syntax::tree::{Arg, Call, Number};
 pub(super) use examples::example;
 use examples::{bits_apart, swapped};
 
-/// The largest whole number that an `f64` tells from its neighbours.
+/// Largest `f64` up to which all whole numbers are exact.
 const WHOLE: f64 = 9_007_199_254_740_992.0;
 
-/// The arguments of a quark with the quark text's words for them.
+/// The arguments of a quark, with their text in the quark's text.
 pub(super) struct Arguments {
     pub(super) values: Vec<Value>,
     pub(super) words: Vec<String>,
 }
 
-/// Fits the arguments of `call` to `declaration`.
+/// Converts and checks the arguments of `call` for `declaration`.
 pub(super) fn fit(
     call: &Call,
     declaration: &Declaration,
@@ -70,7 +70,7 @@ fn fitted(
     }
 }
 
-/// Number of faults of a call if this declaration is meant: arguments that are missing, left over, or of another kind.
+/// Number of faults of a call for this declaration: arguments that are missing, left over, or of another kind.
 pub(super) fn complaints(call: &Call, declaration: &Declaration, parameters: &Parameters<'_>) -> usize {
     let params = &declaration.params;
     let needed = params.iter().filter(|param| param.default.is_none()).count();
@@ -82,7 +82,7 @@ pub(super) fn complaints(call: &Call, declaration: &Declaration, parameters: &Pa
     wrong + needed.saturating_sub(call.args.len()) + call.args.len().saturating_sub(params.len())
 }
 
-/// How a quark is written: `go v ω`, with units.
+/// Writes a quark with its parameters and their units: `go v ω`.
 #[must_use]
 pub fn signature(declaration: &Declaration) -> String {
     let mut text = declaration.name.clone();
@@ -111,8 +111,8 @@ pub fn signature(declaration: &Declaration) -> String {
     text
 }
 
-/// A number as a value of this unit's kind, with its text in this unit; what is wrong with it is told of `declaration`.
-/// A number without a unit has the unit `bare`.
+/// Converts a number to a value of the kind of `unit`, with its text in that unit; errors name `declaration`. A number
+/// without a unit has the unit `bare`.
 pub(super) fn value(number: &Number, bare: Unit, unit: Unit, declaration: &Declaration) -> Fitted {
     let param =
         Param { name: String::new(), kind: unit.kind, unit: Some(unit), default: None, range: None, except: None };
@@ -131,7 +131,7 @@ struct Fitting<'a> {
 }
 
 impl Fitting<'_> {
-    /// An argument, or what the parameter stands for that it is.
+    /// Converts an argument, or the argument given to the parameter that it names.
     fn given(&self, arg: &Arg, param: &Param, parameters: &Parameters<'_>) -> Fitted {
         if let Arg::Name(name) = arg
             && parameters.is_untyped(name.node)
@@ -149,7 +149,7 @@ impl Fitting<'_> {
         }
     }
 
-    /// An argument; `bare` is the unit of a number without one.
+    /// Converts an argument; `bare` is the unit of a number without one.
     fn argument(&self, arg: &Arg, param: &Param, bare: Option<Unit>) -> Fitted {
         match (arg, param.kind) {
             (Arg::Number(number), Kind::Bits(length)) => bits(number, length),
@@ -184,7 +184,7 @@ impl Fitting<'_> {
         }
     }
 
-    /// `inf` for what has an end.
+    /// Reports `inf` for a parameter that must be finite.
     fn endless(&self, arg: &Arg, param: &Param) -> Diagnostic {
         let report = self.mismatch(arg, param, "found infinity".into());
         let is_way = self.declaration.kind == DeclarationKind::Control && param.kind == Kind::Length;
@@ -265,7 +265,7 @@ impl Fitting<'_> {
         Ok((value, text))
     }
 
-    /// The value again, if it is finite and in the parameter's range, which is in its own unit.
+    /// Returns `value` if it is finite and in the parameter's range, which is in the parameter's own unit.
     fn in_range(&self, number: &Number, param: &Param, value: f64) -> Result<f64, Box<Diagnostic>> {
         let unit = param.unit.map(|unit| format!(" {}", unit.name)).unwrap_or_default();
         if !value.is_finite() {
@@ -294,7 +294,7 @@ impl Fitting<'_> {
         Err(Diagnostic::new(Code::E0304, message, number.span, here).into())
     }
 
-    /// The one value that a parameter may not have.
+    /// Reports the only value that the range of a parameter excludes.
     fn excluded(&self, number: &Number, param: &Param, value: f64) -> Diagnostic {
         let unit = param.unit.map(|unit| unit.name).unwrap_or_default();
         let (quark, name) = (&self.declaration.name, &param.name);
@@ -319,7 +319,7 @@ impl Fitting<'_> {
     }
 }
 
-/// A call as it is written, but for its parentheses.
+/// Writes a call as in the plan, without its parentheses.
 pub(super) fn written(call: &Call) -> String {
     let args = call.args.iter().map(|arg| match arg {
         Arg::Number(number) => format!("{}{}", number.digits(), number.unit().unwrap_or_default()),
@@ -420,7 +420,7 @@ fn bits(number: &Number, length: u32) -> Fitted {
     Ok((Value::Bits(bits), number.digits().to_owned()))
 }
 
-/// An exact value of `from`'s family in the unit `to`, as the nearest `f64` to be had.
+/// Converts an exact value from the unit `from` to the unit `to`, as the nearest `f64` available.
 fn converted(exact: &Decimal, from: Unit, to: Unit) -> f64 {
     if from.family != to.family {
         return exact.to_f64() * from.family_to_si() / to.family_to_si() / f64::from(to.factor);
@@ -428,7 +428,7 @@ fn converted(exact: &Decimal, from: Unit, to: Unit) -> f64 {
     exact.scaled(1, -to.exponent).to_f64() / f64::from(to.factor)
 }
 
-/// The kinds of quark in words.
+/// Names a kind of quark for messages.
 pub(super) fn kind_words(kind: DeclarationKind) -> &'static str {
     match kind {
         DeclarationKind::Control => "a law",

@@ -1,5 +1,5 @@
-//! Comparisons of signals: which signals, in which unit, and `t` and `way`, the time and the path driven since the scope was
-//! entered (docs/src/reference/semantics.md, 2.4).
+//! Resolves comparisons of signals: the signals, their unit, and `t` and `way`, the time and the path driven since the
+//! scope was entered (docs/src/reference/semantics.md, 2.4).
 
 use super::arguments::{Fitted, value};
 use super::parameters::{Names, Parameter};
@@ -9,9 +9,9 @@ use crate::alphabet::{Decimal, Declaration, DeclarationKind, Kind, Unit, family_
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::tree::{self, Arg, Call, Number, Operand};
 
-/// The signal that is time.
+/// Name of the signal that is time.
 const TIME: &str = "t";
-/// The signal that is the length of the path driven.
+/// Name of the signal that is the length of the path driven.
 const WAY: &str = "way";
 
 type Resolved<T> = Result<T, Vec<Diagnostic>>;
@@ -22,7 +22,7 @@ struct Signal<'a> {
     quark: QuarkId,
     declaration: &'a Declaration,
     unit: Unit,
-    /// Of `==`, in that unit.
+    /// Tolerance of `==`, in `unit`.
     tolerance: f64,
 }
 
@@ -35,7 +35,7 @@ impl Signal<'_> {
     }
 }
 
-/// Whether a declaration is the signal `t`, the time since a scope was entered.
+/// Returns `true` if a declaration is the signal `t`, the time since a scope was entered.
 #[must_use]
 pub fn is_time(declaration: &Declaration) -> bool {
     declaration.name == TIME
@@ -51,7 +51,7 @@ pub fn is_way(declaration: &Declaration) -> bool {
         && declaration.unit.is_some_and(|(unit, _)| unit.kind == Kind::Length)
 }
 
-/// The condition that a comparison is.
+/// Resolves a comparison to a condition.
 pub(super) fn resolve(
     written: &tree::Compared,
     span: Span,
@@ -118,7 +118,7 @@ pub(super) fn resolve(
     })
 }
 
-/// What a parameter stands for, as a value that a signal is compared with.
+/// Returns the argument given to a parameter, as a value to compare a signal with.
 fn given(parameter: &Parameter<'_>, at: Span, signal: Signal<'_>) -> Fitted {
     let Signal { unit, declaration, .. } = signal;
     if parameter.kind != unit.kind {
@@ -135,7 +135,7 @@ fn given(parameter: &Parameter<'_>, at: Span, signal: Signal<'_>) -> Fitted {
     }
 }
 
-/// `inf`, which only a time may be.
+/// Returns `inf`, which is allowed only for a time.
 fn without_end(at: Span, Signal { unit, declaration, .. }: Signal<'_>) -> Fitted {
     if unit.kind == Kind::Time {
         return Ok((Value::Infinity(unit.kind), "inf".into()));
@@ -145,7 +145,7 @@ fn without_end(at: Span, Signal { unit, declaration, .. }: Signal<'_>) -> Fitted
     Err(Diagnostic::new(Code::E0302, message, at, here).help("only a time is without end, as in `t > inf`").into())
 }
 
-/// The tolerance of two signals that are compared: the larger one.
+/// Returns the tolerance for a comparison of two signals: the larger one.
 fn same_kind(one: Signal<'_>, other: Signal<'_>, span: Span) -> Resolved<Value> {
     let refused = |message: String, help: &str| {
         let [here, there] =
@@ -181,7 +181,7 @@ enum Counted {
     Way,
 }
 
-/// The count from which on, and until which, a comparison of `t` or `way` holds.
+/// Interval in which a comparison of `t` or `way` holds: its first count, and the count that ends it, exclusive.
 fn interval(comparison: &Comparison, counted: Counted, span: Span) -> Resolved<(u64, Option<u64>)> {
     let nanos = |value: &Value| match value {
         Value::Quantity { exact, .. } => exact.to_nanos(),
@@ -213,7 +213,7 @@ fn interval(comparison: &Comparison, counted: Counted, span: Span) -> Resolved<(
     })
 }
 
-/// The signal that `call` means: `x`, also `x(t)`; `r 3`, also `r3`, `r_3` and `r_3(t)`.
+/// Resolves `call` to a signal: `x`, also `x(t)`; `r 3`, also `r3`, `r_3` and `r_3(t)`.
 fn signal<'a>(call: &Call, quarks: &mut Quarks<'a>, names: Names<'_, '_>) -> Resolved<Signal<'a>> {
     let args = match call.args {
         [args @ .., Arg::Name(name)] if name.node == TIME => args,
@@ -236,7 +236,7 @@ fn is_signal(name: &str, quarks: &Quarks<'_>) -> bool {
     quarks.alphabet().declarations_of(name).any(|declaration| declaration.kind == DeclarationKind::Signal)
 }
 
-/// `r_3` as the signal `r` with its number, if there is such a signal of one sonar.
+/// Reads `r_3` as the signal `r` with its number, if there is such a signal of one sonar.
 fn indexed<'s>(call: &Call<'s>, quarks: &Quarks<'_>) -> (&'s str, Option<Number<'s>>) {
     let base = call.name.trim_end_matches(|letter: char| letter.is_ascii_digit());
     let digits = &call.name[base.len()..];

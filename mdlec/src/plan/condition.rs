@@ -1,9 +1,8 @@
-//! Conditions as a machine reads them (docs/src/reference/semantics.md, 2): what they are made of, and their value in a
-//! situation.
+//! Conditions of a resolved plan (docs/src/reference/semantics.md, 2), and their value in a situation.
 
 use super::{QuarkId, RecordId};
 
-/// A condition; `true` is "has fired".
+/// A condition; `true` means that it has fired.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Condition {
     /// Never fires: `null`, `wait inf`, or what degeneracy removal left.
@@ -12,74 +11,74 @@ pub enum Condition {
     Quark(QuarkId),
     /// Fires once this many nanoseconds have passed since the scope of the interrupt was entered.
     Wait {
-        /// The nanoseconds.
+        /// Waiting time in nanoseconds.
         nanos: u64,
-        /// The quark, for its text and its exact value.
+        /// Quark of the timer, for its text and its exact value.
         quark: QuarkId,
     },
     /// Fires while the time since the scope of the interrupt was entered is in this interval: a comparison of `t`.
     Elapsed {
-        /// From so many nanoseconds on ...
+        /// Nanoseconds at which the interval begins.
         from: u64,
-        /// ... and until so many have passed.
+        /// Nanoseconds at which the interval ends, exclusive; `None` if it never ends.
         until: Option<u64>,
-        /// The comparison, for its text.
+        /// Quark of the comparison, for its text.
         quark: QuarkId,
     },
     /// Fires while the length of the path driven since the scope of the interrupt was entered is in this interval: a
     /// comparison of `way`.
     Driven {
-        /// From so many nanometres on ...
+        /// Nanometres at which the interval begins.
         from: u64,
-        /// ... and until so many have been driven.
+        /// Nanometres at which the interval ends, exclusive; `None` if it never ends.
         until: Option<u64>,
-        /// The comparison, for its text.
+        /// Quark of the comparison, for its text.
         quark: QuarkId,
     },
-    /// At least one of these, two or more.
+    /// At least one of these operands; there are two or more.
     Or(Vec<Condition>),
-    /// All of these, two or more.
+    /// All of these operands; there are two or more.
     And(Vec<Condition>),
-    /// Not this.
+    /// The negation of the operand.
     Not(Box<Condition>),
-    /// This, and the memory is set that it had once not fired.
+    /// RISING: the operand, if the memory records that it was once false.
     Rising {
-        /// The number of the memory among those of the interrupt.
+        /// Number of the memory among those of the interrupt.
         memory: u32,
-        /// This.
+        /// Operand of RISING.
         operand: Box<Condition>,
     },
-    /// A labelled element has ended last.
+    /// The labelled element is among those that ended last.
     After(After),
 }
 
 /// `after L`, or `after L c`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct After {
-    /// Whose record it asks.
+    /// Use of the definition whose record the condition reads.
     pub record: RecordId,
-    /// What it asks of it.
+    /// Number of the fact that the condition reads.
     pub fact: u32,
-    /// Its text.
+    /// Text of the condition.
     pub text: String,
 }
 
-/// What a condition asks of the machine that runs the plan, about one scope.
+/// Facts that a condition reads from the machine that runs the plan, about one scope.
 pub trait Situation {
-    /// Whether a quark has fired.
+    /// Returns `true` if the quark has fired.
     fn quark(&self, quark: QuarkId) -> bool;
-    /// Whether so many nanoseconds have passed since the scope was entered.
+    /// Returns `true` if at least `nanos` nanoseconds have passed since the scope was entered.
     fn waited(&self, nanos: u64) -> bool;
-    /// Returns `true` if so many nanometres have been driven since the scope was entered.
+    /// Returns `true` if at least `nanometers` nanometres have been driven since the scope was entered.
     fn driven(&self, nanometers: u64) -> bool;
-    /// Whether a memory of the scope's interrupt is set.
+    /// Returns `true` if this memory of the scope's interrupt is set.
     fn remembers(&self, memory: u32) -> bool;
-    /// Whether this is so of a record.
+    /// Returns `true` if this fact of a record holds.
     fn recorded(&self, record: RecordId, fact: u32) -> bool;
 }
 
 impl Condition {
-    /// Its value in a situation. Reads every operand.
+    /// Value of the condition in a situation. Reads every operand.
     pub fn fired(&self, at: &impl Situation) -> bool {
         match self {
             Self::Null => false,
@@ -95,13 +94,13 @@ impl Condition {
         }
     }
 
-    /// The operands of its outermost OR, as written; itself where it is none.
+    /// Operands of the outermost OR, as written; the condition itself if it is not an OR.
     #[must_use]
     pub fn operands(&self) -> &[Self] {
         if let Self::Or(operands) = self { operands } else { std::slice::from_ref(self) }
     }
 
-    /// The first operand of its outermost OR that has fired, as written; the first and only one where it is no OR.
+    /// Index of the first operand of the outermost OR that has fired; 0 if the condition is not an OR.
     pub fn cause(&self, at: &impl Situation) -> u32 {
         (0..).zip(self.operands()).find(|(_, operand)| operand.fired(at)).map_or(0, |(number, _)| number)
     }
@@ -142,8 +141,8 @@ impl Condition {
         })
     }
 
-    /// Returns the parts that AND and OR join, from left to right: what a report names of a condition that has fired. NOT
-    /// and RISING belong to their operands.
+    /// Returns the parts that AND and OR join, from left to right; reports name the parts that have fired. NOT and
+    /// RISING belong to their operands.
     #[must_use]
     pub fn joined(&self) -> Vec<&Self> {
         if matches!(self, Self::Or(_) | Self::And(_)) {
@@ -153,19 +152,19 @@ impl Condition {
         }
     }
 
-    /// Whether it asks when its scope was entered.
+    /// Returns `true` if the condition depends on the time since its scope was entered.
     #[must_use]
     pub fn waits(&self) -> bool {
         self.any(&|part| matches!(part, Self::Wait { .. } | Self::Elapsed { .. }))
     }
 
-    /// Returns `true` if it asks where its scope was entered.
+    /// Returns `true` if the condition depends on the path driven since its scope was entered.
     #[must_use]
     pub fn drives(&self) -> bool {
         self.any(&|part| matches!(part, Self::Driven { .. }))
     }
 
-    /// Visits every RISING in it: the number of its memory, and its operand.
+    /// Visits every RISING in the condition: the number of its memory, and its operand.
     pub fn each_rising(&self, visit: &mut impl FnMut(u32, &Self)) {
         self.fold((), &mut |(), part| {
             if let Self::Rising { memory, operand } = part {
@@ -174,7 +173,7 @@ impl Condition {
         });
     }
 
-    /// Visits every quark in it; timers are none.
+    /// Visits every quark in the condition, timers excluded.
     pub fn each_quark(&self, visit: &mut impl FnMut(QuarkId)) {
         self.fold((), &mut |(), part| {
             if let Self::Quark(id) = part {
@@ -183,7 +182,7 @@ impl Condition {
         });
     }
 
-    /// The number of its parts: quarks, timers, operators.
+    /// Number of parts of the condition: quarks, timers, operators.
     #[must_use]
     pub fn parts(&self) -> usize {
         self.fold(0, &mut |parts, _| parts + 1)

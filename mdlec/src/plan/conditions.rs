@@ -12,17 +12,17 @@ use crate::alphabet::DeclarationKind;
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::tree::{self, Arg, Call, Compared, ConditionNode, Operand};
 
-/// What conditions are resolved with.
+/// Context in which conditions are resolved.
 pub(super) struct Around<'r, 'a, 'n> {
     pub(super) quarks: &'r mut Quarks<'a>,
     pub(super) names: Names<'r, 'n>,
-    /// The labels of the definition that the condition stands in.
+    /// Labels of the definition that contains the condition.
     pub(super) labels: &'r mut Labels,
     pub(super) found: &'r mut Vec<Diagnostic>,
 }
 
-/// Resolves the condition of a scope at `scope`, with the text of each operand of its outermost OR; without one it is the
-/// null interrupt. What cannot be resolved is reported and counts as null.
+/// Resolves the condition of a scope at `scope`, with the text of each operand of its outermost OR; without a condition
+/// the result is the null interrupt. A part that cannot be resolved is reported and counts as null.
 pub(super) fn interrupt(
     condition: Option<&tree::Condition>,
     scope: Span,
@@ -50,7 +50,7 @@ pub(super) fn interrupt(
     (Interrupt { condition, text, nested, operands: places, memories, removed: false, span: written.span }, operands)
 }
 
-/// The places of the parts that AND and OR join.
+/// Collects the places of the parts that AND and OR join.
 fn joined(written: &tree::Condition, places: &mut Vec<OperandPlace>) {
     match written.node {
         ConditionNode::Or(operands) | ConditionNode::And(operands) => {
@@ -65,7 +65,7 @@ fn joined(written: &tree::Condition, places: &mut Vec<OperandPlace>) {
     }
 }
 
-/// The ends of the signals that an operand compares.
+/// Ends of the signals that an operand compares.
 fn signals(operand: &tree::Condition) -> [Option<NonZeroU32>; 2] {
     match operand.node {
         ConditionNode::Comparison(Compared { left, right: Operand::Signal(right), .. }) => {
@@ -78,17 +78,17 @@ fn signals(operand: &tree::Condition) -> [Option<NonZeroU32>; 2] {
     }
 }
 
-/// The nanoseconds of `wait inf`; no other wait may be as long.
+/// Nanoseconds that represent `wait inf`; no other wait may be as long.
 const FOR_EVER: u64 = u64::MAX;
 
-/// `wait inf` is the null interrupt, once its text is made.
+/// Replaces `wait inf` by the null interrupt, after the text has been made.
 fn without_infinite_waits(condition: Condition) -> Condition {
     condition.map(&|part| if matches!(part, Condition::Wait { nanos: FOR_EVER, .. }) { Condition::Null } else { part })
 }
 
 struct Resolving<'r, 'a, 'n> {
     around: Around<'r, 'a, 'n>,
-    /// How many RISINGs there have been in this condition.
+    /// Number of RISINGs so far in this condition.
     memories: u32,
 }
 
@@ -184,7 +184,7 @@ fn by_word(cause: &tree::Condition, is_unknown: impl Fn(&Call) -> bool) -> Optio
     is_word.then(|| diagnostic.fix("write {}", call.span, written(&inside)))
 }
 
-/// What binds how tightly, loosest first.
+/// Precedence of operators, loosest first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Precedence {
     Or,

@@ -1,4 +1,5 @@
-//! The plans of a file by name: who refers to whom, which plan is the one to run, and that none contains itself.
+//! Collects the plans of a file by name: the references between them, the plan to run, and a check that no plan
+//! contains itself.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,22 +12,22 @@ use crate::syntax::tree::{self, Call, Element, Primary};
 /// The plans of a file and of those that it uses.
 #[derive(Debug)]
 pub(super) struct Definitions<'a> {
-    /// The file's own first, in its order.
+    /// Plans, those of the file itself first, in order.
     pub(super) plans: Vec<&'a tree::Plan<'a>>,
-    /// Their names.
+    /// Names of the plans.
     pub(super) names: Vec<&'a str>,
     by_name: BTreeMap<&'a str, usize>,
-    /// For each plan the plans it refers to.
+    /// For each plan the plans that it refers to.
     refers: Vec<BTreeMap<usize, Uses>>,
-    /// The plans that are too large, or refer to one that is: the first is reported, those around it are not.
+    /// Plans that are too large, or refer to one that is: only the first is reported, not the plans that contain it.
     too_large: BTreeSet<usize>,
-    /// How many are of the file itself, not of one that it uses.
+    /// Number of plans of the file itself, without those of used files.
     own: usize,
-    /// Whether a file is missing that may have more of them.
+    /// `true` if a used file is missing that may contain more plans.
     pub(super) is_incomplete: bool,
-    /// The size of the files, as written.
+    /// Size of the files as written.
     written: Size,
-    /// The longest argument that a plan is given, in bytes.
+    /// Length in bytes of the longest argument given to a plan.
     longest: u64,
 }
 
@@ -83,12 +84,12 @@ impl<'a> Definitions<'a> {
         (definitions, found)
     }
 
-    /// The plan of this name.
+    /// Returns the plan of this name.
     pub(super) fn get(&self, name: &str) -> Option<&'a tree::Plan<'a>> {
         self.by_name.get(name).and_then(|index| self.plans.get(*index)).copied()
     }
 
-    /// The plans of the file itself that no other refers to, in its order.
+    /// Returns the plans of the file itself that no other plan refers to, in order.
     pub(super) fn roots(&self) -> Vec<&'a tree::Plan<'a>> {
         let referred: BTreeSet<usize> = self.refers.iter().flat_map(|refers| refers.keys().copied()).collect();
         let roots = self.by_name.values().filter(|index| **index < self.own && !referred.contains(index));
@@ -97,12 +98,12 @@ impl<'a> Definitions<'a> {
         roots.into_iter().filter_map(|index| self.plans.get(index).copied()).collect()
     }
 
-    /// Whether a plan, by its number, uses no other one.
+    /// Returns `true` if a plan, given by its index, uses no other plan.
     pub(super) fn stands_alone(&self, plan: usize) -> bool {
         self.refers.get(plan).is_some_and(BTreeMap::is_empty)
     }
 
-    /// Visits the plans so that each comes after all it refers to; what is left over contains itself.
+    /// Measures the plans, each after all plans that it refers to; the plans left over contain themselves.
     fn measure(&mut self, found: &mut Vec<Diagnostic>) {
         let mut waits: Vec<usize> = self.refers.iter().map(BTreeMap::len).collect();
         let mut referred_by = vec![Vec::new(); self.plans.len()];
@@ -152,7 +153,7 @@ impl<'a> Definitions<'a> {
         }
     }
 
-    /// A plan that has too much of something, with the plan that it uses and that has the most of it.
+    /// Reports a plan that exceeds a limit, with the plan it uses that contributes most.
     fn explosion(&self, index: usize, excess: &Excess, sizes: &[Size]) -> Diagnostic {
         let Excess { unit, limit, .. } = excess;
         let plan = self.plans[index];
@@ -214,7 +215,7 @@ impl<'a> Definitions<'a> {
     }
 }
 
-/// The places of a plan that refer to others, each with the other's number.
+/// Places in a plan that refer to other plans, each with the index of the other plan.
 fn calls<'a>(plan: &tree::Plan<'a>, by_name: &BTreeMap<&str, usize>) -> Vec<(usize, &'a Call<'a>)> {
     fn visit<'a>(elements: &[Element<'a>], refer: &mut impl FnMut(&'a Call<'a>)) {
         for element in elements {
@@ -233,7 +234,7 @@ fn calls<'a>(plan: &tree::Plan<'a>, by_name: &BTreeMap<&str, usize>) -> Vec<(usi
     calls
 }
 
-/// The plans that these places refer to.
+/// Groups these places by the plan that they refer to.
 fn references(calls: &[(usize, &Call<'_>)]) -> BTreeMap<usize, Uses> {
     let mut references = BTreeMap::new();
     for (index, call) in calls {
@@ -242,7 +243,7 @@ fn references(calls: &[(usize, &Call<'_>)]) -> BTreeMap<usize, Uses> {
     references
 }
 
-/// `Stop` for `stop`, `StopPlan` where it starts with a capital already.
+/// Proposes a plan's name for a word: `Stop` for `stop`, `StopPlan` for a word that begins with a capital already.
 fn plan_like(name: &str) -> String {
     let mut letters = name.chars();
     match letters.next() {

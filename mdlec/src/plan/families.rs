@@ -1,19 +1,19 @@
-//! Families of interrupts of which not all values are possible at once: a signal has one value, and one pattern of obstacles
-//! matches at most.
+//! Families of interrupts whose values exclude each other: a signal has one value, and at most one pattern of obstacles
+//! matches.
 
 use super::{Compared, Comparison, Operator, Quark, QuarkId, Value};
 use crate::alphabet::{Kind, family_to_si};
 
-/// Interrupt quarks that speak of the same thing.
+/// A family of interrupt quarks that depend on the same quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Family {
-    /// Patterns of obstacles, of which one matches at most.
+    /// Patterns of obstacles; at most one of them matches.
     Patterns,
     /// Comparisons of this signal with a value.
     Signal(QuarkId),
 }
 
-/// The family of a quark; none if nothing is known of it.
+/// Family of a quark; `None` if its values are independent.
 pub(crate) fn family(quark: &Quark) -> Option<Family> {
     match &quark.comparison {
         // An angle comes round to where it was.
@@ -22,7 +22,7 @@ pub(crate) fn family(quark: &Quark) -> Option<Family> {
     }
 }
 
-/// The bits of `atIsection`, which all have to match, so that two patterns exclude each other.
+/// Bits of `atIsection`: all must match, so two different patterns exclude each other.
 fn pattern(quark: &Quark) -> Option<&[bool]> {
     match quark.args.as_slice() {
         [Value::Bits(bits)] if quark.name == "atIsection" => Some(bits),
@@ -30,7 +30,7 @@ fn pattern(quark: &Quark) -> Option<&[bool]> {
     }
 }
 
-/// The value that a signal is compared with, and the tolerance, in SI units; nothing for an angle.
+/// Value that a signal is compared with, and the tolerance, in SI units; `None` for an angle.
 fn threshold(comparison: &Comparison) -> Option<(f64, f64)> {
     let si = |value: &Value| match value {
         Value::Quantity { kind: Kind::Angle, .. } => None,
@@ -43,16 +43,17 @@ fn threshold(comparison: &Comparison) -> Option<(f64, f64)> {
     }
 }
 
-/// Values that an analysis lets a signal have in a turn.
+/// Values that an analysis assumes for a signal in a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Readings {
-    /// A number, or none: then every comparison is false.
+    /// A number or no value; without a value every comparison is false.
     Any,
-    /// A number, as a writer thinks of it.
+    /// A number, as the user of a signal expects.
     Numbers,
 }
 
-/// The values that quarks of one family can have in one turn: one list for each possibility, in the order of the quarks.
+/// Values that the quarks of one family can have in one turn: one list for each possibility, in the order of the
+/// quarks.
 pub(crate) fn at_once<'q>(quarks: impl Iterator<Item = &'q Quark>, readings: Readings) -> Vec<Vec<bool>> {
     let quarks: Vec<&Quark> = quarks.collect();
     let are_numbers = readings == Readings::Numbers && quarks.iter().all(|quark| pattern(quark).is_none());
@@ -71,7 +72,7 @@ pub(crate) fn at_once<'q>(quarks: impl Iterator<Item = &'q Quark>, readings: Rea
     all
 }
 
-/// Values of a signal among which is one for everything that comparisons can say of it: all ends, and one between any two.
+/// Values of a signal that cover every result of its comparisons: all limits, and one value between any two.
 fn values(quarks: &[&Quark]) -> Vec<f64> {
     let compared = quarks.iter().filter_map(|quark| threshold(quark.comparison.as_ref()?));
     let ends = compared.flat_map(|(value, tolerance)| [value - tolerance, value, value + tolerance]);
@@ -85,7 +86,7 @@ fn values(quarks: &[&Quark]) -> Vec<f64> {
     ends
 }
 
-/// Returns `true` if a comparison is true of this value of its signal.
+/// Returns `true` if a comparison holds for this value of its signal.
 fn holds(quark: &Quark, signal: f64) -> bool {
     let Some(comparison) = &quark.comparison else { return false };
     let Some((value, tolerance)) = threshold(comparison) else { return false };

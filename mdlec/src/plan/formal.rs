@@ -1,17 +1,18 @@
-//! A resolved plan in the paper's formal notation (Definitions 1 and 2): `((u1, ξ1)(u2, ξ2), ξ, T)^n`.
+//! Prints a resolved plan in the paper's formal notation (Definitions 1 and 2): `((u1, ξ1)(u2, ξ2), ξ, T)^n`.
 //!
-//! It is MDLe again: the outermost scope keeps its braces and its name, for a file is made of those.
+//! The output is valid MDLe: the outermost scope keeps its braces and its name, since a file consists of such plans.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::angle::{HERE, frame_text};
 use super::{Atom, Interrupt, Mark, Node, Plan, Scope};
 
-/// The longest line, where there is a choice.
+/// Maximum length of a line that can be broken.
 const WIDTH: usize = 100;
 
 impl Plan {
-    /// The text in formal notation. A use of a plan that asks its labels is a plan of its own: labels are asked within one.
+    /// Returns the plan in formal notation. A used plan whose labels `after` reads becomes a plan of its own, since
+    /// `after` reads labels of its own plan only.
     #[must_use]
     pub fn formal(&self) -> String {
         let quarks = self.quarks.iter().map(|quark| quark.name.clone());
@@ -24,16 +25,16 @@ impl Plan {
 
 struct Writer<'p> {
     plan: &'p Plan,
-    /// The names that no further plan can have.
+    /// Names that no further plan can have.
     taken: BTreeSet<String>,
-    /// Number of plans that are named after each name.
+    /// Last number used in the names of plans that are named alike.
     numbers: BTreeMap<String, usize>,
-    /// The texts of the plans, the main one first.
+    /// Texts of the plans, the main one first.
     definitions: Vec<String>,
 }
 
 impl<'p> Writer<'p> {
-    /// Writes a plan of this name.
+    /// Writes a plan under this name.
     fn definition(&mut self, name: String, scope: &'p Scope) {
         let number = self.definitions.len();
         self.definitions.push(String::new());
@@ -45,7 +46,7 @@ impl<'p> Writer<'p> {
         self.definitions[number] = format!("{{ {name}{condition}\n{body}}}\n");
     }
 
-    /// The lines of a sequence.
+    /// Lines of a sequence.
     fn sequence(&mut self, body: &'p [Node]) -> Vec<String> {
         body.iter().flat_map(|node| self.node(node)).collect()
     }
@@ -93,7 +94,7 @@ impl<'p> Writer<'p> {
         around(self.sequence(&scope.body), &format!("{here}("), &format!(", {})", interrupt(&scope.interrupt)))
     }
 
-    /// A name like this one that no plan and no quark of the text has.
+    /// Returns a name like this one that no plan and no quark of the text has.
     fn distinct(&mut self, name: &str) -> String {
         let number = self.numbers.entry(name.to_owned()).or_insert(1);
         let mut distinct = name.to_owned();
@@ -105,7 +106,7 @@ impl<'p> Writer<'p> {
     }
 }
 
-/// `ξ`, or `ξ, T` where a timer is its last operand.
+/// Writes `ξ`, or `ξ, T` if the last operand is a timer.
 fn interrupt(interrupt: &Interrupt) -> String {
     let text = in_parentheses(interrupt);
     let (condition, time) = match text.strip_prefix("wait ") {
@@ -123,12 +124,12 @@ fn interrupt(interrupt: &Interrupt) -> String {
     }
 }
 
-/// The condition with the ORs in it as they are written: what `after` asks is an operand of the outermost.
+/// Text of the condition with nested ORs as written, since `after` refers to the operands of the outermost OR.
 fn in_parentheses(interrupt: &Interrupt) -> &str {
     interrupt.nested.as_deref().unwrap_or(&interrupt.text)
 }
 
-/// Lines between brackets: one line if there is room for that.
+/// Encloses lines in brackets, on one line if there is room.
 fn around(lines: Vec<String>, open: &str, close: &str) -> Vec<String> {
     let length: usize = lines.iter().map(|line| line.chars().count()).sum();
     if length + open.len() + close.len() <= WIDTH && lines.iter().all(|line| !line.starts_with(' ')) {
@@ -138,7 +139,7 @@ fn around(lines: Vec<String>, open: &str, close: &str) -> Vec<String> {
     [open.to_owned()].into_iter().chain(inside).chain([close.to_owned()]).collect()
 }
 
-/// Elements one behind the other, with a blank where two would be one: behind a name a parenthesis holds its arguments.
+/// Joins elements, with a space where two would be read as one: a parenthesis after a name holds its arguments.
 fn joined(elements: &[String]) -> String {
     let is_of_a_name = |letter: char| letter.is_ascii_alphanumeric() || letter == '_' || !letter.is_ascii();
     let mut joined = String::new();
@@ -153,7 +154,7 @@ fn joined(elements: &[String]) -> String {
     joined
 }
 
-/// Lines with this in front.
+/// Prepends `start` to the first line.
 fn begun(mut lines: Vec<String>, start: &str) -> Vec<String> {
     if let Some(first) = lines.first_mut() {
         first.insert_str(0, start);
@@ -161,7 +162,7 @@ fn begun(mut lines: Vec<String>, start: &str) -> Vec<String> {
     lines
 }
 
-/// Lines with this behind.
+/// Appends `end` to the last line.
 fn ended(mut lines: Vec<String>, end: &str) -> Vec<String> {
     if let Some(last) = lines.last_mut() {
         last.push_str(end);

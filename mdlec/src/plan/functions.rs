@@ -1,17 +1,18 @@
-//! Tells interrupts that are the same function wherever they stand (paper, Definition 4;
+//! Decides which interrupts are the same function wherever they are (paper, Definition 4;
 //! docs/src/reference/semantics.md, 7.2 and 7.3).
 //!
-//! Whole interrupts are compared, by their normal form: AND and OR flattened, sorted and deduplicated, double NOT removed.
+//! Whole interrupts are compared, by their normal form: AND and OR flattened, sorted and deduplicated, double NOT
+//! removed.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Condition, Quark, QuarkId, RecordId};
 
-/// Tells the interrupts of one plan from each other.
+/// Compares the interrupts of one plan.
 #[derive(Debug)]
 pub struct Functions<'q> {
     quarks: &'q [Quark],
-    /// For each quark the first one that is the same function.
+    /// For each quark the first quark that is the same function.
     same: Vec<QuarkId>,
 }
 
@@ -31,7 +32,7 @@ enum Normal {
     After(RecordId, u32),
 }
 
-/// For each quark the first one that is the same function.
+/// Returns for each quark the first quark that is the same function.
 fn same_functions(quarks: &[Quark]) -> Vec<QuarkId> {
     let mut first = BTreeMap::new();
     let ids = quarks.iter().zip((0..).map(QuarkId));
@@ -40,13 +41,13 @@ fn same_functions(quarks: &[Quark]) -> Vec<QuarkId> {
 }
 
 impl<'q> Functions<'q> {
-    /// Those of a plan with these quarks.
+    /// Prepares the comparison for a plan with these quarks.
     #[must_use]
     pub fn new(quarks: &'q [Quark]) -> Self {
         Self { quarks, same: same_functions(quarks) }
     }
 
-    /// The function of a condition; none for one that never fires, or that is another one in each place where it stands.
+    /// Function of a condition; `None` if the condition never fires or is a different function in each place.
     #[must_use]
     pub fn function(&self, condition: &Condition) -> Option<Function> {
         if !self.can_be_repeated(condition, false) {
@@ -56,7 +57,7 @@ impl<'q> Functions<'q> {
         (normal != Normal::Null).then_some(Function(normal))
     }
 
-    /// Whether the condition is the same function wherever it stands.
+    /// Returns `true` if the condition is the same function in every place.
     fn can_be_repeated(&self, condition: &Condition, under_not: bool) -> bool {
         match condition {
             Condition::Null => true,
@@ -118,7 +119,7 @@ impl<'q> Functions<'q> {
     }
 }
 
-/// A set of one operand is that operand.
+/// Joins operands; a set of one operand is that operand.
 fn single(mut operands: BTreeSet<Normal>, join: impl Fn(BTreeSet<Normal>) -> Normal) -> Normal {
     match operands.pop_first() {
         Some(only) if operands.is_empty() => only,

@@ -1,4 +1,5 @@
-//! The labels of one use of a definition, and what `after` asks about them (docs/src/reference/semantics.md, 2.3).
+//! Labels of one use of a definition, and the `after` conditions that refer to them (docs/src/reference/semantics.md,
+//! 2.3).
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,25 +13,25 @@ use crate::syntax::tree::Name;
 pub(super) struct Labels {
     record: RecordId,
     labels: BTreeMap<String, Label>,
-    /// What is asked, by label and cause, with its number and its place.
+    /// Facts that `after` conditions read, by label and cause, each with its number and its place.
     asked: BTreeMap<(String, Option<String>), Asked>,
 }
 
-/// A label with what ends the element.
+/// A label with the causes that can end its element.
 #[derive(Debug, Clone)]
 struct Label {
     span: Span,
     ends: Ends,
 }
 
-/// What can be the cause that an element ends.
+/// Causes that can end an element.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Ends {
-    /// These operands of its interrupt.
+    /// These operands of the element's interrupt.
     Operands(Vec<String>),
-    /// None: it has no interrupt of its own.
+    /// The end of the element's last element: it has no interrupt of its own.
     WithItsLast,
-    /// Not known, since what is there is used by name and not copied yet.
+    /// Unknown, since the plan there is used by name and not copied yet.
     Unknown,
 }
 
@@ -42,12 +43,12 @@ struct Asked {
 }
 
 impl Labels {
-    /// Those of a use that begins, whose record has this number.
+    /// Begins a use of a definition, whose record has this number.
     pub(super) fn new(record: RecordId) -> Self {
         Self { record, labels: BTreeMap::new(), asked: BTreeMap::new() }
     }
 
-    /// Notes a label, or says where it stands already.
+    /// Adds a label, or reports its earlier use.
     pub(super) fn add(&mut self, label: Name<'_>, found: &mut Vec<Diagnostic>) {
         if let Some(first) = self.labels.get(label.node) {
             let message = format!("there are two labels `{}` in this plan", label.node);
@@ -59,19 +60,19 @@ impl Labels {
         self.labels.insert(label.node.to_owned(), Label { span: label.span, ends: Ends::WithItsLast });
     }
 
-    /// Notes what ends the element of a label.
+    /// Sets the causes that can end the element of a label.
     pub(super) fn ends(&mut self, label: &str, ends: Ends) {
         if let Some(label) = self.labels.get_mut(label) {
             label.ends = ends;
         }
     }
 
-    /// A mark for the node that the element of a label ends with.
+    /// Returns a mark for the node that the element of a label ends with.
     pub(super) fn mark(&self, label: &str) -> Mark {
         Mark { record: self.record, label: label.to_owned(), facts: Vec::new() }
     }
 
-    /// The number of what is asked.
+    /// Returns the number of the fact that an `after` condition reads, and adds it if it is new.
     pub(super) fn asked(&mut self, label: Name<'_>, cause: Option<(String, Span)>) -> (RecordId, u32) {
         let (words, span) = cause.unzip();
         let number = u32::try_from(self.asked.len()).unwrap_or(u32::MAX);
@@ -80,7 +81,8 @@ impl Labels {
         (self.record, asked.number)
     }
 
-    /// Ends the use whose outermost scope this is: marks know what is asked of them, and are gone where nothing is.
+    /// Ends the use whose outermost scope is `scope`: marks get the facts that `after` reads, and are removed if it
+    /// reads none of this use.
     pub(super) fn finish(self, scope: &mut Scope, found: &mut Vec<Diagnostic>) {
         let mut facts: BTreeMap<&str, Vec<Fact>> = BTreeMap::new();
         for ((label, cause), asked) in &self.asked {
@@ -105,7 +107,7 @@ impl Labels {
         }
     }
 
-    /// The operand that has to be the cause, if any has to be.
+    /// Operand that must be the cause; `None` if any cause counts.
     fn operand(&self, label: &str, cause: Option<&str>, asked: Asked) -> Result<Option<u32>, Box<Diagnostic>> {
         let Some(known) = self.labels.get(label) else { return Err(self.unknown(label, asked.label).into()) };
         let (Some(cause), Some(span)) = (cause, asked.cause) else { return Ok(None) };
@@ -153,7 +155,7 @@ fn for_behavior(found: Diagnostic, label: &str, scope: &Scope) -> Diagnostic {
     ))
 }
 
-/// `after s1 bumper`, with parentheses where the operand is more than a quark.
+/// Writes `after s1 bumper`, with parentheses if the operand is more than a quark.
 fn cause_of(label: &str, operand: &str) -> String {
     let is_more =
         [" OR ", " AND ", "NOT ", "RISING ", "after ", "<", ">", "=="].iter().any(|word| operand.contains(word));

@@ -1,6 +1,6 @@
-//! A plan with everything resolved: names, arguments, units, plans by name (paper, Definition 2).
+//! Resolved plans: names, arguments, units and plans by name (paper, Definition 2).
 //!
-//! After this stage no string is looked up again: a quark is an id, an argument its exact decimal, its unit and its SI value.
+//! No later stage looks up a string: a quark is an id; an argument has its exact decimal, its unit and its SI value.
 
 mod angle;
 mod arguments;
@@ -40,7 +40,7 @@ use std::num::NonZeroU32;
 use crate::alphabet::{Decimal, Kind};
 use crate::diagnostic::Span;
 
-/// A plan: the outermost scope and the quarks that it and everything in it use.
+/// A plan: the outermost scope, and the quarks used anywhere in the plan.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
     /// The outermost scope, with the plan's name.
@@ -50,7 +50,7 @@ pub struct Plan {
 }
 
 impl Plan {
-    /// The quark of an id.
+    /// The quark with this id.
     #[must_use]
     pub fn quark(&self, id: QuarkId) -> &Quark {
         &self.quarks[id.0 as usize]
@@ -63,24 +63,24 @@ impl Plan {
     }
 }
 
-/// A quark with its arguments, among [`Plan::quarks`].
+/// Index of a quark with its arguments in [`Plan::quarks`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct QuarkId(pub u32);
 
 /// A quark with its arguments.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Quark {
-    /// Its name in the alphabet.
+    /// Name of the quark in the alphabet; for a comparison the operator.
     pub name: String,
-    /// Which of the declarations of this name it is, from 0, in the alphabet's order.
+    /// Index of the quark's declaration among those of this name, in the alphabet's order.
     pub overload: usize,
-    /// Its arguments, defaults filled in.
+    /// Arguments of the quark, defaults filled in.
     pub args: Vec<Value>,
-    /// For a law: whether it can be done by itself.
+    /// `true` for a law that completes by itself.
     pub completes: bool,
-    /// Whether it has a memory of its own, so that it is never the same function in two scopes.
+    /// `true` if the quark has memory, so that it is never the same function in two scopes.
     pub remembers: bool,
-    /// For a comparison of signals: what it compares. Its name is then the operator.
+    /// For a comparison of signals: its parts.
     pub comparison: Option<Comparison>,
     /// Quark text of the quark (docs/src/reference/language.md, 7).
     pub text: String,
@@ -91,38 +91,38 @@ pub struct Quark {
 pub struct Comparison {
     /// The signal.
     pub signal: QuarkId,
-    /// How it is compared.
+    /// Operator of the comparison.
     pub operator: Operator,
-    /// With what.
+    /// Right side of the comparison.
     pub with: Compared,
-    /// How far apart equal values may be.
+    /// Largest difference between values that count as equal.
     pub tolerance: Value,
 }
 
-/// What a signal is compared with.
+/// Right side of a comparison.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Compared {
     /// Another signal, of the same kind.
     Signal(QuarkId),
-    /// A value of its kind.
+    /// A value of the signal's kind.
     Value(Value),
 }
 
-/// An argument; equal arguments are the same to the last digit.
+/// An argument; equal arguments are equal to the last digit.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Value {
-    /// A number of some kind.
+    /// A number with a kind.
     Quantity {
-        /// What it measures.
+        /// Kind of the quantity.
         kind: Kind,
-        /// Its exact value in the unit of its family.
+        /// Exact value in the unit of the family.
         exact: Decimal,
-        /// That unit: degrees and radians are two families. Empty for a number without a unit.
+        /// Unit of the value: degrees and radians are two families. Empty for a number without a unit.
         family: &'static str,
     },
-    /// For ever: a time or a count.
+    /// `inf`, for a time or a count.
     Infinity(Kind),
-    /// Bits, the one written first first.
+    /// Bits, in the order in which they are written.
     Bits(Vec<bool>),
     /// A whole number.
     Integer(i64),
@@ -135,66 +135,66 @@ pub enum Value {
 /// A closed string: a sequence with an interrupt of its own.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scope {
-    /// Its name; empty for a scope in formal notation.
+    /// Name of the scope; empty in formal notation.
     pub name: String,
-    /// Its interrupt.
+    /// Interrupt of the scope.
     pub interrupt: Interrupt,
-    /// What it runs, in order; never empty.
+    /// Elements of the scope, in order; never empty.
     pub body: Vec<Node>,
-    /// `true` if the frame is the robot's heading at the moment of the entry: `FRAME here`.
+    /// `true` if the frame is the robot's heading at the moment of entry: `FRAME here`.
     pub here: bool,
-    /// For the outermost scope of a plan in which `after` stands: the record of this use of it.
+    /// Record of the labelled elements that ended last: for the outermost scope of a plan that uses `after`.
     pub record: Option<Record>,
-    /// The labels of what ends with it.
+    /// Labels of the elements that end with the scope.
     pub marks: Vec<Mark>,
-    /// Where its definition is.
+    /// Span of the scope's definition.
     pub span: Span,
 }
 
-/// What stands in a sequence.
+/// An element of a sequence.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Node {
     /// An atom.
     Atom(Atom),
     /// A behavior.
     Scope(Scope),
-    /// A string that is run several times.
+    /// A string that runs several times.
     Loop(Loop),
 }
 
-/// An atom: a law that runs until its interrupt fires or it is done.
+/// An atom: a law that runs until its interrupt fires or the law completes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Atom {
-    /// Its law.
+    /// Law of the atom.
     pub law: QuarkId,
-    /// Its interrupt.
+    /// Interrupt of the atom.
     pub interrupt: Interrupt,
-    /// The angle by which its frame is turned, in radians, counter-clockwise; from the innermost `FRAME here` on, if there
-    /// is one.
+    /// Angle by which the atom's frame is turned, in radians, counter-clockwise; relative to the innermost `FRAME
+    /// here`, if there is one.
     pub frame: f64,
-    /// `true` if the frame is the robot's heading at the moment of the entry: `FRAME here`.
+    /// `true` if the frame is the robot's heading at the moment of entry: `FRAME here`.
     pub here: bool,
-    /// The labels of what ends with it.
+    /// Labels of the elements that end with the atom.
     pub marks: Vec<Mark>,
-    /// Where it is.
+    /// Span of the atom.
     pub span: Span,
 }
 
-/// A loop.
+/// A loop: a sequence with its number of passes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Loop {
-    /// The number of passes, at least 1; `None` is for ever.
+    /// Number of passes, at least 1; `None` for an endless loop.
     pub times: Option<u64>,
-    /// What it runs, in order; never empty.
+    /// Elements of a pass, in order; never empty.
     pub body: Vec<Node>,
-    /// The labels of what ends with its last pass.
+    /// Labels of the elements that end with the loop's last pass.
     pub marks: Vec<Mark>,
-    /// Where it is.
+    /// Span of the loop.
     pub span: Span,
 }
 
 impl Node {
-    /// The labels of what ends with it.
+    /// Labels of the elements that end with the node.
     pub(crate) fn marks_mut(&mut self) -> &mut Vec<Mark> {
         match self {
             Self::Atom(atom) => &mut atom.marks,
@@ -204,63 +204,64 @@ impl Node {
     }
 }
 
-/// One use of the definition of a plan, whose record `after` asks.
+/// Identifier of one use of a plan's definition; `after` reads the record of this use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct RecordId(pub u32);
 
-/// The record of labelled elements that ended last, in one use of a definition.
+/// Record of the labelled elements that ended last, in one use of a definition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Record {
-    /// Which use.
+    /// Identifier of the use.
     pub id: RecordId,
-    /// How many different things `after` asks of it.
+    /// Number of different facts that `after` conditions read from the record.
     pub facts: u32,
 }
 
-/// A label of what ends with a node.
+/// A label of an element that ends with a node.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Mark {
-    /// The use of the definition that the label stands in.
+    /// Use of the definition that contains the label.
     pub record: RecordId,
     /// The label.
     pub label: String,
-    /// What `after` asks about it.
+    /// Facts about the label that `after` conditions read.
     pub facts: Vec<Fact>,
 }
 
-/// Something that `after` asks of a record.
+/// A fact that an `after` condition reads from a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Fact {
-    /// Its number in the record.
+    /// Number of the fact in the record.
     pub number: u32,
-    /// The operand of the node's interrupt that has to be the cause; none if any cause will do.
+    /// Operand of the node's interrupt that must be the cause; `None` if any cause counts.
     pub operand: Option<u32>,
 }
 
 impl Fact {
-    /// Whether it is so once the node has ended by this operand of its interrupt, or by something else.
+    /// Returns `true` if the fact holds once the node has ended by `operand` of its interrupt, or for `None` by another
+    /// cause.
     #[must_use]
     pub fn holds(&self, operand: Option<u32>) -> bool {
         self.operand.is_none() || self.operand == operand
     }
 }
 
-/// The interrupt of a scope.
+/// The interrupt of a scope or an atom.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Interrupt {
-    /// What it waits for.
+    /// Condition that fires the interrupt.
     pub condition: Condition,
-    /// Its condition text, also where it was removed.
+    /// Text of the condition, kept if the condition was removed.
     pub text: String,
     /// Condition text with parentheses around each OR that is directly in an OR; `None` without such an OR.
     pub nested: Option<Box<str>>,
-    /// The places of its operands: of the [joined](Condition::joined) parts of its condition.
+    /// Places of the operands: of the [joined](Condition::joined) parts of the condition.
     pub operands: Box<[OperandPlace]>,
-    /// How many memories of RISING it has in each scope entered.
+    /// Number of memories that RISING needs in each entered scope.
     pub memories: u32,
-    /// Whether an outer scope repeats it, so that it was replaced by the null interrupt.
+    /// `true` if an outer scope repeats the interrupt, so that it was replaced by the null interrupt.
     pub removed: bool,
-    /// Where it is; the scope's own place if it has none.
+    /// Span of the interrupt; the span of the scope or atom if that has no interrupt.
     pub span: Span,
 }
 
@@ -280,22 +281,22 @@ impl Interrupt {
         }
     }
 
-    /// Returns the condition text of its operand of this number, the [joined](Condition::joined) part `part`, by the texts
-    /// of the quarks.
+    /// Returns the condition text of operand `number`, the [joined](Condition::joined) part `part`, by the texts of the
+    /// quarks.
     pub fn operand_text(&self, number: usize, part: &Condition, quark: &impl Fn(QuarkId) -> String) -> String {
         let own = self.operands.get(number).and_then(|operand| operand.text.as_deref());
         own.map_or_else(|| condition_text(part, quark), String::clone)
     }
 }
 
-/// The place of an operand as it is written.
+/// Place of an operand as it is written.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OperandPlace {
-    /// From its first word to its last.
+    /// From the operand's first word to its last.
     pub span: Span,
-    /// The ends of the signals that it compares, if it is a comparison, or NOT or RISING of one.
+    /// Ends of the signals that the operand compares, if it is a comparison, or NOT or RISING of one.
     pub signals: [Option<NonZeroU32>; 2],
-    /// Condition text of the operand where the condition has another one, as after a `wait inf` has become null. It is boxed
+    /// Text of the operand where it differs from that of its condition, as after a `wait inf` has become null. Boxed,
     /// because most operands have none.
     pub text: Option<Box<String>>,
 }

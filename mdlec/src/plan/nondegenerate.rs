@@ -1,32 +1,33 @@
 //! Removes degeneracy (paper, Definition 4; docs/src/reference/semantics.md, 7.1): afterwards no interrupt is repeated
 //! inside its scope.
 //!
-//! The outer interrupt is read first and so always wins; replacing the inner ones by the null interrupt changes no trace.
+//! The outer interrupt is read first and so always wins; replacing the inner ones by the null interrupt changes no
+//! trace.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Atom, Condition, Function, Functions, Interrupt, Node, Plan, Quark, QuarkId, Scope};
 use crate::diagnostic::{Code, Diagnostic, Span};
 
-/// A plan without degeneracy; only [`remove_degeneracy`] makes one.
+/// A plan without degeneracy; only [`remove_degeneracy`] constructs it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Nondegenerate(Plan);
 
 impl Nondegenerate {
-    /// The plan.
+    /// The plan itself.
     #[must_use]
     pub fn plan(&self) -> &Plan {
         &self.0
     }
 
-    /// The plan with its outermost scope rewritten in a way that repeats no interrupt, such as expansion.
+    /// Rewrites the outermost scope in a way that repeats no interrupt, such as expansion.
     #[must_use]
     pub(crate) fn map(&self, rewrite: impl FnOnce(&Scope) -> Scope) -> Self {
         Self(Plan { root: rewrite(&self.0.root), quarks: self.0.quarks.clone() })
     }
 }
 
-/// Replaces every repeated interrupt by the null interrupt and warns of each, once.
+/// Replaces every repeated interrupt by the null interrupt, with one warning each.
 #[must_use]
 pub fn remove_degeneracy(mut plan: Plan) -> (Nondegenerate, Vec<Diagnostic>) {
     let mut removal = Removal {
@@ -41,7 +42,7 @@ pub fn remove_degeneracy(mut plan: Plan) -> (Nondegenerate, Vec<Diagnostic>) {
     (Nondegenerate(plan), warnings)
 }
 
-/// The interrupts of the scopes around the place where the removal is, each with its scope's name and its own place.
+/// Interrupts of the enclosing scopes during the removal, each with its scope's name and its span.
 struct Removal<'a> {
     functions: Functions<'a>,
     quarks: &'a [Quark],
@@ -75,7 +76,7 @@ impl Removal<'_> {
         }
     }
 
-    /// Removes the interrupt if it is repeated; else gives its function, if it can be repeated at all.
+    /// Removes the interrupt if it is repeated; else returns its function, if it can be repeated.
     fn interrupt(&mut self, interrupt: &mut Interrupt, law: Option<QuarkId>) -> Option<Function> {
         let function = self.functions.function(&interrupt.condition)?;
         let Some((scope, outer)) = self.around.get(&function).cloned() else { return Some(function) };

@@ -1,4 +1,4 @@
-//! The parameters of a plan: their types, and what they stand for where the plan is used
+//! Parameters of a plan: their types, and the arguments given to them where the plan is used
 //! (docs/src/reference/language.md, 3.4).
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -8,12 +8,12 @@ use crate::alphabet::{self, Declaration, DeclarationKind, Kind, Origin, Param, U
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::tree::{self, Arg, Call, Name};
 
-/// The names that mean something in a definition beside those of its alphabet.
+/// The names that a definition can use in addition to those of its alphabet.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Names<'n, 's> {
-    /// The plans of the file.
+    /// Plans of the file.
     pub(super) plans: &'n [&'s str],
-    /// The parameters of the definition.
+    /// Parameters of the definition.
     pub(super) parameters: &'n Parameters<'s>,
 }
 
@@ -21,21 +21,21 @@ pub(super) struct Names<'n, 's> {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Parameters<'s> {
     known: BTreeMap<&'s str, Parameter<'s>>,
-    /// Those with a type that is none: that was told, and nothing is wrong with where they stand.
+    /// Parameters with an unknown type: the type has been reported, so their uses are not.
     untyped: BTreeSet<&'s str>,
 }
 
-/// A parameter, and what it stands for.
+/// A parameter with the argument given to it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Parameter<'s> {
     pub(super) name: Name<'s>,
     pub(super) kind: Kind,
-    /// Nothing while the definition is looked at by itself.
+    /// Argument of the parameter; `None` while the definition is checked by itself.
     pub(super) given: Option<Arg<'s>>,
 }
 
 impl Parameter<'_> {
-    /// The unit that a bare number has: the paper's for its kind, which is that of our quarks.
+    /// Unit of a bare number: the paper's unit for this kind, which the quarks of `mdle-atoms` use too.
     pub(super) fn unit(&self) -> Option<Unit> {
         if self.kind == Kind::Speed {
             return Unit::from_name("cm/s");
@@ -46,7 +46,7 @@ impl Parameter<'_> {
         self.kind.base_unit()
     }
 
-    /// This parameter stands where `expected` has to stand, at `span`, and is something else.
+    /// Reports that this parameter is used at `span`, where the kind `expected` is required.
     pub(super) fn mismatch(&self, expected: Kind, span: Span) -> Diagnostic {
         let (name, kind) = (self.name.node, self.kind.words());
         let message = format!("expected {}, found `{name}`, which is {kind}", expected.words());
@@ -56,7 +56,7 @@ impl Parameter<'_> {
 }
 
 impl<'s> Parameters<'s> {
-    /// The parameters that a plan declares, which stand for nothing yet.
+    /// Parameters that a plan declares, without arguments.
     pub(super) fn declared(plan: &tree::Plan<'s>, found: &mut Vec<Diagnostic>) -> Self {
         let mut parameters = Self::default();
         for tree::Param { name, type_name } in plan.params {
@@ -75,10 +75,10 @@ impl<'s> Parameters<'s> {
         parameters
     }
 
-    /// The parameters of `plan` as `call` gives them, in a definition that has parameters of its own.
+    /// Parameters of `plan` with the arguments of `call`, in a definition whose own parameters are `around`.
     ///
     /// # Errors
-    /// Where count, type or unit are not what the plan declares.
+    /// Fails if number, type or unit of the arguments differ from the declaration.
     pub(super) fn given(plan: &tree::Plan<'s>, call: &Call<'s>, around: &Self) -> Result<Self, Vec<Diagnostic>> {
         // What is wrong with the types was told where they stand.
         let mut parameters = Self::declared(plan, &mut Vec::new());
@@ -107,17 +107,17 @@ impl<'s> Parameters<'s> {
         Ok(parameters)
     }
 
-    /// The parameter of this name.
+    /// Returns the parameter of this name.
     pub(super) fn get(&self, name: &str) -> Option<&Parameter<'s>> {
         self.known.get(name)
     }
 
-    /// Whether a parameter of this name has a type that is none.
+    /// Returns `true` if the parameter of this name has an unknown type.
     pub(super) fn is_untyped(&self, name: &str) -> bool {
         self.untyped.contains(name)
     }
 
-    /// The parameter that an argument is.
+    /// Returns the parameter that an argument names.
     pub(super) fn of(&self, arg: &Arg<'_>) -> Option<&Parameter<'s>> {
         match arg {
             Arg::Name(name) => self.get(name.node),
@@ -126,19 +126,19 @@ impl<'s> Parameters<'s> {
         }
     }
 
-    /// Adds those of a behavior.
+    /// Adds the parameters of a behavior.
     pub(super) fn extend(&mut self, others: Self) {
         self.known.extend(others.known);
         self.untyped.extend(others.untyped);
     }
 
-    /// Their names.
+    /// Names of the parameters.
     pub(super) fn names(&self) -> impl Iterator<Item = &'s str> {
         self.known.keys().copied()
     }
 }
 
-/// The kind that a type's name says, `bits[4]` included.
+/// Kind for a type's name, `bits[4]` included.
 fn kind_of(name: &str) -> Option<Kind> {
     let length = name.strip_prefix("bits[").and_then(|rest| rest.strip_suffix(']'));
     match length {
@@ -176,7 +176,7 @@ fn unknown_type(name: Name<'_>) -> Diagnostic {
     }
 }
 
-/// A plan with parameters as if it were a quark, so that what is given is checked in the same way.
+/// Declares a plan with parameters like a quark, so that its arguments are checked in the same way.
 fn declaration(plan: &tree::Plan<'_>, parameters: &Parameters<'_>) -> Declaration {
     let param = |param: &tree::Param<'_>| {
         let parameter = parameters.get(param.name.node)?;
@@ -197,7 +197,7 @@ fn declaration(plan: &tree::Plan<'_>, parameters: &Parameters<'_>) -> Declaratio
     }
 }
 
-/// Adds how a plan with these parameters is used.
+/// Adds help that shows how to use a plan with these parameters.
 fn usage(found: Diagnostic, call: &Call<'_>, declaration: &Declaration) -> Diagnostic {
     let name = &declaration.name;
     if declaration.params.is_empty() {
@@ -213,7 +213,7 @@ fn usage(found: Diagnostic, call: &Call<'_>, declaration: &Declaration) -> Diagn
     }
 }
 
-/// A plan that takes parameters stands where nothing gives them.
+/// Reports a plan with parameters in a place that gives no arguments.
 pub(super) fn missing(plan: &tree::Plan<'_>, why: &str) -> Diagnostic {
     let name = plan.name.node;
     let first = plan.params.first().map_or(plan.name.span, |param| param.name.span);
@@ -224,7 +224,7 @@ pub(super) fn missing(plan: &tree::Plan<'_>, why: &str) -> Diagnostic {
         .help(format!("write a plan that uses it by name: `{{ Main {name}({}) }}`", params.join(", ")))
 }
 
-/// A name stands where a count has to, and is no parameter that is one.
+/// Reports a name in the place of a count that is not a parameter of that type.
 pub(super) fn no_count(name: Name<'_>, parameters: &Parameters<'_>) -> Diagnostic {
     if let Some(parameter) = parameters.get(name.node) {
         return parameter.mismatch(Kind::Count, name.span).help(format!("declare it as `{}: count`", name.node));

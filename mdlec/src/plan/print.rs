@@ -1,4 +1,4 @@
-//! A resolved plan as MDLe text: plans by name copied in, every argument in its default unit.
+//! Prints a resolved plan as MDLe text: plans by name copied in, every argument in its default unit.
 
 use std::fmt;
 
@@ -12,7 +12,7 @@ impl fmt::Display for Plan {
 }
 
 impl Plan {
-    /// The text with each atom's number behind it: for a plan whose loops are expanded, the states of its machine.
+    /// Returns the text with each atom's number after it: for a plan with expanded loops, the states of its machine.
     #[must_use]
     pub fn numbered(&self) -> String {
         self.printed(true)
@@ -30,7 +30,7 @@ struct Printer<'p> {
     text: String,
     depth: usize,
     numbered: bool,
-    /// The atoms printed so far.
+    /// Number of atoms printed so far.
     atoms: u64,
 }
 

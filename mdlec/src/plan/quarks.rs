@@ -1,4 +1,5 @@
-//! Quarks by name: which declaration a call means, whether the robot has it, and one id for equal calls.
+//! Resolves quarks by name: chooses the declaration of a call, checks that the robot has it, and gives equal calls one
+//! id.
 
 mod moves;
 
@@ -11,7 +12,7 @@ use crate::alphabet::{Alphabet, Declaration, DeclarationKind};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::tree::Call;
 
-/// The quarks met so far.
+/// The quarks resolved so far.
 #[derive(Debug)]
 pub(super) struct Quarks<'a> {
     alphabet: &'a Alphabet,
@@ -36,7 +37,7 @@ impl<'a> Quarks<'a> {
         self.met
     }
 
-    /// The quark that `call` means where a quark of this kind has to stand.
+    /// Resolves `call` as a quark of this kind.
     pub(super) fn resolve(
         &mut self,
         call: &Call,
@@ -86,7 +87,7 @@ impl<'a> Quarks<'a> {
         })
     }
 
-    /// The id of a quark, which may have been met before.
+    /// Returns the id of a quark, and adds the quark if it is new.
     pub(super) fn add(&mut self, quark: Quark) -> QuarkId {
         if let Some(id) = self.ids.get(&quark) {
             return *id;
@@ -97,7 +98,7 @@ impl<'a> Quarks<'a> {
         id
     }
 
-    /// Whether the robot has what the quark needs.
+    /// Checks that the robot has the capabilities that the quark needs.
     fn available(&self, call: &Call, declaration: &Declaration) -> Result<(), Vec<Diagnostic>> {
         let missing = declaration.needs.iter().filter(|capability| !self.alphabet.has(capability));
         let missing: Vec<String> = missing.map(|capability| format!("`{capability}`")).collect();

@@ -1,4 +1,4 @@
-//! Tree to plan: every name, argument, unit and plan by name resolved, each use of a plan a copy of its own.
+//! Resolves a tree to plans: every name, argument, unit and plan by name; each use of a plan becomes a copy.
 
 mod misread;
 
@@ -15,12 +15,13 @@ use crate::diagnostic::{Code, Diagnostic, Span, has_errors};
 use crate::syntax::Files;
 use crate::syntax::tree::{self, Arg, Call, ConditionNode, Count, Element, Formal, Frame, Number, Primary};
 
-/// The largest angle of a FRAME, in its unit: far beyond a full circle, and sums of it are still exact enough.
+/// Largest angle of a FRAME, in its unit: far beyond a full circle, and small enough for exact sums.
 const FRAME: f64 = 100_000.0;
 
-/// Resolves the plans of a file and of those that it uses: its own that no other refers to, or the one that is `wanted`.
+/// Resolves the plans of a file and of the files that it uses: the file's plans that no other plan refers to, or only
+/// `wanted`.
 ///
-/// Every plan is checked, whether it is wanted or not; no plan comes out if one has an error.
+/// Every plan is checked, wanted or not; if one has an error, no plan is returned.
 #[must_use]
 pub fn resolve(files: &Files, alphabet: &Alphabet, wanted: Option<&str>) -> (Vec<Plan>, Vec<Diagnostic>) {
     let (definitions, mut found) = Definitions::collect(files, alphabet);
@@ -63,35 +64,35 @@ pub fn resolve(files: &Files, alphabet: &Alphabet, wanted: Option<&str>) -> (Vec
     if has_errors(&found) { (Vec::new(), found) } else { (plans, found) }
 }
 
-/// What to do where a plan is used by name.
+/// Action for a plan that is used by name.
 #[derive(Debug, Clone, Copy)]
 enum Uses {
-    /// See that there is such a plan.
+    /// Check that the plan exists.
     Check,
-    /// Put a copy there: safe once all plans are known to be good, and none to contain itself.
+    /// Insert a copy: safe once all plans are known to be valid, and none contains itself.
     Copy,
 }
 
 /// The frame of an element.
 #[derive(Clone, Copy)]
 struct Framing {
-    /// The sum of the angles by which it is turned, in radians, from the innermost `FRAME here` on.
+    /// Sum of the angles by which the frame is turned, in radians, relative to the innermost `FRAME here`.
     turned: f64,
     /// `true` if `FRAME here` is written before this element itself.
     here: bool,
 }
 
 impl Framing {
-    /// That of a plan by itself.
+    /// Frame of a plan by itself.
     const PLAN: Self = Self { turned: 0.0, here: false };
 
-    /// That of the elements inside.
+    /// Frame of the nested elements.
     fn inside(self) -> Self {
         Self { here: false, ..self }
     }
 }
 
-/// A sequence as a scope that is entered in a frame of its own; nothing where there is nothing to run.
+/// Wraps a sequence in a scope with a frame of its own; an empty sequence stays empty.
 fn framed(body: Vec<Node>, span: Span) -> Vec<Node> {
     if body.is_empty() {
         return body;
@@ -104,13 +105,13 @@ struct Resolver<'r, 'a> {
     definitions: &'r Definitions<'a>,
     quarks: Quarks<'r>,
     uses: Uses,
-    /// The parameters of the definition that is being resolved.
+    /// Parameters of the definition that is being resolved.
     parameters: Parameters<'a>,
-    /// Its labels.
+    /// Labels of the definition that is being resolved.
     labels: Labels,
-    /// How many definitions have been begun.
+    /// Number of definitions begun so far.
     begun: u32,
-    /// The place of the element after the one that is being resolved.
+    /// Span of the element after the one that is being resolved.
     next: Option<Span>,
     found: Vec<Diagnostic>,
 }
@@ -122,7 +123,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         Self { definitions, quarks, uses, parameters, labels, begun: 0, next: None, found: Vec::new() }
     }
 
-    /// A plan of the file, with labels and parameters of its own.
+    /// Resolves a plan of the file, with labels and parameters of its own.
     fn plan(&mut self, plan: &tree::Plan<'a>, parameters: Parameters<'a>, frame: Framing) -> (Scope, Ends) {
         let labels = std::mem::replace(&mut self.labels, Labels::new(RecordId(self.begun)));
         self.begun = self.begun.saturating_add(1);
@@ -133,7 +134,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         (scope, ends)
     }
 
-    /// A behavior in place.
+    /// Resolves a behavior in place.
     fn behavior(&mut self, plan: &tree::Plan<'a>, frame: Framing) -> (Scope, Ends) {
         if !plan.params.is_empty() {
             self.found.push(parameters::missing(plan, "it is written in place"));
@@ -191,7 +192,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         }
     }
 
-    /// Each form has a function of its own: plans are used in plans, and a level of them is to take little of the stack.
+    /// Resolves the main part of an element. Each form has a function of its own, to save stack where plans use plans.
     fn primary(&mut self, element: &Element<'a>, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
         match &element.primary {
             Primary::Atom(atom) => self.written(atom, element.span, frame, nodes),
@@ -204,7 +205,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         }
     }
 
-    /// `(s)`: an open string, which `FRAME here` makes a scope.
+    /// Resolves `(s)`: an open string, which `FRAME here` makes a scope.
     fn string(&mut self, elements: &[Element<'a>], span: Span, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
         if frame.here {
             nodes.extend(framed(self.sequence(elements, frame), span));
@@ -214,7 +215,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         Ends::WithItsLast
     }
 
-    /// `s^n`
+    /// Resolves `s^n`.
     fn power(&mut self, power: &Count, element: &Element<'a>, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
         let mut body = Vec::new();
         self.primary(element, frame, &mut body);
@@ -223,7 +224,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         Ends::WithItsLast
     }
 
-    /// `ExecPlan n { s }`
+    /// Resolves `ExecPlan n { s }`.
     fn exec(&mut self, exec: &tree::Exec<'a>, span: Span, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
         let times = self.count(&exec.count);
         let mut body = self.sequence(exec.body, frame);
@@ -235,7 +236,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         Ends::WithItsLast
     }
 
-    /// `(Atom (ξ) u)`
+    /// Resolves `(Atom (ξ) u)`.
     fn written(&mut self, atom: &tree::Atom<'a>, span: Span, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
         if let Some(swapped) = self.swapped(atom) {
             self.found.push(swapped);
@@ -246,14 +247,14 @@ impl<'r, 'a> Resolver<'r, 'a> {
         ends
     }
 
-    /// `{ Behavior … }`
+    /// Resolves `{ Behavior … }`.
     fn in_place(&mut self, plan: &tree::Plan<'a>, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
         let (scope, ends) = self.behavior(plan, frame);
         nodes.push(Node::Scope(scope));
         ends
     }
 
-    /// A plan by name.
+    /// Resolves a plan by name.
     fn used(&mut self, call: &Call<'a>, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
         let Some((plan, parameters)) = self.reference(call) else { return Ends::Unknown };
         let (scope, ends) = self.plan(plan, parameters, frame);
@@ -276,7 +277,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         }
     }
 
-    /// `(u, ξ, T)` or `(s, ξ, T)`: an atom if what it runs is one law, else a scope without a name.
+    /// Resolves `(u, ξ, T)` or `(s, ξ, T)`: to an atom if the body is one law, else to a scope without a name.
     fn formal(&mut self, formal: &Formal<'a>, span: Span, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
         let (interrupt, ends) = self.timed(formal, span);
         match formal.body {
@@ -292,14 +293,15 @@ impl<'r, 'a> Resolver<'r, 'a> {
         ends
     }
 
-    /// Whether a name in the place of a law or a plan is no plan: laws have arguments without parentheses, too.
+    /// Returns `true` if a name that may be a law or a plan is a law, or has arguments without parentheses as only laws
+    /// have.
     fn is_law(&self, call: &Call<'a>) -> bool {
         let mut declarations = self.quarks.alphabet().declarations_of(call.name);
         let is_bare = !call.args.is_empty() && self.definitions.get(call.name).is_none();
         is_bare || declarations.any(|declaration| declaration.kind == DeclarationKind::Control)
     }
 
-    /// The interrupt of a scope in formal notation: `ξ OR wait T`.
+    /// Resolves the interrupt of a scope in formal notation: `ξ OR wait T`.
     fn timed(&mut self, formal: &Formal<'a>, span: Span) -> (Interrupt, Ends) {
         let Some(time) = formal.time else { return self.interrupt(Some(&formal.condition), span) };
         let (args, here) = ([time], time.span());
@@ -322,7 +324,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         self.interrupt(Some(&whole(ConditionNode::Or(&operands))), span)
     }
 
-    /// The plan that `call` names, and what it is given, if a copy is to be put there.
+    /// Returns the plan that `call` names, with its arguments, if a copy is to be inserted.
     fn reference(&mut self, call: &Call<'a>) -> Option<(&'r tree::Plan<'a>, Parameters<'a>)> {
         let Some(plan) = self.definitions.get(call.name) else {
             let unknown = self.unknown_plan(call);
@@ -342,7 +344,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         }
     }
 
-    /// A loop's passes: at least one, `None` for ever.
+    /// Resolves a loop count: at least one pass, `None` for an endless loop.
     fn count(&mut self, count: &Count) -> Option<u64> {
         let number = match count {
             Count::Infinity(_) => return None,
@@ -377,7 +379,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         Some(1)
     }
 
-    /// The angle of a FRAME, in radians.
+    /// Resolves the angle of a FRAME, in radians.
     fn angle(&mut self, number: &Number) -> f64 {
         let unit = number.unit().unwrap_or("deg");
         let decimal = Decimal::parse(number.digits());

@@ -1,27 +1,27 @@
-//! The size of a plan once every plan by name is copied in: it is found before anything is copied, and held to limits.
+//! Computes the size of a plan after every plan by name is copied in, before anything is copied, and limits it.
 //!
-//! Plans within plans multiply, so that a short text may ask for more than any computer has. What a file writes out itself is
-//! never too large.
+//! Plans within plans multiply, so that a short text may need more memory than any computer has. A file is never too
+//! large because of what it writes out itself.
 
 use std::collections::BTreeMap;
 
 use crate::diagnostic::Span;
 use crate::syntax::tree::{Arg, Call, Condition, ConditionNode, Element, Frame, Operand, Plan, Primary};
 
-/// The most atoms, scopes and loops of a plan; loops are not expanded for this. `check` takes half a second for them, and
-/// `analyze` a whole one.
+/// Maximum number of atoms, scopes and loops of a plan; loops are not expanded. `check` takes half a second for this
+/// many, and `analyze` a second.
 const BRACKETS: u64 = 1 << 18;
-/// The most operands of all its conditions, which take as long.
+/// Maximum number of operands of all its conditions, which take as long.
 const OPERANDS: u64 = 1 << 19;
-/// The most bytes of its text, as `--emit plan` prints it.
+/// Maximum bytes of its text, as `--emit plan` prints it.
 const TEXT: u64 = 1 << 26;
-/// The deepest nesting.
+/// Maximum nesting depth.
 pub(super) const DEPTH: u32 = 512;
 
-/// Bytes that the text of a quark, an atom or a scope has beside what is written: defaults, units, brackets.
+/// Additional bytes of printed text for each quark, atom or scope: defaults, units, brackets.
 const BESIDE: u64 = 16;
 
-/// The size of a plan or of a part of one.
+/// Size of a plan or of a part of one.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Size {
     /// Atoms, scopes and loops.
@@ -31,24 +31,25 @@ pub(super) struct Size {
     pub(super) depth: u32,
 }
 
-/// Something that a plan has too much of.
+/// A limit that a plan exceeds.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Excess {
     of: fn(&Size) -> u64,
-    /// The unit of the count, in the plural.
+    /// Unit of the count, in the plural.
     pub(super) unit: &'static str,
     pub(super) limit: u64,
 }
 
 impl Excess {
-    /// The count in a size.
+    /// The limited count of a size.
     pub(super) fn count(&self, size: &Size) -> u64 {
         (self.of)(size)
     }
 }
 
 impl Size {
-    /// The first limit that this size exceeds; files of the size `written` may have as much as they write out.
+    /// Returns the first limit that this size exceeds; each limit is at least the size `written` of the files as
+    /// written.
     pub(super) fn excess(&self, written: &Self) -> Option<Excess> {
         let limits: [Excess; 3] = [
             Excess { of: |size| size.brackets, unit: "atoms, scopes and loops", limit: BRACKETS },
@@ -58,7 +59,7 @@ impl Size {
         limits.into_iter().find(|excess| excess.count(self) > excess.limit.max(excess.count(written)))
     }
 
-    /// One part after the other.
+    /// Size of two parts in sequence.
     pub(super) fn and(self, other: Self) -> Self {
         Self {
             brackets: self.brackets.saturating_add(other.brackets),
@@ -68,13 +69,13 @@ impl Size {
         }
     }
 
-    /// In a scope or a loop.
+    /// Size of the part inside a scope or a loop.
     fn nested(self) -> Self {
         let inside = self.indented();
         Self { brackets: inside.brackets.saturating_add(1), ..inside }
     }
 
-    /// In brackets, which indent each line.
+    /// Size of the part inside brackets, which indent each line.
     fn indented(self) -> Self {
         let text = self.text.saturating_add(self.brackets.saturating_mul(2)).saturating_add(BESIDE);
         Self { text, depth: self.depth.saturating_add(1), ..self }
@@ -85,17 +86,17 @@ impl Size {
     }
 }
 
-/// Measures plans, those first that others use.
+/// Measures plans; used plans are measured before the plans that use them.
 pub(super) struct Measure<'m> {
     pub(super) by_name: &'m BTreeMap<&'m str, usize>,
-    /// The sizes of the plans that were measured before.
+    /// Sizes of the plans measured before.
     pub(super) sizes: &'m [Size],
-    /// The longest argument that a plan is given, in bytes: as long may be what a parameter stands for.
+    /// Length in bytes of the longest argument given to a plan, as an upper bound for the text of each parameter.
     pub(super) longest: u64,
 }
 
 impl Measure<'_> {
-    /// The size of a plan with everything that it uses.
+    /// Size of a plan with everything that it uses.
     pub(super) fn plan(&self, plan: &Plan<'_>) -> Size {
         let own = plan.condition.as_ref().map_or(Size::default(), |condition| self.condition(condition));
         let name = Size::of_text(plan.name.node.len() as u64);
@@ -162,7 +163,7 @@ impl Measure<'_> {
         }
     }
 
-    /// An operand of so many bytes and so many arguments.
+    /// Size of an operand with this many bytes and arguments.
     fn operand(&self, bytes: u64, arguments: usize) -> Size {
         Size { operands: 1, ..Size::of_text(bytes.saturating_add(self.given(arguments))) }
     }
@@ -176,7 +177,7 @@ impl Measure<'_> {
     }
 }
 
-/// The longest argument of these calls, in bytes.
+/// Length in bytes of the longest argument of these calls.
 pub(super) fn longest<'c>(calls: impl Iterator<Item = &'c Call<'c>>) -> u64 {
     calls.flat_map(|call| call.args).map(|arg: &Arg<'_>| length(arg.span())).max().unwrap_or(0)
 }

@@ -1,4 +1,4 @@
-//! Names, arguments, plans by name and degeneracy: what comes out, and what is said where nothing can.
+//! Names, arguments, plans by name and degeneracy: resolved plans and messages.
 
 mod degeneracy;
 mod files;
@@ -7,7 +7,7 @@ mod motion;
 
 use crate::samples::{compiled, judged, sources};
 
-/// One snapshot: the text, what is said of it for a robot that has everything, and the plan.
+/// Records one snapshot: the text, its messages for a robot with all capabilities, and the plan.
 macro_rules! assert_judged {
     ($text:literal) => {
         insta::assert_snapshot!(judged($text, None))

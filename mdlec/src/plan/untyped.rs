@@ -1,4 +1,4 @@
-//! Parameters that are written without their types: reported once, and taken as what they are used for.
+//! Infers the types of parameters that are written without them, and reports each such list once.
 
 use std::collections::BTreeSet;
 
@@ -7,7 +7,7 @@ use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::tree::{Arg, Call, Condition, ConditionNode, Count, Element, Name, Param, Plan, Primary, Spanned};
 use crate::syntax::{Arena, Files};
 
-/// Gives types to the parameters that have none, and reports them.
+/// Adds types to the parameters without one, and reports them.
 pub(crate) fn complete<'s>(files: &mut Files<'s>, arena: &'s Arena, alphabet: &Alphabet) -> Vec<Diagnostic> {
     let plans: BTreeSet<&str> = files.plans.iter().map(|plan| plan.name.node).collect();
     let called: BTreeSet<&str> = files.plans.iter().flat_map(|plan| called_with_arguments(plan.elements)).collect();
@@ -47,10 +47,10 @@ pub(crate) fn complete<'s>(files: &mut Files<'s>, arena: &'s Arena, alphabet: &A
 /// The parentheses after the name of a plan, if they may be parameters.
 struct Header<'s> {
     names: Vec<Name<'s>>,
-    /// The type that is written before the only name.
+    /// Type that is written before the only name.
     kind: Option<Kind>,
     span: Span,
-    /// The elements of the plan without it.
+    /// Elements of the plan without the header.
     elements: &'s [Element<'s>],
 }
 
@@ -66,7 +66,7 @@ impl<'s> Header<'s> {
         Some(Self { names, kind, span: condition.span, elements: plan.elements })
     }
 
-    /// `(d, v)`, which looks like formal notation.
+    /// Reads `(d, v)`, which looks like formal notation.
     fn of_formal(plan: &Plan<'s>) -> Option<Self> {
         let [Element { primary: Primary::Formal(formal), marks: None, span }, elements @ ..] = plan.elements else {
             return None;
@@ -88,7 +88,7 @@ fn named<'s>(call: &Call<'s>) -> Name<'s> {
     Spanned { node: call.name, span: call.name_span() }
 }
 
-/// A type as it is written.
+/// Writes a type as in a plan.
 fn type_name(kind: Kind) -> String {
     let name = Kind::NAMES.iter().find(|name| Kind::from_name(name) == Some(kind));
     if let Kind::Bits(length) = kind {
@@ -97,7 +97,7 @@ fn type_name(kind: Kind) -> String {
     name.map_or_else(String::new, |name| (*name).to_owned())
 }
 
-/// The plans that are called with arguments somewhere in these elements.
+/// Names of the plans that these elements call with arguments.
 fn called_with_arguments<'s>(elements: &[Element<'s>]) -> Vec<&'s str> {
     let mut called = Vec::new();
     calls(elements, &mut |call| {
@@ -109,14 +109,14 @@ fn called_with_arguments<'s>(elements: &[Element<'s>]) -> Vec<&'s str> {
     called
 }
 
-/// The uses of names in the elements of a plan.
+/// Finds the uses of names in the elements of a plan.
 struct Uses<'a, 's> {
     alphabet: &'a Alphabet,
     elements: &'s [Element<'s>],
 }
 
 impl Uses<'_, '_> {
-    /// The kind of the first parameter that a name is given to.
+    /// Kind of the first parameter to which a name is given.
     fn kind_of(&self, name: &str) -> Option<Kind> {
         let is_name = |arg: &Arg<'_>| matches!(arg, Arg::Name(given) if given.node == name);
         if counts(self.elements, name) {
@@ -133,7 +133,7 @@ impl Uses<'_, '_> {
     }
 }
 
-/// Returns `true` if a loop in these elements counts to this name.
+/// Returns `true` if a loop in these elements has this name as its count.
 fn counts(elements: &[Element<'_>], name: &str) -> bool {
     let is_count = |count: &Count<'_>| matches!(count, Count::Name(given) if given.node == name);
     elements.iter().any(|element| {
@@ -148,7 +148,7 @@ fn counts(elements: &[Element<'_>], name: &str) -> bool {
     })
 }
 
-/// The first result that `visit` has for a call in these elements.
+/// First result of `visit` for a call in these elements.
 fn calls<'s, T>(elements: &[Element<'s>], visit: &mut impl FnMut(&Call<'s>) -> Option<T>) -> Option<T> {
     elements.iter().find_map(|element| match element.primary {
         Primary::Atom(atom) => visit(atom.control).or_else(|| calls_of(&atom.condition, visit)),
@@ -164,7 +164,7 @@ fn calls<'s, T>(elements: &[Element<'s>], visit: &mut impl FnMut(&Call<'s>) -> O
     })
 }
 
-/// The first result that `visit` has for a call in a condition.
+/// First result of `visit` for a call in a condition.
 fn calls_of<'s, T>(condition: &Condition<'s>, visit: &mut impl FnMut(&Call<'s>) -> Option<T>) -> Option<T> {
     match condition.node {
         ConditionNode::Or(operands) | ConditionNode::And(operands) => {

@@ -1,4 +1,4 @@
-//! The interrupts and laws of a plan as scripts name them.
+//! Interrupts and laws of a plan, by the names that scripts use.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,7 +7,7 @@ use crate::alphabet::{self, Alphabet};
 use crate::diagnostic::{SourceId, has_errors};
 use crate::syntax::{Arena, NoFiles, parse_with};
 
-/// The texts that mean something in a script for a plan.
+/// The texts that a script for a plan can name.
 pub(crate) struct Words<'p> {
     plan: &'p Plan,
     alphabet: &'p Alphabet,
@@ -18,7 +18,7 @@ pub(crate) struct Words<'p> {
 }
 
 impl<'p> Words<'p> {
-    /// The texts of this plan, which was resolved against `alphabet`.
+    /// Collects the texts of this plan, which was resolved against `alphabet`.
     pub(crate) fn new(plan: &'p Plan, alphabet: &'p Alphabet) -> Self {
         let (interrupts, counted, laws) = (BTreeSet::new(), BTreeMap::new(), BTreeSet::new());
         let mut words = Self { plan, alphabet, interrupts, counted, laws };
@@ -53,7 +53,7 @@ impl<'p> Words<'p> {
         });
     }
 
-    /// The text of the interrupt that a script calls `written`.
+    /// Returns the text of the interrupt that a script writes as `written`.
     pub(crate) fn interrupt(&self, written: String) -> Result<String, String> {
         if self.interrupts.contains(written.as_str()) {
             return Ok(written);
@@ -67,7 +67,7 @@ impl<'p> Words<'p> {
         known(&written, text, &self.interrupts, ["interrupt", "interrupts"])
     }
 
-    /// The text of the law that a script calls `written`.
+    /// Returns the text of the law that a script writes as `written`.
     pub(crate) fn law(&self, written: String) -> Result<String, String> {
         if self.laws.contains(written.as_str()) {
             return Ok(written);
@@ -80,7 +80,7 @@ impl<'p> Words<'p> {
         known(&written, law.unwrap_or_else(|| written.clone()), &self.laws, ["law", "laws"])
     }
 
-    /// A plan with what a script names, read as the compiler reads it; none if that is an error.
+    /// Compiles the plan `text`, which contains the script's word `written`; `None` if it has errors.
     fn read(&self, written: &str, text: &str) -> Option<Plan> {
         // What closes a bracket or begins a comment would be read as more than a name.
         if written.contains(['{', '}', ';', '\n', '"']) || written.contains("//") || written.contains("/*") {
@@ -93,7 +93,7 @@ impl<'p> Words<'p> {
     }
 }
 
-/// The text, if the plan has it; else a message that names the nearest, or all.
+/// Returns `text` if the plan has it; else a message that names the nearest text, or all.
 fn known(written: &str, text: String, texts: &BTreeSet<&str>, [one, many]: [&str; 2]) -> Result<String, String> {
     if texts.contains(text.as_str()) {
         return Ok(text);
@@ -112,7 +112,7 @@ fn known(written: &str, text: String, texts: &BTreeSet<&str>, [one, many]: [&str
 }
 
 impl Condition {
-    /// Visits every quark in it that fires by the time or the way of the turns, and why scripts leave it out.
+    /// Visits every quark that fires by the turns' time or way, with the reason why scripts leave it out.
     fn each_counted(&self, visit: &mut impl FnMut(QuarkId, &'static str)) {
         match self {
             Self::Wait { quark, .. } | Self::Elapsed { quark, .. } => {

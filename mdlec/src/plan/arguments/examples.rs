@@ -1,11 +1,11 @@
-//! Arguments to begin with, for helps.
+//! Example arguments for help texts.
 
 use super::written;
 use crate::alphabet::{Declaration, Kind, Param};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::tree::{Arg, Call};
 
-/// A value that a parameter can have: something to begin with. `None` where only the writer knows a name.
+/// Example value for a parameter; `None` if only the user knows a name.
 pub(in crate::plan) fn example(param: &Param) -> Option<String> {
     let value = match param.kind {
         Kind::Length => "1m".to_owned(),
@@ -22,7 +22,7 @@ pub(in crate::plan) fn example(param: &Param) -> Option<String> {
     Some(value)
 }
 
-/// `atIsection 1 0 0 0` with its bits written together.
+/// Proposes `atIsection 1000` for `atIsection 1 0 0 0`.
 pub(super) fn bits_apart(call: &Call, declaration: &Declaration) -> Option<String> {
     let [Param { kind: Kind::Bits(length), .. }] = declaration.params.as_slice() else { return None };
     let bits = call.args.iter().map(|arg| match arg {
@@ -33,7 +33,7 @@ pub(super) fn bits_apart(call: &Call, declaration: &Declaration) -> Option<Strin
     (bits.len() == *length as usize).then(|| format!("{} {bits}", call.name))
 }
 
-/// Two arguments with the unit of each other, where they fit in the other order.
+/// Reports two arguments whose units show that their order is exchanged.
 pub(super) fn swapped(call: &Call, found: &[Diagnostic], fits: impl Fn(&Call) -> bool) -> Option<Diagnostic> {
     let [first, second] = call.args else { return None };
     if found.len() != 2 || found.iter().any(|found| found.code != Code::E0303) {

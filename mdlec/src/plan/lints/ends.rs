@@ -1,9 +1,9 @@
-//! W0201 and W0202: atoms that nothing ever ends, and what is never reached because of one that does not end by itself.
+//! W0201 and W0202: atoms that nothing ever ends, and elements that are unreachable because an earlier one never ends.
 
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::plan::{Atom, Condition, Interrupt, Node, Plan};
 
-/// Warns of both.
+/// Warns of atoms that never end and of unreachable elements.
 pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
     let mut ends = Ends { plan, pause: 10.0, found };
     ends.enter(&plan.root.interrupt);
@@ -17,22 +17,22 @@ pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
 
 struct Ends<'p, 'f> {
     plan: &'p Plan,
-    /// Seconds after which an atom may end before a timer of an enclosing scope does.
+    /// Duration in seconds proposed for an atom, shorter than the timers of all enclosing scopes.
     pause: f64,
     found: &'f mut Vec<Diagnostic>,
 }
 
-/// Why an element never ends by itself.
+/// Reason why an element never ends by itself.
 #[derive(Clone, Copy)]
 struct Endless<'p> {
-    /// The atom that does not; `None` for a loop without end, which is one on purpose.
+    /// Atom that never ends; `None` for an endless loop, which is intended.
     atom: Option<&'p Atom>,
-    /// Whether it was told already.
+    /// `true` if a warning has been given already.
     told: bool,
 }
 
 impl<'p> Ends<'p, '_> {
-    /// Keeps what is proposed inside a scope below the timers of its interrupt.
+    /// Keeps the proposed duration in a scope below the timers of its interrupt.
     fn enter(&mut self, interrupt: &Interrupt) {
         for operand in interrupt.condition.operands() {
             if let Condition::Wait { nanos, .. } = operand
@@ -43,7 +43,7 @@ impl<'p> Ends<'p, '_> {
         }
     }
 
-    /// What in a sequence never ends, if something does not.
+    /// Reason why a sequence never ends; `None` if it can end.
     fn sequence(&mut self, body: &'p [Node]) -> Option<Endless<'p>> {
         let mut nodes = body.iter();
         let (place, endless) = nodes.by_ref().find_map(|node| Some((node.span(), self.node(node)?)))?;
@@ -112,7 +112,7 @@ impl<'p> Ends<'p, '_> {
     }
 }
 
-/// Whether it is one that can fire.
+/// Returns `true` if the interrupt can fire.
 fn can_end(interrupt: &Interrupt) -> bool {
     interrupt.condition != Condition::Null
 }

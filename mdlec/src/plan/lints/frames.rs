@@ -4,7 +4,7 @@ use crate::alphabet::Kind;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::{Atom, Node, Plan, Quark, Value};
 
-/// Warns of them.
+/// Warns of every such `FRAME here`.
 pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
     Frames { plan, found }.sequence(&plan.root.body);
 }
@@ -45,7 +45,8 @@ impl<'p> Frames<'p, '_> {
     }
 }
 
-/// Returns `true` if a law may mean a direction of its frame: it takes an angle, or a file or a module that has some.
+/// Returns `true` if a law may use a direction of its frame: it takes an angle, or a file or a module that may contain
+/// angles.
 fn names_a_direction(law: &Quark) -> bool {
     // The angle of `turn` counts from the heading at which its atom began.
     law.name != "turn"

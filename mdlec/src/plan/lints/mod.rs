@@ -1,7 +1,6 @@
-//! Lints (docs/src/reference/language.md, 5: W02xx to W04xx): plans that have a meaning, though hardly the one that was
-//! meant.
+//! Lints (docs/src/reference/language.md, 5: W02xx to W04xx): valid plans that are probably not what was meant.
 //!
-//! A lint speaks where something is useless for certain; what may be meant as it is written is left alone.
+//! A lint reports only code that is certainly useless; anything that may be intended is left alone.
 
 mod ends;
 mod frames;
@@ -17,7 +16,7 @@ pub use numbers::bare_numbers;
 use super::{Node, Nondegenerate};
 use crate::diagnostic::{Code, Diagnostic, Span};
 
-/// What is suspicious in a plan without degeneracy, each place told once, however often its plan is used.
+/// Warns of suspicious parts of a plan without degeneracy, once for each place, however often its plan is used.
 #[must_use]
 pub fn lints(plan: &Nondegenerate) -> Vec<Diagnostic> {
     let plan = plan.plan();
@@ -31,7 +30,7 @@ pub fn lints(plan: &Nondegenerate) -> Vec<Diagnostic> {
 }
 
 impl Node {
-    /// Where it is.
+    /// Span of the node.
     fn span(&self) -> Span {
         match self {
             Self::Atom(atom) => atom.span,

@@ -10,7 +10,7 @@ use crate::syntax::tree::{
     self, Arg, Call, Compared, Condition, ConditionNode, Element, Frame, Number, Operand, Primary,
 };
 
-/// Warns of them in every plan of files that resolve.
+/// Warns of such numbers in every plan of files that resolve.
 #[must_use]
 pub fn bare_numbers(files: &Files, alphabet: &Alphabet) -> Vec<Diagnostic> {
     let with_parameters = files.plans.iter().filter(|plan| !plan.params.is_empty());
@@ -22,14 +22,14 @@ pub fn bare_numbers(files: &Files, alphabet: &Alphabet) -> Vec<Diagnostic> {
     numbers.found
 }
 
-/// A range in metres that no sonar measures.
+/// Range in metres beyond that of any sonar.
 const SONAR: f64 = 20.0;
-/// A length in metres that hardly a plan drives.
+/// Length in metres that hardly any plan drives.
 const FAR: f64 = 100.0;
 
 struct Numbers<'a> {
     alphabet: &'a Alphabet,
-    /// The plans that take arguments.
+    /// Plans that take arguments.
     parameters: BTreeMap<&'a str, &'a tree::Plan<'a>>,
     found: Vec<Diagnostic>,
 }
@@ -80,7 +80,7 @@ impl Numbers<'_> {
         }
     }
 
-    /// A value that a signal is compared with.
+    /// Checks a value that a signal is compared with.
     fn compared(&mut self, compared: &Compared) {
         let Operand::Number(number) = &compared.right else { return };
         let name = compared.left.name;
@@ -119,7 +119,7 @@ impl Numbers<'_> {
         }
     }
 
-    /// The arguments of a plan.
+    /// Checks the arguments of a plan.
     fn given(&mut self, call: &Call, plan: &tree::Plan) {
         let parameters = Parameters::declared(plan, &mut Vec::new());
         for (arg, param) in call.args.iter().zip(plan.params) {
@@ -171,7 +171,7 @@ fn beyond_half_a_turn(number: &Number, value: f64) -> Option<Diagnostic> {
     Some(found.fix("the same heading is {}", number.span, format!("{same}deg")))
 }
 
-/// The unit that was probably meant, and what is odd about a value of this kind in that unit.
+/// Returns the unit that was probably meant, and the reason why a value of this kind is doubtful in its unit.
 fn doubt(kind: Kind, unit: &str, value: f64) -> Option<(&'static str, &'static str)> {
     let size = value.abs();
     let is = |name: &str| Unit::from_name(name).is_some_and(|found| found.kind == kind) && unit == name;

@@ -1,4 +1,4 @@
-//! W0301: loops that can be skipped whole in one turn, since nothing in a pass takes time while some conditions hold.
+//! W0301: loops that can be skipped in one turn, since no pass takes time while some conditions hold.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -6,12 +6,12 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::families::{Family, Readings, at_once, family};
 use crate::plan::{Condition, Interrupt, Loop, Node, Plan, Quark, QuarkId, RecordId, Scope, Situation};
 
-/// The most quarks of a loop of which every choice is tried; a loop that reads more is left alone.
+/// Maximum number of quarks of a loop for which all combinations are tried; loops that read more are left alone.
 const QUARKS: usize = 8;
-/// The most elements of a loop that is looked at.
+/// Maximum number of elements of a loop that is checked.
 const ELEMENTS: usize = 64;
 
-/// Warns of them.
+/// Warns of loops that can be skipped.
 pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
     let mut skipped = Skipped { plan, known: BTreeMap::new(), found };
     skipped.inside(&plan.root);
@@ -19,13 +19,13 @@ pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
 
 struct Skipped<'p, 'f> {
     plan: &'p Plan,
-    /// The values of quarks with which no enclosing scope has ended.
+    /// Values that quarks have as long as no enclosing scope has ended.
     known: BTreeMap<QuarkId, bool>,
     found: &'f mut Vec<Diagnostic>,
 }
 
 impl Skipped<'_, '_> {
-    /// Looks at the body of a scope, where no operand of its interrupt has fired.
+    /// Checks the body of a scope, where no operand of its interrupt has fired.
     fn inside(&mut self, scope: &Scope) -> bool {
         let known = self.known.clone();
         for operand in scope.interrupt.condition.operands() {
@@ -45,7 +45,7 @@ impl Skipped<'_, '_> {
         told
     }
 
-    /// Whether a loop was told in it: one around it can be skipped because of that.
+    /// Returns `true` if the sequence contains a reported loop; an enclosing loop can be skipped for the same reason.
     fn sequence(&mut self, body: &[Node]) -> bool {
         body.iter().fold(false, |told, node| {
             told | match node {
@@ -71,7 +71,7 @@ impl Skipped<'_, '_> {
         true
     }
 
-    /// What has to hold for a pass to take no time, if it can.
+    /// Condition under which a pass takes no time; `None` if it always takes time or always takes none.
     fn skips(&self, body: &[Node]) -> Option<String> {
         let skip = all(body, &mut ELEMENTS.clone())?;
         // What has ended before depends on the pass.
@@ -135,7 +135,7 @@ impl Skipped<'_, '_> {
     }
 }
 
-/// What is so of a scope that has just been entered, where quarks say what the function says.
+/// Situation of a scope that has just been entered; the function gives the value of each quark.
 struct AtOnce<F>(F);
 
 impl<F: Fn(QuarkId) -> bool> Situation for AtOnce<F> {
@@ -161,8 +161,8 @@ impl<F: Fn(QuarkId) -> bool> Situation for AtOnce<F> {
     }
 }
 
-/// The condition under which a sequence takes no time, with at most so many elements left to look at; `None` where
-/// there is none. A law may be done at once, but takes time as a rule.
+/// Condition under which a sequence takes no time; checks at most `left` elements. `None` if there is none. A law may
+/// complete at once, but usually takes time.
 fn all(body: &[Node], left: &mut usize) -> Option<Condition> {
     let mut conditions = Vec::new();
     for node in body {
@@ -179,7 +179,7 @@ fn all(body: &[Node], left: &mut usize) -> Option<Condition> {
     Some(Condition::And(conditions))
 }
 
-/// The condition, if it is one that can be true at once.
+/// Condition of the interrupt, if it can be true at once.
 fn own(interrupt: &Interrupt) -> Option<Condition> {
     let condition = &interrupt.condition;
     let never = matches!(

@@ -1,15 +1,15 @@
-//! What each lint says, and what it leaves alone.
+//! Messages of each lint, and plans that no lint reports.
 
 use crate::samples::judged;
 
-/// One snapshot: the text, what is said of it, and the plan.
+/// Records one snapshot: the text, its messages, and the plan.
 macro_rules! assert_judged {
     ($text:literal) => {
         insta::assert_snapshot!(judged($text, None))
     };
 }
 
-/// Holds the lints to have nothing to say of these plans.
+/// Checks that no lint reports these plans.
 fn assert_silent(plans: &[&str]) {
     for plan in plans {
         let judged = judged(plan, None);

@@ -1,4 +1,4 @@
-//! Usual mistakes that can be parsed, and names that no plan has: messages about what was meant.
+//! Reports usual mistakes that the parser accepts, and names of no plan, with what was probably meant.
 
 use super::Resolver;
 use crate::alphabet::{self, DeclarationKind};
@@ -8,7 +8,7 @@ use crate::syntax::foreign;
 use crate::syntax::tree::{self, Call, ConditionNode, Element, Primary};
 
 impl<'a> Resolver<'_, 'a> {
-    /// Reports `{ My Plan (bumper) …`, a name of two words; the number of elements that were read from it.
+    /// Reports `{ My Plan (bumper) …`, a name of two words; returns the number of elements that belong to the mistake.
     pub(super) fn words_of_name(&mut self, plan: &tree::Plan<'a>) -> usize {
         let [Element { primary: Primary::Ref(word), .. }, Element { primary: Primary::String(group), .. }, ..] =
             plan.elements
@@ -30,7 +30,8 @@ impl<'a> Resolver<'_, 'a> {
         2
     }
 
-    /// Reports `{ Plan bumper (Atom …`, a condition without parentheses; the number of elements that were read from it.
+    /// Reports `{ Plan bumper (Atom …`, a condition without parentheses; returns the number of elements that belong to
+    /// the mistake.
     pub(super) fn bare_condition(&mut self, plan: &tree::Plan<'a>) -> usize {
         let [Element { primary: Primary::Ref(call), marks: None, .. }, _, ..] = plan.elements else { return 0 };
         let mut declarations = self.quarks.alphabet().declarations_of(call.name);
@@ -50,7 +51,7 @@ impl<'a> Resolver<'_, 'a> {
         1
     }
 
-    /// `(Atom (u) ξ)`: the law where the condition belongs, and the other way round.
+    /// Reports `(Atom (u) ξ)`: law and condition exchanged.
     pub(super) fn swapped(&self, atom: &tree::Atom<'a>) -> Option<Diagnostic> {
         let ConditionNode::Call(law) = atom.condition.node else { return None };
         let kind = |name| self.quarks.alphabet().declarations_of(name).next().map(|declaration| declaration.kind);
@@ -62,7 +63,7 @@ impl<'a> Resolver<'_, 'a> {
         is_swapped.then(|| found.help(format!("the condition comes first: `(Atom ({interrupt}) ({law}))`")))
     }
 
-    /// A name that no plan has, where an element is expected.
+    /// Reports an unknown name where an element is expected.
     pub(super) fn unknown_plan(&self, call: &Call) -> Diagnostic {
         let name = call.name;
         let span = call.name_span();

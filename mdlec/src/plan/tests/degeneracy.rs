@@ -1,5 +1,5 @@
-//! Tests of the result of degeneracy removal (docs/src/reference/semantics.md, 7.4): traces cannot tell, for the outer
-//! interrupt always wins.
+//! Tests of the result of degeneracy removal (docs/src/reference/semantics.md, 7.4): traces cannot show it, since the
+//! outer interrupt always wins.
 
 use crate::alphabet;
 use crate::diagnostic::SourceId;

@@ -1,4 +1,4 @@
-//! Files that use each other: whose plans are seen, which of them runs, and what is said where a file cannot be used.
+//! Files that use each other: the plans they see, the plan that runs, and messages about files that cannot be used.
 
 use crate::samples::judged_files;
 

@@ -1,8 +1,8 @@
-//! Formal notation is read as the plan that it was made of, whatever the plan asks its labels.
+//! Formal notation resolves to the plan that it was printed from, whatever labels `after` reads.
 
 use crate::samples::compiled;
 
-/// The formal text of a plan, which is that of the plan that it is read as.
+/// Returns the formal text of a plan, and checks that this text has itself as its formal text.
 fn formal(text: &str) -> String {
     let formal = compiled(text)[0].plan.formal();
     assert_eq!(compiled(&formal)[0].plan.formal(), formal);
