@@ -1,5 +1,5 @@
-//! Any machine as a plan with `after` (paper, below Theorem 1: "auxiliary variables"): one loop without end over all states,
-//! each guarded by what has ended last.
+//! Writes any machine as a plan with `after` (paper, below Theorem 1: "auxiliary variables"): one endless loop over all
+//! states, each guarded by the element that ended last.
 
 use std::collections::BTreeSet;
 use std::fmt::Write;
@@ -8,10 +8,11 @@ use super::names::{in_a_comment, texts};
 use super::{COMPLETED, Machine, State};
 use crate::syntax::operands;
 
-/// The plan of a machine, whatever its shape. Of the interrupts that lead on from a state, the first in the file goes first.
+/// Writes a machine of any shape as a plan. If several interrupts lead on from a state, the first in the file takes
+/// precedence.
 ///
-/// The plan's states are the machine's in the order of the file, behind one that is over at once. It is in the same state turn by
-/// turn, up to a turn in which the machine would enter one twice.
+/// The plan's states are the machine's in the order of the file, after one that ends at once. In each turn the plan is
+/// in the machine's state, until a turn in which the machine would enter a state twice.
 #[must_use]
 pub fn augment(machine: &Machine) -> String {
     let (texts, mut names) = texts(machine);
@@ -55,11 +56,11 @@ pub fn augment(machine: &Machine) -> String {
     text
 }
 
-/// What leads on from a state.
+/// Transitions out of a state.
 struct Exits<'t> {
-    /// The operands of its conditions in the order of the file, each once, and where they lead.
+    /// Operands of the state's conditions in the order of the file, each once, with their destinations.
     operands: Vec<(&'t str, State)>,
-    /// Where it leads when its law is done.
+    /// Destination after the state's law completes.
     completed: Option<State>,
 }
 
@@ -81,13 +82,13 @@ impl<'t> Exits<'t> {
         exits
     }
 
-    /// The interrupt of its atom.
+    /// Interrupt of the state's atom.
     fn condition(&self) -> String {
         let operands: Vec<_> = self.operands.iter().map(|(operand, _)| *operand).collect();
         if operands.is_empty() { "null".to_owned() } else { operands.join(" OR ") }
     }
 
-    /// What tells that it was left, and where that leads.
+    /// Conditions that show how the state was left, each with the destination.
     fn ways(&self, label: &str) -> Vec<(State, String)> {
         let after = |operand: &str| match is_a_name(operand) {
             true => format!("after {label} {operand}"),

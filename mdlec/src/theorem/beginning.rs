@@ -1,13 +1,13 @@
-//! The beginning of an order of a machine's states, with what is enclosed in it: what must end if a state follows, and
-//! whether it can (Theorem 1, R1 to R4).
+//! Beginning of an order of a machine's states, with the scopes and loops in it: computes which scopes must end if a
+//! state follows, and whether they can (Theorem 1, R1 to R4).
 //!
-//! Afterwards: everything that has ended is pairwise nested or disjoint, and each place but the last has an interrupt of its own.
+//! Everything that has ended is pairwise nested or disjoint, and each place but the last has an interrupt of its own.
 
 mod fits;
 
 use super::{Broken, InterruptId, Loop, Machine, Run, State, Stretch};
 
-/// An interrupt that leads to the same state from each place since one.
+/// An interrupt that leads to the same state from each place since `first`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Open {
     interrupt: InterruptId,
@@ -15,40 +15,40 @@ pub(super) struct Open {
     to: State,
 }
 
-/// What ends where one state follows another.
+/// Scopes and loops that end between two states.
 #[derive(Default)]
 pub(super) struct Ending {
     runs: Vec<Run>,
-    /// Where the loops begin that end here, in ascending order.
+    /// First places of the loops that end here, in ascending order.
     loops: Vec<usize>,
-    /// What goes on.
+    /// Scopes that continue.
     open: Vec<Open>,
-    /// Where the widest of what ends begins.
+    /// First place of the widest scope or loop that ends.
     widest: Option<usize>,
 }
 
-/// What takes a step back.
+/// Data that undo a step.
 #[derive(Default)]
 pub(super) struct Before {
     runs: usize,
     loops: usize,
-    /// What had ended as a whole and is now in one that is wider.
+    /// Closed stretches that are now inside a wider one.
     wholes: Vec<(usize, usize)>,
     has_whole: bool,
 }
 
-/// The beginning of an order.
+/// Beginning of an order.
 pub(super) struct Beginning<'m> {
     machine: &'m Machine,
     pub(super) order: Vec<State>,
     places: Vec<Option<usize>>,
-    /// The states that lead to each state.
+    /// For each state the states that lead to it.
     sources: Vec<Vec<State>>,
     pub(super) runs: Vec<Run>,
     pub(super) loops: Vec<Loop>,
-    /// The first and the last place of what has ended, outermost only.
+    /// First and last place of each closed stretch, outermost only.
     wholes: Vec<(usize, usize)>,
-    /// The interrupt of laws that are done: it is an atom's own, so that each state is left by itself.
+    /// Interrupt of laws that complete: it belongs to the atom alone, so that each state is left by itself.
     completed: Option<InterruptId>,
 }
 
@@ -75,15 +75,15 @@ impl<'m> Beginning<'m> {
         self.places[state.0 as usize]
     }
 
-    /// What ends if this state follows: what has to and, if there is one, the `extra` of those that are open; `None` where that
-    /// has to end anyway, or must not.
+    /// Scopes and loops that end if `next` follows: those that must end and, if given, the open scope `extra`; `None`
+    /// if that one must end anyway, or must not.
     ///
-    /// More than one extra is never needed. What a scope gains by ending early is an interrupt of its own for this place
-    /// or the next, and two that lead back would serve both; two parts of what leads to the start of the scope itself can be
-    /// one otherwise.
+    /// More than one extra is never needed: a scope that ends early provides an interrupt of its own for this place or
+    /// the next; of two scopes that lead back, one already does both, and two parts of a scope that leads to its own
+    /// start could be joined instead.
     ///
     /// # Errors
-    /// What it breaks.
+    /// Fails with the condition that `next` breaks.
     pub(super) fn ending(&self, open: &[Open], next: State, extra: Option<usize>) -> Result<Option<Ending>, Broken> {
         let Some(here) = self.order.len().checked_sub(1) else {
             return Ok(extra.is_none().then(Ending::default));
@@ -110,7 +110,8 @@ impl<'m> Beginning<'m> {
         self.ended(open, next, &ends, widest).map(Some)
     }
 
-    /// Whether a scope would end before this state though other states without a place have its interrupt lead there too.
+    /// Returns `true` if a scope would end before `next` although its interrupt also leads there from other states,
+    /// which have no place yet.
     pub(super) fn ends_too_early(&self, open: &[Open], next: State) -> bool {
         let mut ending = open.iter().filter(|run| run.to == next && self.completed != Some(run.interrupt));
         ending.any(|run| {
@@ -119,7 +120,7 @@ impl<'m> Beginning<'m> {
         })
     }
 
-    /// Whether a scope has to end before this state.
+    /// Returns `true` if a scope must end before `next`.
     fn must_end(&self, run: Open, next: State) -> Result<bool, Broken> {
         if run.to == next {
             return Ok(true);
@@ -134,12 +135,12 @@ impl<'m> Beginning<'m> {
         Ok(!goes_on)
     }
 
-    /// Where a scope that ends begins, or the loop around it.
+    /// First place of an ending scope, or of the loop at whose start it leads.
     fn reach(&self, run: Open, next: State) -> usize {
         if run.to == next { run.first } else { self.place(run.to).unwrap_or(run.first) }
     }
 
-    /// Ends what begins inside of what ends.
+    /// Ends every scope that begins inside an ending one.
     fn spread(&self, open: &[Open], next: State, ends: &mut [bool], widest: &mut usize) -> Result<(), Broken> {
         for (run, ends) in open.iter().zip(ends).rev() {
             if run.first <= *widest {
@@ -154,7 +155,7 @@ impl<'m> Beginning<'m> {
         Ok(())
     }
 
-    /// A scope that goes on, though what begins before it ends.
+    /// Reports a scope that continues although one that encloses its first state ends.
     fn crossing(&self, run: Open, open: &[Open], widest: usize, next: State) -> Broken {
         let around = open.iter().find(|around| around.first == widest || self.place(around.to) == Some(widest));
         let [.., here] = *self.order.as_slice() else { return Broken::NoExit(next) };
@@ -167,7 +168,7 @@ impl<'m> Beginning<'m> {
         }
     }
 
-    /// What ends, if it can.
+    /// Returns the scopes and loops that end, if they can.
     fn ended(&self, open: &[Open], next: State, ends: &[bool], widest: usize) -> Result<Ending, Broken> {
         let here = self.order.len() - 1;
         let mut ending = Ending { widest: Some(widest), ..Ending::default() };
@@ -192,7 +193,7 @@ impl<'m> Beginning<'m> {
         Ok(ending)
     }
 
-    /// Puts a state behind what has ended. What is open with it, and what takes this back.
+    /// Appends a state; returns the scopes that are open with it, and the data that undo this step.
     pub(super) fn fill(&mut self, ending: Ending, next: State) -> (Vec<Open>, Before) {
         let place = self.order.len();
         let mut before = Before { runs: self.runs.len(), loops: self.loops.len(), ..Before::default() };
@@ -214,8 +215,8 @@ impl<'m> Beginning<'m> {
         (open, before)
     }
 
-    /// All that decides what can follow: which states have a place, where what has ended begins, what is open, and the last state.
-    /// How the inside of what has ended is arranged does not matter any more.
+    /// Hash of everything that decides which states can follow: the states that have a place, the starts of closed
+    /// stretches, the open scopes, and the last state. The inside of a closed stretch no longer matters.
     pub(super) fn outline(&self, open: &[Open]) -> [u8; 32] {
         let mut placed = vec![0_u8; self.places.len().div_ceil(8)];
         for state in &self.order {
@@ -235,7 +236,7 @@ impl<'m> Beginning<'m> {
         hash.finalize().into()
     }
 
-    /// Takes the last state back.
+    /// Removes the last state.
     pub(super) fn take_back(&mut self, before: Before) {
         if let Some(state) = self.order.pop() {
             self.places[state.0 as usize] = None;

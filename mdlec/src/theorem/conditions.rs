@@ -1,5 +1,5 @@
-//! The conditions of Theorem 1 that a machine breaks (docs/src/reference/semantics.md, 8.5: R1 to R4), each in a
-//! sentence.
+//! The conditions of Theorem 1 that a machine breaks (docs/src/reference/semantics.md, 8.5: R1 to R4), each described
+//! in a sentence.
 
 use std::fmt::Write;
 
@@ -7,7 +7,7 @@ use mdle_runtime::Printable;
 
 use super::{InterruptId, Machine, State};
 
-/// Neighbouring states of an order: the first and the last of them.
+/// A stretch of neighbouring states in an order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stretch {
     /// The first.
@@ -16,32 +16,32 @@ pub struct Stretch {
     pub last: State,
 }
 
-/// A condition that fails, with what breaks it.
+/// A condition that fails, with the states and interrupts that break it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Broken {
     /// An interrupt leads on from the termination state.
     EndIsLeft(InterruptId),
     /// Nothing leads on from a state.
     NoExit(State),
-    /// The first state of the only order is not the one that the file names.
+    /// The only possible order begins with a state other than the one that the file names.
     StartNotFirst {
-        /// The named one.
+        /// The state that the file names.
         start: State,
-        /// The first of the order.
+        /// The first state of the order.
         first: State,
     },
-    /// Of two states that would have to be neighbours, neither leads to the other.
+    /// Two states must be neighbours, but neither leads to the other.
     SideBySide(State, State),
     /// A state has no interrupt of its own that leads to the next.
     NoOwnInterrupt {
         /// The state.
         state: State,
-        /// The one that follows.
+        /// The state after it.
         next: State,
-        /// An interrupt that leads there, but from the state before as well, which is named.
+        /// An interrupt that leads there, but also from the state before, which is given.
         shared: Option<(InterruptId, State)>,
     },
-    /// An interrupt leads past a state that it does not take along.
+    /// An interrupt leads past a state without leading on from there to the same destination.
     Skips {
         /// The interrupt.
         interrupt: InterruptId,
@@ -51,23 +51,23 @@ pub enum Broken {
         to: State,
         /// The state between them.
         past: State,
-        /// Where it leads from there, if anywhere.
+        /// State to which the interrupt leads from `past`, if any.
         other: Option<State>,
     },
-    /// What two interrupts enclose overlaps, and neither holds the other.
+    /// The states that two interrupts enclose overlap, and neither stretch contains the other.
     Crosses {
-        /// The one that begins first.
+        /// The interrupt whose stretch begins first.
         interrupt: InterruptId,
-        /// What it encloses.
+        /// States that this interrupt encloses.
         around: Stretch,
-        /// The other.
+        /// The other interrupt.
         other: InterruptId,
         /// The first state that the other encloses.
         begins: State,
-        /// A state beyond the first one's, which the other encloses too.
+        /// A state after the first stretch that the other interrupt encloses too.
         goes_on: State,
     },
-    /// An interrupt leads into the middle of what has ended.
+    /// An interrupt leads into the middle of a closed stretch.
     IntoTheMiddle {
         /// The interrupt.
         interrupt: InterruptId,
@@ -75,35 +75,36 @@ pub enum Broken {
         from: State,
         /// The state to which it leads.
         to: State,
-        /// What ended as a whole.
+        /// The closed stretch.
         whole: Stretch,
     },
     /// An interrupt would have to lead past the beginning of a loop that ends with it.
     PastALoop {
         /// The interrupt.
         interrupt: InterruptId,
-        /// What it encloses.
+        /// States that the interrupt encloses.
         around: Stretch,
         /// The state to which it leads.
         to: State,
-        /// Where the loop begins.
+        /// First state of the loop.
         begins: State,
     },
-    /// No order of the states is without a fault: how the one that gets furthest begins, and why nothing can follow.
+    /// No order of the states satisfies the theorem: gives the beginning of the order that gets furthest, and why no
+    /// state can follow it.
     NoOrder {
-        /// Its states.
+        /// States of that beginning.
         begins: Vec<State>,
-        /// What might follow, and what that breaks.
+        /// States that might follow, each with the condition that it breaks.
         tries: Vec<(State, Broken)>,
-        /// How many more there are.
+        /// Number of further states that might follow.
         more: usize,
     },
 }
 
-/// So many states of an order are named, from its end.
+/// Maximum number of states of an order that are named, from its end.
 const NAMED: usize = 6;
 
-/// What a machine breaks whatever the order of its states.
+/// Conditions that a machine breaks in every order of its states.
 pub(super) fn of_every_order(machine: &Machine) -> Vec<Broken> {
     let left = machine.exits(machine.end()).iter().map(|exit| Broken::EndIsLeft(exit.interrupt));
     let stays = machine.atoms().filter(|state| machine.exits(*state).is_empty()).map(Broken::NoExit);
@@ -111,7 +112,7 @@ pub(super) fn of_every_order(machine: &Machine) -> Vec<Broken> {
 }
 
 impl Broken {
-    /// Says it, the condition's name first.
+    /// Describes the broken condition in a sentence that begins with its name.
     #[must_use]
     pub fn sentence(&self, machine: &Machine) -> String {
         let state = |state: State| quoted(machine.name(state));
@@ -207,7 +208,7 @@ impl Broken {
     }
 }
 
-/// A name in a sentence.
+/// Quotes a name for a sentence.
 fn quoted(name: &str) -> String {
     format!("`{}`", Printable(name))
 }

@@ -1,15 +1,17 @@
-//! Theorem 1 without loops: the order of the states is forced, and so is what each interrupt encloses (R1 to R3).
+//! Theorem 1 without loops: the order of the states is determined, and so are the states that each interrupt encloses
+//! (R1 to R3).
 
 use std::cmp::Reverse;
 
 use super::order::places;
 use super::{Broken, InterruptId, Machine, Run, State, Stretch};
 
-/// What each interrupt encloses in an order in which all leads forwards.
+/// Scopes of each interrupt, in an order in which all interrupts lead forwards.
 ///
-/// Only one order can do: each state leads to the next, and then no other order has all interrupts lead forwards.
+/// Only one order is possible: each state leads to the next, and in no other order do all interrupts lead forwards.
 ///
 /// # Errors
+/// Fails with every condition that the machine breaks.
 /// Every condition that fails.
 pub(super) fn runs(machine: &Machine, order: &[State]) -> Result<Vec<Run>, Vec<Broken>> {
     let mut broken = Vec::new();
@@ -26,7 +28,7 @@ pub(super) fn runs(machine: &Machine, order: &[State]) -> Result<Vec<Run>, Vec<B
     if broken.is_empty() { Ok(runs) } else { Err(broken) }
 }
 
-/// Cuts what interrupts list into runs (R2): from where it begins to lead to a state up to that state.
+/// Cuts the moves of interrupts into runs (R2): from the first place that leads to a state up to that state.
 pub(super) fn cut(machine: &Machine, order: &[State]) -> (Vec<Run>, Vec<Broken>) {
     let places = places(order);
     let (mut runs, mut skips) = (Vec::new(), Vec::new());
@@ -42,7 +44,7 @@ pub(super) fn cut(machine: &Machine, order: &[State]) -> (Vec<Run>, Vec<Broken>)
     (runs, skips)
 }
 
-/// Takes in a run that ends before what it leads to; else it leads past something.
+/// Adds a run that ends just before its destination; any other run leads past a state.
 fn end(machine: &Machine, order: &[State], run: Run, runs: &mut Vec<Run>, skips: &mut Vec<Broken>) {
     if run.last + 1 == run.to {
         runs.push(run);
@@ -58,7 +60,7 @@ fn end(machine: &Machine, order: &[State], run: Run, runs: &mut Vec<Run>, skips:
     });
 }
 
-/// For each interrupt, and each state it leads to, the places from which it does, in their order.
+/// For each interrupt and destination the places from which it leads there, in order.
 fn by_destination(machine: &Machine, order: &[State]) -> Vec<([u32; 2], Vec<usize>)> {
     let mut moves: Vec<([u32; 2], usize)> = Vec::new();
     for (place, state) in order.iter().enumerate() {
@@ -69,7 +71,7 @@ fn by_destination(machine: &Machine, order: &[State]) -> Vec<([u32; 2], Vec<usiz
     groups.filter_map(|group| Some((group.first()?.0, group.iter().map(|(_, place)| *place).collect()))).collect()
 }
 
-/// States without an interrupt of their own (R1).
+/// Finds states without an interrupt of their own (R1).
 fn atoms(machine: &Machine, order: &[State], runs: &[Run]) -> Vec<Broken> {
     let mut has_own = vec![false; order.len()];
     for run in runs.iter().filter(|run| run.first == run.last) {
@@ -87,7 +89,7 @@ fn atoms(machine: &Machine, order: &[State], runs: &[Run]) -> Vec<Broken> {
     lacking.map(why).collect()
 }
 
-/// Runs that overlap one that neither holds them nor is in them (R3); `runs` are sorted by where they begin, longest first.
+/// Finds runs that overlap without nesting (R3); `runs` are sorted by their first place, longest first.
 pub(super) fn crossings(order: &[State], runs: &[Run]) -> Vec<Broken> {
     let mut open: Vec<Run> = Vec::new();
     let mut broken = Vec::new();

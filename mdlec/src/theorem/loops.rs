@@ -1,43 +1,43 @@
-//! Theorem 1 with loops without end (R4): a search among the orders of the states that gives up a beginning as soon as
-//! nothing that could follow it makes it a string.
+//! Theorem 1 with endless loops (R4): a search among the orders of the states that gives up a beginning as soon as no
+//! state that could follow makes it a string.
 
 use std::collections::BTreeSet;
 
 use super::beginning::{Before, Beginning, Ending, Open};
 use super::{Answer, Broken, Found, InterruptId, Machine, State};
 
-/// So many ways on from the beginning that gets furthest are told.
+/// Maximum number of continuations of the furthest beginning that are reported.
 const TOLD: usize = 10;
 
-/// What failed is remembered from this step on: most searches never come so far.
+/// Step from which failed beginnings are remembered: most searches end earlier.
 const REMEMBERS: u64 = 2_000;
 
-/// A place that is filled, and which ways on from it have been tried.
+/// A filled place, with the continuations that have been tried.
 struct Step {
-    /// What is open with this place.
+    /// Scopes that are open with this place.
     open: Vec<Open>,
-    /// Which state is tried next: those that the last one leads to, then all others.
+    /// Index of the state to try next: first those that the last state leads to, then all others.
     candidate: usize,
-    /// Which scope is tried to end here besides those that have to: one of those that are open, from 1.
+    /// Index from 1 of the open scope that ends here in addition to those that must; 0 for no scope.
     extra: usize,
-    /// What takes it back.
+    /// Data that undo the step.
     before: Before,
 }
 
 struct Search<'m> {
     machine: &'m Machine,
-    /// The states in the order in which they are tried.
+    /// States in the order in which they are tried.
     candidates: &'m [State],
-    /// What each state leads to, each once.
+    /// For each state the states that it leads to, each once.
     next: Vec<Vec<State>>,
     beginning: Beginning<'m>,
-    /// The outlines of beginnings that cannot be a string's.
+    /// Outlines of beginnings that cannot become a string.
     failed: BTreeSet<[u8; 32]>,
     furthest: Furthest,
     leaves: Leaves,
 }
 
-/// The beginning that gets furthest, and why it does not get further.
+/// The beginning that gets furthest, with the reasons why no state can follow.
 #[derive(Default)]
 struct Furthest {
     begins: Vec<State>,
@@ -45,16 +45,16 @@ struct Furthest {
     more: usize,
 }
 
-/// What a search leaves out at first, since most strings are found without.
+/// Cases that a search leaves out at first, since most strings are found without them.
 #[derive(Debug, Clone, Copy)]
 struct Leaves {
-    /// Laws that are done end anything but atoms: this is their interrupt.
+    /// Interrupt of laws that complete, if it may end atoms only; `None` if it may end any scope.
     completed: Option<InterruptId>,
-    /// A scope ends though its interrupt leads there from states that come later.
+    /// `true` if no scope may end before a state to which its interrupt also leads from later states.
     early_ends: bool,
 }
 
-/// Looks for a string of a machine in which something leads back, trying states in the order of `candidates`.
+/// Searches for the string of a machine with cycles; tries states in the order of `candidates`.
 pub(super) fn search(machine: &Machine, candidates: &[State], steps: u64) -> Answer {
     let completed = machine.completed();
     let atoms_only = completed.map(|_| completed);
@@ -73,7 +73,8 @@ pub(super) fn search(machine: &Machine, candidates: &[State], steps: u64) -> Ans
     answer
 }
 
-/// What a state leads to, each once, that of the last interrupt first: it is the innermost in what the lowering writes.
+/// States that a state leads to, each once, beginning with the last interrupt's, which is the innermost in lowered
+/// plans.
 fn successors(machine: &Machine, state: State) -> Vec<State> {
     let mut seen = BTreeSet::new();
     machine.exits(state).iter().rev().map(|exit| exit.to).filter(|to| seen.insert(*to)).collect()
@@ -93,7 +94,7 @@ impl<'m> Search<'m> {
         }
     }
 
-    /// What comes of it, and how many steps have been taken when it does.
+    /// Runs the search from step `taken` to at most `limit`; returns the answer and the number of steps taken in total.
     fn run(mut self, taken: u64, limit: u64) -> (Answer, u64) {
         let mut steps = taken;
         let mut path = vec![Step { open: Vec::new(), candidate: 0, extra: 0, before: Before::default() }];
@@ -127,8 +128,8 @@ impl<'m> Search<'m> {
         (Answer::None(vec![Broken::NoOrder { begins, tries, more }]), steps)
     }
 
-    /// The next state to be tried: those that the last one leads to, then all others; and at the end, in the same order, those
-    /// before which a scope would end though not all that it may hold is there.
+    /// Next state to try: first those that the last state leads to, then all others; and at the end, in the same order,
+    /// states before which a scope would end although other states of it have no place yet.
     fn candidate(&self, step: &mut Step) -> Option<State> {
         let order = &self.beginning.order;
         let near = order.last().map_or(&[][..], |last| &self.next[last.0 as usize]);
@@ -156,7 +157,7 @@ impl<'m> Search<'m> {
         }
     }
 
-    /// What ends if this state follows, in the next of the ways that are left; nothing if it cannot.
+    /// Scopes and loops that end if `next` follows, for the next choice of an additional scope; `None` if they cannot.
     fn ending(&mut self, step: &mut Step, next: State) -> Option<Ending> {
         let extra = step.extra.checked_sub(1);
         let result = self.beginning.ending(&step.open, next, extra);

@@ -1,8 +1,8 @@
-//! Theorem 1 both ways (paper, Theorem 1; docs/src/reference/semantics.md, 8.5): the MDLe string of a machine, or why
-//! there is none.
+//! Theorem 1 in both directions (paper, Theorem 1; docs/src/reference/semantics.md, 8.5): the MDLe string of a machine,
+//! or the reasons why none exists.
 //!
-//! Afterwards: in what is found, the places of the states count from 0, the termination state has the last, and runs and loops
-//! are pairwise nested or disjoint.
+//! In a string that is found, the places of the states count from 0, the termination state has the last, and runs and
+//! loops are pairwise nested or disjoint.
 
 mod augment;
 mod beginning;
@@ -22,21 +22,21 @@ pub use printed::{Rule, as_printed, monomial};
 pub use read::{FileError, read};
 pub use string::string;
 
-/// How many steps the search among orders makes unless it is told otherwise: a few seconds.
+/// Default limit of steps in the search among orders: a few seconds.
 pub const STEPS: u64 = 1_000_000;
 
-/// The interrupt that laws raise when they are done: a plan has it without writing it.
+/// The interrupt that a law raises when it completes: a plan has it without writing it.
 const COMPLETED: &str = "completed";
 
-/// A state of a machine, by its place in the file.
+/// A state of a machine, by its index in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct State(pub u32);
 
-/// An interrupt of a machine, by its place in the file.
+/// An interrupt of a machine, by its index in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct InterruptId(pub u32);
 
-/// A machine as an FSM file has it: its last state is the termination state.
+/// A machine as in an FSM file: its last state is the termination state.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Machine {
     states: Vec<String>,
@@ -46,47 +46,47 @@ pub struct Machine {
     exits: Vec<Vec<Exit>>,
 }
 
-/// What an interrupt is called, and the text of its condition where the file has it.
+/// Name of an interrupt, with the text of its condition if the file has one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Named {
-    /// Its name.
+    /// Name of the interrupt.
     pub name: String,
-    /// Its condition.
+    /// Condition of the interrupt, if the file has one.
     pub text: Option<String>,
 }
 
-/// Where an interrupt leads from a state.
+/// A transition out of a state: an interrupt with its destination.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Exit {
     /// The interrupt.
     pub interrupt: InterruptId,
-    /// Where it leads; perhaps to the same state, which is entered anew.
+    /// Destination; it can be the same state, which is then entered again.
     pub to: State,
 }
 
-/// What the theorem says of a machine.
+/// Result of applying the theorem to a machine.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Answer {
-    /// It has this string.
+    /// The machine has this string.
     String(Found),
-    /// It has none, because of all this.
+    /// The machine has no string, for all these reasons.
     None(Vec<Broken>),
-    /// The search among the orders of its states was stopped after so many steps.
+    /// The search among the orders of its states stopped after this number of steps.
     Stopped(u64),
 }
 
-/// A string, as an order of the states and what encloses them.
+/// A string: an order of the states, with the scopes and loops that enclose them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Found {
     /// The states by their places, the termination state last.
     pub order: Vec<State>,
     /// The scopes.
     pub runs: Vec<Run>,
-    /// The loops without end.
+    /// The endless loops.
     pub loops: Vec<Loop>,
 }
 
-/// A scope: an interrupt and the neighbouring places from which it leads to one.
+/// A scope: an interrupt, and the neighbouring places from which it leads to one place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Run {
     /// The interrupt.
@@ -95,11 +95,11 @@ pub struct Run {
     pub first: usize,
     /// The last place.
     pub last: usize,
-    /// The place where it leads: behind the last, or where a loop begins.
+    /// The place to which it leads: after the last one, or the start of a loop.
     pub to: usize,
 }
 
-/// A loop without end, as the places it holds.
+/// An endless loop, as the places that it encloses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Loop {
     /// The first place.
@@ -109,8 +109,8 @@ pub struct Loop {
 }
 
 impl Machine {
-    /// The machine with these names, and for each interrupt its moves from state to state, one a state at most. Moves of states
-    /// that there are not are left out.
+    /// Builds a machine with these states and, for each interrupt, its moves from state to state, at most one per
+    /// state. Moves of unknown states are left out.
     #[must_use]
     pub fn new(states: Vec<String>, interrupts: Vec<(Named, Vec<(State, State)>)>) -> Self {
         let mut exits = vec![Vec::new(); states.len()];
@@ -126,7 +126,7 @@ impl Machine {
         Self { states, laws: None, start: None, interrupts: named, exits }
     }
 
-    /// The same with a state that has to be the first.
+    /// Sets the state that must be the first.
     #[must_use]
     pub fn starting(self, start: State) -> Self {
         Self { start: Some(start), ..self }
@@ -144,7 +144,7 @@ impl Machine {
         &self.interrupts
     }
 
-    /// Where interrupts lead from a state, in the order of the file.
+    /// Transitions out of a state, in the order of the file.
     #[must_use]
     pub fn exits(&self, state: State) -> &[Exit] {
         &self.exits[state.0 as usize]
@@ -162,19 +162,19 @@ impl Machine {
         State(number(self.states.len().saturating_sub(1)))
     }
 
-    /// Where an interrupt leads from a state, if it does from there.
+    /// State to which an interrupt leads from the state `from`, if it leads anywhere.
     fn destination(&self, from: State, interrupt: InterruptId) -> Option<State> {
         let exits = self.exits(from);
         let place = exits.binary_search_by_key(&interrupt, |exit| exit.interrupt).ok()?;
         exits.get(place).map(|exit| exit.to)
     }
 
-    /// All states but the termination state.
+    /// All states except the termination state.
     fn atoms(&self) -> impl DoubleEndedIterator<Item = State> {
         (0..self.end().0).map(State)
     }
 
-    /// The interrupt of laws that are done.
+    /// The interrupt of laws that complete.
     fn completed(&self) -> Option<InterruptId> {
         let place = self.interrupts.iter().position(|interrupt| interrupt.name == COMPLETED)?;
         Some(InterruptId(number(place)))
@@ -189,13 +189,13 @@ impl Machine {
     }
 }
 
-/// A place in a list as a number; no file that can be read has more.
+/// Converts an index to a number; no file that can be read has more entries.
 fn number(place: usize) -> u32 {
     u32::try_from(place).unwrap_or(u32::MAX)
 }
 
-/// The string of a machine, if it has one. Machines without a way back are decided at once, others by a search of
-/// `steps` steps at most.
+/// Finds the string of a machine, if one exists. A machine without a cycle is decided at once, any other by a search of
+/// at most `steps` steps.
 #[must_use]
 pub fn decompile(machine: &Machine, steps: u64) -> Answer {
     let broken = conditions::of_every_order(machine);

@@ -1,4 +1,4 @@
-//! Names of states and interrupts as MDLe has names: letters, digits and `_`, no two alike, and none that means something else.
+//! Converts names of states and interrupts to names of MDLe: letters, digits and `_`, all different, and not reserved.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -7,7 +7,7 @@ use mdle_runtime::Printable;
 use super::Machine;
 use crate::syntax::is_law;
 
-/// What is no name, in capitals.
+/// Reserved words, in capitals.
 const RESERVED: &[&str] = &[
     "ATOM",
     "EXECPLAN",
@@ -25,25 +25,25 @@ const RESERVED: &[&str] = &[
     "INFINITY",
 ];
 
-/// The names that are taken, and how many are made of one.
+/// Names in use, and the number of names derived from each.
 #[derive(Default)]
 pub(super) struct Names {
     taken: BTreeSet<String>,
     made: BTreeMap<String, usize>,
 }
 
-/// The texts that stand for a machine's laws and interrupts.
+/// Texts in a plan for a machine's laws and interrupts.
 pub(super) struct Texts {
-    /// The law of each state but the last.
+    /// Law of each state but the last.
     pub(super) laws: Vec<String>,
-    /// The condition of each interrupt.
+    /// Condition of each interrupt.
     pub(super) conditions: Vec<String>,
-    /// The interrupts that are called something else, as what, and what the file calls them.
+    /// Renamed interrupts: the new name, and the name in the file.
     pub(super) renamed: Vec<(String, String)>,
 }
 
 impl Names {
-    /// A name like this one that nothing else has.
+    /// Returns an unused name like this one.
     pub(super) fn name(&mut self, like: &str) -> String {
         let mut name: String = like.chars().map(|letter| if is_in_names(letter) { letter } else { '_' }).collect();
         let begins_well = name.chars().next().is_some_and(|first| is_law(&first.to_string()));
@@ -62,7 +62,7 @@ impl Names {
     }
 }
 
-/// The texts of a machine, and the names that they take.
+/// Returns the texts of a machine, and the names that they use.
 pub(super) fn texts(machine: &Machine) -> (Texts, Names) {
     let mut names = Names::default();
     // What stands in texts is somebody's name already.
@@ -92,17 +92,17 @@ pub(super) fn texts(machine: &Machine) -> (Texts, Names) {
     (Texts { laws, conditions, renamed }, names)
 }
 
-/// The words of a text.
+/// Words of a text.
 pub(super) fn words(text: &str) -> impl Iterator<Item = &str> {
     text.split(|letter: char| !letter.is_alphanumeric() && letter != '_').filter(|word| !word.is_empty())
 }
 
-/// Returns `true` if a name may have this letter after its first one.
+/// Returns `true` if a name may contain this letter after its first.
 fn is_in_names(letter: char) -> bool {
     letter.is_ascii_alphanumeric() || letter == '_' || !letter.is_ascii() && is_law(&format!("_{letter}"))
 }
 
-/// A text on one line of a comment.
+/// Makes a text safe for a comment on one line.
 pub(super) fn in_a_comment(text: &str) -> String {
     Printable(text).to_string()
 }

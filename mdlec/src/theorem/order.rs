@@ -1,9 +1,9 @@
-//! An order of a machine's states in which all interrupts lead forwards, if there is one; else one that is near it.
+//! Finds an order of a machine's states in which all interrupts lead forwards or, if there is none, one close to it.
 
 use super::{Machine, State};
 
-/// The states such that all leads forwards where nothing leads back, the termination state last. Where several orders do,
-/// the first named state and the file's own order come first.
+/// Orders the states so that all interrupts lead forwards if the machine has no cycle, the termination state last.
+/// Among several such orders, the state that the file names as first and the file's own order decide.
 pub(super) fn forwards(machine: &Machine) -> Vec<State> {
     let first = machine.start().unwrap_or(State(0));
     let mut seen = vec![false; machine.states().len()];
@@ -18,7 +18,7 @@ pub(super) fn forwards(machine: &Machine) -> Vec<State> {
     left
 }
 
-/// Walks everything that can be reached from a state and was not seen, and notes it when it is left.
+/// Visits all states that can be reached from `root` and are new, and records each when it is left.
 fn leave(machine: &Machine, root: State, seen: &mut [bool], left: &mut Vec<State>) {
     if std::mem::replace(&mut seen[root.0 as usize], true) {
         return;
@@ -41,7 +41,7 @@ fn leave(machine: &Machine, root: State, seen: &mut [bool], left: &mut Vec<State
     }
 }
 
-/// The place of each state in an order.
+/// Place of each state in an order.
 pub(super) fn places(order: &[State]) -> Vec<usize> {
     let mut places = vec![0; order.len()];
     for (place, state) in order.iter().enumerate() {
@@ -50,7 +50,8 @@ pub(super) fn places(order: &[State]) -> Vec<usize> {
     places
 }
 
-/// Whether every interrupt leads to a later state. If not in the order of [`forwards`], then in none.
+/// Returns `true` if every interrupt leads to a later state. If this fails for the order of [`forwards`], it fails for
+/// every order.
 pub(super) fn leads_forwards(machine: &Machine, order: &[State]) -> bool {
     let places = places(order);
     let place = |state: State| places[state.0 as usize];

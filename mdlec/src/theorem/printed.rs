@@ -1,31 +1,33 @@
-//! Theorem 1 as the paper prints it: R1 to R4 to the letter, and as they are meant, on the columns of transition matrices.
+//! Theorem 1 as the paper prints it, on the columns of transition matrices: R1 to R4 literally, and as intended.
 //!
-//! The columns of an interrupt are those that it moves. A move to the same state is none: the matrix is the identity there.
+//! The columns of an interrupt are those that it moves. A move to the same state does not count: the matrix is the
+//! identity there.
 
 use super::loop_free::{crossings, cut};
 use super::order::{forwards, places};
 use super::{Answer, InterruptId, Machine, State};
 
-/// What one of the printed conditions says of a machine.
+/// Result of one of the printed conditions for a machine.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Rule {
     /// `R1` to `R4`.
     pub name: &'static str,
-    /// What breaks it to the letter.
+    /// Reason why the literal condition fails; `None` if it holds.
     pub letter: Option<String>,
-    /// What breaks it as it is meant.
+    /// Reason why the intended condition fails; `None` if it holds.
     pub meant: Option<String>,
 }
 
-/// The columns of the matrices in an order of the states, from 0.
+/// Columns of the matrices in an order of the states, from 0.
 struct Columns<'m> {
     machine: &'m Machine,
     order: Vec<State>,
     places: Vec<usize>,
 }
 
-/// The printed conditions, in the one order in which they can hold: the one in which all leads forwards. Where something leads
-/// back, none can, and it is the order of the string that there is, or one that is near.
+/// Checks the printed conditions in the only order in which they can hold: the one in which all interrupts lead
+/// forwards. For a machine with a cycle they cannot hold; then the order is that of its string or, if it has none, a
+/// similar one.
 #[must_use]
 pub fn as_printed(machine: &Machine, exactly: &Answer) -> [Rule; 4] {
     let mut order = forwards(machine);
@@ -51,11 +53,11 @@ pub fn as_printed(machine: &Machine, exactly: &Answer) -> [Rule; 4] {
 #[derive(Debug, Clone, Copy)]
 struct Same {
     first: usize,
-    /// The column behind the last.
+    /// The column after the last.
     behind: usize,
 }
 
-/// Of some moves the lowest row that one leads to, and the lowest that one of another interrupt leads to.
+/// Lowest destination row of some moves, and the lowest of those by another interrupt.
 #[derive(Debug, Clone, Copy, Default)]
 struct Lowest {
     one: Option<(usize, InterruptId)>,
@@ -63,7 +65,7 @@ struct Lowest {
 }
 
 impl Lowest {
-    /// With a move more.
+    /// Adds a move.
     fn with(self, interrupt: InterruptId, row: usize) -> Self {
         let Some((lowest, of)) = self.one else { return Self { one: Some((row, interrupt)), other: None } };
         if of == interrupt {
@@ -75,7 +77,7 @@ impl Lowest {
         Self { other: Some(self.other.map_or(row, |other| other.min(row))), ..self }
     }
 
-    /// The lowest row that another interrupt than this leads to.
+    /// Lowest destination row of the moves by interrupts other than this one.
     fn of_another(self, interrupt: InterruptId) -> usize {
         match self.one {
             Some((lowest, of)) if of != interrupt => lowest,
@@ -86,7 +88,7 @@ impl Lowest {
 }
 
 impl Columns<'_> {
-    /// Every move from a place to another.
+    /// Every move from one place to another.
     fn moves(&self) -> impl Iterator<Item = (InterruptId, usize, usize)> {
         let from = self.order.iter().enumerate();
         let all = from.flat_map(|(place, state)| self.machine.exits(*state).iter().map(move |exit| (place, exit)));
@@ -94,7 +96,7 @@ impl Columns<'_> {
         all.filter(|(_, from, to)| from != to)
     }
 
-    /// The row in which a column of an interrupt has its 1.
+    /// Row in which a column of an interrupt has its 1.
     fn row(&self, interrupt: InterruptId, column: usize) -> usize {
         let to = self.machine.destination(self.order[column], interrupt);
         to.map_or(column, |to| self.places[to.0 as usize])
@@ -108,7 +110,7 @@ impl Columns<'_> {
         format!("`{}`", self.machine.interrupt(interrupt).name)
     }
 
-    /// R1: one interrupt, and no other, that moves a column to the next and nothing else.
+    /// R1: for each column an interrupt, unlike all others, that moves the column to the next and moves nothing else.
     fn atoms(&self) -> Option<String> {
         let mut moved = vec![0_usize; self.machine.interrupts().len()];
         self.moves().for_each(|(interrupt, ..)| moved[interrupt.0 as usize] += 1);
@@ -131,7 +133,7 @@ impl Columns<'_> {
         })
     }
 
-    /// R2: nothing leads back, and what leads on leads on from all columns up to where it leads.
+    /// R2: no interrupt leads back, and an interrupt leads to its destination from all columns up to there.
     fn forwards(&self) -> Option<String> {
         let runs = self.runs();
         self.moves().zip(&runs).find_map(|((interrupt, from, to), run)| {
@@ -149,7 +151,7 @@ impl Columns<'_> {
         })
     }
 
-    /// For each move, in their order, the neighbouring columns whose 1 the interrupt has in the row that it leads to.
+    /// For each move, in order, the neighbouring columns in which the interrupt has its 1 in the destination row.
     fn runs(&self) -> Vec<Same> {
         let moves: Vec<_> = self.moves().collect();
         let mut runs: Vec<Same> = moves.iter().map(|(_, from, _)| Same { first: *from, behind: from + 1 }).collect();
@@ -176,7 +178,7 @@ impl Columns<'_> {
         runs
     }
 
-    /// R3 as it is meant: of what two interrupts enclose, neither or one is inside the other.
+    /// R3 as intended: the columns that two interrupts enclose are disjoint or nested.
     fn nested(&self) -> Option<String> {
         let (mut runs, _) = cut(self.machine, &self.order);
         runs.sort_by_key(|run| (run.first, std::cmp::Reverse(run.last), run.interrupt));
@@ -184,8 +186,8 @@ impl Columns<'_> {
         Some(sentence.trim_start_matches("R3: ").to_owned())
     }
 
-    /// The first column from which on a move's interrupt has its 1 in the row of the move, up to that row; `None` where
-    /// one between them has not.
+    /// First column from which a move's interrupt has its 1 in the row of the move in all columns up to that row;
+    /// `None` if one of them has not.
     fn first_enclosed(&self, moves: &[(InterruptId, usize, usize)], runs: &[Same], number: usize) -> Option<usize> {
         let (interrupt, from, to) = moves[number];
         if from < to {
@@ -200,7 +202,7 @@ impl Columns<'_> {
         Some(before.filter(|before| moves[*before].2 == to).map_or(to, |before| runs[before].first))
     }
 
-    /// R3 to the letter: `k2 <= k1` and `p2 < p1` is all that it asks before one has to enclose the other.
+    /// R3 literally: `k2 <= k1` and `p2 < p1` suffices for one interrupt to have to enclose the other.
     fn nested_to_the_letter(&self) -> Option<String> {
         let (moves, runs) = (self.moves().collect::<Vec<_>>(), self.runs());
         let mut lowest = Vec::with_capacity(moves.len() + 1);
@@ -233,7 +235,8 @@ impl Columns<'_> {
         None
     }
 
-    /// R4 to the letter: where anything leads forwards to, no matrix may have a column that is equal to that one's neighbour.
+    /// R4 literally: if any interrupt leads forwards to a column, no matrix may have that column equal to its
+    /// neighbour.
     fn loops_to_the_letter(&self) -> Option<String> {
         let mut equal = vec![None; self.order.len()];
         for (interrupt, from, _) in self.moves() {
@@ -258,10 +261,11 @@ impl Columns<'_> {
     }
 }
 
-/// So wide may a line of matrices be.
+/// Maximum width of a line of matrices.
 const WIDTH: usize = 110;
 
-/// The machine in monomial form (paper, Eq. 2), its matrices as the paper prints those of Eq. 6: states in the order of the file.
+/// Writes the machine in monomial form (paper, Eq. 2), with matrices printed as in Eq. 6; states in the order of the
+/// file.
 #[must_use]
 pub fn monomial(machine: &Machine) -> String {
     let size = machine.states().len();

@@ -1,6 +1,7 @@
 //! Reads FSM files (docs/src/reference/interfaces.md, 5): states, and interrupts with their moves.
 //!
-//! Afterwards: every move is between states of the file, and an interrupt has one destination for a state at most.
+//! In a machine that is read, every move is between states of the file, and an interrupt has at most one destination
+//! per state.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -12,16 +13,16 @@ use super::{Machine, Named, State, number};
 use crate::alphabet::nearest;
 use crate::syntax::{is_law, operands};
 
-/// Why a file cannot be used.
+/// Reason why a file cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FileError {
-    /// The line, from 1, where it is one line's fault.
+    /// Number of the faulty line, from 1, if the fault is in one line.
     pub line: Option<usize>,
-    /// What is wrong.
+    /// Description of the fault.
     pub message: String,
 }
 
-/// A file as it is written; what else stands in it is ignored.
+/// A file as it is written; unknown fields are ignored.
 #[derive(Deserialize)]
 #[serde(expecting = "an object with `states` and `interrupts`")]
 struct Written {
@@ -39,7 +40,7 @@ struct WrittenInterrupt {
     text: Option<String>,
 }
 
-/// Moves by the state they leave, in the order of the names.
+/// Moves by the state that they leave, in the order of the names.
 struct Moves(BTreeMap<String, String>);
 
 impl<'de> Deserialize<'de> for Moves {
@@ -74,11 +75,12 @@ impl<'de> Visitor<'de> for MovesVisitor {
     }
 }
 
-/// Reads a machine. Entries of one name are one interrupt.
+/// Reads a machine. Entries with the same name are one interrupt.
 ///
 /// # Errors
-/// If it is no JSON, has no state, names states that it does not have, gives one interrupt two destinations for a state, or
-/// gives a state no law, two, or a text that is not one law, or an interrupt one that is not one condition.
+/// Fails if the text is not JSON, has no state, names unknown states, or gives an interrupt two destinations for a
+/// state; if `start` is the last state; if `laws` does not have one law for each state but the last; or if the text of
+/// an interrupt is not one condition.
 pub fn read(text: &str) -> Result<Machine, FileError> {
     let written: Written = serde_json::from_str(text).map_err(|error| reason(&error))?;
     let states = States::new(&written.states)?;
@@ -135,7 +137,7 @@ pub fn read(text: &str) -> Result<Machine, FileError> {
     }
 }
 
-/// The states of a file by their names.
+/// States of a file by name.
 struct States<'n>(BTreeMap<&'n str, State>);
 
 impl<'n> States<'n> {
@@ -162,7 +164,7 @@ impl<'n> States<'n> {
         Ok(Self(states))
     }
 
-    /// The state of this name, for whoever asks.
+    /// Returns the state of this name; `asks` describes the entry that uses it, for the error.
     fn find(&self, name: &str, asks: impl Fn() -> String) -> Result<State, FileError> {
         self.0.get(name).copied().ok_or_else(|| {
             let near = nearest(name, self.0.keys().copied());
@@ -176,7 +178,7 @@ fn refused(message: String) -> FileError {
     FileError { line: None, message }
 }
 
-/// The reader's message, its place as the column only.
+/// Message of the JSON parser, with the column as the only position.
 fn reason(error: &serde_json::Error) -> FileError {
     let message = error.to_string();
     let message = match message.rsplit_once(" at line ") {

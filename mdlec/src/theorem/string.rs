@@ -1,4 +1,5 @@
-//! What was found of a machine as MDLe text: a plan, one atom a line, the number and the name of its state behind it.
+//! Writes the string that was found for a machine as MDLe text: a plan with one atom per line, followed by the number
+//! and name of its state.
 
 use std::cmp::Reverse;
 use std::fmt::Write;
@@ -6,15 +7,16 @@ use std::fmt::Write;
 use super::names::{Names, Texts, in_a_comment, texts};
 use super::{Found, InterruptId, Machine, Run};
 
-/// Brackets nest no deeper in one plan than this; what is deeper becomes a plan by name.
+/// Maximum nesting depth of brackets in one plan; deeper parts become plans by name.
 const DEPTH: usize = 100;
 
-/// Something that is enclosed, outermost first where several enclose the same.
+/// A scope or loop, outermost first if several enclose the same states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Enclosed {
     first: usize,
     last: Reverse<usize>,
-    /// A loop is between the scopes that lead out of it and those that lead back to its start.
+    /// Order of scopes and loops with the same stretch: a loop is between the scopes that lead out of it and those that
+    /// lead back to its start.
     rank: Rank,
     interrupt: Option<InterruptId>,
 }
@@ -26,7 +28,7 @@ enum Rank {
     LeadsBack,
 }
 
-/// The text of a string that was found of this machine.
+/// Returns the text of the string found for this machine.
 #[must_use]
 pub fn string(machine: &Machine, found: &Found) -> String {
     let (texts, mut names) = texts(machine);
@@ -64,8 +66,8 @@ fn enclosed_by(run: &Run) -> Enclosed {
     Enclosed { first: run.first, last: Reverse(run.last), rank, interrupt: Some(run.interrupt) }
 }
 
-/// The interrupt of laws that are done, if it is what the atoms' completion does anyway: it encloses single atoms only, and
-/// leads where their own interrupts do.
+/// Interrupt of laws that complete, if it can be left out: it encloses single atoms only, and leads where their own
+/// interrupts lead.
 fn completed(machine: &Machine, enclosed: &[Enclosed]) -> Option<InterruptId> {
     let completed = machine.completed()?;
     let mut own = enclosed.chunk_by(|one, other| (one.first, one.last) == (other.first, other.last));
@@ -81,13 +83,13 @@ fn condition(texts: &Texts, interrupt: InterruptId) -> &str {
     &texts.conditions[interrupt.0 as usize]
 }
 
-/// Something that is open while its inside is written.
+/// A bracket that is open while its inside is written.
 struct Bracket {
     last: usize,
     end: &'static str,
-    /// The plan that it is written in.
+    /// Index of the plan that contains the bracket.
     plan: usize,
-    /// How deep it is there.
+    /// Nesting depth of the bracket in that plan.
     depth: usize,
 }
 
@@ -96,13 +98,13 @@ struct Writer<'w> {
     found: &'w Found,
     texts: &'w Texts,
     names: Names,
-    /// The texts of the plans, the main one first.
+    /// Texts of the plans, the main one first.
     plans: Vec<String>,
     open: Vec<Bracket>,
 }
 
 impl Writer<'_> {
-    /// Writes everything that is enclosed, from left to right.
+    /// Writes all scopes and loops, from left to right.
     fn write(&mut self, enclosed: &[Enclosed]) {
         let mut rest = enclosed;
         for place in 0..self.found.order.len() - 1 {
@@ -147,7 +149,7 @@ impl Writer<'_> {
         self.open.push(Bracket { last, end, plan, depth });
     }
 
-    /// Where the next line belongs: the plan, and how deep in it.
+    /// Position of the next line: the index of the plan, and the depth in it.
     fn inside(&self) -> (usize, usize) {
         self.open.last().map_or((0, 1), |bracket| (bracket.plan, bracket.depth + 1))
     }

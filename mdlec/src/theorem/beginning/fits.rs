@@ -1,11 +1,12 @@
-//! Whether what would end behind the beginning of an order can: loops begin where something does, and nothing leads into the middle
-//! of what is enclosed as a whole (Theorem 1, R4).
+//! Checks whether scopes and loops can end after the beginning of an order: no interrupt may lead into the middle of a
+//! closed stretch (Theorem 1, R4).
 
 use super::{Beginning, Ending};
 use crate::theorem::{Broken, InterruptId, State, Stretch};
 
 impl Beginning<'_> {
-    /// Whether the loops that end here begin where something can, and lead each scope where it leads (R4).
+    /// Checks that each ending scope leads to a place where a loop can begin, and not past the start of a loop that
+    /// ends with it (R4).
     pub(super) fn loops_fit(&self, ending: &Ending, next: State) -> Result<(), Broken> {
         let here = self.order.len() - 1;
         let stretch = |first: usize, last: usize| Stretch { first: self.order[first], last: self.order[last] };
@@ -37,7 +38,8 @@ impl Beginning<'_> {
         Ok(())
     }
 
-    /// Whether all that leads into the middle of what ends, or of what goes on, is there already, or will be in there (R4).
+    /// Checks that every state that leads into the middle of an ending or continuing stretch has a place in it, or can
+    /// still get one (R4).
     pub(super) fn nothing_leads_inside(&self, ending: &Ending, next: State, widest: usize) -> Result<(), Broken> {
         let here = self.order.len() - 1;
         let inside = self.wholes.partition_point(|(first, _)| *first <= widest);
@@ -66,12 +68,12 @@ impl Beginning<'_> {
         Ok(())
     }
 
-    /// The states that lead to this one and have no place yet.
+    /// States without a place that lead to this one.
     pub(super) fn outside(&self, state: State) -> impl Iterator<Item = State> {
         self.sources[state.0 as usize].iter().copied().filter(|source| self.place(*source).is_none())
     }
 
-    /// A state outside leads into the middle of what begins at a place.
+    /// Reports that a state outside leads into the middle of the stretch that begins at place `first`.
     fn leads_inside(&self, from: State, to: State, first: usize, last: State) -> Broken {
         let exit = self.machine.exits(from).iter().find(|exit| exit.to == to);
         let interrupt = exit.map_or(InterruptId(0), |exit| exit.interrupt);
