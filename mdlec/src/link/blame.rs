@@ -1,4 +1,4 @@
-//! Whose fault it is that a build failed.
+//! Finds the cause of a failed build: the plan, the target's crate, the machine or mdlec.
 
 use std::os::unix::process::ExitStatusExt;
 use std::path::PathBuf;
@@ -8,13 +8,13 @@ use super::messages::Run;
 use super::target::Dependencies;
 use super::{LinkError, TargetCrate};
 
-/// What cargo says when it gets nowhere.
+/// Message of cargo when the network does not answer.
 const NETWORK: &str = "spurious network error";
 
-/// What rustc says when there is no linker, or when the linker fails.
+/// Messages of rustc when there is no linker, or when the linker fails.
 const LINKER: [&str; 2] = ["error: linker `", "error: linking with `"];
 
-/// The fault behind a run that made no executable.
+/// Returns the fault that made a run end without an executable.
 pub(super) fn fault(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>, dependencies: &Dependencies) -> LinkError {
     let text = run.text();
     if run.lacks_room() {
@@ -49,7 +49,7 @@ pub(super) fn fault(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>, dependen
     }
 }
 
-/// The emitted text does not compile.
+/// Fault for emitted text that does not compile.
 fn emitted(target: &TargetCrate<'_>, log: PathBuf) -> LinkError {
     match target {
         TargetCrate::Builtin { .. } => LinkError::Emitted { log },
@@ -58,7 +58,7 @@ fn emitted(target: &TargetCrate<'_>, log: PathBuf) -> LinkError {
     }
 }
 
-/// A crate that is not ours does not compile, or cargo did not even begin.
+/// Fault for a crate of others that does not compile, or for a run in which cargo did not begin to compile.
 fn others(
     job: &Job<'_>,
     run: &Run,

@@ -23,16 +23,16 @@ impl Cache {
     /// Returns the user's cache.
     ///
     /// # Errors
-    /// When there is no [`Cache::folder_of_user`], or it cannot be made.
+    /// Fails if there is no [`Cache::folder_of_user`], or if it cannot be created.
     pub fn of_user() -> Result<Self, LinkError> {
         Self::at(&Self::folder_of_user()?)
     }
 
-    /// Returns the folder of the user's cache, which need not exist: what `MDLEC_CACHE` names, else `mdlec` in the user's cache
-    /// folder.
+    /// Returns the folder of the user's cache, which need not exist: the value of `MDLEC_CACHE`, else `mdlec` in the
+    /// user's cache folder.
     ///
     /// # Errors
-    /// When neither the variable nor a home folder is there.
+    /// Fails if there is neither the variable nor a home folder.
     pub fn folder_of_user() -> Result<PathBuf, LinkError> {
         match env::var_os("MDLEC_CACHE").filter(|folder| !folder.is_empty()) {
             Some(folder) => Ok(PathBuf::from(folder)),
@@ -43,10 +43,10 @@ impl Cache {
         }
     }
 
-    /// The one in `folder`, which is made if need be, and is closed to other users.
+    /// Returns the cache in `folder`, which is created if necessary, and closed to other users.
     ///
     /// # Errors
-    /// When `folder` cannot be made, or others can change it or put another in its place.
+    /// Fails if `folder` cannot be created, or if others can change or replace it.
     pub fn at(folder: &Path) -> Result<Self, LinkError> {
         // Cargo shows paths without symbolic links; ours are compared with them.
         let Private { folder, was_open } = access::private(folder)?;
@@ -59,23 +59,23 @@ impl Cache {
         Ok(cache)
     }
 
-    /// The folder.
+    /// Folder of the cache.
     #[must_use]
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
-    /// The folder of what cargo has compiled.
+    /// Folder of cargo's build results.
     pub(super) fn target(&self) -> PathBuf {
         self.folder.join("target")
     }
 
-    /// The folder of the packages of plans.
+    /// Folder of the packages of plans.
     pub(super) fn plans(&self) -> PathBuf {
         self.folder.join("plans")
     }
 
-    /// An empty folder for the temporary files of a build: a compiler that is killed leaves its own behind.
+    /// Returns an empty folder for the temporary files of a build: a compiler that is killed leaves its own there.
     pub(super) fn scratch(&self) -> Result<PathBuf, LinkError> {
         let folder = self.folder.join("tmp");
         remove(&folder)?;
@@ -83,7 +83,7 @@ impl Cache {
         Ok(folder)
     }
 
-    /// Waits until no other mdlec uses the cache, and keeps others waiting as long as the result lives.
+    /// Waits until no other mdlec uses the cache; locks it for others as long as the returned file is open.
     pub(super) fn lock(&self, progress: &mut dyn FnMut(Progress)) -> Result<File, LinkError> {
         let path = self.folder.join("lock");
         let failed = |error| LinkError::cache(&path, error);
@@ -105,7 +105,7 @@ impl Cache {
     }
 }
 
-/// Writes `contents` to `file` unless they are there already, and says whether it wrote; a reader sees the old or the new.
+/// Writes `contents` to `file` if they differ, and returns whether it wrote; readers see the old file or the new one.
 pub(super) fn write_if_changed(file: &Path, contents: &[u8]) -> Result<bool, LinkError> {
     if fs::read(file).is_ok_and(|found| found == contents) {
         return Ok(false);
@@ -114,7 +114,7 @@ pub(super) fn write_if_changed(file: &Path, contents: &[u8]) -> Result<bool, Lin
     Ok(true)
 }
 
-/// Writes beside `file` and renames.
+/// Writes a file next to `file`, and renames it.
 fn replace(file: &Path, contents: &[u8]) -> io::Result<()> {
     if let Some(folder) = file.parent() {
         fs::create_dir_all(folder)?;
@@ -128,7 +128,7 @@ fn replace(file: &Path, contents: &[u8]) -> io::Result<()> {
     fs::rename(new, file)
 }
 
-/// Removes what is at `path`, be it a file or a folder with all that is in it.
+/// Removes a file, or a folder with all its contents.
 pub(super) fn remove(path: &Path) -> Result<(), LinkError> {
     let removed = match fs::symlink_metadata(path) {
         Ok(found) if found.is_dir() => fs::remove_dir_all(path),

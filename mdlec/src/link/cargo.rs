@@ -1,4 +1,4 @@
-//! Cargo as a child: the same flags whatever the environment says, and nothing of its output on the terminal.
+//! Runs cargo as a child process: with the same flags in every environment, and without its output on the terminal.
 
 use std::ffi::{OsStr, OsString};
 use std::path::{self, PathBuf};
@@ -10,20 +10,20 @@ use super::package::PlanPackage;
 use super::seal::Seal;
 use super::{Cache, LinkError, Progress, orphan, stop};
 
-/// The oldest Rust that the packed sources are for.
+/// Oldest Rust version that compiles the packed sources.
 const NEEDED: &str = env!("CARGO_PKG_RUST_VERSION");
 
-/// What cargo reads from the environment that is the user's business: where its files and its registries are, how it
-/// gets there, how much of the machine it may use. Everything else would change, or build anew, what others built.
+/// Prefixes of variables that cargo may read, since they are the user's choice: its folders, its registries, the
+/// network, its use of the machine. All others would change builds, or repeat them.
 const KEPT: [&str; 6] =
     ["CARGO_HOME", "CARGO_HTTP_", "CARGO_NET_", "CARGO_REGISTRIES_", "CARGO_REGISTRY_", "CARGO_BUILD_JOBS"];
 
-/// The folder that cargo and rustc run in. They search it, and every folder above it, for `.cargo/config.toml` and
-/// `rust-toolchain.toml`, which run code: here nobody but the owner of the machine can put one.
+/// Working folder of cargo and rustc. They search it, and every folder above it, for `.cargo/config.toml` and
+/// `rust-toolchain.toml`, which can run code: here only the superuser can create them.
 const OUTSIDE: &str = "/";
 
-/// Settings of the profile, as cargo's `--config` takes them: neither a configuration file nor the environment overrides
-/// these. Under another profile executables would not do what they promise.
+/// Settings of the profile for cargo's `--config`, which neither a configuration file nor the environment overrides.
+/// Executables rely on these settings.
 const PROFILE: [&str; 13] = [
     // A panic in a driver has to reach the code that stops the robot.
     "profile.release.panic='unwind'",
@@ -43,15 +43,15 @@ const PROFILE: [&str; 13] = [
     "profile.release.package.clap_builder.opt-level='s'",
 ];
 
-/// The Rust that is installed.
+/// The installed Rust.
 #[derive(Debug)]
 pub(super) struct Toolchain {
-    /// The triple of this machine.
+    /// Target triple of this machine.
     pub(super) host: String,
 }
 
 impl Toolchain {
-    /// Asks `rustc`.
+    /// Runs `rustc` to find its version and host.
     pub(super) fn find() -> Result<Self, LinkError> {
         let mut command = command("rustc");
         command.arg("-vV");
@@ -71,13 +71,13 @@ impl Toolchain {
     }
 }
 
-/// The first two numbers of a version.
+/// First two numbers of a version.
 fn version(text: &str) -> Option<(u32, u32)> {
     let mut parts = text.split('.');
     Some((parts.next()?.parse().ok()?, parts.next()?.parse().ok()?))
 }
 
-/// A build of the package of a plan.
+/// A build of a plan's package.
 #[derive(Debug)]
 pub(super) struct Job<'a> {
     pub(super) cache: &'a Cache,
@@ -86,7 +86,7 @@ pub(super) struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// Builds, without the network if that is possible.
+    /// Builds, without the network if possible.
     pub(super) fn build(&self, seal: &mut Seal, progress: &mut dyn FnMut(Progress)) -> Result<Run, LinkError> {
         let run = self.attempt(false, seal, progress)?;
         if !run.lacks_libraries() {
@@ -96,7 +96,7 @@ impl Job<'_> {
         self.attempt(true, seal, progress)
     }
 
-    /// Builds; fetches what is missing if it may go `online`.
+    /// Builds; fetches missing libraries if `online`.
     fn attempt(&self, online: bool, seal: &mut Seal, progress: &mut dyn FnMut(Progress)) -> Result<Run, LinkError> {
         let mut command = self.command("build");
         command
@@ -113,7 +113,7 @@ impl Job<'_> {
             .map_err(|error| unusable("cargo", &error))
     }
 
-    /// Removes what was built of the plan itself.
+    /// Removes the build results of the plan itself.
     pub(super) fn clean(&self) -> Result<(), LinkError> {
         let mut command = self.command("clean");
         command.arg("--offline").arg("--package").arg(self.plan.name());
@@ -121,7 +121,7 @@ impl Job<'_> {
         output(command, "cargo").map(|_| ())
     }
 
-    /// Cargo's command `name` about the plan.
+    /// Returns cargo's command `name` for the plan.
     fn command(&self, name: &str) -> Command {
         let mut command = command("cargo");
         // With an explicit triple the flags are for the plan alone: a static procedural macro could not be loaded.
@@ -156,7 +156,8 @@ impl Job<'_> {
     }
 }
 
-/// `tool`, without what this process's environment, or a file near where the user is, says to cargo and rustc.
+/// Returns a command for `tool` that ignores the configuration of cargo and rustc in this process's environment and
+/// folder.
 pub(super) fn command(tool: &str) -> Command {
     let mut command = Command::new(tool);
     command.current_dir(OUTSIDE).stdin(Stdio::null());
@@ -169,7 +170,7 @@ pub(super) fn command(tool: &str) -> Command {
     command
 }
 
-/// The folder that the variable `name` holds, where a relative path begins at the folder that the user is in.
+/// Absolute path of the folder in the variable `name`; a relative path is relative to the current folder.
 pub(super) fn absolute(name: &str) -> Option<PathBuf> {
     env::var_os(name).filter(|folder| !folder.is_empty()).and_then(|folder| path::absolute(folder).ok())
 }
@@ -179,8 +180,8 @@ pub(super) fn output(mut command: Command, tool: &'static str) -> Result<Output,
     command.output().map_err(|error| unusable(tool, &error))
 }
 
-/// Whether cargo or rustc would let this variable change what they build. `RUSTUP_TOOLCHAIN` stays: it is how one says
-/// which Rust is meant.
+/// Returns `true` if cargo or rustc would let this variable change their results. `RUSTUP_TOOLCHAIN` stays, since users
+/// choose their Rust with it.
 fn is_about_builds(name: &OsStr) -> bool {
     let Some(name) = name.to_str() else { return false };
     let own = name == "CARGO" || name.starts_with("CARGO_") || name.starts_with("__CARGO_");
@@ -188,7 +189,7 @@ fn is_about_builds(name: &OsStr) -> bool {
     (own && !kept) || name == "RUSTC" || name.starts_with("RUSTC_") || matches!(name, "RUSTFLAGS" | "RUSTDOCFLAGS")
 }
 
-/// The program could not be run.
+/// Error for a program that could not be run.
 fn unusable(tool: &'static str, error: &io::Error) -> LinkError {
     let missing = error.kind() == io::ErrorKind::NotFound;
     let why = if missing { "it is not there".to_owned() } else { format!("it cannot be run ({error})") };

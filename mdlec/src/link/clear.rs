@@ -1,4 +1,4 @@
-//! Empties a cache: removes what mdlec keeps there, in a folder that holds nothing else.
+//! Empties a cache: removes the files that mdlec keeps there, in a folder that holds no other files.
 
 use std::collections::BTreeSet;
 use std::ffi::OsStr;
@@ -10,18 +10,18 @@ use std::path::Path;
 use super::cache::remove;
 use super::{Cache, LinkError, Progress, sources};
 
-/// The file that a running mdlec locks. It stays, so that all mdlec wait for the same one.
+/// File that a running mdlec locks. It stays, so that all processes wait for the same file.
 const LOCK: &str = "lock";
 
-/// The other names that mdlec gives to what it keeps in a cache, besides those of unpacked sources.
+/// Names of the other files and folders of a cache, besides the unpacked sources.
 const OWN: [&str; 7] = ["cargo", "cargo.new", "compiled", "compiled.new", "target", "tmp", "plans"];
 
-/// Removes the contents of the cache in `folder`, once no other mdlec uses it, and returns how many bytes of the disk they took.
-/// The folder stays, with the file that is locked.
+/// Removes the contents of the cache in `folder`, once no other mdlec uses it, and returns the number of bytes freed.
+/// The folder stays, with its lock file.
 ///
 /// # Errors
-/// The folder is not a cache: it holds something that mdlec did not write, or no lock. Then nothing is changed. Or the system
-/// refuses.
+/// Fails if the folder is not a cache, since it holds a file that mdlec did not write, or no lock; nothing is changed
+/// then. Also fails if the system refuses.
 pub fn clear(folder: &Path, progress: &mut dyn FnMut(Progress)) -> Result<u64, LinkError> {
     // Before anything is changed, permissions included.
     let Some(found) = contents(folder)? else { return Ok(0) };
@@ -41,7 +41,7 @@ pub fn clear(folder: &Path, progress: &mut dyn FnMut(Progress)) -> Result<u64, L
     Ok(bytes)
 }
 
-/// Lists a folder that must be a cache; `None` if there is none.
+/// Lists a folder that must be a cache; `None` if it does not exist.
 fn contents(folder: &Path) -> Result<Option<Vec<DirEntry>>, LinkError> {
     let found = match fs::read_dir(folder).and_then(Iterator::collect::<io::Result<Vec<_>>>) {
         Ok(found) => found,
@@ -63,7 +63,8 @@ fn is_own(name: &OsStr) -> bool {
     name == LOCK || OWN.iter().any(|own| name == *own) || name.to_str().is_some_and(sources::is_folder)
 }
 
-/// Returns the bytes that a file, or a folder with all that is in it, takes on the disk. A file with several names counts once.
+/// Returns the disk space of a file, or of a folder with all its contents, in bytes. A file with several names counts
+/// once.
 fn size(path: &Path, counted: &mut BTreeSet<(u64, u64)>) -> io::Result<u64> {
     let found = fs::symlink_metadata(path)?;
     let own = if counted.insert((found.dev(), found.ino())) { found.blocks() * 512 } else { 0 };

@@ -1,4 +1,5 @@
-//! Damage in the cache that cargo does not see, as it goes by the times of files and not by what is in them.
+//! Finds damage in the cache that cargo does not notice, since cargo compares the times of files and not their
+//! contents.
 
 use std::os::unix::process::ExitStatusExt;
 
@@ -8,13 +9,13 @@ use super::messages::{Complaint, Run};
 use super::package::PlanPackage;
 use super::{LinkError, Progress, TargetCrate, record};
 
-/// What rustc says of a library that is not there, or of which nothing is left.
+/// Message of rustc about a library that is missing or empty.
 const ABSENT: &str = "can't find crate for `";
 
-/// The same of those that came with mdlec.
+/// Message of rustc about a missing library of mdlec itself.
 const OURS_ABSENT: &str = "can't find crate for `mdle_";
 
-/// What rustc says of a library that it cannot read.
+/// Messages of rustc about a library that it cannot read.
 const UNREADABLE: [&str; 5] = [
     "found invalid metadata files for crate",
     "found possibly newer version of crate",
@@ -23,19 +24,19 @@ const UNREADABLE: [&str; 5] = [
     "error: internal compiler error",
 ];
 
-/// What the linker says where it is the system, or a target's crate, that lacks something.
+/// Messages of the linker about a library or symbol that the system or a target's crate lacks.
 const LACKING: [&str; 4] = ["unable to find library", "cannot find -l", "undefined symbol", "undefined reference"];
 
-/// What has to be built again.
+/// Part of the cache that must be built again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Damage {
-    /// The executable of the plan.
+    /// Executable of the plan.
     Executable,
-    /// Everything that cargo has compiled.
+    /// All build results of cargo.
     Libraries,
 }
 
-/// What of the cache is damaged, judged by a run of cargo.
+/// Returns the damaged part of the cache, judged by a run of cargo; `None` if there is no sign of damage.
 pub(super) fn found(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>) -> Option<Damage> {
     if run.status.success() {
         let stored = run.executable.as_ref().filter(|executable| executable.fresh)?;
@@ -57,7 +58,7 @@ pub(super) fn found(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>) -> Optio
     (refused || spoilt).then_some(Damage::Libraries)
 }
 
-/// Whether an error can come of a library that is damaged.
+/// Returns `true` if a damaged library can be the cause of an error.
 fn is_of_damage(complaint: &Complaint, plan: &PlanPackage, target: &TargetCrate<'_>) -> bool {
     let says = |signs: &[&str]| signs.iter().any(|sign| complaint.text.contains(sign));
     // What came with mdlec does not fail by itself, but what mdlec makes of a plan can be wrong.
@@ -65,14 +66,14 @@ fn is_of_damage(complaint: &Complaint, plan: &PlanPackage, target: &TargetCrate<
     complaint.is_error && !says(&LACKING) && (is_tested || says(&UNREADABLE) && !is_forgotten(complaint, target))
 }
 
-/// Whether a third party's crate names one that it does not depend on.
+/// Returns `true` if a third party's crate uses a crate that it does not depend on.
 fn is_forgotten(complaint: &Complaint, target: &TargetCrate<'_>) -> bool {
     let TargetCrate::Path { folder, .. } = target else { return false };
     let is_own = folder.canonicalize().is_ok_and(|folder| complaint.manifest.starts_with(folder));
     is_own && complaint.text.contains(ABSENT) && !complaint.text.contains(OURS_ABSENT)
 }
 
-/// Removes what is damaged, so that the next run of cargo makes it anew.
+/// Removes the damaged part, so that the next run of cargo builds it again.
 pub(super) fn clear(damage: Damage, job: &Job<'_>, progress: &mut dyn FnMut(Progress)) -> Result<(), LinkError> {
     match damage {
         Damage::Executable => job.clean(),

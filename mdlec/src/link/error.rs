@@ -1,29 +1,30 @@
-//! Why there is no executable, in sentences that say what to do.
+//! Reasons why no executable was built, in sentences that tell the user what to do.
 
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Why there is no executable. Its text is for the person who called mdlec; a long one quotes cargo or rustc at its end.
+/// Reason why no executable was built. The message is for the user of mdlec; a long one quotes cargo or rustc at its
+/// end.
 #[derive(Debug, thiserror::Error)]
 pub enum LinkError {
     /// The output is a folder.
     #[error("`{0}` is a folder: name a file for the output with `-o FILE`")]
     OutputIsFolder(PathBuf),
-    /// The output is a device or the like.
+    /// The output is a special file, such as a device.
     #[error("`{0}` is not a file: name a file for the executable with `-o FILE`")]
     OutputIsSpecial(PathBuf),
     /// The output is a file that the command reads.
     #[error("`{0}` is an input of this command and would be lost: name another file for the output")]
     OutputIsInput(PathBuf),
-    /// The folder of the output is not there.
+    /// The folder of the output does not exist.
     #[error("the folder `{0}` does not exist: make it, or name another with `-o FILE`")]
     OutputFolderMissing(PathBuf),
     /// The output cannot be written.
     #[error("`{path}` cannot be written ({error}): name another file for the output with `-o FILE`")]
     OutputRefused {
-        /// The output.
+        /// Path of the output.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         error: io::Error,
     },
 
@@ -36,9 +37,9 @@ pub enum LinkError {
          variable MDLEC_CACHE"
     )]
     Cache {
-        /// Where in the cache.
+        /// Path in the cache.
         path: PathBuf,
-        /// What the system says.
+        /// Error of the system.
         error: io::Error,
     },
     /// The cache, or a folder above it, belongs to another user.
@@ -49,7 +50,7 @@ pub enum LinkError {
     CacheOfOther {
         /// The folder.
         path: PathBuf,
-        /// The number of the user.
+        /// User identifier of the owner.
         owner: u32,
     },
     /// Others can write to a folder above the cache.
@@ -58,7 +59,7 @@ pub enum LinkError {
          name another folder with the variable MDLEC_CACHE"
     )]
     CacheOpen(PathBuf),
-    /// The folder is to be emptied, and is not a cache.
+    /// The folder to be emptied is not a cache.
     #[error("`{path}` is not a cache of mdlec: {why}; nothing was removed")]
     NotACache {
         /// The folder.
@@ -66,24 +67,24 @@ pub enum LinkError {
         /// The content that a cache does not have, or the lack of its lock file.
         why: String,
     },
-    /// No space is left.
+    /// The disk is full.
     #[error("there is no room left at `{0}` (a full disk, a quota, or `ulimit -f`): make room, then try again")]
     DiskFull(PathBuf),
 
     /// Rust is not installed, or not usable.
     #[error("mdlec needs `{tool}` to build an executable, and {why}: install Rust from rustup.rs")]
     NoRust {
-        /// The program.
+        /// Name of the program.
         tool: &'static str,
-        /// What is wrong with it.
+        /// Reason why the program cannot be used.
         why: String,
     },
     /// Rust is too old.
     #[error("mdlec needs Rust {needed} or newer to build an executable, and this is {found}: run `rustup update`")]
     OldRust {
-        /// The oldest that does.
+        /// Oldest Rust version that is sufficient.
         needed: &'static str,
-        /// What is installed.
+        /// Rust version that is installed.
         found: String,
     },
     /// There is no linker, or no static C library.
@@ -92,7 +93,7 @@ pub enum LinkError {
          (Debian: build-essential, Fedora: gcc and glibc-static); what it says is in `{log}`"
     )]
     Linker {
-        /// What was said.
+        /// File with the output of cargo and rustc.
         log: PathBuf,
     },
     /// Libraries are missing and cannot be fetched.
@@ -101,10 +102,10 @@ pub enum LinkError {
          it to the network once and try again; what cargo says is in `{log}`"
     )]
     NoLibraries {
-        /// What was said.
+        /// File with the output of cargo and rustc.
         log: PathBuf,
     },
-    /// Libraries are missing and cargo is told not to fetch any.
+    /// Libraries are missing, and cargo is configured not to fetch any.
     #[error(
         "the libraries that executables are built on are not on this machine yet, and cargo is told not to fetch them: \
          unset CARGO_NET_OFFLINE, or `net.offline` in cargo's configuration, and try again with the network"
@@ -119,54 +120,54 @@ pub enum LinkError {
     OtherCrate {
         /// The target's folder.
         folder: PathBuf,
-        /// What the alphabet says.
+        /// Name of the crate in the alphabet.
         said: String,
-        /// What cargo says.
+        /// Name of the crate in the manifest, as cargo reads it.
         found: String,
     },
-    /// The target's crate does not depend on what it must.
+    /// The target's crate lacks a required dependency.
     #[error("the target crate `{crate_name}` must depend on `{missing}`: add it to [dependencies] of its Cargo.toml")]
     TargetLacks {
-        /// The target's crate.
+        /// Name of the target's crate.
         crate_name: String,
-        /// The package.
+        /// Name of the missing package.
         missing: &'static str,
     },
-    /// Cargo cannot read the target's manifest, or find what it depends on.
+    /// Cargo cannot read the target's manifest, or find its dependencies.
     #[error("cargo cannot use the target crate `{crate_name}`; this is not a fault of your plan:\n{text}")]
     TargetRefused {
-        /// The target's crate.
+        /// Name of the target's crate.
         crate_name: String,
-        /// What cargo says.
+        /// Output of cargo.
         text: String,
     },
     /// The target's crate does not compile.
     #[error("the target crate `{crate_name}` does not compile; this is not a fault of your plan:\n{text}")]
     TargetBroken {
-        /// The target's crate.
+        /// Name of the target's crate.
         crate_name: String,
-        /// What rustc says.
+        /// Errors of rustc, or the output of cargo if rustc reported none.
         text: String,
     },
-    /// The target's crate is not what its alphabet says.
+    /// The target's crate does not fit its alphabet.
     #[error(
         "the target crate `{crate_name}` does not fit its alphabet: its module `alphabet` has to export a type for every \
          quark the alphabet declares, as `{log}` says; if it does, please report this with the plan and that file"
     )]
     TargetMisfit {
-        /// The target's crate.
+        /// Name of the target's crate.
         crate_name: String,
-        /// What was said.
+        /// File with the output of cargo and rustc.
         log: PathBuf,
     },
 
-    /// A path that no manifest can hold.
+    /// A path that cannot be written in a manifest.
     #[error("`{0}` is not UTF-8, so cargo cannot be told of it: rename it")]
     NotUtf8(PathBuf),
     /// The build was stopped.
     #[error("the build was stopped by signal {0}")]
     Stopped(u8),
-    /// Cargo fails for a reason that is not known here.
+    /// Cargo fails for an unknown reason.
     #[error(
         "cargo failed; what it says is in `{log}`; if it makes no sense, delete the cache `{cache}` and try again; if this \
          stays, please report it with that file"
@@ -174,33 +175,33 @@ pub enum LinkError {
     Cargo {
         /// The folder of the cache.
         cache: PathBuf,
-        /// What was said.
+        /// File with the output of cargo and rustc.
         log: PathBuf,
     },
-    /// Our own Rust does not compile.
+    /// Rust that mdlec emitted does not compile.
     #[error("internal error: mdlec made Rust that does not compile; please report it with the plan and `{log}`")]
     Emitted {
-        /// What was said.
+        /// File with the output of cargo and rustc.
         log: PathBuf,
     },
-    /// What came with mdlec does not compile.
+    /// Sources that are part of mdlec do not compile.
     #[error(
         "internal error: the sources that came with mdlec do not compile; delete `{folder}` and try again; if this \
          stays, please report it with `{log}`"
     )]
     Packed {
-        /// The sources in the cache.
+        /// Folder of the sources in the cache.
         folder: PathBuf,
-        /// What was said.
+        /// File with the output of cargo and rustc.
         log: PathBuf,
     },
-    /// A built-in target that is none.
+    /// An unknown built-in target.
     #[error("internal error: `{0}` is not built in; please report it")]
     NoSuchTarget(String),
 }
 
 impl LinkError {
-    /// The exit status of mdlec.
+    /// Exit status of mdlec for this error.
     #[must_use]
     pub fn exit_status(&self) -> u8 {
         match self {
@@ -233,20 +234,20 @@ impl LinkError {
         }
     }
 
-    /// The system refused something in the cache.
+    /// Error for a path in the cache that the system refused.
     pub(super) fn cache(path: &Path, error: io::Error) -> Self {
         let path = path.to_owned();
         if is_full(&error) { Self::DiskFull(path) } else { Self::Cache { path, error } }
     }
 
-    /// The system refused the output.
+    /// Error for an output that the system refused.
     pub(super) fn output(path: &Path, error: io::Error) -> Self {
         let path = path.to_owned();
         if is_full(&error) { Self::DiskFull(path) } else { Self::OutputRefused { path, error } }
     }
 }
 
-/// Whether no space is left, on the disk, for the user, or for the process.
+/// Returns `true` if the error means that the disk, a quota or the limit of the process is full.
 fn is_full(error: &io::Error) -> bool {
     use io::ErrorKind::{FileTooLarge, QuotaExceeded, StorageFull};
     matches!(error.kind(), StorageFull | QuotaExceeded | FileTooLarge)

@@ -5,10 +5,10 @@ use std::{env, fs, path};
 
 use super::cargo::absolute;
 
-/// The files that cargo and rustup read in the folder of a build and in each folder above it.
+/// Files that cargo and rustup read in the folder of a build and in each folder above it.
 const NAMES: [&str; 4] = [".cargo/config.toml", ".cargo/config", "rust-toolchain.toml", "rust-toolchain"];
 
-/// Returns the first of these files in a folder of `folders` or above one, unless it is in cargo's home. No build reads it.
+/// Returns the first configuration file in `folders` or above them that is not in cargo's home. Builds do not read it.
 #[must_use]
 pub fn ignored_configuration(folders: &[&Path]) -> Option<PathBuf> {
     let home = absolute("CARGO_HOME").or_else(|| Some(env::home_dir()?.join(".cargo")));

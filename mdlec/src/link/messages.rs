@@ -1,4 +1,4 @@
-//! What cargo says while it builds, read line by line.
+//! Reads the output of cargo while it builds, line by line.
 
 use std::io::{self, BufRead, BufReader, Read};
 use std::os::unix::process::ExitStatusExt;
@@ -13,28 +13,28 @@ use signal_hook::consts::SIGXFSZ;
 use super::Progress;
 use super::seal::Seal;
 
-/// What the system says, through rustc or the linker, when a disk is full or a file would become too large.
+/// Messages of the system, through rustc or the linker, when a disk is full or a file is too large.
 const FULL: [&str; 4] = ["No space left on device", "Disk quota exceeded", "File too large", "(signal: 25"];
 
-/// The start of cargo's line about a lock that another cargo holds.
+/// Beginning of cargo's line about a lock that another cargo holds.
 const BLOCKED: &[u8] = b"Blocking waiting for file lock";
 
-/// What came of a run of cargo.
+/// Result of a run of cargo.
 #[derive(Debug)]
 pub(super) struct Run {
-    /// How it ended.
+    /// Exit status of cargo.
     pub(super) status: ExitStatus,
-    /// Whether it might use the network.
+    /// `true` if cargo was allowed to use the network.
     pub(super) online: bool,
-    /// Whether it came as far as to compile, or to see that all is compiled.
+    /// `true` if cargo compiled a package, or found one compiled.
     pub(super) began: bool,
-    /// Whether it took anything from the cache that was compiled before.
+    /// `true` if cargo used anything from the cache that was compiled before.
     pub(super) reused: bool,
     /// The plan's executable, if there is one.
     pub(super) executable: Option<Executable>,
-    /// What rustc says, warnings included, in order.
+    /// Messages of rustc, warnings included, in order.
     pub(super) complaints: Vec<Complaint>,
-    /// What cargo says.
+    /// Standard error of cargo.
     pub(super) stderr: String,
 }
 
@@ -42,28 +42,28 @@ pub(super) struct Run {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Executable {
     pub(super) path: PathBuf,
-    /// Whether it was there already.
+    /// `true` if the executable was there before the run.
     pub(super) fresh: bool,
 }
 
-/// What rustc says of a package.
+/// A message of rustc about a package.
 #[derive(Debug)]
 pub(super) struct Complaint {
     /// The package's manifest.
     pub(super) manifest: PathBuf,
-    /// Whether it stops the build.
+    /// `true` if the message stops the build.
     pub(super) is_error: bool,
-    /// As for a terminal without colours.
+    /// Text of the message as on a terminal without colours.
     pub(super) text: String,
 }
 
 impl Run {
-    /// Whether it ended because cargo was not allowed to fetch something: cargo then names the option.
+    /// Returns `true` if the run ended because cargo was not allowed to fetch something: cargo then names the option.
     pub(super) fn lacks_libraries(&self) -> bool {
         !self.status.success() && !self.began && self.stderr.contains("--offline")
     }
 
-    /// Whether it ended because there was no room for a file.
+    /// Returns `true` if the run ended because there was no room for a file.
     pub(super) fn lacks_room(&self) -> bool {
         let text = self.text();
         self.status.signal() == Some(SIGXFSZ) || FULL.iter().any(|sign| text.contains(sign))
@@ -75,7 +75,7 @@ impl Run {
         !self.status.success() && self.stderr.lines().any(|line| is_panic(line) && !line.starts_with("thread 'rustc'"))
     }
 
-    /// Everything that was said.
+    /// Returns the whole output of cargo and rustc.
     pub(super) fn text(&self) -> String {
         let mut text: String = self.complaints.iter().map(|complaint| complaint.text.as_str()).collect();
         text.push_str(&self.stderr);
@@ -83,7 +83,7 @@ impl Run {
     }
 }
 
-/// A line of cargo's.
+/// A line from cargo.
 enum Heard {
     /// From standard output.
     Message(Vec<u8>),
@@ -91,8 +91,8 @@ enum Heard {
     Blocked,
 }
 
-/// Follows cargo, which may use the network if it is `online`, to its end; `plan` is the manifest of the plan. What cargo
-/// compiles is added to `seal` at once, so that a build that is stopped has not compiled it for nothing.
+/// Follows the run of cargo to its end, with the network if `online`; `plan` is the plan's manifest. Compiled files are
+/// added to `seal` at once, so that a build that is stopped keeps them.
 pub(super) fn follow(
     mut child: Child,
     online: bool,
@@ -136,7 +136,7 @@ pub(super) fn follow(
     Ok(Run { status, online, began, reused, executable, complaints, stderr })
 }
 
-/// Gives each line to `take` until there are no more, cannot be read, or `take` wants none.
+/// Passes each line to `take`, until there are no more, reading fails, or `take` returns `false`.
 fn each_line(lines: Option<impl Read>, mut take: impl FnMut(&[u8]) -> bool) {
     for line in lines.map(BufReader::new).into_iter().flat_map(|lines| lines.split(b'\n')) {
         // What was read before an error is good enough for a message.
@@ -147,7 +147,7 @@ fn each_line(lines: Option<impl Read>, mut take: impl FnMut(&[u8]) -> bool) {
     }
 }
 
-/// What was read so far.
+/// The output of cargo read so far.
 struct Log<'a> {
     plan: &'a Path,
     seal: &'a mut Seal,
@@ -189,7 +189,7 @@ impl Log<'_> {
     }
 }
 
-/// A line of cargo's.
+/// A JSON message of cargo.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "reason")]
 enum Line {
@@ -209,13 +209,13 @@ enum Line {
     Other,
 }
 
-/// What was compiled.
+/// A compiled crate.
 #[derive(Debug, Deserialize)]
 struct Target {
     kind: Vec<String>,
 }
 
-/// What rustc said.
+/// A message of rustc.
 #[derive(Debug, Deserialize)]
 struct Said {
     level: String,

@@ -1,23 +1,23 @@
-//! From emitted Rust to a static executable: a cargo package around it, and cargo to build that.
+//! Builds a static executable from emitted Rust: writes a cargo package and runs cargo.
 //!
-//! Everything happens in the [`Cache`]. The sources that executables are built from are part of mdlec and unpacked
-//! there once, so that an installed mdlec needs no checkout and, when cargo has fetched the libraries once, no network:
+//! Everything happens in the [`Cache`]. The sources of executables are part of mdlec and unpacked there once, so that an
+//! installed mdlec needs no checkout and, once cargo has fetched the libraries, no network:
 //!
 //! ```text
-//! lock                    held while one mdlec works, whose number it holds
-//! cargo                   which cargo is running: one that outlived its mdlec is ended
-//! compiled                the hashes of what is in target/
-//! src-VERSION-HASH/       the unpacked sources; those of versions that nobody uses any more are removed
-//! target/                 what cargo has compiled, for all plans
-//! tmp/                    temporary files of the build under way
+//! lock                    locked while an mdlec works; contains the number of its process
+//! cargo                   the note of a running cargo: one whose mdlec was killed is ended
+//! compiled                the hashes of the files in target/
+//! src-VERSION-HASH/       the unpacked sources; those of versions that are no longer used are removed
+//! target/                 the build results of cargo, for all plans
+//! tmp/                    temporary files of the current build
 //! plans/plan-NAME-HASH/   the package of a plan; HASH is of the plan file's path, the plan and the target
 //! ```
 //!
-//! The cache is its user's alone. Damage in there mends: files of ours are compared to the last byte, what was compiled with
-//! its hash, and where cargo cannot make sense of the rest, all is compiled anew.
+//! Only its user has access to the cache. mdlec repairs damage in it: files of mdlec are compared byte by byte, build
+//! results by their hash, and where cargo cannot read the rest, everything is compiled again.
 //!
-//! Versions are those of mdlec's own lock file, flags are set here whatever the environment says, and the paths of the
-//! cache, of cargo's home and of the user's home do not get into the executable.
+//! Versions are those of mdlec's own lock file, flags are set here in every environment, and the paths of the cache, of
+//! cargo's home and of the user's home do not get into the executable.
 #![allow(clippy::disallowed_methods, reason = "what is done here is I/O")]
 
 mod access;
@@ -59,39 +59,39 @@ use seal::Seal;
 use sources::Sources;
 use target::Dependencies;
 
-/// A plan as Rust.
+/// A plan as Rust, with the data for its executable.
 #[derive(Debug, Clone, Copy)]
 pub struct Package<'a> {
-    /// The plan's name, which the executable shows.
+    /// Name of the plan, which the executable shows.
     pub plan_name: &'a str,
     /// The answer of the executable to `--version`, after the plan's name.
     pub version: &'a str,
-    /// The file that it was written in.
+    /// Plan file that contains the plan.
     pub plan_file: &'a Path,
-    /// The files that the plan was read from, over none of which the executable may go.
+    /// Files that the plan was read from; the executable must not overwrite them.
     pub inputs: &'a [PathBuf],
-    /// The type that implements the plan, in the emitted text.
+    /// Type that implements the plan, in the emitted text.
     pub plan_type: &'a str,
-    /// The emitted text, without inner attributes.
+    /// Emitted text, without inner attributes.
     pub rust: &'a str,
-    /// The robot's crate.
+    /// Crate of the robot.
     pub target: &'a TargetCrate<'a>,
 }
 
-/// An executable.
+/// A built executable.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Built {
-    /// Its bytes.
+    /// Size in bytes.
     pub size: u64,
-    /// Whether it was in the cache already, from an earlier build of the same text.
+    /// `true` if the executable was in the cache already, from an earlier build of the same text.
     pub fresh: bool,
 }
 
-/// Builds the executable of `package` and puts it at `output`, whole or not at all.
+/// Builds the executable of `package` and writes it to `output`, whole or not at all.
 ///
 /// # Errors
-/// When `output` cannot be written, which is seen before the build; when the target's crate does not compile; when this
-/// machine lacks what a build needs; when mdlec emitted nonsense.
+/// Fails if `output` cannot be written, which is checked before the build; if the target's crate does not compile; if
+/// this machine lacks something that a build needs; or if mdlec emitted invalid Rust.
 pub fn build(
     cache: &Cache,
     package: &Package<'_>,
@@ -118,14 +118,15 @@ pub fn build(
 pub struct Emulator {
     /// Path of the executable.
     pub path: PathBuf,
-    /// Keeps other builds from writing over the executable. The lock is given up when this process becomes the emulator.
+    /// Lock that keeps other builds from overwriting the executable. It is released when this process becomes the
+    /// emulator.
     _locked: File,
 }
 
 /// Builds the emulator of `robot`, which is one of [`emulators`].
 ///
 /// # Errors
-/// When this machine lacks what a build needs, or `robot` has no emulator.
+/// Fails if this machine lacks something that a build needs, or if `robot` has no emulator.
 pub fn emulator(cache: &Cache, robot: &str, progress: &mut dyn FnMut(Progress)) -> Result<Emulator, LinkError> {
     let locked = cache.lock(progress)?;
     let toolchain = Toolchain::find()?;
@@ -139,7 +140,7 @@ pub fn emulator(cache: &Cache, robot: &str, progress: &mut dyn FnMut(Progress)) 
     Ok(Emulator { path: executable.path, _locked: locked })
 }
 
-/// Makes the executable of a package in the cache.
+/// Builds the executable of a package in the cache.
 fn make(
     job: &Job<'_>,
     target: &TargetCrate<'_>,
@@ -156,7 +157,7 @@ fn make(
     }
 }
 
-/// Runs cargo, again where damage in the cache may have spoilt it.
+/// Runs cargo, and again if damage in the cache may have made it fail.
 fn run(job: &Job<'_>, target: &TargetCrate<'_>, progress: &mut dyn FnMut(Progress)) -> Result<Run, LinkError> {
     let mut mended = Vec::new();
     let mut seal = Seal::check(job.cache, progress)?;
@@ -179,7 +180,7 @@ mod tests {
 
     use super::Cache;
 
-    /// An empty folder in cargo's own, for the test of this name.
+    /// Returns an empty folder in cargo's output folder for the test of this name.
     pub(super) fn folder(name: &str) -> PathBuf {
         let folder = Path::new(env!("OUT_DIR")).join("link-tests").join(name);
         let _ = fs::remove_dir_all(&folder);
@@ -187,7 +188,7 @@ mod tests {
         folder.canonicalize().unwrap()
     }
 
-    /// An empty cache for the test of this name.
+    /// Returns an empty cache for the test of this name.
     pub(super) fn cache(name: &str) -> Cache {
         Cache::at(&folder(name)).unwrap()
     }

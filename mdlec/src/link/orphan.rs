@@ -1,7 +1,7 @@
-//! Ends the cargo that an mdlec left behind when it was killed: it would hold up the next build until it is done.
+//! Ends the cargo of an mdlec that was killed: it would delay the next build until it is done.
 //!
-//! A note in the cache names the process group of the cargo that is running. Whoever holds the lock of the cache and finds
-//! a note knows that the mdlec which wrote it is gone.
+//! A note in the cache names the process group of the running cargo. A process that holds the lock of the cache and
+//! finds a note knows that the mdlec which wrote it is gone.
 
 use std::fs;
 use std::path::PathBuf;
@@ -13,13 +13,13 @@ use rustix::process::{Pid, Signal, kill_process_group};
 
 use super::Cache;
 
-/// The name of the note in the cache.
+/// Name of the note in the cache.
 const NOTE: &str = "cargo";
 
-/// The time that each signal has to end a cargo.
+/// Time that cargo has to end after each signal.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// A note that is removed when cargo has ended.
+/// The note; dropping it, when cargo has ended, removes it.
 #[derive(Debug)]
 pub(super) struct Note(PathBuf);
 
@@ -30,8 +30,8 @@ impl Drop for Note {
     }
 }
 
-/// Notes that `child`, which leads a process group, is running. Returns `None` where no note can be written, such as on a full
-/// disk: the build goes on without.
+/// Writes the note that `child`, which leads a process group, is running. Returns `None` if the note cannot be written,
+/// such as on a full disk: the build continues without it.
 pub(super) fn note(cache: &Cache, child: &Child) -> Option<Note> {
     let note = cache.folder().join(NOTE);
     let leader = child.id();
@@ -39,7 +39,7 @@ pub(super) fn note(cache: &Cache, child: &Child) -> Option<Note> {
     Some(Note(note))
 }
 
-/// Ends the cargo that a note names, with all its children, if it is still running. Call it with the cache locked.
+/// Ends the cargo that the note names, with all its children, if it is still running. Call it with the cache locked.
 pub(super) fn end(cache: &Cache) {
     let note = cache.folder().join(NOTE);
     let Ok(text) = fs::read_to_string(&note) else { return };
@@ -62,7 +62,7 @@ pub(super) fn end(cache: &Cache) {
     drop(Note(note));
 }
 
-/// Returns when the leader of the process group `leader` started, in ticks since the system did, or `None` if there is no
+/// Returns the start time of the process group's `leader`, in ticks since the system started; `None` if there is no
 /// such leader or it has ended.
 fn started(leader: u32) -> Option<u64> {
     let text = fs::read_to_string(format!("/proc/{leader}/stat")).ok()?;

@@ -1,4 +1,4 @@
-//! The place of the executable: looked at before the build, written at once after it.
+//! The output file: checked before the build, written at once after it.
 
 use std::ffi::OsString;
 use std::fs::{self, File};
@@ -10,11 +10,11 @@ use std::sync::atomic::{AtomicU32, Ordering};
 
 use super::{LinkError, stop};
 
-/// Writes `bytes` to the file `output`, whole or not at all; into a device as it comes. A file that is written over keeps its
-/// permissions. `inputs` are the files that `bytes` were made from.
+/// Writes `bytes` to the file `output`, whole or not at all; a device gets them directly. A file that is overwritten
+/// keeps its permissions. `inputs` are the files that `bytes` were made from.
 ///
 /// # Errors
-/// When `output` is a folder, is one of `inputs`, or cannot be written.
+/// Fails if `output` is a folder, is one of `inputs`, or cannot be written.
 pub fn write_whole(output: &Path, bytes: &[u8], inputs: &[PathBuf]) -> Result<(), LinkError> {
     match Destination::check(output, inputs) {
         Ok(destination) => destination.put(|new| {
@@ -30,27 +30,28 @@ pub fn write_whole(output: &Path, bytes: &[u8], inputs: &[PathBuf]) -> Result<()
     }
 }
 
-/// Refuses an `output` that is one of `inputs`, by whatever path, link or name: writing would destroy what was read.
+/// Refuses an `output` that is one of `inputs`, by any path, link or name: writing would destroy the input.
 ///
 /// # Errors
-/// [`LinkError::OutputIsInput`].
+/// Fails with [`LinkError::OutputIsInput`].
 pub fn must_not_be_read(output: &Path, inputs: &[PathBuf]) -> Result<(), LinkError> {
     let file = |path: &Path| fs::metadata(path).ok().map(|found| (found.dev(), found.ino()));
     let is_input = file(output).is_some_and(|output| inputs.iter().any(|input| file(input) == Some(output)));
     if is_input { Err(LinkError::OutputIsInput(output.to_owned())) } else { Ok(()) }
 }
 
-/// A file that can be written, or written over.
+/// A file that can be created or overwritten.
 #[derive(Debug)]
 pub(super) struct Destination {
-    /// As the caller wrote it.
+    /// Path as the caller wrote it.
     shown: PathBuf,
-    /// Behind symbolic links: a rename would replace the link.
+    /// Path with symbolic links resolved, since a rename would replace the link.
     path: PathBuf,
 }
 
 impl Destination {
-    /// Looks whether a file can be put at `output`, before the build takes its time; it must not be one of `inputs`.
+    /// Checks that a file can be written to `output`, before the build takes its time; `output` must not be one of
+    /// `inputs`.
     pub(super) fn check(output: &Path, inputs: &[PathBuf]) -> Result<Self, LinkError> {
         let shown = output.to_owned();
         let path = match fs::metadata(output) {
@@ -76,7 +77,7 @@ impl Destination {
         Ok(destination)
     }
 
-    /// Puts a copy of `executable` there, with its permissions, and says how large it is.
+    /// Copies `executable` to the destination, with its permissions; returns the size in bytes.
     pub(super) fn copy(&self, executable: &Path) -> Result<u64, LinkError> {
         self.put(|new| {
             let mut executable = File::open(executable)?;
@@ -85,7 +86,7 @@ impl Destination {
         })
     }
 
-    /// Has `write` write a file beside it, and renames that.
+    /// Creates a file next to the destination with `write`, and renames it.
     fn put<T>(&self, write: impl FnOnce(&mut File) -> io::Result<T>) -> Result<T, LinkError> {
         let new = self.beside();
         let refused = |error| LinkError::output(&self.shown, error);
@@ -98,7 +99,7 @@ impl Destination {
         })
     }
 
-    /// A new name in the same folder.
+    /// Returns a new file name in the same folder.
     fn beside(&self) -> PathBuf {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         let mut name = OsString::from(".");
@@ -108,7 +109,7 @@ impl Destination {
     }
 }
 
-/// The folder of a file, also when only its name is given.
+/// Folder of a file, also if the path is only a name.
 fn folder(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }

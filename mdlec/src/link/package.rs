@@ -1,4 +1,4 @@
-//! The cargo package around a plan's emitted Rust.
+//! Writes the cargo package of a plan's emitted Rust.
 
 use std::ffi::OsStr;
 use std::fmt::Write as _;
@@ -8,27 +8,27 @@ use super::cache::{remove, write_if_changed};
 use super::target::Dependencies;
 use super::{Cache, LinkError, Package, record};
 
-/// The package of a plan, as written.
+/// A plan's package that has been written.
 #[derive(Debug)]
 pub(super) struct PlanPackage {
-    /// Its folder, whose name is also that of the package and of its executable.
+    /// Folder of the package; package and executable have the same name.
     pub(super) folder: PathBuf,
-    /// The hash of everything that mdlec wrote there.
+    /// Hash of all files that mdlec wrote there.
     pub(super) hash: String,
 }
 
 impl PlanPackage {
-    /// What its package and its executable are called.
+    /// Name of the package and of its executable.
     pub(super) fn name(&self) -> &OsStr {
         self.folder.file_name().unwrap_or_default()
     }
 
-    /// Its manifest.
+    /// Path of the package's manifest.
     pub(super) fn manifest(&self) -> PathBuf {
         self.folder.join("Cargo.toml")
     }
 
-    /// Keeps what was said for a report.
+    /// Keeps the output of a build in a log file, for a report; returns its path.
     pub(super) fn keep(&self, text: &str) -> Result<PathBuf, LinkError> {
         let log = self.folder.join("build.log");
         write_if_changed(&log, text.as_bytes())?;
@@ -36,7 +36,7 @@ impl PlanPackage {
     }
 }
 
-/// Writes the package of `package`; what has not changed since the last time keeps its time, by which cargo goes.
+/// Writes the package of `package`; unchanged files keep their times, which cargo compares.
 pub(super) fn write(
     cache: &Cache,
     package: &Package<'_>,
@@ -83,7 +83,7 @@ fn write_package(
     Ok(PlanPackage { folder, hash: record::hash(texts.join("\0").as_bytes()) })
 }
 
-/// Writes `files` to `folder`, and `lock` for cargo to start from.
+/// Writes `files` to `folder`, and `lock` as cargo's initial lock file.
 fn write_files(folder: &Path, files: &[(&str, &str)], lock: &str) -> Result<(), LinkError> {
     for (name, text) in files {
         write_if_changed(&folder.join(name), text.as_bytes())?;
@@ -95,7 +95,7 @@ fn write_files(folder: &Path, files: &[(&str, &str)], lock: &str) -> Result<(), 
     Ok(())
 }
 
-/// A name that a person recognises and no other plan has: all executables are built in one folder.
+/// Returns a readable package name that no other plan has: all executables are built in one folder.
 fn name(package: &Package<'_>, target: &str) -> String {
     let file = package.plan_file.canonicalize().unwrap_or_else(|_| package.plan_file.to_owned());
     let mut hasher = blake3::Hasher::new();
@@ -107,7 +107,7 @@ fn name(package: &Package<'_>, target: &str) -> String {
     format!("plan-{stem}-{}", &hasher.finalize().to_hex()[..12])
 }
 
-/// `Cargo.toml`.
+/// Text of `Cargo.toml`.
 fn manifest(name: &str, dependencies: &Dependencies) -> Result<String, LinkError> {
     let mut text = format!(
         "# Made by mdlec, and made again whenever the plan is compiled.\n\
@@ -125,7 +125,7 @@ fn manifest(name: &str, dependencies: &Dependencies) -> Result<String, LinkError
     Ok(text)
 }
 
-/// `src/main.rs`.
+/// Text of `src/main.rs`.
 fn main(package: &Package<'_>) -> String {
     let (target, plan) = (package.target.crate_name(), package.plan_type);
     let (name, version) = (package.plan_name, package.version);
@@ -141,12 +141,12 @@ fn main(package: &Package<'_>) -> String {
     )
 }
 
-/// A path as a manifest can hold it.
+/// Path as text for a manifest.
 pub(super) fn utf8(path: &Path) -> Result<&str, LinkError> {
     path.to_str().ok_or_else(|| LinkError::NotUtf8(path.to_owned()))
 }
 
-/// A TOML string: JSON's escapes are among TOML's.
+/// Quotes a TOML string: JSON's escapes are valid in TOML.
 fn quoted(text: &str) -> String {
     serde_json::Value::from(text).to_string()
 }

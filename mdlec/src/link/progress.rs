@@ -1,26 +1,26 @@
-//! What a build tells whoever waits for it.
+//! Progress of a build, for the user who waits for it.
 
 use std::fmt;
 
-/// How far a build is; a build of which nothing is left to do but the plan tells nothing.
+/// A step of a build; a build of the plan alone reports no steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Progress {
-    /// Another mdlec is building, the process of this number if it is known; this one goes on after it.
+    /// Another mdlec is building, in the process of this number if it is known; this one continues afterwards.
     Waiting(Option<u32>),
     /// Cargo waits for another cargo, which is not mdlec's.
     Blocked,
-    /// Libraries are not on this machine yet and are fetched.
+    /// Libraries are not on this machine yet, and cargo fetches them.
     Fetching,
-    /// The libraries in the cache are damaged, or something in their place is, and all are compiled anew.
+    /// The libraries in the cache are damaged, or replaced by something else, and all are compiled again.
     Mending,
-    /// Compiled files in the cache are not as cargo wrote them, and are compiled anew.
+    /// Compiled files in the cache differ from what cargo wrote, and are compiled again.
     Discarding,
-    /// This many crates of what the program is built on are compiled, counted from 1.
+    /// This many crates have been compiled so far, from 1; the plan itself does not count.
     Compiling(usize),
 }
 
 impl Progress {
-    /// Whether it says something new, and not only a higher number.
+    /// Returns `true` if the step is new, and not only a higher number.
     #[must_use]
     pub fn is_first(&self) -> bool {
         match self {

@@ -1,7 +1,7 @@
-//! What a plan's package was when it was last built, and what came of it.
+//! Record of a plan's package and its executable at the last build.
 //!
-//! Cargo goes by the times of files. They say nothing of a file that was cut short or overwritten, and they lie after a
-//! clock was set back.
+//! Cargo compares the times of files. They do not show that a file was truncated or overwritten, and they are wrong
+//! after a clock was set back.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use super::LinkError;
 use super::cache::write_if_changed;
 use super::package::PlanPackage;
 
-/// Notes that `executable` was built from `plan` as it is now.
+/// Records that `executable` was built from `plan` in its present state.
 pub(super) fn write(plan: &PlanPackage, executable: &Path) -> Result<(), LinkError> {
     let unreadable = |error| LinkError::cache(executable, error);
     let executable = hash(&fs::read(executable).map_err(unreadable)?);
@@ -20,7 +20,7 @@ pub(super) fn write(plan: &PlanPackage, executable: &Path) -> Result<(), LinkErr
     Ok(())
 }
 
-/// Whether `executable` is, to the last byte, what was built from `plan` as it is now.
+/// Returns `true` if `executable` is, to the last byte, what was built from `plan` in its present state.
 pub(super) fn fits(plan: &PlanPackage, executable: &Path) -> bool {
     let executable = fs::read(executable).map(|bytes| hash(&bytes));
     let noted = read(&plan.folder);
@@ -29,17 +29,17 @@ pub(super) fn fits(plan: &PlanPackage, executable: &Path) -> bool {
     })
 }
 
-/// Whether cargo's lock file in the package in `folder` is as cargo left it.
+/// Returns `true` if cargo's lock file in the package's `folder` is as cargo left it.
 pub(super) fn has_lock(folder: &Path) -> bool {
     read(folder).is_some_and(|[_, noted, _]| lock(folder).is_some_and(|lock| lock == noted))
 }
 
-/// A short text that no other bytes have.
+/// Hash of some bytes, as text.
 pub(super) fn hash(bytes: &[u8]) -> String {
     blake3::hash(bytes).to_hex().to_string()
 }
 
-/// The hashes of the package, of its lock file, and of the executable.
+/// Recorded hashes of the package, of its lock file, and of the executable.
 fn read(folder: &Path) -> Option<[String; 3]> {
     let text = fs::read_to_string(file(folder)).ok()?;
     let lines: Vec<_> = text.lines().map(str::to_owned).collect();

@@ -1,9 +1,9 @@
-//! Holds what is taken from the cache to its hash: libraries, procedural macros, build scripts and what these wrote.
+//! Checks the hashes of everything used from the cache: libraries, procedural macros, build scripts and their output.
 //!
-//! Cargo goes by the times of files. The list here names each file that was compiled, with the hash of its contents; before
-//! cargo runs, a file that is not listed or differs is removed, so that cargo compiles it anew. This finds damage, and what
-//! was put there while the folder was open to others. It does not stop somebody who can write to the cache, and so to the
-//! list: the cache is its user's alone for that.
+//! Cargo compares the times of files. This list names each compiled file with the hash of its contents; before cargo
+//! runs, a file that is not listed or differs is removed, so that cargo compiles it again. This finds damage, and files
+//! that were put there while the folder was open to others. It does not stop an attacker who can write to the cache,
+//! and so to the list; the permissions of the cache do.
 
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
@@ -17,20 +17,20 @@ use super::cache::{remove, write_if_changed};
 use super::record::hash;
 use super::{Cache, LinkError, Progress};
 
-/// The list's name in the cache.
+/// Name of the list in the cache.
 const LIST: &str = "compiled";
 
 /// The files that cargo has compiled, with their hashes.
 #[derive(Debug)]
 pub(super) struct Seal {
-    /// The folder that the paths in the list begin at.
+    /// Folder to which the paths in the list are relative.
     target: PathBuf,
     list: PathBuf,
     hashes: BTreeMap<String, String>,
 }
 
 impl Seal {
-    /// Reads the list and removes each compiled file that does not fit it. Call it with the cache locked.
+    /// Reads the list and removes each compiled file that does not match it. Call it with the cache locked.
     pub(super) fn check(cache: &Cache, progress: &mut dyn FnMut(Progress)) -> Result<Self, LinkError> {
         let (target, list) = (cache.target(), cache.folder().join(LIST));
         let text = fs::read_to_string(&list).unwrap_or_default();
@@ -72,7 +72,7 @@ impl Seal {
         self.hashes.extend(lines);
     }
 
-    /// Lists what is in the folder of a build script: the script under both of its names, or what it has written.
+    /// Lists the files in the folder of a build script: the script under both of its names, or its output.
     pub(super) fn add_script(&mut self, inside: &Path, fresh: bool) {
         let mut files = Vec::new();
         // What cannot be read is compiled anew the next time.
@@ -80,7 +80,7 @@ impl Seal {
         self.add(&files, fresh);
     }
 
-    /// Returns for each file whether it is listed and as it was.
+    /// Returns for each file `true` if it is listed and unchanged.
     fn fit(&self, files: &[PathBuf]) -> Vec<bool> {
         let next = AtomicUsize::new(0);
         let work = || {
@@ -104,12 +104,12 @@ impl Seal {
         fits
     }
 
-    /// The hash that is listed for a file.
+    /// Listed hash of a file.
     fn listed(&self, file: &Path) -> Option<&String> {
         self.hashes.get(self.name(file)?)
     }
 
-    /// A file's name in the list, if it can have one.
+    /// Name of a file in the list, if it can have one.
     fn name<'f>(&self, file: &'f Path) -> Option<&'f str> {
         file.strip_prefix(&self.target).ok()?.to_str().filter(|name| !name.contains('\n'))
     }
@@ -119,12 +119,12 @@ fn hash_of(file: &Path) -> Option<String> {
     fs::read(file).ok().map(|bytes| hash(&bytes))
 }
 
-/// The number of threads: files are read as fast as memory allows, which more do not speed up.
+/// Number of threads: a few read files as fast as memory allows.
 fn workers() -> usize {
     thread::available_parallelism().map_or(1, |all| all.get().min(4))
 }
 
-/// Adds the files below `folder` to `files` that a build takes: with `all` every one, and every link in any case.
+/// Adds the files below `folder` that a build uses to `files`: all links, and with `all` every file.
 fn taken(folder: &Path, all: bool, files: &mut Vec<PathBuf>) -> io::Result<()> {
     let entries = match fs::read_dir(folder) {
         Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => return Ok(()),
@@ -163,7 +163,7 @@ mod tests {
     use super::super::tests::cache;
     use super::{Progress, Seal};
 
-    /// Files as cargo writes them, all listed.
+    /// Writes files like those of cargo, all listed.
     fn sealed(test: &str) -> (Cache, [PathBuf; 4]) {
         let cache = cache(test);
         let names = ["deps/liba-1.rlib", "deps/libb-2.so", "build/c-3/build-script-build", "build/c-4/output"];
@@ -181,7 +181,7 @@ mod tests {
         (cache, files)
     }
 
-    /// Checks the cache, and returns whether a file was found that differs.
+    /// Checks the cache, and returns `true` if a file differs.
     fn differs(cache: &Cache) -> bool {
         let mut progress = Vec::new();
         Seal::check(cache, &mut |step| progress.push(step)).unwrap();

@@ -1,4 +1,4 @@
-//! The sources that executables are built from, as packed into mdlec, and their copy in the cache.
+//! The sources of executables, as packed into mdlec, and their copy in the cache.
 
 use std::fs::{self, DirEntry, File};
 use std::io;
@@ -8,72 +8,72 @@ use std::time::{Duration, SystemTime};
 use super::cache::{remove, write_if_changed};
 use super::{Cache, LinkError};
 
-/// The packages that every plan is built on, with their folders.
+/// Packages that every plan depends on, with their folders.
 pub(super) const SHARED: [(&str, &str); 3] =
     [("mdle-runtime", "runtime/core"), ("mdle-host", "runtime/host"), ("mdle-atoms", "atoms")];
 
-/// How the names of the folders begin that sources are unpacked to.
+/// Prefix of the folders of unpacked sources.
 const PREFIX: &str = "src-";
 
-/// The time after which an unused version is forgotten.
+/// Time after which an unused version is removed.
 const FORGOTTEN: Duration = Duration::from_secs(30 * 24 * 60 * 60);
 
-/// The versions that everything was tested with.
+/// Lock file with the versions of dependencies that mdlec was tested with.
 pub(super) const LOCK: &str = "Cargo.lock";
 
-/// An alphabet that came with mdlec.
+/// An alphabet that is part of mdlec.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Alphabet {
-    /// What `--target` or `use` calls it.
+    /// Name of the alphabet in `--target` or `use`.
     pub name: &'static str,
-    /// The name of the file that messages show.
+    /// Name of the file in messages.
     pub file: &'static str,
-    /// The text of the file.
+    /// Text of the file.
     pub text: &'static str,
-    /// Whether it is a target's, and not one that targets share.
+    /// `true` for the alphabet of a target, `false` for a shared one.
     pub target: bool,
 }
 
-/// The alphabets that came with mdlec: the shared ones first, then the targets' in the order of their names.
+/// The alphabets that are part of mdlec: the shared ones first, then those of the targets in the order of their names.
 #[must_use]
 pub fn alphabets() -> &'static [Alphabet] {
     embedded::ALPHABETS
 }
 
-/// The folder and the package name of a built-in target, by what `--target` calls it.
+/// Folder and package name of a built-in target, by its name for `--target`.
 pub(super) fn builtin(target: &str) -> Option<(String, &'static str)> {
     let (name, package) = embedded::TARGETS.iter().find(|(name, _)| *name == target)?;
     Some((format!("targets/{name}"), package))
 }
 
-/// The robots that have an emulator, in the order of their names.
+/// Robots that have an emulator, in the order of their names.
 pub fn emulators() -> impl Iterator<Item = &'static str> {
     embedded::EMULATORS.iter().map(|(robot, _)| *robot)
 }
 
-/// The folder and the package name of the emulator of a built-in target.
+/// Folder and package name of the emulator of a built-in target.
 pub(super) fn emulator(robot: &str) -> Option<(String, &'static str)> {
     let (name, package) = embedded::EMULATORS.iter().find(|(name, _)| *name == robot)?;
     Some((format!("targets/{name}/emulator"), package))
 }
 
-/// The text of a packed file.
+/// Text of a packed file.
 pub(super) fn text(name: &str) -> &'static str {
     let file = embedded::FILES.iter().find(|(file, _)| *file == name);
     file.and_then(|(_, contents)| str::from_utf8(contents).ok()).unwrap_or_default()
 }
 
-/// The copy in the cache.
+/// Copy of the sources in the cache.
 #[derive(Debug)]
 pub(super) struct Sources {
-    /// Its folder.
+    /// Folder of the copy.
     pub(super) folder: PathBuf,
 }
 
 impl Sources {
-    /// Writes the files that the cache lacks, and those that are not as they were packed.
+    /// Writes the files that the cache lacks, and those that differ from the packed ones.
     ///
-    /// Files that are there keep their times, by which cargo knows what it has built. Call it with the cache locked.
+    /// Unchanged files keep their times, by which cargo knows what it has built. Call it with the cache locked.
     pub(super) fn unpack(cache: &Cache) -> Result<Self, LinkError> {
         let folder = cache.folder().join(format!("{PREFIX}{}-{}", env!("CARGO_PKG_VERSION"), embedded::HASH));
         if !folder.exists() {
@@ -94,7 +94,7 @@ impl Sources {
     }
 }
 
-/// Returns `true` if a folder of this name in a cache holds unpacked sources of some version: `src-VERSION-HASH`.
+/// Returns `true` for the name of a folder of unpacked sources of any version: `src-VERSION-HASH`.
 pub(super) fn is_folder(name: &str) -> bool {
     let parts = name.strip_prefix(PREFIX).and_then(|rest| rest.rsplit_once('-'));
     parts.is_some_and(|(version, hash)| {
@@ -104,8 +104,8 @@ pub(super) fn is_folder(name: &str) -> bool {
     })
 }
 
-/// Removes the sources of versions that nobody has used for long, with all that was compiled: most of it is of theirs, and
-/// a version that is new to the cache has to compile its own in any case.
+/// Removes the sources of versions that have not been used for long, with all build results: most of them belong to old
+/// versions, and a new version has to compile its own anyway.
 fn forget_old_versions(cache: &Cache) -> Result<(), LinkError> {
     let is_old = |found: &DirEntry| {
         let used = found.metadata().and_then(|found| found.modified()).ok();
@@ -123,12 +123,12 @@ fn forget_old_versions(cache: &Cache) -> Result<(), LinkError> {
     old.iter().try_for_each(|old| remove(old))
 }
 
-/// Writes to `folder` what is not there yet.
+/// Writes missing and changed files to `folder`.
 fn write(folder: &Path) -> Result<(), LinkError> {
     embedded::FILES.iter().try_for_each(|(name, contents)| write_if_changed(&folder.join(name), contents).map(|_| ()))
 }
 
-/// The table that `build/sources.rs` makes.
+/// Table that `build/sources.rs` generates.
 mod embedded {
     include!(concat!(env!("OUT_DIR"), "/sources.rs"));
 }

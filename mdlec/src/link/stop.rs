@@ -1,4 +1,4 @@
-//! What a signal must not leave behind: a cargo that goes on by itself, a file half written.
+//! Cleans up after a signal: ends a running cargo, and removes half-written files.
 
 use std::fs::{self, File};
 use std::io;
@@ -12,23 +12,23 @@ use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process_group, wa
 use signal_hook::consts::{SIGHUP, SIGINT, SIGQUIT, SIGTERM, SIGXFSZ};
 use signal_hook::iterator::Signals;
 
-/// What is under way in this process.
+/// Processes and files under way in this process.
 static UNFINISHED: Mutex<Vec<Unfinished>> = Mutex::new(Vec::new());
 
-/// What a signal has to end, or to remove.
+/// A process that a signal has to end, or a file that it has to remove.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Unfinished {
-    /// A child, which leads a process group of its own.
+    /// A child process that leads a process group of its own.
     Child(Pid),
-    /// A file that is not whole yet.
+    /// A file that is not complete yet.
     File(PathBuf),
 }
 
-/// From here on a signal that ends this process ends its cargo first and removes what is half written. The exit status
-/// is what a shell says of the signal: 128 more than its number. `farewell` is what else there is to do.
+/// Installs handlers: from now on a signal that ends this process first ends its cargo and removes half-written files.
+/// The exit status is that of shells: 128 plus the signal's number. `farewell` runs last.
 ///
 /// # Errors
-/// When the system does not let a signal be caught.
+/// Fails if the system does not let a signal be caught.
 pub fn leave_nothing_behind(farewell: impl FnOnce() + Send + 'static) -> io::Result<()> {
     let ending = [SIGHUP, SIGINT, SIGQUIT, SIGTERM];
     // Whoever started this with `nohup` wants it to outlive the terminal.
@@ -43,7 +43,7 @@ pub fn leave_nothing_behind(farewell: impl FnOnce() + Send + 'static) -> io::Res
     Ok(())
 }
 
-/// Ends this process.
+/// Ends this process after cleaning up.
 fn end(signal: i32, farewell: impl FnOnce()) {
     // Never let go again: nothing new begins any more.
     let unfinished = list();
@@ -63,7 +63,7 @@ fn end(signal: i32, farewell: impl FnOnce()) {
     process::exit(128 + signal)
 }
 
-/// Keeps something on the list as long as it lives.
+/// Keeps an entry on the list as long as it lives.
 #[derive(Debug)]
 pub(super) struct Watched(Unfinished);
 
@@ -73,7 +73,7 @@ impl Drop for Watched {
     }
 }
 
-/// Starts a child that a signal ends together with all children of its own.
+/// Starts a child process that a signal ends together with all its children.
 pub(super) fn spawn(command: &mut Command) -> io::Result<(Child, Watched)> {
     let mut unfinished = list();
     let child = command.process_group(0).spawn()?;
@@ -82,7 +82,7 @@ pub(super) fn spawn(command: &mut Command) -> io::Result<(Child, Watched)> {
     Ok((child, Watched(leader)))
 }
 
-/// Makes a new file that a signal removes.
+/// Creates a file that a signal removes.
 pub(super) fn create(path: &Path) -> io::Result<(File, Watched)> {
     let mut unfinished = list();
     let file = File::create_new(path)?;
@@ -91,12 +91,12 @@ pub(super) fn create(path: &Path) -> io::Result<(File, Watched)> {
     Ok((file, Watched(path)))
 }
 
-/// The list; it is whole whatever happened to whoever had it before.
+/// Locks the list; its content is valid even if another thread panicked while holding it.
 fn list() -> MutexGuard<'static, Vec<Unfinished>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Whether this process was started with the signal ignored; where that cannot be found out, it was not.
+/// Returns `true` if this process was started with the signal ignored; `false` if that cannot be determined.
 fn is_ignored(signal: i32) -> bool {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

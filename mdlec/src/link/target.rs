@@ -1,8 +1,8 @@
-//! The robot's crate, and the packages that a plan for it is built on.
+//! Crate of the robot, and the packages that a plan for it depends on.
 //!
-//! A plan and its target must meet the same `mdle-runtime`: one type of that name in two packages is two types. So a
-//! target of a third party decides. What it has by path is taken from there for the plan as well; what it has by
-//! version or from git is replaced, in its crate too, by the sources that came with mdlec.
+//! A plan and its target must use the same `mdle-runtime`: one type in two packages is two types. So a third-party
+//! target decides. Its path dependencies are used for the plan as well; its dependencies by version or from git are
+//! replaced, in its crate too, by the sources that are part of mdlec.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -14,27 +14,27 @@ use super::cargo;
 use super::sources::{self, SHARED, Sources};
 use super::{LinkError, package};
 
-/// The crate of a robot. It implements `mdle_host::Target` for a type that its root exports as `Target`.
+/// Crate of a robot. It implements `mdle_host::Target` for a type that its root exports as `Target`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TargetCrate<'a> {
-    /// One that came with mdlec.
+    /// A target that is part of mdlec.
     Builtin {
-        /// What `--target` calls it.
+        /// Name of the target for `--target`.
         name: &'a str,
-        /// The crate that its alphabet names.
+        /// Name of the crate in the target's alphabet.
         crate_name: &'a str,
     },
-    /// A third party's.
+    /// A third-party target.
     Path {
-        /// The folder of its Cargo.toml.
+        /// Folder of its Cargo.toml.
         folder: &'a Path,
-        /// The crate that its alphabet names.
+        /// Name of the crate in the target's alphabet.
         crate_name: &'a str,
     },
 }
 
 impl<'a> TargetCrate<'a> {
-    /// The crate that its alphabet names.
+    /// Name of the crate in the target's alphabet.
     #[must_use]
     pub fn crate_name(&self) -> &'a str {
         match self {
@@ -42,8 +42,8 @@ impl<'a> TargetCrate<'a> {
         }
     }
 
-    /// Refuses an `output` that is a file of a third party's crate. An executable there may be written over: its folder is a
-    /// good place to build plans in.
+    /// Refuses an `output` that is a file of a third-party crate. Executables may be overwritten, since users build
+    /// plans in that folder.
     pub(super) fn must_not_lose(&self, output: &Path) -> Result<(), LinkError> {
         let Self::Path { folder, .. } = self else { return Ok(()) };
         let is_inside = output.canonicalize().is_ok_and(|output| {
@@ -53,28 +53,28 @@ impl<'a> TargetCrate<'a> {
     }
 }
 
-/// Returns `true` if `file` begins as an executable of Linux does.
+/// Returns `true` if `file` begins like an executable of Linux.
 fn is_executable(file: &Path) -> bool {
     let mut start = [0; 4];
     File::open(file).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == *b"\x7fELF"
 }
 
-/// What the package of a plan depends on.
+/// Dependencies of a plan's package.
 #[derive(Debug)]
 pub(super) struct Dependencies {
-    /// Package names with their folders.
+    /// Names of packages with their folders.
     pub(super) packages: Vec<(String, PathBuf)>,
-    /// Packages of the target to replace: the source as `[patch]` names it, the package, the folder instead.
+    /// Packages of the target to replace: the source as `[patch]` names it, the package, the folder to use instead.
     pub(super) patches: Vec<(String, String, PathBuf)>,
-    /// The lock file to start from.
+    /// Initial lock file.
     pub(super) lock: String,
-    /// What tells this target from others.
+    /// Text that distinguishes this target from others.
     pub(super) identity: String,
-    /// The folder of the sources that came with mdlec: a fault in there is ours.
+    /// Folder of the sources that are part of mdlec: a fault in them is a fault of mdlec.
     pub(super) ours: PathBuf,
 }
 
-/// Finds out what a plan for `target` is built on.
+/// Determines the dependencies of a plan for `target`.
 pub(super) fn dependencies(target: &TargetCrate<'_>, sources: &Sources) -> Result<Dependencies, LinkError> {
     match target {
         TargetCrate::Builtin { name, crate_name } => builtin(name, crate_name, sources),
@@ -82,7 +82,7 @@ pub(super) fn dependencies(target: &TargetCrate<'_>, sources: &Sources) -> Resul
     }
 }
 
-/// Everything from the unpacked sources.
+/// Dependencies of a built-in target: everything from the unpacked sources.
 fn builtin(name: &str, crate_name: &str, sources: &Sources) -> Result<Dependencies, LinkError> {
     let (folder, package) = sources::builtin(name)
         .filter(|(_, package)| package.replace('-', "_") == crate_name)
@@ -99,7 +99,7 @@ fn builtin(name: &str, crate_name: &str, sources: &Sources) -> Result<Dependenci
     })
 }
 
-/// Finds out what the emulator of `robot` is built on.
+/// Determines the dependencies of the emulator of `robot`.
 pub(super) fn emulator_dependencies(robot: &str, sources: &Sources) -> Result<Dependencies, LinkError> {
     let (folder, package) = sources::emulator(robot).ok_or_else(|| LinkError::NoSuchTarget(robot.to_owned()))?;
     Ok(Dependencies {
@@ -111,7 +111,7 @@ pub(super) fn emulator_dependencies(robot: &str, sources: &Sources) -> Result<De
     })
 }
 
-/// The target's own choice.
+/// Dependencies of a third-party target, as its manifest chooses them.
 fn by_path(folder: &Path, crate_name: &str, sources: &Sources) -> Result<Dependencies, LinkError> {
     let manifest = folder.join("Cargo.toml").canonicalize().map_err(|_| LinkError::NotACrate(folder.to_owned()))?;
     let metadata = read(&manifest, crate_name)?;
@@ -148,7 +148,7 @@ fn by_path(folder: &Path, crate_name: &str, sources: &Sources) -> Result<Depende
     })
 }
 
-/// What cargo says of the package at `manifest`, with everything that it takes from its workspace filled in.
+/// Runs `cargo metadata` for the package at `manifest`, with the settings of its workspace filled in.
 fn read(manifest: &Path, crate_name: &str) -> Result<Metadata, LinkError> {
     let mut command = cargo::command("cargo");
     command
@@ -162,7 +162,7 @@ fn read(manifest: &Path, crate_name: &str) -> Result<Metadata, LinkError> {
     serde_json::from_slice(&found.stdout).map_err(|error| refused(error.to_string()))
 }
 
-/// The part of `cargo metadata` that is read.
+/// Part of `cargo metadata` that is read.
 #[derive(Debug, Deserialize)]
 struct Metadata {
     packages: Vec<Described>,
@@ -178,14 +178,14 @@ struct Described {
     dependencies: Vec<Dependency>,
 }
 
-/// A crate that a package makes.
+/// A crate that a package builds.
 #[derive(Debug, Deserialize)]
 struct Made {
     name: String,
     kind: Vec<String>,
 }
 
-/// A dependency as the manifest has it; `kind` is null for one of the library.
+/// A dependency in the manifest; `kind` is null for one of the library.
 #[derive(Debug, Deserialize)]
 struct Dependency {
     name: String,
@@ -196,7 +196,7 @@ struct Dependency {
 }
 
 impl Described {
-    /// Its library must be the crate that the alphabet names.
+    /// Checks that the package's library is the crate that the alphabet names.
     fn makes(&self, folder: &Path, crate_name: &str) -> Result<(), LinkError> {
         let library = self.targets.iter().find(|made| made.kind.iter().any(|kind| kind == "lib"));
         if library.is_some_and(|library| library.name == crate_name) {
@@ -208,12 +208,12 @@ impl Described {
 }
 
 impl Dependency {
-    /// Whether it is one of the packages that every plan is built on.
+    /// Returns `true` for the packages that every plan depends on.
     fn is_shared(&self) -> bool {
         self.kind.is_none() && SHARED.iter().any(|(name, _)| *name == self.name)
     }
 
-    /// Where it comes from, as a `[patch]` table is called.
+    /// Source of the dependency, as a `[patch]` table is named.
     fn patched_source(&self) -> String {
         let source = self.source.as_deref().unwrap_or_default();
         if self.registry.is_none() && !source.starts_with("git+") {
