@@ -1,4 +1,6 @@
 //! Formats a text in the canonical layout: two spaces for each level, one element per line in a scope with several.
+//!
+//! Tokens stay, and every comment keeps its place among them; the tree only determines where lines may break.
 
 mod comments;
 mod lines;

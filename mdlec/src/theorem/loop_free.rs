@@ -12,7 +12,6 @@ use super::{Broken, InterruptId, Machine, Run, State, Stretch};
 ///
 /// # Errors
 /// Fails with every condition that the machine breaks.
-/// Every condition that fails.
 pub(super) fn runs(machine: &Machine, order: &[State]) -> Result<Vec<Run>, Vec<Broken>> {
     let mut broken = Vec::new();
     if let (Some(start), [first, ..]) = (machine.start(), order)
