@@ -1,11 +1,11 @@
-//! What an alphabet must not say although its grammar lets it.
+//! Checks of an alphabet beyond its grammar.
 
 use std::collections::BTreeSet;
 
 use super::{AlphabetFile, Declaration, DeclarationKind, Kind};
 use crate::diagnostic::{Code, Diagnostic};
 
-/// All that is wrong with the declarations.
+/// Returns all faults of the declarations.
 pub(super) fn check(alphabet: &AlphabetFile) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     let mut met = BTreeSet::new();

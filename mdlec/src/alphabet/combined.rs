@@ -1,4 +1,4 @@
-//! A robot's whole alphabet: its target's own file together with the shared ones that it uses.
+//! Whole alphabet of a robot: its target's own file together with the shared ones that it uses.
 
 use std::fmt;
 
@@ -9,22 +9,22 @@ use crate::diagnostic::{Code, Diagnostic};
 /// The alphabet that plans for one robot are checked against.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Alphabet {
-    /// The target's name.
+    /// Name of the target.
     pub name: String,
     /// The Rust crate that implements the target; empty without a target.
     pub crate_name: String,
-    /// The period of a turn, in nanoseconds, if the target says so.
+    /// Period of a turn, in nanoseconds, if the target declares it.
     pub period: Option<u64>,
-    /// What the robot can do.
+    /// Capabilities of the robot.
     pub capabilities: Vec<Capability>,
-    /// The robots that messages may name instead, each with what it can do.
+    /// Robots that messages may suggest, each with its capabilities.
     pub robots: Vec<(String, Vec<Capability>)>,
-    /// Whether the robot can do everything: there is no target.
+    /// `true` if there is no target: the robot then has every capability.
     everything: bool,
     declarations: Vec<Declaration>,
 }
 
-/// Puts a target's alphabet together with those of `shared` that it uses.
+/// Combines a target's alphabet with those of `shared` that it uses.
 #[must_use]
 pub fn combine(target: AlphabetFile, shared: &[AlphabetFile]) -> (Alphabet, Vec<Diagnostic>) {
     let mut found = Vec::new();
@@ -57,7 +57,7 @@ pub fn combine(target: AlphabetFile, shared: &[AlphabetFile]) -> (Alphabet, Vec<
 }
 
 impl Alphabet {
-    /// The alphabet of a robot that has everything: a shared file by itself.
+    /// Alphabet of a robot with every capability: a shared file by itself.
     #[must_use]
     pub fn shared(file: AlphabetFile) -> Self {
         Self {
@@ -71,41 +71,41 @@ impl Alphabet {
         }
     }
 
-    /// What the robot can do; nothing for a shared file, whose robot has everything.
+    /// Capabilities of the robot; empty for a shared file, whose robot has every capability.
     #[must_use]
     pub fn capabilities(&self) -> &[Capability] {
         &self.capabilities
     }
 
-    /// Its quarks and signals.
+    /// Quarks and signals of the alphabet.
     pub fn declarations(&self) -> impl Iterator<Item = &Declaration> {
         self.declarations.iter()
     }
 
-    /// The declarations of this name, in the order in which overloads are counted.
+    /// Declarations of this name, in the order in which overloads are counted.
     pub fn declarations_of(&self, name: &str) -> impl Iterator<Item = &Declaration> {
         self.declarations.iter().filter(move |declaration| declaration.name == name)
     }
 
-    /// The names of its quarks and signals; a name that is declared several times comes as often.
+    /// Names of the quarks and signals; a name with several declarations is repeated.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.declarations.iter().map(|declaration| declaration.name.as_str())
     }
 
-    /// Whether the robot can do this, in at least this number.
+    /// Returns `true` if the robot has the capability, in at least this number.
     #[must_use]
     pub fn has(&self, needed: &Capability) -> bool {
         self.everything || is_among(needed, &self.capabilities)
     }
 
-    /// The names of the robots that can do all this.
+    /// Names of the robots that have all these capabilities.
     #[must_use]
     pub fn robots_with(&self, needed: &[Capability]) -> Vec<&str> {
         let can = |capabilities: &[Capability]| needed.iter().all(|needed| is_among(needed, capabilities));
         self.robots.iter().filter(|(_, own)| can(own)).map(|(name, _)| name.as_str()).collect()
     }
 
-    /// The name that `name` was probably meant to be, of this kind if one is given.
+    /// Name that was probably meant by `name`, of this kind if one is given.
     #[must_use]
     pub fn nearest(&self, name: &str, kind: Option<DeclarationKind>) -> Option<&str> {
         let names = || {
@@ -115,7 +115,8 @@ impl Alphabet {
         nearest(name, names()).or_else(|| synonyms::meant(name).find_map(|meant| names().find(|name| *name == meant)))
     }
 
-    /// A hash over the declarations as read: what a target was built for.
+    /// Hash of the target's name, crate, period and capabilities, and of all declarations: identifies the alphabet that
+    /// a target was built for.
     #[must_use]
     pub fn hash(&self) -> u64 {
         let text = format!("{} {} {:?} {:?}", self.name, self.crate_name, self.period, self.capabilities);
@@ -133,7 +134,7 @@ fn is_among(needed: &Capability, capabilities: &[Capability]) -> bool {
     capabilities.iter().any(|own| own.name == needed.name && own.size >= needed.size)
 }
 
-/// The most similar of these names, if one is similar enough to be meant.
+/// Returns the most similar of these names, if it is similar enough to have been meant.
 #[must_use]
 pub fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<&'n str> {
     let lower = name.to_lowercase();
@@ -143,14 +144,14 @@ pub fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<&
     names.map(|other| (distance(other), other)).filter(|(found, _)| *found <= allowed).min().map(|(_, other)| other)
 }
 
-/// Whether a target's own declaration stands for a shared one: same name, same kinds of arguments.
+/// Returns `true` if a target's own declaration replaces a shared one: same name, same kinds of arguments.
 fn replaces(own: &Declaration, shared: &Declaration) -> bool {
     let kinds = |declaration: &Declaration| -> Vec<_> { declaration.params.iter().map(|param| param.kind).collect() };
     own.name == shared.name && kinds(own) == kinds(shared)
 }
 
-/// Overloads in the order of the shared alphabets, a target's additions behind: so a name's first declaration stays its
-/// first, whichever of them a target replaces.
+/// Sorts overloads in the order of the shared alphabets, with a target's additions last: so a name's first declaration
+/// stays its first, whichever of them a target replaces.
 fn in_order(mut declarations: Vec<Declaration>, shared: &[AlphabetFile]) -> Vec<Declaration> {
     let order: Vec<&Declaration> = shared.iter().flat_map(|file| &file.declarations).collect();
     let place = |found: &Declaration| order.iter().position(|shared| replaces(found, shared)).unwrap_or(order.len());
@@ -167,7 +168,7 @@ impl fmt::Display for Capability {
     }
 }
 
-/// The declaration in a canonical form, without its docs and its place: what the hash is over.
+/// Canonical form of the declaration, without its docs and its place; the hash uses it.
 impl fmt::Display for Declaration {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:?} {}(", self.kind, self.name)?;

@@ -3,18 +3,18 @@
 
 use std::fmt;
 
-/// A decimal number, exactly: sign, digits without leading or trailing zeros, power of ten.
+/// An exact decimal number: sign, digits without leading or trailing zeros, power of ten.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Decimal {
     negative: bool,
     /// Digits 0 to 9, most significant first; empty for zero.
     digits: Vec<u8>,
-    /// The power of ten of the last digit.
+    /// Power of ten of the last digit.
     exponent: i64,
 }
 
 impl Decimal {
-    /// Reads what a number token may look like: sign, digits, fraction, exponent. `None` for anything else.
+    /// Reads the text of a number token: sign, digits, fraction, exponent. `None` for any other text.
     #[must_use]
     pub fn parse(text: &str) -> Option<Self> {
         let (negative, rest) = match text.strip_prefix('-') {
@@ -34,13 +34,13 @@ impl Decimal {
         Some(Self { negative, digits, exponent }.normalized())
     }
 
-    /// Nothing.
+    /// Zero.
     #[must_use]
     pub fn zero() -> Self {
         Self { negative: false, digits: Vec::new(), exponent: 0 }
     }
 
-    /// This number times `factor` times ten to the power `exponent`, exactly.
+    /// Multiplies the number by `factor` and by ten to the power `exponent`, exactly.
     #[must_use]
     pub fn scaled(&self, factor: u32, exponent: i32) -> Self {
         let mut product = Vec::with_capacity(self.digits.len() + 10);
@@ -59,7 +59,7 @@ impl Decimal {
         Self { negative: self.negative, digits: product, exponent }.normalized()
     }
 
-    /// The nearest `f64`; infinite where none is near.
+    /// Nearest `f64`; infinite if the number is too large.
     #[must_use]
     pub fn to_f64(&self) -> f64 {
         let sign = if self.negative { "-" } else { "" };
@@ -67,7 +67,7 @@ impl Decimal {
         format!("{sign}0{digits}e{}", self.exponent).parse().unwrap_or(f64::INFINITY)
     }
 
-    /// The nearest whole number of billionths, halves upwards; `None` if that is negative or no u64.
+    /// Nearest whole number of billionths, halves upwards; `None` if that is negative or exceeds `u64`.
     #[must_use]
     pub fn to_nanos(&self) -> Option<u64> {
         if self.digits.is_empty() {
@@ -91,7 +91,7 @@ impl Decimal {
         u64::try_from(rounded).ok()
     }
 
-    /// Whether it is a whole number.
+    /// Returns `true` if the decimal is a whole number.
     #[must_use]
     pub fn is_whole(&self) -> bool {
         self.digits.is_empty() || self.exponent >= 0
@@ -112,7 +112,7 @@ impl Decimal {
 }
 
 impl fmt::Display for Decimal {
-    /// Without an exponent, unless that would be longer than forty places.
+    /// Writes the number without an exponent, unless that would be longer than forty places.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.digits.is_empty() {
             return f.write_str("0");

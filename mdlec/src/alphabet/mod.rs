@@ -1,5 +1,5 @@
-//! The alphabet 𝒜 = U ∪ B′ of a robot: its quarks with the types of their arguments, and what the robot can do
-//! (paper, Definition 1; docs/src/reference/language.md, 6).
+//! Alphabet 𝒜 = U ∪ B′ of a robot: its quarks with the types of their arguments, and its capabilities (paper,
+//! Definition 1; docs/src/reference/language.md, 6).
 
 mod checks;
 mod combined;
@@ -21,73 +21,73 @@ use crate::diagnostic::Span;
 /// An alphabet file as read: a target's own, or a shared one that targets `use`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct AlphabetFile {
-    /// Its name.
+    /// Name of the target or of the shared alphabet.
     pub name: String,
-    /// What only a target has.
+    /// Head of a target's alphabet; `None` for a shared one.
     pub target: Option<TargetHead>,
-    /// The shared alphabets it uses, with the place of the name.
+    /// Shared alphabets that the file uses, with the places of their names.
     pub uses: Vec<(String, Span)>,
-    /// Its quarks and signals, in order.
+    /// Quarks and signals that the file declares, in order.
     pub declarations: Vec<Declaration>,
 }
 
 /// The head of a target's alphabet.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TargetHead {
-    /// The Rust crate that implements it.
+    /// Rust crate that implements the target.
     pub crate_name: String,
-    /// The period of a turn, in nanoseconds, if it says so.
+    /// Period of a turn, in nanoseconds, if the target declares it.
     pub period: Option<u64>,
-    /// What the robot can do.
+    /// Capabilities of the robot.
     pub capabilities: Vec<Capability>,
 }
 
 /// A capability with its size, such as `sonar[16]`.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Capability {
-    /// Its name.
+    /// Name of the capability.
     pub name: String,
-    /// How many, where that matters.
+    /// Number of devices, for capabilities that have one.
     pub size: Option<u32>,
 }
 
-/// What a name of the alphabet is.
+/// Kind of a declaration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum DeclarationKind {
     /// A law, in U.
     Control,
     /// An interrupt, in B′.
     Interrupt,
-    /// What comparisons read.
+    /// A signal, which comparisons read.
     Signal,
 }
 
 /// A quark or a signal with its signature.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Declaration {
-    /// The doc comment, its lines joined by spaces.
+    /// Doc comment, its lines joined by spaces.
     pub docs: String,
-    /// What it is.
+    /// Kind of the quark or signal.
     pub kind: DeclarationKind,
-    /// Its name.
+    /// Name of the quark or signal.
     pub name: String,
-    /// Its parameters, in order.
+    /// Parameters, in order.
     pub params: Vec<Param>,
-    /// For a signal: its unit and the tolerance of `==` in that unit.
+    /// For a signal: its unit, and the tolerance of `==` in that unit.
     pub unit: Option<(Unit, f64)>,
-    /// Whether the law can be done by itself.
+    /// `true` for a law that can complete by itself.
     pub completes: bool,
-    /// Whether the quark has a memory of its own.
+    /// `true` if the quark has memory.
     pub remembers: bool,
-    /// What the robot must be able to do.
+    /// Capabilities that the robot must have.
     pub needs: Vec<Capability>,
-    /// Who declares it.
+    /// File that declares the quark.
     pub origin: Origin,
-    /// Where.
+    /// Span of the declaration.
     pub span: Span,
 }
 
-/// Who declares a quark: its implementation stands there too.
+/// Origin of a declaration, which is also the origin of the implementation.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Origin {
     /// The target itself.
@@ -99,16 +99,16 @@ pub enum Origin {
 /// A parameter of a quark.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Param {
-    /// Its name.
+    /// Name of the parameter.
     pub name: String,
-    /// Its type.
+    /// Type of the parameter.
     pub kind: Kind,
-    /// The unit that a bare number has; the kind's base unit if the alphabet names none.
+    /// Unit of a bare number; the kind's base unit if the alphabet names no other.
     pub unit: Option<Unit>,
-    /// The value it has when it is left out, as written, in that unit.
+    /// Default value as written, in that unit.
     pub default: Option<String>,
-    /// The values it may have, in that unit.
+    /// Smallest and largest value, in that unit.
     pub range: Option<(f64, f64)>,
-    /// The one value that it may not have, in that unit.
+    /// Value in the range that is not allowed, in that unit.
     pub except: Option<f64>,
 }

@@ -1,6 +1,6 @@
 //! Kinds of values and their units (docs/src/reference/language.md, 2.4 and 6.2).
 
-/// What kind of value a parameter takes.
+/// Kind of value of a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Kind {
     /// Metres.
@@ -21,7 +21,7 @@ pub enum Kind {
     Number,
     /// A whole number.
     Integer,
-    /// How often: a positive whole number, or for ever.
+    /// A number of passes: a positive whole number, or `inf`.
     Count,
     /// This many digits 0 and 1.
     Bits(u32),
@@ -74,7 +74,7 @@ impl Kind {
         })
     }
 
-    /// The kind in words, with its article: "an angle".
+    /// Name of the kind in words, with its article: "an angle".
     #[must_use]
     pub fn words(self) -> String {
         match self {
@@ -96,7 +96,7 @@ impl Kind {
         }
     }
 
-    /// The unit in which values are compared and computed.
+    /// Unit in which values are compared and computed.
     #[must_use]
     pub fn base_unit(self) -> Option<Unit> {
         Unit::ALL.iter().copied().find(|unit| unit.kind == self && unit.is_base)
@@ -106,17 +106,17 @@ impl Kind {
 /// A unit that may touch a number.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Unit {
-    /// As it is written.
+    /// Name of the unit as it is written.
     pub name: &'static str,
-    /// What it measures.
+    /// Kind of quantity that the unit measures.
     pub kind: Kind,
-    /// The exact factor to the unit of its family: this whole number …
+    /// Exact factor to the unit of the family: this whole number …
     pub factor: u32,
     /// … times ten to this power.
     pub exponent: i32,
-    /// The unit of the family, in which exact values are compared: degrees and radians are two families.
+    /// Unit of the family, in which exact values are compared: degrees and radians are two families.
     pub family: &'static str,
-    /// Whether its family's unit is the SI unit that robots compute with.
+    /// `true` if the family's unit is the SI unit in which robots compute.
     pub is_base: bool,
 }
 
@@ -144,25 +144,25 @@ impl Unit {
         Self::new("Hz", Kind::Frequency, 1, 0, "Hz"),
     ];
 
-    /// The unit written so.
+    /// Unit with this name.
     #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|unit| unit.name == name)
     }
 
-    /// Whether a unit is written so.
+    /// Returns `true` if a unit has this name.
     #[must_use]
     pub fn is_name(name: &str) -> bool {
         Self::ALL.iter().any(|unit| unit.name == name)
     }
 
-    /// How many SI units one of its family is: 1, or π/180 where the family counts degrees.
+    /// Factor from the family's unit to SI: 1, or π/180 if the family counts degrees.
     #[must_use]
     pub fn family_to_si(self) -> f64 {
         family_to_si(self.family)
     }
 
-    /// So much of this unit in SI units.
+    /// Converts a value in this unit to SI.
     #[must_use]
     pub fn to_si(self, value: f64) -> f64 {
         let tens = (0..self.exponent.unsigned_abs()).fold(1.0, |tens, _| tens * 10.0);
@@ -176,7 +176,7 @@ impl Unit {
     }
 }
 
-/// How many SI units one of this family's unit is: 1, or π/180 where the family counts degrees.
+/// Factor from the unit `family` to SI: 1, or π/180 if the family counts degrees.
 #[must_use]
 pub fn family_to_si(family: &str) -> f64 {
     if family.starts_with("deg") { std::f64::consts::PI / 180.0 } else { 1.0 }

@@ -1,5 +1,5 @@
-//! Reads an alphabet file (docs/src/reference/language.md, 6.1): a descent over its tokens that goes on behind the next
-//! `;` after a defect.
+//! Reads an alphabet file (docs/src/reference/language.md, 6.1): a recursive descent over its tokens that continues
+//! after the next `;` when it finds a defect.
 
 use logos::Logos;
 
@@ -8,7 +8,7 @@ use super::token::Token;
 use super::{AlphabetFile, Capability, Decimal, Declaration, DeclarationKind, Kind, Origin, Param, TargetHead, Unit};
 use crate::diagnostic::{Code, Diagnostic, SourceId, Span, sort};
 
-/// The alphabet of a text, and all that is wrong with it; none if it has no head.
+/// Reads an alphabet: returns it, unless it has no head, and all its diagnostics.
 #[must_use]
 pub fn read(source: SourceId, text: &str) -> (Option<AlphabetFile>, Vec<Diagnostic>) {
     let mut reader = Reader { text, source, tokens: Vec::new(), at: 0, found: Vec::new() };
@@ -22,7 +22,7 @@ pub fn read(source: SourceId, text: &str) -> (Option<AlphabetFile>, Vec<Diagnost
     (alphabet, found)
 }
 
-/// A defect was reported; the declaration it is in is given up.
+/// A defect was reported; the declaration that contains it is dropped.
 struct Defect;
 
 type Read<T> = Result<T, Defect>;
@@ -281,7 +281,7 @@ impl<'t> Reader<'t> {
         Ok((name, span))
     }
 
-    /// The name of a crate, as cargo and Rust have them.
+    /// Reads the name of a crate, as cargo and Rust allow it.
     fn crate_name(&mut self) -> Read<String> {
         let (name, span) = self.word()?;
         let is_ascii = name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
@@ -351,7 +351,7 @@ impl<'t> Reader<'t> {
         Err(Defect)
     }
 
-    /// Goes on behind the next `;`.
+    /// Continues after the next `;`.
     fn skip(&mut self) {
         let rest = self.tokens.get(self.at..).unwrap_or_default();
         let end = rest.iter().position(|(token, _)| *token == Token::Semicolon);

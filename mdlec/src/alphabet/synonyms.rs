@@ -1,4 +1,4 @@
-//! Other words for quarks, which people use before they know an alphabet.
+//! Other words for quarks, which people type before they know an alphabet.
 
 /// Names of quarks, each with other words for it.
 const SYNONYMS: &[(&str, &[&str])] = &[
@@ -18,7 +18,7 @@ const SYNONYMS: &[(&str, &[&str])] = &[
     ("battery", &["voltage", "volts"]),
 ];
 
-/// The quarks that are known by other words, such as `name`.
+/// Quarks for which `name` is another word.
 pub(super) fn meant(name: &str) -> impl Iterator<Item = &'static str> {
     let is_meant = move |words: &[&str]| words.iter().any(|word| word.eq_ignore_ascii_case(name));
     SYNONYMS.iter().filter(move |(_, words)| is_meant(words)).map(|(quark, _)| *quark)

@@ -1,4 +1,4 @@
-//! What alphabets are read as, and what is said about those that make no sense.
+//! Alphabets as they are read, and messages about faulty ones.
 
 use super::{Alphabet, AlphabetFile, Capability, DeclarationKind, Origin, Unit, combine, read};
 use crate::diagnostic::{Code, SourceId, Sources};
@@ -18,7 +18,7 @@ fn sim() -> Alphabet {
     alphabet
 }
 
-/// The text with its messages, each of which has to be of this code.
+/// Returns the text with its messages, and checks that each has this code.
 fn defects(text: &str) -> String {
     let mut sources = Sources::default();
     let id = sources.add("alphabet.mdle", text);

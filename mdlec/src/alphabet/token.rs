@@ -1,4 +1,4 @@
-//! The tokens of an alphabet file; unlike in a plan, `;` ends a declaration here.
+//! Tokens of an alphabet file; unlike in a plan, `;` ends a declaration here.
 
 use logos::Logos;
 
@@ -46,7 +46,7 @@ pub(super) enum Token {
 }
 
 impl Token {
-    /// What it is called in messages.
+    /// Name of the token in messages.
     pub(super) fn words(self) -> &'static str {
         match self {
             Self::Doc => "a doc comment",
