@@ -1,5 +1,5 @@
-//! The machine `counted`: the run-time system's own machine on a lowered plan, loops as the paper's counters
-//! (docs/src/reference/semantics.md, 9). It is what robots run, with a script in place of the robot.
+//! The machine `counted`: the run-time system's machine on a lowered plan, with loops as the paper's counters
+//! (docs/src/reference/semantics.md, 9). Robots run the same machine; here a script replaces the robot.
 
 use mdle_runtime::{
     Begin, Cause, Cursor, Ending, Fsm, Measured, Nanometers, Nanos, Next, Pose, Stamp, Stamps, Transition, Turn, Watch,
@@ -9,16 +9,16 @@ use super::{Applied, Fired, Machine, Outcome, Reports};
 use crate::fsm;
 use crate::plan::{Interrupt, QuarkId, RecordId, Situation};
 
-/// A lowered plan that is run.
+/// A run of a lowered plan.
 #[derive(Debug)]
 pub struct Counted<'p> {
     lowered: &'p fsm::Machine,
-    /// None before the first turn, whose output the machine begins with.
+    /// The machine; `None` before the first turn, since the machine needs that turn's output to begin.
     machine: Option<mdle_runtime::Machine<Scripted<'p>>>,
 }
 
 impl<'p> Counted<'p> {
-    /// A machine that is about to begin.
+    /// Creates the machine, before its first turn.
     #[must_use]
     pub fn new(lowered: &'p fsm::Machine) -> Self {
         Self { lowered, machine: None }
@@ -42,10 +42,10 @@ impl<'p> Machine<'p> for Counted<'p> {
     }
 }
 
-/// Takes down the transitions of a turn.
+/// Records the transitions of a turn.
 struct Transitions<'p> {
     lowered: &'p fsm::Machine,
-    /// The numbers of the operands by which the next one is made.
+    /// Numbers of the operands that fired for the next transition.
     operands: Vec<usize>,
     fired: Vec<Fired<'p>>,
 }
@@ -77,17 +77,17 @@ impl mdle_runtime::Output for Reports {
     }
 }
 
-/// What a lowered plan means where a script is the robot.
+/// A lowered plan whose robot is a script.
 #[derive(Debug)]
 struct Scripted<'p> {
     lowered: &'p fsm::Machine,
-    /// The memories of every level of scopes, those of one level side by side.
+    /// Memories of all levels of scopes, level after level.
     memories: Vec<bool>,
 }
 
 type At<'p> = Cursor<Stamps<'p, Box<[Stamp]>>, Box<[u64]>>;
 
-/// Where a condition is read.
+/// Situation of a condition: a scope's level in the current state, with the reports of the turn.
 struct Read<'r, 'p> {
     scripted: &'r Scripted<'p>,
     cursor: &'r At<'r>,
@@ -129,13 +129,13 @@ impl<'p> Scripted<'p> {
         usize::from(level) * self.lowered.sizes().memories + memory as usize
     }
 
-    /// The scopes around the current atom, from its own outwards: level and interrupt.
+    /// Scopes around the current atom, from its own outwards: level and interrupt.
     fn scopes(&self, cursor: &At) -> impl Iterator<Item = (u16, &'p Interrupt)> + use<'p> {
         let own = self.lowered.atom(cursor.atom()).element();
         own.outwards().filter_map(|element| Some((element.level()?, element.interrupt()?)))
     }
 
-    /// Which scope around the current atom ends, and why.
+    /// Returns the outermost scope that ends, as the cause of the transition; the completion of the law comes last.
     fn ending(&self, cursor: &At<'_>, y: &Reports) -> Option<Cause> {
         let fired = |(level, interrupt): &(u16, &Interrupt)| {
             interrupt.condition.fired(&Read { scripted: self, cursor, level: *level, y })
@@ -152,7 +152,8 @@ impl<'p> Scripted<'p> {
         (atom.law().completes && y.completed.contains(&atom.law().text)).then_some(Cause::Completed(level))
     }
 
-    /// Writes down what ends when the scope that has this cause ends; what was inside is forgotten.
+    /// Records the labelled elements that end with the scope of this cause; the records of scopes inside it are
+    /// forgotten.
     fn record(&mut self, cursor: &At<'_>, cause: Cause, y: &Reports) {
         let level = cause.level();
         let operand = match cause {

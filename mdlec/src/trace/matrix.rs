@@ -1,8 +1,9 @@
 //! The machine `matrix`: an execution as a product of transition matrices (paper, Eq. 4;
 //! docs/src/reference/semantics.md, 8.4 and 9).
 //!
-//! Of the product `E_i(tm) … E_i(t2) E_i(t1)` of what has fired, in order, only the column of the first state is ever
-//! multiplied out: `e(t)` is that product applied to `e(0)`. What starts afresh with a state no matrix says.
+//! Of the product `E_i(tm) … E_i(t2) E_i(t1)` of the interrupts that have fired, in order, only the column of the first
+//! state is ever computed: `e(t)` is that product applied to `e(0)`. The scopes that start afresh with a state are not
+//! in the matrices.
 
 use std::collections::BTreeSet;
 
@@ -18,32 +19,32 @@ use crate::plan::{Nondegenerate, Plan, Quark, QuarkId, RecordId, Situation};
 pub struct MatrixProduct<'p> {
     plan: &'p Plan,
     matrices: Matrices<'p>,
-    /// For each column the interrupts whose matrices list it, by number: the outermost first.
+    /// For each column the numbers of the interrupts whose matrices list it, the outermost first.
     listing: Vec<Vec<u32>>,
-    /// When the scope of each interrupt was entered.
+    /// For each interrupt the moment when its scope was entered.
     entered: Vec<Moment>,
-    /// The memories of RISING that are set, by the number of their interrupt and their own.
+    /// Set memories of RISING, by the number of their interrupt and their own number.
     risen: BTreeSet<(usize, u32)>,
-    /// What is so of the records of what ended last.
+    /// Facts that hold in the records of the elements that ended last.
     facts: BTreeSet<(RecordId, u32)>,
-    /// The product so far, applied to the first state.
+    /// Product so far, applied to the first state.
     e: UnitVector,
-    /// `true` once there was a first turn.
+    /// `true` after the first turn.
     has_begun: bool,
 }
 
-/// An interrupt whose matrix comes next.
+/// An interrupt whose matrix is the next factor.
 struct Factor<'p> {
     number: usize,
-    /// What a trace says of it.
+    /// Text of the interrupt for the trace.
     by: &'p str,
-    /// The operands that have fired.
+    /// Operands that have fired.
     operands: Vec<String>,
-    /// The operand that was the cause.
+    /// Operand that was the cause; `None` if the law has completed.
     operand: Option<u32>,
 }
 
-/// Where the condition of an interrupt is read.
+/// Situation of an interrupt's condition: the state of the product, with the reports of the turn.
 struct At<'t, 'p> {
     product: &'t MatrixProduct<'p>,
     number: usize,
@@ -73,10 +74,10 @@ impl Situation for At<'_, '_> {
 }
 
 impl<'p> MatrixProduct<'p> {
-    /// The empty product, before the first turn.
+    /// Creates the empty product, before the first turn.
     ///
     /// # Errors
-    /// E0501 and E0502 for a plan of too many states.
+    /// Fails with E0501 or E0502 for a plan with too many states.
     pub fn new(plan: &'p Nondegenerate) -> Result<Self, Diagnostic> {
         let matrices = matrices(plan)?;
         let mut listing = vec![Vec::new(); matrices.laws.len() + 1];
@@ -88,12 +89,13 @@ impl<'p> MatrixProduct<'p> {
         Ok(Self { plan: plan.plan(), matrices, listing, entered, risen, facts, e, has_begun: false })
     }
 
-    /// The interrupts whose matrices list the column of the state.
+    /// Interrupts whose matrices list the column of the state.
     fn listed(&self) -> impl DoubleEndedIterator<Item = usize> + use<'_, 'p> {
         self.listing[self.e.row].iter().map(|number| *number as usize)
     }
 
-    /// The interrupt of lowest number that has fired among these, or the atom's own if its law is done.
+    /// Returns the first listed interrupt that has fired, which has the lowest number; else that of the atom, if the
+    /// law has completed.
     fn fired(&self, y: &Reports) -> Option<Factor<'p>> {
         for number in self.listed() {
             let (interrupt, at) = (self.matrices.transitions[number].interrupt, At { product: self, number, y });
@@ -113,20 +115,20 @@ impl<'p> MatrixProduct<'p> {
         own.map(|number| Factor { number, by: COMPLETED, operands: Vec::new(), operand: None })
     }
 
-    /// The law of the state; none when the plan is over.
+    /// Law of the state; `None` when the plan has ended.
     fn law(&self) -> Option<&'p Quark> {
         self.matrices.laws.get(self.e.row).map(|law| self.plan.quark(*law))
     }
 
-    /// The frame of the law, if a scope around the state is entered in a frame of its own: the innermost such scope is the
-    /// one of highest number.
+    /// Frame of the law, if a scope around the state is entered in a frame of its own: the innermost such scope has the
+    /// highest number.
     fn frame(&self) -> Option<Frame> {
         let turned = self.matrices.frames.get(self.e.row)?;
         let anew = self.listed().rev().find(|number| self.matrices.transitions[*number].here)?;
         Some(self.entered[anew].frame(*turned))
     }
 
-    /// Multiplies by the matrix of this interrupt.
+    /// Multiplies the product by the matrix of this interrupt.
     fn multiply(&mut self, number: usize, operand: Option<u32>, now: Moment) {
         let Transition { matrix, afresh, marks, ends_with, .. } = &self.matrices.transitions[number];
         let own = marks.iter().map(|mark| (mark, operand));
@@ -161,7 +163,7 @@ impl<'p> MatrixProduct<'p> {
         self.risen.extend(set);
     }
 
-    /// The number of the state, from 1.
+    /// Number of the state, from 1.
     fn state(&self) -> u64 {
         self.e.row as u64 + 1
     }

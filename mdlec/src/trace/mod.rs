@@ -1,4 +1,4 @@
-//! The machines of `mdlec trace`: the same plan, run by ways of working that share no stepping code
+//! The machines of `mdlec trace`: they run the same plan in different ways, and share no stepping code
 //! (docs/src/reference/semantics.md, 9).
 
 mod counted;
@@ -16,13 +16,13 @@ pub use table::Table;
 pub use tree::Tree;
 pub use write::{Applied, COMPLETED, Fired, Line, Outcome};
 
-/// A way of running a plan.
+/// An interpreter of a plan.
 pub trait Machine<'p> {
-    /// One turn; not called again once the plan is over.
+    /// Runs one turn; not called again after the plan has ended.
     fn turn(&mut self, reports: &Reports) -> Outcome<'p>;
 }
 
-/// The trace of a machine that has not yet begun: it ends with the turn in which the plan is over, or with the script.
+/// Traces a machine from its first turn to the turn in which the plan ends, or to the end of the script.
 pub fn run<'p, 's>(mut machine: impl Machine<'p> + 's, script: &'s Script) -> impl Iterator<Item = Line<'p>> {
     let mut over = false;
     script.turns().iter().enumerate().map_while(move |(turn, reports)| {

@@ -1,6 +1,7 @@
-//! Scripts: what interrupts and laws report, turn by turn, as JSON lines (docs/src/reference/interfaces.md, 3).
+//! Scripts: the reports of interrupts and laws, turn by turn, as JSON lines (docs/src/reference/interfaces.md, 3).
 //!
-//! Afterwards: times are nanoseconds since the first turn, ways are nanometres, and neither ever goes back.
+//! In a script that is read, times are nanoseconds since the first turn, ways are nanometres, and neither ever
+//! decreases.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -11,30 +12,30 @@ use serde::Deserialize;
 use crate::alphabet::{Alphabet, Decimal};
 use crate::plan::{Plan, Words};
 
-/// A script as read.
+/// A script that has been read.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Script {
     turns: Vec<Reports>,
-    /// The line of each turn, from 1.
+    /// Line number of each turn, from 1.
     lines: Vec<usize>,
 }
 
-/// What is reported in one turn: the output `y` of a robot that is only a script.
+/// Reports of one turn: the output `y` of the scripted robot.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Reports {
-    /// The time since the first turn.
+    /// Time since the first turn.
     pub t: Nanos,
-    /// The reading of the odometer: the length of the path driven so far.
+    /// Reading of the odometer: the length of the path driven so far.
     pub way: Nanometers,
-    /// The heading by odometry.
+    /// Heading by odometry.
     pub heading: Radians,
-    /// The quark texts of the interrupts that have fired.
+    /// Quark texts of the interrupts that have fired.
     pub fired: BTreeSet<String>,
-    /// The quark texts of the laws that are done.
+    /// Quark texts of the laws that have completed.
     pub completed: BTreeSet<String>,
 }
 
-/// The moment at which a scope is entered, as the machines that walk by themselves keep it.
+/// Moment at which a scope was entered, as all machines except `counted` keep it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Moment {
     t: Nanos,
@@ -43,35 +44,35 @@ pub(super) struct Moment {
 }
 
 impl Moment {
-    /// Returns `true` if so many nanoseconds have passed since then.
+    /// Returns `true` if at least `nanos` nanoseconds have passed since this moment.
     pub(super) fn waited(self, nanos: u64, now: &Reports) -> bool {
         now.t.since(self.t) >= Nanos(nanos)
     }
 
-    /// Returns `true` if so many nanometres have been driven since then.
+    /// Returns `true` if at least `nanometers` nanometres have been driven since this moment.
     pub(super) fn driven(self, nanometers: u64, now: &Reports) -> bool {
         now.way.since(self.way) >= Nanometers(nanometers)
     }
 
-    /// The heading of that moment as a frame, turned counter-clockwise by so many radians.
+    /// Frame with the heading of this moment, turned counter-clockwise by `turned` radians.
     pub(super) fn frame(self, turned: f64) -> Frame {
         Frame(self.heading).turned(Radians(turned))
     }
 }
 
 impl Reports {
-    /// The moment of this turn.
+    /// Moment of this turn.
     pub(super) fn moment(&self) -> Moment {
         Moment { t: self.t, way: self.way, heading: self.heading }
     }
 }
 
-/// Why a script cannot be used.
+/// Error in a script.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ScriptError {
-    /// The line, from 1.
+    /// Line number, from 1.
     pub line: usize,
-    /// What is wrong with it.
+    /// Description of the error.
     pub message: String,
 }
 
@@ -83,15 +84,15 @@ impl fmt::Display for ScriptError {
 
 impl std::error::Error for ScriptError {}
 
-/// A line as it is written; a list that is left out is empty.
+/// A line as it is written; a list that is missing is empty.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Written {
     t: f64,
-    /// The odometer's reading, in metres.
+    /// Reading of the odometer, in metres.
     #[serde(default)]
     way: f64,
-    /// The heading by odometry, in degrees.
+    /// Heading by odometry, in degrees.
     #[serde(default)]
     heading: f64,
     #[serde(default)]
@@ -101,10 +102,10 @@ struct Written {
 }
 
 impl Script {
-    /// Reads a script: one object a line, blank lines aside.
+    /// Reads a script: one object per line; empty lines are ignored.
     ///
     /// # Errors
-    /// At the first line that is not such an object, or whose time is before the one of the line before it.
+    /// Fails at the first line that is not such an object, or whose time is before that of the previous line.
     pub fn read(text: &str) -> Result<Self, ScriptError> {
         let (mut turns, mut lines): (Vec<Reports>, Vec<usize>) = (Vec::new(), Vec::new());
         let mut start = None;
@@ -133,10 +134,10 @@ impl Script {
         Ok(Self { turns, lines })
     }
 
-    /// The script in the texts of a plan: `r0<60cm` becomes `r0 < 0.6`.
+    /// Converts the script to the texts of a plan: `r0<60cm` becomes `r0 < 0.6`.
     ///
     /// # Errors
-    /// At the first name that is no interrupt of the plan, or no law of it that completes.
+    /// Fails at the first name that is not an interrupt of the plan, or not a law of the plan that completes.
     pub fn in_words_of(mut self, plan: &Plan, alphabet: &Alphabet) -> Result<Self, ScriptError> {
         let words = Words::new(plan, alphabet);
         for (reports, line) in self.turns.iter_mut().zip(&self.lines) {
@@ -149,19 +150,20 @@ impl Script {
         Ok(self)
     }
 
-    /// Its turns, in order; the first is at time 0.
+    /// Turns of the script, in order; the first is at time 0.
     #[must_use]
     pub fn turns(&self) -> &[Reports] {
         &self.turns
     }
 }
 
-/// The seconds or metres in thousand millionths. By way of the shortest decimal, which is what was written, so that nothing is rounded twice.
+/// Converts seconds or metres to billionths. Uses the shortest decimal, which is the number as written, so that nothing
+/// is rounded twice.
 fn nanos(seconds: f64) -> Option<u64> {
     Decimal::parse(&seconds.to_string())?.to_nanos()
 }
 
-/// Reads a line.
+/// Parses a line.
 fn written(line: &str) -> Result<Written, String> {
     let expected = r#"expected one object per line, as in {"t": 0.0, "fired": ["bumper"]}"#;
     // Without this check, a list of values would be read as an object with them.
@@ -177,7 +179,7 @@ fn written(line: &str) -> Result<Written, String> {
     })
 }
 
-/// The reader's message with the column only: its line is always 1, since each line is read by itself.
+/// Message of the JSON parser, with the column only: the line is always 1, since each line is parsed by itself.
 fn reason(error: &serde_json::Error) -> String {
     let message = error.to_string();
     let message = message.split_once(" at line ").map_or(&*message, |(message, _)| message);

@@ -1,8 +1,8 @@
-//! The machine `table`: the expanded FSM of Algorithm 1, a row for each interrupt (docs/src/reference/semantics.md, 8
-//! and 9).
+//! The machine `table`: the expanded FSM of Algorithm 1, with a row for each interrupt
+//! (docs/src/reference/semantics.md, 8 and 9).
 //!
-//! Everything is computed beforehand: where an interrupt leads, which scopes start afresh there, and what ends on the way.
-//! A turn only looks up.
+//! Everything is computed beforehand: the destination of each interrupt, the scopes that start afresh there, and the
+//! elements that end on the way. A turn only reads the table.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -14,21 +14,21 @@ use crate::diagnostic::Diagnostic;
 use crate::fsm::expanded_states;
 use crate::plan::{Interrupt, Mark, Node, Nondegenerate, Plan, Quark, QuarkId, Record, RecordId, Scope, Situation};
 
-/// A plan as a table, and where it is.
+/// A plan as a table, with the current state.
 #[derive(Debug)]
 pub struct Table<'p> {
     plan: &'p Plan,
-    /// The states but the termination state, in order.
+    /// States except the termination state, in order.
     states: Vec<State<'p>>,
-    /// The interrupts, numbered in pre-order: a scope before what it holds.
+    /// Interrupts, numbered in pre-order: a scope before its elements.
     rows: Vec<Row<'p>>,
-    /// What each row remembers since its scope was entered.
+    /// For each row the memory of its scope, valid since the scope was entered.
     memories: Vec<Memory>,
-    /// What is so of each record of what ended last.
+    /// For each record the facts that hold.
     records: BTreeMap<RecordId, Vec<bool>>,
-    /// The place of the current state in `states`; behind them all when the plan is over.
+    /// Index of the current state in `states`; the length of `states` when the plan has ended.
     state: usize,
-    /// `true` once there was a first turn.
+    /// `true` after the first turn.
     has_begun: bool,
 }
 
@@ -36,46 +36,47 @@ pub struct Table<'p> {
 #[derive(Debug)]
 struct State<'p> {
     law: &'p Quark,
-    /// The row of the atom's own interrupt.
+    /// Row of the atom's own interrupt.
     own: usize,
-    /// The angle by which its frame is turned.
+    /// Angle by which the state's frame is turned, in radians.
     turned: f64,
-    /// The row of the innermost scope around it that is entered in a frame of its own, if there is one.
+    /// Row of the innermost scope or atom around the state that is entered in a frame of its own, if there is one.
     here: Option<usize>,
 }
 
-/// What an interrupt does.
+/// An interrupt with its effects.
 #[derive(Debug)]
 struct Row<'p> {
     interrupt: &'p Interrupt,
     level: usize,
-    /// The row of the scope around it; the plan's own has none.
+    /// Row of the enclosing scope; `None` for the plan itself.
     around: Option<usize>,
-    /// The record that is kept with its scope.
+    /// Record that is kept with the scope.
     record: Option<Record>,
     next: Next,
-    /// The labels of its scope, and of what ends because that was its last element.
+    /// Labels of the scope. `ends_with` holds the labels of the elements whose last element the scope is.
     marks: &'p [Mark],
     ends_with: Vec<&'p Mark>,
 }
 
-/// Where an interrupt leads.
+/// Destination of an interrupt.
 #[derive(Debug, Clone)]
 struct Next {
     state: usize,
-    /// The rows of the scopes that start afresh: numbers in pre-order, so that what opens together is a range.
+    /// Rows of the scopes that start afresh: scopes that open together form a range, since rows are in pre-order.
     afresh: Range<usize>,
 }
 
-/// What a scope remembers since it was entered.
+/// Memory of a scope since it was entered.
 #[derive(Debug, Clone)]
 struct Memory {
     entered: Moment,
-    /// The memories of RISING in its interrupt.
+    /// Memories of RISING in the scope's interrupt.
     rising: Vec<bool>,
 }
 
-/// What has fired: a row, its text, its operands that have, and the operand that was the cause; none where the law is done.
+/// A row that has fired, its text, its operands that have fired, and the operand that was the cause; `None` if the law
+/// has completed.
 struct Ending<'p> {
     row: usize,
     by: &'p str,
@@ -83,7 +84,7 @@ struct Ending<'p> {
     operand: Option<u32>,
 }
 
-/// Where the condition of a row is read.
+/// Situation of a row's condition: the table and the row's memory, with the reports of the turn.
 struct Reading<'t, 'p> {
     table: &'t Table<'p>,
     memory: &'t Memory,
@@ -113,10 +114,10 @@ impl Situation for Reading<'_, '_> {
 }
 
 impl<'p> Table<'p> {
-    /// A table that is about to begin.
+    /// Creates the table, before the first turn.
     ///
     /// # Errors
-    /// E0501 and E0502 for a plan of too many states.
+    /// Fails with E0501 or E0502 for a plan with too many states.
     pub fn new(plan: &'p Nondegenerate) -> Result<Self, Diagnostic> {
         expanded_states(plan)?;
         let plan = plan.plan();
@@ -133,7 +134,7 @@ impl<'p> Table<'p> {
         Ok(Self { plan, memories: rows.iter().map(fresh).collect(), records, states, rows, state: 0, has_begun: false })
     }
 
-    /// The rows of the scopes around the current state, outwards.
+    /// Rows of the scopes around the current state, outwards.
     fn around(&self) -> impl Iterator<Item = usize> {
         let own = self.states.get(self.state).map(|state| state.own);
         std::iter::successors(own, |row| self.rows[*row].around)
@@ -143,7 +144,7 @@ impl<'p> Table<'p> {
         Reading { table: self, memory: &self.memories[row], reports }
     }
 
-    /// The outermost interrupt that has fired, the completion of the law last.
+    /// Returns the outermost interrupt that has fired, or else the completion of the law.
     fn fired(&self, reports: &Reports) -> Option<Ending<'p>> {
         let has_fired = |row: &usize| self.rows[*row].interrupt.condition.fired(&self.reading(*row, reports));
         if let Some(row) = self.around().filter(has_fired).last() {
@@ -171,7 +172,7 @@ impl<'p> Table<'p> {
         self.state = state;
     }
 
-    /// Replaces each record of which labelled elements end now by these.
+    /// Replaces the records whose labelled elements end now.
     fn record(&mut self, ending: &Ending<'p>) {
         let Row { marks, ends_with, .. } = &self.rows[ending.row];
         let own = marks.iter().map(|mark| (mark, ending.operand));
@@ -187,7 +188,7 @@ impl<'p> Table<'p> {
         }
     }
 
-    /// Sets each memory of RISING around the current state whose operand has not fired.
+    /// Sets each memory of RISING around the current state whose operand does not hold.
     fn settle(&mut self, reports: &Reports) {
         let mut set = Vec::new();
         for row in self.around() {
@@ -201,7 +202,7 @@ impl<'p> Table<'p> {
         set.into_iter().for_each(|(row, memory)| self.memories[row].rising[memory] = true);
     }
 
-    /// The number of the current state, from 1.
+    /// Number of the current state, from 1.
     fn number(&self) -> u64 {
         self.state as u64 + 1
     }
@@ -231,19 +232,19 @@ impl<'p> Machine<'p> for Table<'p> {
     }
 }
 
-/// A record in which nothing has ended.
+/// Returns a record in which no element has ended.
 fn empty(record: Record) -> Vec<bool> {
     vec![false; record.facts as usize]
 }
 
-/// A table that is filled from left to right.
+/// A table that is being filled from left to right.
 struct Filling<'p> {
     plan: &'p Plan,
     states: Vec<State<'p>>,
     rows: Vec<Row<'p>>,
-    /// The rows of the scopes that have just ended: they lead to what comes now.
+    /// Rows of the scopes that have just ended: they lead to the next state.
     ended: Vec<usize>,
-    /// The first row of what has begun, up to its first atom.
+    /// First row of the scopes that have begun since the last atom.
     begun: Option<usize>,
 }
 
@@ -256,7 +257,7 @@ impl<'p> Filling<'p> {
         self.ended.push(row);
     }
 
-    /// The elements of a scope, the finite loops among them written out.
+    /// Adds the elements of a scope, with finite loops written out.
     fn sequence(&mut self, body: &'p [Node], around: usize, here: Option<usize>) {
         for node in body {
             match node {
@@ -280,7 +281,7 @@ impl<'p> Filling<'p> {
         }
     }
 
-    /// A loop without end is written once: what ends its pass leads back to its first state.
+    /// Adds an endless loop once: the rows that end its pass lead back to its first state.
     fn without_end(&mut self, body: &'p [Node], around: usize, here: Option<usize>) {
         let (state, from) = (self.states.len(), self.rows.len());
         self.sequence(body, around, here);
@@ -288,7 +289,7 @@ impl<'p> Filling<'p> {
         self.lead_to(&Next { state, afresh: from..own + 1 });
     }
 
-    /// Begins a scope or an atom.
+    /// Adds the row of a scope or an atom.
     fn row(&mut self, interrupt: &'p Interrupt, around: Option<usize>, marks: &'p [Mark]) -> usize {
         let row = self.rows.len();
         let level = around.map_or(0, |around| self.rows[around].level + 1);
@@ -298,7 +299,7 @@ impl<'p> Filling<'p> {
         row
     }
 
-    /// What has these labels ends with its last element, which has just ended.
+    /// Adds `marks` to the rows that have just ended: the element with these labels ends with its last element.
     fn ends_too(&mut self, marks: &'p [Mark]) {
         for row in self.ended.iter().filter(|_| !marks.is_empty()) {
             self.rows[*row].ends_with.extend(marks);

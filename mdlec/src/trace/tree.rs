@@ -1,22 +1,23 @@
-//! The machine `tree`: a direct walk over the plan as written, neither expanded nor without degeneracy
-//! (docs/src/reference/semantics.md, 2 to 6). The reference for all others, so it shares no stepping code with any of
-//! them.
+//! The machine `tree`: walks over the plan as written, without expansion or removal of degeneracy
+//! (docs/src/reference/semantics.md, 2 to 6). It is the reference for all other machines, so it shares no stepping code
+//! with them.
 
 use mdle_runtime::{Frame, TRANSITIONS_PER_TURN};
 
 use super::{Applied, COMPLETED, Fired, Machine, Moment, Outcome, Reports};
 use crate::plan::{Atom, Interrupt, Loop, Mark, Node, Plan, QuarkId, RecordId, Scope, Situation};
 
-/// A plan that is walked.
+/// A walk over a plan.
 #[derive(Debug)]
 pub struct Tree<'p> {
     plan: &'p Plan,
-    /// The plan's scopes, loops and atoms. Each stands before what it holds, the plan itself first: a flat list, because
-    /// a plan may be nested deeper than the stack allows for recursion.
+    /// Scopes, loops and atoms of the plan. Each is before its own elements, the plan itself first: a flat list,
+    /// because a plan may be nested deeper than the stack allows for recursion.
     elements: Vec<Element<'p>>,
-    /// Open elements, outermost first; the last is the current atom. Empty before the first turn and when the plan is over.
+    /// Open elements, outermost first; the last is the current atom. Empty before the first turn and after the plan has
+    /// ended.
     open: Vec<Open>,
-    /// `true` once there was a first turn.
+    /// `true` after the first turn.
     has_begun: bool,
 }
 
@@ -24,10 +25,10 @@ pub struct Tree<'p> {
 #[derive(Debug)]
 struct Element<'p> {
     kind: Kind<'p>,
-    /// What it holds: `body.len()` elements, the first of them this one.
+    /// Nodes of the body; the first of them is element number `held`, the others follow it.
     body: &'p [Node],
     held: usize,
-    /// Its states in the expanded plan; for a loop those of one pass.
+    /// Number of states in the expanded plan; for a loop that of one pass.
     states: u64,
 }
 
@@ -43,33 +44,33 @@ enum Kind<'p> {
 struct Open {
     element: usize,
     entered: Moment,
-    /// The place in its body where the walk is.
+    /// Index in the body of the element that is open.
     index: usize,
     /// For a loop: the number of the pass, from 1.
     pass: u64,
-    /// The number of the first state of this pass, and of what stands at `index`.
+    /// Number of the first state of this pass. `here` is that of the open element.
     first: u64,
     here: u64,
-    /// The memories of RISING in its interrupt.
+    /// Memories of RISING in the element's interrupt.
     memories: Vec<bool>,
-    /// For the outermost scope of a definition: what is so of the record.
+    /// For the outermost scope of a definition: the facts of the record that hold.
     facts: Vec<bool>,
 }
 
 /// A scope that ends.
 struct Ending<'p> {
-    /// Its place among those that are open.
+    /// Index of the scope in the open elements.
     place: usize,
     level: usize,
-    /// What a trace says of it.
+    /// Text of the interrupt for the trace.
     by: &'p str,
-    /// The operands of its interrupt that have fired.
+    /// Operands of the scope's interrupt that have fired.
     operands: Vec<String>,
-    /// The operand of its interrupt that was the cause; none where it was its law's completion.
+    /// Operand of the scope's interrupt that was the cause; `None` if the law has completed.
     operand: Option<u32>,
 }
 
-/// Where a condition is read.
+/// Situation of a condition: an open element, with the reports of the turn.
 struct Read<'t, 'p> {
     tree: &'t Tree<'p>,
     open: &'t Open,
@@ -100,13 +101,13 @@ impl Situation for Read<'_, '_> {
 }
 
 impl<'p> Tree<'p> {
-    /// A walk that is about to begin.
+    /// Creates the walk, before the first turn.
     #[must_use]
     pub fn new(plan: &'p Plan) -> Self {
         Self { plan, elements: flat(&plan.root), open: Vec::new(), has_begun: false }
     }
 
-    /// Enters an element and everything that opens with it, down to an atom.
+    /// Enters an element and all elements that open with it, down to an atom.
     fn enter(&mut self, element: usize, first: u64, entered: Moment) {
         let mut next = Some(element);
         while let Some(element) = next {
@@ -122,7 +123,7 @@ impl<'p> Tree<'p> {
         }
     }
 
-    /// The outermost scope whose interrupt has fired, the completion of the atom's law last.
+    /// Returns the outermost scope whose interrupt has fired, or else the completion of the atom's law.
     fn fired(&self, reports: &Reports) -> Option<Ending<'p>> {
         let mut level = 0;
         for (place, open) in self.open.iter().enumerate() {
@@ -140,7 +141,7 @@ impl<'p> Tree<'p> {
         done.then(|| Ending { place, level, by: COMPLETED, operands: Vec::new(), operand: None })
     }
 
-    /// Sets the memory of every RISING around the current atom whose operand has not fired.
+    /// Sets each memory of RISING around the current atom whose operand does not hold.
     fn settle(&mut self, reports: &Reports) {
         for place in 0..self.open.len() {
             let open = &self.open[place];
@@ -164,14 +165,14 @@ impl<'p> Tree<'p> {
         }
     }
 
-    /// The frame of the current atom, if it is inside of what is entered in a frame of its own.
+    /// Frame of the current atom, if the atom or an enclosing scope is entered in a frame of its own.
     fn frame(&self) -> Option<Frame> {
         let Kind::Atom(atom) = self.elements[self.open.last()?.element].kind else { return None };
         let anew = self.open.iter().rev().find(|open| self.elements[open.element].kind.is_here())?;
         Some(anew.entered.frame(atom.frame))
     }
 
-    /// The number of the current atom in the expanded plan, or of the termination state.
+    /// Number of the current atom in the expanded plan, or of the termination state.
     fn state(&self) -> u64 {
         match self.open.last() {
             Some(atom) => atom.first,
@@ -179,7 +180,7 @@ impl<'p> Tree<'p> {
         }
     }
 
-    /// Ends a scope and goes outward to the first element that has a successor.
+    /// Ends a scope, continues outwards to the first element that has a successor, and enters that successor.
     fn leave(&mut self, ending: &Ending<'p>, now: Moment) {
         let mut ended = Vec::new();
         let first = self.elements[self.open[ending.place].element].kind;
@@ -210,7 +211,7 @@ impl<'p> Tree<'p> {
         }
     }
 
-    /// Replaces the record of each definition of which labelled elements have ended, each with the operand that was its
+    /// Replaces the record of each definition whose labelled elements have ended, each with the operand that was its
     /// cause.
     fn record(&mut self, ended: &[(&[Mark], Option<u32>)]) {
         let marks = || ended.iter().flat_map(|(marks, operand)| marks.iter().map(move |mark| (mark, *operand)));
@@ -253,7 +254,7 @@ impl<'p> Machine<'p> for Tree<'p> {
 }
 
 impl<'p> Kind<'p> {
-    /// Its interrupt, unless it is a loop.
+    /// Interrupt of a scope or an atom; `None` for a loop.
     fn interrupt(self) -> Option<&'p Interrupt> {
         match self {
             Self::Scope(scope) => Some(&scope.interrupt),
@@ -271,7 +272,7 @@ impl<'p> Kind<'p> {
         }
     }
 
-    /// The labels of what ends with it.
+    /// Labels of the elements that end with this one.
     fn marks(self) -> &'p [Mark] {
         match self {
             Self::Scope(scope) => &scope.marks,
@@ -282,7 +283,7 @@ impl<'p> Kind<'p> {
 }
 
 impl Element<'_> {
-    /// The record that is kept with it.
+    /// Record that is kept with the element.
     fn record(&self) -> Option<RecordId> {
         match self.kind {
             Kind::Scope(scope) => scope.record.map(|record| record.id),
@@ -290,7 +291,7 @@ impl Element<'_> {
         }
     }
 
-    /// Its states in the expanded plan, all passes of a finite loop together.
+    /// Number of states in the expanded plan, all passes of a finite loop included.
     fn all_states(&self) -> u64 {
         match self.kind {
             Kind::Loop(repeated) => self.states.saturating_mul(repeated.times.unwrap_or(1)),
@@ -299,7 +300,7 @@ impl Element<'_> {
     }
 }
 
-/// The elements of a plan, each before what it holds, the elements of a body side by side.
+/// Elements of a plan, each before its own elements; the elements of a body are neighbours.
 fn flat(root: &Scope) -> Vec<Element<'_>> {
     let mut elements = vec![Element { kind: Kind::Scope(root), body: &root.body, held: 0, states: 0 }];
     let mut next = 0;

@@ -1,34 +1,34 @@
-//! Traces as JSON lines: the one form in which every machine tells what it did (docs/src/reference/interfaces.md, 4).
+//! Traces as JSON lines: the same format for every machine (docs/src/reference/interfaces.md, 4).
 
 use std::fmt;
 
 pub use mdle_runtime::trace::COMPLETED;
 use mdle_runtime::{Frame, Nanos, trace};
 
-/// A transition with the condition texts of the operands that had fired.
+/// A transition with the condition texts of the operands that have fired.
 pub type Fired<'p> = trace::Fired<'p, Vec<String>>;
 
-/// What came of one turn.
+/// Result of one turn, with its number and time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Line<'p> {
-    /// The number of the turn, from 0.
+    /// Number of the turn, from 0.
     pub turn: usize,
-    /// Its time.
+    /// Time of the turn.
     pub t: Nanos,
-    /// What the machine did in it.
+    /// Transitions and input of the machine in this turn.
     pub outcome: Outcome<'p>,
 }
 
-/// What a machine did in one turn.
+/// Transitions and input of a machine in one turn.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome<'p> {
-    /// The state it ended in, numbered in the expanded plan.
+    /// State at the end of the turn, numbered in the expanded plan.
     pub state: u64,
-    /// The input it ended with.
+    /// Input at the end of the turn.
     pub applied: Applied<'p>,
-    /// The frame of the law, if one is applied and a `FRAME here` is around its atom.
+    /// Frame of the law, if a law is applied and its atom is inside a `FRAME here`.
     pub frame: Option<Frame>,
-    /// Its transitions, in order.
+    /// Transitions of the turn, in order.
     pub fired: Vec<Fired<'p>>,
 }
 
@@ -37,9 +37,9 @@ pub struct Outcome<'p> {
 pub enum Applied<'p> {
     /// The law of this quark text.
     Law(&'p str),
-    /// The null input, because the limit of transitions cut the turn.
+    /// The null input, because the turn reached the limit of transitions.
     Cut,
-    /// The null input, because the plan is over.
+    /// The null input, because the plan has ended.
     Over,
 }
 
