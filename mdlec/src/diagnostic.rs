@@ -1,4 +1,4 @@
-//! Diagnostics: a code, what is wrong, where, and what to type instead; rendered with codespan-reporting.
+//! Diagnostics: code, message, place, and text to type instead; rendered with codespan-reporting.
 
 mod excerpt;
 mod explain;
@@ -15,54 +15,55 @@ pub use help::{Edit, Help};
 pub use json::{Message, Place};
 pub use sources::Sources;
 
-/// A file that was read: where it begins if all files stand one behind the other.
+/// Identifier of a file that was read: its byte offset if all files are concatenated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SourceId(pub u32);
 
-/// A stretch of a source, in bytes of all files one behind the other: trees are half spans, and are read as fast as they are small.
+/// A stretch of a source, as byte offsets in all files concatenated. Syntax trees consist half of spans, so small spans
+/// make the parser fast.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Span {
-    /// The first byte.
+    /// Byte offset of the span's start.
     pub start: u32,
-    /// The byte behind the last.
+    /// Byte offset after the span's last byte.
     pub end: u32,
 }
 
 impl Span {
-    /// The stretch between these two bytes of a file.
+    /// Span between two byte offsets of a file.
     #[must_use]
     pub fn new(source: SourceId, start: usize, end: usize) -> Self {
         let among_all = |byte| source.0.saturating_add(u32::try_from(byte).unwrap_or(u32::MAX));
         Self { start: among_all(start), end: among_all(end) }
     }
 
-    /// The bytes of this file that it is.
+    /// Byte range of the span within this file.
     #[must_use]
     pub fn within(self, source: SourceId) -> Range<usize> {
         let in_file = |byte: u32| byte.saturating_sub(source.0) as usize;
         in_file(self.start)..in_file(self.end)
     }
 
-    /// The stretch from the start of this one to the end of `last`, of the same source.
+    /// Span from the start of this one to the end of `last`, in the same source.
     #[must_use]
     pub fn to(self, last: Self) -> Self {
         Self { end: last.end.max(self.end), ..self }
     }
 }
 
-/// How bad it is, in the order in which a message beats another.
+/// Severity of a diagnostic, in ascending order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// The plan has a meaning, perhaps not the one that was meant.
+    /// The plan is valid, but perhaps not what was meant.
     Warning,
-    /// The plan has no meaning.
+    /// The plan is invalid.
     Error,
 }
 
-/// Declares the codes, each with what it is about.
+/// Declares the codes, each with its title.
 macro_rules! codes {
     ($($name:ident $title:literal,)*) => {
-        /// What a diagnostic is about: E stops, W warns.
+        /// Code of a diagnostic: E for errors, which stop the compiler, W for warnings.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum Code { $(#[doc = $title] $name,)* }
 
@@ -76,13 +77,13 @@ macro_rules! codes {
                 match self { $(Self::$name => stringify!($name),)* }
             }
 
-            /// What it is about, in a few words.
+            /// Title of the code: a noun phrase.
             #[must_use]
             pub fn title(self) -> &'static str {
                 match self { $(Self::$name => $title,)* }
             }
 
-            /// What `mdlec explain` says of it, from the file of its name.
+            /// Text of `mdlec explain`, from the file named after the code.
             #[must_use]
             pub fn explanation(self) -> Explanation {
                 Explanation(match self {
@@ -136,7 +137,7 @@ codes! {
 }
 
 impl Code {
-    /// Whether it stops the compiler.
+    /// Severity of the code: an error stops the compiler.
     #[must_use]
     pub fn severity(self) -> Severity {
         if self.name().starts_with('W') { Severity::Warning } else { Severity::Error }
@@ -157,27 +158,27 @@ impl fmt::Display for Code {
     }
 }
 
-/// A place that a diagnostic points at.
+/// A place in a diagnostic.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Label {
-    /// Where.
+    /// Span of the place.
     pub span: Span,
-    /// What to say there; may be empty.
+    /// Text at the place; may be empty.
     pub text: String,
-    /// Whether it is the place of the defect, and not one that explains it.
+    /// `true` for the place of the defect, `false` for one that explains it.
     pub primary: bool,
 }
 
-/// One message to the person who wrote the plan.
+/// A message to the author of the plan.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// What it is about.
+    /// Code of the diagnostic.
     pub code: Code,
-    /// What is wrong, in one line without a full stop.
+    /// Description of the defect, in one line without a full stop.
     pub message: String,
-    /// Where: the primary place first.
+    /// Places, the primary one first.
     pub labels: Vec<Label>,
-    /// What to do about it; each a line below the source.
+    /// Advice for the user; each entry is a line below the source.
     pub help: Vec<Help>,
 }
 
@@ -188,27 +189,27 @@ impl Diagnostic {
         Self { code, message: message.into(), labels: vec![label], help: Vec::new() }
     }
 
-    /// Also points at `span`, which explains the defect.
+    /// Adds the place `span`, which explains the defect.
     #[must_use]
     pub fn also(mut self, span: Span, text: impl Into<String>) -> Self {
         self.labels.push(Label { span, text: text.into(), primary: false });
         self
     }
 
-    /// The place of the defect.
+    /// Place of the defect.
     #[must_use]
     pub fn span(&self) -> Option<Span> {
         self.labels.first().map(|label| label.span)
     }
 }
 
-/// Whether any of these stops the compiler.
+/// Returns `true` if one of these is an error.
 #[must_use]
 pub fn has_errors(diagnostics: &[Diagnostic]) -> bool {
     diagnostics.iter().any(|diagnostic| diagnostic.code.severity() == Severity::Error)
 }
 
-/// Puts diagnostics into the order of the sources.
+/// Sorts diagnostics in the order of the sources.
 pub fn sort(diagnostics: &mut [Diagnostic]) {
     diagnostics.sort_by_key(|diagnostic| (diagnostic.span(), diagnostic.code));
 }

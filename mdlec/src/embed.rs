@@ -1,4 +1,5 @@
-//! Plans in an application: its build script makes Rust of them, and the application includes that.
+//! Embeds plans in an application: the application's build script compiles them to Rust, and the application includes
+//! that.
 //!
 //! ```no_run
 //! // build.rs
@@ -26,7 +27,7 @@ use std::process;
 
 use crate::cli;
 
-/// A plan to be embedded.
+/// A plan to embed.
 #[derive(Debug, Clone)]
 #[must_use = "nothing is embedded before it is written"]
 pub struct Embed {
@@ -35,28 +36,28 @@ pub struct Embed {
     plan: Option<String>,
 }
 
-/// The plan of this file; a path begins at the folder of the package.
+/// Embeds a plan of this file; a path is relative to the folder of the package.
 pub fn plan(file: impl Into<PathBuf>) -> Embed {
     Embed { file: file.into(), target: None, plan: None }
 }
 
 impl Embed {
-    /// The robot: one of `mdlec targets`, or the folder of a target of your own. It has to be named.
+    /// Sets the robot, which is required: one of `mdlec targets`, or the folder of a target of your own.
     pub fn target(self, target: impl Into<String>) -> Self {
         Self { target: Some(target.into()), ..self }
     }
 
-    /// Which plan of the file, if there are several that no other refers to.
+    /// Selects a plan of the file; required if several plans are not used by any other.
     pub fn plan(self, name: impl Into<String>) -> Self {
         Self { plan: Some(name.into()), ..self }
     }
 
-    /// Writes `$OUT_DIR/STEM.rs`, `STEM` being the plan file's name without its ending; the same file embedded twice, as two
-    /// plans, is written over. Has cargo show the warnings, and run the build script again when a file changes that was
-    /// read: the plan, the files that it uses, and the alphabet of a target of your own.
+    /// Writes `$OUT_DIR/STEM.rs`, where `STEM` is the plan file's name without its extension; embedding two plans of
+    /// one file overwrites the first. Makes cargo show the warnings, and run the build script again when a file changes
+    /// that was read: the plan, the files that it uses, and the alphabet of a target of your own.
     ///
-    /// Where the plan has errors, this process ends with exit status 1 and says on standard error what `mdlec check` says;
-    /// where the plan's own file or the target cannot be read, or the Rust cannot be written, with 2.
+    /// If the plan has errors, this process ends with exit status 1 and prints the messages of `mdlec check` on
+    /// standard error; if the plan's file or the target cannot be read, or the Rust cannot be written, it ends with 2.
     pub fn write(self) {
         if let Err(status) = cli::embed(&self.file, self.target.as_deref(), self.plan.as_deref()) {
             process::exit(status.into());

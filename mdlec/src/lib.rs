@@ -26,19 +26,19 @@ pub mod trace;
 use alphabet::Alphabet;
 use diagnostic::{Diagnostic, SourceId};
 
-/// A plan at each stage.
+/// A plan after each stage.
 #[derive(Debug, Clone)]
 pub struct Compiled {
-    /// With everything resolved, degenerate as it may be.
+    /// Plan with everything resolved, perhaps degenerate.
     pub plan: plan::Plan,
-    /// Without repeated interrupts.
+    /// Plan without repeated interrupts.
     pub nondegenerate: plan::Nondegenerate,
-    /// As a machine.
+    /// Plan as a state machine.
     pub lowered: fsm::Machine,
 }
 
-/// The compiler on one screen: takes the plan called `wanted`, or every plan that no other refers to, from text to
-/// machine; [`rust::emit`] makes a machine Rust. No plan comes out if there is an error.
+/// Compiles a text to state machines: the plan `wanted`, or every plan that no other plan uses; [`rust::emit`] turns a
+/// machine into Rust. Returns no plan if there is an error.
 #[must_use]
 pub fn compile(
     source: SourceId,
@@ -49,7 +49,7 @@ pub fn compile(
     compile_with(source, text, alphabet, wanted, &mut syntax::NoFiles)
 }
 
-/// The same for a file that may use others, which `loader` gets.
+/// Compiles a file that may use other files, which `loader` reads; see [`compile`].
 #[must_use]
 pub fn compile_with(
     source: SourceId,
@@ -61,7 +61,7 @@ pub fn compile_with(
     stages(source, text, alphabet, wanted, loader, true)
 }
 
-/// What is wrong with a file that may use others: what [`compile_with`] finds, without keeping what it makes.
+/// Returns the diagnostics of [`compile_with`] for a file that may use others, without keeping the compiled plans.
 #[must_use]
 pub fn check_with(
     source: SourceId,
@@ -72,7 +72,7 @@ pub fn check_with(
     stages(source, text, alphabet, None, loader, false).1
 }
 
-/// All stages, one plan after the other; what they make of it is kept, or let go before the next.
+/// Runs all stages, one plan after the other, and keeps the compiled plans if `keeps` is set.
 fn stages(
     source: SourceId,
     text: &str,

@@ -1,11 +1,11 @@
-//! What unit tests share: alphabets, and a text with what the compiler says of it in one snapshot.
+//! Helpers of unit tests: alphabets, and snapshots of a text with its messages.
 
 use crate::alphabet::{self, Alphabet, AlphabetFile};
 use crate::diagnostic::{SourceId, Sources};
 use crate::syntax::Loader;
 use crate::{Compiled, compile, compile_with, link};
 
-/// The alphabet of a built-in target, or of a robot that has everything; its places are in [`sources`].
+/// Returns the alphabet of a built-in target, or of a robot with every capability; its places are in [`sources`].
 pub(crate) fn alphabet(target: Option<&str>) -> Alphabet {
     let mut sources = Sources::default();
     let read = |(source, file): (SourceId, &link::Alphabet)| -> AlphabetFile {
@@ -27,7 +27,7 @@ pub(crate) fn alphabet(target: Option<&str>) -> Alphabet {
     }
 }
 
-/// The files of the alphabets; a plan's comes behind them.
+/// Returns the files of the alphabets; a plan's file is added after them.
 pub(crate) fn sources() -> Sources {
     let mut sources = Sources::default();
     for file in link::alphabets() {
@@ -36,21 +36,21 @@ pub(crate) fn sources() -> Sources {
     sources
 }
 
-/// The plans of a text that has no error.
+/// Compiles a text without errors.
 pub(crate) fn compiled(text: &str) -> Vec<Compiled> {
     let (compiled, said) = said(text, None);
     assert!(!compiled.is_empty(), "{said}");
     compiled
 }
 
-/// A text with what the compiler says of it, and the plan without degeneracy if there is one.
+/// Shows a text with its messages, and the plan without degeneracy if there is one.
 pub(crate) fn judged(text: &str, target: Option<&str>) -> String {
     let (compiled, said) = said(text, target);
     let plans: Vec<_> = compiled.iter().map(|compiled| compiled.nondegenerate.plan().to_string()).collect();
     format!("{}\n----\n{said}{}", text.trim_end(), plans.join(""))
 }
 
-/// The first of these files with what the compiler says of it, and the plan, where it may use the others by their names.
+/// Shows the first of these files with its messages and its plans; the file may use the others by their names.
 pub(crate) fn judged_files(files: &[(&str, &str)]) -> String {
     struct Given(Sources, Vec<(String, SourceId)>);
     impl Loader for Given {

@@ -1,4 +1,4 @@
-//! The lines of the files that one message shows; long lines are cut around the places in them.
+//! Lines of the files that a message shows; long lines are cut around the message's places.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -11,14 +11,14 @@ use mdle_runtime::{Printable, PrintableLines};
 
 use super::{Diagnostic, Severity, SourceId, Sources};
 
-/// The longest line that is shown whole, in bytes.
+/// Maximum length of a line that is shown whole, in bytes.
 const WHOLE: usize = 240;
-/// Bytes of a longer line that are shown on either side of each place's start and end.
+/// Number of bytes that are shown of a longer line on either side of each place's start and end.
 const AROUND: usize = 60;
 /// Replaces each stretch of a line that is not shown.
 const CUT: &str = "…";
 
-/// A diagnostic as codespan-reporting takes it, with the lines that it shows.
+/// A diagnostic in the form of codespan-reporting, with the lines that it shows.
 #[derive(Debug)]
 pub(super) struct Excerpt<'s> {
     sources: &'s Sources,
@@ -26,27 +26,27 @@ pub(super) struct Excerpt<'s> {
     report: report::Diagnostic<SourceId>,
 }
 
-/// The lines of one file that are shown, one after the other.
+/// Shown lines of one file, concatenated.
 #[derive(Debug, Default)]
 struct Lines {
     text: String,
-    /// In the order of the file.
+    /// Lines in the order of the file.
     lines: Vec<Line>,
 }
 
 /// A line of a file, as far as it is shown.
 #[derive(Debug)]
 struct Line {
-    /// The number of the line in its file, from 0.
+    /// Number of the line in its file, from 0.
     index: usize,
-    /// The bytes of the line in the excerpt.
+    /// Byte range of the line in the excerpt.
     range: Range<usize>,
-    /// The stretches of the file that are kept, each with the byte of the excerpt where it begins.
+    /// Stretches of the file that are kept, each with its offset in the excerpt.
     kept: Vec<(Range<usize>, usize)>,
 }
 
 impl Sources {
-    /// The diagnostic as plain text, as a terminal without colours shows it.
+    /// Renders the diagnostic as plain text, as on a terminal without colours.
     #[must_use]
     pub fn render(&self, diagnostic: &Diagnostic) -> String {
         let shown = Excerpt::new(self, diagnostic)
@@ -57,13 +57,13 @@ impl Sources {
     /// Writes the diagnostic to a terminal with colours.
     ///
     /// # Errors
-    /// When the terminal cannot be written to.
+    /// Fails if writing to the terminal fails.
     pub fn write(&self, diagnostic: &Diagnostic, out: &mut impl WriteColor) -> Result<(), FilesError> {
         let excerpt = Excerpt::new(self, diagnostic)?;
         term::emit_to_write_style(out, &term::Config::default(), &excerpt, &excerpt.report)
     }
 
-    /// The diagnostic with its places in the files as they are shown.
+    /// Converts the diagnostic, with its places in the files as they are shown.
     fn report(&self, diagnostic: &Diagnostic) -> report::Diagnostic<SourceId> {
         let severity = match diagnostic.code.severity() {
             Severity::Error => report::Severity::Error,
@@ -84,7 +84,7 @@ impl Sources {
 }
 
 impl<'s> Excerpt<'s> {
-    /// Takes the lines that `diagnostic` shows out of their files.
+    /// Extracts the lines that `diagnostic` shows from their files.
     fn new(sources: &'s Sources, diagnostic: &Diagnostic) -> Result<Self, FilesError> {
         let mut report = sources.report(diagnostic);
         let mut places: BTreeMap<SourceId, BTreeMap<usize, Vec<usize>>> = BTreeMap::new();
@@ -147,20 +147,20 @@ impl Lines {
         self.lines.push(Line { index, range: start..self.text.len(), kept });
     }
 
-    /// The byte of the excerpt that shows a byte of the file.
+    /// Offset in the excerpt for an offset in the file.
     fn place(&self, byte: usize) -> usize {
         let kept = self.lines.iter().flat_map(|line| &line.kept).rev().find(|(range, _)| range.start <= byte);
         kept.map_or(0, |(range, at)| at + byte.min(range.end).saturating_sub(range.start))
     }
 
-    /// The byte of the file that a byte of the excerpt shows.
+    /// Offset in the file for an offset in the excerpt.
     fn origin(&self, place: usize) -> usize {
         let kept = self.lines.iter().flat_map(|line| &line.kept).rev().find(|(_, at)| *at <= place);
         kept.map_or(0, |(range, at)| range.end.min(range.start + (place - at)))
     }
 }
 
-/// The stretches of a line that are shown, in order and apart from each other.
+/// Stretches of a line that are shown, in order and disjoint.
 fn stretches(line: &str, places: impl Iterator<Item = usize>) -> Vec<Range<usize>> {
     if line.len() <= WHOLE {
         return std::iter::once(0..line.len()).collect();
@@ -187,7 +187,7 @@ fn stretches(line: &str, places: impl Iterator<Item = usize>) -> Vec<Range<usize
     stretches
 }
 
-/// The lines of the excerpt, with the numbers and the columns that they have in the files as written.
+/// Lines of the excerpt, with the line numbers and columns of the files as written.
 impl<'a> Files<'a> for Excerpt<'_> {
     type FileId = SourceId;
     type Name = Printable<&'a str>;
@@ -224,7 +224,8 @@ mod tests {
     use super::super::{Code, Diagnostic, Sources, Span};
     use super::{AROUND, WHOLE};
 
-    /// A message about the first `first` and the first `last` of a plan, without trailing spaces.
+    /// Renders a message about the first occurrence of `first` and the last of `last` in a plan, without trailing
+    /// spaces.
     fn shown(text: &str, first: &str, last: &str) -> String {
         let mut sources = Sources::default();
         let source = sources.add("long.mdle", text);

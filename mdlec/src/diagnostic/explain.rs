@@ -1,34 +1,34 @@
-//! What `mdlec explain` says of a code: a paragraph, and two examples that a test holds to the compiler.
+//! Texts of `mdlec explain`: for each code a paragraph and two examples, which a test compiles.
 
-/// The text of a code: paragraphs, then a line that begins with `Wrong` and one with `Right`, each with an example below
-/// it that is indented by four blanks. Such a line may name, between backticks, the command that judges it; without one it
-/// is `mdlec check plan.mdle`.
+/// Explanation of a code: paragraphs, then a line that begins with `Wrong` and one with `Right`, each followed by an
+/// example indented by four spaces. Such a line may contain, in backticks, the command that the example is for; the
+/// default is `mdlec check plan.mdle`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Explanation(pub(super) &'static str);
 
 /// An example of an explanation.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Example {
-    /// The arguments of `mdlec` that judge it.
+    /// Arguments of `mdlec` for the example.
     pub arguments: Vec<String>,
-    /// The file.
+    /// Text of the example's file.
     pub text: String,
 }
 
 impl Explanation {
-    /// All of it, as it is printed.
+    /// Text of the explanation as it is printed.
     #[must_use]
     pub fn text(self) -> &'static str {
         self.0
     }
 
-    /// The example of the mistake.
+    /// Example of the mistake.
     #[must_use]
     pub fn wrong(self) -> Option<Example> {
         self.example("Wrong")
     }
 
-    /// The example without it.
+    /// Example without the mistake.
     #[must_use]
     pub fn right(self) -> Option<Example> {
         self.example("Right")

@@ -1,34 +1,34 @@
-//! Help: what to do about a defect, and the edit that does it.
+//! Help: advice about a defect, and the edit that removes it.
 
 use super::{Diagnostic, Span};
 
-/// Replaces the text of a span, which is empty where something is missing.
+/// An edit that replaces the text of a span; the span is empty where text is missing.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Edit {
-    /// The text to replace.
+    /// Span of the text to replace.
     pub span: Span,
-    /// The text to put there.
+    /// Text to insert.
     pub replacement: String,
 }
 
 /// One line of help.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Help {
-    /// A sentence; it quotes what to type between backticks.
+    /// A sentence that quotes the text to type in backticks.
     pub text: String,
-    /// The edit that ends the defect, where the help knows it to the letter.
+    /// Edit that removes the defect, if the exact text is known.
     pub edit: Option<Edit>,
 }
 
 impl Diagnostic {
-    /// Also says what to do.
+    /// Adds a line of help.
     #[must_use]
     pub fn help(mut self, text: impl Into<String>) -> Self {
         self.help.push(Help { text: text.into(), edit: None });
         self
     }
 
-    /// Also proposes to replace what `span` holds. In `words`, `{}` stands for the replacement between backticks.
+    /// Adds help that proposes to replace the text of `span`. In `words`, `{}` stands for the replacement in backticks.
     #[must_use]
     pub fn fix(mut self, words: &str, span: Span, replacement: impl Into<String>) -> Self {
         let replacement = replacement.into();

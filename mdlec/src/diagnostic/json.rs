@@ -1,46 +1,45 @@
-//! Diagnostics as JSON, one object a line, for editors and other programs.
-//! See docs/src/reference/interfaces.md, 2.
+//! Diagnostics as JSON for editors and other programs, one object per line (docs/src/reference/interfaces.md, 2).
 
 use serde::Serialize;
 
 use super::{Diagnostic, Label, Severity, Sources};
 
-/// A message; what has no code and no place is about the command, not the plan.
+/// A message; one without a code and a place is about the command, not the plan.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Message<'a> {
-    /// The code; `null` if it has none.
+    /// Code of the message; `null` if it has none.
     pub code: Option<&'static str>,
     /// `error`, `warning` or `note`.
     pub severity: &'static str,
-    /// What is wrong.
+    /// Text of the message.
     pub message: &'a str,
-    /// Where: the place of the defect first.
+    /// Places, that of the defect first.
     pub spans: Vec<Place<'a>>,
-    /// What to do about it.
+    /// Advice for the user.
     pub help: Vec<&'a str>,
 }
 
-/// A place in a file. Lines and columns count from 1, columns in characters; the end is behind the last one.
+/// A place in a file. Lines and columns count from 1, columns in characters; the end is after the last character.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Place<'a> {
-    /// The file.
+    /// Name of the file.
     pub file: &'a str,
-    /// Where it begins.
+    /// Line of the start.
     pub line: usize,
-    /// Where it begins.
+    /// Column of the start.
     pub column: usize,
-    /// Where it ends.
+    /// Line of the end.
     pub end_line: usize,
-    /// Where it ends.
+    /// Column of the end.
     pub end_column: usize,
-    /// Whether it is the place of the defect, and not one that explains it.
+    /// `true` for the place of the defect, `false` for one that explains it.
     pub primary: bool,
-    /// What is said of it; may be empty.
+    /// Text at the place; may be empty.
     pub text: &'a str,
 }
 
 impl<'a> Message<'a> {
-    /// A message without a code. Hints stand in its text as they do for people, one a line: they become its help.
+    /// Makes a message without a code. Lines of the text that begin with `help: ` become its help.
     #[must_use]
     pub fn plain(severity: &'static str, text: &'a str) -> Self {
         let mut parts = text.split("\nhelp: ");
@@ -57,7 +56,7 @@ impl<'a> Message<'a> {
 }
 
 impl Sources {
-    /// The diagnostic as a message.
+    /// Converts the diagnostic to a message.
     #[must_use]
     pub fn message<'a>(&'a self, diagnostic: &'a Diagnostic) -> Message<'a> {
         Message {

@@ -1,19 +1,19 @@
-//! The text of a file as a terminal may have it: characters that are not printable as their numbers, and each place's counterpart.
+//! Printable form of a file's text: characters that are not printable appear as numbers, and offsets can be converted.
 
 use codespan_reporting::files::SimpleFile;
 use mdle_runtime::{Printable, is_printable};
 
-/// A file whose text has characters that are not printable, and what is shown instead of it.
+/// A file whose text has characters that are not printable, with its printable form.
 #[derive(Debug)]
 pub(super) struct Shown {
-    /// The file with printable name and text.
+    /// File with printable name and text.
     pub(super) file: SimpleFile<String, String>,
-    /// The byte after each replaced character, and after what replaces it.
+    /// Offsets after each replaced character: in the text, and in the printable text.
     replaced: Vec<(usize, usize)>,
 }
 
 impl Shown {
-    /// The printable form of a text; `None` if the text is printable.
+    /// Printable form of a text; `None` if the text is printable already.
     pub(super) fn of(name: &str, text: &str) -> Option<Self> {
         let mut shown = String::new();
         let mut replaced = Vec::new();
@@ -36,13 +36,13 @@ impl Shown {
         Some(Self { file: SimpleFile::new(name.to_owned(), shown), replaced })
     }
 
-    /// The byte of the printable text that shows a byte of the text.
+    /// Offset in the printable text for an offset in the text.
     pub(super) fn place(&self, byte: usize) -> usize {
         let before = self.replaced.partition_point(|(text, _)| *text <= byte);
         before.checked_sub(1).map_or(byte, |last| self.replaced[last].1 + (byte - self.replaced[last].0))
     }
 
-    /// The byte of the text that is shown here.
+    /// Offset in the text for an offset in the printable text.
     pub(super) fn origin(&self, place: usize) -> usize {
         let before = self.replaced.partition_point(|(_, shown)| *shown <= place);
         before.checked_sub(1).map_or(place, |last| self.replaced[last].0 + (place - self.replaced[last].1))

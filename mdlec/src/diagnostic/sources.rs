@@ -1,4 +1,4 @@
-//! The files that messages show: a place in one of them is a place among all, one behind the other.
+//! The files that messages show: offsets of spans refer to all files concatenated.
 
 use std::cell::Cell;
 use std::ops::Range;
@@ -8,23 +8,23 @@ use codespan_reporting::files::{Error as FilesError, Files, SimpleFile, column_i
 use super::shown::Shown;
 use super::{SourceId, Span};
 
-/// The files that spans point into.
+/// The files that spans refer to.
 #[derive(Debug, Default)]
 pub struct Sources {
-    /// In the order in which they begin.
+    /// Files in ascending order of their offsets.
     files: Vec<(SourceId, File)>,
-    /// The place that was looked for last.
+    /// Place that was looked up last.
     last: Cell<Option<Known>>,
 }
 
-/// A file as it is written, and as it is shown where that differs.
+/// A file as it is written, and as it is shown if that differs.
 #[derive(Debug)]
 struct File {
     written: SimpleFile<String, String>,
     shown: Option<Shown>,
 }
 
-/// A place whose line and column are known; both count from 1 here.
+/// A place with its line and column; both count from 1 here.
 #[derive(Debug, Clone, Copy)]
 struct Known {
     source: SourceId,
@@ -34,10 +34,10 @@ struct Known {
 }
 
 impl Sources {
-    /// The most bytes of all files together, with one between two: places are numbers of 32 bits.
+    /// Maximum total bytes of all files, with one byte between two: offsets have 32 bits.
     const ROOM: u32 = u32::MAX;
 
-    /// Takes in a file for which there is [room](Self::refusal): the name that messages show, and its text.
+    /// Adds a file for which there is [room](Self::refusal), with its name in messages and its text.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> SourceId {
         let (id, name, text) = (self.next(), name.into(), text.into());
         let shown = Shown::of(&name, &text);
@@ -45,12 +45,12 @@ impl Sources {
         id
     }
 
-    /// Where the next file begins. One byte is between two files: what stands at the end of one is not in the next.
+    /// Offset of the next file. One byte separates files, so that the end of a file is not in the next.
     fn next(&self) -> SourceId {
         SourceId(self.files.last().map_or(0, |(last, file)| Span::new(*last, 0, file.written.source().len() + 1).end))
     }
 
-    /// Why a file of so many bytes cannot be taken in, if it cannot.
+    /// Reason why a file of `length` bytes cannot be added, if there is no room.
     #[must_use]
     pub fn refusal(&self, name: &str, length: usize) -> Option<String> {
         let room = Self::ROOM - self.next().0;
@@ -65,21 +65,21 @@ impl Sources {
         })
     }
 
-    /// The file that holds this byte.
+    /// File that contains this offset.
     fn file(&self, byte: u32) -> Option<&(SourceId, File)> {
         let behind = self.files.partition_point(|(id, _)| id.0 <= byte);
         self.files.get(behind.checked_sub(1)?)
     }
 
-    /// The file that a stretch is in, and its bytes there.
+    /// File of a span, with its byte range there.
     pub(super) fn range(&self, span: Span) -> (SourceId, Range<usize>) {
         let source = self.file(span.start).map_or(SourceId(0), |(id, _)| *id);
         (source, span.within(source))
     }
 
-    /// The line and the column, in characters, of a byte; both count from 1.
+    /// Line and column of a byte, in characters; both count from 1.
     ///
-    /// Counted from the place before, where that is in the same line: a file may be one line with a mistake at every word.
+    /// Starts from the last place if that is in the same line: a file may be one line with a mistake in every word.
     pub(super) fn line_and_column(&self, source: SourceId, byte: usize) -> (usize, usize) {
         let known = self.place_near(source, byte).or_else(|| {
             let at = self.written(source)?.location((), byte).ok()?;
@@ -89,7 +89,7 @@ impl Sources {
         known.map_or((1, 1), |known| (known.line, known.column))
     }
 
-    /// The place of a byte in the line of the place before.
+    /// Place of a byte that is in the line of the last place.
     fn place_near(&self, source: SourceId, byte: usize) -> Option<Known> {
         let last = self.last.get().filter(|last| last.source == source)?;
         let line = self.written(source)?.line_index((), byte).ok();
@@ -99,7 +99,7 @@ impl Sources {
         Some(Known { source, byte, line, column })
     }
 
-    /// Returns the name of the file that a stretch is in, and the line in which it begins, from 1.
+    /// Returns the name of the file that contains a span, and the line in which the span begins, from 1.
     #[must_use]
     pub fn line(&self, span: Span) -> (&str, usize) {
         let (source, range) = self.range(span);
@@ -107,20 +107,20 @@ impl Sources {
         (self.name(source), line.map_or(0, |line| line + 1))
     }
 
-    /// Returns what is written in a stretch; empty if there is no such file.
+    /// Returns the text of a span; empty if there is no such file.
     #[must_use]
     pub fn slice(&self, span: Span) -> &str {
         let (source, range) = self.range(span);
         self.text(source).get(range).unwrap_or("")
     }
 
-    /// The text of a file.
+    /// Text of a file.
     #[must_use]
     pub fn text(&self, source: SourceId) -> &str {
         self.written(source).map_or("", |file| file.source().as_str())
     }
 
-    /// The name of a file.
+    /// Name of a file.
     #[must_use]
     pub fn name(&self, source: SourceId) -> &str {
         self.written(source).map_or("", |file| file.name().as_str())
@@ -130,19 +130,19 @@ impl Sources {
         self.file(source.0).map(|(_, file)| &file.written)
     }
 
-    /// A file as it is shown.
+    /// File as it is shown.
     pub(super) fn shown_file(&self, source: SourceId) -> Result<&SimpleFile<String, String>, FilesError> {
         let (_, file) = self.file(source.0).ok_or(FilesError::FileMissing)?;
         Ok(file.shown.as_ref().map_or(&file.written, |shown| &shown.file))
     }
 
-    /// The byte that shows a byte of a file.
+    /// Offset in the shown text for an offset in the file.
     pub(super) fn shown_place(&self, source: SourceId, byte: usize) -> usize {
         let shown = self.file(source.0).and_then(|(_, file)| file.shown.as_ref());
         shown.map_or(byte, |shown| shown.place(byte))
     }
 
-    /// The column, in characters from 1, of a byte of a file as it is shown, in a line from 0.
+    /// Column of a byte in the file as it is shown, in characters from 1; `line` counts from 0.
     pub(super) fn column(&self, source: SourceId, line: usize, byte: usize) -> Result<usize, FilesError> {
         let (_, file) = self.file(source.0).ok_or(FilesError::FileMissing)?;
         let byte = file.shown.as_ref().map_or(byte, |shown| shown.origin(byte));
@@ -155,7 +155,7 @@ mod tests {
     use super::super::Diagnostic;
     use super::*;
 
-    /// A name for files that are told of only.
+    /// Name for a file that only messages mention.
     const NAME: &str = "long.mdle";
 
     #[test]
