@@ -1,10 +1,10 @@
-//! `mdlec analyze`: what is so of every run of a plan.
+//! `mdlec analyze`: static analysis of a plan.
 
 use super::{Analyze, Failure, build, input, report, settings};
 use crate::Compiled;
 use crate::analysis::analyze as analysis;
 
-/// Prints the analysis of a plan; what is suspicious goes to standard error.
+/// Prints the analysis of a plan; warnings go to standard error.
 pub(super) fn analyze(options: &Analyze) -> Result<(), Failure> {
     let target = settings::target(&options.plan, options.target.as_deref())?;
     let mut input = input::read_plan(&options.plan, &target)?;

@@ -1,4 +1,4 @@
-//! `mdlec bind`: a target's `src/alphabet.rs` from its `alphabet.mdle`.
+//! `mdlec bind`: generates a target's `src/alphabet.rs` from its `alphabet.mdle`.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use super::{Bind, Failure, input, report};
 use crate::alphabet::Alphabet;
 use crate::{link, rust};
 
-/// Writes `src/alphabet.rs` beside the alphabet, or says whether it is up to date.
+/// Writes `src/alphabet.rs` beside the alphabet, or reports whether it is up to date.
 pub(super) fn bind(options: &Bind) -> Result<(), Failure> {
     let file = &options.alphabet;
     let alphabet = input::alphabet(file)?;
@@ -26,7 +26,8 @@ pub(super) fn bind(options: &Bind) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Exit status 2 if the crate of the target in `folder` is not bound to this alphabet: nothing can be built for it.
+/// Fails with exit status 2 if the crate of the target in `folder` is not bound to this alphabet: nothing can be built
+/// for it.
 pub(super) fn must_be_bound(folder: &Path, alphabet: &Alphabet) -> Result<(), Failure> {
     let file = folder.join("alphabet.mdle");
     let is_up_to_date =
@@ -34,7 +35,7 @@ pub(super) fn must_be_bound(folder: &Path, alphabet: &Alphabet) -> Result<(), Fa
     if is_up_to_date { Ok(()) } else { Err(Failure::usage(out_of_date(&file))) }
 }
 
-/// The Rust of an alphabet.
+/// Path of the Rust file generated from an alphabet.
 fn bound(file: &Path) -> PathBuf {
     file.with_file_name("src").join("alphabet.rs")
 }

@@ -1,4 +1,4 @@
-//! `mdlec build`, and `mdlec` without a command: the executable of a plan, or a stage on the way to it.
+//! `mdlec build`, and `mdlec` without a command: builds the executable of a plan, or prints another form of the plan.
 
 use std::path::{Path, PathBuf};
 
@@ -13,7 +13,7 @@ use crate::rust::{self, Header};
 use crate::syntax::outline;
 use crate::{Compiled, fsm, picture, syntax};
 
-/// Does what the command line without a command asks for.
+/// Runs a command line without a command.
 pub(super) fn bare(options: &Bare) -> Result<(), Failure> {
     let makes_none = options.build.emit.as_ref().is_some_and(|emit| emit.kind != EmitKind::Exe);
     if options.run && makes_none {
@@ -25,7 +25,7 @@ pub(super) fn bare(options: &Bare) -> Result<(), Failure> {
         .map_or(Ok(()), |built| built.become_it(options.build.executable.target.as_deref(), &options.args))
 }
 
-/// Builds the executable of a plan, or prints another form of it. Returns the executable.
+/// Builds the executable of a plan, or prints another form of the plan. Returns the executable, if it was built.
 pub(super) fn build(options: &Build) -> Result<Option<Runnable>, Failure> {
     let Build { executable: about, emit, combine } = options;
     let path = executable::begin(about)?;
@@ -62,7 +62,7 @@ pub(super) fn build(options: &Build) -> Result<Option<Runnable>, Failure> {
     Ok(None)
 }
 
-/// Compiles the one plan that is to be run; messages go to standard error.
+/// Compiles the only plan to run; messages go to standard error.
 pub(super) fn compile_one(
     input: &mut Input,
     target: &Target,
@@ -72,7 +72,7 @@ pub(super) fn compile_one(
     compile_judged(input, target, name, deny_warnings, |compiled| compiled)
 }
 
-/// Compiles the one plan that is to be judged: `judge` takes it, so that it can let go of what it does not need.
+/// Compiles the only plan to run, and passes it to `judge` by value, which can drop the parts that it does not need.
 pub(super) fn compile_judged<T>(
     input: &mut Input,
     target: &Target,
@@ -106,7 +106,7 @@ pub(super) fn compile_judged<T>(
     }
 }
 
-/// Exit status 2 if no plan of the file has this name.
+/// Fails with exit status 2 if no plan of the file has this name.
 fn known_plan(input: &mut Input, name: &str) -> Result<(), Failure> {
     let names = input.plan_names();
     let names: Vec<_> = names.iter().map(String::as_str).collect();
@@ -121,7 +121,7 @@ fn known_plan(input: &mut Input, name: &str) -> Result<(), Failure> {
     )))
 }
 
-/// A stage as text, with the files that were read for it.
+/// Returns a form of the plan as text, with the files that were read for it.
 fn stage(options: &Executable, path: &Path, kind: EmitKind) -> Result<(String, Vec<PathBuf>), Failure> {
     let settings = Settings::beside(path)?;
     let target = settings.target(options.target.as_deref())?;
@@ -162,7 +162,7 @@ pub(super) fn needs_target(is_named: bool) -> Result<(), Failure> {
     if is_named { Ok(()) } else { Err(Failure::usage(question)) }
 }
 
-/// A plan as Rust, and what it was made of.
+/// A plan as Rust, with its sources.
 pub(super) struct Emitted {
     pub(super) target: Target,
     pub(super) input: Input,
@@ -170,7 +170,7 @@ pub(super) struct Emitted {
     pub(super) rust: String,
 }
 
-/// Makes Rust of the one plan that is to be compiled with the crate of this target.
+/// Generates Rust from the only plan to compile, for the crate of this target.
 pub(super) fn emitted(
     path: &Path,
     target: Target,

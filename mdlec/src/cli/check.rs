@@ -8,7 +8,7 @@ use super::everywhere::{ALL, everywhere};
 use super::{Check, Failure, input, report, settings};
 use crate::diagnostic::has_errors;
 
-/// Checks each plan file and says what is wrong with it.
+/// Checks each plan file and prints its diagnostics.
 pub(super) fn check(options: &Check) -> Result<(), Failure> {
     if options.target.as_deref() == Some(ALL) {
         return everywhere(options);
@@ -29,7 +29,7 @@ pub(super) fn check(options: &Check) -> Result<(), Failure> {
     })
 }
 
-/// Does this to every file, whatever comes of those before it; the worst of that is the exit status.
+/// Calls `done` for every file, even if it fails for earlier ones; fails with the highest exit status.
 pub(super) fn each(paths: &[PathBuf], mut done: impl FnMut(&Path) -> Result<(), Failure>) -> Result<(), Failure> {
     let mut failed = None;
     for failure in paths.iter().filter_map(|path| done(path).err()) {

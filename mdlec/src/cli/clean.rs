@@ -1,10 +1,10 @@
-//! `mdlec clean`: an empty cache.
+//! `mdlec clean`: empties the cache.
 
 use super::executable::{Shown, failure};
 use super::{Failure, report};
 use crate::link::{self, Cache};
 
-/// Removes what mdlec keeps in its cache, and says how much that was.
+/// Removes the contents of the cache, and prints their size.
 pub(super) fn clean() -> Result<(), Failure> {
     let folder = Cache::folder_of_user().map_err(|error| failure(&error))?;
     let mut shown = Shown::default();

@@ -1,4 +1,4 @@
-//! `mdlec decompile`: the MDLe string of a machine, or why it has none (paper, Theorem 1).
+//! `mdlec decompile`: prints the MDLe string of a machine, or the reasons why none exists (paper, Theorem 1).
 
 use std::path::Path;
 
@@ -8,10 +8,10 @@ use crate::diagnostic::Sources;
 use crate::syntax;
 use crate::theorem::{Answer, Machine, as_printed, augment, decompile as theorem, monomial, read, string};
 
-/// Machines with more states are not shown as matrices.
+/// Maximum number of states of a machine that is shown as matrices.
 const SHOWN: usize = 12;
 
-/// Prints the plan of a machine, or how the paper's own conditions judge it.
+/// Prints the plan of a machine, or the results of the paper's own conditions.
 pub(super) fn decompile(options: &Decompile) -> Result<(), Failure> {
     let file = options.machine.display();
     let text = input::read_text(&options.machine, LARGEST_DATA)?;
@@ -46,14 +46,14 @@ pub(super) fn decompile(options: &Decompile) -> Result<(), Failure> {
     }
 }
 
-/// So many conditions that fail are told.
+/// Maximum number of failed conditions in a message.
 const CONDITIONS: usize = 100;
 
 fn refused(message: String) -> Failure {
     Failure { status: 1, message: Some(message) }
 }
 
-/// Prints a plan in the canonical layout. What the file has as laws and conditions is shown where it is no MDLe.
+/// Prints a plan in the canonical layout. Laws and conditions of the file that are not MDLe are reported.
 fn print(file: &Path, plan: &str) -> Result<(), Failure> {
     let mut sources = Sources::default();
     let source = input::add(&mut sources, Path::new(&format!("the plan of {}", file.display())), plan.to_owned())?;
@@ -66,7 +66,7 @@ fn print(file: &Path, plan: &str) -> Result<(), Failure> {
     }
 }
 
-/// How the printed conditions judge a machine, and where they differ from the exact ones.
+/// Describes the results of the printed conditions for a machine, and where they differ from the exact ones.
 fn printed(machine: &Machine, exactly: &Answer) -> String {
     let mut text = String::new();
     if machine.states().len() <= SHOWN {

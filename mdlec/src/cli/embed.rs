@@ -1,4 +1,4 @@
-//! A plan for a build script: its Rust where cargo wants what a build makes, and the files that cargo is to watch.
+//! Embeds a plan for a build script: writes Rust to cargo's output folder, and names the files that cargo must watch.
 
 use std::env;
 use std::ffi::OsString;
@@ -8,8 +8,8 @@ use super::build::{Emitted, emitted, needs_target};
 use super::{Color, Failure, MessageFormat, executable, input, report};
 use crate::link;
 
-/// Writes `$OUT_DIR/STEM.rs` and tells cargo of warnings and of the files that were read. The exit status, if that is not
-/// done; why not was said on standard error then.
+/// Writes `$OUT_DIR/STEM.rs`, and prints warnings and the files that were read, for cargo. Fails with the exit status,
+/// after the message was printed on standard error.
 pub(crate) fn embed(file: &Path, target: Option<&str>, plan: Option<&str>) -> Result<(), u8> {
     report::choose(MessageFormat::BuildScript, Color::Auto);
     write(file, target, plan).map_err(|failure| failure.told())
@@ -33,7 +33,7 @@ fn write(file: &Path, target: Option<&str>, plan: Option<&str>) -> Result<(), Fa
     report::print_exactly(&watched)
 }
 
-/// The line that has cargo watch `file`. Cargo would take what follows a line break for an instruction of its own.
+/// Line that makes cargo watch `file`. Cargo would read text after a line break as another instruction.
 fn watched(file: &Path) -> Result<String, Failure> {
     let line = format!("cargo::rerun-if-changed={}", file.display());
     if line.contains(['\n', '\r']) {

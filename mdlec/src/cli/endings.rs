@@ -1,13 +1,14 @@
-//! The names of output files: one whose ending promises another format than the command writes is refused before anything is read.
+//! Checks the names of output files: an extension of another format than the command writes is refused before anything
+//! is read.
 
 use std::path::{Path, PathBuf};
 
 use super::{EmitKind, Failure};
 
-/// Endings of pictures.
+/// Extensions of pictures.
 const PICTURES: [&str; 12] = ["svg", "png", "jpg", "jpeg", "gif", "webp", "bmp", "tif", "tiff", "pdf", "ps", "eps"];
 
-/// Refuses a name for the picture of `mdlec draw` that has another ending than `.svg`.
+/// Refuses a name for the picture of `mdlec draw` with another extension than `.svg`.
 pub(super) fn svg(file: &Path) -> Result<(), Failure> {
     let Some(given) = file.extension().filter(|given| !given.eq_ignore_ascii_case("svg")) else { return Ok(()) };
     let (shown, name) = (file.display(), file.with_extension("svg"));
@@ -18,7 +19,7 @@ pub(super) fn svg(file: &Path) -> Result<(), Failure> {
     )))
 }
 
-/// Refuses a name of a picture for an executable or another form of `plan`, none of which is a picture.
+/// Refuses a picture's name for an executable or another form of `plan`, which are not pictures.
 pub(super) fn no_picture(file: &Path, kind: EmitKind, plan: &Path) -> Result<(), Failure> {
     let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
     if !PICTURES.iter().any(|picture| ending.eq_ignore_ascii_case(picture)) {

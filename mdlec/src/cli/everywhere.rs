@@ -1,4 +1,4 @@
-//! `mdlec check --target all`: which robots can run a plan, and why the others cannot.
+//! `mdlec check --target all`: shows which robots can run a plan, and why the others cannot.
 
 use std::path::Path;
 
@@ -9,16 +9,17 @@ use super::{Check, Failure, report};
 use crate::diagnostic::{Severity, has_errors};
 use crate::link;
 
-/// What stands for every robot that came with mdlec.
+/// Value of `--target` for all robots that are part of mdlec.
 pub(super) const ALL: &str = "all";
 
-/// A plan file, and for each robot why it cannot run it: nothing if it can.
+/// A plan file with the errors for each robot; a robot without errors can run it.
 struct Row {
     name: String,
     refusals: Vec<Vec<String>>,
 }
 
-/// Checks each plan file for a robot that has everything, then for each robot. That one of them cannot run it is no error.
+/// Checks each plan file for a robot with every capability, then for each robot. It is not an error if a robot cannot
+/// run a plan.
 pub(super) fn everywhere(options: &Check) -> Result<(), Failure> {
     let everything = input::target(None)?;
     let names = link::alphabets().iter().filter(|alphabet| alphabet.target).map(|alphabet| alphabet.name);
@@ -41,7 +42,7 @@ pub(super) fn everywhere(options: &Check) -> Result<(), Failure> {
     checked
 }
 
-/// Why a robot cannot run what stands in a plan file: places and messages.
+/// Errors of a plan file for a robot: places and messages.
 fn refusals(path: &Path, text: &str, robot: &Target) -> Result<Vec<String>, Failure> {
     let mut plan = input::plan(path, text.to_owned(), robot)?;
     let found = plan.check(&robot.alphabet);
@@ -54,7 +55,7 @@ fn refusals(path: &Path, text: &str, robot: &Target) -> Result<Vec<String>, Fail
     Ok(refusals.collect())
 }
 
-/// A line for each plan, a column for each robot.
+/// Table with a line for each plan and a column for each robot.
 fn table(robots: &[&str], rows: &[Row]) -> String {
     let width = rows.iter().map(|row| row.name.chars().count()).chain(["plan".len()]).max().unwrap_or(0);
     let line = |name: &str, cells: Vec<&str>| {
@@ -67,7 +68,7 @@ fn table(robots: &[&str], rows: &[Row]) -> String {
     line("plan", robots.to_vec()) + &lines.collect::<String>()
 }
 
-/// A line for each thing that a robot cannot do.
+/// Lists the errors of all plans and robots, one per line.
 fn reasons(rows: &[Row]) -> String {
     let refusals = rows.iter().flat_map(|row| row.refusals.iter().flatten());
     let lines: Vec<_> = refusals.map(|refusal| format!("{refusal}\n")).collect();

@@ -1,4 +1,4 @@
-//! `mdlec run`: the executable of a plan, built with its progress shown, and run in the place of this process.
+//! `mdlec run`: builds the executable of a plan, shows the progress, and runs it in the place of this process.
 
 use std::io::{self, IsTerminal, Write};
 use std::os::unix::process::CommandExt;
@@ -26,13 +26,13 @@ pub(super) fn run(options: &Run) -> Result<(), Failure> {
     build(&options.executable, path, output)?.become_it(options.executable.target.as_deref(), &options.args)
 }
 
-/// Prepares for signals, which must leave nothing behind, and returns the file of the plan.
+/// Prepares for signals, so that they leave no processes or files, and returns the file of the plan.
 pub(super) fn begin(options: &Executable) -> Result<&Path, Failure> {
     take_signals()?;
     options.plan.as_deref().ok_or_else(|| Failure::usage("no plan was given"))
 }
 
-/// Has signals end this process without leaving anything behind.
+/// Makes signals end this process without leaving processes or files.
 pub(super) fn take_signals() -> Result<(), Failure> {
     link::leave_nothing_behind(Shown::wipe)
         .map_err(|error| Failure::usage(format!("this system does not let signals be caught: {error}")))
@@ -84,7 +84,7 @@ pub(super) fn build(options: &Executable, path: &Path, output: Option<PathBuf>) 
     Ok(Runnable { path: output, settings })
 }
 
-/// Names a configuration near the target or the plan that would have had an effect on the build if cargo had been run there.
+/// Names a configuration near the target or the plan that mdlec ignores, but that cargo would read there.
 fn note_ignored(plan: &Path, target: &Target) {
     let beside = plan.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
     let folders: Vec<&Path> = target.folder.as_deref().into_iter().chain([beside]).collect();
@@ -97,7 +97,7 @@ fn note_ignored(plan: &Path, target: &Target) {
 }
 
 impl Runnable {
-    /// Becomes the executable, with the options of `mdle.toml` before `args`. `target` is that of the command line.
+    /// Becomes the executable, with the options of `mdle.toml` before `args`; `target` is the one of the command line.
     pub(super) fn become_it(&self, target: Option<&str>, args: &[String]) -> Result<(), Failure> {
         let program = if self.path.is_absolute() { self.path.clone() } else { Path::new(".").join(&self.path) };
         let options = self.settings.run_options(target, args)?;
@@ -107,7 +107,7 @@ impl Runnable {
     }
 }
 
-/// Becomes a program, so that its exit status and its signals are those of this process.
+/// Becomes a program: its exit status and its signals are then those of this process.
 pub(super) fn become_program(command: &mut Command) -> Result<(), Failure> {
     let error = command.exec();
     Err(Failure::usage(format!("cannot run `{}`: {error}", Path::new(command.get_program()).display())))
@@ -117,7 +117,7 @@ pub(super) fn failure(error: &LinkError) -> Failure {
     Failure { status: error.exit_status(), message: Some(error.to_string()) }
 }
 
-/// The progress line: one that is written over on a terminal, else one for each thing worth saying.
+/// Progress output: a line that is overwritten on a terminal, else one line for each new step.
 #[derive(Default)]
 pub(super) struct Shown {
     open: bool,
@@ -146,7 +146,7 @@ impl Shown {
         }
     }
 
-    /// Empties the line that the cursor is in.
+    /// Clears the current line of the terminal.
     fn wipe() {
         let mut out = io::stderr().lock();
         if out.is_terminal() {

@@ -1,9 +1,9 @@
-//! `mdlec explain`: what a code means, with a wrong and a right example.
+//! `mdlec explain`: prints the meaning of a code, with a wrong and a right example.
 
 use super::{Failure, report};
 use crate::diagnostic::Code;
 
-/// Explains a code, or lists them all.
+/// Explains a code, or lists all codes.
 pub(super) fn explain(code: Option<&str>) -> Result<(), Failure> {
     let Some(name) = code else {
         let lines = Code::ALL.iter().map(|code| format!("{code}  {}\n", code.title()));

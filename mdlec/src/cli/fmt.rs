@@ -1,4 +1,4 @@
-//! `mdlec fmt`: plans in the one canonical layout.
+//! `mdlec fmt`: formats plans in the canonical layout.
 
 use std::fs;
 use std::io::{self, IsTerminal};
@@ -10,7 +10,7 @@ use super::{Failure, Fmt, input, report};
 use crate::diagnostic::Sources;
 use crate::{link, syntax};
 
-/// Lays out each file anew, or lists those that are laid out differently. A file with errors stays as it is.
+/// Formats each file, or lists the files whose layout differs. A file with errors stays unchanged.
 pub(super) fn fmt(options: &Fmt) -> Result<(), Failure> {
     each(&options.plans, |path| {
         let text = input::read_text(path, LARGEST_PLAN)?;
@@ -36,13 +36,13 @@ fn formatted(path: &Path, text: String) -> Result<String, Failure> {
     })
 }
 
-/// Lists a file, for scripts and for people.
+/// Prints the path of a file whose layout differs, and fails with exit status 1.
 fn differs(path: &Path) -> Result<(), Failure> {
     report::print(&format!("{}\n", path.display()))?;
     Err(Failure::PLAN)
 }
 
-/// Writes a file over, unless somebody has protected it.
+/// Overwrites a file, unless it is read-only.
 fn write(path: &Path, text: &str) -> Result<(), Failure> {
     if fs::metadata(path).is_ok_and(|found| found.permissions().readonly()) {
         return Err(Failure::usage(format!("`{}` is read-only", path.display())));

@@ -1,4 +1,4 @@
-//! Reads plans and alphabets: the files a command works on.
+//! Reads plans and alphabets, the input files of commands.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -12,23 +12,23 @@ use read::Unread;
 
 /// The robot that plans are checked against.
 pub(super) struct Target {
-    /// What it can do.
+    /// Alphabet of the robot.
     pub(super) alphabet: Alphabet,
-    /// The folder of a target that did not come with mdlec.
+    /// Folder of a target that is not part of mdlec.
     pub(super) folder: Option<PathBuf>,
     /// The `mdle.toml` beside the plan, if there is one.
     pub(super) settings: Option<PathBuf>,
-    /// The files its alphabet was read from, so that messages can show them.
+    /// Files from which the alphabet was read, so that messages can show them.
     sources: Vec<(String, String)>,
 }
 
 impl Target {
-    /// The texts of its alphabet's files: the shared ones, then its own.
+    /// Texts of the alphabet's files: the shared ones, then the target's own.
     pub(super) fn texts(&self) -> impl Iterator<Item = &str> {
         self.sources.iter().map(|(_, text)| text.as_str())
     }
 
-    /// The files that were read for the target.
+    /// Files that were read for the target.
     pub(super) fn files(&self) -> impl Iterator<Item = PathBuf> {
         let own =
             self.folder.iter().flat_map(|folder| ["alphabet.mdle", "src/alphabet.rs"].map(|file| folder.join(file)));
@@ -36,46 +36,46 @@ impl Target {
     }
 }
 
-/// A plan file, with the alphabet's files and those that it uses beside it.
+/// A plan file, together with the alphabet's files and the files that it uses.
 pub(super) struct Input {
     pub(super) sources: Sources,
     pub(super) source: SourceId,
-    /// Where the files are whose plans use others.
+    /// Paths of the plan file and of the files that it uses.
     paths: BTreeMap<SourceId, PathBuf>,
-    /// What was read, by its one true path.
+    /// Files that were read, by their canonical paths.
     read: BTreeMap<PathBuf, SourceId>,
 }
 
 impl Input {
-    /// Compiles what stands in it, or its plan `wanted`.
+    /// Compiles the plans of the file, or only its plan `wanted`.
     pub(super) fn compile(&mut self, alphabet: &Alphabet, wanted: Option<&str>) -> (Vec<Compiled>, Vec<Diagnostic>) {
         let text = self.sources.text(self.source).to_owned();
         compile_with(self.source, &text, alphabet, wanted, self)
     }
 
-    /// What is wrong with what stands in it.
+    /// Returns the diagnostics of the file.
     pub(super) fn check(&mut self, alphabet: &Alphabet) -> Vec<Diagnostic> {
         let text = self.sources.text(self.source).to_owned();
         check_with(self.source, &text, alphabet, self)
     }
 
-    /// The files that were read for it, its own first.
+    /// Files that were read for the plan, its own first.
     pub(super) fn files(&self) -> impl Iterator<Item = &Path> {
         self.paths.values().map(PathBuf::as_path)
     }
 
-    /// The texts of the files that were read for it, its own first.
+    /// Texts of the files that were read for the plan, its own first.
     pub(super) fn texts(&self) -> impl Iterator<Item = &str> {
         self.paths.keys().map(|source| self.sources.text(*source))
     }
 
-    /// All files that were read for it and for `target`: no output may go over them.
+    /// Files that were read for the plan and for `target`, which no output may overwrite.
     pub(super) fn inputs(&self, target: &Target) -> Vec<PathBuf> {
         let named = |path: &Path| if path == Path::new("-") { PathBuf::from("/dev/stdin") } else { path.to_owned() };
         self.files().map(named).chain(target.files()).collect()
     }
 
-    /// The names of its plans, those of the files that it uses included.
+    /// Names of the plans in the file and in the files that it uses.
     pub(super) fn plan_names(&mut self) -> Vec<String> {
         let (arena, text) = (syntax::Arena::new(), self.sources.text(self.source).to_owned());
         let (files, _) = syntax::parse_with(self.source, &text, &arena, self);
@@ -115,12 +115,12 @@ impl syntax::Loader for Input {
     }
 }
 
-/// A byte order mark is an editor's, and no part of a plan.
+/// Removes a byte order mark, which editors write and which is not part of a plan.
 pub(super) fn without_mark(bytes: Vec<u8>) -> Vec<u8> {
     bytes.strip_prefix(b"\xEF\xBB\xBF").map(<[u8]>::to_vec).unwrap_or(bytes)
 }
 
-/// The target that an option names; without one a robot that has everything.
+/// Reads the target that an option names; without an option a robot with every capability.
 pub(super) fn target(option: Option<&str>) -> Result<Target, Failure> {
     let Some(name) = option else { return read_alphabets(None, "") };
     if let Some(builtin) = link::alphabets().iter().find(|alphabet| alphabet.target && alphabet.name == name) {
@@ -137,7 +137,7 @@ pub(super) fn target(option: Option<&str>) -> Result<Target, Failure> {
     Ok(target)
 }
 
-/// The alphabet of this file, with the shared ones that it uses.
+/// Reads the alphabet in this file, with the shared ones that it uses.
 pub(super) fn alphabet(file: &Path) -> Result<Alphabet, Failure> {
     let name = file.display().to_string();
     let text = read_text(file, read::LARGEST_PLAN)?;
@@ -149,7 +149,7 @@ pub(super) fn read_plan(path: &Path, target: &Target) -> Result<Input, Failure> 
     plan(path, read_text(path, read::LARGEST_PLAN)?, target)
 }
 
-/// A plan file that was read.
+/// Makes the input of a plan file whose text was read.
 pub(super) fn plan(path: &Path, text: String, target: &Target) -> Result<Input, Failure> {
     let mut sources = Sources::default();
     for (name, text) in &target.sources {
@@ -161,7 +161,7 @@ pub(super) fn plan(path: &Path, text: String, target: &Target) -> Result<Input, 
     Ok(Input { sources, source, paths, read })
 }
 
-/// Takes in the text of a plan file.
+/// Adds the text of a plan file.
 pub(super) fn add(sources: &mut Sources, path: &Path, text: String) -> Result<SourceId, Failure> {
     let name = shown(path);
     match sources.refusal(&name, text.len()) {
@@ -170,7 +170,7 @@ pub(super) fn add(sources: &mut Sources, path: &Path, text: String) -> Result<So
     }
 }
 
-/// What messages call a file.
+/// Name of a file in messages.
 fn shown(path: &Path) -> String {
     if path == Path::new("-") { "standard input".into() } else { path.display().to_string() }
 }
@@ -195,7 +195,7 @@ pub(super) fn read_text(path: &Path, most: u64) -> Result<String, Failure> {
     })
 }
 
-/// `mdlec targets`.
+/// Prints the list of `mdlec targets`.
 pub(super) fn print_targets() -> Result<(), Failure> {
     let mut text = String::new();
     for builtin in link::alphabets().iter().filter(|alphabet| alphabet.target) {
@@ -206,10 +206,10 @@ pub(super) fn print_targets() -> Result<(), Failure> {
     report::print(&text)
 }
 
-/// Signatures of more letters do not make the column wide in which signatures are.
+/// Maximum width of the column of signatures in characters; longer signatures exceed the column.
 const WIDEST: usize = 100;
 
-/// `mdlec quarks`.
+/// Prints the list of `mdlec quarks`.
 pub(super) fn print_quarks(option: Option<&str>) -> Result<(), Failure> {
     let target = target(option)?;
     let widths = target.alphabet.declarations().map(|declaration| signature(declaration).chars().count());
@@ -261,7 +261,7 @@ fn read_alphabets(own: Option<(String, String)>, name: &str) -> Result<Target, F
     }
 }
 
-/// The robots that came with mdlec, each with what it can do.
+/// Robots that are part of mdlec, each with its capabilities.
 fn robots() -> Vec<(String, Vec<Capability>)> {
     let targets = link::alphabets().iter().filter(|alphabet| alphabet.target);
     let head = |builtin: &link::Alphabet| {
@@ -271,7 +271,7 @@ fn robots() -> Vec<(String, Vec<Capability>)> {
     targets.filter_map(head).collect()
 }
 
-/// Alphabet files as they are read one after the other.
+/// Alphabet files that are read one after the other.
 #[derive(Default)]
 struct Reading {
     sources: Sources,
@@ -306,13 +306,13 @@ fn unknown_target(name: &str) -> Failure {
     ))
 }
 
-/// The end of a sentence about a name that is not known.
+/// End of a sentence about an unknown name: the similar name, if there is one.
 pub(super) fn did_you_mean(name: &str, known: &[&str]) -> String {
     let near = alphabet::nearest(name, known.iter().copied());
     near.map(|near| format!("; did you mean `{near}`?")).unwrap_or_default()
 }
 
-/// The name of a plan file beside `path` that differs from its name in capitals or in the ending alone.
+/// Name of a plan file next to `path` that differs only in upper or lower case or in the extension.
 fn like(path: &Path) -> Option<String> {
     let name = path.file_name()?.to_str()?.to_lowercase();
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
@@ -320,7 +320,7 @@ fn like(path: &Path) -> Option<String> {
     files.filter(|file| [name.clone(), format!("{name}.mdle")].contains(&file.to_lowercase())).min()
 }
 
-/// A hint where only the ending was forgotten.
+/// Hint for a path without the extension `.mdle`.
 fn plan_nearby(path: &Path) -> String {
     let with_ending = path.with_extension("mdle");
     if with_ending.is_file() { format!("\nhelp: there is `{}`", with_ending.display()) } else { String::new() }

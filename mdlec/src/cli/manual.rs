@@ -1,4 +1,4 @@
-//! `mdlec completions` and `mdlec man`: what shells and `man` show of the command line.
+//! `mdlec completions` and `mdlec man`: shell completions and manual pages of the command line.
 
 use std::io;
 

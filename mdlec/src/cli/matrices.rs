@@ -1,4 +1,4 @@
-//! `mdlec PLAN --emit matrices`: in the paper's notation to standard output, as MatrixMarket files into a folder.
+//! `mdlec PLAN --emit matrices`: prints matrices in the paper's notation, or writes MatrixMarket files into a folder.
 
 use std::path::{Path, PathBuf};
 use std::{fs, io};
@@ -9,8 +9,8 @@ use crate::fsm::{self, MatrixFiles};
 use crate::plan::Nondegenerate;
 use crate::{diagnostic::Sources, link};
 
-/// Prints the matrices, or writes them into a folder, over none of `inputs`. A person reads a few small ones; files are for
-/// programs, however small the plan is.
+/// Prints the matrices, or writes them into a folder without overwriting any of `inputs`. Printing is limited to a few
+/// small matrices; files are for programs, whatever their size.
 pub(super) fn matrices(
     plan: &Nondegenerate,
     combined: bool,
@@ -52,7 +52,7 @@ pub(super) fn matrices(
     Ok(())
 }
 
-/// Writes the files and then their list, removes those that an earlier list named, and returns the number of matrices.
+/// Writes the files and then their list, removes files of an earlier list, and returns the number of matrices.
 fn write(files: &MatrixFiles<'_, '_>, folder: &Path, inputs: &[PathBuf]) -> Result<usize, Failure> {
     let failed = |error: io::Error| Failure::usage(format!("`{}` cannot be written: {error}", folder.display()));
     fs::create_dir_all(folder).map_err(failed)?;
@@ -75,7 +75,7 @@ fn write(files: &MatrixFiles<'_, '_>, folder: &Path, inputs: &[PathBuf]) -> Resu
     Ok(count)
 }
 
-/// Returns the files of this folder that are named as matrices are: those of another plan would be taken for this one's.
+/// Returns the files in this folder with names of matrices: those of another plan could be mistaken for this plan's.
 fn matrix_files_in(folder: &Path) -> io::Result<Vec<PathBuf>> {
     let mut files = Vec::new();
     for entry in fs::read_dir(folder)? {

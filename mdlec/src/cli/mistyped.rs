@@ -1,4 +1,4 @@
-//! Arguments that were meant otherwise than clap takes them: misspelled commands, and options of another command.
+//! Recognizes misspelled commands, and options of other commands, which clap reports in another way.
 
 use std::env;
 use std::path::Path;
@@ -10,7 +10,7 @@ use super::words::words;
 use super::{Cli, Failure};
 use crate::alphabet;
 
-/// Returns the error of a first argument that is similar to a command and no file, so that it was taken for a plan.
+/// Returns the error for a first argument that resembles a command and is not a file, so that clap took it for a plan.
 pub(super) fn command() -> Option<Failure> {
     let cli = Cli::command();
     let word = words(&cli).into_iter().nth(1).and_then(|word| word.into_string().ok());
@@ -25,7 +25,7 @@ pub(super) fn command() -> Option<Failure> {
     )))
 }
 
-/// Returns the error of an option that belongs to other commands than the one it is given to. `answer` is that of clap.
+/// Returns the error for an option of other commands than the given one; `answer` is the error of clap.
 pub(super) fn option(answer: &clap::Error) -> Option<Failure> {
     let Some(ContextValue::String(given)) = answer.get(ContextKind::InvalidArg) else { return None };
     if answer.kind() != ErrorKind::UnknownArgument {

@@ -38,7 +38,7 @@ use clap::{CommandFactory as _, FromArgMatches as _, ValueEnum as _};
 pub(crate) use embed::embed;
 use emit::{Emit, EmitKind};
 
-/// The message and the exit status of a command that failed.
+/// Message and exit status of a command that failed.
 #[derive(Debug)]
 struct Failure {
     status: u8,
@@ -52,7 +52,7 @@ impl Failure {
         Self { status: 2, message: Some(message.into()) }
     }
 
-    /// The plan has errors, and they were printed: exit status 1.
+    /// Failure for a plan with errors, which were printed: exit status 1.
     const PLAN: Self = Self { status: 1, message: None };
 
     /// Prints the message, if there is one, and returns the exit status.
@@ -91,7 +91,7 @@ pub fn main() -> ExitCode {
     }
 }
 
-/// Returns the argument of `--color`, which decides about help and wrong usage too, where no arguments are parsed.
+/// Returns the argument of `--color` for help and for usage errors, where clap parses no arguments.
 fn color_of_help() -> Color {
     let mut words = std::env::args().take_while(|word| word != "--").skip_while(|word| !word.starts_with("--color"));
     let value = words.next().and_then(|word| match word.split_once('=') {

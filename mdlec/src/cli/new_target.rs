@@ -1,4 +1,4 @@
-//! `mdlec new-target`: a folder with a robot of one's own, made of `targets/template`.
+//! `mdlec new-target`: creates a folder with a robot of one's own from `targets/template`.
 
 use std::fs;
 use std::io;
@@ -7,13 +7,13 @@ use std::path::Path;
 use super::{Bind, Failure, NewTarget, bind, report};
 use crate::link;
 
-/// The word that stands for the name in the files.
+/// Word in the template's files that the robot's name replaces.
 const NAME: &str = "template";
 
-/// The longest name: a file that is named after the robot can be written everywhere.
+/// Maximum length of a name, so that every file system accepts files that contain it.
 const LONGEST: usize = 32;
 
-/// The files, but for `src/alphabet.rs`, which `bind` writes.
+/// Files of the template, except `src/alphabet.rs`, which `bind` writes.
 const FILES: [(&str, &str); 6] = [
     ("Cargo.toml", include_str!("../../../targets/template/Cargo.toml")),
     ("alphabet.mdle", include_str!("../../../targets/template/alphabet.mdle")),
@@ -23,7 +23,7 @@ const FILES: [(&str, &str); 6] = [
     ("tests/conformance.rs", include_str!("../../../targets/template/tests/conformance.rs")),
 ];
 
-/// Writes the folder, whole or not at all, and says what to do next.
+/// Writes the folder, whole or not at all, and prints the next steps.
 pub(super) fn new_target(options: &NewTarget) -> Result<(), Failure> {
     let name = options.name.as_str();
     must_be_free(name)?;
@@ -58,8 +58,8 @@ fn fill(folder: &Path, name: &str) -> Result<(), Failure> {
     bind::bind(&Bind { alphabet: folder.join("alphabet.mdle"), check: false })
 }
 
-/// A file of the template with this name in it. The manifest leaves our workspace and becomes one of its own, wherever the
-/// folder is; the licence is for whoever writes the robot to choose.
+/// Text of a template's file with this name in it. The manifest leaves mdlec's workspace and gets one of its own, in
+/// any folder; the author of the robot chooses the licence.
 fn named(file: &str, text: &str, name: &str) -> String {
     let text = text.replace(NAME, name);
     if file != "Cargo.toml" {
@@ -72,7 +72,7 @@ fn named(file: &str, text: &str, name: &str) -> String {
     text.replace("{ workspace = true", &format!("{{ version{VERSION}"))
 }
 
-/// A name that no package, no file and no word of `--target` takes amiss.
+/// Fails if the name conflicts with a package, a file or a word of `--target`.
 fn must_be_free(name: &str) -> Result<(), Failure> {
     if is_taken(name) {
         return Err(Failure::usage(format!(
@@ -99,7 +99,7 @@ fn is_taken(name: &str) -> bool {
     name == "all" || link::alphabets().iter().any(|alphabet| alphabet.name == name)
 }
 
-/// A good name that is like this one.
+/// Proposes a valid name that resembles this one.
 fn near(name: &str) -> String {
     let last = Path::new(name).file_name().unwrap_or_default().to_string_lossy().to_lowercase();
     let near: String = last.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();

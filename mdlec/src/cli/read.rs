@@ -1,4 +1,5 @@
-//! Reads the files that a user names: regular ones up to a size, never one that waits for somebody to write; and standard input.
+//! Reads the files that a user names: regular files up to a maximum size, never a file that waits for a writer; and
+//! standard input.
 
 use std::fmt;
 use std::fs::{self, FileType, OpenOptions};
@@ -8,21 +9,21 @@ use std::path::Path;
 
 use rustix::fs::OFlags;
 
-/// The largest plan, alphabet or file that a plan uses, in bytes: what is written by hand is far smaller.
+/// Maximum size in bytes of a plan, an alphabet or a file that a plan uses: files written by hand are far smaller.
 pub(super) const LARGEST_PLAN: u64 = 64_000_000;
-/// The largest machine or script, in bytes, which programs write.
+/// Maximum size in bytes of a machine or a script, which programs write.
 pub(super) const LARGEST_DATA: u64 = 1_000_000_000;
 
-/// Why a file is not read.
+/// Reason why a file is not read.
 #[derive(Debug)]
 pub(super) enum Unread {
-    /// It is no regular file, but this.
+    /// The file is not a regular file, but of this kind.
     Irregular(&'static str),
-    /// It has more bytes than are read.
+    /// The file has more than this maximum of bytes.
     TooLarge(u64),
-    /// It has no end yet: somebody may write more.
+    /// The file does not end: a writer may add more.
     Endless,
-    /// The system refuses.
+    /// Error of the system.
     System(io::Error),
 }
 
@@ -40,7 +41,7 @@ impl Unread {
         }
     }
 
-    /// Says it of the file that messages call `name`.
+    /// Error message for the file that messages call `name`.
     pub(super) fn of(&self, name: impl fmt::Display) -> String {
         match self {
             Self::Irregular(what) => format!("`{name}` is a {what}, not a file"),
@@ -63,7 +64,7 @@ pub(super) fn file(path: &Path, most: u64) -> Result<Vec<u8>, Unread> {
     if metadata.len() > most { Err(Unread::TooLarge(most)) } else { whole(file, most) }
 }
 
-/// Reads standard input, at most `most` bytes of it.
+/// Reads standard input, at most `most` bytes.
 pub(super) fn standard_input(most: u64) -> Result<Vec<u8>, Unread> {
     whole(io::stdin().lock(), most)
 }

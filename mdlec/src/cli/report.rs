@@ -1,4 +1,4 @@
-//! What is said on standard error and printed on standard output.
+//! Messages on standard error, and output on standard output.
 
 use std::env;
 use std::ffi::OsString;
@@ -12,42 +12,43 @@ use mdle_runtime::{Printable, PrintableLines, is_printable};
 use super::{Color, Failure, MessageFormat};
 use crate::diagnostic::{Code, Diagnostic, Message, Severity, Sources, Span, has_errors};
 
-/// How this process says things. Said once, where the command line is read: every message goes through this file.
+/// Format of all messages of this process. It is set once, when the command line is read: every message goes through
+/// this file.
 static FORMAT: OnceLock<MessageFormat> = OnceLock::new();
 
-/// When messages have colours, chosen together with the format.
+/// Choice of colours for messages, set together with the format.
 static COLOR: OnceLock<Color> = OnceLock::new();
 
-/// Chooses how things are said from now on.
+/// Sets the format and the colours of all messages.
 pub(super) fn choose(format: MessageFormat, color: Color) {
     // There is one command line, so this is the first time.
     let _ = FORMAT.set(format);
     let _ = COLOR.set(color);
 }
 
-/// Whether things are said as JSON.
+/// Returns `true` if messages are written as JSON.
 pub(super) fn is_json() -> bool {
     FORMAT.get() == Some(&MessageFormat::Json)
 }
 
-/// Whether it is a build script's cargo that listens.
+/// Returns `true` if messages are written for cargo, which runs a build script.
 fn is_build_script() -> bool {
     FORMAT.get() == Some(&MessageFormat::BuildScript)
 }
 
-/// An option as whoever reads this can type it.
+/// Writes an option as the user can type it: on the command line or in a build script.
 pub(super) fn option(name: &str, value: &str) -> String {
     if is_build_script() { format!(".{name}({value:?})") } else { format!("--{name} {value}") }
 }
 
-/// At most so many diagnostics are shown to a person.
+/// Maximum number of diagnostics shown as text.
 const SHOWN: usize = 100;
-/// At most so many where more than that are about the notation: such a file is hardly a plan.
+/// Maximum number if more than that are errors of notation: such a file is probably not a plan.
 const SHOWN_OF_NO_PLAN: usize = 10;
 
-/// Prints diagnostics in their order, then how many there were.
+/// Prints diagnostics in their order, then their number.
 ///
-/// Returns whether the plan may go on: no error, and no warning where these count as errors.
+/// Returns `true` if the plan may be used: no errors, and with `deny_warnings` no warnings.
 pub(super) fn diagnostics(sources: &Sources, found: &[Diagnostic], deny_warnings: bool) -> bool {
     if is_json() {
         // A program is told all of them.
@@ -67,7 +68,7 @@ pub(super) fn diagnostics(sources: &Sources, found: &[Diagnostic], deny_warnings
     errors == 0 && (warnings == 0 || !deny_warnings)
 }
 
-/// Shows diagnostics to a person.
+/// Renders diagnostics as text.
 fn render(sources: &Sources, found: &[Diagnostic]) {
     let choice = match COLOR.get().unwrap_or(&Color::Auto) {
         Color::Always => ColorChoice::Always,
@@ -84,20 +85,20 @@ fn render(sources: &Sources, found: &[Diagnostic]) {
     note_others(found.len(), most);
 }
 
-/// Says how many diagnostics are not shown.
+/// Prints the number of diagnostics that are not shown.
 fn note_others(all: usize, shown: usize) {
     if all > shown {
         note(format_args!("… and {} more", all - shown));
     }
 }
 
-/// Says one line of JSON.
+/// Writes a message as one line of JSON.
 fn line(message: &Message<'_>) {
     // Nobody is left to be told when standard error is closed.
     let _ = writeln!(io::stderr().lock(), "{}", message.to_json());
 }
 
-/// Has cargo show a warning, in the one line that it takes.
+/// Prints a warning for cargo, in the one line that cargo accepts.
 fn warn_cargo(warning: &Message<'_>) {
     let place = warning.spans.first().map(|place| format!("{}:{}:{}: ", place.file, place.line, place.column));
     let help: String = warning.help.iter().map(|help| format!("; help: {help}")).collect();
@@ -106,7 +107,8 @@ fn warn_cargo(warning: &Message<'_>) {
     let _ = writeln!(io::stdout().lock(), "cargo::warning={}", Printable(text));
 }
 
-/// The diagnostic of a file that is not text, with the file as far as it can be shown; its first `valid` bytes are good.
+/// Diagnostic for a file that is not text, with the part of the file that can be shown; its first `valid` bytes are
+/// valid.
 pub(super) fn not_utf8(name: &str, bytes: &[u8], valid: usize) -> (Sources, Diagnostic) {
     let mut sources = Sources::default();
     let source = sources.add(name, String::from_utf8_lossy(bytes));
@@ -117,7 +119,7 @@ pub(super) fn not_utf8(name: &str, bytes: &[u8], valid: usize) -> (Sources, Diag
     (sources, found)
 }
 
-/// Says what went wrong, in the form of the diagnostics.
+/// Prints an error, in the format of the diagnostics.
 pub(super) fn error(message: &str) {
     if is_json() {
         return line(&Message::plain("error", message));
@@ -125,7 +127,7 @@ pub(super) fn error(message: &str) {
     let _ = writeln!(io::stderr().lock(), "error: {}", PrintableLines(message));
 }
 
-/// Says something that is no error.
+/// Prints a note.
 pub(super) fn note(message: impl Display) {
     if is_json() {
         return line(&Message::plain("note", &message.to_string()));
@@ -133,18 +135,18 @@ pub(super) fn note(message: impl Display) {
     let _ = writeln!(io::stderr().lock(), "{}", PrintableLines(message));
 }
 
-/// Prints text for people to standard output, nothing in it that a terminal obeys; a reader that went away is no error.
+/// Prints text for people to standard output, with control characters made printable; a closed pipe is not an error.
 pub(super) fn print(text: &str) -> Result<(), Failure> {
     print_exactly(&PrintableLines(text).to_string())
 }
 
-/// Prints text for programs to standard output as it is; a reader that went away is no error.
+/// Prints text for programs to standard output unchanged; a closed pipe is not an error.
 pub(super) fn print_exactly(text: &str) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     printed(out.write_all(text.as_bytes()).and_then(|()| out.flush()))
 }
 
-/// What came of printing to standard output.
+/// Converts the result of printing to standard output; a closed pipe is not an error.
 pub(super) fn printed(result: io::Result<()>) -> Result<(), Failure> {
     match result {
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::usage(format!(
@@ -154,7 +156,7 @@ pub(super) fn printed(result: io::Result<()>) -> Result<(), Failure> {
     }
 }
 
-/// Gives the answer of the command line itself: help and version, which were asked for, or what is wrong with the usage.
+/// Prints the answer of the command line itself: the requested help or version, or a usage error.
 pub(super) fn answer(answer: &clap::Error) -> Result<(), Failure> {
     // Only the arguments can have brought what a terminal would obey; beside its colours it could not be told from them.
     let is_plain = |argument: OsString| argument.to_string_lossy().chars().all(is_printable);
@@ -167,7 +169,7 @@ pub(super) fn answer(answer: &clap::Error) -> Result<(), Failure> {
     if answer.use_stderr() { Err(Failure { status: 2, message: None }) } else { printed(result) }
 }
 
-/// `1 error`, `2 errors`.
+/// Writes a number with its noun: `1 error`, `2 errors`.
 fn number(count: usize, thing: &str) -> String {
     if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
 }

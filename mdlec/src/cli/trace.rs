@@ -1,4 +1,4 @@
-//! `mdlec trace`: a plan against a script of interrupts.
+//! `mdlec trace`: runs a plan against a script of interrupts.
 
 use std::io::{self, BufWriter, Write};
 
@@ -6,7 +6,7 @@ use super::read::LARGEST_DATA;
 use super::{Failure, Machine, Trace, input, report, settings};
 use crate::trace::{Counted, Line, MatrixProduct, Script, Table, Tree, run};
 
-/// Runs the plan and prints what it does, a line a turn.
+/// Runs the plan and prints the trace, one line per turn.
 pub(super) fn trace(options: &Trace) -> Result<(), Failure> {
     if options.plan.as_os_str() == "-" && options.script.as_os_str() == "-" {
         return Err(Failure::usage("standard input can be the plan or the script, but not both"));

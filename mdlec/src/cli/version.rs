@@ -1,4 +1,4 @@
-//! The answer of an executable to `--version`: what it was built from. It depends on texts alone, not on where or when.
+//! Answer of an executable to `--version`: identifies its sources. It depends only on texts, not on place or time.
 
 use super::input::{Input, Target};
 
@@ -14,7 +14,7 @@ pub(super) fn version(input: &Input, target: &Target) -> String {
     )
 }
 
-/// Returns twelve hexadecimal digits that no other sequence of texts has.
+/// Returns twelve hexadecimal digits that identify a sequence of texts.
 fn hash<'t>(texts: impl Iterator<Item = &'t str>) -> String {
     let mut hasher = blake3::Hasher::new();
     for text in texts {

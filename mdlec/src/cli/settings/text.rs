@@ -80,7 +80,7 @@ fn in_order<'t, 'i>(table: &'t DeTable<'i>) -> Vec<(&'t Key<'i>, &'t Spanned<DeV
     entries
 }
 
-/// A key as TOML has it.
+/// A key as TOML represents it.
 type Key<'i> = Spanned<std::borrow::Cow<'i, str>>;
 
 /// The text that is being read.
