@@ -183,7 +183,7 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
-    /// A diagnostic at `span`, with `here` written beside the place.
+    /// Makes a diagnostic at `span`; `here` is the text beside the place.
     pub fn new(code: Code, message: impl Into<String>, span: Span, here: impl Into<String>) -> Self {
         let label = Label { span, text: here.into(), primary: true };
         Self { code, message: message.into(), labels: vec![label], help: Vec::new() }

@@ -6,7 +6,7 @@ use super::synonyms;
 use super::{AlphabetFile, Capability, Declaration, DeclarationKind};
 use crate::diagnostic::{Code, Diagnostic};
 
-/// The alphabet that plans for one robot are checked against.
+/// Alphabet of one robot, against which its plans are checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Alphabet {
     /// Name of the target.

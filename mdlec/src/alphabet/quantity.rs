@@ -5,11 +5,11 @@
 pub enum Kind {
     /// Metres.
     Length,
-    /// Metres a second.
+    /// Metres per second.
     Speed,
     /// Degrees or radians, which are never converted into each other exactly.
     Angle,
-    /// Radians or degrees a second.
+    /// Radians or degrees per second.
     AngularRate,
     /// Seconds.
     Time,
@@ -36,7 +36,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// The names of the kinds in an alphabet; `bits` is not among them, since it needs its length.
+    /// Names of the kinds in an alphabet, without `bits`, which needs a length.
     pub const NAMES: &[&str] = &[
         "length",
         "speed",

@@ -68,7 +68,7 @@ impl<'t> Reader<'t> {
         Some(AlphabetFile { name, target, uses, declarations })
     }
 
-    /// `"target" NAME ":" "crate" NAME { "," "period" TIME } ";"` or `"alphabet" NAME ";"`.
+    /// Reads `"target" NAME ":" "crate" NAME { "," "period" TIME } ";"` or `"alphabet" NAME ";"`.
     fn head(&mut self) -> Read<(String, Option<TargetHead>)> {
         self.docs();
         let head = match self.peek_word() {
@@ -106,7 +106,7 @@ impl<'t> Reader<'t> {
         }
     }
 
-    /// `"capability" CAP { "," CAP }`.
+    /// Reads `"capability" CAP { "," CAP }`.
     fn capabilities(&mut self) -> Read<Vec<Capability>> {
         self.at += 1;
         self.capability_list()
@@ -120,7 +120,7 @@ impl<'t> Reader<'t> {
         Ok(list)
     }
 
-    /// `NAME [ "[" INT "]" ]`.
+    /// Reads `NAME [ "[" INT "]" ]`.
     fn capability(&mut self) -> Read<Capability> {
         let name = self.name()?.0;
         Ok(Capability { name, size: self.size()? })
@@ -143,7 +143,7 @@ impl<'t> Reader<'t> {
         self.name()
     }
 
-    /// `( "control" | "interrupt" | "signal" ) NAME [ "(" … ")" ] …`.
+    /// Reads `( "control" | "interrupt" | "signal" ) NAME [ "(" … ")" ] …`.
     fn declaration(&mut self, docs: String, origin: Origin) -> Read<Declaration> {
         let kind = match self.peek_word() {
             Some("control") => DeclarationKind::Control,
@@ -187,7 +187,7 @@ impl<'t> Reader<'t> {
         Ok(params)
     }
 
-    /// `NAME ":" type [ UNIT ] [ "=" NUMBER ] [ "in" NUMBER ".." NUMBER ] [ "not" NUMBER ]`.
+    /// Reads `NAME ":" type [ UNIT ] [ "=" NUMBER ] [ "in" NUMBER ".." NUMBER ] [ "not" NUMBER ]`.
     fn param(&mut self) -> Read<Param> {
         let name = self.name()?.0;
         self.require(Token::Colon)?;
@@ -238,7 +238,7 @@ impl<'t> Reader<'t> {
         }
     }
 
-    /// `"unit" UNIT "tolerance" NUMBER`.
+    /// Reads `"unit" UNIT "tolerance" NUMBER`.
     fn unit_and_tolerance(&mut self) -> Read<Option<(Unit, f64)>> {
         if self.peek_word() != Some("unit") {
             return Ok(None);

@@ -1,4 +1,4 @@
-//! `mdlec check`: diagnostics only.
+//! `mdlec check`: prints the diagnostics of plans.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;

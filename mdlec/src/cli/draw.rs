@@ -1,4 +1,4 @@
-//! `mdlec draw`: a plan as a picture.
+//! `mdlec draw`: draws a plan as a picture.
 
 use super::{Draw, Failure, build, endings, input, report, settings};
 use crate::{link, picture};

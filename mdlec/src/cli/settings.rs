@@ -13,9 +13,9 @@ use super::read::{self, Unread};
 use crate::link;
 use text::{Setting, SettingsText};
 
-/// Name of the file.
+/// Name of the settings file.
 const NAME: &str = "mdle.toml";
-/// The largest such file, in bytes.
+/// Maximum size of the settings file, in bytes.
 const LARGEST: u64 = 1_000_000;
 
 /// The settings of the plans in a folder; empty if the folder has no `mdle.toml`.
@@ -35,13 +35,13 @@ pub(super) struct RunOption {
     pub(super) arguments: Vec<OsString>,
 }
 
-/// Returns the path that an `mdle.toml` beside the plan in the file `plan` has. A plan on standard input has none.
+/// Returns the path of the `mdle.toml` beside the plan in the file `plan`. A plan on standard input has none.
 pub(super) fn file_beside(plan: &Path) -> Option<PathBuf> {
     (plan != Path::new("-")).then(|| plan.with_file_name(NAME))
 }
 
-/// Returns the target for the plan in the file `plan`: the one that the command line names with `option`, or else that of the
-/// `mdle.toml` beside the plan.
+/// Returns the target for the plan in the file `plan`: the one that the command line names with `option`, or else that
+/// of the `mdle.toml` beside the plan.
 pub(super) fn target(plan: &Path, option: Option<&str>) -> Result<Target, Failure> {
     Settings::beside(plan)?.target(option)
 }
@@ -87,8 +87,9 @@ impl Settings {
         option.is_some() || self.text.target.is_some()
     }
 
-    /// Returns the options of the file for a run, without those that `given`, the arguments of the command line, has too. They
-    /// are for the target of the file: there are none if the command line names another one with `target`.
+    /// Returns the options of the file for a run, except those that are also in `given`, the arguments of the command
+    /// line. The options are for the target of the file: if the command line names another one with `target`, there are
+    /// none.
     pub(super) fn run_options(&self, target: Option<&str>, given: &[String]) -> Result<Vec<RunOption>, Failure> {
         let own = self.text.target.as_ref().map(|own| &*own.value);
         if let (Some(target), Some(own)) = (target, own)
@@ -120,7 +121,7 @@ impl Settings {
         Ok(RunOption { place, arguments: vec![argument] })
     }
 
-    /// The name or folder of the target, as `--target` takes it: a folder is relative to that of the file.
+    /// Name or folder of the target, as `--target` takes it: a relative folder is relative to the folder of the file.
     fn target_name(&self, value: &str) -> String {
         let is_robot = link::alphabets().iter().any(|alphabet| alphabet.target && alphabet.name == value);
         let folder = self.in_folder(value);

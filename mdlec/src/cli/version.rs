@@ -2,7 +2,7 @@
 
 use super::input::{Input, Target};
 
-/// Returns the hash of the plan's text with that of the files it uses, the target, the hash of its alphabet with the shared ones,
+/// Returns the hash of the plan's text and the files it uses, the target, the hash of its alphabet and the shared ones,
 /// and the version of the compiler.
 pub(super) fn version(input: &Input, target: &Target) -> String {
     format!(

@@ -1,6 +1,7 @@
-//! The folder that mdlec keeps between runs: unpacked sources, compiled libraries, the packages of plans.
+//! The cache, which mdlec keeps between runs: unpacked sources, compiled libraries, and the packages of plans.
 //!
-//! It is `mdlec` in the user's cache folder unless `MDLEC_CACHE` names another; it may be deleted at any time.
+//! It is the folder `mdlec` in the user's cache folder unless `MDLEC_CACHE` names another; it may be deleted at any
+//! time.
 
 use std::fs::{self, File, TryLockError};
 use std::io::{self, Write};
@@ -13,7 +14,7 @@ use etcetera::BaseStrategy;
 use super::access::{self, Private};
 use super::{LinkError, Progress, orphan};
 
-/// The folder that mdlec keeps between runs.
+/// The cache, a folder that mdlec keeps between runs.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Cache {
     folder: PathBuf,

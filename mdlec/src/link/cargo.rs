@@ -134,10 +134,10 @@ impl Job<'_> {
         command
     }
 
-    /// The flags of rustc: a static executable at a fixed address, which saves its table of relocations, without a path
-    /// of this machine in it.
+    /// Flags of rustc: a static executable at a fixed address, which makes its relocation table unnecessary, without
+    /// any path of this machine in it.
     ///
-    /// They are the same for every plan, as other flags would build everything anew; so a target outside the home
+    /// The flags are equal for all plans, since other flags would build everything again; so a target outside the home
     /// folder keeps its path in the messages of its panics.
     fn flags(&self) -> OsString {
         let mut flags = OsString::from("-Ctarget-feature=+crt-static\x1f-Crelocation-model=static");

@@ -31,7 +31,7 @@ pub enum LinkError {
     /// There is no home folder.
     #[error("there is no home folder to keep compiled libraries in: name a folder with the variable MDLEC_CACHE")]
     NoCacheFolder,
-    /// The cache cannot be written or read.
+    /// The system refuses to read or write the cache.
     #[error(
         "the cache cannot be used at `{path}` ({error}): make it writable or delete it, or name another folder with the \
          variable MDLEC_CACHE"
@@ -64,14 +64,14 @@ pub enum LinkError {
     NotACache {
         /// The folder.
         path: PathBuf,
-        /// The content that a cache does not have, or the lack of its lock file.
+        /// Content of the folder that a cache does not have, or the absence of a lock file.
         why: String,
     },
     /// The disk is full.
     #[error("there is no room left at `{0}` (a full disk, a quota, or `ulimit -f`): make room, then try again")]
     DiskFull(PathBuf),
 
-    /// Rust is not installed, or not usable.
+    /// Rust is not installed, or cannot be used.
     #[error("mdlec needs `{tool}` to build an executable, and {why}: install Rust from rustup.rs")]
     NoRust {
         /// Name of the program.

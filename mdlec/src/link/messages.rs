@@ -69,7 +69,8 @@ impl Run {
         self.status.signal() == Some(SIGXFSZ) || FULL.iter().any(|sign| text.contains(sign))
     }
 
-    /// Returns `true` if cargo itself panicked. Cargo indents the output of build scripts, and panics of rustc are errors.
+    /// Returns `true` if cargo itself panicked. Cargo indents the output of build scripts, so a panic in it begins no
+    /// line; panics of rustc do not count.
     pub(super) fn is_cargo_broken(&self) -> bool {
         let is_panic = |line: &str| line.starts_with("thread '") && line.contains("panicked at");
         !self.status.success() && self.stderr.lines().any(|line| is_panic(line) && !line.starts_with("thread 'rustc'"))

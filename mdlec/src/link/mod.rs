@@ -64,7 +64,7 @@ use target::Dependencies;
 pub struct Package<'a> {
     /// Name of the plan, which the executable shows.
     pub plan_name: &'a str,
-    /// The answer of the executable to `--version`, after the plan's name.
+    /// Answer of the executable to `--version`, printed after the plan's name.
     pub version: &'a str,
     /// Plan file that contains the plan.
     pub plan_file: &'a Path,

@@ -7,7 +7,7 @@ use std::fmt;
 pub enum Progress {
     /// Another mdlec is building, in the process of this number if it is known; this one continues afterwards.
     Waiting(Option<u32>),
-    /// Cargo waits for another cargo, which is not mdlec's.
+    /// Cargo waits for a cargo that mdlec did not start.
     Blocked,
     /// Libraries are not on this machine yet, and cargo fetches them.
     Fetching,

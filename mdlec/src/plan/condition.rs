@@ -5,7 +5,7 @@ use super::{QuarkId, RecordId};
 /// A condition; `true` means that it has fired.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Condition {
-    /// Never fires: `null`, `wait inf`, or what degeneracy removal left.
+    /// Never fires: `null`, `wait inf`, or an interrupt that degeneracy removal has replaced.
     Null,
     /// An interrupt quark.
     Quark(QuarkId),

@@ -9,7 +9,7 @@ use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::Files;
 use crate::syntax::tree::{self, Call, Element, Primary};
 
-/// The plans of a file and of those that it uses.
+/// The plans of a file and of the files that it uses.
 #[derive(Debug)]
 pub(super) struct Definitions<'a> {
     /// Plans, those of the file itself first, in order.
@@ -31,7 +31,7 @@ pub(super) struct Definitions<'a> {
     longest: u64,
 }
 
-/// The places in one plan that refer to another.
+/// The places in one plan that refer to one other plan.
 #[derive(Debug, Clone, Copy)]
 struct Uses {
     first: Span,
@@ -39,7 +39,7 @@ struct Uses {
 }
 
 impl<'a> Definitions<'a> {
-    /// Collects the plans of `files` and reports duplicates, recursion and explosion.
+    /// Collects the plans of `files`; reports duplicate names, recursion and plans that are too large.
     pub(super) fn collect(files: &'a Files<'a>, alphabet: &Alphabet) -> (Self, Vec<Diagnostic>) {
         let mut found = Vec::new();
         let mut by_name = BTreeMap::new();

@@ -86,7 +86,7 @@ pub struct Quark {
     pub text: String,
 }
 
-/// A comparison of a signal: an interrupt quark that has fired while it holds.
+/// A comparison of a signal: an interrupt quark that fires while the comparison holds.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Comparison {
     /// The signal.
@@ -253,7 +253,7 @@ pub struct Interrupt {
     pub condition: Condition,
     /// Text of the condition, kept if the condition was removed.
     pub text: String,
-    /// Condition text with parentheses around each OR that is directly in an OR; `None` without such an OR.
+    /// Text of the condition with parentheses around each OR that is directly in an OR; `None` without such an OR.
     pub nested: Option<Box<str>>,
     /// Places of the operands: of the [joined](Condition::joined) parts of the condition.
     pub operands: Box<[OperandPlace]>,

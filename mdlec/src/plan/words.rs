@@ -12,7 +12,7 @@ pub(crate) struct Words<'p> {
     plan: &'p Plan,
     alphabet: &'p Alphabet,
     interrupts: BTreeSet<&'p str>,
-    /// Conditions that a script never lists, with the reason.
+    /// Conditions that a script must not list, with the reason.
     counted: BTreeMap<&'p str, &'static str>,
     laws: BTreeSet<&'p str>,
 }

@@ -1,4 +1,5 @@
-//! Arithmetic, which MDLe does not have: messages that name the result, and values in units that MDLe does not have.
+//! Messages about arithmetic, which MDLe does not have: they give the result, and convert values in units that MDLe
+//! does not have.
 
 use super::source::{Place, Source};
 use super::token::split;

@@ -1,5 +1,5 @@
 //! Balances brackets before the grammar sees them (docs/src/reference/language.md, 3.7): afterwards every bracket has
-//! its partner, none is nested deeper than 256, and no atom holds an atom.
+//! its partner, brackets are nested at most 256 deep, and no atom contains an atom.
 
 mod inside;
 
@@ -34,8 +34,8 @@ pub(super) struct Balanced<'s> {
     is_repaired: bool,
 }
 
-/// Balances the brackets of a text. A brace that is never closed is closed where its indentation says so, else where its plan
-/// seems to end, if that leaves no other bracket over.
+/// Balances the brackets of a text. A brace that is never closed is closed where its indentation shows the end, else
+/// where its plan seems to end, if no other bracket is left over then.
 pub(super) fn balance<'s>(source: Source<'s>, lexed: &Lexed<'s>) -> Balanced<'s> {
     let (plain, ends) = pass(source, lexed, &BTreeMap::new());
     if !plain.is_open {
@@ -261,7 +261,7 @@ impl<'s> Pass<'_, 's> {
         Some(open)
     }
 
-    /// Closes the innermost open bracket where the text does not.
+    /// Closes the innermost open bracket where the text has no closing bracket.
     fn force(&mut self) -> Option<Open> {
         let kind = if self.open.last()?.kind == Kind::Brace { Tok::RBrace } else { Tok::RParen };
         self.balanced.regions.spoil();

@@ -84,7 +84,7 @@ fn openers(tokens: &[Token<'_>]) -> Vec<Option<usize>> {
     openers
 }
 
-/// A place where the parser could not go on.
+/// A place where the parser found an unexpected token.
 pub(super) struct Site<'t, 's> {
     source: Source<'s>,
     tokens: &'t [Token<'s>],

@@ -1,4 +1,4 @@
-//! A file of plans together with those that it uses, each read once (docs/src/reference/language.md, 1).
+//! Parses a file of plans together with the files that it uses, each once (docs/src/reference/language.md, 1).
 
 use std::collections::BTreeSet;
 
@@ -32,7 +32,7 @@ impl Loader for NoFiles {
     }
 }
 
-/// The plans of a file and of those that it uses.
+/// The plans of a file and of the files that it uses.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Files<'s> {
     /// Plans, those of the file itself first, in order.
@@ -43,7 +43,7 @@ pub struct Files<'s> {
     pub is_incomplete: bool,
 }
 
-/// A file whose uses are being looked at.
+/// A file whose uses are being followed.
 struct Open<'s> {
     source: SourceId,
     uses: Vec<Name<'s>>,

@@ -97,9 +97,9 @@ struct Rewriting<'t, 's> {
     new: Vec<Token<'s>>,
     /// Index of each old token among the new ones.
     moved: Vec<usize>,
-    /// The brackets that are open, as far as they matter, with the old token that closes those that are rewritten.
+    /// Open brackets, the innermost last.
     open: Vec<Open>,
-    /// The messages, with the new token that follows and the text that each is about.
+    /// Messages, each with the index of the new token after its text, and the place of that text.
     found: Vec<(usize, Place, Diagnostic)>,
 }
 
@@ -146,7 +146,7 @@ impl<'s> Rewriting<'_, 's> {
         self.found.push((self.new.len(), place, diagnostic));
     }
 
-    /// Processes the word at `at`; returns the token to continue with.
+    /// Processes the token at `at`; returns the index of the old token to continue with.
     fn next(&mut self, at: usize) -> usize {
         let Some(token) = self.old.get(at).copied() else { return at + 1 };
         let rewritten = if token.kind == Tok::Use {
@@ -269,7 +269,7 @@ impl<'s> Rewriting<'_, 's> {
         (is_short && inside.iter().all(is_condition)).then_some(text)
     }
 
-    /// Leaves out the condition of a word, and reads the braces after it as parentheses.
+    /// Skips the condition after a word, and reads the braces after it as parentheses.
     fn past_condition(&mut self, at: usize) -> usize {
         let mut next = at;
         if matches!(self.kind(at), Some(Tok::LParen | Tok::TouchParen)) && self.kind(at + 1) != Some(Tok::Atom) {

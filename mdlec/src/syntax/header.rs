@@ -17,7 +17,7 @@ pub(super) enum Begins<'s> {
     Either(&'s str),
 }
 
-/// Marks the parentheses in the headers of plans; brackets must match.
+/// Marks the parentheses in the headers of plans; brackets must be balanced.
 pub(super) fn mark(tokens: &mut [Token<'_>]) {
     let mut plans = None;
     for brace in 0..tokens.len() {

@@ -7,7 +7,7 @@ use super::token::split;
 use crate::alphabet::Unit;
 use crate::diagnostic::{Code, Diagnostic, Span};
 
-/// A run of characters that no token begins with.
+/// Reports a run of characters with which no token begins.
 pub(super) fn characters(source: Source<'_>, place: Place) -> Diagnostic {
     let found = source.slice(place);
     if let Some(diagnostic) = arithmetic(source, found, place) {
@@ -73,7 +73,7 @@ fn begins_line(source: Source<'_>, at: usize) -> bool {
     before.rsplit('\n').next().unwrap_or(before).trim().is_empty()
 }
 
-/// The commands of typesetting that are read.
+/// Help that lists the typesetting commands that the lexer accepts.
 const TYPESETTING: &str = "of typesetting only `\\\\`, `\\{`, `\\}`, `\\text{…}`, `\\infty`, `\\leq`, `\\geq`, `\\Gamma_{…}` and `\\sigma_{null}` are read";
 
 /// Returns `true` if an operand can begin here: after a space, an opening bracket, or a sign between operands.
@@ -94,7 +94,7 @@ pub(super) fn file(source: Source<'_>, place: Place, name: &str) -> Diagnostic {
     diagnostic.fix("write {}", span, format!("\"{name}\""))
 }
 
-/// A sign that does not touch its number.
+/// Adds help about a sign that does not touch its number.
 fn sign(diagnostic: Diagnostic, source: Source<'_>, found: &str, place: Place) -> Diagnostic {
     let after = source.text.get(place.end..).unwrap_or("");
     let spaces = after.len() - after.trim_start_matches([' ', '\t']).len();
@@ -108,7 +108,7 @@ fn sign(diagnostic: Diagnostic, source: Source<'_>, found: &str, place: Place) -
     diagnostic.fix(words, span, format!("{found}{number}"))
 }
 
-/// A word in the place of characters that may touch others.
+/// Adds spaces around a word that replaces characters, where these touch others.
 fn apart(source: Source<'_>, place: Place, word: &str) -> String {
     let is_blank = |c: Option<char>| c.is_none_or(char::is_whitespace);
     let before = source.text.get(..place.start).and_then(|before| before.chars().next_back());
@@ -117,7 +117,7 @@ fn apart(source: Source<'_>, place: Place, word: &str) -> String {
     format!("{before}{word}{}", if is_blank(after) { "" } else { " " })
 }
 
-/// A typesetting command that has no meaning in a plan.
+/// Reports a typesetting command that has no meaning in a plan.
 pub(super) fn command(source: Source<'_>, place: Place) -> Diagnostic {
     let found = source.slice(place);
     let diagnostic = Diagnostic::new(
@@ -141,14 +141,14 @@ pub(super) fn command(source: Source<'_>, place: Place) -> Diagnostic {
     diagnostic.fix("write {}", source.span(place), apart(source, place, word))
 }
 
-/// A block comment that does not end.
+/// Reports a block comment that is never closed.
 pub(super) fn comment(source: Source<'_>, place: Place) -> Diagnostic {
     let opener = Place::new(place.start, place.start + 2);
     Diagnostic::new(Code::E0105, "this comment does not end", source.span(opener), "begins here")
         .help("end it with `*/`, or write `//` for a comment that ends with its line")
 }
 
-/// A string that does not end on its line.
+/// Reports a string that does not end on its line.
 pub(super) fn string(source: Source<'_>, place: Place) -> Diagnostic {
     let opener = source.span(Place::new(place.start, place.start + 1));
     let diagnostic = Diagnostic::new(Code::E0105, "this text does not end on its line", opener, "begins here");
@@ -158,13 +158,13 @@ pub(super) fn string(source: Source<'_>, place: Place) -> Diagnostic {
     diagnostic.fix("end it with {}", source.span(Place::new(place.end, place.end)), "\"")
 }
 
-/// A `\text{` whose brace does not close.
+/// Reports a `\text{` that is never closed.
 pub(super) fn text(source: Source<'_>, place: Place) -> Diagnostic {
     Diagnostic::new(Code::E0103, "this `\\text{` is never closed", source.span(place), "opened here")
         .help("close it with `}`; it contains no braces")
 }
 
-/// A number that touches something other than a unit.
+/// Reports a number that touches text other than a unit.
 pub(super) fn number(source: Source<'_>, number: &str, tail: &str, place: Place) -> Diagnostic {
     let span = source.span(Place::new(place.end - tail.len(), place.end));
     let whole = source.span(place);
@@ -216,7 +216,7 @@ pub(super) fn number(source: Source<'_>, number: &str, tail: &str, place: Place)
     diagnostic
 }
 
-/// A number with too many dots, or without digits after a dot.
+/// Reports a number with too many dots, or without digits after a dot.
 fn dot(number: &str, tail: &str, span: Span, whole: Span) -> Diagnostic {
     let diagnostic =
         Diagnostic::new(Code::E0104, format!("`{number}{tail}` is not a number"), span, "not part of a number");
@@ -227,7 +227,7 @@ fn dot(number: &str, tail: &str, span: Span, whole: Span) -> Diagnostic {
     diagnostic.help("a number has one dot at most, with digits on both sides: `0.36`")
 }
 
-/// A spelling of a unit that is probably meant.
+/// Returns the unit that was probably meant by `written`.
 pub(crate) fn nearest_unit(written: &str) -> Option<&'static str> {
     let spelled = match written.to_lowercase().as_str() {
         "°" | "degree" | "degrees" => Some("deg"),

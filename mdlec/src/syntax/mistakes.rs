@@ -46,7 +46,7 @@ pub(super) fn known(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// A plan whose name is missing, or something that cannot be one.
+/// Reports a plan without a name, or with something that cannot be a name.
 fn plan_name(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let is_single = site.kind(site.at + 1) != Some(Tok::Colon);
     if site.found() == Some(Tok::Colon) && is_single && site.before(2) == Some(Tok::LBrace) && site.expects_element() {
@@ -100,7 +100,7 @@ fn plan_name(site: &Site<'_, '_>) -> Option<Diagnostic> {
     }
 }
 
-/// `ExecPlan { … }` and other malformed loops.
+/// Reports `ExecPlan { … }` and other malformed loops.
 fn loop_count(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if site.before(1) == Some(Tok::ExecPlan) {
         if let (Some(Tok::LParen), Some(Tok::Number(_) | Tok::Infinity), Some(Tok::RParen), Some(Tok::LBrace)) =
@@ -140,7 +140,7 @@ fn loop_count(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// `^` without a count, or after a condition.
+/// Reports `^` without a count, or after a condition.
 fn power(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let behind = site.at.checked_sub(1).and_then(|closer| site.partner(closer));
     if site.found() == Some(Tok::Caret) && behind == Some(Tok::ConditionParen) {
@@ -193,7 +193,7 @@ fn keyword_argument(site: &Site<'_, '_>) -> Option<Diagnostic> {
     }
 }
 
-/// Commas between elements.
+/// Reports commas between elements.
 fn comma(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let between = |at: usize| {
         site.about(at, "elements are not separated by commas", "not expected here").fix(
@@ -218,7 +218,7 @@ fn comma(site: &Site<'_, '_>) -> Option<Diagnostic> {
     None
 }
 
-/// A comma in the condition of an atom, after it, or in the parentheses of its law.
+/// Reports a comma in the condition of an atom, after it, or in the parentheses of its law.
 fn comma_in_atom(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let (opener, span) = (site.opener()?, site.span(site.at, site.at));
     let before = opener.checked_sub(1)?;
@@ -253,7 +253,7 @@ fn comma_in_atom(site: &Site<'_, '_>) -> Option<Diagnostic> {
     }
 }
 
-/// A malformed list of parameters.
+/// Reports a malformed list of parameters.
 fn parameters(site: &Site<'_, '_>) -> Option<Diagnostic> {
     (site.opener_kind() == Some(Tok::ParamParen)).then(|| {
         let expected = if site.before(1) == Some(Tok::Comma) { "a parameter".to_owned() } else { site.expectation() };

@@ -1,5 +1,5 @@
-//! Text to tree: tokens, brackets, grammar (docs/src/reference/language.md, 2 and 3). Never fails: a tree and a list of
-//! diagnostics.
+//! Parses text to a tree: tokens, brackets, grammar (docs/src/reference/language.md, 2 and 3). Parsing never fails: it
+//! returns a tree and a list of diagnostics.
 
 mod arithmetic;
 mod brackets;
@@ -114,7 +114,7 @@ fn recover<'s>(source: Source<'s>, arena: &'s Arena) -> (tree::File<'s>, Vec<Dia
     (file, diagnostics)
 }
 
-/// A file without any plan.
+/// Reports a file without any plan.
 fn no_plan(source: Source<'_>) -> Diagnostic {
     let end = source.text.trim_end().len();
     Diagnostic::new(Code::E0107, "this file has no plan", source.span(Place::new(end, end)), "a plan is missing here")

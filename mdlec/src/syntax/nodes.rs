@@ -19,7 +19,7 @@ use super::tree::{
 use super::waiting::{First, Waiting, complete};
 use crate::diagnostic::{Code, Diagnostic, Span};
 
-/// An error that the parser has recovered from.
+/// An error from which the parser has recovered.
 pub(super) type Recovery<'s> = ErrorRecovery<Location, Tok<'s>, std::convert::Infallible>;
 
 /// Doc comments read so far, each with the index of the token after it.

@@ -4,9 +4,9 @@ use super::source::Source;
 use super::token::lex;
 use crate::diagnostic::SourceId;
 
-/// Returns the tokens of `text` in one line, without comments and typesetting, one space between two where there was
-/// something, and without the parentheses around the whole; and for each of the places `ends`, which are ends of tokens,
-/// its place in that line.
+/// Returns the tokens of `text` in one line, without comments, typesetting and the parentheses around the whole; one
+/// space separates two tokens if anything separated them. Also returns for each offset in `ends`, which are ends of
+/// tokens, its offset in that line.
 #[must_use]
 pub fn one_line<const N: usize>(text: &str, ends: [Option<usize>; N]) -> (String, [Option<usize>; N]) {
     let tokens = lex(Source { id: SourceId(0), text }).tokens;

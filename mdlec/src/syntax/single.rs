@@ -13,7 +13,7 @@ pub fn is_law(text: &str) -> bool {
     })
 }
 
-/// The operands of the outermost OR of a condition, as written; `None` if a text is not one condition and nothing else.
+/// Operands of the outermost OR of a condition, as written; `None` if a text is not exactly one condition.
 #[must_use]
 pub fn operands(text: &str) -> Option<Vec<&str>> {
     const BEFORE: &str = "{ P (Atom (";

@@ -423,7 +423,7 @@ fn doc<'s>(lexer: &mut Lexer<'s, Tok<'s>>) -> FilterResult<&'s str, ()> {
     }
 }
 
-/// Skips a block comment; one that does not end takes the rest of the text.
+/// Skips a block comment; one that is never closed takes the rest of the text.
 fn comment<'s>(lexer: &mut Lexer<'s, Tok<'s>>) -> FilterResult<(), ()> {
     let rest = lexer.remainder();
     match rest.find("*/") {

@@ -115,7 +115,7 @@ pub enum Primary<'s> {
     Atom(&'s Atom<'s>),
     /// A behavior in place.
     Plan(&'s Plan<'s>),
-    /// A plan by name, with arguments if it takes some.
+    /// A plan by name, with its arguments if it has any.
     Ref(&'s Call<'s>),
     /// `ExecPlan n { … }` or `ExecPlan n Name`.
     Exec(&'s Exec<'s>),
@@ -202,7 +202,7 @@ pub struct Compared<'s> {
 /// `after LABEL [cause]`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct After<'s> {
-    /// The label of the element that has to have ended.
+    /// Label of the element that must have ended last.
     pub label: Name<'s>,
     /// Operand that must have caused the end of that element.
     pub cause: Option<Condition<'s>>,
@@ -253,7 +253,7 @@ impl Comparison {
 pub struct Call<'s> {
     /// The name.
     pub name: &'s str,
-    /// The arguments, flattened: parentheses around several of them mean nothing.
+    /// Arguments, flattened: parentheses around several of them have no meaning.
     pub args: &'s [Arg<'s>],
     /// From the name to the last argument or the closing parenthesis.
     pub span: Span,
@@ -305,7 +305,7 @@ pub struct Number<'s> {
 }
 
 impl<'s> Number<'s> {
-    /// The number of this text: digits, and perhaps a unit.
+    /// Makes a number from this text: digits, and perhaps a unit.
     #[must_use]
     pub fn new(text: &'s str, span: Span) -> Self {
         Self { text, span }

@@ -16,7 +16,7 @@ pub(super) struct Waiting<'s> {
     pub(super) params: Vec<Param<'s>>,
 }
 
-/// Puts the list that begins at `first` into the arena.
+/// Moves the list that begins at `first` into the arena.
 pub(super) fn complete<'s, T: Copy>(waiting: &mut Vec<T>, first: First, arena: &'s Bump) -> &'s [T] {
     let list = arena.alloc_slice_copy(waiting.get(first..).unwrap_or(&[]));
     waiting.truncate(first);

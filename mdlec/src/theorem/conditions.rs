@@ -21,7 +21,7 @@ pub struct Stretch {
 pub enum Broken {
     /// An interrupt leads on from the termination state.
     EndIsLeft(InterruptId),
-    /// Nothing leads on from a state.
+    /// No interrupt leads on from a state.
     NoExit(State),
     /// The only possible order begins with a state other than the one that the file names.
     StartNotFirst {

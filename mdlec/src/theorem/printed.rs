@@ -49,7 +49,7 @@ pub fn as_printed(machine: &Machine, exactly: &Answer) -> [Rule; 4] {
     ]
 }
 
-/// Neighbouring columns of an interrupt that have their 1 in one row.
+/// Neighbouring columns of an interrupt that have their 1 in the same row.
 #[derive(Debug, Clone, Copy)]
 struct Same {
     first: usize,

@@ -149,7 +149,7 @@ impl<'p> MatrixProduct<'p> {
         }
     }
 
-    /// Sets each memory of RISING whose operand has not fired, in the interrupts that list the state's column.
+    /// Sets each memory of RISING whose operand does not hold, in the interrupts that list the state's column.
     fn settle(&mut self, y: &Reports) {
         let mut set = Vec::new();
         for number in self.listed() {

@@ -46,7 +46,7 @@ pub(super) struct SettingsError {
 /// Reads the text of an `mdle.toml`.
 ///
 /// # Errors
-/// At the first entry that is no TOML, has an unknown key or a value of another type.
+/// Fails at the first entry that is not TOML, has an unknown key, or has a value of the wrong type.
 pub(super) fn read(text: &str) -> Result<SettingsText, SettingsError> {
     let reading = Reading(text);
     let table = DeTable::parse(text).map_err(|error| {
@@ -87,7 +87,7 @@ type Key<'i> = Spanned<std::borrow::Cow<'i, str>>;
 struct Reading<'t>(&'t str);
 
 impl Reading<'_> {
-    /// A value that has to be text; `example` shows one.
+    /// Reads a value that must be text; `example` shows one.
     fn text(&self, key: &Key<'_>, value: &Spanned<DeValue<'_>>, example: &str) -> Result<Setting, SettingsError> {
         let found = value.get_ref();
         match found.as_str() {
@@ -99,7 +99,7 @@ impl Reading<'_> {
         }
     }
 
-    /// The entries of `[options]`.
+    /// Reads the entries of `[options]`.
     fn options(&self, key: &Key<'_>, value: &Spanned<DeValue<'_>>) -> Result<Vec<OptionText>, SettingsError> {
         let Some(table) = value.get_ref().as_table() else {
             let found = kind(value.get_ref());
@@ -136,7 +136,7 @@ impl Reading<'_> {
         Ok(OptionText { line: self.line(&key.span()), name: name.to_owned(), arguments })
     }
 
-    /// An option with a value that is text or a number.
+    /// Reads the value of an option, which is text or a number.
     fn argument(&self, name: &str, value: &Spanned<DeValue<'_>>) -> Result<String, SettingsError> {
         let found = value.get_ref();
         let text = match found {

@@ -1,4 +1,4 @@
-//! W0401: numbers without a unit that look as if another unit were meant, such as a speed of `0.5`, in cm/s.
+//! W0401: numbers without a unit that were probably meant in another unit, such as a speed of `0.5`, which is in cm/s.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! A label inside its atom and a `use` inside a plan, which the grammar could not recover from.
+//! Mistakes from which the grammar could not recover: a label inside its atom, and a `use` inside a plan.
 
 use super::{Kind, Pass};
 use crate::diagnostic::{Code, Diagnostic};

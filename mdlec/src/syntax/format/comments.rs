@@ -58,9 +58,9 @@ fn line_ends(blank: &str) -> usize {
 /// Kind of piece that begins a line of its own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Before {
-    /// The first of several: no empty line comes before it.
+    /// The first of several pieces: no empty line comes before it.
     First,
-    /// The next: an empty line before it stays.
+    /// A further piece: an empty line before it stays.
     Next,
     /// A plan after others: an empty line comes before it.
     Apart,
@@ -69,7 +69,7 @@ pub(super) enum Before {
 }
 
 impl Layout<'_> {
-    /// Puts the comments before the next piece, which itself begins a line.
+    /// Writes the comments before the next piece, which itself begins a line.
     pub(super) fn boundary(&mut self, before: Before) {
         let indent = INDENT * self.depth;
         // The comments before a closing bracket belong to what it closes.

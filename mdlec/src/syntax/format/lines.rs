@@ -27,7 +27,7 @@ impl Lines {
         self.line = Some(Line { code: " ".repeat(indent), ..Line::default() });
     }
 
-    /// Leaves a line empty.
+    /// Adds an empty line.
     pub(super) fn skip(&mut self) {
         self.done.extend(self.line.take());
         self.line = Some(Line::default());
@@ -43,7 +43,7 @@ impl Lines {
         code.push_str(text);
     }
 
-    /// Puts a comment among the words, or on a line of its own.
+    /// Adds a comment between words, or on a line of its own.
     pub(super) fn append(&mut self, comment: &str, is_closed: bool) {
         if self.line.as_ref().is_some_and(|line| !line.comment.is_empty()) {
             return self.trail(comment);

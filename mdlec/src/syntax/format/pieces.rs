@@ -101,7 +101,7 @@ impl<'s> Pieces<'s> {
         self.get(end.saturating_sub(1)).comments > self.get(first.saturating_sub(1)).comments
     }
 
-    /// The pieces from `first` to where the line may break, at the latest before `end`.
+    /// Returns the pieces from `first` to the next place where the line may break, at most to `end`.
     pub(super) fn chunk(&self, first: usize, end: usize) -> Chunk {
         if !self.get(first).may_break {
             return Chunk { may_break: false, width: 0 };

@@ -1,10 +1,10 @@
-//! Atoms: a condition or a law that is missing or in the wrong place.
+//! Mistakes in atoms: a condition or a law that is missing or in the wrong place.
 
 use crate::diagnostic::Diagnostic;
 use crate::syntax::errors::Site;
 use crate::syntax::token::Tok;
 
-/// `(Atom bumper stop)`: the condition of an atom without its parentheses.
+/// Reports `(Atom bumper stop)`: the condition of an atom without its parentheses.
 pub(super) fn atom_condition(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if site.before(1) != Some(Tok::Atom) {
         return None;
@@ -100,7 +100,7 @@ fn several_laws(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// An atom without its law, or with something after the law.
+/// Reports an atom without its law, or with something after the law.
 pub(super) fn atom_law(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if let Some(laws) = several_laws(site) {
         return Some(laws);

@@ -7,7 +7,7 @@ use crate::diagnostic::Diagnostic;
 use crate::syntax::errors::Site;
 use crate::syntax::token::{Tok, split};
 
-/// `r[0]`, `[bumper]`
+/// Reports `r[0]` and `[bumper]`: square brackets.
 pub(super) fn square_brackets(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if site.found() != Some(Tok::LBracket) {
         return None;
@@ -33,7 +33,7 @@ pub(super) fn square_brackets(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// `0,5`
+/// Reports `0,5`: a decimal comma.
 pub(super) fn decimal_comma(site: &Site<'_, '_>) -> Option<Diagnostic> {
     // What stops the parser is the comma, or the digits after it.
     let comma = [Some(site.at), site.at.checked_sub(1)];
@@ -51,7 +51,7 @@ pub(super) fn decimal_comma(site: &Site<'_, '_>) -> Option<Diagnostic> {
     Some(diagnostic.fix("a decimal number has a dot: {}", site.span(whole, comma + 1), format!("{left}.{right}")))
 }
 
-/// `Leg (3m)`: arguments that do not touch the name of their plan.
+/// Reports `Leg (3m)`: arguments that do not touch the name of their plan.
 pub(super) fn apart(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let paren = site.at.checked_sub(1)?;
     let name = paren.checked_sub(1)?;
@@ -76,7 +76,7 @@ pub(super) fn apart(site: &Site<'_, '_>) -> Option<Diagnostic> {
     Some(diagnostic.fix(&words, site.span(name, paren), format!("{plan}(")))
 }
 
-/// `0.5 m`: a unit that does not touch its number.
+/// Reports `0.5 m`: a unit that does not touch its number.
 pub(super) fn unit_apart(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let (Some(Tok::Name(name)), Some(Tok::Number(number))) = (site.found(), site.before(1)) else { return None };
     if !split(number).1.is_empty() {
@@ -88,7 +88,7 @@ pub(super) fn unit_apart(site: &Site<'_, '_>) -> Option<Diagnostic> {
     Some(diagnostic.fix("write {}", site.span(site.at - 1, site.at), format!("{number}{name}")))
 }
 
-/// A quark where an element should be: `{ A go 5 0 }`, `((wait 5) stop)`, `(r0 < 1m)`.
+/// Reports a quark where an element should be: `{ A go 5 0 }`, `((wait 5) stop)`, `(r0 < 1m)`.
 pub(super) fn bare_call(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let formal = site.expects(",") && site.expects_argument() && site.opener_kind() == Some(Tok::LParen);
     if formal {
@@ -120,7 +120,7 @@ pub(super) fn bare_call(site: &Site<'_, '_>) -> Option<Diagnostic> {
     Some(diagnostic.fix("or, if it is a plan, write {}", site.span(site.at - 1, last), call))
 }
 
-/// A quark or a comparison that has parentheses of its own.
+/// Reports a quark or a comparison in parentheses of its own.
 fn in_parentheses(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let opener = site.opener()?;
     let end = site.end_of_group(opener);
@@ -137,7 +137,7 @@ fn in_parentheses(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// `{ Name (bumper) (wait 10) …`: a second condition of a plan.
+/// Reports `{ Name (bumper) (wait 10) …`: a second condition of a plan.
 fn second_condition(site: &Site<'_, '_>, opener: usize, end: usize, second: &str) -> Option<Diagnostic> {
     let closer = opener
         .checked_sub(1)
@@ -154,7 +154,7 @@ fn second_condition(site: &Site<'_, '_>, opener: usize, end: usize, second: &str
     Some(diagnostic.fix("if one of them is enough, join them: {}", site.span(first, end), joined))
 }
 
-/// Proposes the atom that a call may be meant as.
+/// Proposes the atom that was probably meant by a call.
 fn element(diagnostic: Diagnostic, site: &Site<'_, '_>, (first, last): (usize, usize), call: &str) -> Diagnostic {
     let name = call.split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or("");
     let argument = call.strip_prefix(name).unwrap_or("").trim();
@@ -174,7 +174,7 @@ fn element(diagnostic: Diagnostic, site: &Site<'_, '_>, (first, last): (usize, u
     diagnostic.fix("a law runs in an atom, until its condition fires: {}", site.span(first, last), atom)
 }
 
-/// Returns `true` if a call can be seen to be a condition.
+/// Returns `true` if a call is certainly a condition.
 fn is_condition(call: &str) -> bool {
     let (name, argument) = call.split_once(' ').unwrap_or((call, ""));
     let is_bits = argument.len() >= 3 && argument.bytes().all(|byte| matches!(byte, b'0' | b'1'));
@@ -186,12 +186,12 @@ fn is_comparison(token: Option<Tok<'_>>) -> bool {
     matches!(token, Some(Tok::Equal | Tok::Less | Tok::LessOrEqual | Tok::Greater | Tok::GreaterOrEqual))
 }
 
-/// A parenthesis that touches a name but is not its arguments.
+/// Reports a parenthesis that touches a name but does not contain its arguments.
 pub(super) fn touching_parenthesis(site: &Site<'_, '_>) -> Option<Diagnostic> {
     (site.found() == Some(Tok::TouchParen)).then(|| touches(site, site.at))
 }
 
-/// An element in parentheses that touch a name.
+/// Reports an element in parentheses that touch a name.
 pub(super) fn element_touches(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let element = matches!(site.found(), Some(Tok::Atom | Tok::ExecPlan | Tok::LBrace | Tok::Frame));
     let opener = site.opener().filter(|_| element && site.opener_kind() == Some(Tok::TouchParen))?;

@@ -1,10 +1,10 @@
-//! Conditions: operators without an operand, and what is no condition.
+//! Mistakes in conditions: operators without an operand, and text that is not a condition.
 
 use crate::diagnostic::Diagnostic;
 use crate::syntax::errors::Site;
 use crate::syntax::token::Tok;
 
-/// Something other than a condition where a condition is allowed.
+/// Reports text that is not a condition where a condition is allowed.
 pub(super) fn condition(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if !site.expects_condition() {
         return None;
@@ -49,7 +49,7 @@ pub(super) fn condition(site: &Site<'_, '_>) -> Option<Diagnostic> {
     }
 }
 
-/// `1m > r0`, `0.5 < r0 < 1`: the signal comes first.
+/// Reports `1m > r0` and `0.5 < r0 < 1`: a signal must come first.
 fn turned(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let (number, signal) = (site.text(site.at, site.at)?, site.at + 2);
     #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens do not compare")]

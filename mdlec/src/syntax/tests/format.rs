@@ -20,7 +20,7 @@ ExecPlan 3{(Atom(wait 500ms)(go 5 0))(Atom(bumper)stop)}((Atom(null)turn 90)Leg)
 \\Gamma_{a}^{\\text{b c}} = \\{ \\text{Last} (Atom (wait $\\infty$) stop); \\}$
 ";
 
-/// Comments wherever there can be any.
+/// Comments in every possible place.
 const COMMENTS: &str = "// The first line.
 
 
