@@ -1,7 +1,7 @@
 //! Builds a static executable from emitted Rust: writes a cargo package and runs cargo.
 //!
-//! Everything happens in the [`Cache`]. The sources of executables are part of mdlec and unpacked there once, so that an
-//! installed mdlec needs no checkout and, once cargo has fetched the libraries, no network:
+//! Everything happens in the [`Cache`]. The sources of executables are part of mdlec and unpacked there once, so that
+//! an installed mdlec needs no checkout and, once cargo has fetched the libraries, no network:
 //!
 //! ```text
 //! lock                    locked while an mdlec works; contains the number of its process

@@ -293,8 +293,8 @@ impl<'r, 'a> Resolver<'r, 'a> {
         ends
     }
 
-    /// Returns `true` if a name that may be a law or a plan is a law, or has arguments without parentheses as only laws
-    /// have.
+    /// Returns `true` if a name in the place of a law or a plan counts as a law: the alphabet has this law, or the
+    /// name has arguments and no plan has this name.
     fn is_law(&self, call: &Call<'a>) -> bool {
         let mut declarations = self.quarks.alphabet().declarations_of(call.name);
         let is_bare = !call.args.is_empty() && self.definitions.get(call.name).is_none();

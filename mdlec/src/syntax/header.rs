@@ -59,7 +59,7 @@ pub(super) fn names<'s>(tokens: &[Token<'s>]) -> BTreeSet<&'s str> {
     named.collect()
 }
 
-/// Returns whether the tokens after a parenthesis begin parameters: a name and a colon with a type, or with a name that
+/// Determines if the tokens after a parenthesis begin parameters: a name and a colon with a type, or with a name that
 /// must be one. A string whose first element has a label begins alike.
 pub(super) fn begins<'s>(mut behind: impl Iterator<Item = Tok<'s>>) -> Begins<'s> {
     if !matches!((behind.next(), behind.next()), (Some(Tok::Name(_)), Some(Tok::Colon))) {

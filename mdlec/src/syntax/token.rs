@@ -249,7 +249,7 @@ impl<'s> Reader<'s> {
         self.push(Tok::Number(number), place);
     }
 
-    /// Drops the braces of `\text{…}`, so that a name in them still touches the parenthesis after them.
+    /// Drops the braces of `\text{…}`, which do not separate a name from its parenthesis.
     fn text(&mut self, place: Place) {
         match text_end(self.source.text, place.end) {
             Some(end) => self.text_ends = end,
