@@ -12,7 +12,7 @@ use crate::{
 pub trait Alphabet {
     /// The robot's output.
     type Output: Output;
-    /// Its input; the default is the null input.
+    /// Input of the robot; its default is the null input.
     type Input: Default;
     /// Any of its interrupts, with its arguments.
     type Interrupt: Interrupt<Self::Output>;
@@ -20,12 +20,12 @@ pub trait Alphabet {
     type Signal: Signal<Self::Output>;
     /// Any of its laws, with its arguments.
     type Control: Control<Self::Output, Law = Self::Law>;
-    /// Any of its laws as it runs; one that never completes says so by never being done.
+    /// Any of its laws as it runs; a law that never completes is never done.
     type Law: Law<Self::Output, Input = Self::Input> + Completes<Self::Output>;
 
-    /// What the robot can do, in the alphabet's words, such as `sonar[16]`.
+    /// Capabilities of the robot, in the alphabet's words, such as `sonar[16]`.
     const CAPABILITIES: &'static [&'static str];
-    /// What plans may ask of its quarks, where the alphabet limits that.
+    /// Ranges of the parameters that the alphabet limits.
     const LIMITS: &'static [Limit];
 
     /// The interrupt of this name with these arguments; `None` if the alphabet has no such signature.

@@ -1,6 +1,5 @@
-//! What a robot can offer to quarks: one trait for each capability an alphabet can name, implemented by the robot's output.
-//! `state_link` and `modules` have none yet, so no robot can offer them.
-//! See docs/src/reference/interfaces.md, 7.2.
+//! Capabilities: one trait for each capability that an alphabet can name, implemented by the robot's output.
+//! `state_link` and `modules` have no trait yet, so no robot can offer them. See docs/src/reference/interfaces.md, 7.2.
 
 use crate::{Meters, Nanos, Output, Pings, Pose, Setpoint, SonarId, Twist, Volts};
 
@@ -14,7 +13,7 @@ pub trait Odometry: Output {
 
 /// `bumper`: the robot feels contact.
 pub trait Bumpers: Output {
-    /// Whether any bumper is in contact.
+    /// Returns `true` if any bumper is in contact.
     fn pressed(&self) -> bool;
 }
 
@@ -24,13 +23,13 @@ pub trait DiffDrive: Output {
     fn body_radius(&self) -> Meters;
     /// The distance between the wheels.
     fn wheel_base(&self) -> Meters;
-    /// How hard laws steer.
+    /// Returns the gains by which laws steer.
     fn steering(&self) -> Steering {
         Steering::USUAL
     }
 }
 
-/// How hard laws steer: the `k` of each in turn rate for what is still off (paper, section IV-A).
+/// Gains by which laws steer: the `k` of each law, in turn rate for the remaining error (paper, section IV-A).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Steering {
     /// `rotate`, `turn` and `path`: in rad/s for each radian still to turn.
@@ -55,7 +54,8 @@ pub trait SonarRing: Output {
     fn now(&self) -> Nanos;
     /// The distance of the transducers from the centre of the body.
     fn ring_radius(&self) -> Meters;
-    /// How many pings must agree that a way is free: three, or two on a robot whose sonars fire in turn.
+    /// Returns the number of pings that must agree that a way is free: three, or two on a robot whose sonars fire in
+    /// turn.
     fn confirmation(&self) -> usize {
         3
     }
@@ -69,9 +69,9 @@ pub trait SonarRing: Output {
 pub trait Power: Output {
     /// The voltage of the battery, as the robot measures it.
     fn battery(&self) -> Volts;
-    /// Whether the battery has to be charged, by what is low on this robot.
+    /// Returns `true` if the battery has to be charged, by this robot's own limit.
     fn is_low(&self) -> bool;
-    /// Whether the robot is on its charger.
+    /// Returns `true` if the robot is on its charger.
     fn is_plugged(&self) -> bool;
 }
 

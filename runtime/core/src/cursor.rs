@@ -9,7 +9,7 @@ pub trait Slots<T>: AsRef<[T]> + AsMut<[T]> {}
 
 impl<T, S: AsRef<[T]> + AsMut<[T]>> Slots<T> for S {}
 
-/// Where a plan is: the current atom, when each scope around it was entered, the passes left of each loop around it.
+/// Position in a plan: the current atom, the entry of each enclosing scope, and the passes left of each enclosing loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Cursor<E, P> {
     atom: u32,
@@ -33,12 +33,12 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         self.atom
     }
 
-    /// The time since the scope of this level around the current atom was entered.
+    /// Returns the time since the enclosing scope of this level was entered.
     pub fn since(&self, level: u16, t: Nanos) -> Nanos {
         t.since(self.entered.time(level).unwrap_or(t))
     }
 
-    /// The length of the path driven since the scope of this level around the current atom was entered.
+    /// Returns the length of the path driven since the enclosing scope of this level was entered.
     pub fn way(&self, level: u16) -> Nanometers {
         self.entered.way(level)
     }
@@ -49,7 +49,7 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         self.entered.observe(y);
     }
 
-    /// The frame of the current atom, if a `FRAME here` is around it.
+    /// Returns the frame of the current atom, if a `FRAME here` encloses it.
     #[inline(always)]
     pub(crate) fn frame(&self) -> Option<Frame> {
         let Here { level, turned } = self.entered.here(self.atom)?;
@@ -62,8 +62,8 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         self.frame().map_or(begin, |frame| Begin { frame, ..begin })
     }
 
-    /// The bracket of the scope of this level around the current atom; the atom's own if there is none, and the plan's
-    /// when it is over.
+    /// Returns the bracket of the enclosing scope of this level; the atom's own if there is no such scope, and the
+    /// plan's when the plan is over.
     pub fn scope(&self, fsm: Fsm<'_>, level: u16) -> u32 {
         let own = fsm.atoms.get(self.atom as usize).map_or(0, |atom| atom.scope);
         let mut outwards = fsm.outwards(own);
@@ -87,8 +87,8 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         })
     }
 
-    /// The brackets that end when the scope of this level around the current atom ends: that scope first, then those
-    /// around it whose last element has ended, a loop with its last pass.
+    /// Returns the brackets that end when the enclosing scope of this level ends: that scope first, then the brackets
+    /// that enclose it and whose last element has ended, a loop with its last pass.
     pub fn ending<'f>(&self, fsm: Fsm<'f>, level: u16) -> impl Iterator<Item = (u32, &'f Bracket)> {
         let mut outwards = fsm.outwards(self.scope(fsm, level));
         let ended = outwards.next();
@@ -97,14 +97,14 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         ended.into_iter().chain(around)
     }
 
-    /// Whether `bracket` is a loop that has a pass left.
+    /// Returns `true` if `bracket` is a loop that has a pass left.
     fn has_pass(&self, bracket: &Bracket) -> bool {
         let Kind::Loop { times, slot, .. } = bracket.kind else { return false };
         times == 0 || self.left.as_ref().get(usize::from(slot)).is_some_and(|left| *left > 0)
     }
 
-    /// Ends the scope of this level around the current atom, at time `t`, and moves to what follows it.
-    /// Returns whether there is such an atom: if not, the plan is over.
+    /// Ends the enclosing scope of this level at time `t`, and moves to the atom that follows. Returns `true` if there
+    /// is such an atom, and `false` if the plan is over.
     pub fn end(&mut self, fsm: Fsm<'_>, level: u16, t: Nanos) -> bool {
         let mut outwards = fsm.outwards(self.scope(fsm, level));
         // What ends together with the scope has the same last atom.
@@ -123,12 +123,12 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         false
     }
 
-    /// Moves to the end of the plan, as [`Fsm::follows`] has said beforehand.
+    /// Moves to the end of the plan, as [`Fsm::follows`] computed it beforehand.
     pub(crate) fn leave(&mut self, follows: Follows) {
         self.atom = follows.atom;
     }
 
-    /// Moves to what follows a scope that has ended at time `t`, as [`Fsm::follows`] has said beforehand.
+    /// Moves to the successor of a scope that has ended at time `t`, as [`Fsm::follows`] computed it beforehand.
     pub fn follow(&mut self, follows: Follows, t: Nanos) {
         self.atom = follows.atom;
         for level in follows.from..follows.to {
@@ -151,7 +151,8 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         }
     }
 
-    /// Makes `atom` current and starts afresh every bracket around it that lies inside `kept`, all of them without one.
+    /// Makes `atom` current and restarts every enclosing bracket that lies inside `kept`, or all of them if that is
+    /// `None`.
     fn open(&mut self, fsm: Fsm<'_>, atom: u32, kept: Option<u32>, t: Nanos) {
         self.atom = atom;
         // Known when the plan is compiled, and then nobody looks at the tables.

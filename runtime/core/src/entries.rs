@@ -56,7 +56,7 @@ impl<S: AsRef<[Nanos]> + AsMut<[Nanos]>> Entries for S {
 pub struct Here {
     /// The level of the scope at whose entry the heading is taken.
     pub level: u16,
-    /// The sum of the `FRAME a` inside that scope and around the atom, counter-clockwise.
+    /// The sum of the `FRAME a` inside that scope that enclose the atom, counter-clockwise.
     pub turned: Radians,
 }
 

@@ -1,17 +1,17 @@
-//! What follows when a scope ends, where that is known before the plan runs (docs/src/reference/semantics.md, 5.3; Eq.
-//! 2: the one destination of a transition matrix).
+//! Successor of a scope, where it is known before the plan runs (docs/src/reference/semantics.md, 5.3; Eq. 2: the one
+//! destination of a transition matrix).
 
 use crate::Fsm;
 use crate::fsm::Kind;
 
-/// What follows when a scope ends, where no loop has a say in it: known before the plan runs.
+/// Successor of a scope that depends on no loop, so that it is known before the plan runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Follows {
     /// The atom that becomes current; the number of atoms when the plan is over.
     pub atom: u32,
-    /// The scopes that are entered with it: from this level ...
+    /// The first level of the scopes that are entered with the atom.
     pub from: u16,
-    /// ... to below this one. None are when the plan is over.
+    /// End of these levels, exclusive; `from` or less when the plan is over.
     pub to: u16,
 }
 
@@ -22,14 +22,15 @@ impl Follows {
         Self { atom, from, to }
     }
 
-    /// Whether it is the end of the plan: an atom enters its own scope at least.
+    /// Returns `true` if the plan is over: an atom enters its own scope at least.
     pub(crate) const fn is_over(self) -> bool {
         self.from >= self.to
     }
 }
 
 impl Fsm<'_> {
-    /// What follows when this scope ends; `None` where a loop ends with it or begins behind it, for that counts passes.
+    /// Returns the successor of this scope; `None` if a loop ends with the scope or begins after it, as a loop counts
+    /// passes.
     #[must_use]
     pub fn follows(self, scope: u32) -> Option<Follows> {
         let mut outwards = self.outwards(scope);

@@ -20,8 +20,8 @@ pub struct Fsm<'a> {
 }
 
 impl<'a> Fsm<'a> {
-    /// A bracket and those around it, outwards to the plan's own, each with its number. A bracket stands behind those
-    /// around it, so that tables whose parents form a circle hold nobody up.
+    /// Returns a bracket and its enclosing brackets with their numbers, outwards to the plan's own. Enclosing brackets
+    /// have lower numbers, so that the iteration ends even if the parents in a table form a circle.
     pub(crate) fn outwards(self, bracket: u32) -> impl Iterator<Item = (u32, &'a Bracket)> {
         let at = move |number: u32| self.brackets.get(number as usize).map(|bracket| (number, bracket));
         core::iter::successors(
@@ -36,29 +36,30 @@ impl<'a> Fsm<'a> {
 /// A scope or a loop, and the atoms it holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bracket {
-    /// Which of the two it is.
+    /// A scope or a loop.
     pub kind: Kind,
-    /// Its first atom.
+    /// First atom of the bracket.
     pub first: u32,
-    /// Its last atom.
+    /// Last atom of the bracket.
     pub last: u32,
-    /// The bracket around it; the plan's own bracket is its own parent.
+    /// Enclosing bracket; the plan's own bracket is its own parent.
     pub parent: u32,
 }
 
-/// What a bracket is.
+/// Kind of a bracket: a scope or a loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
-    /// A closed string: an atom, a behavior or a plan. Its interrupt sends all its atoms behind its last one.
+    /// A closed string: an atom, a behavior or a plan. Its interrupt leads from each of its atoms to after its last
+    /// one.
     Scope {
-        /// The number of scopes around it.
+        /// Number of enclosing scopes.
         level: u16,
     },
     /// An open string that is run several times: the paper's counter c(t).
     Loop {
         /// Passes in all; 0 is for ever.
         times: u64,
-        /// The number of loops around it: where a cursor keeps its counter.
+        /// Number of enclosing loops: the place of the loop's counter in a cursor.
         slot: u16,
         /// The states of one pass in the expanded plan, or 0 where passes share their states (a loop without end).
         stride: u64,
@@ -68,9 +69,9 @@ pub enum Kind {
 /// An atom as written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Atom {
-    /// Its bracket.
+    /// Bracket of the atom's own scope.
     pub scope: u32,
-    /// Its number in the expanded plan in the first pass of every loop around it, from 1.
+    /// State of the atom in the expanded plan in the first pass of every enclosing loop, from 1.
     pub state: u64,
 }
 

@@ -1,8 +1,8 @@
-//! What every plan runs on: the machine of Algorithm 1, the traits of a kinetic state machine, quarks, units and time.
+//! Runtime of every plan: the machine of Algorithm 1, the traits of a kinetic state machine, quarks, units and time.
 //!
 //! For people who write a robot: [`Robot`], [`Output`] and the traits of [`capability`].
 //! For people who write a quark: [`Interrupt`], [`Control`], [`Law`] and [`Completes`].
-//! For generated code and for whoever runs it: [`fsm`], [`Cursor`], [`Plan`] and [`Machine`], whose turns [`trace`] writes down.
+//! For generated code and its callers: [`fsm`], [`Cursor`], [`Plan`] and [`Machine`], whose turns [`trace`] writes down.
 //! For everything that shows text to people: [`Printable`].
 //!
 //! No allocation, no unsafe code, no path that panics: what is here runs in a robot's control loop.

@@ -21,13 +21,13 @@ pub struct Transition {
     pub to: u64,
 }
 
-/// Told of every transition, in order.
+/// Observer of a plan, which is called for every transition, in order.
 pub trait Watch {
-    /// Whether it looks at what it is told: the numbers of states need not be found out for one that does not.
+    /// `false` if the observer ignores its arguments, so that the numbers of states need not be computed.
     const LOOKS: bool = true;
 
-    /// The operand of this number, of the interrupt by which a scope ends, has fired: called for each of them, in their
-    /// order, before [`Watch::transition`].
+    /// Reports that the operand of this number has fired in the interrupt that ends a scope. Called for each such
+    /// operand, in order, before [`Watch::transition`].
     fn operand(&mut self, _number: u32, _measured: Measured) {}
 
     /// A transition was made.
@@ -41,7 +41,7 @@ impl Watch for () {
     fn transition(&mut self, _: Transition) {}
 }
 
-/// What came of a turn.
+/// Result of a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Turn<U> {
     /// The current atom's law computed this input.
@@ -81,7 +81,8 @@ impl<P: Plan> Machine<P> {
         Self { plan, cursor, frame }
     }
 
-    /// One turn with output `y` at time `t`: transitions until no interrupt around the current atom has fired, then its law.
+    /// Makes a turn with output `y` at time `t`: transitions until no enclosing interrupt fires, then the current
+    /// atom's law.
     pub fn turn<W: Watch>(&mut self, y: &P::Output, t: Nanos, watch: &mut W) -> Turn<P::Input> {
         if self.is_over() {
             return Turn::Over;
@@ -177,7 +178,7 @@ impl<P: Plan> Machine<P> {
         (self.cursor.state(fsm), scope)
     }
 
-    /// Whether the plan is over.
+    /// Returns `true` if the plan is over.
     pub fn is_over(&self) -> bool {
         self.cursor.atom() as usize >= self.plan.fsm().atoms.len()
     }
@@ -192,12 +193,12 @@ impl<P: Plan> Machine<P> {
         (!self.is_over()).then_some(self.cursor.atom())
     }
 
-    /// The frame of the current atom, if a `FRAME here` is around it; an atom in the plan's frame has none of its own.
+    /// Returns the frame of the current atom if a `FRAME here` encloses it; `None` for an atom in the plan's frame.
     pub fn frame(&self) -> Option<Frame> {
         self.cursor.frame()
     }
 
-    /// Where the plan is.
+    /// Returns the position in the plan.
     pub fn cursor(&self) -> &Cursor<P::Entered, P::Left> {
         &self.cursor
     }

@@ -1,11 +1,11 @@
-//! The values that an operand of a condition was read from: reports say them.
+//! Values from which an operand of a condition was evaluated, for reports.
 
 use crate::{Nanometers, Nanos, Operator};
 
 /// The values from which an operand has its value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Measured {
-    /// None that can be shown: a quark that only says that it has fired, or several of them.
+    /// No value can be shown: a quark only reports that it has fired, or the operand consists of several conditions.
     Nothing,
     /// Both sides of a comparison, in SI units.
     Compared {

@@ -1,20 +1,20 @@
-//! What a plan remembers: RISING in each scope entered, and what has ended last, for `after`
+//! Memory of a plan: for RISING in each entered scope, and for `after` about the latest endings
 //! (docs/src/reference/semantics.md, 2.2 and 2.3).
 
 use crate::Slots;
 
-/// The memories of a plan, a row of them for each level of scopes; `()` for a plan that remembers nothing.
+/// The memories of a plan, a row for each level of scopes; `()` for a plan that remembers nothing.
 pub trait Memory<'a> {
-    /// Whether there are any: known when the plan is compiled.
+    /// `true` if the plan has memories, which is known when it is compiled.
     const KEEPS: bool;
 
-    /// Whether this memory of the scope of this level is set.
+    /// Returns `true` if this memory of the scope of this level is set.
     fn is_set(&self, level: u16, memory: u32) -> bool;
-    /// Sets it, or empties it.
+    /// Sets this memory of the scope of this level, or clears it.
     fn set(&mut self, level: u16, memory: u32, value: bool);
-    /// Empties those of this level and of all inside.
+    /// Clears the memories of this level and of all nested levels.
     fn forget(&mut self, level: u16);
-    /// The labels of what ends with a bracket.
+    /// Returns the labels of the parts of the plan that end with a bracket.
     fn marks(&self, bracket: u32) -> &'a [MarkRow<'a>];
 }
 
@@ -45,15 +45,15 @@ pub struct MarkRow<'a> {
     pub first: u32,
     /// ... and how many there are.
     pub count: u32,
-    /// What `after` asks about the label: the memory, and the operand of the bracket's interrupt that has to be the cause,
-    /// if one has to be.
+    /// Memories that `after` reads about the label, each with the operand of the bracket's interrupt that must be the
+    /// cause, if the condition names one.
     pub facts: &'a [(u32, Option<u32>)],
 }
 
 /// The memories of a plan that remembers.
 #[derive(Debug, Clone, Copy)]
 pub struct Memories<'a, S> {
-    /// How many there are a level.
+    /// Number of memories of each level.
     width: u32,
     /// In the order of their brackets.
     marks: &'a [MarkRow<'a>],

@@ -1,6 +1,7 @@
-//! Which operands of a condition have fired, and by which values: asked when a scope ends and somebody watches.
+//! Operands of a condition that have fired, with their values: evaluated when a scope ends and an observer is attached.
 //!
-//! The operands of a condition are the parts that AND and OR join, from left to right; NOT and RISING belong to theirs.
+//! The operands of a condition are the parts that AND and OR join, from left to right. NOT and RISING belong to their
+//! operand.
 
 use crate::fsm::Kind;
 use crate::rows::Reading;

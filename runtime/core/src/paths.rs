@@ -1,8 +1,8 @@
-//! Paths that a robot can be told to drive: headings and forward speeds against time, and the store that has them by name.
+//! Paths that a robot can drive: headings and forward speeds against time, and the store that has them by name.
 
 use crate::{MetersPerSecond, Nanos, Radians};
 
-/// What the robot is to do at one time of a path.
+/// Setpoint of a path: the heading and the forward speed at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Setpoint {
     /// The time since the path began.
@@ -16,9 +16,9 @@ pub struct Setpoint {
 /// A path under the name by which plans ask for it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StoredPath {
-    /// What stands behind `path` in the plan.
+    /// Name of the path, which the plan gives after `path`.
     pub name: &'static str,
-    /// Its setpoints: the first at time 0, each later than the one before.
+    /// Setpoints of the path: the first at time 0, each later than its predecessor.
     pub setpoints: &'static [Setpoint],
 }
 

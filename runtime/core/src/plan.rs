@@ -1,11 +1,11 @@
-//! What a plan answers the machine: which scope around the current atom ends, and why (docs/src/reference/semantics.md,
+//! Answers of a plan to the machine: the enclosing scope that ends, and the cause (docs/src/reference/semantics.md,
 //! 5.2).
 
 use crate::{Begin, Cursor, Entries, Follows, Fsm, Measured, Nanos, Output, Slots, Source};
 
-/// What the atoms and the scopes of a plan mean on one robot: `mdlec` emits it, or it is loaded from text.
+/// Meaning of the atoms and the scopes of a plan on one robot: emitted by `mdlec`, or loaded from text.
 ///
-/// What runs next is not its business: [`Cursor`] decides that, or [`Fsm::follows`] has done so beforehand.
+/// The order of atoms is not its task: [`Cursor`] decides that, or [`Fsm::follows`] has done so beforehand.
 pub trait Plan {
     /// The robot's output.
     type Output: Output;
@@ -22,8 +22,8 @@ pub trait Plan {
     fn slots(&self) -> (Self::Entered, Self::Left);
     /// Makes the law of `atom`, which is now the current one; called once for each atom entered.
     fn enter(&mut self, atom: u32, y: &Self::Output, begin: Begin);
-    /// Asks the interrupts around the current atom, the outermost first, and the law's completion last. The first that
-    /// has fired is what the answer is about; with `direct` the plan may leave its scope at once, by [`Plan::end`].
+    /// Asks the enclosing interrupts, the outermost first, and the law's completion last. The answer is about the first
+    /// that has fired; with `direct` the plan may leave its scope at once, by [`Plan::end`].
     fn next(
         &mut self,
         cursor: &mut Cursor<Self::Entered, Self::Left>,
@@ -31,7 +31,8 @@ pub trait Plan {
         begin: Begin,
         direct: bool,
     ) -> Next;
-    /// What [`Plan::next`] answers where a scope ends: with `direct`, and where it is known what follows, that has begun.
+    /// Returns the answer of [`Plan::next`] where a scope ends: with `direct`, and if its successor is known, that has
+    /// begun.
     ///
     /// Inlined, so that a plan whose code names the ending needs neither table nor match to make the transition.
     #[inline(always)]
@@ -53,22 +54,22 @@ pub trait Plan {
         Next::Moved
     }
 
-    /// Told before the cursor leaves a scope: a plan that remembers what has ended writes that down, and forgets what was
-    /// inside. [`Cursor::ending`] says what ends.
+    /// Called before the cursor leaves a scope: a plan that remembers endings records this one, and clears the memories
+    /// of nested scopes. [`Cursor::ending`] returns the brackets that end.
     #[inline(always)]
     fn leave(&mut self, _cursor: &Cursor<Self::Entered, Self::Left>, _cause: Cause, _y: &Self::Output, _t: Nanos) {}
 
-    /// Told when the atom of a turn is found, before its law is applied: a plan that remembers what has not fired writes
-    /// that down.
+    /// Called when the atom of a turn is found, before its law is applied: a plan that remembers conditions that have
+    /// not fired records them.
     #[inline(always)]
     fn settle(&mut self, _cursor: &Cursor<Self::Entered, Self::Left>, _y: &Self::Output, _t: Nanos) {}
 
     /// The input that the current atom's law computes.
     fn input(&mut self, y: &Self::Output, t: Nanos) -> Self::Input;
 
-    /// Calls `tell` with each operand that has fired of the interrupt of `scope`, which holds the current atom: its number,
-    /// in the order of [`Source::operands_of`], and its values. Only a [`Watch`](crate::Watch) has it asked, before the scope
-    /// is left; a plan written by hand may know no operands.
+    /// Calls `tell` with each operand that has fired of the interrupt of `scope`, which encloses the current atom: its
+    /// number, in the order of [`Source::operands_of`], and its values. The machine calls it only for a
+    /// [`Watch`](crate::Watch), before the scope is left; a plan written by hand may know no operands.
     fn operands(
         &self,
         _cursor: &Cursor<Self::Entered, Self::Left>,
@@ -91,7 +92,7 @@ pub trait Plan {
         Source::NONE
     }
 
-    /// The paths that its laws replay, as the plan names them: whoever runs it has them ready before it begins.
+    /// Returns the names of the paths that its laws replay: the caller loads these paths before the plan begins.
     fn paths(&self) -> &[&'static str] {
         &[]
     }
@@ -102,7 +103,7 @@ pub trait Plan {
 pub enum Cause {
     /// The interrupt of the scope of this level has fired.
     Fired(u16),
-    /// The law of the atom, whose scope is of this level, is done, and no interrupt around it has fired.
+    /// The law of the atom, whose scope is of this level, is done, and no enclosing interrupt has fired.
     Completed(u16),
 }
 
@@ -119,16 +120,16 @@ impl Cause {
 /// A scope that ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Ending {
-    /// Which scope around the current atom, and why.
+    /// The enclosing scope that ends, and the cause.
     pub cause: Cause,
-    /// What follows, if the plan knows it beforehand; the cursor finds it out otherwise.
+    /// The successor, if the plan knows it beforehand; the cursor finds it otherwise.
     pub follows: Option<Follows>,
 }
 
-/// What the interrupts around the current atom ask for.
+/// Answer of the interrupts that enclose the current atom, and of its law's completion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Next {
-    /// Nothing: none has fired.
+    /// Nothing ends: no interrupt has fired, and the law is not done.
     Stays,
     /// This scope is to end.
     Ends(Ending),
@@ -151,7 +152,7 @@ impl From<Cause> for Ending {
 }
 
 impl Cause {
-    /// The ending of a scope behind which this follows.
+    /// Returns the ending of a scope that has this successor.
     #[must_use]
     pub const fn then(self, follows: Follows) -> Ending {
         Ending { cause: self, follows: Some(follows) }

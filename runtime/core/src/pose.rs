@@ -52,8 +52,8 @@ pub struct Twist {
     pub omega: RadiansPerSecond,
 }
 
-/// The frame in which an atom's headings are meant: the heading, by odometry, of the robot when the outermost plan
-/// began, turned by the `FRAME`s around the atom. Where it began does not matter, as a plan names directions only.
+/// The frame of an atom's headings: the robot's heading by odometry when the outermost plan began, turned by the
+/// enclosing `FRAME`s. The position does not matter, as a plan names directions only.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Frame(pub Radians);
 

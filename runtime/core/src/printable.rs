@@ -27,9 +27,9 @@ impl<T: fmt::Display> fmt::Display for PrintableLines<T> {
 
 /// Returns `true` if a character has a form of its own, or belongs to that of its neighbours as an accent does.
 ///
-/// These have none: control characters (`Cc`), separators of lines and paragraphs (`Zl`, `Zp`), what turns text around,
-/// joins it, or cannot be seen (`Cf`, but for the signs of Arabic, Syriac and Kaithi that enclose numbers, and the
-/// layout of hieroglyphs), and the two characters `U+FFFE` and `U+FFFF`, which no XML may have.
+/// These have no form of their own: control characters (`Cc`), separators of lines and paragraphs (`Zl`, `Zp`), what
+/// turns text around, joins it, or cannot be seen (`Cf`, but for the signs of Arabic, Syriac and Kaithi that enclose
+/// numbers, and the layout of hieroglyphs), and the two characters `U+FFFE` and `U+FFFF`, which no XML may have.
 #[must_use]
 pub const fn is_printable(letter: char) -> bool {
     !matches!(

@@ -5,7 +5,7 @@ use crate::{Frame, Measured, Nanos, Radians};
 
 /// An interrupt quark: a condition on the output.
 pub trait Interrupt<Y: ?Sized> {
-    /// Whether it has fired: true where the paper's active-low function is 0.
+    /// Returns `true` if the interrupt has fired: where the paper's active-low function is 0.
     fn fired(&self, y: &Y) -> bool;
 
     /// Returns the values that it compares, for reports; not asked while nothing fires.
@@ -14,7 +14,7 @@ pub trait Interrupt<Y: ?Sized> {
     }
 }
 
-/// What a law is told when its atom begins.
+/// Time and frame in which an atom begins, for its law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Begin {
     /// The time of the turn in which the atom is entered.
@@ -24,7 +24,7 @@ pub struct Begin {
 }
 
 impl Begin {
-    /// The same moment in a frame turned counter-clockwise.
+    /// Returns this moment in a frame turned counter-clockwise.
     #[must_use]
     pub fn turned(self, by: Radians) -> Self {
         Self { frame: self.frame.turned(by), ..self }
@@ -36,7 +36,8 @@ pub trait Control<Y: ?Sized> {
     /// The law with its state.
     type Law: Law<Y>;
 
-    /// The law as it stands when its atom is entered. Has no effect outside: a skipped atom's law is made and never run.
+    /// Returns the law as it is when its atom is entered. Has no effect outside: a skipped atom's law is created and
+    /// never run.
     fn begin(&self, y: &Y, begin: Begin) -> Self::Law;
 }
 
@@ -49,8 +50,9 @@ pub trait Law<Y: ?Sized> {
     fn input(&mut self, y: &Y, t: Nanos) -> Self::Input;
 }
 
-/// A law that can be done by itself, as the alphabet says with `completes`.
+/// A law that can end its atom, as the alphabet declares with `completes`.
 pub trait Completes<Y: ?Sized>: Law<Y> {
-    /// Whether it is done; read before the input is computed, also in the turn in which the atom begins.
+    /// Returns `true` if the law is done; called before the input is computed, also in the turn in which the atom
+    /// begins.
     fn completed(&self, y: &Y, t: Nanos) -> bool;
 }

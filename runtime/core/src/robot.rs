@@ -7,9 +7,9 @@ use crate::{Nanometers, Pose};
 /// Once an `exchange` has failed the robot is stopped and not used again. An implementation must leave the hardware's
 /// own watchdog armed, so that a program that dies stops the robot as well.
 pub trait Robot {
-    /// What the sensors say: `y`, with everything the quarks of this robot read.
+    /// Output `y` of the sensors, with everything that the quarks of this robot read.
     type Output: Output;
-    /// What the actuators take: `u`. Its default is the null input.
+    /// Input `u` of the actuators; its default is the null input.
     type Input: Default;
     /// Why an exchange failed, in a sentence for the operator.
     type Error: core::fmt::Display;
@@ -27,15 +27,16 @@ pub trait Robot {
     fn stop(&mut self) -> Result<(), Self::Error>;
 }
 
-/// What every robot's output offers, whatever its sensors are; the rest are the traits of [`crate::capability`].
+/// Output of a robot with any sensors: what every robot offers. The traits of [`crate::capability`] have the rest.
 pub trait Output {
-    /// Where a plan that began now would put its frame: the pose by odometry; the origin on a robot without.
+    /// Returns the pose by odometry, where a plan that began now would put its frame; the origin on a robot without
+    /// odometry.
     fn here(&self) -> Pose {
         Pose::ORIGIN
     }
 
-    /// The reading of an odometer that counts the path driven; `None` on a robot without, whose way the machine then sums
-    /// up from the distances between [`Output::here`] of successive turns.
+    /// Returns the reading of an odometer that counts the path driven. `None` on a robot without an odometer: the
+    /// machine then adds up the distances between [`Output::here`] of successive turns.
     fn way(&self) -> Option<Nanometers> {
         None
     }

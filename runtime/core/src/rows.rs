@@ -1,7 +1,7 @@
-//! A plan as rows of tables: what its scopes and atoms mean, as values instead of code.
+//! A plan as rows of tables: the meaning of its scopes and atoms, as values instead of code.
 //!
-//! `mdlec` emits this for plans that are too long to be code of their own, and a plan loaded at run time is this. A row
-//! costs rustc next to nothing, and a turn looks at as many of them as there are scopes around the current atom.
+//! `mdlec` emits rows for plans that are too long to be code of their own, and a plan loaded at run time has rows. A
+//! row costs rustc next to nothing, and a turn reads as many rows as there are scopes that enclose the current atom.
 
 use crate::fsm::Kind;
 use crate::{
@@ -9,30 +9,30 @@ use crate::{
     Memory, Nanometers, Nanos, Next, Plan, Radians, Slots,
 };
 
-/// What the brackets and atoms of a plan mean.
+/// Meaning of the brackets and atoms of a plan.
 pub struct Rows<'a, A: Alphabet> {
     /// The machine's tables.
     pub fsm: Fsm<'a>,
-    /// When each bracket ends, in their order.
+    /// Condition by which each bracket ends, in the order of the brackets.
     pub guards: &'a [Guard<A::Interrupt>],
-    /// The operands of conditions; those of operands stand further behind, so that no table goes round in a circle.
+    /// The operands of conditions. The operands of an operand come after it, so that a table cannot form a circle.
     pub operands: &'a [Condition<A::Interrupt>],
-    /// What each atom does, in their order.
+    /// Law of each atom, in the order of the atoms.
     pub laws: &'a [LawRow<A::Control>],
-    /// What traces and messages call all this.
+    /// Texts of the plan, for traces and messages.
     pub texts: Texts<'a>,
 }
 
-/// When a scope ends, and what then; a loop has a row that never fires.
+/// Condition by which a scope ends, and the successor; a loop has a row that never fires.
 #[derive(Debug)]
 pub struct Guard<I> {
-    /// Its interrupt.
+    /// Condition of the scope's interrupt.
     pub condition: Condition<I>,
-    /// How many scopes are around it.
+    /// Number of enclosing scopes.
     pub level: u16,
-    /// The nearest bracket around it whose condition can fire; its own number where there is none.
+    /// Nearest enclosing bracket whose condition can fire; the bracket's own number if there is no such bracket.
     pub around: u32,
-    /// What follows, if that is known beforehand: [`Fsm::follows`].
+    /// Successor of the scope, if it is known beforehand: [`Fsm::follows`].
     pub follows: Option<Follows>,
 }
 
@@ -61,10 +61,10 @@ pub enum Condition<I> {
     After(u16, u32),
 }
 
-/// What a condition is read with.
+/// Values that a condition reads.
 pub(crate) struct Reading<'r, I, Y, M> {
     pub(crate) y: &'r Y,
-    /// The time since its scope was entered, and how many scopes are around that.
+    /// Time since the scope of the condition was entered, and the number of that scope's enclosing scopes.
     pub(crate) since: Nanos,
     pub(crate) level: u16,
     /// The length of the path driven since then.
@@ -74,8 +74,8 @@ pub(crate) struct Reading<'r, I, Y, M> {
 }
 
 impl<I> Condition<I> {
-    /// Whether it has fired; reads every operand, which stand from number `from` on. It calls itself as deep as the text's
-    /// parentheses go.
+    /// Returns `true` if the condition has fired; reads every operand, whose numbers are `from` or more. The recursion
+    /// is as deep as the text's parentheses.
     pub(crate) fn fired<'m, Y, M: Memory<'m>>(&self, at: &Reading<'_, I, Y, M>, from: u32) -> bool
     where
         I: Interrupt<Y>,
@@ -99,7 +99,7 @@ impl<I> Condition<I> {
         }
     }
 
-    /// The first operand of its OR that has fired; the first where it is none.
+    /// Returns the place of the first operand of an OR that has fired; 0 for any other condition.
     fn cause<'m, Y, M: Memory<'m>>(&self, at: &Reading<'_, I, Y, M>) -> u32
     where
         I: Interrupt<Y>,
@@ -112,7 +112,7 @@ impl<I> Condition<I> {
         operands.next().unwrap_or(0)
     }
 
-    /// Tells the memory of every RISING in it whose operand has not fired.
+    /// Calls `tell` with the memory of every RISING in the condition whose operand has not fired.
     fn low<'m, Y, M: Memory<'m>>(&self, at: &Reading<'_, I, Y, M>, from: u32, tell: &mut impl FnMut(u32))
     where
         I: Interrupt<Y>,
@@ -146,7 +146,7 @@ pub struct LawRow<C> {
     pub frame: Radians,
 }
 
-/// The texts of a plan; empty where there is none.
+/// The texts of a plan; empty for a plan without texts.
 #[derive(Debug)]
 pub struct Texts<'a> {
     /// The quark text of each atom's law.
@@ -176,13 +176,13 @@ impl<'a, A: Alphabet, E: Entries, P: Slots<u64>> InRows<'a, A, E, P> {
 }
 
 impl<'a, A: Alphabet, E: Entries, P: Slots<u64>, M: Memory<'a>> InRows<'a, A, E, P, M> {
-    /// The same for a plan that remembers; its memories are empty.
+    /// Returns a plan in rows that remembers; `memory` is empty at first.
     #[must_use]
     pub const fn remembering(rows: &'a Rows<'a, A>, entered: E, left: P, memory: M) -> Self {
         Self { rows, slots: (entered, left), memory, running: None, own: 0 }
     }
 
-    /// The outermost scope around the current atom whose interrupt has fired.
+    /// Returns the guard of the outermost enclosing scope whose interrupt has fired.
     #[inline(always)]
     fn outermost(&self, cursor: &Cursor<E, P>, y: &A::Output, t: Nanos) -> Option<&'a Guard<A::Interrupt>> {
         // From inside out, and the last one found counts: so the outermost wins, however deep scopes are nested.
@@ -211,7 +211,7 @@ impl<'a, A: Alphabet, E: Entries, P: Slots<u64>, M: Memory<'a>> InRows<'a, A, E,
         found
     }
 
-    /// Whether a condition that is made of others has fired.
+    /// Returns `true` if a condition that consists of others has fired.
     #[cold]
     #[inline(never)]
     fn compound(&self, guard: &Guard<A::Interrupt>, cursor: &Cursor<E, P>, y: &A::Output, t: Nanos) -> bool {
@@ -257,7 +257,7 @@ impl<'a, A: Alphabet, E: Entries, P: Slots<u64>, M: Memory<'a>> InRows<'a, A, E,
         self.memory.forget(outermost);
     }
 
-    /// Sets the memory of every RISING around the current atom whose operand has not fired.
+    /// Sets the memory of every RISING in the enclosing scopes' conditions whose operand has not fired.
     fn remember(&mut self, cursor: &Cursor<E, P>, y: &A::Output, t: Nanos) {
         let (rows, mut here) = (self.rows, self.own);
         while let Some(guard) = rows.guards.get(here as usize) {

@@ -1,5 +1,5 @@
-//! The output of a robot on two driven wheels with odometry, bumper switches, sixteen sonars, a battery and a store of paths: each
-//! value as it is kept, and the capabilities that it comes to (`y = h(x)`, paper, Eq. 1).
+//! The output of a robot on two driven wheels with odometry, bumper switches, sixteen sonars, a battery and a store of
+//! paths: the values, and the capabilities that they give it (`y = h(x)`, paper, Eq. 1).
 
 use crate::capability::{Bumpers, DiffDrive, Odometry, Paths, Power, SonarRing, Steering};
 use crate::{Meters, Nanos, Output, PathStore, Pings, Pose, SONARS, Setpoint, SonarId, Twist, Volts};
@@ -9,46 +9,46 @@ use crate::{Meters, Nanos, Output, PathStore, Pings, Pose, SONARS, Setpoint, Son
 pub struct Sensed {
     /// The time of the exchange that brought it, counted from the first, as that of its pings.
     pub at: Nanos,
-    /// Where the robot is by its own reckoning.
+    /// Pose of the robot by its own odometry.
     pub odometry: Pose,
-    /// How fast it moves, measured.
+    /// Measured speed and turn rate.
     pub velocity: Twist,
-    /// The bumper switches in contact: bit `i` for switch `i`. A simulated Scout has six, counted counter-clockwise from
-    /// the front, an ATRV-mini one before and one behind.
+    /// The bumper switches in contact: bit `i` for switch `i`. A simulated Scout has six, counted counter-clockwise
+    /// from the front, an ATRV-mini one at the front and one at the back.
     pub switches: u32,
     /// The last pings of each sonar.
     pub pings: [Pings; SONARS],
-    /// What the robot says of its power; the default on one that says nothing of it.
+    /// Power supply as the robot reports it; the default on a robot that reports nothing of it.
     pub supply: Supply,
-    /// What never changes.
+    /// Constants of the body.
     pub shape: Shape,
-    /// The paths that the plan can replay; empty on a robot that is given none.
+    /// The paths that the plan can replay; empty on a robot without paths.
     pub paths: PathStore,
 }
 
-/// What a robot says of its power.
+/// Power supply as a robot reports it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Supply {
     /// The voltage of its battery.
     pub battery: Volts,
-    /// Whether the battery has to be charged.
+    /// `true` if the battery has to be charged.
     pub is_low: bool,
-    /// Whether the robot is on its charger.
+    /// `true` if the robot is on its charger.
     pub is_plugged: bool,
 }
 
-/// What laws must know of the body.
+/// Constants of a body that laws need.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape {
-    /// The radius of the smallest circle around it.
+    /// Radius of the smallest circle around the body.
     pub body_radius: Meters,
     /// The distance between its wheels.
     pub wheel_base: Meters,
     /// The distance of the sonars from its centre.
     pub ring_radius: Meters,
-    /// How many pings must agree that a way is free.
+    /// Number of pings that must agree that a way is free.
     pub confirmation: usize,
-    /// How hard laws steer it.
+    /// Gains by which laws steer the robot.
     pub steering: Steering,
 }
 

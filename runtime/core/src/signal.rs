@@ -2,13 +2,13 @@
 
 use crate::{Interrupt, Measured, Radians};
 
-/// What comparisons read: a number of the output, in SI units.
+/// A number of the output that comparisons read, in SI units.
 pub trait Signal<Y: ?Sized> {
-    /// Its value now; infinite where the sensor saw nothing.
+    /// Returns the current value; infinite where the sensor saw nothing.
     fn value(&self, y: &Y) -> f64;
 }
 
-/// How a signal is compared.
+/// Operator of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Operator {
     /// Not further apart than this.
@@ -26,7 +26,7 @@ pub enum Operator {
 }
 
 impl Operator {
-    /// Whether it holds; it holds for nothing that is no number.
+    /// Returns `true` if the comparison holds; it never holds for NaN.
     #[must_use]
     pub fn holds(self, left: f64, right: f64) -> bool {
         match self {
@@ -40,7 +40,7 @@ impl Operator {
     }
 }
 
-/// What a signal is compared with.
+/// Right side of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Operand<S> {
     /// Another signal.
@@ -84,7 +84,7 @@ impl<Y: ?Sized, S: Signal<Y>, O: Signal<Y>> Interrupt<Y> for Comparison<S, O> {
     }
 }
 
-/// The signals of a robot that has none.
+/// The signals of a robot without signals.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum NoSignal {}
 

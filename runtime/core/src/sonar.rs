@@ -4,7 +4,7 @@ use crate::{Meters, Nanos, Pose, Radians};
 
 /// The number of sonars, and of the directions the paper's plans count them in.
 pub const SONARS: usize = 16;
-/// How many pings of each sonar an output keeps: what it takes to confirm that a way is free.
+/// Number of pings of each sonar that an output keeps: as many as it takes to confirm that a way is free.
 pub const PINGS_KEPT: usize = 3;
 
 /// One of the sixteen sonars: number `i` looks along `i · 22.5°`, counter-clockwise from the front, on every robot.
@@ -18,14 +18,14 @@ impl SonarId {
         Self(number & 15)
     }
 
-    /// Its number, below [`SONARS`].
+    /// Returns the sonar's number, below [`SONARS`].
     #[must_use]
     pub const fn number(self) -> usize {
         // It is below 16 as it is. Masked once more, the optimiser sees it too, and an index into a ring cannot panic.
         (self.0 & 15) as usize
     }
 
-    /// Where it looks, from the robot's heading.
+    /// Returns the direction of the sonar's axis, relative to the robot's heading.
     #[must_use]
     pub const fn bearing(self) -> Radians {
         Radians::from_degrees(self.0 as f64 * 22.5)
@@ -37,9 +37,9 @@ impl SonarId {
 pub struct Ping {
     /// The range from the transducer; `None` when no echo came back.
     pub range: Option<Meters>,
-    /// When it was taken.
+    /// Time at which the ping was taken.
     pub at: Nanos,
-    /// Where the robot was by odometry when it was taken.
+    /// Pose of the robot by odometry when the ping was taken.
     pub pose: Pose,
 }
 
@@ -61,7 +61,7 @@ impl Pings {
         self.kept.iter().flatten()
     }
 
-    /// The smallest range among the newest `count` pings. `None` when none of them, or no ping yet, brought an echo.
+    /// Returns the smallest range among the newest `count` pings; `None` if no such ping brought an echo.
     #[must_use]
     pub fn nearest(&self, count: usize) -> Option<Meters> {
         let ranges = self.newest_first().take(count).filter_map(|ping| ping.range);

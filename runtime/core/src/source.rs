@@ -59,7 +59,7 @@ pub struct ValueWords<'a> {
 }
 
 impl<'a> Source<'a> {
-    /// The source of a plan that has none, such as one that is written in Rust.
+    /// The source of a plan without source text, such as a plan that is written in Rust.
     pub const NONE: Self = Self { files: &[], brackets: &[], operands: &[] };
 
     /// Returns the operands of a bracket, in the order in which they are written.

@@ -1,4 +1,4 @@
-//! The machine on tables by hand: where a plan goes, what starts afresh, and what a turn comes to.
+//! Tests of the machine on tables by hand: the order of atoms, the restarts of brackets, and the result of a turn.
 
 mod cursor;
 mod machine;

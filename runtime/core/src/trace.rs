@@ -1,4 +1,4 @@
-//! The line of a trace: JSON, one object a turn, by which every machine tells what it did
+//! The line of a trace: a JSON object for each turn, in which every machine reports its transitions and its law
 //! (docs/src/reference/interfaces.md, 4).
 
 use core::fmt::{self, Write};
@@ -10,36 +10,36 @@ use crate::{Cause, Frame, Nanos, Plan, Radians, Transition};
 pub struct Line<'a, F> {
     /// The number of the turn, from 0.
     pub turn: u64,
-    /// Its time.
+    /// Time of the turn.
     pub t: Nanos,
     /// The state in which it ended, in the expanded plan, from 1.
     pub state: u64,
     /// The quark text of the law that was applied; `None` for the null input.
     pub law: Option<&'a str>,
-    /// The frame of the law, if a `FRAME here` is around its atom.
+    /// Frame of the law, if a `FRAME here` encloses its atom.
     pub frame: Option<Frame>,
-    /// Its transitions, in order: anything that gives [`Fired`].
+    /// Transitions of the turn, in order: anything that gives [`Fired`].
     pub fired: F,
 }
 
-/// A transition as a trace tells it.
+/// A transition as a trace has it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Fired<'a, O> {
     /// The state left.
     pub from: u64,
-    /// How many scopes are around the one that ended.
+    /// Number of scopes that enclose the scope that ended.
     pub level: usize,
     /// The condition text of its interrupt, or [`COMPLETED`].
     pub by: &'a str,
-    /// The condition texts of the operands of its interrupt that have fired, in order; none where the law completed.
+    /// Condition texts of the operands of its interrupt that have fired, in order; empty if the law completed.
     pub operands: O,
 }
 
-/// What a scope ended by where only its law's completion did it.
+/// Text of a trace for a scope that ended only because its law completed.
 pub const COMPLETED: &str = "completed";
 
 impl Cause {
-    /// What a trace says of it, where the scope that ended has an interrupt of this condition text.
+    /// Returns the text of a trace for this cause, in a scope whose interrupt has this condition text.
     #[must_use]
     pub const fn by(self, condition: &str) -> &str {
         match self {
@@ -50,12 +50,12 @@ impl Cause {
 }
 
 impl Transition {
-    /// What a trace says ended the scope: the condition text of its interrupt, or [`COMPLETED`].
+    /// Returns the text of a trace for the cause: the condition text of the scope's interrupt, or [`COMPLETED`].
     pub fn by<'p, P: Plan>(&self, plan: &'p P) -> &'p str {
         self.cause.by(plan.condition(self.scope))
     }
 
-    /// This transition of `plan` as a trace tells it, with the texts of the operands that have fired.
+    /// Returns this transition of `plan` as a trace has it, with the texts of the operands that have fired.
     pub fn fired<'p, P: Plan, O>(&self, plan: &'p P, operands: O) -> Fired<'p, O> {
         Fired { from: self.from, level: usize::from(self.cause.level()), by: self.by(plan), operands }
     }

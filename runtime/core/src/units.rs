@@ -35,7 +35,7 @@ impl Radians {
         self.0 * (180.0 / core::f64::consts::PI)
     }
 
-    /// The same direction, between -π and π.
+    /// Returns this direction as an angle between -π and π.
     #[must_use]
     pub fn wrapped(self) -> Self {
         Self(libm::remainder(self.0, core::f64::consts::TAU))

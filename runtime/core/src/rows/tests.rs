@@ -1,4 +1,4 @@
-//! When conditions in rows fire, and what a plan in rows remembers.
+//! Tests of conditions in rows, and of the memory of a plan in rows.
 
 use std::vec::Vec;
 
@@ -22,7 +22,7 @@ impl Interrupt<Sensed> for Fires {
     }
 }
 
-/// Tells the heading of the frame in which it began, and is done with 99.
+/// Law whose input is the heading of the frame in which it began; it is done when the output contains 99.
 #[derive(Default)]
 struct Points(f64);
 
@@ -78,7 +78,7 @@ impl Alphabet for Toy {
     }
 }
 
-/// What a condition with these operands is read with, three nanoseconds after its scope was entered.
+/// Returns the values that a condition with these operands reads three nanoseconds after its scope was entered.
 fn at<'r, M>(operands: &'r [Condition<Fires>], y: &'r Sensed, memory: &'r M) -> Reading<'r, Fires, Sensed, M> {
     Reading { y, since: Nanos(3), level: 0, way: Nanometers(5), operands, memory }
 }
@@ -240,7 +240,8 @@ impl Remembering {
         Self { guards, operands: operands.into() }
     }
 
-    /// What is set afterwards, where this was set before: the places of the memories, level by level.
+    /// Acts on a plan whose memories were set as in `before`; returns the places of the memories set afterwards, by
+    /// level.
     fn after<R>(&self, before: Set, act: impl FnOnce(&mut Remembers<'_>, &mut At) -> R) -> (R, Vec<usize>) {
         let laws = [0.0, 1.0].map(|angle| LawRow { control: Points::default(), frame: Radians(angle) });
         let texts = Texts { laws: &[], conditions: &[], names: &[] };

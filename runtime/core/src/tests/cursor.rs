@@ -1,4 +1,5 @@
-//! Where a cursor goes when a scope ends, and what then starts afresh (docs/src/reference/semantics.md, 5.3 and 6).
+//! Tests of a cursor: the atom after a scope has ended, and the brackets that restart (docs/src/reference/semantics.md,
+//! 5.3 and 6).
 
 use std::vec::Vec;
 
@@ -46,12 +47,12 @@ const PAIR: [Atom; 2] = [Atom::new(3, 1), Atom::new(4, 2)];
 
 type Walk = Cursor<[Nanos; 3], [u64; 2]>;
 
-/// A cursor at the start, at time 100. What storage held before does not matter.
+/// Returns a cursor at the start, at time 100. The storage's earlier content does not matter.
 fn start(fsm: Fsm<'_>) -> Walk {
     Cursor::start(fsm, [Nanos(77); 3], [77; 2], Nanos(100))
 }
 
-/// The states through which a plan goes when scopes of this level end one after another, at most `most` of them.
+/// Returns the states of a plan whose scopes of this level end one after another, at most `most` states.
 fn states(fsm: Fsm<'_>, level: u16, most: usize) -> Vec<u64> {
     let mut cursor = start(fsm);
     let mut states = std::vec![cursor.state(fsm)];

@@ -1,4 +1,4 @@
-//! What a turn comes to (docs/src/reference/semantics.md, 5).
+//! Tests of the result of a turn (docs/src/reference/semantics.md, 5).
 
 use std::vec::Vec;
 
@@ -20,11 +20,11 @@ struct Toy {
     termination: u64,
     /// The atoms entered, in order.
     entered: Vec<u32>,
-    /// How many inputs were computed.
+    /// Number of inputs computed.
     computed: u32,
-    /// Whether it says what follows when a scope ends.
+    /// `true` if the plan knows the successor when a scope ends.
     foresees: bool,
-    /// Whether it leaves a scope at once where it may.
+    /// `true` if the plan leaves a scope at once where it may.
     leaves: bool,
 }
 
