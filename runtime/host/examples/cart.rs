@@ -19,7 +19,7 @@ fn main() -> ExitCode {
     run::<CartTarget, _>("shuttle", || Shuttle { forward: true })
 }
 
-/// What the cart senses.
+/// Output of the cart's sensors.
 struct Sensed {
     at: Meters,
     track: Meters,

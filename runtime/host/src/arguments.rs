@@ -1,4 +1,4 @@
-//! The options of every executable, whatever its target.
+//! The options of every executable, for any target.
 
 use std::path::PathBuf;
 use std::time::Duration;

@@ -1,6 +1,8 @@
-//! Several runs of one plan, by robots that differ in a seed: made by several threads, told in the order of the seeds.
+//! Several runs of one plan, by robots that differ in a seed: made by several threads, reported in the order of the
+//! seeds.
 //!
-//! A run is the same whoever makes it and whatever else runs: each has a robot, a clock and a plan of its own.
+//! A run has the same result on every thread and beside any other runs: each has a robot, a clock and a plan
+//! of its own.
 
 use std::fmt;
 use std::io::Write;
@@ -23,20 +25,20 @@ use crate::summary::Summary;
 use crate::turns::{self, Limits, Witnesses};
 use crate::{Hosted, Judgement, Pace, Time};
 
-/// When a run is given up that no option limits: no batch shall go on for ever.
+/// Timeout of runs that no option limits: no batch shall go on for ever.
 const TIMEOUT: Duration = Duration::from_secs(3600);
 
 /// Runs to be made of one plan.
 pub struct Batch<R> {
     /// The seed of the first run; each run's is one more than that of the run before.
     pub first: u64,
-    /// How many runs.
+    /// Number of runs.
     pub runs: NonZeroU64,
-    /// How many of them are made at the same time.
+    /// Number of runs that are made at the same time.
     pub jobs: NonZeroUsize,
-    /// Whether the summary is to be JSON.
+    /// `true` if the summary is to be JSON.
     pub json: bool,
-    /// Makes the robot of a seed, or says why there is none.
+    /// Makes the robot of a seed, or returns why that failed.
     pub robot: Box<dyn Fn(u64) -> Result<R, String> + Send + Sync>,
     /// The options with which the run of a seed is made alone.
     pub alone: Box<dyn Fn(u64) -> Vec<String> + Send + Sync>,
@@ -49,7 +51,7 @@ impl<R> fmt::Debug for Batch<R> {
     }
 }
 
-/// How a run has gone.
+/// Outcome of a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Outcome {
     /// The plan is over, and there was no goal.
@@ -68,24 +70,24 @@ pub(crate) enum Outcome {
     Failed(String),
 }
 
-/// A run behind us.
+/// A run that has ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Done {
     pub(crate) seed: u64,
     pub(crate) outcome: Outcome,
     /// The plan's time at which it ended.
     pub(crate) t: Nanos,
-    /// How the plan ended, if it did.
+    /// End of the plan; `None` if it was not over.
     pub(crate) over: Option<Over>,
     pub(crate) contacts: u64,
 }
 
-/// What all runs have in common.
+/// Settings that all runs share.
 pub(crate) struct Terms<'a> {
     pub(crate) period: Duration,
     pub(crate) limits: Limits,
     pub(crate) signals: &'a Signals,
-    /// What the executable was called as.
+    /// Name by which the executable was called.
     pub(crate) program: &'a str,
     /// The causes by which the plan must end.
     pub(crate) required: &'a Required,
@@ -98,7 +100,7 @@ impl Terms<'_> {
     }
 }
 
-/// Makes the runs and tells of them; the exit status, and why `out` could not be written.
+/// Makes the runs and reports them; returns the exit status, and the error if `out` could not be written.
 pub(crate) fn run<R: Hosted, P>(
     batch: &Batch<R>,
     plan: &(impl Fn() -> P + Sync),

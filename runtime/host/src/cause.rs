@@ -10,7 +10,7 @@ use crate::passes::{Passes, outwards};
 use crate::report::rounded;
 use crate::transitions::Operand;
 
-/// The decimals of a value that is shown, unless it takes more to tell it from what it is compared with.
+/// Decimals of a value, unless more are needed to distinguish it from the value that it is compared with.
 const DECIMALS: usize = 2;
 /// The most decimals of a value.
 const DECIMALS_MOST: usize = 9;
@@ -57,7 +57,7 @@ impl<P: Plan> fmt::Display for CauseText<'_, P> {
     }
 }
 
-/// The place of the atom that a report names: its line, the names of the scopes around it and the passes of loops.
+/// Returns the place of an atom in a report: its line, the names of its enclosing scopes and the passes of loops.
 pub(crate) fn place<P: Plan>(plan: &P, passes: &Passes, atom: u32) -> String {
     let (fsm, source) = (plan.fsm(), plan.source());
     let Some(own) = fsm.atoms.get(atom as usize).map(|atom| atom.scope) else { return String::new() };

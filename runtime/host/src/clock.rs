@@ -1,4 +1,4 @@
-//! When turns begin and what time it is in them (docs/src/reference/semantics.md, 3.1).
+//! Clock of a run: the start and the time of each turn (docs/src/reference/semantics.md, 3.1).
 //!
 //! Turns begin at absolute deadlines, so lateness never adds up. A real robot that was late skips ahead: it is never
 //! sent a burst of inputs. In stepped time no turn may be skipped; what scheduling cost is caught up there.
@@ -15,13 +15,14 @@ use crate::{Pace, Time, urgency};
 
 /// The longest sleep without a look at the signals.
 const SLICE: Duration = Duration::from_millis(20);
-/// How much lateness stepped time catches up, in nanoseconds; after more, such as a suspended process, it goes on from now.
+/// Maximum lateness that stepped time catches up, in nanoseconds. After more, as when the process was suspended, it
+/// goes on from now.
 const CATCH_UP: u64 = 250_000_000;
 
-/// The maximum delay of a turn on a robot that does not say how long it can go without a command.
+/// The maximum delay of a turn on a robot without a limit of its own on the time without a command.
 const GAP: Duration = Duration::from_secs(2);
 
-/// Where real time comes from; a test drives it by hand.
+/// Source of real time; a test drives it by hand.
 pub(crate) trait Instants {
     /// The time since some moment before the first turn; never goes back.
     fn now(&mut self) -> Duration;
@@ -62,13 +63,13 @@ pub(crate) struct Clock<I> {
     time: Time,
     /// In nanoseconds; at least 1.
     period: u64,
-    /// When turn 0 began, in real nanoseconds; in stepped time moved on by what is not caught up.
+    /// Start of turn 0, in real nanoseconds; in stepped time later by the lateness that is not caught up.
     origin: u64,
-    /// When the first output had been taken: the plan's time 0, in real nanoseconds.
+    /// Time of the first output, in real nanoseconds: the plan's time 0.
     zero: u64,
-    /// How many periods after the origin the current turn began.
+    /// Number of periods from the origin to the start of the current turn.
     place: u64,
-    /// When the current turn began, in real nanoseconds.
+    /// Start of the current turn, in real nanoseconds.
     begun: u64,
     /// The longest time that a robot in real time may go without a command, in nanoseconds.
     longest_gap: u64,
@@ -76,8 +77,8 @@ pub(crate) struct Clock<I> {
 }
 
 impl<I: Instants> Clock<I> {
-    /// The clock of a run whose turn 0 begins now, of a robot that goes without a command for so long at most; by default
-    /// for two seconds more than a period.
+    /// The clock of a run whose turn 0 begins now. The robot can go without a command for `longest_gap`, by default two
+    /// seconds more than a period.
     pub(crate) fn begin(mut instants: I, time: Time, period: Duration, longest_gap: Option<Duration>) -> Self {
         let origin = nanos(instants.now());
         let longest_gap = nanos(longest_gap.unwrap_or(period.saturating_add(GAP)));
@@ -100,7 +101,7 @@ impl<I: Instants> Clock<I> {
         }
     }
 
-    /// How late turns began and how long they took, if a robot in real time has made any.
+    /// Returns the lateness and the durations of the turns, if a robot in real time has made any turns.
     pub(crate) fn timing(&self) -> Option<&Timing> {
         Some(&self.timing).filter(|timing| self.time == Time::Wall && timing.has_turns())
     }
@@ -136,7 +137,7 @@ impl<I: Instants> Clock<I> {
         }
     }
 
-    /// Moves on to the next turn's place; when it begins, in real nanoseconds, or `None` for at once.
+    /// Moves on to the next turn's place; returns its start in real nanoseconds, or `None` for at once.
     fn deadline(&mut self) -> Option<u64> {
         self.place = self.place.saturating_add(1);
         match self.time {
@@ -169,7 +170,7 @@ mod tests {
     use super::*;
     use crate::signals::Signal;
 
-    /// Time that passes only in sleeps, and when the test says so.
+    /// Time that passes only in sleeps, and when the test advances it.
     #[derive(Debug, Default)]
     struct ByHand(Duration);
 

@@ -1,5 +1,4 @@
-//! How a run ends: the exit status, and the sentence on standard error.
-//! See docs/src/reference/interfaces.md, 6.3.
+//! End of a run: the exit status, and the sentence on standard error. See docs/src/reference/interfaces.md, 6.3.
 
 use std::fmt;
 use std::io::{self, Write};
@@ -10,7 +9,7 @@ use mdle_runtime::PrintableLines;
 use crate::Refusal;
 use crate::signals::Signal;
 
-/// Exit status: the plan is over, whatever ended it.
+/// Exit status: the plan is over, by any cause.
 pub(crate) const OVER: u8 = 0;
 /// Exit status: of several runs, not all ended as required.
 pub(crate) const MISSED: u8 = 1;
@@ -56,10 +55,10 @@ pub(crate) enum Ending {
 }
 
 impl Ending {
-    /// The exit status of the executable, after these faults on the way out.
+    /// Returns the exit status of the executable, after these faults on the way out.
     ///
-    /// A robot that could not be stopped in good order, or a log that is cut short, is a fault whatever came before. What
-    /// [`Hosted::finish`](crate::Hosted::finish) could not write makes one only of a plan that is over: any other ending
+    /// A robot that could not be stopped in good order, or a truncated log, is always a fault. A file that
+    /// [`Hosted::finish`](crate::Hosted::finish) could not write is a fault only if the plan is over: any other ending
     /// says more.
     pub(crate) fn status(&self, faults: &[Fault]) -> u8 {
         let grave = faults.iter().any(|fault| match fault {
@@ -81,8 +80,8 @@ impl Ending {
         }
     }
 
-    /// This ending of a robot whose stop failed for this reason, if it did, and the reason if it is still to be told: what
-    /// an exchange failed by says enough, and mostly the same.
+    /// Returns this ending after a stop that failed for the reason `stop`, if any, and the reason if it is still to be
+    /// reported: after a failed exchange it is not, as the exchange's error says enough, and is mostly the same.
     pub(crate) fn with_stop(self, stop: Option<String>) -> (Self, Option<String>) {
         match (self, stop) {
             (Self::Robot(fault), Some(_)) => (Self::Unstopped(fault), None),
@@ -90,8 +89,8 @@ impl Ending {
         }
     }
 
-    /// Whether the robot still takes inputs: it is not used again once an exchange has failed, and after a panic
-    /// nothing is known of it. Its stop command is sent all the same.
+    /// Returns `true` if the robot still takes inputs. It is not used again once an exchange has failed, and after a
+    /// panic its state is unknown; its stop command is sent all the same.
     pub(crate) fn robot_listens(&self) -> bool {
         match self {
             Self::Over
@@ -105,7 +104,7 @@ impl Ending {
         }
     }
 
-    /// Whether the robot's own code can still be trusted to write what was asked for.
+    /// Returns `true` if the robot's own code can still be trusted to write the files that the options name.
     pub(crate) fn is_orderly(&self) -> bool {
         match self {
             Self::Over
@@ -138,7 +137,8 @@ impl Ending {
         }
     }
 
-    /// Says it on standard error, and whether that stopped the robot; a plan that is over has said so on standard output.
+    /// Reports the ending on standard error, and whether the robot was stopped; a plan that is over has been reported
+    /// on standard output.
     pub(crate) fn tell(&self, is_stopped: bool, err: &mut dyn Write) {
         let came = if is_stopped { "a fault stopped the robot" } else { "a fault ended the plan" };
         match self {
@@ -177,7 +177,7 @@ impl Ending {
     }
 }
 
-/// What goes wrong on the way out.
+/// Fault on the way out.
 #[derive(Debug)]
 pub(crate) enum Fault {
     /// The null input could not be exchanged once more.
@@ -188,12 +188,12 @@ pub(crate) enum Fault {
     Path(io::Error),
     /// The stop command could not be delivered, or the robot did not stop: the robot's sentence.
     Stop(String),
-    /// What was asked for could not be written: the robot's sentence.
+    /// The files that the robot was to write could not be written: the robot's sentence.
     Finish(String),
 }
 
 impl Fault {
-    /// Says it on standard error, of a robot that was stopped or not.
+    /// Reports the fault on standard error; `is_stopped` is `true` if the robot was stopped.
     pub(crate) fn tell(&self, is_stopped: bool, err: &mut dyn Write) {
         match self {
             Self::Exchange(ending) => ending.tell(is_stopped, err),
@@ -206,7 +206,7 @@ impl Fault {
 }
 
 impl Refusal {
-    /// Says it on standard error; the exit status.
+    /// Reports the refusal on standard error, and returns the exit status.
     pub(crate) fn tell(&self, err: &mut dyn Write) -> u8 {
         let (sentence, status) = match self {
             Self::Usage(sentence) => (sentence.as_str(), USAGE),

@@ -39,7 +39,7 @@ pub fn read_text(path: &Path, most: u64) -> io::Result<String> {
     String::from_utf8(read_file(path, most)?).map_err(|_| io::Error::other("it is not UTF-8 text"))
 }
 
-/// An error that says what is no regular file.
+/// Returns an error with the type of the file unless it is a regular file.
 fn regular(found: FileType) -> io::Result<()> {
     let what = if found.is_file() {
         return Ok(());

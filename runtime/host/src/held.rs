@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-/// The most that is held, in bytes: when there is more, the first half goes.
+/// Maximum size of the text that is kept, in bytes: when there is more, the first half is dropped.
 const MOST: usize = 1 << 20;
 
 /// A writer that passes everything on when it is flushed, and not before.

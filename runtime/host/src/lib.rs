@@ -1,8 +1,8 @@
-//! What the executable of a plan needs around its turns: arguments, clock, signals, safe stop, report and run log.
+//! Host of a plan's executable: arguments, clock, signals, safe stop, report and run log, around the turns of the plan.
 //!
 //! For people who write a robot: [`Target`], [`Hosted`], [`Time`] and [`Refusal`], and [`Batch`] where it can be started over, [`Replays`] where it replays paths, [`read_file`] and [`output_format`] where its options name files, [`Quantity`] where they take lengths and times. For generated code: [`run`].
 //!
-//! Whatever happens, the robot is stopped: when the plan is over, when an exchange fails, when code panics, when a
+//! The robot is stopped in every case: when the plan is over, when an exchange fails, when code panics, when a
 //! signal comes, when a limit is reached.
 #![forbid(unsafe_code)]
 

@@ -15,29 +15,30 @@ use crate::transitions::{Operand, Transitions};
 #[derive(Debug)]
 pub(crate) struct Log {
     file: Outlet,
-    /// Whether each turn reaches the file at once: not at the fastest pace.
+    /// `true` if each turn reaches the file at once: not at the fastest pace.
     prompt: bool,
 }
 
-/// What a log says about a turn.
+/// Entry of a log: one turn.
 pub(crate) struct Entry<'a, P> {
     /// The plan, for its texts.
     pub(crate) plan: &'a P,
     /// The number of the turn, from 0.
     pub(crate) turn: u64,
-    /// Its time.
+    /// Time of the turn.
     pub(crate) t: Nanos,
     /// The state in which it ended.
     pub(crate) state: u64,
     /// The atom whose law was applied, as written; `None` for the null input.
     pub(crate) applied: Option<u32>,
-    /// The frame of that law, if a `FRAME here` is around its atom.
+    /// Frame of that law, if a `FRAME here` encloses its atom.
     pub(crate) frame: Option<Frame>,
-    /// Its transitions, in order.
+    /// Transitions of the turn, in order.
     pub(crate) transitions: &'a Transitions,
 }
 
-/// A file that is to be written in a run, such as its log, open and still as it was found; dropped, it leaves no file where there was none.
+/// A file that is to be written in a run, such as its log, open and unchanged. If the file is new, dropping this
+/// removes it.
 #[derive(Debug)]
 pub(crate) struct Untouched<'p> {
     file: File,
@@ -60,18 +61,18 @@ impl<'p> Untouched<'p> {
         }
     }
 
-    /// Begins a log in it, in place of whatever it held. Each turn reaches the file at once if `prompt`.
+    /// Begins a log in the file, in place of its earlier content. Each turn reaches the file at once if `prompt`.
     ///
     /// # Errors
-    /// When what it held cannot be cut off.
+    /// When the earlier content cannot be cut off.
     pub(crate) fn begin(self, prompt: bool, patience: &Patience) -> io::Result<Log> {
         Ok(Log { file: self.emptied(patience)?, prompt })
     }
 
-    /// Writes to the file, without whatever it held; from now on it stays.
+    /// Empties the file and returns a writer to it; from now on the file stays.
     ///
     /// # Errors
-    /// When that cannot be cut off.
+    /// When the earlier content cannot be cut off.
     pub(crate) fn emptied(self, patience: &Patience) -> io::Result<Outlet> {
         let Self { file, new } = self;
         // A device or a pipe has no length.

@@ -1,4 +1,4 @@
-//! The files that options name: what a run writes is one file each, and none that it reads.
+//! The files that options name: a file that a run writes is named by one option only, and the run does not read it.
 
 use std::fs;
 use std::io;
@@ -21,7 +21,7 @@ pub struct NamedFile {
     pub is_written: bool,
 }
 
-/// A file, whatever it is called.
+/// Identity of a file, independent of the path that names it.
 #[derive(Debug, PartialEq, Eq)]
 enum Identity {
     /// One that is there: its device and its number on that.
@@ -63,7 +63,7 @@ fn clash(file: &NamedFile, other: &NamedFile) -> String {
     }
 }
 
-/// Which file a name leads to; `None` for what is no file, such as a device, and for what cannot be found out.
+/// Returns the identity of the file at a path; `None` if that is no regular file, such as a device, or is unknown.
 fn identity(path: &Path) -> Option<Identity> {
     match fs::metadata(path) {
         Ok(found) => found.is_file().then(|| Identity::Known(found.dev(), found.ino())),

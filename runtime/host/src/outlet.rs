@@ -15,9 +15,9 @@ use crate::patience::{AT_THE_END, Patience};
 pub(crate) const STACK: usize = 128 * 1024;
 /// The maximum that waits for a slow reader, in bytes.
 const WAITING: usize = 1 << 20;
-/// As much is handed over without being asked for, in bytes.
+/// Size from which text is handed over without a flush, in bytes.
 const PIECE: usize = 1 << 16;
-/// As much is written at a time, in bytes: who takes that is no reader that takes nothing.
+/// Maximum size of a single write, in bytes: a reader that takes this much counts as one that reads.
 const CHUNK: usize = 1 << 13;
 /// The longest time that a file which must be complete may take nothing while a robot drives.
 const LAG: Duration = Duration::from_secs(5);
@@ -27,7 +27,7 @@ const LOOK: Duration = Duration::from_millis(20);
 /// The treatment of pieces for which a slow reader leaves no room while a robot drives.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Keeps {
-    /// Lines for people: they are left out, and a line says so.
+    /// Lines for people: they are left out, and a line reports that.
     WhatIsRead,
     /// A record that must not lack anything: that is an error.
     All,
@@ -40,7 +40,7 @@ pub(crate) struct Outlet {
     piece: Vec<u8>,
     keeps: Keeps,
     patience: Patience,
-    /// Whether pieces have been lost since the last one that was handed over.
+    /// `true` if pieces have been lost since the last piece that was handed over.
     lost: bool,
     /// `true` once the reader is not waited for any longer.
     given_up: bool,
@@ -58,7 +58,7 @@ struct Queue {
     pieces: VecDeque<Vec<u8>>,
     /// Bytes that wait or are being written.
     bytes: usize,
-    /// When the reader took something last, or something was handed over to one that waited.
+    /// Time at which the reader took something last, or at which something was handed over to a waiting thread.
     moved: Instant,
     is_closed: bool,
     /// Why the thread has ended.
@@ -233,7 +233,7 @@ impl Drop for Outlet {
     }
 }
 
-/// A handle on an outlet for what other threads have to tell at once.
+/// A handle on an outlet for messages of other threads that cannot wait.
 #[derive(Debug, Clone)]
 pub(crate) struct Aside(Arc<Shared>);
 

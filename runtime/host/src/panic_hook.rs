@@ -1,4 +1,4 @@
-//! The panic hook: it tells where code panicked without making the robot wait for whoever reads that.
+//! The panic hook: it reports where code panicked, without making the robot wait for the reader of this report.
 
 use std::backtrace::{Backtrace, BacktraceStatus};
 use std::panic::{self, PanicHookInfo};
@@ -7,7 +7,7 @@ use std::thread;
 use crate::outlet::Aside;
 use crate::safety::text;
 
-/// Has panics told through `outlet` from now on.
+/// Sends reports of panics through `outlet` from now on.
 pub(crate) fn tell_to(outlet: Aside) {
     panic::set_hook(Box::new(move |panic| outlet.tell(told(panic))));
 }

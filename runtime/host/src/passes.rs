@@ -1,4 +1,5 @@
-//! The pass of each loop around the current atom, counted for reports: a machine counts those of finite loops only.
+//! The pass of each loop that encloses the current atom, counted for reports: a machine counts passes of finite loops
+//! only.
 
 use mdle_runtime::fsm::{Bracket, Kind};
 use mdle_runtime::{Fsm, Transition};
@@ -47,7 +48,7 @@ impl Passes {
     }
 }
 
-/// A bracket and those around it, outwards, each with its number.
+/// Returns a bracket and its enclosing brackets, outwards, each with its number.
 pub(crate) fn outwards(fsm: Fsm<'_>, bracket: u32) -> impl Iterator<Item = (u32, &Bracket)> {
     let at = move |number: u32| fsm.brackets.get(number as usize).map(|bracket| (number, bracket));
     std::iter::successors(at(bracket), move |(number, bracket)| {

@@ -25,13 +25,13 @@ use crate::{Batch, Refusal, Target};
 /// The largest file that is read, in bytes: at ten rows a second some eleven hours.
 const LARGEST: u64 = 10_000_000;
 
-/// What it takes to replay and to record paths on a robot whose alphabet has the capability `paths`.
+/// Functions and limits to replay and to record paths on a robot whose alphabet has the capability `paths`.
 pub struct Replays<R: Robot> {
     /// The fastest that a path may ask the robot to drive, forwards or backwards, and to turn.
     pub fastest: Twist,
     /// Hands the robot what the plan replays, before the first exchange: from then on each output has it.
     pub take: fn(&mut R, PathStore),
-    /// How fast the robot drives forward, by this output.
+    /// Returns the forward speed of the robot, by this output.
     pub speed: fn(&R::Output) -> MetersPerSecond,
 }
 
@@ -56,10 +56,10 @@ pub(crate) fn recording<T: Target>(matches: &ArgMatches) -> Option<PathBuf> {
     T::PATHS.and_then(|_| matches.get_one("record-path").cloned())
 }
 
-/// Whether turns are short enough for a path to be recorded.
+/// Checks that turns are short enough for a path to be recorded.
 ///
 /// # Errors
-/// They are not: what is recorded could not be replayed.
+/// The turns are too long: the path could not be replayed.
 pub(crate) fn check_period(options: &Options) -> Result<(), Refusal> {
     if options.path.is_none() || options.period <= APART {
         return Ok(());
@@ -69,10 +69,10 @@ pub(crate) fn check_period(options: &Options) -> Result<(), Refusal> {
     Err(Refusal::Usage(format!("{sentence}; choose a shorter --period")))
 }
 
-/// Begins to record the path that a robot drives; `None` if it cannot tell.
+/// Begins to record the path that a robot drives; `None` if the target does not provide [`Target::PATHS`].
 ///
 /// # Errors
-/// What the file held cannot be cut off.
+/// The file's earlier content cannot be cut off.
 pub(crate) fn recorder<T: Target>(
     file: Untouched<'_>,
     patience: &Patience,
@@ -84,7 +84,7 @@ pub(crate) fn recorder<T: Target>(
 /// Reads the paths that a plan replays.
 ///
 /// # Errors
-/// A path that is not there, is none, or is too fast for the robot: in which file, where and why.
+/// A file is missing, holds no path, or its path is too fast for the robot: in which file, where and why.
 pub(crate) fn load<T: Target>(matches: &ArgMatches, names: &[&'static str]) -> Result<PathStore, Refusal> {
     if names.is_empty() {
         return Ok(PathStore::EMPTY);
@@ -119,7 +119,7 @@ pub(crate) fn hand_over<T: Target>(robot: &mut T::Robot, store: PathStore) {
     }
 }
 
-/// The same batch, whose robots have these paths.
+/// Returns the batch with robots that have these paths.
 pub(crate) fn in_batch<T: Target>(batch: Batch<T::Robot>, store: PathStore) -> Batch<T::Robot> {
     let Some(Replays { take, .. }) = T::PATHS else { return batch };
     let make = batch.robot;

@@ -20,12 +20,12 @@ pub(crate) struct Patience {
     stopped: Arc<OnceLock<Stopped>>,
 }
 
-/// The moment at which the stop had been tried.
+/// Result of the attempt to stop the robot.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stopped {
-    /// When that was.
+    /// Time at which the stop had been tried.
     pub(crate) at: Instant,
-    /// The exit status as far as it was known then; `None` where only a signal ends the run.
+    /// The exit status as far as it was known then; `None` if only a signal ends the run.
     pub(crate) status: Option<u8>,
 }
 
@@ -45,12 +45,12 @@ impl Patience {
         let _ = self.stopped.set(Stopped { at: Instant::now(), status });
     }
 
-    /// When the stop had been tried, if it was.
+    /// Returns the attempt to stop the robot, if it has been made.
     pub(crate) fn stopped(&self) -> Option<Stopped> {
         self.stopped.get().copied()
     }
 
-    /// Returns how long a reader that takes nothing is waited for; `None` for as long as it takes.
+    /// Returns the maximum wait for a reader that takes nothing; `None` for no limit.
     pub(crate) fn limit(&self) -> Option<Duration> {
         let is_real = self.is_real.load(Ordering::SeqCst);
         if is_real && self.stopped().is_none() {

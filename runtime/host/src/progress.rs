@@ -1,4 +1,4 @@
-//! The line on standard error by which a fast run shows that it goes on: only on a terminal, and never left behind.
+//! The line on standard error by which a fast run shows that it goes on: only on a terminal, and erased at the end.
 
 use std::io::Write;
 use std::time::Duration;
@@ -9,7 +9,7 @@ use crate::report::Report;
 
 /// From one look to the next.
 const EVERY: Duration = Duration::from_millis(100);
-/// The longest line, in letters: none may need two lines of a terminal.
+/// Maximum length of the line, in letters, so that it never needs two lines of a terminal.
 const LETTERS: usize = 76;
 /// The letters of a bar.
 const BAR: usize = 30;
@@ -38,7 +38,7 @@ impl<'e> Progress<'e> {
         self.show(&format!("{:.1} s  {times:.0} times as fast as real  {}", t.seconds(), Printable(law)));
     }
 
-    /// So many runs of all are done.
+    /// Shows that `done` of `all` runs are done.
     pub(crate) fn runs(&mut self, done: u64, all: u64) {
         let Some(now) = self.due() else { return };
         let full = (BAR as f64 * done as f64 / all.max(1) as f64) as usize;

@@ -1,5 +1,5 @@
-//! What a run says on standard output: one line a transition, and at last why the plan is over.
-//! See docs/src/reference/interfaces.md, 6.2.
+//! Report of a run on standard output: a line for each transition, and at the end why the plan is over. See
+//! docs/src/reference/interfaces.md, 6.2.
 
 use std::fmt;
 use std::io::{self, Write};
@@ -15,19 +15,19 @@ use crate::transitions::{Operand, Transitions};
 /// The report of a run; goes quiet when nobody reads it any more.
 pub(crate) struct Report<'a> {
     out: &'a mut dyn Write,
-    /// Whether lines are shown as soon as they are written: not at the fastest pace.
+    /// `true` if lines are shown as soon as they are written: not at the fastest pace.
     prompt: bool,
-    /// Nothing more is written after an error; it is kept unless it says that the reader has gone.
+    /// Nothing more is written after an error; the error is kept unless it means that the reader has gone.
     state: State,
     /// The passes of loops.
     passes: Passes,
     /// Why the current atom runs; empty for the plan's first.
     since: String,
-    /// How the plan ended, if it has.
+    /// End of the plan, once it is over.
     over: Option<Over>,
 }
 
-/// How a plan ended.
+/// End of a plan.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct Over {
     /// The words of a report.
@@ -44,7 +44,7 @@ pub(crate) struct Over {
     pub(crate) numbers: Vec<u32>,
 }
 
-/// Whether a report is still written.
+/// State of a report: open, or no longer written.
 enum State {
     Open,
     Closed(Option<io::Error>),
@@ -137,7 +137,7 @@ impl<'a> Report<'a> {
 }
 
 impl Over {
-    /// How `plan` ended by this transition.
+    /// Returns the end of `plan` by this transition.
     fn of<P: Plan>(plan: &P, transition: &Transition, operands: &[Operand], cause: String) -> Self {
         let source = plan.source();
         let texts = source.operands_of(transition.scope);

@@ -107,7 +107,7 @@ fn scopes(fsm: Fsm<'_>) -> impl Iterator<Item = u32> {
     (0..).zip(fsm.brackets).filter(move |(_, bracket)| is_scope(bracket.kind)).map(|(number, _)| number)
 }
 
-/// Returns `true` if nothing follows a scope when it ends, at least in the last pass of the loops around it.
+/// Returns `true` if nothing follows a scope when it ends, at least in the last pass of its enclosing loops.
 fn ends_plan(fsm: Fsm<'_>, scope: u32) -> bool {
     let last = fsm.brackets.first().map(|plan| plan.last);
     outwards(fsm, scope).all(|(_, around)| {
@@ -119,7 +119,7 @@ fn ends_plan(fsm: Fsm<'_>, scope: u32) -> bool {
     })
 }
 
-/// Says that the plan cannot end by this cause, and by which ones it can.
+/// Returns the message that the plan cannot end by this cause, and by which causes it can.
 fn refused<P: Plan>(plan: &P, text: &str) -> String {
     let source = plan.source();
     let mut known: Vec<String> = Vec::new();

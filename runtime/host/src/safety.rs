@@ -1,16 +1,16 @@
-//! The shield around code of the robot and of the plan: a panic in it becomes a value, so that the robot is stopped.
+//! The shield for code of the robot and of the plan: a panic in it becomes a value, so that the robot is stopped.
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-/// What code said when it panicked.
+/// Message of a panic.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Panicked(pub(crate) String);
 
-/// Runs `code`. What it leaves behind after a panic may be broken: do no more with it than stop the robot.
+/// Runs `code`. Its data may be inconsistent after a panic: do no more with them than stop the robot.
 ///
 /// # Errors
-/// When it panicked. The panic hook has then told where, on standard error.
+/// When it panicked. The panic hook has then reported where, on standard error.
 pub(crate) fn shielded<T>(code: impl FnOnce() -> T) -> Result<T, Panicked> {
     catch_unwind(AssertUnwindSafe(code)).map_err(|payload| {
         let message = text(&*payload);

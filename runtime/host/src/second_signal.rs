@@ -12,7 +12,7 @@ use crate::outlet::STACK;
 use crate::patience::Stopped;
 use crate::signals::Signals;
 
-/// The time that the program may go on after the attempt to stop, once a second signal came.
+/// The time that the program may go on after the attempt to stop, if a second signal came.
 const AFTER_THE_STOP: Duration = Duration::from_secs(1);
 /// The time that the program may go on after the second signal if the stop is not tried at all: the robot's code hangs.
 const WITHOUT_A_STOP: Duration = Duration::from_secs(10);

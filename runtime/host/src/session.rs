@@ -1,4 +1,4 @@
-//! A whole run: options, robot, turns, and the way out, on which the robot is stopped whatever has happened.
+//! A whole run: options, robot, turns, and the way out, on which the robot is always stopped.
 
 use std::ffi::OsString;
 use std::io::{self, Write};
@@ -23,9 +23,9 @@ use crate::signals::Signals;
 use crate::turns::{self, Limits, Witnesses};
 use crate::{Hosted, NamedFile, Pace, Program, Refusal, Target, Time, named_file, way_out};
 
-/// What a run meets outside the program; a test brings its own.
+/// Environment of a run: time, signals and output; a test provides its own.
 pub(crate) struct Surroundings<'e, I, O> {
-    /// Where real time comes from.
+    /// Source of real time.
     pub(crate) instants: I,
     /// The signals that end the run.
     pub(crate) signals: Signals,
@@ -33,7 +33,7 @@ pub(crate) struct Surroundings<'e, I, O> {
     pub(crate) out: O,
     /// Standard error.
     pub(crate) err: &'e mut dyn Write,
-    /// Where standard error is a terminal, the clock of the line that shows that a fast run goes on.
+    /// Clock of the line that shows that a fast run goes on, if standard error is a terminal.
     pub(crate) seen: Option<Box<dyn FnMut() -> Duration + 'e>>,
 }
 
@@ -134,7 +134,7 @@ where
     status
 }
 
-/// Says what this computer does not permit, and how it would.
+/// Warns of the permission that this computer does not give, and names the command that gives it.
 fn warn_of_lateness(refused: &str, program: Option<&OsString>, err: &mut dyn Write) {
     let program = program.map_or_else(|| "FILE".into(), |program| program.to_string_lossy());
     say(
@@ -146,7 +146,7 @@ fn warn_of_lateness(refused: &str, program: Option<&OsString>, err: &mut dyn Wri
     );
 }
 
-/// What the options say of the plan.
+/// Data of the plan that the options ask for.
 struct Prepared {
     /// The paths that the plan replays, read.
     store: PathStore,
@@ -194,7 +194,7 @@ fn batch<T: Target>(
     Ok(batch.map(|batch| paths::in_batch::<T>(batch, store)))
 }
 
-/// Makes the runs of a batch and tells of them; the exit status.
+/// Makes the runs of a batch and reports them; returns the exit status.
 fn several<'e, R: Hosted, P>(
     batch: &Batch<R>,
     plan: &(impl Fn() -> P + Sync),
@@ -232,7 +232,7 @@ fn answered(answer: &str, out: &mut dyn Write) -> u8 {
     ending::OVER
 }
 
-/// What a run needs before its first turn.
+/// Parts that a run needs before its first turn.
 struct Ready<R: Robot> {
     robot: R,
     time: Time,
@@ -267,7 +267,7 @@ fn ready<T: Target>(
     opened.unwrap_or_else(bug_before)
 }
 
-/// Says that a signal ended the run while the robot was opened; the exit status.
+/// Reports that a signal ended the run while the robot was opened; returns the exit status.
 fn ended_at_the_start(signals: &Signals, stopped: Result<(), String>, err: &mut dyn Write) -> u8 {
     let Some(signal) = signals.caught() else {
         signals.patience().stop_was_tried(None);
@@ -293,7 +293,7 @@ fn bug_before<T>(Panicked(message): Panicked) -> Result<T, Refusal> {
     Err(Refusal::Fault(format!("the robot's code panicked before it ran, which is a bug: {message}")))
 }
 
-/// Whether somebody may be watching: at the fastest pace it matters more that writing is cheap.
+/// Returns `true` if a person may be watching; at the fastest pace it matters more that writing is cheap.
 fn is_watched(time: Time) -> bool {
     match time {
         Time::Wall | Time::Stepped(Pace::Times(_)) => true,

@@ -89,11 +89,11 @@ impl Signal {
 /// The signals caught so far.
 #[derive(Debug)]
 pub(crate) struct Signals {
-    /// The number of the signal that came last; 0 before the first.
+    /// The number of the signal that arrived last; 0 before the first.
     caught: Arc<AtomicUsize>,
-    /// Whether a signal ends the program at once, as it does by default.
+    /// `true` if a signal ends the program at once, as it does by default.
     deadly: Arc<AtomicBool>,
-    /// Whether SIGUSR1 came: how late are the turns?
+    /// `true` if SIGUSR1 has arrived, which asks how late the turns are.
     timing: Arc<AtomicBool>,
     /// The signals that are noted: all but those that were ignored already.
     noted: Vec<Signal>,
@@ -167,17 +167,17 @@ impl Signals {
         self.deadly.load(Ordering::SeqCst)
     }
 
-    /// The signal that came last, if one came.
+    /// Returns the signal that arrived last, if any.
     pub(crate) fn caught(&self) -> Option<Signal> {
         u8::try_from(self.caught.load(Ordering::SeqCst)).ok().filter(|number| *number > 0).map(Signal)
     }
 
-    /// Tells code that opens a robot whether a signal came.
+    /// Returns the request by which code that opens a robot learns of a signal.
     pub(crate) fn stop_request(&self) -> StopRequest {
         StopRequest::of(&self.caught)
     }
 
-    /// Whether it has been asked, since this was asked last, how late the turns are.
+    /// Returns `true` if SIGUSR1 has arrived since the last call, which asks how late the turns are.
     pub(crate) fn timing_is_asked_for(&self) -> bool {
         self.timing.swap(false, Ordering::SeqCst)
     }
@@ -208,7 +208,7 @@ impl Signals {
     }
 }
 
-/// The signals that this process was started with ignored, a bit each from SIGHUP; where that cannot be found out, none.
+/// Returns the signals that this process ignores since its start, a bit for each from SIGHUP; 0 if that is unknown.
 fn ignored() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));

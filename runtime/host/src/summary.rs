@@ -13,15 +13,15 @@ use crate::report::Over;
 /// The runs of a batch, in the order of their seeds.
 pub(crate) struct Summary<'a> {
     pub(crate) runs: &'a [Done],
-    /// How many there were to be: more, if a signal ended the batch.
+    /// Number of runs that were to be made: more than were made if a signal ended the batch.
     pub(crate) asked: u64,
     /// The first seed.
     pub(crate) first: u64,
     /// The options with which the run of a seed is made alone.
     pub(crate) alone: &'a dyn Fn(u64) -> Vec<String>,
-    /// When runs were given up that no option limits.
+    /// Timeout of the runs, if no option limits them.
     pub(crate) timeout: Option<Duration>,
-    /// What the executable was called as.
+    /// Name by which the executable was called.
     pub(crate) program: &'a str,
 }
 
@@ -66,7 +66,7 @@ impl Summary<'_> {
         self.runs.iter().filter(|run| run.outcome.name() == name).count() as u64
     }
 
-    /// How often something was touched, and in how many runs.
+    /// Returns the number of contacts, and the number of runs in which there were contacts.
     fn contacts(&self) -> (u64, usize) {
         let touched = self.runs.iter().filter(|run| run.contacts > 0);
         (touched.clone().map(|run| run.contacts).sum(), touched.count())

@@ -1,5 +1,4 @@
-//! What a target gives the host: its options, its robot and how its time passes.
-//! See docs/src/reference/interfaces.md, 7.3.
+//! Interface of a target to the host: its options, its robot and its time. See docs/src/reference/interfaces.md, 7.3.
 
 use std::fmt;
 use std::time::Duration;
@@ -17,14 +16,14 @@ pub trait Target {
     const PERIOD: Duration;
     /// The robot.
     type Robot: Hosted + 'static;
-    /// What it takes to replay and to record paths, if the alphabet has the capability `paths`: the executable then takes
+    /// Functions to replay and to record paths, if the alphabet has the capability `paths`: the executable then takes
     /// `--paths` and `--record-path`.
     const PATHS: Option<Replays<Self::Robot>> = None;
 
     /// Adds the target's own options to the executable's.
     fn arguments(command: Command) -> Command;
 
-    /// How time passes for this robot with these options.
+    /// Returns the time of this robot with these options: real or stepped.
     ///
     /// # Errors
     /// A sentence for the operator about an option that makes no sense.
@@ -40,12 +39,13 @@ pub trait Target {
     /// Why there is no robot: a bad option (exit status 2), a fault (exit status 3), or `request`.
     fn connect(matches: &ArgMatches, period: Duration, request: &StopRequest) -> Result<Self::Robot, Refusal>;
 
-    /// Returns the files that the target's own options name: none is written that another option names as well.
+    /// Returns the files that the target's own options name: the host refuses to write a file that another option names
+    /// too.
     fn files(_matches: &ArgMatches) -> Vec<NamedFile> {
         Vec::new()
     }
 
-    /// What is printed instead of a run, if these options ask for something that needs none.
+    /// Returns the text to print instead of a run, if these options ask for something that needs no run.
     ///
     /// # Errors
     /// Why there is no answer: a bad option (exit status 2).
@@ -53,8 +53,8 @@ pub trait Target {
         Ok(None)
     }
 
-    /// Whether the robot shows its run on standard output itself, as with a live view: then the report waits until the
-    /// robot is stopped, and the robot leaves the screen when it is.
+    /// Returns `true` if the robot shows its run on standard output itself, as with a live view: the report then waits
+    /// until the robot is stopped, and the robot leaves the screen when it is stopped.
     fn screen(_matches: &ArgMatches) -> bool {
         false
     }
@@ -73,21 +73,21 @@ pub trait Target {
     }
 }
 
-/// How time passes.
+/// Time of a robot: real or stepped.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Time {
     /// By the wall clock, read after each exchange.
     Wall,
-    /// Turn `k` is at `k` periods exactly, whatever the wall clock says: a simulated world.
+    /// Turn `k` is at `k` periods exactly, independent of the wall clock: a simulated world.
     Stepped(Pace),
 }
 
-/// How fast stepped time passes.
+/// Pace of stepped time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Pace {
     /// This many times as fast as the wall clock; positive and finite.
     Times(f64),
-    /// As fast as possible.
+    /// The fastest pace possible.
     Max,
 }
 
@@ -98,12 +98,12 @@ pub enum Refusal {
     Usage(String),
     /// The robot does not answer, or answers that it cannot run.
     Fault(String),
-    /// The run was asked to end while the robot was opened. The robot was stopped; if not, a sentence that says why
+    /// The run was asked to end while the robot was opened. The robot was stopped; if not, a sentence with the reason
     /// (exit status 3).
     Ended(Result<(), String>),
 }
 
-/// Where a plan stands after a turn in which it was not over.
+/// State of a plan after a turn in which it was not over.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Standing<'a> {
     /// The time of the turn.
@@ -112,12 +112,12 @@ pub struct Standing<'a> {
     pub state: u64,
     /// The quark text of its law.
     pub law: &'a str,
-    /// Its line, the names of the scopes around it and the passes of loops: `patrol.mdle:12, Leg, pass 3 of 5`; empty for a
-    /// plan that was written in Rust.
+    /// Line of the atom, names of its enclosing scopes and passes of loops: `patrol.mdle:12, Leg, pass 3 of 5`; empty
+    /// for a plan that was written in Rust.
     pub place: String,
     /// The reason for which it runs: the operands that fired, with their values; empty for the plan's first.
     pub since: &'a str,
-    /// The scopes around it, the plan first and the atom last.
+    /// The scopes that enclose the atom, the plan first and the atom's own last.
     pub scopes: Vec<Around<'a>>,
 }
 
@@ -134,14 +134,14 @@ pub struct Ended<'a> {
     pub t: Nanos,
 }
 
-/// A scope around the current atom.
+/// A scope that encloses the current atom.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Around<'a> {
-    /// Its name; empty for an atom.
+    /// Name of the scope; empty for an atom.
     pub name: &'a str,
     /// The condition text of its interrupt.
     pub condition: &'a str,
-    /// How long ago it was entered.
+    /// Time since the scope was entered.
     pub since: Nanos,
 }
 
@@ -152,7 +152,7 @@ pub enum Judgement {
     Arrived,
     /// The robot touches something.
     Bumped,
-    /// The robot is outside its goal; a few words that say where.
+    /// The robot is outside its goal; a few words on its place.
     Astray(String),
 }
 
@@ -168,35 +168,36 @@ impl fmt::Display for Judgement {
 
 /// A robot that an executable drives: besides the exchange it may follow what the plan does.
 pub trait Hosted: Robot {
-    /// An atom began in the turn at time `t`, and its law is now applied. `number` is its state in the first pass of the loops
-    /// around it, so that every pass of an atom as written has one number.
+    /// Reports that an atom began in the turn at time `t`, and that its law is now applied. `number` is its state in
+    /// the first pass of its enclosing loops, so that every pass of an atom as written has one number.
     fn began(&mut self, _number: u64, _law: &str, _t: Nanos) {}
 
-    /// The turns of the run have ended; the robot has not been stopped yet.
+    /// Reports that the turns of the run have ended; the robot has not been stopped yet.
     fn ended(&mut self, _ended: &Ended<'_>) {}
 
-    /// Whether [`Hosted::turned`] is to be called.
+    /// Returns `true` if [`Hosted::turned`] is to be called.
     fn looks(&self) -> bool {
         false
     }
 
-    /// A turn was made, and this is where the plan stands.
+    /// Reports the state of the plan after a turn.
     fn turned(&mut self, _standing: &Standing<'_>) {}
 
-    /// Returns the longest time without a command after which the robot is still driven on, by the wall clock: that of the robot's own
-    /// watchdog, or how long its data stay fresh. After a longer gap, as when the program was suspended, the run ends with a
-    /// fault before a command is sent. `None` for two seconds more than the period. Simulated time has no gaps.
+    /// Returns the longest time without a command after which the robot is still driven on, by the wall clock: the time
+    /// of its own watchdog, or the time for which its data stay fresh. After a longer gap, as when the program was
+    /// suspended, the run ends with a fault before a command is sent. `None` for two seconds more than the period.
+    /// Simulated time has no gaps.
     fn longest_gap(&self) -> Option<Duration> {
         None
     }
 
-    /// Returns the result of a run whose plan is over; `None` if the robot was to come to no goal. Asked after the robot was
+    /// Returns the result of a run whose plan is over; `None` if the robot has no goal. Called after the robot was
     /// stopped.
     fn judged(&self) -> Option<Judgement> {
         None
     }
 
-    /// How often the robot has come into contact with something so far.
+    /// Returns the number of times that the robot has come into contact with something so far.
     fn contacts(&self) -> u64 {
         0
     }

@@ -1,4 +1,5 @@
-//! Whole runs on a toy robot in virtual time: what the robot is sent, what is said, and the exit status, on every way out.
+//! Tests of whole runs on a toy robot in virtual time: the robot's inputs, the output, and the exit status, on every
+//! way out.
 
 mod ends;
 mod limits;

@@ -1,4 +1,4 @@
-//! How late the turns of a robot begin and how long they take, counted in classes: nothing is allocated for a turn.
+//! Lateness and durations of a robot's turns, counted in classes: nothing is allocated for a turn.
 
 use std::fmt;
 use std::time::Duration;
@@ -17,7 +17,7 @@ const BOUNDS: [u64; 19] = {
     bounds
 };
 
-/// So many turns in a row that take longer than the period are too many: the robot does not get what the plan asks for.
+/// Number of successive turns longer than the period that ends a run: the robot does not get what the plan asks for.
 const LIMIT: u32 = 10;
 
 /// Counts of the turns of a run.
@@ -31,7 +31,7 @@ pub(crate) struct Timing {
     in_a_row: u32,
 }
 
-/// How many fall into each class.
+/// Number of turns in each class.
 #[derive(Debug, Default)]
 struct Counts {
     classes: [u64; BOUNDS.len() + 1],
@@ -40,7 +40,7 @@ struct Counts {
 }
 
 impl Timing {
-    /// Whether a turn has been counted.
+    /// Returns `true` if a turn has been counted.
     pub(crate) fn has_turns(&self) -> bool {
         self.took.most > 0
     }
@@ -50,15 +50,15 @@ impl Timing {
         Self { period, late: Counts::default(), took: Counts::default(), overruns: 0, in_a_row: 0 }
     }
 
-    /// A turn begins, so many nanoseconds after its time.
+    /// Counts the start of a turn, `late` nanoseconds after its time.
     pub(crate) fn begins(&mut self, late: u64) {
         self.late.add(late);
     }
 
-    /// A turn has taken so many nanoseconds.
+    /// Counts a turn that has taken `nanos` nanoseconds.
     ///
     /// # Errors
-    /// When it was too long, and so were those before it: a sentence for the operator.
+    /// When this turn and the turns before it were too long: a sentence for the operator.
     pub(crate) fn took(&mut self, nanos: u64) -> Result<(), String> {
         self.took.add(nanos);
         if nanos <= self.period {

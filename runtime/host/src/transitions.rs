@@ -20,7 +20,7 @@ impl Transitions {
         self.operands.clear();
     }
 
-    /// Returns `true` if there are none.
+    /// Returns `true` if there are no transitions.
     pub(crate) fn is_empty(&self) -> bool {
         self.made.is_empty()
     }

@@ -19,7 +19,7 @@ use crate::timing::Timing;
 use crate::transitions::Transitions;
 use crate::{Around, Ended, Hosted, Standing};
 
-/// When a plan that is not over is given up.
+/// Limits at which a run ends whose plan is not over.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Limits {
     /// At this time of the plan. The turn at that time is still made: the plan may be over in it.
@@ -28,7 +28,7 @@ pub(crate) struct Limits {
     pub(crate) turns: Option<u64>,
 }
 
-/// What the turns tell of themselves to.
+/// Recipients of the turns' reports.
 pub(crate) struct Witnesses<'a, 'o, Y> {
     /// The lines on standard output.
     pub(crate) report: &'a mut Report<'o>,
@@ -44,8 +44,7 @@ pub(crate) struct Witnesses<'a, 'o, Y> {
 
 /// Runs `plan` on `robot`, from the exchange of turn 0 until something ends it.
 ///
-/// The robot still does what it was told last: the null input and the stop are the caller's, who also has to be ready
-/// for a panic.
+/// The robot still executes its last input: the caller has to send the null input and the stop, also after a panic.
 pub(crate) fn run<R: Hosted, P, I: Instants>(
     robot: &mut R,
     plan: P,
@@ -110,7 +109,7 @@ where
     ending
 }
 
-/// Tells the robot which atom has begun.
+/// Reports to the robot which atom has begun.
 fn began<R: Hosted, P: Plan>(robot: &mut R, machine: &Machine<P>, t: Nanos) {
     let plan = machine.plan();
     let atom = machine.atom().and_then(|atom| Some((atom, plan.fsm().atoms.get(atom as usize)?)));
@@ -119,13 +118,13 @@ fn began<R: Hosted, P: Plan>(robot: &mut R, machine: &Machine<P>, t: Nanos) {
     }
 }
 
-/// Tells the robot that its turns have ended, and by what.
+/// Reports to the robot that its turns have ended, and the cause.
 fn ended<R: Hosted, P: Plan>(robot: &mut R, machine: &Machine<P>, ending: &Ending, report: &Report<'_>, t: Nanos) {
     let by = report.over().map_or_else(|| ending.brief(), |over| over.cause.clone());
     robot.ended(&Ended { plan: machine.plan().name(0), is_over: *ending == Ending::Over, by: &by, t });
 }
 
-/// Where a plan stands that is not over.
+/// Returns the state of a plan that is not over.
 fn standing<'m, P: Plan>(machine: &'m Machine<P>, t: Nanos, report: &'m Report<'_>) -> Standing<'m> {
     let (plan, fsm) = (machine.plan(), machine.plan().fsm());
     let atom = machine.atom().and_then(|atom| fsm.atoms.get(atom as usize));
@@ -149,7 +148,7 @@ pub(crate) fn exchange<R: Robot>(robot: &mut R, input: &R::Input) -> Result<R::O
 }
 
 impl Limits {
-    /// The limit that a plan has reached which is not over after `turns` turns, the last of them at time `t`.
+    /// Returns the limit that a plan has reached, if it is not over after `turns` turns, the last one at time `t`.
     fn reached(&self, turns: u64, t: Nanos) -> Option<Ending> {
         let timeout = self.timeout.filter(|limit| t.0 >= nanos(*limit)).map(Ending::Timeout);
         timeout.or(self.turns.filter(|limit| turns >= *limit).map(Ending::Turns))
@@ -157,14 +156,14 @@ impl Limits {
 }
 
 impl<Y> Witnesses<'_, '_, Y> {
-    /// Tells how late turns begin and how long they take.
+    /// Reports how late turns begin and how long they take.
     fn tell_timing(&mut self, timing: Option<&Timing>) {
         if let (Some(err), Some(timing)) = (&mut self.err, timing) {
             say(err, format_args!("{timing}"));
         }
     }
 
-    /// Tells of a turn.
+    /// Reports a turn to the recipients.
     fn tell<P: Plan>(
         &mut self,
         machine: &Machine<P>,

@@ -1,4 +1,4 @@
-//! What keeps other programs from making turns late: real-time scheduling, and memory that is not paged out.
+//! Protection from other programs that make turns late: real-time scheduling, and memory that is not paged out.
 
 use rustix::mm::{MlockAllFlags, mlockall};
 use thread_priority::{
@@ -8,14 +8,14 @@ use thread_priority::{
 
 /// The priority among real-time threads, from 1 to 99: above ordinary programs, below the kernel's own threads.
 const PRIORITY: u8 = 50;
-/// As the operator is told of it.
+/// Name of real-time scheduling in messages.
 const SCHEDULING: &str = "real-time scheduling";
-/// As the operator is told of it.
+/// Name of locked memory in messages.
 const MEMORY: &str = "locked memory";
 
-/// Has this thread run before all ordinary ones whenever it is ready, and all memory of this process stay where it is.
-/// What is allocated later may be paged out: a limit on locked memory would make asking for it fail in mid-run, and a
-/// turn asks for none.
+/// Lets this thread run before all ordinary threads whenever it is ready, and keeps all memory of this process in RAM.
+/// Memory that is allocated later may be paged out: a limit on locked memory would make allocations fail during a run,
+/// and a turn allocates nothing.
 ///
 /// # Errors
 /// What the system does not permit, in words. The run goes on without it.

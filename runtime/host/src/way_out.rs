@@ -1,4 +1,4 @@
-//! The way out of a run: the robot is stopped, and then it is told why the run ended and what else went wrong.
+//! The way out of a run: the robot is stopped, and then the cause of the end and all faults are reported.
 
 use std::io::{self, Write};
 
@@ -14,7 +14,7 @@ pub(crate) fn bug(Panicked(message): Panicked) -> Ending {
     Ending::Bug(message)
 }
 
-/// Stops the robot; the ending with what came of that, whether the robot's code can still be trusted, and what went wrong.
+/// Stops the robot; returns the ending after that, whether the robot's code can still be trusted, and the faults.
 ///
 /// The null input is sent once more where the robot still listens, then the stop command in any case.
 pub(crate) fn stop<R: Hosted>(robot: &mut R, ending: Ending) -> (Ending, bool, Vec<Fault>) {
@@ -73,7 +73,7 @@ pub(crate) struct Files {
     pub(crate) path: Option<io::Error>,
 }
 
-/// Says why the run ended, and what else went wrong, once the robot was stopped; the exit status.
+/// Reports why the run ended, and all faults, once the robot was stopped; returns the exit status.
 pub(crate) fn tell<R: Hosted>(
     robot: &mut R,
     ending: Ending,

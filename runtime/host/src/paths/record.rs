@@ -1,4 +1,4 @@
-//! What a robot drives, written down as a path: a row a turn.
+//! Recorder of the path that a robot drives: a row for each turn.
 
 use std::io::{self, Write};
 
@@ -12,7 +12,7 @@ pub(crate) struct Recorder<Y, W: Write = Outlet> {
     speed: fn(&Y) -> MetersPerSecond,
     /// The heading in which the plan began, by odometry.
     begun: Option<Radians>,
-    /// Nothing more is written after an error, which is told in the end: a recording is no reason to stop a robot.
+    /// Nothing more is written after an error, which is reported at the end: a recording is no reason to stop a robot.
     written: io::Result<()>,
 }
 

@@ -1,4 +1,4 @@
-//! What is said of files that hold no path, and that what is recorded is read as it was driven.
+//! Tests of the messages about files that hold no path, and that a recorded path is read as it was driven.
 
 use std::fmt::Write as _;
 
@@ -98,7 +98,7 @@ fn bytes_that_are_no_text_are_told_where_they_are() {
     assert_eq!(place(b"time s\n\xc3\n"), Some((2, 1)));
 }
 
-/// The output of a robot that tells its heading and its speed.
+/// The output of a robot that reports its heading and its speed.
 struct Told(Pose, MetersPerSecond);
 
 impl Output for Told {

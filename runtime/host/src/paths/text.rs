@@ -6,12 +6,12 @@ use std::time::Duration;
 
 use mdle_runtime::{MetersPerSecond, Nanos, Radians, Setpoint, Twist};
 
-/// How far apart two rows may be: further, and what lies between them would be made up.
+/// Maximum time between two rows: over a longer time, the motion between them would be a guess.
 pub(super) const APART: Duration = Duration::from_secs(1);
 
-/// What a file may begin with.
+/// Header of a path file, as messages show it.
 const HEADER: &str = "`time s, heading deg, speed cm/s`";
-/// What a path may ask for of what the robot can do: what was measured of a robot at its limits may lie above them.
+/// Factor by which a path may exceed the robot's limits: values that were measured at the limits may lie above them.
 const MARGIN: f64 = 1.05;
 /// The latest time, in nanoseconds: up to there they are whole in a number with a fraction. Three months.
 const LATEST: f64 = (1_u64 << 53) as f64;
@@ -28,7 +28,7 @@ const COLUMNS: [Column; 3] = [
     Column { name: "speed", units: [("cm/s", 0.01), ("m/s", 1.0)] },
 ];
 
-/// What is wrong with a path: where, by line and column from 1, and what.
+/// Error in a path: the place, by line and column from 1, and the message.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Wrong {
     pub(super) place: Option<(usize, usize)>,
@@ -47,7 +47,7 @@ impl Cell<'_> {
         Wrong { place: Some(self.place), what }
     }
 
-    /// The number that it is, in the column's unit; `what` it tells.
+    /// Returns the number in the cell; `what` names it in messages.
     fn number(&self, what: &str) -> Result<f64, Wrong> {
         match self.text.parse::<f64>() {
             _ if self.text.is_empty() => Err(self.wrong(format!("the {what} is missing"))),
@@ -67,8 +67,8 @@ pub(super) fn utf8(bytes: &[u8]) -> Result<&str, Wrong> {
     })
 }
 
-/// The setpoints that `text` tells, for a robot that is no faster than this: the first at time 0, each later than the one
-/// before.
+/// Returns the setpoints in `text`, for a robot that is no faster than `fastest`: the first at time 0, each later than
+/// its predecessor.
 pub(super) fn setpoints(text: &str, fastest: Twist) -> Result<Vec<Setpoint>, Wrong> {
     // Spreadsheets like to put it in front.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -126,7 +126,7 @@ fn units(header: &[Cell<'_>]) -> Result<[(&'static str, f64); 3], Wrong> {
 }
 
 impl Column {
-    /// The unit in which a cell of the header says that this column is.
+    /// Returns the unit that a cell of the header gives for this column.
     fn unit(&self, cell: &Cell<'_>) -> Result<(&'static str, f64), Wrong> {
         let Self { name, units: [(one, _), (other, _)] } = self;
         let mut words = cell.text.split_whitespace();
@@ -175,7 +175,7 @@ impl Rows {
         Ok(())
     }
 
-    /// The time of the next row, which is so many nanoseconds after the first.
+    /// Returns the time of the next row, `nanos` nanoseconds after the first.
     fn time(&self, cell: &Cell<'_>, nanos: f64) -> Result<Nanos, Wrong> {
         if nanos > LATEST {
             return Err(cell.wrong(format!("no path is as long as {}", self.shown(cell))));
@@ -217,7 +217,7 @@ impl Rows {
         Err(cell.wrong(format!("{} {unit} is too fast: this robot drives at {fastest} {unit} at most", cell.text)))
     }
 
-    /// Whether the robot can turn to this heading from the one before in time.
+    /// Checks that the robot can turn in time to this heading from the previous one.
     fn check_turn(&self, cell: &Cell<'_>, to: &Setpoint) -> Result<(), Wrong> {
         let Some(from) = self.setpoints.last() else { return Ok(()) };
         let (turn, seconds) = (Radians(to.heading.0 - from.heading.0).wrapped(), to.at.since(from.at).seconds());

@@ -1,4 +1,4 @@
-//! What the robot is sent, and in which order, on every way out.
+//! Tests of the inputs that a robot gets, and of their order, on every way out.
 
 use mdle_runtime::Cause::{Completed, Fired};
 
@@ -10,7 +10,7 @@ fn quiet() -> Act {
     Act::Senses(vec![])
 }
 
-/// What the robot was told, the exit status and standard error, for a snapshot.
+/// Returns the robot's journal, the exit status and standard error, for a snapshot.
 fn way_out(run: &Run) -> String {
     format!("{}\nstatus {}\n{}", run.journal, run.status, run.err)
 }

@@ -1,4 +1,4 @@
-//! What a run says: the lines on standard output and the run log.
+//! Tests of a run's output: the lines on standard output and the run log.
 
 use std::io::{self, Write};
 use std::path::PathBuf;
@@ -28,7 +28,7 @@ fn fresh() -> PathBuf {
     std::env::temp_dir().join(name)
 }
 
-/// What a run with these options says, and its log.
+/// Returns a run with these options, and its log.
 fn logged(stage: Stage, options: &[&str]) -> (Run, String) {
     let path = fresh();
     let run = stage.run(&[options, &["--log", path.to_str().unwrap()]].concat());

@@ -13,7 +13,7 @@ pub(super) struct ToyPlan {
     laws: Vec<&'static str>,
     conditions: Vec<&'static str>,
     names: Vec<&'static str>,
-    /// Whether the current atom's interrupt has always fired.
+    /// `true` if the current atom's interrupt always fires.
     restless: bool,
     paths: Vec<&'static str>,
     running: u32,
@@ -42,7 +42,7 @@ impl ToyPlan {
         }
     }
 
-    /// The same plan, which replays a path as well.
+    /// Returns this plan with a path to replay.
     pub(super) fn replaying(self) -> Self {
         Self { paths: vec!["hall"], ..self }
     }

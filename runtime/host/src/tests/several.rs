@@ -1,4 +1,5 @@
-//! Several runs: what is said of them, whatever the number of threads, and what a signal leaves.
+//! Tests of several runs: their report, which is equal for any number of threads, and the runs that remain after a
+//! signal.
 
 use std::num::{NonZeroU64, NonZeroUsize};
 use std::time::Duration;

@@ -22,7 +22,7 @@ pub(super) struct Sensed(pub(super) Vec<(u32, Cause)>);
 
 impl Output for Sensed {}
 
-/// What the robot does at one exchange; after the script it senses nothing for ever.
+/// Action of the robot at one exchange; after the script it senses nothing for ever.
 #[derive(Debug, Clone)]
 pub(super) enum Act {
     Senses(Vec<(u32, Cause)>),
@@ -43,7 +43,7 @@ pub(super) struct Stage {
     pub(super) finish: Result<(), String>,
     /// The result of its run, if it has a goal.
     pub(super) judgement: Option<Judgement>,
-    /// Whether it looks where the plan stands.
+    /// `true` if the robot asks for the plan's state after each turn.
     pub(super) looks: bool,
     pub(super) plan: ToyPlan,
     /// The name by which the program is called.
@@ -68,15 +68,15 @@ impl Default for Stage {
     }
 }
 
-/// What came of a run.
+/// Result of a run.
 #[derive(Debug)]
 pub(super) struct Run {
     pub(super) status: u8,
     pub(super) out: String,
     pub(super) err: String,
-    /// What the robot was told, in order, with commas between.
+    /// Calls to the robot, in order, separated by commas.
     pub(super) journal: String,
-    /// How much real time passed in sleeps.
+    /// Real time that passed in sleeps.
     pub(super) slept: Duration,
 }
 

@@ -4,8 +4,8 @@ use std::io::{BufRead, BufReader};
 use std::process::{Child, ChildStderr, Command, Stdio};
 use std::sync::{Arc, Once};
 
-/// Gives SIGHUP its default effect in the programs that this one starts, also under `nohup`, which has it ignored by all of them:
-/// a signal that is caught has it again in another program.
+/// Gives SIGHUP its default effect in the programs that this one starts, also under `nohup`, which ignores it in all of
+/// them: a signal that is caught has its default effect again in another program.
 fn catch_hang_up() {
     static CAUGHT: Once = Once::new();
     CAUGHT.call_once(|| {
@@ -31,7 +31,7 @@ pub(crate) fn start(arguments: &[&str]) -> Child {
     cart(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
-/// Options with which the cart tells what it is told, and drives on for longer than any test takes.
+/// Options with which the cart reports its commands, and drives on for longer than any test takes.
 pub(crate) const FAR: [&str; 5] = ["--tell", "--period", "0.02", "--track", "1000"];
 
 /// Returns `true` unless the line reports a permission that this computer lacks, which comes before anything else.
@@ -44,7 +44,7 @@ pub(crate) fn lines(stderr: ChildStderr) -> impl Iterator<Item = String> {
     BufReader::new(stderr).lines().map(Result::unwrap).filter(|line| is_no_refusal(line))
 }
 
-/// Reads what the cart tells until it is told to move.
+/// Reads the cart's reports until it is commanded to move.
 pub(crate) fn wait_until_it_moves(stderr: ChildStderr) -> impl Iterator<Item = String> {
     let mut lines = lines(stderr);
     assert!(lines.any(|line| line == "cart: 0.5 m/s"));

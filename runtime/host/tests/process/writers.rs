@@ -23,7 +23,7 @@ enum Writer {
 
 const WRITERS: [Writer; 4] = [Writer::Out, Writer::Err, Writer::Log, Writer::Path];
 
-/// A cart that tells what it is told through a pipe of its own.
+/// A cart that reports its commands through a pipe of its own.
 struct Cart {
     folder: PathBuf,
     command: Command,
@@ -104,14 +104,14 @@ impl Cart {
         self.command = shell;
     }
 
-    /// Takes in what it was told.
+    /// Reads the commands that the cart has reported, and returns all of them.
     fn hear(&mut self) -> &str {
         // There is nothing, or the cart has not opened it, or has ended.
         let _ = self.journal.read_to_string(&mut self.told);
         &self.told
     }
 
-    /// Starts it and waits until it was told to move so many times.
+    /// Starts the cart and waits until it was commanded to move `times` times.
     fn moves(&mut self, times: usize) -> Child {
         let child = self.command.spawn().unwrap();
         self.moves_on(times);
@@ -126,7 +126,7 @@ impl Cart {
         }
     }
 
-    /// Waits for its end; the status, and whether it stands.
+    /// Waits for the cart's end; returns the status, and `true` if the cart was stopped.
     fn end(&mut self, child: &mut Child) -> (Option<i32>, bool) {
         let status = child.wait().unwrap().code();
         (status, self.hear().ends_with("stop\n"))
