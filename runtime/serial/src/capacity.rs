@@ -1,20 +1,20 @@
-//! What a line carries in a turn.
+//! Capacity of a line in a turn.
 
 use std::time::Duration;
 
 /// Bits of a byte on the line: eight, a start and a stop.
 const BITS: f64 = 10.0;
 
-/// How long so many bytes take on a line of so many bits a second.
+/// Returns the time that `bytes` bytes take on a line of `speed` bits per second.
 #[must_use]
 pub fn time_of(bytes: usize, speed: u32) -> Duration {
     Duration::from_secs_f64(bytes as f64 * BITS / f64::from(speed.max(1)))
 }
 
-/// Sees that turns of this period leave the line the time that it takes.
+/// Checks that turns of this period are long enough for their transmission, which takes `takes`.
 ///
 /// # Errors
-/// The sentence that says that they do not.
+/// The sentence that says that they are not.
 pub fn carries(period: Duration, takes: Duration) -> Result<(), String> {
     if takes <= period {
         return Ok(());

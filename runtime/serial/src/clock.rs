@@ -5,20 +5,20 @@ use std::time::{Duration, Instant};
 use mdle_host::StopRequest;
 use mdle_runtime::Nanos;
 
-/// Where the time of an output comes from.
+/// Source of the time of an output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Clock {
     /// The time that has passed since the first output.
     Wall,
-    /// So much for each output: a robot in lockstep.
+    /// This time for each output: a robot in lockstep.
     Stepped(Duration),
 }
 
-/// In lockstep a robot takes as long as its machine makes it, and stands meanwhile: it is waited for so much longer.
+/// Factor of patience in lockstep: there a robot takes as long as its machine needs, and stands still meanwhile.
 const LONGER: u32 = 10;
 
 impl Clock {
-    /// How long to wait, by the clock, for what may take a robot so long.
+    /// Returns the time to wait, by the clock, for an action that may take a robot `limit`.
     #[must_use]
     pub const fn patience(self, limit: Duration) -> Duration {
         match self {
@@ -27,7 +27,8 @@ impl Clock {
         }
     }
 
-    /// Whether for the robot so much time has passed since `begun`, in which it was told so many commands.
+    /// Returns `true` if `limit` has passed for the robot since `begun`, when it has got `commands` commands since
+    /// then.
     #[must_use]
     pub fn is_past(self, limit: Duration, begun: Instant, commands: u32) -> bool {
         match self {
@@ -36,7 +37,7 @@ impl Clock {
         }
     }
 
-    /// Lets time pass, unless it passes with what the robot is told.
+    /// Lets time pass, unless it passes with the commands to the robot.
     pub fn pass(self, time: Duration) {
         match self {
             Self::Wall => std::thread::sleep(time),
@@ -57,7 +58,7 @@ impl Clock {
 #[derive(Debug)]
 pub struct Times {
     clock: Clock,
-    /// When the first output was taken, and how many there have been.
+    /// Time of the first output; `outputs` is the number of outputs so far.
     first: Option<Instant>,
     outputs: u64,
 }

@@ -1,5 +1,5 @@
-//! What robots on a serial line share, whatever their languages: the line, the options of their executables, their
-//! configuration and where it came from, the time of their outputs, and whether they move as they are told.
+//! Shared code of robots on a serial line: the line, the options of their executables, their configuration and its
+//! origin, the time of their outputs, and the check that they move as commanded.
 #![forbid(unsafe_code)]
 
 mod capacity;

@@ -14,7 +14,7 @@ use rustix::fs::{FlockOperation, OFlags};
 use rustix::io::Errno;
 use rustix::termios::{self, OptionalActions};
 
-/// How long a robot may take to accept a connection.
+/// Maximum time that a robot may take to accept a connection.
 const CONNECT: Duration = Duration::from_secs(1);
 
 /// An open line.
@@ -23,7 +23,7 @@ pub struct Line {
     port: OwnedFd,
 }
 
-/// What can go wrong with a line.
+/// Fault of a line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum LineFault {
     /// This device cannot be opened, and why.
@@ -32,7 +32,7 @@ pub enum LineFault {
     Busy(String),
     /// This device is no serial port.
     NotSerial(String),
-    /// Nothing came, or went, in time.
+    /// Nothing arrived, or could be sent, in time.
     Silent,
     /// The line was closed at the other end.
     Closed,
@@ -68,7 +68,7 @@ impl LineFault {
 }
 
 impl Line {
-    /// Opens a serial port at so many bits a second, or `tcp:ADDRESS:PORT`. Nothing is sent.
+    /// Opens a serial port at `speed` bits per second, or `tcp:ADDRESS:PORT`. Nothing is sent.
     ///
     /// # Errors
     /// It is missing, busy, no terminal, or nobody listens.

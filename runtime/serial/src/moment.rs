@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use rustix::time::{ClockId, clock_gettime};
 
-/// A moment. [`std::time::Instant`] is another clock, which stands while the computer sleeps.
+/// A moment. [`std::time::Instant`] is another clock, which stops while the computer sleeps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Moment(Duration);
 

@@ -1,20 +1,21 @@
-//! Detects a robot that does not move as commanded: faster, or in the other direction.
-//! See docs/src/reference/protocols.md, 3.
+//! Detects a robot that does not move as commanded: faster, or in the other direction. See
+//! docs/src/reference/protocols.md, 3.
 //!
-//! A robot that an obstacle holds, or one of whose sides is stuck, moves less than it was told, which is no disobedience. The
-//! measured speeds of both sides have to stay within what the commands so far allow: a band around zero that reaches to the
-//! last two commands at once, and leaves what was commanded before only as fast as the robot brakes.
+//! A robot that an obstacle blocks, or one of whose sides is stuck, moves less than commanded, which is no
+//! disobedience. The measured speeds of both sides have to stay within the band that the commands so far allow. The
+//! band contains zero and at once the last two commands, and shrinks from earlier commands only as fast as the robot
+//! brakes.
 
 use std::time::Duration;
 
 use mdle_runtime::Nanos;
 
-/// A robot may brake with this part of the deceleration that it was told.
+/// Part of the commanded deceleration that a robot must reach.
 const PART: f64 = 0.5;
 /// A side may be this far outside of the band: in m/s, and as a part of the fastest speed in the band.
 const ERROR: f64 = 0.05;
 const ERROR_PART: f64 = 0.2;
-/// The longest time that a robot is given to stand.
+/// The maximum time that a robot gets to stop.
 const LONGEST: Duration = Duration::from_secs(5);
 /// The time that it may take until it begins to brake.
 const REACTION: Duration = Duration::from_millis(100);
@@ -47,8 +48,9 @@ struct Band {
 }
 
 impl Obedience {
-    /// Of a robot that stands, whose sides are told to brake with `forward` m/s² where both go the same way and with `turning`
-    /// m/s² where they go against each other. It may disobey for less than `limit`; for ever if that is zero.
+    /// Returns the state of a robot that stands still, whose sides brake with `forward` m/s² where both go the same way
+    /// and with `turning` m/s² where they go against each other. It may disobey for less than `limit`; for ever if that
+    /// is zero.
     #[must_use]
     pub const fn new(forward: f64, turning: f64, limit: Duration) -> Self {
         Self {
@@ -79,8 +81,8 @@ impl Obedience {
         self.limit > Nanos::ZERO && since.is_some_and(|since| at.since(since) >= self.limit)
     }
 
-    /// Returns how long the robot may take to stand: twice as long as braking takes as it was told, from the fastest speed that
-    /// it may have, but at least `least` and at most five seconds.
+    /// Returns how long the robot may take to stop: twice the braking time at the commanded deceleration from the
+    /// fastest speed that it may have, but at least `least` and at most five seconds.
     #[must_use]
     pub fn time_to_stand(&self, least: Duration) -> Duration {
         let time = |band: &Band| band.fastest().max(self.measured) / band.brakes;
@@ -96,7 +98,7 @@ impl Band {
         Self { low: 0.0, high: 0.0, told: 0.0, brakes }
     }
 
-    /// Narrows the band by what the robot brakes in so many seconds, but not within the last two commands.
+    /// Narrows the band by the braking of the robot in `seconds` seconds, but not within the last two commands.
     fn tell(&mut self, command: f64, seconds: f64) {
         let before = std::mem::replace(&mut self.told, command);
         let by = self.brakes * seconds;

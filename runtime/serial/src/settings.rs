@@ -1,4 +1,4 @@
-//! A robot's configuration: a TOML file, the defaults, and where each value came from.
+//! A robot's configuration: a TOML file, the defaults, and the origin of each value.
 
 use std::fmt;
 use std::path::Path;
@@ -28,7 +28,7 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// What the file says, if there is one; a type whose fields are options can say that there is nothing.
+    /// Reads the file, if there is one; a value that the file lacks is `None` in a type whose fields are options.
     ///
     /// # Errors
     /// The file cannot be read, is no TOML, or has a key or a value that it cannot have: where and why.
@@ -82,7 +82,7 @@ impl Settings {
         })
     }
 
-    /// What is wrong with a value, with the file's name if there is one.
+    /// Returns the message about a value, with the file's name if there is one.
     #[must_use]
     pub fn blamed(&self, why: &str) -> String {
         self.file.as_ref().map_or_else(|| why.to_owned(), |file| format!("{file}: {why}"))
@@ -102,7 +102,7 @@ impl Settings {
     }
 }
 
-/// As TOML that can be given back with `--config`, with what each value means and where it came from.
+/// Prints TOML that can be given back with `--config`, with the meaning and the origin of each value.
 impl fmt::Display for Settings {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for Entry { key, value, from } in &self.entries {
