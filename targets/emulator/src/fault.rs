@@ -1,4 +1,4 @@
-//! What can go wrong with a robot on command: on its line, whatever it speaks, or in its body.
+//! Faults of a robot on command: on its line, in any language, or in its body.
 
 use std::fmt;
 use std::mem::discriminant;
@@ -12,7 +12,7 @@ const LATEST: Duration = Duration::from_secs(1_000_000);
 /// The largest number that a fault takes: bytes of noise, milliseconds of delay.
 const MOST: u32 = 60_000;
 
-/// What goes wrong.
+/// A fault of the line, or of the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fault {
     /// This many bytes that mean nothing come before each frame.
@@ -31,16 +31,16 @@ pub enum Fault {
     Silence,
     /// The line is closed.
     Close,
-    /// What the body suffers.
+    /// Fault of the body.
     Body(Ailment),
 }
 
-/// What goes wrong with the robot itself.
+/// A fault of the robot itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ailment {
     /// It receives nothing: the line to the robot is cut.
     Deaf,
-    /// It keeps its speed, whatever it is told and whatever its own watchdog says.
+    /// It keeps its speed, against all commands and its own watchdog.
     Runaway,
     /// The right side does not move.
     StuckWheel,
@@ -56,9 +56,9 @@ pub enum Ailment {
     PluggedIn,
     /// Bytes that a reader must skip are in each frame.
     Filler,
-    /// It tells the same of itself again and again.
+    /// It sends the same report of itself again and again.
     Hang,
-    /// Its sonars no longer ping.
+    /// The sonars no longer ping.
     NoPings,
     /// It no longer reports its bumpers.
     NoBumpers,
@@ -103,14 +103,15 @@ const KINDS: [(&str, Fault); 24] = [
 /// A fault, and how long after the robot was switched on it begins, by the time of its world.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct At {
-    /// What.
+    /// Fault that begins.
     pub fault: Fault,
-    /// When.
+    /// Time at which the fault begins, by the clock of the robot's world.
     pub time: Duration,
 }
 
 impl Fault {
-    /// Returns the fault with the number of `text` in place of its usual one; `None` if it takes none, or none so large.
+    /// Returns the fault with the number of `text` in place of its usual number; `None` if it takes no number, or none
+    /// of this size.
     fn numbered(self, text: &str) -> Option<Self> {
         match self {
             Self::Noise(_) => text.parse().ok().filter(|number| *number <= MOST).map(Self::Noise),

@@ -75,7 +75,7 @@ impl<R: Emulated> Faulty<R> {
         self.begun.iter().find_map(|fault| of(*fault))
     }
 
-    /// Whatever is due begins.
+    /// Begins the faults that are due.
     fn begin(&mut self) {
         for At { fault, .. } in self.coming.extract_if(.., |at| at.time <= self.age) {
             self.begun.push(fault);
@@ -157,7 +157,7 @@ impl<R: Embodied> Embodied for Faulty<R> {
 mod tests {
     use super::*;
 
-    /// A robot that says the same frame in each period, and can suffer all but filler.
+    /// A robot that sends the same frame in each period, and can suffer all ailments but filler.
     #[derive(Default)]
     struct Robot(Vec<Ailment>);
 

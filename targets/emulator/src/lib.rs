@@ -1,4 +1,4 @@
-//! What emulated robots share, whatever their languages: the pseudo-terminal, how time passes, and their programs.
+//! Shared code of robot emulators in any language: the pseudo-terminal, the passing of time, and their programs.
 #![forbid(unsafe_code)]
 
 mod driven;

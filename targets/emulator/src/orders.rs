@@ -11,7 +11,7 @@ const KEPT: usize = 64;
 pub enum Order {
     /// To move.
     Drive,
-    /// To stand.
+    /// To stand still.
     Stand,
     /// To leave the motors without current.
     LetGo,

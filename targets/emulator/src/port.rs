@@ -16,7 +16,7 @@ use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 #[derive(Debug)]
 pub struct Port {
     ours: OwnedFd,
-    /// Held open, so that the line outlives those who use it.
+    /// Kept open, so that the line outlives its users.
     _theirs: fs::File,
     path: PathBuf,
     link: Option<PathBuf>,

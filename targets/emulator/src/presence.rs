@@ -1,4 +1,5 @@
-//! Which of the lines has a driver at its other end: whoever opens and closes the device is seen by the system.
+//! Detection of the lines that have a driver at their other end: the system reports each opening and closing of a
+//! device.
 
 use std::mem::MaybeUninit;
 use std::os::fd::OwnedFd;
@@ -15,21 +16,21 @@ pub(crate) struct Presence {
     lines: Vec<Seen>,
 }
 
-/// What was seen of a line.
+/// State of a line.
 #[derive(Debug, Clone, Copy)]
 struct Seen {
-    /// What the system calls it.
+    /// Number by which the system's reports name the line.
     number: i32,
-    /// How many have it open, and whether anybody ever had.
+    /// Number of times that the line is open; `has_begun` is `true` if it ever was open.
     users: u32,
     has_begun: bool,
 }
 
 impl Presence {
-    /// Of the drivers at these devices, from now on.
+    /// Watches for drivers at these devices, from now on.
     ///
     /// # Errors
-    /// The system cannot watch so many.
+    /// The system cannot watch this many devices.
     pub(crate) fn of<'p>(devices: impl Iterator<Item = &'p Path>) -> io::Result<Self> {
         let watch = inotify::init(CreateFlags::NONBLOCK | CreateFlags::CLOEXEC)?;
         let events = WatchFlags::OPEN | WatchFlags::CLOSE_WRITE | WatchFlags::CLOSE_NOWRITE;
@@ -39,15 +40,15 @@ impl Presence {
         Ok(Self { watch, lines })
     }
 
-    /// What can be waited for: it can be read when somebody has come or gone.
+    /// Returns a descriptor to wait for: it can be read when a driver has come or gone.
     pub(crate) fn end(&self) -> &OwnedFd {
         &self.watch
     }
 
-    /// Takes in who has come and gone.
+    /// Reads which drivers have come and gone.
     ///
     /// # Errors
-    /// The system no longer tells.
+    /// The system reports no longer.
     pub(crate) fn look(&mut self) -> io::Result<()> {
         let mut buffer = [MaybeUninit::uninit(); 1024];
         let mut reader = Reader::new(&self.watch, &mut buffer);
@@ -69,12 +70,12 @@ impl Presence {
         Ok(())
     }
 
-    /// Whether each line has had a driver by now.
+    /// Returns `true` if each line has had a driver.
     pub(crate) fn all_have_begun(&self) -> bool {
         self.lines.iter().all(|line| line.has_begun)
     }
 
-    /// Whether each line has one now, in their order.
+    /// Returns for each line, in order, `true` if it has a driver now.
     pub(crate) fn are_open(&self) -> impl Iterator<Item = bool> {
         self.lines.iter().map(|line| line.users > 0)
     }

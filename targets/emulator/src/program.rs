@@ -64,7 +64,7 @@ fn step_of_lockstep(text: &str) -> Result<Duration, String> {
     Quantity::duration(text, "ms", Duration::from_millis(1), Duration::from_secs(10))
 }
 
-/// A robot's name and where it stands.
+/// A robot's name and its start pose.
 #[derive(Debug, Clone)]
 struct Named(String, Start);
 
@@ -82,8 +82,8 @@ impl FromStr for Named {
     }
 }
 
-/// Runs the robots that `made` makes of their bodies, until a signal comes. `name` is the robot's, as in `the Scout`; the time of
-/// its body passes in such steps as `step` says for a pace.
+/// Runs the robots that `made` makes of their bodies, until a signal comes. `name` is the robot's, as in `the Scout`;
+/// `step` returns the time step of its body for a pace.
 pub fn program<R: Emulated + Embodied>(
     name: &str,
     body: Body,
@@ -136,7 +136,8 @@ fn run<R: Emulated + Embodied>(
     line.map_err(|error| format!("the line failed: {error}"))
 }
 
-/// The bodies that the options ask for, with their names if they have some. Each of them knows where the others are.
+/// Returns the bodies that the options ask for, with their names if they have names. Each body has the places of the
+/// others.
 fn bodies(
     options: &Options,
     world: &World,
@@ -181,7 +182,7 @@ fn refuse(name: &str, body: &Simulated, others: &[(Option<String>, Simulated)]) 
     Ok(())
 }
 
-/// What turns true when this program is asked to end.
+/// Returns the flag that a signal to end this program sets.
 fn over() -> std::io::Result<Arc<AtomicBool>> {
     let over = Arc::new(AtomicBool::new(false));
     for signal in [SIGINT, SIGTERM, SIGHUP] {

@@ -13,44 +13,44 @@ pub const STEP: Duration = Duration::from_millis(10);
 /// The longest wait without a look at whether to go on.
 pub(crate) const SLICE: Duration = Duration::from_millis(5);
 
-/// A robot that is not there: its language and its body.
+/// A robot emulator: its language and its body.
 pub trait Emulated {
     /// Takes in bytes from the line.
     fn push(&mut self, bytes: &[u8]);
 
-    /// Does what the next request asks for that is whole; `None` if there is none. In lockstep a period passes after a
-    /// request of which this says true, and before anything is said.
+    /// Executes the next complete request; `None` if there is no such request. In lockstep a period passes after a
+    /// request for which this returns `true`, before the answer is sent.
     fn obey(&mut self) -> Option<bool>;
 
-    /// Lets so much time pass.
+    /// Lets `time` pass.
     ///
     /// # Errors
-    /// The world's sentence about an input that it cannot take, which none here is.
+    /// The world's sentence about an input that it cannot take; no input here is of this kind.
     fn pass(&mut self, time: Duration) -> Result<(), String>;
 
-    /// The frames that it has to say since it was asked last.
+    /// Returns the frames that the robot has to send since the last call.
     fn said(&mut self) -> Vec<Vec<u8>>;
 
-    /// Whether this can happen to it.
+    /// Returns `true` if this robot can have this ailment.
     fn can_suffer(ailment: Ailment) -> bool;
 
-    /// From now on this is the matter with it.
+    /// Begins this ailment.
     fn suffer(&mut self, ailment: Ailment);
 }
 
 /// A robot that others in its world see and touch.
 pub trait Embodied {
-    /// Where it is.
+    /// Returns the disc of the robot's body, at its place.
     fn disc(&self) -> Disc;
 
-    /// From now on the others are here.
+    /// Moves the other robots to these places.
     fn see(&mut self, others: &[Disc]);
 }
 
-/// How the world passes on.
+/// Pace of the world.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pace {
-    /// By so much with each command, whatever the clock says.
+    /// The world advances by this step with each command, independent of the clock.
     Lockstep(Duration),
     /// By the clock, in steps of [`STEP`].
     Real,
@@ -67,7 +67,7 @@ impl Pace {
     }
 }
 
-/// Serves the robot at this line as long as `goes_on` says so, and then until it has done what it was told before.
+/// Serves the robot at this line while `goes_on` returns `true`, and then until it has executed its earlier commands.
 ///
 /// # Errors
 /// The line failed, or the world did.

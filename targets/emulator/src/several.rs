@@ -1,8 +1,8 @@
 //! Several robots in one world, each at its own line: they hear and touch each other.
 //!
-//! In lockstep the world passes on by a step once each robot that has a driver has been told its command for that step. It
-//! begins when each of them has had a driver; one whose driver has gone no longer holds up the others, and its own
-//! watchdog stops it. In a step the robots move one behind the other, in their order.
+//! In lockstep the world advances by a step once each robot with a driver has got its command for that step. It begins
+//! when each robot has had a driver; a robot whose driver has gone no longer blocks the others, and its own watchdog
+//! stops it. In a step the robots move one after another, in their order.
 
 use std::io;
 use std::time::{Duration, Instant};
@@ -20,7 +20,7 @@ use crate::serve::{self, Embodied, Emulated, Pace, SLICE, STEP, say};
 pub struct Seat<R> {
     /// The robot.
     pub robot: R,
-    /// Its line.
+    /// Line of the robot.
     pub port: Port,
 }
 
@@ -32,10 +32,10 @@ pub struct Several<R> {
 }
 
 impl<R> Several<R> {
-    /// Whoever comes to one of these lines is seen from now on.
+    /// Returns the robots, and watches from now on for drivers at their lines.
     ///
     /// # Errors
-    /// The system cannot watch so many.
+    /// The system cannot watch this many lines.
     pub fn of(seats: Vec<Seat<R>>) -> io::Result<Self> {
         let presence = Presence::of(seats.iter().map(|seat| seat.port.path()))?;
         Ok(Self { seats, presence })
@@ -49,7 +49,7 @@ impl<R> Several<R> {
 }
 
 impl<R: Emulated + Embodied> Several<R> {
-    /// Serves all of them as long as `goes_on` says so, and then until they have done what they were told before.
+    /// Serves all robots while `goes_on` returns `true`, and then until they have executed their earlier commands.
     ///
     /// # Errors
     /// A line failed, or the world did.
@@ -109,7 +109,7 @@ fn serve_several<R: Emulated + Embodied>(
     }
 }
 
-/// Waits until somebody says something, comes or goes, or so long.
+/// Waits until a driver sends something, comes or goes, or until `limit` has passed.
 fn wait<R>(seats: &[Seat<R>], presence: &Presence, limit: Duration) -> io::Result<()> {
     let timeout = Timespec { tv_sec: limit.as_secs() as i64, tv_nsec: i64::from(limit.subsec_nanos()) };
     let ends = seats.iter().map(|seat| seat.port.end()).chain([presence.end()]);
@@ -120,7 +120,7 @@ fn wait<R>(seats: &[Seat<R>], presence: &Presence, limit: Duration) -> io::Resul
     }
 }
 
-/// Has a robot do what it is told, up to its command for the coming step.
+/// Lets a robot execute its requests, up to its command for the coming step.
 fn hear<R: Emulated>(seat: &mut Seat<R>, pace: Pace, told: &mut bool) -> io::Result<()> {
     while !*told {
         match seat.robot.obey() {
@@ -132,13 +132,13 @@ fn hear<R: Emulated>(seat: &mut Seat<R>, pace: Pace, told: &mut bool) -> io::Res
     Ok(())
 }
 
-/// Whether the world is to pass on.
+/// Returns `true` if the world is to advance.
 fn is_due(presence: &Presence, told: &[bool]) -> bool {
     let nobody_is_waited_for = presence.are_open().zip(told).all(|(is_open, told)| *told || !is_open);
     presence.all_have_begun() && nobody_is_waited_for && told.contains(&true)
 }
 
-/// Lets the world pass on, in which each of them finds the others where they are.
+/// Lets the world advance; each robot finds the others at their current places.
 fn pass<R: Emulated + Embodied>(seats: &mut [Seat<R>], step: Duration) -> io::Result<()> {
     let mut discs: Vec<Disc> = seats.iter().map(|seat| seat.robot.disc()).collect();
     for (number, Seat { robot, port }) in seats.iter_mut().enumerate() {

@@ -19,13 +19,13 @@ pub struct Staged<T> {
     serving: Option<JoinHandle<io::Result<()>>>,
 }
 
-/// What is seen of the robot from outside, and asked of its world.
+/// State of a robot as a test sees it, and requests to its world.
 #[derive(Debug)]
 struct Seen<T> {
     now: Mutex<T>,
-    /// How many periods are to pass in which it is told nothing.
+    /// Number of periods that are to pass without a command.
     idle: AtomicU32,
-    /// What it suffers next.
+    /// Ailment that begins next.
     ailment: Mutex<Option<Ailment>>,
     is_over: AtomicBool,
 }
@@ -39,7 +39,8 @@ struct Watched<R, T> {
 }
 
 impl<T: Clone + Send + 'static> Staged<T> {
-    /// Switches on a robot whose world passes on by `period` with each command; `look` is what is seen of it.
+    /// Switches on a robot whose world advances by `period` with each command; `look` returns the state that a test
+    /// sees.
     ///
     /// # Errors
     /// The system has no more pseudo-terminals.
@@ -63,7 +64,7 @@ impl<T: Clone + Send + 'static> Staged<T> {
         &self.device
     }
 
-    /// What is seen of it now.
+    /// Returns the current state of the robot.
     #[must_use]
     pub fn now(&self) -> T {
         self.seen.now.lock().unwrap_or_else(PoisonError::into_inner).clone()
@@ -74,7 +75,7 @@ impl<T: Clone + Send + 'static> Staged<T> {
         *self.seen.ailment.lock().unwrap_or_else(PoisonError::into_inner) = Some(ailment);
     }
 
-    /// Lets so many periods pass in which the robot is told nothing, and waits for that.
+    /// Lets `periods` periods pass without a command to the robot, and waits until they have passed.
     pub fn left_alone(&self, periods: u32) {
         self.seen.idle.store(periods, Ordering::Release);
         while self.seen.idle.load(Ordering::Acquire) > 0 && self.serving.as_ref().is_some_and(|it| !it.is_finished()) {

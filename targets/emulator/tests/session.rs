@@ -1,4 +1,5 @@
-//! The line of a program that leads a session, as services do, is not its terminal: it would be told to hang up with it.
+//! The line of a program that leads a session, as services do, must not become its terminal: the program would be hung
+//! up with it.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::env;
@@ -7,7 +8,7 @@ use std::process::Command;
 
 use mdle_emulator::Port;
 
-/// Tells this test that it leads a session.
+/// Environment variable by which this test knows that it leads a session.
 const LEADS: &str = "MDLE_LEADS_A_SESSION";
 
 #[test]

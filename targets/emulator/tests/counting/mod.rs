@@ -8,7 +8,7 @@ thread_local! {
     static ASKED: Cell<u64> = const { Cell::new(0) };
 }
 
-/// How often this thread has asked for memory.
+/// Returns how often this thread has asked for memory.
 pub(crate) fn asked() -> u64 {
     ASKED.get()
 }
