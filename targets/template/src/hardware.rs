@@ -11,7 +11,7 @@ use mdle_runtime::{
     Twist,
 };
 
-/// REPLACE by what you measure on your robot. `body_radius` is of the smallest circle around it.
+/// REPLACE by the measures of your robot. `body_radius` is the radius of the smallest circle around it.
 const SHAPE: Shape = Shape {
     body_radius: Meters(0.2),
     wheel_base: Meters(0.35),
@@ -75,15 +75,15 @@ impl Hardware {
         Ok(Self { period, pose: Pose::ORIGIN, velocity: Twist::default() })
     }
 
-    /// Where the robot is that is imagined, from where it was opened. REPLACE: of a real one nobody knows that in here; take
-    /// it away, and have `tests/conformance.rs` find out.
+    /// Returns the pose of the imagined robot, relative to the place at which it was opened. REPLACE: a real robot does
+    /// not know its true pose; delete this function, and determine the pose in `tests/conformance.rs`.
     #[must_use]
     pub fn imagined(&self) -> Pose {
         self.pose
     }
 
-    /// Sends the speeds for this period and returns what the sensors say then. Yours waits for that, but not for ever: a
-    /// robot that is silent is a fault, and what the sensors said before is never returned twice.
+    /// Sends the speeds for this period and returns the sensors' values after it. Yours waits for them, but not for
+    /// ever: a robot that is silent is a fault, and earlier values are never returned twice.
     pub(crate) fn command(&mut self, speeds: Twist) -> Result<Sensed, Fault> {
         let seconds = self.period.as_secs_f64();
         self.pose = self.pose.moved(Meters(speeds.v.0 * seconds), Radians(speeds.omega.0 * seconds));
@@ -122,7 +122,7 @@ mod tests {
         Twist { v: MetersPerSecond(v), omega: RadiansPerSecond(omega) }
     }
 
-    /// What the sensors say after a second with these speeds.
+    /// Returns the sensors' values after a second with these speeds.
     fn after_a_second(v: f64, omega: f64) -> Result<Sensed, Fault> {
         let mut hardware = hardware();
         (0..9).try_for_each(|_| hardware.command(twist(v, omega)).map(|_| ()))?;

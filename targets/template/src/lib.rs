@@ -16,7 +16,7 @@ pub use mdle_runtime::Sensed as Output;
 /// The robot's input: a forward speed and a turn rate. Zero is the null input.
 pub use mdle_runtime::Twist as Input;
 
-/// What the host runs a plan on.
+/// Target of this robot: the host runs plans on it.
 #[derive(Debug, Clone, Copy)]
 pub struct Target;
 

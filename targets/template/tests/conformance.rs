@@ -10,7 +10,7 @@ use mdle_host::{StopRequest, Target as _};
 use mdle_runtime::{Nanos, Pose, Radians, Robot as _};
 use template_target::{Hardware, Input, Target, alphabet};
 
-/// Where the robot is tried.
+/// Stage of the conformance suite.
 struct Floor {
     began: Pose,
 }
@@ -20,8 +20,8 @@ impl Stage for Floor {
     type Alphabet = alphabet::Alphabet;
     const PERIOD: Nanos = alphabet::PERIOD;
 
-    /// REPLACE: starts the robot anew, and sees to it that the walls of `room` are where it says, and the robot `at` a place
-    /// among them. One that is imagined without walls is wherever it is said to be.
+    /// REPLACE: starts the robot anew, and makes sure that the walls of `room` are where it says, and that the robot is
+    /// `at` a place among them. An imagined robot without walls is wherever it is placed.
     fn robot(&mut self, _room: &Room, at: Pose) -> Result<Hardware, String> {
         self.began = at;
         let options = Target::arguments(Command::new("conformance")).get_matches_from(["conformance"]);
