@@ -1,5 +1,5 @@
-//! What `mdlec` says to bad input, through the real binary: a message with a code or a hint, the exit status, and nothing
-//! half-written left behind.
+//! Messages of `mdlec` about bad input, through the real binary: each has a code or a hint and sets the exit status,
+//! and no partial file is left.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -10,7 +10,7 @@ use mdle_tests::executable::{folder, run_mdlec};
 /// A plan that is good.
 const REST: &str = "{ Rest (Atom (wait 1ms) stop) }\n";
 
-/// What a person sees: the exit status and standard error.
+/// Returns the exit status and standard error, as a person sees them.
 fn said(folder: &Path, arguments: &[&str]) -> String {
     let before = listing(folder);
     let output = run_mdlec(folder, arguments);

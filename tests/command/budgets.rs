@@ -38,7 +38,7 @@ fn multiplied(uses: &[usize], inmost: &str) -> String {
     levels.collect::<String>() + &inmost.replace("NAME", &name(uses.len()))
 }
 
-/// A condition of so many operands.
+/// Returns a condition of `count` operands.
 fn operands(count: usize) -> String {
     let operands: Vec<_> = (1..=count).map(|number| format!("wait {number}ms")).collect();
     operands.join(" OR ")
@@ -69,7 +69,7 @@ fn with_plan(test: &str, plan: &str) -> std::path::PathBuf {
     folder
 }
 
-/// Every command says this of a plan, and nothing else.
+/// Asserts that every command prints this message about a plan, and no other.
 fn assert_refused(test: &str, plan: &str, message: &str) {
     let folder = with_plan(test, plan);
     for command in COMMANDS {
@@ -176,7 +176,7 @@ fn loops_multiply_conditions_within_limits() {
     assert_ends("loops", &plan, &[ANALYZE, RUST]);
 }
 
-/// An image of so many pixels, black where `stands` says so.
+/// Returns an image of this size, black where `stands` returns `true`.
 fn image(width: usize, height: usize, stands: impl Fn(usize, usize) -> bool) -> Vec<u8> {
     let mut bytes = format!("P5\n{width} {height}\n255\n").into_bytes();
     let pixels = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));

@@ -1,4 +1,4 @@
-//! What `mdlec` prints when all is well, through the real binary.
+//! Output of `mdlec` without errors, through the real binary.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::collections::BTreeSet;
@@ -33,7 +33,7 @@ const SCRIPT: &str = r#"{"t": 0.0, "fired": [], "completed": []}
 {"t": 0.1, "fired": ["atIsection 0100", "bumper"], "completed": ["align 7 9"]}
 "#;
 
-/// Its trace (docs/src/reference/interfaces.md, 4): what the plan from lab 2 to lab 1 makes of the script.
+/// Trace (docs/src/reference/interfaces.md, 4) of the plan from lab 2 to lab 1 on the script.
 const TRACE: &str = r#"{"turn":0,"t":0.0,"state":1,"law":"goAvoid 90 40 20","fired":[]}
 {"turn":1,"t":0.1,"state":9,"law":null,"fired":[{"from":1,"level":0,"by":"bumper","operands":["bumper"]}]}
 "#;
@@ -50,7 +50,7 @@ fn printed(output: Output) -> String {
     String::from_utf8(output.stdout).expect("UTF-8")
 }
 
-/// Standard output of a command that succeeds and has nothing to say on standard error.
+/// Returns standard output of a command that succeeds and prints nothing on standard error.
 fn printed_alone(output: Output) -> String {
     assert_eq!(String::from_utf8_lossy(&output.stderr), "");
     printed(output)

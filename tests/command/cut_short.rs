@@ -1,5 +1,5 @@
-//! What `mdlec` does when it cannot go on: a signal, a reader that goes away, no room; through the real binary. Nothing is
-//! left behind, and the next build works.
+//! Tests of `mdlec` when it cannot go on: a signal, a reader that goes away, no room; through the real binary. No file
+//! is left, and the next build works.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::ffi::OsString;
@@ -15,7 +15,7 @@ use mdle_tests::executable::{cache, command, folder, mdlec, run_mdlec, without_w
 
 const PLAN: &str = "plan.mdle";
 
-/// A cargo that says so when it is at work, with a child of its own, and never ends by itself.
+/// A cargo that reports that it is at work, with a child of its own, and never ends by itself.
 const CARGO: &str = "#!/bin/sh\nexec 3> \"$AT_WORK\"\necho at work >&3\nsleep 120 &\nwait\necho survived >&3\n";
 
 fn with_plan(test: &str) -> PathBuf {
@@ -30,7 +30,7 @@ fn listing(folder: &Path) -> Vec<OsString> {
     names
 }
 
-/// The exit status, and what stands on standard error, but for the builds of other tests.
+/// Returns the exit status and standard error, without lines about the builds of other tests.
 fn told(output: &Output) -> (Option<i32>, String) {
     let said = String::from_utf8(output.stderr.clone()).expect("UTF-8");
     assert!(!said.contains("panicked"), "{said}");
@@ -44,7 +44,8 @@ fn assert_builds(folder: &Path) {
     assert_eq!(run.stdout, b"0.1 s  plan over: wait 1ms (plan.mdle:1)\n");
 }
 
-/// `mdlec` in `folder` with [`CARGO`] at work, and what hears of that; what `mdlec` says comes when it has ended.
+/// Starts `mdlec` in `folder` with [`CARGO`] at work; returns it, the pipe that reports the work, and a thread that
+/// returns the output of `mdlec` after its end.
 fn with_cargo_at_work(folder: &Path) -> (Child, BufReader<File>, JoinHandle<String>) {
     let tools = folder.join("tools");
     fs::create_dir(&tools).unwrap();

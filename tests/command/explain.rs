@@ -9,7 +9,7 @@ use mdle_tests::executable::{folder, run_mdlec};
 use mdlec::diagnostic::{Code, Example};
 use serde_json::Value;
 
-/// What no plan brings about, so that it has no examples: a defect of the compiler.
+/// Code of a defect of the compiler, which no plan causes, so that it has no examples.
 const WITHOUT_EXAMPLES: Code = Code::E0901;
 
 /// The codes that have examples.
@@ -19,7 +19,7 @@ fn with_examples() -> impl Iterator<Item = Code> {
     Code::ALL.iter().copied().filter(|code| *code != WITHOUT_EXAMPLES)
 }
 
-/// What is said of an example, to people or as JSON.
+/// Returns the messages about an example, for people or as JSON.
 fn said(folder: &Path, example: &Example, format: &str) -> String {
     // What an example calls `\xDF` is that byte.
     let bytes = example.text.split("\\xDF").map(str::as_bytes).collect::<Vec<_>>().join(&b'\xDF');
@@ -29,7 +29,7 @@ fn said(folder: &Path, example: &Example, format: &str) -> String {
     String::from_utf8(run_mdlec(folder, &arguments).stderr).expect("UTF-8")
 }
 
-/// The codes of what is said of an example, and that as JSON.
+/// Returns the codes of the messages about an example, and the messages as JSON.
 fn codes(folder: &Path, example: &Example) -> (BTreeSet<String>, String) {
     let said = said(folder, example, "json");
     let codes = said.lines().map(|line| {

@@ -1,4 +1,5 @@
-//! Text that would command a terminal or turn lines around, in plans, file names, options and machines: nobody is shown it.
+//! Text that would command a terminal or reverse lines, in plans, file names, options and machines: `mdlec` never
+//! prints it.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -14,7 +15,7 @@ use mdlec::compile;
 use mdlec::diagnostic::{SourceId, Sources, has_errors};
 use mdlec::rust::{Header, Shape, bind, emit_as};
 
-/// Colours and clears a terminal, renames its window, rings, goes to the start of the line, and turns text around.
+/// Colours and clears a terminal, renames its window, rings, returns to the start of the line, and reverses text.
 const HOSTILE: &str = "a\u{1b}[2J\u{1b}]0;x\u{7}\u{9b}31m\r\u{202e}\u{2066}\u{200f}\u{2028}\u{7f}z";
 
 fn hostile(text: &str) -> String {

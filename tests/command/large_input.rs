@@ -1,5 +1,5 @@
-//! Plans that nobody writes by hand, through the real binary: what is too deep is one error that names the limit, what is
-//! only long comes to a result.
+//! Plans that nobody writes by hand, through the real binary: too deep nesting is one error that names the limit, and
+//! plans that are only long are processed.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -7,10 +7,10 @@ use std::path::Path;
 
 use mdle_tests::executable::{folder, run_mdlec};
 
-/// So many of each.
+/// Number of repetitions.
 const MANY: usize = 100_000;
 
-/// What every command is asked to do with a plan called `P`.
+/// Arguments of every command, for a plan called `P`.
 const COMMANDS: [&[&str]; 5] = [
     &["check", "plan.mdle"],
     &["fmt", "--check", "plan.mdle"],
@@ -28,7 +28,7 @@ fn said(folder: &Path, plan: &str, arguments: &[&str]) -> (Option<i32>, String, 
     (output.status.code(), text(output.stdout), text(output.stderr))
 }
 
-/// What nests, from the outside to the inside and back.
+/// Returns a text with nested parts that are closed, and the text with parts that are not.
 fn nested(before: &str, opened: &str, inside: &str, closed: &str, behind: &str) -> [String; 2] {
     let open = format!("{before}{}{inside}", opened.repeat(MANY));
     [format!("{open}{}{behind}", closed.repeat(MANY)), format!("{open}{behind}")]

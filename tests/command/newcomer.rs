@@ -1,4 +1,4 @@
-//! The mistakes of someone who has just begun: what is said of each, to people and as JSON, names what to type instead.
+//! The mistakes of someone who has just begun: each message, for people and as JSON, names what to type instead.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;

@@ -1,4 +1,4 @@
-//! Whatever the bytes, `mdlec` ends by itself with a message; through the real binary, as the end of a stack cannot be caught.
+//! On any bytes `mdlec` ends by itself with a message; through the real binary, as a stack overflow cannot be caught.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -8,7 +8,7 @@ use mdle_tests::chance::Chance;
 use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::repository::files;
 
-/// What plans, scripts and alphabets are made of.
+/// Words of plans, scripts and alphabets.
 const WORDS: [&str; 48] = [
     "{",
     "}",

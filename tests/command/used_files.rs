@@ -21,7 +21,7 @@ fn with_files(test: &str, files: &[(&str, &str)]) -> PathBuf {
     folder
 }
 
-/// What mdlec says, in the folder or in the one above it.
+/// Returns the output of mdlec in this folder, and its exit status.
 fn said(folder: &std::path::Path, arguments: &[&str]) -> String {
     let output = run_mdlec(folder, arguments);
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();

@@ -70,7 +70,7 @@ const ROUND_BY_SIGNALS: &str = r#"
 {"t": 15.7, "fired": ["v >= 80"]}
 "#;
 
-/// The first element ends by time, the scopes behind it by what rises; contact is the end.
+/// The first element ends by time, the scopes after it by RISING; contact ends the plan.
 const RECALL: &str = r#"
 {"t": 0.0}
 {"t": 2.0}
@@ -83,7 +83,7 @@ const RECALL: &str = r#"
 {"t": 6.0, "fired": ["bumper"]}
 "#;
 
-/// What is there from the beginning does not rise, and the first element ends in the other way.
+/// Conditions that hold from the beginning do not rise, and the first element ends by the other operand.
 const RECALL_OTHERWISE: &str = r#"
 {"t": 0.0, "fired": ["bumper"]}
 {"t": 0.5, "fired": ["bumper", "atIsection 1000"]}
@@ -186,8 +186,9 @@ fn printed(executable: &str, script: &Script) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// An output on which the quarks report what a script says, as the executables read it. Pose and ranges are of the turn
-/// alone. Nothing is at rest that is not done, so that no law completes of itself.
+/// Returns the record of an output on which the quarks report the script's values, as the executables read it. Pose and
+/// ranges are of the turn alone. The robot rests only where the script completes a law, so that no law completes by
+/// itself.
 fn record(reports: &Reports) -> Vec<u8> {
     let said = |text: &str| reports.completed.contains(text);
     let goals =
@@ -214,7 +215,8 @@ fn record(reports: &Reports) -> Vec<u8> {
     std::iter::once(reports.t.0).chain(bits).flat_map(u64::to_le_bytes).collect()
 }
 
-/// Asserts that an executable does on a script what the compiler's machine does. Its lines, the inputs behind the turns.
+/// Asserts that an executable and the compiler's machine behave equally on a script. Returns the executable's lines,
+/// the inputs after the turns.
 fn traced(executable: &str, plan: &str, script: &str) -> String {
     let (Compiled { plan, .. }, _) = compiled(plan);
     let script = Script::read(script).expect("a script");

@@ -1,4 +1,4 @@
-//! `mdlec bind`: a target is held to its alphabet, and a plan to both, through the real binary.
+//! Tests of `mdlec bind`: a target must match its alphabet, and a plan both, through the real binary.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;

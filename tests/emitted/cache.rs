@@ -30,7 +30,7 @@ fn assert_built(output: &Output) {
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// Runs the executable in `folder`, which has to be that of the plan of so many seconds.
+/// Runs the executable in `folder`, which must be that of the plan that rests for `seconds`.
 fn assert_rests(folder: &Path, seconds: usize) {
     let run = Command::new(folder.join("plan")).args(["--speed", "max"]).output().unwrap();
     assert_eq!(
@@ -39,7 +39,7 @@ fn assert_rests(folder: &Path, seconds: usize) {
     );
 }
 
-/// What is said of a plan that does not become an executable.
+/// Returns the message about a plan that does not become an executable.
 fn refused(command: &mut Command) -> String {
     let output = command.output().unwrap();
     let said = String::from_utf8(output.stderr).unwrap();

@@ -47,7 +47,7 @@ fn cargo_run(folder: &Path, loudness: &str, arguments: &[&str]) -> Output {
     command.current_dir(folder).output().expect("cargo runs")
 }
 
-/// What it prints, after it was built in silence.
+/// Returns the output of the program, which was built without messages.
 fn printed(folder: &Path) -> String {
     let output = run(folder);
     let (out, err) = (String::from_utf8(output.stdout).unwrap(), String::from_utf8(output.stderr).unwrap());

@@ -19,7 +19,7 @@ use mdle_tests::repository::root;
 use mdlec::rust::{Header, Shape, emit_as, plan_type};
 use mdlec::trace::Script;
 
-/// How many random plans are emitted, and on how many scripts each of them runs.
+/// Number of random plans that are emitted, and of scripts on which each plan runs.
 const PLANS: u64 = 200;
 const SCRIPTS: u64 = 25;
 
@@ -68,7 +68,7 @@ fn compare(shape: Shape) {
     }
 }
 
-/// A random plan. Every other one remembers nothing: those that do are rows, whatever shape is asked for.
+/// Returns a random plan. Every second plan remembers nothing: plans that do are always emitted as rows.
 fn random(seed: u64) -> Case {
     let root = ROOTS[seed as usize % ROOTS.len()];
     let draw = |drawn: u64| {
@@ -85,8 +85,8 @@ fn random(seed: u64) -> Case {
     (0..1000).find_map(draw).expect("a plan")
 }
 
-/// Each interrupt and each law of the target once, arguments in their default units, so that each is seen to be made of
-/// the arguments that its text says.
+/// Returns a plan with each interrupt and each law of the target once, arguments in their default units, so that the
+/// test sees that each is created with the arguments in its text.
 fn every_quark() -> Case {
     let mut text = String::from("{ Main");
     for (number, interrupt) in INTERRUPTS.iter().enumerate() {
@@ -156,7 +156,7 @@ impl Package {
         }
     }
 
-    /// Compiles the plans and runs each on its scripts: their traces, one behind the other.
+    /// Compiles the plans and runs each on its scripts; returns their traces, one after another.
     fn run(&self, cases: &[Case]) -> String {
         let mut turns = String::new();
         for (number, case) in cases.iter().enumerate() {

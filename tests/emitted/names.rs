@@ -1,4 +1,4 @@
-//! The names in an emitted file and in a bound alphabet: none hides another one, whatever plans and quarks are called.
+//! The names in an emitted file and in a bound alphabet: no name hides another, with any names of plans and quarks.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -83,7 +83,7 @@ fn code(rust: &str) -> String {
     lines.collect::<Vec<_>>().join("\n")
 }
 
-/// The types of a file, and what is written like one, that stand anywhere without what they belong to.
+/// Returns the types of a file, and names written like types, that occur without the path that they belong to.
 fn types(code: &str) -> BTreeSet<&str> {
     let is_part = |letter: char| letter.is_alphanumeric() || letter == '_';
     // What is written large is a constant.

@@ -1,5 +1,5 @@
-//! A target that did not come with `mdlec`: it serves like any other, and what is wrong with its crate is quoted whole, under
-//! one sentence that says whose fault it is; through the real binary.
+//! A target that did not come with `mdlec`: it works like any other, and the messages about its crate are quoted whole,
+//! under one sentence that names the crate at fault; through the real binary.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -9,7 +9,7 @@ use std::process::Command;
 use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::repository::{files, root};
 
-/// The sentence over what rustc says.
+/// The sentence above the messages of rustc.
 const SENTENCE: &str =
     "error: the target crate `mdle_sim` does not compile; this is not a fault of your plan:\nerror[E0425]: ";
 
@@ -34,7 +34,7 @@ fn with_rover(test: &str) -> PathBuf {
     folder
 }
 
-/// What is said when a plan for the rover does not become an executable.
+/// Returns the message about a plan for the rover that does not become an executable.
 fn refused(folder: &Path) -> String {
     let output = run_mdlec(folder, &["plan.mdle", "--target", "rover"]);
     let said = String::from_utf8(output.stderr).unwrap();
@@ -103,7 +103,7 @@ fn a_new_target_drives_and_feels_contact_once_it_can() {
     ");
 }
 
-/// What cargo says of the conformance of the robot in this folder, and whether it is passed.
+/// Returns `true` if the robot in this folder passes the conformance suite, and cargo's output.
 fn conformance(robot: &Path) -> (bool, String) {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let mut command = Command::new(cargo);

@@ -5,7 +5,8 @@
 use mdle_tests::emission::{alphabet, emitted, emitted_as, emitted_for};
 use mdlec::rust::{Shape, bind};
 
-/// The same as if it were one line: without white space, and without a comma behind the last argument.
+/// Returns the text without white space, and without a comma after the last argument, so that line breaks do not
+/// matter.
 fn one_line(rust: &str) -> String {
     rust.split_whitespace().collect::<String>().replace(",)", ")")
 }

@@ -3,10 +3,10 @@
 use mdle_tests::pipeline::{Machines, compile};
 use mdlec::trace::Script;
 
-/// What is reported in a turn: time, interrupts and completed laws, separated by commas.
+/// Reports of a turn: time, interrupts and completed laws, separated by commas.
 pub(crate) type Turn = (f64, &'static str, &'static str);
 
-/// Holds every machine to the trace, one line a turn.
+/// Asserts that every machine has this trace, one line for each turn.
 pub(crate) fn assert_trace(plan: &str, script: &[Turn], expected: &[&str]) {
     let compiled = compile(plan).unwrap_or_else(|report| panic!("{report}"));
     let script = Script::read(&written(script)).expect("a script");

@@ -43,7 +43,7 @@ fn all_machines_do_the_same() {
     assert_holds(any_text::run);
 }
 
-/// What fuzzing found worth keeping of the lines of robots, and what makes a reader keep what it need not.
+/// Returns the inputs of robots' lines that fuzzing found, and inputs that make a reader keep more than it needs.
 fn lines() -> Vec<Vec<u8>> {
     let kept = fs::read_dir(root().join("tests/fuzz/lines")).unwrap();
     let kept = kept.map(|entry| fs::read(entry.unwrap().path()).unwrap());

@@ -12,11 +12,11 @@ use mdlec::fsm::expand;
 use mdlec::plan::{Node, Plan, Scope, remove_degeneracy};
 use mdlec::trace::{Script, Tree, run};
 
-/// How many plans are tried, and the most states of one that is written out.
+/// Number of plans that are tried, and the maximum number of states of a plan that is written out.
 const PLANS: u64 = 500;
 const STATES: u64 = 2000;
 
-/// What the plans were like.
+/// Properties of the plans, counted.
 #[derive(Debug, Default)]
 struct Seen {
     tried: u64,
@@ -68,7 +68,7 @@ fn hold(compiled: &Compiled, script: &Script, text: &str) -> (bool, bool) {
     (nondegenerate.plan() != plan, &expanded != plan)
 }
 
-/// A scope with its finite loops written out, whatever is repeated in it.
+/// Returns a scope with its finite loops written out, nested ones as well.
 fn written_out(scope: &Scope) -> Scope {
     let mut body = Vec::new();
     scope.body.iter().for_each(|node| write_out(node, &mut body));

@@ -25,7 +25,8 @@ fn tree(text: &str) -> String {
     outline(&file)
 }
 
-/// The text with its blanks replaced: by lines, by nothing visible, by comments that are numbered from 0.
+/// Returns the text with each space and line break replaced by other separators, such as comments that are numbered
+/// from 0, and the number of comments.
 fn disordered(text: &str, chance: &mut Chance) -> (String, usize) {
     let (mut disordered, mut comments) = (String::new(), 0);
     for character in text.chars() {

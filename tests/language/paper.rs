@@ -15,7 +15,7 @@ const LISTINGS: [(&str, &str, usize); 5] = [
     (r"$$\Gamma_{\text{soundFollow}} = \{", "sound_following", 0),
 ];
 
-/// The listing that begins so: up to the end of the block it stands in, or of the line where it is set as a formula.
+/// Returns the listing that begins with `first`: up to the end of its block, or of the line if it is set as a formula.
 fn cut<'p>(paper: &'p str, first: &str) -> &'p str {
     if first.starts_with("$$") {
         return paper.lines().find(|line| line.starts_with(first)).expect(first);

@@ -1,5 +1,5 @@
-//! What `mdlec analyze` says: of random plans, against brute force, where nothing that it says never happens does; of the
-//! plans in `plans/`; and of how large a machine is, against rustc.
+//! Tests of `mdlec analyze`: of random plans against brute force, in which nothing happens that the analysis excludes;
+//! of the plans in `plans/`; and of the size of a machine, against rustc.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -32,16 +32,16 @@ mod recorded {
     }
 }
 
-/// How many plans are tried.
+/// Number of random plans.
 const PLANS: u64 = 1000;
-/// The most choices of what quarks say of which all are tried; else so many by chance.
+/// Maximum number of combinations of quark values of which all are tried; of more, this many random ones are tried.
 const CHOICES: usize = 16;
 /// The most situations of a plan, if all choices are tried, and if they are not.
 const SITUATIONS: [usize; 2] = [1000, 80];
-/// Steps between turns, in nanoseconds: none, timers' own lengths and windows, and one longer than all timers.
+/// Steps between turns, in nanoseconds: zero, timers' own lengths and windows, and one longer than all timers.
 const STEPS: [u64; 4] = [0, 100_000_000, 1_000_000_000, 5_000_000_000];
 
-/// What came of all plans.
+/// Counts over all plans.
 #[derive(Debug, Default, Clone, Copy)]
 struct Count {
     plans: usize,
@@ -49,7 +49,7 @@ struct Count {
     over: usize,
     /// Plans of which every situation was tried.
     whole: usize,
-    /// Atoms of these: all, those that never run, and those of which that was foretold.
+    /// Atoms of these plans: all, those that never run, and those for which the analysis excludes it.
     atoms: usize,
     idle: usize,
     foretold: usize,
@@ -100,7 +100,7 @@ fn seeds(first: usize, step: usize) -> Count {
     count
 }
 
-/// A plan that is tried, and what is said of it.
+/// A plan and its analysis.
 struct Trial<'c> {
     seed: u64,
     text: &'c str,
@@ -165,7 +165,7 @@ impl<'c> Trial<'c> {
         }
     }
 
-    /// Holds what was said of a plan against one of its turns.
+    /// Compares the analysis of a plan with one of its turns.
     fn check(&self, explorer: &Explorer<'_>, turn: &Turn, run: &Run) {
         for part in &turn.current {
             let Part::Atom(atom) = self.parts[*part] else { panic!("an atom is current") };
@@ -240,7 +240,8 @@ fn runs_of_the_machine_take_as_long_as_is_said() {
     assert!(over > 500 && bounded > 200, "{over} plans are over, {bounded} of them with a longest time");
 }
 
-/// Choices of what the quarks of a plan say, and whether these are all. Signals have values, so that their comparisons agree.
+/// Returns combinations of quark values of a plan, and `true` if these are all. Signals have values, so that their
+/// comparisons agree.
 fn choices(plan: &Plan, chance: &mut Chance) -> (Vec<Said>, bool) {
     let is_free = |quark: &Quark| quark.completes || INTERRUPTS.contains(&quark.text.as_str());
     let bits: Vec<usize> = (0..plan.quarks.len()).filter(|number| is_free(&plan.quarks[*number])).collect();
@@ -330,7 +331,7 @@ fn an_analysis_is_printed_for_people_and_for_programs() {
     );
 }
 
-/// Holds the bytes that are told of a plan to those of its compiled Rust.
+/// Compares the sizes in the analysis of a plan with those of its compiled Rust.
 fn assert_bytes<P: mdle_runtime::Plan>(path: &str, plan: &P) {
     let bytes = analysis(path).bytes;
     let cursor = size_of::<Cursor<P::Entered, P::Left>>();

@@ -17,10 +17,10 @@ use mdlec::diagnostic::SourceId;
 use mdlec::syntax::{arena_for, parse};
 use mdlec::trace::{Applied, COMPLETED, Line, Outcome, Script};
 
-/// How many plans are tried.
+/// Number of random plans.
 const PLANS: u64 = 10_000;
 
-/// What a random plan and its script brought about, to see that chance tries what it is meant to try.
+/// Events in the runs of random plans, to check that they include all that the test is meant to try.
 #[derive(Debug, Default)]
 struct Seen {
     plans: usize,
@@ -35,7 +35,7 @@ struct Seen {
     rising: usize,
     after: usize,
     compared: usize,
-    /// How often each production of the grammar, and each unit, stood in a plan that was run.
+    /// Number of times that each production of the grammar, and each unit, occurred in a plan that was run.
     productions: Productions,
 }
 
@@ -102,7 +102,7 @@ fn assert_every_production_is_met(counts: &Productions) {
     assert!(unknown.is_empty(), "the grammar does not have {unknown:#?}");
 }
 
-/// Every so many seeds, from the first on.
+/// Tries every `step`th seed, from `first` on.
 fn seeds(first: usize, step: usize) -> Seen {
     let mut seen = Seen::default();
     for seed in (first as u64..PLANS).step_by(step) {

@@ -1,4 +1,5 @@
-//! Every plan in `plans/`: tree, machine and Rust as snapshots where `sim` can run it, what is said of it elsewhere.
+//! Every plan in `plans/`: tree, machine and Rust as snapshots where `sim` can run it, and the messages for other
+//! robots.
 //!
 //! The Rust is a file of its own beside its snapshot, `snapshots/machine__golden__rust-….snap.rs`, to be opened and read as one.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]

@@ -1,5 +1,5 @@
-//! Matrices that are read back from what `--emit matrices` prints and writes drive the same transitions as the machine
-//! `table` (paper, Eqs. 2 to 4), and the command says which of the two forms it chose.
+//! Matrices that are read back from the output and the files of `--emit matrices` make the same transitions as the
+//! machine `table` (paper, Eqs. 2 to 4), and the command reports which of the two forms it chose.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::collections::BTreeMap;
@@ -14,12 +14,12 @@ use mdlec::fsm::{Terms, equation, matrix_files, most_states, terms};
 use mdlec::trace::{COMPLETED, Fired, Line, Script, Table, run};
 use serde_json::Value;
 
-/// How many random plans are tried.
+/// Number of random plans.
 const PLANS: u64 = 400;
 /// Plans of more states are left out: each matrix is read as a whole.
 const STATES: u64 = 300;
 
-/// A matrix as it was read: for each column the row of its one, from 1, and what is said of it.
+/// A matrix as it was read: for each column the row of its one, from 1, and its name, text and places.
 #[derive(Debug)]
 struct Read {
     name: String,
@@ -73,7 +73,7 @@ fn holds(place: &(usize, usize, usize), state: usize) -> bool {
     (place.1..=place.2).contains(&state)
 }
 
-/// Reads a MatrixMarket coordinate file: square, of ones, each column with one of them.
+/// Reads a MatrixMarket coordinate file: square, each column with a single one.
 fn read_market(text: &str) -> Vec<usize> {
     assert!(text.lines().all(|line| line.len() <= 1024));
     let mut lines = text.lines();
@@ -124,7 +124,7 @@ fn read_files(list: &str, files: &BTreeMap<String, String>) -> Matrices {
     Matrices { live: entries("matrices"), never: entries("never") }
 }
 
-/// Reads the equation in the paper's notation, with what its symbols stand for.
+/// Reads the equation in the paper's notation, with the meaning of its symbols.
 fn read_equation(text: &str) -> Matrices {
     let (sum, symbols) = text.split_once("where the state is one of\n").unwrap();
     let mut rows = BTreeMap::new();

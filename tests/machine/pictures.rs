@@ -22,7 +22,7 @@ use mdlec::fsm::{Machine, expand, lower};
 use mdlec::picture::{dot, mermaid, svg};
 use mdlec::trace::{Line, Script, Table, run};
 
-/// How many random plans are tried.
+/// Number of random plans.
 const PLANS: u64 = 300;
 
 /// Random plans, each with its seed and a script.

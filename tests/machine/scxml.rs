@@ -15,12 +15,12 @@ use mdlec::picture::scxml;
 use mdlec::plan::Nondegenerate;
 use mdlec::trace::{Applied, Line, Script, Table, run};
 
-/// How many random plans are tried.
+/// Number of random plans.
 const PLANS: u64 = 150;
 /// Plans of more states are left out.
 const STATES: u64 = 150;
 
-/// What the random plans brought about.
+/// Events in the runs of the random plans.
 #[derive(Debug, Default)]
 struct Seen {
     plans: usize,

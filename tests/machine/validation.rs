@@ -1,4 +1,4 @@
-//! Machines that are not their plan's are told apart from those that are: 500 mutations of random machines.
+//! Machines that do not match their plan are distinguished from those that do: 500 mutations of random machines.
 
 use std::collections::BTreeMap;
 
@@ -9,13 +9,13 @@ use mdle_tests::random_plan::RandomPlan;
 use mdlec::diagnostic::Code;
 use mdlec::fsm::{Draft, validate};
 
-/// How many mutated machines are tried.
+/// Number of mutated machines.
 const MUTATIONS: usize = 500;
 
 /// Makes a machine wrong in a place that chance picks, or leaves it as it is.
 type Mutation = fn(&mut Draft, &mut Chance);
 
-/// What can go wrong with a machine.
+/// Mutations of a machine.
 const WRONG: &[(&str, Mutation)] = &[
     ("extent, its first atom", |machine, chance| {
         let bracket = pick(&mut machine.brackets, chance);

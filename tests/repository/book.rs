@@ -1,4 +1,4 @@
-//! The book: its pages are linked, its links lead somewhere, and its examples do what it says.
+//! The book: its pages are linked, its links lead somewhere, and its examples behave as their pages claim.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::collections::BTreeSet;
@@ -105,7 +105,7 @@ impl Walk<'_> {
         fs::write(path, text).unwrap();
     }
 
-    /// Holds a file, if the block has one, to what the page says has become of it.
+    /// Compares a file, if the block has one, with the text that the page shows.
     fn compare(&self, fence: &Fence) {
         let Some(file) = fence.file() else { return };
         assert_eq!(fs::read_to_string(self.folder.join(file)).unwrap(), fence.text, "{}: {file}", self.page.path);
@@ -132,7 +132,8 @@ impl Walk<'_> {
         }
     }
 
-    /// Runs a command, as a reader types it, and holds it to what it says; without that, to success.
+    /// Runs a command, as a reader types it, and compares its output with the page; without output on the page, asserts
+    /// success.
     fn run(&self, command: &str) {
         let (command, expected) = command.split_once('\n').unwrap();
         let words: Vec<_> = command.split(' ').collect();
@@ -170,7 +171,7 @@ fn said(output: &Output) -> String {
     format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
 }
 
-/// Whether a text is as a page shows it: to the letter, but for what a line `…` leaves out.
+/// Returns `true` if the output is equal to the page's text, except where a line `…` leaves text out.
 fn is_alike(said: &str, shown: &str) -> bool {
     match shown.split_once("…\n") {
         None => said == shown,

@@ -1,4 +1,4 @@
-//! The codes of diagnostics are well-formed, and a test brings about each of them.
+//! The codes of diagnostics are well-formed, and a test causes each code.
 
 use std::collections::BTreeSet;
 
@@ -35,7 +35,7 @@ fn no_code_is_without_a_test() {
     }
 }
 
-/// What a file expects of the compiler: a snapshot or a test is all that, other Rust is where its tests begin.
+/// Returns the tests in a file: all of a snapshot or of a test, and of other Rust the part with its tests.
 fn what_is_tested(file: &TextFile) -> Option<String> {
     let is_test = file.path.starts_with("tests/")
         || file.path.contains("/tests/")

@@ -63,7 +63,7 @@ fn assert_none(breaches: &[String]) {
     assert!(breaches.is_empty(), "{}", breaches.join("\n"));
 }
 
-/// What of these is missing in the table, is there twice, or is none of them.
+/// Returns the names that the table lacks, has twice, or has although they do not exist.
 fn differences<'a>(all: impl Iterator<Item = &'a str>, listed: impl Iterator<Item = &'a str>) -> Vec<String> {
     let all: BTreeSet<_> = all.collect();
     let mut seen = BTreeSet::new();
@@ -129,7 +129,7 @@ fn every_rule_has_tests_and_the_rules_are_in_order() {
     assert_eq!(table.rules.iter().map(|rule| &rule.says).collect::<BTreeSet<_>>().len(), table.rules.len());
 }
 
-/// What no text without errors has is not looked for: trees do not show it.
+/// Productions that occur only in texts with errors are not looked for: trees do not show them.
 #[test]
 fn a_production_stands_in_a_plan_of_its_tests() {
     let (table, tests) = (table(), tests());

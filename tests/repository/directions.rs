@@ -7,7 +7,7 @@ use std::process::Command;
 
 use mdle_tests::repository::{TextFile, files, names_from, root};
 
-/// What each package may use of ours. A folder that is not listed may not hold a package.
+/// Packages of the workspace that each package may use. A folder that is not listed may not hold a package.
 const PACKAGES: &[(&str, &[&str])] = &[
     ("runtime/core", &[]),
     ("runtime/host", &["mdle-runtime"]),
@@ -47,7 +47,7 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("tests/fuzz", &["mdle-tests"]),
 ];
 
-/// What each room of the compiler may use of the others. `crate` is what `lib.rs` itself holds.
+/// Rooms of the compiler that each room may use. `crate` is the text of `lib.rs` itself.
 const ROOMS: &[(&str, &[&str])] = &[
     ("diagnostic", &[]),
     ("alphabet", &["diagnostic"]),
@@ -117,7 +117,7 @@ fn what_a_robot_runs_needs_no_package_but_libm() {
     assert_eq!(needed("atoms"), BTreeSet::from(["libm", "mdle-atoms", "mdle-runtime"].map(str::to_owned)));
 }
 
-/// The packages of ours that a manifest names as dependencies, of whatever sort.
+/// Returns the packages of the workspace that a manifest names as dependencies, of any sort.
 fn ours(manifest: &TextFile) -> impl Iterator<Item = &str> {
     let mut in_dependencies = false;
     manifest.text.lines().filter_map(move |line| {
@@ -151,8 +151,8 @@ fn rooms_of_the_compiler_use_only_those_before_them() {
     assert_eq!(breaches, [""; 0]);
 }
 
-/// The files of the compiler's rooms, tests aside. `lib.rs`, which shows them all on one screen, belongs to none, nor does
-/// what only tests share.
+/// Returns the files of the compiler's rooms without tests. `lib.rs`, which shows them all on one screen, belongs to no
+/// room, nor do files that only tests share.
 fn rooms() -> impl Iterator<Item = (String, TextFile)> {
     files(&[".rs"]).into_iter().filter_map(|file| {
         let inside =

@@ -1,5 +1,6 @@
 //! The lab tour on an ATRV-mini: the executable that `mdlec --target atrv` builds, against the emulated robot on a
-//! pseudo-terminal, beside the simulator's own run with that robot's body; and what it says of a robot that is none.
+//! pseudo-terminal, beside the simulator's own run with that robot's body; and its messages about a device that is no
+//! robot.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -87,7 +88,7 @@ fn the_tour_ends_on_an_atrv_where_it_ends_in_the_simulator() {
     assert!(away <= 0.15 && turned.abs() <= 5.0, "{away} m and {turned} degrees away from {x}, {y}, {heading}");
 }
 
-/// What the executable says with these arguments, and how it ends.
+/// Returns the output of the executable with these arguments, and its exit status.
 fn said(arguments: &[&str]) -> String {
     let output = Command::new(on_atrv()).args(arguments).current_dir(on_atrv().parent().unwrap()).output().unwrap();
     told(&output)

@@ -1,4 +1,4 @@
-//! Several runs of a plan by the executable that `mdlec` builds: what is said of them, and that it is true.
+//! Several runs of a plan by the executable that `mdlec` builds: their summary, and that it is true.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -135,7 +135,7 @@ fn without_a_goal_runs_are_grouped_by_their_cause() {
     ");
 }
 
-/// What a single run at maximum speed prints, and its status.
+/// Returns the output of a single run at maximum speed, and its status.
 fn alone(options: &[&str]) -> String {
     let output = run(&[&["--speed", "max"], options].concat());
     let [out, err] = [output.stdout, output.stderr].map(text);

@@ -30,7 +30,7 @@ fn run(folder: &Path, arguments: &[&str]) -> Output {
     Command::new(tour()).args(arguments).current_dir(folder).output().unwrap()
 }
 
-/// Where the robot was at a time.
+/// Pose of the robot at a time.
 #[derive(Debug, Clone, Copy)]
 struct Place {
     x: f64,
@@ -50,7 +50,7 @@ fn apart(one: f64, other: f64) -> f64 {
     apart.min(360.0 - apart)
 }
 
-/// Where each atom has to end: zone and, after a turn, heading (docs/src/reference/office.md, 2).
+/// Zone in which an atom has to end and, after a turn, its heading (docs/src/reference/office.md, 2).
 type Zone = ([f64; 4], Option<(f64, f64)>);
 
 const ROUND: f64 = 35.0;
@@ -141,7 +141,7 @@ fn it_gives_the_same_bytes_on_every_processor() {
     assert!(once == files("bytes_plain", plain), "a processor without FMA and AVX2 gives other bytes");
 }
 
-/// What the executable did is what the compiler's machine does on the same happenings.
+/// The executable and the compiler's machine behave equally on the same events.
 #[test]
 fn its_log_is_the_trace_of_what_it_met() {
     let folder = folder("lab_tour_log");
@@ -165,7 +165,7 @@ fn its_log_is_the_trace_of_what_it_met() {
     assert!(transitions >= 13, "every atom of the tour ends, and {transitions} did");
 }
 
-/// The line of a script that has happen what a line of a log says happened.
+/// Returns the line of a script that reports the events in a line of a log.
 fn happenings(turn: &Value) -> Value {
     let (mut fired, mut completed) = (Vec::new(), Vec::new());
     for transition in turn["fired"].as_array().unwrap() {

@@ -103,8 +103,8 @@ impl Run {
     }
 }
 
-/// Counts how often the robot came to within 30 cm of the far end of a path of this length, and back to within 30 cm of the
-/// start, in turn; the robot never left the path by more than 30 cm.
+/// Counts how often the robot reached the far end of a path of this length, within 30 cm, and then the start again; the
+/// robot never left the path by more than 30 cm.
 fn legs(trail: &[[f64; 3]], length: f64, name: &str) -> (u32, u32) {
     let (mut there, mut back, mut is_out) = (0, 0, false);
     for [ahead, left, _] in trail {

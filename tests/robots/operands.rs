@@ -13,10 +13,10 @@ use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::random_script::script;
 use mdlec::trace::{COMPLETED, Reports, Script, Tree, run};
 
-/// How many random plans are tried.
+/// Number of random plans.
 const PLANS: u64 = 3_000;
 
-/// The operands of a condition text: what AND and OR join, whatever parentheses are around it.
+/// Returns the operands of a condition text: the parts that AND and OR join, inside any parentheses.
 fn operands(text: &str) -> Vec<String> {
     let mut found = Vec::new();
     let mut operand = String::new();
@@ -47,7 +47,7 @@ fn operands(text: &str) -> Vec<String> {
     found
 }
 
-/// What the text of an operand alone says of its value in a turn; `None` where it depends on more than this.
+/// Returns the value of an operand in a turn, by its text alone; `None` if it depends on more than these arguments.
 fn value(operand: &str, reports: &Reports, since: f64) -> Option<bool> {
     let now = reports.t.seconds();
     let seconds = |text: &str| text.parse::<f64>().ok();

@@ -60,7 +60,7 @@ fn run(options: &[&str]) -> Output {
     run.args(["--speed", "max", "--world", "floor.toml"]).args(options).current_dir(twice()).output().unwrap()
 }
 
-/// What a run that was good has said.
+/// Returns the output of a run that succeeds.
 fn good(options: &[&str]) -> String {
     let output = run(options);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -70,8 +70,8 @@ fn good(options: &[&str]) -> String {
 /// Place and heading: metres and degrees.
 type At = [f64; 3];
 
-/// Where the setpoints of a path lead from this place, in a frame turned by so many degrees, and at which time they end: read
-/// and integrated here, in steps of a millisecond.
+/// Returns the pose to which the setpoints of a path lead from `from`, in a frame turned by `frame` degrees, and the
+/// time at which they end: read and integrated here, in steps of a millisecond.
 fn integrated(path: &str, from: At, frame: f64) -> (At, f64) {
     let told = path.lines().map(|line| line.split('#').next().unwrap()).filter(|line| !line.trim().is_empty());
     let numbers = |row: &str| row.split(',').map(|number| number.trim().parse().unwrap()).collect::<Vec<f64>>();
@@ -92,7 +92,7 @@ fn integrated(path: &str, from: At, frame: f64) -> (At, f64) {
     ([x, y, heading], rows.last().unwrap()[0])
 }
 
-/// Where the plan should lead by this path.
+/// Returns the pose to which the plan should lead with this path.
 fn twice_integrated(path: &str) -> At {
     let (half, _) = integrated(path, [1.0, 2.0, 30.0], 30.0);
     integrated(path, half, 230.0).0
@@ -104,7 +104,7 @@ fn assert_near([x, y, heading]: At, [to_x, to_y, to_heading]: At, metres: f64, d
     assert!(away <= metres && turned.abs() <= degrees, "{away} m and {turned}° from ({to_x}, {to_y}) at {to_heading}°");
 }
 
-/// Where the robot was in a turn that is over, by the time that begins its row.
+/// Returns the robot's pose in a turn that is over, by the time that begins its row.
 fn was_at(trail: &str, seconds: &str) -> At {
     let trail = fs::read_to_string(twice().join(trail)).unwrap();
     let row = trail.lines().find(|row| row.split(',').next() == Some(seconds)).unwrap_or_else(|| panic!("{trail}"));

@@ -1,4 +1,4 @@
-//! A plan that goes by battery and charger does the same on each emulated robot that has them.
+//! A plan that depends on battery and charger behaves equally on each emulated robot that has them.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -18,7 +18,7 @@ const PACE: Pace = Pace::Lockstep(PERIOD);
 /// It drives until its battery is low, and rests until somebody plugs it in.
 const PLAN: &str = "{ Home (charger OR wait 30s) (Atom (lowBattery OR battery < 5V) (go 10 0)) (Atom (null) stop) }\n";
 
-/// Its battery is low after 5 s, and it is plugged in after 10.
+/// Faults of a robot: its battery is low after 5 s, and it is plugged in after 10.
 const FAULTS: [&str; 2] = ["low-battery@5", "plugged-in@10"];
 
 /// The report of a plan on this robot with these faults, without times.

@@ -79,7 +79,7 @@ fn the_tour_ends_on_a_scout_where_it_ends_in_the_simulator() {
     assert!(away <= 0.15 && turned.abs() <= 5.0, "{away} m and {turned} degrees away from {x}, {y}, {heading}");
 }
 
-/// What the executable says with these arguments, and how it ends.
+/// Returns the output of the executable with these arguments, and its exit status.
 fn said(arguments: &[&str]) -> String {
     let output = Command::new(on_scout()).args(arguments).current_dir(on_scout().parent().unwrap()).output().unwrap();
     let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());

@@ -40,7 +40,7 @@ fn seat(is_left: bool) -> Seat<Scout> {
     Seat { robot: Scout::new(body).unwrap(), port: Port::open().unwrap() }
 }
 
-/// What two executables say at the end, each on a robot of its own, and where these are then.
+/// Returns the output of two executables, each on a robot of its own, and the robots' places at the end.
 fn together(executables: [&Path; 2]) -> ([String; 2], [Disc; 2]) {
     let mut robots = Several::of(vec![seat(true), seat(false)]).unwrap();
     let mut started = executables.iter().zip(robots.seats()).map(|(executable, seat)| {
