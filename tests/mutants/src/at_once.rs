@@ -15,7 +15,7 @@ use crate::trial::{FAST, Outcome, RUNTIME, TESTS, cargo, environment};
 /// A test that works longer than this and three times what it takes without a fault hangs. It is the processor's time, so
 /// that others may work there as well.
 const PATIENCE: Duration = Duration::from_secs(5);
-/// A test that waits for longer than this, whatever for, hangs.
+/// Duration of a wait after which a test hangs.
 const ENDLESS: Duration = Duration::from_secs(1800);
 /// The most memory of a process, in KiB.
 const MEMORY: &str = "6291456";
@@ -30,7 +30,7 @@ pub(crate) struct AtOnce<'m> {
     tests: Vec<Test>,
 }
 
-/// What became of a mutant when all were built.
+/// State of a mutant after all were built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Standing {
     Built,
@@ -44,7 +44,7 @@ pub(crate) enum Standing {
 struct Test {
     number: usize,
     executable: Executable,
-    /// The names of its tests that are run, or parts of them; all without one.
+    /// The names of the tests that are run, or parts of these names; all tests if there are none.
     filters: &'static [&'static str],
     limit: Duration,
 }
@@ -110,7 +110,8 @@ impl<'m> AtOnce<'m> {
         }
     }
 
-    /// Whether rustc takes the files with all mutants that are left; those that it refuses are left out afterwards.
+    /// Returns `true` if rustc accepts the files with all mutants that are left. Mutants that it refuses are left out
+    /// afterwards.
     fn is_built(&mut self, sources: &[Source]) -> bool {
         let schemata: BTreeMap<_, _> =
             sources.iter().map(|source| (source.file.clone(), self.schema(source))).collect();
@@ -129,7 +130,7 @@ impl<'m> AtOnce<'m> {
         false
     }
 
-    /// Writes a file with its mutants; those that cannot be chosen stand apart from now on.
+    /// Writes a file with its mutants; mutants that cannot be chosen at run time are set apart.
     fn schema(&mut self, source: &Source) -> Schema {
         let built =
             self.mutants().filter(|(_, standing, mutant)| *standing == Standing::Built && mutant.file == source.file);

@@ -47,7 +47,7 @@ impl Checkout {
         self.folder.join("checkout")
     }
 
-    /// What cargo builds of them.
+    /// Returns the folder with cargo's builds of the copied files.
     pub(crate) fn target(&self) -> PathBuf {
         self.folder.join("target")
     }
@@ -58,7 +58,7 @@ impl Checkout {
     }
 }
 
-/// What git says in this checkout.
+/// Returns the output of git in this checkout.
 pub(crate) fn git(arguments: &[&str]) -> String {
     let mut command = Command::new("git");
     // A checkout that belongs to somebody else, as it may where tests run, is read as well.

@@ -1,4 +1,4 @@
-//! Which mutants are tried, by a seed, and from which files they come.
+//! Choice of mutants, by a seed, and the files from which they are taken.
 
 use std::fs;
 
@@ -8,7 +8,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use crate::checkout::{git, root};
 use crate::mutant::{Mutant, mutants};
 
-/// What is mutated: files and folders. A few mutants are taken from each area in turn, however large it is.
+/// Areas that are mutated: files and folders. A few mutants are taken from each area in turn, however large it is.
 const AREAS: &[&[&str]] = &[
     &[
         "runtime/core/src/cursor.rs",

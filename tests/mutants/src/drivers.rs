@@ -24,13 +24,13 @@ const LIST: &str = include_str!("../drivers.toml");
 const TESTS: [&str; 6] =
     ["--package", "mdle-scout-emulator", "--package", "mdle-atrv-emulator", "--test", "conformance"];
 
-/// How many are tried at the same time.
+/// Number of faults that are tried at the same time.
 const AT_ONCE: usize = 2;
 
-/// A test that takes so many seconds hangs: without a fault it takes two.
+/// Number of seconds after which a test hangs: without a fault it takes two.
 const PATIENCE: &str = "120";
 
-/// What is put behind each file.
+/// Code that is added after each file.
 const CHOICE: &str = r#"
 fn __fault() -> u32 {
     static CHOSEN: std::sync::OnceLock<u32> = std::sync::OnceLock::new();
@@ -120,7 +120,7 @@ fn built(checkout: &Checkout) -> Vec<Executable> {
     executables(&printed)
 }
 
-/// The first check that a fault breaks; `None` if all hold.
+/// Returns the first check that a fault breaks; `None` if all hold.
 fn tried(tests: &[Executable], number: u32, fault: &Fault) -> Option<String> {
     // targets/ROBOT/emulator tests the driver in targets/ROBOT.
     let robot = Path::new(&fault.file).components().nth(1).expect("a file of a driver");

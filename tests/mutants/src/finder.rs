@@ -11,7 +11,7 @@ use crate::operators::{can_be_left_out, mistaken, neighbours, other_operator};
 use crate::pieces::{can_be_deleted, is_alike, is_test, leaves};
 use crate::template;
 
-/// A change: what stands in this range of bytes becomes this.
+/// A change: the text in this range of bytes becomes `new`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Change {
     pub(crate) place: Range<usize>,
@@ -38,7 +38,7 @@ struct Finder<'t> {
 }
 
 impl Finder<'_> {
-    /// Notes a change, unless it is none.
+    /// Notes a change, unless the text remains the same.
     fn change(&mut self, place: Range<usize>, new: impl Into<String>) {
         let change = Change { place, new: new.into(), function: self.function.clone() };
         if !self.changes.contains(&change) && self.text[change.place.clone()] != change.new {
@@ -46,7 +46,7 @@ impl Finder<'_> {
         }
     }
 
-    /// What a node is now.
+    /// Returns the current text of a node.
     fn old(&self, node: &impl Spanned) -> String {
         self.text[range(node)].to_owned()
     }
@@ -73,7 +73,7 @@ impl Finder<'_> {
         }
     }
 
-    /// The same for what two arms of a `match` come to: a block needs no comma behind it, and what it becomes does.
+    /// Exchanges the values of two arms of a `match`: a block needs no comma after it, and its replacement does.
     fn exchange_bodies(&mut self, one: &Expr, other: &Expr) {
         let (start, end) = (range(one), range(other));
         let (old, new) = (self.old(one), self.old(other));
@@ -263,7 +263,7 @@ impl<'ast> Visit<'ast> for Finder<'_> {
     }
 }
 
-/// Where a node stands, in bytes.
+/// Returns the range of a node, in bytes.
 fn range(node: &impl Spanned) -> Range<usize> {
     node.span().byte_range()
 }

@@ -1,4 +1,4 @@
-//! Tries mutants, one by one or all together, says what comes of each, and counts.
+//! Tries mutants, one by one or all together, reports the result of each, and counts.
 
 use std::time::Instant;
 
@@ -10,7 +10,7 @@ use crate::mutant::Mutant;
 use crate::report::{self, Report};
 use crate::trial::{Outcome, Trials};
 
-/// What is known before mutants are tried.
+/// Data that exist before mutants are tried.
 pub(crate) struct Judge<'a> {
     pub(crate) sources: &'a [Source],
     pub(crate) equivalents: &'a Equivalents,
@@ -62,7 +62,7 @@ impl Judge<'_> {
         }
     }
 
-    /// Counts a mutant, and says what came of it.
+    /// Counts a mutant, and prints its result.
     fn tried(&self, mutant: &Mutant, outcome: Outcome, start: Instant, report: &mut Report) {
         let equivalent = self.equivalents.find(mutant);
         report.add(mutant, outcome, equivalent.is_some());

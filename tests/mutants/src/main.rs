@@ -1,4 +1,5 @@
-//! Mutation tests: puts small faults into the code that decides what a robot does, and counts which of them tests catch.
+//! Mutation tests: puts small faults into the code that decides what a robot does, and counts the faults that tests
+//! catch.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test tool fails by panicking")]
 #![allow(clippy::print_stdout, reason = "what it prints is what it is for")]

@@ -9,16 +9,16 @@ use crate::finder;
 /// One fault.
 #[derive(Debug, Clone)]
 pub(crate) struct Mutant {
-    /// The place in the list of areas of the one it belongs to.
+    /// The place of the mutant's area in the list of areas.
     pub(crate) area: usize,
-    /// Its file, from the root.
+    /// File of the mutant, from the root.
     pub(crate) file: String,
     /// The function or constant that changes.
     pub(crate) function: String,
     /// The change in words, which no other of this function has.
     pub(crate) change: String,
     line: usize,
-    /// What stands in this range of bytes becomes this.
+    /// Range of bytes whose text becomes `new`.
     pub(crate) place: Range<usize>,
     pub(crate) new: String,
 }
@@ -54,7 +54,7 @@ pub(crate) fn mutants(area: usize, file: &str, text: &str) -> syn::Result<Vec<Mu
     Ok(mutants.collect())
 }
 
-/// What changes, and the line in which it does: a key that outlives changes elsewhere.
+/// Returns a description of the change and its line: a key that remains valid after changes elsewhere.
 fn in_words(text: &str, line: usize, found: &finder::Change) -> String {
     let old = short(&text[found.place.clone()]);
     let line = short(text.lines().nth(line - 1).unwrap_or_default());

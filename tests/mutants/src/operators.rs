@@ -1,4 +1,5 @@
-//! What is exchanged for what, and what can be left out, where the type stays the same.
+//! Operators and methods that are exchanged for each other, and methods that can be left out, where the type stays the
+//! same.
 
 use syn::BinOp;
 
@@ -53,7 +54,7 @@ pub(crate) fn mistaken(name: &str) -> Option<&'static str> {
     })
 }
 
-/// Whether a call of this method can be left out.
+/// Returns `true` if a call of this method can be left out.
 pub(crate) fn can_be_left_out(method: &str) -> bool {
     LEFT_OUT.contains(&method)
 }

@@ -1,8 +1,9 @@
-//! Which pieces of syntax can be exchanged for each other, and which can be deleted.
+//! Pieces of syntax that can be exchanged for each other, or deleted.
 
 use syn::{Attribute, Expr, Ident, Lit, Stmt};
 
-/// Whether two expressions are of one simple kind, and so may be of one type: names, numbers, references to either.
+/// Returns `true` if two expressions are of one simple kind, and so may be of one type: names, numbers, references to
+/// either.
 pub(crate) fn is_alike(one: &Expr, other: &Expr) -> bool {
     let is_variable = |expression: &Expr| match expression {
         Expr::Path(path) => path.path.get_ident().is_some_and(|name| !name.to_string().starts_with(char::is_uppercase)),
@@ -16,8 +17,8 @@ pub(crate) fn is_alike(one: &Expr, other: &Expr) -> bool {
     }
 }
 
-/// Whether a statement does something by itself. Of those that hold others, which are deleted one by one, only an `if`
-/// that leaves, as what it holds can seldom be missing.
+/// Returns `true` if a statement has an effect of its own. Statements in a block are deleted one by one, so of
+/// statements with blocks only an `if` that leaves counts, as its content can seldom be missing.
 pub(crate) fn can_be_deleted(statement: &Stmt) -> bool {
     let Stmt::Expr(expression, end) = statement else { return false };
     match expression {
@@ -28,12 +29,12 @@ pub(crate) fn can_be_deleted(statement: &Stmt) -> bool {
     }
 }
 
-/// Whether a statement leaves the function or the loop.
+/// Returns `true` if a statement leaves the function or the loop.
 pub(crate) fn leaves(statement: &Stmt) -> bool {
     matches!(statement, Stmt::Expr(Expr::Return(_) | Expr::Break(_) | Expr::Continue(_), _))
 }
 
-/// Whether it is for tests only what has this attribute.
+/// Returns `true` if an item with this attribute is for tests only.
 pub(crate) fn is_test(attribute: &Attribute) -> bool {
     attribute.path().is_ident("cfg") && attribute.parse_args::<Ident>().is_ok_and(|condition| condition == "test")
 }

@@ -1,10 +1,10 @@
-//! What cargo says in JSON: where rustc refused the text, and which test executables there are.
+//! JSON output of cargo: the places where rustc refused the text, and the test executables.
 
 use std::path::PathBuf;
 
 use serde::Deserialize;
 
-/// A line of what cargo says, as far as it is read here.
+/// A line of cargo's output, as far as it is read here.
 #[derive(Debug, Deserialize)]
 struct Line {
     reason: String,
@@ -43,7 +43,7 @@ struct Expansion {
 /// An error of rustc.
 #[derive(Debug)]
 pub(crate) struct Refusal {
-    /// As rustc prints it.
+    /// Text of the error as rustc prints it.
     pub(crate) text: String,
     /// The places that it is about, the most important one first: a file, and a byte of it.
     pub(crate) places: Vec<(String, usize)>,
@@ -85,7 +85,7 @@ fn lines(printed: &str) -> impl Iterator<Item = Line> {
     lines.filter(|line| matches!(&*line.reason, "compiler-message" | "compiler-artifact"))
 }
 
-/// Where a message points to, and from where each macro was called that it points into.
+/// Adds the places to which a message points, and for a place in a macro the places of its calls.
 fn places_of(message: &Message, is_primary: bool, places: &mut Vec<(String, usize)>) {
     for span in message.spans.iter().filter(|span| span.is_primary == is_primary) {
         let mut inside = Some(span);

@@ -1,4 +1,4 @@
-//! What came of the mutants, counted by file and by the test that caught them.
+//! Results of the mutants, counted by file and by the test that caught them.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -26,7 +26,7 @@ struct Counts {
 }
 
 impl Report {
-    /// Counts a mutant; `listed` says whether it is said to change nothing.
+    /// Counts a mutant; `listed` is `true` if `equivalent.toml` lists it.
     pub(crate) fn add(&mut self, mutant: &Mutant, outcome: Outcome, listed: bool) {
         let counts = self.files.entry(mutant.file.clone()).or_default();
         match outcome {
@@ -46,12 +46,12 @@ impl Report {
         }
     }
 
-    /// How many could be tested.
+    /// Returns the number of mutants that could be tested.
     pub(crate) fn compiled(&self) -> usize {
         self.files.values().map(|counts| counts.caught + counts.hanging + counts.equivalent + counts.survived).sum()
     }
 
-    /// Whether each was caught, or is listed and rightly so.
+    /// Returns `true` if each mutant was caught, or is rightly listed.
     pub(crate) fn is_good(&self) -> bool {
         self.complaints.is_empty()
     }

@@ -11,10 +11,10 @@ use syn::{Block, ReturnType, Signature, TypeImplTrait};
 
 use crate::mutant::Mutant;
 
-/// The variable that holds the number of the chosen mutant; without it there is none.
+/// The variable with the number of the chosen mutant; without it no mutant is chosen.
 pub(crate) const VARIABLE: &str = "MDLE_MUTANT";
 
-/// What is put behind each file. It reads the variable once, without `std`, which the runtime does not have.
+/// Code that is added after each file. It reads the variable once, without `std`, which the runtime does not have.
 const CHOICE: &str = r#"
 fn __mutant() -> u32 {
     use core::ffi::{CStr, c_char};
@@ -46,12 +46,12 @@ struct Variant {
     body: Body,
 }
 
-/// Whose body it is.
+/// Version of a function's body.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Body {
     /// This mutant's.
     Changed(u32),
-    /// As it was, beside those of these mutants.
+    /// The original body, beside the bodies of these mutants.
     Original(Vec<u32>),
 }
 
@@ -97,12 +97,12 @@ impl Schema {
         self.text.push('\n');
     }
 
-    /// Whether this mutant is in the text.
+    /// Returns `true` if this mutant is in the text.
     pub(crate) fn holds(&self, number: u32) -> bool {
         self.variants.iter().any(|variant| variant.body == Body::Changed(number))
     }
 
-    /// The body to which what stands at this byte belongs.
+    /// Returns the body that contains this byte.
     pub(crate) fn at(&self, byte: usize) -> Option<&Body> {
         self.variants.iter().find(|variant| variant.place.contains(&byte)).map(|variant| &variant.body)
     }
@@ -144,7 +144,7 @@ impl<'ast> Visit<'ast> for Bodies {
     }
 }
 
-/// Whether every body has a type of its own.
+/// Returns `true` if the return type contains `impl Trait`, so that every body has a type of its own.
 fn is_opaque(output: &ReturnType) -> bool {
     #[derive(Default)]
     struct Opaque(bool);

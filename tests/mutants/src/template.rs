@@ -1,4 +1,4 @@
-//! The same for what stands in `quote!`: tokens of emitted code, some of which are no expressions yet.
+//! Finder of changes inside `quote!`: in tokens of emitted code, some of which are no expressions yet.
 
 use std::ops::Range;
 
@@ -6,8 +6,8 @@ use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
 
 use crate::operators::{mistaken, neighbours};
 
-/// Tells `change` of each place of these tokens that can be changed, and what it becomes; nothing where it is left out.
-/// `text` is the file that they are from.
+/// Calls `change` with each place of these tokens that can be changed, and its new text; `None` if it is left out.
+/// `text` is the file with the tokens.
 pub(crate) fn changes(text: &str, tokens: TokenStream, change: &mut impl FnMut(Range<usize>, Option<String>)) {
     let mut values = Vec::new();
     interpolated(tokens.clone(), &mut values);

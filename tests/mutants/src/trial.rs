@@ -37,7 +37,7 @@ const RULES: &[&str] = &[
     "signals::",
 ];
 
-/// So many of them take seconds. The others take minutes, and the last one has rustc compile a runtime.
+/// Number of tests that take seconds. The others take minutes, and the last one has rustc compile a runtime.
 pub(crate) const FAST: usize = 4;
 
 /// The command line of a test.
@@ -53,7 +53,7 @@ const BUILD: Duration = Duration::from_secs(600);
 /// The most memory of a process, in KiB: a fault may fill all there is.
 const MEMORY: &str = "8388608";
 
-/// What came of a mutant.
+/// Result of a mutant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Outcome {
     /// It is no program, so nobody has to find it.
@@ -66,11 +66,11 @@ pub(crate) enum Outcome {
     Survived,
 }
 
-/// What runs the trials.
+/// Runner of the trials.
 #[derive(Debug)]
 pub(crate) struct Trials {
     checkout: Checkout,
-    /// How long each test may take.
+    /// Maximum duration of each test.
     limits: Vec<Duration>,
 }
 
@@ -106,7 +106,7 @@ impl Trials {
         outcome
     }
 
-    /// What the tests say of the copy as it is, with a fault in one of these packages.
+    /// Returns the result of the tests on the copy as it is, with a fault in one of these packages.
     fn tested(&self, changed: Packages) -> Outcome {
         for (number, ((packages, targets), limit)) in TESTS.iter().zip(&self.limits).enumerate() {
             if *packages == RUNTIME && changed != RUNTIME {
@@ -152,7 +152,7 @@ pub(crate) fn cargo() -> OsString {
     std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into())
 }
 
-/// What every command in the copy is to know.
+/// Sets the folder and environment variables of a command in the copy.
 pub(crate) fn environment(command: &mut Command, checkout: &Checkout) {
     command
         .current_dir(checkout.sources())
