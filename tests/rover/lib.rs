@@ -14,14 +14,14 @@ use mdle_runtime::{Robot, Volts};
 pub use Rover as Target;
 pub use Sensed as Output;
 
-/// Its input: a number.
+/// Input of the rover: a number.
 pub type Input = i64;
 
 /// The robot.
 #[derive(Debug)]
 pub struct Rover(Volts);
 
-/// Its output.
+/// Output of the rover.
 #[derive(Debug)]
 pub struct Sensed(pub Volts);
 

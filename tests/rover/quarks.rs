@@ -1,4 +1,4 @@
-//! What the rover's alphabet declares.
+//! Quarks of the rover's alphabet.
 
 use mdle_runtime::{Begin, Control, Interrupt, Law, Nanos, Volts};
 

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-/// What `build.rs` has made of `plans/round.mdle`.
+/// Rust that `build.rs` emits for `plans/round.mdle`.
 mod round {
     include!(concat!(env!("OUT_DIR"), "/round.rs"));
 }

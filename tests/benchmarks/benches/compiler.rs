@@ -12,12 +12,12 @@ use std::process::{Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// How often each plan is compiled.
+/// Number of times that each plan is compiled.
 const RUNS: usize = 5;
-/// How often memory is looked at.
+/// Time between two readings of memory.
 const LOOK: Duration = Duration::from_millis(2);
 
-/// What a run took.
+/// Cost of a run.
 struct Cost {
     wall: Duration,
     /// In seconds.
@@ -49,7 +49,7 @@ fn main() {
     fs::remove_dir_all(folder).expect("the folder of this run");
 }
 
-/// So many bytes of plans as people write them, in which nothing is wrong.
+/// Returns `bytes` bytes of plans as people write them, without errors.
 fn small_plans(bytes: usize) -> String {
     let mut plans = String::with_capacity(bytes + 1000);
     for number in 0.. {
@@ -67,7 +67,7 @@ fn small_plans(bytes: usize) -> String {
     plans
 }
 
-/// Atoms one behind the other.
+/// Returns a plan of atoms one after another.
 fn written_out(atoms: usize, differ: bool) -> String {
     let mut plan = String::from("{ P (bumper)\n");
     for atom in 0..atoms {

@@ -1,8 +1,9 @@
 //! Text to tree, in bytes a second: mdlec's front end beside the bare parser of the same grammar.
 //!
-//! All take turns, and the fastest run of each counts: whatever else the machine does meanwhile, it does it to all of them.
-//! `mdlec` puts each tree into an arena that has been used before, so that the parser is measured; `first` into a new one, so that
-//! the time is in it which the system takes to hand out memory. Trees are taken down outside of the measured time.
+//! All parsers take turns, and the fastest run of each counts, so that other load on the machine affects them equally.
+//! `mdlec` puts each tree into an arena that has been used before, so that the parser is measured; `first` into a new
+//! one, so that the time includes what the system takes to hand out memory. Trees are taken down outside of the
+//! measured time.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
 
 use std::hint::black_box;
@@ -13,7 +14,7 @@ use mdle_benchmarks::front_end::{one_megabyte, plans, ten_megabytes};
 use mdlec::diagnostic::SourceId;
 use mdlec::syntax::{Arena, arena_for, parse};
 
-/// How many bytes each of them reads in all its runs.
+/// Number of bytes that each parser reads in all its runs.
 const BYTES: usize = 200_000_000;
 
 fn main() {
@@ -30,7 +31,8 @@ fn main() {
     }
 }
 
-/// How long the fastest run takes: the bare parser, mdlec in an arena that has been used, in new ones.
+/// Returns the time of the fastest run: of the bare parser, and of mdlec in an arena that has been used and in new
+/// ones.
 fn fastest(texts: &[String], runs: usize, repeats: usize) -> [Duration; 3] {
     let mut fastest = [Duration::MAX; 3];
     let mut used = Arena::new();

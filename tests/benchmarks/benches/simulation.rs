@@ -1,4 +1,4 @@
-//! How fast the simulator is: rays beside a bare traversal of cells, and a whole robot.
+//! Speed of the simulator: rays beside a bare traversal of cells, and a whole robot.
 #![allow(clippy::expect_used, reason = "a benchmark of a world that is not there fails by panicking")]
 
 use std::hint::black_box;
@@ -9,7 +9,7 @@ use mdle_sim::{Body, Make, Part, Place, Simulated, Walls, World};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-/// How far the sonars of a Scout hear, in metres.
+/// Maximum range of a Scout's sonars, in metres.
 const REACH: f64 = 6.477;
 /// Rays of one measurement.
 const RAYS: usize = 10_000;
@@ -37,7 +37,7 @@ fn scattered(walls: usize, side: f64) -> (World, Vec<(Place, Place)>) {
     (World::parse("scattered", &text).expect("a good world"), rays)
 }
 
-/// What any grid has to do: step from cell to cell until one is taken.
+/// Minimum work of any grid: a step from cell to cell until one is taken.
 struct Cells {
     taken: Vec<bool>,
     count: usize,

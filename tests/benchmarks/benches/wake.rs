@@ -1,4 +1,4 @@
-//! How late turns begin on a real clock, beside a bare loop of `clock_nanosleep` with the same privileges.
+//! Lateness of turns on a real clock, beside a bare loop of `clock_nanosleep` with the same privileges.
 //!
 //! Both are processes of their own, this program with a role, and take turns; the figures are of all rounds together.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
@@ -26,7 +26,7 @@ const PERIOD: Duration = Duration::from_millis(10);
 const TURNS: usize = 500;
 /// Of each of both.
 const ROUNDS: usize = 6;
-/// Says which of both a process is.
+/// Environment variable with the role of a process: turns or bare loop.
 const ROLE: &str = "MDLE_WAKE_ROLE";
 
 fn main() {
@@ -39,7 +39,7 @@ fn main() {
     }
 }
 
-/// Has both run in turns, and prints what comes of it.
+/// Runs both in turns, and prints their latenesses.
 fn compare() {
     let (mut turns, mut bare) = (Vec::new(), Vec::new());
     for _ in 0..ROUNDS {
@@ -58,7 +58,7 @@ fn compare() {
     println!("{:<12}{p50:>10.2}{p99:>10.2}{most:>10.2}", "ratio");
 }
 
-/// How late each turn of a round began, in nanoseconds.
+/// Returns the lateness of each turn of a round, in nanoseconds.
 fn lateness(role: &str) -> Vec<i64> {
     let program = env::current_exe().expect("this program");
     let arguments = ["--period", &PERIOD.as_secs_f64().to_string(), "--turns", &TURNS.to_string()];
@@ -71,8 +71,8 @@ fn lateness(role: &str) -> Vec<i64> {
     begins.iter().skip(1).map(|begun| late(begun - first)).collect()
 }
 
-/// How late a turn begins that begins so long after the first one, beside the deadline that is nearest before it; a turn
-/// that is hardly too early is so little early.
+/// Returns the lateness of a turn that begins `nanos` nanoseconds after the first, relative to the nearest deadline
+/// before it; negative for a turn that is up to a tenth of a period early.
 fn late(nanos: i64) -> i64 {
     let period = PERIOD.as_nanos() as i64;
     (nanos + period / 10).rem_euclid(period) - period / 10

@@ -1,10 +1,10 @@
-//! What the front end reads: the plans of the repository, and generated ones of one and of ten megabytes.
+//! Workloads of the front end: the plans of the repository, and generated plans of one and of ten megabytes.
 
 use mdle_tests::repository::files;
 
 use crate::plan_text::plan_text;
 
-/// A name, and the files that it stands for.
+/// A name, and the files of this workload.
 pub type Workload = (&'static str, Vec<String>);
 
 /// The plans of the repository, less the one whose `\text{…}` the bare parser does not read.

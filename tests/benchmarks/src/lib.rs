@@ -1,4 +1,5 @@
-//! What the benchmarks work on, and what they are measured against; `benches/` holds one file for each subject.
+//! Workloads of the benchmarks, and the code beside which they are measured; `benches/` holds one file for each
+//! subject.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a benchmark fails by panicking")]
 

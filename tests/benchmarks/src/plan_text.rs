@@ -22,7 +22,7 @@ const TESTS: &[&str] = &[
     "t >= 12.5",
 ];
 
-/// Laws, each as it stands behind an atom's condition.
+/// Laws, as they are written after an atom's condition.
 const LAWS: &[&str] = &[
     "(go 20 0)",
     "(go 0 0.36)",
@@ -58,7 +58,7 @@ const NAMES: &[&str] = &[
     "ReturnHome",
 ];
 
-/// What people write beside their plans.
+/// Comments that people write beside their plans.
 const COMMENTS: &[&str] = &[
     "// ahead until something is in front",
     "// for at most this long",
@@ -71,10 +71,10 @@ const COMMENTS: &[&str] = &[
 /// Loop counts.
 const COUNTS: &[&str] = &["2", "3", "3", "5", "10", "inf"];
 
-/// How deep behaviors and loops nest.
+/// Maximum depth of nested behaviors and loops.
 const DEPTH: usize = 6;
 
-/// The plans of this seed, of at least so many bytes.
+/// Returns the plans of this seed, of at least `bytes` bytes.
 #[must_use]
 pub fn plan_text(seed: u64, bytes: usize) -> String {
     let mut writer = Writer { text: String::with_capacity(bytes + 10_000), chance: Chance::new(seed), depth: 0 };
@@ -170,7 +170,7 @@ impl Writer {
         self.line(&format!("{label}(Atom {condition} {law})"));
     }
 
-    /// A condition in parentheses, with at most so many more inside.
+    /// Returns a condition in parentheses, with at most `nested` nested parentheses.
     fn condition(&mut self, nested: usize) -> String {
         let mut text = format!("({}", self.operand(nested));
         while self.chance.percent(25) {

@@ -1,4 +1,4 @@
-//! What makes the comparison a fair one: both parsers read the same language.
+//! Tests that the comparison is fair: both parsers read the same language.
 
 use mdlec::diagnostic::SourceId;
 use mdlec::syntax::{Arena, parse};

@@ -1,4 +1,4 @@
-//! Whatever comes on the line of an ATRV, both ends read on.
+//! On any bytes on the line of an ATRV, both ends read on.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

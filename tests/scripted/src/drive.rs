@@ -9,11 +9,11 @@ use mdle_runtime::{Frame, Machine, Measured, Nanos, Plan, Transition, Turn, Watc
 
 use crate::{Input, LAWS, Output};
 
-/// Writes the trace of `plan` over a script: one JSON object a turn, to the turn in which the plan is over.
+/// Writes the trace of `plan` over a script: one JSON object for each turn, to the turn in which the plan is over.
 ///
-/// `law` is what the input says, not what the plan says of itself. Where the two differ, where the law was not made when
-/// its atom began, and where a machine that nobody watches does otherwise, `law` says `broken`, so that a comparison
-/// fails there.
+/// `law` comes from the input, not from the plan's own texts. If these two differ, if the law was not created when its
+/// atom began, or if a machine without an observer behaves differently, `law` is `broken`, so that a comparison fails
+/// there.
 ///
 /// # Errors
 /// When `trace` cannot be written.

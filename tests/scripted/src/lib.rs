@@ -1,6 +1,6 @@
-//! A robot that is only a script: its output says what each quark reports, its input which law was applied.
+//! A robot that is only a script: its output contains the report of each quark, its input the law that was applied.
 //!
-//! Emitted Rust is compiled against it as against any target, so that what it does can be compared with other machines.
+//! Emitted Rust is compiled against it as against any target, so that its behavior can be compared with other machines.
 #![no_std]
 #![forbid(unsafe_code)]
 

@@ -148,7 +148,7 @@ laws! {
 #[derive(Debug, Clone, Copy)]
 pub struct Endless(Input);
 
-/// A law that runs until the script says that it is done.
+/// A law that runs until the script reports that it is done.
 #[derive(Debug, Clone, Copy)]
 pub struct Finite(Input);
 

@@ -1,4 +1,4 @@
-//! What a script can report, and what the robot can be told, as numbers of quark texts.
+//! Reports of a script, and inputs of the robot, as numbers of quark texts.
 
 use mdle_runtime::{Nanometers, Nanos, Pose, Radians};
 
@@ -80,7 +80,7 @@ impl mdle_runtime::Output for Output {
 }
 
 impl Output {
-    /// Whether the interrupt of this name with these arguments, in its default units, has fired.
+    /// Returns `true` if the interrupt of this name with these arguments, in its default units, has fired.
     pub(crate) fn has_fired(&self, name: &str, arguments: &[Argument]) -> bool {
         number(INTERRUPTS, name, arguments).is_some_and(|bit| self.fired >> bit & 1 == 1)
     }
@@ -91,7 +91,7 @@ impl Output {
         known.map_or(f64::INFINITY, |(_, value)| value)
     }
 
-    /// Whether the law of this number is done.
+    /// Returns `true` if the law of this number is done.
     pub(crate) fn is_completed(&self, law: usize) -> bool {
         self.completed >> law & 1 == 1
     }
@@ -100,13 +100,13 @@ impl Output {
 /// The input of a turn: the law that computed it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Input {
-    /// Its number among [`LAWS`]; `None` is the null input.
+    /// Number of the law among [`LAWS`]; `None` is the null input.
     pub law: Option<usize>,
-    /// When its atom began.
+    /// Time at which the law's atom began.
     pub began: Nanos,
     /// The frame in which it began.
     pub frame: Radians,
-    /// How many inputs it has computed since then, this one included.
+    /// Number of inputs that the law has computed since then, this one included.
     pub computed: u32,
 }
 

@@ -1,10 +1,10 @@
-//! What must not link: an index that nobody has checked.
+//! Executable that must not link: it has an unchecked index.
 #![no_std]
 #![no_main]
 
 use core::ffi::c_int;
 
-/// Where the C library begins.
+/// Entry point, which the C library calls.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "no other function has this name")]
 #[allow(clippy::indexing_slicing, reason = "that this is noticed is what is tested")]

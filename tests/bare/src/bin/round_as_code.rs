@@ -9,7 +9,7 @@ mod plan {
     include!(concat!(env!("PLANS"), "/round_as_code.rs"));
 }
 
-/// Where the C library begins.
+/// Entry point, which the C library calls.
 #[unsafe(no_mangle)]
 #[allow(unsafe_code, reason = "no other function has this name")]
 extern "C" fn main() -> c_int {

@@ -1,15 +1,15 @@
-//! The bare parser: logos and lalrpop read the language and make nothing of it, which is the least that text to tree can cost.
+//! The bare parser: logos and lalrpop read the language without a result, which is the minimum cost of text to tree.
 //!
 //! Its grammar has the productions of mdlec's, and its tokens are the same. It leaves out all that mdlec does besides:
 //!
 //! - a tree, and the places of its nodes;
-//! - recovery from errors, and every word about them: the first one ends it;
+//! - recovery from errors, and all messages: it stops at the first error;
 //! - the pass that balances brackets, and their greatest depth;
 //! - doc comments, which it skips like any other;
 //! - `\text{…}`, whose braces vanish in mdlec, and units that do not touch their number.
 //!
-//! What a parenthesis in a plan's header is depends on what stands in it. mdlec marks it before it parses; here a copy of
-//! the lexer runs ahead, so that nothing has to be kept and only headers are read twice.
+//! The meaning of a parenthesis in a plan's header depends on its content. mdlec marks it before it parses; here a copy
+//! of the lexer runs ahead, so that nothing has to be kept and only headers are read twice.
 
 mod stream;
 mod token;
@@ -29,7 +29,7 @@ lalrpop_util::lalrpop_mod!(
     "/bare/grammar.rs"
 );
 
-/// Whether this is a file of plans.
+/// Returns `true` if the text is a file of plans.
 #[must_use]
 pub fn accepts(text: &str) -> bool {
     grammar::FileParser::new().parse(stream::Stream::new(text)).is_ok()

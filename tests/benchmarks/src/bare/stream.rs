@@ -1,4 +1,4 @@
-//! The tokens of a text as the grammar takes them, one after the other: each parenthesis is told what it is.
+//! The tokens of a text as the grammar takes them, one after another, each parenthesis with its kind.
 
 use logos::{Lexer, Logos};
 
@@ -16,22 +16,22 @@ pub(super) struct Stream<'s> {
     name_ends: usize,
 }
 
-/// How far the header of a plan has been read.
+/// Position in the header of a plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Header {
     /// No header.
     Outside,
-    /// Behind `ExecPlan`: no brace before the end of its count begins a header.
+    /// After `ExecPlan`: no brace before the end of its count begins a header.
     Count,
-    /// Behind an `ExecPlan` and its count.
+    /// After an `ExecPlan` and its count.
     Loop,
-    /// Behind the brace of a plan.
+    /// After the brace of a plan.
     Brace,
-    /// Behind its name.
+    /// After the name of a plan.
     Name,
     /// In its parameters.
     Params,
-    /// Behind its parameters.
+    /// After the parameters of a plan.
     Condition,
 }
 
@@ -41,7 +41,7 @@ impl<'s> Stream<'s> {
         Self { lexer: Tok::lexer(text), header: Header::Outside, name_ends: usize::MAX }
     }
 
-    /// What the parenthesis is that has just been read.
+    /// Returns the kind of the parenthesis that has just been read.
     fn parenthesis(&mut self, start: usize) -> Tok<'s> {
         let kind = match self.header {
             Header::Name if is_params(self.lexer.clone()) => Tok::ParamParen,
@@ -84,12 +84,12 @@ impl<'s> Iterator for Stream<'s> {
     }
 }
 
-/// Whether parameters follow: a name and a colon.
+/// Returns `true` if parameters follow: a name and a colon.
 fn is_params<'s>(mut ahead: Lexer<'s, Tok<'s>>) -> bool {
     matches!((ahead.next(), ahead.next()), (Some(Ok(Tok::Name(_))), Some(Ok(Tok::Colon))))
 }
 
-/// Whether the group that has just been opened holds what no condition does.
+/// Returns `true` if the group that has just been opened contains a token that no condition contains.
 fn is_element<'s>(ahead: Lexer<'s, Tok<'s>>) -> bool {
     let mut depth = 1_usize;
     for token in ahead {

@@ -2,7 +2,7 @@
 
 use logos::Logos;
 
-/// What a token is, with the text that a parser would make something of.
+/// Kind of a token, with the text that a parser would process.
 #[derive(Logos, Debug, Clone, Copy, PartialEq)]
 #[logos(skip(r"[\s;$\u{feff}]+"))]
 #[logos(skip(r"\\\\"))]

@@ -1,11 +1,11 @@
-//! How long rustc takes for what mdlec emits: against the number of atoms written out, and against the count of a loop.
+//! Build time of emitted Rust: against the number of atoms written out, and against the count of a loop.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 use std::{env, fs};
 
-/// How often each file is compiled; the fastest counts.
+/// Number of times that each file is compiled; the fastest counts.
 const RUNS: usize = 5;
 
 /// The files that the build script has written, and what they are.
@@ -19,7 +19,7 @@ const PLANS: &[(&str, &str)] = &[
     ("looped_1000000000.rs", "10^9 passes through 2 atoms"),
 ];
 
-/// What stands behind an emitted file: a generic turn is compiled where it is used, and so the time for it counts too.
+/// Code that is added after an emitted file: a generic turn is compiled where it is used, so that its time counts too.
 const TURN: &str = "
 pub fn turn(
     machine: &mut ::mdle_runtime::Machine<T>,

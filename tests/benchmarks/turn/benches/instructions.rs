@@ -47,7 +47,7 @@ machines! {
     table_100000: Table<100_000>,
 }
 
-/// Counts what is done in a machine's turn, and neither the loop around it nor the machine's beginning.
+/// Counts the instructions of a machine's turn only, without the loop that calls it and the machine's beginning.
 fn turn_alone() -> LibraryBenchmarkConfig {
     let turn = EntryPoint::Custom("*as mdle_workload::machines::Robot>::turn".to_owned());
     LibraryBenchmarkConfig::default().tool(Callgrind::default().entry_point(turn)).clone()

@@ -7,7 +7,7 @@ use mdle_runtime::{Nanos, Turn};
 use crate::Output;
 use crate::machines::Robot;
 
-/// What the robot meets.
+/// Events that the robot meets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Case {
     /// No condition fires: the first atom's law writes, turn after turn.
@@ -19,10 +19,10 @@ pub enum Case {
 }
 
 impl Case {
-    /// All of them.
+    /// All cases.
     pub const ALL: [Self; 3] = [Self::Steady, Self::Each, Self::Halt];
 
-    /// What the first turn reads, and by how much the measurement grows from turn to turn.
+    /// Returns the output of the first turn, and the growth of the measurement from turn to turn.
     fn outputs(self) -> (Output, f64) {
         match self {
             Self::Steady => (Output { measured: 0.5, halt: false }, 0.0),
@@ -32,7 +32,7 @@ impl Case {
     }
 }
 
-/// Makes `turns` turns, and begins the plan again whenever it is over. Returns the sum of all that was written.
+/// Makes `turns` turns, and begins the plan again each time it is over. Returns the sum of all that was written.
 ///
 /// The loop knows nothing of the cases but two numbers, so that it costs the same in all of them.
 pub fn run<M: Robot>(case: Case, turns: u32) -> f64 {

@@ -10,18 +10,18 @@ pub mod cases;
 pub mod machines;
 pub mod quarks;
 
-/// What a turn reads.
+/// Output that a turn reads.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Output {
-    /// What the atoms' conditions look at.
+    /// Measurement that the atoms' conditions read.
     pub measured: f64,
-    /// Whether the plan is to end.
+    /// `true` if the plan is to end.
     pub halt: bool,
 }
 
 impl mdle_runtime::Output for Output {}
 
-/// What a turn writes.
+/// Input that a turn writes.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Input {
     /// The first number.

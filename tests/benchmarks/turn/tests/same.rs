@@ -1,4 +1,4 @@
-//! All machines of a size write the same, turn by turn: else comparing them would say nothing.
+//! All machines of a size write the same, turn by turn: otherwise a comparison would be meaningless.
 
 use mdle_runtime::{Nanos, Turn};
 use mdle_workload::machines::Robot;
@@ -19,8 +19,8 @@ fn script(leap: u32) -> Vec<(f64, bool)> {
     (0..5_000).map(|_| (f64::from(draw(2 * leap)) / 2.0, draw(501) == 0)).collect()
 }
 
-/// What a machine says in each turn. When it is over it begins again, and so does the measurement: a plan does not make
-/// more than so many transitions in a turn, which its peers know nothing of.
+/// Returns the result of a machine in each turn. When it is over it begins again, and so does the measurement: a plan
+/// makes a limited number of transitions in a turn, and the other machines have no such limit.
 fn said<M: Robot>(script: &[(f64, bool)]) -> Vec<Turn<Input>> {
     let mut y = Output::default();
     let mut machine = M::begin(&y, Nanos(0));
@@ -36,7 +36,7 @@ fn said<M: Robot>(script: &[(f64, bool)]) -> Vec<Turn<Input>> {
     (0..).zip(script).map(turn).collect()
 }
 
-/// Whether a machine says the same as the table, whose words cover all that can happen.
+/// Asserts that a machine gives the results of the table, and that these cover all cases.
 fn assert_same<M: Robot, const N: usize>(leap: u32) {
     let script = script(leap);
     let expected = said::<Table<N>>(&script);

@@ -9,7 +9,7 @@ use mdle_runtime::{Nanos, Turn};
 
 use crate::{Input, Output};
 
-/// A machine that runs T(N). Its turn is not inlined into the loop around it, as a robot's driver would not be.
+/// A machine that runs T(N). Its turn is not inlined into the loop that calls it, as a robot's driver would not be.
 pub trait Robot {
     /// The plan at its first atom.
     fn begin(y: &Output, t: Nanos) -> Self;
@@ -17,7 +17,7 @@ pub trait Robot {
     fn turn(&mut self, y: &Output, t: Nanos) -> Turn<Input>;
 }
 
-/// Does nothing: what the loop around a machine costs.
+/// Does nothing, to measure the cost of the loop that calls a machine.
 #[derive(Debug)]
 pub struct Nothing;
 

@@ -5,13 +5,13 @@ use mdle_runtime::{Nanos, Turn};
 use super::Robot;
 use crate::{Input, Output};
 
-/// What an action has written.
+/// Result of an action.
 #[derive(Debug, Default)]
 pub struct Context {
     said: Option<Turn<Input>>,
 }
 
-/// Each generated machine in a module of its own, with the turn around it.
+/// Each generated machine in a module of its own, with the turn that runs it.
 macro_rules! machines {
     ($($module:ident $machine:ident $file:literal),+) => {$(
         #[allow(missing_docs, clippy::result_unit_err, reason = "as smlang has it")]

@@ -7,7 +7,7 @@ use statig::prelude::*;
 use super::Robot;
 use crate::{Input, Output};
 
-/// Each generated chart in a module of its own, with the turn around it.
+/// Each generated chart in a module of its own, with the turn that runs it.
 macro_rules! charts {
     ($($module:ident $machine:ident $file:literal),+) => {$(
         mod $module {
