@@ -1,7 +1,7 @@
-//! What holds for all bytes whatever that come on a robot's line, at either end: libFuzzer looks for some for which it does
-//! not, and a test tries all that are kept.
+//! Properties of all bytes on a robot's line, at either end: libFuzzer searches for bytes that break them, and a test
+//! tries all bytes that were kept.
 //!
-//! Each function panics where something does not hold. The first byte says in what pieces the others come.
+//! Each function panics where a property does not hold. The first byte determines the pieces in which the others come.
 
 use mdle_atrv::{Packet, Reader, Report};
 use mdle_atrv_emulator::wire as rflex;
@@ -67,7 +67,7 @@ fn answers(bytes: &[u8]) {
     assert!(found.as_ref().is_some_and(|found| found.ends_with(&state)), "{found:?}");
 }
 
-/// What the emulator makes of them.
+/// Returns the requests that the Scout's emulator reads from the bytes.
 fn requests<'b>(robot: &mut wire::Incoming, pieces: impl Iterator<Item = &'b [u8]>) -> Vec<wire::Request> {
     let mut found = Vec::new();
     for piece in pieces {
@@ -103,7 +103,7 @@ pub fn atrv(bytes: &[u8]) {
     assert_eq!(commands(&mut robot, [written.bytes()].into_iter()), [told]);
 }
 
-/// What the driver makes of them: port, opcode and data of each packet.
+/// Returns the packets that the ATRV's driver reads from the bytes: port, opcode and data of each.
 fn packets(reader: &mut Reader, bytes: &[u8]) -> Vec<(u8, u8, Vec<u8>)> {
     let mut found = Vec::new();
     for byte in bytes {
@@ -117,7 +117,7 @@ fn packets(reader: &mut Reader, bytes: &[u8]) -> Vec<(u8, u8, Vec<u8>)> {
     found
 }
 
-/// What the emulator makes of them.
+/// Returns the requests that the ATRV's emulator reads from the bytes.
 fn commands<'b>(robot: &mut rflex::Incoming, pieces: impl Iterator<Item = &'b [u8]>) -> Vec<rflex::Request> {
     let mut found = Vec::new();
     for piece in pieces {

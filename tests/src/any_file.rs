@@ -82,7 +82,7 @@ pub fn world(bytes: &[u8]) {
     }
 }
 
-/// A map comes to a world or an error; the bytes before `P2` or `P5` are the YAML file.
+/// A map results in a world or an error; the bytes before `P2` or `P5` are the YAML file.
 pub fn map(bytes: &[u8]) {
     let begin = bytes.windows(2).position(|pair| [&b"P2"[..], b"P5"].contains(&pair));
     let (header, image) = bytes.split_at(begin.unwrap_or(bytes.len()));

@@ -30,13 +30,13 @@ const RUN: usize = 100;
 /// The most turns of a run: each may make as many transitions as there are.
 const TURNS: usize = 6;
 
-/// Bytes as a text: those that are none are one character each.
+/// Returns bytes as a text: each invalid sequence becomes one character.
 #[must_use]
 pub fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes).into_owned()
 }
 
-/// A text has a tree or errors, whose places are in it, and which can be shown; an error behind it changes no tree.
+/// A text has a tree or errors, whose places are in it, and which can be shown; an error after it changes no tree.
 pub fn parse(text: &str) {
     let mut sources = Sources::default();
     sources.add("before.mdle", "Γ");
@@ -61,7 +61,8 @@ pub fn parse(text: &str) {
     }
 }
 
-/// The canonical layout of a text has its tree and its comments, and is its own; a text with errors has none.
+/// The canonical layout of a text has its tree and its comments, and is its own layout; a text with errors has no
+/// layout.
 pub fn layout(text: &str) {
     let id = SourceId(0);
     let arena = arena_for(text);
@@ -94,7 +95,7 @@ pub fn check(text: &str) {
     }
 }
 
-/// An analysis comes to a result, and agrees with itself.
+/// An analysis has a result, and agrees with itself.
 fn analysed(lowered: &Machine) {
     let analysis = analyze(lowered);
     assert_eq!((analysis.states, analysis.atoms.len()), (lowered.states(), lowered.atoms().len()));
@@ -164,7 +165,7 @@ fn lines(trace: &[mdlec::trace::Line<'_>]) -> String {
     trace.iter().map(|line| format!("{line}\n")).collect()
 }
 
-/// The plans of a text, once all that is said of it has been shown.
+/// Returns the plans of a text, after all messages about it have been shown.
 fn compiled(text: &str, alphabet: &Alphabet) -> Vec<Compiled> {
     let mut sources = Sources::default();
     for file in link::alphabets() {
@@ -189,7 +190,7 @@ fn shown(sources: &Sources, found: &[Diagnostic]) {
     }
 }
 
-/// The comments of a text without errors, blanks left out, in order.
+/// Returns the comments of a text without errors, in order, without spaces.
 fn comments(text: &str) -> Vec<String> {
     let mut comments = Vec::new();
     let mut rest = text;

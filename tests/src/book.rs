@@ -6,12 +6,12 @@ use mdlec::diagnostic::Code;
 
 use crate::repository::{TextFile, files, root};
 
-/// A fenced block of a page: what stands behind its backticks, separated by commas, and what is inside, with included files.
+/// A fenced block of a page: the words after its backticks, separated by commas, and its content, with included files.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fence {
-    /// What it is, first, then what else is said of it.
+    /// Kind of the block first, then its other properties.
     pub words: Vec<String>,
-    /// What is inside.
+    /// Content of the block.
     pub text: String,
 }
 
@@ -118,7 +118,7 @@ pub fn anchors(page: &TextFile) -> Vec<String> {
     headings.map(|heading| heading.chars().filter_map(kept).collect()).collect()
 }
 
-/// The chapter of all messages, from what `mdlec explain` says.
+/// Returns the chapter of all messages, from the texts of `mdlec explain`.
 #[must_use]
 pub fn messages() -> String {
     let mut text = "# All messages\n\n\

@@ -12,7 +12,7 @@ pub struct Citation {
     pub path: String,
     /// The numbers of the sections; empty if the page is cited as a whole.
     pub sections: Vec<String>,
-    /// Whether the path ends with a quotation mark, as a path that code opens does.
+    /// `true` if the path ends with a quotation mark, as a path that code opens does.
     pub is_quoted: bool,
 }
 

@@ -1,4 +1,4 @@
-//! As much of ECMAScript's expressions as the conditions of mdlec's SCXML machines are made of.
+//! The part of ECMAScript's expressions that conditions of mdlec's SCXML machines use.
 
 use std::collections::BTreeMap;
 
@@ -22,7 +22,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// Whether a condition of this value holds.
+    /// Returns `true` if a condition of this value holds.
     #[must_use]
     pub fn is_true(&self) -> bool {
         match self {

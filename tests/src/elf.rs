@@ -1,4 +1,4 @@
-//! How large the sections of an executable are: the tools that say so are not on every machine.
+//! Sizes of the sections of an executable: the tools that print them are not on every machine.
 
 /// The sizes in bytes of the sections of a 64-bit ELF file of this machine's byte order, by name.
 ///

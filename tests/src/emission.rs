@@ -1,4 +1,4 @@
-//! What the compiler emits for a plan of the target `scripted`, or of a robot with quarks of one's own.
+//! Emitted Rust of a plan for the target `scripted`, or for a robot with other quarks.
 
 use mdlec::alphabet::{Alphabet, combine, read};
 use mdlec::diagnostic::{SourceId, Sources};
@@ -13,14 +13,14 @@ pub fn emitted(plan: &str) -> String {
     emitted_for(scripted(), plan)
 }
 
-/// The same in this shape.
+/// Returns the file of plan `Main` for the target `scripted`, in this shape.
 #[must_use]
 pub fn emitted_as(shape: Shape, plan: &str) -> String {
     let sources = sources(plan);
     emit_as(shape, &lowered(scripted(), plan), header(&sources), scripted())
 }
 
-/// The same for the robot of another alphabet, in the shape that suits the plan.
+/// Returns the file of plan `Main` for the robot of this alphabet, in the shape that suits the plan.
 #[must_use]
 pub fn emitted_for(alphabet: &Alphabet, plan: &str) -> String {
     let sources = sources(plan);

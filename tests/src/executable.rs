@@ -60,7 +60,7 @@ pub fn run_mdlec(folder: &Path, arguments: &[&str]) -> Output {
     output
 }
 
-/// As [`run_mdlec`], with this text on standard input.
+/// Runs mdlec like [`run_mdlec`], with this text on standard input.
 #[must_use]
 pub fn run_mdlec_reading(folder: &Path, arguments: &[&str], input: &str) -> Output {
     let mut command = command(folder, arguments);

@@ -1,17 +1,17 @@
-//! A plan run by brute force: from each situation it can be in, a turn for each choice of what its quarks say and of how
-//! much time goes by. Written from the rules (docs/src/reference/semantics.md, 3 to 6) alone; it shares no stepping
+//! A plan run by brute force: from each situation that it can be in, a turn for each combination of quark values and
+//! each step of time. Written from the rules (docs/src/reference/semantics.md, 3 to 6) alone; it shares no stepping
 //! with any machine.
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use mdlec::plan::{Condition, Interrupt, Mark, Node, Plan, QuarkId, Record, RecordId, Situation};
 
-/// What quarks say in a turn, by their numbers.
+/// Values of the quarks in a turn, by their numbers.
 #[derive(Debug, Clone, Default)]
 pub struct Said {
-    /// Which interrupts have fired.
+    /// Interrupts that have fired.
     pub fired: Vec<bool>,
-    /// Which laws are done.
+    /// Laws that are done.
     pub completed: Vec<bool>,
 }
 
@@ -46,7 +46,7 @@ struct Frame {
     facts: Vec<bool>,
 }
 
-/// Where a plan is.
+/// Situation of a plan.
 #[derive(Debug, Clone)]
 pub struct Run {
     frames: Vec<Frame>,
@@ -56,20 +56,21 @@ pub struct Run {
     pub way: u64,
 }
 
-/// What a turn did.
+/// Result of a turn.
 #[derive(Debug, Default)]
 pub struct Turn {
     /// The atoms that were current, by their parts; the last one's law is applied unless the turn was cut.
     pub current: Vec<usize>,
-    /// The parts that ended, each with the operands of its interrupt that had fired; none if its law was done.
+    /// The parts that ended, each with the operands of its interrupt that had fired; without operands if its law was
+    /// done.
     pub ended: Vec<(usize, Vec<usize>)>,
-    /// Whether a law was applied.
+    /// `true` if a law was applied.
     pub applied: bool,
-    /// Whether the plan is over.
+    /// `true` if the plan is over.
     pub over: bool,
 }
 
-/// Where a condition is read.
+/// Situation in which a condition is read.
 struct At<'r, 'p> {
     explorer: &'r Explorer<'p>,
     run: &'r Run,
@@ -193,7 +194,7 @@ impl<'p> Explorer<'p> {
         turn
     }
 
-    /// The outermost part that ends, by its place among those around the current atom.
+    /// Returns the outermost part that ends, by its place among the parts that enclose the current atom.
     fn fired(&self, run: &Run, said: &Said) -> Option<(usize, Vec<usize>)> {
         for (place, frame) in run.frames.iter().enumerate() {
             let at = At { explorer: self, run, frame, said };
@@ -208,7 +209,7 @@ impl<'p> Explorer<'p> {
         is_done.then(|| (run.frames.len() - 1, Vec::new()))
     }
 
-    /// Ends the part at this place and goes on to what follows; `false` where nothing does.
+    /// Ends the part at this place and goes on to its successor; `false` if there is no successor.
     fn end(&self, run: &mut Run, mut place: usize, cause: Option<usize>) -> bool {
         let mut ended = vec![(run.frames[place].part, cause)];
         let next = loop {
@@ -265,7 +266,7 @@ impl<'p> Explorer<'p> {
         set.into_iter().for_each(|(place, memory)| run.frames[place].memories[memory] = true);
     }
 
-    /// What tells two situations apart; times only up to `longest`, behind which every timer is over.
+    /// Returns a key that distinguishes situations; times only up to `longest`, after which every timer is over.
     fn key(&self, run: &Run, longest: u64) -> Vec<u64> {
         let mut key = Vec::new();
         for frame in &run.frames {
@@ -276,10 +277,11 @@ impl<'p> Explorer<'p> {
         key
     }
 
-    /// Visits every turn from every situation that can be reached, breadth first, with these choices of what quarks say and
-    /// these steps of time, with and without a step of the way where a condition asks for it; at most so many situations. `true` if that were all.
+    /// Visits every turn from every situation that can be reached, breadth first, with these combinations of quark
+    /// values and these steps of time, with and without a step of the way if a condition reads it; at most `most`
+    /// situations. Returns `true` if these were all.
     pub fn explore(&self, said: &[Said], steps: &[u64], most: usize, visit: &mut impl FnMut(&Turn, &Run)) -> bool {
-        /// How many transitions a situation may take in the mean: searches that are cut are long.
+        /// Mean number of transitions that a situation may take: searches that are cut are long.
         const TRANSITIONS_EACH: usize = 500;
         let longest = 20_000_000_000;
         let drives = self.parts.iter().any(|part| part.interrupt.is_some_and(|it| it.condition.drives()));

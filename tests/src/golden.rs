@@ -1,4 +1,4 @@
-//! What the compiler makes of the plans in `plans/`, as text that a person compares.
+//! Results of the compiler for the plans in `plans/`, as text that a person compares.
 
 use std::fmt::Write;
 
@@ -24,7 +24,7 @@ pub fn alphabet(target: Option<&str>) -> Alphabet {
     }
 }
 
-/// The plans of a file, and what is said of it, for a robot.
+/// Returns the plans of a file, and the messages about it, for a robot.
 #[must_use]
 pub fn judge(file: &TextFile, target: Option<&str>) -> (Vec<Compiled>, String) {
     let (sources, source) = sources(file);

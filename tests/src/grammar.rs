@@ -5,14 +5,14 @@ use crate::repository::root;
 /// An alternative of a production, as `Name = what it is made of`, without the names that its action gives to the parts.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Production {
-    /// Its text.
+    /// Text of the production.
     pub text: String,
-    /// Whether it is there for texts with errors only.
+    /// `true` if the production only occurs in texts with errors.
     pub recovers: bool,
 }
 
 impl Production {
-    /// What may stand in it or not in a text without errors: each as `Name … option?`.
+    /// Returns the optional parts of the production in a text without errors, each as `Name … option?`.
     #[must_use]
     pub fn options(&self) -> Vec<String> {
         let mut options = Vec::new();

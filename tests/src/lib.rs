@@ -1,4 +1,5 @@
-//! What the tests of this crate share: random plans and scripts, the way from text to machines, lines of robots, the repository's files.
+//! Shared code of the tests of this crate: random plans and scripts, the way from text to machines, lines of robots,
+//! the repository's files.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test tool fails by panicking")]
 

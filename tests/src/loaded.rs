@@ -32,7 +32,8 @@ pub struct Words<'l> {
 /// The files and modules of the quarks that scripts report.
 const NAMES: &[&str] = &["horn", "bell.mid", "sun"];
 
-/// What ends with a bracket: its record, and the facts there with the operand that each is about.
+/// A label that ends with a bracket: the bracket, the label's record, and its facts, each with the operand that it is
+/// about.
 pub type Facts = (u32, RecordPlace, Vec<(u32, Option<u32>)>);
 
 /// Labels with their facts, as a plan takes them.
@@ -115,7 +116,7 @@ impl<'l> Plan for LoadedPlan<'l> {
 type At<'l> = Cursor<Entered<'l>, Box<[u64]>>;
 
 impl<'l> Loaded<'l> {
-    /// Makes the rows of a plan. Without `foresight` they do not say what follows when a scope ends.
+    /// Makes the rows of a plan. Without `foresight` they do not contain the successors of scopes.
     ///
     /// # Panics
     /// If the alphabet does not know a quark of the plan.
@@ -176,7 +177,7 @@ impl<'l> Loaded<'l> {
         Words { operands: operands.collect(), brackets: brackets.collect() }
     }
 
-    /// What ends with which bracket, with the facts of each label.
+    /// Returns the labels that end with each bracket, with their facts.
     #[must_use]
     pub fn facts(&self) -> Vec<Facts> {
         let elements = self.lowered.elements();
@@ -205,7 +206,7 @@ impl<'l> Loaded<'l> {
         LoadedPlan(InRows::remembering(rows, entered, vec![0; slots].into(), memory), words)
     }
 
-    /// A condition; its operands go behind all operands that there are so far, and theirs behind them.
+    /// Returns a condition; its operands are added after all earlier operands, and the operands of these after them.
     fn condition(&mut self, written: &plan::Condition) -> Condition<AnyInterrupt> {
         match written {
             plan::Condition::Null => Condition::Null,

@@ -22,7 +22,7 @@ pub fn outputs(script: &Script) -> Vec<(Nanos, Output)> {
         .collect()
 }
 
-/// Bit `i` says whether text `i` is among those that were said.
+/// Returns a number whose bit `i` is 1 if `said` contains text `i`.
 fn bits(texts: &[&str], said: &BTreeSet<String>) -> u64 {
     let bits = texts.iter().zip(0..).filter(|(text, _)| said.contains(**text));
     bits.fold(0, |number, (_, bit)| number | 1 << bit)

@@ -12,7 +12,7 @@ use mdlec::trace::{Counted, Line, MatrixProduct, Script, Table, Tree, run};
 /// The most states of a plan whose expanded form is run as well.
 const EXPANDED: u64 = 2000;
 
-/// The one file that plans may use here, and what it says.
+/// The one file that plans may use here, and its text.
 pub const LIBRARY_FILE: &str = "library.mdle";
 const LIBRARY: &str =
     "{ Stroll (T: time) (b OR wait T) (Atom (a) seek) (drift, c, T) }\n{ Pause (Atom (wait 0.1) idle) }\n";

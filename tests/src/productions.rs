@@ -1,6 +1,7 @@
-//! Counts how often each production of the grammar stands in a text: from its tree, and from the text where trees forget it.
+//! Counts how often each production of the grammar occurs in a text: from its tree, and from the text where trees omit
+//! it.
 //!
-//! Productions are named as [`crate::grammar`] names them; what is optional counts where it stands. Units count by their names.
+//! Productions are named as in [`crate::grammar`]; an optional part counts where it occurs. Units count by their names.
 
 mod conditions;
 
@@ -10,7 +11,7 @@ use mdlec::alphabet::Unit;
 use mdlec::diagnostic::{SourceId, Span};
 use mdlec::syntax::tree::{Arg, Atom, Call, Count, Element, Exec, File, Formal, Frame, Number, Param, Plan, Primary};
 
-/// How often each production, and each unit, has been met.
+/// Number of times that each production, and each unit, has been met.
 pub type Productions = BTreeMap<&'static str, u64>;
 
 /// Counts those of a text without errors.
@@ -51,12 +52,12 @@ impl<'t> Counter<'t> {
         }
     }
 
-    /// What is written there.
+    /// Returns the text of a span.
     fn written(&self, span: Span) -> &'t str {
         &self.text[span.within(SourceId(0))]
     }
 
-    /// What is written before that, blanks at its end left out.
+    /// Returns the text before a span, without white space at its end.
     fn before(&self, span: Span) -> &'t str {
         self.text[..span.within(SourceId(0)).start].trim_end()
     }

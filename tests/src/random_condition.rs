@@ -3,7 +3,7 @@
 use crate::chance::Chance;
 use crate::signals::comparison;
 
-/// The interrupts of the target `scripted`; arguments in every unit and notation, each of them among its texts.
+/// The interrupts of the target `scripted`; arguments in every unit and notation, each of them in the target's list.
 const INTERRUPTS: &[&str] = &[
     "a",
     "b",
@@ -92,7 +92,7 @@ pub fn law(chance: &mut Chance, is_formal: bool) -> String {
     chance.pick(choices).to_owned()
 }
 
-/// Stands for an `after` until the labels of the definition are known; parentheses may stand around it.
+/// Placeholder of an `after` until the labels of the definition are known; parentheses may enclose it.
 pub const AFTER: &str = "AFTER";
 
 /// The operands of the outermost OR of a condition, as they are written.
@@ -116,7 +116,7 @@ pub fn operands(condition: &str) -> Vec<&str> {
     operands
 }
 
-/// A condition, as it stands between parentheses.
+/// Returns a condition, as it is written between parentheses.
 pub fn condition(chance: &mut Chance) -> String {
     match chance.below(10) {
         0 => "null".into(),

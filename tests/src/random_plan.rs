@@ -10,28 +10,28 @@ use crate::random_condition::{condition, law};
 #[derive(Debug, Clone)]
 pub struct RandomPlan {
     definitions: Vec<(&'static str, Scope)>,
-    /// Whether the plan that it refers to has [`PARAMETERS`].
+    /// `true` if the plan that `Main` refers to has [`PARAMETERS`].
     parameters: bool,
-    /// Whether it uses the file [`LIBRARY_FILE`](crate::pipeline::LIBRARY_FILE).
+    /// `true` if the plan uses the file [`LIBRARY_FILE`](crate::pipeline::LIBRARY_FILE).
     uses: bool,
 }
 
 /// A closed string.
 #[derive(Debug, Clone)]
 struct Scope {
-    /// Its label as a plan, with what stands behind that.
+    /// Label of the scope as a plan, with the separator after it.
     label: String,
     name: &'static str,
-    /// Its condition as text; `None` if it has none.
+    /// Condition of the scope as text; `None` if it has no condition.
     condition: Option<String>,
-    /// Its timer, if it is written in formal notation, which has no name.
+    /// Timer of a scope in formal notation, which has no name.
     formal: Option<&'static str>,
     body: Vec<Element>,
-    /// What stands behind its body.
+    /// Text after the body.
     end: &'static str,
 }
 
-/// What stands in a string.
+/// An element of a string.
 #[derive(Debug, Clone)]
 enum Element {
     /// An element with a label.
@@ -41,7 +41,7 @@ enum Element {
     Atom {
         condition: String,
         law: String,
-        /// As for a scope.
+        /// Timer of an atom in formal notation.
         formal: Option<&'static str>,
     },
     Scope(Scope),
@@ -52,7 +52,7 @@ enum Element {
     },
     /// An open string without a count.
     String(Vec<Element>),
-    /// A plan by name, with what its parameters stand for.
+    /// A plan by name, with the arguments for its parameters.
     Reference(&'static str, Option<String>),
 }
 
@@ -67,7 +67,7 @@ const TIMES: &[&str] = &["1", "1", "2", "2", "2", "2", "3", "3", "3", "3", "5", 
 
 /// The parameters of the plan that another refers to.
 const PARAMETERS: &str = "(n: count, far: length, T: time, v: speed, mask: bits[4], leader: module, tune: file)";
-/// What they may stand for: such that all quarks made of them are among the target's texts.
+/// Arguments for the parameters, such that all quarks that result are among the target's texts.
 const GIVEN: [&[&str]; 7] = [
     &["1", "2", "3", "inf"],
     &["2", "200cm", "0.25m", "25cm"],
@@ -77,28 +77,28 @@ const GIVEN: [&[&str]; 7] = [
     &["sun module"],
     &["\"bell.mid\""],
 ];
-/// The same for the plan of the file that is used.
+/// Arguments for the parameters of `Stroll`, the plan of the file that is used.
 const OF_STROLL: &[&[&str]] = &[&["0.25", "100ms", "inf"]];
 /// Conditions made of the parameters.
 const OF_PARAMETERS: &[&str] =
     &["wait T", "farOff far", "farOff(far) OR wait T", "t > T AND a", "NOT wait T", "pattern mask OR played tune"];
-/// Laws made of them.
+/// Laws that use the parameters.
 const LAWS_OF_PARAMETERS: &[&str] = &["drive(v)", "chase(leader)", "replay(tune)"];
 
 /// The frames of elements.
 const FRAMES: &[&str] = &["90deg", "-45", "0.5rad", "180", "here", "here", "here"];
 
-/// What a plan may still grow to.
+/// State of a growing plan: its size is limited.
 struct Growth<'c> {
     chance: &'c mut Chance,
     atoms: usize,
-    /// Whether loops may have thousands of passes.
+    /// `true` if loops may have thousands of passes.
     long: bool,
-    /// The plans by name that may stand in it, each with the choices for its arguments, if it has parameters.
+    /// The plans by name that may occur in this plan, each with the choices for its arguments, if it has parameters.
     others: Vec<(&'static str, &'static [&'static [&'static str]])>,
-    /// Whether this one has [`PARAMETERS`].
+    /// `true` if this plan has [`PARAMETERS`].
     own: bool,
-    /// How many labels there are.
+    /// Number of labels so far.
     labels: usize,
 }
 
@@ -125,7 +125,7 @@ impl RandomPlan {
         Self { definitions, parameters, uses }
     }
 
-    /// The same with another name in place of `Main`.
+    /// Returns this plan with another name in place of `Main`.
     #[must_use]
     pub fn named(mut self, name: &'static str) -> Self {
         for (plan, _) in &mut self.definitions {
@@ -166,7 +166,7 @@ impl Growth<'_> {
         condition(self.chance)
     }
 
-    /// Whether an element is written in formal notation, and with which timer.
+    /// Returns the timer of an element in formal notation, or `None` if it is not written in that notation.
     fn formal(&mut self) -> Option<&'static str> {
         let times = ["", ", 0.25", ", 100ms", ", 1s", ", inf", ", T"];
         let times = if self.own { &times[..] } else { &times[..5] };

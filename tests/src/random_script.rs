@@ -7,7 +7,7 @@ use mdle_scripted::{INTERRUPTS, LAWS};
 use crate::chance::Chance;
 use crate::signals::Values;
 
-/// Steps between turns in seconds: none at all, timers' own lengths, and one nanosecond more or less than these.
+/// Steps between turns in seconds: zero, timers' own lengths, and one nanosecond more or less than these.
 const STEPS: &[&str] =
     &["0", "0.05", "0.1", "0.1", "0.1", "0.099999999", "0.100000001", "0.25", "0.299999999", "1", "2.500000001", "7"];
 

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 /// A text file of the repository.
 #[derive(Debug, Clone)]
 pub struct TextFile {
-    /// Its path from the root, with `/`.
+    /// Path of the file from the root, with `/`.
     pub path: String,
-    /// What it says.
+    /// Content of the file.
     pub text: String,
 }
 

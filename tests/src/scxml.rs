@@ -1,5 +1,5 @@
-//! A small interpreter of flat SCXML machines (W3C, "State Chart XML", appendix D), for those that mdlec writes: transitions
-//! without an event first, in document order, until there is none; then the next event.
+//! A small interpreter of flat SCXML machines (W3C, "State Chart XML", appendix D), for those that mdlec writes:
+//! transitions without an event first, in document order, until no such transition is enabled; then the next event.
 
 use std::collections::BTreeMap;
 
@@ -67,7 +67,7 @@ impl<'e> Machine<'e> {
         self.settle()
     }
 
-    /// Whether it is in a final state.
+    /// Returns `true` if the machine is in a final state.
     #[must_use]
     pub fn is_over(&self) -> bool {
         self.state.name == "final"

@@ -7,7 +7,7 @@ use crate::chance::Chance;
 /// A comparison as it may be spelled, its text, and whether it holds.
 type Comparison = (&'static [&'static str], &'static str, fn(&Values) -> bool);
 
-/// The values of the signals in a turn: numbers of those in the lists below, so that a text says each.
+/// The values of the signals in a turn: numbers in the lists below, so that each has a text.
 #[derive(Debug, Clone, Copy)]
 pub struct Values {
     /// The ranges of sonars 3 and 5, in metres.
@@ -27,7 +27,7 @@ const PLACES: &[f64] = &[-1.0, 0.0, 0.4, 3.0];
 const HEADINGS: &[f64] = &[-179.5, 0.0, 90.5, 179.75];
 const SPEEDS: &[f64] = &[-20.0, 0.0, 20.5];
 
-/// What random conditions compare.
+/// Comparisons of random conditions: spellings, canonical text, and test.
 const COMPARISONS: &[Comparison] = &[
     (&["r3 == r5", "r_3 == r_5(t)", "r 3 == r(5)"], "r3 == r5", |s| (s.r3 - s.r5).abs() <= 0.026),
     (&["r3 < r5"], "r3 < r5", |s| s.r3 < s.r5),
@@ -58,7 +58,7 @@ const TIMES: &[&str] = &[
 const WAYS: &[&str] =
     &["way >= 0.25m", "way > 10cm", "way < 300mm", "way <= 0.05", "way == 0.1", "way(t) > 1", "way > 0", "way ≥ 0.2"];
 
-/// A comparison, as it stands in a condition.
+/// Returns a comparison, as it is written in a condition.
 pub fn comparison(chance: &mut Chance) -> String {
     if chance.percent(25) {
         return chance.pick(WAYS).to_owned();
@@ -70,7 +70,7 @@ pub fn comparison(chance: &mut Chance) -> String {
     chance.pick(spellings).to_owned()
 }
 
-/// The values of the signals in SI units, as a script says them; infinite where it does not.
+/// Returns the values of the signals in SI units from a script's texts; infinite where there is no text.
 pub fn values(said: &BTreeSet<String>) -> [f64; 5] {
     let value = |name: &str, values: &[f64], unit: f64| {
         let value = values.iter().find(|value| said.contains(&format!("{name} == {value}")));
@@ -92,7 +92,7 @@ impl Values {
         Self { r3: one(RANGES), r5: one(RANGES), x: one(PLACES), theta: one(HEADINGS), v: one(SPEEDS) }
     }
 
-    /// The texts of the comparisons that hold, and those that say what the values are.
+    /// Returns the texts of the comparisons that hold, and the texts of the values.
     pub fn texts(&self) -> Vec<String> {
         let hold = COMPARISONS.iter().filter(|(.., holds)| holds(self)).map(|(_, text, _)| (*text).to_owned());
         hold.chain(self.said()).collect()

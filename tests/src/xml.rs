@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 /// An element.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Element {
-    /// Its name.
+    /// Name of the element.
     pub name: String,
-    /// Its attributes.
+    /// Attributes of the element.
     pub attributes: BTreeMap<String, String>,
     /// The elements in it.
     pub children: Vec<Element>,

@@ -10,7 +10,7 @@ impl Counter<'_> {
         self.or(condition);
     }
 
-    /// Whether parentheses stand around all of it, and are its own.
+    /// Returns `true` if parentheses enclose the whole condition, and belong to it.
     fn is_parenthesized(&self, condition: &Condition<'_>) -> bool {
         self.written(condition.span).starts_with('(')
             && match &condition.node {
@@ -24,7 +24,7 @@ impl Counter<'_> {
             }
     }
 
-    /// Where parentheses may stand around all of it that belong to a test.
+    /// Counts the productions of a condition in a place where enclosing parentheses would belong to a test.
     pub(super) fn or_inside(&mut self, condition: &Condition<'_>) {
         if self.is_parenthesized(condition) {
             self.wrapped();
@@ -34,7 +34,7 @@ impl Counter<'_> {
         }
     }
 
-    /// What leads from a condition to a test in parentheses.
+    /// Counts the productions that lead from a condition to a test in parentheses.
     fn wrapped(&mut self) {
         self.met("Or = And");
         self.met("And = Not");
@@ -169,7 +169,7 @@ impl Counter<'_> {
         }
     }
 
-    /// Whether the arguments stand in a parenthesis that touches the name.
+    /// Returns `true` if the arguments are in a parenthesis that touches the name.
     pub(super) fn touches(&self, call: &Call<'_>) -> bool {
         self.written(call.span)[call.name.len()..].starts_with('(')
     }

@@ -1,4 +1,4 @@
-//! What `after` asks in random plans: one of the labels of its definition, with or without a cause.
+//! Operands of `after` in random plans: a label of the same definition, with or without a cause.
 
 use super::{Element, Scope};
 use crate::chance::Chance;
@@ -85,7 +85,7 @@ fn asked(chance: &mut Chance, labels: &Labels) -> String {
     format!("(after {label} ({operand}))")
 }
 
-/// Whether it is an interrupt with its arguments, and nothing else.
+/// Returns `true` if the operand is only an interrupt with its arguments.
 fn is_call(operand: &str) -> bool {
     let is_a_name = operand.split([' ', '(']).next().is_some_and(|word| !matches!(word, "NOT" | "RISING" | ""));
     is_a_name && !operand.contains(" AND ") && !operand.contains(['<', '=', '>', '≤', '≥', '\\'])

@@ -40,7 +40,7 @@ impl Scope {
     }
 }
 
-/// A law without parentheses around it.
+/// Returns a law without its enclosing parentheses.
 fn bare(law: &str) -> &str {
     law.strip_prefix('(').and_then(|law| law.strip_suffix(')')).unwrap_or(law)
 }
