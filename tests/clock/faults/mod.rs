@@ -1,5 +1,5 @@
-//! What comes of each fault, on each robot: what the executable says, how it ends, and how far the body moves on meanwhile.
-//! The page of the book that tells of it is written here.
+//! Result of each fault, on each robot: the output of the executable, its exit status, and how far the body moves on.
+//! The book's page about faults is written here.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 #![allow(clippy::print_stdout, reason = "how long it took is seen with --nocapture")]
 
@@ -90,13 +90,13 @@ impl Robot {
         RefCell::new(command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap())
     }
 
-    /// What comes of a device that is none, or on which nobody is.
+    /// Returns the row of a device that is no line, or that has no robot.
     fn without(&self, device: &Path) -> Row {
         let still = Way { metres: 0.0, time: Duration::ZERO };
         Row::of(self.started(device, IN_LOCKSTEP).into_inner().wait_with_output().unwrap(), still, None)
     }
 
-    /// What comes of this on a robot that is there, and how long after it has begun the executable has ended.
+    /// Returns the row of an event on a connected robot, and how long after its beginning the executable has ended.
     fn with<R: Emulated>(
         &self,
         made: Made<R>,
@@ -167,7 +167,7 @@ fn cases<R: Emulated + 'static>(
     cases
 }
 
-/// What comes of them; all at the same time, as a driver that waits in vain does so for long.
+/// Returns the rows of these cases, which run at the same time, as a driver without an answer takes long.
 fn rows(cases: Vec<(String, Case<'_>)>) -> Vec<(String, Row)> {
     thread::scope(|scope| {
         let rows: Vec<_> = cases.into_iter().map(|(what, of)| (what, scope.spawn(of))).collect();

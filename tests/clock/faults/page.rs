@@ -7,11 +7,11 @@ use mdle_emulator::Order;
 
 use super::watched::Way;
 
-/// What came of something.
+/// Result of a fault or another event.
 #[derive(Debug)]
 pub(crate) struct Row {
     pub(crate) said: String,
-    /// `None` when it was killed.
+    /// `None` if the executable was killed.
     pub(crate) status: Option<i32>,
     pub(crate) way: Way,
     /// The last order that the robot received.

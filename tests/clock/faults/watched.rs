@@ -9,30 +9,30 @@ use mdle_runtime::Pose;
 
 use super::PERIOD;
 
-/// When what happens begins, by the time of the robot's world: it drives by then.
+/// Time of the robot's world at which an event begins: it drives by then.
 pub(crate) const BEGINS: Duration = Duration::from_secs(4);
-/// How long garbage comes, and how many bytes a second: as many as the slower line carries.
+/// Duration of garbage; `GARBAGE_A_SECOND` bytes come a second: as many as the slower line carries.
 const GARBAGE: Duration = Duration::from_secs(60);
 const GARBAGE_A_SECOND: u32 = 3840;
-/// How long a line is dead that comes back.
+/// Time for which a line is dead that comes back.
 const DEAD: Duration = Duration::from_secs(2);
-/// In lockstep a driver that waits in vain does so for longer than this, and one that does not for much less.
+/// In lockstep a driver without an answer waits for longer than this, and a driver with answers for much less.
 const IN_VAIN: Duration = Duration::from_millis(2000);
-/// Less than this in a period is none, in metres.
+/// Maximum movement in a period of a body that counts as still, in metres.
 const STANDS: f64 = 1e-4;
-/// After so many periods without a move it stands for good: no watchdog takes longer.
+/// Number of periods without movement after which the body remains still: no watchdog takes longer.
 const FOR_GOOD: usize = 30;
 
-/// What happens.
+/// Event that happens to the robot, its line or its driver.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Happening {
     /// It was the wrong robot from the start.
     Nothing,
-    /// What the robot or its line was told with `--fault`, if anything.
+    /// The fault given with `--fault` to the robot or its line, if any.
     OnCommand,
     /// Nothing but garbage comes for a minute.
     Garbage,
-    /// What comes answers something else.
+    /// The answers belong to other commands.
     WrongAnswers,
     /// The line dies in the middle of a frame, and comes back.
     DeadForAWhile,
@@ -40,24 +40,25 @@ pub(crate) enum Happening {
     Killed,
 }
 
-/// How far the body moved on, in metres, and for how long.
+/// Distance that the body moved on, in metres, and the duration of this movement.
 #[derive(Debug)]
 pub(crate) struct Way {
     pub(crate) metres: f64,
     pub(crate) time: Duration,
 }
 
-/// What differs from robot to robot.
+/// Properties in which robots differ.
 pub(crate) struct Nature<R> {
-    /// Where it really is.
+    /// True pose of the robot.
     pub(crate) pose: fn(&R) -> Pose,
     /// The orders that have reached the robot.
     pub(crate) orders: fn(&R) -> &Orders,
-    /// What one of its frames becomes that answers something else.
+    /// Returns a frame that answers something else, from a frame of the robot.
     pub(crate) wrong: fn(&[u8]) -> Vec<u8>,
-    /// For how many periods more a driver waits that has no answer, while the world of an emulator in lockstep stands.
+    /// Number of additional periods for which a driver without an answer waits, while the world of an emulator in
+    /// lockstep pauses.
     pub(crate) waits: u32,
-    /// The steps in which it is told of time.
+    /// Step by which the robot's time advances.
     pub(crate) step: Duration,
 }
 
@@ -67,12 +68,12 @@ pub(crate) struct Watched<'a, R> {
     happening: Happening,
     nature: Nature<R>,
     child: &'a RefCell<Child>,
-    /// When it happened, by the clock.
+    /// Time at which the event began, by the clock.
     pub(crate) begun: Option<Instant>,
     age: Duration,
-    /// Where it was at the end of each period.
+    /// Pose of the robot at the end of each step.
     poses: Vec<(Duration, Pose)>,
-    /// When it was told something last.
+    /// Time of the last bytes to the robot.
     told: Option<Instant>,
     garbage: Vec<u8>,
 }
@@ -83,8 +84,8 @@ impl<'a, R: Emulated> Watched<'a, R> {
         Self { robot, happening, nature, child, begun: None, age, poses, told: None, garbage }
     }
 
-    /// Nobody tells it anything any more: it moves on until its watchdog stops it. How far that was, from the last answer
-    /// before something happened.
+    /// Lets the robot move on without commands until its watchdog stops it. Returns how far that was, from the last
+    /// answer before the event.
     pub(crate) fn left_alone(mut self) -> Way {
         while !self.stands() {
             // A closed line does not stop the world.
@@ -108,13 +109,13 @@ impl<'a, R: Emulated> Watched<'a, R> {
         self.poses.len() > FOR_GOOD && self.poses.windows(2).rev().take(FOR_GOOD).all(|two| moved(two) <= STANDS)
     }
 
-    /// Whether this happens now.
+    /// Returns `true` if this event is now happening; it lasts for `lasts`.
     fn is(&self, happening: Happening, lasts: Duration) -> bool {
         self.happening == happening && self.age.checked_sub(BEGINS).is_some_and(|since| since < lasts)
     }
 
-    /// A driver waits in vain by its own clock: the robot moves on meanwhile, though in lockstep nobody has told it to. It
-    /// waits for an end of garbage as it does for an end of silence, and gives up the first time.
+    /// Lets the robot move on while a driver waits without an answer by its own clock, although in lockstep no command
+    /// lets time pass. The driver waits for an end of garbage as for an end of silence, and gives up the first time.
     fn waited(&mut self) {
         let in_vain = self.told.replace(Instant::now()).is_some_and(|told| told.elapsed() >= IN_VAIN);
         if in_vain || self.is(Happening::Garbage, GARBAGE) {
@@ -123,7 +124,7 @@ impl<'a, R: Emulated> Watched<'a, R> {
     }
 }
 
-/// How far it went from one pose to the next.
+/// Returns the distance between two poses.
 fn moved(two: &[(Duration, Pose)]) -> f64 {
     libm::hypot(two[1].1.x.0 - two[0].1.x.0, two[1].1.y.0 - two[0].1.y.0)
 }

@@ -1,4 +1,4 @@
-//! A plan that drives ahead for a second, as the executables of two robots; the variable `ROBOT` says which.
+//! A plan that drives ahead for a second, as the executables of two robots; the variable `ROBOT` selects the robot.
 
 use std::process::ExitCode;
 

@@ -1,5 +1,5 @@
-//! Every signal that can be caught, at twenty moments of a run on both robots: the robot is at rest, what it received last says so, and
-//! the status says why.
+//! Every signal that can be caught, at twenty moments of a run on both robots: the robot is at rest, as its last
+//! command asks, and the exit status names the cause.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod run;

@@ -94,8 +94,8 @@ impl Robot for Atrv {
     }
 }
 
-/// Returns `true` if the frame commands an axis to stand. After the axis come four bytes of its speed; a frame may need one unit, of which a
-/// metre has 139,655, so that no byte of it has to be escaped.
+/// Returns `true` if the frame commands an axis to stop. After the axis come four bytes of its speed; a frame may need
+/// one unit, of which a metre has 139,655, so that no byte of it has to be escaped.
 fn is_rest(axis: u8, frame: &[u8]) -> bool {
     frame.starts_with(&[0x1B, 0x02, 2, 0, 7, 14, axis, 0, 0, 0]) && frame.get(10).is_some_and(|speed| *speed <= 1)
 }
@@ -108,7 +108,7 @@ fn without<'b>(mut bytes: &'b [u8], frame: &[u8]) -> &'b [u8] {
     bytes
 }
 
-/// What a robot has received.
+/// Data that a robot has received.
 #[derive(Default)]
 pub(crate) struct Received {
     /// The program that drives it.
@@ -188,8 +188,8 @@ pub(crate) fn send(signal: i32, process: u32) {
     assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
 }
 
-/// Gives SIGHUP its default effect in the programs that this one starts, also under `nohup`, which has it ignored by all of them:
-/// a signal that is caught has it again in another program.
+/// Gives SIGHUP its default effect in the programs that this one starts, also under `nohup`, which ignores it in all of
+/// them: a signal that is caught has its default effect again in another program.
 fn catch_hang_up() {
     static CAUGHT: Once = Once::new();
     CAUGHT.call_once(|| {

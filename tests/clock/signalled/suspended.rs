@@ -12,7 +12,8 @@ use super::run::{AT_REST, Ran, Robot, distance, drove, ran, send};
 
 /// The robot drives once it has gone this far, in metres.
 const DRIVES: f64 = 0.03;
-/// The time for which the program is suspended: longer than any of the robots' watchdogs waits and than they take to stand.
+/// The time for which the program is suspended: longer than the timeout of any robot's watchdog and the braking after
+/// it.
 const SUSPENDED: Duration = Duration::from_millis(2500);
 
 /// Returns the run in which the program is suspended when `begins` is true of the robot, and the pose of the robot at the end of that.
@@ -53,7 +54,7 @@ fn a_robot_is_not_driven_off_again_after_a_suspension() {
     is_not_driven_off_again::<Atrv>();
 }
 
-/// Suspends the program after its first motion command, which is to stand.
+/// Suspends the program after its first motion command, which is to stop.
 fn is_not_driven<R: Robot>(words: &str) {
     let (ran, resumed) = suspended::<R>("opening", |robot| robot.orders().last().is_some());
     assert!(resumed.is_some() && !drove(&ran.robot), "{:?}", ran.robot.orders());

@@ -1,5 +1,6 @@
-//! A robot that does not hear, does not obey, answers late or stops telling something, and a program that was suspended: the
-//! executable on an emulated robot, by the clock. What counts is what the robot received last, and whether it stands.
+//! A robot that does not hear, does not obey, answers late or no longer reports something, and a program that was
+//! suspended: the executable on an emulated robot, by the clock. The test checks the last command that the robot
+//! received, and that it does not move.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 #![allow(clippy::print_stdout, reason = "how long it took is seen with --nocapture")]
 

@@ -18,11 +18,11 @@ use mdle_sim::{Body, Make, Simulated, World};
 use mdle_tests::executable::{folder, run_mdlec};
 use rustix::fs::OFlags;
 
-/// It drives, stands for a while, and is over.
+/// A plan that drives, rests for a while, and is over.
 const PLAN: &str = "{ Drive (bumper OR wait 6s) (Atom (wait 4s) (go 20 0)) (Atom (null) stop) }\n";
 const ROOM: &str =
     "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[4, -2], [4, 2], [-2, 2], [-2, -2], [4, -2]]";
-/// When faults begin, by the time of the robot's world: it drives by then, and for two seconds more.
+/// Time of the robot's world at which faults begin: it drives by then, and for two seconds more.
 pub(crate) const BEGINS: Duration = Duration::from_millis(3500);
 /// No machine is slower than this.
 const SLOW: Duration = Duration::from_secs(30);

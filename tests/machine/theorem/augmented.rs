@@ -8,13 +8,14 @@ use mdlec::trace::{Applied, Counted, Script, run};
 
 use super::machines::{Row, Table, likely, machine};
 
-/// How many machines are tried, each with a script of so many turns.
+/// Number of machines that are tried, each with a script of `TURNS` turns.
 const MACHINES: u64 = 500;
 const TURNS: usize = 60;
 
-/// The trace of a machine, straight from what it is: in each turn it goes on by the first interrupt that has fired until none has.
+/// Returns the trace of a machine, directly from its definition: in each turn it goes on by the first interrupt that
+/// has fired until no interrupt has fired.
 ///
-/// The states by their places; up to the first turn that would enter one twice.
+/// The states are their places; the trace ends before the first turn that would enter a state twice.
 fn states(atoms: usize, rows: &[Row], fired: &[Vec<bool>]) -> Vec<usize> {
     let (mut state, mut trace) = (0, Vec::new());
     for fired in fired {

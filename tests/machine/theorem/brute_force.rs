@@ -12,10 +12,10 @@ use super::machines::{Row, Table, likely, machine};
 /// The definition for up to four atoms.
 static DEFINITIONS: LazyLock<Vec<Definition>> = LazyLock::new(|| (1..=4).map(Definition::new).collect());
 
-/// How many samples there are of each size.
+/// Number of samples of each size.
 const SAMPLES: u64 = 100_000;
 
-/// How many machines were compared, and how many of them have a string, and one with a loop.
+/// Numbers of machines that were compared, that have a string, and that have a string with a loop.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
 struct Count {
     machines: usize,
@@ -69,7 +69,8 @@ fn on_all_cores(work: impl Fn(usize, usize) -> Count + Sync) -> Count {
     })
 }
 
-/// Every machine with so many atoms and interrupts; their order does not matter, so that of the rows is ascending.
+/// Compares every machine with this number of atoms and interrupts. The order of the interrupts does not matter, so
+/// that their rows are ascending.
 fn exhaust(atoms: usize, interrupts: usize, start: Option<usize>) -> Count {
     let rows = Table::rows(atoms);
     on_all_cores(|hand, cores| {

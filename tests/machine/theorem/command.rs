@@ -1,4 +1,4 @@
-//! `mdlec decompile` through the real binary: the paper's machines, and files that are none.
+//! Tests of `mdlec decompile` through the real binary: the paper's machines, and files that are no machines.
 
 use std::fmt::Write;
 use std::fs;
@@ -30,7 +30,7 @@ fn with_file(test: &str, text: &str) -> PathBuf {
     folder
 }
 
-/// What is printed and said of a file, and the exit status.
+/// Returns the output and the messages about a file, and the exit status.
 fn said(test: &str, text: &str, options: &[&str]) -> (String, Option<i32>) {
     let output = run_mdlec(&with_file(test, text), &[&["decompile", "fsm.json"], options].concat());
     let [out, err] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text).into_owned());
@@ -162,7 +162,8 @@ fn a_file_that_cannot_be_read_is_wrong_usage() {
     assert_eq!(both.status.code(), Some(2));
 }
 
-/// A chain of so many states, all in scopes within scopes that begin with one of the first `depth` and end with the last.
+/// Returns a chain of `states` states, in nested scopes that begin with each of the first `depth` states and end with
+/// the last.
 fn chain(states: usize, depth: usize) -> String {
     let names: Vec<_> = (1..=states).map(|number| format!("\"s{number}\"")).collect();
     let mut interrupts: Vec<_> = (1..states)

@@ -13,11 +13,11 @@ type Interval = (usize, usize);
 /// A set of intervals, by their places in the list of all.
 type Set = u32;
 
-/// What can be enclosed in so many atoms, and by whom.
+/// Everything that the statement says about machines with this number of atoms.
 pub(crate) struct Definition {
     atoms: usize,
     intervals: Vec<Interval>,
-    /// For each interval those that are neither nested with it nor disjoint.
+    /// For each interval, the intervals that are neither nested with it nor disjoint.
     crossing: Vec<Set>,
     /// For each family of loops, and each row of destinations, the sets of runs that it can be cut into.
     cuts: Vec<Vec<Vec<Set>>>,
@@ -32,8 +32,8 @@ fn nest_or_are_disjoint(one: Interval, other: Interval) -> bool {
     holds(one, other) || holds(other, one) || one.1 < other.0 || other.1 < one.0
 }
 
-/// Where the interrupt of a run may lead: past all loops that end with it, or to the innermost one outside it. A loop that is equal to
-/// the run may be on either side.
+/// Returns the destinations that the interrupt of a run may have: after all loops that end with it, or at the start of
+/// the innermost loop outside it. A loop that is equal to the run may be on either side.
 fn destinations(run: Interval, loops: &[Interval]) -> Vec<usize> {
     let ends_with = |inner: bool| {
         let around = loops.iter().filter(|around| around.1 == run.1 && around.0 <= run.0);
@@ -84,7 +84,8 @@ impl Definition {
         Self { numberings: numberings.collect(), atoms, intervals, crossing, cuts, families }
     }
 
-    /// Whether a machine, as the number of a row of destinations for each interrupt, has a string that begins with `start`.
+    /// Returns `true` if a machine, given as the number of a row of destinations for each interrupt, has a string that
+    /// begins with `start`.
     pub(crate) fn has_string(&self, rows: &[usize], start: Option<usize>) -> bool {
         let mut numberings = self.numberings.iter().filter(|(places, _)| start.is_none_or(|start| places[start] == 0));
         numberings.any(|(_, renumbered)| {
@@ -98,7 +99,7 @@ impl Definition {
         })
     }
 
-    /// Whether the rows can be cut such that all runs are nested or disjoint, and each atom is a run.
+    /// Returns `true` if the rows can be cut such that all runs are nested or disjoint, and each atom is a run.
     fn fits(&self, cuts: &[Vec<Set>], rows: &[usize], runs: Set) -> bool {
         let [row, rest @ ..] = rows else {
             return (0..self.atoms).all(|atom| {

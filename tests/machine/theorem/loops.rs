@@ -2,7 +2,7 @@
 
 use mdle_tests::chance::Chance;
 
-/// The text of a plan `Main` with about so many atoms.
+/// Returns the text of a plan `Main` with about `atoms` atoms.
 pub(crate) fn plan_of_loops(chance: &mut Chance, atoms: usize) -> String {
     let mut waits = 0;
     let body = sequence(chance, atoms, &mut waits);

@@ -1,4 +1,4 @@
-//! Small machines, as numbers: for each interrupt a row that says of each atom where it leads, if anywhere.
+//! Small machines, as numbers: for each interrupt a row with the destination of each atom, if it has one.
 
 use mdle_tests::chance::Chance;
 use mdlec::theorem::{Machine, Named, State};
@@ -6,11 +6,11 @@ use mdlec::theorem::{Machine, Named, State};
 /// A row: where an interrupt leads from each atom.
 pub(crate) type Row = Vec<Option<usize>>;
 
-/// The rows of machines with so many atoms.
+/// The rows of machines with a given number of atoms.
 pub(crate) struct Table;
 
 impl Table {
-    /// How many rows there are.
+    /// Returns the number of rows.
     pub(crate) fn count(atoms: usize) -> usize {
         (atoms + 2).pow(u32::try_from(atoms).unwrap())
     }
@@ -80,7 +80,7 @@ pub(crate) fn likely(chance: &mut Chance, atoms: usize, interrupts: usize) -> Ve
     disordered
 }
 
-/// Encloses atoms in scopes and loops, all of them in one of their own at least.
+/// Encloses atoms in scopes and loops; each atom has at least a scope of its own.
 fn enclose(
     chance: &mut Chance,
     first: usize,

@@ -34,7 +34,7 @@ fn hold(matrices: &[Matrix]) -> bool {
     first && second && third
 }
 
-/// Whether they hold in any numbering, the termination state last.
+/// Returns `true` if the printed conditions hold in some numbering, with the termination state last.
 fn hold_somewhere(atoms: usize, rows: &[Row]) -> bool {
     let mut numberings = vec![vec![]];
     for place in 0..atoms {
@@ -158,7 +158,7 @@ fn the_letter_is_judged_as_if_everything_were_looked_at() {
     assert!(broken.iter().chain(&held).all(|count| *count > 1_000), "{broken:?} {held:?}");
 }
 
-/// Returns `true` if something leads back whatever the order of the states.
+/// Returns `true` if some transition leads back in every order of the states.
 fn leads_back(rows: &[Row]) -> bool {
     let mut left: Vec<usize> = (0..rows[0].len()).collect();
     let leads_inside = |from: usize, left: &[usize]| {

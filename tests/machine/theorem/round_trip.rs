@@ -14,22 +14,22 @@ use mdlec::theorem::{Answer, augment, decompile, read, string};
 use super::definition::assert_is_string;
 use super::loops::plan_of_loops;
 
-/// How many plans go round.
+/// Number of plans that make the round trip.
 const PLANS: usize = 1000;
 
 /// The most states of a plan that does.
 const STATES: usize = 200;
 
-/// How many steps the search may take.
+/// Maximum number of steps of the search.
 const STEPS: u64 = 20_000;
 
-/// What chance brought about.
+/// Counts over the random plans.
 #[derive(Debug, Default)]
 struct Seen {
     plans: usize,
     states: usize,
     with_loops: usize,
-    /// Those that ask labels, of which an FSM file does not say enough for a plan.
+    /// Plans that use `after`, for which an FSM file lacks information.
     asking: usize,
     /// Those for which the search takes too long.
     stopped: usize,
@@ -46,7 +46,7 @@ fn disordered(file: &FsmFile, chance: &mut Chance) -> FsmFile {
     file
 }
 
-/// What a machine does, its states called by their places: laws, and for each condition from where to where.
+/// Returns the meaning of a machine, its states named by their places: the laws, and the moves of each condition.
 fn meaning(file: &FsmFile, place: &BTreeMap<String, usize>) -> (Vec<String>, Vec<(String, usize, usize)>) {
     let mut laws = vec![String::new(); file.laws.len()];
     for (state, law) in file.states.iter().zip(&file.laws) {
