@@ -41,8 +41,8 @@ pub struct Steering {
 }
 
 impl Steering {
-    /// For `rotate`, with its fastest turn, this asks for 1.6 rad/s² at most, where a Scout's wheels can do more than three
-    /// times that, and an ATRV-mini's were set to 1.55 and 2.
+    /// The usual gains. For `rotate`, with its fastest turn, they ask for 1.6 rad/s² at most, where a Scout's wheels
+    /// can do more than three times that, and an ATRV-mini's were set to 1.55 and 2.
     pub const USUAL: Self = Self { rotate: 2.0, align: 2.0, avoid: 2.0 };
 }
 

@@ -1,5 +1,5 @@
-//! One turn of a plan: interrupts outermost first, then the law of the atom that is left standing
-//! (docs/src/reference/semantics.md, 5.1).
+//! One turn of a plan: interrupts outermost first, then the law of the current atom (docs/src/reference/semantics.md,
+//! 5.1).
 
 use crate::{Begin, Cause, Cursor, Ending, Entries as _, Frame, Measured, Nanos, Next, Output as _, Plan};
 
@@ -34,7 +34,7 @@ pub trait Watch {
     fn transition(&mut self, transition: Transition);
 }
 
-/// Nobody watches.
+/// The observer of a plan that nobody observes.
 impl Watch for () {
     const LOOKS: bool = false;
 

@@ -55,7 +55,7 @@ pub struct MarkRow<'a> {
 pub struct Memories<'a, S> {
     /// Number of memories of each level.
     width: u32,
-    /// In the order of their brackets.
+    /// Labels in the order of their brackets.
     marks: &'a [MarkRow<'a>],
     set: S,
 }

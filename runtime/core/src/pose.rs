@@ -58,7 +58,7 @@ pub struct Twist {
 pub struct Frame(pub Radians);
 
 impl Frame {
-    /// This frame turned counter-clockwise.
+    /// Returns this frame turned counter-clockwise.
     #[must_use]
     pub fn turned(self, by: Radians) -> Self {
         Self(Radians(self.0.0 + by.0))

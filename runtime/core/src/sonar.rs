@@ -50,7 +50,7 @@ pub struct Pings {
 }
 
 impl Pings {
-    /// Takes in a new ping and forgets the oldest.
+    /// Adds a new ping and removes the oldest.
     pub fn push(&mut self, ping: Ping) {
         let [first, second, _] = self.kept;
         self.kept = [Some(ping), first, second];

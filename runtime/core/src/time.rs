@@ -16,7 +16,7 @@ impl Nanos {
         Self(self.0.saturating_sub(earlier.0))
     }
 
-    /// This time in seconds.
+    /// Returns this time in seconds.
     #[must_use]
     pub const fn seconds(self) -> f64 {
         // A run of three months is below 2^53 nanoseconds, so exact; longer ones round to microseconds.

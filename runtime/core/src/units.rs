@@ -29,7 +29,7 @@ impl Radians {
         Self(degrees * (core::f64::consts::PI / 180.0))
     }
 
-    /// This angle in degrees.
+    /// Returns this angle in degrees.
     #[must_use]
     pub const fn degrees(self) -> f64 {
         self.0 * (180.0 / core::f64::consts::PI)

@@ -24,7 +24,7 @@ impl Nanometers {
         Self(self.0.saturating_sub(earlier.0))
     }
 
-    /// This reading after another `length`.
+    /// Returns the reading after another `length`.
     #[must_use]
     pub const fn plus(self, length: Self) -> Self {
         Self(self.0.saturating_add(length.0))
