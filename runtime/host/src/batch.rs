@@ -66,7 +66,7 @@ pub(crate) enum Outcome {
     Otherwise,
     /// The plan was given up.
     TimedOut,
-    /// There was no such run, or a fault stopped it: why.
+    /// The run could not begin, or a fault stopped it: the reason.
     Failed(String),
 }
 

@@ -61,7 +61,7 @@ impl Instants for SinceBoot {
 pub(crate) struct Clock<I> {
     instants: I,
     time: Time,
-    /// In nanoseconds; at least 1.
+    /// Period of a turn in nanoseconds; at least 1.
     period: u64,
     /// Start of turn 0, in real nanoseconds; in stepped time later by the lateness that is not caught up.
     origin: u64,
@@ -87,7 +87,7 @@ impl<I: Instants> Clock<I> {
         Self { instants, time, period, origin, zero: origin, place: 0, begun: origin, longest_gap, timing }
     }
 
-    /// Takes note that the first output has been taken: this is the plan's time 0.
+    /// Notes that the first output has been taken: this is the plan's time 0.
     pub(crate) fn zero(&mut self) -> Nanos {
         self.zero = nanos(self.instants.now());
         Nanos::ZERO

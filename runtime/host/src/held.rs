@@ -13,7 +13,7 @@ pub(crate) struct Held<W> {
 }
 
 impl<W: Write> Held<W> {
-    /// Nothing yet for `to`.
+    /// Returns an empty writer, which will write to `to`.
     pub(crate) fn new(to: W) -> Self {
         Self { to, text: Vec::new(), cut: false }
     }

@@ -24,9 +24,9 @@ pub struct NamedFile {
 /// Identity of a file, independent of the path that names it.
 #[derive(Debug, PartialEq, Eq)]
 enum Identity {
-    /// One that is there: its device and its number on that.
+    /// An existing file: its device, and its number on that device.
     Known(u64, u64),
-    /// One that will be in this place.
+    /// A file that will be created in this place.
     New(PathBuf),
 }
 

@@ -74,7 +74,7 @@ impl Shared {
 }
 
 impl Queue {
-    /// Takes in a piece. There is always room for one alone, however long.
+    /// Adds a piece. There is always room for a single piece of any length.
     fn push(&mut self, piece: Vec<u8>) -> Result<(), Vec<u8>> {
         if self.bytes > 0 && self.bytes.saturating_add(piece.len()) > WAITING {
             return Err(piece);

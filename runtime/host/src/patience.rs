@@ -35,12 +35,12 @@ impl Patience {
         Self { request, is_real: Arc::default(), stopped: Arc::default() }
     }
 
-    /// From now on nobody is waited for.
+    /// Ends all waits for readers from now on.
     pub(crate) fn robot_drives(&self) {
         self.is_real.store(true, Ordering::SeqCst);
     }
 
-    /// Readers are waited for again, but not for ever.
+    /// Lets writers wait for readers again, but for a limited time.
     pub(crate) fn stop_was_tried(&self, status: Option<u8>) {
         let _ = self.stopped.set(Stopped { at: Instant::now(), status });
     }

@@ -7,14 +7,14 @@ use mdle_runtime::{Nanos, Printable};
 
 use crate::report::Report;
 
-/// From one look to the next.
+/// Minimum time between two updates of the line.
 const EVERY: Duration = Duration::from_millis(100);
 /// Maximum length of the line, in letters, so that it never needs two lines of a terminal.
 const LETTERS: usize = 76;
 /// The letters of a bar.
 const BAR: usize = 30;
 
-/// A line that is written over and over, and gone when it is dropped.
+/// A line that is updated in place, and erased when it is dropped.
 pub(crate) struct Progress<'e> {
     err: &'e mut dyn Write,
     /// The time since it began.

@@ -27,7 +27,7 @@ enum Cause {
     Completed,
     /// The interrupt of this bracket fired.
     Scope(u32),
-    /// This operand of the interrupt of this bracket had fired.
+    /// An operand of a bracket's interrupt had fired: the numbers of the bracket and of the operand.
     Operand(u32, u32),
 }
 

@@ -19,7 +19,7 @@ const WITHOUT_A_STOP: Duration = Duration::from_secs(10);
 /// The time between two looks at whether the stop was tried.
 const LOOK: Duration = Duration::from_millis(10);
 
-/// Has the second signal end the program, with the status that it has by then. `leave_screen` gives the terminal back.
+/// Lets the second signal end the program, with the exit status known by then. `leave_screen` gives the terminal back.
 ///
 /// # Errors
 /// When the system does not let a signal be caught, or gives no thread.

@@ -126,7 +126,7 @@ impl Signals {
         Ok(signals)
     }
 
-    /// Has a signal noted, or end the program while signals do.
+    /// Lets a signal be noted, or end the program while signals end it at once.
     fn note(&self, signal: Signal) -> io::Result<()> {
         let number = i32::from(signal.number());
         if signal == Signal::of(Number::BUS) {
@@ -143,8 +143,8 @@ impl Signals {
         }
     }
 
-    /// From here on a signal is only noted: the robot must be stopped first. What is written must not hold up a robot whose
-    /// time is real.
+    /// Lets signals only be noted from now on: the robot must be stopped first. Output must not delay a robot in real
+    /// time.
     pub(crate) fn robot_runs(&self, time: Time) {
         self.deadly.store(false, Ordering::SeqCst);
         if time == Time::Wall {

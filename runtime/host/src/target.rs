@@ -76,7 +76,7 @@ pub trait Target {
 /// Time of a robot: real or stepped.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Time {
-    /// By the wall clock, read after each exchange.
+    /// Time of the wall clock, read after each exchange.
     Wall,
     /// Turn `k` is at `k` periods exactly, independent of the wall clock: a simulated world.
     Stepped(Pace),

@@ -23,7 +23,7 @@ const LIMIT: u32 = 10;
 /// Counts of the turns of a run.
 #[derive(Debug)]
 pub(crate) struct Timing {
-    /// In nanoseconds.
+    /// Period of a turn, in nanoseconds.
     period: u64,
     late: Counts,
     took: Counts,
@@ -35,7 +35,7 @@ pub(crate) struct Timing {
 #[derive(Debug, Default)]
 struct Counts {
     classes: [u64; BOUNDS.len() + 1],
-    /// In nanoseconds.
+    /// Maximum, in nanoseconds.
     most: u64,
 }
 

@@ -5,7 +5,7 @@ use mdle_runtime::{Measured, Transition, Watch};
 /// The transitions of a turn. The plan, which has their texts, is not at hand while they are made.
 #[derive(Debug, Default)]
 pub(crate) struct Transitions {
-    /// In order, each with the number of operands up to its own.
+    /// Transitions in order, each with the number of operands up to its own.
     made: Vec<(Transition, usize)>,
     operands: Vec<Operand>,
 }
@@ -14,7 +14,7 @@ pub(crate) struct Transitions {
 pub(crate) type Operand = (u32, Measured);
 
 impl Transitions {
-    /// Forgets those of the turn before.
+    /// Removes the transitions of the previous turn.
     pub(crate) fn clear(&mut self) {
         self.made.clear();
         self.operands.clear();

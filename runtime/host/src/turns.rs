@@ -22,9 +22,9 @@ use crate::{Around, Ended, Hosted, Standing};
 /// Limits at which a run ends whose plan is not over.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Limits {
-    /// At this time of the plan. The turn at that time is still made: the plan may be over in it.
+    /// Time of the plan at which the run ends. The turn at that time is still made: the plan may be over in it.
     pub(crate) timeout: Option<Duration>,
-    /// After this many turns.
+    /// Number of turns after which the run ends.
     pub(crate) turns: Option<u64>,
 }
 

@@ -64,7 +64,7 @@ pub struct Times {
 }
 
 impl Times {
-    /// Before the first output.
+    /// Returns the times of a robot before its first output.
     #[must_use]
     pub const fn new(clock: Clock) -> Self {
         Self { clock, first: None, outputs: 0 }

@@ -26,9 +26,9 @@ pub struct Line {
 /// Fault of a line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum LineFault {
-    /// This device cannot be opened, and why.
+    /// A device cannot be opened: its name, and the reason.
     Open(String, String),
-    /// Somebody else has this device.
+    /// Another program has this device.
     Busy(String),
     /// This device is no serial port.
     NotSerial(String),
@@ -97,7 +97,7 @@ impl Line {
         Ok(())
     }
 
-    /// Takes in what is there, as much of it as there is room for; how many bytes that was.
+    /// Reads the bytes that have arrived, as many as `into` has room for; returns their number.
     ///
     /// # Errors
     /// The line is closed.

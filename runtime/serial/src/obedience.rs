@@ -25,7 +25,7 @@ const REACTION: Duration = Duration::from_millis(100);
 pub struct Obedience {
     /// The longest time that the speeds may be outside of the band; zero for ever.
     limit: Nanos,
-    /// The speed of both sides together, and by how much they differ from it.
+    /// Bands of the common speed of both sides, and of half their difference.
     forward: Band,
     turning: Band,
     last: Option<Nanos>,
@@ -38,7 +38,7 @@ pub struct Obedience {
 /// The speeds that commands allow, in m/s.
 #[derive(Debug, Clone, Copy)]
 struct Band {
-    /// At most zero, and at least zero.
+    /// Ends of the band: `low` is at most zero, `high` at least zero.
     low: f64,
     high: f64,
     /// The last command.
@@ -63,8 +63,8 @@ impl Obedience {
         }
     }
 
-    /// Takes in the speeds of the right and the left side at `at`, in m/s, with the command of this turn, and returns `true` if
-    /// the robot has disobeyed for the whole limit.
+    /// Notes the speeds of the right and the left side at `at`, in m/s, with the command of this turn; returns `true`
+    /// if the robot has disobeyed for the whole limit.
     pub fn is_broken(&mut self, at: Nanos, told: [f64; 2], measured: [f64; 2]) -> bool {
         let seconds = at.since(self.last.replace(at).unwrap_or(at)).seconds();
         let [right, left] = told;

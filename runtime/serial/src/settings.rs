@@ -20,7 +20,7 @@ struct Entry {
     from: String,
 }
 
-/// Takes down each value as it is chosen.
+/// The values that were chosen, with the name of the file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Settings {
     file: Option<String>,

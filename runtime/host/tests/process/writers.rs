@@ -40,7 +40,7 @@ fn fifo(path: &Path) {
 }
 
 impl Cart {
-    /// With these options; it drives far.
+    /// Returns a cart with these options, which drives far.
     fn new(test: &str, options: &[&str]) -> Self {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test);
         let _ = fs::remove_dir_all(&folder);
@@ -54,7 +54,7 @@ impl Cart {
         Self { folder, command, journal, told: String::new(), full: Vec::new() }
     }
 
-    /// Has one of its writers write to this file.
+    /// Lets a writer of the cart write to this file.
     fn to(&mut self, writer: Writer, file: &Path) {
         let open = || fs::OpenOptions::new().write(true).create(true).truncate(false).open(file).unwrap();
         match writer {
@@ -65,7 +65,7 @@ impl Cart {
         };
     }
 
-    /// Has one of its writers write to a reader that reads nothing, whose pipe is full.
+    /// Lets a writer of the cart write to a reader that reads nothing, whose pipe is full.
     fn blocked(&mut self, writer: Writer) {
         let fifo = self.folder.join(format!("{writer:?}"));
         self::fifo(&fifo);
@@ -78,7 +78,7 @@ impl Cart {
         self.to(writer, &fifo);
     }
 
-    /// Has one of its writers write to a reader that has gone.
+    /// Lets a writer of the cart write to a reader that has gone.
     fn closed(&mut self, writer: Writer) {
         let (reader, end) = io::pipe().unwrap();
         match writer {
@@ -89,7 +89,7 @@ impl Cart {
         drop(reader);
     }
 
-    /// Has one of its writers write to a file that may not have a byte.
+    /// Lets a writer of the cart write to a file that may not have a byte.
     fn limited(&mut self, writer: Writer) {
         let file = self.folder.join(format!("{writer:?}"));
         self.to(writer, &file);
