@@ -24,7 +24,7 @@ pub enum Order {
 pub struct Orders(VecDeque<(Duration, Order)>);
 
 impl Orders {
-    /// Takes down an order that has arrived at this age.
+    /// Records an order that has arrived at this age.
     pub fn push(&mut self, age: Duration, order: Order) {
         if self.0.len() >= KEPT {
             self.0.pop_front();

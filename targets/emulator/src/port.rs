@@ -12,7 +12,7 @@ use rustix::io::Errno;
 use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
 use rustix::termios::{OptionalActions, tcgetattr, tcsetattr};
 
-/// Both ends of the line, and where the other one is.
+/// Both ends of a line, and the path of the driver's end.
 #[derive(Debug)]
 pub struct Port {
     ours: OwnedFd,
@@ -64,7 +64,7 @@ impl Port {
         &self.path
     }
 
-    /// This end of the line.
+    /// Returns the emulator's end of the line.
     pub(crate) fn end(&self) -> &OwnedFd {
         &self.ours
     }

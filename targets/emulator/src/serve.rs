@@ -15,7 +15,7 @@ pub(crate) const SLICE: Duration = Duration::from_millis(5);
 
 /// A robot emulator: its language and its body.
 pub trait Emulated {
-    /// Takes in bytes from the line.
+    /// Receives bytes from the line.
     fn push(&mut self, bytes: &[u8]);
 
     /// Executes the next complete request; `None` if there is no such request. In lockstep a period passes after a
@@ -52,7 +52,7 @@ pub trait Embodied {
 pub enum Pace {
     /// The world advances by this step with each command, independent of the clock.
     Lockstep(Duration),
-    /// By the clock, in steps of [`STEP`].
+    /// The world advances by the clock, in steps of [`STEP`].
     Real,
 }
 

@@ -70,7 +70,7 @@ impl<T: Clone + Send + 'static> Staged<T> {
         self.seen.now.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Has the robot suffer this, from the end of the next period on.
+    /// Begins this ailment of the robot, from the end of the next period on.
     pub fn suffers(&self, ailment: Ailment) {
         *self.seen.ailment.lock().unwrap_or_else(PoisonError::into_inner) = Some(ailment);
     }
