@@ -44,7 +44,7 @@ fn operands(count: usize) -> String {
     operands.join(" OR ")
 }
 
-/// Every command that reads a plan, but those that only read its text.
+/// Commands that read a plan, except those that only read its text.
 const COMMANDS: [&[&str]; 14] = [
     &["check"],
     &["check", "--target", "all"],

@@ -60,7 +60,7 @@ fn emitted(folder: &Path, kind: &str) -> String {
     printed(run_mdlec(folder, &["plan.mdle", "--target", "sim", "--emit", kind]))
 }
 
-/// Holds all four machines to the trace of a plan, one line a turn.
+/// Asserts that all four machines have this trace of a plan, one line for each turn.
 fn assert_trace(folder: &Path, expected: &str) {
     for machine in [None, Some("tree"), Some("table"), Some("matrix"), Some("counted")] {
         let machine = machine.map_or(vec![], |machine| vec!["--machine", machine]);

@@ -60,7 +60,7 @@ const WORDS: [&str; 48] = [
     "[[[[",
 ];
 
-/// Each sort of file this often.
+/// Number of files of each sort.
 const FILES: u64 = 40;
 
 fn bytes(chance: &mut Chance) -> Vec<u8> {

@@ -26,7 +26,7 @@ const EXECUTABLES: [(&str, &str, Shape); 4] = [
     ("every_quark", "EveryQuark", Shape::Code),
 ];
 
-/// One way through the plan: most of its interrupts fire.
+/// Script of the plan in which most of its interrupts fire.
 const ROUND: &str = r#"
 {"t": 0.0, "fired": ["atIsection 0100"]}
 {"t": 0.1, "fired": ["atIsection 1000"]}
@@ -59,7 +59,7 @@ const ROUND_IN_TIME: &str = r#"
 {"t": 65.2, "fired": ["bumper"]}
 "#;
 
-/// And a third: measurements are compared.
+/// Script of the plan in which measurements are compared.
 const ROUND_BY_SIGNALS: &str = r#"
 {"t": 0.0}
 {"t": 0.1, "fired": ["r2 < 0.3"]}

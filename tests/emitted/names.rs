@@ -49,7 +49,7 @@ fn a_quark_may_be_called_as_any_constant_of_the_file_is() {
     assert_eq!(all.len(), 2 * own.len() + 1, "{all:?}");
 }
 
-/// Every name that a file gives to a function of its own, an argument or a variable, as far as a scope could have it.
+/// Returns every name that a file gives to its functions, arguments and variables, if a scope could have this name.
 fn names_of_its_own(rust: &str) -> Vec<&str> {
     // Functions further in are methods, which hide nothing.
     let functions = rust.lines().filter_map(|line| line.strip_prefix("    fn ")?.split('(').next());

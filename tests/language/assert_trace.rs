@@ -1,4 +1,4 @@
-//! Holds every machine to a trace that was written out by hand from the rules.
+//! Asserts that every machine has a trace that was written out by hand from the rules.
 
 use mdle_tests::pipeline::{Machines, compile};
 use mdlec::trace::Script;

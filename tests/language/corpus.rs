@@ -1,6 +1,6 @@
-//! Every text that fuzzing found worth keeping, and every plan of this repository, holds to what holds for any text.
+//! Every text that fuzzing found, and every plan of this repository, has the properties of all texts.
 //!
-//! What runs them here is what libFuzzer runs (`tests/fuzz`).
+//! libFuzzer runs the same functions (`tests/fuzz`).
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;
@@ -8,7 +8,7 @@ use std::fs;
 use mdle_tests::repository::root;
 use mdle_tests::{any_bytes, any_file, any_text, texts};
 
-/// Holds every text to this.
+/// Asserts that every text has this property.
 fn assert_holds(property: fn(&str)) {
     let texts = texts::kept();
     assert!(texts.len() > 200, "{} texts", texts.len());

@@ -86,7 +86,7 @@ fn layout_does_not_depend_on_where_the_lines_of_a_plan_end() {
     }
 }
 
-/// Holds a command to its exit status and standard output; returns standard error.
+/// Asserts the exit status and the standard output of a command; returns standard error.
 fn assert_says(output: &Output, status: i32, printed: &str) -> String {
     let said = String::from_utf8_lossy(&output.stderr).into_owned();
     assert_eq!(output.status.code(), Some(status), "{said}");

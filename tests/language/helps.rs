@@ -1,4 +1,5 @@
-//! Every text that a help proposes is right: put in its place, it ends the defect; and what a help quotes can be read.
+//! Each text that a help proposes is right: inserted in its place, it removes the error; and each text that a help
+//! quotes can be parsed.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::collections::BTreeSet;

@@ -106,7 +106,7 @@ struct Trial<'c> {
     text: &'c str,
     compiled: &'c Compiled,
     analysis: Analysis,
-    /// For each part, in pre-order: the atom or the scope that it is.
+    /// The atom or the scope of each part, in pre-order.
     parts: Vec<Part>,
 }
 

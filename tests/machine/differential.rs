@@ -88,7 +88,7 @@ fn every_machine_prints_the_same_trace() {
 /// Units of which no parameter of the robot's quarks is.
 const UNMET_UNITS: &[&str] = &["Hz"];
 
-/// Holds the counts to the grammar: every production, every part that may be left out, and every unit is in some plan.
+/// Asserts that every production, every optional part, and every unit occurs in some plan.
 fn assert_every_production_is_met(counts: &Productions) {
     let grammar = grammar::productions().into_iter().filter(|production| !production.recovers);
     let productions = grammar.flat_map(|production| [production.options(), vec![production.text]].concat());

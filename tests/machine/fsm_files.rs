@@ -13,7 +13,7 @@ fn file(plan: &str) -> FsmFile {
     fsm_file(&compiled[0].nondegenerate).unwrap()
 }
 
-/// Holds the file of a plan to its states, and to a line for each interrupt: name, text, and where it sends which states.
+/// Asserts the states in the file of a plan, and a line for each interrupt: name, text and moves.
 fn assert_moves(plan: &str, states: &[&str], expected: &[&str]) {
     let file = file(plan);
     assert_eq!(file.states, states, "{plan}");

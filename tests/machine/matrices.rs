@@ -29,7 +29,7 @@ struct Read {
     places: Vec<(usize, usize, usize)>,
 }
 
-/// All that was read of a plan.
+/// The matrices of a plan, as they were read.
 #[derive(Debug, Default)]
 struct Matrices {
     live: Vec<Read>,

@@ -55,7 +55,7 @@ fn boxes(picture: &Element) -> Vec<(&Element, Edges)> {
     groups.map(|group| (group, edges(&group.children[1]))).collect()
 }
 
-/// Holds a picture to what a picture has to be.
+/// Asserts that a picture is well drawn.
 fn assert_well_drawn(lowered: &Machine, picture: &Element) {
     let whole = edges(picture);
     let boxes = boxes(picture);

@@ -111,7 +111,7 @@ impl Walk<'_> {
         assert_eq!(fs::read_to_string(self.folder.join(file)).unwrap(), fence.text, "{}: {file}", self.page.path);
     }
 
-    /// Holds a plan to the codes that are expected of it.
+    /// Asserts that a plan causes exactly the expected codes.
     fn check(&self, fence: &Fence) {
         let said = said(&run_mdlec(&self.folder, &["check", &self.plan, "--message-format", "json"]));
         let codes = said.lines().filter_map(|line| {
@@ -122,7 +122,7 @@ impl Walk<'_> {
         assert_eq!(codes.collect::<BTreeSet<_>>(), expected, "{}\n{}\n{said}", self.page.path, fence.text);
     }
 
-    /// Holds every machine to a trace of the last plan with the last script.
+    /// Asserts that every machine has this trace of the last plan with the last script.
     fn trace(&self, expected: &str) {
         for machine in ["tree", "table", "matrix", "counted"] {
             let arguments = ["trace", &self.plan, "--script", &self.script, "--machine", machine];
@@ -152,7 +152,7 @@ impl Walk<'_> {
 }
 
 impl Walk<'_> {
-    /// Holds the pictures of the page to what its commands have drawn.
+    /// Compares the pictures of the page with those that its commands have drawn.
     fn pictures(&self) {
         for picture in
             links(self.page).into_iter().filter(|link| link.ends_with(".svg") && self.folder.join(link).exists())

@@ -18,7 +18,7 @@ use mdle_sim::{Body, Make, Simulated, World};
 use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::repository::root;
 
-/// Nothing depends on how fast this machine is.
+/// Pace of the emulator: no result depends on the speed of this machine.
 const IN_LOCKSTEP: Pace = Pace::Lockstep(Duration::from_millis(100));
 
 /// The tour's executable for the ATRV, built once.

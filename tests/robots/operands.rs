@@ -127,7 +127,7 @@ const PLAN: &str = "\
 }
 ";
 
-/// It ends by contact, by time, or with its last atom.
+/// Plan that ends by contact, by time, or with its last atom.
 const PUSH: &str = "\
 { Push (bumper OR wait 1min)
   (Atom (r0 < 60cm OR wait 10s) (go 20 0))

@@ -15,7 +15,7 @@ use mdle_tests::executable::{folder, run_mdlec};
 
 const PERIOD: Duration = Duration::from_millis(100);
 const PACE: Pace = Pace::Lockstep(PERIOD);
-/// It drives until its battery is low, and rests until somebody plugs it in.
+/// Plan of a robot that drives until its battery is low, and rests until it is plugged in.
 const PLAN: &str = "{ Home (charger OR wait 30s) (Atom (lowBattery OR battery < 5V) (go 10 0)) (Atom (null) stop) }\n";
 
 /// Faults of a robot: its battery is low after 5 s, and it is plugged in after 10.
