@@ -9,7 +9,7 @@ use crate::Sensed;
 pub struct Low(Volts);
 
 impl Low {
-    /// Below this voltage.
+    /// Returns an interrupt that fires below this voltage.
     pub const fn new(limit: Volts) -> Self {
         Self(limit)
     }
@@ -26,7 +26,7 @@ impl Interrupt<Sensed> for Low {
 pub struct Count(i64);
 
 impl Count {
-    /// From this number on.
+    /// Returns a law whose input is always `first`.
     pub const fn new(first: i64) -> Self {
         Self(first)
     }

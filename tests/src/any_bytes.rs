@@ -18,7 +18,7 @@ fn in_pieces(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     stream.chunks(size)
 }
 
-/// On a Scout's line.
+/// Asserts the properties on a Scout's line.
 pub fn scout(bytes: &[u8]) {
     answers(bytes);
     let whole: Vec<u8> = in_pieces(bytes).flatten().copied().collect();
@@ -78,7 +78,7 @@ fn requests<'b>(robot: &mut wire::Incoming, pieces: impl Iterator<Item = &'b [u8
     found
 }
 
-/// On an ATRV's line.
+/// Asserts the properties on an ATRV's line.
 pub fn atrv(bytes: &[u8]) {
     let whole: Vec<u8> = in_pieces(bytes).flatten().copied().collect();
     for marks in [true, false] {

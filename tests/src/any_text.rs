@@ -79,8 +79,8 @@ pub fn layout(text: &str) {
     assert_eq!(format(id, &laid_out).as_ref(), Ok(&laid_out));
 }
 
-/// Every robot's plans come out of a text or errors that can be shown, and can be analysed; as formulas the plans are the
-/// same, where they can be written so.
+/// For every robot a text has plans that can be analysed, or errors that can be shown; plans written as formulas are
+/// the same plans, if they can be written so.
 pub fn check(text: &str) {
     for alphabet in [&*EVERYTHING, &*SIMULATOR, scripted()] {
         let all = compiled(text, alphabet);
@@ -103,7 +103,7 @@ fn analysed(lowered: &Machine) {
     assert!(is_shorter && !analysis.to_json().is_empty(), "{}", analysis.to_text());
 }
 
-/// All that a machine does, without the names of its scopes and without the numbers of its records.
+/// Returns the behavior of a machine, without the names of its scopes and the numbers of its records.
 fn machine(lowered: &Machine) -> String {
     let place = |record: &RecordId| lowered.record(*record).map(|record| (record.level, record.first));
     let marks = lowered.elements().flat_map(|element| element.marks().iter().map(move |mark| (element.number(), mark)));
@@ -146,7 +146,7 @@ pub fn emit(text: &str) {
     }
 }
 
-/// All machines print the same trace of a plan; the text is also what chance makes the script of.
+/// All machines print the same trace of a plan; the text is also the seed of the random script.
 pub fn run(text: &str) {
     let seed = text.bytes().fold(0_u64, |seed, byte| seed.wrapping_mul(31).wrapping_add(u64::from(byte)));
     let script = script(&mut Chance::new(seed), TURNS);

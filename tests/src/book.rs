@@ -29,7 +29,7 @@ impl Fence {
     }
 }
 
-/// Every page, the table of contents included.
+/// Returns every page, including the table of contents.
 #[must_use]
 pub fn pages() -> Vec<TextFile> {
     files(&[".md"]).into_iter().filter(|file| file.path.starts_with("docs/src/")).collect()

@@ -24,7 +24,7 @@ impl Chance {
         self.below(100) < percent
     }
 
-    /// One of these.
+    /// Returns one of the choices.
     pub fn pick<'a, T: ?Sized>(&mut self, choices: &[&'a T]) -> &'a T {
         choices[self.below(choices.len())]
     }

@@ -32,7 +32,7 @@ impl Production {
     }
 }
 
-/// Every production of `grammar.lalrpop` but those of tokens, whose spellings are no grammar.
+/// Returns every production of `grammar.lalrpop` except those of tokens, whose spellings are no grammar.
 #[must_use]
 pub fn productions() -> Vec<Production> {
     let path = root().join("mdlec/src/syntax/grammar.lalrpop");

@@ -123,9 +123,9 @@ fn tokens(text: &str) -> Vec<String> {
 /// A state diagram of mermaid's: for each composite state (the diagram itself has no name) what leads where inside it.
 #[derive(Debug, Default)]
 pub struct Diagram {
-    /// The states that are in each.
+    /// States in each composite state.
     pub states: BTreeMap<String, BTreeSet<String>>,
-    /// From, to and what is written on it, in each.
+    /// Transitions in each composite state: from, to and label.
     pub transitions: BTreeMap<String, Vec<(String, String, String)>>,
 }
 
@@ -171,7 +171,7 @@ pub fn read_mermaid(text: &str) -> Diagram {
     diagram
 }
 
-/// Without what mermaid reads otherwise, but for letters as numbers.
+/// Asserts that a text has no character with a meaning in mermaid, except as a number.
 fn assert_plain(text: &str) {
     let mut parts = text.split('#');
     let first = parts.next().unwrap_or_default();

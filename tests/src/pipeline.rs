@@ -92,7 +92,7 @@ fn rendered(sources: &Sources, found: &[Diagnostic]) -> String {
 #[derive(Debug)]
 pub struct Machines<'c> {
     compiled: &'c Compiled,
-    /// With its finite loops written out, if that is not too long.
+    /// The plan with its finite loops written out, if that is not too long.
     expanded: Option<Machine>,
 }
 

@@ -180,7 +180,7 @@ impl Growth<'_> {
         }
     }
 
-    /// One of the other plans, with arguments if it takes some.
+    /// Returns a reference to another plan, with arguments if it takes some.
     fn reference(&mut self) -> Element {
         let (name, choices) = self.others[self.chance.below(self.others.len())];
         let arguments: Vec<_> = choices.iter().map(|choices| self.chance.pick(choices)).collect();

@@ -18,7 +18,7 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
 }
 
-/// Every file whose name ends so, in the order of their paths; build folders and hidden ones aside.
+/// Returns every file with one of these endings, in the order of their paths, without build folders and hidden ones.
 #[must_use]
 pub fn files(endings: &[&str]) -> Vec<TextFile> {
     let mut found = Vec::new();

@@ -56,7 +56,7 @@ impl<'e> Machine<'e> {
         self.state.attribute("id")
     }
 
-    /// Takes an event; the states that were left, in order.
+    /// Processes an event; returns the states that the machine then left, in order.
     pub fn event(&mut self, name: &str, data: Value) -> Vec<&'e str> {
         self.data.insert("_event".into(), Value::Object([("data".to_owned(), data)].into()));
         let taken =
@@ -77,7 +77,7 @@ impl<'e> Machine<'e> {
         self.state.children.iter().filter(|child| child.name == "transition")
     }
 
-    /// Takes transitions without an event as long as there are any.
+    /// Takes transitions without an event while one is enabled; returns the states that were left.
     fn settle(&mut self) -> Vec<&'e str> {
         let mut left = Vec::new();
         loop {
@@ -128,7 +128,7 @@ impl<'e> Machine<'e> {
     }
 }
 
-/// Holds a document to the names of elements and attributes, and to where an element may be.
+/// Asserts that a document has only known elements and attributes, each element where it may be.
 fn assert_valid(root: &Element) {
     assert_eq!(root.attribute("xmlns"), "http://www.w3.org/2005/07/scxml");
     assert_eq!((root.attribute("version"), root.attribute("datamodel")), ("1.0", "ecmascript"));

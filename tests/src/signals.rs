@@ -10,15 +10,15 @@ type Comparison = (&'static [&'static str], &'static str, fn(&Values) -> bool);
 /// The values of the signals in a turn: numbers in the lists below, so that each has a text.
 #[derive(Debug, Clone, Copy)]
 pub struct Values {
-    /// The ranges of sonars 3 and 5, in metres.
+    /// Range of sonar 3, in metres.
     pub r3: f64,
-    /// See `r3`.
+    /// Range of sonar 5, in metres.
     pub r5: f64,
-    /// Metres.
+    /// Position along the first axis, in metres.
     pub x: f64,
-    /// Degrees.
+    /// Heading, in degrees.
     pub theta: f64,
-    /// Centimetres a second.
+    /// Forward speed, in centimetres a second.
     pub v: f64,
 }
 

@@ -29,7 +29,7 @@ pub fn kept() -> Vec<(String, String)> {
     texts
 }
 
-/// Every literal in the Rust of this repository that looks like a plan, such as the bad input of tests.
+/// Returns every literal in the Rust of this repository that looks like a plan, such as the bad input of tests.
 #[must_use]
 pub fn literals() -> Vec<(String, String)> {
     let mut texts = Vec::new();

@@ -22,7 +22,7 @@ impl Element {
         self.attributes.get(name).unwrap_or_else(|| panic!("<{}> has no `{name}`", self.name))
     }
 
-    /// It and all elements in it, outer ones first.
+    /// Returns the element and all elements in it, outer ones first.
     #[must_use]
     pub fn all(&self) -> Vec<&Self> {
         let (mut all, mut open) = (Vec::new(), vec![self]);

@@ -20,7 +20,7 @@ const LOOK: Duration = Duration::from_millis(2);
 /// Cost of a run.
 struct Cost {
     wall: Duration,
-    /// In seconds.
+    /// Processor time in user mode, in seconds.
     user: f64,
     /// The most that was in memory at one time, in kB.
     memory: u64,
@@ -87,7 +87,7 @@ fn loops(number: usize, count: usize) -> String {
     plan + "}\n"
 }
 
-/// One atom that many things end.
+/// Returns a plan of one atom with `number` operands in its condition.
 fn operands(number: usize) -> String {
     let operands: Vec<_> = (1..=number).map(|seconds| format!("wait {seconds}")).collect();
     format!("{{ P (Atom ({}) stop) }}\n", operands.join(" OR "))

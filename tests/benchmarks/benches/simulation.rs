@@ -130,7 +130,7 @@ fn robot(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// From the text of a world to a robot in it.
+/// Measures the start: from the text of a world to a robot in it.
 fn start(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("start");
     group.sample_size(10);

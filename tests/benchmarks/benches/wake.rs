@@ -22,9 +22,9 @@ use thread_priority::{
 };
 
 const PERIOD: Duration = Duration::from_millis(10);
-/// In a round.
+/// Number of turns of a round.
 const TURNS: usize = 500;
-/// Of each of both.
+/// Number of rounds of each process.
 const ROUNDS: usize = 6;
 /// Environment variable with the role of a process: turns or bare loop.
 const ROLE: &str = "MDLE_WAKE_ROLE";

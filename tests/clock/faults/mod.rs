@@ -27,7 +27,7 @@ use self::watched::{BEGINS, Happening, Nature, Watched, Way};
 
 const PERIOD: Duration = Duration::from_millis(100);
 const IN_LOCKSTEP: Pace = Pace::Lockstep(PERIOD);
-/// It drives at a wall, and is to stop half a metre before it.
+/// Plan of a robot that drives at a wall, and is to stop half a metre before it.
 const PLAN: &str = "{ Approach (bumper OR wait 20s) (Atom (r0 < 50cm) (go 20 0)) }\n";
 const ROOM: &str =
     "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[3, -2], [3, 2], [-2, 2], [-2, -2], [3, -2]]";
@@ -58,7 +58,7 @@ const ON_COMMAND: [(&str, &str); 23] = [
     ("leap", "each position is 3 m away from the one before"),
     ("hang", "the robot repeats the same data"),
 ];
-/// And what else.
+/// Events other than faults given with `--fault`.
 const BESIDES: [(Happening, &str); 4] = [
     (Happening::Garbage, "nothing but garbage for a minute"),
     (Happening::WrongAnswers, "answers to other commands"),
@@ -68,7 +68,7 @@ const BESIDES: [(Happening, &str); 4] = [
 
 /// Makes an emulated robot.
 type Made<R> = fn(Pace) -> (R, Nature<R>);
-/// Lets something happen.
+/// A case of the table: it lets an event happen.
 type Case<'r> = Box<dyn FnOnce() -> Row + Send + 'r>;
 
 /// The executable of the plan for a target.
@@ -207,7 +207,8 @@ fn each_fault_stops_the_robot_or_is_borne() {
     assert!(committed == text, "INSTA_UPDATE=always writes docs/src/faults.md\n{text}");
 }
 
-/// By the clock a fault may come a turn later after the last answer than in lockstep, and so may the command before it.
+/// Maximum distance in metres by which a body moves further by the clock than in lockstep: a fault may come a turn
+/// later after the last answer, and so may the command before it.
 const FURTHER: f64 = 0.05;
 /// The time from a fault to the end of the program, in seconds.
 const SOON: f64 = 1.5;
@@ -224,15 +225,16 @@ const ENDS: [End; 6] = [
     (None, Happening::WrongAnswers, SOON, FURTHER),
     (None, Happening::DeadForAWhile, SOON, FURTHER),
 ];
-/// And what is noticed later on an ATRV: a bumper report that is missing after a second, a question without an answer after two,
-/// of which the last may have been answered just before.
+/// Faults that an ATRV's driver notices later: a missing bumper report after a second, a question without an answer
+/// after two, of which the last may have been answered just before.
 const LATER: [End; 3] = [
     (Some(Fault::Body(Ailment::NoBumpers)), Happening::OnCommand, 2.0, 0.1),
     (Some(Fault::Body(Ailment::NoStatus)), Happening::OnCommand, 3.0, 0.25),
     (Some(Fault::Body(Ailment::Deaf)), Happening::OnCommand, 3.0, FURTHER),
 ];
 
-/// Holds the executable to its end. By the clock the least of a few tries counts, as a busy machine can only make it more.
+/// Asserts that the executable ends in time. By the clock the minimum of a few tries counts, as a busy machine can only
+/// increase it.
 fn assert_ends<R: Emulated>(robot: &Robot, made: Made<R>, (fault, happening, soon, further): End) {
     let (in_lockstep, _) = robot.with(made, IN_LOCKSTEP, fault, happening);
     let mut least = (f64::INFINITY, f64::INFINITY);

@@ -26,7 +26,7 @@ const FOR_GOOD: usize = 30;
 /// Event that happens to the robot, its line or its driver.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Happening {
-    /// It was the wrong robot from the start.
+    /// No event: the robot was the wrong one from the start.
     Nothing,
     /// The fault given with `--fault` to the robot or its line, if any.
     OnCommand,

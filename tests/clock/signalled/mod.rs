@@ -70,7 +70,7 @@ fn wrong<R: Robot>(signal: i32, ran: &Ran<R>) -> Option<String> {
     (!wrong.is_empty()).then_some(wrong)
 }
 
-/// Holds every signal at every moment of a run to what is right.
+/// Asserts that every signal at every moment of a run stops the robot as it should.
 fn every_signal<R: Robot>() {
     let folder = folder(&format!("signalled_{}", R::NAME));
     let config = config(&folder, R::NAME);
@@ -109,7 +109,7 @@ fn every_signal_at_every_moment_stops_an_atrv() {
     every_signal::<Atrv>();
 }
 
-/// Holds a signal that comes by the clock, once the robot drives, to what is right.
+/// Asserts that a signal by the clock, once the robot drives, stops it as it should.
 fn by_the_clock<R: Robot>() {
     let folder = folder(&format!("signalled_by_the_clock_{}", R::NAME));
     let mut left = true;

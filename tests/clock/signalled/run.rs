@@ -13,7 +13,7 @@ use mdle_sim::{Body, Make, Simulated, World};
 
 /// The period of the program's turns.
 const PERIOD: Duration = Duration::from_millis(100);
-/// In lockstep a command lets a period pass, and no machine is too slow.
+/// Pace of the emulator: a command lets a period pass, and no machine is too slow.
 pub(crate) const LOCKSTEP: Pace = Pace::Lockstep(PERIOD);
 /// A robot that moves less than this in a period is at rest, in metres.
 pub(crate) const AT_REST: f64 = 0.001;
@@ -78,7 +78,8 @@ impl Robot for Atrv {
         self.orders()
     }
 
-    /// Both axes at rest, the brake and the question for it, and nothing that reports any more.
+    /// Returns `true` if the bytes end with both axes at rest, the brake and the question for it, and the end of all
+    /// reports.
     fn is_secured(&self, bytes: &[u8]) -> bool {
         use mdle_atrv::Command::{Brake, Deaf, Defaults, Inputs, Reports, Status};
         let frames = |commands: &[mdle_atrv::Command]| -> Vec<u8> {

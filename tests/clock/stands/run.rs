@@ -103,7 +103,7 @@ impl<R: Robot> Ran<R> {
         orders
     }
 
-    /// Holds the run to an end with this status and these words, of a robot that received these orders last.
+    /// Asserts that the run ended with this status and these words, and that the robot received these orders last.
     pub(crate) fn assert(&self, status: i32, words: &[&str], orders: &[Order]) {
         println!("{} s after the fault: {}", self.took.as_secs_f64(), self.said);
         assert_eq!(self.status, Some(status), "{}", self.said);
@@ -153,11 +153,11 @@ pub(crate) fn ran<R: Robot>(
 /// The connection of the program to the robot.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Way {
-    /// By a pseudo-terminal.
+    /// A pseudo-terminal.
     Terminal,
-    /// Over TCP.
+    /// TCP.
     Tcp,
-    /// Over TCP, of which the robot's end is shut down when faults begin: it still receives.
+    /// TCP whose end at the robot is shut down when faults begin: the robot still receives.
     HalfClosed,
 }
 

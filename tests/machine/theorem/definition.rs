@@ -21,9 +21,9 @@ pub(crate) struct Definition {
     crossing: Vec<Set>,
     /// For each family of loops, and each row of destinations, the sets of runs that it can be cut into.
     cuts: Vec<Vec<Vec<Set>>>,
-    /// For each row of destinations the families in which it can be cut at all.
+    /// For each row of destinations, the families in which it can be cut.
     families: Vec<Vec<u64>>,
-    /// For each numbering, the place of each atom, and which row each row becomes.
+    /// For each numbering, the place of each atom, and the renumbered row of each row.
     numberings: Vec<(Vec<usize>, Vec<usize>)>,
 }
 
@@ -159,7 +159,7 @@ fn renumbered(row: &[Option<usize>], places: &[usize]) -> Vec<Option<usize>> {
     renumbered
 }
 
-/// Holds a string that was found to the statement.
+/// Asserts that a decompiled string fulfils the statement.
 pub(crate) fn assert_is_string(machine: &Machine, found: &Found) {
     let size = machine.states().len();
     let mut sorted: Vec<_> = found.order.iter().map(|state| state.0 as usize).collect();

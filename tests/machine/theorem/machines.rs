@@ -15,7 +15,7 @@ impl Table {
         (atoms + 2).pow(u32::try_from(atoms).unwrap())
     }
 
-    /// Every row, by its number.
+    /// Returns every row, in the order of their numbers.
     pub(crate) fn rows(atoms: usize) -> Vec<Row> {
         (0..Self::count(atoms)).map(|number| Self::row(number, atoms)).collect()
     }

@@ -31,7 +31,7 @@ struct Seen {
     with_loops: usize,
     /// Plans that use `after`, for which an FSM file lacks information.
     asking: usize,
-    /// Those for which the search takes too long.
+    /// Plans for which the search takes too long.
     stopped: usize,
 }
 

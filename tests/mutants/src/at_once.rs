@@ -74,7 +74,7 @@ impl<'m> AtOnce<'m> {
         this
     }
 
-    /// Each mutant, in the order in which they were given, and what became of it.
+    /// Returns each mutant with its place and state, in the given order.
     pub(crate) fn mutants(&self) -> impl Iterator<Item = (usize, Standing, &'m Mutant)> {
         self.mutants.iter().enumerate().map(|(place, (standing, mutant))| (place, *standing, *mutant))
     }
@@ -101,7 +101,7 @@ impl<'m> AtOnce<'m> {
         self.checkout
     }
 
-    /// One that is no syntax would take the whole file with it.
+    /// Marks the mutants that are no syntax as such: each of them would make the whole file invalid.
     fn refuse_what_is_no_syntax(&mut self, source: &Source) {
         for (standing, mutant) in self.mutants.iter_mut().filter(|(_, mutant)| mutant.file == source.file) {
             if syn::parse_file(&mutant.apply(&source.text)).is_err() {

@@ -58,7 +58,7 @@ fn in_folder(folder: &str) -> Vec<String> {
     files.into_iter().map(|name| format!("{folder}/{name}")).collect()
 }
 
-/// All mutants of these files.
+/// Returns all mutants of these files.
 pub(crate) fn all(sources: &[Source]) -> Vec<Mutant> {
     let found = sources.iter().map(|Source { area, file, text }| {
         mutants(*area, file, text).unwrap_or_else(|error| panic!("{file}: {error}"))

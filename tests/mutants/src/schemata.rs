@@ -49,7 +49,7 @@ struct Variant {
 /// Version of a function's body.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Body {
-    /// This mutant's.
+    /// The body of this mutant.
     Changed(u32),
     /// The original body, beside the bodies of these mutants.
     Original(Vec<u32>),

@@ -56,7 +56,7 @@ const MEMORY: &str = "8388608";
 /// Result of a mutant.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Outcome {
-    /// It is no program, so nobody has to find it.
+    /// The mutant is no valid program, so no test has to find it.
     DoesNotCompile,
     /// This test failed.
     Caught(usize),

@@ -71,7 +71,7 @@ fn applied(input: Input, named: &str, began: Nanos, computed: u32) -> &'static s
 
 /// The transitions of a turn, each with the numbers of the operands that have fired.
 struct Transitions {
-    /// Those of the next one.
+    /// Operands of the next transition.
     operands: Vec<u32>,
     made: Vec<(Transition, Vec<u32>)>,
 }

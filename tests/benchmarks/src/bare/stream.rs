@@ -29,7 +29,7 @@ enum Header {
     Brace,
     /// After the name of a plan.
     Name,
-    /// In its parameters.
+    /// In the parameters of a plan.
     Params,
     /// After the parameters of a plan.
     Condition,

@@ -1,6 +1,6 @@
 //! The peers of T(N) as source: what a person would write by hand, a line or a few for each atom.
 
-/// One text after the other, for each atom.
+/// Returns the texts of all atoms, one after another.
 fn each(atoms: u32, text: impl Fn(u32) -> String) -> String {
     (0..atoms).map(text).collect()
 }

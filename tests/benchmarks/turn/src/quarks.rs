@@ -9,7 +9,7 @@ use crate::{Input, Output};
 pub struct Reached(f64);
 
 impl Reached {
-    /// Once the measurement is at least this.
+    /// Returns an interrupt that fires once the measurement is at least `limit`.
     #[must_use]
     pub const fn new(limit: f64) -> Self {
         Self(limit)
@@ -27,7 +27,7 @@ impl Interrupt<Output> for Reached {
 pub struct Halt;
 
 impl Halt {
-    /// While the switch is on.
+    /// Returns an interrupt that fires while the switch is on.
     #[must_use]
     #[allow(clippy::new_without_default, reason = "as bound alphabets have it")]
     pub const fn new() -> Self {

@@ -8,8 +8,8 @@ use mdle_workload::machines::smlang::Smlang8;
 use mdle_workload::machines::statig::Statig8;
 use mdle_workload::{Input, Output};
 
-/// By how much the measurement grows, always by less than `leap`, and the switch: conditions fire or not, several in a
-/// turn too, and the plan ends by itself or by the switch.
+/// Returns for each turn the growth of the measurement, always less than `leap`, and the switch: conditions fire or
+/// not, several in a turn too, and the plan ends by itself or by the switch.
 fn script(leap: u32) -> Vec<(f64, bool)> {
     let mut seed = 1_u32;
     let mut draw = |below: u32| {
