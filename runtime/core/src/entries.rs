@@ -3,7 +3,7 @@
 
 use crate::{Nanometers, Nanos, Output, Pose, Radians, Slots};
 
-/// Storage for what is kept of the entry of each level of scopes: times alone, or [`Stamps`].
+/// Storage for the entry of each level of scopes: times alone, or [`Stamps`].
 pub trait Entries {
     /// Returns `true` if no level is kept.
     fn is_empty(&self) -> bool;

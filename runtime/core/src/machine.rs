@@ -34,7 +34,7 @@ pub trait Watch {
     fn transition(&mut self, transition: Transition);
 }
 
-/// The observer of a plan that nobody observes.
+/// The observer of a plan without observers.
 impl Watch for () {
     const LOOKS: bool = false;
 
@@ -71,7 +71,8 @@ pub struct Machine<P: Plan> {
 }
 
 impl<P: Plan> Machine<P> {
-    /// Begins `plan` at the first output `y` and its time; the turn itself is [`Machine::turn`], with the same two.
+    /// Begins `plan` at the first output `y` and its time; [`Machine::turn`] then makes the turn, with the same output
+    /// and time.
     pub fn begin(mut plan: P, y: &P::Output, t: Nanos) -> Self {
         let frame = Frame(y.here().theta);
         let (mut entered, left) = plan.slots();

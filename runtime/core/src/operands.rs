@@ -7,11 +7,11 @@ use crate::fsm::Kind;
 use crate::rows::Reading;
 use crate::{Condition, Cursor, Entries, Fsm, Interrupt, Measured, Memory, Nanos, Slots};
 
-/// The conditions of a plan that is code, as rows: read only where a scope has ended and somebody watches.
+/// The conditions of a plan that is code, as rows: read only where a scope has ended and an observer is attached.
 pub struct Conditions<'a, I> {
     /// The condition of each bracket, in their order.
     pub conditions: &'a [Condition<I>],
-    /// The operands of conditions; those of operands come after all of these.
+    /// The operands of conditions; the operands of an operand come after it.
     pub operands: &'a [Condition<I>],
 }
 

@@ -11,7 +11,7 @@ pub trait Plan {
     type Output: Output;
     /// The robot's input; its default is the null input.
     type Input: Default;
-    /// A place for what is kept of the entry of each level of scopes.
+    /// Storage for the entry of each level of scopes.
     type Entered: Entries;
     /// A place for the counter of each level of loops.
     type Left: Slots<u64>;

@@ -41,7 +41,7 @@ pub trait Control<Y: ?Sized> {
     fn begin(&self, y: &Y, begin: Begin) -> Self::Law;
 }
 
-/// A control law `u(y, t)` with what it remembers since its atom began.
+/// A control law `u(y, t)` with its state since its atom began.
 pub trait Law<Y: ?Sized> {
     /// The input it computes.
     type Input;

@@ -67,7 +67,7 @@ pub struct Comparison<S, O> {
 }
 
 impl<S, O> Comparison<S, O> {
-    /// The comparison of these.
+    /// Returns the comparison of `signal` with `with`.
     #[must_use]
     pub const fn new(signal: S, operator: Operator, with: Operand<O>) -> Self {
         Self { signal, operator, with }

@@ -11,7 +11,7 @@ impl Nanometers {
     /// No way at all.
     pub const ZERO: Self = Self(0);
 
-    /// The length rounded to the nearest nanometre; zero for what is negative or no number.
+    /// Returns the length rounded to the nearest nanometre; zero for a negative length or NaN.
     #[must_use]
     pub fn round(length: Meters) -> Self {
         // Conversion to an integer saturates, and makes 0 of what is no number.

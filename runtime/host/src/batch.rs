@@ -231,7 +231,7 @@ fn panicked<T>(Panicked(message): Panicked) -> Result<T, String> {
     Err(format!("a panic, which is a bug: {message}"))
 }
 
-/// Time that nobody looks at: runs of a batch are made as fast as possible.
+/// Clock of a batch, whose time never advances: runs are made as fast as possible.
 #[derive(Debug)]
 struct Standing;
 

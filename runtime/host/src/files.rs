@@ -1,4 +1,4 @@
-//! Reads the files that an operator names: regular ones, up to a size, and never one that waits for somebody to write.
+//! Reads the files that an operator names: regular files, up to a size, and never a pipe that waits for a writer.
 
 use std::fs::{self, FileType, OpenOptions};
 use std::io::{self, Read as _};

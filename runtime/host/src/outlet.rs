@@ -122,7 +122,7 @@ impl Outlet {
         Aside(Arc::clone(&self.shared))
     }
 
-    /// Hands over what has been written so far.
+    /// Hands over the text that has been written so far.
     fn hand_over(&mut self) -> io::Result<()> {
         if self.piece.is_empty() {
             return Ok(());

@@ -12,7 +12,7 @@ use crate::cause::{CauseText, place};
 use crate::passes::Passes;
 use crate::transitions::{Operand, Transitions};
 
-/// The report of a run; goes quiet when nobody reads it any more.
+/// The report of a run; it stops writing when its reader has gone.
 pub(crate) struct Report<'a> {
     out: &'a mut dyn Write,
     /// `true` if lines are shown as soon as they are written: not at the fastest pace.
@@ -105,7 +105,7 @@ impl<'a> Report<'a> {
         self.note(written);
     }
 
-    /// Shows what has been written so far.
+    /// Shows the lines that have been written so far.
     pub(crate) fn flush(&mut self) {
         match self.state {
             State::Open => {

@@ -37,7 +37,8 @@ pub(crate) struct Surroundings<'e, I, O> {
     pub(crate) seen: Option<Box<dyn FnMut() -> Duration + 'e>>,
 }
 
-/// Runs what `plan` makes on the robot of target `T` with these arguments, the program's own name first; the exit status.
+/// Runs the plans that `plan` makes on the robot of target `T` with these arguments, the program's own name first;
+/// returns the exit status.
 pub(crate) fn session<'o, T: Target, P, I, O>(
     program: Program<'_>,
     arguments: impl IntoIterator<Item = OsString>,
@@ -217,7 +218,7 @@ where
     status
 }
 
-/// Prints help, or why the arguments are wrong; the exit status.
+/// Prints help, or the error in the arguments; returns the exit status.
 fn unparsed<'o>(error: &clap::Error, out: impl FnOnce() -> Box<dyn Write + 'o>, err: &mut dyn Write) -> u8 {
     if error.use_stderr() {
         say(err, format_args!("{}", error.render().to_string().trim_end()));
@@ -226,7 +227,7 @@ fn unparsed<'o>(error: &clap::Error, out: impl FnOnce() -> Box<dyn Write + 'o>, 
     answered(&error.render().to_string(), &mut *out())
 }
 
-/// Prints what was asked for instead of a run. Nobody has to read it to the end.
+/// Prints the answer that an option asks for instead of a run. Its reader may go before the end.
 fn answered(answer: &str, out: &mut dyn Write) -> u8 {
     let _ = write!(out, "{}", PrintableLines(answer)).and_then(|()| out.flush());
     ending::OVER

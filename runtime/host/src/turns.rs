@@ -36,7 +36,7 @@ pub(crate) struct Witnesses<'a, 'o, Y> {
     pub(crate) log: Option<&'a mut Log>,
     /// The path that is driven, if it is to be recorded.
     pub(crate) path: Option<&'a mut Recorder<Y>>,
-    /// The line that shows that a fast run goes on, where somebody sees it.
+    /// The line that shows that a fast run goes on, if standard error is a terminal.
     pub(crate) progress: Option<Progress<'a>>,
     /// Standard error, where it does not show that line.
     pub(crate) err: Option<&'a mut dyn Write>,

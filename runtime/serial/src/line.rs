@@ -41,7 +41,7 @@ pub enum LineFault {
 }
 
 impl LineFault {
-    /// A failure of the line: what is unplugged reads as an error of input and output.
+    /// Returns the fault for an error of the line: an unplugged device reads as an error of input and output.
     fn of(error: Errno) -> Self {
         match error {
             Errno::IO | Errno::NXIO | Errno::NODEV | Errno::CONNRESET | Errno::PIPE => Self::Closed,

@@ -1,4 +1,5 @@
-//! Everything that is written, to what is blocked, closed, full or limited: the robot drives on or stops, and waits for nobody.
+//! All writers of a run, whose readers are blocked, closed, full or limited: the robot drives on or stops, and waits
+//! for no reader.
 
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
@@ -30,7 +31,7 @@ struct Cart {
     journal: File,
     /// The commands that the cart got so far.
     told: String,
-    /// Pipes that nobody reads.
+    /// Pipes that are never read.
     full: Vec<File>,
 }
 
