@@ -27,10 +27,10 @@ pub struct Faulty<R> {
 }
 
 impl<R: Emulated> Faulty<R> {
-    /// A robot that has just been switched on.
+    /// Returns a robot that has just been switched on.
     ///
     /// # Errors
-    /// It cannot suffer one of these.
+    /// The robot cannot have one of these faults.
     pub fn new(robot: R, faults: &[At]) -> Result<Self, String> {
         let cannot = faults.iter().find(|at| matches!(at.fault, Fault::Body(ailment) if !R::can_suffer(ailment)));
         if let Some(At { fault, .. }) = cannot {

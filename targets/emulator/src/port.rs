@@ -69,7 +69,7 @@ impl Port {
         &self.ours
     }
 
-    /// Waits for bytes for at most so long. They go to `take`; whether there were any.
+    /// Waits for bytes until `limit` has passed, and passes them to `take`; returns `true` if there were any.
     ///
     /// # Errors
     /// The line failed.
@@ -89,7 +89,7 @@ impl Port {
         Ok(true)
     }
 
-    /// Sends bytes. What nobody reads is lost once the line is full, as on a wire.
+    /// Sends bytes. Bytes without a reader are lost once the line is full, as on a wire.
     ///
     /// # Errors
     /// The line failed.

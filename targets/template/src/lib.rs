@@ -1,4 +1,4 @@
-//! The robot template as a target of mdlec. What it can do is in `alphabet.mdle`, what drives it in `hardware.rs`.
+//! The robot template as a target of mdlec. `alphabet.mdle` lists its quarks, and `hardware.rs` drives it.
 #![forbid(unsafe_code)]
 
 pub mod alphabet;

@@ -37,7 +37,7 @@ impl Stage for Floor {
         Pose { theta: Radians(began.theta.0 + imagined.theta.0), ..place }
     }
 
-    /// REPLACE: waits. What is imagined moves with commands alone.
+    /// REPLACE: waits. An imagined robot moves only with commands.
     fn left_alone(&mut self, robot: &mut Hardware, periods: u32) {
         for _ in 0..periods {
             let _ = robot.exchange(&Input::default()).unwrap();
