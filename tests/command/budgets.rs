@@ -11,7 +11,7 @@ use mdle_tests::executable::{cache, folder, mdlec, run_mdlec};
 
 /// The address space that a process gets, in KiB: 1 GB.
 const MEMORY: u32 = 1 << 20;
-/// The processor time that a process gets, in seconds: generous, since tests run what is not optimised, beside each other.
+/// The processor time that a process gets, in seconds: generous, since tests run unoptimised code at the same time.
 const SECONDS: u32 = 60;
 
 /// A program in `folder` under both limits.

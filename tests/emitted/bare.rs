@@ -174,7 +174,7 @@ fn cargo_build() -> Command {
     command
 }
 
-/// Runs an executable on a script: what it printed.
+/// Runs an executable on a script; returns its output.
 fn printed(executable: &str, script: &Script) -> String {
     let mut child =
         Command::new(built().join(executable)).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();

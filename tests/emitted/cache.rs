@@ -12,7 +12,7 @@ use mdle_tests::executable::{cache, command, folder, run_mdlec, without_waiting}
 
 const BUILD: [&str; 3] = ["plan.mdle", "--target", "sim"];
 
-/// An address at which nobody listens.
+/// An address without a server.
 const NOWHERE: &str = "http://127.0.0.1:1";
 
 /// A plan that is over after some seconds.

@@ -13,7 +13,7 @@ use mdle_tests::repository::{files, root};
 use mdlec::diagnostic::SourceId;
 use mdlec::syntax::{Arena, format, outline::outline, parse};
 
-/// A plan as nobody should write it, and as it should be.
+/// A plan in bad layout, and in the right layout.
 const ODD: &str = "{P(bumper)\n(Atom(wait 1 or bumper)stop)// one\r\n\n\n(Atom (wait 2) stop)\n}";
 const LAID_OUT: &str = "{ P (bumper)\n  (Atom (wait 1 OR bumper) stop)    // one\n\n  (Atom (wait 2) stop)\n}\n";
 

@@ -23,7 +23,7 @@ fn line(turn: usize, t: &str, state: u64, law: Option<&str>, fired: &[(u64, usiz
 /// A line of a trace: the state, the law, and the transitions with the state left, the level and the cause.
 type Expected<'t> = (u64, Option<&'t str>, &'t [(u64, usize, &'t str)]);
 
-/// Holds the plan to what it does in turns at 0, 1, 2 … seconds, in which these interrupts fire and laws complete.
+/// Asserts the behavior of the plan in turns at 0, 1, 2 … seconds, in which these interrupts fire and laws complete.
 fn assert_turns(plan: &str, turns: &[(&'static str, &'static str)], expected: &[Expected<'_>]) {
     let script: Vec<Turn> =
         turns.iter().enumerate().map(|(turn, (fired, completed))| (turn as f64, *fired, *completed)).collect();

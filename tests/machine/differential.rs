@@ -162,7 +162,7 @@ fn compare(seed: u64, foresight: bool, text: &str, script: &str, seen: &mut Seen
     }
 }
 
-/// The first lines in which two traces differ, and what they are traces of.
+/// Returns the first lines in which two traces differ, with the plan and the script.
 fn difference(one: (&str, &[Line<'_>]), other: (&str, &[Line<'_>]), text: &str, script: &str) -> String {
     let turn = one.1.iter().zip(other.1).take_while(|(one, other)| one == other).count();
     let line = |trace: &[Line<'_>]| trace.get(turn).map_or("(no line)".into(), ToString::to_string);

@@ -253,7 +253,7 @@ fn a_line_that_is_cut_ends_the_run() {
     insta::assert_snapshot!(told(&output));
 }
 
-/// A robot of which somebody sees that it moves.
+/// A robot that reports whether it moves.
 struct Moves<'a>(&'a mut Atrv, &'a AtomicBool);
 
 impl Emulated for Moves<'_> {

@@ -9,7 +9,8 @@ use std::sync::OnceLock;
 use mdle_tests::executable::{folder, run_mdlec};
 use serde_json::Value;
 
-/// A metre ahead in five seconds; whether that is where one wants to be, and what is in the way, the start decides.
+/// Plan that drives a metre ahead in five seconds; the start decides whether that reaches the goal, and which obstacles
+/// are in the way.
 const PLAN: &str = "{ Ahead (bumper) (Atom (wait 5) (go 20 0)) }\n";
 const WORLD: &str = "goal = { min = [0.7, -0.3], max = [1.3, 0.3] }\n\
                      [[wall]]\nname = \"left\"\npoints = [[0.2, 0.65], [1.5, 0.65]]\n";

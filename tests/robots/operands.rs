@@ -149,7 +149,7 @@ fn plans() -> &'static Path {
     })
 }
 
-/// The status of a plan in the hall, and what it printed.
+/// Returns the exit status of a plan in the hall, and its output.
 fn reported(plan: &str, options: &[&str]) -> (Option<i32>, String) {
     let mut command = Command::new(format!("./{plan}"));
     let output: Output = command.args(["--world", "hall"]).args(options).current_dir(plans()).output().unwrap();
