@@ -45,7 +45,10 @@ impl Value {
     }
 }
 
-/// The value of an expression; what it cannot read is an error.
+/// Returns the value of an expression.
+///
+/// # Panics
+/// When the expression is not of the part that is read here.
 #[must_use]
 pub fn evaluate(text: &str, data: &BTreeMap<String, Value>) -> Value {
     let mut reader = Reader { rest: text, data };
@@ -54,7 +57,7 @@ pub fn evaluate(text: &str, data: &BTreeMap<String, Value>) -> Value {
     value
 }
 
-/// Reads and evaluates in one go; what is not `live` is only read.
+/// Reads and evaluates in one pass; parts that are not `live` are only read.
 struct Reader<'r> {
     rest: &'r str,
     data: &'r BTreeMap<String, Value>,

@@ -233,7 +233,7 @@ impl<'p> Explorer<'p> {
         true
     }
 
-    /// Writes down the labels of what has ended at once.
+    /// Records the labels of the parts that ended together.
     fn record(&self, run: &mut Run, ended: &[(usize, Option<usize>)]) {
         let mut fresh: BTreeMap<RecordId, Vec<u32>> = BTreeMap::new();
         for (part, cause) in ended {
@@ -251,7 +251,7 @@ impl<'p> Explorer<'p> {
         }
     }
 
-    /// Sets the memories of what has not fired.
+    /// Sets the memories of RISING conditions whose operand has not fired.
     fn remember(&self, run: &mut Run, said: &Said) {
         let mut set = Vec::new();
         for (place, frame) in run.frames.iter().enumerate() {

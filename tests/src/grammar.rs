@@ -1,8 +1,8 @@
-//! The grammar of plans as a list: what each of its productions is made of, as the parser's generator reads it.
+//! The grammar of plans as a list: the parts of each production, as the parser's generator reads them.
 
 use crate::repository::root;
 
-/// An alternative of a production, as `Name = what it is made of`, without the names that its action gives to the parts.
+/// An alternative of a production, as `Name = parts`, without the names that its action gives to the parts.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Production {
     /// Text of the production.

@@ -1,4 +1,4 @@
-//! A strict reader of the XML that mdlec writes: what is not well-formed is an error.
+//! A strict reader of the XML that mdlec writes: text that is not well-formed is an error.
 
 use std::collections::BTreeMap;
 

@@ -181,7 +181,7 @@ fn bridged(device: &Path, way: Way) -> String {
     format!("tcp:{address}")
 }
 
-/// Hands on bytes until either end is closed, or for so long.
+/// Passes bytes on until either end is closed, or until `limit` has passed.
 fn pumped(mut from: impl Read, mut to: impl Write, limit: Duration) {
     let (begun, mut chunk) = (Instant::now(), [0; 256]);
     while let Ok(count @ 1..) = from.read(&mut chunk) {

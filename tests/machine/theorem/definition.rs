@@ -7,7 +7,7 @@ use mdlec::theorem::{Found, Machine};
 
 use super::machines::Table;
 
-/// The first and the last place of what is enclosed.
+/// The first and the last place of a run or a loop.
 type Interval = (usize, usize);
 
 /// A set of intervals, by their places in the list of all.

@@ -155,7 +155,7 @@ impl<'m> AtOnce<'m> {
         }
     }
 
-    /// Runs cargo in the copy: whether all went well, and what it printed.
+    /// Runs cargo in the copy; returns `true` if it succeeded, and its output.
     fn cargo(&self, arguments: &[&[&str]]) -> (bool, String) {
         let mut command = Command::new(cargo());
         environment(&mut command, &self.checkout);

@@ -51,7 +51,7 @@ impl Finder<'_> {
         self.text[range(node)].to_owned()
     }
 
-    /// Visits what is in a function or constant.
+    /// Visits the content of a function or constant.
     fn inside(&mut self, name: &Ident, visit: impl FnOnce(&mut Self)) {
         let around = std::mem::replace(&mut self.function, name.to_string());
         visit(self);

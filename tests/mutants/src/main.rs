@@ -85,7 +85,7 @@ fn main() -> ExitCode {
     if report.is_good() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
-/// Prints mutants, until there is nobody who reads on.
+/// Prints mutants, until the reader has gone.
 fn list(mutants: &[&Mutant]) -> ExitCode {
     let mut out = BufWriter::new(std::io::stdout().lock());
     let printed = mutants.iter().try_for_each(|mutant| writeln!(out, "{mutant}")).and_then(|()| out.flush());

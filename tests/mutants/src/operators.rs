@@ -21,7 +21,7 @@ const MISTAKEN: &[(&str, &str)] = &[
     ("take_while", "skip_while"),
 ];
 
-/// Methods whose result is of the type of what they are called on.
+/// Methods whose result has the type of their receiver.
 const LEFT_OUT: &[&str] = &[
     "abs",
     "also",

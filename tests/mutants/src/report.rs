@@ -7,7 +7,7 @@ use crate::equivalent::Equivalent;
 use crate::mutant::Mutant;
 use crate::trial::{self, Outcome};
 
-/// The counts, and what is not as it should be.
+/// The counts, and the complaints about survivors and wrong entries.
 #[derive(Debug, Default)]
 pub(crate) struct Report {
     files: BTreeMap<String, Counts>,

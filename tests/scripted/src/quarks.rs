@@ -103,7 +103,7 @@ signals! {
     V "v";
 }
 
-/// Declares laws as interrupts are declared, and what they become when their atom begins.
+/// Declares laws as interrupts are declared, each with the type that it has while its atom runs.
 macro_rules! laws {
     ($($name:ident $text:literal ($($arg:ident: $type:ty),*) [$($value:expr),*] $law:ident;)*) => {$(
         #[doc = concat!("The law `", $text, "`.")]

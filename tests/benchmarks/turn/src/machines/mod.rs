@@ -1,4 +1,4 @@
-//! T(N) in several hands: each machine does the same job, which `tests/same.rs` holds.
+//! T(N) in several forms: each machine does the same job, as `tests/same.rs` asserts.
 
 pub mod by_hand;
 pub mod plan;
