@@ -89,8 +89,8 @@ pub struct Stamps<'a, S> {
 }
 
 impl<'a, S: Slots<Stamp>> Stamps<'a, S> {
-    /// A stamp for each level that `slots` has room for, whose values do not matter; `frames` has the frame of each atom as
-    /// written, and may be empty in a plan without `FRAME here`.
+    /// A stamp for each level that `slots` has room for; the values do not matter. `frames` has the frame of each atom
+    /// as written, and may be empty in a plan without `FRAME here`.
     #[must_use]
     pub const fn new(slots: S, frames: &'a [Option<Here>]) -> Self {
         Self { slots, frames, now: Stamp::START, last: None }

@@ -22,7 +22,7 @@ pub struct StoredPath {
     pub setpoints: &'static [Setpoint],
 }
 
-/// The paths that a plan can replay. They were read before the robot moves and stay until the program ends, so an output
+/// The paths that a plan can replay. They are read before the robot moves and stay until the program ends, so an output
 /// can hold them all and still be copied in a turn.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PathStore(&'static [StoredPath]);

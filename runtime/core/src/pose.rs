@@ -1,4 +1,4 @@
-//! Poses, velocities and the frames in which headings are meant (paper, section IV-C: each landmark has a frame of its own).
+//! Poses, velocities and the frames of headings (paper, section IV-C: each landmark has a frame of its own).
 
 use crate::{Meters, MetersPerSecond, Radians, RadiansPerSecond};
 

@@ -45,19 +45,21 @@ pub enum Condition<I> {
     Quark(I),
     /// Fires once this much time has passed since its scope was entered.
     Wait(Nanos),
-    /// Fires from this time since its scope was entered until that one.
+    /// Fires while the time since its scope was entered is at least the first value and below the second.
     Elapsed(Nanos, Nanos),
-    /// Fires from this length of path driven since its scope was entered until that one.
+    /// Fires while the length of the path driven since its scope was entered is at least the first value and below the
+    /// second.
     Driven(Nanometers, Nanometers),
-    /// Fires when one of its operands does: the number of the first, and how many there are.
+    /// Fires when any operand fires: the number of the first operand, and the number of operands.
     Or(u32, u32),
-    /// Fires when all of its operands do.
+    /// Fires when all operands fire: the number of the first operand, and the number of operands.
     And(u32, u32),
-    /// Fires when its operand, of this number, does not.
+    /// Fires when its operand does not: the number of the operand.
     Not(u32),
-    /// Fires when its operand does and the memory is set that it once did not: the memory of the scope, and the operand.
+    /// Fires when its operand fires and did not in an earlier turn of this scope, as the memory records: the numbers of
+    /// the memory and of the operand.
     Rising(u32, u32),
-    /// Fires while this memory of the scope of this level is set: something has ended last.
+    /// Fires while a memory of an ending is set: the level of its scope, and its number.
     After(u16, u32),
 }
 

@@ -1,4 +1,5 @@
-//! A target and a plan by hand: a cart that shuttles on a track. `mdlec` writes the second half, a robot's author the first.
+//! A target and a plan by hand: a cart that shuttles on a track. `mdlec` writes the second half, a robot's author the
+//! first.
 //!
 //! `cargo run -p mdle-host --example cart -- --speed max --timeout 20`. The tests of this package run it as a program.
 

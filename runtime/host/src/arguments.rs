@@ -44,8 +44,8 @@ pub(crate) struct Options {
     pub(crate) path: Option<PathBuf>,
 }
 
-/// Returns the command line of the executable of plan `name` for target `T`. The usage line names the executable's file, or
-/// the plan if the file name is unknown.
+/// Returns the command line of the executable of plan `name` for target `T`. The usage line names the executable's
+/// file, or the plan if the file name is unknown.
 pub(crate) fn command<T: Target>(program: Program<'_>) -> Command {
     let seconds = T::PERIOD.as_secs_f64();
     let name = program.plan;

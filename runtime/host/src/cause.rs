@@ -1,4 +1,5 @@
-//! The words of a transition: the operands that have fired with their values, in the writer's words, and where they are.
+//! The words of a transition: the operands that have fired with their values, as the plan's author wrote them, and
+//! their places.
 
 use std::fmt::{self, Write as _};
 
@@ -102,8 +103,8 @@ fn measured_words(operand: &OperandWords<'_>, measured: Measured) -> String {
     words + operand.written.get(written..).unwrap_or("")
 }
 
-/// Returns the values of both sides in the units of their signals, with the fewest decimals for which the comparison still
-/// has the same result.
+/// Returns the values of both sides in the units of their signals, with the fewest decimals for which the comparison
+/// still has the same result.
 fn compared(words: &[ValueWords<'_>], left: f64, operator: Operator, right: f64) -> [Option<String>; 2] {
     let scale = |side: usize| words.get(side).map(|words| words.scale);
     let Some(one) = scale(0) else { return [None, None] };

@@ -109,8 +109,8 @@ impl<I: Instants> Clock<I> {
     /// Waits for the beginning of the next turn.
     ///
     /// # Errors
-    /// A signal, which cuts the wait short, one turn too many that took longer than the period, or the robot has gone without
-    /// a command for too long.
+    /// A signal, which ends the wait early; too many successive turns longer than the period; or too long a time
+    /// without a command to the robot.
     pub(crate) fn next_turn(&mut self, signals: &Signals) -> Result<(), Ending> {
         if self.time == Time::Wall {
             let took = nanos(self.instants.now()).saturating_sub(self.begun);

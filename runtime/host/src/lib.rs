@@ -1,9 +1,11 @@
 //! Host of a plan's executable: arguments, clock, signals, safe stop, report and run log, around the turns of the plan.
 //!
-//! For people who write a robot: [`Target`], [`Hosted`], [`Time`] and [`Refusal`], and [`Batch`] where it can be started over, [`Replays`] where it replays paths, [`read_file`] and [`output_format`] where its options name files, [`Quantity`] where they take lengths and times. For generated code: [`run`].
+//! For people who write a robot: [`Target`], [`Hosted`], [`Time`] and [`Refusal`]; [`Batch`] if it can be started
+//! again, [`Replays`] if it replays paths, [`read_file`] and [`output_format`] if its options name files, [`Quantity`]
+//! if they take lengths and times. For generated code: [`run`].
 //!
-//! The robot is stopped in every case: when the plan is over, when an exchange fails, when code panics, when a
-//! signal comes, when a limit is reached.
+//! The robot is stopped in every case: when the plan is over, when an exchange fails, when code panics, when a signal
+//! arrives, when a limit is reached.
 #![forbid(unsafe_code)]
 
 mod arguments;
@@ -62,13 +64,13 @@ pub use quantity::Quantity;
 pub use stop_request::StopRequest;
 pub use target::{Around, Ended, Hosted, Judgement, Pace, Refusal, Standing, Target, Time};
 
-/// Runs the plan that `plan` makes on the robot of the target `T`, with the arguments of this process: what the `main` of an executable
-/// that mdlec builds calls. `program` is the plan's name, for `--help`, whose usage names the executable as it was called; a [`Program`]
-/// also answers `--version`.
+/// Runs the plan that `plan` makes on the robot of the target `T`, with the arguments of this process: the `main` of an
+/// executable that mdlec builds calls this function. `program` is the plan's name, for `--help`, whose usage names the
+/// executable as it was called; a [`Program`] also answers `--version`.
 ///
-/// Exit status: 0 the plan is over; 1 of several runs not all ended as required; 2 a bad option, world or start pose; 3 a fault stopped the robot, or what
-/// was asked for could not be written; 4 `--timeout` or `--turns`; 5 the plan is over and ended otherwise than required; 128+N signal N. In every case the
-/// robot was stopped.
+/// Exit status: 0 the plan is over; 1 of several runs not all ended as required; 2 a bad option, world or start pose; 3
+/// a fault stopped the robot, or a requested file could not be written; 4 `--timeout` or `--turns`; 5 the plan is over
+/// and ended otherwise than required; 128+N signal N. In every case the robot was stopped.
 ///
 /// It handles the signals of the process and replaces its panic hook by one that never makes the robot wait.
 pub fn run<'a, T: Target, P>(program: impl Into<Program<'a>>, plan: impl Fn() -> P + Sync) -> ExitCode
@@ -100,8 +102,8 @@ where
     ExitCode::from(session::session::<T, P, _, _>(program.into(), std::env::args_os(), &plan, surroundings))
 }
 
-/// Standard output and standard error, each with a thread that writes to it. The library's own buffer of standard output is
-/// left out: nobody may take what is in it when the program ends.
+/// Returns standard output and standard error, each with a thread that writes to it. The library's own buffer of
+/// standard output is left out: its content may be lost when the program ends.
 fn standard_streams(patience: &Patience) -> io::Result<(Outlet, Outlet)> {
     let open = |stream: BorrowedFd<'_>| -> io::Result<Outlet> {
         Outlet::open(File::from(stream.try_clone_to_owned()?), Keeps::WhatIsRead, patience)

@@ -33,8 +33,8 @@ pub(crate) enum Keeps {
     All,
 }
 
-/// A writer whose `flush` returns at once while a robot drives, and otherwise when all is written, as far as the patience of
-/// the run goes. Dropping it waits likewise.
+/// A writer whose `flush` returns at once while a robot drives, and otherwise when all is written, or when the patience
+/// of the run ends. Dropping it waits likewise.
 #[derive(Debug)]
 pub(crate) struct Outlet {
     piece: Vec<u8>,

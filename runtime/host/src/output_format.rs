@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
 
-/// Returns a parser for the value of an option that writes a file in `format`, such as `SVG`, with the ending `ending`, such as
-/// `svg`. It accepts names with this ending, in small or capital letters, and names without an ending.
+/// Returns a parser for the value of an option that writes a file in `format`, such as `SVG`, with the ending `ending`,
+/// such as `svg`. It accepts names with this ending, in small or capital letters, and names without an ending.
 pub fn output_format(format: &'static str, ending: &'static str) -> impl TypedValueParser<Value = PathBuf> {
     PathBufValueParser::new().try_map(move |path| match refusal(&path, format, ending) {
         Some(sentence) => Err(sentence),

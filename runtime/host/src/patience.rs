@@ -1,5 +1,5 @@
-//! The time that a writer waits for its reader: as long as it takes before the run, not at all while a robot drives, and not
-//! for ever afterwards.
+//! The time that a writer waits for its reader: without limit before the run, not at all while a robot drives, and for
+//! a limited time afterwards.
 
 use std::sync::Arc;
 use std::sync::OnceLock;

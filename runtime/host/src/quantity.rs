@@ -28,8 +28,8 @@ impl Quantity {
     const ALL: [Self; 7] =
         [Self::Time, Self::Length, Self::Angle, Self::Speed, Self::TurnRate, Self::Voltage, Self::Frequency];
 
-    /// Reads a finite number followed by a unit, such as `3s`; `bare` is the unit of a number alone. The result is in the
-    /// unit of the variant.
+    /// Reads a finite number followed by a unit, such as `3s`; `bare` is the unit of a number alone. The result is in
+    /// the unit of the variant.
     ///
     /// # Errors
     /// The text is not a number with a unit of this kind: a sentence with what to type instead.

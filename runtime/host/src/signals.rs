@@ -17,8 +17,8 @@ use crate::stop_request::StopRequest;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Signal(u8);
 
-/// The signals that end a program by default and can be caught, but for those that mean something else here: SIGUSR1 asks for
-/// the timing, SIGPIPE and SIGXFSZ are errors of the file that is written.
+/// The signals that end a program by default and can be caught, without those that mean something else here: SIGUSR1
+/// asks for the timing, SIGPIPE and SIGXFSZ are errors of the file that is written.
 const NAMED: [(Number, &str); 16] = [
     (Number::HUP, "SIGHUP"),
     (Number::INT, "SIGINT"),
@@ -79,8 +79,8 @@ impl Signal {
 
     /// Returns `true` if a program that was started with this signal ignored goes on ignoring it.
     ///
-    /// `nohup` asks for that. A script's shell starts jobs in the background with SIGINT and SIGQUIT ignored, which nobody has
-    /// asked for: who presses Ctrl-C wants the robot to stop.
+    /// `nohup` asks for that. A script's shell starts jobs in the background with SIGINT and SIGQUIT ignored, which is
+    /// not intended: a person who presses Ctrl-C wants the robot to stop.
     fn may_be_ignored(self) -> bool {
         ![Number::INT, Number::QUIT, Number::TERM].map(Self::of).contains(&self)
     }

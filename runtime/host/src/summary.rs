@@ -1,4 +1,5 @@
-//! The summary of several runs: how many ended how, how long they took, and a command that repeats the first of each kind.
+//! The summary of several runs: the number of runs with each outcome, their times, and a command that repeats the first
+//! of each kind.
 
 use std::fmt::{self, Write as _};
 use std::time::Duration;

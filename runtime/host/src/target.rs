@@ -31,12 +31,12 @@ pub trait Target {
 
     /// Opens the robot; no motion yet.
     ///
-    /// From the call on, signals no longer end the program: they make `request`. A robot that is open in no time ignores it,
-    /// and the host stops the robot before its first turn. One that takes a while looks at `request` between its steps, and
-    /// when it is made, stops and returns [`Refusal::Ended`].
+    /// From the call on, signals no longer end the program: they make `request`. A robot that opens at once ignores it,
+    /// and the host stops the robot before its first turn. A robot that takes longer checks `request` between its
+    /// steps, and when it is made, stops and returns [`Refusal::Ended`].
     ///
     /// # Errors
-    /// Why there is no robot: a bad option (exit status 2), a fault (exit status 3), or `request`.
+    /// A bad option (exit status 2), a fault (exit status 3), or `request`.
     fn connect(matches: &ArgMatches, period: Duration, request: &StopRequest) -> Result<Self::Robot, Refusal>;
 
     /// Returns the files that the target's own options name: the host refuses to write a file that another option names
@@ -59,8 +59,8 @@ pub trait Target {
         false
     }
 
-    /// Gives the terminal back, if [`Target::screen`] took it. Called on another thread when the program ends while the robot's
-    /// code hangs: it must neither wait nor panic.
+    /// Gives the terminal back, if [`Target::screen`] took it. Called on another thread when the program ends while the
+    /// robot's code hangs: it must neither wait nor panic.
     fn leave_screen() {}
 
     /// The runs to be made instead of one, if these options ask for several: only robots that can be started over have

@@ -33,7 +33,8 @@ pub(crate) fn claim() -> Result<(), String> {
 mod tests {
     use super::{MEMORY, PRIORITY, SCHEDULING, claim};
 
-    /// Scheduling policy and real-time priority of this thread, fields 41 and 40 of proc(5), and the locked memory in kB.
+    /// Returns the scheduling policy and real-time priority of this thread, fields 41 and 40 of proc(5), and the locked
+    /// memory in kB.
     fn granted() -> (u32, u32, u64) {
         let stat = std::fs::read_to_string("/proc/thread-self/stat").unwrap();
         let after_name: Vec<u32> = stat

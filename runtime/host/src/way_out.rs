@@ -41,8 +41,8 @@ pub(crate) fn stop<R: Hosted>(robot: &mut R, ending: Ending) -> (Ending, bool, V
     (ending, orderly, faults)
 }
 
-/// Returns the ending of a plan that is over, or else an [`Ending::Otherwise`], by the causes that are required and by the
-/// robot's goal. The result of a goal is reported.
+/// Returns the ending of a plan that is over, or else an [`Ending::Otherwise`], by the causes that are required and by
+/// the robot's goal. The result of a goal is reported.
 pub(crate) fn judge<R: Hosted>(robot: &R, ending: Ending, required: &Required, report: &mut Report<'_>) -> Ending {
     if ending != Ending::Over {
         return ending;

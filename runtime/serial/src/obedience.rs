@@ -115,7 +115,8 @@ impl Band {
 mod tests {
     use super::*;
 
-    /// Returns the turn, of 100 ms each, in which a robot that brakes with 1 m/s² is found to disobey for half a second.
+    /// Returns the turn, of 100 ms each, in which a robot that brakes with 1 m/s² is found to disobey for half a
+    /// second.
     fn broken(turns: &[([f64; 2], [f64; 2])]) -> Option<usize> {
         let mut obedience = Obedience::new(1.0, 1.0, Duration::from_millis(500));
         turns.iter().enumerate().find_map(|(turn, (told, measured))| {

@@ -9,7 +9,8 @@ use nix::sys::signal::{SigSet, SigmaskHow};
 
 use crate::cart::{FAR, cart, is_no_timing, lines, send, start, wait_until_it_moves};
 
-/// The signals that end a program by default and can be caught, but for SIGUSR1, SIGPIPE and SIGXFSZ, and two real-time ones.
+/// The signals that end a program by default and can be caught, without SIGUSR1, SIGPIPE and SIGXFSZ, and two real-time
+/// ones.
 const ENDING: [(u8, &str); 18] = [
     (1, "SIGHUP"),
     (2, "SIGINT"),

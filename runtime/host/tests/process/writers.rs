@@ -194,7 +194,8 @@ fn a_log_that_nobody_reads_stops_the_robot() {
     assert_eq!(cart.end(&mut child), (Some(3), true));
 }
 
-/// Returns the errors and the end of a cart whose log or path has a reader that goes away after some turns; a signal ends it unless that does.
+/// Returns the errors and the end of a cart whose log or path has a reader that goes away after some turns; a signal
+/// ends the cart unless that does.
 fn deserted(writer: Writer, ends_the_run: bool) -> (String, (Option<i32>, bool)) {
     let mut cart = Cart::new(&format!("deserted_{writer:?}"), &[]);
     let pipe = cart.folder.join(format!("{writer:?}"));
