@@ -51,7 +51,8 @@ impl fmt::Display for Fault {
     }
 }
 
-/// The command for this input: where it is too fast, both speeds are lowered alike, so that the robot stays on its curve.
+/// Returns the command for this input: if it is too fast, both speeds are reduced by the same factor, so that the robot
+/// stays on its curve.
 pub(crate) fn within_limits(input: &Twist) -> Result<Twist, Fault> {
     if !(input.v.0.is_finite() && input.omega.0.is_finite()) {
         return Err(Fault::NoNumber);
@@ -69,8 +70,8 @@ pub struct Hardware {
 }
 
 impl Hardware {
-    /// Opens the robot; it does not move yet. Yours sets its odometry to zero here and arms its watchdog, which has to stop
-    /// the robot when no command comes any more: even this program can be killed.
+    /// Opens the robot; it does not move yet. Yours sets its odometry to zero here and arms its watchdog, which has to
+    /// stop the robot when no command comes any more: even this program can be killed.
     pub(crate) fn open(_options: &ArgMatches, period: Duration) -> Result<Self, Fault> {
         Ok(Self { period, pose: Pose::ORIGIN, velocity: Twist::default() })
     }
@@ -101,8 +102,8 @@ impl Hardware {
         })
     }
 
-    /// Stops the robot; called on every way out, a fault's too. Yours sends the robot's own stop command, even if the last
-    /// one was not answered.
+    /// Stops the robot; called on every way out, also after a fault. Yours sends the robot's own stop command, even if
+    /// the last command was not answered.
     pub(crate) fn halt(&mut self) -> Result<(), Fault> {
         self.velocity = Twist::default();
         Ok(())
