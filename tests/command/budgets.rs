@@ -1,5 +1,5 @@
-//! Inputs that ask for more than any computer has, through the real binaries: each ends within stated memory and time, with a
-//! result or with a message that names the limit.
+//! Inputs that ask for more than any computer has, through the real binaries: each ends within stated memory and time,
+//! with a result or with a message that names the limit.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::ffi::OsStr;
@@ -28,7 +28,8 @@ fn judged(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
     (output.status.code(), String::from_utf8(output.stderr).expect("UTF-8"))
 }
 
-/// A plan `P` that uses a plan so often, which uses another so often, and so on down to `inmost`, which is called `NAME` there.
+/// Returns a plan `P` that uses a plan `uses[0]` times, which uses another plan `uses[1]` times, and so on down to
+/// `inmost`, in which `NAME` is its own name.
 fn multiplied(uses: &[usize], inmost: &str) -> String {
     let name = |level: usize| if level == 0 { "P".to_owned() } else { format!("L{level}") };
     let levels = uses.iter().enumerate().map(|(level, uses)| {

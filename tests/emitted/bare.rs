@@ -1,4 +1,5 @@
-//! No path that panics: the executables of `tests/bare` link although nothing is there that a panic could call, and run.
+//! No path that panics: the executables of `tests/bare` link although there is no function that a panic could call, and
+//! run.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 

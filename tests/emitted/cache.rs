@@ -1,5 +1,5 @@
-//! `mdlec` and the folder that it keeps: several at once, one that is damaged or cannot be used, no network; through the
-//! real binary.
+//! `mdlec` and its cache folder: several processes at once, a cache that is damaged or cannot be used, no network;
+//! through the real binary.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs::{self, File};

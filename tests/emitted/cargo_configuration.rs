@@ -1,4 +1,4 @@
-//! Cargo's configuration does not decide what an executable is: neither a file above the cache or the target, nor a profile in
+//! Cargo's configuration does not change an executable: neither a file above the cache or the target, nor a profile in
 //! cargo's home; through the real binary and the real cargo.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -44,7 +44,8 @@ fn above() -> PathBuf {
     above.canonicalize().unwrap()
 }
 
-/// A configuration in `folder` whose compiler wrapper leaves the file `strange` there, and a toolchain that does not exist.
+/// Writes a configuration in `folder` whose compiler wrapper leaves the file `strange` there, and a toolchain that does
+/// not exist.
 fn put_strangers(folder: &Path) {
     fs::create_dir_all(folder.join(".cargo")).unwrap();
     let wrapper = folder.join(".cargo/wrapper");
@@ -86,7 +87,7 @@ fn assert_done(output: &Output) {
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// A robot of one's own in `rover`, whose driver does `body` in each turn and leaves the file `stopped` when it is stopped.
+/// Writes a robot in `rover`, whose driver does `body` in each turn and leaves the file `stopped` when it is stopped.
 fn with_rover(test: &str, body: &str) -> PathBuf {
     let folder = folder(test);
     assert_done(&command(&folder, &["new-target", "rover"]).output().unwrap());

@@ -90,7 +90,7 @@ fn edits_end_the_defect() {
     assert!(edits > 300, "{edits} edits");
 }
 
-/// Returns `true` if a quoted text is MDLe where it would be written: a file, an element, a header, a condition or a law.
+/// Returns `true` if a quoted text is MDLe in its place: a file, an element, a header, a condition or a law.
 fn can_be_read(quoted: &str) -> bool {
     let fillings = [" (Atom (wait 5) stop) ", " (wait 5) stop", "wait 5", "stop"];
     let places = [

@@ -6,8 +6,8 @@
 use super::assert_trace::{Turn, assert_trace};
 use mdlec::trace::COMPLETED;
 
-/// A line of a trace: the state and the law that it ends with, and the transitions as `from level by`, with the operands that
-/// had fired where these are not the whole condition: `a OR b | b`.
+/// Returns a line of a trace: the state and the law that it ends with, and the transitions as `from level by`, with the
+/// operands that had fired where these are not the whole condition: `a OR b | b`.
 fn line(turn: usize, t: &str, state: u64, law: Option<&str>, fired: &[(u64, usize, &str)]) -> String {
     let law = law.map_or("null".to_owned(), |law| format!("{law:?}"));
     let fired = fired.iter().map(|(from, level, by)| {

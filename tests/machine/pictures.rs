@@ -1,5 +1,5 @@
-//! Pictures of random plans: whole, within their edges, with every condition somewhere, and with the transitions that the
-//! plan has; and what is too large for a picture.
+//! Pictures of random plans: complete, within their edges, with every condition somewhere, and with the transitions
+//! that the plan has; and plans that are too large for a picture.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 #![allow(clippy::print_stdout, reason = "who reads a failure wants the seed and the plan")]
 

@@ -1,5 +1,5 @@
-//! The SCXML machine of a plan does what the plan does: run by an interpreter of SCXML, it leaves the same states in the same
-//! turns as the machine `table`, and ends each turn with the same law.
+//! The SCXML machine of a plan behaves as the plan: run by an interpreter of SCXML, it leaves the same states in the
+//! same turns as the machine `table`, and ends each turn with the same law.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use mdle_tests::chance::Chance;

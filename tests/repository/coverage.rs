@@ -1,5 +1,5 @@
-//! The table `coverage.toml` is whole and true: each production of the grammar, each rule of what a plan means, and each code of a
-//! diagnostic has a test that there is.
+//! The table `coverage.toml` is complete and true: each production of the grammar, each rule of the meaning of plans,
+//! and each code of a diagnostic has a test that exists.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::collections::{BTreeMap, BTreeSet};

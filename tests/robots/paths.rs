@@ -1,5 +1,5 @@
-//! Plans that replay paths, by the executables that `mdlec` builds: where and when they end, what they refuse, and that what
-//! a run records is a path again.
+//! Plans that replay paths, by the executables that `mdlec` builds: where and when they end, which paths they refuse,
+//! and that a recorded path is a path again.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::fs;

@@ -1,5 +1,5 @@
-//! Two Scouts in one world, each with an executable of its own: they hear and touch each other, in lockstep, the same way
-//! each time.
+//! Two Scouts in one world, each with an executable of its own: they hear and touch each other, in lockstep, with the
+//! same result each time.
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::cell::RefCell;
