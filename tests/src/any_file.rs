@@ -51,7 +51,8 @@ pub fn alphabet(bytes: &[u8]) {
     }
 }
 
-/// A machine is read or has an error; of one that is read, Theorem 1 has an answer, and a plan can be made with `after`.
+/// A machine is read or has an error; for a machine that is read, Theorem 1 has an answer, and a plan can be made with
+/// `after`.
 pub fn machine(bytes: &[u8]) {
     let Ok(machine) = theorem::read(&text(bytes)) else { return };
     let answer = theorem::decompile(&machine, STEPS);

@@ -220,7 +220,8 @@ impl Growth<'_> {
         }
     }
 
-    /// A loop; often one that holds or ends in a scope, where leaving the scope and ending the pass must not be mixed up.
+    /// Returns a loop; often one that contains or ends in a scope, where leaving the scope and ending the pass must not
+    /// be confused.
     fn repeated(&mut self, depth: usize) -> Element {
         let times = match self.long && self.chance.percent(40) {
             true => self.chance.pick(&["3000", "5000", "1000000"]),

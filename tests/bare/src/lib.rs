@@ -1,6 +1,6 @@
 //! A robot without std and without an allocator, for plans whose executable links only if no path of it panics.
 //!
-//! Its output comes from outside, and the input that the plan computes goes there: so the optimiser can leave nothing out.
+//! Its output is read, and the input that the plan computes is printed, so that the optimiser can leave nothing out.
 #![no_std]
 
 pub mod alphabet;

@@ -20,7 +20,8 @@ use mdle_tests::executable::folder;
 
 use self::run::{AT_REST, LOCKSTEP, Ran, Robot, drove, ran, send};
 
-/// The signals that end a program by default and can be caught, but for SIGUSR1, SIGPIPE and SIGXFSZ, and one that is real-time.
+/// The signals that end a program by default and can be caught, without SIGUSR1, SIGPIPE and SIGXFSZ, and a real-time
+/// signal.
 const SIGNALS: [i32; 17] = [1, 2, 3, 5, 6, 7, 12, 14, 15, 16, 24, 26, 27, 29, 30, 31, 40];
 /// The moments of a run: before the first command, after the last one, and between.
 const MOMENTS: usize = 20;

@@ -29,7 +29,8 @@ pub(crate) trait Robot: Emulated + Sized {
     fn new(pace: Pace) -> Self;
     fn pose(&self) -> Pose;
     fn orders(&self) -> &Orders;
-    /// Returns `true` if it is as it should be after a run that was stopped, and these bytes were the last that it received.
+    /// Returns `true` if the robot is as it should be after a run that was stopped, and these bytes were the last that
+    /// it received.
     fn is_secured(&self, bytes: &[u8]) -> bool;
 }
 
@@ -198,8 +199,8 @@ fn catch_hang_up() {
     });
 }
 
-/// Runs the program with this configuration on a robot that gives no answers of the type `mute`. `look` is called once before the first
-/// command.
+/// Runs the program with this configuration on a robot that gives no answers of the type `mute`. `look` is called once
+/// before the first command.
 pub(crate) fn ran<R: Robot>(
     config: &Path,
     pace: Pace,

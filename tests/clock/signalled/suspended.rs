@@ -1,4 +1,5 @@
-//! A program that is suspended while its robot drives or is opened, and goes on much later: the robot is not driven (off again).
+//! A program that is suspended while its robot drives or is opened, and goes on much later: the robot does not drive
+//! off again.
 
 use std::time::Duration;
 
@@ -16,7 +17,8 @@ const DRIVES: f64 = 0.03;
 /// it.
 const SUSPENDED: Duration = Duration::from_millis(2500);
 
-/// Returns the run in which the program is suspended when `begins` is true of the robot, and the pose of the robot at the end of that.
+/// Returns the run in which the program is suspended when `begins` returns `true`, and the pose of the robot when the
+/// program goes on.
 fn suspended<R: Robot>(name: &str, begins: fn(&R) -> bool) -> (Ran<R>, Option<Pose>) {
     let folder = folder(&format!("suspended_{name}_{}", R::NAME));
     let config = folder.join("config.toml");

@@ -113,8 +113,8 @@ impl<R: Robot> Ran<R> {
     }
 }
 
-/// Runs the executable on a robot with these faults. `meanwhile` has the running program at hand, and the time since the robot
-/// was switched on.
+/// Runs the executable on a robot with these faults. `meanwhile` gets the running program, and the moment at which the
+/// robot was switched on.
 pub(crate) fn ran<R: Robot>(
     faults: &[&str],
     arguments: &[&str],

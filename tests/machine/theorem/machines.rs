@@ -47,7 +47,8 @@ pub(crate) fn machine(atoms: usize, rows: &[Row]) -> Machine {
     Machine::new(states, interrupts.collect())
 }
 
-/// A machine that often has a string, and else is near to one that has: scopes and loops that nest, the atoms in disorder.
+/// Returns the rows of a machine that often has a string, and otherwise is similar to one that has: scopes and loops
+/// that nest, the atoms in disorder.
 pub(crate) fn likely(chance: &mut Chance, atoms: usize, interrupts: usize) -> Vec<Row> {
     let (mut loops, mut runs) = (Vec::new(), Vec::new());
     enclose(chance, 0, atoms, &mut loops, &mut runs);

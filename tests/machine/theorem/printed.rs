@@ -1,4 +1,5 @@
-//! The printed conditions against their words: every numbering, on whole matrices; and where they differ from the exact ones.
+//! The printed conditions against their words: every numbering, on whole matrices; and where they differ from the exact
+//! ones.
 
 use mdle_tests::chance::Chance;
 use mdlec::theorem::{Answer, Machine, Named, STEPS, State, as_printed, decompile};
@@ -97,7 +98,8 @@ fn they_are_judged_in_the_one_numbering_in_which_they_can_hold() {
 /// A move: from one place to another, by an interrupt.
 type Move = (usize, usize, usize);
 
-/// The sentences of R2 and R3 to the letter, by looking at everything, for machines whose states are in the order of the file.
+/// Returns the results of the sentences of R2 and R3, checked exhaustively, for machines whose states are in the order
+/// of the file.
 fn sentences(atoms: usize, rows: &[Row]) -> [Option<String>; 2] {
     let row = |interrupt: usize, column: usize| rows[interrupt].get(column).copied().flatten().unwrap_or(column);
     let all = (0..atoms).flat_map(|from| (0..rows.len()).map(move |interrupt| (interrupt, from)));

@@ -1,5 +1,5 @@
-//! The theorem as the inverse of Algorithm 1: a plan's machine, its states in disorder, has a string, and the string's machine is
-//! that machine.
+//! The theorem as the inverse of Algorithm 1: a plan's machine, its states in disorder, has a string, and the string
+//! has the same machine.
 
 use std::collections::BTreeMap;
 

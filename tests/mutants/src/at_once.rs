@@ -12,8 +12,8 @@ use crate::refusals::{Executable, Refusal, executables, refusals};
 use crate::schemata::{Body, Schema, VARIABLE};
 use crate::trial::{FAST, Outcome, RUNTIME, TESTS, cargo, environment};
 
-/// A test that works longer than this and three times what it takes without a fault hangs. It is the processor's time, so
-/// that others may work there as well.
+/// A test that works longer than this and three times its duration without a fault hangs. This is processor time, so
+/// that other programs may run at the same time.
 const PATIENCE: Duration = Duration::from_secs(5);
 /// Duration of a wait after which a test hangs.
 const ENDLESS: Duration = Duration::from_secs(1800);

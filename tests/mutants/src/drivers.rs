@@ -1,4 +1,5 @@
-//! Faults in the drivers of robots, from the list in `drivers.toml`, and whether the conformance of the robots catches each.
+//! Faults in the drivers of robots, from the list in `drivers.toml`: the conformance of the robots has to catch each
+//! fault.
 //!
 //! All are built together. An expression becomes `match __fault() { 17 => { the expression with fault 17 } _ => { it } }`,
 //! and the variable chooses one when the test starts.

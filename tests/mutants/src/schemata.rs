@@ -1,7 +1,7 @@
 //! Mutant schemata: a file in which every function holds its mutants beside itself, and one is chosen when it runs.
 //!
-//! A body becomes `match __mutant() { 17 => { the body with change 17 }, _ => { the body } }`, so that one build does for
-//! all mutants. What rustc has to know beforehand cannot choose: constants, and what a function returns as `impl Trait`.
+//! A body becomes `match __mutant() { 17 => { the body with change 17 }, _ => { the body } }`, so that one build is
+//! enough for all mutants. Code that rustc evaluates cannot choose: constants, and functions that return `impl Trait`.
 
 use std::ops::Range;
 

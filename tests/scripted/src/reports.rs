@@ -136,7 +136,8 @@ pub(crate) fn duration(time: Nanos) -> f64 {
     if time == Nanos::MAX { f64::INFINITY } else { time.seconds() }
 }
 
-/// The number of the text of this name with these arguments. Numbers went through SI units, so they are compared closely.
+/// Returns the number of the text of this name with these arguments. Numbers went through SI units, so they are
+/// compared with a tolerance.
 pub(crate) fn number(texts: &[&str], name: &str, arguments: &[Argument]) -> Option<usize> {
     texts.iter().position(|text| {
         let mut words = text.split(' ').filter(|word| *word != "module");
