@@ -2,7 +2,7 @@
 
 use super::lower;
 use crate::diagnostic::{Code, Diagnostic, Span};
-use crate::plan::{Atom, Interrupt, Loop, Node, Nondegenerate, Scope};
+use crate::plan::{Loop, Node, Nondegenerate, Part, Scope};
 
 /// The most states that an expanded form is made for.
 const EXPANDED: u64 = 100_000;
@@ -17,17 +17,20 @@ const TEXT: u64 = 1 << 26;
 /// them.
 pub fn expand(plan: &Nondegenerate) -> Result<Nondegenerate, Diagnostic> {
     expanded_states(plan)?;
-    let parts = Count { unit: "parts of conditions", of: |element| element.interrupt().condition.parts() as u64 };
+    let parts = Count {
+        unit: "parts of conditions",
+        of: |part| part.interrupt().map_or(0, |interrupt| interrupt.condition.parts() as u64),
+    };
     let text = Count {
         unit: "bytes of text",
-        of: |element| {
-            let name = if let Element::Scope(scope) = element { scope.name.len() } else { 0 };
-            (element.interrupt().text.len() + name) as u64
+        of: |part| {
+            let name = part.scope().map_or(0, |scope| scope.name.len());
+            part.interrupt().map_or(0, |interrupt| (interrupt.text.len() + name) as u64)
         },
     };
     for (count, limit) in [(parts, PARTS), (text, TEXT)] {
-        let written = Expanded::of(&plan.plan().root, &count, false).all;
-        let expanded = Expanded::of(&plan.plan().root, &count, true);
+        let written = Expanded::of(Part::Scope(&plan.plan().root), &count, false).all;
+        let expanded = Expanded::of(Part::Scope(&plan.plan().root), &count, true);
         if expanded.all > limit.max(written) {
             return Err(too_large(&expanded, &count, limit, plan));
         }
@@ -40,12 +43,12 @@ pub fn expand(plan: &Nondegenerate) -> Result<Nondegenerate, Diagnostic> {
 /// # Errors
 /// E0501 for a plan that cannot be lowered, E0502 for one of more than 100,000 states.
 pub fn expanded_states(plan: &Nondegenerate) -> Result<u64, Diagnostic> {
-    let states = lower(plan)?.termination;
+    let states = lower(plan)?.states();
     if states <= EXPANDED {
         return Ok(states);
     }
-    let count = Count { unit: "states", of: |element| u64::from(matches!(element, Element::Atom(_))) };
-    let expanded = Expanded { all: states, ..Expanded::of(&plan.plan().root, &count, true) };
+    let count = Count { unit: "states", of: |part| u64::from(part.atom().is_some()) };
+    let expanded = Expanded { all: states, ..Expanded::of(Part::Scope(&plan.plan().root), &count, true) };
     Err(too_large(&expanded, &count, EXPANDED, plan))
 }
 
@@ -87,26 +90,11 @@ fn expand_sequence(body: &[Node]) -> Vec<Node> {
     expanded
 }
 
-/// A part of a plan that expansion copies.
-enum Element<'p> {
-    Atom(&'p Atom),
-    Scope(&'p Scope),
-}
-
-impl<'p> Element<'p> {
-    fn interrupt(&self) -> &'p Interrupt {
-        match self {
-            Self::Atom(atom) => &atom.interrupt,
-            Self::Scope(scope) => &scope.interrupt,
-        }
-    }
-}
-
 /// Something that elements have, and how much of it one has.
 struct Count {
     /// In the plural.
     unit: &'static str,
-    of: fn(&Element<'_>) -> u64,
+    of: fn(Part<'_>) -> u64,
 }
 
 /// The amount of something in a plan, and the loop that multiplies it most.
@@ -118,27 +106,16 @@ struct Expanded {
 
 impl Expanded {
     /// Counts in all passes of finite loops, or in one pass of each.
-    fn of(plan: &Scope, count: &Count, passes: bool) -> Self {
-        let inside = Self::sequence(&plan.body, count, passes);
-        Self { all: inside.all.saturating_add((count.of)(&Element::Scope(plan))), ..inside }
-    }
-
-    fn sequence(body: &[Node], count: &Count, passes: bool) -> Self {
-        body.iter().fold(Self::default(), |sum, node| {
-            let Self { all, largest } = match node {
-                Node::Atom(atom) => Self { all: (count.of)(&Element::Atom(atom)), largest: None },
-                Node::Scope(scope) => Self::of(scope, count, passes),
-                Node::Loop(Loop { times, body, span, .. }) => {
-                    let pass = Self::sequence(body, count, passes);
-                    let all = pass.all.saturating_mul(times.filter(|_| passes).unwrap_or(1));
-                    let is_repeated = times.is_some_and(|times| times > 1);
-                    Self { all, largest: if is_repeated { Some((all, *span)) } else { pass.largest } }
-                }
-            };
-            let size = |repeated: &Option<(u64, Span)>| repeated.map_or(0, |(size, _)| size);
+    fn of(part: Part<'_>, count: &Count, passes: bool) -> Self {
+        let inside = part.body().iter().map(|node| Self::of(node.part(), count, passes));
+        let size = |repeated: &Option<(u64, Span)>| repeated.map_or(0, |(size, _)| size);
+        let inside = inside.fold(Self { all: (count.of)(part), largest: None }, |sum, Self { all, largest }| {
             let largest = if size(&largest) > size(&sum.largest) { largest } else { sum.largest };
             Self { all: sum.all.saturating_add(all), largest }
-        })
+        });
+        let Part::Loop(Loop { times: Some(times), span, .. }) = part else { return inside };
+        let all = inside.all.saturating_mul(if passes { *times } else { 1 });
+        Self { all, largest: if *times > 1 { Some((all, *span)) } else { inside.largest } }
     }
 }
 

@@ -22,6 +22,7 @@ mod size;
 #[cfg(test)]
 mod tests;
 pub(crate) mod untyped;
+mod walk;
 mod words;
 
 pub use crate::syntax::tree::Comparison as Operator;
@@ -33,6 +34,7 @@ pub use conditions::condition_text;
 pub use functions::{Function, Functions};
 pub use nondegenerate::{Nondegenerate, remove_degeneracy};
 pub use resolve::resolve;
+pub use walk::{Part, Visit, Walk};
 pub(crate) use words::Words;
 
 use std::num::NonZeroU32;

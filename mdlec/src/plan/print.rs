@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::angle::{HERE, frame_text};
-use super::{Atom, Interrupt, Node, Plan, Scope};
+use super::{Atom, Interrupt, Part, Plan, Scope, Visit};
 
 impl fmt::Display for Plan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -20,7 +20,21 @@ impl Plan {
 
     fn printed(&self, numbered: bool) -> String {
         let mut printer = Printer { plan: self, text: String::new(), depth: 0, numbered, atoms: 0 };
-        printer.scope(&self.root);
+        for visit in self.walk() {
+            match visit {
+                Visit::Enter(Part::Atom(atom)) => printer.atom(atom),
+                Visit::Enter(Part::Scope(scope)) => printer.open(&scope_head(scope)),
+                Visit::Enter(Part::Loop(repeated)) => {
+                    let times = repeated.times.map_or_else(|| "inf".to_owned(), |times| times.to_string());
+                    printer.open(&format!("ExecPlan {times} {{"));
+                }
+                Visit::Leave(Part::Atom(_)) => {}
+                Visit::Leave(Part::Scope(_) | Part::Loop(_)) => {
+                    printer.depth -= 1;
+                    printer.line("}");
+                }
+            }
+        }
         printer.text
     }
 }
@@ -39,31 +53,10 @@ impl Printer<'_> {
         self.text += &format!("{:indent$}{text}\n", "", indent = 2 * self.depth);
     }
 
-    fn scope(&mut self, scope: &Scope) {
-        let name = if scope.name.is_empty() { "_" } else { scope.name.as_str() };
-        let condition = condition(&scope.interrupt);
-        let condition = if condition == "null" { String::new() } else { format!(" ({condition})") };
-        let here = if scope.here { HERE } else { "" };
-        self.line(&format!("{here}{{ {name}{condition}"));
-        self.inside(&scope.body);
-        self.line("}");
-    }
-
-    fn inside(&mut self, body: &[Node]) {
+    /// A line that opens a scope or a loop.
+    fn open(&mut self, head: &str) {
+        self.line(head);
         self.depth += 1;
-        for node in body {
-            match node {
-                Node::Atom(atom) => self.atom(atom),
-                Node::Scope(scope) => self.scope(scope),
-                Node::Loop(repeated) => {
-                    let times = repeated.times.map_or_else(|| "inf".to_owned(), |times| times.to_string());
-                    self.line(&format!("ExecPlan {times} {{"));
-                    self.inside(&repeated.body);
-                    self.line("}");
-                }
-            }
-        }
-        self.depth -= 1;
     }
 
     fn atom(&mut self, atom: &Atom) {
@@ -73,6 +66,15 @@ impl Printer<'_> {
         let law = &self.plan.quark(atom.law).text;
         self.line(&format!("{frame}(Atom ({}) {law}){number}", condition(&atom.interrupt)));
     }
+}
+
+/// `{ Leg (bumper)`
+fn scope_head(scope: &Scope) -> String {
+    let name = if scope.name.is_empty() { "_" } else { scope.name.as_str() };
+    let condition = condition(&scope.interrupt);
+    let condition = if condition == "null" { String::new() } else { format!(" ({condition})") };
+    let here = if scope.here { HERE } else { "" };
+    format!("{here}{{ {name}{condition}")
 }
 
 fn condition(interrupt: &Interrupt) -> &str {

@@ -22,25 +22,11 @@ impl<'p> Words<'p> {
     pub(crate) fn new(plan: &'p Plan, alphabet: &'p Alphabet) -> Self {
         let (interrupts, counted, laws) = (BTreeSet::new(), BTreeMap::new(), BTreeSet::new());
         let mut words = Self { plan, alphabet, interrupts, counted, laws };
-        words.condition(&plan.root.interrupt);
-        words.sequence(&plan.root.body);
-        words
-    }
-
-    fn sequence(&mut self, body: &'p [Node]) {
-        for node in body {
-            match node {
-                Node::Atom(atom) => {
-                    self.condition(&atom.interrupt);
-                    self.laws.insert(&self.plan.quark(atom.law).text);
-                }
-                Node::Scope(scope) => {
-                    self.condition(&scope.interrupt);
-                    self.sequence(&scope.body);
-                }
-                Node::Loop(repeated) => self.sequence(&repeated.body),
-            }
+        for part in plan.parts() {
+            part.interrupt().into_iter().for_each(|interrupt| words.condition(interrupt));
+            words.laws.extend(part.atom().map(|atom| plan.quark(atom.law).text.as_str()));
         }
+        words
     }
 
     fn condition(&mut self, interrupt: &'p Interrupt) {
@@ -48,8 +34,10 @@ impl<'p> Words<'p> {
         interrupt.condition.each_quark(&mut |id| {
             self.interrupts.insert(&plan.quark(id).text);
         });
-        interrupt.condition.each_counted(&mut |id, reason| {
-            self.counted.insert(&plan.quark(id).text, reason);
+        interrupt.condition.fold((), &mut |(), part| {
+            if let Some((id, reason)) = part.counted() {
+                self.counted.insert(&plan.quark(id).text, reason);
+            }
         });
     }
 
@@ -116,12 +104,11 @@ impl Condition {
     fn each_counted(&self, visit: &mut impl FnMut(QuarkId, &'static str)) {
         match self {
             Self::Wait { quark, .. } | Self::Elapsed { quark, .. } => {
-                visit(*quark, "is a timer, which fires by the time `t` of the turns");
+                Some((*quark, "is a timer, which fires by the time `t` of the turns"))
             }
-            Self::Driven { quark, .. } => visit(*quark, "fires by the `way` of the turns"),
-            Self::Null | Self::Quark(_) | Self::After(_) => {}
-            Self::Or(operands) | Self::And(operands) => operands.iter().for_each(|operand| operand.each_counted(visit)),
-            Self::Not(operand) | Self::Rising { operand, .. } => operand.each_counted(visit),
+            Self::Driven { quark, .. } => Some((*quark, "fires by the `way` of the turns")),
+            Self::Null | Self::Quark(_) | Self::After(_) => None,
+            Self::Or(_) | Self::And(_) | Self::Not(_) | Self::Rising { .. } => None,
         }
     }
 }

@@ -46,9 +46,9 @@ impl<'p> Ends<'p, '_> {
     /// Reason why a sequence never ends; `None` if it can end.
     fn sequence(&mut self, body: &'p [Node]) -> Option<Endless<'p>> {
         let mut nodes = body.iter();
-        let (place, endless) = nodes.by_ref().find_map(|node| Some((node.span(), self.node(node)?)))?;
+        let (place, endless) = nodes.by_ref().find_map(|node| Some((node.part().span(), self.node(node)?)))?;
         let Some(next) = nodes.next() else { return Some(endless) };
-        self.unreachable(["this is never reached", "never runs"], next.span(), endless, place);
+        self.unreachable(["this is never reached", "never runs"], next.part().span(), endless, place);
         Some(Endless { told: true, ..endless })
     }
 

@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 
 pub use numbers::bare_numbers;
 
-use super::{Node, Nondegenerate};
+use super::Nondegenerate;
 use crate::diagnostic::{Code, Diagnostic, Span};
 
 /// Warns of suspicious parts of a plan without degeneracy, once for each place, however often its plan is used.

@@ -1,0 +1,185 @@
+//! A walk over the scopes, loops and atoms of a plan, in the order of its text.
+
+use std::{iter, slice};
+
+use super::{Atom, Interrupt, Loop, Node, Plan, Scope};
+use crate::diagnostic::Span;
+
+/// A scope, a loop or an atom of a plan.
+#[derive(Debug, Clone, Copy)]
+pub enum Part<'p> {
+    /// A behavior, or the plan.
+    Scope(&'p Scope),
+    /// A string that is run several times.
+    Loop(&'p Loop),
+    /// An atom.
+    Atom(&'p Atom),
+}
+
+/// A step of a walk.
+#[derive(Debug, Clone, Copy)]
+pub enum Visit<'p> {
+    /// The part is entered.
+    Enter(Part<'p>),
+    /// The part is left: all that it holds has been.
+    Leave(Part<'p>),
+}
+
+/// A walk over a plan, which visits each part twice.
+#[derive(Debug)]
+pub struct Walk<'p> {
+    root: Option<&'p Scope>,
+    /// The parts that were entered and not left, each with what it still holds.
+    open: Vec<(Part<'p>, slice::Iter<'p, Node>)>,
+}
+
+impl Plan {
+    /// Walks over all parts: each is entered, then all inside it, then it is left.
+    #[must_use]
+    pub fn walk(&self) -> Walk<'_> {
+        Walk { root: Some(&self.root), open: Vec::new() }
+    }
+
+    /// Returns all parts in pre-order: a part comes before those inside it.
+    pub fn parts(&self) -> impl Iterator<Item = Part<'_>> {
+        let mut walk = self.walk();
+        iter::from_fn(move || walk.by_ref().find_map(Visit::entered))
+    }
+}
+
+impl<'p> Walk<'p> {
+    /// The number of parts that enclose the next one to be visited.
+    #[must_use]
+    pub fn depth(&self) -> usize {
+        self.open.len()
+    }
+
+    /// Returns the scopes that enclose the next part to be visited, the innermost first; atoms are none.
+    pub fn scopes(&self) -> impl Iterator<Item = &'p Scope> {
+        self.open.iter().rev().filter_map(|(part, _)| part.scope())
+    }
+
+    fn enter(&mut self, part: Part<'p>) -> Visit<'p> {
+        self.open.push((part, part.body().iter()));
+        Visit::Enter(part)
+    }
+}
+
+impl<'p> Iterator for Walk<'p> {
+    type Item = Visit<'p>;
+
+    fn next(&mut self) -> Option<Visit<'p>> {
+        if let Some(root) = self.root.take() {
+            return Some(self.enter(Part::Scope(root)));
+        }
+        match self.open.last_mut()?.1.next() {
+            Some(node) => Some(self.enter(node.part())),
+            None => self.open.pop().map(|(part, _)| Visit::Leave(part)),
+        }
+    }
+}
+
+impl<'p> Visit<'p> {
+    /// The part, if it is entered.
+    #[must_use]
+    pub fn entered(self) -> Option<Part<'p>> {
+        match self {
+            Self::Enter(part) => Some(part),
+            Self::Leave(_) => None,
+        }
+    }
+}
+
+impl<'p> Part<'p> {
+    /// The interrupt of a scope or an atom; a loop has none.
+    #[must_use]
+    pub fn interrupt(self) -> Option<&'p Interrupt> {
+        match self {
+            Self::Scope(scope) => Some(&scope.interrupt),
+            Self::Atom(atom) => Some(&atom.interrupt),
+            Self::Loop(_) => None,
+        }
+    }
+
+    /// The string that a scope or a loop runs; empty for an atom.
+    #[must_use]
+    pub fn body(self) -> &'p [Node] {
+        match self {
+            Self::Scope(scope) => &scope.body,
+            Self::Loop(repeated) => &repeated.body,
+            Self::Atom(_) => &[],
+        }
+    }
+
+    /// The scope, if it is one.
+    #[must_use]
+    pub fn scope(self) -> Option<&'p Scope> {
+        match self {
+            Self::Scope(scope) => Some(scope),
+            Self::Loop(_) | Self::Atom(_) => None,
+        }
+    }
+
+    /// The atom, if it is one.
+    #[must_use]
+    pub fn atom(self) -> Option<&'p Atom> {
+        match self {
+            Self::Atom(atom) => Some(atom),
+            Self::Scope(_) | Self::Loop(_) => None,
+        }
+    }
+
+    /// The place of an atom, a loop, or the definition of a scope.
+    #[must_use]
+    pub fn span(self) -> Span {
+        match self {
+            Self::Scope(scope) => scope.span,
+            Self::Loop(repeated) => repeated.span,
+            Self::Atom(atom) => atom.span,
+        }
+    }
+}
+
+impl Node {
+    /// The part of the plan that it is.
+    #[must_use]
+    pub fn part(&self) -> Part<'_> {
+        match self {
+            Self::Atom(atom) => Part::Atom(atom),
+            Self::Scope(scope) => Part::Scope(scope),
+            Self::Loop(repeated) => Part::Loop(repeated),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::samples::compiled;
+
+    #[test]
+    fn a_walk_knows_its_depth_and_the_enclosing_scopes() {
+        let text = "{ P (bumper) { Q (Atom (wait 1) stop)^2 } { R (Atom (null) stop) } }";
+        let plan = &compiled(text)[0].plan;
+        let mut walk = plan.walk();
+        let mut seen = Vec::new();
+        loop {
+            let around: Vec<_> = walk.scopes().map(|scope| scope.name.as_str()).collect();
+            let (depth, around) = (walk.depth(), around.join(" in "));
+            let word = match walk.next() {
+                Some(Visit::Enter(part)) => match part {
+                    Part::Scope(scope) => scope.name.clone(),
+                    Part::Loop(_) => "loop".to_owned(),
+                    Part::Atom(_) => "atom".to_owned(),
+                },
+                Some(Visit::Leave(_)) => continue,
+                None => break,
+            };
+            seen.push(format!("{depth} {word} in {around}"));
+        }
+        let expected = ["0 P in ", "1 Q in P", "2 loop in Q in P", "3 atom in Q in P", "1 R in P", "2 atom in R in P"];
+        assert_eq!(seen, expected);
+        assert_eq!(plan.parts().filter_map(Part::atom).count(), 2);
+        assert_eq!(plan.walk().count(), 2 * plan.parts().count());
+    }
+}
