@@ -1,10 +1,10 @@
-//! Holds a machine against its plan: every transition is the one that the plan asks for (paper, Eq. 2;
-//! docs/src/reference/semantics.md, 5.3 and 8).
+//! Oracle of the lowering, which shares no code with it: holds the tables of a machine against its plan.
 //!
-//! It shares no code with the lowering. It walks the plan and says of each scope, loop and atom what follows when it ends,
-//! as the plan's own nesting has it; the machine says the same by its intervals of atoms. As each step outwards agrees, so
-//! does every chain of them: where a transition leads, which scopes and counters it starts afresh, and which loop it
-//! repeats. So its cost does not depend on loop counts, and every lowering is held against its plan.
+//! Every transition is the one that the plan asks for (paper, Eq. 2; docs/src/reference/semantics.md, 5.3 and 8). The
+//! oracle walks the plan and determines for each scope, loop and atom what follows when it ends, by the plan's own nesting;
+//! the machine has the same in its intervals of atoms. As each step outwards agrees, so does every chain of them: where a
+//! transition leads, which scopes and counters it starts afresh, and which loop it repeats. So the cost does not depend on
+//! loop counts, and every lowering is validated.
 
 use std::fmt;
 
