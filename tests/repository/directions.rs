@@ -214,6 +214,47 @@ fn the_lowering_is_validated_by_code_of_its_own() {
 }
 
 #[test]
+fn tables_of_a_machine_are_read_by_its_face() {
+    let mut breaches = Vec::new();
+    for (room, file) in rooms() {
+        if ["picture", "rust", "analysis"].contains(&room.as_str()) {
+            let kinds = names_from(&file.text, "mdle_runtime::fsm").contains(&"Kind".to_owned());
+            breaches.extend(kinds.then(|| format!("{}: an element has a kind of its own", file.path)));
+        }
+        // Lowering writes the tables, the face reads them, and validation shares no code with either.
+        let has_tables = ["lower", "machine", "validation"].map(|name| format!("mdlec/src/fsm/{name}.rs"));
+        let uses_machines = room == "fsm" || names_from(&file.text, "crate").contains(&"fsm".to_owned());
+        if has_tables.contains(&file.path) || !uses_machines {
+            continue;
+        }
+        breaches.extend(indexed(&file.text).map(|line| format!("{}: read an element: {line}", file.path)));
+        let drafts = room != "fsm" && file.text.contains(".draft()");
+        breaches.extend(drafts.then(|| format!("{}: drafts are for tests", file.path)));
+    }
+    assert_eq!(breaches, [""; 0]);
+}
+
+/// The lines that take an entry of a machine's tables by its number.
+fn indexed(text: &str) -> impl Iterator<Item = &str> {
+    let tables = ["brackets", "scopes", "atoms", "laws"];
+    let takes = ["[", ".get(", ".get_mut("];
+    let lines = text.lines().map(str::trim).filter(|line| !line.starts_with("//"));
+    lines.filter(move |line| {
+        let found =
+            tables.iter().flat_map(|table| line.match_indices(table).map(move |(at, _)| (at, at + table.len())));
+        let mut whole =
+            found.filter(|(at, _)| !line[..*at].ends_with(|letter: char| letter.is_alphanumeric() || letter == '_'));
+        whole.any(|(_, end)| takes.iter().any(|take| line[end..].starts_with(take)))
+    })
+}
+
+#[test]
+fn an_index_into_a_table_is_found() {
+    let text = "let a = lowered.brackets[number];\nself.atoms.get(first)\n// laws[0]\nlet scopes = &[1];\nmy_laws[0]; laws.len()";
+    assert_eq!(indexed(text).collect::<Vec<_>>(), ["let a = lowered.brackets[number];", "self.atoms.get(first)"]);
+}
+
+#[test]
 fn stages_of_the_compiler_read_no_files() {
     let mut breaches = Vec::new();
     for (room, file) in rooms().filter(|(room, _)| !WITH_IO.contains(&room.as_str())) {

@@ -200,7 +200,7 @@ impl<'l> Loaded<'l> {
     ) -> LoadedPlan<'r> {
         let (levels, slots) = (self.lowered.sizes().levels, self.lowered.sizes().slots);
         // No plan has more levels than brackets.
-        let memories = vec![false; self.lowered.brackets.len() * self.lowered.sizes().memories];
+        let memories = vec![false; self.lowered.elements().len() * self.lowered.sizes().memories];
         let memory = Memories::new(u32::try_from(self.lowered.sizes().memories).unwrap(), marks, memories.into());
         let entered = Stamps::new(vec![Stamp::START; levels].into(), self.lowered.frames());
         LoadedPlan(InRows::remembering(rows, entered, vec![0; slots].into(), memory), words)

@@ -123,15 +123,6 @@ impl Machine {
     }
 }
 
-// For the rooms that read the tables themselves.
-impl std::ops::Deref for Machine {
-    type Target = Draft;
-
-    fn deref(&self) -> &Draft {
-        &self.0
-    }
-}
-
 fn as_number(index: usize) -> u32 {
     u32::try_from(index).unwrap_or(u32::MAX)
 }

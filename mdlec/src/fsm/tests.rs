@@ -28,11 +28,11 @@ fn brackets_are_in_pre_order_and_count_the_scopes_and_loops_around_them() {
         Bracket::repeat(4, 1, 1, 4, 4, 8),
         Bracket::scope(1, 4, 4, 9),
     ];
-    assert_eq!(lowered.brackets, brackets);
+    assert_eq!(lowered.tables().brackets, brackets);
     let atoms = [Atom::new(1, 1), Atom::new(4, 2), Atom::new(6, 3), Atom::new(7, 6), Atom::new(10, 17)];
-    assert_eq!((&*lowered.atoms, lowered.termination), (&atoms[..], 21));
+    assert_eq!((lowered.tables().atoms, lowered.states()), (&atoms[..], 21));
     assert_eq!((lowered.sizes().levels, lowered.sizes().slots), (3, 2));
-    let names = lowered.scopes.iter().map(|scope| scope.as_ref().map(|scope| &*scope.name));
+    let names = lowered.elements().map(|element| element.interrupt().map(|_| element.name()));
     let (atom, of_loop) = (Some(""), None);
     let expected = [Some("P"), atom, of_loop, of_loop, atom, Some("Q"), atom, atom, of_loop, of_loop, atom];
     assert_eq!(names.collect::<Vec<_>>(), expected);
@@ -41,7 +41,7 @@ fn brackets_are_in_pre_order_and_count_the_scopes_and_loops_around_them() {
 #[test]
 fn a_plan_without_loops_has_no_place_for_a_counter() {
     let lowered = &compiled("{ P (Atom (wait 1) stop) }")[0].lowered;
-    assert_eq!((lowered.sizes().levels, lowered.sizes().slots, lowered.termination), (2, 0, 2));
+    assert_eq!((lowered.sizes().levels, lowered.sizes().slots, lowered.states()), (2, 0, 2));
 }
 
 #[test]
@@ -55,7 +55,7 @@ fn entry_times_have_places_down_to_the_last_level_that_has_a_wait() {
 #[test]
 fn a_plan_of_more_than_two_to_the_53_states_is_refused() {
     let most = "ExecPlan 9007199254740991 { (Atom (wait 1) stop) }";
-    let termination = |body: &str| compiled(&format!("{{ P {body} }}"))[0].lowered.termination;
+    let termination = |body: &str| compiled(&format!("{{ P {body} }}"))[0].lowered.states();
     assert_eq!(termination(most), 1 << 53, "the termination state is the last of them");
     let more = [
         "ExecPlan 9007199254740992 { (Atom (wait 1) stop) }",

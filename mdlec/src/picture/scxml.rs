@@ -37,8 +37,8 @@ pub fn scxml(plan: &Nondegenerate) -> Result<String, Diagnostic> {
     let drives = made.transitions.iter().any(|transition| transition.interrupt.condition.drives());
     let mut machine = Machine { plan, made: &made, drives, listing, facts, text: String::new() };
     machine.head();
-    for state in 0..made.laws.len() {
-        machine.state(state);
+    for (state, law) in made.laws.iter().enumerate() {
+        machine.state(state, plan.quark(*law));
         if machine.text.len() > LONGEST {
             let states = made.laws.len() + 1;
             let message = format!("as SCXML the {states} states of this plan take more than {} MB", LONGEST >> 20);
@@ -117,8 +117,7 @@ impl<'p> Machine<'_, 'p> {
         self.line(0, "</scxml>");
     }
 
-    fn state(&mut self, state: usize) {
-        let law = self.plan.quark(self.made.laws[state]);
+    fn state(&mut self, state: usize, law: &Quark) {
         self.line(1, &format!("<state id=\"{}\">", self.name(state)));
         self.line(2, "<onentry>");
         self.assign(3, "law", &text(law));

@@ -100,8 +100,9 @@ fn known(written: &str, text: String, texts: &BTreeSet<&str>, [one, many]: [&str
 }
 
 impl Condition {
-    /// Visits every quark that fires by the turns' time or way, with the reason why scripts leave it out.
-    fn each_counted(&self, visit: &mut impl FnMut(QuarkId, &'static str)) {
+    /// Returns the quark that fires by the time or the way of the turns, if the condition is one, with the reason why
+    /// scripts leave it out.
+    fn counted(&self) -> Option<(QuarkId, &'static str)> {
         match self {
             Self::Wait { quark, .. } | Self::Elapsed { quark, .. } => {
                 Some((*quark, "is a timer, which fires by the time `t` of the turns"))

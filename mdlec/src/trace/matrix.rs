@@ -1,5 +1,5 @@
-//! The machine `matrix`: an execution as a product of transition matrices (paper, Eq. 4;
-//! docs/src/reference/semantics.md, 8.4 and 9).
+//! Oracle of the machines that robots run, by the paper's own algebra: `matrix`, an execution as a product of transition
+//! matrices (paper, Eq. 4; docs/src/reference/semantics.md, 8.4 and 9). It shares no stepping code with them.
 //!
 //! Of the product `E_i(tm) … E_i(t2) E_i(t1)` of the interrupts that have fired, in order, only the column of the first
 //! state is ever computed: `e(t)` is that product applied to `e(0)`. The scopes that start afresh with a state are not
@@ -117,7 +117,7 @@ impl<'p> MatrixProduct<'p> {
 
     /// Law of the state; `None` when the plan has ended.
     fn law(&self) -> Option<&'p Quark> {
-        self.matrices.laws.get(self.e.row).map(|law| self.plan.quark(*law))
+        self.matrices.laws.iter().nth(self.e.row).map(|law| self.plan.quark(*law))
     }
 
     /// Frame of the law, if a scope around the state is entered in a frame of its own: the innermost such scope has the

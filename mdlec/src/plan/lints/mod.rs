@@ -28,14 +28,3 @@ pub fn lints(plan: &Nondegenerate) -> Vec<Diagnostic> {
     found.retain(|lint| told.insert((lint.span(), lint.code)));
     found
 }
-
-impl Node {
-    /// Span of the node.
-    fn span(&self) -> Span {
-        match self {
-            Self::Atom(atom) => atom.span,
-            Self::Scope(scope) => scope.span,
-            Self::Loop(repeated) => repeated.span,
-        }
-    }
-}
