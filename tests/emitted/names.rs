@@ -125,8 +125,11 @@ fn a_quark_may_be_called_as_any_type_that_a_bound_alphabet_uses() {
     let bound =
         |quark: &str| bind(&alphabet(&format!("interrupt {quark}; signal x unit m tolerance 1; control halt;")));
     let code = code(&bound("a"));
-    let types = types(&code);
-    assert!(types.contains("AnyLaw") && types.contains("Debug") && types.contains("None"), "{types:?}");
+    let mut types = types(&code);
+    let declared = include_str!("../runtime/core/src/alphabet.rs").split_once("macro_rules! alphabet").unwrap().1;
+    let declared = ["pub enum ", "pub struct "].iter().flat_map(|item| declared.split(item).skip(1));
+    types.extend(declared.filter_map(|item| item.split([' ', ';']).next()));
+    assert!(types.contains("AnyLaw") && types.contains("Alphabet") && types.contains("None"), "{types:?}");
     for name in types.into_iter().filter(|name| *name != "Halt") {
         assert!(bound(name).contains(&format!("{name}Quark::new()")), "{name}");
     }

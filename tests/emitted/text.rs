@@ -97,15 +97,30 @@ fn a_plan_that_remembers_is_rows_with_a_memory_and_is_told_what_ends() {
 }
 
 #[test]
-fn a_bound_alphabet_matches_over_what_there_is() {
-    let fired = |declarations: &str| {
-        let rust = one_line(&bind(&alphabet(declarations)));
-        let (_, fired) = rust.split_once("fnfired(&self,y:&Output)->bool{").expect("how an interrupt is asked");
-        fired.split_once(']').map_or(fired, |(fired, _)| fired)[..40].to_owned()
-    };
-    assert!(fired("control halt;").starts_with("match*self{}"));
-    assert!(fired("interrupt a; control halt;").starts_with("matchself{Self::A(interrupt)=>"));
-    assert!(fired("signal x unit m tolerance 1; control halt;").starts_with("matchself{Self::Comparison("));
+fn a_bound_alphabet_has_a_line_for_each_quark_that_runs() {
+    let bound = bind(&alphabet(
+        "/// Halts.\ncontrol halt; control seek(to: length m in 0..2) completes; interrupt a; signal x unit m tolerance 1; \
+         interrupt wait(duration: time s);",
+    ));
+    let tables = "runtime::alphabet! {
+    capabilities: [];
+    limits: [
+        \"seek\" \"to\" in 0.0..2.0,
+    ];
+    interrupts: [
+        \"a\" => A(a),
+    ];
+    signals: [
+        \"x\" => X(x),
+    ];
+    controls: [
+        \"halt\" => Halt(halt),
+        \"seek\" => Seek(seek) completes,
+    ];
+}
+";
+    assert!(bound.ends_with(tables), "{bound}");
+    assert!(bound.contains("/// `halt`: Halts.\nconst fn halt(arguments: &[runtime::Argument<'_>]) -> Option<Halt> {"));
 }
 
 #[test]

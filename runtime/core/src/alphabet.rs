@@ -100,11 +100,11 @@ impl<const N: usize> Bits<N> {
 #[macro_export]
 macro_rules! alphabet {
     (
-        capabilities: [$($capability:literal $(as $needed:ident)?,)*];
-        limits: [$($quark:literal $parameter:literal in $least:literal..$most:literal,)*];
-        interrupts: [$($interrupt_name:literal => $interrupt:ident($interrupt_of:path),)*];
-        signals: [$($signal_name:literal => $signal:ident($signal_of:path),)*];
-        controls: [$($control_name:literal => $control:ident($control_of:path) $($completes:ident)?,)*];
+        capabilities: [$($capability:literal $(as $needed:ident)?),* $(,)?];
+        limits: [$($quark:literal $parameter:literal in $least:literal..$most:literal),* $(,)?];
+        interrupts: [$($interrupt_name:literal => $interrupt:ident($interrupt_of:path)),* $(,)?];
+        signals: [$($signal_name:literal => $signal:ident($signal_of:path)),* $(,)?];
+        controls: [$($control_name:literal => $control:ident($control_of:path) $($completes:ident)?),* $(,)?];
     ) => {
         /// Any interrupt of this robot with its arguments.
         #[derive(Debug)]
