@@ -7,8 +7,8 @@ pub mod quarks;
 use std::convert::Infallible;
 use std::time::Duration;
 
-use mdle_host::clap::{ArgMatches, Command};
-use mdle_host::{Hosted, Pace, Refusal, StopRequest, Time};
+use mdle_host::clap::ArgMatches;
+use mdle_host::{Pace, Refusal, StopRequest, Time};
 use mdle_runtime::{Robot, Volts};
 
 pub use Rover as Target;
@@ -42,16 +42,10 @@ impl Robot for Rover {
     }
 }
 
-impl Hosted for Rover {}
-
 impl mdle_host::Target for Rover {
     const NAME: &'static str = alphabet::NAME;
     const PERIOD: Duration = Duration::from_nanos(alphabet::PERIOD.0);
     type Robot = Self;
-
-    fn arguments(command: Command) -> Command {
-        command
-    }
 
     fn time(_: &ArgMatches) -> Result<Time, String> {
         Ok(Time::Stepped(Pace::Max))

@@ -4,8 +4,8 @@
 use std::convert::Infallible;
 use std::time::Duration;
 
-use mdle_host::clap::{ArgMatches, Command};
-use mdle_host::{Hosted, Pace, Refusal, StopRequest, Time};
+use mdle_host::clap::ArgMatches;
+use mdle_host::{Pace, Refusal, StopRequest, Time};
 use mdle_runtime::Robot;
 
 /// What the program refers to.
@@ -35,16 +35,10 @@ impl Robot for Rover {
     }
 }
 
-impl Hosted for Rover {}
-
 impl mdle_host::Target for Rover {
     const NAME: &'static str = "rover";
     const PERIOD: Duration = Duration::from_millis(100);
     type Robot = Self;
-
-    fn arguments(command: Command) -> Command {
-        command
-    }
 
     fn time(_: &ArgMatches) -> Result<Time, String> {
         Ok(Time::Stepped(Pace::Max))

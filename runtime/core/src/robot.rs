@@ -1,5 +1,7 @@
 //! The kinetic state machine as the run-time system meets it (paper, Eq. 1: an output `y` for an input `u`).
 
+use core::time::Duration;
+
 use crate::{Nanometers, Pose};
 
 /// A robot: takes an input, gives the output that follows it, and can be stopped.
@@ -25,6 +27,13 @@ pub trait Robot {
     /// # Errors
     /// When the command could not be delivered; the hardware's watchdog is then what stops it.
     fn stop(&mut self) -> Result<(), Self::Error>;
+
+    /// Returns the longest time without a command after which the robot is still driven on, by the wall clock: that of the robot's own
+    /// watchdog, or how long its data stay fresh. After a longer gap, as when the program was suspended, the run ends with a
+    /// fault before a command is sent. `None` for two seconds more than the period. Simulated time has no gaps.
+    fn longest_gap(&self) -> Option<Duration> {
+        None
+    }
 }
 
 /// Output of a robot with any sensors: what every robot offers. The traits of [`crate::capability`] have the rest.

@@ -10,7 +10,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use mdle_host::clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
-use mdle_host::{Hosted, Pace, Refusal, Replays, StopRequest, Target, Time, run};
+use mdle_host::{Pace, Refusal, Replays, StopRequest, Target, Time, run};
 use mdle_runtime::fsm::{Atom, Bracket};
 use mdle_runtime::{
     Begin, Cause, Cursor, Fsm, Meters, MetersPerSecond, Nanos, Next, Output, Plan, RadiansPerSecond, Robot, Twist,
@@ -97,8 +97,6 @@ impl Cart {
         panic!("the cart exploded");
     }
 }
-
-impl Hosted for Cart {}
 
 /// An input: a speed; the null input is rest.
 #[derive(Default)]

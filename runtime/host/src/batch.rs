@@ -12,10 +12,11 @@ use std::sync::mpsc::{Sender, channel};
 use std::thread;
 use std::time::Duration;
 
-use mdle_runtime::{Nanos, Plan, PrintableLines};
+use mdle_runtime::{Nanos, Plan, PrintableLines, Robot};
 
 use crate::clock::{Clock, Instants};
 use crate::ending::Ending;
+use crate::observer::{Followed, Observes};
 use crate::progress::Progress;
 use crate::report::{Over, Report};
 use crate::required::Required;
@@ -23,7 +24,7 @@ use crate::safety::{Panicked, shielded};
 use crate::signals::Signals;
 use crate::summary::Summary;
 use crate::turns::{self, Limits, Witnesses};
-use crate::{Hosted, Judgement, Pace, Time};
+use crate::{Judgement, Pace, Time};
 
 /// Timeout of runs that no option limits: no batch shall go on for ever.
 const TIMEOUT: Duration = Duration::from_secs(3600);
@@ -101,9 +102,10 @@ impl Terms<'_> {
 }
 
 /// Makes the runs and reports them; returns the exit status, and the error if `out` could not be written.
-pub(crate) fn run<R: Hosted, P>(
+pub(crate) fn run<R: Robot, P>(
     batch: &Batch<R>,
     plan: &(impl Fn() -> P + Sync),
+    observer: Observes<R>,
     terms: &Terms<'_>,
     out: &mut dyn Write,
     mut progress: Option<Progress<'_>>,
@@ -118,7 +120,7 @@ where
         let jobs = batch.jobs.get().min(usize::try_from(batch.runs.get()).unwrap_or(usize::MAX));
         for _ in 0..jobs {
             let sender = sender.clone();
-            scope.spawn(|| work(batch, plan, terms, &next, sender));
+            scope.spawn(|| work(batch, plan, observer, terms, &next, sender));
         }
         drop(sender);
         for run in done {
@@ -148,9 +150,10 @@ where
 }
 
 /// Makes runs as long as there are some to be made, and no signal comes.
-fn work<R: Hosted, P>(
+fn work<R: Robot, P>(
     batch: &Batch<R>,
     plan: &(impl Fn() -> P + Sync),
+    observer: Observes<R>,
     terms: &Terms<'_>,
     next: &AtomicU64,
     done: Sender<Done>,
@@ -164,19 +167,25 @@ fn work<R: Hosted, P>(
         }
         let seed = batch.first.wrapping_add(number);
         // The batch listens until all threads have ended.
-        let Some(run) = one(batch, seed, plan, terms) else { return };
+        let Some(run) = one(batch, seed, plan, observer, terms) else { return };
         let _ = done.send(run);
     }
 }
 
 /// Makes the run of a seed; `None` if a signal cut it short.
-fn one<R: Hosted, P>(batch: &Batch<R>, seed: u64, plan: &impl Fn() -> P, terms: &Terms<'_>) -> Option<Done>
+fn one<R: Robot, P>(
+    batch: &Batch<R>,
+    seed: u64,
+    plan: &impl Fn() -> P,
+    observer: Observes<R>,
+    terms: &Terms<'_>,
+) -> Option<Done>
 where
     P: Plan<Output = R::Output, Input = R::Input>,
 {
     let mut run = Done { seed, outcome: Outcome::Ended, t: Nanos::ZERO, over: None, contacts: 0 };
     let mut robot = match shielded(|| (batch.robot)(seed)).unwrap_or_else(panicked) {
-        Ok(robot) => robot,
+        Ok(robot) => Followed::new(robot, observer),
         Err(sentence) => return Some(Done { outcome: Outcome::Failed(sentence), ..run }),
     };
     let mut clock = Clock::begin(Standing, Time::Stepped(Pace::Max), terms.period, None);
@@ -193,9 +202,9 @@ where
     run.t = clock.taken();
     let stopped = shielded(|| {
         if ending.as_ref().is_ok_and(Ending::robot_listens) {
-            let _ = robot.exchange(&R::Input::default());
+            let _ = robot.robot.exchange(&R::Input::default());
         }
-        robot.stop().map_err(|fault| fault.to_string())
+        robot.robot.stop().map_err(|fault| fault.to_string())
     });
     let failure = stopped.unwrap_or_else(panicked).err();
     run.outcome = match ending {
@@ -213,7 +222,7 @@ where
         Ok(Ending::Timeout(_) | Ending::Turns(_)) => Outcome::TimedOut,
         Ok(Ending::Over | Ending::Otherwise(_)) => {
             run.over = over;
-            match shielded(|| Ok(robot.judged())).unwrap_or_else(panicked) {
+            match shielded(|| Ok(robot.observer().and_then(|observer| observer.judged()))).unwrap_or_else(panicked) {
                 Err(panic) => Outcome::Failed(panic),
                 Ok(_) if run.over.as_ref().is_some_and(|over| !terms.required.allows(over)) => Outcome::Otherwise,
                 Ok(None) => Outcome::Ended,
@@ -223,7 +232,7 @@ where
             }
         }
     };
-    run.contacts = robot.contacts();
+    run.contacts = robot.observer().map_or(0, |observer| observer.contacts());
     Some(run)
 }
 

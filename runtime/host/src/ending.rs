@@ -57,8 +57,8 @@ pub(crate) enum Ending {
 impl Ending {
     /// Returns the exit status of the executable, after these faults on the way out.
     ///
-    /// A robot that could not be stopped in good order, or a truncated log, is always a fault. A file that
-    /// [`Hosted::finish`](crate::Hosted::finish) could not write is a fault only if the plan is over: any other ending
+    /// A robot that could not be stopped in good order, or a log that is cut short, is a fault whatever came before. What
+    /// [`Observer::finish`](crate::Observer::finish) could not write makes one only of a plan that is over: any other ending
     /// says more.
     pub(crate) fn status(&self, faults: &[Fault]) -> u8 {
         let grave = faults.iter().any(|fault| match fault {

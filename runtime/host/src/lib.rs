@@ -1,8 +1,6 @@
 //! Host of a plan's executable: arguments, clock, signals, safe stop, report and run log, around the turns of the plan.
 //!
-//! For people who write a robot: [`Target`], [`Hosted`], [`Time`] and [`Refusal`]; [`Batch`] if it can be started
-//! again, [`Replays`] if it replays paths, [`read_file`] and [`output_format`] if its options name files, [`Quantity`]
-//! if they take lengths and times. For generated code: [`run`].
+//! For people who write a robot: [`Target`], [`Time`] and [`Refusal`], [`Observer`] where its runs are watched and [`Batch`] where it can be started over, [`Replays`] where it replays paths, [`read_file`] and [`output_format`] where its options name files, [`Quantity`] where they take lengths and times. For generated code: [`run`].
 //!
 //! The robot is stopped in every case: when the plan is over, when an exchange fails, when code panics, when a signal
 //! arrives, when a limit is reached.
@@ -17,6 +15,7 @@ mod files;
 mod held;
 mod log;
 mod named_file;
+mod observer;
 mod operand_text;
 mod outlet;
 mod output_format;
@@ -55,6 +54,7 @@ pub use clap;
 pub use files::{read_file, read_text};
 use mdle_runtime::{Plan, Robot};
 pub use named_file::NamedFile;
+pub use observer::{Around, Ended, Judgement, Observation, Observer, SeveralRuns, Standing};
 use outlet::{Keeps, Outlet};
 pub use output_format::output_format;
 pub use paths::{Replays, setpoints};
@@ -62,7 +62,7 @@ use patience::Patience;
 pub use program::Program;
 pub use quantity::Quantity;
 pub use stop_request::StopRequest;
-pub use target::{Around, Ended, Hosted, Judgement, Pace, Refusal, Standing, Target, Time};
+pub use target::{Pace, Refusal, Target, Time};
 
 /// Runs the plan that `plan` makes on the robot of the target `T`, with the arguments of this process: the `main` of an
 /// executable that mdlec builds calls this function. `program` is the plan's name, for `--help`, whose usage names the
@@ -78,7 +78,8 @@ where
     P: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>,
 {
     let signals = signals::Signals::listen();
-    let signals = signals.and_then(|signals| second_signal::watch(&signals, T::leave_screen).map(|()| signals));
+    let leave_screen = T::OBSERVATION.map_or::<fn(), _>(|| {}, |observation| observation.leave_screen);
+    let signals = signals.and_then(|signals| second_signal::watch(&signals, leave_screen).map(|()| signals));
     let signals = match signals {
         Ok(signals) => signals,
         Err(error) => {

@@ -14,6 +14,7 @@ use crate::clock::{Clock, Instants};
 use crate::ending::{self, Ending, Fault, say};
 use crate::held::Held;
 use crate::log::{Log, Untouched};
+use crate::observer::{Followed, Observes};
 use crate::paths::{self, Recorder};
 use crate::progress::Progress;
 use crate::report::Report;
@@ -21,7 +22,7 @@ use crate::required::Required;
 use crate::safety::{Panicked, shielded};
 use crate::signals::Signals;
 use crate::turns::{self, Limits, Witnesses};
-use crate::{Hosted, NamedFile, Pace, Program, Refusal, Target, Time, named_file, way_out};
+use crate::{NamedFile, Observation, Pace, Program, Refusal, SeveralRuns, Target, Time, named_file, way_out};
 
 /// Environment of a run: time, signals and output; a test provides its own.
 pub(crate) struct Surroundings<'e, I, O> {
@@ -76,11 +77,11 @@ where
             let program = arguments.first().map_or_else(|| program.plan.into(), |called| called.to_string_lossy());
             let terms =
                 Terms { period: options.period, limits, signals: &signals, program: &program, required: &required };
-            return several(&batch, plan, &terms, &mut *out(), err, seen);
+            return several(&batch, plan, observer::<T>(), &terms, &mut *out(), err, seen);
         }
         Ok(None) => {}
     }
-    let Ready { mut robot, time, mut log, mut path } = match ready::<T>(&matches, &options, store, &paths, &signals) {
+    let Ready { robot, time, mut log, mut path } = match ready::<T>(&matches, &options, store, &paths, &signals) {
         Ok(ready) => ready,
         Err(Refusal::Ended(stopped)) => return ended_at_the_start(&signals, stopped, err),
         Err(refusal) => {
@@ -89,7 +90,8 @@ where
             return refusal.tell(err);
         }
     };
-    let screen = T::screen(&matches);
+    let mut robot = Followed::new(robot, observer::<T>());
+    let screen = T::OBSERVATION.is_some_and(|observation| (observation.screen)(&matches));
     let mut out = out();
     if screen {
         out = Box::new(Held::new(out));
@@ -100,7 +102,7 @@ where
     {
         warn_of_lateness(&refused, arguments.first(), err);
     }
-    let mut clock = Clock::begin(instants, time, options.period, robot.longest_gap());
+    let mut clock = Clock::begin(instants, time, options.period, robot.robot.longest_gap());
     let ending = shielded(|| {
         let log = match &mut log {
             Ok(log) => log.as_mut(),
@@ -115,8 +117,8 @@ where
             Witnesses { report: &mut report, log, path: path.as_mut().ok().and_then(Option::as_mut), progress, err };
         turns::run(&mut robot, plan(), limits, &mut clock, &signals, &mut witnesses)
     });
-    let (ending, orderly, faults) = way_out::stop(&mut robot, ending.unwrap_or_else(way_out::bug));
-    let ending = way_out::judge(&robot, ending, &required, &mut report);
+    let (ending, orderly, faults) = way_out::stop(&mut robot.robot, ending.unwrap_or_else(way_out::bug));
+    let ending = way_out::judge(&mut robot, ending, &required, &mut report);
     let orderly = orderly && ending.is_orderly();
     signals.patience().stop_was_tried(Some(ending.status(&faults)));
     let files = way_out::Files {
@@ -168,6 +170,11 @@ fn prepared<T: Target, P: Plan>(matches: &ArgMatches, plan: &impl Fn() -> P) -> 
     prepared.unwrap_or_else(bug_before)
 }
 
+/// The observer of the target's robot, if it has one.
+fn observer<T: Target>() -> Observes<T::Robot> {
+    T::OBSERVATION.map(|observation| observation.observer)
+}
+
 /// The files that the options of a run name.
 fn named_files<T: Target>(matches: &ArgMatches, options: &Options, paths: &[&'static str]) -> Vec<NamedFile> {
     let written = [("--log", &options.log), ("--record-path", &options.path)];
@@ -179,12 +186,9 @@ fn named_files<T: Target>(matches: &ArgMatches, options: &Options, paths: &[&'st
 }
 
 /// The runs of a batch, if these options ask for several.
-fn batch<T: Target>(
-    matches: &ArgMatches,
-    options: &Options,
-    store: PathStore,
-) -> Result<Option<Batch<T::Robot>>, Refusal> {
-    let batch = shielded(|| T::batch(matches, options.period)).unwrap_or_else(bug_before)?;
+fn batch<T: Target>(matches: &ArgMatches, options: &Options, store: PathStore) -> SeveralRuns<T::Robot> {
+    let Some(Observation { batch, .. }) = T::OBSERVATION else { return Ok(None) };
+    let batch = shielded(|| batch(matches, options.period)).unwrap_or_else(bug_before)?;
     let alone =
         [("--log", &options.log), ("--record-path", &options.path)].into_iter().find(|(_, file)| file.is_some());
     if let (Some(_), Some((option, _))) = (&batch, alone) {
@@ -196,9 +200,10 @@ fn batch<T: Target>(
 }
 
 /// Makes the runs of a batch and reports them; returns the exit status.
-fn several<'e, R: Hosted, P>(
+fn several<'e, R: Robot, P>(
     batch: &Batch<R>,
     plan: &(impl Fn() -> P + Sync),
+    observer: Observes<R>,
     terms: &Terms<'_>,
     out: &mut dyn Write,
     err: &'e mut dyn Write,
@@ -208,7 +213,7 @@ where
     P: Plan<Output = R::Output, Input = R::Input>,
 {
     let progress = seen.map(|now| Progress::new(&mut *err, now));
-    let (status, unwritten) = batch::run(batch, plan, terms, out, progress);
+    let (status, unwritten) = batch::run(batch, plan, observer, terms, out, progress);
     if let Some(signal) = terms.signals.caught() {
         Ending::Signal(signal).tell(true, err);
     }

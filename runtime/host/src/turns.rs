@@ -11,13 +11,14 @@ use crate::cause::place;
 use crate::clock::{Clock, Instants, nanos};
 use crate::ending::{Ending, say};
 use crate::log::{Entry, Log};
+use crate::observer::Followed;
 use crate::paths::Recorder;
 use crate::progress::Progress;
 use crate::report::Report;
 use crate::signals::Signals;
 use crate::timing::Timing;
 use crate::transitions::Transitions;
-use crate::{Around, Ended, Hosted, Standing};
+use crate::{Around, Ended, Standing};
 
 /// Limits at which a run ends whose plan is not over.
 #[derive(Debug, Clone, Copy)]
@@ -45,8 +46,8 @@ pub(crate) struct Witnesses<'a, 'o, Y> {
 /// Runs `plan` on `robot`, from the exchange of turn 0 until something ends it.
 ///
 /// The robot still executes its last input: the caller has to send the null input and the stop, also after a panic.
-pub(crate) fn run<R: Hosted, P, I: Instants>(
-    robot: &mut R,
+pub(crate) fn run<R: Robot, P, I: Instants>(
+    robot: &mut Followed<R>,
     plan: P,
     limits: Limits,
     clock: &mut Clock<I>,
@@ -59,7 +60,7 @@ where
     if let Some(signal) = signals.caught() {
         return Ending::Signal(signal);
     }
-    let mut y = match exchange(robot, &R::Input::default()) {
+    let mut y = match exchange(&mut robot.robot, &R::Input::default()) {
         Ok(output) => output,
         Err(ending) => return ending,
     };
@@ -86,8 +87,8 @@ where
             Turn::Law(_) | Turn::Cut => {}
             Turn::Over => break Ending::Over,
         }
-        if robot.looks() {
-            robot.turned(&standing(&machine, t, witnesses.report));
+        if let Some(observer) = robot.observer().filter(|observer| observer.looks()) {
+            observer.turned(&standing(&machine, t, witnesses.report));
         }
         number = number.saturating_add(1);
         if let Some(ending) = limits.reached(number, t) {
@@ -99,7 +100,7 @@ where
         if let Err(ending) = clock.next_turn(signals) {
             break ending;
         }
-        y = match exchange(robot, &turn.input()) {
+        y = match exchange(&mut robot.robot, &turn.input()) {
             Ok(output) => output,
             Err(ending) => break ending,
         };
@@ -109,19 +110,21 @@ where
     ending
 }
 
-/// Reports to the robot which atom has begun.
-fn began<R: Hosted, P: Plan>(robot: &mut R, machine: &Machine<P>, t: Nanos) {
+/// Tells the observer which atom has begun.
+fn began<R, P: Plan>(robot: &mut Followed<R>, machine: &Machine<P>, t: Nanos) {
+    let Some(observer) = robot.observer() else { return };
     let plan = machine.plan();
     let atom = machine.atom().and_then(|atom| Some((atom, plan.fsm().atoms.get(atom as usize)?)));
     if let Some((atom, written)) = atom {
-        robot.began(written.state, plan.law(atom), t);
+        observer.began(written.state, plan.law(atom), t);
     }
 }
 
-/// Reports to the robot that its turns have ended, and the cause.
-fn ended<R: Hosted, P: Plan>(robot: &mut R, machine: &Machine<P>, ending: &Ending, report: &Report<'_>, t: Nanos) {
+/// Tells the observer that the turns have ended, and by what.
+fn ended<R, P: Plan>(robot: &mut Followed<R>, machine: &Machine<P>, ending: &Ending, report: &Report<'_>, t: Nanos) {
+    let Some(observer) = robot.observer() else { return };
     let by = report.over().map_or_else(|| ending.brief(), |over| over.cause.clone());
-    robot.ended(&Ended { plan: machine.plan().name(0), is_over: *ending == Ending::Over, by: &by, t });
+    observer.ended(&Ended { plan: machine.plan().name(0), is_over: *ending == Ending::Over, by: &by, t });
 }
 
 /// Returns the state of a plan that is not over.

@@ -2,12 +2,15 @@
 
 use std::io::{self, Write};
 
+use mdle_runtime::Robot;
+
 use crate::ending::{Ending, Fault};
 use crate::log::Log;
+use crate::observer::Followed;
 use crate::report::Report;
 use crate::required::Required;
 use crate::safety::{Panicked, shielded};
-use crate::{Hosted, Judgement, turns};
+use crate::{Judgement, turns};
 
 /// A panic as an ending.
 pub(crate) fn bug(Panicked(message): Panicked) -> Ending {
@@ -17,7 +20,7 @@ pub(crate) fn bug(Panicked(message): Panicked) -> Ending {
 /// Stops the robot; returns the ending after that, whether the robot's code can still be trusted, and the faults.
 ///
 /// The null input is sent once more where the robot still listens, then the stop command in any case.
-pub(crate) fn stop<R: Hosted>(robot: &mut R, ending: Ending) -> (Ending, bool, Vec<Fault>) {
+pub(crate) fn stop<R: Robot>(robot: &mut R, ending: Ending) -> (Ending, bool, Vec<Fault>) {
     let last = if ending.robot_listens() {
         let last = shielded(|| turns::exchange(robot, &R::Input::default()).map(drop));
         last.unwrap_or_else(|panicked| Err(bug(panicked))).err()
@@ -43,11 +46,16 @@ pub(crate) fn stop<R: Hosted>(robot: &mut R, ending: Ending) -> (Ending, bool, V
 
 /// Returns the ending of a plan that is over, or else an [`Ending::Otherwise`], by the causes that are required and by
 /// the robot's goal. The result of a goal is reported.
-pub(crate) fn judge<R: Hosted>(robot: &R, ending: Ending, required: &Required, report: &mut Report<'_>) -> Ending {
+pub(crate) fn judge<R>(
+    robot: &mut Followed<R>,
+    ending: Ending,
+    required: &Required,
+    report: &mut Report<'_>,
+) -> Ending {
     if ending != Ending::Over {
         return ending;
     }
-    let judgement = match shielded(|| robot.judged()) {
+    let judgement = match shielded(|| robot.observer().and_then(|observer| observer.judged())) {
         Ok(judgement) => judgement,
         Err(panicked) => return bug(panicked),
     };
@@ -74,8 +82,8 @@ pub(crate) struct Files {
 }
 
 /// Reports why the run ended, and all faults, once the robot was stopped; returns the exit status.
-pub(crate) fn tell<R: Hosted>(
-    robot: &mut R,
+pub(crate) fn tell<R>(
+    robot: &mut Followed<R>,
     ending: Ending,
     orderly: bool,
     mut faults: Vec<Fault>,
@@ -92,7 +100,7 @@ pub(crate) fn tell<R: Hosted>(
     // Before the robot finishes, which may take a while.
     ending.tell(is_stopped, err);
     if orderly {
-        let finished = shielded(|| robot.finish());
+        let finished = shielded(|| robot.observer().map_or(Ok(()), |observer| observer.finish()));
         let finished = finished.unwrap_or_else(|Panicked(message)| Err(format!("a panic: {message}")));
         faults.extend(finished.err().map(Fault::Finish));
     }

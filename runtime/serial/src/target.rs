@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 use std::time::Duration;
 
 use mdle_host::clap::{ArgMatches, Command};
-use mdle_host::{Hosted, NamedFile, Refusal, Replays, StopRequest, Target, Time};
+use mdle_host::{NamedFile, Refusal, Replays, StopRequest, Target, Time};
 use mdle_runtime::{Nanos, PathStore, Robot, Sensed, Twist};
 
 use crate::capacity::carries;
@@ -13,7 +13,7 @@ use crate::configuration::{Configuration, Configured};
 use crate::options;
 
 /// A robot on a serial line, as its driver implements it.
-pub trait SerialRobot: Robot<Output = Sensed, Input = Twist, Error: Into<Refusal>> + Hosted + Sized + 'static {
+pub trait SerialRobot: Robot<Output = Sensed, Input = Twist, Error: Into<Refusal>> + Sized + 'static {
     /// The name of the target, as `mdlec --target` takes it.
     const NAME: &'static str;
     /// The period of a turn unless `--period` says otherwise.

@@ -106,11 +106,6 @@ impl Atrv {
         }
     }
 
-    /// Returns the time without a command after which the robot is stopped.
-    pub(crate) fn watchdog(&self) -> Duration {
-        Duration::from_millis(self.config.watchdog)
-    }
-
     fn prepare(&mut self, period: Duration, request: &StopRequest) -> Result<(), Fault> {
         let go_on = || if request.is_made() { Err(Fault::Ended(None)) } else { Ok(()) };
         go_on()?;
@@ -286,5 +281,9 @@ impl Robot for Atrv {
             self.rest();
             before.and(sent)
         })
+    }
+
+    fn longest_gap(&self) -> Option<Duration> {
+        Some(Duration::from_millis(self.config.watchdog))
     }
 }

@@ -83,7 +83,7 @@ impl Scout {
     }
 
     /// Returns the time without a command after which the robot stops itself.
-    pub(crate) fn watchdog(&self) -> Duration {
+    fn watchdog(&self) -> Duration {
         Duration::from_secs(self.config.watchdog.into())
     }
 
@@ -237,5 +237,9 @@ impl Robot for Scout {
             let _ = self.line.say(&Command::Limp, Instant::now() + ANSWER);
         }
         stands.and(let_go.map(|_| ()))
+    }
+
+    fn longest_gap(&self) -> Option<Duration> {
+        Some(self.watchdog())
     }
 }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use mdle_host::{Hosted, Refusal, StopRequest};
+use mdle_host::{Refusal, StopRequest};
 use mdle_runtime::{MetersPerSecond, Nanos, PathStore, RadiansPerSecond, Twist};
 use mdle_serial::{Clock, SerialRobot};
 
@@ -46,17 +46,12 @@ impl SerialRobot for Scout {
     }
 }
 
-impl Hosted for Scout {
-    fn longest_gap(&self) -> Option<Duration> {
-        Some(self.watchdog())
-    }
-}
-
 impl From<Fault> for Refusal {
     fn from(fault: Fault) -> Self {
-        match fault {
-            Fault::Ended(unstopped) => Self::Ended(unstopped.map_or(Ok(()), |fault| Err(fault.to_string()))),
-            other => Self::Fault(other.to_string()),
+        if let Fault::Ended(unstopped) = fault {
+            Self::Ended(unstopped.map_or(Ok(()), |fault| Err(fault.to_string())))
+        } else {
+            Self::Fault(fault.to_string())
         }
     }
 }

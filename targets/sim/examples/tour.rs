@@ -11,8 +11,8 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use mdle_host::clap::{Arg, ArgMatches, Command, value_parser};
-use mdle_host::{Batch, Ended, Hosted, Judgement, NamedFile, Refusal, Standing, StopRequest, Target, Time, run};
-use mdle_runtime::{Nanos, Robot, Twist};
+use mdle_host::{Batch, NamedFile, Observation, Refusal, SeveralRuns, StopRequest, Target, Time, run};
+use mdle_runtime::{Robot, Twist};
 use mdle_sim::{Fault, Observed, Sensed, Sim};
 
 fn main() -> ExitCode {
@@ -28,10 +28,29 @@ struct Breaking {
     left: Option<u64>,
 }
 
+/// What the simulator makes of its runs.
+const SIM: Option<Observation<Observed>> = Sim::OBSERVATION;
+
+/// The runs of the simulator, each with a robot that may break down.
+fn batch(matches: &ArgMatches, period: Duration) -> SeveralRuns<Breaking> {
+    let batch = SIM.map_or(Ok(None), |sim| (sim.batch)(matches, period))?;
+    let left = matches.get_one("panic-at").copied();
+    Ok(batch.map(|Batch { first, runs, jobs, json, robot, alone }| {
+        let robot = Box::new(move |seed| Ok(Breaking { robot: robot(seed)?, left }));
+        Batch { first, runs, jobs, json, robot, alone }
+    }))
+}
+
 impl Target for Fragile {
     const NAME: &'static str = Sim::NAME;
     const PERIOD: Duration = Sim::PERIOD;
     type Robot = Breaking;
+    const OBSERVATION: Option<Observation<Breaking>> = Some(Observation {
+        observer: |breaking| &mut breaking.robot,
+        screen: |matches| SIM.is_some_and(|sim| (sim.screen)(matches)),
+        leave_screen: || SIM.iter().for_each(|sim| (sim.leave_screen)()),
+        batch,
+    });
 
     fn arguments(command: Command) -> Command {
         let option = Arg::new("panic-at").long("panic-at").value_name("N").value_parser(value_parser!(u64));
@@ -48,23 +67,6 @@ impl Target for Fragile {
 
     fn files(matches: &ArgMatches) -> Vec<NamedFile> {
         Sim::files(matches)
-    }
-
-    fn leave_screen() {
-        Sim::leave_screen();
-    }
-
-    fn screen(matches: &ArgMatches) -> bool {
-        Sim::screen(matches)
-    }
-
-    fn batch(matches: &ArgMatches, period: Duration) -> Result<Option<Batch<Breaking>>, Refusal> {
-        let Some(Batch { first, runs, jobs, json, robot, alone }) = Sim::batch(matches, period)? else {
-            return Ok(None);
-        };
-        let left = matches.get_one("panic-at").copied();
-        let robot = Box::new(move |seed| Ok(Breaking { robot: robot(seed)?, left }));
-        Ok(Some(Batch { first, runs, jobs, json, robot, alone }))
     }
 }
 
@@ -85,35 +87,5 @@ impl Robot for Breaking {
 
     fn stop(&mut self) -> Result<(), Fault> {
         self.robot.stop()
-    }
-}
-
-impl Hosted for Breaking {
-    fn began(&mut self, number: u64, law: &str, t: Nanos) {
-        self.robot.began(number, law, t);
-    }
-
-    fn ended(&mut self, ended: &Ended<'_>) {
-        self.robot.ended(ended);
-    }
-
-    fn looks(&self) -> bool {
-        self.robot.looks()
-    }
-
-    fn turned(&mut self, standing: &Standing<'_>) {
-        self.robot.turned(standing);
-    }
-
-    fn judged(&self) -> Option<Judgement> {
-        self.robot.judged()
-    }
-
-    fn contacts(&self) -> u64 {
-        self.robot.contacts()
-    }
-
-    fn finish(&mut self) -> Result<(), String> {
-        self.robot.finish()
     }
 }

@@ -1,6 +1,6 @@
 //! The simulated robot with whoever looks on: its pictures, and the table of where it was.
 
-use mdle_host::{Ended, Hosted, Judgement, Standing};
+use mdle_host::{Ended, Judgement, Observer, Standing};
 use mdle_runtime::capability::Bumpers as _;
 use mdle_runtime::{Nanos, PathStore, Pose, Robot, Sensed, Twist};
 
@@ -154,7 +154,7 @@ impl Robot for Observed {
     }
 }
 
-impl Hosted for Observed {
+impl Observer for Observed {
     fn began(&mut self, number: u64, law: &str, t: Nanos) {
         if let Some(Pictures { trail, .. }) = &mut self.pictures {
             trail.began(number, law, t);

@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use mdle_host::clap::{ArgMatches, Command};
-use mdle_host::{Batch, NamedFile, Refusal, Replays, StopRequest, Target, Time};
+use mdle_host::{NamedFile, Observation, Refusal, Replays, StopRequest, Target, Time};
 use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Twist};
 
 use crate::observed::Observed;
@@ -23,6 +23,12 @@ impl Target for Sim {
         take: Observed::take_paths,
         speed: |sensed| sensed.velocity.v,
     });
+    const OBSERVATION: Option<Observation<Observed>> = Some(Observation {
+        observer: |robot| robot,
+        screen: options::watch,
+        leave_screen: crate::watch::leave_screen,
+        batch: |matches, period| setup::batch(matches, period).map_err(Refusal::Usage),
+    });
 
     fn arguments(command: Command) -> Command {
         options::arguments(command)
@@ -38,17 +44,5 @@ impl Target for Sim {
 
     fn files(matches: &ArgMatches) -> Vec<NamedFile> {
         options::files(matches)
-    }
-
-    fn leave_screen() {
-        crate::watch::leave_screen();
-    }
-
-    fn screen(matches: &ArgMatches) -> bool {
-        options::watch(matches)
-    }
-
-    fn batch(matches: &ArgMatches, period: Duration) -> Result<Option<Batch<Observed>>, Refusal> {
-        setup::batch(matches, period).map_err(Refusal::Usage)
     }
 }

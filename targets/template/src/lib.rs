@@ -9,7 +9,7 @@ use std::time::Duration;
 
 pub use hardware::{Fault, Hardware};
 use mdle_host::clap::{ArgMatches, Command};
-use mdle_host::{Hosted, Refusal, StopRequest, Time};
+use mdle_host::{Refusal, StopRequest, Time};
 use mdle_runtime::Robot;
 /// The robot's output: what its sensors say.
 pub use mdle_runtime::Sensed as Output;
@@ -51,5 +51,3 @@ impl Robot for Hardware {
         self.halt()
     }
 }
-
-impl Hosted for Hardware {}

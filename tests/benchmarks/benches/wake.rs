@@ -10,7 +10,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use mdle_host::clap::{self, ArgMatches};
-use mdle_host::{Hosted, Refusal, StopRequest, Target, Time};
+use mdle_host::{Refusal, StopRequest, Target};
 use mdle_runtime::fsm::{Atom, Bracket};
 use mdle_runtime::{Begin, Cursor, Fsm, Nanos, Next, Output, Plan, Robot};
 use rustix::mm::{MlockAllFlags, mlockall};
@@ -129,20 +129,10 @@ impl Robot for Stopwatch {
     }
 }
 
-impl Hosted for Stopwatch {}
-
 impl Target for Stopwatch {
     const NAME: &'static str = "stopwatch";
     const PERIOD: Duration = PERIOD;
     type Robot = Self;
-
-    fn arguments(command: clap::Command) -> clap::Command {
-        command
-    }
-
-    fn time(_: &ArgMatches) -> Result<Time, String> {
-        Ok(Time::Wall)
-    }
 
     fn connect(_: &ArgMatches, _: Duration, _: &StopRequest) -> Result<Self, Refusal> {
         Ok(Self { origin: Instant::now(), begins: Vec::with_capacity(TURNS + 1) })

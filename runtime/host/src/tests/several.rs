@@ -13,7 +13,7 @@ use crate::batch::{self, Batch, Terms};
 use crate::required::{self, Required};
 use crate::signals::{Signal, Signals};
 use crate::turns::Limits;
-use crate::{Hosted, Judgement};
+use crate::{Judgement, Observer};
 
 /// A robot whose run is decided by its seed: the plan's outermost interrupt fires in turn `seed`, if ever.
 struct Seeded {
@@ -46,7 +46,7 @@ impl Robot for Seeded {
     }
 }
 
-impl Hosted for Seeded {
+impl Observer for Seeded {
     fn judged(&self) -> Option<Judgement> {
         self.has_goal.then(|| match self.seed % 9 {
             2 => Judgement::Bumped,
@@ -99,7 +99,7 @@ impl Several {
         let period = Duration::from_millis(100);
         let terms = Terms { period, limits, signals, program: "./it's", required: &required };
         let mut out = Vec::new();
-        let (status, unwritten) = batch::run(&batch, &ToyPlan::lab, &terms, &mut out, None);
+        let (status, unwritten) = batch::run(&batch, &ToyPlan::lab, Some(|robot| robot), &terms, &mut out, None);
         assert!(unwritten.is_none());
         (status, String::from_utf8(out).unwrap())
     }

@@ -14,7 +14,7 @@ use super::plan::ToyPlan;
 use crate::clock::Instants;
 use crate::session::{Surroundings, session};
 use crate::signals::{Signal, Signals};
-use crate::{Around, Ended, Hosted, Judgement, Pace, Refusal, Standing, StopRequest, Target, Time};
+use crate::{Around, Ended, Judgement, Observation, Observer, Pace, Refusal, Standing, StopRequest, Target, Time};
 
 /// An output: what fires while which atom, as written, is the current one.
 #[derive(Debug, Clone, Default)]
@@ -187,6 +187,7 @@ impl Target for ToyTarget {
     const NAME: &'static str = "toy";
     const PERIOD: Duration = Duration::from_millis(100);
     type Robot = Toy;
+    const OBSERVATION: Option<Observation<Toy>> = Some(Observation::by(|toy| toy));
 
     fn arguments(command: Command) -> Command {
         command.arg(Arg::new("device").long("device").value_name("PATH").help("Where the toy is"))
@@ -257,7 +258,7 @@ impl Robot for Toy {
     }
 }
 
-impl Hosted for Toy {
+impl Observer for Toy {
     fn began(&mut self, state: u64, law: &str, t: Nanos) {
         self.note(format!("began {state} {law} at {}", t.seconds()));
     }

@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use mdle_host::clap::Command;
-use mdle_host::{Ended, Hosted, StopRequest, Target};
+use mdle_host::{Ended, Observer as _, StopRequest, Target};
 use mdle_runtime::{Machine, Meters, Nanos, Plan, Pose, Radians, Robot, Transition, Turn, Twist, Watch};
 use mdle_sim::{Body, Make, Observed, Sim, Simulated, World};
 use plan::Tour;

@@ -1,0 +1,160 @@
+//! The observer of a run: what a simulated robot makes of its own run, beside driving, and what a driver never needs.
+//! See docs/src/reference/interfaces.md, 7.4.
+
+use std::fmt;
+use std::time::Duration;
+
+use clap::ArgMatches;
+use mdle_runtime::Nanos;
+
+use crate::{Batch, Refusal};
+
+/// Follows what a plan does on a robot: for pictures, a live view, or a goal.
+pub trait Observer {
+    /// An atom began in the turn at time `t`, and its law is now applied. `number` is its state in the first pass of the loops
+    /// around it, so that every pass of an atom as written has one number.
+    fn began(&mut self, _number: u64, _law: &str, _t: Nanos) {}
+
+    /// The turns of the run have ended; the robot has not been stopped yet.
+    fn ended(&mut self, _ended: &Ended<'_>) {}
+
+    /// Returns `true` if [`Observer::turned`] is to be called.
+    fn looks(&self) -> bool {
+        false
+    }
+
+    /// A turn was made, and this is where the plan stands.
+    fn turned(&mut self, _standing: &Standing<'_>) {}
+
+    /// Returns the result of a run whose plan is over; `None` if the robot was to come to no goal. Asked after the robot was
+    /// stopped.
+    fn judged(&self) -> Option<Judgement> {
+        None
+    }
+
+    /// Returns the number of contacts with something so far.
+    fn contacts(&self) -> u64 {
+        0
+    }
+
+    /// Called once after the robot was stopped, on every orderly way out: write what was asked for, such as a plot.
+    ///
+    /// # Errors
+    /// A sentence for the operator about what could not be written.
+    fn finish(&mut self) -> Result<(), String> {
+        Ok(())
+    }
+}
+
+/// The part of a target whose robot has an observer.
+pub struct Observation<R> {
+    /// Returns the observer.
+    pub observer: fn(&mut R) -> &mut dyn Observer,
+    /// Returns `true` if the robot shows its run on standard output itself, as with a live view: then the report waits until
+    /// the robot is stopped, and the robot leaves the screen when it is.
+    pub screen: fn(&ArgMatches) -> bool,
+    /// Gives the terminal back, if [`Observation::screen`] took it. Called on another thread when the program ends while the
+    /// robot's code hangs: it must neither wait nor panic.
+    pub leave_screen: fn(),
+    /// Returns the runs to be made instead of one, if these options ask for several: only robots that can be started over
+    /// have such options. No run has begun yet.
+    pub batch: fn(&ArgMatches, Duration) -> SeveralRuns<R>,
+}
+
+/// Runs to be made instead of one, if several were asked for; a bad option or a fault otherwise.
+pub type SeveralRuns<R> = Result<Option<Batch<R>>, Refusal>;
+
+impl<R> Observation<R> {
+    /// An observer without a screen, of one run at a time.
+    pub const fn by(observer: fn(&mut R) -> &mut dyn Observer) -> Self {
+        Self { observer, screen: |_| false, leave_screen: || {}, batch: |_, _| Ok(None) }
+    }
+}
+
+impl<R> fmt::Debug for Observation<R> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Observation").finish_non_exhaustive()
+    }
+}
+
+/// A robot with the observer of its run, if it has one.
+pub(crate) struct Followed<R> {
+    pub(crate) robot: R,
+    observer: Observes<R>,
+}
+
+/// Returns the observer of a robot.
+pub(crate) type Observes<R> = Option<fn(&mut R) -> &mut dyn Observer>;
+
+impl<R> Followed<R> {
+    pub(crate) fn new(robot: R, observer: Observes<R>) -> Self {
+        Self { robot, observer }
+    }
+
+    pub(crate) fn observer(&mut self) -> Option<&mut dyn Observer> {
+        self.observer.map(|observer| observer(&mut self.robot))
+    }
+}
+
+/// Where a plan stands after a turn in which it was not over.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Standing<'a> {
+    /// The time of the turn.
+    pub t: Nanos,
+    /// The number of the current atom's state.
+    pub state: u64,
+    /// The quark text of its law.
+    pub law: &'a str,
+    /// Its line, the names of the scopes around it and the passes of loops: `patrol.mdle:12, Leg, pass 3 of 5`; empty for a
+    /// plan that was written in Rust.
+    pub place: String,
+    /// The reason for which it runs: the operands that fired, with their values; empty for the plan's first.
+    pub since: &'a str,
+    /// The scopes around it, the plan first and the atom last.
+    pub scopes: Vec<Around<'a>>,
+}
+
+/// The end of a run's turns, for a person.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Ended<'a> {
+    /// Name of the plan; empty if it has none.
+    pub plan: &'a str,
+    /// `true` if the plan is over, `false` if it was stopped before.
+    pub is_over: bool,
+    /// Cause of the end, such as `bumper (Patrol)` or `--timeout`.
+    pub by: &'a str,
+    /// Time of the last turn.
+    pub t: Nanos,
+}
+
+/// A scope around the current atom.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Around<'a> {
+    /// Its name; empty for an atom.
+    pub name: &'a str,
+    /// The condition text of its interrupt.
+    pub condition: &'a str,
+    /// How long ago it was entered.
+    pub since: Nanos,
+}
+
+/// Result of a run whose plan is over, for a robot that was to come to a goal.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Judgement {
+    /// The robot is in its goal, and touches nothing.
+    Arrived,
+    /// The robot touches something.
+    Bumped,
+    /// The robot is outside its goal; a few words that say where.
+    Astray(String),
+}
+
+impl fmt::Display for Judgement {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Arrived => write!(f, "arrived"),
+            Self::Bumped => write!(f, "bumped"),
+            Self::Astray(place) => write!(f, "astray at {place}"),
+        }
+    }
+}
