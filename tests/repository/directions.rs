@@ -18,7 +18,8 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("targets/scout", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms"]),
     ("targets/atrv", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms"]),
     ("targets/template", &["mdle-runtime", "mdle-host", "mdle-atoms"]),
-    ("targets/emulator", &["mdle-host", "mdle-sim"]),
+    // The runtime, the line and the conformance are there for the tests of robots alone.
+    ("targets/emulator", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms", "mdle-sim"]),
     // The drivers and the conformance of robots are there for their tests alone: they share no word of the language.
     ("targets/scout/emulator", &["mdle-runtime", "mdle-host", "mdle-atoms", "mdle-sim", "mdle-emulator", "mdle-scout"]),
     ("targets/atrv/emulator", &["mdle-runtime", "mdle-host", "mdle-atoms", "mdle-sim", "mdle-emulator", "mdle-atrv"]),

@@ -11,6 +11,8 @@ mod program;
 mod serve;
 mod several;
 mod staged;
+#[cfg(feature = "trial")]
+mod trial;
 
 pub use driven::{Driven, driven};
 pub use fault::{Ailment, At, Fault};
@@ -21,3 +23,5 @@ pub use program::{Options, program};
 pub use serve::{Embodied, Emulated, Pace, STEP, serve};
 pub use several::{Seat, Several};
 pub use staged::Staged;
+#[cfg(feature = "trial")]
+pub use trial::{OnItsLine, Ran, Trial, memory_asked_for, ran, started};

@@ -1,65 +1,25 @@
 //! The driver's reaction to each fault that the emulator can make, and the last command that the robot received.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
-use std::path::Path;
 use std::time::Duration;
 
-use mdle_atrv::{Atrv, Clock, Config, Configured, Fault, Garbled, LineFault, Output};
-use mdle_atrv_emulator::atrv::{Atrv as Emulated, step};
-use mdle_emulator::{At, Driven, Faulty, Order, Pace, driven};
-use mdle_host::StopRequest;
+use mdle_atrv::{Fault, Garbled, LineFault, Output};
+use mdle_emulator::Order;
+use mdle_runtime::SonarId;
 use mdle_runtime::capability::{Bumpers, Odometry, SonarRing};
-use mdle_runtime::{MetersPerSecond, Robot as _, SonarId, Twist};
-use mdle_sim::{Body, Make, Simulated, World};
 
-const PERIOD: Duration = Duration::from_millis(100);
-const PACE: Pace = Pace::Lockstep(PERIOD);
-/// A wall 4 m before the robot, and others far away.
-const ROOM: &str =
-    "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[4, -3], [4, 3], [-3, 3], [-3, -3], [4, -3]]";
+mod robot;
 
-/// The result of a run.
-struct Ran {
-    /// The last output, or the fault that ended the run.
-    output: Result<Output, Fault>,
-    /// The result of the stop.
-    stop: Result<(), Fault>,
-    robot: Faulty<Emulated>,
-}
+type Ran = mdle_emulator::Ran<robot::Robot>;
 
 /// Returns the outcome of these faults while a driver asks for `speed`, in m/s, for fifty turns, and then stops.
 fn ran(faults: &[&str], speed: fn(turn: u32) -> f64) -> Ran {
     ran_for(50, faults, speed)
 }
 
-/// Returns an emulated robot with these faults.
-fn emulated(faults: &[&str]) -> Faulty<Emulated> {
-    let world = World::parse("room", ROOM).unwrap();
-    let make = Make { body: Body::Atrv, without: Vec::new(), seed: None };
-    let body = |step| Simulated::with(&make, &world, world.start, step).unwrap();
-    let faults: Vec<At> = faults.iter().map(|fault| fault.parse().unwrap()).collect();
-    Faulty::new(Emulated::new(body(step(PACE)), step(PACE), false).unwrap(), &faults).unwrap()
-}
-
-/// Opens the robot at this device.
-fn connected(device: &Path) -> Result<Atrv, Fault> {
-    // No machine is so slow that an answer takes longer.
-    let config = Config { answer: 3000, ..Configured::read(None, device.to_str()).unwrap().config };
-    Atrv::connect(config, Clock::Stepped(PERIOD), PERIOD, &StopRequest::default())
-}
-
 /// Returns the outcome of these faults in a run of `turns` turns.
 fn ran_for(turns: u32, faults: &[&str], speed: fn(turn: u32) -> f64) -> Ran {
-    let Driven { result: (output, stop), served, robot } = driven(emulated(faults), PACE, |device| {
-        let mut driver = connected(device).unwrap();
-        let input = |turn| Twist { v: MetersPerSecond(speed(turn)), ..Twist::default() };
-        let output = (0..turns).try_fold(None, |_, turn| driver.exchange(&input(turn)).map(Some)).map(Option::unwrap);
-        // As the host does, whatever has come.
-        (output, driver.stop())
-    })
-    .unwrap();
-    assert_eq!(served.is_err(), faults.iter().any(|fault| fault.starts_with("close")), "{served:?}");
-    Ran { output, stop, robot }
+    mdle_emulator::ran(turns, faults, speed).unwrap()
 }
 
 /// When faults have begun, by the time of the robot's world.
@@ -67,9 +27,7 @@ const BEGUN: Duration = Duration::from_secs(3);
 
 /// Returns the reason for which a driver refuses a robot that has this fault from the beginning.
 fn refused(fault: &str) -> String {
-    let Driven { result, served, .. } = driven(emulated(&[fault]), PACE, |device| connected(device).map(drop)).unwrap();
-    served.unwrap();
-    sentence(result)
+    sentence(mdle_emulator::started::<robot::Robot>(fault).unwrap())
 }
 
 /// Returns the last output of a robot that drives ahead and has this fault after three seconds.
@@ -133,15 +91,15 @@ fn sentence(fault: Result<(), Fault>) -> String {
 fn a_robot_that_keeps_moving_is_a_fault() {
     // It does what it is told as long as that is what it does anyway.
     let Ran { output, stop, robot } = ran(&["runaway@3"], ahead);
-    assert!(output.is_ok() && robot.robot().velocity().v.0 > 0.19, "{output:?}");
+    assert!(output.is_ok() && robot.velocity().v.0 > 0.19, "{output:?}");
     assert!(sentence(stop).contains("still moved"));
-    assert_eq!(robot.robot().orders().last().unwrap().1, Order::Brake);
+    assert_eq!(robot.orders().last().unwrap().1, Order::Brake);
     // Told to stand, it has a second and a bit.
     let Ran { output, stop, robot } = ran(&["runaway@3"], ahead_then_none);
     assert!(sentence(output.map(drop)).contains("does not obey"));
     assert!(sentence(stop).contains("still moved"));
-    let first = robot.robot().orders().iter().find(|(age, order)| *age > BEGUN && *order == Order::Stand).unwrap().0;
-    let last = robot.robot().orders().last().unwrap().0;
+    let first = robot.orders().iter().find(|(age, order)| *age > BEGUN && *order == Order::Stand).unwrap().0;
+    let last = robot.orders().last().unwrap().0;
     assert!(last - first < Duration::from_millis(2500), "{first:?} {last:?}");
 }
 
@@ -150,12 +108,12 @@ fn a_robot_that_receives_nothing_is_a_fault() {
     // The controller stops it after a second in which nothing came.
     let Ran { output, stop, robot } = ran(&["deaf@3"], ahead);
     assert!(sentence(output.map(drop)).contains("does not receive"));
-    assert_eq!((stop, robot.robot().velocity().v.0), (Err(Fault::Unheard), 0.0));
+    assert_eq!((stop, robot.velocity().v.0), (Err(Fault::Unheard), 0.0));
     // One that does not stop by itself.
     let Ran { output, stop, robot } = ran(&["deaf@3", "runaway@3"], ahead);
     assert!(sentence(output.map(drop)).contains("does not receive"));
     assert!(sentence(stop).contains("still moved"));
-    assert_eq!(robot.robot().orders().last().unwrap().1, Order::Drive);
+    assert_eq!(robot.orders().last().unwrap().1, Order::Drive);
 }
 
 #[test]
@@ -163,12 +121,12 @@ fn a_robot_without_its_brake_was_not_stopped() {
     // The run ends before an unanswered question is a fault, and after the robot has stopped itself.
     let Ran { output, stop, robot } = ran_for(42, &["deaf@3"], ahead);
     assert!(output.is_ok(), "{output:?}");
-    assert_eq!((stop, robot.robot().velocity().v.0, robot.robot().is_braked()), (Err(Fault::Unheard), 0.0, false));
+    assert_eq!((stop, robot.velocity().v.0, robot.is_braked()), (Err(Fault::Unheard), 0.0, false));
     // It answers, but its brake is not set.
     let Ran { output, stop, robot } = ran_for(42, &["runaway@3"], |_| 0.0);
     assert!(output.is_ok(), "{output:?}");
     assert!(sentence(stop).contains("brake is not set"));
-    assert_eq!(robot.robot().orders().last().unwrap().1, Order::Brake);
+    assert_eq!(robot.orders().last().unwrap().1, Order::Brake);
 }
 
 #[test]
@@ -186,7 +144,7 @@ fn each_kind_of_report_that_stops_is_a_fault() {
         // Without an axis it does not report that it stands, without answers not that it is braked.
         let reports = ["no-bumpers", "leap"].contains(&fault);
         assert_eq!(stop.is_ok(), reports, "{fault}: {stop:?}");
-        assert_eq!((robot.robot().is_braked(), robot.robot().velocity().v.0), (true, 0.0), "{fault}");
+        assert_eq!((robot.is_braked(), robot.velocity().v.0), (true, 0.0), "{fault}");
     }
 }
 
@@ -207,7 +165,7 @@ fn each_kind_of_report_is_waited_for_at_the_start() {
 fn a_robot_that_falls_silent_stands_before_it_is_braked() {
     let Ran { stop, robot, .. } = ran(&["silence@3"], ahead);
     assert_eq!(stop, Err(Fault::Line(LineFault::Silent)));
-    assert_eq!((robot.robot().is_braked(), robot.robot().velocity().v.0), (true, 0.0));
-    let orders: Vec<Order> = robot.robot().orders().iter().map(|(_, order)| order).collect();
+    assert_eq!((robot.is_braked(), robot.velocity().v.0), (true, 0.0));
+    let orders: Vec<Order> = robot.orders().iter().map(|(_, order)| order).collect();
     assert!(orders.ends_with(&[[Order::Stand; 8].as_slice(), &[Order::Brake]].concat()), "{orders:?}");
 }

@@ -1,60 +1,20 @@
 //! The driver's reaction to each fault that the emulator can make, and the last command that the robot received.
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test fails by panicking")]
 
-use std::path::Path;
 use std::time::Duration;
 
-use mdle_emulator::{At, Driven, Faulty, Order, Pace, driven};
-use mdle_host::StopRequest;
+use mdle_emulator::Order;
+use mdle_runtime::SonarId;
 use mdle_runtime::capability::{Bumpers, Odometry, SonarRing};
-use mdle_runtime::{MetersPerSecond, Robot as _, SonarId, Twist};
-use mdle_scout::{Clock, Config, Configured, Fault, Garbled, LineFault, Output, Scout};
-use mdle_scout_emulator::scout::Scout as Emulated;
-use mdle_sim::{Body, Make, Simulated, World};
+use mdle_scout::{Fault, Garbled, LineFault, Output};
 
-const PERIOD: Duration = Duration::from_millis(100);
-const PACE: Pace = Pace::Lockstep(PERIOD);
-/// A wall 4 m before the robot, and others far away.
-const ROOM: &str =
-    "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[4, -3], [4, 3], [-3, 3], [-3, -3], [4, -3]]";
+mod robot;
 
-/// The result of a run.
-struct Ran {
-    /// The last output, or the fault that ended the run.
-    output: Result<Output, Fault>,
-    /// The result of the stop.
-    stop: Result<(), Fault>,
-    robot: Faulty<Emulated>,
-}
-
-/// Returns an emulated robot with these faults.
-fn emulated(faults: &[&str]) -> Faulty<Emulated> {
-    let world = World::parse("room", ROOM).unwrap();
-    let make = Make { body: Body::Scout, without: Vec::new(), seed: None };
-    let body = |step| Simulated::with(&make, &world, world.start, step).unwrap();
-    let faults: Vec<At> = faults.iter().map(|fault| fault.parse().unwrap()).collect();
-    Faulty::new(Emulated::new(body(PERIOD)).unwrap(), &faults).unwrap()
-}
-
-/// Opens the robot at this device.
-fn connected(device: &Path) -> Result<Scout, Fault> {
-    // No machine is so slow that an answer takes longer.
-    let config = Config { answer: 3000, ..Configured::read(None, device.to_str()).unwrap().config };
-    Scout::connect(config, Clock::Stepped(PERIOD), PERIOD, &StopRequest::default())
-}
+type Ran = mdle_emulator::Ran<robot::Robot>;
 
 /// Returns the outcome of these faults while a driver asks for `speed`, in m/s, for fifty turns, and then stops.
 fn ran(faults: &[&str], speed: fn(turn: u32) -> f64) -> Ran {
-    let Driven { result: (output, stop), served, robot } = driven(emulated(faults), PACE, |device| {
-        let mut driver = connected(device).unwrap();
-        let input = |turn| Twist { v: MetersPerSecond(speed(turn)), ..Twist::default() };
-        let output = (0..50).try_fold(None, |_, turn| driver.exchange(&input(turn)).map(Some)).map(Option::unwrap);
-        // As the host does, whatever has come.
-        (output, driver.stop())
-    })
-    .unwrap();
-    assert_eq!(served.is_err(), faults.iter().any(|fault| fault.starts_with("close")), "{served:?}");
-    Ran { output, stop, robot }
+    mdle_emulator::ran(50, faults, speed).unwrap()
 }
 
 /// When faults have begun, by the time of the robot's world.
@@ -120,15 +80,15 @@ fn sentence(fault: Result<(), Fault>) -> String {
 fn a_robot_that_keeps_moving_is_a_fault() {
     // It does what it is told as long as that is what it does anyway.
     let Ran { output, stop, robot } = ran(&["runaway@3"], ahead);
-    assert!(output.is_ok() && !robot.robot().stands(), "{output:?}");
+    assert!(output.is_ok() && !robot.stands(), "{output:?}");
     assert!(sentence(stop).contains("still moved"));
-    assert_eq!(robot.robot().orders().last().unwrap().1, Order::LetGo);
+    assert_eq!(robot.orders().last().unwrap().1, Order::LetGo);
     // Told to stand, it has a second and a bit.
     let Ran { output, stop, robot } = ran(&["runaway@3"], ahead_then_none);
     assert!(sentence(output.map(drop)).contains("does not obey"));
     assert!(sentence(stop).contains("still moved"));
-    let first = robot.robot().orders().iter().find(|(age, order)| *age > BEGUN && *order == Order::Stand).unwrap().0;
-    let last = robot.robot().orders().last().unwrap().0;
+    let first = robot.orders().iter().find(|(age, order)| *age > BEGUN && *order == Order::Stand).unwrap().0;
+    let last = robot.orders().last().unwrap().0;
     assert!(last - first < Duration::from_millis(2500), "{first:?} {last:?}");
 }
 
@@ -137,20 +97,20 @@ fn a_robot_that_receives_nothing_is_a_fault() {
     let Ran { output, stop, robot } = ran(&["deaf@3"], ahead);
     assert_eq!(output.map(drop), Err(Fault::Line(LineFault::Silent)));
     assert_eq!(stop, Err(Fault::Line(LineFault::Silent)));
-    assert_eq!(robot.robot().orders().last().unwrap().1, Order::Drive);
+    assert_eq!(robot.orders().last().unwrap().1, Order::Drive);
 }
 
 #[test]
 fn positions_that_leap_are_a_fault() {
     let Ran { output, stop, robot } = ran(&["leap@3"], ahead);
     assert!(sentence(output.map(drop)).contains("leap"));
-    assert_eq!((stop, robot.robot().stands()), (Ok(()), true));
+    assert_eq!((stop, robot.stands()), (Ok(()), true));
 }
 
 #[test]
 fn a_robot_that_falls_silent_is_told_to_stand_again_and_again() {
     let Ran { stop, robot, .. } = ran(&["silence@3"], ahead);
-    assert_eq!((stop, robot.robot().stands()), (Err(Fault::Line(LineFault::Silent)), true));
-    let orders: Vec<Order> = robot.robot().orders().iter().map(|(_, order)| order).collect();
+    assert_eq!((stop, robot.stands()), (Err(Fault::Line(LineFault::Silent)), true));
+    let orders: Vec<Order> = robot.orders().iter().map(|(_, order)| order).collect();
     assert!(orders.ends_with(&[[Order::Stand; 5].as_slice(), &[Order::LetGo]].concat()), "{orders:?}");
 }

@@ -1,0 +1,194 @@
+//! A driver on its emulated robot: the tests that every robot on a line has to pass, and what they have in common.
+
+use std::marker::PhantomData;
+use std::path::Path;
+use std::time::Duration;
+
+use mdle_atoms::conformance::{Room, Stage, Supplied};
+use mdle_host::StopRequest;
+use mdle_runtime::{Alphabet, MetersPerSecond, Nanos, PathStore, Pose, RadiansPerSecond, Robot, Sensed, Twist};
+use mdle_serial::{Clock, Configured, SerialRobot};
+use mdle_sim::{Body, Make, Simulated, World};
+
+use crate::driven::{Driven, driven};
+use crate::fault::{Ailment, At};
+use crate::faulty::Faulty;
+use crate::serve::{Emulated, Pace};
+use crate::staged::Staged;
+
+/// The time that a driver waits for an answer where none fails to come, in milliseconds: longer than any machine takes.
+const LONG: u64 = 60_000;
+/// The time that a driver waits for an answer where some do, in milliseconds.
+const PATIENCE: u64 = 3000;
+
+/// A wall 4 m before the robot, and others far away.
+const HALL: &str =
+    "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[4, -3], [4, 3], [-3, 3], [-3, -3], [4, -3]]";
+
+/// A robot with its driver.
+pub trait Trial {
+    /// The driver.
+    type Driver: SerialRobot;
+    /// The alphabet of the driver's crate.
+    type Alphabet: Alphabet<Output = Sensed, Input = Twist>;
+    /// The emulated robot.
+    type Emulated: Emulated + Send + 'static;
+    /// The body that the robot has in the simulator.
+    const BODY: Body;
+
+    /// Returns the step of the robot's world.
+    fn step(pace: Pace) -> Duration {
+        pace.step()
+    }
+
+    /// Returns a robot that has just been switched on, whose world passes on in such steps.
+    ///
+    /// # Errors
+    /// The world's sentence about an input that it cannot take, which none here is.
+    fn emulated(body: Simulated, step: Duration) -> Result<Self::Emulated, String>;
+
+    /// Returns the true pose of the robot.
+    fn pose(robot: &Self::Emulated) -> Pose;
+}
+
+/// The period of the robot's turns.
+fn period<T: Trial>() -> Duration {
+    Duration::from_nanos(T::Driver::PERIOD.0)
+}
+
+/// Returns a robot of this world that has just been switched on.
+fn switched_on<T: Trial>(world: &World, at: Pose, seed: Option<u64>) -> Result<T::Emulated, String> {
+    let step = T::step(Pace::Lockstep(period::<T>()));
+    let make = Make { body: T::BODY, without: Vec::new(), seed };
+    T::emulated(Simulated::with(&make, world, at, step).map_err(|error| error.to_string())?, step)
+}
+
+/// Opens the robot at this device, whose answers may take so many milliseconds.
+fn connected<T: Trial>(device: &Path, answer: u64) -> Result<Result<T::Driver, FaultOf<T>>, String> {
+    let mut config = Configured::<<T::Driver as SerialRobot>::Config>::read(None, device.to_str())?.config;
+    *T::Driver::answer(&mut config) = answer;
+    let period = period::<T>();
+    Ok(T::Driver::connect(config, Clock::Stepped(period), period, &StopRequest::default()))
+}
+
+/// A fault of the driver.
+type FaultOf<T> = <<T as Trial>::Driver as Robot>::Error;
+
+/// The stage of the conformance suite: the driver is at the line of the robot that is switched on now, whose sensors are
+/// exact and whose wheels do not slip.
+#[derive(Debug)]
+pub struct OnItsLine<T>(Option<Staged<Pose>>, PhantomData<T>);
+
+impl<T> Default for OnItsLine<T> {
+    fn default() -> Self {
+        Self(None, PhantomData)
+    }
+}
+
+impl<T: Trial> Stage for OnItsLine<T> {
+    type Robot = T::Driver;
+    type Alphabet = T::Alphabet;
+    const PERIOD: Nanos = T::Driver::PERIOD;
+
+    fn robot(&mut self, room: &Room, at: Pose) -> Result<T::Driver, String> {
+        let world = World::parse("the room", &room.to_string()).map_err(|error| error.to_string())?;
+        let robot = switched_on::<T>(&world, at, None)?;
+        let staged = Staged::new(robot, period::<T>(), T::pose).map_err(|error| error.to_string())?;
+        let driver = connected::<T>(staged.device(), LONG)?.map_err(|fault| fault.to_string());
+        self.0 = Some(staged);
+        driver
+    }
+
+    fn take_paths(&mut self, robot: &mut T::Driver, paths: PathStore) {
+        robot.take_paths(paths);
+    }
+
+    fn supply(&mut self, _: &mut T::Driver, supplied: Supplied) {
+        let ailment = match supplied {
+            Supplied::Well => return,
+            Supplied::Low => Ailment::LowBattery,
+            Supplied::Plugged => Ailment::PluggedIn,
+        };
+        self.0.iter().for_each(|staged| staged.suffers(ailment));
+    }
+
+    fn truth(&self, _: &T::Driver) -> Pose {
+        self.0.as_ref().map_or(Pose::ORIGIN, Staged::now)
+    }
+
+    fn left_alone(&mut self, _: &mut T::Driver, periods: u32) {
+        self.0.iter().for_each(|staged| staged.left_alone(periods));
+    }
+}
+
+/// Returns how often the driver asks for memory in fifty turns, by the number that `asked` has counted so far on this thread:
+/// long enough for each sonar to ping, and for whatever does not come in each turn.
+///
+/// # Errors
+/// The robot or its driver failed.
+pub fn memory_asked_for<T: Trial>(asked: fn() -> u64) -> Result<u64, String> {
+    let world = World::office().map_err(|error| error.to_string())?;
+    let robot = switched_on::<T>(&world, world.start, Some(1))?;
+    let Driven { result, served, .. } = driven(robot, Pace::Lockstep(period::<T>()), |device| {
+        let mut driver = connected::<T>(device, LONG)?.map_err(|fault| fault.to_string())?;
+        let before = asked();
+        for turn in 0..50 {
+            let omega = RadiansPerSecond(f64::from(turn % 7) / 10.0 - 0.3);
+            driver.exchange(&Twist { v: MetersPerSecond(0.2), omega }).map_err(|fault| fault.to_string())?;
+        }
+        Ok(asked() - before)
+    })
+    .map_err(|error| error.to_string())?;
+    served.map_err(|error| error.to_string())?;
+    result
+}
+
+/// A run that is over, of a robot with faults in front of a wall.
+pub struct Ran<T: Trial> {
+    /// The last output, or the fault that ended the run.
+    pub output: Result<Sensed, FaultOf<T>>,
+    /// The result of the stop.
+    pub stop: Result<(), FaultOf<T>>,
+    /// The robot.
+    pub robot: T::Emulated,
+}
+
+/// Runs a driver that asks for `speed`, in m/s, for so many turns, and then stops, as the host does whatever has come.
+///
+/// # Errors
+/// There is no such fault, the driver could not connect, or the line was closed without a fault that closes it, or left
+/// open with one.
+pub fn ran<T: Trial>(turns: u32, faults: &[&str], speed: fn(turn: u32) -> f64) -> Result<Ran<T>, String> {
+    let Driven { result, served, robot } = driven(faulty::<T>(faults)?, Pace::Lockstep(period::<T>()), |device| {
+        let mut driver = connected::<T>(device, PATIENCE)?.map_err(|fault| fault.to_string())?;
+        let mut exchange = |turn| driver.exchange(&Twist { v: MetersPerSecond(speed(turn)), ..Twist::default() });
+        let output = (1..turns).try_fold(exchange(0), |last, turn| last.map(|_| exchange(turn)));
+        Ok::<_, String>((output.unwrap_or_else(Err), driver.stop()))
+    })
+    .map_err(|error| error.to_string())?;
+    let closes = faults.iter().any(|fault| fault.starts_with("close"));
+    if served.is_err() != closes {
+        return Err(format!("{faults:?}: {served:?}"));
+    }
+    let (output, stop) = result?;
+    Ok(Ran { output, stop, robot: robot.into_robot() })
+}
+
+/// Returns what the driver says at the start of a robot that has this fault from the beginning.
+///
+/// # Errors
+/// There is no such fault, or the line failed.
+pub fn started<T: Trial>(fault: &str) -> Result<Result<(), FaultOf<T>>, String> {
+    let Driven { result, served, .. } =
+        driven(faulty::<T>(&[fault])?, Pace::Lockstep(period::<T>()), |device| connected::<T>(device, PATIENCE))
+            .map_err(|error| error.to_string())?;
+    served.map_err(|error| error.to_string())?;
+    result.map(|driver| driver.map(drop))
+}
+
+/// Returns a robot in the hall with these faults.
+fn faulty<T: Trial>(faults: &[&str]) -> Result<Faulty<T::Emulated>, String> {
+    let world = World::parse("hall", HALL).map_err(|error| error.to_string())?;
+    let faults: Vec<At> = faults.iter().map(|fault| fault.parse()).collect::<Result<_, _>>()?;
+    Faulty::new(switched_on::<T>(&world, world.start, None)?, &faults)
+}
