@@ -12,6 +12,10 @@ const WIDE: Meters = Meters(0.3);
 pub(crate) struct Gains {
     /// `align`: the fastest turn, in rad/s. Where sonars fire in turn, the ranges are older.
     pub(crate) align_fastest: f64,
+    /// `align`: ranges that differ by this much or less, in metres, are equal. 8 mm are 2° in a hallway 1.5 m wide, to sonars
+    /// of 25°. Where sonars fire in turn it is an inch, the resolution of the paper's sonars: beside a corner, a robot that
+    /// wanted ranges closer would turn into the corner.
+    pub(crate) align_equal: f64,
     /// `align`: how long, in seconds, a sonar is waited for that has heard the wall and then does not: three pings of it
     /// where every turn brings one, else two rings.
     pub(crate) align_waits: f64,
@@ -33,6 +37,7 @@ pub(crate) struct Gains {
 /// A body whose sonars all ping in every turn.
 const RING: Gains = Gains {
     align_fastest: 0.3,
+    align_equal: 0.008,
     align_waits: 0.3,
     look_ahead: Meters(0.4),
     soft_margin: 0.35,
@@ -43,6 +48,7 @@ const RING: Gains = Gains {
 /// A Scout, whose sonars fire one after the other.
 const SCOUT: Gains = Gains {
     align_fastest: 0.12,
+    align_equal: 0.026,
     align_waits: 2.0,
     look_ahead: Meters(0.5),
     soft_margin: 0.4,
