@@ -16,6 +16,9 @@ const ALSO_FACES: f64 = 1.5;
 /// Ranges that differ by less, in metres, are alike.
 const ALIKE: f64 = 0.06;
 
+/// The sonars to both sides of one that a straight wall faces hear it further from the centre of the body by this factor and
+/// length, in metres, at most. Those beside the edge of a way hear walls that run off from there, where walls are rough.
+const FLAT: (f64, f64) = (1.08, 0.04);
 /// What the sonars to both sides hear of a straight wall is longer than what the one between them hears, by this factor at
 /// most and by a step of ranges; what lies behind an opening is further.
 const SLANT: (f64, f64) = (1.08, 0.02);
@@ -129,7 +132,8 @@ fn faces_between<Y: SonarRing>(y: &Y, direction: SonarId) -> bool {
     };
     let (Some(before), Some(diagonal), Some(after)) = (near(1), near(2), near(3)) else { return false };
     let in_a_corner = [near(0), near(4)].iter().all(|wall| wall.is_some_and(|wall| wall < diagonal));
-    !in_a_corner && diagonal.0 <= before.0.min(after.0) + ALIKE
+    let is_flat = before.0.max(after.0) <= FLAT.0 * (diagonal.0 + y.ring_radius().0) - y.ring_radius().0 + FLAT.1;
+    !in_a_corner && is_flat && diagonal.0 <= before.0.min(after.0) + ALIKE
 }
 
 #[cfg(test)]
