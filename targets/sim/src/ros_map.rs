@@ -47,6 +47,7 @@ impl Header {
             start: Pose::ORIGIN,
             goal: None,
             charger: None,
+            rough: 0.0,
         };
         count(&world).map_err(|what| WorldError::new(file, None, what))?;
         Ok(world)

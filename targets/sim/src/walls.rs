@@ -20,6 +20,8 @@ pub struct Walls {
     moving: Vec<Moving>,
     /// The other robots.
     others: Vec<Disc>,
+    /// How rough all surfaces are, from 0 to 1.
+    pub(crate) rough: f64,
 }
 
 impl Walls {
@@ -59,7 +61,7 @@ impl Walls {
         };
         let ends = segments.iter().map(meets).collect();
         let moving = world.things.iter().map(Moving::of).collect();
-        Self { segments, ends, grid, moving, others: Vec::new() }
+        Self { segments, ends, grid, moving, others: Vec::new(), rough: world.rough }
     }
 
     /// How far a ray from `from` goes before it hits a wall; `None` if that is `most` metres or more.

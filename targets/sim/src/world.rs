@@ -31,6 +31,8 @@ pub struct World {
     pub goal: Option<Goal>,
     /// The charger, if the world has one.
     pub charger: Option<Charger>,
+    /// How rough its surfaces are, from 0, as smooth as the body's model has them, to 1, heard by sonars at any angle.
+    pub rough: f64,
     /// So many of the first outlines are contours of a map: inside an odd number of them it is solid.
     pub(crate) contours: usize,
 }

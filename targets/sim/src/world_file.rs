@@ -87,6 +87,7 @@ fn read(text: &str) -> Result<World, Wrong> {
         Wrong(error.span(), what)
     })?;
     let unit = Unit::of(written.units.as_ref())?;
+    let rough = written.rough.as_ref().map_or(Ok(0.0), outlines::rough)?;
     let start = unit.start(&written.start.0)?;
     let goal = written.goal.as_ref().map(|goal| unit.goal(goal)).transpose()?;
     let (mut outlines, mut things) = (Vec::new(), Vec::new());
@@ -109,7 +110,7 @@ fn read(text: &str) -> Result<World, Wrong> {
         things.push(unit.door(number, door)?);
     }
     let charger = written.charger.as_ref().map(|charger| unit.charger(charger)).transpose()?;
-    let world = World { outlines, things, start, goal, charger, contours: 0 };
+    let world = World { outlines, things, start, goal, charger, rough, contours: 0 };
     count(&world).map_err(|what| Wrong(None, what))?;
     let blocked = charger.and_then(|charger| charger.blocked(&world, RADIUS));
     if let (Some(name), Some(text)) = (blocked, &written.charger) {

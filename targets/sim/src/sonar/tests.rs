@@ -104,6 +104,23 @@ fn a_flat_wall_answers_up_to_forty_degrees_or_so() {
     assert!((45..=49).contains(&last_heard(1.0, &[Part::Lobe])), "{}", last_heard(1.0, &[Part::Lobe]));
 }
 
+/// How far off its normal, in degrees, a wall of this roughness 1 m ahead is last heard.
+fn last_heard_rough(rough: f64) -> u32 {
+    let heard = |degrees: &u32| {
+        let wall = turned(1.0, f64::from(*degrees));
+        range(&pinged(Body::Scout, &[], &format!("rough = {rough}\n{wall}")), 0).is_some()
+    };
+    (0..80).take_while(heard).count() as u32 - 1
+}
+
+#[test]
+fn rough_walls_are_heard_at_wider_angles() {
+    let angles = [0.0, 0.25, 0.5, 1.0].map(last_heard_rough);
+    assert_eq!(angles[0], last_heard(1.0, &[]));
+    assert!(angles.is_sorted_by(|less, more| less + 3 <= *more), "{angles:?}");
+    assert!(angles[3] > 70);
+}
+
 #[test]
 fn a_wall_end_is_heard_only_near_the_axis() {
     // The end of a wall that lies along the ray's direction, so that its face is not heard.

@@ -216,6 +216,18 @@ impl Unit {
     }
 }
 
+/// How rough all surfaces of a file are.
+pub(super) fn rough(written: &Spanned<f64>) -> Result<f64, Wrong> {
+    let value = *written.get_ref();
+    if (0.0..=1.0).contains(&value) {
+        return Ok(value);
+    }
+    Err(Wrong::at(
+        written,
+        format!("`rough` is {value}; expected 0, for smooth surfaces, to 1, for those heard at any angle"),
+    ))
+}
+
 fn seconds(written: &Spanned<f64>) -> Result<f64, Wrong> {
     let value = *written.get_ref();
     if (0.0..=1e9).contains(&value) {

@@ -16,6 +16,7 @@ pub(super) type Numbers = Spanned<Vec<Spanned<f64>>>;
 #[serde(deny_unknown_fields)]
 pub(super) struct WorldText {
     pub(super) units: Option<Spanned<String>>,
+    pub(super) rough: Option<Spanned<f64>>,
     #[serde(default)]
     pub(super) start: Table<StartText>,
     pub(super) goal: Option<Spanned<Table<GoalText>>>,
