@@ -126,7 +126,7 @@ fn a_quark_may_be_called_as_any_type_that_a_bound_alphabet_uses() {
         |quark: &str| bind(&alphabet(&format!("interrupt {quark}; signal x unit m tolerance 1; control halt;")));
     let code = code(&bound("a"));
     let mut types = types(&code);
-    let declared = include_str!("../runtime/core/src/alphabet.rs").split_once("macro_rules! alphabet").unwrap().1;
+    let declared = include_str!("../../runtime/core/src/alphabet.rs").split_once("macro_rules! alphabet").unwrap().1;
     let declared = ["pub enum ", "pub struct "].iter().flat_map(|item| declared.split(item).skip(1));
     types.extend(declared.filter_map(|item| item.split([' ', ';']).next()));
     assert!(types.contains("AnyLaw") && types.contains("Alphabet") && types.contains("None"), "{types:?}");

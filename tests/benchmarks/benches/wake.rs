@@ -9,7 +9,7 @@ use std::env;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use mdle_host::clap::{self, ArgMatches};
+use mdle_host::clap::ArgMatches;
 use mdle_host::{Refusal, StopRequest, Target};
 use mdle_runtime::fsm::{Atom, Bracket};
 use mdle_runtime::{Begin, Cursor, Fsm, Nanos, Next, Output, Plan, Robot};
