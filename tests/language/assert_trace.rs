@@ -1,4 +1,5 @@
 //! Asserts that every machine has a trace that was written out by hand from the rules.
+#![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use mdle_tests::pipeline::{Machines, compile};
 use mdlec::trace::Script;
