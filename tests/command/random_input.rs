@@ -4,7 +4,7 @@
 use std::fs;
 use std::path::Path;
 
-use mdle_tests::chance::Chance;
+use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::repository::files;
 
@@ -102,7 +102,7 @@ fn assert_ends(folder: &Path, arguments: &[&str], statuses: &[i32], seed: u64) {
 fn random_bytes_are_no_plan() {
     let folder = folder("random_bytes");
     fs::write(folder.join("script"), "{\"t\": 0}\n").unwrap();
-    for seed in 0..FILES {
+    for seed in 0..repeated(FILES) {
         let mut chance = Chance::new(seed);
         for make in [bytes, words] {
             fs::write(folder.join("plan.mdle"), make(&mut chance)).unwrap();
@@ -123,7 +123,7 @@ fn a_spoilt_plan_is_a_plan_or_an_error() {
     let folder = folder("spoilt_plans");
     let plans = files(&[".mdle"]).into_iter().filter(|file| file.path.starts_with("plans/")).collect::<Vec<_>>();
     fs::write(folder.join("script"), "{\"t\": 0}\n{\"t\": 9}\n").unwrap();
-    for seed in 0..FILES {
+    for seed in 0..repeated(FILES) {
         let mut chance = Chance::new(seed);
         let good = &plans[chance.below(plans.len())].text;
         fs::write(folder.join("plan.mdle"), spoilt(good.as_bytes(), &mut chance)).unwrap();
@@ -139,7 +139,7 @@ fn a_random_script_is_wrong_usage() {
     let folder = folder("random_scripts");
     fs::write(folder.join("plan.mdle"), "{ P (bumper) (Atom (wait 1) stop) }\n").unwrap();
     let good = b"{\"t\": 0.0, \"fired\": [\"bumper\"], \"completed\": []}\n{\"t\": 0.1}\n";
-    for seed in 0..FILES {
+    for seed in 0..repeated(FILES) {
         let mut chance = Chance::new(seed);
         for script in [bytes(&mut chance), words(&mut chance), spoilt(good, &mut chance)] {
             fs::write(folder.join("script"), script).unwrap();
@@ -155,7 +155,7 @@ fn a_random_alphabet_is_no_target() {
     fs::create_dir(folder.join("rover")).unwrap();
     fs::write(folder.join("plan.mdle"), "{ P (bumper) (Atom (wait 1) stop) }\n").unwrap();
     let alphabets = files(&["alphabet.mdle"]);
-    for seed in 0..FILES {
+    for seed in 0..repeated(FILES) {
         let mut chance = Chance::new(seed);
         let good = &alphabets[chance.below(alphabets.len())].text;
         for alphabet in [bytes(&mut chance), words(&mut chance), spoilt(good.as_bytes(), &mut chance)] {

@@ -7,7 +7,7 @@ use std::collections::BTreeSet;
 
 use mdle_runtime::{Cursor, Frame, Machine};
 use mdle_scripted::INTERRUPTS;
-use mdle_tests::chance::Chance;
+use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::explore::{Explorer, Run, Said, Turn};
 use mdle_tests::golden::judge;
@@ -90,9 +90,10 @@ fn what_is_said_never_to_happen_never_happens() {
 
 fn seeds(first: usize, step: usize) -> Count {
     let mut count = Count::default();
-    for seed in (first as u64..PLANS).step_by(step) {
+    for seed in (first as u64..repeated(PLANS)).step_by(step) {
         let mut chance = Chance::new(seed);
-        let text = RandomPlan::new(&mut chance, 2 + (seed as usize) * 12 / (PLANS as usize), false).to_string();
+        let text =
+            RandomPlan::new(&mut chance, 2 + (seed as usize) * 12 / (repeated(PLANS) as usize), false).to_string();
         if let Ok(compiled) = compile(&text) {
             Trial::new(seed, &text, &compiled).run(&mut chance, &mut count);
         }

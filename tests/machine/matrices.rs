@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 
-use mdle_tests::chance::Chance;
+use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::pipeline::compile;
 use mdle_tests::random_plan::RandomPlan;
@@ -173,7 +173,7 @@ fn written(terms: &Terms<'_>) -> Matrices {
 #[test]
 fn matrices_that_are_read_back_drive_the_transitions_of_the_table() {
     let (mut plans, mut small, mut transitions, mut summed) = (0, 0, 0, 0);
-    for seed in 0..PLANS {
+    for seed in 0..repeated(PLANS) {
         let mut chance = Chance::new(seed);
         let text = RandomPlan::new(&mut chance, 2 + (seed % 20) as usize, false).to_string();
         let script = Script::read(&script(&mut chance, 12)).unwrap();

@@ -8,7 +8,7 @@ use std::fs;
 use std::io::Write;
 use std::process::{Command, Stdio};
 
-use mdle_tests::chance::Chance;
+use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::golden::judge;
 use mdle_tests::graphs::{Graph, read_dot, read_mermaid};
@@ -27,7 +27,7 @@ const PLANS: u64 = 300;
 
 /// Random plans, each with its seed and a script.
 fn plans() -> impl Iterator<Item = (u64, Compiled, String)> {
-    (0..PLANS).filter_map(|seed| {
+    (0..repeated(PLANS)).filter_map(|seed| {
         let mut chance = Chance::new(seed);
         let text = RandomPlan::new(&mut chance, 2 + (seed % 30) as usize, false).to_string();
         let script = script(&mut chance, 12);

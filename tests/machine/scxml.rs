@@ -2,7 +2,7 @@
 //! same turns as the machine `table`, and ends each turn with the same law.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
-use mdle_tests::chance::Chance;
+use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::ecmascript::Value;
 use mdle_tests::golden::judge;
 use mdle_tests::pipeline::compile;
@@ -83,7 +83,7 @@ fn compare(plan: &Nondegenerate, script: &str, seen: &mut Seen) {
 #[test]
 fn the_machine_does_what_the_plan_does() {
     let mut seen = Seen::default();
-    for seed in 0..PLANS {
+    for seed in 0..repeated(PLANS) {
         let mut chance = Chance::new(seed);
         let text = RandomPlan::new(&mut chance, 2 + (seed % 20) as usize, false).to_string();
         let script = script(&mut chance, 12);

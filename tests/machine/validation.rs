@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 
 use mdle_runtime::fsm::Kind;
-use mdle_tests::chance::Chance;
+use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::pipeline::compile;
 use mdle_tests::random_plan::RandomPlan;
 use mdlec::diagnostic::Code;
 use mdlec::fsm::{Draft, validate};
 
 /// Number of mutated machines.
-const MUTATIONS: usize = 500;
+const MUTATIONS: u64 = 500;
 
 /// Makes a machine wrong in a place that chance picks, or leaves it as it is.
 type Mutation = fn(&mut Draft, &mut Chance);
@@ -109,7 +109,8 @@ fn swap<T>(all: &mut [T], chance: &mut Chance) {
 #[test]
 fn every_mutated_machine_is_told_apart() {
     let (mut seed, mut tried) = (0, BTreeMap::<_, usize>::new());
-    while tried.values().sum::<usize>() < MUTATIONS {
+    let mutations = repeated(MUTATIONS) as usize;
+    while tried.values().sum::<usize>() < mutations {
         seed += 1;
         let mut chance = Chance::new(seed);
         let text = RandomPlan::new(&mut chance, 2 + (seed % 20) as usize, false).to_string();

@@ -3,6 +3,20 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
+/// Returns `count` times the number in the variable `MDLE_LONG`: how often a test repeats something with other random choices.
+///
+/// Without the variable it is `count`. `.ci/thorough` sets it.
+///
+/// # Panics
+///
+/// If the variable is not a whole number from 1 on.
+#[must_use]
+pub fn repeated(count: u64) -> u64 {
+    let Ok(factor) = std::env::var("MDLE_LONG") else { return count };
+    let factor = factor.parse().ok().filter(|factor: &u64| *factor >= 1);
+    count * factor.expect("MDLE_LONG is a whole number from 1 on")
+}
+
 /// A source of choices.
 #[derive(Debug, Clone)]
 pub struct Chance(ChaCha8Rng);

@@ -1,6 +1,6 @@
 //! Any machine as a plan with `after`: it and the machine itself side by side, turn by turn.
 
-use mdle_tests::chance::Chance;
+use mdle_tests::chance::{Chance, repeated};
 use mdlec::alphabet;
 use mdlec::diagnostic::{SourceId, Sources};
 use mdlec::theorem::{Machine, augment};
@@ -52,7 +52,7 @@ fn alphabet(machine: &Machine) -> alphabet::Alphabet {
 #[test]
 fn the_plan_is_in_the_state_of_the_machine_turn_by_turn() {
     let (mut turns, mut over, mut whole) = (0, 0, 0);
-    for seed in 0..MACHINES {
+    for seed in 0..repeated(MACHINES) {
         let mut chance = Chance::new(seed);
         let (atoms, interrupts) = (1 + chance.below(6), 1 + chance.below(5));
         let rows: Vec<Row> = match seed % 3 {

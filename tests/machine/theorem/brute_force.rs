@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 use std::time::Instant;
 
-use mdle_tests::chance::Chance;
+use mdle_tests::chance::{Chance, repeated};
 use mdlec::theorem::{Answer, STEPS, State, decompile};
 
 use super::definition::{Definition, assert_is_string};
@@ -93,7 +93,7 @@ fn exhaust(atoms: usize, interrupts: usize, start: Option<usize>) -> Count {
 fn sample(atoms: usize, interrupts: usize) -> Count {
     on_all_cores(|hand, cores| {
         let mut count = Count::default();
-        for seed in (hand as u64..SAMPLES).step_by(cores) {
+        for seed in (hand as u64..repeated(SAMPLES)).step_by(cores) {
             let mut chance = Chance::new(seed);
             let rows = match seed % 4 {
                 0 => (0..interrupts).map(|_| Table::row(chance.below(Table::count(atoms)), atoms)).collect(),

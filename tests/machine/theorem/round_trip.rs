@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use mdle_tests::chance::Chance;
+use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::pipeline::{compile, compile_plan};
 use mdle_tests::random_plan::RandomPlan;
 use mdlec::diagnostic::SourceId;
@@ -15,7 +15,7 @@ use super::definition::assert_is_string;
 use super::loops::plan_of_loops;
 
 /// Number of plans that make the round trip.
-const PLANS: usize = 1000;
+const PLANS: u64 = 1000;
 
 /// The most states of a plan that does.
 const STATES: usize = 200;
@@ -99,8 +99,8 @@ fn go_round(file: &FsmFile, chance: &mut Chance, what: &str, seen: &mut Seen) {
 
 #[test]
 fn random_plans_go_round() {
-    let (mut seen, mut seed) = (Seen::default(), 0);
-    while seen.plans - seen.asking < PLANS {
+    let (mut seen, mut seed, plans) = (Seen::default(), 0, repeated(PLANS) as usize);
+    while seen.plans - seen.asking < plans {
         seed += 1;
         let mut chance = Chance::new(seed);
         let text = RandomPlan::new(&mut chance, 2 + (seed % 20) as usize, false).to_string();
@@ -111,14 +111,14 @@ fn random_plans_go_round() {
         }
     }
     println!("{seen:?}");
-    assert!(seen.stopped <= PLANS / 100, "{seen:?}");
-    assert!(seen.with_loops > PLANS / 20 && seen.asking > PLANS / 20, "{seen:?}");
+    assert!(seen.stopped <= plans / 100, "{seen:?}");
+    assert!(seen.with_loops > plans / 20 && seen.asking > plans / 20, "{seen:?}");
 }
 
 #[test]
 fn plans_of_loops_without_end_go_round() {
-    let mut seen = Seen::default();
-    for seed in 0..PLANS as u64 {
+    let (mut seen, plans) = (Seen::default(), repeated(PLANS) as usize);
+    for seed in 0..plans as u64 {
         let mut chance = Chance::new(seed);
         let text = plan_of_loops(&mut chance, 2 + (seed % 16) as usize);
         let compiled = compile(&text).unwrap_or_else(|said| panic!("seed {seed}\n{said}"));
@@ -126,8 +126,8 @@ fn plans_of_loops_without_end_go_round() {
         go_round(&file, &mut chance, &format!("seed {seed}\n{text}"), &mut seen);
     }
     println!("{seen:?}");
-    assert!(seen.stopped <= PLANS / 100, "{seen:?}");
-    assert!(seen.with_loops > PLANS / 2, "{seen:?}");
+    assert!(seen.stopped <= plans / 100, "{seen:?}");
+    assert!(seen.with_loops > plans / 2, "{seen:?}");
 }
 
 /// Pieces of laws and conditions, good ones and such as reach beyond their place.
