@@ -170,7 +170,7 @@ fn graphs_have_the_transitions_of_the_plan() {
         }
         let expanded = lower(&expand(&compiled.nondegenerate).unwrap()).unwrap();
         let graph = read_dot(&dot(&expanded).unwrap());
-        let name = |state: u64| if state == expanded.termination { "over".into() } else { format!("a{state}") };
+        let name = |state: u64| if state == expanded.states() { "over".into() } else { format!("a{state}") };
         let turns = Script::read(&script).unwrap();
         for Line { outcome, .. } in
             run(Table::new(&compiled.nondegenerate).unwrap(), &turns).filter(|line| line.outcome.fired.len() < 100)
