@@ -97,8 +97,8 @@ fn with_rover(test: &str, body: &str) -> PathBuf {
         assert!(text.contains(after), "{after}");
         text.replacen(after, &format!("{after}\n        {line}"), 1)
     };
-    let text = put(text, "fn command(&mut self, speeds: Twist) -> Result<Sensed, Fault> {", body);
-    let text = put(text, "fn halt(&mut self) -> Result<(), Fault> {", "let _ = std::fs::write(\"stopped\", \"\");");
+    let text = put(text, "fn exchange(&mut self, input: &Input) -> Result<Output, Fault> {", body);
+    let text = put(text, "fn stop(&mut self) -> Result<(), Fault> {", "let _ = std::fs::write(\"stopped\", \"\");");
     fs::write(&hardware, text).unwrap();
     fs::write(folder.join("plan.mdle"), "{ Drive (Atom (wait 1s) (go 20 0)) }\n").unwrap();
     folder

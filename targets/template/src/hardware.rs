@@ -4,12 +4,14 @@ use std::fmt;
 use std::time::Duration;
 
 use mdle_host::clap::{Arg, ArgMatches, Command};
-use mdle_host::{Pace, Time};
+use mdle_host::{Pace, Refusal, StopRequest, Time};
 use mdle_runtime::capability::Steering;
 use mdle_runtime::{
-    Meters, MetersPerSecond, Nanos, PathStore, Pings, Pose, Radians, RadiansPerSecond, SONARS, Sensed, Shape, Supply,
-    Twist,
+    Meters, MetersPerSecond, Nanos, PathStore, Pings, Pose, Radians, RadiansPerSecond, Robot, SONARS, Sensed, Shape,
+    Supply,
 };
+
+use crate::{Input, Output, alphabet};
 
 /// REPLACE by the measures of your robot. `body_radius` is the radius of the smallest circle around it.
 const SHAPE: Shape = Shape {
@@ -23,18 +25,6 @@ const SHAPE: Shape = Shape {
 const FASTEST: MetersPerSecond = MetersPerSecond(0.5);
 /// REPLACE by the turn rate that no law may exceed.
 const FASTEST_TURN: RadiansPerSecond = RadiansPerSecond(2.0);
-
-/// REPLACE by the options that your robot needs, such as the line that it is on.
-pub(crate) fn options(command: Command) -> Command {
-    let speed = Arg::new("speed").long("speed").value_name("real|max").value_parser(["real", "max"]);
-    command.arg(speed.help("Speed of the simulated time: as fast as the clock, or as possible [default: real]"))
-}
-
-/// REPLACE by `Time::Wall`: only where nothing is real can time be hurried.
-pub(crate) fn time(options: &ArgMatches) -> Time {
-    let is_hurried = options.get_one::<String>("speed").is_some_and(|speed| speed == "max");
-    Time::Stepped(if is_hurried { Pace::Max } else { Pace::Times(1.0) })
-}
 
 /// Why the robot cannot go on. Add what can go wrong with yours: a line that is closed, no answer, an emergency stop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,39 +43,59 @@ impl fmt::Display for Fault {
 
 /// Returns the command for this input: if it is too fast, both speeds are reduced by the same factor, so that the robot
 /// stays on its curve.
-pub(crate) fn within_limits(input: &Twist) -> Result<Twist, Fault> {
+fn within_limits(input: &Input) -> Result<Input, Fault> {
     if !(input.v.0.is_finite() && input.omega.0.is_finite()) {
         return Err(Fault::NoNumber);
     }
     let scale = (FASTEST.0 / input.v.0.abs()).min(FASTEST_TURN.0 / input.omega.0.abs()).min(1.0);
-    Ok(Twist { v: MetersPerSecond(input.v.0 * scale), omega: RadiansPerSecond(input.omega.0 * scale) })
+    Ok(Input { v: MetersPerSecond(input.v.0 * scale), omega: RadiansPerSecond(input.omega.0 * scale) })
 }
 
-/// The robot. REPLACE its fields by the line to yours, and the bodies of the three functions by your driver.
+/// The robot. REPLACE its fields by the line to yours, and the functions below by your driver.
 #[derive(Debug)]
 pub struct Hardware {
     period: Duration,
     pose: Pose,
-    velocity: Twist,
+    velocity: Input,
 }
 
-impl Hardware {
-    /// Opens the robot; it does not move yet. Yours sets its odometry to zero here and arms its watchdog, which has to
-    /// stop the robot when no command comes any more: even this program can be killed.
-    pub(crate) fn open(_options: &ArgMatches, period: Duration) -> Result<Self, Fault> {
-        Ok(Self { period, pose: Pose::ORIGIN, velocity: Twist::default() })
+/// The target that the host runs plans on.
+#[derive(Debug, Clone, Copy)]
+pub struct Target;
+
+impl mdle_host::Target for Target {
+    const NAME: &'static str = alphabet::NAME;
+    const PERIOD: Duration = Duration::from_nanos(alphabet::PERIOD.0);
+    type Robot = Hardware;
+
+    /// REPLACE by the options that your robot needs, such as the line that it is on.
+    fn arguments(command: Command) -> Command {
+        let speed = Arg::new("speed").long("speed").value_name("real|max").value_parser(["real", "max"]);
+        command.arg(speed.help("Speed of the simulated time: as fast as the clock, or as possible [default: real]"))
     }
 
-    /// Returns the pose of the imagined robot, relative to the place at which it was opened. REPLACE: a real robot does
-    /// not know its true pose; delete this function, and determine the pose in `tests/conformance.rs`.
-    #[must_use]
-    pub fn imagined(&self) -> Pose {
-        self.pose
+    /// REPLACE: take it away, and time passes by the clock. Only where nothing is real can it be hurried.
+    fn time(options: &ArgMatches) -> Result<Time, String> {
+        let is_hurried = options.get_one::<String>("speed").is_some_and(|speed| speed == "max");
+        Ok(Time::Stepped(if is_hurried { Pace::Max } else { Pace::Times(1.0) }))
     }
+
+    /// Opens the robot; it does not move yet. Yours sets its odometry to zero here and arms its watchdog, which has to
+    /// stop the robot when no command comes any more: even this program can be killed.
+    fn connect(_options: &ArgMatches, period: Duration, _request: &StopRequest) -> Result<Hardware, Refusal> {
+        Ok(Hardware { period, pose: Pose::ORIGIN, velocity: Input::default() })
+    }
+}
+
+impl Robot for Hardware {
+    type Output = Output;
+    type Input = Input;
+    type Error = Fault;
 
     /// Sends the speeds for this period and returns the sensors' values after it. Yours waits for them, but not for
     /// ever: a robot that is silent is a fault, and earlier values are never returned twice.
-    pub(crate) fn command(&mut self, speeds: Twist) -> Result<Sensed, Fault> {
+    fn exchange(&mut self, input: &Input) -> Result<Output, Fault> {
+        let speeds = within_limits(input)?;
         let seconds = self.period.as_secs_f64();
         self.pose = self.pose.moved(Meters(speeds.v.0 * seconds), Radians(speeds.omega.0 * seconds));
         self.velocity = speeds;
@@ -104,30 +114,42 @@ impl Hardware {
 
     /// Stops the robot; called on every way out, also after a fault. Yours sends the robot's own stop command, even if
     /// the last command was not answered.
-    pub(crate) fn halt(&mut self) -> Result<(), Fault> {
-        self.velocity = Twist::default();
+    fn stop(&mut self) -> Result<(), Fault> {
+        self.velocity = Input::default();
         Ok(())
+    }
+}
+
+impl Hardware {
+    /// Where the robot is that is imagined, from where it was opened. REPLACE: of a real one nobody knows that in here; take
+    /// it away, and have `tests/conformance.rs` find out.
+    #[must_use]
+    pub fn imagined(&self) -> Pose {
+        self.pose
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use mdle_host::Target as _;
+
     use super::*;
 
     fn hardware() -> Hardware {
-        let options = options(Command::new("test")).get_matches_from(["test"]);
-        Hardware::open(&options, Duration::from_millis(100)).unwrap_or_else(|fault| unreachable!("{fault}"))
+        let options = Target::arguments(Command::new("test")).get_matches_from(["test"]);
+        Target::connect(&options, Duration::from_millis(100), &StopRequest::default())
+            .unwrap_or_else(|refusal| unreachable!("{refusal:?}"))
     }
 
-    fn twist(v: f64, omega: f64) -> Twist {
-        Twist { v: MetersPerSecond(v), omega: RadiansPerSecond(omega) }
+    fn twist(v: f64, omega: f64) -> Input {
+        Input { v: MetersPerSecond(v), omega: RadiansPerSecond(omega) }
     }
 
     /// Returns the sensors' values after a second with these speeds.
-    fn after_a_second(v: f64, omega: f64) -> Result<Sensed, Fault> {
+    fn after_a_second(v: f64, omega: f64) -> Result<Output, Fault> {
         let mut hardware = hardware();
-        (0..9).try_for_each(|_| hardware.command(twist(v, omega)).map(|_| ()))?;
-        hardware.command(twist(v, omega))
+        (0..9).try_for_each(|_| hardware.exchange(&twist(v, omega)).map(|_| ()))?;
+        hardware.exchange(&twist(v, omega))
     }
 
     #[test]
@@ -150,10 +172,10 @@ mod tests {
     #[test]
     fn a_robot_that_is_stopped_stands() -> Result<(), Fault> {
         let mut hardware = hardware();
-        hardware.command(twist(0.2, 0.5))?;
-        hardware.halt()?;
-        let [before, after] = [hardware.command(Twist::default())?, hardware.command(Twist::default())?];
-        assert_eq!((before.odometry, after.velocity), (after.odometry, Twist::default()));
+        hardware.exchange(&twist(0.2, 0.5))?;
+        hardware.stop()?;
+        let [before, after] = [hardware.exchange(&Input::default())?, hardware.exchange(&Input::default())?];
+        assert_eq!((before.odometry, after.velocity), (after.odometry, Input::default()));
         Ok(())
     }
 }
