@@ -87,7 +87,7 @@ fn faults_are_told_with_their_place() {
     .map(fault);
     insta::assert_snapshot!(faults.join("\n"), @r#"
     room.toml:3:1: missing comma between array elements, expected `,`
-    room.toml:1:3: unknown field `wal`, expected one of `units`, `start`, `goal`, `charger`, `wall`, `box`, `disc`, `door`
+    room.toml:1:3: unknown field `wal`, expected one of `units`, `rough`, `start`, `goal`, `charger`, `wall`, `box`, `disc`, `door`
     room.toml:2:1: unknown field `nmae`, expected `name` or `points`
     room.toml:1:1: missing field `points`
     room.toml:2:10: a wall needs at least two points, as in `points = [[0, 0], [2.5, 0]]`
@@ -116,6 +116,10 @@ fn faults_are_told_with_their_place() {
     room.toml:1:11: missing field `heading`
     room.toml:1:18: `at` is two numbers, x and y in metres, not 3
     room.toml:1:9: "miles" is no unit of length; expected one of `m`, `cm`, `mm`, `in`, `ft`
+    room.toml:1:9: `rough` is 2; expected 0, for smooth surfaces, to 1, for those heard at any angle
+    room.toml:1:9: `rough` is -0.1; expected 0, for smooth surfaces, to 1, for those heard at any angle
+    room.toml:1:9: `rough` is NaN; expected 0, for smooth surfaces, to 1, for those heard at any angle
+    room.toml:1:9: invalid type: string "very", expected a number
     room.toml:3:20: 1e7 is no coordinate: expected a number, at most 1000 km
     room.toml:3:10: a disc without an inside: expected a radius above 0
     room.toml:1:1: a disc has a `radius` and a `centre`, or a `schedule` if it moves
