@@ -16,8 +16,9 @@ const ALSO_FACES: f64 = 1.5;
 /// Ranges that differ by less, in metres, are alike.
 const ALIKE: f64 = 0.06;
 
-/// The sonars to both sides of one that a straight wall faces hear it further from the centre of the body by this factor and
-/// length, in metres, at most. Those beside the edge of a way hear walls that run off from there, where walls are rough.
+/// The sonars to both sides of one that a straight wall faces hear it, on average, further from the centre of the body by this
+/// factor and length, in metres, at most. Those beside the edge of a way hear walls that run off from there, where walls are
+/// rough.
 const FLAT: (f64, f64) = (1.08, 0.04);
 /// What the sonars to both sides hear of a straight wall is longer than what the one between them hears, by this factor at
 /// most and by a step of ranges; what lies behind an opening is further.
@@ -132,7 +133,7 @@ fn faces_between<Y: SonarRing>(y: &Y, direction: SonarId) -> bool {
     };
     let (Some(before), Some(diagonal), Some(after)) = (near(1), near(2), near(3)) else { return false };
     let in_a_corner = [near(0), near(4)].iter().all(|wall| wall.is_some_and(|wall| wall < diagonal));
-    let is_flat = before.0.max(after.0) <= FLAT.0 * (diagonal.0 + y.ring_radius().0) - y.ring_radius().0 + FLAT.1;
+    let is_flat = (before.0 + after.0) / 2.0 <= FLAT.0 * (diagonal.0 + y.ring_radius().0) - y.ring_radius().0 + FLAT.1;
     !in_a_corner && is_flat && diagonal.0 <= before.0.min(after.0) + ALIKE
 }
 
@@ -282,6 +283,17 @@ mod tests {
         ranges[3..=5].copy_from_slice(&[9.0, 0.55, 0.53]);
         ranges[6..=7].copy_from_slice(&[0.53, 0.55]);
         assert!(!fires("0100", &in_turn(ranges)), "a wall that faces the diagonal behind the left");
+    }
+
+    #[test]
+    fn the_edge_of_a_way_between_rough_walls_is_no_wall() {
+        let mut ranges = [9.0; 16];
+        ranges[3..=5].copy_from_slice(&[0.57, 0.55, 0.57]);
+        // The edge, and the walls that run off from there.
+        ranges[13..=15].copy_from_slice(&[1.07, 0.87, 1.07]);
+        assert!(fires("0100", &in_turn(ranges)));
+        ranges[13..=15].copy_from_slice(&[0.9, 0.87, 0.9]);
+        assert!(!fires("0100", &in_turn(ranges)), "a wall");
     }
 
     #[test]
