@@ -97,10 +97,20 @@ fn symbols(terms: &Terms<'_>) -> String {
     if terms.combined {
         text += "An interrupt in several places is counted once (Eq. 3). Of those that fire at once, the one with the lowest \
                  number\nat the state (in parentheses) decides.\n";
+        if is_kept_apart(&terms.live) {
+            text += "A timer counts from the start of its own scope, so that equal ones are kept apart.\n";
+        }
     } else {
         text += "Of those that fire at once, the one with the lowest number decides.\n";
     }
     text
+}
+
+/// Returns `true` if terms of the same text are apart, since they wait.
+fn is_kept_apart(terms: &[Term<'_>]) -> bool {
+    let mut texts: Vec<_> = terms.iter().filter(|term| term.waits).map(|term| term.text).collect();
+    texts.sort_unstable();
+    texts.windows(2).any(|pair| pair.first() == pair.last())
 }
 
 fn interrupts(terms: &[Term<'_>], numbered: bool) -> String {
@@ -155,6 +165,15 @@ mod tests {
         let text =
             "{ P (wait 60) { Q (bumper) (Atom (wait 1) stop) (Atom (null) rotate 90) } (Atom (bumper) turn 90) }";
         insta::assert_snapshot!(printed(text, true).unwrap());
+    }
+
+    #[test]
+    fn timers_of_two_scopes_are_kept_apart() {
+        let plan = "{ P (Atom (wait 2) stop) { Q (wait 2) (Atom (bumper) stop) } (Atom (bumper) stop) }";
+        let text = printed(plan, true).unwrap();
+        assert!(text.contains("wait 2, at e1 (2)\n") && text.contains("wait 2, at e2 of Q (3)\n"), "{text}");
+        assert!(text.contains("bumper, at e2 (4), e3 (5)\n"), "{text}");
+        assert!(text.ends_with("equal ones are kept apart.\n"), "{text}");
     }
 
     #[test]

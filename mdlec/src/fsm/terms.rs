@@ -30,6 +30,8 @@ pub struct Term<'p> {
     pub name: String,
     /// Its condition text.
     pub text: &'p str,
+    /// `true` if it asks for a time, which counts from the start of its scope.
+    pub waits: bool,
     /// The scopes that have it, from left to right: no state is in two of them (Observation 1).
     pub places: Vec<Extent<'p>>,
 }
@@ -82,13 +84,14 @@ pub fn terms(plan: &Nondegenerate, combined: bool) -> Result<Terms<'_>, Diagnost
         let columns = transition.matrix.listed();
         let (first, last, row) = (*columns.start(), *columns.end(), transition.matrix.row());
         let place = Extent { number, scope: transition.name, first, last, row };
-        let term = Term { name: format!("x{number}"), text: &transition.interrupt.text, places: vec![place] };
         let condition = &transition.interrupt.condition;
+        let (name, text, waits) = (format!("x{number}"), &transition.interrupt.text, condition.waits());
+        let term = Term { name, text, waits, places: vec![place] };
         if *condition == Condition::Null {
             never.push(term);
             continue;
         }
-        let function = functions.function(condition).filter(|_| combined);
+        let function = functions.function(condition).filter(|_| combined && !condition.waits());
         let known = function.map(|function| *first_of.entry(function).or_insert(live.len()));
         match known.and_then(|known| live.get_mut(known)) {
             Some(first) => first.places.push(place),
@@ -107,7 +110,7 @@ fn completion<'p>(plan: &'p Plan, made: &Matrices<'p>) -> Option<Term<'p>> {
         Extent { number: number + 1, scope, first: column, last: column, row: matrix.row() }
     });
     let places: Vec<_> = places.collect();
-    (!places.is_empty()).then(|| Term { name: "completed".into(), text: "completed", places })
+    (!places.is_empty()).then(|| Term { name: "completed".into(), text: "completed", waits: false, places })
 }
 
 #[cfg(test)]
@@ -124,8 +127,8 @@ mod tests {
 
     #[test]
     fn an_interrupt_that_is_counted_once_has_the_matrix_of_equation_3() {
-        let text = "{ P { Q (bumper OR wait 5) (Atom (wait 1) stop) (Atom (null) rotate 90) } (Atom (wait 1) stop)^2 \
-                    (Atom (wait 5 OR bumper) turn 90) }";
+        let text = "{ P { Q (bumper OR r0 < 1) (Atom (r1 < 1) stop) (Atom (null) rotate 90) } (Atom (r1 < 1) stop)^2 \
+                    (Atom (r0 < 1 OR bumper) turn 90) }";
         let plan = &compiled(text)[0].nondegenerate;
         let (apart, once) = (terms(plan, false).unwrap(), terms(plan, true).unwrap());
         let names = |terms: &Terms<'_>| terms.live.iter().map(|term| term.name.clone()).collect::<Vec<_>>();

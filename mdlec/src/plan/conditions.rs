@@ -33,7 +33,7 @@ pub(super) fn interrupt(
     };
     let mut resolving = Resolving { around, memories: 0 };
     let condition = resolving.condition(written);
-    let Resolving { around: Around { quarks, .. }, memories } = resolving;
+    let Resolving { around: Around { quarks, .. }, mut memories } = resolving;
     let name = |id| quarks.get(id).map(|quark| quark.text.clone()).unwrap_or_default();
     let operands = condition.operands().iter().map(|operand| condition_text(operand, &name)).collect();
     let text = condition_text(&condition, &name);
@@ -45,8 +45,13 @@ pub(super) fn interrupt(
         let is_infinite = part.any(&|part| matches!(part, Condition::Wait { nanos: FOR_EVER, .. }));
         place.text = is_infinite.then(|| Box::new(condition_text(part, &name)));
     }
+    let mut condition = without_infinite_waits(condition);
+    if condition != Condition::Null && constant(&condition) == Some(false) {
+        // Reports name the operand of a condition that has no operands any more by its whole text.
+        places = vec![OperandPlace { span: written.span, signals: [None; 2], text: Some(Box::new(text.clone())) }];
+        (condition, memories) = (Condition::Null, 0);
+    }
     let places = places.into();
-    let condition = without_infinite_waits(condition);
     (Interrupt { condition, text, nested, operands: places, memories, removed: false, span: written.span }, operands)
 }
 
@@ -84,6 +89,21 @@ const FOR_EVER: u64 = u64::MAX;
 /// Replaces `wait inf` by the null interrupt, after the text has been made.
 fn without_infinite_waits(condition: Condition) -> Condition {
     condition.map(&|part| if matches!(part, Condition::Wait { nanos: FOR_EVER, .. }) { Condition::Null } else { part })
+}
+
+/// The value that a condition always has, if it asks nothing: all that is in it is the null interrupt.
+fn constant(condition: &Condition) -> Option<bool> {
+    let all = |operands: &[Condition]| operands.iter().map(constant).collect::<Option<Vec<_>>>();
+    match condition {
+        Condition::Null => Some(false),
+        Condition::Or(operands) => Some(all(operands)?.contains(&true)),
+        Condition::And(operands) => Some(!all(operands)?.contains(&false)),
+        Condition::Not(operand) => constant(operand).map(|value| !value),
+        // It never becomes true, as it is so from the beginning or never.
+        Condition::Rising { operand, .. } => constant(operand).map(|_| false),
+        Condition::Quark(_) | Condition::Wait { .. } | Condition::Elapsed { .. } => None,
+        Condition::Driven { .. } | Condition::After(_) => None,
+    }
 }
 
 struct Resolving<'r, 'a, 'n> {

@@ -71,3 +71,20 @@ fn degrees_and_radians_are_never_the_same() {
     // As near as a float comes to half a turn, and still another number.
     assert!(!removed("3.141592653589793rad"));
 }
+
+#[test]
+fn the_null_interrupt_in_disguise_is_null() {
+    for condition in
+        ["wait inf OR wait inf", "NOT (NOT wait inf)", "null AND wait inf", "RISING (NOT null)", "NOT (NOT null)"]
+    {
+        let compiled = compiled(&format!("{{ P (bumper) (Atom ({condition}) stop) }}"));
+        let interrupt = of_first_atom(&compiled[0]);
+        assert_eq!((&interrupt.condition, interrupt.memories, interrupt.removed), (&Condition::Null, 0, false));
+        assert_eq!(interrupt.text, condition);
+        assert_eq!(interrupt.operands.len(), 1);
+    }
+    for condition in ["wait inf OR wait 1", "NOT wait inf", "bumper AND null"] {
+        let compiled = compiled(&format!("{{ P (atIsection 1000) (Atom ({condition}) stop) }}"));
+        assert_ne!(of_first_atom(&compiled[0]).condition, Condition::Null, "{condition}");
+    }
+}
