@@ -4,11 +4,13 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use super::assert_trace::assert_trace;
+use mdle_tests::pipeline::compile_plan;
 
 #[test]
 fn the_papers_example_is_a_scope_with_a_timer_and_three_passes() {
     for plan in [
         "{ Main ((idle, a)(drift, b), c, 10s)^3 }",
+        "{ Main (((idle, a), (drift, b)), c, 10s)^3 }",
         "{ Main ExecPlan 3 { { Inner (c OR wait 10) (Atom (a) idle) (Atom (b) drift) } } }",
     ] {
         assert_trace(
@@ -49,4 +51,14 @@ fn a_timer_is_the_last_operand_and_may_be_a_cause() {
             ),
         ],
     );
+}
+
+#[test]
+fn a_string_before_sigma_null_is_a_plan() {
+    let formal = |text: &str| compile_plan(text, "Plan").unwrap().plan.formal();
+    for bare in ["((idle, a)(drift, b), c, 10s)^3 σ_null", "(((idle, a), (drift, b)), c, 10s)^3 \\sigma_{null}"] {
+        assert_eq!(formal(bare), formal("{ Plan ((idle, a)(drift, b), c, 10s)^3 }"), "{bare}");
+    }
+    assert!(compile_plan("((idle, a)(drift, b), c, 10s)^3", "Plan").unwrap_err().contains("E0102"));
+    assert!(compile_plan("σ_null", "Plan").unwrap_err().contains("E0102"));
 }

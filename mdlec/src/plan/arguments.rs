@@ -151,6 +151,11 @@ impl Fitting<'_> {
 
     /// Converts an argument; `bare` is the unit of a number without one.
     fn argument(&self, arg: &Arg, param: &Param, bare: Option<Unit>) -> Fitted {
+        if let (Arg::Name(name), Kind::Sonar) = (arg, param.kind)
+            && let Some(number) = examples::sonar(name)
+        {
+            return self.whole(&number, param);
+        }
         match (arg, param.kind) {
             (Arg::Number(number), Kind::Bits(length)) => bits(number, length),
             (

@@ -9,7 +9,7 @@ mod pieces;
 use super::source::Source;
 use super::token::Tok;
 use super::tree::{Element, File, Plan, Primary};
-use super::{arena_for, parse};
+use super::{arena_for, parse, printed};
 use crate::diagnostic::{Diagnostic, SourceId, Span, has_errors};
 use comments::Before;
 use lines::Lines;
@@ -27,11 +27,14 @@ const INDENT: usize = 2;
 /// Fails if the text has errors: where the parser had to guess, nothing is moved.
 pub fn format(id: SourceId, text: &str) -> Result<String, Vec<Diagnostic>> {
     let arena = arena_for(text);
-    let (file, found) = parse(id, text, &arena);
+    let (_, found) = parse(id, text, &arena);
     if has_errors(&found) {
         return Err(found);
     }
-    let source = Source::new(id, text);
+    let text = printed::with_braces(Source::new(id, text));
+    let arena = arena_for(&text);
+    let (file, _) = parse(id, &text, &arena);
+    let source = Source::new(id, &text);
     let mut layout = Layout { id: source.id, pieces: Pieces::of(source), at: 0, lines: Lines::default(), depth: 0 };
     layout.file(&file);
     Ok(layout.lines.text())

@@ -193,29 +193,16 @@ fn keyword_argument(site: &Site<'_, '_>) -> Option<Diagnostic> {
     }
 }
 
-/// Reports commas between elements.
+/// A comma that is not between two elements.
 fn comma(site: &Site<'_, '_>) -> Option<Diagnostic> {
-    let between = |at: usize| {
-        site.about(at, "elements are not separated by commas", "not expected here").fix(
-            "remove it: a space is enough",
-            site.span(at, at),
-            "",
-        )
-    };
-    if site.found() == Some(Tok::Comma) && site.expects_element() {
-        return Some(between(site.at));
+    if site.found() != Some(Tok::Comma) {
+        return None;
     }
-    let element = matches!(site.found(), Some(Tok::Atom | Tok::ExecPlan | Tok::LBrace | Tok::Frame));
-    if site.found() == Some(Tok::Comma)
-        && let Some(found) = comma_in_atom(site)
-    {
-        return Some(found);
+    if site.expects_element() {
+        let diagnostic = site.about(site.at, "this comma is not between two elements", "not expected here");
+        return Some(diagnostic.fix("remove it", site.span(site.at, site.at), ""));
     }
-    if element && site.expects_condition() {
-        let back = (1..=2).find(|back| site.before(*back) == Some(Tok::Comma))?;
-        return Some(between(site.at - back).help("a comma makes `(s, ξ)`: a scope and its condition"));
-    }
-    None
+    comma_in_atom(site)
 }
 
 /// Reports a comma in the condition of an atom, after it, or in the parentheses of its law.

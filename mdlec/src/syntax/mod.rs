@@ -17,6 +17,7 @@ mod mistakes;
 mod nodes;
 mod one_line;
 pub mod outline;
+mod printed;
 mod regions;
 mod single;
 mod source;
@@ -83,6 +84,7 @@ pub fn parse<'s>(source: SourceId, text: &'s str, arena: &'s Arena) -> (tree::Fi
 fn recover<'s>(source: Source<'s>, arena: &'s Arena) -> (tree::File<'s>, Vec<Diagnostic>) {
     let mut lexed = token::lex(source);
     foreign::replace(source, &mut lexed);
+    printed::read(&mut lexed);
     let mut balanced = brackets::balance(source, &lexed);
     header::mark(&mut balanced.tokens);
 

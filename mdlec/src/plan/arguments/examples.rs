@@ -3,7 +3,7 @@
 use super::written;
 use crate::alphabet::{Declaration, Kind, Param};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::syntax::tree::{Arg, Call};
+use crate::syntax::tree::{Arg, Call, Name, Number};
 
 /// Example value for a parameter; `None` if only the user knows a name.
 pub(in crate::plan) fn example(param: &Param) -> Option<String> {
@@ -20,6 +20,13 @@ pub(in crate::plan) fn example(param: &Param) -> Option<String> {
         Kind::Robot | Kind::Module | Kind::File => return None,
     };
     Some(value)
+}
+
+/// The sonar whose range a name is, as the paper's `align r_7 r_9` has it.
+pub(super) fn sonar<'s>(name: &Name<'s>) -> Option<Number<'s>> {
+    let digits = name.node.strip_prefix('r').map(|index| index.strip_prefix('_').unwrap_or(index))?;
+    let is_index = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
+    is_index.then(|| Number::new(digits, name.span))
 }
 
 /// Proposes `atIsection 1000` for `atIsection 1 0 0 0`.

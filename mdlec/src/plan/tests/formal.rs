@@ -1,6 +1,6 @@
 //! Formal notation resolves to the plan that it was printed from, whatever labels `after` reads.
 
-use crate::samples::compiled;
+use crate::samples::{compiled, judged};
 
 /// Returns the formal text of a plan, and checks that this text has itself as its formal text.
 fn formal(text: &str) -> String {
@@ -86,4 +86,14 @@ fn plans_by_name_are_neither_a_condition_nor_one_name() {
       (stop, after s1)
     }
     ");
+}
+
+#[test]
+fn sonars_of_laws_may_be_written_as_their_ranges() {
+    let printed = compiled("{ P (bumper) (Atom (r_7(t) == r_9(t)) align r_7 r_9) (align(r3, 5), r3 == r5) }");
+    let written = compiled("{ P (bumper) (Atom (r7 == r9) (align 7 9)) (Atom (r3 == r5) (align 3 5)) }");
+    assert_eq!(printed[0].plan.formal(), written[0].plan.formal());
+    let judged = |law: &str| judged(&format!("{{ P (bumper) (Atom (null) {law}) }}"), None);
+    assert!(judged("align r_16 r_9").contains("expected a sonar, 0 to 15, found `16`"));
+    assert!(judged("align x_7 r_9").contains("expected a sonar, 0 to 15, found the name `x_7`"));
 }

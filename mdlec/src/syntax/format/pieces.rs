@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use super::super::header;
+use super::super::printed;
 use super::super::source::{Place, Source};
 use super::super::token::{Lexed, Tok, Token, label, lex};
 use super::comments::{Gap, gap};
@@ -41,7 +42,9 @@ pub(super) struct Pieces<'s>(Vec<Piece<'s>>);
 impl<'s> Pieces<'s> {
     /// The pieces of a text without errors.
     pub(super) fn of(source: Source<'s>) -> Self {
-        let Lexed { mut tokens, .. } = lex(source);
+        let mut lexed = lex(source);
+        printed::read(&mut lexed);
+        let Lexed { mut tokens, .. } = lexed;
         header::mark(&mut tokens);
         let end = source.text.len();
         tokens.push(Token { kind: Tok::Comment, place: Place::new(end, end) });

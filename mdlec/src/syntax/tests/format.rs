@@ -113,6 +113,31 @@ fn every_form_has_its_layout() {
 }
 
 #[test]
+fn strings_as_the_paper_prints_them_get_braces_and_no_commas() {
+    let text = "{A (null)(((Atom (b) u),(Atom (c) v)),x,5) B,{C D, /* why */ E}}
+/// As in Fig. 2.
+((a, ψ_a)(b, ψ_b), ψ_c)σ_null // the end
+Γ_x=(a b)^2 \\sigma_{null} { F G }";
+    insta::assert_snapshot!(assert_kept(text), @r"
+    { A (null)
+      (((Atom (b) u) (Atom (c) v)), x, 5)
+      B
+      { C
+        D
+        /* why */ E
+      }
+    }
+
+    /// As in Fig. 2.
+    { Plan ((a, ψ_a) (b, ψ_b), ψ_c) sigma_null }    // the end
+
+    Γ_x = { Plan (null) (a b)^2 sigma_null }
+
+    { F G }
+    ");
+}
+
+#[test]
 fn the_papers_listings_read_well() {
     insta::assert_snapshot!(assert_kept(&listings::ALL.concat()));
 }

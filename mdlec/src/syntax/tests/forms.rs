@@ -49,6 +49,19 @@ fn headers() {
 }
 
 #[test]
+fn strings_as_the_paper_prints_them() {
+    check(
+        "forms_strings_as_the_paper_prints_them",
+        &[
+            "{ A (null) (((Atom (b) u), (Atom (c) v)), x, 5) B, { C D, E }, ExecPlan 2 { F, G } }",
+            "{ A ((u 1, x), (v 2, y), s1: B) FRAME 90 (C^2, FRAME here D), ((u 1, x), (y OR z)) (B, C) }",
+            "((a, ψ_a)(b, ψ_b), ψ_c)σ_null",
+            "((Atom (b) u), (Atom (c) v)) \\sigma_{null} Γ_x = (a b)^2 sigma_null { C D }",
+        ],
+    );
+}
+
+#[test]
 fn conditions() {
     check(
         "forms_conditions",

@@ -1,0 +1,164 @@
+//! Strings as the paper prints them (docs/src/reference/language.md, 3.2): commas between their elements, and a plan without
+//! braces before `σ_null`.
+
+use std::borrow::Cow;
+
+use super::header::{self, Begins};
+use super::source::{Place, Source};
+use super::token::{Lexed, Tok, Token, lex};
+
+/// The name of a plan that is printed without one.
+const NAME: &str = "Plan";
+
+/// Leaves out the commas between elements, and puts the braces of a plan around a string before `σ_null`.
+pub(super) fn read(lexed: &mut Lexed<'_>) {
+    let is_printed = |token: &Token<'_>| matches!(token.kind, Tok::Comma | Tok::SigmaNull);
+    if !lexed.tokens.iter().any(is_printed) {
+        return;
+    }
+    let (commas, plans) = found(&lexed.tokens);
+    if commas.is_empty() && plans.is_empty() {
+        return;
+    }
+    let (mut commas, mut plans) = (commas.into_iter().peekable(), plans.into_iter().peekable());
+    let old = std::mem::take(&mut lexed.tokens);
+    let mut moved = Vec::with_capacity(old.len());
+    for (at, token) in old.iter().enumerate() {
+        moved.push(lexed.tokens.len());
+        if plans.peek().is_some_and(|plan| plan.0 == at) {
+            head(&old, at, &mut lexed.tokens);
+        }
+        if commas.next_if_eq(&at).is_none() {
+            lexed.tokens.push(*token);
+        }
+        if plans.next_if(|plan| plan.1 == at).is_some() {
+            let end = token.place.end;
+            lexed.tokens.push(Token { kind: Tok::RBrace, place: Place::new(end, end) });
+        }
+    }
+    let end = lexed.tokens.len();
+    let at = |before: usize| moved.get(before).copied().unwrap_or(end);
+    lexed.docs.iter_mut().for_each(|(before, _)| *before = at(*before));
+    lexed.errors.iter_mut().for_each(|(before, _)| *before = at(*before));
+}
+
+/// The text with braces, and a name, around each plan that has none.
+pub(super) fn with_braces(source: Source<'_>) -> Cow<'_, str> {
+    let tokens = lex(source).tokens;
+    let (_, plans) = found(&tokens);
+    if plans.is_empty() {
+        return Cow::Borrowed(source.text);
+    }
+    let (mut text, mut copied) = (String::new(), 0);
+    for (first, last) in plans {
+        let mut new = Vec::new();
+        head(&tokens, first, &mut new);
+        let (Some(start), Some(end)) = (tokens.get(first), tokens.get(last)) else { continue };
+        let opening = if new.len() > 2 { format!("{{ {NAME} (null) ") } else { format!("{{ {NAME} ") };
+        text += source.slice(Place::new(copied, start.place.start));
+        text += &opening;
+        text += source.slice(Place::new(start.place.start, end.place.end));
+        text += " }";
+        copied = end.place.end;
+    }
+    text += source.slice(Place::new(copied, source.text.len()));
+    Cow::Owned(text)
+}
+
+/// The brace, the name and, where what follows looks like a condition, the null interrupt of a plan without braces.
+fn head<'s>(tokens: &[Token<'s>], at: usize, new: &mut Vec<Token<'s>>) {
+    let start = tokens.get(at).map_or(0, |token| token.place.start);
+    let mut push = |kind| new.push(Token { kind, place: Place::new(start, start) });
+    [Tok::LBrace, Tok::Name(NAME)].into_iter().for_each(&mut push);
+    if !header::is_element(behind(tokens, at)) {
+        [Tok::LParen, Tok::Null, Tok::RParen].into_iter().for_each(push);
+    }
+}
+
+/// What an open bracket contains.
+#[derive(Clone, Copy, PartialEq)]
+enum Inside {
+    /// Elements of a plan or a loop.
+    Braces,
+    /// Elements, or what formal notation has.
+    Parentheses,
+    /// Arguments or parameters.
+    Others,
+}
+
+/// The commas between elements, and the plans without braces: their first token and their `σ_null`.
+fn found(tokens: &[Token<'_>]) -> (Vec<usize>, Vec<(usize, usize)>) {
+    let (mut commas, mut plans, mut open) = (Vec::new(), Vec::new(), Vec::new());
+    // The first token of what is outside of all plans.
+    let mut first = 0;
+    let before = |at: usize, back: usize| at.checked_sub(back).and_then(|at| tokens.get(at)).map(|token| token.kind);
+    for (at, token) in tokens.iter().enumerate() {
+        #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens say nothing")]
+        match token.kind {
+            Tok::LBrace => open.push(Inside::Braces),
+            Tok::LParen | Tok::TouchParen => {
+                let is_head = before(at, 2) == Some(Tok::LBrace) && matches!(before(at, 1), Some(Tok::Name(_)));
+                let is_list = is_head && header::begins(behind(tokens, at)) != Begins::Others;
+                let touches = token.kind == Tok::TouchParen && !is_head;
+                open.push(if is_list || touches { Inside::Others } else { Inside::Parentheses });
+            }
+            Tok::RParen | Tok::RBrace => {
+                open.pop();
+                if open.is_empty() && token.kind == Tok::RBrace {
+                    first = at + 1;
+                }
+            }
+            Tok::Str(_) if open.is_empty() && before(at, 1) == Some(Tok::Use) => first = at + 1,
+            Tok::Assign if open.is_empty() && matches!(before(at, 1), Some(Tok::Label(_))) => first = at + 1,
+            Tok::SigmaNull if open.is_empty() => {
+                if tokens.get(first).is_some_and(|token| token.kind == Tok::LParen) && is_string(tokens, first, at) {
+                    plans.push((first, at));
+                }
+                first = at + 1;
+            }
+            Tok::Comma if ends_element(before(at, 1)) && begins_element(tokens, at, open.last().copied()) => {
+                commas.push(at);
+            }
+            _ => {}
+        }
+    }
+    (commas, plans)
+}
+
+/// Returns `true` if only groups in parentheses, and their powers, are between these tokens.
+fn is_string(tokens: &[Token<'_>], first: usize, end: usize) -> bool {
+    let mut depth = 0_usize;
+    tokens.get(first..end).unwrap_or(&[]).iter().all(|token| {
+        #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are no brackets")]
+        match token.kind {
+            Tok::LParen | Tok::TouchParen => depth += 1,
+            Tok::RParen => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        let is_power = matches!(token.kind, Tok::Caret | Tok::Number(_) | Tok::Infinity | Tok::Comma);
+        depth > 0 || token.kind == Tok::RParen || is_power
+    })
+}
+
+fn ends_element(token: Option<Tok<'_>>) -> bool {
+    matches!(token, Some(Tok::RParen | Tok::RBrace | Tok::Name(_) | Tok::Number(_) | Tok::Infinity))
+}
+
+/// Returns `true` if an element follows this comma. In parentheses a condition may follow it, so that a name, or a group
+/// that may be a condition, is none.
+fn begins_element(tokens: &[Token<'_>], comma: usize, inside: Option<Inside>) -> bool {
+    let kind = |ahead: usize| tokens.get(comma + ahead).map(|token| token.kind);
+    let Some(next) = kind(1).filter(|_| inside != Some(Inside::Others)) else { return false };
+    #[allow(clippy::wildcard_enum_match_arm, reason = "no element begins with any other token")]
+    match next {
+        Tok::LBrace | Tok::ExecPlan | Tok::Frame | Tok::Label(_) => true,
+        Tok::Name(_) => inside == Some(Inside::Braces) || kind(2) == Some(Tok::Colon),
+        Tok::LParen => inside == Some(Inside::Braces) || header::is_element(behind(tokens, comma + 1)),
+        _ => false,
+    }
+}
+
+/// The tokens after the one at `at`.
+fn behind<'s>(tokens: &[Token<'s>], at: usize) -> impl Iterator<Item = Tok<'s>> {
+    tokens.get(at + 1..).unwrap_or(&[]).iter().map(|token| token.kind)
+}
