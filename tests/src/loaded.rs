@@ -1,8 +1,8 @@
 //! Plans loaded at run time: rows whose quarks the bound alphabet of the target `scripted` makes by their names.
 
 use mdle_runtime::{
-    Alphabet, Argument, Begin, BracketWords, Cause, Comparison, Condition, Cursor, Fsm, Guard, InRows, LawRow, MarkRow,
-    Measured, Memories, Meters, MetersPerSecond, Nanometers, Nanos, Next, Operand, OperandWords, Operator, Plan,
+    Alphabet, Argument, Begin, BracketWords, Cause, Comparison, Condition, Cursor, Ending, Fsm, Guard, InRows, LawRow,
+    MarkRow, Measured, Memories, Meters, MetersPerSecond, Nanometers, Nanos, Operand, OperandWords, Operator, Plan,
     Radians, RadiansPerSecond, Rows, SonarId, Source, SourceLine, Stamp, Stamps, Texts, Volts,
 };
 use mdle_scripted::alphabet::{self as scripted, AnyControl, AnyInterrupt};
@@ -76,8 +76,8 @@ impl<'l> Plan for LoadedPlan<'l> {
         self.0.enter(atom, y, begin);
     }
 
-    fn next(&mut self, cursor: &mut At<'l>, y: &Output, begin: Begin, direct: bool) -> Next {
-        self.0.next(cursor, y, begin, direct)
+    fn next(&self, cursor: &At<'l>, y: &Output, t: Nanos) -> Option<Ending> {
+        self.0.next(cursor, y, t)
     }
 
     fn leave(&mut self, cursor: &At<'l>, cause: Cause, y: &Output, t: Nanos) {

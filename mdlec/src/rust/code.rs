@@ -202,7 +202,7 @@ impl<'a> Meaning<'a> {
             let around = self.around(element).map(asked_first);
             let asked = |question: &TokenStream, cause: TokenStream| {
                 let ending = ending(element, &cause);
-                quote!(if #question { return runtime::Plan::end(self, cursor, #ending, y, begin, direct); })
+                quote!(if #question { return Some(#ending); })
             };
             let completes = atom.law().completes;
             let interrupt = self.condition(element).map(|fired| asked(&fired, quote!(Fired)));
@@ -214,14 +214,13 @@ impl<'a> Meaning<'a> {
         let plan = self.function(self.machine.root()).map(asked_first);
         quote! {
             #[inline(always)]
-            fn next(&mut self, cursor: &mut At, y: &Output, begin: Begin, direct: bool) -> Next {
-                let t = begin.now;
+            fn next(&self, cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
                 #plan
                 match &self.running {
                     Running::Idle => {}
                     #(#arms)*
                 }
-                Next::Stays
+                None
             }
         }
     }
@@ -251,7 +250,7 @@ pub(super) fn atom_doc(atom: Atom<'_>) -> String {
 /// Ends the scopes that this function asks for, before anything further inside is asked.
 fn asked_first(function: &Ident) -> TokenStream {
     quote! {
-        if let Some(ending) = #function(cursor, y, t) { return Next::Ends(ending); }
+        if let Some(ending) = #function(cursor, y, t) { return Some(ending); }
     }
 }
 

@@ -117,7 +117,7 @@ pub fn emit_as(shape: Shape, machine: &Machine, header: Header<'_>, alphabet: &A
         mod machine {
             use ::mdle_runtime as runtime;
             use ::mdle_runtime::fsm::{Atom, Bracket};
-            use ::mdle_runtime::{Begin, Cursor, Fsm, Nanos, Next};
+            use ::mdle_runtime::{Begin, Cursor, Fsm, Nanos};
             use ::#target::alphabet::{self as robot, Input, Output};
 
             #same_alphabet

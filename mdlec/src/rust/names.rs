@@ -7,8 +7,8 @@ use quote::format_ident;
 
 /// The types that a generated file uses, beside those of the robot, which it writes with their module.
 const TYPES: &[&str] = &[
-    "At", "Atom", "Begin", "Bracket", "Cursor", "Debug", "Default", "FnMut", "Fsm", "Input", "Nanos", "Next", "None",
-    "Option", "Output", "Plan", "Running", "Self", "Some",
+    "At", "Atom", "Begin", "Bracket", "Cursor", "Debug", "Default", "FnMut", "Fsm", "Input", "Nanos", "None", "Option",
+    "Output", "Plan", "Running", "Self", "Some",
 ];
 /// What a bound alphabet has beside its quarks, and what its text uses of Rust's own.
 const BOUND: &[&str] = &[
@@ -31,7 +31,7 @@ const CONSTANTS: &[&str] = &["FSM", "LAWS", "CONDITIONS", "NAMES", "OPERANDS", "
 /// Its other function, the names of arguments and variables, which would hide a function, and the keyword that syn does
 /// not know yet.
 const FUNCTIONS: &[&str] =
-    &["text", "texts", "index", "gen", "cursor", "y", "t", "tell", "law", "atom", "begin", "scope", "direct"];
+    &["text", "texts", "index", "gen", "cursor", "y", "t", "tell", "law", "atom", "begin", "scope"];
 
 /// The type of a plan: its name in camel case.
 #[must_use]

@@ -45,13 +45,12 @@ pub(super) fn machine(plan: &Ident, doc: &str, machine: &Machine, paths: Option<
             fn enter(&mut self, atom: u32, y: &Output, begin: Begin) { runtime::Plan::enter(&mut self.0, atom, y, begin); }
             #[inline(always)]
             fn next(
-                &mut self,
-                cursor: &mut Cursor<Self::Entered, Self::Left>,
+                &self,
+                cursor: &Cursor<Self::Entered, Self::Left>,
                 y: &Output,
-                begin: Begin,
-                direct: bool,
-            ) -> Next {
-                runtime::Plan::next(&mut self.0, cursor, y, begin, direct)
+                t: Nanos,
+            ) -> Option<runtime::Ending> {
+                runtime::Plan::next(&self.0, cursor, y, t)
             }
             #told
             #[inline(always)]

@@ -2,7 +2,7 @@
 //! (docs/src/reference/semantics.md, 9). Robots run the same machine; here a script replaces the robot.
 
 use mdle_runtime::{
-    Begin, Cause, Cursor, Ending, Fsm, Measured, Nanometers, Nanos, Next, Pose, Stamp, Stamps, Transition, Turn, Watch,
+    Begin, Cause, Cursor, Ending, Fsm, Measured, Nanometers, Nanos, Pose, Stamp, Stamps, Transition, Turn, Watch,
 };
 
 use super::{Applied, Fired, Machine, Outcome, Reports};
@@ -205,8 +205,8 @@ impl<'p> mdle_runtime::Plan for Scripted<'p> {
 
     fn enter(&mut self, _: u32, _: &Reports, _: Begin) {}
 
-    fn next(&mut self, cursor: &mut At<'p>, y: &Reports, _: Begin, _: bool) -> Next {
-        self.ending(cursor, y).map(Ending::from).into()
+    fn next(&self, cursor: &At<'p>, y: &Reports, _: Nanos) -> Option<Ending> {
+        self.ending(cursor, y).map(Ending::from)
     }
 
     fn leave(&mut self, cursor: &At<'p>, cause: Cause, y: &Reports, _: Nanos) {

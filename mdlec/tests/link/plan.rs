@@ -30,13 +30,12 @@ impl ::mdle_runtime::Plan for Nap {
     fn enter(&mut self, _: u32, _: &Self::Output, _: ::mdle_runtime::Begin) {}
 
     fn next(
-        &mut self,
-        _: &mut ::mdle_runtime::Cursor<Self::Entered, Self::Left>,
+        &self,
+        _: &::mdle_runtime::Cursor<Self::Entered, Self::Left>,
         _: &Self::Output,
-        _: ::mdle_runtime::Begin,
-        _: bool,
-    ) -> ::mdle_runtime::Next {
-        ::mdle_runtime::Next::Ends(::mdle_runtime::Cause::Fired(0).into())
+        _: ::mdle_runtime::Nanos,
+    ) -> Option<::mdle_runtime::Ending> {
+        Some(::mdle_runtime::Cause::Fired(0).into())
     }
 
     fn input(&mut self, _: &Self::Output, _: ::mdle_runtime::Nanos) {}

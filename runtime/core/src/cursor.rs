@@ -123,11 +123,6 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         false
     }
 
-    /// Moves to the end of the plan, as [`Fsm::follows`] computed it beforehand.
-    pub(crate) fn leave(&mut self, follows: Follows) {
-        self.atom = follows.atom;
-    }
-
     /// Moves to the successor of a scope that has ended at time `t`, as [`Fsm::follows`] computed it beforehand.
     pub fn follow(&mut self, follows: Follows, t: Nanos) {
         self.atom = follows.atom;

@@ -21,11 +21,6 @@ impl Follows {
     pub const fn new(atom: u32, from: u16, to: u16) -> Self {
         Self { atom, from, to }
     }
-
-    /// Returns `true` if the plan is over: an atom enters its own scope at least.
-    pub(crate) const fn is_over(self) -> bool {
-        self.from >= self.to
-    }
 }
 
 impl Fsm<'_> {

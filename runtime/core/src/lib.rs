@@ -52,7 +52,7 @@ pub use measured::Measured;
 pub use memory::{MarkRow, Memories, Memory};
 pub use operands::Conditions;
 pub use paths::{PathStore, Setpoint, StoredPath};
-pub use plan::{Cause, Ending, Next, Plan};
+pub use plan::{Cause, Ending, Plan};
 pub use pose::{Frame, Pose, Twist};
 pub use printable::{Printable, PrintableLines, is_printable};
 pub use quark::{Begin, Completes, Control, Interrupt, Law};

@@ -1,7 +1,7 @@
 //! One turn of a plan: interrupts outermost first, then the law of the current atom (docs/src/reference/semantics.md,
 //! 5.1).
 
-use crate::{Begin, Cause, Cursor, Ending, Entries as _, Frame, Measured, Nanos, Next, Output as _, Plan};
+use crate::{Begin, Cause, Cursor, Ending, Entries as _, Frame, Measured, Nanos, Output as _, Plan};
 
 /// The most transitions of one turn; the search for the next atom then goes on in the next turn.
 pub const TRANSITIONS_PER_TURN: u32 = 4096;
@@ -85,84 +85,46 @@ impl<P: Plan> Machine<P> {
     /// Makes a turn with output `y` at time `t`: transitions until no enclosing interrupt fires, then the current
     /// atom's law.
     pub fn turn<W: Watch>(&mut self, y: &P::Output, t: Nanos, watch: &mut W) -> Turn<P::Input> {
-        if self.is_over() {
-            return Turn::Over;
-        }
         self.cursor.observe(y);
-        let begin = Begin { now: t, frame: self.frame };
-        match self.plan.next(&mut self.cursor, y, begin, !W::LOOKS) {
-            Next::Stays => self.law(y, t),
-            Next::Moved => self.go_on(y, t, watch),
-            Next::Over => Turn::Over,
-            Next::Ends(Ending { follows: Some(follows), .. }) if !W::LOOKS && follows.is_over() => {
-                self.cursor.leave(follows);
-                Turn::Over
-            }
-            Next::Ends(_) => self.search(0, y, t, watch),
-        }
-    }
-
-    /// The rest of a turn that has made one transition, as long as it goes from atom to atom directly. Apart from
-    /// [`Machine::turn`], so that a turn in which nothing happens carries nothing of a loop with it.
-    #[inline(never)]
-    fn go_on<W: Watch>(&mut self, y: &P::Output, t: Nanos, watch: &mut W) -> Turn<P::Input> {
-        let begin = Begin { now: t, frame: self.frame };
-        let mut made: u32 = 1;
-        loop {
-            match self.plan.next(&mut self.cursor, y, begin, made < TRANSITIONS_PER_TURN) {
-                Next::Stays => return self.law(y, t),
-                Next::Moved => made = made.saturating_add(1),
-                Next::Over => return Turn::Over,
-                Next::Ends(_) => return self.search(made, y, t, watch),
-            }
-        }
-    }
-
-    /// The rest of a turn that has made `made` transitions, one after the other as the semantics have them.
-    #[inline(never)]
-    fn search<W: Watch>(&mut self, mut made: u32, y: &P::Output, t: Nanos, watch: &mut W) -> Turn<P::Input> {
-        let begin = Begin { now: t, frame: self.frame };
-        loop {
-            let ending = match self.plan.next(&mut self.cursor, y, begin, false) {
-                Next::Stays | Next::Moved => return self.law(y, t),
-                Next::Over => return Turn::Over,
-                Next::Ends(_) if made == TRANSITIONS_PER_TURN => {
+        let mut made: u32 = 0;
+        while !self.is_over() {
+            match self.plan.next(&self.cursor, y, t) {
+                Some(ending) if made < TRANSITIONS_PER_TURN => {
+                    self.step(ending, y, t, watch);
+                    made = made.saturating_add(1);
+                }
+                Some(_) => {
                     self.plan.settle(&self.cursor, y, t);
                     return Turn::Cut;
                 }
-                Next::Ends(ending) => ending,
-            };
-            self.step(ending, y, t, watch);
-            if self.is_over() {
-                return Turn::Over;
+                None => {
+                    self.plan.settle(&self.cursor, y, t);
+                    return Turn::Law(self.plan.input(y, t));
+                }
             }
-            self.plan.enter(self.cursor.atom(), y, self.cursor.begins(begin));
-            made = made.saturating_add(1);
         }
+        Turn::Over
     }
 
-    /// Applies the law of the atom that is left standing.
+    /// Leaves the scope that ends, and enters the atom that follows, if there is one.
+    ///
+    /// Inlined, so that a plan whose code names what follows needs no table to enter it.
     #[inline(always)]
-    fn law(&mut self, y: &P::Output, t: Nanos) -> Turn<P::Input> {
-        self.plan.settle(&self.cursor, y, t);
-        Turn::Law(self.plan.input(y, t))
-    }
-
-    /// Makes the transition that `ending` asks for.
     fn step<W: Watch>(&mut self, ending: Ending, y: &P::Output, t: Nanos, watch: &mut W) {
-        let level = ending.cause.level();
         let looked = W::LOOKS.then(|| self.look(ending.cause, y, t, watch));
         self.plan.leave(&self.cursor, ending.cause, y, t);
-        let fsm = self.plan.fsm();
         match ending.follows {
             Some(follows) => self.cursor.follow(follows, t),
             None => {
-                self.cursor.end(fsm, level, t);
+                self.cursor.end(self.plan.fsm(), ending.cause.level(), t);
             }
         }
         if let Some((from, scope)) = looked {
             let to = self.cursor.state(self.plan.fsm());
             watch.transition(Transition { from, scope, cause: ending.cause, atom: self.atom(), to });
+        }
+        if !self.is_over() {
+            self.plan.enter(self.cursor.atom(), y, self.cursor.begins(Begin { now: t, frame: self.frame }));
         }
     }
 

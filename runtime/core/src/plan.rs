@@ -22,37 +22,9 @@ pub trait Plan {
     fn slots(&self) -> (Self::Entered, Self::Left);
     /// Makes the law of `atom`, which is now the current one; called once for each atom entered.
     fn enter(&mut self, atom: u32, y: &Self::Output, begin: Begin);
-    /// Asks the enclosing interrupts, the outermost first, and the law's completion last. The answer is about the first
-    /// that has fired; with `direct` the plan may leave its scope at once, by [`Plan::end`].
-    fn next(
-        &mut self,
-        cursor: &mut Cursor<Self::Entered, Self::Left>,
-        y: &Self::Output,
-        begin: Begin,
-        direct: bool,
-    ) -> Next;
-    /// Returns the answer of [`Plan::next`] where a scope ends: with `direct`, and if its successor is known, that has
-    /// begun.
-    ///
-    /// Inlined, so that a plan whose code names the ending needs neither table nor match to make the transition.
-    #[inline(always)]
-    fn end(
-        &mut self,
-        cursor: &mut Cursor<Self::Entered, Self::Left>,
-        ending: Ending,
-        y: &Self::Output,
-        begin: Begin,
-        direct: bool,
-    ) -> Next {
-        let Some(follows) = ending.follows.filter(|_| direct) else { return Next::Ends(ending) };
-        self.leave(cursor, ending.cause, y, begin.now);
-        cursor.follow(follows, begin.now);
-        if follows.is_over() {
-            return Next::Over;
-        }
-        self.enter(cursor.atom(), y, cursor.begins(begin));
-        Next::Moved
-    }
+    /// Asks the interrupts around the current atom, the outermost first, and the law's completion last. Returns the scope
+    /// that ends, of the first that has fired; `None` if the atom goes on.
+    fn next(&self, cursor: &Cursor<Self::Entered, Self::Left>, y: &Self::Output, t: Nanos) -> Option<Ending>;
 
     /// Called before the cursor leaves a scope: a plan that remembers endings records this one, and clears the memories
     /// of nested scopes. [`Cursor::ending`] returns the brackets that end.
@@ -124,25 +96,6 @@ pub struct Ending {
     pub cause: Cause,
     /// The successor, if the plan knows it beforehand; the cursor finds it otherwise.
     pub follows: Option<Follows>,
-}
-
-/// Answer of the interrupts that enclose the current atom, and of its law's completion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Next {
-    /// Nothing ends: no interrupt has fired, and the law is not done.
-    Stays,
-    /// This scope is to end.
-    Ends(Ending),
-    /// A scope has ended, and what follows has begun.
-    Moved,
-    /// A scope has ended, and with it the plan.
-    Over,
-}
-
-impl From<Option<Ending>> for Next {
-    fn from(ending: Option<Ending>) -> Self {
-        ending.map_or(Self::Stays, Self::Ends)
-    }
 }
 
 impl From<Cause> for Ending {

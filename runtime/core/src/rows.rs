@@ -6,7 +6,7 @@
 use crate::fsm::Kind;
 use crate::{
     Alphabet, Begin, Cause, Completes, Control, Cursor, Ending, Entries, Follows, Fsm, Interrupt, Law, Measured,
-    Memory, Nanometers, Nanos, Next, Plan, Radians, Slots,
+    Memory, Nanometers, Nanos, Plan, Radians, Slots,
 };
 
 /// Meaning of the brackets and atoms of a plan.
@@ -320,22 +320,15 @@ impl<'a, A: Alphabet, E: Entries + Clone, P: Slots<u64> + Clone, M: Memory<'a>> 
     }
 
     #[inline(always)]
-    fn next(&mut self, cursor: &mut Cursor<E, P>, y: &A::Output, begin: Begin, direct: bool) -> Next {
-        let t = begin.now;
+    fn next(&self, cursor: &Cursor<E, P>, y: &A::Output, t: Nanos) -> Option<Ending> {
         if let Some(Guard { level, follows, .. }) = self.outermost(cursor, y, t) {
-            let ending = Ending { cause: Cause::Fired(*level), follows: *follows };
-            return self.end(cursor, ending, y, begin, direct);
+            return Some(Ending { cause: Cause::Fired(*level), follows: *follows });
         }
-        if !self.running.as_ref().is_some_and(|law| law.completed(y, t)) {
-            return Next::Stays;
+        if !self.running.as_ref()?.completed(y, t) {
+            return None;
         }
-        match self.rows.guards.get(self.own as usize) {
-            Some(Guard { level, follows, .. }) => {
-                let ending = Ending { cause: Cause::Completed(*level), follows: *follows };
-                self.end(cursor, ending, y, begin, direct)
-            }
-            None => Next::Stays,
-        }
+        let Guard { level, follows, .. } = self.rows.guards.get(self.own as usize)?;
+        Some(Ending { cause: Cause::Completed(*level), follows: *follows })
     }
 
     #[inline(always)]

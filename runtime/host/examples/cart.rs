@@ -13,7 +13,7 @@ use mdle_host::clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use mdle_host::{Pace, Refusal, Replays, StopRequest, Target, Time, run};
 use mdle_runtime::fsm::{Atom, Bracket};
 use mdle_runtime::{
-    Begin, Cause, Cursor, Fsm, Meters, MetersPerSecond, Nanos, Next, Output, Plan, RadiansPerSecond, Robot, Twist,
+    Begin, Cause, Cursor, Ending, Fsm, Meters, MetersPerSecond, Nanos, Output, Plan, RadiansPerSecond, Robot, Twist,
 };
 
 fn main() -> ExitCode {
@@ -197,15 +197,12 @@ impl Plan for Shuttle {
         self.forward = atom == 0;
     }
 
-    fn next(&mut self, cursor: &mut Cursor<[Nanos; 2], [u64; 1]>, y: &Sensed, begin: Begin, _: bool) -> Next {
-        let there = if self.forward { y.at.0 >= y.track.0 } else { y.at.0 <= 0.0 };
-        if cursor.since(0, begin.now) >= LIMIT {
-            Next::Ends(Cause::Fired(0).into())
-        } else if there {
-            Next::Ends(Cause::Fired(1).into())
-        } else {
-            Next::Stays
+    fn next(&self, cursor: &Cursor<[Nanos; 2], [u64; 1]>, y: &Sensed, t: Nanos) -> Option<Ending> {
+        if cursor.since(0, t) >= LIMIT {
+            return Some(Cause::Fired(0).into());
         }
+        let there = if self.forward { y.at.0 >= y.track.0 } else { y.at.0 <= 0.0 };
+        there.then(|| Cause::Fired(1).into())
     }
 
     fn input(&mut self, _: &Sensed, _: Nanos) -> Speed {

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 use mdle_host::clap::ArgMatches;
 use mdle_host::{Refusal, StopRequest, Target};
 use mdle_runtime::fsm::{Atom, Bracket};
-use mdle_runtime::{Begin, Cursor, Fsm, Nanos, Next, Output, Plan, Robot};
+use mdle_runtime::{Begin, Cursor, Ending, Fsm, Nanos, Output, Plan, Robot};
 use rustix::mm::{MlockAllFlags, mlockall};
 use rustix::thread::{ClockId, clock_nanosleep_absolute};
 use rustix::time::{Timespec, clock_gettime};
@@ -163,8 +163,8 @@ impl Plan for Rest {
 
     fn enter(&mut self, _: u32, _: &Nothing, _: Begin) {}
 
-    fn next(&mut self, _: &mut Cursor<[Nanos; 2], [u64; 0]>, _: &Nothing, _: Begin, _: bool) -> Next {
-        Next::Stays
+    fn next(&self, _: &Cursor<[Nanos; 2], [u64; 0]>, _: &Nothing, _: Nanos) -> Option<Ending> {
+        None
     }
 
     fn input(&mut self, _: &Nothing, _: Nanos) {}

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 use mdle_atrv::Target as Atrv;
 use mdle_host::run;
 use mdle_runtime::fsm::{Atom, Bracket};
-use mdle_runtime::{Begin, Cause, Cursor, Fsm, MetersPerSecond, Nanos, Next, Plan, Sensed, Twist};
+use mdle_runtime::{Begin, Cause, Cursor, Ending, Fsm, MetersPerSecond, Nanos, Plan, Sensed, Twist};
 use mdle_scout::Target as Scout;
 
 fn main() -> ExitCode {
@@ -42,8 +42,8 @@ impl Plan for Ahead {
 
     fn enter(&mut self, _: u32, _: &Sensed, _: Begin) {}
 
-    fn next(&mut self, cursor: &mut Cursor<[Nanos; 2], [u64; 0]>, _: &Sensed, begin: Begin, _: bool) -> Next {
-        if cursor.since(0, begin.now) >= SECOND { Next::Ends(Cause::Fired(0).into()) } else { Next::Stays }
+    fn next(&self, cursor: &Cursor<[Nanos; 2], [u64; 0]>, _: &Sensed, t: Nanos) -> Option<Ending> {
+        (cursor.since(0, t) >= SECOND).then(|| Cause::Fired(0).into())
     }
 
     fn input(&mut self, _: &Sensed, _: Nanos) -> Twist {

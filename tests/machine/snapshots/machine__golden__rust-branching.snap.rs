@@ -13,7 +13,7 @@ pub use machine::Branching;
 mod machine {
     use ::mdle_runtime as runtime;
     use ::mdle_runtime::fsm::{Atom, Bracket};
-    use ::mdle_runtime::{Begin, Cursor, Fsm, Nanos, Next};
+    use ::mdle_runtime::{Begin, Cursor, Fsm, Nanos};
     use ::mdle_sim::alphabet::{self as robot, Input, Output};
     const _: () = assert!(
         robot::HASH == 0x2f2d6a68f3e7ec1a,
@@ -67,13 +67,12 @@ mod machine {
         }
         #[inline(always)]
         fn next(
-            &mut self,
-            cursor: &mut Cursor<Self::Entered, Self::Left>,
+            &self,
+            cursor: &Cursor<Self::Entered, Self::Left>,
             y: &Output,
-            begin: Begin,
-            direct: bool,
-        ) -> Next {
-            runtime::Plan::next(&mut self.0, cursor, y, begin, direct)
+            t: Nanos,
+        ) -> Option<runtime::Ending> {
+            runtime::Plan::next(&self.0, cursor, y, t)
         }
         fn leave(
             &mut self,

@@ -13,7 +13,7 @@ pub use machine::Dock;
 mod machine {
     use ::mdle_runtime as runtime;
     use ::mdle_runtime::fsm::{Atom, Bracket};
-    use ::mdle_runtime::{Begin, Cursor, Fsm, Nanos, Next};
+    use ::mdle_runtime::{Begin, Cursor, Fsm, Nanos};
     use ::mdle_sim::alphabet::{self as robot, Input, Output};
     const _: () = assert!(
         robot::HASH == 0x2f2d6a68f3e7ec1a,
@@ -90,16 +90,9 @@ mod machine {
             };
         }
         #[inline(always)]
-        fn next(
-            &mut self,
-            cursor: &mut At,
-            y: &Output,
-            begin: Begin,
-            direct: bool,
-        ) -> Next {
-            let t = begin.now;
+        fn next(&self, cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
             if let Some(ending) = dock(cursor, y, t) {
-                return Next::Ends(ending);
+                return Some(ending);
             }
             match &self.running {
                 Running::Idle => {}
@@ -107,49 +100,30 @@ mod machine {
                     if runtime::Interrupt::fired(&AT_ISECTION_1000, y)
                         | (cursor.since(1u16, t) >= Nanos(20000000000))
                     {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
-                            runtime::Cause::Fired(1u16).into(),
-                            y,
-                            begin,
-                            direct,
-                        );
+                        return Some(runtime::Cause::Fired(1u16).into());
                     }
                 }
                 Running::Atom2(_) => {
                     if let Some(ending) = shake(cursor, y, t) {
-                        return Next::Ends(ending);
+                        return Some(ending);
                     }
                     if cursor.since(2u16, t) >= Nanos(500000000) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(2, 2, 3)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom3(law) => {
                     if let Some(ending) = shake(cursor, y, t) {
-                        return Next::Ends(ending);
+                        return Some(ending);
                     }
                     if runtime::Completes::completed(law, y, t) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
-                            runtime::Cause::Completed(2u16).into(),
-                            y,
-                            begin,
-                            direct,
-                        );
+                        return Some(runtime::Cause::Completed(2u16).into());
                     }
                 }
             }
-            Next::Stays
+            None
         }
         fn input(&mut self, y: &Output, t: Nanos) -> Input {
             match &mut self.running {

@@ -13,7 +13,7 @@ pub use machine::LabTour;
 mod machine {
     use ::mdle_runtime as runtime;
     use ::mdle_runtime::fsm::{Atom, Bracket};
-    use ::mdle_runtime::{Begin, Cursor, Fsm, Nanos, Next};
+    use ::mdle_runtime::{Begin, Cursor, Fsm, Nanos};
     use ::mdle_sim::alphabet::{self as robot, Input, Output};
     const _: () = assert!(
         robot::HASH == 0x2f2d6a68f3e7ec1a,
@@ -222,303 +222,196 @@ mod machine {
             };
         }
         #[inline(always)]
-        fn next(
-            &mut self,
-            cursor: &mut At,
-            y: &Output,
-            begin: Begin,
-            direct: bool,
-        ) -> Next {
-            let t = begin.now;
+        fn next(&self, cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
             match &self.running {
                 Running::Idle => {}
                 Running::Atom1(law) => {
                     if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
-                        return Next::Ends(ending);
+                        return Some(ending);
                     }
                     if runtime::Interrupt::fired(&AT_ISECTION_0100, y) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(1, 2, 3)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Completed(2u16)
                                 .then(runtime::Follows::new(1, 2, 3)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom2(_) => {
                     if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
-                        return Next::Ends(ending);
+                        return Some(ending);
                     }
                     if runtime::Interrupt::fired(&AT_ISECTION_0010, y) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(2, 2, 3)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom3(law) => {
                     if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
-                        return Next::Ends(ending);
+                        return Some(ending);
                     }
                     if runtime::Completes::completed(law, y, t) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Completed(2u16)
                                 .then(runtime::Follows::new(3, 2, 3)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom4(law) => {
                     if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
-                        return Next::Ends(ending);
+                        return Some(ending);
                     }
                     if runtime::Interrupt::fired(&AT_ISECTION_1000, y) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(4, 2, 3)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Completed(2u16)
                                 .then(runtime::Follows::new(4, 2, 3)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom5(_) => {
                     if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
-                        return Next::Ends(ending);
+                        return Some(ending);
                     }
                     if runtime::Interrupt::fired(&AT_ISECTION_0100, y) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(5, 2, 3)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom6(law) => {
                     if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
-                        return Next::Ends(ending);
+                        return Some(ending);
                     }
                     if runtime::Completes::completed(law, y, t) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Completed(2u16)
                                 .then(runtime::Follows::new(6, 2, 3)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom7(law) => {
                     if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
-                        return Next::Ends(ending);
+                        return Some(ending);
                     }
                     if cursor.since(2u16, t) >= Nanos(7000000000) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(7, 2, 3)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Completed(2u16)
                                 .then(runtime::Follows::new(7, 2, 3)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom8(law) => {
                     if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
-                        return Next::Ends(ending);
+                        return Some(ending);
                     }
                     if runtime::Interrupt::fired(&AT_ISECTION_1000, y) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(8, 1, 3)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Completed(2u16)
                                 .then(runtime::Follows::new(8, 1, 3)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom9(law) => {
                     if let Some(ending) = lab1_to_office_plan(cursor, y, t) {
-                        return Next::Ends(ending);
+                        return Some(ending);
                     }
                     if runtime::Interrupt::fired(&AT_ISECTION_1001, y) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(9, 2, 3)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Completed(2u16)
                                 .then(runtime::Follows::new(9, 2, 3)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom10(_) => {
                     if let Some(ending) = lab1_to_office_plan(cursor, y, t) {
-                        return Next::Ends(ending);
+                        return Some(ending);
                     }
                     if runtime::Interrupt::fired(&AT_ISECTION_0011, y) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(10, 2, 3)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom11(law) => {
                     if let Some(ending) = lab1_to_office_plan(cursor, y, t) {
-                        return Next::Ends(ending);
+                        return Some(ending);
                     }
                     if runtime::Completes::completed(law, y, t) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Completed(2u16)
                                 .then(runtime::Follows::new(11, 2, 3)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom12(law) => {
                     if let Some(ending) = lab1_to_office_plan(cursor, y, t) {
-                        return Next::Ends(ending);
+                        return Some(ending);
                     }
                     if runtime::Interrupt::fired(&AT_ISECTION_0100, y) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(12, 2, 3)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Completed(2u16)
                                 .then(runtime::Follows::new(12, 2, 3)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom13(law) => {
                     if let Some(ending) = lab1_to_office_plan(cursor, y, t) {
-                        return Next::Ends(ending);
+                        return Some(ending);
                     }
                     if cursor.since(2u16, t) >= Nanos(10000000000) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(13, 0, 0)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Completed(2u16)
                                 .then(runtime::Follows::new(13, 0, 0)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
             }
-            Next::Stays
+            None
         }
         fn input(&mut self, y: &Output, t: Nanos) -> Input {
             match &mut self.running {

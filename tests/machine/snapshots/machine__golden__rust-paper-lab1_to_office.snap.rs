@@ -13,7 +13,7 @@ pub use machine::Lab1ToOfficePlan;
 mod machine {
     use ::mdle_runtime as runtime;
     use ::mdle_runtime::fsm::{Atom, Bracket};
-    use ::mdle_runtime::{Begin, Cursor, Fsm, Nanos, Next};
+    use ::mdle_runtime::{Begin, Cursor, Fsm, Nanos};
     use ::mdle_sim::alphabet::{self as robot, Input, Output};
     const _: () = assert!(
         robot::HASH == 0x2f2d6a68f3e7ec1a,
@@ -124,119 +124,72 @@ mod machine {
             };
         }
         #[inline(always)]
-        fn next(
-            &mut self,
-            cursor: &mut At,
-            y: &Output,
-            begin: Begin,
-            direct: bool,
-        ) -> Next {
-            let t = begin.now;
+        fn next(&self, cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
             if let Some(ending) = lab1_to_office_plan(cursor, y, t) {
-                return Next::Ends(ending);
+                return Some(ending);
             }
             match &self.running {
                 Running::Idle => {}
                 Running::Atom1(law) => {
                     if runtime::Interrupt::fired(&AT_ISECTION_1001, y) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(1u16)
                                 .then(runtime::Follows::new(1, 1, 2)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Completed(1u16)
                                 .then(runtime::Follows::new(1, 1, 2)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom2(_) => {
                     if runtime::Interrupt::fired(&AT_ISECTION_0011, y) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(1u16)
                                 .then(runtime::Follows::new(2, 1, 2)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom3(law) => {
                     if runtime::Completes::completed(law, y, t) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Completed(1u16)
                                 .then(runtime::Follows::new(3, 1, 2)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom4(law) => {
                     if runtime::Interrupt::fired(&AT_ISECTION_0100, y) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(1u16)
                                 .then(runtime::Follows::new(4, 1, 2)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Completed(1u16)
                                 .then(runtime::Follows::new(4, 1, 2)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom5(law) => {
                     if cursor.since(1u16, t) >= Nanos(10000000000) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(1u16)
                                 .then(runtime::Follows::new(5, 0, 0)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Completed(1u16)
                                 .then(runtime::Follows::new(5, 0, 0)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
             }
-            Next::Stays
+            None
         }
         fn input(&mut self, y: &Output, t: Nanos) -> Input {
             match &mut self.running {

@@ -13,7 +13,7 @@ pub use machine::Lab2ToLab1Plan;
 mod machine {
     use ::mdle_runtime as runtime;
     use ::mdle_runtime::fsm::{Atom, Bracket};
-    use ::mdle_runtime::{Begin, Cursor, Fsm, Nanos, Next};
+    use ::mdle_runtime::{Begin, Cursor, Fsm, Nanos};
     use ::mdle_sim::alphabet::{self as robot, Input, Output};
     const _: () = assert!(
         robot::HASH == 0x2f2d6a68f3e7ec1a,
@@ -144,169 +144,102 @@ mod machine {
             };
         }
         #[inline(always)]
-        fn next(
-            &mut self,
-            cursor: &mut At,
-            y: &Output,
-            begin: Begin,
-            direct: bool,
-        ) -> Next {
-            let t = begin.now;
+        fn next(&self, cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
             if let Some(ending) = lab2_to_lab1_plan(cursor, y, t) {
-                return Next::Ends(ending);
+                return Some(ending);
             }
             match &self.running {
                 Running::Idle => {}
                 Running::Atom1(law) => {
                     if runtime::Interrupt::fired(&AT_ISECTION_0100, y) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(1u16)
                                 .then(runtime::Follows::new(1, 1, 2)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Completed(1u16)
                                 .then(runtime::Follows::new(1, 1, 2)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom2(_) => {
                     if runtime::Interrupt::fired(&AT_ISECTION_0010, y) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(1u16)
                                 .then(runtime::Follows::new(2, 1, 2)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom3(law) => {
                     if runtime::Completes::completed(law, y, t) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Completed(1u16)
                                 .then(runtime::Follows::new(3, 1, 2)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom4(law) => {
                     if runtime::Interrupt::fired(&AT_ISECTION_1000, y) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(1u16)
                                 .then(runtime::Follows::new(4, 1, 2)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Completed(1u16)
                                 .then(runtime::Follows::new(4, 1, 2)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom5(_) => {
                     if runtime::Interrupt::fired(&AT_ISECTION_0100, y) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(1u16)
                                 .then(runtime::Follows::new(5, 1, 2)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom6(law) => {
                     if runtime::Completes::completed(law, y, t) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Completed(1u16)
                                 .then(runtime::Follows::new(6, 1, 2)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom7(law) => {
                     if cursor.since(1u16, t) >= Nanos(7000000000) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(1u16)
                                 .then(runtime::Follows::new(7, 1, 2)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Completed(1u16)
                                 .then(runtime::Follows::new(7, 1, 2)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom8(law) => {
                     if runtime::Interrupt::fired(&AT_ISECTION_1000, y) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(1u16)
                                 .then(runtime::Follows::new(8, 0, 0)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                     if runtime::Completes::completed(law, y, t) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Completed(1u16)
                                 .then(runtime::Follows::new(8, 0, 0)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
             }
-            Next::Stays
+            None
         }
         fn input(&mut self, y: &Output, t: Nanos) -> Input {
             match &mut self.running {

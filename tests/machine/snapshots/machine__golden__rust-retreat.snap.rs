@@ -13,7 +13,7 @@ pub use machine::Explore;
 mod machine {
     use ::mdle_runtime as runtime;
     use ::mdle_runtime::fsm::{Atom, Bracket};
-    use ::mdle_runtime::{Begin, Cursor, Fsm, Nanos, Next};
+    use ::mdle_runtime::{Begin, Cursor, Fsm, Nanos};
     use ::mdle_sim::alphabet::{self as robot, Input, Output};
     const _: () = assert!(
         robot::HASH == 0x2f2d6a68f3e7ec1a,
@@ -88,65 +88,41 @@ mod machine {
             };
         }
         #[inline(always)]
-        fn next(
-            &mut self,
-            cursor: &mut At,
-            y: &Output,
-            begin: Begin,
-            direct: bool,
-        ) -> Next {
-            let t = begin.now;
+        fn next(&self, cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
             if let Some(ending) = explore(cursor, y, t) {
-                return Next::Ends(ending);
+                return Some(ending);
             }
             match &self.running {
                 Running::Idle => {}
                 Running::Atom1(_) => {
                     if runtime::Interrupt::fired(&BUMPER, y) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(1u16)
                                 .then(runtime::Follows::new(1, 1, 3)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom2(_) => {
                     if let Some(ending) = retreat(cursor, y, t) {
-                        return Next::Ends(ending);
+                        return Some(ending);
                     }
                     if cursor.since(2u16, t) >= Nanos(2000000000) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(2u16)
                                 .then(runtime::Follows::new(2, 2, 3)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
                 Running::Atom3(law) => {
                     if let Some(ending) = retreat(cursor, y, t) {
-                        return Next::Ends(ending);
+                        return Some(ending);
                     }
                     if runtime::Completes::completed(law, y, t) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
-                            runtime::Cause::Completed(2u16).into(),
-                            y,
-                            begin,
-                            direct,
-                        );
+                        return Some(runtime::Cause::Completed(2u16).into());
                     }
                 }
             }
-            Next::Stays
+            None
         }
         fn input(&mut self, y: &Output, t: Nanos) -> Input {
             match &mut self.running {

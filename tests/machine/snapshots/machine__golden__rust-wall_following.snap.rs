@@ -13,7 +13,7 @@ pub use machine::WallFollowing;
 mod machine {
     use ::mdle_runtime as runtime;
     use ::mdle_runtime::fsm::{Atom, Bracket};
-    use ::mdle_runtime::{Begin, Cursor, Fsm, Nanos, Next};
+    use ::mdle_runtime::{Begin, Cursor, Fsm, Nanos};
     use ::mdle_sim::alphabet::{self as robot, Input, Output};
     const _: () = assert!(
         robot::HASH == 0x2f2d6a68f3e7ec1a,
@@ -117,29 +117,17 @@ mod machine {
             };
         }
         #[inline(always)]
-        fn next(
-            &mut self,
-            cursor: &mut At,
-            y: &Output,
-            begin: Begin,
-            direct: bool,
-        ) -> Next {
-            let t = begin.now;
+        fn next(&self, cursor: &At, y: &Output, t: Nanos) -> Option<runtime::Ending> {
             if let Some(ending) = wall_following(cursor, y, t) {
-                return Next::Ends(ending);
+                return Some(ending);
             }
             match &self.running {
                 Running::Idle => {}
                 Running::Atom1(_) => {
                     if !runtime::Interrupt::fired(&R0_0_7, y) {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(1u16)
                                 .then(runtime::Follows::new(1, 1, 2)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
@@ -147,14 +135,9 @@ mod machine {
                     if runtime::Interrupt::fired(&R2_1, y)
                         | runtime::Interrupt::fired(&R0_0_7, y)
                     {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
+                        return Some(
                             runtime::Cause::Fired(1u16)
                                 .then(runtime::Follows::new(2, 1, 2)),
-                            y,
-                            begin,
-                            direct,
                         );
                     }
                 }
@@ -162,18 +145,11 @@ mod machine {
                     if !runtime::Interrupt::fired(&R2_1, y)
                         | runtime::Interrupt::fired(&R0_0_7, y)
                     {
-                        return runtime::Plan::end(
-                            self,
-                            cursor,
-                            runtime::Cause::Fired(1u16).into(),
-                            y,
-                            begin,
-                            direct,
-                        );
+                        return Some(runtime::Cause::Fired(1u16).into());
                     }
                 }
             }
-            Next::Stays
+            None
         }
         fn input(&mut self, y: &Output, t: Nanos) -> Input {
             match &mut self.running {

@@ -6,7 +6,7 @@ use super::{Condition, Guard, InRows, LawRow, Reading, Rows, Texts};
 use crate::fsm::{Atom, Bracket};
 use crate::{
     Alphabet, Argument, Begin, Cause, Comparison, Completes, Control, Cursor, Follows, Frame, Fsm, Interrupt, Law,
-    Limit, MarkRow, Measured, Memories, Memory, Nanometers, Nanos, Next, NoSignal, Output, Plan, Radians,
+    Limit, MarkRow, Measured, Memories, Memory, Nanometers, Nanos, NoSignal, Output, Plan, Radians,
 };
 
 /// The numbers of the interrupts that fire.
@@ -297,21 +297,12 @@ fn what_ends_is_written_down_with_its_cause_and_what_was_inside_is_forgotten() {
 }
 
 #[test]
-fn an_ending_whose_sequel_is_known_is_written_down_as_well() {
-    let y = Sensed(&[1]);
-    let next = |plan: &mut Remembers<'_>, cursor: &mut At| plan.next(cursor, &y, BEGIN, true);
-    let (next, set) = ends_by_either().after([false; WIDTH * LEVELS], next);
-    assert_eq!((next, &set[..]), (Next::Moved, &[1, 2][..]));
-}
-
-#[test]
 fn a_scope_ends_at_the_moment_for_which_it_waits() {
     for (condition, from) in [(Condition::Wait(Nanos(3)), 3), (Condition::Elapsed(Nanos(2), Nanos(9)), 2)] {
         let plan = Remembering::new(condition, Condition::Null, []);
         let ends = (0..6).map(|now| {
-            let begin = Begin { now: Nanos(now), ..BEGIN };
-            let next = |plan: &mut Remembers<'_>, cursor: &mut At| plan.next(cursor, &Sensed(&[]), begin, false);
-            plan.after([false; WIDTH * LEVELS], next).0 != Next::Stays
+            let next = |plan: &mut Remembers<'_>, cursor: &mut At| plan.next(cursor, &Sensed(&[]), Nanos(now));
+            plan.after([false; WIDTH * LEVELS], next).0.is_some()
         });
         assert_eq!(ends.collect::<Vec<_>>(), (0..6).map(|now| now >= from).collect::<Vec<_>>());
     }
@@ -330,27 +321,27 @@ fn a_law_begins_with_its_atom_in_its_frame() {
     let none = |plan: &mut Remembers<'_>, cursor: &mut At| {
         let y = Sensed(&[]);
         plan.enter(9, &y, BEGIN);
-        (plan.own, plan.input(&y, Nanos::ZERO), plan.next(cursor, &y, BEGIN, false))
+        (plan.own, plan.input(&y, Nanos::ZERO), plan.next(cursor, &y, Nanos::ZERO))
     };
     let none = ends_by_either().after([false; WIDTH * LEVELS], none).0;
-    assert_eq!(none, (0, 0.0, Next::Stays), "there is no such atom, and it is never done");
+    assert_eq!(none, (0, 0.0, None), "there is no such atom, and it is never done");
 }
 
 #[test]
 fn an_atom_ends_when_its_law_is_done_and_not_before() {
     let next = |y: Sensed| {
-        let next = |plan: &mut Remembers<'_>, cursor: &mut At| plan.next(cursor, &y, BEGIN, false);
+        let next = |plan: &mut Remembers<'_>, cursor: &mut At| plan.next(cursor, &y, Nanos::ZERO);
         ends_by_either().after([false; WIDTH * LEVELS], next).0
     };
-    assert_eq!(next(Sensed(&[])), Next::Stays);
-    assert!(matches!(next(Sensed(&[99])), Next::Ends(ending) if ending.cause == Cause::Completed(2)));
-    assert!(matches!(next(Sensed(&[1, 99])), Next::Ends(ending) if ending.cause == Cause::Fired(2)));
+    assert_eq!(next(Sensed(&[])), None);
+    assert!(matches!(next(Sensed(&[99])), Some(ending) if ending.cause == Cause::Completed(2)));
+    assert!(matches!(next(Sensed(&[1, 99])), Some(ending) if ending.cause == Cause::Fired(2)));
 }
 
 #[test]
 fn the_first_operand_of_all_can_end_a_scope() {
     let y = Sensed(&[0]);
-    let next = |plan: &mut Remembers<'_>, cursor: &mut At| plan.next(cursor, &y, BEGIN, false);
+    let next = |plan: &mut Remembers<'_>, cursor: &mut At| plan.next(cursor, &y, Nanos::ZERO);
     let (next, _) = ends_by_either().after([false; WIDTH * LEVELS], next);
-    assert!(matches!(next, Next::Ends(ending) if ending.cause == Cause::Fired(2)), "{next:?}");
+    assert!(matches!(next, Some(ending) if ending.cause == Cause::Fired(2)), "{next:?}");
 }

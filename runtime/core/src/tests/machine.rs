@@ -4,8 +4,8 @@ use std::vec::Vec;
 
 use crate::fsm::{Atom, Bracket, Kind};
 use crate::{
-    Begin, Cause, Cursor, Ending, Follows, Fsm, Machine, Nanos, Next, Output, Plan, TRANSITIONS_PER_TURN, Transition,
-    Turn, Watch,
+    Begin, Cause, Cursor, Ending, Follows, Fsm, Machine, Nanos, Output, Plan, TRANSITIONS_PER_TURN, Transition, Turn,
+    Watch,
 };
 
 /// An output: the brackets whose interrupts have fired, and whether the current law is done.
@@ -24,8 +24,6 @@ struct Toy {
     computed: u32,
     /// `true` if the plan knows the successor when a scope ends.
     foresees: bool,
-    /// `true` if the plan leaves a scope at once where it may.
-    leaves: bool,
 }
 
 /// The brackets of [`Toy::nested`].
@@ -73,7 +71,6 @@ impl Toy {
             entered: Vec::new(),
             computed: 0,
             foresees: true,
-            leaves: true,
         }
     }
 }
@@ -96,15 +93,13 @@ impl Plan for Toy {
         self.entered.push(atom);
     }
 
-    fn next(&mut self, cursor: &mut Cursor<[Nanos; 3], [u64; 1]>, y: &Sensed, begin: Begin, direct: bool) -> Next {
+    fn next(&self, cursor: &Cursor<[Nanos; 3], [u64; 1]>, y: &Sensed, _: Nanos) -> Option<Ending> {
         let own = self.atoms[cursor.atom() as usize].scope;
         let Kind::Scope { level: own } = self.brackets[own as usize].kind else { panic!("an atom's own scope") };
         let outermost = (0..=own).find(|level| y.0.contains(&cursor.scope(self.fsm(), *level)));
-        let Some(cause) = outermost.map(Cause::Fired).or(y.1.then_some(Cause::Completed(own))) else {
-            return Next::Stays;
-        };
+        let cause = outermost.map(Cause::Fired).or(y.1.then_some(Cause::Completed(own)))?;
         let follows = self.fsm().follows(cursor.scope(self.fsm(), cause.level())).filter(|_| self.foresees);
-        self.end(cursor, Ending { cause, follows }, y, begin, direct && self.leaves)
+        Some(Ending { cause, follows })
     }
 
     fn input(&mut self, _: &Sensed, _: Nanos) -> u32 {
@@ -188,13 +183,14 @@ fn a_plan_that_is_over_stays_over() {
     assert_eq!(turn(&mut machine, Sensed(&[PLAN], false)).0, Turn::Over);
     assert_eq!(turn(&mut machine, QUIET), (Turn::Over, Vec::new()));
     assert_eq!((machine.state(), machine.atom(), machine.is_over()), (4, None, true));
+    assert_eq!(machine.plan().entered, [0], "nothing is entered at the end");
     assert_eq!(Turn::<u32>::Over.input(), 0, "the null input");
 }
 
 #[test]
 fn a_plan_that_nobody_watches_is_over_as_well() {
-    for leaves in [true, false] {
-        let mut machine = begin(Toy { leaves, ..Toy::nested() });
+    for foresees in [true, false] {
+        let mut machine = begin(Toy { foresees, ..Toy::nested() });
         assert_eq!(machine.turn(&Sensed(&[PLAN], false), Nanos::ZERO, &mut ()), Turn::Over);
         assert_eq!((machine.state(), machine.atom(), machine.is_over()), (4, None, true));
     }

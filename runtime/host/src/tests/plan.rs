@@ -1,7 +1,7 @@
 //! Plans by hand whose interrupts the toy robot's script fires.
 
 use mdle_runtime::fsm::{Atom, Bracket};
-use mdle_runtime::{Begin, Cause, Cursor, Ending, Fsm, Nanos, Next, Plan};
+use mdle_runtime::{Begin, Cause, Cursor, Ending, Fsm, Nanos, Plan};
 
 use super::toy::Sensed;
 
@@ -80,9 +80,9 @@ impl Plan for ToyPlan {
         self.running = atom;
     }
 
-    fn next(&mut self, cursor: &mut Cursor<Vec<Nanos>, Vec<u64>>, y: &Sensed, _: Begin, _: bool) -> Next {
+    fn next(&self, cursor: &Cursor<Vec<Nanos>, Vec<u64>>, y: &Sensed, _: Nanos) -> Option<Ending> {
         let scripted = y.0.iter().find(|(atom, _)| *atom == cursor.atom()).map(|(_, cause)| *cause);
-        scripted.or(self.restless.then_some(Cause::Fired(1))).map(Ending::from).into()
+        scripted.or(self.restless.then_some(Cause::Fired(1))).map(Ending::from)
     }
 
     fn input(&mut self, _: &Sensed, _: Nanos) -> u32 {
