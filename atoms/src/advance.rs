@@ -37,7 +37,7 @@ pub struct Advancing {
     quark: Advance,
     /// The pose by odometry at which the atom began.
     from: Pose,
-    /// When the input was last asked for.
+    /// Time of the previous request for an input; `None` before the first.
     before: Option<Nanos>,
 }
 

@@ -16,7 +16,7 @@ const CONTINUOUS: f64 = 0.1;
 const CHANGES: u8 = 5;
 /// A full circle at the slowest turn, in seconds: by then every heading has been tried.
 const LONGEST: f64 = TAU / SLOWEST;
-/// The robot stands at a heading that is no further off than this.
+/// Largest distance from the final heading at which the robot is brought to rest.
 const NEAR: Radians = Radians::from_degrees(1.0);
 
 /// `u_θ = k(r_i − r_j)`, `u_f = 0`.
@@ -36,45 +36,46 @@ impl Align {
 
 /// The law of [`Align`]: done when the ranges are equal, and where every turn brings a ping, when it stands at that heading.
 ///
-/// Beside a jamb, a corner or a door no heading may have equal ranges: one side of it the first range is longer, the other
-/// side the second one. Then it is done at the heading at which the ranges differed least; the signals `r` of the two sonars
-/// have the difference that is left.
+/// Beside a jamb, a corner or a door no heading may have equal ranges: one side of it the first range is longer, the
+/// other side the second one. Then the law is done at the heading at which the ranges differed least, and the
+/// difference that is left is that of the signals `r` of the two sonars.
 ///
-/// A sonar that misses an echo now and then is waited for. While one hears nothing for longer, the robot looks for the wall,
-/// once round at most: then it stands still and is not done, and what ends the atom is for the plan to say.
+/// A sonar that misses an echo now and then is waited for. While one sonar hears nothing for longer, the robot looks
+/// for the wall, once round at most; then it stops without being done, and the plan must end the atom by other means.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Aligning {
     sonars: Align,
     began: Nanos,
-    /// When both sonars were last heard.
+    /// Time at which both sonars last heard an echo.
     heard: Option<Nanos>,
     last: Option<Sample>,
-    /// The last one with the least difference.
+    /// Last sample with the least difference.
     best: Option<Sample>,
-    /// How often the sign of the difference has changed.
+    /// Number of times that the sign of the difference has changed.
     changes: u8,
     end: Option<End>,
 }
 
-/// What both sonars heard.
+/// The difference of the ranges of both sonars, and the heading to which it belongs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Sample {
-    /// How much further the first sonar's echo is, in metres.
+    /// Range of the first sonar minus that of the second, in metres.
     difference: f64,
-    /// Between the headings at which they pinged: where the ranges change evenly, this is the one with that difference.
+    /// Mean of the headings at which the sonars pinged: where the ranges change evenly, they have this difference at
+    /// this heading.
     heading: Radians,
 }
 
-/// The heading at which it ends.
+/// The heading at which the law ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct End {
     heading: Radians,
-    /// Whether the robot was there and was asked to stand.
+    /// `true` if the law's last input stopped the robot at this heading.
     stands: bool,
 }
 
 impl Aligning {
-    /// What both sonars heard, by the same confirmation as in `atIsection`; `None` when either hears nothing.
+    /// Returns the sample of the newest echoes, confirmed as in `atIsection`; `None` if either sonar hears nothing.
     fn sample<Y: SonarRing>(&self, y: &Y) -> Option<Sample> {
         let Align { first, second } = self.sonars;
         let ((first, near), (second, far)) = (nearest(y, first)?, nearest(y, second)?);
@@ -113,7 +114,7 @@ impl Aligning {
         self.end = self.end.or(Some(End { heading, stands: false }));
     }
 
-    /// Which way to turn when only one of them hears an echo: towards the one that does.
+    /// Returns the turn rate, in rad/s, while only one sonar hears an echo: towards the sonar that hears it.
     fn unheard<Y: DiffDrive + SonarRing>(&self, y: &Y, t: Nanos) -> f64 {
         let Gains { align_waits: waits, align_fastest: fastest, .. } = *Gains::of(y);
         let (since, waits) = self.heard.map_or((self.began, 0.0), |heard| (heard, waits));
@@ -222,7 +223,7 @@ mod tests {
     struct Wall {
         first: u8,
         second: u8,
-        /// Where it is, in degrees.
+        /// Direction of the wall, in degrees.
         at: f64,
         /// The share of pings of the first and of the second sonar that bring nothing.
         misses: [f64; 2],
@@ -233,8 +234,9 @@ mod tests {
 
     const EXACT: Wall = Wall { first: 7, second: 9, at: 180.0, misses: [0.0; 2], error: 0.0, confirmation: 3 };
 
-    /// Runs `align` beside the wall, started `off` degrees from square, for three minutes: how far from square it ends, in
-    /// degrees, and whether it is done. Where sonars fire in turn, each pings once a second.
+    /// Runs `align` beside the wall for at most three minutes, started `off` degrees from square. Returns the final
+    /// heading, in degrees from square, and `true` if the law is done. Where sonars fire in turn, each pings once a
+    /// second.
     fn ended(wall: Wall, off: f64, seed: u64) -> (f64, bool) {
         let sonars = [SonarId::new(wall.first), SonarId::new(wall.second)];
         let mut y = Sensed { confirmation: wall.confirmation, ..Sensed::heading(off) };
@@ -261,7 +263,7 @@ mod tests {
         (y.pose.theta.wrapped().degrees(), false)
     }
 
-    /// How far from square it ends where nothing goes wrong.
+    /// Returns the final heading, in degrees from square, of a run without errors; panics if the law is not done.
     fn aligned(first: u8, second: u8, at: f64, off: f64, confirmation: usize) -> f64 {
         let (end, done) = ended(Wall { first, second, at, confirmation, ..EXACT }, off, 0);
         assert!(done, "not aligned after three minutes, at {end} degrees");

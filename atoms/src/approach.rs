@@ -1,36 +1,36 @@
-//! Somebody who comes towards the robot: what is heard ahead gets nearer faster than the robot drives.
+//! Detects somebody who comes towards the robot: the echoes ahead get nearer faster than the robot drives.
 
 use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Meters, Nanos, PINGS_KEPT, Pose, Radians, SONARS, SonarId};
 
 /// A sonar listens for somebody if its axis is no further off the way ahead than this.
 const AHEAD: Radians = Radians::from_degrees(14.0);
-/// Echoes are compared that are at least this long apart, so that the way between them is not lost in their errors.
+/// Least time between two echoes that are compared, so that their errors do not hide the way between them.
 const APART: Nanos = Nanos(200_000_000);
-/// Whoever comes more slowly than this, in m/s, is gone round like what stands.
+/// Least speed of somebody who comes, in m/s; the robot drives round anything slower as round a fixed obstacle.
 const SLOWEST: f64 = 0.3;
-/// What comes faster than this, in m/s, is no person but two things taken for one.
+/// Greatest speed of a person, in m/s; faster echoes are of two different things.
 const FASTEST: f64 = 2.0;
-/// Echoes that have come nearer by less, in metres, may be those of something that stands: ranges err by 1.5 cm, and come
-/// in inches.
+/// Least way, in metres, by which the echoes of something that comes get nearer; less may be the error of a fixed
+/// obstacle's ranges, which is 1.5 cm and a step of an inch.
 const NEARER: f64 = 0.1;
 
-/// Echoes that lie further apart across the way than this, in metres, are of two things.
+/// Greatest distance across the way, in metres, between two echoes of one thing.
 const ACROSS: f64 = 0.25;
 
-/// Faster than this, in rad/s, the robot does not turn between echoes that are compared: what a cone just touches of a wall
-/// beside the way comes and goes as it turns.
+/// Greatest turn rate of the robot, in rad/s, between echoes that are compared: a wall that the edge of a cone just
+/// touches appears and disappears as the robot turns.
 const TURNS: f64 = 0.02;
 
-/// An echo: where in the odometry's axes, and when.
+/// An echo: its place in the odometry's axes, and its time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Heard {
     at: Nanos,
-    /// Its heading is the direction of the sonar's axis.
+    /// Place of the echo; the heading is the direction of the sonar's axis.
     place: Pose,
 }
 
-/// The same from where the robot is: how far along the way, and across it.
+/// An echo relative to the robot: its distance along the way and across it, in metres.
 #[derive(Debug, Clone, Copy)]
 struct Relative {
     at: Nanos,
@@ -65,10 +65,10 @@ impl Approach {
         };
     }
 
-    /// How many seconds whoever comes needs from the newest echo on until he is here; `None` where nobody comes.
+    /// Returns the seconds from the newest echo until somebody who comes reaches the robot; `None` if nobody comes.
     ///
-    /// Places of what stands stay the same. As many echoes must agree as it takes to believe that a way is free, and none
-    /// that is still known may gainsay.
+    /// Fixed obstacles stay at the same place. As many echoes must agree as confirm that a way is free, and no echo
+    /// that is still kept may contradict them.
     pub(crate) fn seconds(&self, here: Pose, way: Radians, confirmation: usize) -> Option<f64> {
         let (sin, cos) = libm::sincos(way.0);
         let mut heard = self.heard.iter().flatten().map(|Heard { at, place }| {
@@ -104,8 +104,8 @@ mod tests {
     use crate::trial::Sensed;
     use mdle_runtime::Twist;
 
-    /// How long somebody needs who is heard at these ranges, a second apart, by a robot that drives at this speed and turn
-    /// rate, in m/s and rad/s.
+    /// Returns the seconds until somebody arrives who is heard at these ranges, one second apart, by a robot that
+    /// drives at `v` m/s and turns at `omega` rad/s.
     fn seconds(ranges: &[Option<f64>], v: f64, omega: f64, confirmation: usize) -> Option<f64> {
         let (mut y, mut approach) = (Sensed { confirmation, ..Sensed::default() }, Approach::default());
         for (second, range) in (0..).zip(ranges) {

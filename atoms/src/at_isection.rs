@@ -8,10 +8,10 @@ use crate::gains::fire_in_turn;
 /// The sonars that look front, left, back and right: the order in which the bits are written.
 const DIRECTIONS: [SonarId; 4] = [SonarId::new(0), SonarId::new(4), SonarId::new(8), SonarId::new(12)];
 
-/// A ping was in a direction if its axis was no further from it than this: half of what lies between two sonars, and a
-/// little, so that a robot that turns slowly has always one in each.
+/// Greatest angle between a ping's axis and a direction for the ping to count there: half the angle between two sonars
+/// and a little more, so that a robot that turns slowly always has one sonar in each direction.
 const WITHIN: Radians = Radians::from_degrees(14.0);
-/// A wall faces a diagonal up to so many times the range under which a direction is blocked.
+/// Multiple of the range below which a direction is blocked; up to it a wall faces a diagonal.
 const ALSO_FACES: f64 = 1.5;
 /// Ranges that differ by less, in metres, are alike.
 const ALIKE: f64 = 0.06;
@@ -20,14 +20,15 @@ const ALIKE: f64 = 0.06;
 /// factor and length, in metres, at most. Those beside the edge of a way hear walls that run off from there, where walls are
 /// rough.
 const FLAT: (f64, f64) = (1.08, 0.04);
-/// What the sonars to both sides hear of a straight wall is longer than what the one between them hears, by this factor at
-/// most and by a step of ranges; what lies behind an opening is further.
+/// Factor and step, in metres, by which the ranges of the neighbours of a sonar may exceed its own along a straight
+/// wall; an echo from beyond an opening is further.
 const SLANT: (f64, f64) = (1.08, 0.02);
 
 /// Fires while all four directions are as the bits say: 1 where an obstacle is near, 0 where the way is free.
 ///
-/// Where sonars fire in turn, as on robots, it also needs walls to lie in the four directions and not between them: a wall
-/// is heard only by those sonars that it faces, and a robot that stands askew hears nothing where a way seems free.
+/// Where sonars fire in turn, as on robots, it also needs walls to lie in the four directions and not between them: a
+/// wall is heard only by those sonars that it faces, and a robot that is turned between two directions hears nothing
+/// where a way seems free.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct AtIsection {
     pattern: Bits<4>,
@@ -53,7 +54,7 @@ impl<Y: SonarRing> Interrupt<Y> for AtIsection {
     }
 }
 
-/// Whether something is near in the direction of this one sonar; `None` before its first ping.
+/// Returns `Some(true)` if something is near in the direction of this one sonar; `None` before its first ping.
 ///
 /// The smallest of the last pings decides, so "blocked" is believed at once and "free" only when they agree: a missed
 /// echo opens no way. Only the sonar in that direction counts: its neighbours see the walls along a corridor.
@@ -63,8 +64,9 @@ fn blocked<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<bool> {
     Some(pings.nearest(y.confirmation()).is_some_and(|range| range < y.blocked_within()))
 }
 
-/// The same where sonars fire in turn, by what was heard in that direction of the room, by whichever sonar looked there:
-/// while the robot turns, the last pings of one sonar were not where it looks now.
+/// Returns `Some(true)` if something is near in the direction of `sonar`, on a robot whose sonars fire in turn. The
+/// pings of any sonar that looked in that direction of the room count: while the robot turns, the last pings of one
+/// sonar were in other directions.
 fn blocked_in_turn<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<bool> {
     let near = towards(y, sonar)?;
     Some(near < y.blocked_within())
@@ -100,8 +102,8 @@ fn newest<Y: SonarRing>(y: &Y, direction: SonarId) -> [Option<&Ping>; 2] {
     newest
 }
 
-/// Whether this ping of one sonar was in the direction that another looks in now, and what it heard still is: a jamb that
-/// was passed since is not where it was heard.
+/// Returns `true` if this ping of `sonar` was in the direction in which `direction` looks now, and its echo, if it had
+/// one, still lies in that direction: a jamb that the robot has passed no longer does.
 fn looked_there<Y: SonarRing>(y: &Y, direction: SonarId, sonar: SonarId, ping: &Ping) -> bool {
     let here = y.here();
     let axis = Radians(ping.pose.theta.0 + sonar.bearing().0);
@@ -111,8 +113,9 @@ fn looked_there<Y: SonarRing>(y: &Y, direction: SonarId, sonar: SonarId, ping: &
     is_within(axis.0) && is_within(libm::atan2(place.y.0 - here.y.0, place.x.0 - here.x.0))
 }
 
-/// The range of a wall that a sonar does not hear in its two last pings, which missed it or strayed, or look past it by now:
-/// it heard the wall before, and those to both sides have lately heard that and nothing further.
+/// Returns the range of a wall that a sonar no longer hears in its two last pings, because they missed it, strayed, or
+/// look past it by now. The sonar must have heard the wall before, and both its neighbours must have heard it lately
+/// and nothing further.
 fn overheard<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<Meters> {
     let before = y.pings(sonar).newest_first().nth(2)?.range.filter(|range| *range < y.blocked_within())?;
     let most = SLANT.0 * before.0 + SLANT.1;
@@ -124,8 +127,8 @@ fn overheard<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<Meters> {
     (hears(1) && hears(SONARS as u8 - 1)).then_some(before)
 }
 
-/// Whether a wall faces the diagonal that comes counter-clockwise after one of the directions: there and to both sides
-/// something near is heard, none nearer than there. An edge is heard in one direction or two.
+/// Returns `true` if a wall faces the diagonal that comes counter-clockwise after `direction`: something near is heard
+/// there and to both sides, and nothing nearer than there. An edge is heard in one direction or two.
 fn faces_between<Y: SonarRing>(y: &Y, direction: SonarId) -> bool {
     let near = |further: u8| {
         let sonar = SonarId::new(direction.number() as u8 + further);
@@ -200,8 +203,8 @@ mod tests {
         assert!(!fires("1000", &y));
     }
 
-    /// Whether the way to the left seems free, and whether blocked, after these pings of its sonar and the last two of those
-    /// to both sides, oldest first.
+    /// Returns whether the way to the left seems free, and whether it seems blocked, after `pings` of its sonar and the
+    /// last two pings of both neighbours, `beside`, all oldest first.
     fn left(pings: [Option<f64>; 3], beside: [[Option<f64>; 2]; 2]) -> (bool, bool) {
         let mut y = in_turn([9.0; 16]);
         let [before, after] = &beside;

@@ -1,8 +1,8 @@
-//! What any robot must do whose alphabet claims a capability: a suite that a robot's author runs on the robot itself, or on
-//! one that is not there.
+//! Conformance suite: the behaviour that an alphabet's capabilities require of any robot. A robot's author runs it on
+//! the robot itself or on a robot emulator.
 //!
-//! A [`Stage`] puts the robot into rooms that the suite makes up, and tells where its body truly is, apart from what the
-//! robot says of itself. One test then does for all that the alphabet claims:
+//! A [`Stage`] puts the robot into rooms that the suite makes up, and reports the true pose of its body, apart from the
+//! robot's own data. One test then checks every capability that the alphabet claims:
 //!
 //! ```text
 //! #[test]
@@ -38,20 +38,20 @@ use mdle_runtime::{Alphabet, Nanos, PathStore, Pose, Robot, Twist};
 pub use report::{Checked, Report, Verdict};
 pub use room::{Room, Wall};
 
-/// Where robots are tried: it builds a room round a robot, and sees what becomes of it.
+/// The place of the trials: a stage builds a room round a robot and measures the true pose of its body.
 pub trait Stage {
     /// The robot.
     type Robot: Robot<Input = Twist>;
-    /// Its alphabet, as `mdlec bind` wrote it.
+    /// The robot's alphabet, as `mdlec bind` wrote it.
     type Alphabet: Alphabet<Output = <Self::Robot as Robot>::Output, Input = Twist>;
-    /// How long an exchange lasts: `alphabet::PERIOD`.
+    /// Duration of an exchange: `alphabet::PERIOD`.
     const PERIOD: Nanos;
 
-    /// A robot that has just been started, at rest in this room at this pose, before its first exchange. One that was
-    /// there before is gone.
+    /// Returns a robot that has just been started, at rest in this room at this pose, before its first exchange. It
+    /// replaces any earlier robot.
     ///
     /// # Errors
-    /// Why there is none.
+    /// A message if there is no robot to return.
     fn robot(&mut self, room: &Room, at: Pose) -> Result<Self::Robot, String>;
 
     /// Hands the robot the paths that its plan replays, before its first exchange; for robots with the capability `paths`.
@@ -60,14 +60,14 @@ pub trait Stage {
     /// Sees to the robot's supply, from now on; for robots with the capability `power`.
     fn supply(&mut self, _robot: &mut Self::Robot, _supplied: Supplied) {}
 
-    /// Where the body truly is by now, in the axes of the room: not what its odometry says.
+    /// Returns the true pose of the body, in the axes of the room; odometry may differ.
     fn truth(&self, robot: &Self::Robot) -> Pose;
 
-    /// Lets so many periods pass in which nobody tells the robot anything.
+    /// Lets `periods` periods pass without an exchange.
     fn left_alone(&mut self, robot: &mut Self::Robot, periods: u32);
 }
 
-/// How a robot on a stage is supplied.
+/// The power supply of a robot on a stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Supplied {
     /// By a battery that is charged, as it is when it has just been started.
@@ -78,7 +78,7 @@ pub enum Supplied {
     Plugged,
 }
 
-/// What a robot on this stage says.
+/// The output of the robot on this stage.
 type Out<S> = <<S as Stage>::Robot as Robot>::Output;
 
 /// The checks, as they are asked for: one method for each capability.
@@ -122,7 +122,8 @@ impl<'s, S: Stage> Suite<'s, S> {
         )
     }
 
-    /// `odometry`: what the robot says of its own motion beside what became of it, and the laws that turn by it.
+    /// `odometry`: the motion that the robot reports against the true motion of its body, and the laws that turn by
+    /// odometry.
     #[must_use]
     pub fn odometry(self) -> Self
     where
@@ -205,8 +206,8 @@ impl<'s, S: Stage> Suite<'s, S> {
         )
     }
 
-    /// What came of it, and of the claims of the alphabet: what it claims has to have been asked for, and the other way
-    /// round.
+    /// Returns the verdicts on the checks and on the alphabet's claims: each claimed capability must have been checked,
+    /// and each checked capability claimed.
     #[must_use]
     pub fn report(self) -> Report {
         Report::new(self.checked, &self.asked, S::Alphabet::CAPABILITIES)

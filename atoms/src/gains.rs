@@ -7,7 +7,7 @@ use mdle_runtime::{Meters, PINGS_KEPT};
 /// A body of this radius or more is wide: hallways leave it little room to turn aside in.
 const WIDE: Meters = Meters(0.3);
 
-/// What the laws do otherwise on another body.
+/// Parameters of the laws that differ from body to body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Gains {
     /// `align`: the fastest turn, in rad/s. Where sonars fire in turn, the ranges are older.
@@ -16,21 +16,24 @@ pub(crate) struct Gains {
     /// of 25°. Where sonars fire in turn it is an inch, the resolution of the paper's sonars: beside a corner, a robot that
     /// wanted ranges closer would turn into the corner.
     pub(crate) align_equal: f64,
-    /// `align`: how long, in seconds, a sonar is waited for that has heard the wall and then does not: three pings of it
+    /// `align`: time, in seconds, to wait for a sonar that has heard the wall and then does not: three of its pings
     /// where every turn brings one, else two rings.
     pub(crate) align_waits: f64,
-    /// `goAvoid`: how far ahead the way should be free. Further, and the robot turns off into a side way before
-    /// `atIsection` has confirmed it; where sonars fire in turn, what they hear is a second old, and nearer by now.
+    /// `goAvoid`: length of the way ahead that should be free. If it is longer, the robot turns off into a side way
+    /// before `atIsection` has confirmed it; where sonars fire in turn, ranges are a second old, and obstacles nearer
+    /// by now.
     pub(crate) look_ahead: Meters,
     /// `goAvoid`: kept around the body where there is room, in metres. Where sonars fire in turn odometry drifts too, and
     /// the middle of a hallway must be kept by what is heard.
     pub(crate) soft_margin: f64,
-    /// `goAvoid`: how far along a way it is asked how much room that leaves, in metres. Beside a wall, only what lies ahead
-    /// tells a way that leads off it from one that keeps as close: with room asked where the robot is, drift would never
-    /// be made good. A wide body that asked far ahead would turn back before what it can just pass.
+    /// `goAvoid`: distance along a way, in metres, at which the room beside it is measured. Beside a wall, only the
+    /// room ahead distinguishes a way that leads off the wall from one that keeps as close: with the room measured
+    /// beside the robot, drift would never be corrected. A wide body that measured it far ahead would turn back before
+    /// a gap that it can just pass.
     pub(crate) room_at: f64,
-    /// `goAvoid`: how far beyond the end of a way, in metres, something still counts as beside it. At nothing, a wall ahead
-    /// is come as near to as the look-ahead lets; a wide body must begin sooner to go round a box.
+    /// `goAvoid`: distance beyond the end of a way, in metres, in which something still counts as beside the way. With
+    /// 0 the robot comes as near to a wall ahead as the look-ahead lets it; a wide body must begin sooner to go round a
+    /// box.
     pub(crate) beyond: f64,
 }
 
@@ -70,7 +73,7 @@ impl Gains {
     }
 }
 
-/// Whether sonars fire one after the other, so that ranges are older.
+/// Returns `true` if sonars fire one after the other, so that ranges are older.
 pub(crate) fn fire_in_turn<Y: SonarRing>(y: &Y) -> bool {
     y.confirmation() < PINGS_KEPT
 }

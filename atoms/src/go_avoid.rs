@@ -21,7 +21,7 @@ const ON_THE_SPOT: Radians = Radians::from_degrees(50.0);
 const DETOUR: Radians = Radians::from_degrees(60.0);
 /// A detour that has lasted this long goes along its obstacle: the goal's direction would lead back to where it began.
 const ALONG_AFTER: Nanos = Nanos(8_000_000_000);
-/// How far a detour is turned towards the obstacle that it goes along.
+/// Angle by which a detour is turned towards the obstacle along which it goes.
 const ALONG: Radians = Radians::from_degrees(40.0);
 /// A detour is over only when it has brought the robot nearer to the goal by this much...
 const GAINED: Meters = Meters(0.1);
@@ -31,9 +31,9 @@ const DETOUR_LEAST: Nanos = Nanos(1_000_000_000);
 const ASIDE: Radians = Radians::from_degrees(60.0);
 /// With this much room on its right it gives way to the right, as people do; else to where there is more.
 const ROOM: Meters = Meters(0.4);
-/// How long the robot keeps out of the way after somebody should have passed, in seconds.
+/// Time, in seconds, for which the robot keeps out of the way after somebody should have passed.
 const PASSES: f64 = 1.0;
-/// The longest it keeps out of the way of somebody who does not come nearer any more, in seconds.
+/// Longest time, in seconds, for which the robot keeps out of the way of somebody who does not come nearer any more.
 const PASSES_MOST: f64 = 8.0;
 
 /// Towards the point at a bearing and range from where the atom begins.
@@ -71,7 +71,7 @@ pub struct GoingRound {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Detour {
     side: Side,
-    /// How far the goal was when it began.
+    /// Distance of the goal when the detour began.
     from: Meters,
     since: Nanos,
 }
@@ -105,7 +105,7 @@ impl GoingRound {
         Radians(libm::atan2(self.goal.y.0 - here.y.0, self.goal.x.0 - here.x.0))
     }
 
-    /// Whether a detour has lasted so long that it goes along its obstacle.
+    /// Returns `true` if the detour has lasted long enough to go along its obstacle.
     fn goes_along(&self, t: Nanos) -> bool {
         self.detour.is_some_and(|detour| t.since(detour.since) > ALONG_AFTER)
     }

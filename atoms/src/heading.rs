@@ -1,13 +1,13 @@
-//! How `rotate` and `turn` bring the heading to where it should be: `u_θ = k(α − θ)` (paper, section IV-A).
+//! Turning to a heading, as `rotate` and `turn` do: `u_θ = k(α − θ)` (paper, section IV-A).
 
 use mdle_runtime::capability::{DiffDrive, Odometry};
 use mdle_runtime::{Nanos, Radians, RadiansPerSecond, Twist};
 
 /// The fastest turn, in rad/s.
 const FASTEST: f64 = 0.8;
-/// What of the angle still to turn is turned at most until the law is asked again: with more it would go too far.
+/// Greatest part of the remaining angle that is turned before the law runs again: with more the robot would go too far.
 const AT_ONCE: f64 = 0.5;
-/// How far off is near enough.
+/// Tolerance of the final heading.
 const NEAR: Radians = Radians::from_degrees(2.0);
 /// Below this difference of the wheels' speeds, in m/s, the robot no longer turns.
 const AT_REST: f64 = 0.02;
@@ -20,7 +20,7 @@ pub(crate) fn turning(left: Radians, gain: f64, before: Option<Nanos>, t: Nanos)
     Twist { omega: RadiansPerSecond((gain * left.0).clamp(-FASTEST, FASTEST)), ..Twist::default() }
 }
 
-/// Whether with `left` still to turn the robot is near enough, and at rest.
+/// Returns `true` if the remaining angle `left` is within the tolerance and the robot is at rest.
 pub(crate) fn turned<Y: DiffDrive + Odometry>(left: Radians, y: &Y) -> bool {
     let wheels_differ = y.velocity().omega.0 * y.wheel_base().0;
     left.0.abs() <= NEAR.0 && wheels_differ.abs() < AT_REST

@@ -1,9 +1,9 @@
-//! Where echoes came from in the last seconds: on a detour out of a corner the sonars do not see all of it at once.
+//! The places of the echoes of the last seconds: on a detour out of a corner the sonars do not see all of it at once.
 
 use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, SonarId};
 
-/// How many places are kept.
+/// Greatest number of places kept.
 pub(crate) const PLACES: usize = 96;
 /// Echoes from nearer to each other than this, in metres, are one place.
 const ONE_PLACE: f64 = 0.1;
@@ -75,7 +75,8 @@ mod tests {
     use super::*;
     use crate::trial::Sensed;
 
-    /// What is kept after these pings straight ahead, each by a robot so far along the first axis.
+    /// Returns the number of places kept after `pings` straight ahead, each with the robot's distance along the first
+    /// axis and the range.
     fn kept(pings: &[(f64, f64)], now: u64) -> usize {
         let (mut y, mut memory) = (Sensed::default(), Memory::EMPTY);
         for (x, range) in pings {

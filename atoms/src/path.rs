@@ -26,29 +26,30 @@ impl Path {
     }
 }
 
-/// The law of [`Path`]: done at the time of the last setpoint. Where there is no such path it stands still and is never
-/// done, since what comes behind it in a plan relies on the way having been driven.
+/// The law of [`Path`]: it is done at the time of the last setpoint. Without such a path the robot stands still and the
+/// law is never done, since what comes after it in a plan relies on the way having been driven.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Replaying {
     file: &'static str,
     frame: Frame,
-    /// When the path began.
+    /// Time at which the path began.
     begun: Nanos,
-    /// When the input was last asked for.
+    /// Time of the previous request for an input; `None` before the first.
     before: Option<Nanos>,
 }
 
-/// What a path asks for at one time.
+/// The heading, turn rate and speed that a path asks for at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Asked {
     heading: Radians,
-    /// How fast that changes.
+    /// Rate at which the heading changes.
     turn_rate: RadiansPerSecond,
     speed: MetersPerSecond,
 }
 
 impl Asked {
-    /// What `path` asks for so long after it began; `None` from its end on.
+    /// Returns what `path` asks for at the time `at` after its begin; `None` before its first setpoint and from its
+    /// last one on.
     fn of(path: &[Setpoint], at: Nanos) -> Option<Self> {
         let next = path.partition_point(|setpoint| setpoint.at <= at);
         let (from, to) = (path.get(next.checked_sub(1)?)?, path.get(next)?);

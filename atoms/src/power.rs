@@ -1,4 +1,4 @@
-//! `lowBattery`, `charger` and the signal `battery`: what a plan goes by that brings its robot home (ours).
+//! `lowBattery`, `charger` and the signal `battery`, for plans that bring their robot home (not in the paper).
 
 use mdle_runtime::capability::Power;
 use mdle_runtime::{Interrupt, Signal};

@@ -22,14 +22,14 @@ impl Rotate {
 /// The law of [`Rotate`]: done within 2° of the heading and at rest.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rotating {
-    /// The heading by odometry.
+    /// The final heading by odometry.
     goal: Radians,
-    /// When the input was last asked for.
+    /// Time of the previous request for an input; `None` before the first.
     before: Option<Nanos>,
 }
 
 impl Rotating {
-    /// What is left to turn, the shortest way round.
+    /// Returns the angle left to turn, the shortest way round.
     fn left<Y: Odometry>(&self, y: &Y) -> Radians {
         Radians(self.goal.0 - y.pose().theta.0).wrapped()
     }

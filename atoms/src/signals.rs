@@ -22,7 +22,7 @@ impl<Y: SonarRing> Signal<Y> for R {
     }
 }
 
-/// How long ago a sonar pinged last, in seconds; infinite where it has not yet.
+/// Age of a sonar's last ping, in seconds; infinite before its first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Age(SonarId);
 

@@ -13,7 +13,7 @@ const DIRECTIONS: i32 = 72;
 const SEEN_WITHIN: f64 = 2.0;
 /// The points taken of a ping's arc, from its axis.
 const ARC: [Radians; 3] = [Radians::from_degrees(-8.0), Radians(0.0), Radians::from_degrees(8.0)];
-/// How far, in metres, a wall is taken to go on beyond where it was last heard.
+/// Distances, in metres, by which a wall is assumed to go on beyond where it was last heard.
 const EXTENDS: [f64; 3] = [0.25, 0.5, 0.75];
 /// Echoes of one wall are this far apart at least, in metres: those of an edge are not.
 const APART: f64 = 0.15;
@@ -21,16 +21,16 @@ const APART: f64 = 0.15;
 const ACROSS: f64 = 0.5;
 /// The points taken of what is heard, and those of what was heard before.
 const POINTS: usize = SONARS * (ARC.len() + EXTENDS.len()) + PLACES;
-/// Kept around the body whatever it costs, in metres.
+/// Least distance kept around the body, whatever the cost, in metres.
 const MARGIN: f64 = 0.06;
-/// What a way that lacks free length costs, in radians of detour for the whole look-ahead.
+/// Cost of a way that lacks free length, in radians of detour for the whole look-ahead.
 const BLOCKED_COSTS: f64 = 6.0;
-/// What a way along the hard margin costs, in radians of detour. With 0.6 the robot may drift off the middle of a
-/// hallway so far that at the next junction `atIsection` sees, half turned, the pattern it is to see at the end.
+/// Cost of a way along the hard margin, in radians of detour. With 0.6 the robot may drift off the middle of a hallway
+/// so far that at the next junction `atIsection` sees, half turned, the pattern it is to see at the end.
 const CLOSE_COSTS: f64 = 0.9;
-/// What another direction than the one before costs, in radians of detour for each radian.
+/// Cost of a change of direction from turn to turn, in radians of detour for each radian.
 const CHANGE_COSTS: f64 = 0.15;
-/// The same on a detour.
+/// Cost of a change of direction on a detour, in radians of detour for each radian.
 const CHANGE_COSTS_ON_A_DETOUR: f64 = 0.6;
 /// Further than this from the goal's direction no detour leads: beyond, it would go in circles.
 const TURNED_MOST: Radians = Radians::from_degrees(215.0);
@@ -38,17 +38,17 @@ const TURNED_MOST: Radians = Radians::from_degrees(215.0);
 const ROUNDING: f64 = 1e-9;
 /// Free way is not counted beyond this, in metres.
 const FREE_MOST: f64 = 3.0;
-/// How far back and ahead of the robot, in metres, points count as beside its way.
+/// Limits of the distance behind and ahead of the robot, in metres, at which points count as beside its way.
 const BESIDE: (f64, f64) = (-0.05, 0.9);
 
-/// Where a sonar heard something, from the centre of the body, in the odometry's axes.
+/// Place of an echo relative to the centre of the body, in the odometry's axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Point {
     x: f64,
     y: f64,
 }
 
-/// What the sonars last heard around the robot, and how wide a way it needs.
+/// The places of the sonars' last echoes around the robot, and the width of the way that it needs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Obstacles {
     points: [Point; POINTS],
@@ -60,18 +60,18 @@ pub(crate) struct Obstacles {
     beyond: f64,
 }
 
-/// Where a law wants to go.
+/// The direction in which a law wants to go.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Wish {
     /// The direction of the goal.
     pub(crate) goal: Radians,
-    /// How far ahead the way should be free.
+    /// Length of the way ahead that should be free.
     pub(crate) look_ahead: Meters,
     /// The direction chosen in the turn before.
     pub(crate) previous: Option<Radians>,
     /// The side of an obstacle to which the law keeps.
     pub(crate) side: Option<Side>,
-    /// Whether it goes along an obstacle rather than to the goal.
+    /// `true` if the law goes along an obstacle rather than to the goal.
     pub(crate) along: bool,
 }
 
@@ -132,20 +132,20 @@ impl Obstacles {
         }
     }
 
-    /// The same with what was heard before.
+    /// Adds the places that `memory` keeps.
     pub(crate) fn with(mut self, memory: &Memory, here: Pose, now: Nanos) -> Self {
         let remembered = memory.around(here, now).into_iter().flatten();
         remembered.for_each(|(x, y)| self.push(Point { x, y }));
         self
     }
 
-    /// The same for a robot that may go along walls as close as it can.
+    /// Drops the soft margin, for a robot that may go along walls as close as it can.
     pub(crate) fn close(self) -> Self {
         Self { soft: 0.0, ..self }
     }
 
-    /// How far the body, with its margin, can go in this direction before it meets a point; at most 3 m, and negative
-    /// when a point is already inside the margin.
+    /// Returns the distance in metres, at most 3, that the body, with its margin, can go in this direction before it
+    /// meets a point; negative when a point is already inside the margin.
     pub(crate) fn free(&self, direction: Radians) -> Meters {
         let mut free = FREE_MOST;
         for (along, across) in self.along(direction) {
@@ -219,7 +219,8 @@ impl Obstacles {
     }
 }
 
-/// Where the wall goes on that a sonar heard in all its pings kept: surfaces ahead are not heard, since they are not faced.
+/// Returns points where the wall goes on that a sonar heard in all the pings kept. The sonars do not hear the surface
+/// ahead, since it does not face them.
 fn extended<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose) -> Option<[Point; EXTENDS.len()]> {
     let mut echoes = y.pings(sonar).newest_first().map(|ping| {
         let range = ping.range.filter(|range| range.0 < SEEN_WITHIN)?;
@@ -335,7 +336,8 @@ mod tests {
         assert!((free.0 - 0.425).abs() < 1e-12, "{free:?}");
     }
 
-    /// What is free ahead of a robot that has heard a wall on its left in three pings, `leans` metres nearer each time.
+    /// Returns the free distance ahead of a robot that has heard a wall on its left in three pings, `leans` metres
+    /// nearer each time.
     fn beside_a_wall(leans: f64, confirmation: usize) -> f64 {
         let mut y = Sensed { confirmation, ..Sensed::default() };
         for ping in 0..3 {

@@ -11,7 +11,7 @@ use mdle_runtime::{
 /// The period of a turn in these trials, in seconds.
 pub(crate) const PERIOD: f64 = 0.1;
 
-/// What a robot with every capability might sense.
+/// The output of a robot with every capability.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Sensed {
     pub(crate) now: Nanos,
@@ -50,7 +50,7 @@ impl Sensed {
         self.ping_at(sonar, range, Nanos::ZERO);
     }
 
-    /// The same at a time.
+    /// Takes in a ping of this time, made where the robot is.
     pub(crate) fn ping_at(&mut self, sonar: SonarId, range: Option<f64>, at: Nanos) {
         let ping = Ping { range: range.map(Meters), at, pose: self.pose };
         self.pings.get_mut(sonar.number()).expect("one of the sixteen").push(ping);

@@ -23,21 +23,21 @@ impl Turn {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Turning {
     angle: Radians,
-    /// What was turned up to `last`. Counted, because a heading does not tell 270° from -90°.
+    /// The angle turned up to `last`. It is counted, because a heading does not distinguish 270° from -90°.
     so_far: Radians,
     /// The heading of the last turn.
     last: Radians,
-    /// When that was.
+    /// Time of the previous request for an input; `None` before the first.
     before: Option<Nanos>,
 }
 
 impl Turning {
-    /// What was turned since the atom began.
+    /// Returns the angle turned since the atom began.
     fn so_far<Y: Odometry>(&self, y: &Y) -> Radians {
         Radians(self.so_far.0 + Radians(y.pose().theta.0 - self.last.0).wrapped().0)
     }
 
-    /// What is left to turn.
+    /// Returns the angle left to turn.
     fn left<Y: Odometry>(&self, y: &Y) -> Radians {
         Radians(self.angle.0 - self.so_far(y).0)
     }

@@ -1,4 +1,4 @@
-//! What a robot says of its own measures.
+//! Checks of the measures that a robot reports of its own body.
 
 use std::format;
 use std::string::String;

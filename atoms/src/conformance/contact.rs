@@ -9,10 +9,10 @@ use super::room::AT;
 use super::trial::{Trial, Way};
 use super::{Out, Room, Stage, Verdict};
 
-/// How far the wall is from the body, in metres, and how fast it is driven at.
+/// Distance of the wall from the body, in metres, and the speed towards it, in m/s.
 const AWAY: f64 = 0.4;
 const V: f64 = 0.1;
-/// How far a body may be from a wall that it feels, in metres, beyond what it goes in a period.
+/// Greatest gap, in metres, between the body and a wall that it feels, beyond the way of one period.
 const FEELS: f64 = 0.02;
 
 pub(super) fn is_felt<S: Stage>(stage: &mut S) -> Result<(), Verdict>
@@ -43,7 +43,7 @@ where
     not_felt(&trial, wall - radius, reach)
 }
 
-/// That no contact is told where there is none.
+/// Checks that no contact is reported where there is none.
 fn not_felt<S: Stage>(trial: &Trial<'_, S>, wall: f64, reach: f64) -> Result<(), Verdict>
 where
     Out<S>: Bumpers,
@@ -57,7 +57,7 @@ where
     Ok(())
 }
 
-/// That the interrupt says the same.
+/// Checks that the interrupt agrees with the output.
 fn agrees<S: Stage>(trial: &Trial<'_, S>) -> Result<(), Verdict>
 where
     Out<S>: Bumpers,

@@ -1,4 +1,4 @@
-//! What an input does to the body: its signs and units, and that the body stops.
+//! Checks of the effect of an input on the body: its signs and units, and that the body stops.
 
 use std::format;
 use std::string::String;
@@ -9,26 +9,26 @@ use super::measured::Measured;
 use super::trial::{Trial, Way, lasting, twist};
 use super::{Room, Stage, Verdict};
 
-/// How far off what the body does may be, as a part of what it was told.
+/// Tolerance of the body's motion, as a part of the commanded motion.
 pub(super) const PART: f64 = 0.06;
-/// How far off it may be besides, in metres and in radians.
+/// Tolerance of the body's motion besides, in metres and in radians.
 pub(super) const METRES: f64 = 0.02;
 pub(super) const RADIANS: f64 = 0.03;
-/// After so many seconds a body has the speed that it was told.
+/// Time, in seconds, after which a body has the commanded speed.
 pub(super) const SETTLES: f64 = 0.8;
-/// How long it is looked at then.
+/// Time for which the motion is then measured, in seconds.
 pub(super) const SECONDS: f64 = 2.0;
-/// What it is told, in m/s and rad/s.
+/// Commanded speeds, in m/s and rad/s.
 pub(super) const V: f64 = 0.2;
 pub(super) const OMEGA: f64 = 0.4;
-/// How far a body goes that stands, in metres and radians.
+/// Greatest motion of a body at rest, in metres and radians.
 const STANDS: (f64, f64) = (0.01, 0.02);
-/// A body that is told to stop brakes at least like this, in m/s² and rad/s².
+/// Least braking of a body that is stopped, in m/s² and rad/s².
 const BRAKES: (f64, f64) = (0.5, 1.5);
-/// How much of what the alphabet lets plans ask has to be reached.
+/// Part of the speeds in the alphabet's limits that the body has to reach.
 const REACHED: f64 = 0.9;
 
-/// That the body has stood.
+/// Checks that the body was at rest.
 pub(super) fn stood(way: &Way, when: &str) -> Result<(), String> {
     if way.far() <= STANDS.0 && way.turn.abs() <= STANDS.1 {
         return Ok(());
@@ -36,7 +36,7 @@ pub(super) fn stood(way: &Way, when: &str) -> Result<(), String> {
     Err(format!("{when} the body went {:.3} m and turned by {:.1} degrees", way.far(), way.turn.to_degrees()))
 }
 
-/// That the body has gone this way, along this arc.
+/// Checks that the body has moved along the arc of these speeds.
 fn went(way: &Way, v: f64, omega: f64, seconds: f64) -> Result<(), String> {
     let arc = Way::between(Pose::ORIGIN, Pose::ORIGIN.moved(Meters(v * seconds), Radians(omega * seconds)));
     let did = format!("told {v} m/s and {omega} rad/s for {seconds:.1} s, the body");

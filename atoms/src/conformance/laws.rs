@@ -12,16 +12,16 @@ use super::ring::HEARD;
 use super::trial::{Trial, Way, lasting};
 use super::{Out, Room, Stage, Verdict};
 
-/// How far off a heading may be where a law is done that turns to it, in degrees, and as a part of its turn: 2 degrees of
-/// the law's own, and what odometry adds.
+/// Tolerance of the heading of a law that turns to it, in degrees, besides a part of its turn: 2 degrees of the law's
+/// own, and the error of odometry.
 const DONE: f64 = 5.0;
-/// The same for `align`, whose sonars may tell ranges an inch off, a second late.
+/// Tolerance of the heading of `align`, in degrees; its ranges may be an inch off and a second late.
 const SQUARE: f64 = 8.0;
 /// The longest that a law may turn, in seconds.
 const TURNS: f64 = 25.0;
-/// How far the wall is from which `align` keeps its distance, in metres beyond the body, and half its length.
+/// Distance of the wall beside which `align` runs, in metres beyond the body, and half the wall's length.
 const WALL: (f64, f64) = (0.5, 1.8);
-/// How far askew the robot is when it begins to align, in degrees.
+/// Angle from square at which the robot begins to align, in degrees.
 const ASKEW: f64 = 12.0;
 
 pub(super) fn go<S: Stage>(stage: &mut S) -> Result<(), Verdict> {
@@ -58,7 +58,7 @@ pub(super) fn stop<S: Stage>(stage: &mut S) -> Result<(), Verdict> {
     Ok(stood(&Way::between(from, trial.truth()), "under `stop`")?)
 }
 
-/// That a law has turned the body by so many degrees on the spot, and that it stands.
+/// Checks that a law has turned the body by `degrees` on the spot, and that the body is then at rest.
 fn turned<S: Stage>(trial: &mut Trial<'_, S>, what: &str, from: Pose, degrees: f64, off: f64) -> Result<(), String> {
     let way = Way::between(from, trial.truth());
     let wrong = Radians(way.turn - Radians::from_degrees(degrees).0).wrapped().degrees();
@@ -72,7 +72,7 @@ fn turned<S: Stage>(trial: &mut Trial<'_, S>, what: &str, from: Pose, degrees: f
     stood(&trial.drive(0.0, 0.0, 0.5)?, &format!("{what} is done, and then"))
 }
 
-/// How far off a turn by so many degrees may be.
+/// Returns the tolerance, in degrees, of a turn by this angle.
 fn off(degrees: f64) -> f64 {
     DONE + PART * degrees.abs()
 }

@@ -1,11 +1,11 @@
-//! A number beside what it should be, and what is probably wrong where they differ.
+//! A measured number beside the expected one, and the probable cause of a difference.
 
 use std::format;
 use std::string::String;
 
 use core::f64::consts::PI;
 
-/// What is a mistake of factors is most often one of these.
+/// Factors of the most common mistakes of units, with their names.
 const FACTORS: [(f64, &str); 10] = [
     (180.0 / PI, "degrees for radians"),
     (PI / 180.0, "radians for degrees"),
@@ -19,29 +19,29 @@ const FACTORS: [(f64, &str); 10] = [
     (0.5, "a radius for a diameter"),
 ];
 
-/// A part of what was wanted that is as good as nothing.
+/// Part of the expected number below which a measured one counts as nothing.
 const NOTHING: f64 = 0.01;
 
 /// A number that was measured.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Measured<'a> {
-    /// What was done, and what was measured of it, up to the number.
+    /// Text up to the number: the action, and the measured quantity.
     pub(super) what: &'a str,
-    /// Its unit.
+    /// Unit of the quantity.
     pub(super) unit: &'a str,
-    /// Where a mistake would be.
+    /// Probable source of a mistake.
     pub(super) whose: &'a str,
     pub(super) found: f64,
     pub(super) wanted: f64,
-    /// How far it may be off.
+    /// Tolerance, in the same unit.
     pub(super) within: f64,
 }
 
 impl Measured<'_> {
-    /// Whether it is as wanted.
+    /// Checks that the measured number is within the tolerance.
     ///
     /// # Errors
-    /// What is wrong, and probably why.
+    /// A sentence with the difference and its probable cause.
     pub(super) fn check(&self) -> Result<(), String> {
         let Self { what, unit, whose, found, wanted, within } = *self;
         if (found - wanted).abs() <= within {
@@ -51,7 +51,7 @@ impl Measured<'_> {
     }
 }
 
-/// What is probably wrong.
+/// Returns the probable cause of a difference, as the end of a sentence; empty if there is none.
 fn why(found: f64, wanted: f64, within: f64, whose: &str) -> String {
     let factor = found / wanted;
     if wanted.abs() <= within || !factor.is_finite() {

@@ -1,4 +1,4 @@
-//! What a robot says of its own motion, beside what became of its body.
+//! Checks of the motion that a robot reports against the true motion of its body.
 
 use std::format;
 use std::string::String;
@@ -11,7 +11,7 @@ use super::measured::Measured;
 use super::trial::{Trial, Way, lasting};
 use super::{Out, Room, Stage, Verdict};
 
-/// How far off a measured speed may be, in m/s, and a measured turn rate, in rad/s.
+/// Tolerance of a measured speed, in m/s, and of a measured turn rate, in rad/s.
 const SPEED: f64 = 0.015;
 const RATE: f64 = 0.03;
 
@@ -19,7 +19,7 @@ fn counted(what: &str, unit: &str, found: f64, wanted: f64, within: f64) -> Resu
     Measured { what, unit, whose: "odometry", found, wanted, within }.check()
 }
 
-/// That odometry tells this way, which the body went.
+/// Checks that odometry reports the way `told`, when the body truly went `went`.
 fn told(did: &str, told: &Way, went: &Way) -> Result<(), String> {
     let says = |what: &str| format!("{did}, and by odometry it {what}");
     let (metres, radians) = (METRES + PART * went.far(), RADIANS + PART * went.turn.abs());
@@ -28,7 +28,7 @@ fn told(did: &str, told: &Way, went: &Way) -> Result<(), String> {
     counted(&says("went to its left by"), "m", told.left, went.left, metres)
 }
 
-/// Drives so; what became of the body, and what odometry told of that.
+/// Drives with this input. Returns the true way of the body and the way that odometry reports.
 fn driven<S: Stage>(trial: &mut Trial<'_, S>, v: f64, omega: f64, seconds: f64) -> Result<(Way, Way), String>
 where
     Out<S>: Odometry,

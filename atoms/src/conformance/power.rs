@@ -1,4 +1,4 @@
-//! Battery and charger: what the robot says of them beside what was done to them.
+//! Checks of the battery and charger states that the robot reports.
 
 use std::format;
 use std::string::String;
@@ -11,10 +11,10 @@ use super::{Out, Room, Stage, Supplied, Verdict};
 
 /// The lowest and the highest voltage that is meant, in volts.
 const VOLTS: (f64, f64) = (1.0, 1000.0);
-/// How long a robot may take to tell that its supply has changed, in seconds.
+/// Time, in seconds, within which a robot must report a change of its supply.
 const TELLS: f64 = 5.0;
 
-/// What a robot says of its supply.
+/// The state of its supply that a robot reports.
 #[derive(Debug, Clone, Copy)]
 struct Said {
     volts: f64,
@@ -22,7 +22,7 @@ struct Said {
     is_plugged: bool,
 }
 
-/// What it says a while after it was supplied like this.
+/// Returns the state that the robot reports `TELLS` seconds after it is supplied like this.
 fn said<S: Stage>(stage: &mut S, supplied: Supplied) -> Result<Said, Verdict>
 where
     Out<S>: Power,
@@ -40,7 +40,7 @@ where
     Ok(said)
 }
 
-/// That the quarks say the same.
+/// Checks that the quarks and the signal of the alphabet agree with the output.
 fn agree<S: Stage>(y: &Out<S>, said: Said) -> Result<(), Verdict> {
     for (name, wanted) in [("lowBattery", said.is_low), ("charger", said.is_plugged)] {
         let interrupt = S::Alphabet::interrupt(name, &[]).ok_or(Verdict::NotOffered)?;
@@ -55,7 +55,7 @@ fn agree<S: Stage>(y: &Out<S>, said: Said) -> Result<(), Verdict> {
     Ok(())
 }
 
-/// That this is said where it is so, and not where it is not.
+/// Checks that a state is reported where it holds, and not elsewhere.
 fn only(what: &str, where_it_is: bool, where_not: [bool; 2]) -> Result<(), String> {
     match (where_it_is, where_not) {
         (true, [false, false]) => Ok(()),
@@ -86,7 +86,7 @@ where
     Ok(())
 }
 
-/// What it says when all is well, when its battery is low, and on its charger.
+/// Returns the states that the robot reports when it is well supplied, when its battery is low, and on its charger.
 fn each<S: Stage>(stage: &mut S) -> Result<[Said; 3], Verdict>
 where
     Out<S>: Power,

@@ -9,13 +9,13 @@ use super::drive::SETTLES;
 use super::trial::{Trial, Way};
 use super::{Out, Room, Stage, Verdict};
 
-/// What every robot is given: a second ahead, a quarter of a circle to the left in two, a second ahead.
+/// The path that every robot is given: a second ahead, a quarter of a circle to the left in two, a second ahead.
 pub(super) static STORED: PathStore = PathStore::new(&[StoredPath { name: NAME, setpoints: &BEND }]);
 const NAME: &str = "bend.csv";
 static BEND: [Setpoint; 4] =
     [setpoint(0, 0.0, SPEED), setpoint(1, 0.0, SPEED), setpoint(3, 90.0, SPEED), setpoint(4, 90.0, SPEED)];
 const SPEED: f64 = 0.2;
-/// How far from the end of the path the body may be, in metres and degrees: it has to get going, and to stop.
+/// Greatest distance of the body from the end of the path, in metres and degrees: it has to accelerate and to stop.
 const ENDS: (f64, f64) = (0.1, 10.0);
 
 const fn setpoint(seconds: u64, degrees: f64, speed: f64) -> Setpoint {

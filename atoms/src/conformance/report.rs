@@ -1,4 +1,4 @@
-//! What came of the checks, as the author of a robot reads it.
+//! The results of the checks, for the author of a robot.
 
 use std::format;
 use std::string::String;
@@ -6,17 +6,17 @@ use std::vec::Vec;
 
 use core::fmt;
 
-/// What there are checks for.
+/// Capabilities for which there are checks.
 const KNOWN: [&str; 6] = ["diff_drive", "odometry", "bumper", "sonar[16]", "paths", "power"];
 
-/// What came of a check.
+/// The result of a check.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Verdict {
     /// The robot does what it must.
     Holds,
     /// The alphabet has no such quark or signal, so no plan can ask for it.
     NotOffered,
-    /// What is wrong, in a sentence for the author.
+    /// A defect, as a sentence for the author.
     Broken(String),
 }
 
@@ -32,9 +32,9 @@ impl From<String> for Verdict {
 pub struct Checked {
     /// The capability it belongs to.
     pub capability: &'static str,
-    /// What must hold.
+    /// The requirement, as its name in the report.
     pub name: &'static str,
-    /// Whether it does.
+    /// The result of the check.
     pub verdict: Verdict,
 }
 
@@ -42,9 +42,9 @@ pub struct Checked {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Report {
     checked: Vec<Checked>,
-    /// What is wrong with the claims.
+    /// Defects of the alphabet's claims.
     claims: Vec<String>,
-    /// What is claimed and cannot be checked here.
+    /// Capabilities that are claimed and for which there are no checks.
     unknown: Vec<&'static str>,
 }
 
@@ -68,7 +68,7 @@ impl Report {
         Self { checked, claims: missing.chain(more).collect(), unknown }
     }
 
-    /// Whether the robot does all that it must.
+    /// Returns `true` if the robot meets all requirements.
     #[must_use]
     pub fn holds(&self) -> bool {
         self.claims.is_empty() && !self.checked.iter().any(|checked| matches!(checked.verdict, Verdict::Broken(_)))

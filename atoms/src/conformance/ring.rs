@@ -11,28 +11,29 @@ use super::room::AT;
 use super::trial::{Trial, Way};
 use super::{Out, Room, Stage, Verdict};
 
-/// How long it takes, in seconds, until every sonar has pinged three times, also on a robot whose sonars fire in turn.
+/// Time, in seconds, until every sonar has pinged three times, also on a robot whose sonars fire in turn.
 pub(super) const HEARD: f64 = 3.2;
-/// How far off a range may be, in metres: that of a sonar with steps of an inch, which need not stand quite on the ring.
+/// Tolerance of a range, in metres: that of a sonar with steps of an inch, which need not be mounted quite on the ring.
 const RANGE: f64 = 0.05;
-/// How far from the centre the wall is, in metres, that each sonar looks at. No two are alike, those of even numbers are
-/// nearer, since some robots listen to two sonars there, beside which the next walls are; and no order is any other's
-/// reversed or shifted.
+/// Distances from the centre, in metres, of the walls at which the sonars look. No two are alike. Those of even numbers
+/// are nearer, since some robots listen to two sonars there, beside which the next walls are; and no order is any
+/// other's reversed or shifted.
 const WALLS: [f64; SONARS] =
     [1.08, 1.71, 0.75, 2.37, 1.41, 1.93, 0.86, 1.60, 1.19, 2.15, 0.97, 2.26, 1.52, 1.82, 1.30, 2.04];
-/// Half of how wide a wall is for each metre of its distance, of even numbers and of odd ones: neighbours do not hear it.
+/// Half the width of a wall of an even number and of an odd one, for each metre of its distance: neighbours do not hear
+/// it.
 const HALF: [f64; 2] = [0.05, 0.08];
-/// How old a ping may be, in seconds: a full ring takes a second.
+/// Greatest age of a ping, in seconds: a full ring takes a second.
 const OLD: f64 = 2.0;
-/// How far from where the robot then was a ping may say that it was taken, in metres and radians.
+/// Tolerance of the pose at which a ping was made, in metres and radians.
 const THERE: (f64, f64) = (0.06, 0.1);
 
-/// The sixteen.
+/// Returns all sixteen sonars.
 fn sonars() -> impl Iterator<Item = SonarId> {
     (0..SONARS as u8).map(SonarId::new)
 }
 
-/// What a sonar heard last, as the distance from the centre of the body, in metres.
+/// Returns the last echo of a sonar, as the distance from the centre of the body in metres; `None` if it heard nothing.
 fn heard<S: Stage>(trial: &Trial<'_, S>, sonar: SonarId) -> Result<Option<f64>, String>
 where
     Out<S>: SonarRing,

@@ -7,10 +7,11 @@ use core::fmt;
 
 use mdle_runtime::{Meters, Pose, Radians};
 
-/// How far away the outermost walls are, in metres: further than any sonar hears.
+/// Distance of the outermost walls, in metres: further than any sonar hears.
 const FAR: f64 = 40.0;
 
-/// Where robots begin: nowhere near the origin, and along no axis, so that the room's axes are not taken for the robot's.
+/// The pose at which robots begin: nowhere near the origin, and along no axis, so that the room's axes are not taken
+/// for the robot's.
 pub(super) const AT: Pose = Pose { x: Meters(1.0), y: Meters(-0.5), theta: Radians::from_degrees(30.0) };
 
 /// A straight wall without thickness.
@@ -18,7 +19,7 @@ pub(super) const AT: Pose = Pose { x: Meters(1.0), y: Meters(-0.5), theta: Radia
 pub struct Wall {
     /// One end: its `x` and `y`; the heading means nothing.
     pub from: Pose,
-    /// The other.
+    /// The other end; the heading means nothing.
     pub to: Pose,
 }
 
@@ -37,8 +38,8 @@ impl Room {
         sides.into_iter().fold(Self { walls: Vec::new() }, |room, side| room.across(side, FAR, FAR))
     }
 
-    /// The same with a wall more: square to the direction that is so many degrees counter-clockwise of where the robot
-    /// first looks, so far from its centre (metres), and so long to both sides.
+    /// Adds a wall that is square to the direction `degrees` counter-clockwise of where the robot first looks,
+    /// `distance` metres from the robot's centre, and `half` metres long to both sides.
     pub(super) fn across(mut self, degrees: f64, distance: f64, half: f64) -> Self {
         let bearing = AT.theta.0 + Radians::from_degrees(degrees).0;
         let foot = AT.towards(Radians(bearing), Meters(distance));
@@ -53,7 +54,7 @@ impl Room {
         &self.walls
     }
 
-    /// How far the nearest wall is from the place of this pose.
+    /// Returns the distance of the nearest wall from the place of this pose.
     pub(super) fn nearest(&self, at: Pose) -> Meters {
         let ways = self.walls.iter().map(|wall| wall.distance(at));
         Meters(ways.fold(f64::INFINITY, f64::min))

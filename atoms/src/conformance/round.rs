@@ -8,12 +8,12 @@ use mdle_runtime::{Argument, Meters, MetersPerSecond, Pose, Radians};
 use super::trial::{Trial, Way};
 use super::{Out, Room, Stage, Verdict};
 
-/// How far from its goal it may be when it is done, in metres: 0.12 of its own, and what odometry adds.
+/// Greatest distance from the goal at the end, in metres: 0.12 of the law's own, and the error of odometry.
 const ARRIVED: f64 = 0.2;
-/// As far as it is sent, in metres, and how fast, in m/s.
+/// Distance of the goal, in metres, and the speed, in m/s.
 const RANGE: f64 = 1.0;
 const SPEED: f64 = 0.2;
-/// How near to a wall a body touches it, in metres.
+/// Greatest distance, in metres, at which a body touches a wall.
 const TOUCHES: f64 = 0.002;
 
 fn arguments(degrees: f64, range: f64) -> [Argument<'static>; 3] {

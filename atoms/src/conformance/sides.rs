@@ -10,10 +10,11 @@ use super::ring::HEARD;
 use super::trial::Trial;
 use super::{Out, Room, Stage, Verdict};
 
-/// How far a wall is that blocks a side, and one that does not, as parts of the range under which it is blocked.
+/// Distances of a wall that blocks a side and of a wall that does not, as parts of the range below which a side is
+/// blocked.
 const NEAR: f64 = 0.6;
 const FREE: f64 = 1.4;
-/// Half of how long the walls are, in metres.
+/// Half the length of the walls, in metres.
 const HALF: f64 = 0.8;
 
 pub(super) fn at_isection<S: Stage>(stage: &mut S) -> Result<(), Verdict>

@@ -11,22 +11,22 @@ use mdle_runtime::{
 use super::room::AT;
 use super::{Out, Room, Stage, Supplied, Verdict, replay};
 
-/// How far from where it was put a robot may stand, in metres and radians.
+/// Greatest distance of a robot from where the stage was to put it, in metres and radians.
 const PUT: (f64, f64) = (0.02, 0.02);
 
 /// A robot in a room.
 pub(super) struct Trial<'s, S: Stage> {
     stage: &'s mut S,
     pub(super) robot: S::Robot,
-    /// What it said last.
+    /// The robot's last output.
     pub(super) y: Out<S>,
     /// The frame of a plan that began with its first output.
     frame: Frame,
-    /// How many exchanges there have been.
+    /// Number of exchanges so far.
     exchanges: u64,
 }
 
-/// What became of a body between two poses, in the axes of the first.
+/// The motion of a body between two poses, in the axes of the first.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Way {
     /// In metres.
@@ -45,7 +45,7 @@ impl Way {
         Self { ahead: x * cos + y * sin, left: y * cos - x * sin, turn }
     }
 
-    /// In metres.
+    /// Returns the distance between the two poses, in metres.
     pub(super) fn far(&self) -> f64 {
         libm::hypot(self.ahead, self.left)
     }
@@ -56,7 +56,7 @@ pub(super) fn twist(v: f64, omega: f64) -> Twist {
 }
 
 impl<'s, S: Stage> Trial<'s, S> {
-    /// A robot where robots begin in this room, after its first exchange.
+    /// Puts a robot at the start pose of this room and makes its first exchange.
     pub(super) fn of(stage: &'s mut S, room: &Room) -> Result<Self, String> {
         let mut robot = stage.robot(room, AT).map_err(|why| format!("the stage has no robot: {why}"))?;
         stage.take_paths(&mut robot, replay::STORED);
@@ -72,29 +72,29 @@ impl<'s, S: Stage> Trial<'s, S> {
         Ok(Self { stage, robot, y, frame, exchanges: 1 })
     }
 
-    /// The time of its last output.
+    /// Returns the time of the robot's last output.
     pub(super) fn now(&self) -> Nanos {
         Nanos(S::PERIOD.0.saturating_mul(self.exchanges.saturating_sub(1)))
     }
 
-    /// Where its body is.
+    /// Returns the true pose of the robot's body.
     pub(super) fn truth(&self) -> Pose {
         self.stage.truth(&self.robot)
     }
 
-    /// One turn with this input.
+    /// Makes one exchange with this input.
     pub(super) fn exchange(&mut self, input: &Twist) -> Result<(), String> {
         self.y = self.robot.exchange(input).map_err(|fault| format!("an exchange failed: {fault}"))?;
         self.exchanges = self.exchanges.saturating_add(1);
         Ok(())
     }
 
-    /// Sees to its supply.
+    /// Sets the robot's power supply.
     pub(super) fn supply(&mut self, supplied: Supplied) {
         self.stage.supply(&mut self.robot, supplied);
     }
 
-    /// Turns with this input for so many seconds; what became of the body.
+    /// Makes exchanges with this input for `seconds`. Returns the motion of the body.
     pub(super) fn drive(&mut self, v: f64, omega: f64, seconds: f64) -> Result<Way, String> {
         let from = self.truth();
         for _ in 0..periods::<S>(seconds) {
@@ -103,7 +103,7 @@ impl<'s, S: Stage> Trial<'s, S> {
         Ok(Way::between(from, self.truth()))
     }
 
-    /// Nobody tells it anything for so many seconds; what became of the body.
+    /// Lets `seconds` pass without an exchange. Returns the motion of the body.
     pub(super) fn left_alone(&mut self, seconds: f64) -> Way {
         let from = self.truth();
         self.stage.left_alone(&mut self.robot, periods::<S>(seconds));
@@ -133,7 +133,7 @@ impl<'s, S: Stage> Trial<'s, S> {
         Ok(None)
     }
 
-    /// The same for a law that has to be done by then.
+    /// Runs a law as `run` does, and fails if it is not done within `most` seconds.
     pub(super) fn run_until_done(&mut self, name: &str, arguments: &[Argument<'_>], most: f64) -> Result<(), Verdict> {
         match self.run(name, arguments, most, |_| Ok(()))? {
             Some(_) => Ok(()),
@@ -142,12 +142,12 @@ impl<'s, S: Stage> Trial<'s, S> {
     }
 }
 
-/// About so many seconds in periods, of which there is one at least.
+/// Returns the number of periods in about this many seconds; at least one.
 fn periods<S: Stage>(seconds: f64) -> u32 {
     libm::round(seconds / S::PERIOD.seconds().max(1e-3)).max(1.0) as u32
 }
 
-/// About so many seconds, as the whole periods that they last.
+/// Returns the duration of the whole periods that last about this many seconds.
 pub(super) fn lasting<S: Stage>(seconds: f64) -> f64 {
     f64::from(periods::<S>(seconds)) * S::PERIOD.seconds()
 }
