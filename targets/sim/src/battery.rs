@@ -68,7 +68,7 @@ impl Battery {
         self.charge <= 0.0
     }
 
-    /// What the robot measures of it.
+    /// Returns the voltage and flags that the robot measures.
     pub(crate) fn supply(&self, is_plugged: bool) -> Supply {
         let cell = EMPTY + (FULL - EMPTY) * self.charge;
         Supply { battery: Volts(cell * self.pack.cells), is_low: cell < LOW, is_plugged }

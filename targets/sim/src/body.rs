@@ -18,17 +18,19 @@ use odometry::Odometry;
 pub(crate) const RADIUS: f64 = 0.205;
 /// The longest step of the integration, in seconds: little more than a centimetre of way, so no wall is stepped over.
 pub(crate) const STEP: f64 = 0.01;
-/// How near a wall must be for the bumper to feel it, in metres.
+/// Greatest distance, in metres, at which the bumper feels a wall.
 const FEELS: f64 = 0.001;
-/// A wall that leaves this part of the speed forward lets the wheels turn as they did: one met at less than 45°.
+/// Least part of the forward speed that a wall must leave for the wheels to go on turning unchanged: that of a wall met
+/// at 45°.
 const GLANCES: f64 = 0.5;
-/// How far it is looked for walls, in metres beyond the body: within that it moves without looking again.
+/// Range of the search for walls, in metres beyond the body: the body moves as far as the search has found free without
+/// another one.
 const LOOKS: f64 = 0.6;
 
-/// Where the body is and how it moves.
+/// The place and the motion of the body.
 #[derive(Debug, Clone)]
 pub(crate) struct Body {
-    /// On the floor.
+    /// Pose on the floor.
     pub(crate) pose: Pose,
     drive: Drive,
     odometry: Odometry,
@@ -36,11 +38,11 @@ pub(crate) struct Body {
     left: f64,
     /// The speed of the right wheel, in m/s.
     right: f64,
-    /// What never moves is at least this far, in metres.
+    /// Distance, in metres, that the body can go in any direction before it may touch something that never moves.
     clear: f64,
 }
 
-/// What the body ran into in a step.
+/// The obstacle that the body met in a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Met {
     Nothing,
@@ -54,7 +56,7 @@ impl Body {
         Self { pose, drive, odometry: Odometry::new(drive.slip, seed), left: 0.0, right: 0.0, clear: 0.0 }
     }
 
-    /// Where it is by the turns of its wheels: the origin at the start.
+    /// Returns the pose by the turns of the wheels: the origin at the start.
     pub(crate) fn odometry(&self) -> Pose {
         self.odometry.pose
     }
@@ -143,7 +145,7 @@ impl Body {
         Met::Wall(if v.0 > 0.0 { forward.clamp(0.0, v.0) } else { forward.clamp(v.0, 0.0) })
     }
 
-    /// Whether the body overlaps nothing at `there`, to which it is to go by `way`.
+    /// Returns `true` if the body overlaps nothing at `there`, after a further `way` metres.
     fn is_free(&mut self, there: Place, way: f64, walls: &Walls) -> bool {
         let radius = self.drive.radius;
         if walls.moving(there) < radius {

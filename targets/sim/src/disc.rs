@@ -6,20 +6,20 @@ use crate::world::Place;
 /// A disc.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Disc {
-    /// Its centre.
+    /// Centre of the disc.
     pub at: Place,
     /// In metres.
     pub radius: f64,
 }
 
 impl Disc {
-    /// Whether it overlaps another one.
+    /// Returns `true` if the disc overlaps `other`.
     #[must_use]
     pub fn overlaps(&self, other: &Self) -> bool {
         self.distance(other.at) < other.radius
     }
 
-    /// The distance from `at` to its edge, negative inside.
+    /// Returns the distance from `at` to the disc's edge, negative inside.
     pub(crate) fn distance(&self, at: Place) -> f64 {
         apart(self.at, at) - self.radius
     }
@@ -31,7 +31,8 @@ impl Disc {
         Place { x: self.at.x + part * x, y: self.at.y + part * y }
     }
 
-    /// How far a ray from outside goes in the unit direction `way` before it meets it, if that is less than `most`.
+    /// Returns the distance that a ray from outside goes in the unit direction `way` before it meets the disc, if that
+    /// is less than `most`.
     pub(crate) fn ray(&self, from: Place, way: Place, most: f64) -> Option<f64> {
         let (x, y) = (self.at.x - from.x, self.at.y - from.y);
         let (along, across) = (x * way.x + y * way.y, x * way.y - y * way.x);
@@ -40,7 +41,7 @@ impl Disc {
         (half >= 0.0 && range >= 0.0 && range < most).then_some(range)
     }
 
-    /// The same, with what the ray finds there: a disc has no edges.
+    /// Returns the surface that a ray from outside meets, if its distance is less than `most`: a disc has no edges.
     pub(crate) fn found(&self, from: Place, way: Place, most: f64) -> Option<Surface> {
         let range = self.ray(from, way, most)?;
         let (x, y) = (from.x + range * way.x - self.at.x, from.y + range * way.y - self.at.y);

@@ -12,9 +12,9 @@ pub(crate) const FRAMES_MOST: usize = 800;
 pub(crate) struct Frame {
     pub(crate) t: Nanos,
     pub(crate) pose: Pose,
-    /// Where each sonar had an echo just now.
+    /// Place of each sonar's new echo; `None` if it has none.
     pub(crate) echoes: [Option<Place>; SONARS],
-    /// How far each thing of the world has gone; `None` for an open door.
+    /// Displacement of each thing of the world; `None` for an open door.
     pub(crate) things: Vec<Option<Place>>,
 }
 

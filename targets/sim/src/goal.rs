@@ -1,4 +1,4 @@
-//! Where a plan is to leave the robot: a zone of the floor, and perhaps a heading.
+//! The goal of a plan: a zone of the floor, and perhaps a heading.
 
 use mdle_host::Quantity;
 use mdle_runtime::{Pose, Radians};
@@ -24,16 +24,16 @@ pub struct Goal {
 pub enum Zone {
     /// A rectangle along the axes of the floor.
     Rectangle {
-        /// Its least coordinates.
+        /// Least coordinates.
         min: Place,
-        /// Its greatest.
+        /// Greatest coordinates.
         max: Place,
     },
     /// A circle.
     Circle {
-        /// Its middle.
+        /// Centre of the circle.
         center: Place,
-        /// Its radius, in metres; above 0.
+        /// Radius, in metres; above 0.
         radius: f64,
     },
 }
@@ -67,7 +67,7 @@ impl Goal {
         Ok(Self { zone: Zone::Circle { center: Place { x, y }, radius }, heading })
     }
 
-    /// Whether a robot whose centre is at `pose` has arrived.
+    /// Returns `true` if a robot whose centre is at `pose` has arrived.
     #[must_use]
     pub fn holds(&self, pose: &Pose) -> bool {
         let Place { x, y } = Place::of(pose);

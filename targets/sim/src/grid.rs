@@ -12,7 +12,7 @@ const CELLS_FOR_EACH: f64 = 3.0;
 const CELLS_MOST: f64 = 4096.0;
 /// The cells that a segment of mean length crosses at most: a world of long walls gets larger cells.
 const CROSSED_MOST: f64 = 8.0;
-/// How much further than its ends a segment is entered, as a part of a cell, so that rounding loses none.
+/// Part of a cell by which a segment is entered beyond its ends, so that rounding loses none.
 const BEYOND: f64 = 1e-6;
 
 /// A segment from `from`, by `along`.
@@ -22,7 +22,7 @@ pub(crate) struct Segment {
     pub(crate) along: Place,
 }
 
-/// Where a ray ended.
+/// The point at which a ray meets a segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Hit {
     /// In metres from where the ray began.
@@ -39,7 +39,7 @@ pub(crate) struct Grid {
     cell: f64,
     columns: usize,
     rows: usize,
-    /// Where the entries of a cell begin; one more than there are cells.
+    /// Index of the first entry of each cell; one more than there are cells.
     starts: Vec<u32>,
     entries: Vec<(Segment, u32)>,
 }
@@ -53,7 +53,8 @@ impl Segment {
         Place { x: self.from.x + self.along.x, y: self.from.y + self.along.y }
     }
 
-    /// How far a ray from `from` in the unit direction `way` goes before it meets this segment, if below `most`.
+    /// Returns the distance that a ray from `from` in the unit direction `way` goes before it meets this segment, if
+    /// below `most`.
     pub(crate) fn met(&self, from: Place, way: Place, most: f64) -> Option<f64> {
         let (ox, oy) = (self.from.x - from.x, self.from.y - from.y);
         // Cramer's rule; divided only once it is known that there is a hit.
@@ -155,7 +156,8 @@ impl Grid {
         &self.entries[self.starts[cell] as usize..self.starts[cell + 1] as usize]
     }
 
-    /// What a ray from `from` in the unit direction `way` meets first, if nearer than `most` metres.
+    /// Returns the first segment that a ray from `from` in the unit direction `way` meets, if nearer than `most`
+    /// metres.
     pub(crate) fn ray(&self, from: Place, way: Place, most: f64) -> Option<Hit> {
         let (entered, left) = self.crossed(from, way, most)?;
         let at = Place { x: from.x + entered * way.x, y: from.y + entered * way.y };
@@ -223,9 +225,9 @@ impl Grid {
 
 /// A ray along one axis of the grid.
 struct Axis {
-    /// How far along the ray the next border lies.
+    /// Distance along the ray to the next border.
     next: f64,
-    /// From one border to the next.
+    /// Distance along the ray from one border to the next.
     between: f64,
     forward: bool,
 }

@@ -41,7 +41,7 @@ pub use charger::Charger;
 pub use disc::Disc;
 pub use goal::{Goal, Zone};
 pub use mdle_runtime::Sensed;
-/// Its output.
+/// The robot's output.
 pub use mdle_runtime::Sensed as Output;
 /// The robot's input.
 pub use mdle_runtime::Twist as Input;
@@ -52,7 +52,7 @@ pub use robot::{Fault, Make, Simulated};
 pub use sonar::Heard;
 pub use start::{Start, StartError};
 pub use target::Sim;
-/// What the host runs a plan on.
+/// The target that the host runs a plan on.
 pub use target::Sim as Target;
 pub use walls::Walls;
 pub use world::{Outline, Place, World};

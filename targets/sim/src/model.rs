@@ -1,4 +1,4 @@
-//! What the simulated robot can be: a body, and what of it can be left out.
+//! Models of the simulated robots: bodies, and the parts of them that can be left out.
 
 mod figures;
 
@@ -32,7 +32,7 @@ impl fmt::Display for Body {
     }
 }
 
-/// What of a body can be left out, to see what it does.
+/// Parts of a body that can be left out, to see their effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Part {
     /// The lobe of a sonar: without it everything in a cone of 25° is heard alike.
@@ -65,7 +65,7 @@ pub(crate) const PARTS: [(&str, Part); 8] = [
     ("slip", Part::Slip),
 ];
 
-/// All that is to be known to simulate a body.
+/// Everything needed to simulate a body.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Model {
     pub(crate) drive: Drive,
@@ -82,9 +82,9 @@ pub(crate) struct Drive {
     pub(crate) radius: f64,
     /// The distance between the wheels.
     pub(crate) wheel_base: f64,
-    /// The fastest a wheel turns.
+    /// Greatest speed of a wheel.
     pub(crate) fastest: f64,
-    /// How fast the speed of a wheel changes.
+    /// Acceleration of a wheel.
     pub(crate) acceleration: f64,
     /// Wheel speeds are commanded in whole numbers of this, rounded towards zero.
     pub(crate) unit: f64,
@@ -92,7 +92,7 @@ pub(crate) struct Drive {
     pub(crate) slip: Option<Slip>,
 }
 
-/// How odometry goes wrong: spreads of normal distributions.
+/// Errors of odometry: standard deviations of normal distributions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Slip {
     /// Of the way driven, as a part, once for a run: what the tyres measure.
@@ -111,11 +111,12 @@ pub(crate) struct Hearing {
     pub(crate) transducers: Vec<Transducer>,
     /// The distance from the centre at which laws take the transducers to be.
     pub(crate) ring_radius: f64,
-    /// Where the outermost rays lie.
+    /// Angle of the outermost rays from the axis.
     pub(crate) half_cone: Radians,
-    /// How far off the axis something that faces the sonar is just heard; `None`: as far as there are rays.
+    /// Greatest angle off the axis at which something that faces the sonar is heard; `None`: as far as there are rays.
     pub(crate) lobe: Option<Radians>,
-    /// From how far off its normal a surface on the axis is just heard; `None`: from anywhere.
+    /// Greatest angle between the axis and the normal of a surface on it at which the surface is heard; `None`: any
+    /// angle.
     pub(crate) facing: Option<Radians>,
     pub(crate) least: f64,
     pub(crate) most: f64,
@@ -123,15 +124,16 @@ pub(crate) struct Hearing {
     pub(crate) step: f64,
     /// The spread of a range's error.
     pub(crate) spread: f64,
-    /// How much all ranges of a run are too long or too short at most, as a part: the air's temperature.
+    /// Greatest common error of all ranges of a run, as a part: the air's temperature.
     pub(crate) scale: f64,
-    /// The spread of how well an echo is heard, as a part of what it takes to hear one.
+    /// Standard deviation of the loudness of an echo, as a part of the loudness needed to hear it.
     pub(crate) fading: f64,
-    /// The share of pings that bring no echo whatever is there.
+    /// The share of pings that bring no echo, whatever the distance.
     pub(crate) misses: f64,
-    /// The share of pings that bring any range, whatever is there.
+    /// The share of pings that bring a random range.
     pub(crate) outliers: f64,
-    /// Which transducers ping together, in order, each so long after the one before; `None`: all in every turn.
+    /// Groups of transducers that ping together, in order, and the time between two groups; `None`: all ping in every
+    /// turn.
     pub(crate) order: Option<Order>,
 }
 

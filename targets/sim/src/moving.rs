@@ -1,13 +1,13 @@
-//! What moves in a world: doors that open and close, boxes and discs on a schedule.
+//! Moving parts of a world: doors that open and close, boxes and discs on a schedule.
 //!
-//! Nothing moves into the robot: a door that would close on it stays open, and whoever would walk into it stops in contact
-//! with it, until it is gone. Its schedule goes on from there, so it comes later everywhere.
+//! Nothing moves into the robot: a door that would close on it stays open, and a box or disc that would move into it
+//! stops in contact with it, until it is gone. Its schedule goes on from there, so it comes later everywhere.
 
 use crate::grid::{Hit, Segment};
 use crate::surfaces::{Ends, Surface, apart, ends, surface};
 use crate::world::{Outline, Place};
 
-/// How near something may come to the robot, in metres: the bumper feels it.
+/// Least distance to which something approaches the robot, in metres: the bumper feels it.
 const STOPS_AT: f64 = 1e-4;
 
 /// Something that moves.
@@ -15,11 +15,11 @@ const STOPS_AT: f64 = 1e-4;
 pub struct Thing {
     /// A closed door, or a box or disc where its schedule begins.
     pub outline: Outline,
-    /// What it does when.
+    /// Motion of the thing.
     pub schedule: Schedule,
 }
 
-/// What something does when, in seconds since the robot was switched on.
+/// The motion of a thing over time, in seconds since the robot was switched on.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Schedule {
     /// A door, closed but for these times: from, to.
@@ -31,14 +31,14 @@ pub enum Schedule {
     },
     /// Straight from place to place.
     Way {
-        /// When its centre is where: at least one, in order. It stands before the first and after the last.
+        /// Times and places of the centre: at least one, in order. The thing rests before the first and after the last.
         stops: Vec<Stop>,
         /// Begins anew at the first after the last.
         repeats: bool,
     },
 }
 
-/// When something is where.
+/// A place of a thing at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stop {
     /// In seconds.
@@ -48,12 +48,12 @@ pub struct Stop {
 }
 
 impl Thing {
-    /// Its corners when it has gone this far from where it begins.
+    /// Returns the corners of the thing when it has gone this far from where it begins.
     pub(crate) fn corners(&self, gone: Place) -> impl Iterator<Item = Place> {
         self.outline.points.iter().map(move |point| Place { x: point.x + gone.x, y: point.y + gone.y })
     }
 
-    /// The places of its centre between which it goes; none of a door.
+    /// Returns the places between which the centre of the thing moves; a door has no such places.
     pub(crate) fn way(&self) -> impl Iterator<Item = Place> {
         let stops = match &self.schedule {
             Schedule::Open { .. } => [].as_slice(),
@@ -72,7 +72,7 @@ impl Thing {
 }
 
 impl Schedule {
-    /// How far it has gone from where it begins; `None` for an open door.
+    /// Returns the displacement at time `t` from the place where the thing begins; `None` for an open door.
     fn moved(&self, t: f64) -> Option<Place> {
         match self {
             Self::Open { times, every } => {
@@ -94,7 +94,7 @@ impl Schedule {
     }
 }
 
-/// Where something is on its way between two stops.
+/// Returns the place at time `t` on the way between two stops; `None` before the first stop and from the last one on.
 fn at(stops: &[Stop], t: f64) -> Option<Place> {
     let (from, to) = stops.iter().zip(stops.iter().skip(1)).find(|(from, to)| from.t <= t && t < to.t)?;
     let part = (t - from.t) / (to.t - from.t);
@@ -106,14 +106,14 @@ fn at(stops: &[Stop], t: f64) -> Option<Place> {
 #[derive(Debug, Clone)]
 pub(crate) struct Moving {
     schedule: Schedule,
-    /// By its own clock, which stands while it waits.
+    /// Time of the thing's own clock, in seconds; it stops while the thing waits for the robot.
     t: f64,
-    /// Where it begins.
+    /// Sides at the place where the thing begins.
     first: Vec<Segment>,
     ends: Vec<Ends>,
-    /// Where it is now: nowhere for an open door.
+    /// Sides at the current place; empty for an open door.
     now: Vec<Segment>,
-    /// A circle around it where it begins, and how far it has gone.
+    /// A circle around the thing where it begins, and its displacement from there.
     centre: Place,
     radius: f64,
     moved: Option<Place>,
@@ -144,12 +144,12 @@ impl Moving {
         moving
     }
 
-    /// How far it has gone from where it begins; `None` for an open door.
+    /// Returns the displacement from the place where the thing begins; `None` for an open door.
     pub(crate) fn gone(&self) -> Option<Place> {
         self.moved
     }
 
-    /// Its sides, where they are now.
+    /// Returns the sides of the thing at its current place.
     pub(crate) fn segments(&self) -> impl Iterator<Item = &Segment> {
         self.now.iter()
     }
@@ -163,7 +163,7 @@ impl Moving {
         self.moved = moved;
     }
 
-    /// Lets its clock go on, unless that would move it into the disc around `body`.
+    /// Lets the thing's clock go on, unless that would move it into the disc around `body`.
     pub(crate) fn advance(&mut self, seconds: f64, body: Place, radius: f64) {
         let moved = self.schedule.moved(self.t + seconds);
         if moved == self.moved {
@@ -193,7 +193,7 @@ impl Moving {
         Some(Place { x: self.centre.x + x, y: self.centre.y + y })
     }
 
-    /// Its distance from `at`, exact where it is below `most`; infinite for an open door.
+    /// Returns the distance of the thing from `at`, exact where it is below `most`; infinite for an open door.
     pub(crate) fn distance(&self, at: Place, most: f64) -> f64 {
         match self.around() {
             Some(around) if apart(around, at) - self.radius < most => {
@@ -203,7 +203,7 @@ impl Moving {
         }
     }
 
-    /// What a ray meets of it, if nearer than `most`.
+    /// Returns the first side of the thing that a ray meets, if nearer than `most`.
     pub(crate) fn ray(&self, from: Place, way: Place, most: f64) -> Option<Hit> {
         let around = self.around()?;
         let (x, y) = (around.x - from.x, around.y - from.y);
@@ -221,7 +221,7 @@ impl Moving {
         best
     }
 
-    /// The same, with what the ray finds there.
+    /// Returns the surface of the thing that a ray meets, if nearer than `most`.
     pub(crate) fn found(&self, from: Place, way: Place, most: f64) -> Option<Surface> {
         let Hit { range, segment } = self.ray(from, way, most)?;
         let at = Place { x: from.x + range * way.x, y: from.y + range * way.y };

@@ -9,18 +9,18 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 #[derive(Debug, Clone)]
 pub(crate) struct Noise(ChaCha8Rng);
 
-/// What the numbers are for.
+/// The purpose of random numbers; each has its own stream.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Purpose {
     /// Errors of the sonars' ranges.
     Ranges = 0,
     /// Ranges that mean nothing.
     Outliers = 1,
-    /// How well echoes are heard.
+    /// Random loudness of echoes.
     Fading = 2,
     /// The slip of the wheels.
     Slip = 3,
-    /// Where the robot starts.
+    /// Start pose of the robot.
     Start = 4,
 }
 

@@ -1,4 +1,4 @@
-//! The simulated robot with whoever looks on: its pictures, and the table of where it was.
+//! The simulated robot with its observers: pictures, the live view, and the table of its poses.
 
 use mdle_host::{Ended, Judgement, Observer, Standing};
 use mdle_runtime::capability::Bumpers as _;
@@ -25,7 +25,7 @@ pub struct Observed {
     watch: Option<Watch>,
 }
 
-/// What is drawn in the end, and of what.
+/// The pictures to be drawn at the end, and their data.
 struct Pictures {
     plot: Option<WholeFile>,
     record: Option<WholeFile>,
@@ -60,13 +60,13 @@ impl From<Simulated> for Observed {
 }
 
 impl Observed {
-    /// Where it is on the floor, which only the simulator knows.
+    /// Returns the true pose of the robot on the floor, which only the simulator knows.
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.robot.pose()
     }
 
-    /// Sees to its supply from now on: the charge of its battery, from 0 to 1, and the charger of its world.
+    /// Sets the robot's supply from now on: the charge of its battery, from 0 to 1, and the charger of its world.
     pub fn supply(&mut self, charge: f64, charger: Option<Charger>) {
         self.robot.supply(charge, charger);
     }

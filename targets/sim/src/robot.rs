@@ -24,23 +24,23 @@ pub struct Simulated {
     shape: Shape,
     battery: Battery,
     charger: Option<Charger>,
-    /// What the plan can replay.
+    /// Paths that the plan can replay.
     pub(crate) paths: PathStore,
-    /// How many bumper switches there are.
+    /// Number of bumper switches.
     switches: u8,
     period: Duration,
     /// Exchanges so far; the first is at time 0.
     exchanges: u64,
 }
 
-/// What is simulated besides the world.
+/// The parts of a simulation besides its world.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Make {
     /// The body.
     pub body: model::Body,
-    /// What of it is left out.
+    /// Parts of the body that are left out.
     pub without: Vec<Part>,
-    /// What its errors are drawn by; without one nothing errs.
+    /// Random seed for sensor and wheel errors; `None` for a robot without errors.
     pub seed: Option<u64>,
 }
 
@@ -107,7 +107,7 @@ impl Simulated {
         })
     }
 
-    /// Where it is on the floor, which only the simulator knows.
+    /// Returns the true pose of the robot on the floor, which only the simulator knows.
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.body.pose
@@ -136,7 +136,7 @@ impl Simulated {
         self.charger.is_some_and(|charger| charger.holds(&self.body.pose))
     }
 
-    /// Where it is in the world, as others see and touch it.
+    /// Returns the robot's outline in the world, as other robots hear and touch it.
     #[must_use]
     pub fn disc(&self) -> Disc {
         Disc { at: Place::of(&self.body.pose), radius: self.radius() }
@@ -147,8 +147,8 @@ impl Simulated {
         self.walls.put_others(others);
     }
 
-    /// What each transducer heard last, in the order of the body's model: what a robot's boards tell before anybody makes
-    /// sixteen sonars of it.
+    /// Returns the last ping of each transducer, in the order of the body's model: the data of a robot's boards before
+    /// a driver combines them into sixteen sonars.
     #[must_use]
     pub fn heard(&self) -> &[Heard] {
         &self.ring.heard
@@ -159,7 +159,7 @@ impl Simulated {
         self.shape.body_radius.0
     }
 
-    /// How far each thing of the world has gone from where it begins; `None` for an open door.
+    /// Returns the displacement of each thing of the world; `None` for an open door.
     pub(crate) fn gone(&self) -> impl Iterator<Item = Option<Place>> {
         self.walls.gone()
     }

@@ -1,4 +1,5 @@
-//! What the options say about a run, read and checked before anything moves: one run, or several that differ by a seed.
+//! The setup of a run, from options that are read and checked before anything moves: one run, or several that differ by
+//! a seed.
 
 use std::num::NonZeroUsize;
 use std::thread::available_parallelism;
@@ -112,7 +113,7 @@ impl Setup {
     }
 }
 
-/// What can be typed instead.
+/// Returns the text that can be typed instead.
 fn hint(start: &Pose) -> String {
     // Degrees that were read from a file come back with a last digit of their own.
     let degrees = libm::round(start.theta.degrees() * 1e6) / 1e6;

@@ -16,9 +16,9 @@ use crate::world::Place;
 pub(crate) struct Ring {
     pub(crate) pings: [Pings; SONARS],
     pub(crate) hearing: Hearing,
-    /// What each transducer heard last, as the range of the sonar that it speaks for.
+    /// Newest range of each transducer, as a range of the sonar that it speaks for; `None` when no echo came back.
     ranges: Vec<Option<f64>>,
-    /// The same as it heard it itself.
+    /// Newest ping of each transducer, with the range from the transducer itself.
     pub(crate) heard: Vec<Heard>,
     errors: Option<Errors>,
     /// The group that pings next, and when, where there is an order.
@@ -30,17 +30,17 @@ pub(crate) struct Ring {
 pub struct Heard {
     /// From the transducer; `None` when no echo came back.
     pub range: Option<Meters>,
-    /// When it pinged.
+    /// Time of the ping.
     pub at: Nanos,
 }
 
-/// What goes wrong in a run with a seed.
+/// Errors of a run with a random seed.
 #[derive(Debug, Clone)]
 struct Errors {
     ranges: Noise,
     outliers: Noise,
     fading: Noise,
-    /// What all ranges of the run are multiplied by.
+    /// Factor of all ranges of the run.
     scale: f64,
 }
 
@@ -62,7 +62,7 @@ impl Ring {
         Self { pings: [Pings::default(); SONARS], hearing, ranges, heard, errors, next: (0, Nanos::ZERO) }
     }
 
-    /// When the next ping is due; `None` where all sonars ping in every turn.
+    /// Returns the time of the next ping; `None` where all sonars ping in every turn.
     pub(crate) fn due(&self) -> Option<Nanos> {
         self.hearing.order.as_ref().map(|_| self.next.1)
     }
@@ -133,7 +133,8 @@ impl Ring {
 }
 
 impl Errors {
-    /// What is heard of an exact range. Every ping draws the same number of numbers, whatever it hears.
+    /// Returns the range that is heard instead of the exact one. Every ping draws the same number of random numbers,
+    /// whatever it hears.
     fn of(&mut self, exact: Option<f64>, hearing: &Hearing) -> Option<f64> {
         let missed = self.ranges.uniform() < hearing.misses;
         let error = hearing.spread * self.ranges.normal();
@@ -145,7 +146,7 @@ impl Errors {
     }
 }
 
-/// Where a transducer is and where it looks.
+/// Returns the place and the direction of a transducer.
 fn placed(transducer: &Transducer, pose: &Pose, ring_radius: f64) -> (Place, Radians) {
     let axis = Radians(pose.theta.0 + transducer.bearing.0);
     let on_the_ring = transducer.bearing == transducer.sonar.bearing()

@@ -1,4 +1,4 @@
-//! Where the robot starts: read from `x,y,deg`, and checked against the world.
+//! The start pose of the robot: read from `x,y,deg`, and checked against the world.
 
 use std::fmt;
 use std::str::FromStr;
@@ -11,7 +11,7 @@ use crate::world::{Place, World};
 
 /// Directions in which a closed floor must have a wall.
 const LOOKS: u16 = 180;
-/// How far it is looked, in metres: across any world.
+/// Range of the search for walls, in metres: across any world.
 const SIGHT: f64 = 1e7;
 
 /// A start pose as an option gives it.
@@ -66,7 +66,7 @@ impl FromStr for Start {
     }
 }
 
-/// Whether a robot can start at `pose` in `world`.
+/// Checks that a robot can start at `pose` in `world`.
 pub(crate) fn check(pose: &Pose, radius: f64, world: &World, walls: &Walls) -> Result<(), StartError> {
     let place = Place::of(pose);
     if let Some(outline) = world.solid(place) {
@@ -83,7 +83,7 @@ pub(crate) fn check(pose: &Pose, radius: f64, world: &World, walls: &Walls) -> R
     Ok(())
 }
 
-/// Whether there is a wall in every direction.
+/// Returns `true` if there is a wall in every direction.
 fn encloses(walls: &Walls, place: Place) -> bool {
     (0..LOOKS).all(|look| {
         let direction = Radians::from_degrees(f64::from(look) * (360.0 / f64::from(LOOKS)));
@@ -109,7 +109,7 @@ mod tests {
         }
     }
 
-    /// What becomes of a start on the office floor.
+    /// Checks a start pose on the office floor.
     fn office(x: f64, y: f64) -> Result<(), StartError> {
         let world = World::office().expect("our own floor");
         check(&Pose { x: Meters(x), y: Meters(y), theta: Radians(0.0) }, 0.205, &world, &Walls::of(&world))

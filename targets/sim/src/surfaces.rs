@@ -1,4 +1,4 @@
-//! What a ray finds where it ends: how squarely it meets the surface, and whether an edge is near.
+//! The surface that a ray meets: its normal, and the nearest edge.
 
 use crate::grid::Segment;
 use crate::world::Place;
@@ -8,32 +8,32 @@ const TOGETHER: f64 = 1e-3;
 /// The cosine of the turn up to which two segments are one smooth surface: 30°.
 const SMOOTH: f64 = 0.866;
 
-/// How a segment ends.
+/// The form of one end of a segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum End {
     /// Free.
     Edge,
     /// At the middle of another segment.
     Covered,
-    /// Where another segment goes on in this unit direction.
+    /// At another segment, which goes on in this unit direction.
     Meets(Place),
 }
 
 /// Both ends of a segment, first the one it is given from.
 pub(crate) type Ends = [End; 2];
 
-/// What a ray found.
+/// The surface that a ray has met.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Surface {
-    /// How far the ray went, in metres.
+    /// Distance that the ray went, in metres.
     pub(crate) range: f64,
     /// The unit normal of the surface, on the side of the ray.
     pub(crate) normal: Place,
-    /// How far the nearest edge is that sends sound back to where the ray came from; infinite without.
+    /// Distance of the nearest edge that sends sound back to where the ray came from, in metres; infinite without one.
     pub(crate) edge: f64,
 }
 
-/// How each end of `segment` lies to `others`, itself among them or not.
+/// Returns the form of both ends of `segment` among `others`, which may contain the segment itself.
 pub(crate) fn ends<'s>(segment: &Segment, others: impl Iterator<Item = &'s Segment>) -> Ends {
     let mut meeting = Meeting::of(*segment);
     others.for_each(|other| meeting.touched(other));
@@ -87,7 +87,7 @@ fn met(other: &Segment, at: Place) -> End {
     }
 }
 
-/// What a ray in the unit direction `way` that went `range` far finds at `at`.
+/// Returns the surface that a ray in the unit direction `way` meets at `at`, on `segment`, after `range` metres.
 pub(crate) fn surface(segment: &Segment, ends: &Ends, at: Place, way: Place, range: f64) -> Surface {
     let length = libm::hypot(segment.along.x, segment.along.y);
     let along = Place { x: segment.along.x / length, y: segment.along.y / length };
@@ -104,7 +104,8 @@ pub(crate) fn surface(segment: &Segment, ends: &Ends, at: Place, way: Place, ran
     Surface { range, normal, edge }
 }
 
-/// Whether the end of a surface that runs `outward` to it and looks along `normal` is an edge seen from that side.
+/// Returns `true` if the end of a surface that runs `outward` to it and looks along `normal` is an edge seen from that
+/// side.
 fn is_edge(end: &End, outward: Place, normal: Place) -> bool {
     match end {
         End::Edge => true,

@@ -1,4 +1,4 @@
-//! What a run leaves behind for its pictures: the way, where each atom began, what the sonars heard, where the body touched.
+//! The record of a run for its pictures: the way, the places where atoms began, the echoes, and the contacts.
 
 mod ways;
 
@@ -21,21 +21,21 @@ pub(crate) struct Trail {
     /// The radius of the body, in metres.
     pub(crate) radius: f64,
     pub(crate) start: Pose,
-    /// Where the robot is now.
+    /// Current pose of the robot.
     pub(crate) here: Pose,
-    /// How far each thing of the world has gone now; `None` for an open door.
+    /// Current displacement of each thing of the world; `None` for an open door.
     pub(crate) things: Vec<Option<Place>>,
     /// The way, by the atoms that drove it.
     pub(crate) ways: Ways,
-    /// What a title says of the run.
+    /// Text about the run for a title.
     pub(crate) about: About,
-    /// Where the sonars heard something, at most one in a square of 4 cm.
+    /// Places of echoes, at most one in a square of 4 cm.
     pub(crate) echoes: Vec<Place>,
     heard: BTreeSet<(i64, i64)>,
-    /// Where the body touched something when it came into contact, and when; at most one in such a square.
+    /// Place and time of each beginning of a contact, at most one in a square of 4 cm.
     pub(crate) contacts: Vec<(Place, Nanos)>,
     touched: BTreeSet<(i64, i64)>,
-    /// When it last sensed anything.
+    /// Time of the robot's last output.
     sensed: Option<Nanos>,
     /// For a picture that moves.
     pub(crate) frames: Option<Frames>,
@@ -77,7 +77,7 @@ impl Trail {
         self.ways.went(Place::of(pose));
     }
 
-    /// Where it is, it senses this, at time `t`.
+    /// Records the output `sensed` of the robot at its current pose, at time `t`.
     pub(crate) fn sensed(&mut self, sensed: &Sensed, t: Nanos) {
         self.ways.passed(t);
         let echoes = echoes(&self.here, sensed, self.sensed.replace(t));
@@ -117,8 +117,8 @@ impl Trail {
     }
 }
 
-/// Where the newest pings had their echoes on the floor, if they had any, by sonar: on the axes of their cones. A sonar
-/// that has not pinged since the turn before has none.
+/// Returns the places on the floor of the echoes of the newest pings, by sonar: on the axes of their cones. A sonar
+/// that has not pinged since `before` has no echo.
 pub(crate) fn echoes(pose: &Pose, sensed: &Sensed, before: Option<Nanos>) -> [Option<Place>; SONARS] {
     let mut echoes = [None; SONARS];
     for (echo, number) in echoes.iter_mut().zip(0..) {
@@ -133,7 +133,8 @@ pub(crate) fn echoes(pose: &Pose, sensed: &Sensed, before: Option<Nanos>) -> [Op
     echoes
 }
 
-/// Where a pose by odometry was on the floor, when the robot, which is `here`, is at `odometry` by the same reckoning.
+/// Returns the pose on the floor that belongs to the pose `then` by odometry, when the robot is at `here` on the floor
+/// and at `odometry` by the same odometry.
 fn on_the_floor(then: &Pose, here: &Pose, odometry: &Pose) -> Pose {
     let turned = here.theta.0 - odometry.theta.0;
     let (x, y) = (then.x.0 - odometry.x.0, then.y.0 - odometry.y.0);

@@ -1,4 +1,4 @@
-//! What stands in a world, and what moves in it, made ready for questions: rays, distances, contacts.
+//! The fixed and moving obstacles of a world, prepared for queries: rays, distances, contacts.
 
 use mdle_runtime::Radians;
 
@@ -64,14 +64,15 @@ impl Walls {
         Self { segments, ends, grid, moving, others: Vec::new(), rough: world.rough }
     }
 
-    /// How far a ray from `from` goes before it hits a wall; `None` if that is `most` metres or more.
+    /// Returns the distance that a ray from `from` goes before it hits a wall; `None` if that is `most` metres or more.
     #[must_use]
     pub fn ray(&self, from: Place, direction: Radians, most: f64) -> Option<f64> {
         let (sin, cos) = libm::sincos(direction.0);
         self.cast(from, Place { x: cos, y: sin }, most)
     }
 
-    /// The same, in the direction of a unit vector.
+    /// Returns the distance that a ray in the direction of the unit vector `way` goes before it hits a wall; `None` if
+    /// that is `most` metres or more.
     #[must_use]
     pub fn cast(&self, from: Place, way: Place, most: f64) -> Option<f64> {
         let range = self.grid.ray(from, way, most).map_or(most, |hit| hit.range);
@@ -81,7 +82,7 @@ impl Walls {
         (range < most).then_some(range)
     }
 
-    /// The same, with what the ray finds there.
+    /// Returns the surface that a ray in the direction of the unit vector `way` meets, if nearer than `most` metres.
     pub(crate) fn found(&self, from: Place, way: Place, most: f64) -> Option<Surface> {
         let at = |range: f64| Place { x: from.x + range * way.x, y: from.y + range * way.y };
         let standing = self.grid.ray(from, way, most).and_then(|Hit { range, segment }| {
@@ -133,7 +134,7 @@ impl Walls {
         self.others.iter().for_each(|other| take(other.nearest(at)));
     }
 
-    /// How far each of the things has gone from where it begins; `None` for an open door.
+    /// Returns the displacement of each of the things from where it begins; `None` for an open door.
     pub(crate) fn gone(&self) -> impl Iterator<Item = Option<Place>> {
         self.moving.iter().map(Moving::gone)
     }
@@ -149,7 +150,7 @@ impl Walls {
         self.others.extend_from_slice(others);
     }
 
-    /// Whether anything here ever moves.
+    /// Returns `true` if anything here ever moves.
     pub(crate) fn move_at_all(&self) -> bool {
         !self.moving.is_empty()
     }

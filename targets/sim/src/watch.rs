@@ -31,9 +31,9 @@ pub(crate) struct Watch {
     /// The way so far, not denser than a centimetre.
     way: Vec<Place>,
     echoes: Vec<Place>,
-    /// How far each thing of the world has gone; `None` for an open door.
+    /// Displacement of each thing of the world; `None` for an open door.
     things: Vec<Option<Place>>,
-    /// When the robot last sensed anything.
+    /// Time of the robot's last output.
     sensed: Option<Nanos>,
     /// Of the body, in metres.
     radius: f64,
@@ -84,7 +84,7 @@ impl Watch {
         self.now.pose = *pose;
     }
 
-    /// Whether the robot is in contact with something, and how often it has come into contact so far.
+    /// Takes in whether the robot is in contact with something, and the number of contacts so far.
     pub(crate) fn touched(&mut self, touches: bool, contacts: u64) {
         (self.now.touches, self.now.contacts) = (touches, contacts);
     }

@@ -5,7 +5,7 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-/// Where the file goes.
+/// The path of the file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct WholeFile {
     path: PathBuf,

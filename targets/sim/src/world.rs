@@ -1,4 +1,4 @@
-//! A world: the outlines of walls and boxes on a flat floor, and where a robot starts unless told otherwise.
+//! A world: the outlines of walls and boxes on a flat floor, and the default start pose of a robot.
 
 use std::fmt;
 
@@ -18,7 +18,7 @@ const WORLDS: [(&str, &str); 4] = [
     ("room", include_str!("../worlds/room.toml")),
 ];
 
-/// What the simulated robot moves among. Its coordinates are finite and no wall has length zero.
+/// The surroundings of the simulated robot. All coordinates are finite and no wall has length zero.
 #[derive(Debug, Clone, PartialEq)]
 pub struct World {
     /// Walls, boxes and discs that stand.
@@ -27,7 +27,7 @@ pub struct World {
     pub things: Vec<Thing>,
     /// The start pose unless an option says otherwise.
     pub start: Pose,
-    /// Where a plan is to leave the robot, if the world says so.
+    /// The place where a plan is to leave the robot, if the world has one.
     pub goal: Option<Goal>,
     /// The charger, if the world has one.
     pub charger: Option<Charger>,
@@ -40,11 +40,11 @@ pub struct World {
 /// A wall, a box or a disc, as the line around it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outline {
-    /// What messages call it.
+    /// The name in messages.
     pub name: String,
-    /// Its corners in order; a box ends where it began. A disc has 48 of them.
+    /// Corners in order; a box ends where it began. A disc has 48 of them.
     pub points: Vec<Place>,
-    /// Whether it is a box or a disc, which is solid inside; a wall has no thickness.
+    /// `true` for a box or a disc, which is solid inside; a wall has no thickness.
     pub solid: bool,
 }
 
@@ -117,19 +117,20 @@ impl World {
         self.outlines.iter().flat_map(Outline::segments)
     }
 
-    /// The same with everything that moves, where it begins.
+    /// Returns all walls and sides of boxes, and the sides of everything that moves where it begins, each with its
+    /// outline.
     pub(crate) fn everything(&self) -> impl Iterator<Item = (&Outline, Place, Place)> {
         self.segments().chain(self.things.iter().flat_map(|thing| thing.outline.segments()))
     }
 }
 
 impl Outline {
-    /// Its sides.
+    /// Returns the sides of the outline.
     fn segments(&self) -> impl Iterator<Item = (&Self, Place, Place)> {
         self.points.iter().zip(self.points.iter().skip(1)).map(move |(from, to)| (self, *from, *to))
     }
 
-    /// Whether `place` is inside: a line from it crosses an odd number of sides.
+    /// Returns `true` if `place` is inside: a line from it crosses an odd number of sides.
     fn surrounds(&self, place: Place) -> bool {
         let crossed = self.segments().filter(|(_, from, to)| {
             let between = (from.y > place.y) != (to.y > place.y);
@@ -140,7 +141,7 @@ impl Outline {
 }
 
 impl Place {
-    /// Where a pose is.
+    /// Returns the place of a pose.
     pub(crate) fn of(pose: &Pose) -> Self {
         let (Meters(x), Meters(y)) = (pose.x, pose.y);
         Self { x, y }

@@ -20,7 +20,7 @@ const SEGMENTS_MOST: usize = 1_000_000;
 /// A longer text is refused: to be read it takes up to 70 times its bytes of memory.
 const BYTES_MOST: usize = 8 << 20;
 
-/// What is wrong with a world file: `file:line:column: sentence`.
+/// The defect of a world file: `file:line:column: sentence`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct WorldError {
     file: String,
@@ -42,7 +42,7 @@ impl fmt::Display for WorldError {
 impl std::error::Error for WorldError {}
 
 impl WorldError {
-    /// What is wrong at a line and column, from 1, of a file, or with it as a whole.
+    /// The defect at a line and column, from 1, of a file, or of the file as a whole.
     pub(crate) fn new(file: &str, place: Option<(usize, usize)>, what: impl Into<String>) -> Self {
         Self { file: file.to_owned(), place, what: what.into() }
     }

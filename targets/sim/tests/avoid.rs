@@ -7,7 +7,8 @@ use mdle_runtime::{
 use mdle_sim::alphabet::GoAvoid;
 use mdle_sim::{Simulated, World};
 
-/// How many of ten starts, side by side across 10 cm, reach the point 6 m ahead without contact.
+/// Returns the number of ten starts, side by side across 10 cm, from which a robot reaches the point 6 m ahead without
+/// contact.
 fn arrived(walls: &str) -> usize {
     let world = World::parse("a test's world", walls).expect("a good world");
     (0..10).filter(|start| reaches(&world, 0.05 * (f64::from(*start) / 4.5 - 1.0))).count()

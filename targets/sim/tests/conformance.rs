@@ -79,7 +79,7 @@ struct Faulty {
     is_stopped: bool,
 }
 
-/// What the driver makes of an input, of an output, and of a stop.
+/// A faulty driver's changes to an input, to an output, and to a stop.
 #[derive(Clone, Copy)]
 struct Fault {
     told: fn(Input) -> Input,

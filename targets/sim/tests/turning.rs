@@ -9,7 +9,7 @@ use mdle_runtime::{Begin, Completes, Control, Frame, Law, Nanos, Output, Pose, R
 use mdle_sim::alphabet::{Rotate, Turn};
 use mdle_sim::{Body, Make, Sensed, Simulated, World};
 
-/// How a turn on the spot went, in degrees by odometry and seconds.
+/// The result of a turn on the spot, in degrees by odometry and seconds.
 #[derive(Debug)]
 struct Turned {
     /// In all, counter-clockwise positive.

@@ -7,7 +7,7 @@ use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Robot, SonarId, Twist};
 use mdle_sim::{Body, Make, Simulated, World, Zone};
 
-/// What is wrong with a world.
+/// Returns the error message of a faulty world.
 fn fault(text: &str) -> String {
     World::parse("room.toml", text).expect_err("a bad world").to_string()
 }
@@ -168,7 +168,7 @@ fn every_world_that_comes_along_has_a_place_to_start() {
     assert!(World::named("ofice").is_none());
 }
 
-/// How far the robot at the origin hears ahead, second by second, while it stands.
+/// Returns the ranges ahead of the robot at the origin, second by second, while it stands still.
 fn ahead(text: &str, seconds: usize) -> Vec<Option<f64>> {
     let world = World::parse("a test's world", text).expect("a good world");
     let mut robot = Simulated::new(&world, world.start, None, Duration::from_secs(1)).expect("a start on the floor");

@@ -1,15 +1,16 @@
-//! Contact of the disc with what stands: it slides along it, and never overlaps it.
+//! Contact of the disc with obstacles: it slides along them, and never overlaps them.
 
 use crate::walls::Walls;
 use crate::world::Place;
 
-/// How far a slide is led off the surface, in metres, so that rounding does not take it for one into it.
+/// Distance, in metres, by which a slide is led off the surface, so that rounding does not turn it into the surface.
 const LED_OFF: f64 = 1e-8;
-/// How often a step is turned along another surface: a corner has two.
+/// Greatest number of surfaces along which one step slides: a corner has two.
 const SLIDES: usize = 3;
 
-/// How far the disc at `at` gets when it is to move by `way`: all of it where it is free, else up to the contact and on
-/// along the surface. The step must be shorter than the radius; where it ends, the disc overlaps nothing.
+/// Returns the way that the disc at `at` goes when it is to move by `way`: all of it if that is free, else up to the
+/// contact and on along the surface. The step must be shorter than the radius; where it ends, the disc overlaps
+/// nothing.
 pub(crate) fn slid(at: Place, way: Place, radius: f64, walls: &Walls) -> Place {
     let reach = radius + libm::hypot(way.x, way.y) + LED_OFF;
     let free = |place: Place| walls.clearance(place, reach) >= radius;

@@ -1,4 +1,4 @@
-//! What the wheels tell of the way, and how that goes wrong.
+//! Odometry: the way that the wheels measure, and the errors of that measurement.
 
 use mdle_runtime::{Meters, Pose, Radians};
 
@@ -6,18 +6,19 @@ use crate::model::Slip;
 use crate::noise::{Noise, Purpose};
 use crate::world::Place;
 
-/// Where the body takes itself to be: the origin at the start.
+/// The pose that the body reckons from its wheels: the origin at the start.
 #[derive(Debug, Clone)]
 pub(crate) struct Odometry {
     pub(crate) pose: Pose,
-    /// What is wrong in this run, if anything is.
+    /// Errors of this run; `None` for exact odometry.
     errors: Option<Errors>,
 }
 
 #[derive(Debug, Clone)]
 struct Errors {
     noise: Noise,
-    /// What is told for each metre and each radian that the wheels roll, and the turn that is told for each metre.
+    /// Factors of the measured way (`way`) and turn (`turn`), error of the heading in radians for each metre (`bend`),
+    /// and standard deviation of the heading in radians after a metre (`wander`).
     way: f64,
     turn: f64,
     bend: f64,

@@ -1,4 +1,4 @@
-//! How the body moves, stops, slides and counts.
+//! Motion, stops, slides and odometry of the body.
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};

@@ -100,8 +100,8 @@ mod tests {
 
     type Rgb = [f64; 3];
 
-    /// What becomes of linear RGB in an eye: of most people, and without red, green or blue cones (Machado, Oliveira and
-    /// Fernandes, 2009, severity 1).
+    /// Matrices for linear RGB as an eye sees it: with normal sight, and without red, green or blue cones (Machado,
+    /// Oliveira and Fernandes, 2009, severity 1).
     const EYES: [[Rgb; 3]; 4] = [
         [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
         [[0.152286, 1.052583, -0.204868], [0.114503, 0.786281, 0.099216], [-0.003882, -0.048116, 1.051998]],

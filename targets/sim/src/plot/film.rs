@@ -1,4 +1,4 @@
-//! How a run becomes a film: how fast it is shown, which atom runs when, and the animations that all repeat together.
+//! A film of a run: the speed at which it is shown, the atoms that run, and the animations that all repeat together.
 
 use mdle_runtime::Nanos;
 use svg::node::element::{Animate, AnimateTransform};
@@ -19,24 +19,24 @@ const REST: f64 = 2.5;
 
 /// A film of a run.
 pub(super) struct Film<'f> {
-    /// Its moments.
+    /// Moments of the run.
     pub(super) frames: &'f [Frame],
     /// The atoms that run in it, in order.
     pub(super) acts: Vec<Act>,
-    /// How many times as fast as it happened it is shown.
+    /// Factor by which the film is faster than the run.
     pub(super) times: f64,
-    /// Whether the ways are short enough to be written down place by place.
+    /// `true` if the ways are short enough to be written down place by place.
     smooth: bool,
 }
 
 /// An atom that runs for a while.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Act {
-    /// Its number among those that began; `None` before the first.
+    /// Index of the atom among those that began; `None` before the first.
     pub(super) mark: Option<usize>,
     pub(super) from: Nanos,
     pub(super) to: Nanos,
-    /// Its moments, and the first of the next.
+    /// Indices of the act's first moment, and of its last, with which the next act begins.
     first: usize,
     last: usize,
 }
@@ -95,23 +95,23 @@ impl<'f> Film<'f> {
         Some(marks.iter().flat_map(|mark| &mark.way).copied().collect())
     }
 
-    /// When it ends, in the run's time.
+    /// Returns the end of the film, in the run's time.
     pub(super) fn end(&self) -> Nanos {
         self.frames.last().map_or(Nanos::ZERO, |frame| frame.t)
     }
 
-    /// How much of the run has passed at `t`, from 0 to 1.
+    /// Returns the part of the run that has passed at `t`, from 0 to 1.
     pub(super) fn part(&self, t: Nanos) -> f64 {
         let end = self.end().seconds();
         if end > 0.0 { (t.seconds() / end).min(1.0) } else { 1.0 }
     }
 
-    /// How long it takes to be shown, with the rest, in seconds.
+    /// Returns the duration of the film, with the rest at its end, in seconds.
     pub(super) fn duration(&self) -> f64 {
         libm::round((self.end().seconds() / self.times + REST) * 1e3) / 1e3
     }
 
-    /// Where in a repetition the run's time `t` is, from 0 to 1, to a hundred-thousandth.
+    /// Returns the position of the run's time `t` in a repetition, from 0 to 1, rounded to a hundred-thousandth.
     fn key(&self, t: Nanos) -> f64 {
         let shown = t.min(self.end()).seconds() / self.times;
         libm::round(shown / self.duration() * 1e5) / 1e5
@@ -140,7 +140,7 @@ impl<'f> Film<'f> {
         self.attributes(&keyed).into_iter().fold(animate, |animate, (name, value)| animate.set(name, value))
     }
 
-    /// What is seen from a time on, and until another.
+    /// Returns an animation that shows something from one time on, and until another.
     pub(super) fn visible(&self, from: Nanos, to: Option<Nanos>) -> Animate {
         let before = (self.key(from) > 0.0).then(|| (Nanos::ZERO, "hidden".to_owned()));
         let behind = to.map(|to| (to, "hidden".to_owned()));

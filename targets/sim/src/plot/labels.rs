@@ -1,4 +1,4 @@
-//! Where the numbers of the atoms go: beside the places where they began, and never on top of each other.
+//! The places of the atoms' numbers: beside the places where the atoms began, and never on top of each other.
 
 use std::f64::consts::TAU;
 
@@ -37,7 +37,7 @@ pub(super) fn placed(dots: &[Pixel], lines: &[Pixel], ((left, right), (top, bott
     labels
 }
 
-/// Where a label could go, best first.
+/// Returns possible places of a label, best first.
 fn around((x, y): Pixel) -> impl Iterator<Item = Pixel> {
     DISTANCES.into_iter().flat_map(move |distance| {
         (0..DIRECTIONS).map(move |direction| {

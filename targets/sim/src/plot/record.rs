@@ -78,7 +78,7 @@ fn lengths(pixels: &[Pixel]) -> Vec<f64> {
     [0.0].into_iter().take(pixels.len()).chain(steps).collect()
 }
 
-/// What the sonars hear just now.
+/// Draws the echoes of each moment.
 fn echoes(layout: &Layout, film: &Film<'_>) -> Path {
     let heard = |frame: &Frame| {
         let shown = frame.echoes.iter().flatten().filter(|place| layout.shows_any([**place].into_iter()));

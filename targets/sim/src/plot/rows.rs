@@ -15,7 +15,7 @@ const APART: f64 = 22.0;
 /// An atom in the legend.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Row {
-    /// Its number; empty for the line of those that are not listed.
+    /// Number of the atom; empty for the line that counts the atoms not listed.
     pub(super) number: String,
     pub(super) law: String,
     /// Number of times that it ran; empty if each atom ran once.

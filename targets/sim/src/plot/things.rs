@@ -1,4 +1,4 @@
-//! What moves in a world as it is drawn: doors dashed, the rest where it is in the end, with the way it goes.
+//! Drawings of the moving things of a world: doors dashed, the rest at its last place, with the way it goes.
 
 use svg::node::element::{Group, Path};
 
@@ -12,7 +12,7 @@ use crate::world::{Place, World};
 
 /// Of doors.
 const DASHES: &str = "5 4";
-/// Where something begins.
+/// Displacement of a thing that has not moved.
 const NOWHERE: Place = Place { x: 0.0, y: 0.0 };
 
 /// A sign that the legend explains.
@@ -41,7 +41,7 @@ impl Sign {
         }
     }
 
-    /// What it means.
+    /// Returns the meaning of the sign.
     pub(super) fn said(self) -> &'static str {
         match self {
             Self::Door => "door",
@@ -66,7 +66,7 @@ pub(super) fn drawn(layout: &Layout, world: &World, trail: &Trail) -> Group {
     })
 }
 
-/// The same, moving.
+/// Draws everything that moves, with its motion.
 pub(super) fn moving(layout: &Layout, world: &World, trail: &Trail, film: &Film<'_>) -> Group {
     let things = world.things.iter().zip(&trail.things).enumerate();
     things.fold(ways(layout, world), |group, (number, (thing, end))| {

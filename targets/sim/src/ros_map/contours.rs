@@ -1,7 +1,7 @@
 //! The lines between pixels that stand and pixels that do not, without the steps that pixels make of slanted lines.
 
-/// How far a line may pass from the corners of pixels that it replaces, in pixels. The steps of a slanted line lie up to 1 off
-/// it, and a little more where it begins at the wrong one.
+/// Greatest distance, in pixels, between a line and the corners of pixels that it replaces. The steps of a slanted line
+/// lie up to 1 off it, and a little more where it begins at the wrong one.
 const TOLERANCE: f64 = 1.25;
 /// The most sides of pixels where something stands on one side only: 200 km of walls at 5 cm.
 const SIDES_MOST: usize = 4_000_000;

@@ -5,18 +5,18 @@ use crate::world_file::WorldError;
 /// The smallest and the largest pixel, in metres.
 const RESOLUTIONS: std::ops::RangeInclusive<f64> = 1e-4..=100.0;
 
-/// What the file says.
+/// The content of the file.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Header {
     /// The path of the image, from the folder of the file.
     pub(crate) image: String,
     /// Metres for each pixel.
     pub(crate) resolution: f64,
-    /// Where the lower left corner of the image lies, and how it is turned, in metres and radians.
+    /// Position of the lower left corner of the image, and its rotation, in metres and radians.
     pub(crate) x: f64,
     pub(crate) y: f64,
     pub(crate) yaw: f64,
-    /// Whether white stands and black is free.
+    /// `true` if white is occupied and black is free.
     pub(crate) negate: bool,
     /// Darker than this part of black stands.
     pub(crate) occupied: f64,

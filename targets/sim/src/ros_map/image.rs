@@ -8,7 +8,7 @@ const PIXELS_MOST: usize = 100_000_000;
 pub(super) struct Image {
     pub(super) width: usize,
     pub(super) height: usize,
-    /// What white is.
+    /// Value of white.
     white: u16,
     grey: Vec<u16>,
 }

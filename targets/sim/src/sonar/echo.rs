@@ -4,8 +4,8 @@
 //! (α / lobe)² + (β / facing)² is at most what the distance leaves of 1. Near an edge sound goes everywhere, but little of
 //! it: there β counts as a fixed loss. A rough surface scatters too: of what β costs, the part `rough` of the world is left out. A right-angled corner sends everything back where it came from.
 //!
-//! The rays of a cone lie so far apart that a person 4 m away may stand between two of them. So at what moves, of which
-//! there is little, one more ray is aimed.
+//! The rays of a cone lie so far apart that a person 4 m away may be between two of them. One more ray is therefore
+//! aimed at each moving thing and each other robot, of which there are few.
 
 use mdle_runtime::Radians;
 
@@ -18,18 +18,18 @@ use crate::world::Place;
 const RAYS: u8 = 7;
 /// Nearer to an edge than this, in metres, a ray is scattered by it.
 const SCATTERS: f64 = 0.08;
-/// What an edge costs: it is heard up to 0.6 of the lobe, so 12.5° of 21°.
+/// Loss at an edge: an edge is heard up to 0.6 of the lobe, so 12.5° of 21°.
 const EDGE_COSTS: f64 = 0.65;
 /// Up to here, in metres, the receiver's growing gain makes up for the distance.
 const GAIN_LASTS: f64 = 2.0;
-/// What each metre beyond costs: at 6.5 m a wall is heard up to 26° off its normal.
+/// Loss for each metre beyond: at 6.5 m a wall is heard up to 26° off its normal.
 const METRE_COSTS: f64 = 0.13;
-/// How far apart the two bounces of a ray in a corner may lie, for each metre of range, for the sound to come back to
-/// the sonar: as for a ray that is one beside that into the corner itself.
+/// Greatest distance between the two bounces of a ray in a corner, for each metre of range, at which the sound comes
+/// back to the sonar: as for a ray that is one beside that into the corner itself.
 const CORNER: f64 = 0.35;
-/// How far from the opposite direction, as a cosine, a ray may leave a corner: 15°.
+/// Greatest angle, as a cosine, between the opposite direction and a ray that leaves a corner: 15°.
 const BACK: f64 = -0.966;
-/// How far from a surface, in metres, a ray goes on, so that it does not meet it again.
+/// Distance from a surface, in metres, at which a reflected ray begins, so that it does not meet the surface again.
 const OFF: f64 = 1e-6;
 
 /// The distance from a transducer to the nearest thing heard in its cone, in metres. `fade` is how much better or worse

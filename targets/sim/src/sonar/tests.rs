@@ -1,4 +1,4 @@
-//! What the sonars hear, ideal ones and those of a Scout.
+//! Echoes that the sonars hear, ideal ones and those of a Scout.
 
 use mdle_runtime::SonarId;
 
@@ -87,7 +87,7 @@ fn a_seed_makes_the_noise_that_it_says_it_does() {
     assert!((150..250).contains(&missed), "{missed}");
 }
 
-/// How far off its normal, in degrees, a wall 1 m ahead is last heard.
+/// Returns the greatest angle off its normal, in degrees, at which a wall `distance` metres ahead is heard.
 fn last_heard(distance: f64, without: &[Part]) -> u32 {
     (0..80)
         .take_while(|degrees| range(&pinged(Body::Scout, without, &turned(distance, f64::from(*degrees))), 0).is_some())

@@ -36,7 +36,7 @@ pub(crate) struct Ways {
 /// An atom as written.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Atom {
-    /// Its state in the first pass of the loops around it.
+    /// Number of the atom's state in the first pass of the enclosing loops.
     pub(crate) number: u64,
     pub(crate) law: String,
     /// The place where it first began.

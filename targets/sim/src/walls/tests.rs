@@ -28,7 +28,7 @@ fn scene(random: &mut ChaCha8Rng, walls: usize) -> World {
     World::parse("scene", &text).expect("a good scene")
 }
 
-/// The same walls in a library of geometry.
+/// Builds the walls of `world` in a library of geometry.
 fn beside(world: &World) -> Polyline {
     let (mut vertices, mut indices) = (Vec::new(), Vec::new());
     for ((_, from, to), first) in world.segments().zip((0_u32..).step_by(2)) {

@@ -14,7 +14,7 @@ pub(super) enum Ink {
 }
 
 impl Ink {
-    /// What switches the terminal to it.
+    /// Returns the escape sequence that switches the terminal to this colour.
     fn code(self) -> &'static str {
         match self {
             Self::None | Self::Wall => "\x1b[0m",

@@ -23,7 +23,7 @@ pub(super) struct Map {
     corner: Place,
     /// The dots of a metre.
     scale: f64,
-    /// How much of the way is drawn.
+    /// Number of places of the way that are drawn.
     went: usize,
 }
 
@@ -58,12 +58,12 @@ impl Map {
         map
     }
 
-    /// Whether it is a map of this size.
+    /// Returns `true` if the map has this size.
     pub(super) fn is_of(&self, columns: usize, rows: usize) -> bool {
         (self.canvas.columns, self.canvas.rows) == (columns, rows)
     }
 
-    /// Whether a place is on it.
+    /// Returns `true` if a place is on the map.
     pub(super) fn shows(&self, place: Place) -> bool {
         let (x, y) = self.at(place);
         (0.0..2.0 * self.canvas.columns as f64).contains(&x) && (0.0..4.0 * self.canvas.rows as f64).contains(&y)

@@ -18,7 +18,8 @@ const ENTER: &str = "\x1b[?1049h\x1b[?25l\x1b[2J";
 /// Colours, cursor and screen as they were.
 const LEAVE: &str = "\x1b[0m\x1b[?25h\x1b[?1049l";
 
-/// How the terminal was found, as long as its screen is taken: a process has one, and so has its panic hook.
+/// Settings of the terminal before its screen was taken, as long as it is taken: a process has one screen, and its
+/// panic hook uses the same.
 static FOUND: Mutex<Option<Found>> = Mutex::new(None);
 
 struct Found(Option<Termios>);
@@ -40,7 +41,7 @@ const LEAVING: Duration = Duration::from_millis(500);
 #[derive(Debug)]
 pub(super) struct Screen;
 
-/// Whether standard output is a terminal.
+/// Returns `true` if standard output is a terminal.
 pub(super) fn is_there() -> bool {
     stdout().is_terminal()
 }

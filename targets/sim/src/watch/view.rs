@@ -8,7 +8,7 @@ const SCOPES_MOST: usize = 4;
 /// The letters of a bar.
 const BAR: usize = 20;
 
-/// What is told of a moment.
+/// The data that are shown of a moment.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Now {
     pub(super) pose: Pose,
@@ -24,7 +24,7 @@ pub(super) struct Now {
 struct Scope {
     said: String,
     seconds: f64,
-    /// How long it waits at most, if it says so.
+    /// Seconds of the scope's `wait`, if its condition has one.
     wait: Option<f64>,
 }
 
@@ -98,7 +98,7 @@ fn wait(condition: &str) -> Option<f64> {
     words.get(at + 1)?.parse().ok().filter(|seconds: &f64| seconds.is_finite())
 }
 
-/// As much of a text as there is room for.
+/// Returns the beginning of a text for which there is room.
 fn cut(text: &str, room: usize) -> String {
     let text = Printable(text).to_string();
     if text.chars().count() <= room {

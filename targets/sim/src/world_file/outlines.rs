@@ -1,4 +1,4 @@
-//! What a world file describes, checked, in metres.
+//! The content of a world file, checked, in metres.
 
 use mdle_runtime::{Meters, Pose, Radians};
 use toml::Spanned;
@@ -16,10 +16,10 @@ const FURTHEST: f64 = 1e6;
 const CORNERS: u32 = 48;
 /// The reach of a charger unless the file says otherwise, in metres.
 const REACH: f64 = 0.1;
-/// What lengths can be in, in metres.
+/// Units of length, in metres.
 const UNITS: [(&str, f64); 5] = [("m", 1.0), ("cm", 0.01), ("mm", 0.001), ("in", 0.0254), ("ft", 0.3048)];
 
-/// What the lengths of a file are in: so many metres.
+/// Unit of the lengths of a file, in metres.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Unit(f64);
 

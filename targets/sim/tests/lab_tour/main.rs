@@ -28,12 +28,12 @@ struct End {
 }
 
 impl End {
-    /// Its heading in degrees, 0..360.
+    /// Returns the heading in degrees, 0..360.
     fn heading(&self) -> f64 {
         self.pose.theta.degrees().rem_euclid(360.0)
     }
 
-    /// How far its heading is from this one, in degrees.
+    /// Returns the difference between the end's heading and `heading`, in degrees.
     fn off(&self, heading: f64) -> f64 {
         Radians::from_degrees(self.heading() - heading).wrapped().degrees().abs()
     }
@@ -101,7 +101,7 @@ fn table(ends: &[End]) -> String {
     })
 }
 
-/// Where the judge wants the robot when an atom ends.
+/// The zone in which the judge wants the robot when an atom ends.
 struct Zone {
     x: [f64; 2],
     y: [f64; 2],
@@ -129,7 +129,7 @@ fn zone(atom: u64) -> Option<Zone> {
     Some(Zone { x, y, heading })
 }
 
-/// What is wrong with a tour; nothing if every atom ended in its zone.
+/// Returns the defects of a tour; nothing if every atom ended in its zone.
 fn faults(ends: &[End]) -> Vec<String> {
     let mut faults = Vec::new();
     if ends.iter().map(|end| end.atom).ne(1..=13) {
@@ -154,7 +154,7 @@ fn off(seed: u64) -> Pose {
     Pose { x: Meters(within(0.1)), y: Meters(within(0.1)), theta: Radians::from_degrees(within(5.0)) }
 }
 
-/// How many of these tours arrive; tells of the others.
+/// Returns the number of these tours that arrive; prints the faults of the others.
 fn arrived(seeds: std::ops::Range<u64>, noisy: bool) -> usize {
     let count = seeds.clone().count();
     let arrived = seeds.filter(|seed| {

@@ -15,7 +15,7 @@ fn scout(seed: u64) -> Make {
     Make { body: Body::Scout, seed: Some(seed), ..Make::default() }
 }
 
-/// How many of these runs arrive without contact; tells of the others.
+/// Returns the number of these runs that arrive without contact; prints the outcome of the others.
 fn clean(name: &str, runs: impl Iterator<Item = (u64, Outcome)>) -> usize {
     let clean = runs.filter(|(seed, outcome)| {
         if *outcome != Outcome::Clean {
@@ -40,7 +40,8 @@ fn rooms_are_crossed_by_a_scout_too() {
     assert!(clean("scout", runs) >= 22);
 }
 
-/// How many of four starts, side by side across 10 cm, lead to a place 6 m ahead without contact: ideal, and as a Scout.
+/// Returns the number of four starts, side by side across 10 cm, that lead to a place 6 m ahead without contact: ideal,
+/// and as a Scout.
 fn past(walls: &str) -> (usize, usize) {
     let runs = |make: fn(u64) -> Make| {
         let run = move |seed: u64| {
@@ -72,8 +73,8 @@ fn a_doorway_twenty_centimetres_wider_than_the_body_is_passed() {
     assert!(scout >= 3);
 }
 
-/// How many of these seeds go 6 m along a hallway 2 m wide, without contact, while somebody comes towards them at this
-/// speed, who keeps this far to his right of the middle.
+/// Returns the number of these seeds that go 6 m along a hallway 2 m wide, without contact, while somebody comes
+/// towards them at this speed, who keeps this far to his right of the middle.
 fn meet(name: &str, make: fn(u64) -> Make, seeds: u64, speed: f64, right: f64) -> usize {
     let run = |seed: u64| {
         let y = 0.1 * (seed as f64 / 9.5 - 1.0);

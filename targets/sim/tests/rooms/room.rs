@@ -19,7 +19,7 @@ const GAP: f64 = 0.81;
 /// Given up after this many turns: five minutes.
 const TURNS: u64 = 3000;
 
-/// How a run ended.
+/// The outcome of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Outcome {
     /// Without contact.

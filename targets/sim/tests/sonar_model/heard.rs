@@ -1,4 +1,4 @@
-//! What the sonar in front of a simulated Scout hears of a wall or a column, ping after ping.
+//! Pings of the sonar in front of a simulated Scout at a wall or a column.
 
 use std::time::Duration;
 
@@ -18,12 +18,12 @@ pub(crate) const WALL: &str = "[[wall]]\npoints = [[{x}, -60], [{x}, 60]]";
 /// A column 60 cm thick on the first axis, the near side at `{x}`.
 pub(crate) const COLUMN: &str = "[[disc]]\nradius = 0.3\ncentre = [{x}, 0]";
 
-/// What came of a number of pings.
+/// The results of a number of pings.
 #[derive(Debug, Default)]
 pub(crate) struct Heard {
     /// By how much each range heard was too long, in metres.
     pub(crate) errors: Vec<f64>,
-    /// How many brought nothing.
+    /// Number of pings without an echo.
     pub(crate) silent: usize,
 }
 

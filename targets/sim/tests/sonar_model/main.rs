@@ -8,9 +8,9 @@ use std::path::Path;
 
 use heard::{COLUMN, Heard, WALL, heard};
 
-/// How often each is pinged at for a share.
+/// Number of pings for a share.
 const PINGS: usize = 100;
-/// How often for a histogram.
+/// Number of pings for a histogram.
 const MANY: usize = 2000;
 
 /// Cao and Borenstein (2002) measured up to 42 degrees, and much less at a cylinder.

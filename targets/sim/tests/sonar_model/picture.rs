@@ -32,7 +32,7 @@ pub(crate) fn svg() -> String {
     format!("{}\n", document.add(ground).add(shares()).add(errors()))
 }
 
-/// How often something is heard by the angle between the axis and its normal.
+/// Draws the share of pings that are heard against the angle between the axis and the surface's normal.
 fn shares() -> Group {
     let at = |degrees: f64, share: f64| (LEFT[0] + degrees / DEGREES * WIDTH, TOP + HEIGHT * (1.0 - share));
     let mut group = frame(LEFT[0], "pings heard, %", "angle off the normal, degrees");
@@ -56,7 +56,7 @@ fn shares() -> Group {
     group
 }
 
-/// How far the ranges of a wall that faces the sonar are off, as a histogram.
+/// Draws the errors of the ranges of a wall that faces the sonar, as a histogram.
 fn errors() -> Group {
     let heard = heard(WALL, 1.0, 0.0, MANY);
     let bars = 2 * CENTIMETRES;
@@ -87,7 +87,7 @@ fn errors() -> Group {
     group
 }
 
-/// What is around a chart.
+/// Draws the labels of a chart.
 fn frame(left: f64, up: &str, along: &str) -> Group {
     let group = Group::new().add(label(up, (left, TOP - 16.0), "start"));
     group.add(label(along, (left + WIDTH / 2.0, TOP + HEIGHT + 38.0), "middle"))

@@ -1,4 +1,4 @@
-//! What is shown in a terminal, in a real pseudo-terminal: the live view, the line of progress, and that nothing stays.
+//! Output in a real pseudo-terminal: the live view, the line of progress, and that nothing of them stays.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 mod pseudo;
@@ -23,7 +23,7 @@ fn tour(options: &[&str]) -> Command {
     command
 }
 
-/// What came after the screen was given back, which it was once.
+/// Returns the output after the screen was given back, which it was once.
 fn behind_the_screen(seen: &str) -> &str {
     let (before, behind) = seen.split_once(LEAVE).unwrap();
     assert!(before.contains(ENTER), "{seen:?}");

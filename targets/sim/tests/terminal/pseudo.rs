@@ -15,7 +15,7 @@ pub(crate) struct Terminal {
     child: Child,
     controller: File,
     modes: LocalModes,
-    /// What it has written so far.
+    /// Output of the program so far.
     pub(crate) seen: String,
 }
 
@@ -88,7 +88,7 @@ impl Terminal {
         (self.seen, status)
     }
 
-    /// Whether keys are echoed, as they were at first.
+    /// Returns `true` if keys are echoed, as they were at first.
     pub(crate) fn echoes(&self) -> bool {
         tcgetattr(&self.controller).unwrap().local_modes.contains(self.modes & (LocalModes::ECHO | LocalModes::ICANON))
     }
