@@ -22,20 +22,20 @@ pub(crate) struct Frame {
 #[derive(Debug, Clone)]
 pub(crate) struct Frames {
     kept: Vec<Frame>,
-    /// The last one of all, kept or not: the run ends there.
+    /// The last moment of the run, kept or not.
     last: Option<Frame>,
-    /// One of so many is kept.
+    /// Number of moments of which one is kept.
     stride: u64,
     seen: u64,
 }
 
 impl Frames {
-    /// None yet.
+    /// Creates an empty record.
     pub(crate) fn new() -> Self {
         Self { kept: Vec::new(), last: None, stride: 1, seen: 0 }
     }
 
-    /// The next moment.
+    /// Adds the next moment.
     pub(crate) fn push(&mut self, frame: Frame) {
         if self.seen.is_multiple_of(self.stride) {
             self.kept.push(frame.clone());

@@ -14,7 +14,7 @@ use crate::watch::Watch;
 use crate::whole_file::{Unfinished, WholeFile};
 use crate::world::World;
 
-/// A simulated robot and what is made of its run; it drives as it would unobserved.
+/// A simulated robot and the observers of its run; it drives as it would unobserved.
 pub struct Observed {
     robot: Simulated,
     goal: Option<Goal>,
@@ -218,7 +218,7 @@ mod tests {
     use crate::world::Place;
     use mdle_runtime::{MetersPerSecond, RadiansPerSecond};
 
-    /// The trail of a robot that goes ahead at 20 cm/s from the origin for so many turns of 100 ms.
+    /// Returns the trail of a robot that goes ahead at 20 cm/s from the origin for `turns` turns of 100 ms.
     fn ahead(world: &str, turns: usize) -> Trail {
         let world = World::parse("a test's world", world).expect("a good world");
         let robot = Simulated::with(&Make::default(), &world, Pose::ORIGIN, Duration::from_millis(100));

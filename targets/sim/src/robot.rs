@@ -126,7 +126,7 @@ impl Simulated {
         self.charger = charger;
     }
 
-    /// Returns what it measures of its battery and its charger.
+    /// Returns the battery and charger data that the robot measures.
     #[must_use]
     pub fn supplied(&self) -> Supply {
         self.battery.supply(self.is_plugged())
@@ -199,7 +199,7 @@ impl Simulated {
         }
     }
 
-    /// Moves the robot, and what moves in the world.
+    /// Moves the robot and the moving things of the world.
     fn advance(&mut self, input: &Twist, seconds: f64) {
         if seconds <= 0.0 {
             return;

@@ -1,8 +1,8 @@
-//! Worlds from maps of ROS: what `map_server` saves, a YAML file of a few keys beside an image.
+//! Worlds from maps of ROS as `map_server` saves them: a YAML file of a few keys beside an image.
 //!
-//! Pixels darker than the threshold stand; where they border on others there is a wall. The steps that pixels make of a
-//! slanted wall are smoothed out, since a sonar would not hear it otherwise. The unknown is floor. The robot starts at the
-//! origin of the map's frame, which is where the mapping robot began.
+//! Pixels darker than the threshold are occupied; where they border on others there is a wall. The steps that pixels
+//! make of a slanted wall are smoothed out, since a sonar would not hear it otherwise. The unknown is floor. The robot
+//! starts at the origin of the map's frame, which is where the mapping robot began.
 
 mod contours;
 mod header;
@@ -19,7 +19,7 @@ pub(crate) use header::Header;
 use image::Image;
 
 impl Header {
-    /// The world of this header and the bytes of its image; `file` is what errors call the image.
+    /// Returns the world of this header and the bytes of its image; errors call the image `file`.
     pub(crate) fn world(&self, file: &str, bytes: &[u8]) -> Result<World, WorldError> {
         let image = Image::read(bytes).map_err(|what| WorldError::new(file, None, what))?;
         let (sin, cos) = libm::sincos(self.yaw);

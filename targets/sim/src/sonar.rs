@@ -1,4 +1,4 @@
-//! The sonars: when which of them pings, and what it then hears, errors included.
+//! The sonars: the order in which they ping, and the ranges that they hear, errors included.
 
 mod echo;
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! Start poses that are off the given one by chance: by how much, says `--start-noise`; which, says the seed.
+//! Random start poses near the given one: `--start-noise` limits the distance, and the seed selects the pose.
 
 use mdle_host::Quantity;
 use mdle_runtime::{Meters, Pose, Radians};
@@ -8,12 +8,12 @@ use crate::start::{self, StartError};
 use crate::walls::Walls;
 use crate::world::World;
 
-/// Poses tried before there is said to be none.
+/// Number of poses tried before the search fails.
 const TRIES: u32 = 1000;
 /// The most by which a start may be off, in metres and degrees.
 const MOST: [f64; 2] = [100.0, 180.0];
 
-/// By how much a start may be off along each axis, and in heading; to either side, each amount as likely as any other.
+/// Greatest error of a start along each axis, and in heading; to either side, with a uniform distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct StartNoise {
     metres: f64,
@@ -37,7 +37,7 @@ impl StartNoise {
     /// The start pose of `seed`: the first drawn around `start` at which a robot of this radius, in metres, can stand.
     ///
     /// # Errors
-    /// Why it cannot stand at the last one tried.
+    /// The reason why the robot cannot stand at the last pose tried.
     pub(crate) fn pose(
         self,
         start: &Pose,

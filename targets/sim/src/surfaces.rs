@@ -40,7 +40,7 @@ pub(crate) fn ends<'s>(segment: &Segment, others: impl Iterator<Item = &'s Segme
     meeting.ends()
 }
 
-/// The ends of a segment, and what was met at each so far: it takes no memory, however much lies there.
+/// The ends of a segment, with the segments met at each so far: it takes no memory, however many lie there.
 pub(crate) struct Meeting {
     segment: Segment,
     ends: [(End, Option<Segment>); 2],

@@ -12,7 +12,8 @@ use crate::frames::{Frame, Frames};
 use crate::world::Place;
 pub(crate) use ways::{Atom, Mark, Ways};
 
-/// Of the echoes in a square with this side, in metres, one is kept: however long a run, a floor has only so many.
+/// Side of a square in which one echo is kept, in metres: however long a run, the number of squares of a floor is
+/// limited.
 const SQUARE: f64 = 0.04;
 
 /// The way of a robot.

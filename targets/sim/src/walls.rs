@@ -25,7 +25,7 @@ pub struct Walls {
 }
 
 impl Walls {
-    /// The walls and the sides of what stands in `world`; what moves is where it begins.
+    /// Returns the walls and the sides of the fixed obstacles in `world`, and the moving things where they begin.
     #[must_use]
     pub fn of(world: &World) -> Self {
         let segments = segments(world);
@@ -36,7 +36,7 @@ impl Walls {
     /// The walls of a world that may have too many in one place to be ready within seconds.
     ///
     /// # Errors
-    /// A sentence that names what the world has too much of.
+    /// A sentence that names the part of the world that is too large.
     pub(crate) fn of_any(world: &World) -> Result<Self, String> {
         let segments = segments(world);
         let grid = Grid::of(&segments);
@@ -100,14 +100,14 @@ impl Walls {
         self.standing(at, reach).min(self.moving(at))
     }
 
-    /// The distance to what never moves, or `reach` if that is less.
+    /// Returns the distance to the nearest obstacle that never moves, or `reach` if that is less.
     pub(crate) fn standing(&self, at: Place, reach: f64) -> f64 {
         let mut least = reach;
         self.grid.near(at, reach, |_, segment| least = least.min(apart(segment.nearest(at), at)));
         least
     }
 
-    /// The distance to what may move; infinite without any.
+    /// Returns the distance to the nearest moving thing or other robot; infinite without any.
     pub(crate) fn moving(&self, at: Place) -> f64 {
         let least = self.moving.iter().fold(f64::INFINITY, |least, thing| thing.distance(at, least).min(least));
         self.others.iter().fold(least, |least, other| least.min(other.distance(at)))
@@ -167,7 +167,7 @@ fn segments(world: &World) -> Vec<Segment> {
     world.segments().map(|(_, from, to)| Segment::between(from, to)).collect()
 }
 
-/// The wall or box of `world` that is nearest to `at`, where it stands at the beginning.
+/// Returns the wall or box of `world` that is nearest to `at`, with everything where it begins.
 pub(crate) fn nearest(world: &World, at: Place) -> Option<&Outline> {
     let distances =
         world.everything().map(|(outline, from, to)| (outline, apart(Segment::between(from, to).nearest(at), at)));

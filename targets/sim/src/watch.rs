@@ -20,7 +20,7 @@ pub(crate) fn leave_screen() {
     screen::leave_at_once();
 }
 
-/// From one picture to the next, at least: faster than that nobody sees.
+/// Least time from one picture to the next: nobody sees faster changes.
 const EVERY: Duration = Duration::from_millis(50);
 
 /// A live view.
@@ -42,10 +42,11 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    /// A view of `world` on standard output, with a robot of this radius in metres; it takes the screen when the first turn is made.
+    /// Returns a view of `world` on standard output, with a robot of this radius in metres; it takes the screen at the
+    /// first turn.
     ///
     /// # Errors
-    /// When standard output is no terminal.
+    /// Standard output is not a terminal.
     pub(crate) fn of(world: &World, radius: f64) -> Result<Self, String> {
         if !screen::is_there() {
             let hint = "run it in a terminal, or make a picture with --plot or --record";

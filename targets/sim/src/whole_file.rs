@@ -14,7 +14,8 @@ pub(crate) struct WholeFile {
 }
 
 impl WholeFile {
-    /// The file at `path`, as `option` names it, which can be written as far as can be told now. Leaves no file behind.
+    /// Returns the file at `path`, which `option` names, after checking that it can probably be written. Leaves no file
+    /// there.
     pub(crate) fn at(option: &str, path: &Path) -> Result<Self, String> {
         let shown = path.display();
         if path.as_os_str().as_encoded_bytes().ends_with(b"/") {
@@ -51,7 +52,7 @@ impl WholeFile {
         Ok(Self { path, unfinished })
     }
 
-    /// Writes the file; `what` it is goes into the sentence of an error.
+    /// Writes the file; an error names it as `what`.
     pub(crate) fn write(&self, what: &str, text: &str) -> Result<(), String> {
         let mut unfinished = Unfinished::new(self.clone());
         unfinished.write(text);
@@ -63,7 +64,7 @@ impl WholeFile {
 #[derive(Debug)]
 pub(crate) struct Unfinished {
     file: WholeFile,
-    /// Nothing more is written after an error, which is told in the end.
+    /// The first error, which `finish` reports; nothing is written after it.
     written: io::Result<BufWriter<File>>,
     is_finished: bool,
 }
@@ -86,7 +87,7 @@ impl Unfinished {
         }
     }
 
-    /// Puts the file in its place; `what` it is goes into the sentence of an error.
+    /// Puts the file in its place; an error names it as `what`.
     pub(crate) fn finish(mut self, what: &str) -> Result<(), String> {
         let written = std::mem::replace(&mut self.written, Err(ErrorKind::Other.into()));
         let put = written.and_then(|mut file| file.flush());

@@ -21,7 +21,7 @@ const WORLDS: [(&str, &str); 4] = [
 /// The surroundings of the simulated robot. All coordinates are finite and no wall has length zero.
 #[derive(Debug, Clone, PartialEq)]
 pub struct World {
-    /// Walls, boxes and discs that stand.
+    /// Walls, boxes and discs that never move.
     pub outlines: Vec<Outline>,
     /// Doors, and boxes and discs that move.
     pub things: Vec<Thing>,
@@ -33,7 +33,7 @@ pub struct World {
     pub charger: Option<Charger>,
     /// How rough its surfaces are, from 0, as smooth as the body's model has them, to 1, heard by sonars at any angle.
     pub rough: f64,
-    /// So many of the first outlines are contours of a map: inside an odd number of them it is solid.
+    /// Number of the first outlines that are contours of a map: inside an odd number of them it is solid.
     pub(crate) contours: usize,
 }
 
@@ -58,7 +58,7 @@ pub struct Place {
 }
 
 impl World {
-    /// The world of a TOML text; `file` is what errors call it.
+    /// Returns the world of a TOML text, which errors call `file`.
     ///
     /// # Errors
     /// What is wrong with the text, and where.
@@ -66,8 +66,8 @@ impl World {
         world_file::parse(file, text)
     }
 
-    /// The world of a map of ROS, as the text of its YAML file and the bytes of its image; `file` and `image` are what errors
-    /// call these.
+    /// Returns the world of a map of ROS, from the text of its YAML file and the bytes of its image; errors call these
+    /// `file` and `image`.
     ///
     /// # Errors
     /// The defect of either file, with its place.
@@ -106,7 +106,7 @@ impl World {
         outlines.into_iter().find(|outline| outline.solid && outline.surrounds(place))
     }
 
-    /// All corners: of what stands, and of what moves at each of its stops.
+    /// Returns all corners: of the fixed outlines, and of the moving things at each of their stops.
     pub(crate) fn places(&self) -> impl Iterator<Item = Place> {
         let standing = self.outlines.iter().flat_map(|outline| outline.points.iter().copied());
         standing.chain(self.things.iter().flat_map(Thing::places))

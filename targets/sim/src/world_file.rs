@@ -1,6 +1,6 @@
 //! Reading a world from TOML; afterwards every coordinate is finite, in metres, and every wall, box and disc has a size.
 //!
-//! Obstacles may overlap: together they are one. What moves goes through what stands, but never into the robot.
+//! Obstacles may overlap: together they are one. Moving things go through fixed ones, but never into the robot.
 
 mod outlines;
 mod text;
@@ -48,7 +48,7 @@ impl WorldError {
     }
 }
 
-/// A fault of the text: where, and what.
+/// A defect of the text: its place, and a message.
 pub(crate) struct Wrong(pub(crate) Option<Range<usize>>, pub(crate) String);
 
 impl Wrong {

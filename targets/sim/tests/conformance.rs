@@ -1,5 +1,5 @@
-//! The simulated robot does what any robot must do: the ideal body, and the bodies of both robots with exact sensors. With a
-//! fault in its driver it does not, and is told so.
+//! The simulated robot conforms: the ideal body, and the bodies of both robots with exact sensors. With a fault in its
+//! driver it does not, and the report names the fault.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::time::Duration;
@@ -141,7 +141,7 @@ fn repinged(y: &mut Output, change: impl Fn(usize, &Ping) -> Ping) {
     }
 }
 
-/// The first check that finds the fault, and what it says.
+/// Returns the first check that finds the fault, and its message.
 fn found(mut fault: Fault) -> String {
     let parts: [fn(Suite<'_, Fault>) -> Suite<'_, Fault>; 5] = [
         |suite| suite.diff_drive(),

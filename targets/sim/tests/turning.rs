@@ -50,7 +50,7 @@ fn bodies() -> Vec<Make> {
     [Body::Ideal, Body::Scout, Body::Atrv].into_iter().flat_map(of).collect()
 }
 
-/// That this turn, by so many degrees, ends within its 2 degrees, without ever being further past them.
+/// Checks that this turn by `angle` degrees ends within its 2 degrees, without ever being further past them.
 fn ends_well(turned: &Turned, angle: f64, what: &str) {
     assert!((turned.by - angle).abs() <= 2.0, "{what}: {turned:?}");
     assert!(turned.furthest <= angle.abs() + 2.0, "{what}: {turned:?}");

@@ -1,5 +1,5 @@
-//! The colours of a plot on light and on dark pages: atoms that follow each other can be told apart by everybody, those who
-//! see no red or green too.
+//! The colours of a plot on light and on dark pages: everybody can distinguish atoms that follow each other, also
+//! people who see no red or green.
 
 use std::fmt::Write as _;
 

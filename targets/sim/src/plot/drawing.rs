@@ -1,4 +1,4 @@
-//! The picture of a run that is over: the floor, the way coloured by atom, what was heard and touched, and the legend.
+//! The picture of a run that is over: the floor, the way coloured by atom, echoes and contacts, and the legend.
 
 use std::collections::BTreeSet;
 
@@ -43,7 +43,7 @@ pub(super) fn document(layout: &Layout, height: f64) -> Document {
     document.add(Title::new(&layout.title.whole)).add(Style::new(style()))
 }
 
-/// The echoes, at most one in a small square: more cannot be told apart.
+/// Draws the echoes, at most one in a small square: more cannot be distinguished.
 fn echoes(layout: &Layout, trail: &Trail) -> Path {
     let shown = trail.echoes.iter().filter(|place| layout.shows_any([**place].into_iter()));
     let mut squares = BTreeSet::new();

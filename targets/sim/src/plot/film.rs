@@ -86,8 +86,8 @@ impl<'f> Film<'f> {
         self.frames.get(act.first..=act.last).unwrap_or_default()
     }
 
-    /// The way driven in an act, with the ways of the atoms left out behind it; `None` if all the ways are too long to
-    /// be written down.
+    /// Returns the way driven in an act, followed by the ways of the atoms left out after it; `None` if all the ways
+    /// are too long to be written down.
     pub(super) fn way(&self, act: &Act, trail: &Trail) -> Option<Vec<Place>> {
         let first = act.mark?;
         let next = self.acts.get(self.acts.partition_point(|other| other.mark <= act.mark)).and_then(|next| next.mark);

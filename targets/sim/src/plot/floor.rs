@@ -31,7 +31,7 @@ pub(super) fn drawn(layout: &Layout, world: &World, height: f64) -> Group {
         .add(clipped().add(walls(layout, world)))
 }
 
-/// A group of which only what lies on the floor that is shown is drawn.
+/// Returns a group that is drawn only inside the floor that is shown.
 pub(super) fn clipped() -> Group {
     Group::new().set("clip-path", format!("url(#{REGION})"))
 }

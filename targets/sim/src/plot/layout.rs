@@ -27,7 +27,7 @@ pub(super) const LETTERS: u32 = 14;
 pub(super) const LETTER: f64 = 0.56;
 /// The lines of the legend besides the atoms: the heads of the columns, a free one, the signs, and the scale.
 pub(super) const KEY: usize = 9;
-/// The most signs of what moves.
+/// Greatest number of signs of moving things.
 const SIGNS: usize = 2;
 /// The least width of a legend: that of its signs.
 const LEGEND_LEAST: f64 = 170.0;

@@ -1,4 +1,4 @@
-//! The legend of a plot: each atom with its number, its law and when it began, and what the other signs mean.
+//! The legend of a plot: each atom with its number, its law and when it began, and the meaning of the other signs.
 
 use svg::node::element::{Group, Path, Rectangle};
 
@@ -45,7 +45,7 @@ pub(super) fn drawn(layout: &Layout, world: &World, trail: &Trail) -> Group {
     legend.add(scale_bar(layout))
 }
 
-/// The signs that occur, drawn around height 0, and what they mean.
+/// Draws the signs that occur around height 0, each with its meaning.
 fn signs(layout: &Layout, x: f64, world: &World, trail: &Trail) -> Vec<(Group, &'static str)> {
     let body = |class| Group::new().add(circle((x, 0.0), 7.0).set("fill", "none").set("class", class));
     let mut signs = vec![(body("faint"), "start"), (body("ink"), "end")];

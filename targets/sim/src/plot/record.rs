@@ -1,4 +1,4 @@
-//! The picture that moves: the way is drawn as it was driven, the robot drives it, and the running atom is told.
+//! The picture that moves: the way is drawn as it was driven, the robot drives it, and the running atom is named.
 //!
 //! Everything repeats together, after a moment of rest. A viewer that moves nothing shows the end of the run; one that runs
 //! scripts also shows the time, and has a button to pause and a strip to seek.

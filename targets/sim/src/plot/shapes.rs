@@ -63,16 +63,16 @@ fn whole((x, y): Pixel) -> (i64, i64) {
     (libm::round(x * 10.0) as i64, libm::round(y * 10.0) as i64)
 }
 
-/// Two numbers of tenths; a minus sign keeps them apart as well as a blank does.
+/// Writes two numbers of tenths; before a minus sign no space is needed.
 fn pair((x, y): (i64, i64)) -> String {
     let (x, y) = (x as f64 / 10.0, y as f64 / 10.0);
     if y < 0.0 { format!("{x}{y}") } else { format!("{x} {y}") }
 }
 
-/// Of places on a line, those without which it would lie no more than this many pixels elsewhere.
+/// Greatest distance, in pixels, of a place that is left out from the line without it.
 const BESIDE: f64 = 0.2;
 
-/// The places of a line that is drawn as well without the others.
+/// Returns the places that a line needs to be drawn as well as with all of them.
 pub(super) fn simplified(pixels: impl IntoIterator<Item = Pixel>) -> Vec<Pixel> {
     let mut kept: Vec<Pixel> = Vec::new();
     // The places since the last one kept.
@@ -93,7 +93,7 @@ pub(super) fn simplified(pixels: impl IntoIterator<Item = Pixel>) -> Vec<Pixel> 
     kept
 }
 
-/// The most places that one straight line stands for, so that a long one takes no long time.
+/// Greatest number of places that one straight line replaces, so that a long one takes no long time.
 const LONGEST: usize = 500;
 
 /// The distance of a place from a line between two others.

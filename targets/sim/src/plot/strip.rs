@@ -11,7 +11,7 @@ use super::rows::shortened;
 use super::shapes::{badge, line, polyline, tenths, text};
 use crate::trail::Trail;
 
-/// The height of what is below the floor: the running atom, and the time.
+/// Height of the part below the floor: the running atom, and the time.
 pub(super) const STRIP: f64 = 84.0;
 /// Half the height of the line of time, in pixels.
 const HALF: f64 = 5.0;
@@ -111,7 +111,7 @@ fn speed(film: &Film<'_>, (x, y): (f64, f64)) -> Text {
     text("", (x, y), "end").add(TSpan::new("").set("class", "now")).add(TSpan::new(format!("{end}{fast}")))
 }
 
-/// The sign that pauses, and the one that goes on; hidden where no script answers to them.
+/// Draws the sign that pauses and the sign that resumes; both are hidden where no script answers to them.
 fn button((x, y): (f64, f64)) -> Group {
     let area = Rectangle::new().set("x", x - 14.0).set("y", y - 14.0).set("width", 28).set("height", 28);
     let bars = format!("M{} {}v{}m{} 0v-{}", x - 4.0, y - BUTTON, 2.0 * BUTTON, 8.0, 2.0 * BUTTON);

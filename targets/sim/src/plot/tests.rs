@@ -9,7 +9,7 @@ use crate::frames::{Frame, Frames};
 use crate::trail::Trail;
 use crate::world::{Place, World};
 
-/// A run of this many turns in circles, in which an atom begins every so many turns.
+/// Returns a run of this many turns in circles, in which an atom begins every `an_atom_every` turns.
 fn run(turns: u64, an_atom_every: u64, law: &str) -> Trail {
     let mut trail = Trail::from(&Pose::ORIGIN, 0.205);
     trail.frames = Some(Frames::new());

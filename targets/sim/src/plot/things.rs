@@ -10,7 +10,7 @@ use crate::moving::{Schedule, Thing};
 use crate::trail::Trail;
 use crate::world::{Place, World};
 
-/// Of doors.
+/// Dashes of the lines of doors.
 const DASHES: &str = "5 4";
 /// Displacement of a thing that has not moved.
 const NOWHERE: Place = Place { x: 0.0, y: 0.0 };
@@ -50,14 +50,14 @@ impl Sign {
     }
 }
 
-/// The signs of what moves in the part of the floor that is shown.
+/// Returns the signs of the things that move in the part of the floor that is shown.
 pub(super) fn signs(layout: &Layout, world: &World) -> impl Iterator<Item = Sign> {
     let shown = |thing: &&Thing| layout.shows_any(thing.places());
     let shown: Vec<Sign> = world.things.iter().filter(shown).map(Sign::of).collect();
     [Sign::Door, Sign::Moves].into_iter().filter(move |sign| shown.contains(sign))
 }
 
-/// Everything that moves, where it is in the end.
+/// Draws everything that moves at its last place.
 pub(super) fn drawn(layout: &Layout, world: &World, trail: &Trail) -> Group {
     let things = world.things.iter().zip(&trail.things);
     things.fold(ways(layout, world), |group, (thing, gone)| match Sign::of(thing) {

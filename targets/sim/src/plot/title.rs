@@ -60,7 +60,7 @@ fn height(size: u32) -> f64 {
     f64::from(size) * 1.4
 }
 
-/// A text in a few lines of at most this many letters, broken between words; what does not fit ends in `…`.
+/// Breaks a text between words into a few lines of at most this many letters; a text that does not fit ends in `…`.
 fn wrapped(text: &str, letters: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {

@@ -1,9 +1,9 @@
-//! The lines between pixels that stand and pixels that do not, without the steps that pixels make of slanted lines.
+//! Contours of the occupied pixels of a map, without the steps that pixels make of slanted lines.
 
 /// Greatest distance, in pixels, between a line and the corners of pixels that it replaces. The steps of a slanted line
 /// lie up to 1 off it, and a little more where it begins at the wrong one.
 const TOLERANCE: f64 = 1.25;
-/// The most sides of pixels where something stands on one side only: 200 km of walls at 5 cm.
+/// Greatest number of sides of pixels between occupied and free: 200 km of walls at 5 cm.
 const SIDES_MOST: usize = 4_000_000;
 /// The most corners that are smoothed together: the time for these grows with their square.
 const TOGETHER: usize = 1024;
@@ -14,10 +14,11 @@ type Corner = (i32, i32);
 /// The steps from a corner, in the order in which one is taken where two lead on: that of the upper pixel first.
 const STEPS: [Corner; 4] = [(0, -1), (1, 0), (0, 1), (-1, 0)];
 
-/// Closed lines around what stands, each ending where it began, in an order that depends on nothing but the image.
+/// Returns closed lines around the occupied pixels, each ending where it began, in an order that depends only on the
+/// image.
 ///
 /// # Errors
-/// More sides than can be made ready.
+/// The image has more sides than `SIDES_MOST`.
 pub(super) fn contours(
     width: usize,
     height: usize,
@@ -45,7 +46,7 @@ pub(super) fn contours(
     Ok(loops)
 }
 
-/// The sides of pixels where something stands on the left only, as steps from each corner.
+/// The sides of pixels that are occupied on the left only, as steps from each corner.
 struct Sides {
     /// For each corner the steps from it, a bit each; column by column.
     steps: Vec<u8>,
@@ -96,7 +97,7 @@ impl Sides {
         Some(((self.next / self.rows) as i32, (self.next % self.rows) as i32))
     }
 
-    /// Takes the step that goes on from `here`; where two pixels touch at a corner, the one that stays with its pixel.
+    /// Takes the step that goes on from `here`; where two pixels touch at a corner, the step that stays with its pixel.
     fn taken(&mut self, here: Corner, came: Corner) -> Option<Corner> {
         let steps = self.steps.get_mut(here.0 as usize * self.rows + here.1 as usize)?;
         let turns = |step: Corner| came.0 * step.1 - came.1 * step.0;
@@ -132,7 +133,7 @@ fn smoothed(line: &[Corner]) -> Vec<Corner> {
     line.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(corner, _)| *corner).collect()
 }
 
-/// Keeps what a line needs between two of its corners (Douglas and Peucker, 1973).
+/// Keeps the corners that a line needs between two of its corners (Douglas and Peucker, 1973).
 fn keep(line: &[Corner], from: usize, to: usize, kept: &mut [bool]) {
     let mut open = vec![(from, to)];
     while let Some((from, to)) = open.pop() {

@@ -18,7 +18,7 @@ pub(crate) struct Header {
     pub(crate) yaw: f64,
     /// `true` if white is occupied and black is free.
     pub(crate) negate: bool,
-    /// Darker than this part of black stands.
+    /// Darkness, from 0 to 1, above which a pixel is occupied.
     pub(crate) occupied: f64,
 }
 
@@ -105,7 +105,7 @@ fn line<'t>(text: &'t str, key: &str) -> Option<(usize, &'t str)> {
     (1..).zip(text.lines()).find(|(_, line)| line.strip_prefix(key).is_some_and(|rest| rest.starts_with(':')))
 }
 
-/// A value that begins at a byte of a line, without blanks, comment and quotes.
+/// Returns the value that begins at a byte of a line, without spaces, comment and quotes.
 fn trimmed<'t>(line: usize, whole: &'t str, from: usize, part: &'t str) -> Value<'t> {
     let part = part.split(" #").next().unwrap_or_default();
     let blanks = part.len() - part.trim_start().len();

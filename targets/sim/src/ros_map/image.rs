@@ -41,7 +41,7 @@ impl Image {
         Ok(Self { width, height, white, grey })
     }
 
-    /// For each pixel whether it is darker than this part of black; brighter with `negate`.
+    /// Returns for each pixel `true` if it is darker than this part of black; brighter with `negate`.
     pub(super) fn darker(&self, than: f64, negate: bool) -> Vec<bool> {
         let is_dark = |grey: u16| {
             let bright = f64::from(grey) / f64::from(self.white);
@@ -54,7 +54,7 @@ impl Image {
     }
 }
 
-/// The words of the file that are still to be read; from `#` to the end of a line is none.
+/// The words of the file that are still to be read, without comments from `#` to the end of a line.
 struct Words<'b>(&'b [u8]);
 
 impl<'b> Words<'b> {
@@ -79,7 +79,7 @@ impl<'b> Words<'b> {
         numbers.take(count).collect()
     }
 
-    /// After one blank, one byte a pixel or two, the greater first.
+    /// Reads one byte a pixel, or two, the more significant first, after one space.
     fn bytes(&mut self, count: usize, white: u16) -> Vec<u16> {
         let bytes = self.0.get(1..).unwrap_or_default();
         if white < 256 {

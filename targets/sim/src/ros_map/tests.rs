@@ -13,7 +13,7 @@ fn header(text: &str) -> Header {
     Header::parse("map.yaml", text).expect("a good header")
 }
 
-/// A map of so many pixels, black where `stands` says so, grey in the first column, else white.
+/// Returns a map of this size in pixels, black where `stands` is true, grey in the first column, else white.
 fn map(width: usize, height: usize, stands: impl Fn(usize, usize) -> bool) -> Vec<u8> {
     let mut bytes = format!("P5\n# CREATOR: map_saver.cpp 0.050 m/pix\n{width} {height}\n255\n").into_bytes();
     let grey = |row, column| {

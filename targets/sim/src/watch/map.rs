@@ -7,7 +7,7 @@ use crate::goal::{Zone, edge};
 use crate::moving::Thing;
 use crate::world::{Place, World};
 
-/// Kept free around what is drawn, in metres.
+/// Margin around the drawing, in metres.
 const AROUND: f64 = 0.3;
 /// The least radius of a body, in dots, whose edge is drawn, and in how many dots.
 const BODY_LEAST: f64 = 2.5;
@@ -28,7 +28,7 @@ pub(super) struct Map {
 }
 
 impl Map {
-    /// The map of a floor, and of the places in `way`, in so many columns and rows.
+    /// Returns the map of a floor, and of the places in `way`, in `columns` columns and `rows` rows.
     pub(super) fn of(world: &World, way: &[Place], columns: usize, rows: usize) -> Self {
         let places = || world.places().chain(way.iter().copied());
         let range = |of: fn(&Place) -> f64| {
@@ -69,7 +69,7 @@ impl Map {
         (0.0..2.0 * self.canvas.columns as f64).contains(&x) && (0.0..4.0 * self.canvas.rows as f64).contains(&y)
     }
 
-    /// Draws what is new of the way.
+    /// Draws the new part of the way.
     pub(super) fn went(&mut self, way: &[Place]) {
         for place in way.iter().skip(self.went) {
             self.dot(*place, Ink::Way);
@@ -77,7 +77,7 @@ impl Map {
         self.went = way.len();
     }
 
-    /// The map with what moves on it, each gone so far.
+    /// Returns the map with the moving things on it, each with its displacement.
     pub(super) fn with<'t>(&self, things: impl Iterator<Item = (&'t Thing, Place)>) -> Self {
         let mut map = self.clone();
         for (thing, gone) in things {
@@ -88,7 +88,7 @@ impl Map {
         map
     }
 
-    /// Draws what the robot hears.
+    /// Draws the echoes that the robot hears.
     pub(super) fn heard(&mut self, echoes: &[Place]) {
         for echo in echoes {
             self.dot(*echo, Ink::Echo);

@@ -24,7 +24,7 @@ static FOUND: Mutex<Option<Found>> = Mutex::new(None);
 
 struct Found(Option<Termios>);
 
-/// The terminal, so that writing to it never waits, and what it has not yet taken of a picture.
+/// The terminal, so that writing to it never waits, and the rest of a picture that it has not yet taken.
 static TERMINAL: Mutex<Option<Terminal>> = Mutex::new(None);
 
 struct Terminal {
@@ -103,7 +103,7 @@ fn leave() {
     restore(found);
 }
 
-/// Gives the screen back while the thread that has it hangs: nothing here waits for what that thread holds.
+/// Gives the screen back while the thread that has it hangs: nothing here waits for a lock of that thread.
 pub(super) fn leave_at_once() {
     if terminal().is_some() {
         return leave();
@@ -121,7 +121,7 @@ fn restore(found: Option<Termios>) {
     }
 }
 
-/// Opens the terminal once more, in a way that does not wait. Where that is not allowed, what is shown may wait.
+/// Opens the terminal once more, in a way that does not wait. Where that is not allowed, writing may wait.
 fn opened() -> Option<Terminal> {
     let flags = (OFlags::NONBLOCK | OFlags::NOCTTY).bits() as i32;
     let file = File::options().write(true).custom_flags(flags).open("/proc/self/fd/1").ok()?;
@@ -133,7 +133,7 @@ fn terminal() -> MutexGuard<'static, Option<Terminal>> {
 }
 
 impl Terminal {
-    /// Writes what is left, as much as the terminal takes; whether that was all, or no more can be.
+    /// Writes as much of the rest as the terminal takes. Returns `true` if that was all, or if no more can be written.
     fn push(&mut self) -> bool {
         while !self.left.is_empty() {
             match self.file.write(&self.left) {
@@ -163,7 +163,7 @@ fn write(text: &str) {
     let _ = out.write_all(text.as_bytes()).and_then(|()| out.flush());
 }
 
-/// Writes this after what is left, for as long as giving the terminal back may take.
+/// Writes this after the rest, for as long as giving the terminal back may take.
 fn write_to_the_end(text: &str) {
     let mut terminal = terminal();
     let Some(terminal) = terminal.as_mut() else {

@@ -19,7 +19,7 @@ pub(super) struct Now {
     scopes: Vec<Scope>,
 }
 
-/// A scope as it is told.
+/// A scope as it is shown.
 #[derive(Debug, Clone, PartialEq)]
 struct Scope {
     said: String,
@@ -29,7 +29,7 @@ struct Scope {
 }
 
 impl Now {
-    /// The plan stands here.
+    /// Takes in the current state of the plan.
     pub(super) fn stands(&mut self, standing: &Standing<'_>) {
         self.seconds = standing.t.seconds();
         let place = if standing.place.is_empty() { String::new() } else { format!("  ({})", standing.place) };

@@ -23,7 +23,7 @@ const UNITS: [(&str, f64); 5] = [("m", 1.0), ("cm", 0.01), ("mm", 0.001), ("in",
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Unit(f64);
 
-/// Something that stands still, or does not.
+/// A fixed outline or a moving thing.
 pub(super) enum Stands {
     Still(Outline),
     Never(Thing),
@@ -178,7 +178,7 @@ impl Unit {
         Ok(Thing { outline, schedule: Schedule::Open { times, every: every.map(|(_, value)| value) } })
     }
 
-    /// The stops of a schedule; none for what stands still.
+    /// Returns the stops of a schedule; empty for a thing without one.
     fn schedule(self, written: Option<&Spanned<Vec<Numbers>>>) -> Result<Vec<Stop>, Wrong> {
         let Some(written) = written else { return Ok(Vec::new()) };
         if written.get_ref().is_empty() {

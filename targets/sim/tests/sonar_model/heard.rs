@@ -10,7 +10,7 @@ use mdle_sim::{Body, Make, Simulated, World};
 const RING: u64 = 960;
 /// From the centre of the body to the transducer, in metres.
 const TRANSDUCER: f64 = 0.19;
-/// A new robot, and so another temperature of the air, after so many pings.
+/// Number of pings after which a new robot is made, and so another temperature of the air.
 const ONE_RUN: usize = 20;
 
 /// A long wall across the first axis at `{x}`.
@@ -35,8 +35,8 @@ impl Heard {
     }
 }
 
-/// So many pings at something this far, in metres, from the transducer along its normal, which lies so many degrees off the
-/// sonar's axis.
+/// Makes `pings` pings at something `distance` metres from the transducer along its normal, which lies `degrees`
+/// degrees off the sonar's axis.
 pub(crate) fn heard(what: &str, distance: f64, degrees: f64, pings: usize) -> Heard {
     let theta = Radians::from_degrees(degrees);
     let (y, ahead) = (TRANSDUCER * libm::sin(theta.0), TRANSDUCER * libm::cos(theta.0));

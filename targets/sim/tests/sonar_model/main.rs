@@ -1,4 +1,4 @@
-//! The sonars of the simulated Scout against what was measured of real ones, and the picture of it in the book.
+//! The sonars of the simulated Scout compared with measurements of real ones, and their picture in the book.
 #![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
 mod heard;

@@ -1,4 +1,4 @@
-//! The picture: how often a wall and a column are heard by the angle at which they stand, and how far ranges are off.
+//! The picture: the share of pings at which a wall and a column are heard, by their angle, and the errors of ranges.
 
 use svg::Document;
 use svg::node::element::{Group, Line, Path, Rectangle, Text, Title};
