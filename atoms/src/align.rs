@@ -12,7 +12,8 @@ const SLOWEST: f64 = 0.08;
 /// Differences of opposite sign that lie no further apart than this, in metres, have equal ranges between them; further
 /// apart, one of the sonars looks past an edge, or has strayed.
 const CONTINUOUS: f64 = 0.1;
-/// After the sign of the difference has changed this often without equal ranges, there are none to be found.
+/// Number of changes of the difference's sign without equal ranges after which no heading with equal ranges is
+/// expected.
 const CHANGES: u8 = 5;
 /// A full circle at the slowest turn, in seconds: by then every heading has been tried.
 const LONGEST: f64 = TAU / SLOWEST;
@@ -227,7 +228,7 @@ mod tests {
         at: f64,
         /// The share of pings of the first and of the second sonar that bring nothing.
         misses: [f64; 2],
-        /// By how much a range may be too long or too short, in metres.
+        /// Greatest error of a range, in metres.
         error: f64,
         confirmation: usize,
     }

@@ -57,7 +57,7 @@ pub trait Stage {
     /// Hands the robot the paths that its plan replays, before its first exchange; for robots with the capability `paths`.
     fn take_paths(&mut self, _robot: &mut Self::Robot, _paths: PathStore) {}
 
-    /// Sees to the robot's supply, from now on; for robots with the capability `power`.
+    /// Sets the robot's power supply from now on; for robots with the capability `power`.
     fn supply(&mut self, _robot: &mut Self::Robot, _supplied: Supplied) {}
 
     /// Returns the true pose of the body, in the axes of the room; odometry may differ.
@@ -70,11 +70,11 @@ pub trait Stage {
 /// The power supply of a robot on a stage.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Supplied {
-    /// By a battery that is charged, as it is when it has just been started.
+    /// A battery that is charged, as it is when the robot has just been started.
     Well,
-    /// By a battery that has to be charged.
+    /// A battery that has to be charged.
     Low,
-    /// By its charger.
+    /// The robot's charger.
     Plugged,
 }
 

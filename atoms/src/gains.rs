@@ -63,7 +63,7 @@ const SCOUT: Gains = Gains {
 const ATRV: Gains = Gains { look_ahead: Meters(0.4), room_at: 0.3, beyond: 0.6, ..SCOUT };
 
 impl Gains {
-    /// Those of the body that this is an output of.
+    /// Returns the gains of the body that has this output.
     pub(crate) fn of<Y: DiffDrive + SonarRing>(y: &Y) -> &'static Self {
         match (fire_in_turn(y), y.body_radius() >= WIDE) {
             (false, _) => &RING,

@@ -11,11 +11,11 @@ use crate::gains::Gains;
 use crate::memory::Memory;
 use crate::tangent::{Obstacles, Side, Wish};
 
-/// Nearer than this the goal is reached.
+/// Distance from the goal below which it is reached.
 const ARRIVED: Meters = Meters(0.12);
 /// The fastest turn, in rad/s.
 const FASTEST: f64 = 0.9;
-/// This far off the direction chosen the robot turns on the spot.
+/// Angle off the chosen direction from which the robot turns on the spot.
 const ON_THE_SPOT: Radians = Radians::from_degrees(50.0);
 /// A detour further than this from the goal's direction is kept up.
 const DETOUR: Radians = Radians::from_degrees(60.0);
@@ -27,16 +27,17 @@ const ALONG: Radians = Radians::from_degrees(40.0);
 const GAINED: Meters = Meters(0.1);
 /// ... and has lasted this long.
 const DETOUR_LEAST: Nanos = Nanos(1_000_000_000);
-/// Out of the way of somebody who comes, the robot goes in this direction from the goal's.
+/// Angle from the goal's direction in which the robot gives way to somebody who comes.
 const ASIDE: Radians = Radians::from_degrees(60.0);
-/// With this much room on its right it gives way to the right, as people do; else to where there is more.
+/// Room on its right with which the robot gives way to the right, as people do; with less it gives way to the side with
+/// more room.
 const ROOM: Meters = Meters(0.4);
 /// Time, in seconds, for which the robot keeps out of the way after somebody should have passed.
 const PASSES: f64 = 1.0;
 /// Longest time, in seconds, for which the robot keeps out of the way of somebody who does not come nearer any more.
 const PASSES_MOST: f64 = 8.0;
 
-/// Towards the point at a bearing and range from where the atom begins.
+/// Drives to the point at a bearing and range from where the atom begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GoAvoid {
     bearing: Radians,
@@ -76,7 +77,7 @@ struct Detour {
     since: Nanos,
 }
 
-/// Out of the way of somebody who comes towards the robot.
+/// The side and the end of giving way to somebody who comes towards the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct GivesWay {
     side: Side,

@@ -32,7 +32,7 @@ const CLOSE_COSTS: f64 = 0.9;
 const CHANGE_COSTS: f64 = 0.15;
 /// Cost of a change of direction on a detour, in radians of detour for each radian.
 const CHANGE_COSTS_ON_A_DETOUR: f64 = 0.6;
-/// Further than this from the goal's direction no detour leads: beyond, it would go in circles.
+/// Greatest angle of a detour from the goal's direction: beyond it the robot would go in circles.
 const TURNED_MOST: Radians = Radians::from_degrees(215.0);
 /// Costs differ by less than this through the order in which they are added up.
 const ROUNDING: f64 = 1e-9;

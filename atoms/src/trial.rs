@@ -40,7 +40,7 @@ impl Default for Sensed {
 }
 
 impl Sensed {
-    /// At the origin, at rest, with this heading in degrees.
+    /// Returns the output at the origin, at rest, with this heading in degrees.
     pub(crate) fn heading(degrees: f64) -> Self {
         Self { pose: Pose { theta: Radians::from_degrees(degrees), ..Pose::ORIGIN }, ..Self::default() }
     }
@@ -56,7 +56,7 @@ impl Sensed {
         self.pings.get_mut(sonar.number()).expect("one of the sixteen").push(ping);
     }
 
-    /// One period of an ideal drive.
+    /// Moves the robot for one period of an ideal drive.
     pub(crate) fn drive(&mut self, input: Twist) {
         let theta = self.pose.theta.0;
         self.pose.x.0 += input.v.0 * PERIOD * libm::cos(theta);

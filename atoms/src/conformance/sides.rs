@@ -37,7 +37,7 @@ fn word(bits: [bool; 4]) -> String {
     bits.iter().map(|bit| if *bit { '1' } else { '0' }).collect()
 }
 
-/// That of all words only this one fires, where walls are on these sides.
+/// Checks that of all 16 patterns only the one of these walls fires.
 fn tells<S: Stage>(stage: &mut S, walls: [bool; 4]) -> Result<(), Verdict>
 where
     Out<S>: SonarRing + DiffDrive,

@@ -29,11 +29,11 @@ pub(super) struct Trial<'s, S: Stage> {
 /// The motion of a body between two poses, in the axes of the first.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Way {
-    /// In metres.
+    /// Way forward, in metres.
     pub(super) ahead: f64,
-    /// In metres.
+    /// Way to the left, in metres.
     pub(super) left: f64,
-    /// In radians between -π and π, counter-clockwise.
+    /// Turn in radians between -π and π, counter-clockwise.
     pub(super) turn: f64,
 }
 
