@@ -29,10 +29,10 @@ const FULL: f64 = 2.12;
 const LOW: f64 = 1.8;
 
 impl Pack {
-    /// Of a robot of 25 kg: 12 V, 36 Ah.
+    /// Pack of a robot of 25 kg: 12 V, 36 Ah.
     pub(crate) const SCOUT: Self =
         Self { capacity: 432.0 * WATT_HOUR, standby: 30.0, metre: 41.0, charger: 120.0, cells: 6.0 };
-    /// Of a robot of 40 kg: 24 V, 30 Ah.
+    /// Pack of a robot of 40 kg: 24 V, 30 Ah.
     pub(crate) const ATRV: Self =
         Self { capacity: 720.0 * WATT_HOUR, standby: 40.0, metre: 65.0, charger: 200.0, cells: 12.0 };
 }
@@ -41,7 +41,7 @@ impl Pack {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Battery {
     pack: Pack,
-    /// From 0, empty, to 1, full.
+    /// Charge from 0, empty, to 1, full.
     charge: f64,
 }
 
@@ -51,12 +51,12 @@ impl Battery {
         Self { pack, charge: charge.clamp(0.0, 1.0) }
     }
 
-    /// From now on it has this charge, from 0 to 1.
+    /// Sets the charge, from 0 to 1.
     pub(crate) fn charge(&mut self, charge: f64) {
         self.charge = charge.clamp(0.0, 1.0);
     }
 
-    /// Some seconds have passed, in which the wheels rolled this far, in metres, on the charger or not.
+    /// Lets `seconds` pass, in which the wheels rolled `rolled` metres, on the charger or not.
     pub(crate) fn passed(&mut self, seconds: f64, rolled: f64, is_plugged: bool) {
         let Pack { capacity, standby, metre, charger, .. } = self.pack;
         let given = if is_plugged { charger } else { 0.0 };

@@ -51,7 +51,7 @@ enum Met {
 }
 
 impl Body {
-    /// At rest at `pose`, with the errors of this seed or none.
+    /// Creates a body at rest at `pose`, with the errors of this seed or none.
     pub(crate) fn new(drive: Drive, pose: Pose, seed: Option<u64>) -> Self {
         Self { pose, drive, odometry: Odometry::new(drive.slip, seed), left: 0.0, right: 0.0, clear: 0.0 }
     }
@@ -116,7 +116,7 @@ impl Body {
         self.advance(&Twist::default(), self.drive.fastest / self.drive.acceleration + STEP, walls);
     }
 
-    /// One step of the integration.
+    /// Makes one step of the integration, of `step` seconds.
     fn step(&mut self, step: f64, walls: &Walls) -> Met {
         let Twist { v, omega } = self.velocity();
         let (way, turn) = (v.0 * step, omega.0 * step);

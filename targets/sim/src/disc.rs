@@ -1,4 +1,4 @@
-//! Another robot, as those in the same world see and touch it: a disc that is where it is.
+//! Another robot, as the robots in the same world hear and touch it: a disc.
 
 use crate::surfaces::{Surface, apart};
 use crate::world::Place;
@@ -8,7 +8,7 @@ use crate::world::Place;
 pub struct Disc {
     /// Centre of the disc.
     pub at: Place,
-    /// In metres.
+    /// Radius of the disc, in metres.
     pub radius: f64,
 }
 
@@ -24,7 +24,7 @@ impl Disc {
         apart(self.at, at) - self.radius
     }
 
-    /// The place of its edge that is nearest to `at`.
+    /// Returns the place of the disc's edge that is nearest to `at`.
     pub(crate) fn nearest(&self, at: Place) -> Place {
         let (x, y) = (at.x - self.at.x, at.y - self.at.y);
         let part = self.radius / libm::hypot(x, y).max(f64::MIN_POSITIVE);

@@ -25,7 +25,7 @@ pub(crate) struct Segment {
 /// The point at which a ray meets a segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Hit {
-    /// In metres from where the ray began.
+    /// Distance from where the ray began, in metres.
     pub(crate) range: f64,
     /// The number of the segment.
     pub(crate) segment: usize,
@@ -187,7 +187,7 @@ impl Grid {
         (best.segment != usize::MAX).then_some(best)
     }
 
-    /// From where to where a ray is over the grid; `None` if it never is.
+    /// Returns the distances along a ray at which it enters and leaves the grid; `None` if it never does.
     fn crossed(&self, from: Place, way: Place, most: f64) -> Option<(f64, f64)> {
         let beyond = BEYOND * self.cell;
         let slab = |from: f64, way: f64, cells: usize| {
@@ -242,7 +242,7 @@ impl Axis {
         Self { next: (border - from) / way, between: (cell / way).abs(), forward }
     }
 
-    /// On to the next cell, if there is one.
+    /// Moves on to the next cell. Returns `true` if there is one.
     fn step(&mut self, number: &mut usize, count: usize) -> bool {
         self.next += self.between;
         let next = if self.forward { *number + 1 } else { number.wrapping_sub(1) };

@@ -78,7 +78,7 @@ pub(crate) struct Model {
 /// Wheels and outline. Metres and seconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Drive {
-    /// Of the disc.
+    /// Radius of the disc.
     pub(crate) radius: f64,
     /// The distance between the wheels.
     pub(crate) wheel_base: f64,
@@ -95,13 +95,13 @@ pub(crate) struct Drive {
 /// Errors of odometry: standard deviations of normal distributions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Slip {
-    /// Of the way driven, as a part, once for a run: what the tyres measure.
+    /// Relative error of the way driven, drawn once for a run: the size of the tyres.
     pub(crate) way: f64,
-    /// Of the angle turned, as a part, once for a run: where on the floor the wheels bear.
+    /// Relative error of the angle turned, drawn once for a run: the points at which the wheels touch the floor.
     pub(crate) turn: f64,
-    /// Of the heading, in radians for each metre driven, once for a run: wheels that are not quite alike.
+    /// Error of the heading, in radians for each metre driven, drawn once for a run: wheels that are not quite alike.
     pub(crate) bend: f64,
-    /// Of the heading, in radians, after a metre driven; grows with its root.
+    /// Error of the heading, in radians, after a metre driven; grows with the square root of the way.
     pub(crate) wander: f64,
 }
 
@@ -155,7 +155,7 @@ pub(crate) struct Transducer {
     pub(crate) sonar: SonarId,
 }
 
-/// From the axis of a cone without a lobe to its edge.
+/// Angle from the axis of a cone without a lobe to its edge.
 const HALF_CONE: Radians = Radians::from_degrees(12.5);
 
 impl Model {

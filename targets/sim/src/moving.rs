@@ -22,18 +22,18 @@ pub struct Thing {
 /// The motion of a thing over time, in seconds since the robot was switched on.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Schedule {
-    /// A door, closed but for these times: from, to.
+    /// A door, closed except at these times: from, to.
     Open {
         /// The times, none of which overlaps another.
         times: Vec<[f64; 2]>,
-        /// Begins anew after this many seconds.
+        /// Period after which the times repeat, in seconds; `None` if they do not.
         every: Option<f64>,
     },
-    /// Straight from place to place.
+    /// A box or disc that moves straight from place to place.
     Way {
         /// Times and places of the centre: at least one, in order. The thing rests before the first and after the last.
         stops: Vec<Stop>,
-        /// Begins anew at the first after the last.
+        /// `true` if the way begins again at the first stop after the last.
         repeats: bool,
     },
 }
@@ -41,9 +41,9 @@ pub enum Schedule {
 /// A place of a thing at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stop {
-    /// In seconds.
+    /// Time of the stop, in seconds.
     pub t: f64,
-    /// The centre.
+    /// Place of the centre.
     pub at: Place,
 }
 

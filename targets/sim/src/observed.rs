@@ -36,7 +36,7 @@ struct Pictures {
 /// A table of the robot's poses: one line of comma-separated values for each exchange, written during the run.
 struct Table {
     file: WholeFile,
-    /// From the first exchange on.
+    /// Lines of the table; `None` before the first exchange.
     lines: Option<Unfinished>,
 }
 
@@ -76,13 +76,13 @@ impl Observed {
         self.robot.paths = paths;
     }
 
-    /// Has its run judged by where it ends.
+    /// Lets `goal` judge the end of the run.
     pub(crate) fn judged_by(self, goal: Option<Goal>) -> Self {
         Self { goal, ..self }
     }
 
-    /// Has its way drawn when the run is finished: as a picture, and as one that moves; `setup` names the world, the body and
-    /// the seed in their titles.
+    /// Draws the robot's way when the run is finished, as a still picture and as a moving one; `setup` names the world,
+    /// the body and the seed in their titles.
     pub(crate) fn drawn(
         mut self,
         (plot, record): (Option<WholeFile>, Option<WholeFile>),
@@ -99,12 +99,12 @@ impl Observed {
         self
     }
 
-    /// Has its run shown as it goes.
+    /// Shows the run on `watch` as it goes.
     pub(crate) fn watched(self, watch: Option<Watch>) -> Self {
         Self { watch, ..self }
     }
 
-    /// Has its way written down when the run is finished: `t,x,y,heading` in seconds, metres and degrees.
+    /// Writes the robot's poses to `file` during the run: `t,x,y,heading` in seconds, metres and degrees.
     pub(crate) fn written_down(mut self, file: Option<WholeFile>) -> Self {
         self.table = file.map(|file| Table { file, lines: None });
         self

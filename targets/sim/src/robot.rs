@@ -142,7 +142,7 @@ impl Simulated {
         Disc { at: Place::of(&self.body.pose), radius: self.radius() }
     }
 
-    /// From now on the other robots in its world are here: it hears them, and does not get through them.
+    /// Sets the places of the other robots in the world: the robot hears them and cannot pass through them.
     pub fn see(&mut self, others: &[Disc]) {
         self.walls.put_others(others);
     }

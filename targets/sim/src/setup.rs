@@ -30,7 +30,7 @@ struct Setup {
     noise: Option<StartNoise>,
     /// The goal that judges the run.
     goal: Option<Goal>,
-    /// Of the battery at the start, from 0 to 1.
+    /// Charge of the battery at the start, from 0 to 1.
     charge: f64,
     period: Duration,
 }

@@ -28,7 +28,7 @@ pub(crate) struct Ring {
 /// The last ping of one transducer, of which several may speak for one sonar.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Heard {
-    /// From the transducer; `None` when no echo came back.
+    /// Range from the transducer; `None` when no echo came back.
     pub range: Option<Meters>,
     /// Time of the ping.
     pub at: Nanos,
@@ -110,7 +110,7 @@ impl Ring {
         here.chain(later).all(|other| speaks_for(*other) != Some(sonar)).then_some(sonar)
     }
 
-    /// One transducer pings.
+    /// Lets one transducer ping.
     fn listen(&mut self, number: usize, pose: &Pose, at: Nanos, walls: &Walls) {
         let Self { hearing, errors, ranges, heard: all, .. } = self;
         let (Some(transducer), Some(range), Some(last)) =

@@ -11,11 +11,11 @@ const SMOOTH: f64 = 0.866;
 /// The form of one end of a segment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum End {
-    /// Free.
+    /// The end is free.
     Edge,
-    /// At the middle of another segment.
+    /// The end lies at the middle of another segment.
     Covered,
-    /// At another segment, which goes on in this unit direction.
+    /// The end meets another segment, which goes on in this unit direction.
     Meets(Place),
 }
 

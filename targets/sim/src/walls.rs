@@ -144,7 +144,7 @@ impl Walls {
         self.moving.iter().filter_map(Moving::around).chain(self.others.iter().map(|other| other.at))
     }
 
-    /// From now on the other robots are here.
+    /// Sets the places of the other robots.
     pub(crate) fn put_others(&mut self, others: &[Disc]) {
         self.others.clear();
         self.others.extend_from_slice(others);
@@ -155,7 +155,7 @@ impl Walls {
         !self.moving.is_empty()
     }
 
-    /// Has everything that moves do so for this long, but none of it into a disc of this radius around `body`.
+    /// Moves all things for `seconds`, but none of them into a disc of this radius around `body`.
     pub(crate) fn advance(&mut self, seconds: f64, body: Place, radius: f64) {
         for thing in &mut self.moving {
             thing.advance(seconds, body, radius);

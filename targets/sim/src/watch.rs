@@ -35,7 +35,7 @@ pub(crate) struct Watch {
     things: Vec<Option<Place>>,
     /// Time of the robot's last output.
     sensed: Option<Nanos>,
-    /// Of the body, in metres.
+    /// Radius of the body, in metres.
     radius: f64,
     now: view::Now,
     shown: Option<Instant>,

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct WholeFile {
     path: PathBuf,
-    /// Beside it, so that a rename puts it in place at once.
+    /// Path of the unfinished file, in the same folder so that a rename puts it in place at once.
     unfinished: PathBuf,
 }
 

@@ -12,9 +12,9 @@ use mdle_sim::{Body, Make, Sensed, Simulated, World};
 /// The result of a turn on the spot, in degrees by odometry and seconds.
 #[derive(Debug)]
 struct Turned {
-    /// In all, counter-clockwise positive.
+    /// Total turn, counter-clockwise positive.
     by: f64,
-    /// The furthest from the heading at the start, on the side to which it was to turn.
+    /// Greatest angle from the heading at the start, on the side of the turn.
     furthest: f64,
     seconds: f64,
 }

@@ -17,7 +17,7 @@ use crate::world::{Place, World};
 /// Between two places of the way that callouts keep clear of, in pixels.
 const STEP: f64 = 6.0;
 
-/// Of the echoes in a square with this side, in pixels, one is drawn.
+/// Side of a square in which one echo is drawn, in pixels.
 const SQUARE: f64 = 8.0;
 
 /// The plot of a trail on the floor of `world`.

@@ -7,7 +7,7 @@ use super::{colours, labels};
 /// A place in a drawing, in pixels.
 pub(super) type Pixel = (f64, f64);
 
-/// To a tenth of a pixel; never a negative zero.
+/// Rounds to a tenth of a pixel; the result is never a negative zero.
 pub(super) fn tenths(pixels: f64) -> f64 {
     libm::round(pixels * 10.0) / 10.0 + 0.0
 }

@@ -3,9 +3,9 @@
 use crate::trail::Trail;
 use crate::world::World;
 
-/// Kept free around walls, in metres.
+/// Margin around walls, in metres.
 const AROUND: f64 = 0.4;
-/// Shown around the way, in metres, as far as there is anything.
+/// Part of the floor that is shown around the way, in metres, as far as there is anything.
 const ROOM: f64 = 2.0;
 /// The share of the world from which on all of it is shown.
 const MOST: f64 = 0.5;

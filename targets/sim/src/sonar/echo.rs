@@ -16,11 +16,11 @@ use crate::world::Place;
 
 /// The rays of a cone, evenly spread.
 const RAYS: u8 = 7;
-/// Nearer to an edge than this, in metres, a ray is scattered by it.
+/// Greatest distance from an edge, in metres, at which the edge scatters a ray.
 const SCATTERS: f64 = 0.08;
 /// Loss at an edge: an edge is heard up to 0.6 of the lobe, so 12.5° of 21°.
 const EDGE_COSTS: f64 = 0.65;
-/// Up to here, in metres, the receiver's growing gain makes up for the distance.
+/// Distance, in metres, up to which the receiver's growing gain compensates the loss.
 const GAIN_LASTS: f64 = 2.0;
 /// Loss for each metre beyond: at 6.5 m a wall is heard up to 26° off its normal.
 const METRE_COSTS: f64 = 0.13;

@@ -53,7 +53,7 @@ pub(crate) struct Mark {
     /// Position of the atom in [`Ways::atoms`]; `None` for the rest of a run of too many passes.
     pub(crate) atom: Option<usize>,
     pub(crate) t: Nanos,
-    /// From where it began.
+    /// The way, from the place where the pass began.
     pub(crate) way: Vec<Place>,
 }
 

@@ -22,11 +22,11 @@ const TURNS: u64 = 3000;
 /// The outcome of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Outcome {
-    /// Without contact.
+    /// The run arrived without contact.
     Clean,
-    /// With this many contacts.
+    /// The run arrived, with this many contacts.
     Touched(u32),
-    /// Not within five minutes.
+    /// The run did not arrive within five minutes.
     TimedOut,
 }
 

@@ -8,7 +8,7 @@ use mdle_sim::{Body, Make, Simulated, World};
 
 /// A ring of sixteen takes this long, in milliseconds.
 const RING: u64 = 960;
-/// From the centre of the body to the transducer, in metres.
+/// Distance of the transducer from the centre of the body, in metres.
 const TRANSDUCER: f64 = 0.19;
 /// Number of pings after which a new robot is made, and so another temperature of the air.
 const ONE_RUN: usize = 20;
@@ -21,7 +21,7 @@ pub(crate) const COLUMN: &str = "[[disc]]\nradius = 0.3\ncentre = [{x}, 0]";
 /// The results of a number of pings.
 #[derive(Debug, Default)]
 pub(crate) struct Heard {
-    /// By how much each range heard was too long, in metres.
+    /// Errors of the ranges heard, in metres; positive if too long.
     pub(crate) errors: Vec<f64>,
     /// Number of pings without an echo.
     pub(crate) silent: usize,
