@@ -1,12 +1,11 @@
-//! What an rFLEX controller is told: the commands of its language that a driver needs, as frames.
-//! See docs/src/reference/protocols.md, 2.3.
+//! Commands to an rFLEX controller that a driver needs, as frames. See docs/src/reference/protocols.md, 2.3.
 
 use crate::avoid::{ESCAPE, avoided};
 use crate::frame::{Packet, Written, check};
 
-/// The most data of a command here.
+/// Maximum number of data bytes of a command.
 const MOST: usize = 14;
-/// By how much a number is changed at most, so that the check is none that has to be avoided.
+/// Maximum by which a number is reduced to keep the frame's check from being 1B.
 const NUDGES: u32 = 8;
 
 /// An axis of motion.
@@ -18,51 +17,51 @@ pub enum Axis {
     Rotation,
 }
 
-/// How an axis is to move: in the controller's own units.
+/// Motion of an axis, in the controller's own units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Motion {
-    /// Forward, or counter-clockwise, positive.
+    /// Velocity; forward or counter-clockwise is positive.
     pub velocity: i32,
-    /// How fast that may change.
+    /// Maximum change of the velocity per second.
     pub acceleration: u32,
-    /// The most torque.
+    /// Maximum torque.
     pub torque: u32,
 }
 
 /// A command. Times are microseconds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Command {
-    /// Tell the battery's voltage and the brake.
+    /// Report the battery's voltage and the state of the brake.
     Status,
     /// Go at this velocity.
     Move(Axis, Motion),
-    /// Forget what was set.
+    /// Restore the default settings.
     Defaults,
     /// Set the brake.
     Brake,
-    /// Release it.
+    /// Release the brake.
     Release,
-    /// Tell where both axes are, so often; 0 for never.
+    /// Report the positions of both axes at this interval; 0 for never.
     Reports(u32),
-    /// Tell the digital inputs, so often; 0 for never.
+    /// Report the digital inputs at this interval; 0 for never.
     Inputs(u32),
-    /// Run the sonars, and wait so long for each echo.
+    /// Run the sonars, each of which waits this long for its echo.
     Sonars(u32),
-    /// Switch them off.
+    /// Switch the sonars off.
     Deaf,
 }
 
-/// What is done about bytes that are 1B.
+/// Treatment of bytes that are 1B.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Escape {
-    /// Numbers are changed so that there are none.
+    /// Numbers are changed so that none of their bytes is 1B.
     Avoid,
-    /// They are marked.
+    /// Bytes that are 1B are marked.
     Mark,
 }
 
 impl Command {
-    /// The frame that says it.
+    /// Returns the frame of this command.
     #[must_use]
     pub fn frame(&self, escape: Escape) -> Written {
         let mut nudge = 0;
@@ -78,7 +77,7 @@ impl Command {
         }
     }
 
-    /// Port, opcode and data, with its first number changed by so much.
+    /// Returns port, opcode and data; the data's first number that can be changed is reduced by `nudge`.
     fn data(&self, escape: Escape, nudge: u32) -> (u8, u8, Data) {
         let mut data = Data { escape, nudge, bytes: [0; MOST], count: 0 };
         let (port, opcode) = match *self {
@@ -127,7 +126,7 @@ impl Command {
 /// The data of a command, as it is put together.
 struct Data {
     escape: Escape,
-    /// What the first number is changed by, if it is one that can be changed at all: 0 means what it says.
+    /// Amount by which the first number above [`NUDGES`] is reduced; smaller numbers, such as 0, are sent as they are.
     nudge: u32,
     bytes: [u8; MOST],
     count: usize,

@@ -1,4 +1,4 @@
-//! What differs from ATRV to ATRV: a TOML file, the defaults, and where each value came from.
+//! Configuration of an ATRV: a TOML file, the defaults, and the source of each value.
 
 use std::time::Duration;
 
@@ -6,74 +6,74 @@ use mdle_serial::{Key, Setting, one_of, within};
 
 use crate::command::Escape;
 
-/// A configuration, and where each of its values came from.
+/// A configuration with the source of each of its values.
 pub type Configured = mdle_serial::Configured<Config>;
 
 mdle_serial::configuration! {
-    /// What is known of the robot at hand.
+    /// Properties of one robot.
     Config;
 
-    /// What the controller counts for a metre.
+    /// Controller's units per metre.
     units_per_metre: f64 = 139_654.7, in 1000.0..=1e6, "" "what the controller counts", unverified;
-    /// And for a radian.
+    /// Controller's units per radian.
     units_per_radian: f64 = 49_784.5, in 1000.0..=1e6, "" "what the controller counts", unverified;
-    /// What a sonar counts for a metre.
+    /// Sonar's counts per metre.
     counts_per_metre: f64 = 1550.0, in 100.0..=10_000.0, "" "what a sonar counts", unverified;
     /// The fastest that a side may go, in m/s.
     fastest: f64 = 1.2, in 0.01..=1.5, "m/s" "of a side", unverified;
     /// The distance between the sides, as laws are to take it, in metres.
     wheel_base: f64 = 0.4, in 0.1..=1.0, "m" "between the sides", unverified;
-    /// How fast the speed changes, in m/s².
+    /// Acceleration of the robot, in m/s².
     acceleration: f64 = 1.0, in 0.1..=5.0, "m/s²" "", unverified;
-    /// How fast the turn rate changes, in the controller's units.
+    /// Acceleration of the rotation, in the controller's units per second squared.
     rotation_acceleration: u32 = 100_000, in 1000..=1e6, "units/s²" "";
-    /// The most torque forward, in the controller's units.
+    /// Maximum torque of the translation, in the controller's units.
     translation_torque: u32 = 30_000, in 1..=1e6, "units" "";
-    /// And in turns.
+    /// Maximum torque of the rotation, in the controller's units.
     rotation_torque: u32 = 35_000, in 1..=1e6, "units" "";
-    /// Whether a speed of 0 is sent as 1 unit.
+    /// Set to `true` if a speed of 0 is sent as 1 unit.
     zero_as_one: bool = true, "" "tells speed 0 as 1 unit", unverified;
-    /// What is done about bytes that are 1B.
+    /// Treatment of bytes that are 1B.
     escape: Escape = "avoid".to_owned(), "" "bytes 1B: \"avoid\" or \"mark\"", unverified;
     /// Sonars: 24 on four boards, or 16 on two.
     sonars: u8 = 24, "" "24 on four boards, or 16 on two", unverified;
-    /// How long a board waits for echoes, in microseconds.
+    /// Time for which a board waits for echoes, in microseconds.
     echo: u32 = 30_000, in 1000..=100_000, "µs" "that a board waits for echoes";
-    /// Ranges beyond this are none, in metres.
+    /// Range beyond which an echo is ignored, in metres.
     reach: f64 = 4.0, in 0.2..=10.0, "m" "beyond which there is no echo", unverified;
     /// The address of the first bumper.
     bumper_address: u8 = 0x40, "" "of the front bumper";
-    /// How bumpers are reported.
+    /// Form in which the controller reports bumpers.
     bumpers: Bumpers = "addresses".to_owned(), "" "\"addresses\": one each; \"bits\": of one", unverified;
-    /// How often the robot tells where it is, in milliseconds.
+    /// Time between two position reports, in milliseconds.
     reports: u64 = 50, in 20..=200, "ms" "between two reports of where it is";
-    /// How often it is asked for its brake, in milliseconds.
+    /// Time between two requests for the state of the brake, in milliseconds.
     status: u64 = 1000, in 200..=60_000, "ms" "between two questions for its brake";
-    /// How long it may say nothing, in milliseconds.
+    /// Maximum time without a position report, in milliseconds.
     answer: u64 = 300, in 50..=400, "ms" "that it may say nothing";
     /// The longest time between two reports of a bumper, in milliseconds; 0 for ever.
     inputs: u64 = 1000, in 0..=60_000, "ms" "that a bumper may say nothing, 0 for ever", unverified;
     /// The longest time in which the robot moves faster than commanded, or in the opposite direction, in milliseconds; 0 for no limit.
     disobey: u64 = 500, in 0..=60_000,
         "ms" "that it may move faster than commanded, or in the opposite direction, 0 for no limit", unverified;
-    /// After how many milliseconds without a turn it is stopped.
+    /// Time without a turn after which the watchdog stops the robot, in milliseconds.
     watchdog: u64 = 500, in 150..=5000, "ms" "without a turn until it is stopped";
-    /// How long it is left alone after each command, in milliseconds.
+    /// Pause after each command, in milliseconds.
     pause: u64 = 1, in 0..=10, "ms" "after each command";
-    /// By how much the battery's voltage is above what the controller says, in volts.
+    /// Difference between the battery's voltage and the controller's report of it, in volts.
     battery_offset: f64 = 1.82, in -5.0..=5.0, "V" "by which it is above what it tells", unverified;
-    /// Below which voltage the battery is low.
+    /// Voltage below which the battery is low.
     low_battery: f64 = 21.0, in 10.0..=30.0, "V" "below which the battery is low", unverified;
-    /// Above which voltage it is being charged.
+    /// Voltage above which the battery is being charged.
     plugged_above: f64 = 27.6, "V" "above which it is being charged", unverified;
 }
 
-/// How the controller reports bumpers.
+/// Form in which the controller reports bumpers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Bumpers {
-    /// Each has an address of its own.
+    /// Each bumper has an address of its own.
     Addresses,
-    /// Both are bits of one address.
+    /// Both bumpers are bits of one address.
     Bits,
 }
 
@@ -94,7 +94,7 @@ impl Setting for Escape {
 }
 
 impl Config {
-    /// Checks what a range does not say.
+    /// Checks the conditions that a value's range cannot express.
     fn check(&self) -> Result<(), String> {
         within("inputs", self.inputs as f64, if self.inputs == 0 { 0.0 } else { 300.0 }, 60_000.0)?;
         within("plugged-above", self.plugged_above, self.low_battery, 40.0)?;
@@ -110,7 +110,7 @@ impl Config {
         Ok(())
     }
 
-    /// How long the robot may say nothing.
+    /// Returns the maximum time without a position report.
     #[must_use]
     pub const fn patience(&self) -> Duration {
         Duration::from_millis(self.answer)

@@ -19,26 +19,26 @@ use crate::mouth::Mouth;
 const SPEED: u32 = 115_200;
 /// The radius of the smallest circle around the body.
 const RADIUS: Meters = Meters(0.415);
-/// How many pings must agree that a way is free on a robot whose sonars fire in turn.
+/// Number of pings that must agree that a way is free on a robot whose sonars fire in turn.
 const CONFIRMATION: usize = 2;
-/// How long the robot may take to release its brake, and each of its sonars to ping a few times.
+/// Maximum time for the robot to release its brake, and for each of its sonars to ping a few times.
 const STARTING: Duration = Duration::from_millis(1000);
-/// The least time that it has to stand before its brake is set: from 0.2 m/s it takes a fifth of a second.
+/// Minimum time that the robot is allowed for coming to rest before its brake is set; from 0.2 m/s it takes 0.2 s.
 const STOPPING: Duration = Duration::from_millis(800);
-/// The time that its reports may take meanwhile in lockstep, and the line for the last commands.
+/// Maximum time in lockstep for a report during a stop, and for the line to accept the last commands.
 const ANSWER: Duration = Duration::from_millis(150);
 /// The longest time from the command to brake until the robot reports that its brake is set.
 const BRAKING: Duration = Duration::from_millis(500);
 /// The time between two commands to brake.
 const AGAIN: Duration = Duration::from_millis(100);
-/// The time between two looks at whether it stands.
+/// The time between two checks for the robot being at rest.
 const LOOK: Duration = Duration::from_millis(50);
-/// It stands when it moves no faster than this, in m/s and rad/s.
+/// Maximum speed of a robot that is at rest, in m/s and rad/s.
 const STANDS: f64 = 0.01;
-/// How often it tells its bumpers, in microseconds: as everybody asks.
+/// Interval of the bumper reports, in microseconds: the one that other drivers request.
 const INPUTS: u32 = 100_000;
 
-/// An ATRV that tells where it is.
+/// An ATRV that reports its position.
 #[derive(Debug)]
 pub struct Atrv {
     mouth: Mouth,
@@ -47,16 +47,16 @@ pub struct Atrv {
     times: Times,
     hearing: Hearing,
     obedience: Obedience,
-    /// How often it tells where it is, and how many times in a turn in lockstep.
+    /// Interval of the position reports; in lockstep, `a_turn` is their number in a turn.
     reports: Duration,
     a_turn: u32,
-    /// When it was asked for its brake last.
+    /// Time of the last request for the state of the brake.
     asked: Nanos,
-    /// What the plan can replay.
+    /// Recorded paths that the plan can replay.
     pub(crate) paths: PathStore,
 }
 
-/// How long it takes in a turn to say all that a turn can say, and to leave the controllers alone after it.
+/// Returns the time that all commands of a turn take on the line, with the pause after each of them.
 pub(crate) fn turn_takes(config: &Config) -> Duration {
     let [along, round] = motion::commands(&Twist::default(), config);
     let commands = [Command::Status, along, round];
@@ -65,8 +65,8 @@ pub(crate) fn turn_takes(config: &Config) -> Duration {
 }
 
 impl Atrv {
-    /// Opens the line and prepares the robot: it stands, its brake is released, it tells where it is, and each sonar has
-    /// pinged.
+    /// Opens the line and prepares the robot: it is at rest, its brake is released, it reports its position, and each
+    /// sonar has pinged.
     ///
     /// # Errors
     /// There is no line, no robot, its brake is set, or its sonars are silent.
@@ -135,7 +135,7 @@ impl Atrv {
         }
     }
 
-    /// Tells the robot how to move, and returns the speeds of its right and its left side for that, in m/s.
+    /// Commands a motion, and returns the speeds of the robot's right and left side for it, in m/s.
     fn move_on(&mut self, input: &Twist) -> Result<[f64; 2], Fault> {
         let commands = motion::commands(input, &self.config);
         for command in &commands {
@@ -146,7 +146,7 @@ impl Atrv {
         Ok(motion::asked(&commands, &self.config))
     }
 
-    /// Tells it something else.
+    /// Sends a command that is not a motion.
     fn say(&mut self, command: Command) -> Result<(), Fault> {
         self.mouth.say(&command.frame(self.config.escape), Instant::now() + self.config.patience())?;
         self.rest();
@@ -163,10 +163,12 @@ impl Atrv {
         self.hearing.take(self.mouth.line(), at, self.a_turn, patience)
     }
 
-    /// Tells the robot to stand, again and again, until it reports that it does. It may hear even if it is not heard.
+    /// Commands the robot to stop, repeatedly, until it reports that it is at rest. The robot may receive commands even
+    /// if its reports are lost.
     ///
     /// # Errors
-    /// Nothing can be sent, or in all of its time to stand the robot has not reported, or not that it stands.
+    /// Nothing can be sent, or within the time limit the robot has not reported, or has not reported that it is at
+    /// rest.
     fn stands(&mut self) -> Result<(), Fault> {
         let (begun, limit) = (Instant::now(), self.obedience.time_to_stand(STOPPING));
         // What it has reported before is of another time. If nothing can be read any more, that is found out below.
@@ -197,11 +199,12 @@ impl Atrv {
         Err(Fault::Moves)
     }
 
-    /// Sets the brake, again and again, until the robot reports that it is set: reports that it stands may come from a robot that
-    /// receives no commands, and has stopped itself.
+    /// Sets the brake, repeatedly, until the robot reports that it is set: a report of being at rest may come from a
+    /// robot that receives no commands, and has stopped itself.
     ///
     /// # Errors
-    /// Nothing can be sent, or in all of its time the robot has not answered, or not that its brake is set.
+    /// Nothing can be sent, or within the time limit the robot has not answered, or has not reported that its brake is
+    /// set.
     fn brakes(&mut self) -> Result<(), Fault> {
         self.hearing.forget_brake();
         let end = Instant::now() + self.clock.patience(BRAKING);
@@ -216,7 +219,7 @@ impl Atrv {
         }
     }
 
-    /// Returns `true` if the robot stands by its reports since the stop began.
+    /// Returns `true` if the robot's reports since the stop began show it at rest.
     fn is_at_rest(&mut self, patience: Duration) -> Result<bool, Fault> {
         let deadline = Instant::now() + patience;
         let Twist { v, omega } = self.hearing.speed(self.mouth.line(), self.a_turn.max(1), deadline)?;

@@ -1,4 +1,4 @@
-//! What can go wrong with an ATRV, each in a sentence for the operator that says what to do.
+//! Faults of an ATRV, each with a sentence for the operator that says what to do.
 
 use std::fmt;
 
@@ -8,30 +8,30 @@ use crate::command::Axis;
 use crate::frame::Garbled;
 use crate::report::Unreadable;
 
-/// Why the robot cannot be driven, or no longer.
+/// Reason why the robot cannot be driven, or can no longer be driven.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Fault {
     /// The run was asked to end while the robot was prepared; if it could not be stopped, why.
     Ended(Option<Box<Self>>),
     /// The line cannot be opened, is cut, or nothing came in time.
     Line(LineFault),
-    /// What came is no frame, and no report of where the robot is came besides.
+    /// The received bytes are not a frame, and no position report arrived either.
     Garbled(Garbled),
-    /// What came says nothing that a driver understands.
+    /// A received frame is not a report that a driver can read.
     Unreadable(Unreadable),
     /// The robot repeats its last report of its position: its clock does not advance.
     Repeated,
     /// The brake holds the robot, although the command to release it was sent.
     Braked,
-    /// The sonars of this direction, of sixteen, say nothing.
+    /// The sonars of this direction, one of sixteen, do not report.
     Deaf(u8),
-    /// No command was given for so long that the watchdog has stopped the robot.
+    /// The watchdog has stopped the robot, because no motion was commanded in time.
     Overslept,
-    /// It reports, but does not answer questions: the line to it is cut.
+    /// The robot reports, but does not answer requests: the line to it is cut.
     Unheard,
-    /// It does not report this axis.
+    /// The robot does not report this axis.
     Untold(Axis),
-    /// It does not report this bumper.
+    /// The robot does not report this bumper.
     Numb(u8),
     /// The robot has moved faster than commanded, or in the opposite direction, for this many milliseconds.
     Disobeys(u64),

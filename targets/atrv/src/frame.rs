@@ -3,35 +3,35 @@
 //!
 //! A 1B that is a value is followed by 00; 1B 02 begins a frame, 1B 03 ends it, 1B 01 is filler and means nothing.
 
-/// What marks a byte that is none.
+/// First byte of a two-byte mark.
 const ESCAPE: u8 = 0x1B;
-/// Behind it: nothing is meant.
+/// Second byte of filler, which has no meaning.
 const FILLER: u8 = 0x01;
-/// A frame begins.
+/// Second byte of the mark that begins a frame.
 const START: u8 = 0x02;
-/// A frame ends.
+/// Second byte of the mark that ends a frame.
 const END: u8 = 0x03;
-/// It was a value.
+/// Second byte of the mark for a data byte that is 1B.
 const LITERAL: u8 = 0x00;
 /// Port, id, opcode and length.
 const HEAD: usize = 4;
 /// The longest packet: its head, 255 bytes of data, the check.
 const LONGEST: usize = HEAD + 255 + 1;
-/// The most data of a packet that is written.
+/// Maximum number of data bytes of a packet that is written.
 const MOST: usize = 32;
-/// The longest such packet on the line, if every byte of it had to be marked.
+/// Length on the line of a packet with [`MOST`] bytes of data, if every byte of it had to be marked.
 const ROOM: usize = 2 * (HEAD + MOST + 1) + 4;
 
-/// What a frame says.
+/// Content of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Packet<'a> {
-    /// The part of the robot that it is for, or from.
+    /// The part of the robot that receives or sends the packet.
     pub port: u8,
-    /// A number that the robot counts up, and nobody needs.
+    /// A number that the robot counts up, and that a driver ignores.
     pub id: u8,
-    /// What it is about.
+    /// Number of the command or report, among those of the port.
     pub opcode: u8,
-    /// The rest.
+    /// Bytes after the packet's head.
     pub data: &'a [u8],
 }
 
@@ -42,16 +42,16 @@ pub struct Written {
     count: usize,
 }
 
-/// What is wrong with bytes that should be a frame.
+/// Reason why bytes are not a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Garbled {
-    /// It says that its data is the first, and there are as many bytes as the second.
+    /// The frame's length of data is the first number; the number of bytes is the second.
     Length(usize, usize),
-    /// The bytes come to the first check, and the frame says the second.
+    /// The check of the bytes is the first number; the frame's own check is the second.
     Check(u8, u8),
-    /// Behind 1B is this byte.
+    /// This byte follows 1B, and is no mark.
     Mark(u8),
-    /// Bytes outside of any frame, of which this is one.
+    /// This byte is outside of any frame.
     Outside(u8),
 }
 
@@ -72,8 +72,8 @@ pub(crate) fn check(bytes: &[u8]) -> u8 {
 }
 
 impl Packet<'_> {
-    /// Its bytes on the line. Data is at most 32 bytes long; of more, the first 32 are sent. Values that
-    /// are 1B are marked if `marks` says so.
+    /// Returns the frame's bytes on the line. Only the first 32 bytes of the data are sent. Bytes that are 1B are
+    /// marked if `marks` is `true`.
     #[must_use]
     pub fn written(&self, marks: bool) -> Written {
         let data = self.data.get(..self.data.len().min(MOST)).unwrap_or_default();
@@ -109,12 +109,12 @@ impl Written {
     }
 }
 
-/// Where in the stream of bytes a reader is.
+/// State of a reader within the stream of bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Place {
-    /// Outside of any frame; whether the last byte was 1B, and whether anything was told of what lies here.
+    /// Outside of any frame. `marked`: the last byte was 1B; `told`: an error was returned for these bytes.
     Outside { marked: bool, told: bool },
-    /// In a frame; whether the last byte was 1B.
+    /// Inside a frame. `marked`: the last byte was 1B.
     Inside { marked: bool },
 }
 
@@ -133,10 +133,10 @@ impl Default for Reader {
 }
 
 impl Reader {
-    /// Takes in the next byte: the packet that is whole with it, if one is.
+    /// Takes in the next byte, and returns the packet that it completes, if any.
     ///
     /// # Errors
-    /// What came so far is no frame. The reader waits for the next one to begin.
+    /// The bytes so far are not a frame. The reader waits for the next one to begin.
     pub fn take(&mut self, byte: u8) -> Result<Option<Packet<'_>>, Garbled> {
         match (self.place, byte) {
             (Place::Outside { marked: true, .. }, START) | (Place::Inside { marked: true }, START) => {

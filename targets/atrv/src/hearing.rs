@@ -1,4 +1,4 @@
-//! What the robot has told so far: the stream of its reports, taken in as they come, and what is wrong with it.
+//! Reception of the robot's reports: the state that they give, and the faults in them.
 
 use std::time::{Duration, Instant};
 
@@ -13,50 +13,50 @@ use crate::motion::{Odometer, twist};
 use crate::report::Report;
 use crate::ring::Ring;
 
-/// The most that is read at once.
+/// Maximum number of bytes that are read at once.
 const CHUNK: usize = 512;
-/// The time that an answer may take besides that for two questions.
+/// Maximum delay of an answer, beyond twice the time between two requests.
 const LATE: Duration = Duration::from_millis(300);
-/// How many times something is read before it is looked whether that is enough: a robot may talk without end.
+/// Maximum number of reads before the caller checks whether enough has arrived: a robot may send without end.
 const READS: usize = 64;
 
-/// All that is known of the robot.
+/// Reader of the robot's reports, with the state of the robot according to them.
 #[derive(Debug)]
 pub(crate) struct Hearing {
     reader: Reader,
     known: Known,
-    /// When it told where it is, by this computer's clock.
+    /// Time of the last position report, by this computer's clock.
     told: Option<Instant>,
-    /// What was wrong since then.
+    /// Fault found since the last position report.
     trouble: Option<Fault>,
     /// The longest time between two answers about its brake.
     unanswered: Nanos,
 }
 
-/// What its reports say.
+/// State of the robot according to its reports.
 #[derive(Debug)]
 struct Known {
     config: Config,
     odometer: Odometer,
     ring: Ring,
-    /// Position and velocity along the way, which are told before those of the turn; once used they are none.
+    /// Position and velocity of the translation, which are reported before those of the rotation; `None` after use.
     along: Option<(i32, i32)>,
     velocity: Twist,
-    /// When it told where it is, by its own clock.
+    /// Time of the last position report, by the controller's clock.
     time: Option<u32>,
-    /// Bit 0 for the bumper before, bit 1 for the one behind.
+    /// Bit 0 for the front bumper, bit 1 for the rear one.
     switches: u32,
-    /// The time at which it reported each of them last.
+    /// Time of the last report of each bumper.
     felt: [Option<Nanos>; 2],
     /// `true` if the brake is set, `None` before the first report; and the time of the last report.
     is_braked: Option<bool>,
     answered: Nanos,
-    /// What its battery was at then.
+    /// Battery voltage at the last report of the brake.
     battery: Volts,
 }
 
 impl Hearing {
-    /// Before the first report, of a robot that is asked for its brake in every `period` at most.
+    /// Creates the state before the first report, of a robot whose brake is requested at most once in `period`.
     pub(crate) fn new(config: &Config, period: Duration) -> Self {
         let known = Known {
             config: config.clone(),
@@ -76,11 +76,11 @@ impl Hearing {
         Self { reader: Reader::default(), known, told: None, trouble: None, unanswered }
     }
 
-    /// Takes in what has come, and waits until the robot has told `count` times where it is, or, for a `count` of 0, until
-    /// it has done so within the last `patience`.
+    /// Takes in the reports that have arrived, and waits for `count` position reports, or, for a `count` of 0, until
+    /// one has arrived within the last `patience`.
     ///
     /// # Errors
-    /// The line is closed, or `patience` was not enough.
+    /// The line is closed, or no such report has arrived within `patience`.
     pub(crate) fn take(&mut self, line: &Line, at: Nanos, count: u32, patience: Duration) -> Result<(), Fault> {
         let begun = Instant::now();
         let mut told = 0;
@@ -100,7 +100,8 @@ impl Hearing {
         }
     }
 
-    /// Forgets what it has told until now, but not what is known by that.
+    /// Takes in the reports that have arrived, and forgets the time and the fault of the last ones, but not the state
+    /// that they gave.
     ///
     /// # Errors
     /// The line is closed.
@@ -110,11 +111,11 @@ impl Hearing {
         Ok(())
     }
 
-    /// Takes in what has come, and until `deadline` waits for it to tell `count` times where it is. Returns how fast it moves by
-    /// what it has told since it was forgotten.
+    /// Takes in the reports that have arrived, and waits until `deadline` for `count` position reports. Returns the
+    /// velocity of the last position report since [`Self::forget`].
     ///
     /// # Errors
-    /// The line is closed, or it has told nothing since.
+    /// The line is closed, or no position has been reported since then.
     pub(crate) fn speed(&mut self, line: &Line, count: u32, deadline: Instant) -> Result<Twist, Fault> {
         let mut told = 0;
         loop {
@@ -156,7 +157,8 @@ impl Hearing {
         }
     }
 
-    /// What the start still waits for: the fault that it will be if it does not come.
+    /// Returns the fault that fails the start if the report that is still missing does not arrive, or `None` if all
+    /// have arrived.
     pub(crate) fn waits_for(&self) -> Option<Fault> {
         match self.known.is_braked {
             None => Some(Fault::Unheard),
@@ -168,10 +170,10 @@ impl Hearing {
         }
     }
 
-    /// Whether the robot can go on at the time of this output.
+    /// Checks that the robot can go on at the time of this output.
     ///
     /// # Errors
-    /// It is braked, its positions leap, or it has not told something for too long.
+    /// The robot is braked, its positions leap, or one of its reports is overdue.
     pub(crate) fn fault(&self, at: Nanos) -> Result<(), Fault> {
         let known = &self.known;
         if known.is_braked == Some(true) {
@@ -187,34 +189,34 @@ impl Hearing {
         silent.map_or(Ok(()), Err)
     }
 
-    /// Where it is.
+    /// Returns the robot's pose by odometry.
     pub(crate) fn pose(&self) -> Pose {
         self.known.odometer.pose
     }
 
-    /// How fast it moves.
+    /// Returns the robot's velocity.
     pub(crate) fn velocity(&self) -> Twist {
         self.known.velocity
     }
 
-    /// Its bumpers.
+    /// Returns the bumpers in contact, as bits.
     pub(crate) fn switches(&self) -> u32 {
         self.known.switches
     }
 
-    /// Its sonars.
+    /// Returns the last pings of each direction.
     pub(crate) fn pings(&self) -> &[Pings; SONARS] {
         &self.known.ring.pings
     }
 
-    /// Its battery, and whether that is being charged, which only its voltage tells.
+    /// Returns the battery's voltage and state; the voltage alone shows that it is being charged.
     pub(crate) fn supply(&self) -> Supply {
         let Known { battery, config, .. } = &self.known;
         let is_plugged = battery.0 > config.plugged_above;
         Supply { battery: *battery, is_low: battery.0 < config.low_battery, is_plugged }
     }
 
-    /// Takes in what is there; how often the robot has told where it is.
+    /// Takes in the reports that have arrived, and returns the number of position reports among them.
     fn drain(&mut self, line: &Line, at: Nanos) -> Result<u32, Fault> {
         let mut told = 0;
         for _ in 0..READS {
@@ -244,7 +246,7 @@ impl Hearing {
 }
 
 impl Known {
-    /// Takes in a packet; whether with it the robot has told where it is.
+    /// Takes in a packet, and returns `true` if it completes a position report.
     fn take(&mut self, packet: &Packet<'_>, at: Nanos) -> Result<bool, Fault> {
         match Report::read(packet).map_err(Fault::Unreadable)? {
             Report::Axis { axis: Axis::Translation, position, velocity, .. } => {
@@ -277,7 +279,7 @@ impl Known {
         Ok(false)
     }
 
-    /// A digital input says this.
+    /// Takes in the state of a digital input.
     fn feel(&mut self, address: u8, state: u16, at: Nanos) {
         match (address.wrapping_sub(self.config.bumper_address), self.config.bumpers) {
             (0, Bumpers::Bits) => (self.switches, self.felt) = (u32::from(state & 0b11), [Some(at); 2]),
@@ -292,7 +294,7 @@ impl Known {
         }
     }
 
-    /// The first bumper that has said nothing for too long, if that matters.
+    /// Returns the first bumper whose last report is too old, or `None` if the configuration sets no limit.
     fn numb(&self, at: Nanos) -> Option<u8> {
         let limit = Nanos(self.config.inputs.saturating_mul(1_000_000));
         let is_old = |felt: &Option<Nanos>| felt.is_none_or(|felt| at.since(felt) > limit);

@@ -1,4 +1,4 @@
-//! Where the sonars of the two ATRV-minis that are known look, and which of the paper's sixteen directions each speaks for.
+//! Directions of the sonars of the two known ATRV-minis, and the paper's sixteen directions that each sonar stands for.
 
 use mdle_runtime::SONARS;
 
@@ -10,14 +10,14 @@ pub(crate) const RING_RADIUS: f64 = 0.28;
 /// A sonar on the body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Transducer {
-    /// Its board, times 16, and its channel.
+    /// Board of the sonar, times 16, plus its channel.
     pub(crate) id: u8,
     /// Forward and to the left of the centre, in metres.
     x: f64,
     y: f64,
     /// Counter-clockwise from the front.
     degrees: f64,
-    /// The directions it speaks for: bit `i` for direction `i`.
+    /// The directions for which the sonar pings: bit `i` for direction `i`.
     pub(crate) directions: u16,
 }
 
@@ -44,7 +44,7 @@ const HALF: [(f64, f64, f64, &[usize]); 8] = [
     (-225.43, 230.03, 90.0, &[4, 5, 6]),
 ];
 
-/// All sonars of the robot with so many.
+/// Returns all sonars of a robot that has this number of sonars.
 pub(crate) fn transducers(sonars: u8) -> [Option<Transducer>; MOST] {
     let mut all = [None; MOST];
     let known = if sonars == 16 { two_boards } else { four_boards };

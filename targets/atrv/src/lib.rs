@@ -27,7 +27,7 @@ pub use driver::Atrv;
 pub use fault::Fault;
 pub use frame::{Garbled, Packet, Reader, Written};
 pub use mdle_runtime::Sensed;
-/// Its output.
+/// The robot's output.
 pub use mdle_runtime::Sensed as Output;
 /// The robot's input.
 pub use mdle_runtime::Twist as Input;

@@ -1,5 +1,5 @@
-//! Speeds of the robot in the controller's units, and the way that its positions tell.
-//! See docs/src/reference/protocols.md, 2.5.
+//! Conversion between the robot's speeds and the controller's units, and odometry from the positions of the axes. See
+//! docs/src/reference/protocols.md, 2.5.
 
 use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians, RadiansPerSecond, Twist};
 
@@ -8,7 +8,7 @@ use crate::config::Config;
 
 /// No robot goes further than this between two reports, in metres; a number that says so is another one's.
 const LEAP: f64 = 1.0;
-/// After so many leaps more than steps its positions mean nothing.
+/// If leaps outnumber steps by this many, the positions are meaningless.
 const LEAPS: u8 = 4;
 
 /// The commands for this input, translation first, no side above the fastest: both axes are slowed down alike, so that
@@ -35,7 +35,7 @@ pub(crate) fn commands(input: &Twist, config: &Config) -> [Command; 2] {
     [Command::Move(Axis::Translation, translation), Command::Move(Axis::Rotation, rotation)]
 }
 
-/// Where the robot is by the positions of its axes, from the first report on.
+/// The robot's pose by the positions of its axes, from the first report on.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Odometer {
     last: Option<(i32, i32)>,

@@ -1,4 +1,5 @@
-//! What says commands on the line, and says "stop" by itself when nobody has given one for too long.
+//! Output of commands to the line, and the watchdog, which stops the robot when no motion has been commanded for too
+//! long.
 //!
 //! The controller stops a robot whose line has fallen silent, after a time that nobody states. So a thread of this program
 //! does it as well, and only if the program dies the controller is what stops the robot.
@@ -12,15 +13,15 @@ use mdle_serial::{Line, Moment};
 use crate::fault::Fault;
 use crate::frame::Written;
 
-/// How long the line may take the watchdog's commands.
+/// Maximum time for the line to accept the watchdog's commands.
 const STOPPING: Duration = Duration::from_millis(100);
 
-/// The line, and the watchdog over what is said on it.
+/// The line, and the watchdog over the commands on it.
 #[derive(Debug)]
 pub(crate) struct Mouth {
     shared: Arc<Shared>,
     watching: Option<JoinHandle<()>>,
-    /// After how long without a motion the robot has been stopped.
+    /// Time without a motion command after which the watchdog stops the robot.
     limit: Option<Duration>,
 }
 
@@ -31,12 +32,12 @@ struct Shared {
     over: Condvar,
 }
 
-/// What the watchdog goes by.
+/// State of the watchdog.
 #[derive(Debug)]
 struct Watch {
-    /// When the robot was told to move last; `None` while it need not be.
+    /// Time of the last motion command; `None` while no further one is due.
     told: Option<Moment>,
-    /// Whether it has stopped the robot.
+    /// Set to `true` when the watchdog has stopped the robot.
     has_bitten: bool,
     is_over: bool,
 }
@@ -49,7 +50,8 @@ impl Shared {
 }
 
 impl Mouth {
-    /// On this line; with a limit, its watchdog says `stop` when after a motion no other one follows for so long.
+    /// Creates the output to `line`. With a limit, the watchdog sends `stop` when no motion command follows another
+    /// within the limit.
     pub(crate) fn new(line: Line, watchdog: Option<(Duration, [Written; 2])>) -> Self {
         let watch = Watch { told: None, has_bitten: false, is_over: false };
         let limit = watchdog.as_ref().map(|(limit, _)| *limit);
@@ -68,7 +70,7 @@ impl Mouth {
         &self.shared.line
     }
 
-    /// Says something that moves nothing.
+    /// Sends a command that is not a motion.
     ///
     /// # Errors
     /// The line is closed, or takes nothing until `deadline`.
@@ -78,10 +80,10 @@ impl Mouth {
         Ok(self.shared.line.write(frame.bytes(), deadline)?)
     }
 
-    /// Says how to move. From then on the watchdog waits for the next time.
+    /// Sends a motion command. From then on the watchdog waits for the next one.
     ///
     /// # Errors
-    /// The same, or the watchdog has stopped the robot meanwhile.
+    /// The line is closed, or takes nothing until `deadline`, or the watchdog has stopped the robot.
     pub(crate) fn say_motion(&self, frame: &Written, deadline: Instant) -> Result<(), Fault> {
         let mut watch = self.shared.watch();
         // Where this program, or the computer, was stopped, so was the watchdog.
@@ -93,7 +95,7 @@ impl Mouth {
         Ok(self.shared.line.write(frame.bytes(), deadline)?)
     }
 
-    /// The robot is being stopped: the watchdog need no longer.
+    /// Disarms the watchdog, because the robot is being stopped.
     pub(crate) fn ends(&self) {
         let mut watch = self.shared.watch();
         (watch.told, watch.has_bitten) = (None, false);
@@ -111,7 +113,7 @@ impl Drop for Mouth {
     }
 }
 
-/// The watchdog.
+/// Runs the watchdog until the output is dropped.
 fn keep_watch(shared: &Shared, limit: Duration, stop: &[Written; 2]) {
     let mut watch = shared.watch();
     while !watch.is_over {

@@ -1,58 +1,58 @@
-//! What an rFLEX controller tells: where its axes are, what its sonars hear, its bumpers, its brake.
-//! See docs/src/reference/protocols.md, 2.4.
+//! Reports of an rFLEX controller: the positions of its axes, the echoes of its sonars, its bumpers, its brake. See
+//! docs/src/reference/protocols.md, 2.4.
 
 use crate::command::Axis;
 use crate::frame::Packet;
 
-/// What a packet from the robot says, in the controller's units.
+/// Content of a packet from the robot, in the controller's units.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Report<'a> {
-    /// Where an axis is, how far it has gone since it was switched on, and how fast it moves.
+    /// Position of an axis relative to that at switch-on, and its velocity.
     Axis {
-        /// Which.
+        /// Axis that the report is about.
         axis: Axis,
-        /// It goes on at the other end where its 32 bits end.
+        /// Position of the axis; it wraps at 32 bits.
         position: i32,
-        /// Per second.
+        /// Velocity of the axis, per second.
         velocity: i32,
-        /// When, by the controller's clock, in milliseconds.
+        /// Time of the report by the controller's clock, in milliseconds.
         time: u32,
     },
-    /// What some of the sonars have heard.
+    /// Echoes of some of the sonars.
     Sonars(Echoes<'a>),
     /// A digital input: a bumper, or something else.
     Input {
-        /// Which.
+        /// Address of the input.
         address: u8,
-        /// What it says.
+        /// State of the input.
         state: u16,
     },
     /// The battery and the brake.
     Status {
-        /// Hundredths of a volt, less what the electronics take.
+        /// Voltage in hundredths of a volt, less the drop across the electronics.
         battery: u32,
-        /// Whether it holds the robot.
+        /// Set to `true` if the brake holds the robot.
         is_braked: bool,
     },
     /// Something that a driver does not need.
     Other,
 }
 
-/// Why a packet says nothing.
+/// Reason why a packet cannot be read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Unreadable {
-    /// No part of an rFLEX sends it: its port and opcode.
+    /// No part of an rFLEX sends a packet of this port and opcode.
     Unknown(u8, u8),
-    /// A report of this port and opcode with so little data.
+    /// A report of this port and opcode has only this number of data bytes.
     Short(u8, u8, usize),
 }
 
-/// What sonars have heard: three bytes for each.
+/// Echoes of sonars, three bytes for each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Echoes<'a>(&'a [u8]);
 
 impl Echoes<'_> {
-    /// The number of each sonar with the range that it tells.
+    /// Returns the number of each sonar and the range that it reports.
     pub fn each(&self) -> impl Iterator<Item = (u8, u16)> {
         self.0.chunks_exact(3).filter_map(|echo| match echo {
             [sonar, high, low] => Some((*sonar, u16::from_be_bytes([*high, *low]))),
@@ -62,10 +62,10 @@ impl Echoes<'_> {
 }
 
 impl<'a> Report<'a> {
-    /// What this packet says.
+    /// Returns the content of this packet.
     ///
     /// # Errors
-    /// No rFLEX sends such packets, or it is shorter than it can be.
+    /// No rFLEX sends such packets, or the packet is too short for its content.
     pub fn read(packet: &Packet<'a>) -> Result<Self, Unreadable> {
         let short = || Unreadable::Short(packet.port, packet.opcode, packet.data.len());
         match (packet.port, packet.opcode) {
@@ -79,7 +79,7 @@ impl<'a> Report<'a> {
     }
 }
 
-/// A return value and the time, which axis, its position, its velocity; behind them what the controller was told.
+/// Reads a return value, the time, the axis, its position and its velocity; the rest repeats the controller's commands.
 fn axis(data: &[u8]) -> Option<Report<'static>> {
     // Twenty-five bytes have come, or it is not what it says.
     let [_, _, _, _, t0, t1, t2, t3, axis, p0, p1, p2, p3, v0, v1, v2, v3, _, _, _, _, _, _, _, _, ..] = data else {
@@ -95,7 +95,7 @@ fn axis(data: &[u8]) -> Option<Report<'static>> {
     Some(Report::Axis { axis, position, velocity: i32::from_be_bytes([*v0, *v1, *v2, *v3]), time })
 }
 
-/// The time, an address, and what is there: some controllers leave a byte out.
+/// Reads the time, an address and the state there, of which some controllers leave a byte out.
 fn input(data: &[u8]) -> Option<Report<'static>> {
     match data {
         [_, _, _, _, address, high, low] => {
@@ -106,7 +106,7 @@ fn input(data: &[u8]) -> Option<Report<'static>> {
     }
 }
 
-/// The time, the voltage, the brake.
+/// Reads the time, the voltage and the brake.
 fn status(data: &[u8]) -> Option<Report<'static>> {
     let [_, _, _, _, b0, b1, b2, b3, brake, ..] = data else { return None };
     Some(Report::Status { battery: u32::from_be_bytes([*b0, *b1, *b2, *b3]), is_braked: *brake != 0 })

@@ -6,7 +6,7 @@ use mdle_runtime::{Meters, Nanos, PINGS_KEPT, Ping, Pings, Pose, SONARS};
 use crate::config::Config;
 use crate::layout::{MOST, Transducer, transducers};
 
-/// A direction that has not pinged for so long is deaf: a sweep takes a fifth of it.
+/// A direction that has not pinged for this time is deaf: a sweep takes a fifth of it.
 const DEAF: Nanos = Nanos(1_000_000_000);
 
 /// The sonars and their pings.
@@ -16,10 +16,10 @@ const DEAF: Nanos = Nanos(1_000_000_000);
 #[derive(Debug, Clone)]
 pub(crate) struct Ring {
     transducers: [Option<Transducer>; MOST],
-    /// What each transducer heard last, as a range of the ring.
+    /// Last range of each transducer, measured from the ring.
     ranges: [Option<f64>; MOST],
     pub(crate) pings: [Pings; SONARS],
-    /// Which transducers have reported since each direction pinged last: bit `i` for number `i`.
+    /// Transducers that have reported since each direction pinged last: bit `i` for number `i`.
     reported: [u32; SONARS],
     counts_per_metre: f64,
     reach: f64,
@@ -38,7 +38,8 @@ impl Ring {
         }
     }
 
-    /// The sonar with this id has heard this, with the robot at `pose` by odometry. An id that the robot has not is another
+    /// Takes in the echo of the sonar with this id, with the robot at `pose` by odometry. An id without a sonar is
+    /// another
     /// channel of a board.
     pub(crate) fn take(&mut self, id: u8, counts: u16, at: Nanos, pose: Pose) {
         let found = self.transducers.iter().zip(0..).find(|(sonar, _)| sonar.is_some_and(|sonar| sonar.id == id));
@@ -65,13 +66,13 @@ impl Ring {
         }
     }
 
-    /// The lowest direction without as many pings as are kept.
+    /// Returns the lowest direction with fewer pings than are kept.
     pub(crate) fn unheard(&self) -> Option<u8> {
         let all = (0..).zip(&self.pings);
         all.filter(|(_, pings)| pings.newest_first().count() < PINGS_KEPT).map(|(direction, _)| direction).next()
     }
 
-    /// The lowest direction that has said nothing for too long.
+    /// Returns the lowest direction whose last ping is too old.
     pub(crate) fn deaf(&self, now: Nanos) -> Option<u8> {
         let all = (0..).zip(&self.pings);
         let is_old = |pings: &Pings| pings.newest_first().next().is_none_or(|ping| now.since(ping.at) > DEAF);
@@ -111,7 +112,7 @@ mod tests {
         Ring::new(&Config { sonars, ..Configured::read(None, None).unwrap().config })
     }
 
-    /// What a direction has heard, newest first: the time, and the range in millimetres.
+    /// Returns the pings of a direction, newest first: the time, and the range in millimetres.
     fn heard(ring: &Ring, direction: usize) -> Vec<(u64, Option<i32>)> {
         let millimetres = |range: Meters| libm::round(range.0 * 1000.0) as i32;
         ring.pings[direction].newest_first().map(|ping| (ping.at.0, ping.range.map(millimetres))).collect()

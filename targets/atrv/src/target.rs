@@ -11,7 +11,7 @@ use crate::config::Config;
 use crate::driver::{Atrv, turn_takes};
 use crate::fault::Fault;
 
-/// How much later than it should a turn may be before the watchdog stops the robot.
+/// Margin by which a period has to be shorter than the watchdog's limit, for turns that are late.
 const SLACK: Duration = Duration::from_millis(50);
 
 impl SerialRobot for Atrv {

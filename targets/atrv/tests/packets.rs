@@ -10,7 +10,7 @@ fn bytes(hex: &str) -> Vec<u8> {
 /// A packet: its port, id, opcode and data.
 type Owned = (u8, u8, u8, Vec<u8>);
 
-/// What a reader makes of these bytes: each packet with its data, and each thing that is wrong.
+/// Returns the results of a reader for these bytes: each packet with its data, and each error.
 fn read(bytes: &[u8]) -> Vec<Result<Owned, Garbled>> {
     let mut reader = Reader::default();
     let mut found = Vec::new();
@@ -68,7 +68,7 @@ fn commands_are_the_worked_packets() {
     }
 }
 
-/// What these bytes say, handed to `is`.
+/// Hands the report in these bytes to `is`.
 fn said(hex: &str, is: impl FnOnce(u8, Report<'_>)) {
     let (port, id, opcode, data) = packet(hex);
     is(id, Report::read(&Packet { port, id, opcode, data: &data }).unwrap());

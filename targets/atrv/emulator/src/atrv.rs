@@ -1,4 +1,4 @@
-//! An ATRV-mini in a simulated world: what each command does to it, and what it tells as time passes.
+//! An ATRV-mini in a simulated world: the effect of each command, and the reports that it sends as time passes.
 
 mod telling;
 
@@ -11,21 +11,21 @@ use mdle_sim::{Disc, Output, Simulated};
 use crate::wire::{Incoming, Request, number};
 use telling::Schedule;
 
-/// What the controller counts for a metre and a radian.
+/// Controller's units per metre and per radian.
 const A_METRE: f64 = 139_654.7;
 const A_RADIAN: f64 = 49_784.5;
-/// After how long without a command it stops by itself, unless it is told otherwise.
+/// Default time without a command after which the robot stops by itself.
 const FAILSAFE: Duration = Duration::from_secs(1);
-/// By how much the battery is above what the controller tells, in volts.
+/// Difference between the battery's voltage and the controller's report of it, in volts.
 const ABOVE: f64 = 1.82;
-/// What it tells of a low battery and of one on its charger, in hundredths of a volt: the charger's voltage is higher than
-/// that of any battery.
+/// Reported voltages of a low battery and of a battery on its charger, in hundredths of a volt: the charger's voltage
+/// is higher than that of any battery.
 const LOW: u32 = 1850;
 const PLUGGED: u32 = 2650;
 /// The distance between its sides, in metres, as its body has it.
 const BETWEEN: f64 = 0.4;
 
-/// The steps in which the time of its body passes: as many as it takes for none to be longer than [`STEP`].
+/// Returns the time step of the robot's body: the step of `pace`, divided so that no part is longer than [`STEP`].
 #[must_use]
 pub fn step(pace: Pace) -> Duration {
     let step = pace.step();
@@ -39,38 +39,39 @@ pub struct Atrv {
     step: Duration,
     sensed: Output,
     incoming: Incoming,
-    /// What is still to be sent, and how many reports there have been.
+    /// Reports that are still to be sent; `count` is the number of the last report.
     said: Vec<Vec<u8>>,
     count: u8,
     /// The commands, forward and turning, in the robot's units per second, and the last command that arrived.
     told: (i32, i32),
     asked: (i32, i32),
     orders: Orders,
-    /// How far each axis has gone, in its units.
+    /// Distances of both axes, in the controller's units.
     gone: (f64, f64),
     axes: Schedule,
     inputs: Schedule,
-    /// What it has told of its axes.
+    /// Data of the last axis reports.
     told_axes: Vec<Vec<u8>>,
-    /// Which pings have been told, while the sonars run.
+    /// Time of the last reported ping of each sonar, while the sonars run.
     pings: Option<Vec<Nanos>>,
     is_braked: bool,
     silence: Duration,
-    /// How long it has been on.
+    /// Time since the robot was switched on.
     age: Duration,
-    /// Whether its emergency stop is pressed.
+    /// Set to `true` while the emergency stop is pressed.
     pub emergency: bool,
-    /// What else is the matter with it.
+    /// Ailments that the robot suffers from.
     ailments: Vec<Ailment>,
-    /// After how long without a command it stops by itself.
+    /// Time without a command after which the robot stops by itself.
     pub failsafe: Duration,
 }
 
 impl Atrv {
-    /// A robot that has just been switched on, whose body's time passes in such steps. `marks` as for [`Incoming::new`].
+    /// Creates a robot that has just been switched on, whose body's time passes in steps of `step`. `marks` is as for
+    /// [`Incoming::new`].
     ///
     /// # Errors
-    /// The world's sentence about an input that it cannot take, which none here is.
+    /// The world's error about an input that it cannot take, which does not occur here.
     pub fn new(mut body: Simulated, step: Duration, marks: bool) -> Result<Self, String> {
         let sensed = body.exchange(&Twist::default()).map_err(|error| error.to_string())?;
         Ok(Self {
@@ -97,19 +98,19 @@ impl Atrv {
         })
     }
 
-    /// Where the robot really is.
+    /// Returns the true pose of the robot.
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.body.pose()
     }
 
-    /// How fast it moves.
+    /// Returns the velocity that the robot measures.
     #[must_use]
     pub fn velocity(&self) -> Twist {
         self.sensed.velocity
     }
 
-    /// Whether its brake holds it.
+    /// Returns `true` if the brake or the emergency stop holds the robot.
     #[must_use]
     pub fn is_braked(&self) -> bool {
         self.is_braked || self.emergency
@@ -121,7 +122,7 @@ impl Atrv {
         &self.orders
     }
 
-    /// Does what it is told; whether that was to turn, which is the second half of a motion.
+    /// Executes a command, and returns `true` if it is one to turn, which is the second half of a motion.
     fn does(&mut self, request: &Request) -> bool {
         if self.has(Ailment::Deaf) {
             return request.port == 2 && request.code == 7 && request.data.first() == Some(&1);
@@ -186,7 +187,7 @@ impl Atrv {
         }
     }
 
-    /// One step of the world, after which it is so old.
+    /// Advances the world by one step, at whose end the robot's age is `age`.
     fn tick(&mut self, age: Duration) -> Result<(), String> {
         self.silence += age.saturating_sub(self.age);
         self.age = age;
@@ -214,7 +215,7 @@ impl Atrv {
         Ok(())
     }
 
-    /// The axes have gone from there to where its odometry is.
+    /// Moves the axes by the way from `before` to the pose of the odometry.
     fn goes(&mut self, before: &Pose) {
         let after = &self.sensed.odometry;
         let turn = (after.theta.0 - before.theta.0 + std::f64::consts::PI).rem_euclid(std::f64::consts::TAU)
@@ -226,7 +227,7 @@ impl Atrv {
         self.gone = (self.gone.0 + way * A_METRE, self.gone.1 + turn * A_RADIAN);
     }
 
-    /// What it tells of its battery, in hundredths of a volt. On the charger that is no longer low.
+    /// Returns the battery's voltage as reported, in hundredths of a volt. On the charger it is never low.
     fn battery(&self) -> u32 {
         let supply = self.body.supplied();
         if self.has(Ailment::PluggedIn) || supply.is_plugged {
@@ -243,7 +244,7 @@ impl Atrv {
     }
 }
 
-/// How the body moves if its right side does not.
+/// Returns the motion of a body whose right side does not move.
 fn left_alone(input: &Twist) -> Twist {
     let left = input.v.0 - input.omega.0 * (BETWEEN / 2.0);
     Twist { v: MetersPerSecond(left / 2.0), omega: RadiansPerSecond(-left / BETWEEN) }

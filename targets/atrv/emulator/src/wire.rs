@@ -10,9 +10,9 @@ const LONGEST: usize = 1000;
 pub struct Request {
     /// The part: 1 system, 2 motors, 4 sonars, 5 digital inputs.
     pub port: u8,
-    /// What it is to do.
+    /// Number of the command, among those of the part.
     pub code: u8,
-    /// What comes with it.
+    /// Arguments of the command.
     pub data: Vec<u8>,
 }
 
@@ -20,7 +20,7 @@ pub struct Request {
 #[derive(Debug, Default)]
 pub struct Incoming {
     bytes: Vec<u8>,
-    /// Whether it knows that `1B 00` is a value.
+    /// Set to `true` if `1B 00` is taken as a value.
     marks: bool,
 }
 
@@ -36,7 +36,7 @@ impl Incoming {
         self.bytes.extend_from_slice(bytes);
     }
 
-    /// How many bytes it keeps, of which something may still come.
+    /// Returns the number of bytes that are kept for a command that is not complete.
     #[must_use]
     pub fn kept(&self) -> usize {
         self.bytes.len()
@@ -68,7 +68,7 @@ impl Incoming {
         }
     }
 
-    /// What lies between the marks of the command that begins here.
+    /// Returns the bytes between the marks of the command at the beginning of the kept bytes.
     fn body(&self) -> Body {
         let mut body = Vec::new();
         let mut at = 2;
@@ -96,11 +96,11 @@ impl Incoming {
 }
 
 enum Body {
-    /// It has not ended yet.
+    /// The command has not ended yet.
     Open,
-    /// So many bytes make none.
+    /// This number of bytes is not a command.
     Lost(usize),
-    /// It takes so many bytes of the line.
+    /// The command's bytes, and the number of bytes that it takes on the line.
     Whole(Vec<u8>, usize),
 }
 

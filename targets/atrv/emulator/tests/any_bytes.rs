@@ -28,18 +28,18 @@ fn packets(reader: &mut Reader, bytes: &[u8]) -> Vec<(u8, u8, Vec<u8>)> {
     found
 }
 
-/// The same as the robot finds them.
+/// Returns the commands that the robot finds in these bytes.
 fn requests(incoming: &mut Incoming, bytes: &[u8]) -> Vec<(u8, u8, Vec<u8>)> {
     incoming.push(bytes);
     std::iter::from_fn(|| incoming.next_request()).map(|found| (found.port, found.code, found.data)).collect()
 }
 
-/// What brings a reader out of whatever it is in.
+/// Returns `noise` with an end mark, which brings a reader out of any state.
 fn ended(noise: &[u8]) -> Vec<u8> {
     [noise, &[0x1B, 0x03]].concat()
 }
 
-/// What each test is run with; it prints the seed, which is seen where the test fails.
+/// Configuration of each test; prints the random seed, which is shown when the test fails.
 fn config() -> ProptestConfig {
     let default = ProptestConfig::default();
     let rng_seed = match default.rng_seed {

@@ -22,7 +22,7 @@ fn ran_for(turns: u32, faults: &[&str], speed: fn(turn: u32) -> f64) -> Ran {
     mdle_emulator::ran(turns, faults, speed).unwrap()
 }
 
-/// When faults have begun, by the time of the robot's world.
+/// World time at which the faults have begun.
 const BEGUN: Duration = Duration::from_secs(3);
 
 /// Returns the reason for which a driver refuses a robot that has this fault from the beginning.
@@ -44,7 +44,7 @@ fn ahead(_: u32) -> f64 {
     0.2
 }
 
-/// Twenty centimetres a second until the fault has begun, and none after it.
+/// Returns a speed of 0.2 m/s until the fault has begun, and 0 after it.
 fn ahead_then_none(turn: u32) -> f64 {
     if turn < 30 { 0.2 } else { 0.0 }
 }

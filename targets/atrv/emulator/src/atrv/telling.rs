@@ -1,4 +1,5 @@
-//! What the robot tells by itself: where its axes are, what its sonars hear, its bumpers; and when.
+//! Reports that the robot sends by itself: the positions of its axes, the echoes of its sonars, its bumpers; and their
+//! schedule.
 
 use std::time::Duration;
 
@@ -8,21 +9,21 @@ use mdle_runtime::Twist;
 use super::{A_METRE, A_RADIAN, Atrv};
 use crate::wire::report;
 
-/// What a sonar counts for a metre.
+/// Sonar's counts per metre.
 const A_RANGE: f64 = 1550.0;
 /// The boards with the body's sonars, six on each: front left, rear left, front right, rear right.
 const BOARDS: [u8; 4] = [0, 1, 3, 2];
-/// What it tells when it has heard nothing.
+/// Counts that a sonar without an echo reports.
 const NOTHING: u16 = 32_766;
 /// The distance of each position from the one before when they leap, in metres.
 const LEAP: f64 = 3.0;
-/// In every so many reports there is filler.
+/// Number of reports from one with filler to the next one with filler.
 const FILLED: u8 = 7;
 
-/// Something that is told again and again.
+/// Schedule of a report that is sent periodically.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Schedule {
-    /// Zero for never.
+    /// Interval of the report; zero for never.
     period: Duration,
     due: Duration,
 }
@@ -53,7 +54,7 @@ impl Atrv {
         [&[0; 4][..], &self.time(), &[axis], &position.to_be_bytes(), &speed.to_be_bytes(), &[0; 8]].concat()
     }
 
-    /// A report for the sonars that have pinged since the last one, if any have.
+    /// Reports the sonars that have pinged since the last such report, if any have.
     pub(super) fn tell_pings(&mut self) {
         let is_dead = self.has(Ailment::DeadSonar);
         let is_mute = self.has(Ailment::NoPings);
@@ -105,7 +106,7 @@ impl Schedule {
         Self { period, due: now + period }
     }
 
-    /// Whether it is time.
+    /// Returns `true` if the report is due, and then schedules the next one.
     pub(super) fn is_due(&mut self, now: Duration) -> bool {
         let is_due = !self.period.is_zero() && self.due <= now;
         if is_due {

@@ -20,7 +20,7 @@ fn driven(driver: &mut Atrv, v: f64, omega: f64, periods: usize) -> Output {
     (0..periods).map(|_| driver.exchange(&input).unwrap()).last().unwrap()
 }
 
-/// What a sonar heard last, in metres.
+/// Returns the range of a sonar's last ping, in metres.
 fn heard(output: &Output, sonar: u8) -> f64 {
     output.pings(SonarId::new(sonar)).newest_first().next().unwrap().range.unwrap().0
 }

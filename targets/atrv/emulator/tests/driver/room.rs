@@ -14,13 +14,13 @@ use mdle_runtime::{Robot as _, Twist};
 use mdle_sim::{Body, Make, Simulated, World};
 
 pub(crate) const PERIOD: Duration = Duration::from_millis(100);
-/// Walls 2 m before the robot, 1.5 m to its left, 1 m to its right and 3 m behind it.
+/// Walls 2 m ahead of the robot, 1.5 m to its left, 1 m to its right and 3 m to its rear.
 const ROOM: &str =
     "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[2, -1], [2, 1.5], [-3, 1.5], [-3, -1], [2, -1]]";
 
-/// Longer than any machine takes.
+/// Maximum time to wait for a report, in milliseconds: longer than any machine takes.
 const LONG: u64 = 60_000;
-/// What is not going to come is not waited for.
+/// Maximum time to wait for a report that never arrives, in milliseconds.
 const SHORT: u64 = 500;
 
 /// Ends the robot's thread when a test ends, also when it fails.
@@ -32,15 +32,15 @@ impl Drop for Ends<'_> {
     }
 }
 
-/// Not what is usual.
+/// Steering that differs from the default.
 pub(crate) const STEERING: Steering = Steering { rotate: 1.0, align: 3.0, avoid: 1.5 };
 
-/// The configuration of a robot at this line that answers within so many milliseconds.
+/// Returns the configuration of a robot at this line that has `answer` milliseconds for each report.
 fn config(port: &Port, answer: u64) -> Config {
     Config { answer, steering: STEERING, ..Configured::read(None, port.path().to_str()).unwrap().config }
 }
 
-/// The robot as an operator has it: who can press its emergency stop, and sees whether it has come to stand.
+/// The robot with an operator, who can press its emergency stop, and sees when it has come to rest.
 struct Watched<'a> {
     robot: Emulated,
     emergency: &'a AtomicBool,
@@ -77,7 +77,7 @@ impl mdle_emulator::Emulated for Watched<'_> {
     fn suffer(&mut self, _: Ailment) {}
 }
 
-/// What `drive` makes of a robot in the room, which is handed back.
+/// Runs `drive` with a robot in the room, and returns the robot and the result.
 fn in_the_room<T>(
     pace: Pace,
     [emergency, stands]: [&AtomicBool; 2],
@@ -112,40 +112,41 @@ fn in_the_room<T>(
     (watched.robot, result)
 }
 
-/// What `drive` makes of a robot in lockstep.
+/// Runs `drive` with a robot in lockstep, and returns the robot and the result.
 pub(crate) fn with_robot<T>(drive: impl FnOnce(&mut Atrv) -> T) -> (Emulated, T) {
     with_emergency(&AtomicBool::new(false), drive)
 }
 
-/// The same with somebody at its emergency stop.
+/// Runs `drive` with a robot in lockstep whose emergency stop is pressed while `pressed` is set.
 pub(crate) fn with_emergency<T>(pressed: &AtomicBool, drive: impl FnOnce(&mut Atrv) -> T) -> (Emulated, T) {
     let off = AtomicBool::new(false);
     let lights = [pressed, &off];
     in_the_room(Pace::Lockstep(PERIOD), lights, |_| {}, |driver| drive(&mut driver.unwrap()))
 }
 
-/// The same with a robot that takes bytes of 1B like this.
+/// Runs `drive` with a robot in lockstep that treats bytes of 1B as `escape` says.
 pub(crate) fn driven_in(escape: Escape, drive: impl FnOnce(&mut Atrv)) {
     let off = AtomicBool::new(false);
     let lights = [&off; 2];
     in_the_room(Pace::Lockstep(PERIOD), lights, |config| config.escape = escape, |driver| drive(&mut driver.unwrap()));
 }
 
-/// Why a driver with this configuration does not begin.
+/// Returns the fault for which a driver with this configuration does not start.
 pub(crate) fn refused(change: impl FnOnce(&mut Config)) -> Fault {
     let off = AtomicBool::new(false);
     let lights = [&off; 2];
     in_the_room(Pace::Lockstep(PERIOD), lights, change, |driver| driver.map(|_| ()).unwrap_err()).1
 }
 
-/// Why one does not with the emergency stop pressed.
+/// Returns the fault for which a driver does not start while the emergency stop is pressed.
 pub(crate) fn refused_in_emergency(pressed: &AtomicBool) -> Fault {
     let off = AtomicBool::new(false);
     let lights = [pressed, &off];
     in_the_room(Pace::Lockstep(PERIOD), lights, |_| {}, |driver| driver.map(|_| ()).unwrap_err()).1
 }
 
-/// What `drive` makes of a robot by the clock, which says when it has come to stand; and how fast that then is.
+/// Runs `drive` with a robot in real time and the flag that is set when the robot has come to rest; returns the robot's
+/// speed at the end, in m/s, and the result.
 pub(crate) fn overslept<T>(drive: impl FnOnce(&mut Atrv, &AtomicBool) -> T) -> (f64, T) {
     let (emergency, stands) = (AtomicBool::new(false), AtomicBool::new(false));
     let (robot, result) = in_the_room(
@@ -158,7 +159,7 @@ pub(crate) fn overslept<T>(drive: impl FnOnce(&mut Atrv, &AtomicBool) -> T) -> (
     (robot.velocity().v.0, result)
 }
 
-/// What a driver says of something that answers each turn with these bytes.
+/// Returns the fault of a driver whose robot answers each command with these bytes.
 pub(crate) fn said_of(answers: impl Fn(&Request) -> Vec<u8> + Sync) -> Fault {
     let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
     thread::scope(|scope| {
@@ -178,7 +179,7 @@ pub(crate) fn said_of(answers: impl Fn(&Request) -> Vec<u8> + Sync) -> Fault {
     })
 }
 
-/// What turns come to with a robot whose reports come in pieces, and behind noise.
+/// Returns the result of 20 turns with a robot whose reports arrive in pieces, after noise.
 pub(crate) fn dribbled(period: Duration) -> Result<(), Fault> {
     let world = World::parse("room", ROOM).unwrap();
     let body = Make { body: Body::Atrv, without: Vec::new(), seed: None };
@@ -210,7 +211,7 @@ pub(crate) fn dribbled(period: Duration) -> Result<(), Fault> {
     })
 }
 
-/// What an exchange and a stop come to after the line was cut.
+/// Returns the results of an exchange and of a stop after the line was cut.
 pub(crate) fn cut() -> [Result<(), Fault>; 2] {
     let port = Port::open().unwrap();
     let (path, over) = (port.path().to_owned(), AtomicBool::new(false));
