@@ -1,16 +1,15 @@
-//! What a Scout is told: the commands of its language that a driver needs, as frames.
-//! See docs/src/reference/protocols.md, 1.3.
+//! Commands to a Scout that a driver needs, as frames. See docs/src/reference/protocols.md, 1.3.
 
 use crate::frame::{Arguments, Frame};
 use crate::number;
 
-/// How many sonars there are.
+/// Number of sonars.
 const SONARS: usize = 16;
 
 /// A command. Lengths are tenths of an inch, speeds tenths of an inch per second, angles tenths of a degree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Command {
-    /// Tell the state (GS).
+    /// Report the state (GS).
     State,
     /// Stop and hold the position (ST).
     Stop,
@@ -18,9 +17,9 @@ pub enum Command {
     Limp,
     /// Position and heading are zero from now on (ZR).
     Zero,
-    /// Stop when no command has come for so many seconds; 0 switches that off (CONF_TM).
+    /// Stop when no command has arrived for this number of seconds; 0 switches the watchdog off (CONF_TM).
     Watchdog(u8),
-    /// Which sonars ping, one after the other, so many times four milliseconds apart; 255 ends the list (CONF_SN).
+    /// Ping with these sonars, one after the other, at an interval given in units of 4 ms; 255 ends the list (CONF_SN).
     Sonars(u8, [u8; SONARS]),
     /// The greatest accelerations of the right and the left wheel, a tenth of an inch per second squared (AC).
     Accelerations(u16, u16),
@@ -29,7 +28,7 @@ pub enum Command {
 }
 
 impl Command {
-    /// Its type on the line, which its answer bears as well.
+    /// Returns the command's type on the line, which its answer has as well.
     #[must_use]
     pub const fn kind(&self) -> u8 {
         match self {
@@ -44,7 +43,7 @@ impl Command {
         }
     }
 
-    /// The frame that says it.
+    /// Returns the frame of this command.
     #[must_use]
     pub fn frame(&self) -> Frame {
         let mut arguments = Arguments::new();

@@ -19,19 +19,19 @@ use crate::wheels::{self, WHEEL_BASE};
 
 /// The radius of the body.
 const RADIUS: Meters = Meters(0.205);
-/// How many pings must agree that a way is free on a robot whose sonars fire in turn.
+/// Number of pings that must agree that a way is free on a robot whose sonars fire in turn.
 const CONFIRMATION: usize = 2;
-/// The least time that the robot has to stand before its motors are let go: from 1 m/s it takes half a second.
+/// Minimum time that the robot is allowed for coming to rest before its motors are released; from 1 m/s it takes 0.5 s.
 const STOPPING: Duration = Duration::from_millis(600);
-/// The time that its last answer may take when it has not answered before.
+/// Maximum time for the last answer of a robot that has not answered before.
 const ANSWER: Duration = Duration::from_millis(150);
 /// A wheel that is held may jitter by this, in tenths of an inch per second.
 const JITTER: u16 = 4;
-/// The time between two looks at whether it stands.
+/// The time between two checks for the robot being at rest.
 const LOOK: Duration = Duration::from_millis(20);
 /// The time between two stop commands to a robot that does not answer.
 const AGAIN: Duration = Duration::from_millis(100);
-/// How long it may take to set its position to zero: newer versions of its maker's library wait much longer for that.
+/// Maximum time for the robot to set its position to zero: newer versions of its maker's library wait much longer.
 const ZEROING: Duration = Duration::from_secs(5);
 
 /// A Scout that answers.
@@ -47,18 +47,19 @@ pub struct Scout {
     times: Times,
     /// The moment of the last command, until the robot is stopped.
     commanded: Option<Moment>,
-    /// What the plan can replay.
+    /// Recorded paths that the plan can replay.
     pub(crate) paths: PathStore,
 }
 
-/// How long the line takes in a turn: for a command and the state that answers it.
+/// Returns the time that a turn takes on the line: a command, and the state that answers it.
 pub(crate) fn turn_takes() -> Duration {
     let command = Command::Velocities(0, 0).frame().bytes().len();
     time_of(command + state::LENGTH + frame::AROUND, SPEED)
 }
 
 impl Scout {
-    /// Opens the line and prepares the robot: it stands at zero, its watchdog is armed, and each sonar has pinged.
+    /// Opens the line and prepares the robot: it is at rest at position zero, its watchdog is armed, and each sonar has
+    /// pinged.
     ///
     /// # Errors
     /// There is no line, no robot, or its emergency stop is pressed.
@@ -114,10 +115,10 @@ impl Scout {
         Ok(())
     }
 
-    /// Waits until the robot stands.
+    /// Waits until the robot is at rest.
     ///
     /// # Errors
-    /// It does not answer, or still moves in the state that it is asked for when it has had the time to stand.
+    /// The robot does not answer, or the state requested at the end of the time limit shows that it still moves.
     fn stands(&mut self, begun: Instant, limit: Duration) -> Result<(), Fault> {
         let mut was_slow = false;
         for looks in 1.. {
@@ -139,12 +140,13 @@ impl Scout {
         Err(Fault::Moves)
     }
 
-    /// Sends a command on the way out, whose answer may take so long.
+    /// Sends a command at the end of a run, whose answer may take as long as `patience`.
     fn at_the_end(&mut self, command: Command, patience: Duration) -> Result<Frame, Fault> {
         self.line.ask(&command, Instant::now() + patience)
     }
 
-    /// Says "stop" to a robot that does not answer, for as long as it may take to stand: it may hear all the same.
+    /// Sends "stop" repeatedly to a robot that does not answer, for the time that it may take to come to rest: it may
+    /// receive commands even if its answers are lost.
     fn insist(&mut self, begun: Instant, limit: Duration) {
         for said in 1.. {
             let deadline = Instant::now() + AGAIN;
@@ -178,7 +180,7 @@ impl Scout {
     }
 }
 
-/// What the state says of the battery, which both supplies are of: the lower one counts.
+/// Returns the battery's voltage and state. The battery feeds both supplies: the lower voltage counts.
 fn supply(state: &State, config: &Config) -> Supply {
     let [cpu, motor] = state.volts();
     let battery = Volts(cpu.0.min(motor.0));

@@ -1,4 +1,4 @@
-//! What can go wrong with a Scout, each in a sentence for the operator that says what to do.
+//! Faults of a Scout, each with a sentence for the operator that says what to do.
 
 use std::fmt;
 
@@ -6,20 +6,20 @@ use mdle_serial::LineFault;
 
 use crate::frame::Garbled;
 
-/// Why the robot cannot be driven, or no longer.
+/// Reason why the robot cannot be driven, or can no longer be driven.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Fault {
     /// The run was asked to end while the robot was prepared; if it could not be stopped, why.
     Ended(Option<Box<Self>>),
     /// The line cannot be opened, is cut, or nothing came in time.
     Line(LineFault),
-    /// What came is no frame.
+    /// The received bytes are not a frame.
     Garbled(Garbled),
     /// The answer to this command is of that type.
     Wrong {
         /// The type of the command.
         asked: u8,
-        /// That of the answer.
+        /// The type of the answer.
         answered: u8,
     },
     /// The robot does not take commands of this type.
@@ -30,7 +30,7 @@ pub enum Fault {
     EmergencyStop,
     /// The robot's clock has not advanced for this many milliseconds: it repeats the same state.
     Hung(u64),
-    /// The sonars have said the same for so long that they no longer ping.
+    /// The sonars no longer ping: they have reported the same ranges while the robot has moved too far.
     Frozen,
     /// The robot has moved faster than commanded, or in the opposite direction, for this many milliseconds.
     Disobeys(u64),

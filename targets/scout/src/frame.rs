@@ -5,13 +5,13 @@ use arrayvec::ArrayVec;
 
 /// The first byte of each frame.
 pub(crate) const START: u8 = 0x01;
-/// The last.
+/// The last byte of each frame.
 const END: u8 = 0x5C;
-/// What is in a frame besides its arguments: start, two bytes of length, type, sum, end.
+/// Number of a frame's bytes besides its arguments: start, two bytes of length, type, sum, end.
 pub(crate) const AROUND: usize = 6;
 /// The longest length that is believed: no reply of a Scout comes near it, and a garbled length must not be waited for.
 const LONGEST: usize = 255;
-/// The most arguments, as type and sum count to the length.
+/// Maximum number of argument bytes: type and sum count to the length.
 const MOST: usize = LONGEST - 2;
 
 /// A frame's arguments; a turn allocates nothing.
@@ -20,22 +20,22 @@ pub type Arguments = ArrayVec<u8, MOST>;
 /// A frame that has come in: its type, and its arguments in the order of the line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Frame {
-    /// Of the command that it answers, or that it is.
+    /// The type of the command that the frame answers, or is.
     pub kind: u8,
     /// The arguments.
     pub arguments: Arguments,
 }
 
-/// What is wrong with bytes that should be a frame.
+/// Reason why bytes are not a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Garbled {
     /// The first byte is this one.
     Start(u8),
     /// No frame of a Scout is that long or that short.
     Length(u16),
-    /// The bytes come to the first sum, and the frame says the second.
+    /// The sum of the bytes is the first number; the frame's own sum is the second.
     Sum(u8, u8),
-    /// Behind the sum is this byte.
+    /// This byte follows the sum.
     End(u8),
 }
 
@@ -56,7 +56,7 @@ fn sum(bytes: &[u8]) -> u8 {
 }
 
 impl Frame {
-    /// Its bytes on the line.
+    /// Returns the frame's bytes on the line.
     #[must_use]
     pub fn bytes(&self) -> ArrayVec<u8, { MOST + AROUND }> {
         // Type and sum count.
@@ -68,10 +68,10 @@ impl Frame {
         bytes
     }
 
-    /// The frame at the beginning of what has come in, and its number of bytes; `None` if more has to come first.
+    /// Returns the frame at the beginning of `bytes` and its number of bytes, or `None` if it is not complete.
     ///
     /// # Errors
-    /// These bytes do not begin a frame, whatever comes behind them.
+    /// These bytes do not begin a frame, whatever follows them.
     pub fn read(bytes: &[u8]) -> Result<Option<(Self, usize)>, Garbled> {
         match bytes.first() {
             None => return Ok(None),

@@ -1,9 +1,9 @@
-//! Whether what a Scout says is new: its clock goes on, and its sonars say something else where they must.
+//! Detection of stale data: a Scout's clock has to advance, and its sonars' ranges have to change as the robot moves.
 //! See docs/src/reference/protocols.md, 1.8.
 //!
-//! A state answers a command and is as old as that, unless the controller says the same one again; that its clock shows.
-//! No clock shows when the sonars pinged. But where the robot turns, or goes towards what it hears or away from it, one of
-//! them says something else if they ping at all.
+//! A state answers a command and is as recent as the command, unless the controller repeats an old state, which its
+//! clock shows. No clock shows when the sonars pinged. But while the robot turns, or moves towards or away from
+//! something that it hears, at least one of the sonars reports a different range if they ping at all.
 
 use mdle_runtime::{Nanos, Pose, Radians};
 
@@ -11,18 +11,18 @@ use crate::config::Config;
 use crate::fault::Fault;
 use crate::state::State;
 
-/// What a sonar says that heard nothing.
+/// Range that a sonar without an echo reports.
 const NOTHING: u8 = 255;
 /// A turn after which one of the sonars has something else before it: each of them looks where the fourth one did.
 const TURN: f64 = std::f64::consts::FRAC_PI_2;
 
-/// What was new last.
+/// Last data of the robot that differed from those before.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Freshness {
-    /// The time of the clock, and since when it is that.
+    /// Time of the robot's clock, and the moment at which it was first received.
     clock: Option<(u32, Nanos)>,
     sonars: [u8; 16],
-    /// Where the robot was last; how far it has gone and turned since a sonar said something new, in metres and radians.
+    /// Last pose of the robot; and its distance and turn since a sonar's range changed, in metres and radians.
     pose: Pose,
     way: f64,
     turn: f64,
@@ -32,7 +32,7 @@ impl Freshness {
     /// Takes in the state that came at `at`, with the robot at `pose` by it.
     ///
     /// # Errors
-    /// It is as old as the configuration allows, or what its sonars say is.
+    /// The clock has not advanced, or the sonars' ranges have not changed, for longer than the configuration allows.
     pub(crate) fn take(&mut self, state: &State, at: Nanos, pose: Pose, config: &Config) -> Result<(), Fault> {
         let (_, since) =
             *self.clock.insert(self.clock.filter(|(clock, _)| *clock == state.clock).unwrap_or((state.clock, at)));
@@ -54,7 +54,7 @@ impl Freshness {
     }
 }
 
-/// Whether this sonar heard something.
+/// Returns `true` if this sonar has heard an echo.
 fn hears(state: &State, sonar: u8) -> bool {
     state.sonars.get(usize::from(sonar)).is_some_and(|range| *range != NOTHING)
 }
@@ -67,8 +67,8 @@ mod tests {
     use super::*;
     use crate::config::Configured;
 
-    /// Which of these states, a second apart, is refused, and why: range ahead, range to the left, x in metres, heading in
-    /// degrees, clock.
+    /// Returns the first of these states, a second apart, that is refused, and the fault. A state is the range ahead,
+    /// the range to the left, x in metres, the heading in degrees, and the clock.
     fn refused(states: &[(u8, u8, f64, f64, u32)]) -> Option<(usize, Fault)> {
         let config = Config { stale: 1500, ..Configured::read(None, None).unwrap().config };
         let mut freshness = Freshness::default();

@@ -27,7 +27,7 @@ pub use driver::Scout;
 pub use fault::Fault;
 pub use frame::{Arguments, Frame, Garbled};
 pub use mdle_runtime::Sensed;
-/// Its output.
+/// The robot's output.
 pub use mdle_runtime::Sensed as Output;
 /// The robot's input.
 pub use mdle_runtime::Twist as Input;

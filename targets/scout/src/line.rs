@@ -11,7 +11,7 @@ use crate::reader::{CHUNK, Reader};
 
 /// Bits a second, 8N1.
 pub(crate) const SPEED: u32 = 38_400;
-/// After so long without a byte, more than forty bytes' worth, nothing more comes of an answer.
+/// Silence after which an answer is over: the time of more than forty bytes.
 const QUIET: Duration = Duration::from_millis(20);
 /// The type of the answer to a command that the robot does not take.
 const REFUSED: u8 = 8;
@@ -32,9 +32,10 @@ impl Line {
         Ok(Self { line: mdle_serial::Line::open(device, SPEED)?, reader: Reader::default() })
     }
 
-    /// Sends `command` and waits for its answer until `deadline`. What came in before is thrown away, as a Scout never
-    /// speaks first, and noise around the answer is skipped. An answer with a wrong sum is asked for once more, as each
-    /// command can be sent twice; silence is not, or an answer that was only late would be taken for the next one's.
+    /// Sends `command` and waits for its answer until `deadline`. Bytes received before are dropped, because a Scout
+    /// never speaks first, and noise around the answer is skipped. After an answer with a wrong sum the command is sent
+    /// once more, as each command can be sent twice; after silence it is not, because a late answer would be taken for
+    /// the next command's.
     ///
     /// # Errors
     /// The line is closed, or by the deadline there was no answer, or none that was whole.

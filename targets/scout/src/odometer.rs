@@ -1,5 +1,4 @@
-//! Where a Scout is by its own reckoning, beyond the 83 m at which its numbers wrap.
-//! See docs/src/reference/protocols.md, 1.8.
+//! Odometry of a Scout beyond the 83 m at which its numbers wrap. See docs/src/reference/protocols.md, 1.8.
 
 use mdle_runtime::{Meters, Nanos, Pose, Radians};
 
@@ -7,14 +6,14 @@ use crate::fault::Fault;
 use crate::state::State;
 use crate::wheels::UNIT;
 
-/// How many numbers there are in sign and magnitude: those from -32767 to 32767.
+/// Count of the numbers in sign and magnitude, from -32767 to 32767.
 const NUMBERS: i32 = 65_535;
 
 /// No robot goes further than this between two states, in metres, besides what it can drive in the time between them.
 const LEAP: f64 = 1.0;
-/// A wheel may go so much faster than it is told.
+/// Maximum ratio of a wheel's speed to its commanded speed.
 const FASTER: f64 = 2.0;
-/// After so many leaps more than steps its positions mean nothing.
+/// If leaps outnumber steps by this many, the positions are meaningless.
 const LEAPS: u8 = 4;
 
 /// Follows the numbers of the line from state to state.
@@ -28,8 +27,9 @@ pub(crate) struct Odometer {
 }
 
 impl Odometer {
-    /// Returns the pose of the robot in the state that came at `at`, of which no wheel is told to go faster than `fastest`
-    /// m/s. A leap moves the pose nowhere. Between two states the robot moves less than half of what wraps.
+    /// Returns the pose of the robot in the state that arrived at `at`, while no wheel is commanded to go faster than
+    /// `fastest` m/s. A leap does not move the pose. Between two states the robot moves less than half of the range
+    /// that wraps.
     ///
     /// # Errors
     /// The positions leap again and again.

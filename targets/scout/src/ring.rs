@@ -5,9 +5,9 @@ use mdle_runtime::{Meters, Nanos, Ping, Pings, Pose, SONARS};
 
 /// Metres in an inch.
 const INCH: f64 = 0.0254;
-/// By so many gaps a ring may be late: better a ping too few than one that was none.
+/// Number of gaps by which a round may be late: a missing ping is better than one that did not happen.
 const SLACK: usize = 2;
-/// What a sonar says that heard nothing.
+/// Range that a sonar without an echo reports.
 const NOTHING: u8 = 255;
 
 /// The pings of the ring.
@@ -18,16 +18,16 @@ const NOTHING: u8 = 255;
 pub(crate) struct Ring {
     pings: [Pings; SONARS],
     last: [Option<(u8, Nanos)>; SONARS],
-    /// Which sonars ping at all.
+    /// Set to `true` for each sonar that pings.
     active: [bool; SONARS],
-    /// How long the ring takes to go round.
+    /// Duration of one round of the ring.
     around: Nanos,
-    /// After how long a reading that stays is a new one.
+    /// Time after which an unchanged range is a new ping.
     again: Nanos,
 }
 
 impl Ring {
-    /// A ring of these sonars, one after the other with such a gap between two pings.
+    /// Creates a ring of these sonars, one after the other with `gap` between two pings.
     pub(crate) fn new(order: &[u8], gap: Nanos) -> Self {
         let active = std::array::from_fn(|sonar| order.iter().any(|number| usize::from(*number) == sonar));
         let times = |count: usize| Nanos(gap.0.saturating_mul(count as u64));
@@ -36,12 +36,12 @@ impl Ring {
         Self { pings: [Pings::default(); SONARS], last: [None; SONARS], active, around, again }
     }
 
-    /// How long it takes until each sonar has pinged.
+    /// Returns the time until each sonar has pinged.
     pub(crate) fn around(&self) -> Nanos {
         self.around
     }
 
-    /// Takes in what the sonars say at `at`, with the robot at `pose` by odometry.
+    /// Takes in the ranges of the sonars at `at`, with the robot at `pose` by odometry.
     pub(crate) fn take_in(&mut self, sonars: &[u8; SONARS], at: Nanos, pose: Pose) -> [Pings; SONARS] {
         let all = self.pings.iter_mut().zip(&mut self.last).zip(sonars).zip(&self.active);
         for (((pings, last), heard), _) in all.filter(|(_, active)| **active) {

@@ -1,5 +1,5 @@
-//! What a Scout says of itself in answer to almost any command: the state, 42 bytes in a fixed order.
-//! See docs/src/reference/protocols.md, 1.4.
+//! State of a Scout, its answer to almost any command: 42 bytes in a fixed order. See docs/src/reference/protocols.md,
+//! 1.4.
 
 use mdle_runtime::Volts;
 
@@ -19,15 +19,15 @@ pub struct State {
     pub sonars: [u8; 16],
     /// Bit `i` for bumper switch `i` in contact.
     pub bumper: u32,
-    /// Where it is, in tenths of an inch, forward and to the left of where it was zeroed; wraps at 83 m.
+    /// Distance forward of the place where it was zeroed, in tenths of an inch; wraps at 83 m.
     pub x: i16,
-    /// See `x`.
+    /// Distance to the left of the place where it was zeroed, in tenths of an inch; wraps at 83 m.
     pub y: i16,
-    /// Its heading, in tenths of a degree, counter-clockwise.
+    /// Heading, in tenths of a degree, counter-clockwise.
     pub heading: i16,
     /// The speed of the right wheel, in tenths of an inch per second.
     pub right: i16,
-    /// That of the left wheel.
+    /// The speed of the left wheel, in tenths of an inch per second.
     pub left: i16,
     /// Motors, battery, charger and emergency stop, as bits.
     pub status: u8,
@@ -89,13 +89,13 @@ impl State {
         })
     }
 
-    /// Whether the emergency stop is pressed; no command moves the robot then.
+    /// Returns `true` if the emergency stop is pressed: no command moves the robot then.
     #[must_use]
     pub const fn is_stopped(&self) -> bool {
         self.status & 0b0100_0000 != 0
     }
 
-    /// Whether the charger is plugged in, or charges.
+    /// Returns `true` if the charger is plugged in, or charges.
     #[must_use]
     pub const fn is_plugged(&self) -> bool {
         self.status & 0b0011_0000 != 0

@@ -5,13 +5,14 @@ use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Twist};
 
 /// Metres in a tenth of an inch.
 pub(crate) const UNIT: f64 = 0.00254;
-/// How far a wheel goes for a degree that the robot turns on the spot, in inches; the same number for tenths of both.
+/// Distance that a wheel goes for each degree of a turn on the spot, in inches, or in tenths of an inch for tenths of a
+/// degree.
 const ROTATION: f64 = 0.118597;
-/// The distance between the wheels, in metres: what [`ROTATION`] says of it.
+/// The distance between the wheels, in metres, which follows from [`ROTATION`].
 pub(crate) const WHEEL_BASE: f64 = 0.34519;
 
-/// The speeds of the right and the left wheel for this input, none of them above `fastest` (m/s): both are slowed down
-/// alike, so that the robot stays on its curve. An input that is no number stops the robot.
+/// Returns the speeds of the right and the left wheel for this input, at most `fastest` (m/s): both are slowed down
+/// alike, so that the robot stays on its curve. An input that is not finite stops the robot.
 pub(crate) fn speeds(input: &Twist, fastest: f64) -> (i16, i16) {
     let along = libm::trunc(input.v.0 / UNIT);
     // Tenths of a degree a second.

@@ -13,13 +13,13 @@ use crate::wire::{Incoming, Request, answer, number, two_bytes};
 const INCH: f64 = 0.0254;
 /// Inches that a wheel makes for each degree of a turn on the spot.
 const INCHES_A_DEGREE: f64 = 0.118_597;
-/// By how much a robot whose motors are limp gets slower, in tenths of an inch a second, each second: 0.3 m/s.
+/// Deceleration of a robot whose motors are limp, in tenths of an inch per second squared: 0.3 m/s².
 const ROLLING: f64 = 120.0;
-/// What it measures of both supplies when they are at 10.5 V.
+/// Raw measurements of both supplies at 10.5 V.
 const LOW: [u8; 2] = [202, 177];
 /// The distance of each position from the one before when they leap, in tenths of an inch: 3 m.
 const LEAP: i64 = 1181;
-/// The answer to what a Scout does not know.
+/// Type of the answer to a command that a Scout does not know.
 const REFUSED: u8 = 8;
 
 /// The robot.
@@ -28,49 +28,49 @@ pub struct Scout {
     body: Simulated,
     sensed: Output,
     incoming: Incoming,
-    /// What was asked last, and whether it knows that, until it has answered.
+    /// Last request, until it is answered, with `true` if the robot knows the command.
     asked: Option<(Request, bool)>,
-    /// What the wheels have been told, in tenths of an inch a second.
+    /// Commanded speeds of the wheels, in tenths of an inch per second.
     wheels: (i32, i32),
-    /// Whether the motors are limp: then it rolls on.
+    /// Set to `true` while the motors are limp: the robot then rolls on.
     limp: bool,
-    /// Where its numbers are zero.
+    /// Pose at which the reported position and heading are zero.
     zero: Pose,
     /// The sonars that ping, bit by bit.
     active: u16,
-    /// What each sonar said last.
+    /// Last range of each sonar, as reported.
     heard: [u8; 16],
-    /// After how long without a request it stops; `None` when it never does.
+    /// Time without a request after which the robot stops; `None` for never.
     watchdog: Option<Duration>,
     silence: Duration,
-    /// How long it has been on.
+    /// Time since the robot was switched on.
     age: Duration,
-    /// Whether its emergency stop is pressed.
+    /// Set to `true` while the emergency stop is pressed.
     pub emergency: bool,
-    /// What else may be the matter: its right wheel, the sonar in front, its first bumper, its battery, its
-    /// charger, all its sonars.
+    /// Ailments: a stuck right wheel, a dead front sonar, a pressed first bumper, a low battery, a plugged charger, and
+    /// sonars that do not ping.
     is_stuck: bool,
     is_deaf: bool,
     is_pressed: bool,
     is_low: bool,
     is_plugged: bool,
     is_mute: bool,
-    /// The state that it says again and again.
+    /// State that a hung robot repeats.
     hung: Option<Vec<u8>>,
     is_cut_off: bool,
     /// The speeds that the wheels keep, whatever is commanded.
     runaway: Option<(i32, i32)>,
-    /// By how much its positions are off, and whether they leap.
+    /// Offset of the reported positions, in tenths of an inch, which grows while `leaps` is `true`.
     off: i64,
     leaps: bool,
     orders: Orders,
 }
 
 impl Scout {
-    /// A robot that has just been switched on.
+    /// Creates a robot that has just been switched on.
     ///
     /// # Errors
-    /// The world's sentence about an input that it cannot take, which none here is.
+    /// The world's error about an input that it cannot take, which does not occur here.
     pub fn new(mut body: Simulated) -> Result<Self, String> {
         let sensed = body.exchange(&Twist::default()).map_err(|error| error.to_string())?;
         let zero = sensed.pose();
@@ -105,7 +105,7 @@ impl Scout {
         Ok(scout)
     }
 
-    /// Where the robot really is.
+    /// Returns the true pose of the robot.
     #[must_use]
     pub fn pose(&self) -> Pose {
         self.body.pose()
@@ -117,7 +117,7 @@ impl Scout {
         &self.orders
     }
 
-    /// Returns `true` if its wheels stand.
+    /// Returns `true` if the wheels are at rest.
     #[must_use]
     pub fn stands(&self) -> bool {
         self.rolling() == (0, 0)
@@ -152,7 +152,7 @@ impl Scout {
         }
     }
 
-    /// Does what it is told; whether it knows that.
+    /// Executes a request, and returns `true` if the robot knows the command.
     fn does(&mut self, request: &Request) -> bool {
         self.silence = Duration::ZERO;
         match (request.command, &*request.data) {
@@ -174,7 +174,7 @@ impl Scout {
         true
     }
 
-    /// How fast the wheels go, in tenths of an inch a second.
+    /// Returns the speeds of the right and the left wheel, in tenths of an inch per second.
     fn rolling(&self) -> (i32, i32) {
         let velocity = self.sensed.velocity();
         let spin = velocity.omega.0.to_degrees() * INCHES_A_DEGREE * INCH;
@@ -182,7 +182,7 @@ impl Scout {
         (tenths(velocity.v.0 + spin), tenths(velocity.v.0 - spin))
     }
 
-    /// The state, as all answers have it.
+    /// Returns the state that an answer contains.
     fn state(&self) -> Vec<u8> {
         let pose = self.sensed.pose();
         let (x, y) = (pose.x.0 - self.zero.x.0, pose.y.0 - self.zero.y.0);

@@ -7,7 +7,7 @@
 pub struct Request {
     /// The command's type.
     pub command: u8,
-    /// What comes with it.
+    /// Arguments of the command.
     pub data: Vec<u8>,
 }
 
@@ -21,7 +21,7 @@ impl Incoming {
         self.0.extend_from_slice(bytes);
     }
 
-    /// How many bytes it keeps, of which something may still come.
+    /// Returns the number of bytes that are kept for a request that is not complete.
     #[must_use]
     pub fn kept(&self) -> usize {
         self.0.len()
@@ -80,7 +80,7 @@ pub fn number(low: u8, high: u8) -> i32 {
     if high >= 128 { -size } else { size }
 }
 
-/// The two bytes of a number; only the rest of it modulo the 65,535 numbers there are can be said.
+/// Returns the two bytes of a number in sign and magnitude, modulo the 65,535 numbers that they can express.
 #[must_use]
 pub fn two_bytes(number: i64) -> [u8; 2] {
     let number = (number + 32_767).rem_euclid(65_535) - 32_767;

@@ -8,7 +8,7 @@ use proptest::collection::vec;
 use proptest::prelude::{Just, ProptestConfig, any, prop_oneof, proptest};
 use proptest::test_runner::RngSeed;
 
-/// What each test is run with; it prints the seed, which is seen where the test fails.
+/// Configuration of each test; prints the random seed, which is shown when the test fails.
 fn config() -> ProptestConfig {
     let default = ProptestConfig::default();
     let rng_seed = match default.rng_seed {

@@ -15,19 +15,19 @@ use mdle_scout_emulator::wire::{Incoming, Request, answer};
 use mdle_sim::{Body, Make, Simulated, World};
 
 const PERIOD: Duration = Duration::from_millis(100);
-/// Walls 2 m before the robot, 1.5 m to its left, 1 m to its right and 3 m behind it.
+/// Walls 2 m ahead of the robot, 1.5 m to its left, 1 m to its right and 3 m to its rear.
 const ROOM: &str =
     "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[2, -1], [2, 1.5], [-3, 1.5], [-3, -1], [2, -1]]";
 
-/// Longer than any machine takes.
+/// Maximum time to wait for an answer, in milliseconds: longer than any machine takes.
 const LONG: u64 = 60_000;
-/// What is not going to come is not waited for.
+/// Maximum time to wait for an answer that never arrives, in milliseconds.
 const SHORT: u64 = 100;
 
-/// Not what is usual.
+/// Steering that differs from the default.
 const STEERING: Steering = Steering { rotate: 1.0, align: 3.0, avoid: 1.5 };
 
-/// A driver of what answers at this line within so many milliseconds.
+/// Connects a driver to the robot at this line, which has `answer` milliseconds for each answer.
 fn connected(port: &Port, answer: u64) -> Result<Scout, Fault> {
     let mut config = Configured::read(None, port.path().to_str()).unwrap().config;
     config.answer = answer;
@@ -44,7 +44,7 @@ impl Drop for Ends<'_> {
     }
 }
 
-/// What `drive` makes of a robot in the room, in lockstep.
+/// Returns the result of `drive` with a robot in the room, in lockstep.
 fn with_robot<T>(drive: impl FnOnce(&mut Scout) -> T) -> T {
     let world = World::parse("room", ROOM).unwrap();
     let make = Make { body: Body::Scout, without: Vec::new(), seed: None };
@@ -61,12 +61,13 @@ fn with_robot<T>(drive: impl FnOnce(&mut Scout) -> T) -> T {
     })
 }
 
-/// What an exchange comes to, after the start, with a robot that answers like this: the number of the request counts.
+/// Returns the result of an exchange, after the start, with a robot that answers like this; `answers` gets the number
+/// of each request.
 fn exchanged(patience: u64, answers: impl Fn(usize, &Request, &Port) + Sync) -> Result<(), Fault> {
     asked(patience, answers, |driver| driver.exchange(&Twist::default()).map(|_| ()))
 }
 
-/// The result of `drive`, after the start, with such a robot.
+/// Returns the result of `drive`, after the start, with a robot that answers like this.
 fn asked(
     patience: u64,
     answers: impl Fn(usize, &Request, &Port) + Sync,
@@ -89,12 +90,12 @@ fn asked(
     })
 }
 
-/// What a driver says of a robot that answers with these bytes.
+/// Returns the fault of a driver whose robot answers with these bytes.
 fn said_of(answers: impl Fn(usize, &Request) -> Vec<u8> + Sync) -> Fault {
     exchanged(SHORT, |count, request, port| port.write(&answers(count, request)).unwrap()).unwrap_err()
 }
 
-/// The state of a robot that stands where it began.
+/// Returns the state of a robot that is at rest where it began.
 fn state(kind: u8) -> Vec<u8> {
     answer(kind, &[0; 42])
 }
@@ -104,7 +105,7 @@ fn driven(driver: &mut Scout, v: f64, omega: f64, periods: usize) -> Output {
     (0..periods).map(|_| driver.exchange(&input).unwrap()).last().unwrap()
 }
 
-/// What a sonar heard last, in metres.
+/// Returns the range of a sonar's last ping, in metres.
 fn heard(output: &Output, sonar: u8) -> f64 {
     output.pings(SonarId::new(sonar)).newest_first().next().unwrap().range.unwrap().0
 }

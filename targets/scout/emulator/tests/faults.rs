@@ -17,7 +17,7 @@ fn ran(faults: &[&str], speed: fn(turn: u32) -> f64) -> Ran {
     mdle_emulator::ran(50, faults, speed).unwrap()
 }
 
-/// When faults have begun, by the time of the robot's world.
+/// World time at which the faults have begun.
 const BEGUN: Duration = Duration::from_secs(3);
 
 /// Returns the last output of a robot that drives ahead and has this fault after three seconds.
@@ -29,12 +29,12 @@ fn fails(fault: &str) -> Fault {
     last_output(fault).expect_err(fault)
 }
 
-/// Twenty centimetres a second.
+/// Returns a speed of 0.2 m/s.
 fn ahead(_: u32) -> f64 {
     0.2
 }
 
-/// Twenty centimetres a second until the fault has begun, and none after it.
+/// Returns a speed of 0.2 m/s until the fault has begun, and 0 after it.
 fn ahead_then_none(turn: u32) -> f64 {
     if turn < 30 { 0.2 } else { 0.0 }
 }
