@@ -7,14 +7,14 @@ use super::variables::Variable;
 use crate::fsm::Machine;
 use crate::plan::{After, Condition};
 
-/// When a condition is read.
+/// Moment at which a condition is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum When {
-    /// In the turn in which its scope is entered.
+    /// The turn in which the condition's scope is entered.
     Entered,
-    /// In any turn.
+    /// Any turn.
     Later,
-    /// When its scope has just ended.
+    /// The turn in which the condition's scope has just ended.
     Past,
 }
 
@@ -51,7 +51,7 @@ impl Choices {
         Some(Self { free, columns: columns.collect() })
     }
 
-    /// What is so in every choice, or in none.
+    /// Returns the table that is `value` in every choice.
     pub(super) fn constant(&self, value: bool) -> Table {
         Table::constant(self.free, value)
     }
@@ -61,7 +61,7 @@ impl Choices {
         self.columns.iter()
     }
 
-    /// The choices in which a condition has fired. What is no variable here is not true.
+    /// Returns the choices in which a condition has fired. A variable that is missing here is false.
     pub(super) fn fired(&self, read: Read<'_>, machine: &Machine) -> Table {
         let Read { condition, bracket, when } = read;
         let column = |variable| self.columns.get(&variable).cloned().unwrap_or_else(|| self.constant(false));
@@ -146,7 +146,7 @@ pub(super) fn variables(read: Read<'_>, machine: &Machine, found: &mut BTreeSet<
     found.len() <= MOST
 }
 
-/// What ends changes what `after` says.
+/// Returns the variable of the fact that `after` asks for, which changes when an element ends.
 fn fact(after: &After, when: When) -> Variable {
     match when {
         When::Entered | When::Later => Variable::Fact(after.record, after.fact),

@@ -1,4 +1,4 @@
-//! How long a plan runs at most: as long as its timers say, whatever the robot senses and whatever its laws do.
+//! Upper bound of a plan's duration by its timers, independent of the robot's sensors and of the completion of laws.
 //!
 //! A timer is read once a turn, so each may be over as much later as the time from one turn to the next.
 
@@ -12,16 +12,16 @@ use crate::plan::Condition;
 /// The longest time of a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Longest {
-    /// No longer than these nanoseconds and so many times from one turn to the next.
+    /// At most these nanoseconds plus this number of times from one turn to the next.
     Bounded { nanos: u128, turns: u64 },
-    /// As long as this bracket, an atom or a loop, goes on.
+    /// No bound, because this bracket, an atom or a loop, may go on for ever.
     Unbounded(u32),
 }
 
 impl Longest {
     const NONE: Self = Self::Bounded { nanos: 0, turns: 0 };
 
-    /// This, and behind it that.
+    /// Returns the duration of `self` followed by `next`.
     fn then(self, next: Self) -> Self {
         match (self, next) {
             (Self::Bounded { nanos, turns }, Self::Bounded { nanos: more, turns: further }) => {
@@ -33,7 +33,7 @@ impl Longest {
         }
     }
 
-    /// So many passes of this, a loop of this bracket; 0 is for ever.
+    /// Returns the duration of this number of passes of the loop of this bracket; 0 is for ever.
     fn times(self, times: u64, bracket: u32) -> Self {
         match self {
             Self::Bounded { .. } if times == 0 => Self::Unbounded(bracket),
@@ -44,7 +44,7 @@ impl Longest {
         }
     }
 
-    /// The shorter of both: each holds.
+    /// Returns the shorter of two bounds that both hold.
     fn or(self, other: Self) -> Self {
         match (self, other) {
             (Self::Bounded { nanos, turns }, Self::Bounded { nanos: more, turns: further }) => {
@@ -59,7 +59,7 @@ impl Longest {
 /// Adds up the longest times of all that is reached.
 pub(super) fn longest(machine: &Machine, found: &[Found], most: Most) -> Longest {
     let mut inside = vec![Longest::NONE; machine.elements().len()];
-    // The last element first: so what is inside of one is known, and what stands behind it.
+    // The last element first: then the elements inside and after an element are known.
     for (element, found) in machine.elements().zip(found).rev() {
         let number = element.number();
         let body = match element.kind() {

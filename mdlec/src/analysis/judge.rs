@@ -1,4 +1,4 @@
-//! What can end one scope, and whether it is always skipped, in what is known where it stands.
+//! Operands that can end one scope, and scopes that are always skipped, by the knowledge at their place.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,7 +1,7 @@
-//! W0202 to W0206, W0302 and W0303: conditions with one value, operands that never end their scope, and elements that are
-//! always skipped or never reached.
+//! W0202 to W0206, W0302 and W0303: conditions with one value, operands that never end their scope, and elements that
+//! are always skipped or never reached.
 //!
-//! What stands in a plan that is used more than once is told only if it is so in every use.
+//! A warning about a plan that is used more than once is reported only if it holds in every use.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,7 +11,7 @@ use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::fsm::{Atom, Element, Exit, Machine};
 use crate::plan::{Condition, Interrupt, Quark, condition_text};
 
-/// What is suspicious.
+/// Returns the warnings about a machine.
 pub(super) fn lints(machine: &Machine, found: &[Found]) -> Vec<Diagnostic> {
     let lints = Lints { machine, constants: Constants::new(machine) };
     let mut uses: BTreeMap<Span, usize> = BTreeMap::new();
@@ -107,7 +107,7 @@ impl<'l> Lints<'l> {
         Some(lint.fix("wait here until it becomes true again: {}", span, format!("(RISING ({text}))")))
     }
 
-    /// An element behind one that never ends before what is around both.
+    /// Returns the warning about an element after one that never ends before the element that encloses both.
     fn cut_off(&self, interrupt: &Interrupt, before: u32) -> Diagnostic {
         let lint = Diagnostic::new(Code::W0202, "this is never reached", interrupt.span, "never runs");
         let before = self.machine.element(before).interrupt().map(|before| before.span);
@@ -153,7 +153,7 @@ fn repeated(element: Element<'_>, interrupt: &Interrupt, before: &Interrupt) -> 
     lint.fix("or wait here until it becomes true again: {}", span, rising)
 }
 
-/// The condition of a scope behind a word that takes one operand.
+/// Returns the condition of a scope after a word that takes one operand.
 fn negated(word: &str, interrupt: &Interrupt) -> String {
     let text = &interrupt.text;
     if matches!(interrupt.condition, Condition::Quark(_)) {

@@ -1,7 +1,7 @@
-//! What is so of every run of a plan, found without running it: which atoms run, what can end them, how long it all takes,
-//! how large the machine is.
+//! Static analysis: facts about every run of a plan, found without running it. It finds the atoms that run, the
+//! operands that can end them, durations, and the size of the machine.
 //!
-//! What is said never to happen never happens, in no run; what is said to be possible may be too much to look at.
+//! "Never" is true of every run; "possible" may also mean that the question was too large to decide.
 
 mod choices;
 mod constants;
@@ -29,7 +29,7 @@ use crate::diagnostic::Diagnostic;
 use crate::fsm::{ElementKind, Machine};
 use crate::plan::{Condition, condition_text};
 
-/// What is so of every run of a plan.
+/// Facts about every run of a plan.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Analysis {
     /// The plan's name.
@@ -38,22 +38,22 @@ pub struct Analysis {
     pub states: u64,
     /// The atoms as written, plans by name copied in.
     pub atom_count: usize,
-    /// The interrupts as written that can be one that fires: null ones and removed ones are none.
+    /// Number of interrupts as written that can fire, without null and removed ones.
     pub interrupts: usize,
-    /// How many scopes are around each other at most, the plan and the atom's own included.
+    /// Maximum number of nested scopes, the plan and the atom's own included.
     pub depth: usize,
-    /// How many loops are around an atom at most.
+    /// Maximum number of loops around an atom.
     pub loop_depth: usize,
-    /// The most transitions of one turn.
+    /// Maximum number of transitions in one turn.
     pub transitions: u64,
-    /// The turns from the one in which an interrupt fires to the one that begins with what follows being sent; nothing
-    /// where a search for what follows may go on without end.
+    /// Number of turns from the one in which an interrupt fires to the one that begins by sending the next atom's
+    /// input; `None` if a search for the next atom may go on without end.
     pub reaction_turns: Option<u64>,
-    /// The shortest time in which it can be over, in seconds; nothing if it never is.
+    /// Minimum time until the plan is over, in seconds; `None` if it never is.
     pub shortest: Option<f64>,
-    /// The longest time.
+    /// Maximum time until the plan is over.
     pub longest: Duration,
-    /// How large it is.
+    /// Size of the emitted machine.
     pub bytes: Bytes,
     /// The plan and its behaviors, in order; atoms are below.
     pub scopes: Vec<ScopeAnswer>,
@@ -61,54 +61,54 @@ pub struct Analysis {
     pub atoms: Vec<AtomAnswer>,
 }
 
-/// How long a plan takes at most.
+/// Maximum duration of a plan.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Duration {
-    /// In seconds; nothing where there is no bound.
+    /// Duration in seconds; `None` without a bound.
     pub seconds: Option<f64>,
-    /// So many times from one turn to the next more, since a timer is read once a turn.
+    /// Number of further times from one turn to the next, since a timer is read once a turn.
     pub turns: Option<u64>,
-    /// What has no bound, where there is none.
+    /// Reason why there is no bound; `None` with a bound.
     pub because: Option<String>,
 }
 
-/// What is so of a scope other than an atom.
+/// Facts about a scope other than an atom.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ScopeAnswer {
-    /// Its number, from 1: the plan.
+    /// Number of the scope; 1 is the plan.
     pub scope: usize,
-    /// The number of the scope around it.
+    /// Number of the enclosing scope.
     pub within: Option<usize>,
-    /// Its name; empty for a scope in formal notation.
+    /// Name of the scope; empty for a scope in formal notation.
     pub name: String,
-    /// Its first and its last atom.
+    /// First and last atom of the scope.
     pub atoms: [usize; 2],
-    /// Whether its atoms come to run.
+    /// Reachability of the scope's atoms.
     pub reach: Reach,
-    /// By which operands of its interrupt it can end.
+    /// Operands of the scope's interrupt by which it can end.
     pub ended_by: Vec<String>,
-    /// The operands by which it never ends.
+    /// Operands of the interrupt by which it never ends.
     pub never_by: Vec<String>,
 }
 
-/// What is so of an atom.
+/// Facts about an atom.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct AtomAnswer {
-    /// Its number, from 1, among the atoms as written.
+    /// Number of the atom, from 1, among the atoms as written.
     pub atom: usize,
-    /// The number of its state, in the first pass of every loop around it.
+    /// Number of the atom's state, in the first pass of every loop around it.
     pub state: u64,
-    /// The number of the scope around it.
+    /// Number of the enclosing scope.
     pub within: usize,
-    /// Its law.
+    /// Text of the atom's law.
     pub law: String,
-    /// Whether it comes to run.
+    /// Reachability of the atom.
     pub reach: Reach,
-    /// By which operands of its own interrupt it can end, and `completed` if its law can be done.
+    /// Operands of the atom's own interrupt by which it can end, and `completed` if its law can complete.
     pub ended_by: Vec<String>,
-    /// The operands by which it never ends.
+    /// Operands of the interrupt by which it never ends.
     pub never_by: Vec<String>,
-    /// Whether it can end at all: by itself, or with a scope around it.
+    /// Set to `true` if the atom can end, by itself or with an enclosing scope.
     pub ends: bool,
 }
 
@@ -226,7 +226,7 @@ impl Answers {
     }
 }
 
-/// The texts of the operands by which an interrupt can fire, and of those by which it cannot; `null` is none.
+/// Returns the texts of the operands by which an interrupt can fire, and of those by which it cannot, without `null`.
 fn by(condition: &Condition, found: &Found, machine: &Machine) -> (Vec<String>, Vec<String>) {
     let (mut can, mut never) = (Vec::new(), Vec::new());
     for (operand, outcome) in condition.operands().iter().zip(&found.operands) {

@@ -8,14 +8,14 @@ use super::{Analysis, AtomAnswer, Duration, Reach, ScopeAnswer};
 const AROUND: usize = 3;
 
 impl Analysis {
-    /// As JSON, one object.
+    /// Returns the analysis as a JSON object.
     #[must_use]
     pub fn to_json(&self) -> String {
         // Only maps with keys that are no strings cannot be written, and there are none.
         serde_json::to_string_pretty(self).map(|text| text + "\n").unwrap_or_default()
     }
 
-    /// For people.
+    /// Returns the analysis as text for people.
     #[must_use]
     pub fn to_text(&self) -> String {
         let mut text = self.figures();

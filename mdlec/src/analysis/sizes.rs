@@ -1,4 +1,4 @@
-//! How many bytes the emitted machine takes: what it keeps from turn to turn, and its tables.
+//! Size of the emitted machine in bytes: its state from turn to turn, and its tables.
 
 use std::collections::BTreeSet;
 
@@ -12,11 +12,11 @@ use crate::rust::Shape;
 /// Bytes of the emitted machine, on a computer of 64 bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub struct Bytes {
-    /// How it is written: `code` or `rows`.
+    /// Form of the emitted plan: `code` or `rows`.
     pub form: &'static str,
-    /// What is kept from turn to turn beside the law that runs: where the plan is, when it began what, its frame.
+    /// State from turn to turn, besides the running law: the position in the plan, the times of entry, the frame.
     pub state: u64,
-    /// What it remembers, for RISING and `after`.
+    /// Memories of RISING and `after`.
     pub memories: u64,
     /// The tables of brackets and atoms.
     pub machine: u64,
@@ -24,7 +24,7 @@ pub struct Bytes {
     pub texts: u64,
 }
 
-/// Counts them.
+/// Counts the bytes of the emitted machine.
 pub(super) fn bytes(machine: &Machine) -> Bytes {
     let number = |count: usize| u64::try_from(count).unwrap_or(u64::MAX);
     // A cursor begins with the number of its atom, in front of numbers of eight bytes.

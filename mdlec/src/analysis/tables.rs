@@ -1,9 +1,9 @@
 //! Truth tables: for every choice of some variables, whether something holds. A bit a choice, sixty-four at a time.
 
-/// The most variables of which every choice is tried.
+/// Maximum number of variables whose choices are all tried.
 pub(super) const VARIABLES: usize = 12;
 
-/// Whether something holds, by the number of the choice: bit `i` of that number is the value of variable `i`.
+/// A truth table by the number of the choice: bit `i` of that number is the value of variable `i`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Table(Vec<u64>);
 
@@ -18,13 +18,13 @@ const SHORT: [u64; 6] = [
 ];
 
 impl Table {
-    /// What holds always, or never, of so many variables.
+    /// Returns the table of this number of variables that is `value` for every choice.
     pub(super) fn constant(variables: usize, value: bool) -> Self {
         let words = 1_usize << variables.saturating_sub(SHORT.len());
         Self(vec![if value { u64::MAX } else { 0 }; words])
     }
 
-    /// What holds when this variable does.
+    /// Returns the table that is true where this variable is true.
     pub(super) fn variable(variables: usize, index: usize) -> Self {
         let mut table = Self::constant(variables, false);
         for (number, word) in table.0.iter_mut().enumerate() {
@@ -37,30 +37,30 @@ impl Table {
         table
     }
 
-    /// Where both hold.
+    /// Returns the conjunction of two tables.
     pub(super) fn and(mut self, other: &Self) -> Self {
         self.0.iter_mut().zip(&other.0).for_each(|(word, other)| *word &= other);
         self
     }
 
-    /// Where one of them holds.
+    /// Returns the disjunction of two tables.
     pub(super) fn or(mut self, other: &Self) -> Self {
         self.0.iter_mut().zip(&other.0).for_each(|(word, other)| *word |= other);
         self
     }
 
-    /// Where it does not hold.
+    /// Returns the negation of the table.
     pub(super) fn not(mut self) -> Self {
         self.0.iter_mut().for_each(|word| *word = !*word);
         self
     }
 
-    /// Whether it holds for the choice of this number.
+    /// Returns `true` if the table is true for the choice of this number.
     pub(super) fn holds(&self, choice: usize) -> bool {
         self.0.get(choice / 64).is_some_and(|word| word >> (choice % 64) & 1 == 1)
     }
 
-    /// Whether it holds for some choice.
+    /// Returns `true` if the table is true for some choice.
     pub(super) fn is_possible(&self) -> bool {
         self.0.iter().any(|word| *word != 0)
     }

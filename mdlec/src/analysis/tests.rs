@@ -1,4 +1,4 @@
-//! What an analysis says of small plans, and what it leaves alone: each lint with a near miss.
+//! Analyses of small plans: each warning is tested with a plan that has it, and with a near miss.
 
 mod texts;
 

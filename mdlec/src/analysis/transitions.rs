@@ -13,15 +13,15 @@ use crate::fsm::{ElementKind, Machine};
 use crate::plan::families::Readings;
 use crate::plan::{Condition, Interrupt, QuarkId};
 
-/// The most transitions of one turn: no more than the machine makes.
+/// Maximum number of transitions in one turn, at most as many as the machine makes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Most {
     pub(super) count: u64,
-    /// Whether a search may need more than one turn has.
+    /// Set to `true` if a search may need more transitions than one turn has.
     pub(super) is_cut: bool,
 }
 
-/// Counts them.
+/// Counts the transitions of a machine's longest turn.
 pub(super) fn most(machine: &Machine) -> Most {
     /// The most quarks of which every choice is counted, and the most brackets times choices.
     const QUARKS: usize = 8;
@@ -49,23 +49,23 @@ pub(super) fn most(machine: &Machine) -> Most {
     Most { count: count.min(limit), is_cut: count > limit }
 }
 
-/// How long chains of transitions in an element, or in elements one behind the other, can be.
+/// Maximum lengths of chains of transitions in an element, or in consecutive elements.
 #[derive(Debug, Clone, Copy)]
 struct Chains {
-    /// From its beginning to its end, if it can be passed in one turn.
+    /// Chain from the beginning to the end, if the element can be passed in one turn.
     pass: Option<u64>,
-    /// From its beginning to somewhere inside.
+    /// Chain from the beginning to a place inside.
     first: u64,
-    /// From somewhere inside to its end, if it can end.
+    /// Chain from a place inside to the end, if the element can end.
     last: Option<u64>,
-    /// Anywhere in it.
+    /// Chain between any two places inside.
     inside: u64,
 }
 
 impl Chains {
     const NONE: Self = Self { pass: Some(0), first: 0, last: None, inside: 0 };
 
-    /// This, and behind it those.
+    /// Returns the chains of `self` followed by `next`.
     fn then(self, next: Self) -> Self {
         let last = plus(self.last, next.pass);
         let through = self.last.map_or(0, |last| last.saturating_add(next.first));
@@ -96,7 +96,7 @@ impl Chains {
         }
     }
 
-    /// What a scope makes of what is inside it.
+    /// Returns the chains of a scope around `self`, whose interrupt fires with these certainties.
     fn within(self, at_once: Certainty, later: Certainty, asks_after: bool) -> Self {
         let one = |certainty: Certainty| certainty.can.then_some(1);
         if at_once.must {
@@ -117,10 +117,10 @@ fn plus(one: Option<u64>, other: Option<u64>) -> Option<u64> {
     Some(one?.saturating_add(other?))
 }
 
-/// The longest chain of transitions where the quarks say what the bits of `choice` are.
+/// Returns the length of the longest chain of transitions where the quarks have the values of the bits of `choice`.
 fn longest(machine: &Machine, quarks: &[QuarkId], choice: usize) -> u64 {
     let mut inside = vec![Chains::NONE; machine.elements().len()];
-    // The last element first: so what is inside of one is known, and what stands behind it.
+    // The last element first: then the elements inside and after an element are known.
     for element in machine.elements().rev() {
         let body = match element.kind() {
             ElementKind::Loop { times } => inside[element.index()].times(times.unwrap_or(0)),
@@ -143,14 +143,14 @@ fn longest(machine: &Machine, quarks: &[QuarkId], choice: usize) -> u64 {
     0
 }
 
-/// Whether something can be, and whether it has to be.
+/// Possibility and necessity of an event.
 #[derive(Debug, Clone, Copy)]
 struct Certainty {
     can: bool,
     must: bool,
 }
 
-/// Of a condition: in the turn in which its scope is entered, or in any.
+/// Returns the certainty that a condition has fired, in the turn in which its scope is entered, or in any turn.
 fn certainty(condition: &Condition, quarks: &[QuarkId], choice: usize, entered: bool) -> Certainty {
     let known = |value| Certainty { can: value, must: value };
     let unknown = Certainty { can: true, must: false };

@@ -1,5 +1,5 @@
-//! What the value of a condition depends on, and which of these can be true at once: timers run from entries that lie one
-//! behind the other, and a signal has one value.
+//! Variables on which the value of a condition depends, and the values that they can have at once: timers run from
+//! entries in a known order, and a signal has one value.
 
 use std::collections::BTreeMap;
 
@@ -11,28 +11,28 @@ use crate::plan::{Quark, QuarkId, RecordId};
 /// Something that is true or not in a turn, as far as conditions say no more of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Variable {
-    /// An interrupt quark that is the same function wherever it stands.
+    /// An interrupt quark that is the same function in every place.
     Quark(QuarkId),
-    /// One with a memory of its own, in the scope of this bracket.
+    /// An interrupt quark with a memory of its own, in the scope of this bracket.
     Own(u32, QuarkId),
-    /// So many nanoseconds have passed since the scope of this bracket was entered.
+    /// This number of nanoseconds has passed since the scope of this bracket was entered.
     Timer(u32, u64),
     /// This time has passed since a scope was entered that has ended.
     Past(u32, u64),
-    /// So many nanometres have been driven since the scope of this bracket was entered.
+    /// This number of nanometres has been driven since the scope of this bracket was entered.
     Way(u32, u64),
     /// This length has been driven since a scope was entered that has ended.
     PastWay(u32, u64),
     /// A memory of the interrupt of this bracket.
     Memory(u32, u32),
-    /// What `after` asks.
+    /// A fact that `after` asks for.
     Fact(RecordId, u32),
-    /// What it asked before an element ended.
+    /// A fact that `after` asks for, as it was before an element ended.
     PastFact(RecordId, u32),
 }
 
-/// Where the values of these variables can be so at once: `entered` says when a scope was entered at the earliest, and the
-/// brackets of timers hold one another, a smaller number the larger.
+/// Returns the choices whose values the variables can have at once. `entered` gives the earliest entry of a scope; the
+/// brackets of timers are nested, and the outer one has the smaller number.
 pub(super) fn possible(
     choices: &Choices,
     quarks: &[Quark],

@@ -14,81 +14,81 @@ use super::world::{Added, World};
 use crate::fsm::{Element, ElementKind, Machine, Visit};
 use crate::plan::{Condition, QuarkId};
 
-/// Whether an atom comes to run.
+/// Reachability of an atom.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Reach {
-    /// Its law may be applied.
+    /// The atom's law may be applied.
     Runs,
-    /// It may become the current atom, but then something around it has always fired.
+    /// The atom may become the current one, but then an interrupt around it has always fired.
     Skipped,
-    /// It never becomes the current atom.
+    /// The atom never becomes the current one.
     Never,
 }
 
-/// What is so of a bracket.
+/// Facts about a bracket.
 #[derive(Debug, Clone)]
 pub(super) struct Found {
     pub(super) reach: Reach,
-    /// For each operand of its interrupt's outermost OR: whether the interrupt can fire by it.
+    /// An answer for each operand of the outermost OR of the bracket's interrupt.
     pub(super) operands: Vec<Outcome>,
-    /// Whether it ends because its law is done.
+    /// Set to `true` if the bracket can end because its law is done.
     pub(super) completes: bool,
-    /// Why it is always skipped, if it is.
+    /// Reason why the bracket is always skipped, if it is.
     pub(super) skipped: Option<Skip>,
     /// The element before it, if that keeps it from being reached and a reader of the text alone would not see it.
     pub(super) cut_off_by: Option<u32>,
 }
 
-/// Why an element is always skipped.
+/// Reason why an element is always skipped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Skip {
-    /// Its interrupt has always fired when it is entered.
+    /// The element's interrupt has always fired when the element is entered.
     AtOnce,
-    /// Its interrupt has fired whenever what comes before it ends: the bracket of one of these.
+    /// The element's interrupt has fired whenever the element before it ends; this bracket is one of those that end it.
     Behind(u32),
-    /// It is inside of something that is skipped.
+    /// An enclosing element is skipped.
     Inside,
 }
 
-/// Whether an interrupt can fire by one of its operands.
+/// Answer whether an interrupt can fire by one of its operands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Outcome {
-    /// It can.
+    /// The interrupt can fire by the operand.
     Possible,
-    /// It is never true.
+    /// The operand is never true.
     Never,
-    /// It is true only when the interrupt of this bracket has fired.
+    /// The operand is true only when the interrupt of this bracket has fired.
     Beaten(u32),
-    /// It is over later than a timer of this bracket.
+    /// The operand's timer is over later than a timer of this bracket.
     Late(u32),
-    /// It is the same as an operand of this bracket's interrupt.
+    /// The operand equals an operand of this bracket's interrupt.
     Repeated(u32),
-    /// It was not asked: this place is never reached.
+    /// The operand was not judged: its place is never reached.
     Unread,
 }
 
-/// What has just fired where an element is entered: one of these. Nothing is known where there are none.
+/// Conditions of which one has just fired where an element is entered. The list is empty if nothing is known.
 type Facts<'l> = Vec<Read<'l>>;
 
 /// A bracket that the walk is inside.
 struct Open {
     reach: Reach,
-    /// When it is entered, and when it ends by itself, each at the earliest.
+    /// Earliest entry of the bracket; `own` is its earliest end by itself.
     clock: Option<u64>,
     own: Option<u64>,
     added: Added,
-    /// Whether what is before it in the text ends.
+    /// Set to `true` if the element before the bracket ends, as far as the text alone shows.
     written: bool,
 }
 
-/// What is so of each bracket, and the time at which the plan is over at the earliest.
+/// Facts about each bracket, and the earliest end of the plan.
 pub(super) struct Walked {
     pub(super) found: Vec<Found>,
     pub(super) shortest: Option<u64>,
 }
 
-/// Walks over a machine. `one_turn` says that every search for the next atom comes to its end in one turn.
+/// Walks over a machine. `one_turn` is `true` if every search for the next atom ends within one turn.
 pub(super) fn walk(machine: &Machine, one_turn: bool) -> Walked {
     let mut walk = Walk {
         world: World::new(machine),
@@ -120,16 +120,16 @@ pub(super) struct Walk<'l> {
     found: Vec<Found>,
     /// The timers that are operands of interrupts around, by their brackets.
     pub(super) waits: BTreeMap<QuarkId, Vec<u32>>,
-    /// When the next element is entered at the earliest; `None` where it is not.
+    /// Earliest entry of the next element; `None` if it is never entered.
     pub(super) clock: Option<u64>,
     pub(super) facts: Facts<'l>,
-    /// Whether what stands before the next element ends, as far as its text alone says.
+    /// Set to `true` if the element before the next one ends, as far as the text alone shows.
     written: bool,
-    /// Whether the next element is the first of one that is skipped.
+    /// Set to `true` if the next element is inside a skipped element.
     skipping: bool,
     /// The element before the next one.
     before: Option<u32>,
-    /// Whether every search for the next atom comes to its end in one turn.
+    /// Set to `true` if every search for the next atom ends within one turn.
     pub(super) one_turn: bool,
 }
 
@@ -178,7 +178,7 @@ impl<'l> Walk<'l> {
         self.before = None;
     }
 
-    /// What has just fired where a loop's body begins: what leads there may be its own last element.
+    /// Adds the conditions that lead from a loop's last element to the beginning of its body.
     fn repeat(&mut self, repeated: Element<'l>) {
         let again = self.exit(repeated);
         if self.facts.is_empty() || again.is_empty() {
@@ -205,9 +205,9 @@ impl<'l> Walk<'l> {
         }
     }
 
-    /// What has fired when an element has ended: one of these; nothing if that is not known.
+    /// Returns conditions of which one has fired when an element has ended; the list is empty if that is not known.
     fn exit(&self, element: Element<'l>) -> Facts<'l> {
-        /// The most scopes that may end one with the other.
+        /// Maximum number of scopes that may end together.
         const ENDING: usize = 8;
         let mut exits = Vec::new();
         for here in iter::successors(Some(element), |here| here.children().last()).take(ENDING) {
@@ -259,7 +259,7 @@ impl<'l> Walk<'l> {
     }
 }
 
-/// When a loop ends at the earliest, by when it is entered and when its first pass ends.
+/// Returns the earliest end of a loop, from its entry and the earliest end of its first pass.
 fn passes(from: Option<u64>, pass: Option<u64>, times: Option<u64>) -> Option<u64> {
     let (from, pass, times) = (from?, pass?, times?);
     Some(from.saturating_add(pass.saturating_sub(from).saturating_mul(times)))

@@ -1,7 +1,7 @@
-//! What is known where a condition is read: no interrupt of a scope around it has fired, for these are read first
-//! (docs/src/reference/semantics.md, 5.2).
+//! Knowledge at the place where a condition is read: no interrupt of an enclosing scope has fired, because these are
+//! read first (docs/src/reference/semantics.md, 5.2).
 //!
-//! An answer "impossible" holds for every run; "possible" may be said of what is too much to look at.
+//! "Impossible" holds for every run; "possible" may also mean that the question was too large to decide.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,32 +15,33 @@ use crate::plan::{Condition, QuarkId};
 /// The most conditions around a place that are looked at for each variable of a question.
 const CLAUSES: usize = 8;
 
-/// What is asked of some conditions: that one of them has fired, or that none has.
+/// Question about some conditions: that one of them has fired, or that they all have not.
 #[derive(Debug, Clone)]
 pub(super) struct Wanted<'l> {
     pub(super) any: Vec<Read<'l>>,
     pub(super) fired: bool,
 }
 
-/// What is known at a place of a plan.
+/// Knowledge at a place of a plan.
 #[derive(Debug)]
 pub(super) struct World<'l> {
     pub(super) machine: &'l Machine,
-    /// When the scope of each bracket was entered at the earliest, in nanoseconds since the plan began.
+    /// Earliest entry of the scope of each bracket, in nanoseconds since the plan began.
     pub(super) entered: Vec<u64>,
-    /// What has one value only, or a scope around would have ended; and the bracket of that scope.
+    /// Variables that have one value only, or an enclosing scope would have ended; with the bracket of that scope.
     units: BTreeMap<Variable, (bool, u32)>,
-    /// When a timer around is over, on the clock of `entered`, and its bracket: the first of them is the last.
+    /// Times at which the timers of enclosing scopes are over, on the clock of `entered`, with their brackets: the last
+    /// one in the list is over first.
     deadlines: Vec<(u64, u32)>,
     /// The paths that end scopes around, in nanometres, with their brackets: each is shorter than those before it.
     distances: Vec<(u64, u32)>,
-    /// What else has not fired around, by the variables in it.
+    /// Other conditions of enclosing scopes that have not fired, by the variables in them.
     clauses: BTreeMap<Variable, Vec<Read<'l>>>,
     families: BTreeMap<Family, BTreeSet<QuarkId>>,
     readings: Readings,
 }
 
-/// What a scope has added to what is known inside it.
+/// Knowledge that a scope has added for the elements inside it.
 #[derive(Debug, Default)]
 pub(super) struct Added {
     units: Vec<Variable>,
@@ -243,7 +244,7 @@ impl<'l> World<'l> {
         }
     }
 
-    /// Whether all this can be so in one turn; `fixed` says what the values of some variables are.
+    /// Returns `true` if all this can be true in one turn; `fixed` gives the values of some variables.
     pub(super) fn is_possible(&self, wanted: &[Wanted<'l>], fixed: &BTreeMap<Variable, bool>) -> bool {
         let mut variables = BTreeSet::new();
         let reads = wanted.iter().flat_map(|wanted| &wanted.any);
@@ -276,7 +277,7 @@ impl<'l> World<'l> {
         table.is_possible()
     }
 
-    /// Whether an interrupt may be one that has not fired.
+    /// Returns `true` if an interrupt may not have fired.
     pub(super) fn stays(&self, bracket: u32, condition: &'l Condition, when: When) -> bool {
         let not = |condition| {
             let any = vec![Read { condition, bracket, when }];
@@ -287,7 +288,8 @@ impl<'l> World<'l> {
         operands.iter().all(not) && (operands.len() == 1 || not(condition))
     }
 
-    /// What has not fired around and shares variables with these, as long as there are not too many in all.
+    /// Returns conditions of enclosing scopes that have not fired and share variables with `all`, as long as the number
+    /// of free variables permits.
     fn clauses(&self, all: &mut BTreeSet<Variable>, value: &impl Fn(&Variable) -> Option<bool>) -> Vec<Read<'l>> {
         let free = |all: &BTreeSet<Variable>| all.iter().filter(|variable| value(variable).is_none()).count();
         let related: Vec<Read<'l>> = all

@@ -2,7 +2,7 @@
 
 use crate::samples::judged;
 
-/// One snapshot: the text, what is said of it, and the plan.
+/// One snapshot: the text, its analysis, and the plan.
 macro_rules! assert_judged {
     ($text:literal) => {
         insta::assert_snapshot!(judged($text, None))
