@@ -1,15 +1,13 @@
-//! Makes the parsers from their grammars, and packs the sources that executables are built from.
+//! Makes the parser from its grammar, and packs the sources that executables are built from.
 
 #![allow(clippy::disallowed_methods, reason = "what is done here is I/O")]
 
-#[path = "build/parsers.rs"]
-mod parsers;
 #[path = "build/sources.rs"]
 mod sources;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     // Cargo watches the package by itself only as long as a build script names nothing, and `sources` does.
     println!("cargo::rerun-if-changed=src");
-    parsers::make()?;
+    lalrpop::process_src()?;
     sources::pack()
 }

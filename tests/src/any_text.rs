@@ -52,7 +52,7 @@ pub fn parse(text: &str) {
     }
     shown(&sources, &found);
     if found.is_empty() {
-        // What is flawless is read by a parser of its own.
+        // What is wrong behind the plans changes nothing in their trees.
         let flawed = format!("{text}\n§\n");
         let arena = arena_for(&flawed);
         let (file, found) = read(id, &flawed, &arena);

@@ -6,8 +6,7 @@ mod advice;
 use std::collections::{BTreeMap, BTreeSet};
 
 pub(crate) use advice::advice;
-use advice::advice_for;
-pub(super) use advice::is_word;
+use advice::{advice_for, is_word};
 
 use super::header;
 use super::source::{Place, Source};
@@ -15,7 +14,7 @@ use super::token::{Lexed, Tok, Token};
 use crate::diagnostic::{Code, Diagnostic};
 
 /// Returns `true` if a name is probably meant as the keyword `Atom`.
-pub(super) fn is_like_atom(name: &str) -> bool {
+fn is_like_atom(name: &str) -> bool {
     (3..=5).contains(&name.len())
         && name.starts_with(['a', 'A'])
         && strsim::damerau_levenshtein(&name.to_ascii_lowercase(), "atom") <= 1

@@ -4,7 +4,6 @@
 //! are in the arena already, and members of a list wait elsewhere until the list is complete.
 
 use std::borrow::Cow;
-use std::cell::RefCell;
 use std::ops::Range;
 
 use bumpalo::Bump;
@@ -22,9 +21,6 @@ use crate::diagnostic::{Code, Diagnostic, Span};
 /// An error from which the parser has recovered.
 pub(super) type Recovery<'s> = ErrorRecovery<Location, Tok<'s>, std::convert::Infallible>;
 
-/// Doc comments read so far, each with the index of the token after it.
-pub(super) type Docs<'s> = RefCell<Vec<(usize, &'s str)>>;
-
 /// Head of a plan: everything before its elements.
 #[derive(Default, Clone, Copy)]
 pub(super) struct Head<'s> {
@@ -38,9 +34,10 @@ pub(super) struct Nodes<'t, 's> {
     pub(super) source: Source<'s>,
     /// Arena of the tree.
     arena: &'s Bump,
-    /// The tokens, for messages about broken text; empty where no messages are needed.
+    /// The tokens, for what is broken.
     pub(super) tokens: &'t [Token<'s>],
-    docs: &'t Docs<'s>,
+    /// The doc comments, each with the token that follows it.
+    docs: &'t [(usize, &'s str)],
     /// Nodes whose list is not complete.
     pub(super) waiting: Waiting<'s>,
     /// The tree.
@@ -53,7 +50,12 @@ pub(super) struct Nodes<'t, 's> {
 
 impl<'t, 's> Nodes<'t, 's> {
     /// Returns constructors for the tokens of a text.
-    pub(super) fn new(source: Source<'s>, arena: &'s Bump, tokens: &'t [Token<'s>], docs: &'t Docs<'s>) -> Self {
+    pub(super) fn new(
+        source: Source<'s>,
+        arena: &'s Bump,
+        tokens: &'t [Token<'s>],
+        docs: &'t [(usize, &'s str)],
+    ) -> Self {
         let (waiting, file) = (Waiting::new(), File::default());
         Self { source, arena, tokens, docs, waiting, file, errors: Vec::new(), empty: Vec::new() }
     }
@@ -120,12 +122,9 @@ impl<'t, 's> Nodes<'t, 's> {
 
     /// Doc comment directly before a plan.
     fn docs_of(&self, start: Location) -> &'s [&'s str] {
-        let (docs, start) = (self.docs.borrow(), start.token as usize);
-        if docs.last().is_none_or(|(last, _)| *last < start) {
-            return &[];
-        }
-        let first = docs.partition_point(|(token, _)| *token < start);
-        let lines = docs.get(first..).unwrap_or(&[]).iter();
+        let start = start.token as usize;
+        let first = self.docs.partition_point(|(token, _)| *token < start);
+        let lines = self.docs.get(first..).unwrap_or(&[]).iter();
         let lines: Vec<_> = lines.take_while(|(token, _)| *token == start).map(|(_, line)| *line).collect();
         self.arena.alloc_slice_copy(&lines)
     }

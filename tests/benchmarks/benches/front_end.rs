@@ -1,15 +1,13 @@
-//! Text to tree, in bytes a second: mdlec's front end beside the bare parser of the same grammar.
+//! Text to tree, in bytes a second.
 //!
-//! All parsers take turns, and the fastest run of each counts, so that other load on the machine affects them equally.
-//! `mdlec` puts each tree into an arena that has been used before, so that the parser is measured; `first` into a new
-//! one, so that the time includes what the system takes to hand out memory. Trees are taken down outside of the
-//! measured time.
+//! Both kinds of runs take turns, and the fastest of each counts. `used` puts each tree into an arena that has been used before,
+//! so that the parser is measured; `new` into a new one, so that the time is in it which the system takes to hand out memory.
+//! Trees are taken down outside of the measured time.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use mdle_benchmarks::bare;
 use mdle_benchmarks::front_end::{one_megabyte, plans, ten_megabytes};
 use mdlec::diagnostic::SourceId;
 use mdlec::syntax::{Arena, arena_for, parse};
@@ -18,29 +16,26 @@ use mdlec::syntax::{Arena, arena_for, parse};
 const BYTES: usize = 200_000_000;
 
 fn main() {
-    println!("{:8} {:>6} {:>12} {:>12} {:>12}", "", "runs", "bare, MB/s", "mdlec", "first");
+    println!("{:8} {:>6} {:>12} {:>12}", "", "runs", "used, MB/s", "new");
     for (name, texts) in [plans(), one_megabyte(), ten_megabytes()] {
-        assert!(texts.iter().all(|text| bare::accepts(text) && reads(text, &Arena::new())), "{name}");
+        assert!(texts.iter().all(|text| reads(text, &Arena::new())), "{name}");
         let bytes: usize = texts.iter().map(String::len).sum();
         // A run is long enough for the clock.
         let (runs, repeats) = (BYTES / bytes.max(100_000), (100_000 / bytes).max(1));
-        let [bare, used, first] = fastest(&texts, runs, repeats);
+        let [used, new] = fastest(&texts, runs, repeats);
         let speed = |time: Duration| (bytes * repeats) as f64 / time.as_secs_f64() / 1e6;
-        let beside = |time: Duration| format!("{:.1} ({:.2})", speed(time), bare.as_secs_f64() / time.as_secs_f64());
-        println!("{name:8} {runs:>6} {:>12.1} {:>12} {:>12}", speed(bare), beside(used), beside(first));
+        println!("{name:8} {runs:>6} {:>12.1} {:>12.1}", speed(used), speed(new));
     }
 }
 
-/// Returns the time of the fastest run: of the bare parser, and of mdlec in an arena that has been used and in new
-/// ones.
-fn fastest(texts: &[String], runs: usize, repeats: usize) -> [Duration; 3] {
-    let mut fastest = [Duration::MAX; 3];
+/// Returns the time of the fastest run: in an arena that has been used, in new ones.
+fn fastest(texts: &[String], runs: usize, repeats: usize) -> [Duration; 2] {
+    let mut fastest = [Duration::MAX; 2];
     let mut used = Arena::new();
     for _ in 0..runs {
         let mut new: Vec<Vec<Arena>> = Vec::new();
         new.resize_with(repeats, || texts.iter().map(|text| arena_for(text)).collect());
         let times = [
-            time(repeats, |_| texts.iter().all(|text| bare::accepts(black_box(text)))),
             time(repeats, |_| {
                 texts.iter().all(|text| {
                     used.reset();

@@ -3,7 +3,6 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a benchmark fails by panicking")]
 
-pub mod bare;
 pub mod front_end;
 pub mod plan_text;
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Words of other languages, and the forms of MDLe that replace them.
 
 /// Returns `true` if a name is a word of other languages, so that it may have to be replaced.
-pub(in crate::syntax) fn is_word(name: &str) -> bool {
+pub(super) fn is_word(name: &str) -> bool {
     matches!(
         name,
         "if" | "If"
