@@ -42,7 +42,7 @@ fn refused(folder: &Path) -> String {
     assert!(!folder.join("plan").exists());
     // Of this, only the first build of all says something.
     said.lines()
-        .filter(|line| !line.starts_with("compiling what") && !line.starts_with("waiting for"))
+        .filter(|line| !line.starts_with("compiling libraries") && !line.starts_with("waiting for"))
         .fold(String::new(), |text, line| text + line + "\n")
 }
 
