@@ -8,7 +8,7 @@ use crate::alphabet::Kind;
 
 /// Content that begins after a parenthesis in a header.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Begins<'s> {
+pub(super) enum Begins<'s> {
     /// Parameters.
     Parameters,
     /// No parameters.
@@ -61,7 +61,7 @@ pub(super) fn names<'s>(tokens: &[Token<'s>]) -> BTreeSet<&'s str> {
 
 /// Determines if the tokens after a parenthesis begin parameters: a name and a colon with a type, or with a name that
 /// must be one. A string whose first element has a label begins alike.
-fn begins<'s>(mut behind: impl Iterator<Item = Tok<'s>>) -> Begins<'s> {
+pub(super) fn begins<'s>(mut behind: impl Iterator<Item = Tok<'s>>) -> Begins<'s> {
     if !matches!((behind.next(), behind.next()), (Some(Tok::Name(_)), Some(Tok::Colon))) {
         return Begins::Others;
     }
@@ -82,7 +82,7 @@ fn begins<'s>(mut behind: impl Iterator<Item = Tok<'s>>) -> Begins<'s> {
 
 /// Returns `true` if the group whose parenthesis is before `behind` contains something that no condition does, at any
 /// depth: an element, a colon, or a comma that is not between arguments.
-fn is_element<'s>(behind: impl Iterator<Item = Tok<'s>>) -> bool {
+pub(super) fn is_element<'s>(behind: impl Iterator<Item = Tok<'s>>) -> bool {
     let mut depth = 1_usize;
     // How deep the parenthesis is in which arguments stand, and whether one of those may come next.
     let (mut arguments, mut takes) = (None, false);

@@ -2,8 +2,8 @@
 
 use mdle_runtime::fsm::{Atom, Bracket, Kind};
 use mdle_runtime::{
-    Begin, Bits, Cause, Completes, Control, Cursor, Ending, Fsm, Interrupt, Law, Meters, MetersPerSecond, Nanos, Next,
-    Plan, Radians, RadiansPerSecond, SonarId,
+    Begin, Bits, Cause, Completes, Control, Cursor, Ending, Fsm, Interrupt, Law, Meters, MetersPerSecond, Nanos, Plan,
+    Radians, RadiansPerSecond, SonarId,
 };
 use mdle_sim::alphabet::{Align, AtIsection, Bumper, Go, GoAvoid, Input, Output, Rotate};
 
@@ -103,10 +103,9 @@ impl Plan for Tour {
         });
     }
 
-    fn next(&mut self, cursor: &mut Cursor<Self::Entered, Self::Left>, y: &Output, begin: Begin, _: bool) -> Next {
-        let t = begin.now;
+    fn next(&self, cursor: &Cursor<Self::Entered, Self::Left>, y: &Output, t: Nanos) -> Option<Ending> {
         if Bumper::new().fired(y) {
-            return Next::Ends(Cause::Fired(1).into());
+            return Some(Cause::Fired(1).into());
         }
         let own = match ATOMS[cursor.atom() as usize].0 {
             Until::At(bits) => AtIsection::new(Bits(bits.map(|bit| bit == 1))).fired(y),
@@ -119,7 +118,7 @@ impl Plan for Tour {
             Running::Align(law) => law.completed(y, t),
             Running::Rotate(law) => law.completed(y, t),
         };
-        own.then_some(Cause::Fired(2)).or(completed.then_some(Cause::Completed(2))).map(Ending::from).into()
+        own.then_some(Cause::Fired(2)).or(completed.then_some(Cause::Completed(2))).map(Ending::from)
     }
 
     fn input(&mut self, y: &Output, t: Nanos) -> Input {
