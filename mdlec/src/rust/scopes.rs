@@ -35,8 +35,8 @@ impl Meaning<'_> {
     /// The function of the nearest scope that encloses this element and has an interrupt; not the plan's, which is asked
     /// before all others.
     pub(super) fn around(&self, element: Element<'_>) -> Option<&Ident> {
-        let enclosing = element.outwards().skip(1).filter(|enclosing| enclosing.parent().is_some());
-        enclosing.filter_map(|enclosing| self.function(enclosing)).next()
+        let mut enclosing = element.outwards().skip(1).filter(|enclosing| enclosing.parent().is_some());
+        enclosing.find_map(|enclosing| self.function(enclosing))
     }
 
     /// Returns the expression that is true when the interrupt of this element has fired; `None` where it never does.

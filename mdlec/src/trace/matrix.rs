@@ -117,7 +117,7 @@ impl<'p> MatrixProduct<'p> {
 
     /// Law of the state; `None` when the plan has ended.
     fn law(&self) -> Option<&'p Quark> {
-        self.matrices.laws.iter().nth(self.e.row).map(|law| self.plan.quark(*law))
+        self.matrices.laws.iter().copied().nth(self.e.row).map(|law| self.plan.quark(law))
     }
 
     /// Frame of the law, if a scope around the state is entered in a frame of its own: the innermost such scope has the
