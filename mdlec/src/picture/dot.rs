@@ -9,7 +9,7 @@ use super::{can_be_shown, too_many};
 use crate::diagnostic::Diagnostic;
 use crate::fsm::{Atom, Element, ElementKind, Machine, Visit};
 
-/// How many letters a line of a label has, and how many lines it has.
+/// Maximum number of letters in a line of a label; `LINES` is the maximum number of its lines.
 const LETTERS: usize = 30;
 const LINES: usize = 3;
 /// The most edges: loops that end together have one each.

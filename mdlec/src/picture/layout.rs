@@ -4,14 +4,14 @@ use super::places::{GAP, Placed, SIDE};
 use super::texts::until;
 use crate::fsm::{Element, ElementKind, Machine};
 
-/// What an arrow says.
+/// Meaning of an arrow.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Arrow {
-    /// What follows.
+    /// The way to the element that follows.
     Flow,
-    /// Into the first of what a box holds, or out of its last: a line without a head.
+    /// The way into the first element of a box, or out of its last one: a line without a head.
     Port,
-    /// How a scope is left when its own condition fires.
+    /// The way out of a scope when its own condition fires.
     Exit,
     /// The next pass of a loop.
     Again,
@@ -22,16 +22,16 @@ pub(super) enum Arrow {
 pub(super) struct Line {
     pub(super) arrow: Arrow,
     pub(super) points: Vec<(i64, i64)>,
-    /// How deep the box is that it belongs to.
+    /// Nesting depth of the box to which the line belongs.
     pub(super) depth: usize,
 }
 
-/// Where the picture begins and ends, beside the box of the plan.
+/// Width on either side of the plan's box, for the signs where the plan begins and ends.
 pub(super) const MARGIN: i64 = 44;
-/// How far below the upper edge of a scope its own exit is.
+/// Distance of a scope's own exit from the scope's upper edge.
 pub(super) const EXIT: i64 = 16;
 
-/// All arrows, in the order of their boxes.
+/// Returns all arrows, in the order of their boxes.
 pub(super) fn arrows(machine: &Machine, all: &[Placed]) -> Vec<Line> {
     let mut lines = Vec::new();
     if let Some(root) = all.first() {
@@ -118,13 +118,13 @@ fn gap_above(child: usize, placed: &Placed, all: &[Placed]) -> i64 {
     tops.min().unwrap_or(0) - GAP / 2
 }
 
-/// The next pass: below everything that the loop holds, back to its first.
+/// Returns the line of a loop's next pass: below all its elements, back to the first.
 fn again(placed: &Placed, from: (i64, i64), to: (i64, i64)) -> Line {
     let (right, left, below) = (from.0 + SIDE / 2, to.0 - SIDE / 2, placed.y + placed.height - 16);
     line(Arrow::Again, placed.depth, &[from, (right, from.1), (right, below), (left, below), (left, to.1), to])
 }
 
-/// How a scope is left by its own condition: from its head to where it leads.
+/// Returns the line of a scope's exit by its own condition, from its head to `to`; no line for other elements.
 fn exit(element: Element<'_>, placed: &Placed, to: (i64, i64), over: i64) -> Vec<Line> {
     if !element.is_scope() || !until(element).ends() {
         return Vec::new();
@@ -133,7 +133,8 @@ fn exit(element: Element<'_>, placed: &Placed, to: (i64, i64), over: i64) -> Vec
     vec![line(Arrow::Exit, placed.depth, &[from, (over, from.1), (over, to.1), to])]
 }
 
-/// How a scope at the end of a row is left by its own condition: down to the arrow in the gap, which leads on.
+/// Returns the lines of the exit of a scope at the end of a row by its own condition: down to the arrow in the gap,
+/// which leads on.
 fn exit_below(element: Element<'_>, placed: &Placed, to: (i64, i64), gap: i64) -> Vec<Line> {
     let right = placed.x + placed.width;
     if placed.flows {

@@ -1,4 +1,4 @@
-//! How much room text takes in a picture: it is set in letters of one width, so that no font has to be asked.
+//! Size of text in a picture: all letters have the same width, so that no font has to be asked.
 
 /// The width of ten letters, in pixels.
 const TEN_LETTERS: i64 = 73;
@@ -10,7 +10,7 @@ pub(super) fn width(text: &str) -> i64 {
     columns(text) * TEN_LETTERS / 10
 }
 
-/// How many letters fit.
+/// Returns the number of letters that fit into a width in pixels.
 pub(super) fn letters(width: i64) -> usize {
     usize::try_from(width.max(0) * 10 / TEN_LETTERS).unwrap_or(0)
 }
@@ -20,8 +20,8 @@ fn columns(text: &str) -> i64 {
     text.chars().map(|letter| if letter < '\u{1100}' { 1 } else { 2 }).sum()
 }
 
-/// A text on at most so many lines of at most so many letters, broken before OR and AND where that can be, else between
-/// words; what does not fit is left out, and the last line tells so by `…`.
+/// Breaks a text into at most `lines` lines of at most `letters` letters, before OR and AND where possible, else
+/// between words. Text that does not fit is left out, and the last line shows so by `…`.
 pub(super) fn wrapped(text: &str, letters: usize, lines: usize) -> Vec<String> {
     let letters = letters.max(4);
     // More is never shown, however long the text is.
@@ -46,7 +46,7 @@ pub(super) fn wrapped(text: &str, letters: usize, lines: usize) -> Vec<String> {
     wrapped
 }
 
-/// The words of a text, those together that stand between ORs and ANDs.
+/// Splits a text before each OR and AND.
 fn operands(text: &str) -> Vec<String> {
     let mut operands: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -61,7 +61,7 @@ fn operands(text: &str) -> Vec<String> {
     operands
 }
 
-/// Whether there is room for these words on the last line.
+/// Returns `true` if the last line has room for these words.
 fn fits(wrapped: &[String], words: &str, letters: usize) -> bool {
     let line = wrapped.last().map_or(0, |line| length(line) + usize::from(!line.is_empty()));
     line + length(words) <= letters

@@ -1,7 +1,7 @@
 //! A plan for mermaid: a `stateDiagram-v2` with scopes and loops as composite states.
 //!
-//! In mermaid nothing leads from inside a composite state to the outside, so an end is told one step at a time: what ends
-//! last leads to the end of what is around it, and that leads on.
+//! In mermaid no transition leads from inside a composite state to the outside, so an end is drawn one step at a time:
+//! the last element leads to the end of the enclosing element, and that leads on.
 
 use mdle_runtime::{Printable, is_printable};
 
@@ -12,7 +12,7 @@ use super::texts::{exponent, labels, law, passes, until};
 use crate::diagnostic::Diagnostic;
 use crate::fsm::{Element, ElementKind, Exit, Machine, Visit};
 
-/// How many letters of a condition or a law are shown: mermaid does not break the lines of labels.
+/// Maximum number of letters of a condition or a law: mermaid does not break the lines of labels.
 const LETTERS: usize = 60;
 
 /// The plan as a state diagram.

@@ -1,4 +1,4 @@
-//! Where the boxes of a picture are put: children in rows inside the scope or loop that holds them.
+//! Positions of the boxes of a picture: children are in rows inside their scope or loop.
 
 use super::exits::ends;
 use super::measure::{LINE, letters, width, wrapped};
@@ -6,9 +6,9 @@ use super::texts::{Until, exponent, labels, passes, until};
 use crate::fsm::{Atom, Element, ElementKind, Machine};
 use crate::plan::frame_text;
 
-/// How wide a picture is, if nothing in it needs more.
+/// Width of a picture, if nothing in it needs more.
 const PICTURE: i64 = 1180;
-/// The least room for what a box holds, however deep it is.
+/// Minimum width of a box's content, at any depth.
 const LEAST: i64 = 400;
 /// Between boxes beside each other, and between a box and what it holds.
 pub(super) const GAP: i64 = 34;
@@ -18,11 +18,11 @@ const BOTTOM: i64 = 16;
 /// The room below for the arrow that begins the next pass.
 const AGAIN: i64 = 30;
 const PADDING: i64 = 10;
-/// How many letters an atom is wide at most, and how many lines of a text it shows.
+/// Maximum width of an atom in letters; `LINES` is the maximum number of lines of a text in it.
 const LETTERS: usize = 30;
 const LINES: usize = 3;
 
-/// What a line in a box is.
+/// Style of a line in a box.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Style {
     Law,
@@ -38,17 +38,17 @@ pub(super) struct Placed {
     pub(super) y: i64,
     pub(super) width: i64,
     pub(super) height: i64,
-    /// How far below its upper edge what comes before leads to it, and what comes behind begins.
+    /// Distance from the upper edge of the arrow that leads to the box; `leaves` is that of the arrow that leaves it.
     pub(super) enters: i64,
     pub(super) leaves: i64,
-    /// What is written at its head, from above.
+    /// Lines at the head of the box, from above.
     pub(super) lines: Vec<(Style, String)>,
     pub(super) children: Vec<usize>,
-    /// Which of the children begin a row.
+    /// The children that begin a row.
     pub(super) rows: Vec<usize>,
-    /// How many scopes and loops are around it.
+    /// Number of scopes and loops around the box.
     pub(super) depth: usize,
-    /// Whether anything in it, or it itself, ever leads behind it; and whether that is what it holds.
+    /// Set to `true` if the element ends at all; `flows`, if it ends with its last element, or is an atom that ends.
     pub(super) ends: bool,
     pub(super) flows: bool,
 }
@@ -98,7 +98,7 @@ fn atom(atom: Atom<'_>, placed: &mut Placed) {
     placed.lines = lines;
 }
 
-/// What ends it, in words; nothing where a scope only ends with its last element.
+/// Returns the lines that show the condition by which an element ends.
 fn until_lines(until: &Until, letters: usize) -> Vec<(Style, String)> {
     let (style, text) = match until {
         Until::Fires(text) => (Style::Until, format!("until {text}")),
@@ -113,7 +113,7 @@ fn widest(lines: &[(Style, String)]) -> i64 {
     lines.iter().map(|(_, line)| width(line)).max().unwrap_or(0)
 }
 
-/// Places what a scope or a loop holds, whose sizes are known, and so finds its size.
+/// Places the elements of a scope or a loop, whose sizes are known, and computes its own size.
 fn holder(element: Element<'_>, all: &mut [Placed]) {
     let number = element.index();
     let children = all[number].children.clone();
@@ -148,7 +148,7 @@ fn holder(element: Element<'_>, all: &mut [Placed]) {
     placed.rows = rows.iter().filter_map(|row| row.first().copied()).collect();
 }
 
-/// What is written at the head of a scope or a loop.
+/// Returns the lines at the head of a scope or a loop.
 fn head(element: Element<'_>, content: i64) -> Vec<(Style, String)> {
     let letters = letters(content + SIDE).max(34);
     let labels = labels(element);

@@ -1,11 +1,12 @@
 //! A plan as a machine in W3C SCXML that does what the plan does.
 //!
-//! In SCXML the transitions of inner states go first, in MDLe those of outer scopes. So there are no states in states: each
-//! atom of the expanded plan is a state, and has the transitions of all scopes around it in document order, the outermost
-//! first. What starts afresh with a state, which SCXML would tell by entering states, is told by assignments.
+//! In SCXML the transitions of inner states go first, in MDLe those of outer scopes. So there are no nested states:
+//! each atom of the expanded plan is a state, and has the transitions of all scopes around it in document order, the
+//! outermost first. Assignments reset what starts afresh with a state, for which SCXML would enter states.
 //!
-//! An event `turn` brings what a line of a script has (`t`, `way`, `fired`, `completed`); afterwards transitions without an event
-//! are taken as long as there are any, at most [`TRANSITIONS_PER_TURN`], and `law` is what is applied.
+//! An event `turn` brings the content of a line of a script (`t`, `way`, `fired`, `completed`); afterwards transitions
+//! without an event are taken as long as there are any, at most [`TRANSITIONS_PER_TURN`], and `law` is the law that is
+//! applied.
 
 use std::collections::BTreeMap;
 
@@ -18,7 +19,7 @@ use crate::plan::{Condition, Mark, Nondegenerate, Plan, Quark, RecordId};
 
 /// The longest text, in bytes.
 const LONGEST: usize = 64 << 20;
-/// What `n`, the number of transitions in this turn, is before the first turn.
+/// Value of `n`, the number of transitions in this turn, before the first turn.
 const BEFORE: u32 = TRANSITIONS_PER_TURN + 1;
 
 /// The machine of a plan.
@@ -57,7 +58,7 @@ struct Machine<'m, 'p> {
     drives: bool,
     /// For each state the interrupts whose scopes hold it, the outermost first.
     listing: Vec<Vec<usize>>,
-    /// How many facts each record has.
+    /// Number of facts of each record.
     facts: BTreeMap<RecordId, u32>,
     text: String,
 }
@@ -204,7 +205,7 @@ impl<'p> Machine<'_, 'p> {
         self.line(2, "</transition>");
     }
 
-    /// What `after` will ask about what ends now.
+    /// Writes the facts that `after` asks for when an interrupt of this transition ends elements.
     fn record(&mut self, transition: &Transition<'p>, number: usize, by_condition: bool) {
         let own = transition.marks.iter().map(|mark| (mark, by_condition));
         let ended: Vec<(&Mark, bool)> = own.chain(transition.ends_with.iter().map(|mark| (*mark, false))).collect();
@@ -239,7 +240,7 @@ impl<'p> Machine<'_, 'p> {
         }
     }
 
-    /// Whether a condition of this interrupt has fired, in ECMAScript.
+    /// Returns the ECMAScript expression that is true if a condition of this interrupt has fired.
     fn expression(&self, condition: &Condition, number: usize) -> String {
         let joined = |operands: &[Condition], sign: &str| {
             let operands: Vec<_> = operands.iter().map(|operand| self.expression(operand, number)).collect();
@@ -278,22 +279,22 @@ fn owned((id, value): (&str, &str)) -> (String, String) {
     (id.to_owned(), value.to_owned())
 }
 
-/// When the scope of an interrupt was entered.
+/// Returns the variable for the time at which the scope of an interrupt was entered.
 fn entered(number: usize) -> String {
     format!("entered{}", number + 1)
 }
 
-/// The odometer's reading when the scope of an interrupt was entered.
+/// Returns the variable for the odometer's reading when the scope of an interrupt was entered.
 fn begun(number: usize) -> String {
     format!("begun{}", number + 1)
 }
 
-/// A memory of RISING.
+/// Returns the variable for a memory of RISING.
 fn risen(number: usize, memory: u32) -> String {
     format!("risen{}_{memory}", number + 1)
 }
 
-/// A fact of a record.
+/// Returns the variable for a fact of a record.
 fn fact(record: RecordId, number: u32) -> String {
     format!("fact{}_{number}", record.0)
 }

@@ -13,15 +13,15 @@ use crate::fsm::{Element, ElementKind, Machine};
 
 /// Colours for light and dark, and letters.
 const STYLE: &str = include_str!("style.css");
-/// Above the plan's box, for the title.
+/// Height above the plan's box, for the title.
 const TITLE: i64 = 46;
-/// Below it, with a line for what the signs mean.
+/// Height below the plan's box, with a line for the meaning of the signs.
 const FOOT: i64 = 40;
-/// The most lines of what the signs mean.
+/// Maximum number of lines for the meaning of the signs.
 const MEANINGS: usize = 4;
-/// How round a corner of a line is.
+/// Radius of the rounded corners of a line.
 const ROUND: i64 = 8;
-/// How many colours there are for scopes in scopes.
+/// Number of colours for nested scopes.
 const COLOURS: usize = 4;
 
 /// The picture of a plan.
@@ -84,7 +84,7 @@ impl Picture<'_> {
         self.line("</svg>");
     }
 
-    /// Where the plan begins and is over, and what the signs mean.
+    /// Draws the signs for the beginning and the end of the plan, and the meaning of the signs.
     fn ends(&mut self, root: &Placed, height: i64, meanings: &[String]) {
         let (begin, end) = (root.x - MARGIN + 16, root.x + root.width + MARGIN - 12);
         self.line(&format!("<circle class=\"end\" cx=\"{begin}\" cy=\"{}\" r=\"6\"/>", root.y + root.enters));
@@ -99,7 +99,7 @@ impl Picture<'_> {
         }
     }
 
-    /// What those of the signs mean that are in this picture.
+    /// Returns the meaning of the signs that are in this picture.
     fn meanings(&self) -> String {
         let mut meanings = Vec::new();
         if self.machine.elements().any(|element| element.is_scope() && until(element).ends()) {
@@ -129,7 +129,7 @@ impl Picture<'_> {
         }
     }
 
-    /// What is written in a box.
+    /// Draws the text in a box.
     fn words(&mut self, element: Element<'_>, placed: &Placed) {
         for (place, (style, text)) in (0..).zip(&placed.lines) {
             let class = match style {

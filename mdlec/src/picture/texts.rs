@@ -1,28 +1,28 @@
-//! What is written on atoms, scopes and loops in a picture.
+//! Texts on atoms, scopes and loops in a picture.
 
 use crate::fsm::{Atom, Element, ElementKind};
 use crate::plan::{Condition, Interrupt, frame_text};
 
-/// The longest text that a tooltip holds, in characters: what is longer is no text for a person.
+/// Maximum length of a tooltip, in characters: people do not read a longer text.
 const TOOLTIP: usize = 4000;
 
-/// What ends an atom or a scope, in words.
+/// Condition that ends an atom or a scope, in words.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Until {
     /// This condition.
     Fires(String),
     /// The law's completion.
     Done,
-    /// Either.
+    /// This condition, or the law's completion.
     FiresOrDone(String),
-    /// Nothing of its own: its condition was removed, for an outer scope repeats it.
+    /// No condition of its own: it was removed, because an outer scope repeats it.
     Removed(String),
-    /// Nothing of its own.
+    /// No condition of its own.
     Never,
 }
 
 impl Until {
-    /// What ends a scope, or an atom whose law may complete.
+    /// Returns the condition that ends a scope or an atom; `completes` is `true` if the atom's law may complete.
     pub(super) fn of(interrupt: &Interrupt, completes: bool) -> Self {
         let (text, fires) = (interrupt.text.clone(), interrupt.condition != Condition::Null);
         match (fires, completes, interrupt.removed) {
@@ -34,7 +34,7 @@ impl Until {
         }
     }
 
-    /// Whether there is anything that ends it.
+    /// Returns `true` if the element can end by itself.
     pub(super) fn ends(&self) -> bool {
         match self {
             Self::Fires(_) | Self::Done | Self::FiresOrDone(_) => true,
@@ -42,7 +42,7 @@ impl Until {
         }
     }
 
-    /// In words, as they stand behind "until" in a picture.
+    /// Returns the words that follow "until" in a picture.
     pub(super) fn text(&self) -> String {
         match self {
             Self::Fires(text) => text.clone(),

@@ -1,4 +1,4 @@
-//! Text that stands in XML: escaped, and without the characters that XML does not have.
+//! Text in XML: escaped, and without the characters that XML does not have.
 
 use mdle_runtime::{Printable, is_printable};
 
