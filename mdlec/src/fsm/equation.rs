@@ -7,7 +7,8 @@ const STATES: usize = 16;
 /// The longest line, in characters.
 const WIDTH: usize = 100;
 
-/// The equation with what its symbols stand for; none for a plan of more states than a person can read matrices of.
+/// Returns the equation with the meaning of its symbols; `None` for a plan with more states than people can read
+/// matrices of.
 #[must_use]
 pub fn equation(terms: &Terms<'_>) -> Option<String> {
     (terms.states() <= STATES).then(|| format!("{}\n{}", sum(terms), symbols(terms)))
@@ -45,7 +46,7 @@ fn sum(terms: &Terms<'_>) -> String {
     text + &written(&lines)
 }
 
-/// A matrix in its brackets, with its interrupt behind the row in the middle.
+/// Returns the lines of a matrix in its brackets, with its interrupt after the row in the middle.
 fn block(terms: &Terms<'_>, term: &Term<'_>) -> Vec<String> {
     let (matrix, last) = (terms.matrix(term), terms.states() - 1);
     let rows = (0..=last).map(|row| {
@@ -65,7 +66,7 @@ fn written(lines: &[String]) -> String {
     lines.iter().map(|line| format!("{}\n", line.trim_end())).collect()
 }
 
-/// How wide a text is: the bar over a letter takes no place of its own.
+/// Returns the width of a text; the bar over a letter takes no column of its own.
 fn width(text: &str) -> usize {
     text.chars().filter(|letter| *letter != '\u{304}').count()
 }
@@ -80,7 +81,7 @@ fn complement(name: &str) -> String {
     symbol(name).replacen('ξ', "ξ\u{304}", 1)
 }
 
-/// What the symbols stand for.
+/// Returns the meaning of the symbols.
 fn symbols(terms: &Terms<'_>) -> String {
     let mut text = "where the state is one of\n".to_owned();
     let states = terms.laws.iter().copied().chain(["the plan is over"]);

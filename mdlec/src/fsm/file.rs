@@ -36,9 +36,9 @@ pub struct FsmFile {
 pub struct InterruptEntry {
     /// `x1`, `x2`, …, or `completed`.
     pub name: String,
-    /// Its condition text.
+    /// Text of the interrupt's condition.
     pub text: String,
-    /// From state to state.
+    /// Moves from state to state.
     pub moves: Moves,
 }
 
@@ -55,13 +55,13 @@ impl Serialize for Moves {
 /// A scope, as the states it holds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ScopeEntry {
-    /// Its interrupt.
+    /// Name of the scope's interrupt.
     pub interrupt: String,
-    /// Its name; empty for an atom.
+    /// Name of the scope; empty for an atom.
     pub name: String,
-    /// Its first state.
+    /// First state of the scope.
     pub first: String,
-    /// Its last state.
+    /// Last state of the scope.
     pub last: String,
 }
 

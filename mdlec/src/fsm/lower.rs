@@ -47,7 +47,7 @@ struct Lowering {
     draft: Draft,
 }
 
-/// Where a node stands: the bracket around it, the scopes and loops around it, the number of its first state.
+/// Place of a node: the enclosing bracket, the number of scopes and of loops around the node, and its first state.
 #[derive(Clone, Copy)]
 struct Place {
     parent: u32,
@@ -135,7 +135,7 @@ impl Lowering {
         pass.checked_mul(times).filter(|states| *states < STATES).ok_or_else(|| too_many(repeated.span))
     }
 
-    /// Opens a bracket at the next atom; [`Lowering::close`] tells its last one.
+    /// Opens a bracket at the next atom; [`Lowering::close`] sets its last one.
     fn bracket(&mut self, kind: Kind, parent: u32, meaning: Option<ScopeMeaning>, marks: &[Mark], span: Span) -> u32 {
         self.memories(meaning.as_ref().map_or(0, |meaning| meaning.interrupt.memories));
         if let (Kind::Scope { level }, Some(meaning)) = (kind, &meaning)
@@ -155,7 +155,7 @@ impl Lowering {
         number
     }
 
-    /// Makes room for so many memories a level.
+    /// Reserves room for this number of memories at each level.
     fn memories(&mut self, memories: u32) {
         self.draft.sizes.memories = self.draft.sizes.memories.max(memories as usize);
     }

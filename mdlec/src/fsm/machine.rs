@@ -157,7 +157,7 @@ pub enum ElementKind<'m> {
     Atom(Atom<'m>),
 }
 
-/// What follows when an element ends, one step outwards.
+/// Consequence of the end of an element, one step outwards.
 #[derive(Debug, Clone, Copy)]
 pub enum Exit<'m> {
     /// The plan is over.

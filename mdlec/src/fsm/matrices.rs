@@ -44,13 +44,13 @@ impl<'p> Matrices<'p> {
 pub struct Transition<'p> {
     /// The interrupt.
     pub interrupt: &'p Interrupt,
-    /// The name of its scope; empty for an atom.
+    /// Name of the interrupt's scope; empty for an atom.
     pub name: &'p str,
-    /// How many scopes are around its scope.
+    /// Number of scopes around the interrupt's scope.
     pub level: usize,
     /// `true` if the scope is entered in a frame of its own: `FRAME here`.
     pub here: bool,
-    /// Where it leads.
+    /// Transition matrix of the interrupt.
     pub matrix: Matrix,
     /// The first interrupt, in pre-order, whose scope starts afresh when this one has fired: from there on all do that
     /// hold the new state. Matrices cannot say that; it is the tree's business.
@@ -141,10 +141,10 @@ struct Bracket<'p> {
     around: Option<usize>,
     /// The labels of what ends with it.
     marks: &'p [Mark],
-    /// Its states, from 0.
+    /// First and last state of the bracket, from 0.
     first: usize,
     last: usize,
-    /// Its first interrupt, and the one behind its last.
+    /// First interrupt of the bracket; `ends` is the one after its last interrupt.
     begins: usize,
     ends: usize,
 }
@@ -163,14 +163,14 @@ enum Kind<'p> {
     WithoutEnd,
 }
 
-/// Where a bracket stands: the bracket around it, and how many scopes.
+/// Place of a bracket: the enclosing bracket, and the number of scopes around it.
 #[derive(Clone, Copy)]
 struct Place {
     around: Option<usize>,
     level: usize,
 }
 
-/// Where an interrupt leads.
+/// Destination of an interrupt.
 struct Destination<'p> {
     row: usize,
     /// The first interrupt that starts afresh there.
@@ -226,8 +226,8 @@ impl<'p> Brackets<'p> {
         (bracket.last, bracket.ends) = (self.laws.len() - 1, self.interrupts);
     }
 
-    /// Where the interrupt of this scope leads: to the start of the innermost loop outside it that ends where it ends and
-    /// goes on, else behind its last state.
+    /// Returns the destination of a scope's interrupt: the start of the innermost enclosing loop without end whose last
+    /// state is that of the scope, or else the state after the scope's last state.
     fn destination(&self, scope: &Bracket<'_>) -> Destination<'p> {
         let (mut ended, mut ends_with) = (scope, Vec::new());
         while let Some(around) = ended.around {

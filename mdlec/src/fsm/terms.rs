@@ -15,11 +15,11 @@ pub struct Terms<'p> {
     pub source: &'p str,
     /// The quark text of each state's law, without the termination state.
     pub laws: Vec<&'p str>,
-    /// Those whose interrupt can fire, in pre-order, completion last.
+    /// Terms whose interrupt can fire, in pre-order, completion last.
     pub live: Vec<Term<'p>>,
-    /// Those whose interrupt never fires: null, or removed because an outer one repeats it.
+    /// Terms whose interrupt never fires: null, or removed because an outer one repeats it.
     pub never: Vec<Term<'p>>,
-    /// Whether equal interrupts are counted once.
+    /// Set to `true` if equal interrupts are counted once.
     pub combined: bool,
 }
 
@@ -28,7 +28,7 @@ pub struct Terms<'p> {
 pub struct Term<'p> {
     /// `x1`, `x2`, …, or `completed`; of an interrupt in several places, that of the first.
     pub name: String,
-    /// Its condition text.
+    /// Text of the interrupt's condition.
     pub text: &'p str,
     /// `true` if it asks for a time, which counts from the start of its scope.
     pub waits: bool,

@@ -15,7 +15,7 @@ use super::{Draft, RecordPlace, Sizes};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::plan::{Interrupt, Mark, Node, Nondegenerate, Record, Scope};
 
-/// Says whether `draft` is the machine of `plan`.
+/// Checks that `draft` is the machine of `plan`.
 ///
 /// # Errors
 /// E0901: the first place at which it is not, with what the plan asks for and what the machine has. That is a defect of the
@@ -30,43 +30,43 @@ pub fn validate(plan: &Nondegenerate, draft: &Draft) -> Result<(), Diagnostic> {
     same(root.span, "its termination state", states + 1, u128::from(draft.termination))
 }
 
-/// What is around a node of the plan.
+/// Surroundings of a node of the plan.
 #[derive(Clone, Copy)]
 struct Around {
-    /// The bracket of the node around it; of the plan, its own.
+    /// Bracket of the enclosing node; of the plan, its own.
     holder: u32,
-    /// Whether something follows it there; `None` for the plan.
+    /// Set to `true` if another node follows in the same string; `None` for the plan.
     behind: Option<bool>,
-    /// How many scopes are around it.
+    /// Number of scopes around the node.
     scopes: u16,
-    /// How many loops.
+    /// Number of loops around the node.
     loops: u16,
-    /// How many states of the expanded plan come before it, in the first pass of every loop.
+    /// Number of states of the expanded plan before the node, in the first pass of every loop.
     states: u128,
     /// The level of the innermost scope around it that is entered in a frame of its own.
     here: Option<u16>,
 }
 
-/// What happens when a node ends: one step outwards.
+/// Consequence of the end of a node, one step outwards.
 #[derive(Debug, PartialEq)]
 enum Step {
     /// The plan is over.
     Over,
     /// This atom becomes current; what is in this bracket starts afresh.
     Enters { atom: u32, inside: u32 },
-    /// What is around it, this bracket, has come to the end of its string: a loop may repeat it.
+    /// The string of this enclosing bracket has ended: a loop may repeat it.
     Ends { bracket: u32 },
 }
 
 struct Walk<'l> {
     draft: &'l Draft,
-    /// How many brackets and atoms of the plan have been met.
+    /// Number of brackets of the plan that the walk has met; `atoms` is the number of atoms.
     brackets: u32,
     atoms: u32,
 }
 
 impl Walk<'_> {
-    /// Holds a scope against the machine; the number of its states.
+    /// Compares a scope with the machine, and returns the number of its states.
     fn scope(&mut self, scope: &Scope, around: Around) -> Result<u128, Diagnostic> {
         let (number, first) = self.met();
         let inside = Around {
@@ -138,7 +138,8 @@ impl Walk<'_> {
         Ok(1)
     }
 
-    /// The innermost scope with `FRAME here` inside a scope that may have one itself, for which there must be a place.
+    /// Returns the level of the innermost scope with `FRAME here` for the nodes of a scope, and checks that the machine
+    /// has room for its heading if it is that scope itself.
     fn here(&self, is_here: bool, around: Around, span: Span) -> Result<Option<u16>, Diagnostic> {
         let Sizes { stamps, levels, .. } = self.draft.sizes;
         match is_here {
@@ -153,13 +154,13 @@ impl Walk<'_> {
         }
     }
 
-    /// The number of the next bracket, and of the first atom in it.
+    /// Counts the next bracket, and returns its number and that of the first atom in it.
     fn met(&mut self) -> (u32, u32) {
         self.brackets += 1;
         (self.brackets - 1, self.atoms)
     }
 
-    /// Whether a bracket is of this kind, begins with this atom, and is followed by what follows it in the plan.
+    /// Checks that a bracket is of this kind, begins with this atom, and is followed by what follows it in the plan.
     fn bracket(&self, number: u32, first: u32, kind: Kind, around: Around, span: Span) -> Result<(), Diagnostic> {
         let made = self.draft.brackets.get(number as usize);
         same(span, "what it is", Some((kind, first)), made.map(|made| (made.kind, made.first)))?;
@@ -172,7 +173,7 @@ impl Walk<'_> {
         same(span, "what follows it", Some(asked), made.and_then(|made| self.step(number, made)))
     }
 
-    /// What the machine does when this bracket ends.
+    /// Returns the step that the machine takes when this bracket ends.
     fn step(&self, number: u32, bracket: &Bracket) -> Option<Step> {
         if number == 0 {
             return (bracket.parent == 0 && bracket.last as usize + 1 == self.draft.atoms.len()).then_some(Step::Over);
@@ -193,7 +194,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Whether a bracket has this name and interrupt and these labels, and memory enough.
+    /// Checks that a bracket has this name, interrupt and labels, and that there are enough memories.
     fn meaning(
         &self,
         number: u32,
@@ -222,7 +223,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Whether a record lies beside the memories of its scope's interrupt, and all of it.
+    /// Checks that a record is after the memories of its scope's interrupt, and that there is room for all of it.
     fn record(&self, record: Record, scope: &Scope, around: Around) -> Result<(), Diagnostic> {
         let (first, facts) = (scope.interrupt.memories, record.facts);
         let asked = RecordPlace { level: around.scopes, first, facts };
@@ -236,7 +237,7 @@ impl Walk<'_> {
     }
 }
 
-/// Whether the plan and the machine agree.
+/// Checks that the plan and the machine agree.
 fn same<T: PartialEq + fmt::Debug>(span: Span, what: &str, asked: T, made: T) -> Result<(), Diagnostic> {
     if asked == made { Ok(()) } else { Err(mismatch(span, what, &format!("{asked:?}"), &format!("{made:?}"))) }
 }
