@@ -9,13 +9,13 @@ use quote::quote;
 const PIECE: usize = 256;
 /// The columns of a line, as prettyplease fills it.
 const WIDTH: usize = 89;
-/// Stands for elements that are laid out by themselves, with a number behind it. It is longer than a line, so it stands
-/// alone on one, as they do.
+/// Placeholder for elements that are laid out separately, followed by a number. It is longer than a line, so that it is
+/// alone on one, as the elements are.
 const STAND_IN: &str =
     "the_elements_of_a_long_list_which_are_laid_out_by_themselves_and_then_written_where_this_very_long_name_stands_";
 
-/// The text of a file, with a blank line behind each item of it and of its module. The elements of a long list stand
-/// below each other; there is none of numbers alone, which would fill lines.
+/// Returns the text of a file, with an empty line after each item of it and of its module. The elements of a long list
+/// are below each other; no such list is of numbers alone, which would fill lines.
 pub(super) fn laid_out(file: TokenStream) -> String {
     let mut lists = Vec::new();
     let text = printed(shortened(file, &mut lists));
@@ -50,7 +50,7 @@ fn shortened(tokens: TokenStream, lists: &mut Vec<Vec<TokenStream>>) -> TokenStr
     shortened.collect()
 }
 
-/// What is between the brackets of a list, or what stands for it if it is long.
+/// Returns the content of a list's brackets, or a placeholder for it if it is long.
 fn elements(inside: TokenStream, lists: &mut Vec<Vec<TokenStream>>) -> TokenStream {
     let mut pieces = Vec::new();
     let (mut piece, mut commas) = (Vec::new(), 0);
@@ -75,12 +75,12 @@ fn stand_in(number: usize) -> TokenStream {
     TokenTree::from(Ident::new(&format!("{STAND_IN}{number}"), Span::call_site())).into()
 }
 
-/// Which list a line stands for.
+/// Returns the number of the list whose placeholder is on a line.
 fn list(line: &str) -> Option<usize> {
     line.trim_start().strip_prefix(STAND_IN)?.strip_suffix(',')?.parse().ok()
 }
 
-/// Writes elements as they are laid out where a stand-in has this line.
+/// Writes elements as they are laid out in the place of a placeholder with this line.
 fn write_elements(elements: TokenStream, line: &str, text: &mut String) {
     let indent = line.len() - line.trim_start().len();
     if let Some(plain) = strings(&elements).or_else(|| calls(&elements, WIDTH.saturating_sub(indent))) {
@@ -153,7 +153,7 @@ mod tests {
 
     use super::{PIECE, laid_out};
 
-    /// What is laid out in pieces, and at once.
+    /// Returns the layout of a file in pieces, and its layout at once.
     fn both(file: &TokenStream) -> [String; 2] {
         let whole = prettyplease::unparse(&syn::parse2(file.clone()).expect("a file"));
         let pieces: Vec<_> =

@@ -25,7 +25,7 @@ use crate::fsm::{Element, Machine};
 pub use bind::bind;
 pub use names::plan_type;
 
-/// What the head of the file says and the code refers to.
+/// Content of the head of an emitted file, and the texts to which the code refers.
 #[derive(Debug, Clone, Copy)]
 pub struct Header<'a> {
     /// The plan's text and that of the files that it uses, for reports.
@@ -36,7 +36,7 @@ pub struct Header<'a> {
     pub plan: &'a str,
 }
 
-/// How a plan is written: what a turn does is the same.
+/// Form of an emitted plan; a turn does the same in each.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
     /// Code for each atom and scope: the fastest turn, and pleasant to read.
@@ -129,7 +129,8 @@ pub fn emit_as(shape: Shape, machine: &Machine, header: Header<'_>, alphabet: &A
     format!("{}{}", heading(header, alphabet), layout::laid_out(file))
 }
 
-/// What does not compile where the target was bound to another alphabet than the plan was checked against.
+/// Returns an assertion that does not compile if the target is bound to another alphabet than that against which the
+/// plan was checked.
 fn same_alphabet(alphabet: &Alphabet) -> TokenStream {
     let hash = bind::hash(alphabet);
     let message = format!("the crate of target `{}` is bound to another alphabet: run `mdlec bind`", alphabet.name);

@@ -10,7 +10,7 @@ const TYPES: &[&str] = &[
     "At", "Atom", "Begin", "Bracket", "Cursor", "Debug", "Default", "FnMut", "Fsm", "Input", "Nanos", "None", "Option",
     "Output", "Plan", "Running", "Self", "Some",
 ];
-/// What a bound alphabet has beside its quarks, and what its text uses of Rust's own.
+/// Names of a bound alphabet besides its quarks, and the names of Rust's own that its text uses.
 const BOUND: &[&str] = &[
     "Input",
     "Output",
@@ -26,10 +26,10 @@ const BOUND: &[&str] = &[
     "Self",
     "Some",
 ];
-/// The constants that it has in any case.
+/// Constants of every emitted plan.
 const CONSTANTS: &[&str] = &["FSM", "LAWS", "CONDITIONS", "NAMES", "OPERANDS", "SOURCE"];
-/// Its other function, the names of arguments and variables, which would hide a function, and the keyword that syn does
-/// not know yet.
+/// Names of an emitted plan's functions, arguments and variables, which would hide another function, and the keyword
+/// that syn does not know yet.
 const FUNCTIONS: &[&str] =
     &["text", "texts", "index", "gen", "cursor", "y", "t", "tell", "law", "atom", "begin", "scope"];
 

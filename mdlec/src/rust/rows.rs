@@ -77,7 +77,7 @@ pub(super) fn machine(plan: &Ident, doc: &str, machine: &Machine, paths: Option<
     }
 }
 
-/// What the plan is told so that it can remember.
+/// Returns the functions by which the machine informs a plan with memories; `None` for a plan without memories.
 fn told(machine: &Machine) -> Option<TokenStream> {
     (machine.sizes().memories > 0).then(|| {
         quote! {
@@ -189,11 +189,12 @@ fn around(element: Element<'_>) -> Element<'_> {
     element.outwards().skip(1).find(can_fire).unwrap_or(element)
 }
 
-/// The operands of conditions, breadth first: so they stand side by side, and behind what they belong to.
+/// The operands of conditions, breadth first: so the operands of one condition are consecutive, and after the
+/// condition.
 struct Operands<'l> {
     machine: &'l Machine,
     waiting: VecDeque<&'l Condition>,
-    /// How many have been given a number.
+    /// Number of conditions that have been given a number.
     count: usize,
 }
 
@@ -202,7 +203,7 @@ impl<'l> Operands<'l> {
         Self { machine, waiting: VecDeque::new(), count: 0 }
     }
 
-    /// The variant of a condition, whose operands are given the next numbers.
+    /// Returns the variant of a condition, and gives its operands the next numbers.
     fn row(&mut self, condition: &'l Condition) -> TokenStream {
         let first = Literal::usize_unsuffixed(self.count);
         match condition {

@@ -1,4 +1,5 @@
-//! When scopes end, as code: interrupts as expressions, and a function for each scope that asks the one around it first.
+//! The ends of scopes, as code: interrupts as expressions, and a function for each scope that asks the enclosing one
+//! first.
 
 use mdle_runtime::Printable;
 use proc_macro2::{Ident, Literal, TokenStream};
@@ -45,7 +46,7 @@ impl Meaning<'_> {
         (*condition != Condition::Null).then(|| self.expression(condition, level(element)))
     }
 
-    /// Whether a condition of a scope of this level has fired.
+    /// Returns the expression that is true when a condition of a scope of this level has fired.
     fn expression(&self, condition: &Condition, level: u16) -> TokenStream {
         let operand = |operand: &Condition| {
             let inner = self.expression(operand, level);

@@ -31,7 +31,7 @@ pub(super) fn from_arguments(quark: &Bound<'_>, visibility: &TokenStream) -> Tok
     }
 }
 
-/// The trait of a capability; `None` for one that no trait of ours stands for.
+/// Returns the trait of a capability; `None` if no trait represents it.
 pub(super) fn capability_trait(capability: &Capability) -> Option<Ident> {
     let name = match capability.name.as_str() {
         "odometry" => "Odometry",

@@ -104,7 +104,7 @@ pub(super) fn follows(follows: Follows) -> TokenStream {
     quote!(runtime::Follows::new(#atom, #from, #to))
 }
 
-/// `fn paths`: the files whose paths laws replay, each once; nothing for a plan that replays none.
+/// Returns `fn paths`: the files whose paths laws replay, each once; `None` for a plan that replays no paths.
 pub(super) fn paths(machine: &Machine, alphabet: &Alphabet) -> Option<TokenStream> {
     let replays = |quark: &Quark| {
         let declaration = alphabet.declarations_of(&quark.name).nth(quark.overload);
