@@ -81,7 +81,8 @@ fn workspace(root: &Path, packages: &[String]) -> Result<String, Box<dyn Error>>
     Ok(toml::to_string(&manifest)?)
 }
 
-/// A package's manifest without the targets that are left out: cargo reads none that names a file that is not there.
+/// Returns a package's manifest without the targets that are left out: cargo reads no manifest that names a missing
+/// file.
 fn manifest_of(text: &str) -> Result<String, Box<dyn Error>> {
     let mut manifest: toml::Table = text.parse()?;
     if !["test", "bench", "example"].map(|kind| manifest.remove(kind).is_some()).contains(&true) {

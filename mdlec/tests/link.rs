@@ -1,4 +1,4 @@
-//! Emitted Rust becomes a static executable; whatever prevents it is said in a sentence.
+//! Emitted Rust becomes a static executable; an error message explains what prevents it.
 //!
 //! All tests share a cache that outlives them: only the first run compiles the runtime.
 #![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "a test may, and files are what this is about")]
@@ -91,7 +91,7 @@ fn a_target_must_be_what_its_alphabet_says() {
     assert!(matches!(error, LinkError::NotACrate(_)), "{error:?}");
 }
 
-/// Whether an ELF file of 64 bits asks for a dynamic loader: whether it has a program header of type 3.
+/// Returns `true` if a 64-bit ELF file asks for a dynamic loader, by a program header of type 3.
 fn has_interpreter(elf: &[u8]) -> bool {
     assert_eq!(elf[..5], *b"\x7fELF\x02");
     let number = |at: usize, bytes: usize| elf[at..at + bytes].iter().rev().fold(0, |n, byte| n << 8 | *byte as usize);

@@ -8,14 +8,14 @@ use mdle_host::clap::ArgMatches;
 use mdle_host::{Pace, Refusal, StopRequest, Time};
 use mdle_runtime::Robot;
 
-/// What the program refers to.
+/// Name by which the emitted program refers to the target.
 pub use Rover as Target;
 
 /// The robot.
 #[derive(Debug)]
 pub struct Rover;
 
-/// Its output.
+/// The robot's output.
 #[derive(Debug)]
 pub struct Sensed;
 
