@@ -34,7 +34,7 @@ pub enum Report<'a> {
         /// Set to `true` if the brake holds the robot.
         is_braked: bool,
     },
-    /// Something that a driver does not need.
+    /// A report that a driver does not need.
     Other,
 }
 

@@ -26,7 +26,7 @@ pub(crate) struct Ring {
 }
 
 impl Ring {
-    /// Before the first report.
+    /// Creates the state before the first report.
     pub(crate) fn new(config: &Config) -> Self {
         Self {
             transducers: transducers(config.sonars),

@@ -36,9 +36,9 @@ pub enum Fault {
     Disobeys(u64),
     /// Consecutive positions are too far from each other.
     Leaps,
-    /// It has stopped itself, as no command came for this many seconds.
+    /// The robot has stopped itself, because no command has arrived for this number of seconds.
     Overslept(u8),
-    /// It has not come to rest after the stop command.
+    /// The robot has not come to rest after the command to stop.
     Moves,
 }
 

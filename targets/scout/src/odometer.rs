@@ -51,7 +51,7 @@ impl Odometer {
     }
 }
 
-/// The way from one number to the next.
+/// Returns the difference from one number to the next, which may have wrapped.
 fn unwrapped(from: i16, to: i16) -> i64 {
     let way = i32::from(to) - i32::from(from);
     let half = NUMBERS / 2;

@@ -5,7 +5,7 @@ use crate::frame::{Frame, Garbled, START};
 /// The most bytes that are read from the line at once.
 pub(crate) const CHUNK: usize = 512;
 
-/// The bytes that have come in since a command was sent, and the frames in them.
+/// The bytes received since a command was sent, and the frames in them.
 #[derive(Debug)]
 pub struct Reader {
     /// Empty, or from where a frame may begin.

@@ -16,7 +16,7 @@ pub struct Request {
     pub data: Vec<u8>,
 }
 
-/// Bytes that have come in, and the commands in them.
+/// Received bytes, and the commands in them.
 #[derive(Debug, Default)]
 pub struct Incoming {
     bytes: Vec<u8>,
@@ -25,7 +25,7 @@ pub struct Incoming {
 }
 
 impl Incoming {
-    /// Before the first byte. `marks`: whether `1B 00` is known to be a value; nobody has seen a controller that knows.
+    /// Creates an empty buffer. `marks` is `true` if `1B 00` is taken as a value, which no known controller does.
     #[must_use]
     pub const fn new(marks: bool) -> Self {
         Self { bytes: Vec::new(), marks }

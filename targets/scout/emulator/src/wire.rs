@@ -11,7 +11,7 @@ pub struct Request {
     pub data: Vec<u8>,
 }
 
-/// Bytes that have come in, and the requests in them.
+/// Received bytes, and the requests in them.
 #[derive(Debug, Default)]
 pub struct Incoming(Vec<u8>);
 
