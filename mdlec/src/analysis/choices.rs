@@ -56,7 +56,7 @@ impl Choices {
         Table::constant(self.free, value)
     }
 
-    /// Each variable, and the choices in which it is true.
+    /// Returns each variable, and the choices in which it is true.
     pub(super) fn columns(&self) -> impl Iterator<Item = (&Variable, &Table)> {
         self.columns.iter()
     }

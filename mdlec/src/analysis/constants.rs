@@ -1,4 +1,4 @@
-//! W0203: conditions that are never true, or true whenever they are first read, whatever is around them.
+//! W0203: conditions that are never true, or true whenever they are first read, independent of the scopes around them.
 
 use std::collections::BTreeMap;
 

@@ -81,7 +81,7 @@ pub(super) fn longest(machine: &Machine, found: &[Found], most: Most) -> Longest
     Longest::NONE
 }
 
-/// With the turns in which a search is cut: each has made as many transitions as a turn makes, and each transition leads to
+/// Adds the turns in which a search is cut: each makes as many transitions as a turn can, and each transition leads to
 /// another state.
 fn searched(longest: Longest, machine: &Machine, most: Most) -> Longest {
     match longest {

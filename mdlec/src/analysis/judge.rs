@@ -77,7 +77,7 @@ impl<'l> Walk<'l> {
         over.map(|over| over.checked_sub(1).map_or(0, |last| timers[last].1))
     }
 
-    /// Why an operand cannot end its scope.
+    /// Returns the reason why an operand cannot end its scope.
     fn blame(&self, operand: &'l Condition, number: u32) -> Outcome {
         let read = self.read(operand, number, When::Later);
         if let Condition::Wait { quark, .. } = operand

@@ -77,7 +77,7 @@ impl Chains {
         }
     }
 
-    /// So many passes of this; 0 is for ever.
+    /// Returns the chains of this number of passes of `self`; 0 is for ever.
     fn times(self, times: u64) -> Self {
         let through = |passes: u64| self.pass.map_or(0, |pass| pass.saturating_mul(passes));
         let again = |passes: u64| self.last.map_or(0, |last| last.saturating_add(through(passes)));

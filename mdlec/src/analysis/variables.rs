@@ -8,7 +8,7 @@ use super::tables::Table;
 use crate::plan::families::{Family, Readings, at_once, family};
 use crate::plan::{Quark, QuarkId, RecordId};
 
-/// Something that is true or not in a turn, as far as conditions say no more of it.
+/// A variable that is true or false in a turn, independent of the conditions that read it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Variable {
     /// An interrupt quark that is the same function in every place.

@@ -90,9 +90,9 @@ fn expand_sequence(body: &[Node]) -> Vec<Node> {
     expanded
 }
 
-/// Something that elements have, and how much of it one has.
+/// A quantity that elements have, and the amount of one element.
 struct Count {
-    /// In the plural.
+    /// Name of the quantity, in the plural.
     unit: &'static str,
     of: fn(Part<'_>) -> u64,
 }

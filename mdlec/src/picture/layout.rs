@@ -89,7 +89,7 @@ fn inside(element: Element<'_>, placed: &Placed, all: &[Placed], lines: &mut Vec
     lines.extend(exit(last, end, (port, from.1), from.0 + SIDE / 2));
 }
 
-/// From one box to the one beside it, whose lines may be on other heights.
+/// Returns the points from one box to the next in its row, whose arrow may arrive at another height.
 fn beside(from: (i64, i64), to: (i64, i64)) -> Vec<(i64, i64)> {
     if from.1 == to.1 {
         return vec![from, to];
@@ -98,7 +98,7 @@ fn beside(from: (i64, i64), to: (i64, i64)) -> Vec<(i64, i64)> {
     vec![from, (middle, from.1), (middle, to.1), to]
 }
 
-/// From the end of a row to the begin of the next one, through the gap between them.
+/// Returns the points from the end of a row to the beginning of the next one, through the gap between them.
 fn around(from: (i64, i64), to: (i64, i64), gap: i64) -> Vec<(i64, i64)> {
     vec![
         from,
@@ -110,7 +110,7 @@ fn around(from: (i64, i64), to: (i64, i64), gap: i64) -> Vec<(i64, i64)> {
     ]
 }
 
-/// The middle of the gap above the row that begins with this child.
+/// Returns the middle of the gap above the row that begins with this child.
 fn gap_above(child: usize, placed: &Placed, all: &[Placed]) -> i64 {
     let row = placed.children.iter().skip_while(|other| **other != child);
     let next = row.clone().skip(1).find(|other| placed.rows.contains(other));

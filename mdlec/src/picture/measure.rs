@@ -67,7 +67,7 @@ fn fits(wrapped: &[String], words: &str, letters: usize) -> bool {
     line + length(words) <= letters
 }
 
-/// Puts words on the last line, or on the next one; in pieces where they are too long for any.
+/// Puts words on the last line, or on the next one; in pieces if they are longer than a line.
 fn put(wrapped: &mut Vec<String>, words: &str, letters: usize) {
     if !fits(wrapped, words, letters) && wrapped.last().is_some_and(|line| !line.is_empty()) {
         wrapped.push(String::new());

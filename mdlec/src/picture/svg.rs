@@ -111,7 +111,7 @@ impl Picture<'_> {
         meanings.join(" ")
     }
 
-    /// All boxes, outer ones first, so that what they hold is drawn over them.
+    /// Draws all boxes, outer ones first, so that inner ones are drawn over them.
     fn boxes(&mut self) {
         for (element, placed) in self.machine.elements().zip(self.all) {
             let (x, y, width, height) = (placed.x, placed.y, placed.width, placed.height);

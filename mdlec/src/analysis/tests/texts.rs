@@ -9,7 +9,7 @@ macro_rules! assert_judged {
     };
 }
 
-/// Holds the lints to have nothing to say of these plans.
+/// Asserts that these plans have no warnings.
 fn assert_silent(plans: &[&str]) {
     for plan in plans {
         let judged = judged(plan, None);
