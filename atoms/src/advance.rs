@@ -1,4 +1,5 @@
-//! `advance D v`: drives straight ahead, or back, by a length of way; ours, next to the paper's `goAvoid` (section IV-A).
+//! `advance D v`: drives straight ahead, or back, by a length of way; ours, next to the paper's `goAvoid` (section
+//! IV-A).
 
 use mdle_runtime::capability::{DiffDrive, Odometry};
 use mdle_runtime::{Begin, Completes, Control, Law, Meters, MetersPerSecond, Nanos, Pose, Radians, Twist};
@@ -7,8 +8,8 @@ use crate::heading::turning;
 
 /// The speed, in m/s, for each metre that is left: a body at full speed begins to brake so that it never goes too far.
 const GAIN: f64 = 1.0;
-/// The part of what is left that is driven at most until the law is asked again: an input acts a turn later, so that with
-/// more the robot would go to and fro.
+/// The part of what is left that is driven at most until the law is asked again: an input acts a turn later, so that
+/// with more the robot would go to and fro.
 const AT_ONCE: f64 = 0.25;
 /// The distance, in metres, within which the robot has arrived; of a way shorter than twice that, half the way.
 const NEAR: f64 = 0.01;
@@ -86,8 +87,8 @@ mod tests {
     use super::*;
     use crate::trial::{PERIOD, Sensed, begun, framed};
 
-    /// Runs `advance` from a heading in degrees, with a push of so many degrees to the left in each of the first ten turns;
-    /// the turns that it took.
+    /// Runs `advance` from a heading in degrees, with a push of so many degrees to the left in each of the first ten
+    /// turns; the turns that it took.
     fn advanced(distance: f64, speed: f64, y: &mut Sensed, push: f64) -> u64 {
         let mut law = Advance::new(Meters(distance), MetersPerSecond(speed)).begin(&*y, framed(77.0));
         for number in 0..2000 {

@@ -35,7 +35,8 @@ impl Align {
     }
 }
 
-/// The law of [`Align`]: done when the ranges are equal, and where every turn brings a ping, when it stands at that heading.
+/// The law of [`Align`]: done when the ranges are equal, and where every turn brings a ping, when it stands at that
+/// heading.
 ///
 /// Beside a jamb, a corner or a door no heading may have equal ranges: one side of it the first range is longer, the
 /// other side the second one. Then the law is done at the heading at which the ranges differed least, and the
@@ -84,15 +85,15 @@ impl Aligning {
         Some(Sample { difference: near - far, heading: between(from, to, 0.5) })
     }
 
-    /// What both sonars heard if the ranges are equal.
+    /// The range that both sonars heard, if their ranges are equal.
     fn equal<Y: DiffDrive + SonarRing>(&self, y: &Y) -> Option<Sample> {
         self.sample(y).filter(|sample| sample.difference.abs() <= Gains::of(y).align_equal)
     }
 
     /// Takes a measurement in, which ends the law at equal ranges that it has passed.
     ///
-    /// Pings that come in turn are of headings that lie degrees apart, and err by an inch: there a change of sign alone has no
-    /// equal ranges in it.
+    /// Pings that come in turn are of headings that lie degrees apart, and err by an inch: there a change of sign alone
+    /// has no equal ranges in it.
     fn take(&mut self, sample: Sample, in_turn: bool) {
         let Some(last) = self.last.replace(sample).filter(|last| *last != sample) else {
             self.best = self.best.or(Some(sample));
@@ -305,7 +306,8 @@ mod tests {
                     let off = 8.0 * ((seed % 9) as f64 - 4.0);
                     let wall = Wall { misses, error: 0.02, confirmation, ..EXACT };
                     let (end, done) = ended(wall, off, seed + 4);
-                    // Two ranges that are 2 cm wrong make 3 degrees, and pings that come once a second are of where it was.
+                    // Two ranges that are 2 cm wrong make 3 degrees, and pings that come once a second are of where it
+                    // was.
                     let most = if confirmation == 3 { 5.0 } else { 10.0 };
                     assert!(done && end.abs() < most, "from {off}, misses {misses:?}, {confirmation}: {end}, {done}");
                 }
@@ -333,8 +335,8 @@ mod tests {
         }
     }
 
-    /// Runs `align` by the ranges that its two sonars return at a heading in degrees, for three minutes: when it is done, in
-    /// seconds, and at which heading.
+    /// Runs `align` by the ranges that its two sonars return at a heading in degrees, for three minutes: when it is
+    /// done, in seconds, and at which heading.
     fn done(sonars: [u8; 2], off: f64, ranges: impl Fn(f64) -> [f64; 2]) -> Option<(u64, f64)> {
         let sonars = sonars.map(SonarId::new);
         let mut y = Sensed::heading(off);
@@ -357,8 +359,8 @@ mod tests {
 
     #[test]
     fn beside_an_edge_it_ends_where_ranges_differ_least() {
-        // Up to one degree the second sonar hears a jamb, beyond it the wall of the room behind. A jamb is believed for three
-        // pings, while the robot turns on.
+        // Up to one degree the second sonar hears a jamb, beyond it the wall of the room behind. A jamb is believed for
+        // three pings, while the robot turns on.
         for off in [-20.0, 0.0, 3.0, 20.0] {
             let (seconds, heading) =
                 done([7, 9], off, |heading| [0.9, if heading < 1.0 { 0.6 } else { 2.0 }]).expect("an end");

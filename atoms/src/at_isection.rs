@@ -16,9 +16,9 @@ const ALSO_FACES: f64 = 1.5;
 /// Ranges that differ by less, in metres, are alike.
 const ALIKE: f64 = 0.06;
 
-/// The sonars to both sides of one that a straight wall faces hear it, on average, further from the centre of the body by this
-/// factor and length, in metres, at most. Those beside the edge of a way hear walls that run off from there, where walls are
-/// rough.
+/// The sonars to both sides of one that a straight wall faces hear it, on average, further from the centre of the body
+/// by this factor and length, in metres, at most. Those beside the edge of a way hear walls that run off from there,
+/// where walls are rough.
 const FLAT: (f64, f64) = (1.08, 0.04);
 /// Factor and step, in metres, by which the ranges of the neighbours of a sonar may exceed its own along a straight
 /// wall; an echo from beyond an opening is further.

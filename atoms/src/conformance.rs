@@ -54,7 +54,8 @@ pub trait Stage {
     /// A message if there is no robot to return.
     fn robot(&mut self, room: &Room, at: Pose) -> Result<Self::Robot, String>;
 
-    /// Hands the robot the paths that its plan replays, before its first exchange; for robots with the capability `paths`.
+    /// Hands the robot the paths that its plan replays, before its first exchange; for robots with the capability
+    /// `paths`.
     fn take_paths(&mut self, _robot: &mut Self::Robot, _paths: PathStore) {}
 
     /// Sets the robot's power supply from now on; for robots with the capability `power`.

@@ -1,5 +1,5 @@
-//! The gains of the laws that differ from body to body, in one place: a body of one's own is looked up by what it tells of
-//! itself. All other gains are constants beside their laws.
+//! The gains of the laws that differ from body to body, in one place: a body of one's own is looked up by what it tells
+//! of itself. All other gains are constants beside their laws.
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
 use mdle_runtime::{Meters, PINGS_KEPT};
@@ -12,9 +12,9 @@ const WIDE: Meters = Meters(0.3);
 pub(crate) struct Gains {
     /// `align`: the fastest turn, in rad/s. Where sonars fire in turn, the ranges are older.
     pub(crate) align_fastest: f64,
-    /// `align`: ranges that differ by this much or less, in metres, are equal. 8 mm are 2° in a hallway 1.5 m wide, to sonars
-    /// of 25°. Where sonars fire in turn it is an inch, the resolution of the paper's sonars: beside a corner, a robot that
-    /// wanted ranges closer would turn into the corner.
+    /// `align`: ranges that differ by this much or less, in metres, are equal. 8 mm are 2° in a hallway 1.5 m wide, to
+    /// sonars of 25°. Where sonars fire in turn it is an inch, the resolution of the paper's sonars: beside a corner, a
+    /// robot that wanted ranges closer would turn into the corner.
     pub(crate) align_equal: f64,
     /// `align`: time, in seconds, to wait for a sonar that has heard the wall and then does not: three of its pings
     /// where every turn brings one, else two rings.
@@ -23,8 +23,8 @@ pub(crate) struct Gains {
     /// before `atIsection` has confirmed it; where sonars fire in turn, ranges are a second old, and obstacles nearer
     /// by now.
     pub(crate) look_ahead: Meters,
-    /// `goAvoid`: kept around the body where there is room, in metres. Where sonars fire in turn odometry drifts too, and
-    /// the middle of a hallway must be kept by what is heard.
+    /// `goAvoid`: kept around the body where there is room, in metres. Where sonars fire in turn odometry drifts too,
+    /// and the middle of a hallway must be kept by what is heard.
     pub(crate) soft_margin: f64,
     /// `goAvoid`: distance along a way, in metres, at which the room beside it is measured. Beside a wall, only the
     /// room ahead distinguishes a way that leads off the wall from one that keeps as close: with the room measured

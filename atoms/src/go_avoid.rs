@@ -1,5 +1,5 @@
-//! `goAvoid ψ r v`: drives to a point given by bearing and range, round obstacles (paper, section IV-A), and out of the way
-//! of somebody who comes towards the robot.
+//! `goAvoid ψ r v`: drives to a point given by bearing and range, round obstacles (paper, section IV-A), and out of the
+//! way of somebody who comes towards the robot.
 
 use mdle_runtime::capability::{DiffDrive, Odometry, SonarRing};
 use mdle_runtime::{

@@ -12,8 +12,8 @@ const NEAR: Radians = Radians::from_degrees(2.0);
 /// Below this difference of the wheels' speeds, in m/s, the robot no longer turns.
 const AT_REST: f64 = 0.02;
 
-/// The input that turns on the spot, with `left` still to turn by `gain`, that is `k`; the law was last asked `before`, if it
-/// was.
+/// The input that turns on the spot, with `left` still to turn by `gain`, that is `k`; the law was last asked `before`,
+/// if it was.
 pub(crate) fn turning(left: Radians, gain: f64, before: Option<Nanos>, t: Nanos) -> Twist {
     let period = before.map_or(0.0, |before| t.since(before).seconds());
     let gain = if gain * period > AT_ONCE { AT_ONCE / period } else { gain };

@@ -1,8 +1,8 @@
 //! `path file`: replays the headings and forward speeds of a file (paper, section IV-A).
 //!
-//! Between two setpoints both go from one to the other in a straight line, the heading the shortest way round. So what a
-//! path asks for depends neither on the period of the turns that recorded it nor on that of the turns that replay it; held
-//! until the next setpoint, both would lag by half a row, and a heading would come in steps.
+//! Between two setpoints both go from one to the other in a straight line, the heading the shortest way round. So what
+//! a path asks for depends neither on the period of the turns that recorded it nor on that of the turns that replay it;
+//! held until the next setpoint, both would lag by half a row, and a heading would come in steps.
 
 use mdle_runtime::capability::{DiffDrive, Odometry, Paths};
 use mdle_runtime::{
@@ -11,8 +11,8 @@ use mdle_runtime::{
 
 use crate::heading::turning;
 
-/// `u_f = v_s(t)`, `u_θ = dα_s/dt + k(α_s(t) − θ)`: without the first term the heading would lag in every bend, by half a
-/// second of it.
+/// `u_f = v_s(t)`, `u_θ = dα_s/dt + k(α_s(t) − θ)`: without the first term the heading would lag in every bend, by half
+/// a second of it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Path {
     file: &'static str,

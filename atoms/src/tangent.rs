@@ -76,7 +76,8 @@ pub(crate) struct Wish {
 }
 
 impl Wish {
-    /// The cost of another direction than that of the turn before, so that two ways that are equally good do not take turns.
+    /// The cost of another direction than that of the turn before, so that two ways that are equally good do not take
+    /// turns.
     fn turns(&self, offset: f64) -> f64 {
         let costs = if self.along { CHANGE_COSTS_ON_A_DETOUR } else { CHANGE_COSTS };
         let change = |previous: Radians| Radians(self.goal.0 + offset - previous.0).wrapped().0.abs();
@@ -176,7 +177,8 @@ impl Obstacles {
     pub(crate) fn best(&self, wish: &Wish) -> Radians {
         let mut best = (f64::INFINITY, 0, 0.0);
         for number in 0..DIRECTIONS {
-            // From the goal's direction outwards, so that most others are known to be worse without a look at any point.
+            // From the goal's direction outwards, so that most others are known to be worse without a look at any
+            // point.
             let step = if number % 2 == 0 { number / 2 } else { -(number + 1) / 2 };
             let offset = Radians::from_degrees(f64::from(step) * (360.0 / f64::from(DIRECTIONS))).0;
             let counted = wish.side.map_or(offset, |side| side.counted(offset));
@@ -244,8 +246,8 @@ fn heard<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<(Ping, Meters)> {
     (range.0 < SEEN_WITHIN).then_some((ping, range))
 }
 
-/// Points of a ping's arc, at these angles off its axis, seen from `here`: the arc lies around the transducer, where that was
-/// at the time.
+/// Points of a ping's arc, at these angles off its axis, seen from `here`: the arc lies around the transducer, where
+/// that was at the time.
 fn on_arc<const N: usize>(
     ping: &Ping,
     range: Meters,

@@ -19,7 +19,8 @@ const TEMPLATE: &str = "template";
 /// The folder of the package that robot emulators share, and below a target's folder that of its emulator.
 const EMULATOR: &str = "emulator";
 
-/// Writes `$OUT_DIR/sources.rs`: the files with their contents, a hash of them all, the targets, their emulators and the alphabets.
+/// Writes `$OUT_DIR/sources.rs`: the files with their contents, a hash of them all, the targets, their emulators and
+/// the alphabets.
 pub(crate) fn pack() -> Result<(), Box<dyn Error>> {
     let root = Path::new(&env::var("CARGO_MANIFEST_DIR")?).join("..").canonicalize()?;
     let out = PathBuf::from(env::var("OUT_DIR")?);

@@ -1,7 +1,8 @@
 //! The compiler of MDLe: text in, Rust out.
 //!
 //! ```text
-//! text ─syntax→ tree ─plan::resolve→ Plan ─plan::remove_degeneracy→ Nondegenerate ─fsm::lower→ Machine ─rust::emit→ Rust ─link→ executable
+//! text ─syntax→ tree ─plan::resolve→ Plan ─plan::remove_degeneracy→ Nondegenerate
+//!      ─fsm::lower→ Machine ─rust::emit→ Rust ─link→ executable
 //! ```
 //!
 //! **A stage does no I/O**: only [`cli`], [`embed`] and [`link`] read and write files.

@@ -173,7 +173,8 @@ fn a_cache_that_others_can_change_is_refused() {
 #[test]
 fn whom_a_build_waits_for_is_told() {
     let folder = with_plan("waits", 5);
-    // Another test's build may be the one that is waited for, and itself wait for this lock: then all let go, and begin again.
+    // Another test's build may be the one that is waited for, and itself wait for this lock: then all let go, and begin
+    // again.
     let heard = |lock: &Path, sentence: &str| loop {
         let file = File::options().create(true).append(true).open(lock).unwrap();
         file.lock().unwrap();

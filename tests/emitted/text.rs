@@ -1,4 +1,4 @@
-//! What an emitted file says: arguments, conditions and tables as their rules have them (`machines.rs` says what it does).
+//! The text of an emitted file: arguments, conditions and tables (`machines.rs` tests what it does).
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 

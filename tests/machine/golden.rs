@@ -1,7 +1,8 @@
 //! Every plan in `plans/`: tree, machine and Rust as snapshots where `sim` can run it, and the messages for other
 //! robots.
 //!
-//! The Rust is a file of its own beside its snapshot, `snapshots/machine__golden__rust-….snap.rs`, to be opened and read as one.
+//! The Rust is a file of its own beside its snapshot, `snapshots/machine__golden__rust-….snap.rs`, to be opened and
+//! read as one.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use mdle_runtime::Plan;

@@ -82,7 +82,8 @@ impl Walk<'_> {
             "diff" => self.patch(fence),
             "console" => fence.text.split("$ ").skip(1).for_each(|command| self.run(command)),
             "text" => self.compare(fence),
-            // Later commands of the page use these files; those of the two pages on applications, tests/emitted/embed.rs builds.
+            // Later commands of the page use these files; those of the two pages on applications,
+            // tests/emitted/embed.rs builds.
             "csv" | "json" | "rust" | "toml" => drop(self.write(fence.file().unwrap(), fence)),
             "sh" => {}
             other => panic!("{}: what is `{other}`?", self.page.path),

@@ -32,6 +32,45 @@ fn a_file_starts_with_its_purpose_and_is_not_too_long() {
     assert_none(&breaches);
 }
 
+/// Returns the doc blocks of a file: the line number and the first line's text of each.
+fn doc_blocks(text: &str) -> Vec<(usize, &str)> {
+    let doc = |line: &'_ str| ["///", "//!"].iter().any(|mark| line.trim_start().starts_with(mark));
+    let lines: Vec<&str> = text.lines().collect();
+    let starts = (0..lines.len()).filter(|&at| doc(lines[at]) && (at == 0 || !doc(lines[at - 1])));
+    starts.map(|at| (at + 1, lines[at].trim_start()[3..].trim())).collect()
+}
+
+/// Doc comments name a thing or say what it does; see `CONTRIBUTING.md`.
+#[test]
+fn doc_comments_are_sentences_or_noun_phrases() {
+    const OPENERS: [&str; 6] = ["What", "How", "Whether", "Where", "Its", "The same"];
+    let (mut blocks, mut riddles) = (0, Vec::new());
+    for file in files(&[".rs"]).iter().filter(|file| !is_generated(file)) {
+        for (number, first) in doc_blocks(&file.text) {
+            blocks += 1;
+            if OPENERS.iter().any(|opener| first.strip_prefix(opener).is_some_and(|rest| rest.starts_with(' '))) {
+                riddles.push(format!("{}:{number}: {first}", file.path));
+            }
+        }
+    }
+    assert!(blocks > 1000, "{blocks} doc comments found");
+    assert!(riddles.len() * 100 < blocks, "{} of {blocks}:\n{}", riddles.len(), riddles.join("\n"));
+}
+
+#[test]
+fn comments_are_no_wider_than_code() {
+    const WIDTH: usize = 120;
+    let mut breaches = Vec::new();
+    for file in files(&[".rs"]).iter().filter(|file| !is_generated(file)) {
+        for (number, line) in (1..).zip(file.text.lines()) {
+            if line.trim_start().starts_with("//") && line.chars().count() > WIDTH {
+                breaches.push(format!("{}:{number}", file.path));
+            }
+        }
+    }
+    assert_none(&breaches);
+}
+
 #[test]
 fn nothing_is_left_for_later_and_no_test_is_switched_off() {
     // In two parts, so that this file does not hold them.

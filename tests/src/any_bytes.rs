@@ -59,7 +59,8 @@ fn answers(bytes: &[u8]) {
     while let Some(frame) = reader.after_false_start(5) {
         check(&mut reader, frame);
     }
-    // After any bytes the next answer is found, unless these bytes and the answer together have a right sum of eight bits.
+    // After any bytes the next answer is found, unless these bytes and the answer together have a right sum of eight
+    // bits.
     let state = wire::answer(5, &[7; 42]);
     reader.push(&state);
     let found = std::iter::from_fn(|| reader.next_frame()).last();

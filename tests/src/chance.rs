@@ -3,7 +3,8 @@
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
-/// Returns `count` times the number in the variable `MDLE_LONG`: how often a test repeats something with other random choices.
+/// Returns `count` times the number in the variable `MDLE_LONG`: how often a test repeats something with other random
+/// choices.
 ///
 /// Without the variable it is `count`. `.ci/thorough` sets it.
 ///

@@ -35,8 +35,8 @@ pub fn target() -> PathBuf {
     this.ancestors().nth(3).expect("a target folder").to_owned()
 }
 
-/// Returns an empty folder for a test. Tests in the same file have to name theirs differently; those of other files may use the
-/// same name.
+/// Returns an empty folder for a test. Tests in the same file have to name theirs differently; those of other files may
+/// use the same name.
 #[must_use]
 #[track_caller]
 pub fn folder(test: &str) -> PathBuf {
@@ -50,8 +50,8 @@ pub fn folder(test: &str) -> PathBuf {
     folder.canonicalize().expect("a folder")
 }
 
-/// Runs `mdlec` with these arguments in `folder`, and returns its output without the messages about builds of other tests. Its cache
-/// outlives the tests, so that only the first compiles the runtime.
+/// Runs `mdlec` with these arguments in `folder`, and returns its output without the messages about builds of other
+/// tests. Its cache outlives the tests, so that only the first compiles the runtime.
 #[must_use]
 pub fn run_mdlec(folder: &Path, arguments: &[&str]) -> Output {
     let mut output = command(folder, arguments).output().expect("mdlec runs");

@@ -110,8 +110,8 @@ impl<'s, S: Stage> Trial<'s, S> {
         Way::between(from, self.truth())
     }
 
-    /// The law of this name with these arguments, begun now in the frame of a plan that began with the first exchange, runs
-    /// until it is done: after how many seconds, or that it was not done in `most`. `each` looks at every turn.
+    /// The law of this name with these arguments, begun now in the frame of a plan that began with the first exchange,
+    /// runs until it is done: after how many seconds, or that it was not done in `most`. `each` looks at every turn.
     pub(super) fn run(
         &mut self,
         name: &str,

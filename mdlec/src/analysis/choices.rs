@@ -34,7 +34,8 @@ pub(super) struct Choices {
 }
 
 impl Choices {
-    /// The choices of these, in their order, where `value` says which have one value only; nothing if there are too many.
+    /// The choices of these, in their order, where `value` says which have one value only; nothing if there are too
+    /// many.
     pub(super) fn new(all: &BTreeSet<Variable>, value: impl Fn(&Variable) -> Option<bool>) -> Option<Self> {
         let free = all.iter().filter(|variable| value(variable).is_none()).count();
         if free > VARIABLES {

@@ -1,7 +1,7 @@
 //! Maximum number of transitions in one turn (docs/src/reference/semantics.md, 5.5).
 //!
-//! All that a turn reads is read of one output at one time, so each choice of what the interrupt quarks say is counted by
-//! itself, as long as there are few of them; else each may say anything each time, and the count is a bound.
+//! All that a turn reads is read of one output at one time, so each choice of what the interrupt quarks say is counted
+//! by itself, as long as there are few of them; else each may say anything each time, and the count is a bound.
 
 use std::collections::BTreeSet;
 

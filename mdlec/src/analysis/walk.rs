@@ -1,8 +1,8 @@
 //! Walks over a machine in the order in which it runs: which atoms run, which are skipped, which are never reached, and
 //! what can end each scope.
 //!
-//! One pass over the brackets: what a scope around a place does to it is in [`World`], when it is reached at the earliest
-//! is counted on the way. A loop's body is walked over once: its first pass comes first.
+//! One pass over the brackets: what a scope around a place does to it is in [`World`], when it is reached at the
+//! earliest is counted on the way. A loop's body is walked over once: its first pass comes first.
 
 use std::collections::BTreeMap;
 use std::iter;

@@ -14,8 +14,9 @@ use crate::theorem::STEPS;
 
 /// Compile plans in MDLe, the Motion Description Language, for robots
 ///
-/// A plan is a text file that lists what a robot does: control laws, and the interrupts that end them. `mdlec PLAN --target
-/// ROBOT` checks the plan and builds one executable that runs it on that robot, or in the simulator with `--target sim`.
+/// A plan is a text file that lists what a robot does: control laws, and the interrupts that end them. `mdlec PLAN
+/// --target ROBOT` checks the plan and builds one executable that runs it on that robot, or in the simulator with
+/// `--target sim`.
 #[derive(Debug, Parser)]
 #[command(name = "mdlec", version, args_conflicts_with_subcommands = true, subcommand_negates_reqs = true)]
 #[command(after_help = "Example: mdlec run plan.mdle --target sim -- --speed max --plot run.svg")]
@@ -98,13 +99,13 @@ pub(super) enum Command {
     /// Build the executable of a plan and run it
     ///
     /// `mdlec` becomes the executable: its exit status and its signals are those of the run. The executable stays where
-    /// `mdlec build` writes it. The file `mdle.toml` beside the plan may name `target`, `world` and, in the table `options`,
-    /// options of runs, such as `speed = "max"`; those of the command line win.
+    /// `mdlec build` writes it. The file `mdle.toml` beside the plan may name `target`, `world` and, in the table
+    /// `options`, options of runs, such as `speed = "max"`; those of the command line win.
     Run(Run),
     /// Check plans and report their errors
     ///
-    /// Reports all errors and warnings of a file in one run, each with its place and, where possible, a correction to type.
-    /// Builds nothing. With `--target all`, prints a table of which robots can run which plan.
+    /// Reports all errors and warnings of a file in one run, each with its place and, where possible, a correction to
+    /// type. Builds nothing. With `--target all`, prints a table of which robots can run which plan.
     Check(Check),
     /// Format plans in the canonical layout
     ///
@@ -112,13 +113,13 @@ pub(super) enum Command {
     Fmt(Fmt),
     /// Run a plan against a script of interrupts, without a robot
     ///
-    /// A script lists, turn by turn, the time and which interrupts have fired. The output is one JSON object per turn: the
-    /// running atom, its law, and the transitions.
+    /// A script lists, turn by turn, the time and which interrupts have fired. The output is one JSON object per turn:
+    /// the running atom, its law, and the transitions.
     Trace(Trace),
     /// Analyze a plan: reachability, durations, sizes
     ///
-    /// Static analysis, valid for every run: which atoms run, what can end each of them, the shortest and longest duration,
-    /// and the size of the state machine. Warns of conditions that can never have an effect.
+    /// Static analysis, valid for every run: which atoms run, what can end each of them, the shortest and longest
+    /// duration, and the size of the state machine. Warns of conditions that can never have an effect.
     Analyze(Analyze),
     /// Draw a plan as an SVG picture
     ///
@@ -126,7 +127,8 @@ pub(super) enum Command {
     Draw(Draw),
     /// Convert a finite state machine into a plan
     ///
-    /// Finds the plan that is equivalent to the machine, by Theorem 1 of the paper, or reports which of its conditions fail.
+    /// Finds the plan that is equivalent to the machine, by Theorem 1 of the paper, or reports which of its conditions
+    /// fail.
     Decompile(Decompile),
     /// Explain the code of a message
     ///
@@ -150,13 +152,14 @@ pub(super) enum Command {
     NewTarget(NewTarget),
     /// Build the emulator of a robot and run it
     ///
-    /// Opens a pseudo-terminal, speaks the protocol of the robot on it, and moves a simulated body in a world. `mdlec` becomes the
-    /// emulator, which runs until a signal comes.
+    /// Opens a pseudo-terminal, speaks the protocol of the robot on it, and moves a simulated body in a world. `mdlec`
+    /// becomes the emulator, which runs until a signal comes.
     Emulator(Emulator),
     /// Remove everything that mdlec keeps in its cache
     ///
-    /// Compiled libraries, unpacked sources and the packages of plans: the next build makes them again. The cache is the folder
-    /// `MDLEC_CACHE`, or `mdlec` in the user's cache folder; a folder that contains anything else is refused.
+    /// Compiled libraries, unpacked sources and the packages of plans: the next build makes them again. The cache is
+    /// the folder `MDLEC_CACHE`, or `mdlec` in the user's cache folder; a folder that contains anything else is
+    /// refused.
     Clean,
     /// Print a script that completes the commands and options of mdlec in a shell
     ///
@@ -198,8 +201,8 @@ pub(super) struct Build {
     pub(super) executable: Executable,
     /// Intermediate form to print instead of building
     ///
-    /// One of tree, plan, nondegenerate, expanded, fsm, matrices, dot, mermaid, scxml, formal, rust and exe. Without `=FILE` it
-    /// goes to standard output; `matrices=FOLDER` writes MatrixMarket files into a folder.
+    /// One of tree, plan, nondegenerate, expanded, fsm, matrices, dot, mermaid, scxml, formal, rust and exe. Without
+    /// `=FILE` it goes to standard output; `matrices=FOLDER` writes MatrixMarket files into a folder.
     #[arg(long, value_name = "KIND[=FILE]", value_parser = Emit::parse)]
     pub(super) emit: Option<Emit>,
     /// Merge the matrices of equal interrupts, with `--emit matrices`
@@ -215,8 +218,8 @@ pub(super) struct Executable {
     pub(super) plan: Option<PathBuf>,
     /// Robot to compile for: a name from `mdlec targets`, or a folder
     ///
-    /// A folder holds a target of your own: an `alphabet.mdle` and a crate. `mdlec new-target` creates one. Without the option,
-    /// the `target` of an `mdle.toml` beside the plan.
+    /// A folder holds a target of your own: an `alphabet.mdle` and a crate. `mdlec new-target` creates one. Without the
+    /// option, the `target` of an `mdle.toml` beside the plan.
     #[arg(long, value_name = "NAME|FOLDER")]
     pub(super) target: Option<String>,
     /// Executable to write [default: the plan's file name without its extension, in the current folder]
@@ -236,7 +239,8 @@ pub(super) struct Check {
     /// Files of the plans
     #[arg(required = true)]
     pub(super) plans: Vec<PathBuf>,
-    /// Robot to check for, or `all` for a table of all robots [default: that of mdle.toml, or one with every capability]
+    /// Robot to check for, or `all` for a table of all robots [default: that of mdle.toml, or one with every
+    /// capability]
     #[arg(long, value_name = "NAME|FOLDER|all")]
     pub(super) target: Option<String>,
     /// Treat warnings as errors

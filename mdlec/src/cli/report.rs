@@ -158,7 +158,8 @@ pub(super) fn printed(result: io::Result<()>) -> Result<(), Failure> {
 
 /// Prints the answer of the command line itself: the requested help or version, or a usage error.
 pub(super) fn answer(answer: &clap::Error) -> Result<(), Failure> {
-    // Only the arguments can have brought what a terminal would obey; beside its colours it could not be told from them.
+    // Only the arguments can have brought what a terminal would obey; beside its colours it could not be told from
+    // them.
     let is_plain = |argument: OsString| argument.to_string_lossy().chars().all(is_printable);
     let result = if env::args_os().all(is_plain) {
         answer.print()

@@ -67,8 +67,8 @@ impl Settings {
         Ok(Self { file: Some(file), text })
     }
 
-    /// Returns the target that the command line names with `option`, or else that of the file; without either, a robot that
-    /// has every capability.
+    /// Returns the target that the command line names with `option`, or else that of the file; without either, a robot
+    /// that has every capability.
     pub(super) fn target(&self, option: Option<&str>) -> Result<Target, Failure> {
         let mut target = match (option, &self.text.target) {
             (Some(_), _) | (None, None) => input::target(option),
@@ -110,7 +110,8 @@ impl Settings {
         world.into_iter().chain(others).collect()
     }
 
-    /// The option `--world`: a file of that name in the folder of the `mdle.toml`, or else a world that the target knows.
+    /// The option `--world`: a file of that name in the folder of the `mdle.toml`, or else a world that the target
+    /// knows.
     fn world(&self, world: &Setting) -> Result<RunOption, Failure> {
         let (place, file) = (self.place(world.line), self.in_folder(&world.value));
         if !file.is_file() && world.value.contains(['.', '/']) {

@@ -5,8 +5,8 @@ use std::ffi::OsString;
 
 use clap::{Arg, Command};
 
-/// Returns the words of this process's command line. Options of all commands that come before the command are moved after it:
-/// without a command the same place belongs to a plan, so that clap refuses a command there.
+/// Returns the words of this process's command line. Options of all commands that come before the command are moved
+/// after it: without a command the same place belongs to a plan, so that clap refuses a command there.
 pub(super) fn words(cli: &Command) -> Vec<OsString> {
     ordered(env::args_os().collect(), cli)
 }

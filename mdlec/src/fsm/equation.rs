@@ -154,7 +154,8 @@ mod tests {
         equation(&terms(&compiled(text)[0].nondegenerate, combined).unwrap())
     }
 
-    /// The string of Fig. 3, `((u1, ξ1)(u2, ξ2)(u1, ξ3))`: the first law comes twice, and is a state of its own each time.
+    /// The string of Fig. 3, `((u1, ξ1)(u2, ξ2)(u1, ξ3))`: the first law comes twice, and is a state of its own each
+    /// time.
     #[test]
     fn the_string_of_figure_3_has_three_terms_of_four_states() {
         let text = "{ Fig3 (Atom (bumper) (go 20 0)) (Atom (atIsection 0100) (go 0 0.36)) (Atom (wait 7) (go 20 0)) }";

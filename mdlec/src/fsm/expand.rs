@@ -13,8 +13,8 @@ const TEXT: u64 = 1 << 26;
 /// The plan with its finite loops written out; a loop without end is left as it is.
 ///
 /// # Errors
-/// E0501 for a plan that cannot be lowered, E0502 for one of more than 100,000 states, or of too many conditions in all of
-/// them.
+/// E0501 for a plan that cannot be lowered, E0502 for one of more than 100,000 states, or of too many conditions in all
+/// of them.
 pub fn expand(plan: &Nondegenerate) -> Result<Nondegenerate, Diagnostic> {
     expanded_states(plan)?;
     let parts = Count {

@@ -16,8 +16,8 @@ pub const STATES: u64 = 1 << 53;
 /// Lowers a plan, and validates the machine against it.
 ///
 /// # Errors
-/// E0501 when the plan, expanded, has more than [`STATES`] states; E0901 when the machine is not the plan's, which would be
-/// a defect of this compiler.
+/// E0501 when the plan, expanded, has more than [`STATES`] states; E0901 when the machine is not the plan's, which
+/// would be a defect of this compiler.
 pub fn lower(nondegenerate: &Nondegenerate) -> Result<Machine, Diagnostic> {
     let plan = nondegenerate.plan();
     let mut lowering = Lowering {

@@ -272,7 +272,8 @@ impl<'m> Element<'m> {
         }
     }
 
-    /// Returns the place of a loop's counter, and the states of one pass in the expanded plan: 0 for a loop without end.
+    /// Returns the place of a loop's counter, and the states of one pass in the expanded plan: 0 for a loop without
+    /// end.
     #[must_use]
     pub fn counter(self) -> Option<(u16, u64)> {
         match self.bracket().kind {

@@ -1,9 +1,9 @@
 //! Holds a machine to Observation 1 of the paper: every column of its transition matrices is a standard basis vector.
 //!
 //! The matrix of one scope has such columns by its form: those of its atoms have their one in a single row. Where an
-//! interrupt is counted once, its matrix is a sum over all scopes that have it (Eq. 3), and a column in two of them would
-//! have two ones and a minus one. Intervals of a machine are nested or disjoint, so no scope may have the interrupt of one
-//! around it: the machine is that of a non-degenerate plan.
+//! interrupt is counted once, its matrix is a sum over all scopes that have it (Eq. 3), and a column in two of them
+//! would have two ones and a minus one. Intervals of a machine are nested or disjoint, so no scope may have the
+//! interrupt of one around it: the machine is that of a non-degenerate plan.
 
 use std::collections::BTreeMap;
 
@@ -11,8 +11,9 @@ use super::{Machine, Visit};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::{Function, Functions};
 
-/// Says whether all transition matrices of a machine have columns that are standard basis vectors, also those that count
-/// an interrupt once. The brackets are to be in pre-order and nested, as [`validate`](super::validate) finds them.
+/// Says whether all transition matrices of a machine have columns that are standard basis vectors, also those that
+/// count an interrupt once. The brackets are to be in pre-order and nested, as [`validate`](super::validate) finds
+/// them.
 ///
 /// # Errors
 /// E0901: the first interrupt that is repeated inside its scope. That is a defect of the compiler.

@@ -1,4 +1,5 @@
-//! The terms of `Π(t) = Σ E_i ξ̄_i(t)` of a plan (paper, Eq. 2), and those of an interrupt that is counted once (Eq. 3).
+//! The terms of `Π(t) = Σ E_i ξ̄_i(t)` of a plan (paper, Eq. 2), and those of an interrupt that is counted once (Eq.
+//! 3).
 //!
 //! They are numbered as in the FSM file: `x1`, `x2`, … in pre-order, and `completed` for laws that are done.
 
@@ -58,8 +59,9 @@ impl Terms<'_> {
         self.laws.len() + 1
     }
 
-    /// The transition matrix of a term: for each column the row of its one. It is `Σ E_ij − (n−1) I` over the term's places
-    /// (Eq. 3): a column that one of them lists is taken from there, for in all others it is that of the identity.
+    /// The transition matrix of a term: for each column the row of its one. It is `Σ E_ij − (n−1) I` over the term's
+    /// places (Eq. 3): a column that one of them lists is taken from there, for in all others it is that of the
+    /// identity.
     #[must_use]
     pub fn matrix(&self, term: &Term<'_>) -> Vec<usize> {
         let mut rows: Vec<_> = (0..self.states()).collect();

@@ -1,10 +1,10 @@
 //! Oracle of the lowering, which shares no code with it: holds the tables of a machine against its plan.
 //!
 //! Every transition is the one that the plan asks for (paper, Eq. 2; docs/src/reference/semantics.md, 5.3 and 8). The
-//! oracle walks the plan and determines for each scope, loop and atom what follows when it ends, by the plan's own nesting;
-//! the machine has the same in its intervals of atoms. As each step outwards agrees, so does every chain of them: where a
-//! transition leads, which scopes and counters it starts afresh, and which loop it repeats. So the cost does not depend on
-//! loop counts, and every lowering is validated.
+//! oracle walks the plan and determines for each scope, loop and atom what follows when it ends, by the plan's own
+//! nesting; the machine has the same in its intervals of atoms. As each step outwards agrees, so does every chain of
+//! them: where a transition leads, which scopes and counters it starts afresh, and which loop it repeats. So the cost
+//! does not depend on loop counts, and every lowering is validated.
 
 use std::fmt;
 
@@ -18,8 +18,8 @@ use crate::plan::{Interrupt, Mark, Node, Nondegenerate, Record, Scope};
 /// Checks that `draft` is the machine of `plan`.
 ///
 /// # Errors
-/// E0901: the first place at which it is not, with what the plan asks for and what the machine has. That is a defect of the
-/// compiler.
+/// E0901: the first place at which it is not, with what the plan asks for and what the machine has. That is a defect of
+/// the compiler.
 pub fn validate(plan: &Nondegenerate, draft: &Draft) -> Result<(), Diagnostic> {
     let root = &plan.plan().root;
     let mut walk = Walk { draft, brackets: 0, atoms: 0 };

@@ -145,7 +145,8 @@ fn taken(folder: &Path, all: bool, files: &mut Vec<PathBuf>) -> io::Result<()> {
     Ok(())
 }
 
-/// Returns `true` for a library, a procedural macro, a build script under both of its names, and its instructions to cargo.
+/// Returns `true` for a library, a procedural macro, a build script under both of its names, and its instructions to
+/// cargo.
 fn is_taken(path: &Path, name: &OsStr) -> bool {
     let extension = path.extension().and_then(OsStr::to_str);
     let is_library = extension.is_some_and(|extension| matches!(extension, "rlib" | "rmeta" | "so" | "a"));

@@ -1,7 +1,7 @@
 //! Pictures of a plan: drawn as nested boxes, and as text that other tools draw or run (Graphviz, mermaid, SCXML).
 //!
-//! A picture shows the plan as it is written: loops are not expanded. Only the SCXML machine, which is to do what the plan
-//! does, has a state for each atom of the expanded plan.
+//! A picture shows the plan as it is written: loops are not expanded. Only the SCXML machine, which is to do what the
+//! plan does, has a state for each atom of the expanded plan.
 
 mod dot;
 mod exits;

@@ -21,8 +21,8 @@ pub(super) fn type_of(quark: &Quark, quarks: &[Quark]) -> TokenStream {
     quote!(runtime::Comparison<#signal, #with>)
 }
 
-/// `runtime::Comparison::new(…)`, with its signals as `signal` writes them; a value is compared as if it were one of type
-/// `none`.
+/// `runtime::Comparison::new(…)`, with its signals as `signal` writes them; a value is compared as if it were one of
+/// type `none`.
 pub(super) fn compared(
     comparison: &Comparison,
     none: &TokenStream,

@@ -14,11 +14,12 @@ use super::signatures::{capability_trait, from_arguments};
 use crate::alphabet::{Alphabet, Declaration, DeclarationKind, Kind, Origin};
 use crate::plan::{is_time, is_way, signature};
 
-/// Writes `src/alphabet.rs` of the crate that implements the alphabet: what the crate must have, and what plans need of it.
+/// Writes `src/alphabet.rs` of the crate that implements the alphabet: what the crate must have, and what plans need of
+/// it.
 ///
-/// A target's crate exports `Input` and `Output` in its root; the quarks that it declares itself are in its module `quarks`.
-/// Those of the shared alphabet `atoms` are in the root of the crate `mdle_atoms`, whose own `src/alphabet.rs` binds them
-/// once for all targets. The text depends on nothing but the alphabet.
+/// A target's crate exports `Input` and `Output` in its root; the quarks that it declares itself are in its module
+/// `quarks`. Those of the shared alphabet `atoms` are in the root of the crate `mdle_atoms`, whose own
+/// `src/alphabet.rs` binds them once for all targets. The text depends on nothing but the alphabet.
 #[must_use]
 pub fn bind(alphabet: &Alphabet) -> String {
     if alphabet.crate_name.is_empty() { shared(alphabet) } else { target(alphabet) }
@@ -77,8 +78,8 @@ pub(super) struct Bound<'a> {
 }
 
 impl<'a> Bound<'a> {
-    /// All of them: `wait`, `t` and `way` are the machine's business, and a quark whose capability the robot lacks needs no
-    /// code, nor does a shared one whose capability has no trait yet.
+    /// All of them: `wait`, `t` and `way` are the machine's business, and a quark whose capability the robot lacks
+    /// needs no code, nor does a shared one whose capability has no trait yet.
     fn all(alphabet: &'a Alphabet) -> Vec<Self> {
         let mut overloads = BTreeMap::<&str, usize>::new();
         let mut functions = Distinct::quark_functions();

@@ -1,4 +1,5 @@
-//! A plan as code: quarks as constants, laws as variants, interrupts as functions that ask the scopes around them first.
+//! A plan as code: quarks as constants, laws as variants, interrupts as functions that ask the scopes around them
+//! first.
 
 use std::collections::BTreeSet;
 
@@ -194,8 +195,8 @@ impl<'a> Meaning<'a> {
         }
     }
 
-    /// `fn next`: asks the plan's own interrupt, then has an arm for each atom, which asks the scope around it first and
-    /// itself last.
+    /// `fn next`: asks the plan's own interrupt, then has an arm for each atom, which asks the scope around it first
+    /// and itself last.
     pub(super) fn next(&self) -> TokenStream {
         let arms = self.machine.atoms().map(|atom| {
             let (variant, element) = (atom_variant(atom.index()), atom.element());

@@ -104,8 +104,8 @@ fn strings(elements: &TokenStream) -> Option<Vec<String>> {
     tokens.map(|token| token.starts_with('"').then_some(token)).collect()
 }
 
-/// The elements, if all are calls of a path with literals, and no longer than `width` with their commas. The tables of a
-/// machine are such lists.
+/// The elements, if all are calls of a path with literals, and no longer than `width` with their commas. The tables of
+/// a machine are such lists.
 fn calls(elements: &TokenStream, width: usize) -> Option<Vec<String>> {
     let mut calls = Vec::new();
     let mut call = String::new();

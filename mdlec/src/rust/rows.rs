@@ -97,7 +97,8 @@ fn told(machine: &Machine) -> Option<TokenStream> {
     })
 }
 
-/// The type of the plan's memory, how the plan is made, and `static MARKS`: nothing of it for a plan that remembers nothing.
+/// The type of the plan's memory, how the plan is made, and `static MARKS`: nothing of it for a plan that remembers
+/// nothing.
 fn memory(machine: &Machine, begins: &TokenStream) -> (Option<TokenStream>, TokenStream, Option<TokenStream>) {
     let slots = Literal::usize_unsuffixed(machine.sizes().slots);
     let slots = quote!(#begins, [0; #slots]);

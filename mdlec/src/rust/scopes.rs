@@ -33,8 +33,8 @@ impl Meaning<'_> {
         quote!(#(#functions)*)
     }
 
-    /// The function of the nearest scope that encloses this element and has an interrupt; not the plan's, which is asked
-    /// before all others.
+    /// The function of the nearest scope that encloses this element and has an interrupt; not the plan's, which is
+    /// asked before all others.
     pub(super) fn around(&self, element: Element<'_>) -> Option<&Ident> {
         let mut enclosing = element.outwards().skip(1).filter(|enclosing| enclosing.parent().is_some());
         enclosing.find_map(|enclosing| self.function(enclosing))
@@ -108,8 +108,8 @@ pub(super) fn nanometers(length: u64) -> TokenStream {
     quote!(runtime::Nanometers(#length))
 }
 
-/// Operands with an operator between them, in groups where there are many: Rust's syntax nests operators to the left, and
-/// compilers follow it down.
+/// Operands with an operator between them, in groups where there are many: Rust's syntax nests operators to the left,
+/// and compilers follow it down.
 fn joined(operands: Vec<TokenStream>, operator: &TokenStream) -> TokenStream {
     const GROUP: usize = 64;
     let join = |operands: &[TokenStream]| {

@@ -1,5 +1,5 @@
-//! Strings as the paper prints them (docs/src/reference/language.md, 3.2): commas between their elements, and a plan without
-//! braces before `σ_null`.
+//! Strings as the paper prints them (docs/src/reference/language.md, 3.2): commas between their elements, and a plan
+//! without braces before `σ_null`.
 
 use std::borrow::Cow;
 
@@ -75,7 +75,7 @@ fn head<'s>(tokens: &[Token<'s>], at: usize, new: &mut Vec<Token<'s>>) {
     }
 }
 
-/// What an open bracket contains.
+/// The contents of an open bracket.
 #[derive(Clone, Copy, PartialEq)]
 enum Inside {
     /// Elements of a plan or a loop.
@@ -144,8 +144,8 @@ fn ends_element(token: Option<Tok<'_>>) -> bool {
     matches!(token, Some(Tok::RParen | Tok::RBrace | Tok::Name(_) | Tok::Number(_) | Tok::Infinity))
 }
 
-/// Returns `true` if an element follows this comma. In parentheses a condition may follow it, so that a name, or a group
-/// that may be a condition, is none.
+/// Returns `true` if an element follows this comma. In parentheses a condition may follow it, so that a name, or a
+/// group that may be a condition, is none.
 fn begins_element(tokens: &[Token<'_>], comma: usize, inside: Option<Inside>) -> bool {
     let kind = |ahead: usize| tokens.get(comma + ahead).map(|token| token.kind);
     let Some(next) = kind(1).filter(|_| inside != Some(Inside::Others)) else { return false };

@@ -234,7 +234,7 @@ impl<'s> Reader<'s> {
         matches!(self.lexed.tokens.last(), Some(Token { kind: Tok::Frame, .. }))
     }
 
-    /// What touches a number and is no unit is reported and dropped; a unit that does not touch it is a name.
+    /// Reports and drops a text that touches a number and is no unit; a unit that does not touch it is a name.
     fn number(&mut self, number: &'s str, tail: &'s str, place: Place) {
         self.end_run();
         let unit = tail.trim_start();

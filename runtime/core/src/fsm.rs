@@ -1,9 +1,9 @@
 //! The finite state machine of a plan, as a tree of brackets instead of N×N matrices (Algorithm 1; Eq. 2).
 //! See docs/src/reference/generated_code.md, 1.
 //!
-//! A transition matrix `E_i` is an interval of columns and one destination, so a scope that holds atoms `a..b` is stored
-//! as those two numbers. It is a tree and not a list of intervals because `((s)^2, ξ)` and `(s, ξ)^2` cover the same
-//! atoms, and ξ leaves the first but starts the second pass of the other.
+//! A transition matrix `E_i` is an interval of columns and one destination, so a scope that holds atoms `a..b` is
+//! stored as those two numbers. It is a tree and not a list of intervals because `((s)^2, ξ)` and `(s, ξ)^2` cover the
+//! same atoms, and ξ leaves the first but starts the second pass of the other.
 
 /// A plan's machine: tables that generated code holds as constants and a loaded plan owns.
 ///

@@ -2,8 +2,8 @@
 //!
 //! For people who write a robot: [`Robot`], [`Output`] and the traits of [`capability`].
 //! For people who write a quark: [`Interrupt`], [`Control`], [`Law`] and [`Completes`].
-//! For generated code and its callers: [`fsm`], [`Cursor`], [`Plan`] and [`Machine`], whose turns [`trace`] writes down.
-//! For everything that shows text to people: [`Printable`].
+//! For generated code and its callers: [`fsm`], [`Cursor`], [`Plan`] and [`Machine`], whose turns [`trace`] writes
+//! down. For everything that shows text to people: [`Printable`].
 //!
 //! No allocation, no unsafe code, no path that panics: what is here runs in a robot's control loop.
 #![no_std]

@@ -22,8 +22,8 @@ pub trait Plan {
     fn slots(&self) -> (Self::Entered, Self::Left);
     /// Makes the law of `atom`, which is now the current one; called once for each atom entered.
     fn enter(&mut self, atom: u32, y: &Self::Output, begin: Begin);
-    /// Asks the interrupts around the current atom, the outermost first, and the law's completion last. Returns the scope
-    /// that ends, of the first that has fired; `None` if the atom goes on.
+    /// Asks the interrupts around the current atom, the outermost first, and the law's completion last. Returns the
+    /// scope that ends, of the first that has fired; `None` if the atom goes on.
     fn next(&self, cursor: &Cursor<Self::Entered, Self::Left>, y: &Self::Output, t: Nanos) -> Option<Ending>;
 
     /// Called before the cursor leaves a scope: a plan that remembers endings records this one, and clears the memories

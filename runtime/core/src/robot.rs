@@ -28,9 +28,10 @@ pub trait Robot {
     /// When the command could not be delivered; the hardware's watchdog is then what stops it.
     fn stop(&mut self) -> Result<(), Self::Error>;
 
-    /// Returns the longest time without a command after which the robot is still driven on, by the wall clock: that of the robot's own
-    /// watchdog, or how long its data stay fresh. After a longer gap, as when the program was suspended, the run ends with a
-    /// fault before a command is sent. `None` for two seconds more than the period. Simulated time has no gaps.
+    /// Returns the longest time without a command after which the robot is still driven on, by the wall clock: that of
+    /// the robot's own watchdog, or how long its data stay fresh. After a longer gap, as when the program was
+    /// suspended, the run ends with a fault before a command is sent. `None` for two seconds more than the period.
+    /// Simulated time has no gaps.
     fn longest_gap(&self) -> Option<Duration> {
         None
     }

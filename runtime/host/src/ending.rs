@@ -57,9 +57,9 @@ pub(crate) enum Ending {
 impl Ending {
     /// Returns the exit status of the executable, after these faults on the way out.
     ///
-    /// A robot that could not be stopped in good order, or a log that is cut short, is a fault whatever came before. What
-    /// [`Observer::finish`](crate::Observer::finish) could not write makes one only of a plan that is over: any other ending
-    /// says more.
+    /// A robot that could not be stopped in good order, or a log that is cut short, is a fault whatever came before.
+    /// What [`Observer::finish`](crate::Observer::finish) could not write makes one only of a plan that is over: any
+    /// other ending says more.
     pub(crate) fn status(&self, faults: &[Fault]) -> u8 {
         let grave = faults.iter().any(|fault| match fault {
             Fault::Exchange(_) | Fault::Log(_) | Fault::Stop(_) => true,

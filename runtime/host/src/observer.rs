@@ -11,8 +11,8 @@ use crate::{Batch, Refusal};
 
 /// Follows what a plan does on a robot: for pictures, a live view, or a goal.
 pub trait Observer {
-    /// An atom began in the turn at time `t`, and its law is now applied. `number` is its state in the first pass of the loops
-    /// around it, so that every pass of an atom as written has one number.
+    /// An atom began in the turn at time `t`, and its law is now applied. `number` is its state in the first pass of
+    /// the loops around it, so that every pass of an atom as written has one number.
     fn began(&mut self, _number: u64, _law: &str, _t: Nanos) {}
 
     /// The turns of the run have ended; the robot has not been stopped yet.
@@ -26,8 +26,8 @@ pub trait Observer {
     /// A turn was made, and this is where the plan stands.
     fn turned(&mut self, _standing: &Standing<'_>) {}
 
-    /// Returns the result of a run whose plan is over; `None` if the robot was to come to no goal. Asked after the robot was
-    /// stopped.
+    /// Returns the result of a run whose plan is over; `None` if the robot was to come to no goal. Asked after the
+    /// robot was stopped.
     fn judged(&self) -> Option<Judgement> {
         None
     }
@@ -50,14 +50,14 @@ pub trait Observer {
 pub struct Observation<R> {
     /// Returns the observer.
     pub observer: fn(&mut R) -> &mut dyn Observer,
-    /// Returns `true` if the robot shows its run on standard output itself, as with a live view: then the report waits until
-    /// the robot is stopped, and the robot leaves the screen when it is.
+    /// Returns `true` if the robot shows its run on standard output itself, as with a live view: then the report waits
+    /// until the robot is stopped, and the robot leaves the screen when it is.
     pub screen: fn(&ArgMatches) -> bool,
-    /// Gives the terminal back, if [`Observation::screen`] took it. Called on another thread when the program ends while the
-    /// robot's code hangs: it must neither wait nor panic.
+    /// Gives the terminal back, if [`Observation::screen`] took it. Called on another thread when the program ends
+    /// while the robot's code hangs: it must neither wait nor panic.
     pub leave_screen: fn(),
-    /// Returns the runs to be made instead of one, if these options ask for several: only robots that can be started over
-    /// have such options. No run has begun yet.
+    /// Returns the runs to be made instead of one, if these options ask for several: only robots that can be started
+    /// over have such options. No run has begun yet.
     pub batch: fn(&ArgMatches, Duration) -> SeveralRuns<R>,
 }
 
@@ -96,7 +96,7 @@ impl<R> Followed<R> {
     }
 }
 
-/// Where a plan stands after a turn in which it was not over.
+/// The place in a plan after a turn that did not end it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Standing<'a> {
     /// The time of the turn.
@@ -105,8 +105,8 @@ pub struct Standing<'a> {
     pub state: u64,
     /// The quark text of its law.
     pub law: &'a str,
-    /// Its line, the names of the scopes around it and the passes of loops: `patrol.mdle:12, Leg, pass 3 of 5`; empty for a
-    /// plan that was written in Rust.
+    /// The atom's line, the names of its enclosing scopes and the passes of loops: `patrol.mdle:12, Leg, pass 3 of 5`;
+    /// empty for a plan that was written in Rust.
     pub place: String,
     /// The reason for which it runs: the operands that fired, with their values; empty for the plan's first.
     pub since: &'a str,
@@ -130,11 +130,11 @@ pub struct Ended<'a> {
 /// A scope around the current atom.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Around<'a> {
-    /// Its name; empty for an atom.
+    /// The scope's name; empty for an atom.
     pub name: &'a str,
     /// The condition text of its interrupt.
     pub condition: &'a str,
-    /// How long ago it was entered.
+    /// Time since the scope was entered.
     pub since: Nanos,
 }
 

@@ -7,8 +7,8 @@ use mdle_runtime::Robot;
 
 use crate::{NamedFile, Observation, Replays, StopRequest};
 
-/// A robot that executables are built for; implemented once in each target crate. A driver needs no more than a [`Robot`]
-/// and [`Target::connect`].
+/// A robot that executables are built for; implemented once in each target crate. A driver needs no more than a
+/// [`Robot`] and [`Target::connect`].
 pub trait Target {
     /// The name of the target, as `mdlec --target` takes it.
     const NAME: &'static str;

@@ -35,7 +35,7 @@ impl<C: Configuration> Configured<C> {
     }
 }
 
-/// As TOML that can be given back with `--config`.
+/// Returns the configuration as TOML, which `--config` reads.
 impl<C> fmt::Display for Configured<C> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.settings.fmt(f)
@@ -137,8 +137,8 @@ pub fn within(name: &str, value: f64, least: f64, most: f64) -> Result<(), Strin
 
 /// Declares a configuration, a line for each of its keys: `name: type = default, in range, "unit" "help", confidence;`.
 ///
-/// Every configuration has a `device` in front, and how hard laws steer at the end. The type has a function `check`, which
-/// says what is wrong with values that are good each by itself.
+/// Every configuration has a `device` in front, and how hard laws steer at the end. The type has a function `check`,
+/// which says what is wrong with values that are good each by itself.
 #[macro_export]
 macro_rules! configuration {
     (
@@ -156,7 +156,7 @@ macro_rules! configuration {
             /// The serial port, or `tcp:ADDRESS:PORT`.
             pub device: String,
             $($(#[$field_meta])* pub $key: $type,)*
-            /// How hard laws steer.
+            /// The gains with which laws steer.
             pub steering: $crate::Steering,
         }
 

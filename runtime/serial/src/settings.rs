@@ -63,8 +63,8 @@ impl Settings {
         }
     }
 
-    /// Returns how hard laws steer: `rotate`, `align` and `avoid` of the file, for the rest the usual gains. With less than a
-    /// tenth a robot hardly turns, with more than ten it swings.
+    /// Returns how hard laws steer: `rotate`, `align` and `avoid` of the file, for the rest the usual gains. With less
+    /// than a tenth a robot hardly turns, with more than ten it swings.
     ///
     /// # Errors
     /// The sentence that says which gain is too small or too great.

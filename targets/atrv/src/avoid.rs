@@ -1,8 +1,8 @@
 //! Numbers without a byte 1B: what is sent to a controller that may not understand one.
 //! See docs/src/reference/protocols.md, 2.2.
 //!
-//! Every program that is known to drive an rFLEX sends its bytes unmarked, and changes a turn rate whose bytes would hold a
-//! 1B to the nearest one without. Here that is done to every number, and to every byte of it.
+//! Every program that is known to drive an rFLEX sends its bytes unmarked, and changes a turn rate whose bytes would
+//! hold a 1B to the nearest one without. Here that is done to every number, and to every byte of it.
 
 /// The byte.
 pub(crate) const ESCAPE: u8 = 0x1B;

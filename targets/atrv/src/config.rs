@@ -53,7 +53,8 @@ mdle_serial::configuration! {
     answer: u64 = 300, in 50..=400, "ms" "that it may say nothing";
     /// The longest time between two reports of a bumper, in milliseconds; 0 for ever.
     inputs: u64 = 1000, in 0..=60_000, "ms" "that a bumper may say nothing, 0 for ever", unverified;
-    /// The longest time in which the robot moves faster than commanded, or in the opposite direction, in milliseconds; 0 for no limit.
+    /// The longest time in which the robot moves faster than commanded, or in the opposite direction, in milliseconds;
+    /// 0 for no limit.
     disobey: u64 = 500, in 0..=60_000,
         "ms" "that it may move faster than commanded, or in the opposite direction, 0 for no limit", unverified;
     /// Time without a turn after which the watchdog stops the robot, in milliseconds.

@@ -1,5 +1,5 @@
-//! The ATRV as a kinetic state machine: each input is two velocity commands, and the output is what its reports say by then
-//! (paper, Eq. 1).
+//! The ATRV as a kinetic state machine: each input is two velocity commands, and the output is what its reports say by
+//! then (paper, Eq. 1).
 
 use std::time::{Duration, Instant};
 

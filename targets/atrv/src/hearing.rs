@@ -141,7 +141,8 @@ impl Hearing {
     /// Waits until the robot reports that its brake is set.
     ///
     /// # Errors
-    /// The line is closed, or by `deadline` the robot has not reported its brake since it was forgotten, or that it is not set.
+    /// The line is closed, or by `deadline` the robot has not reported its brake since it was forgotten, or that it is
+    /// not set.
     pub(crate) fn brake(&mut self, line: &Line, deadline: Instant) -> Result<(), Fault> {
         loop {
             self.drain(line, Nanos::ZERO)?;

@@ -31,8 +31,8 @@ const QUARTER: [(f64, f64, f64, usize); 6] = [
     (136.91, 235.97, 90.0, 4),
 ];
 
-/// The eight on the left of the robot with sixteen, with the directions that each speaks for: between 90° and 180° there is
-/// one alone.
+/// The eight on the left of the robot with sixteen, with the directions that each speaks for: between 90° and 180°
+/// there is one alone.
 const HALF: [(f64, f64, f64, &[usize]); 8] = [
     (258.17, 114.70, 0.0, &[0]),
     (252.24, 152.17, 18.0, &[1]),
@@ -95,8 +95,9 @@ fn at(id: usize, (x, y, degrees): (f64, f64, f64), directions: &[usize]) -> Tran
 impl Transducer {
     /// A range of this sonar as one of the ring: from the centre to the place of the echo, less the ring's radius.
     ///
-    /// One that speaks for several directions looks between them, so that the place is not to be believed: there it is how
-    /// far off that place is along the axis. A wall beside the robot is then as far in all directions that hear it alike.
+    /// One that speaks for several directions looks between them, so that the place is not to be believed: there it is
+    /// how far off that place is along the axis. A wall beside the robot is then as far in all directions that hear it
+    /// alike.
     pub(crate) fn on_the_ring(&self, range: f64) -> f64 {
         let (sin, cos) = libm::sincos(self.degrees.to_radians());
         let far = if self.directions.count_ones() == 1 {

@@ -1,8 +1,8 @@
 //! Output of commands to the line, and the watchdog, which stops the robot when no motion has been commanded for too
 //! long.
 //!
-//! The controller stops a robot whose line has fallen silent, after a time that nobody states. So a thread of this program
-//! does it as well, and only if the program dies the controller is what stops the robot.
+//! The controller stops a robot whose line has fallen silent, after a time that nobody states. So a thread of this
+//! program does it as well, and only if the program dies the controller is what stops the robot.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};

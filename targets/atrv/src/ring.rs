@@ -11,8 +11,8 @@ const DEAF: Nanos = Nanos(1_000_000_000);
 
 /// The sonars and their pings.
 ///
-/// A direction has pinged when each of its sonars has reported since it pinged last, or when one of them reports a second
-/// time before another has: a report may be lost.
+/// A direction has pinged when each of its sonars has reported since it pinged last, or when one of them reports a
+/// second time before another has: a report may be lost.
 #[derive(Debug, Clone)]
 pub(crate) struct Ring {
     transducers: [Option<Transducer>; MOST],

@@ -44,17 +44,19 @@ pub struct Options {
     link: Option<PathBuf>,
     /// Simulated time per command, in milliseconds or as in `0.1s` [default: the time of the clock]
     ///
-    /// From 1 ms to 10 s. A run in lockstep is the same each time. Once every robot has a driver, several robots wait for each other's commands.
+    /// From 1 ms to 10 s. A run in lockstep is the same each time. Once every robot has a driver, several robots wait
+    /// for each other's commands.
     #[arg(long, value_name = "TIME", value_parser = step_of_lockstep)]
     lockstep: Option<Duration>,
     /// Fault to inject, and the time after which it begins, in seconds or with a unit; repeatable
     ///
-    /// On the line: noise (noise=40: 40 bytes before each frame), dribble (byte by byte), check (one wrong bit per frame), lose
-    /// (two frames of three), double, late (late=100 or late=100ms: each frame 100 ms late; not in lockstep), silence (the line from the robot
-    /// is cut), deaf (the line to the robot is cut), close. In the robot: runaway (it keeps its speed), stuck-wheel (the right
-    /// one), dead-sonar (the front ones), bumper, emergency, low-battery, plugged-in, no-pings, leap (positions leap by metres),
-    /// hang (it repeats the same state). On the ATRV-mini: filler, and no-bumpers, no-translation, no-rotation, no-status (these
-    /// reports stop). The time is that of the simulated world since the robot was switched on. A fault affects all robots.
+    /// On the line: noise (noise=40: 40 bytes before each frame), dribble (byte by byte), check (one wrong bit per
+    /// frame), lose (two frames of three), double, late (late=100 or late=100ms: each frame 100 ms late; not in
+    /// lockstep), silence (the line from the robot is cut), deaf (the line to the robot is cut), close. In the robot:
+    /// runaway (it keeps its speed), stuck-wheel (the right one), dead-sonar (the front ones), bumper, emergency,
+    /// low-battery, plugged-in, no-pings, leap (positions leap by metres), hang (it repeats the same state). On the
+    /// ATRV-mini: filler, and no-bumpers, no-translation, no-rotation, no-status (these reports stop). The time is that
+    /// of the simulated world since the robot was switched on. A fault affects all robots.
     #[arg(long, value_name = "KIND[=N]@TIME")]
     fault: Vec<At>,
 }

@@ -74,8 +74,8 @@ fn connected<T: Trial>(device: &Path, answer: u64) -> Result<Result<T::Driver, F
 /// A fault of the driver.
 type FaultOf<T> = <<T as Trial>::Driver as Robot>::Error;
 
-/// The stage of the conformance suite: the driver is at the line of the robot that is switched on now, whose sensors are
-/// exact and whose wheels do not slip.
+/// The stage of the conformance suite: the driver is at the line of the robot that is switched on now, whose sensors
+/// are exact and whose wheels do not slip.
 #[derive(Debug)]
 pub struct OnItsLine<T>(Option<Staged<Pose>>, PhantomData<T>);
 
@@ -121,8 +121,8 @@ impl<T: Trial> Stage for OnItsLine<T> {
     }
 }
 
-/// Returns how often the driver asks for memory in fifty turns, by the number that `asked` has counted so far on this thread:
-/// long enough for each sonar to ping, and for whatever does not come in each turn.
+/// Returns how often the driver asks for memory in fifty turns, by the number that `asked` has counted so far on this
+/// thread: long enough for each sonar to ping, and for whatever does not come in each turn.
 ///
 /// # Errors
 /// The robot or its driver failed.

@@ -24,7 +24,8 @@ mdle_serial::configuration! {
     stale: u64 = 500, in 0..=60_000, "ms" "that its clock may stand, 0 for ever", unverified;
     /// Maximum distance that the robot drives while its sonars report the same ranges, in metres; 0 for no limit.
     frozen: f64 = 1.0, in 0.0..=100.0, "m" "of way on which its sonars may say the same, 0 for ever";
-    /// The longest time in which the robot moves faster than commanded, or in the opposite direction, in milliseconds; 0 for no limit.
+    /// The longest time in which the robot moves faster than commanded, or in the opposite direction, in milliseconds;
+    /// 0 for no limit.
     disobey: u64 = 500, in 0..=60_000,
         "ms" "that it may move faster than commanded, or in the opposite direction, 0 for no limit", unverified;
     /// Sonars that ping, in their order.

@@ -157,7 +157,8 @@ impl Scout {
         }
     }
 
-    /// Returns `true` if the robot has stopped itself since the last command: it must not be driven off again without a word.
+    /// Returns `true` if the robot has stopped itself since the last command: it must not be driven off again without a
+    /// word.
     fn has_overslept(&self) -> bool {
         self.clock == Clock::Wall && self.commanded.is_some_and(|last| last.elapsed() >= self.watchdog())
     }

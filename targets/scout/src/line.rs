@@ -74,8 +74,8 @@ impl Line {
         Ok(self.line.write(&command.frame().bytes(), deadline)?)
     }
 
-    /// Sends `command` once. A whole answer that is wrong is an error as soon as the line is quiet, anything else at the
-    /// deadline.
+    /// Sends `command` once. A whole answer that is wrong is an error as soon as the line is quiet, anything else at
+    /// the deadline.
     fn ask_once(
         &mut self,
         command: &Command,

@@ -60,8 +60,9 @@ impl Reader {
         }
     }
 
-    /// Takes out a frame of this type that comes after bytes that may still become another one: noise that looks like the
-    /// beginning of a frame. To be asked for when nothing more comes, or a part of a true frame could be taken for one.
+    /// Takes out a frame of this type that comes after bytes that may still become another one: noise that looks like
+    /// the beginning of a frame. To be asked for when nothing more comes, or a part of a true frame could be taken for
+    /// one.
     pub fn after_false_start(&mut self, kind: u8) -> Option<Frame> {
         let found = (1..self.waiting.len()).find_map(|place| {
             let frame = Frame::read(self.waiting.get(place..)?).ok().flatten();

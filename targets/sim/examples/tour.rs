@@ -28,7 +28,7 @@ struct Breaking {
     left: Option<u64>,
 }
 
-/// What the simulator makes of its runs.
+/// Runs of the tour on the simulator.
 const SIM: Option<Observation<Observed>> = Sim::OBSERVATION;
 
 /// The runs of the simulator, each with a robot that may break down.

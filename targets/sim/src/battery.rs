@@ -4,9 +4,9 @@ use mdle_runtime::{Supply, Volts};
 
 /// A battery and what uses it. Watts, joules and volts.
 ///
-/// The documents on the robots give no figures, so these are assumed: a pair of lead-acid batteries as this size of robot
-/// carries, and the power of a computer with its sonars. The energy of a metre is that of rolling friction (a twentieth of
-/// the weight) through motors with an efficiency of three tenths.
+/// The documents on the robots give no figures, so these are assumed: a pair of lead-acid batteries as this size of
+/// robot carries, and the power of a computer with its sonars. The energy of a metre is that of rolling friction (a
+/// twentieth of the weight) through motors with an efficiency of three tenths.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Pack {
     /// Energy of the full battery, in joules.

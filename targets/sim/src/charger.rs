@@ -24,7 +24,8 @@ impl Charger {
         pose.distance(&self.pose).0 <= self.reach && off.0.abs() <= HEADING.0
     }
 
-    /// The wall, box or disc in which no robot can be on the charger: it surrounds that place, or is nearer than a body is wide.
+    /// The wall, box or disc in which no robot can be on the charger: it surrounds that place, or is nearer than a body
+    /// is wide.
     pub(crate) fn blocked(&self, world: &World, radius: f64) -> Option<String> {
         let place = Place::of(&self.pose);
         let inside = world.solid(place).map(|outline| outline.name.clone());

@@ -1,5 +1,5 @@
-//! Segments in a uniform grid: the first one a ray meets, and those near a place. All of the simulator's geometry of rays
-//! is here.
+//! Segments in a uniform grid: the first one a ray meets, and those near a place. All of the simulator's geometry of
+//! rays is here.
 //!
 //! A ray visits the cells on its way in order (Amanatides and Woo, 1987) and stops in the first cell that it does not
 //! leave before a hit. Only additions, multiplications, divisions and square roots: the same bits on every machine.
@@ -120,7 +120,8 @@ impl Grid {
         (self.starts, self.entries) = (starts, entries);
     }
 
-    /// Calls `take` with every cell that a segment touches: column by column, the rows between where it comes in and out.
+    /// Calls `take` with every cell that a segment touches: column by column, the rows between where it comes in and
+    /// out.
     fn touched(&self, segment: &Segment, mut take: impl FnMut(usize)) {
         let Segment { from, along } = *segment;
         let to = segment.to();

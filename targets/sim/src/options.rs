@@ -144,10 +144,10 @@ fn of_runs(command: Command) -> Command {
         )
 }
 
-/// What shows or writes down one run.
+/// The options that show or record a single run.
 const ONE_RUN: [&str; 4] = ["watch", "plot", "record", "trail"];
 
-/// What a run of several is not told when it is made alone.
+/// The options of several runs that are left out of the command that repeats one of them.
 const OF_SEVERAL: [&str; 5] = ["runs", "jobs", "json", "seed", "speed"];
 
 /// A long option with a value.
@@ -155,7 +155,7 @@ fn option(name: &'static str, value: &'static str) -> Arg {
     Arg::new(name).long(name).value_name(value)
 }
 
-/// How fast time passes.
+/// The speed at which time passes.
 pub(crate) fn time(matches: &ArgMatches) -> Result<Time, String> {
     let text = matches.get_one::<String>("speed").map_or("real", String::as_str);
     pace(text)
@@ -226,7 +226,7 @@ pub(crate) fn start(matches: &ArgMatches) -> Result<Option<(&str, Start)>, Strin
     Ok(Some((text, start)))
 }
 
-/// What `--body`, `--without` and `--seed` say is to be simulated.
+/// The simulated body, as `--body`, `--without` and `--seed` give it.
 pub(crate) fn make(matches: &ArgMatches) -> Result<Make, String> {
     let name = matches.get_one::<String>("body").map_or("ideal", String::as_str);
     let body = [Body::Ideal, Body::Scout, Body::Atrv].into_iter().find(|body| body.to_string() == name);
@@ -248,7 +248,7 @@ pub(crate) fn battery(matches: &ArgMatches) -> f64 {
     matches.get_one("battery").map_or(1.0, |percent: &u64| *percent as f64 / 100.0)
 }
 
-/// Whether the run is to be shown as it goes.
+/// Returns `true` if the run is shown while it goes on.
 pub(crate) fn watch(matches: &ArgMatches) -> bool {
     matches.get_flag("watch")
 }
@@ -270,7 +270,7 @@ pub(crate) fn jobs(matches: &ArgMatches) -> Option<NonZeroUsize> {
     usize::try_from(jobs).ok().and_then(NonZeroUsize::new)
 }
 
-/// Whether the other options make sense where there are several runs.
+/// Checks that the other options fit several runs.
 pub(crate) fn agree(matches: &ArgMatches) -> Result<(), String> {
     match time(matches)? {
         Time::Stepped(Pace::Times(times)) if matches.contains_id("speed") => Err(format!(

@@ -1,4 +1,5 @@
-//! The pictures of a run: of `--plot`, the floor, the way driven and where each atom began; of `--record`, one that moves.
+//! The pictures of a run: of `--plot`, the floor, the way driven and where each atom began; of `--record`, one that
+//! moves.
 
 mod colours;
 mod drawing;

@@ -20,7 +20,7 @@ pub struct Walls {
     moving: Vec<Moving>,
     /// The other robots.
     others: Vec<Disc>,
-    /// How rough all surfaces are, from 0 to 1.
+    /// Roughness of all surfaces, from 0 to 1.
     pub(crate) rough: f64,
 }
 

@@ -100,7 +100,8 @@ impl Unfinished {
 impl Drop for Unfinished {
     fn drop(&mut self) {
         if !self.is_finished {
-            // What could not be finished is not left lying about; if that fails too, the first error is the one to tell.
+            // What could not be finished is not left lying about; if that fails too, the first error is the one to
+            // tell.
             let _ = fs::remove_file(&self.file.unfinished);
         }
     }

@@ -31,7 +31,7 @@ pub struct World {
     pub goal: Option<Goal>,
     /// The charger, if the world has one.
     pub charger: Option<Charger>,
-    /// How rough its surfaces are, from 0, as smooth as the body's model has them, to 1, heard by sonars at any angle.
+    /// Roughness of the world's surfaces, from 0 (as smooth as the body's model) to 1 (heard by sonars at any angle).
     pub rough: f64,
     /// Number of the first outlines that are contours of a map: inside an odd number of them it is solid.
     pub(crate) contours: usize,

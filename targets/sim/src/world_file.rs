@@ -1,4 +1,5 @@
-//! Reading a world from TOML; afterwards every coordinate is finite, in metres, and every wall, box and disc has a size.
+//! Reading a world from TOML; afterwards every coordinate is finite, in metres, and every wall, box and disc has a
+//! size.
 //!
 //! Obstacles may overlap: together they are one. Moving things go through fixed ones, but never into the robot.
 

@@ -1,5 +1,5 @@
-//! `advance` on the simulated bodies: at the limits of their wheels, with their errors and however long a turn of the machine
-//! is, it ends at its distance, at rest, and does not go past it.
+//! `advance` on the simulated bodies: at the limits of their wheels, with their errors and however long a turn of the
+//! machine is, it ends at its distance, at rest, and does not go past it.
 #![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
 use std::time::Duration;
@@ -22,8 +22,8 @@ struct Driven {
     seconds: f64,
 }
 
-/// Runs `advance` on a body without anything around it, in turns of this many milliseconds; two seconds more in which the
-/// robot is to stand still.
+/// Runs `advance` on a body without anything around it, in turns of this many milliseconds; two seconds more in which
+/// the robot is to stand still.
 fn driven(distance: f64, speed: f64, make: &Make, period: u64) -> Driven {
     let world = World::parse("an empty floor", "").expect("a good world");
     let mut robot = Simulated::with(make, &world, Pose::ORIGIN, Duration::from_millis(period)).expect("a start");

@@ -1,5 +1,5 @@
-//! `rotate` and `turn` on the simulated bodies: at the limits of their wheels, and however long a turn of the machine is,
-//! they end at their heading and do not go past it.
+//! `rotate` and `turn` on the simulated bodies: at the limits of their wheels, and however long a turn of the machine
+//! is, they end at their heading and do not go past it.
 #![allow(clippy::expect_used, reason = "a test fails by panicking")]
 
 use std::time::Duration;

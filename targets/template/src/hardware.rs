@@ -121,8 +121,8 @@ impl Robot for Hardware {
 }
 
 impl Hardware {
-    /// Where the robot is that is imagined, from where it was opened. REPLACE: of a real one nobody knows that in here; take
-    /// it away, and have `tests/conformance.rs` find out.
+    /// Where the robot is that is imagined, from where it was opened. REPLACE: of a real one nobody knows that in here;
+    /// take it away, and have `tests/conformance.rs` find out.
     #[must_use]
     pub fn imagined(&self) -> Pose {
         self.pose

@@ -1,8 +1,8 @@
 //! Text to tree, in bytes a second.
 //!
-//! Both kinds of runs take turns, and the fastest of each counts. `used` puts each tree into an arena that has been used before,
-//! so that the parser is measured; `new` into a new one, so that the time is in it which the system takes to hand out memory.
-//! Trees are taken down outside of the measured time.
+//! Both kinds of runs take turns, and the fastest of each counts. `used` puts each tree into an arena that has been
+//! used before, so that the parser is measured; `new` into a new one, so that the time is in it which the system takes
+//! to hand out memory. Trees are taken down outside of the measured time.
 #![allow(clippy::print_stdout, reason = "this is what a benchmark is for")]
 
 use std::hint::black_box;

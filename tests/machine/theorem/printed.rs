@@ -198,7 +198,8 @@ fn large_machines_are_judged_in_time_with_their_moves() {
     const ATOMS: u32 = 30_000;
     let named = |name: String| Named { name, text: None };
     let moves = |first: u32, last: u32| (first..last).map(|from| (State(from), State(last))).collect();
-    // Everything is enclosed, and each hundred of atoms, and each atom: to look at every pair of moves would take hours.
+    // Everything is enclosed, and each hundred of atoms, and each atom: to look at every pair of moves would take
+    // hours.
     let mut interrupts = vec![(named("all".into()), moves(0, ATOMS))];
     interrupts.extend((0..ATOMS / 100).map(|part| (named(format!("w{part}")), moves(100 * part, 100 * part + 100))));
     interrupts.extend((0..ATOMS).map(|atom| (named(format!("x{atom}")), moves(atom, atom + 1))));

@@ -1,8 +1,8 @@
 //! Faults in the drivers of robots, from the list in `drivers.toml`: the conformance of the robots has to catch each
 //! fault.
 //!
-//! All are built together. An expression becomes `match __fault() { 17 => { the expression with fault 17 } _ => { it } }`,
-//! and the variable chooses one when the test starts.
+//! All are built together. An expression becomes `match __fault() { 17 => { the expression with fault 17 } _ => { it }
+//! }`, and the variable chooses one when the test starts.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

@@ -20,8 +20,8 @@ pub(super) struct ToyPlan {
 }
 
 impl ToyPlan {
-    /// `{ Lab (bumper) (Atom (atIsection 0100) go 20 0) { Turn (wait 10) (Atom (wait inf) rotate 90) (Atom (r3 < r5) stop) }
-    /// (Atom (heard "stop") null) }`, where `rotate` completes.
+    /// `{ Lab (bumper) (Atom (atIsection 0100) go 20 0) { Turn (wait 10) (Atom (wait inf) rotate 90) (Atom (r3 < r5)
+    /// stop) } (Atom (heard "stop") null) }`, where `rotate` completes.
     pub(super) fn lab() -> Self {
         Self {
             brackets: vec![

@@ -42,7 +42,8 @@ impl Incoming {
         self.bytes.len()
     }
 
-    /// The next command that is whole. One with a wrong length or check, or with a 1B in it that it does not know, is lost.
+    /// The next command that is whole. One with a wrong length or check, or with a 1B in it that it does not know, is
+    /// lost.
     pub fn next_request(&mut self) -> Option<Request> {
         loop {
             let Some(begin) = self.bytes.windows(2).position(|two| two == [0x1B, 0x02]) else {

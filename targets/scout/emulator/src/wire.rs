@@ -27,8 +27,8 @@ impl Incoming {
         self.0.len()
     }
 
-    /// The next request that is whole. What cannot be a request is skipped, a byte at a time, as a robot does that waits
-    /// for the beginning of one.
+    /// The next request that is whole. What cannot be a request is skipped, a byte at a time, as a robot does that
+    /// waits for the beginning of one.
     pub fn next_request(&mut self) -> Option<Request> {
         loop {
             let Some(begin) = self.0.iter().position(|byte| *byte == 1) else {

@@ -50,8 +50,8 @@ pub(super) fn ideal() -> Model {
 }
 
 /// A flat wall was measured to answer a Polaroid module up to 42° off its normal, something that faces it whatever the
-/// angle up to about half of that, and a thin cylinder up to less (Cao and Borenstein, 2002): both limits on an ellipse,
-/// 21² + 35² = 41². Ranges err by 3 cm at most, so by a third of that; absolutely by one part in a hundred.
+/// angle up to about half of that, and a thin cylinder up to less (Cao and Borenstein, 2002): both limits on an
+/// ellipse, 21² + 35² = 41². Ranges err by 3 cm at most, so by a third of that; absolutely by one part in a hundred.
 pub(super) fn scout() -> Model {
     let ideal = ideal();
     Model {

@@ -67,7 +67,8 @@ const DARK: Palette = Palette {
     ],
 };
 
-/// The class of a line, `way`, of the inside of a disc, `disc`, or of the number on it, `on`, in the colour of this atom.
+/// The class of a line, `way`, of the inside of a disc, `disc`, or of the number on it, `on`, in the colour of this
+/// atom.
 pub(super) fn class(kind: &str, atom: usize) -> String {
     format!("{kind}{}", atom % COUNT)
 }

@@ -18,8 +18,8 @@ const APART: f64 = 3.0;
 /// A rectangle: from left to right, and from top to bottom.
 pub(super) type Room = ((f64, f64), (f64, f64));
 
-/// Returns a label for each of the `dots`, in order, inside `room` and clear of all dots and of the labels before it; where
-/// that can be, also of the `lines`, given by places no farther apart than a label is wide.
+/// Returns a label for each of the `dots`, in order, inside `room` and clear of all dots and of the labels before it;
+/// where that can be, also of the `lines`, given by places no farther apart than a label is wide.
 pub(super) fn placed(dots: &[Pixel], lines: &[Pixel], ((left, right), (top, bottom)): Room) -> Vec<Pixel> {
     let mut labels: Vec<Pixel> = Vec::with_capacity(dots.len());
     for dot in dots {

@@ -1,7 +1,7 @@
 //! The picture that moves: the way is drawn as it was driven, the robot drives it, and the running atom is named.
 //!
-//! Everything repeats together, after a moment of rest. A viewer that moves nothing shows the end of the run; one that runs
-//! scripts also shows the time, and has a button to pause and a strip to seek.
+//! Everything repeats together, after a moment of rest. A viewer that moves nothing shows the end of the run; one that
+//! runs scripts also shows the time, and has a button to pause and a strip to seek.
 
 use mdle_runtime::{Pose, Radians};
 use svg::node::element::{Group, Path, Rectangle, Script};

@@ -104,7 +104,7 @@ fn a_flat_wall_answers_up_to_forty_degrees_or_so() {
     assert!((45..=49).contains(&last_heard(1.0, &[Part::Lobe])), "{}", last_heard(1.0, &[Part::Lobe]));
 }
 
-/// How far off its normal, in degrees, a wall of this roughness 1 m ahead is last heard.
+/// Returns the largest angle to its normal, in degrees, at which a wall of this roughness 1 m ahead is heard.
 fn last_heard_rough(rough: f64) -> u32 {
     let heard = |degrees: &u32| {
         let wall = turned(1.0, f64::from(*degrees));

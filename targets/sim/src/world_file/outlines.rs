@@ -216,7 +216,7 @@ impl Unit {
     }
 }
 
-/// How rough all surfaces of a file are.
+/// Roughness of all surfaces of a file.
 pub(super) fn rough(written: &Spanned<f64>) -> Result<f64, Wrong> {
     let value = *written.get_ref();
     if (0.0..=1.0).contains(&value) {

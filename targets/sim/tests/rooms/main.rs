@@ -1,4 +1,5 @@
-//! `goAvoid` in random rooms, out of corners and through a narrow doorway, with and without all that goes wrong on robots.
+//! `goAvoid` in random rooms, out of corners and through a narrow doorway, with and without all that goes wrong on
+//! robots.
 #![allow(clippy::expect_used, clippy::print_stdout, reason = "a test fails by panicking, and tells what happened")]
 
 mod room;

@@ -19,8 +19,8 @@ pub(crate) struct Terminal {
     pub(crate) seen: String,
 }
 
-/// Gives SIGHUP its default effect in the programs that this one starts, also under `nohup`, which has it ignored by all of them:
-/// a signal that is caught has it again in another program.
+/// Gives SIGHUP its default effect in the programs that this one starts, also under `nohup`, which has it ignored by
+/// all of them: a signal that is caught has it again in another program.
 fn catch_hang_up() {
     static CAUGHT: Once = Once::new();
     CAUGHT.call_once(|| {

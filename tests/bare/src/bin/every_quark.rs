@@ -4,7 +4,7 @@
 
 use core::ffi::c_int;
 
-/// What mdlec emits: `tests/emitted/bare.rs` has it written where `PLANS` says.
+/// The emitted plan, which `tests/emitted/bare.rs` writes to the folder `PLANS`.
 mod plan {
     include!(concat!(env!("PLANS"), "/every_quark.rs"));
 }

@@ -1,4 +1,5 @@
-//! The driver and the robot on a real pseudo-terminal: signs, units and directions, and what either of them says of a fault.
+//! The driver and the robot on a real pseudo-terminal: signs, units and directions, and what either of them says of a
+//! fault.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 mod room;
