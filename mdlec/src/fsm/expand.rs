@@ -16,6 +16,15 @@ const TEXT: u64 = 1 << 26;
 /// E0501 for a plan that cannot be lowered, E0502 for one of more than 100,000 states, or of too many conditions in all
 /// of them.
 pub fn expand(plan: &Nondegenerate) -> Result<Nondegenerate, Diagnostic> {
+    fits(plan)?;
+    Ok(plan.map(expand_scope))
+}
+
+/// Checks that the expanded form of a plan is within the limits of states, conditions and texts.
+///
+/// # Errors
+/// E0501 and E0502, as [`expand`] has them.
+pub(super) fn fits(plan: &Nondegenerate) -> Result<(), Diagnostic> {
     expanded_states(plan)?;
     let parts = Count {
         unit: "parts of conditions",
@@ -35,7 +44,7 @@ pub fn expand(plan: &Nondegenerate) -> Result<Nondegenerate, Diagnostic> {
             return Err(too_large(&expanded, &count, limit, plan));
         }
     }
-    Ok(plan.map(expand_scope))
+    Ok(())
 }
 
 /// The number of states of a plan with its finite loops written out, the termination state included.

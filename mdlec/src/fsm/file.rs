@@ -3,6 +3,7 @@
 
 use serde::Serialize;
 
+use super::expand::fits;
 use super::{Transition, matrices};
 use crate::diagnostic::Diagnostic;
 use crate::plan::{Condition, Nondegenerate};
@@ -70,6 +71,8 @@ pub struct ScopeEntry {
 /// # Errors
 /// E0501 and E0502, as [`expand`](super::expand) has them.
 pub fn fsm_file(plan: &Nondegenerate) -> Result<FsmFile, Diagnostic> {
+    // The file repeats the text of a condition for each state that it is copied to.
+    fits(plan)?;
     let matrices = matrices(plan)?;
     let plan = plan.plan();
     let state = |number: usize| if number == matrices.laws.len() { "end".into() } else { format!("a{}", number + 1) };
