@@ -20,6 +20,7 @@ use mdle_tests::xml::{Element, read};
 use mdlec::Compiled;
 use mdlec::fsm::{Machine, expand, lower};
 use mdlec::picture::{dot, mermaid, svg};
+use mdlec::plan::Condition;
 use mdlec::trace::{Line, Script, Table, run};
 
 /// Number of random plans.
@@ -83,9 +84,9 @@ fn assert_well_drawn(lowered: &Machine, picture: &Element) {
             let right = x + text.text.chars().count() as i64 * 73 / 10;
             assert!(right <= here[2], "{:?} is too long for its box", text.text);
         }
-        if let Some(interrupt) = element.interrupt().filter(|interrupt| interrupt.text != "null") {
+        if let Some(interrupt) = element.interrupt().filter(|interrupt| interrupt.condition != Condition::Null) {
             let title = &group.children[0].text;
-            let is_told = title.contains(&interrupt.text) || interrupt.text == "wait inf" || title.contains("done");
+            let is_told = title.contains(&interrupt.text) || title.contains("done");
             assert!(is_told, "{title:?} does not tell {}", interrupt.text);
         }
     }
