@@ -5,7 +5,8 @@ use std::time::Duration;
 
 use clap::{Arg, ArgMatches, Command, value_parser};
 
-use crate::{Program, Quantity, Target, paths, required};
+use crate::executable::TargetOptions;
+use crate::{Program, Quantity, paths, required};
 
 /// The shortest period: a turn must leave time for the exchange.
 const PERIOD_LEAST: Duration = Duration::from_micros(100);
@@ -44,13 +45,13 @@ pub(crate) struct Options {
     pub(crate) path: Option<PathBuf>,
 }
 
-/// Returns the command line of the executable of plan `name` for target `T`. The usage line names the executable's
+/// Returns the command line of an executable for this target. The usage line names the executable's
 /// file, or the plan if the file name is unknown.
-pub(crate) fn command<T: Target>(program: Program<'_>) -> Command {
-    let seconds = T::PERIOD.as_secs_f64();
+pub(crate) fn command(target: &TargetOptions, program: Program<'_>) -> Command {
+    let seconds = target.period.as_secs_f64();
     let name = program.plan;
     let command = Command::new(name.to_owned())
-        .about(format!("Run the plan {name} on the robot {}", T::NAME))
+        .about(format!("Run the plan {name} on the robot {}", target.name))
         .arg(
             option("period", "TIME")
                 .help(format!("Period of the control loop, in seconds or as in `50ms` [default: {seconds}]"))
@@ -82,7 +83,7 @@ pub(crate) fn command<T: Target>(program: Program<'_>) -> Command {
         );
     let command = required::argument(command);
     let command = if program.version.is_empty() { command } else { command.version(program.version.to_owned()) };
-    with_statuses(T::arguments(if T::PATHS.is_some() { paths::arguments(command) } else { command }))
+    with_statuses((target.arguments)(if target.fastest.is_some() { paths::arguments(command) } else { command }))
 }
 
 /// Adds the exit statuses to the help of a command whose options are all there.
@@ -96,13 +97,13 @@ fn with_statuses(command: Command) -> Command {
 }
 
 /// Reads the common options.
-pub(crate) fn options<T: Target>(matches: &ArgMatches) -> Options {
+pub(crate) fn options(target: &TargetOptions, matches: &ArgMatches) -> Options {
     Options {
-        period: matches.get_one("period").copied().unwrap_or(T::PERIOD),
+        period: matches.get_one("period").copied().unwrap_or(target.period),
         timeout: matches.get_one("timeout").copied(),
         turns: matches.get_one("turns").copied(),
         log: matches.get_one("log").cloned(),
-        path: paths::recording::<T>(matches),
+        path: paths::recording(target, matches),
     }
 }
 

@@ -12,11 +12,11 @@ use std::sync::mpsc::{Sender, channel};
 use std::thread;
 use std::time::Duration;
 
-use mdle_runtime::{Nanos, Plan, PrintableLines, Robot};
+use mdle_runtime::{Nanos, PrintableLines};
 
 use crate::clock::{Clock, Instants};
+use crate::drive::Drive;
 use crate::ending::Ending;
-use crate::observer::{Followed, Observes};
 use crate::progress::Progress;
 use crate::report::{Over, Report};
 use crate::required::Required;
@@ -49,6 +49,28 @@ impl<R> fmt::Debug for Batch<R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { first, runs, jobs, json, .. } = self;
         write!(f, "Batch {{ first: {first}, runs: {runs}, jobs: {jobs}, json: {json} }}")
+    }
+}
+
+/// The runs of a [`Batch`], without the type of its robots.
+pub(crate) struct Runs<'p> {
+    first: u64,
+    runs: NonZeroU64,
+    jobs: NonZeroUsize,
+    json: bool,
+    /// Makes the robot of a seed, with the plan that drives it, or returns why that failed.
+    drive: Box<dyn Fn(u64) -> Prepared<'p> + Send + Sync + 'p>,
+    alone: Box<dyn Fn(u64) -> Vec<String> + Send + Sync>,
+}
+
+/// A robot with its plan, before the first exchange, or why there is none.
+type Prepared<'p> = Result<Box<dyn Drive + 'p>, String>;
+
+impl<'p> Runs<'p> {
+    /// Returns the runs of `batch`, in which the plan of `drive` drives each robot.
+    pub(crate) fn of<R: 'p>(batch: Batch<R>, drive: impl Fn(R) -> Box<dyn Drive + 'p> + Send + Sync + 'p) -> Self {
+        let Batch { first, runs, jobs, json, robot, alone } = batch;
+        Self { first, runs, jobs, json, drive: Box::new(move |seed| robot(seed).map(&drive)), alone }
     }
 }
 
@@ -102,17 +124,12 @@ impl Terms<'_> {
 }
 
 /// Makes the runs and reports them; returns the exit status, and the error if `out` could not be written.
-pub(crate) fn run<R: Robot, P>(
-    batch: &Batch<R>,
-    plan: &(impl Fn() -> P + Sync),
-    observer: Observes<R>,
+pub(crate) fn run(
+    batch: &Runs<'_>,
     terms: &Terms<'_>,
     out: &mut dyn Write,
     mut progress: Option<Progress<'_>>,
-) -> (u8, Option<std::io::Error>)
-where
-    P: Plan<Output = R::Output, Input = R::Input>,
-{
+) -> (u8, Option<std::io::Error>) {
     let mut runs = Vec::new();
     let next = AtomicU64::new(0);
     thread::scope(|scope| {
@@ -120,7 +137,7 @@ where
         let jobs = batch.jobs.get().min(usize::try_from(batch.runs.get()).unwrap_or(usize::MAX));
         for _ in 0..jobs {
             let sender = sender.clone();
-            scope.spawn(|| work(batch, plan, observer, terms, &next, sender));
+            scope.spawn(|| work(batch, terms, &next, sender));
         }
         drop(sender);
         for run in done {
@@ -150,16 +167,7 @@ where
 }
 
 /// Makes runs as long as there are some to be made, and no signal comes.
-fn work<R: Robot, P>(
-    batch: &Batch<R>,
-    plan: &(impl Fn() -> P + Sync),
-    observer: Observes<R>,
-    terms: &Terms<'_>,
-    next: &AtomicU64,
-    done: Sender<Done>,
-) where
-    P: Plan<Output = R::Output, Input = R::Input>,
-{
+fn work(batch: &Runs<'_>, terms: &Terms<'_>, next: &AtomicU64, done: Sender<Done>) {
     loop {
         let number = next.fetch_add(1, Ordering::Relaxed);
         if number >= batch.runs.get() || terms.signals.caught().is_some() {
@@ -167,25 +175,16 @@ fn work<R: Robot, P>(
         }
         let seed = batch.first.wrapping_add(number);
         // The batch listens until all threads have ended.
-        let Some(run) = one(batch, seed, plan, observer, terms) else { return };
+        let Some(run) = one(batch, seed, terms) else { return };
         let _ = done.send(run);
     }
 }
 
 /// Makes the run of a seed; `None` if a signal cut it short.
-fn one<R: Robot, P>(
-    batch: &Batch<R>,
-    seed: u64,
-    plan: &impl Fn() -> P,
-    observer: Observes<R>,
-    terms: &Terms<'_>,
-) -> Option<Done>
-where
-    P: Plan<Output = R::Output, Input = R::Input>,
-{
+fn one(batch: &Runs<'_>, seed: u64, terms: &Terms<'_>) -> Option<Done> {
     let mut run = Done { seed, outcome: Outcome::Ended, t: Nanos::ZERO, over: None, contacts: 0 };
-    let mut robot = match shielded(|| (batch.robot)(seed)).unwrap_or_else(panicked) {
-        Ok(robot) => Followed::new(robot, observer),
+    let mut drive = match shielded(|| (batch.drive)(seed)).unwrap_or_else(panicked) {
+        Ok(drive) => drive,
         Err(sentence) => return Some(Done { outcome: Outcome::Failed(sentence), ..run }),
     };
     let mut clock = Clock::begin(Standing, Time::Stepped(Pace::Max), terms.period, None);
@@ -195,16 +194,16 @@ where
     let ending = shielded(|| {
         let mut report = Report::new(&mut nobody, false);
         let mut witnesses = Witnesses { report: &mut report, log: None, path: None, progress: None, err: None };
-        let ending = turns::run(&mut robot, plan(), limits, &mut clock, terms.signals, &mut witnesses);
+        let ending = turns::run(&mut *drive, limits, &mut clock, terms.signals, &mut witnesses);
         over = witnesses.report.over().cloned();
         ending
     });
     run.t = clock.taken();
     let stopped = shielded(|| {
         if ending.as_ref().is_ok_and(Ending::robot_listens) {
-            let _ = robot.robot.exchange(&R::Input::default());
+            let _ = drive.release();
         }
-        robot.robot.stop().map_err(|fault| fault.to_string())
+        drive.stop()
     });
     let failure = stopped.unwrap_or_else(panicked).err();
     run.outcome = match ending {
@@ -222,7 +221,7 @@ where
         Ok(Ending::Timeout(_) | Ending::Turns(_)) => Outcome::TimedOut,
         Ok(Ending::Over | Ending::Otherwise(_)) => {
             run.over = over;
-            match shielded(|| Ok(robot.observer().and_then(|observer| observer.judged()))).unwrap_or_else(panicked) {
+            match shielded(|| Ok(drive.observer().and_then(|observer| observer.judged()))).unwrap_or_else(panicked) {
                 Err(panic) => Outcome::Failed(panic),
                 Ok(_) if run.over.as_ref().is_some_and(|over| !terms.required.allows(over)) => Outcome::Otherwise,
                 Ok(None) => Outcome::Ended,
@@ -232,7 +231,7 @@ where
             }
         }
     };
-    run.contacts = robot.observer().map_or(0, |observer| observer.contacts());
+    run.contacts = drive.observer().map_or(0, |observer| observer.contacts());
     Some(run)
 }
 

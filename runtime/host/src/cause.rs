@@ -5,8 +5,9 @@ use std::fmt::{self, Write as _};
 
 use mdle_runtime::fsm::Kind;
 use mdle_runtime::trace::COMPLETED;
-use mdle_runtime::{Cause, Measured, OperandWords, Operator, Plan, SourceLine, Transition, ValueWords};
+use mdle_runtime::{Cause, Measured, OperandWords, Operator, SourceLine, Transition, ValueWords};
 
+use crate::drive::Texts;
 use crate::passes::{Passes, outwards};
 use crate::report::rounded;
 use crate::transitions::Operand;
@@ -17,13 +18,13 @@ const DECIMALS: usize = 2;
 const DECIMALS_MOST: usize = 9;
 
 /// Why a scope ended, as a report has it: `r1 = 0.38 m < 40cm (wall.mdle:7)`.
-pub(crate) struct CauseText<'a, P> {
-    pub(crate) plan: &'a P,
+pub(crate) struct CauseText<'a> {
+    pub(crate) plan: &'a dyn Texts,
     pub(crate) transition: &'a Transition,
     pub(crate) operands: &'a [Operand],
 }
 
-impl<P: Plan> fmt::Display for CauseText<'_, P> {
+impl fmt::Display for CauseText<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { plan, transition, operands } = *self;
         let Transition { scope, cause, .. } = *transition;
@@ -31,7 +32,7 @@ impl<P: Plan> fmt::Display for CauseText<'_, P> {
         let Some(bracket) = source.brackets.get(scope as usize) else {
             // A plan that was written in Rust has no text.
             let name = plan.name(scope);
-            let by = transition.by(plan);
+            let by = cause.by(plan.condition(scope));
             return if name.is_empty() { f.write_str(by) } else { write!(f, "{by} ({name})") };
         };
         if matches!(cause, Cause::Completed(_)) {
@@ -59,7 +60,7 @@ impl<P: Plan> fmt::Display for CauseText<'_, P> {
 }
 
 /// Returns the place of an atom in a report: its line, the names of its enclosing scopes and the passes of loops.
-pub(crate) fn place<P: Plan>(plan: &P, passes: &Passes, atom: u32) -> String {
+pub(crate) fn place(plan: &dyn Texts, passes: &Passes, atom: u32) -> String {
     let (fsm, source) = (plan.fsm(), plan.source());
     let Some(own) = fsm.atoms.get(atom as usize).map(|atom| atom.scope) else { return String::new() };
     let around = outwards(fsm, own).filter_map(|(number, bracket)| match bracket.kind {

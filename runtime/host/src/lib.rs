@@ -12,7 +12,9 @@ mod arguments;
 mod batch;
 mod cause;
 mod clock;
+mod drive;
 mod ending;
+mod executable;
 mod files;
 mod held;
 mod log;
@@ -53,6 +55,7 @@ use std::process::ExitCode;
 
 pub use batch::Batch;
 pub use clap;
+use executable::{Executable, PlanOnTarget};
 pub use files::{read_file, read_text};
 use mdle_runtime::{Plan, Robot};
 pub use named_file::NamedFile;
@@ -79,8 +82,13 @@ pub fn run<'a, T: Target, P>(program: impl Into<Program<'a>>, plan: impl Fn() ->
 where
     P: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>,
 {
+    execute(program.into(), &PlanOnTarget::<T, P>::new(&plan))
+}
+
+/// Runs an executable with the arguments of this process.
+fn execute(program: Program<'_>, executable: &dyn Executable) -> ExitCode {
     let signals = signals::Signals::listen();
-    let leave_screen = T::OBSERVATION.map_or::<fn(), _>(|| {}, |observation| observation.leave_screen);
+    let leave_screen = executable.target().leave_screen;
     let signals = signals.and_then(|signals| second_signal::watch(&signals, leave_screen).map(|()| signals));
     let signals = match signals {
         Ok(signals) => signals,
@@ -102,7 +110,7 @@ where
     let seen = io::stderr().is_terminal().then(|| Box::new(move || begun.elapsed()) as Box<dyn FnMut() -> _>);
     let (out, mut err) = (|| Box::new(out) as Box<dyn Write>, err);
     let surroundings = session::Surroundings { instants: clock::SinceBoot, signals, out, err: &mut err, seen };
-    ExitCode::from(session::session::<T, P, _, _>(program.into(), std::env::args_os(), &plan, surroundings))
+    ExitCode::from(session::session(program, std::env::args_os(), executable, surroundings))
 }
 
 /// Returns standard output and standard error, each with a thread that writes to it. The library's own buffer of

@@ -4,9 +4,10 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::Path;
 
-use mdle_runtime::trace::Line;
-use mdle_runtime::{Frame, Nanos, Plan};
+use mdle_runtime::trace::{Fired, Line};
+use mdle_runtime::{Frame, Nanos};
 
+use crate::drive::Texts;
 use crate::outlet::{Keeps, Outlet};
 use crate::patience::Patience;
 use crate::transitions::{Operand, Transitions};
@@ -20,9 +21,9 @@ pub(crate) struct Log {
 }
 
 /// Entry of a log: one turn.
-pub(crate) struct Entry<'a, P> {
+pub(crate) struct Entry<'a> {
     /// The plan, for its texts.
-    pub(crate) plan: &'a P,
+    pub(crate) plan: &'a dyn Texts,
     /// The number of the turn, from 0.
     pub(crate) turn: u64,
     /// Time of the turn.
@@ -102,14 +103,19 @@ impl Log {
     ///
     /// # Errors
     /// When the file cannot be written, such as when the disk is full.
-    pub(crate) fn turn<P: Plan>(&mut self, entry: &Entry<'_, P>) -> io::Result<()> {
+    pub(crate) fn turn(&mut self, entry: &Entry<'_>) -> io::Result<()> {
         let Entry { plan, turn, t, state, applied, frame, transitions } = *entry;
         let law = applied.map(|atom| plan.law(atom));
         let source = plan.source();
         let fired = transitions.iter().map(|(transition, operands)| {
             let texts = source.operands_of(transition.scope);
             let text = |(number, _): &Operand| texts.get(*number as usize).map(|words| words.text);
-            transition.fired(plan, operands.iter().filter_map(text))
+            Fired {
+                from: transition.from,
+                level: usize::from(transition.cause.level()),
+                by: transition.cause.by(plan.condition(transition.scope)),
+                operands: operands.iter().filter_map(text),
+            }
         });
         writeln!(self.file, "{}", Line { turn, t, state, law, frame, fired })?;
         if self.prompt { self.flush() } else { Ok(()) }

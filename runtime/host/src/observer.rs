@@ -77,24 +77,8 @@ impl<R> fmt::Debug for Observation<R> {
     }
 }
 
-/// A robot with the observer of its run, if it has one.
-pub(crate) struct Followed<R> {
-    pub(crate) robot: R,
-    observer: Observes<R>,
-}
-
 /// Returns the observer of a robot.
 pub(crate) type Observes<R> = Option<fn(&mut R) -> &mut dyn Observer>;
-
-impl<R> Followed<R> {
-    pub(crate) fn new(robot: R, observer: Observes<R>) -> Self {
-        Self { robot, observer }
-    }
-
-    pub(crate) fn observer(&mut self) -> Option<&mut dyn Observer> {
-        self.observer.map(|observer| observer(&mut self.robot))
-    }
-}
 
 /// The place in a plan after a turn that did not end it.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -6,7 +6,7 @@ mod tests;
 mod text;
 
 use std::collections::BTreeMap;
-use std::io::{self, ErrorKind};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use clap::{Arg, ArgMatches, Command, value_parser};
@@ -15,12 +15,11 @@ use mdle_runtime::{MetersPerSecond, PathStore, Robot, Setpoint, StoredPath, Twis
 pub(crate) use record::Recorder;
 use text::{APART, Wrong};
 
+use crate::Refusal;
 use crate::arguments::Options;
+use crate::executable::TargetOptions;
 use crate::files::read_file;
-use crate::log::Untouched;
 use crate::output_format::output_format;
-use crate::patience::Patience;
-use crate::{Batch, Refusal, Target};
 
 /// The largest file that is read, in bytes: at ten rows a second some eleven hours.
 const LARGEST: u64 = 10_000_000;
@@ -52,8 +51,8 @@ pub(crate) fn arguments(command: Command) -> Command {
 }
 
 /// The file of `--record-path`.
-pub(crate) fn recording<T: Target>(matches: &ArgMatches) -> Option<PathBuf> {
-    T::PATHS.and_then(|_| matches.get_one("record-path").cloned())
+pub(crate) fn recording(target: &TargetOptions, matches: &ArgMatches) -> Option<PathBuf> {
+    target.fastest.and_then(|_| matches.get_one("record-path").cloned())
 }
 
 /// Checks that turns are short enough for a path to be recorded.
@@ -69,30 +68,18 @@ pub(crate) fn check_period(options: &Options) -> Result<(), Refusal> {
     Err(Refusal::Usage(format!("{sentence}; choose a shorter --period")))
 }
 
-/// Begins to record the path that a robot drives; `None` if the target does not provide [`Target::PATHS`].
-///
-/// # Errors
-/// The file's earlier content cannot be cut off.
-pub(crate) fn recorder<T: Target>(
-    file: Untouched<'_>,
-    patience: &Patience,
-) -> io::Result<Option<Recorder<<T::Robot as Robot>::Output>>> {
-    let Some(Replays { speed, .. }) = T::PATHS else { return Ok(None) };
-    Ok(Some(Recorder::new(file.emptied(patience)?, speed)))
-}
-
 /// Reads the paths that a plan replays.
 ///
 /// # Errors
 /// A file is missing, holds no path, or its path is too fast for the robot: in which file, where and why.
-pub(crate) fn load<T: Target>(matches: &ArgMatches, names: &[&'static str]) -> Result<PathStore, Refusal> {
+pub(crate) fn load(target: &TargetOptions, matches: &ArgMatches, names: &[&'static str]) -> Result<PathStore, Refusal> {
     if names.is_empty() {
         return Ok(PathStore::EMPTY);
     }
-    let Some(Replays { fastest, .. }) = T::PATHS else {
+    let Some(fastest) = target.fastest else {
         return Err(Refusal::Usage(format!(
             "the plan replays paths, and the crate of the robot {} does not say how: it needs `Target::PATHS`",
-            T::NAME
+            target.name
         )));
     };
     let folder = matches.get_one::<PathBuf>("paths").map(PathBuf::as_path);
@@ -110,25 +97,6 @@ pub(crate) fn files(matches: &ArgMatches, names: &[&'static str]) -> impl Iterat
     // A robot that replays none has no such option.
     let folder = if names.is_empty() { None } else { matches.get_one::<PathBuf>("paths").cloned() };
     names.iter().map(move |name| place(folder.as_deref(), name))
-}
-
-/// Hands a robot its paths.
-pub(crate) fn hand_over<T: Target>(robot: &mut T::Robot, store: PathStore) {
-    if let Some(Replays { take, .. }) = T::PATHS {
-        take(robot, store);
-    }
-}
-
-/// Returns the batch with robots that have these paths.
-pub(crate) fn in_batch<T: Target>(batch: Batch<T::Robot>, store: PathStore) -> Batch<T::Robot> {
-    let Some(Replays { take, .. }) = T::PATHS else { return batch };
-    let make = batch.robot;
-    let robot = move |seed| {
-        let mut robot = make(seed)?;
-        take(&mut robot, store);
-        Ok(robot)
-    };
-    Batch { robot: Box::new(robot), ..batch }
 }
 
 /// The file of the path that a plan calls `name`: a name without an ending is that of a CSV file.

@@ -5,10 +5,11 @@ use std::fmt;
 use std::io::{self, Write};
 
 use mdle_runtime::trace::COMPLETED;
-use mdle_runtime::{Cause, Measured, Nanos, Plan, Printable, Transition};
+use mdle_runtime::{Cause, Measured, Nanos, Printable, Transition};
 
 use crate::Judgement;
 use crate::cause::{CauseText, place};
+use crate::drive::Texts;
 use crate::passes::Passes;
 use crate::transitions::{Operand, Transitions};
 
@@ -72,7 +73,7 @@ impl<'a> Report<'a> {
     }
 
     /// Reports the transitions of the turn at time `t`.
-    pub(crate) fn turn<P: Plan>(&mut self, plan: &P, t: Nanos, transitions: &Transitions) {
+    pub(crate) fn turn(&mut self, plan: &dyn Texts, t: Nanos, transitions: &Transitions) {
         for (transition, operands) in transitions.iter() {
             self.passes.step(plan.fsm(), transition);
             let cause = Printable(CauseText { plan, transition, operands }).to_string();
@@ -138,7 +139,7 @@ impl<'a> Report<'a> {
 
 impl Over {
     /// Returns the end of `plan` by this transition.
-    fn of<P: Plan>(plan: &P, transition: &Transition, operands: &[Operand], cause: String) -> Self {
+    fn of(plan: &dyn Texts, transition: &Transition, operands: &[Operand], cause: String) -> Self {
         let source = plan.source();
         let texts = source.operands_of(transition.scope);
         let unmeasured: Vec<Operand> = operands.iter().map(|(number, _)| (*number, Measured::Nothing)).collect();
@@ -149,7 +150,7 @@ impl Over {
             cause,
             words,
             by: match transition.cause {
-                Cause::Fired(_) => transition.by(plan).to_owned(),
+                Cause::Fired(_) => plan.condition(transition.scope).to_owned(),
                 Cause::Completed(_) => COMPLETED.to_owned(),
             },
             operands: operands.map(|words| words.text.to_owned()).collect(),

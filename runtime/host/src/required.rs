@@ -1,10 +1,11 @@
 //! `--require`: the causes by which a plan must end.
 
 use clap::{Arg, ArgAction, ArgMatches, Command};
+use mdle_runtime::Fsm;
 use mdle_runtime::fsm::Kind;
 use mdle_runtime::trace::COMPLETED;
-use mdle_runtime::{Fsm, Plan};
 
+use crate::drive::Texts;
 use crate::operand_text::{is_condition, is_operand};
 use crate::passes::outwards;
 use crate::report::Over;
@@ -52,7 +53,7 @@ impl Required {
     ///
     /// # Errors
     /// The plan cannot end by a cause: a sentence with what to type instead.
-    pub(crate) fn of<P: Plan>(matches: &ArgMatches, plan: &P) -> Result<Self, String> {
+    pub(crate) fn of(matches: &ArgMatches, plan: &dyn Texts) -> Result<Self, String> {
         let texts: Vec<String> = matches.get_many("require").into_iter().flatten().cloned().collect();
         let mut causes = Vec::new();
         for text in &texts {
@@ -84,7 +85,7 @@ impl Required {
 }
 
 /// The causes that are called `text`, by the scopes that `may` choose.
-fn endings<P: Plan>(plan: &P, text: &str, may: impl Fn(u32) -> bool) -> impl Iterator<Item = Cause> {
+fn endings(plan: &dyn Texts, text: &str, may: impl Fn(u32) -> bool) -> impl Iterator<Item = Cause> {
     let completed = (text == COMPLETED).then_some(Cause::Completed);
     let scopes = scopes(plan.fsm()).filter(|scope| may(*scope)).flat_map(|scope| {
         let named = (!text.is_empty() && plan.name(scope) == text).then_some(Cause::Scope(scope));
@@ -120,7 +121,7 @@ fn ends_plan(fsm: Fsm<'_>, scope: u32) -> bool {
 }
 
 /// Returns the message that the plan cannot end by this cause, and by which causes it can.
-fn refused<P: Plan>(plan: &P, text: &str) -> String {
+fn refused(plan: &dyn Texts, text: &str) -> String {
     let source = plan.source();
     let mut known: Vec<String> = Vec::new();
     for scope in scopes(plan.fsm()).filter(|scope| ends_plan(plan.fsm(), *scope)) {

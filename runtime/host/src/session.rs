@@ -6,15 +6,16 @@ use std::path::Path;
 use std::time::Duration;
 
 use clap::ArgMatches;
-use mdle_runtime::{PathStore, Plan, PrintableLines, Robot};
+use mdle_runtime::{PathStore, PrintableLines};
 
 use crate::arguments::{self, Options};
-use crate::batch::{self, Batch, Terms};
+use crate::batch::{self, Runs, Terms};
 use crate::clock::{Clock, Instants};
+use crate::drive::Drive;
 use crate::ending::{self, Ending, Fault, say};
+use crate::executable::{Executable, TargetOptions};
 use crate::held::Held;
 use crate::log::{Log, Untouched};
-use crate::observer::{Followed, Observes};
 use crate::paths::{self, Recorder};
 use crate::progress::Progress;
 use crate::report::Report;
@@ -22,7 +23,7 @@ use crate::required::Required;
 use crate::safety::{Panicked, shielded};
 use crate::signals::Signals;
 use crate::turns::{self, Limits, Witnesses};
-use crate::{NamedFile, Observation, Pace, Program, Refusal, SeveralRuns, Target, Time, named_file, way_out};
+use crate::{NamedFile, Pace, Program, Refusal, Time, named_file, way_out};
 
 /// Environment of a run: time, signals and output; a test provides its own.
 pub(crate) struct Surroundings<'e, I, O> {
@@ -38,37 +39,36 @@ pub(crate) struct Surroundings<'e, I, O> {
     pub(crate) seen: Option<Box<dyn FnMut() -> Duration + 'e>>,
 }
 
-/// Runs the plans that `plan` makes on the robot of target `T` with these arguments, the program's own name first;
-/// returns the exit status.
-pub(crate) fn session<'o, T: Target, P, I, O>(
+/// Runs an executable with these arguments, the program's own name first; returns the exit status.
+pub(crate) fn session<'o, I, O>(
     program: Program<'_>,
     arguments: impl IntoIterator<Item = OsString>,
-    plan: &(impl Fn() -> P + Sync),
+    executable: &dyn Executable,
     surroundings: Surroundings<'_, I, O>,
 ) -> u8
 where
-    P: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>,
     I: Instants,
     O: FnOnce() -> Box<dyn Write + 'o>,
 {
     let Surroundings { mut instants, signals, out, err, seen } = surroundings;
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    let matches = match arguments::command::<T>(program).try_get_matches_from(&arguments) {
+    let target = executable.target();
+    let matches = match arguments::command(&target, program).try_get_matches_from(&arguments) {
         Ok(matches) => matches,
         Err(error) => return unparsed(&error, out, err),
     };
-    let options = arguments::options::<T>(&matches);
+    let options = arguments::options(&target, &matches);
     let limits = Limits { timeout: options.timeout, turns: options.turns };
-    match shielded(|| T::answer(&matches)).unwrap_or_else(bug_before) {
+    match shielded(|| (target.answer)(&matches)).unwrap_or_else(bug_before) {
         Err(refusal) => return refusal.tell(err),
         Ok(Some(answer)) => return answered(&answer, &mut *out()),
         Ok(None) => {}
     }
-    let Prepared { store, paths, required } = match prepared::<T, P>(&matches, plan) {
+    let Prepared { store, paths, required } = match prepared(&target, &matches, executable) {
         Err(refusal) => return refusal.tell(err),
         Ok(prepared) => prepared,
     };
-    match batch::<T>(&matches, &options, store) {
+    match batch(executable, &matches, &options, store) {
         Err(refusal) => return refusal.tell(err),
         Ok(Some(batch)) => {
             // Nothing has to be stopped.
@@ -77,11 +77,12 @@ where
             let program = arguments.first().map_or_else(|| program.plan.into(), |called| called.to_string_lossy());
             let terms =
                 Terms { period: options.period, limits, signals: &signals, program: &program, required: &required };
-            return several(&batch, plan, observer::<T>(), &terms, &mut *out(), err, seen);
+            return several(&batch, &terms, &mut *out(), err, seen);
         }
         Ok(None) => {}
     }
-    let Ready { robot, time, mut log, mut path } = match ready::<T>(&matches, &options, store, &paths, &signals) {
+    let ready = ready(executable, &matches, &options, store, &paths, &signals);
+    let Ready { mut drive, time, mut log, mut path } = match ready {
         Ok(ready) => ready,
         Err(Refusal::Ended(stopped)) => return ended_at_the_start(&signals, stopped, err),
         Err(refusal) => {
@@ -90,8 +91,7 @@ where
             return refusal.tell(err);
         }
     };
-    let mut robot = Followed::new(robot, observer::<T>());
-    let screen = T::OBSERVATION.is_some_and(|observation| (observation.screen)(&matches));
+    let screen = (target.screen)(&matches);
     let mut out = out();
     if screen {
         out = Box::new(Held::new(out));
@@ -102,7 +102,7 @@ where
     {
         warn_of_lateness(&refused, arguments.first(), err);
     }
-    let mut clock = Clock::begin(instants, time, options.period, robot.robot.longest_gap());
+    let mut clock = Clock::begin(instants, time, options.period, drive.longest_gap());
     let ending = shielded(|| {
         let log = match &mut log {
             Ok(log) => log.as_mut(),
@@ -115,19 +115,19 @@ where
         };
         let mut witnesses =
             Witnesses { report: &mut report, log, path: path.as_mut().ok().and_then(Option::as_mut), progress, err };
-        turns::run(&mut robot, plan(), limits, &mut clock, &signals, &mut witnesses)
+        turns::run(&mut *drive, limits, &mut clock, &signals, &mut witnesses)
     });
-    let (ending, orderly, faults) = way_out::stop(&mut robot.robot, ending.unwrap_or_else(way_out::bug));
-    let ending = way_out::judge(&mut robot, ending, &required, &mut report);
+    let (ending, orderly, faults) = way_out::stop(&mut *drive, ending.unwrap_or_else(way_out::bug));
+    let ending = way_out::judge(&mut *drive, ending, &required, &mut report);
     let orderly = orderly && ending.is_orderly();
     signals.patience().stop_was_tried(Some(ending.status(&faults)));
     let files = way_out::Files {
         log: log.ok().flatten(),
         path: path.and_then(|path| path.map_or(Ok(()), Recorder::close)).err(),
     };
-    let status = way_out::tell(&mut robot, ending, orderly, faults, &mut report, files, err);
+    let status = way_out::tell(&mut *drive, ending, orderly, faults, &mut report, files, err);
     // It stands, and all is said; even code that panics while it tidies up must not change the status.
-    let _ = shielded(move || drop(robot));
+    let _ = shielded(move || drop(drive));
     if let Some(timing) = clock.timing() {
         say(err, format_args!("{timing}"));
     }
@@ -160,35 +160,39 @@ struct Prepared {
 }
 
 /// Reads the paths that the plan replays, and the causes by which it must end.
-fn prepared<T: Target, P: Plan>(matches: &ArgMatches, plan: &impl Fn() -> P) -> Result<Prepared, Refusal> {
+fn prepared(target: &TargetOptions, matches: &ArgMatches, executable: &dyn Executable) -> Result<Prepared, Refusal> {
     let prepared = shielded(|| {
-        let plan = plan();
-        let required = Required::of(matches, &plan).map_err(Refusal::Usage)?;
-        let store = paths::load::<T>(matches, plan.paths())?;
+        let plan = executable.plan();
+        let required = Required::of(matches, &*plan).map_err(Refusal::Usage)?;
+        let store = paths::load(target, matches, plan.paths())?;
         Ok(Prepared { store, paths: plan.paths().to_vec(), required })
     });
     prepared.unwrap_or_else(bug_before)
 }
 
-/// The observer of the target's robot, if it has one.
-fn observer<T: Target>() -> Observes<T::Robot> {
-    T::OBSERVATION.map(|observation| observation.observer)
-}
-
 /// The files that the options of a run name.
-fn named_files<T: Target>(matches: &ArgMatches, options: &Options, paths: &[&'static str]) -> Vec<NamedFile> {
+fn named_files(
+    target: &TargetOptions,
+    matches: &ArgMatches,
+    options: &Options,
+    paths: &[&'static str],
+) -> Vec<NamedFile> {
     let written = [("--log", &options.log), ("--record-path", &options.path)];
     let written = written
         .into_iter()
         .filter_map(|(option, path)| path.clone().map(|path| NamedFile { option, path, is_written: true }));
     let read = paths::files(matches, paths).map(|path| NamedFile { option: "the plan", path, is_written: false });
-    written.chain(read).chain(T::files(matches)).collect()
+    written.chain(read).chain((target.files)(matches)).collect()
 }
 
 /// The runs of a batch, if these options ask for several.
-fn batch<T: Target>(matches: &ArgMatches, options: &Options, store: PathStore) -> SeveralRuns<T::Robot> {
-    let Some(Observation { batch, .. }) = T::OBSERVATION else { return Ok(None) };
-    let batch = shielded(|| batch(matches, options.period)).unwrap_or_else(bug_before)?;
+fn batch<'p>(
+    executable: &'p dyn Executable,
+    matches: &ArgMatches,
+    options: &Options,
+    store: PathStore,
+) -> Result<Option<Runs<'p>>, Refusal> {
+    let batch = shielded(|| executable.batch(matches, options.period, store)).unwrap_or_else(bug_before)?;
     let alone =
         [("--log", &options.log), ("--record-path", &options.path)].into_iter().find(|(_, file)| file.is_some());
     if let (Some(_), Some((option, _))) = (&batch, alone) {
@@ -196,24 +200,19 @@ fn batch<T: Target>(matches: &ArgMatches, options: &Options, store: PathStore) -
             "{option} writes down one run, and there are to be several: leave it out, or run one seed alone"
         )));
     }
-    Ok(batch.map(|batch| paths::in_batch::<T>(batch, store)))
+    Ok(batch)
 }
 
 /// Makes the runs of a batch and reports them; returns the exit status.
-fn several<'e, R: Robot, P>(
-    batch: &Batch<R>,
-    plan: &(impl Fn() -> P + Sync),
-    observer: Observes<R>,
+fn several<'e>(
+    batch: &Runs<'_>,
     terms: &Terms<'_>,
     out: &mut dyn Write,
     err: &'e mut dyn Write,
     seen: Option<Box<dyn FnMut() -> Duration + 'e>>,
-) -> u8
-where
-    P: Plan<Output = R::Output, Input = R::Input>,
-{
+) -> u8 {
     let progress = seen.map(|now| Progress::new(&mut *err, now));
-    let (status, unwritten) = batch::run(batch, plan, observer, terms, out, progress);
+    let (status, unwritten) = batch::run(batch, terms, out, progress);
     if let Some(signal) = terms.signals.caught() {
         Ending::Signal(signal).tell(true, err);
     }
@@ -239,36 +238,37 @@ fn answered(answer: &str, out: &mut dyn Write) -> u8 {
 }
 
 /// Parts that a run needs before its first turn.
-struct Ready<R: Robot> {
-    robot: R,
+struct Ready<'p> {
+    drive: Box<dyn Drive + 'p>,
     time: Time,
     /// A log that cannot begin is no refusal: the robot is there already, and has to be stopped.
     log: io::Result<Option<Log>>,
     /// The path that is recorded.
-    path: io::Result<Option<Recorder<R::Output>>>,
+    path: io::Result<Option<Recorder>>,
 }
 
 /// Opens what a run needs. A start that is refused leaves the files that it writes as they were.
-fn ready<T: Target>(
+fn ready<'p>(
+    executable: &'p dyn Executable,
     matches: &ArgMatches,
     options: &Options,
     store: PathStore,
     paths: &[&'static str],
     signals: &Signals,
-) -> Result<Ready<T::Robot>, Refusal> {
+) -> Result<Ready<'p>, Refusal> {
+    let target = executable.target();
     let opened = shielded(|| {
-        let time = T::time(matches).map_err(Refusal::Usage)?;
-        named_file::check(named_files::<T>(matches, options, paths))?;
+        let time = (target.time)(matches).map_err(Refusal::Usage)?;
+        named_file::check(named_files(&target, matches, options, paths))?;
         let log = untouched("run log", options.log.as_deref())?;
         let path = untouched("path", options.path.as_deref())?;
         paths::check_period(options)?;
         // From here on a signal must not end the program before the robot was stopped.
         signals.robot_runs(time);
-        let mut robot = T::connect(matches, options.period, &signals.stop_request())?;
-        paths::hand_over::<T>(&mut robot, store);
+        let drive = executable.connect(matches, options.period, &signals.stop_request(), store)?;
         let log = log.map(|file| file.begin(is_watched(time), signals.patience())).transpose();
-        let path = path.map(|file| paths::recorder::<T>(file, signals.patience())).transpose().map(Option::flatten);
-        Ok(Ready { robot, time, log, path })
+        let path = path.map(|file| file.emptied(signals.patience()).map(Recorder::new)).transpose();
+        Ok(Ready { drive, time, log, path })
     });
     opened.unwrap_or_else(bug_before)
 }

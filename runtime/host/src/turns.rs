@@ -5,20 +5,20 @@ use std::io::{self, Write};
 use std::time::Duration;
 
 use mdle_runtime::fsm::Kind;
-use mdle_runtime::{Machine, Nanos, Plan, Robot, Turn};
+use mdle_runtime::{Nanos, Turn};
 
 use crate::cause::place;
 use crate::clock::{Clock, Instants, nanos};
+use crate::drive::{Drive, Position};
 use crate::ending::{Ending, say};
 use crate::log::{Entry, Log};
-use crate::observer::Followed;
 use crate::paths::Recorder;
 use crate::progress::Progress;
 use crate::report::Report;
 use crate::signals::Signals;
 use crate::timing::Timing;
 use crate::transitions::Transitions;
-use crate::{Around, Ended, Standing};
+use crate::{Around, Ended, Observer, Standing};
 
 /// Limits at which a run ends whose plan is not over.
 #[derive(Debug, Clone, Copy)]
@@ -30,65 +30,58 @@ pub(crate) struct Limits {
 }
 
 /// Recipients of the turns' reports.
-pub(crate) struct Witnesses<'a, 'o, Y> {
+pub(crate) struct Witnesses<'a, 'o> {
     /// The lines on standard output.
     pub(crate) report: &'a mut Report<'o>,
     /// The run log, if one was asked for.
     pub(crate) log: Option<&'a mut Log>,
     /// The path that is driven, if it is to be recorded.
-    pub(crate) path: Option<&'a mut Recorder<Y>>,
+    pub(crate) path: Option<&'a mut Recorder>,
     /// The line that shows that a fast run goes on, if standard error is a terminal.
     pub(crate) progress: Option<Progress<'a>>,
     /// Standard error, where it does not show that line.
     pub(crate) err: Option<&'a mut dyn Write>,
 }
 
-/// Runs `plan` on `robot`, from the exchange of turn 0 until something ends it.
+/// Makes the turns of a plan on its robot, from the exchange of turn 0 until something ends them.
 ///
 /// The robot still executes its last input: the caller has to send the null input and the stop, also after a panic.
-pub(crate) fn run<R: Robot, P, I: Instants>(
-    robot: &mut Followed<R>,
-    plan: P,
+pub(crate) fn run<I: Instants>(
+    drive: &mut dyn Drive,
     limits: Limits,
     clock: &mut Clock<I>,
     signals: &Signals,
-    witnesses: &mut Witnesses<'_, '_, R::Output>,
-) -> Ending
-where
-    P: Plan<Output = R::Output, Input = R::Input>,
-{
+    witnesses: &mut Witnesses<'_, '_>,
+) -> Ending {
     if let Some(signal) = signals.caught() {
         return Ending::Signal(signal);
     }
-    let mut y = match exchange(&mut robot.robot, &R::Input::default()) {
-        Ok(output) => output,
-        Err(ending) => return ending,
-    };
+    if let Err(fault) = drive.exchange() {
+        return Ending::Robot(fault);
+    }
     let mut t = clock.zero();
-    let mut machine = Machine::begin(plan, &y, t);
     let mut transitions = Transitions::default();
     // Whether the current atom has been entered since a law was applied last.
     let mut fresh = true;
     let mut number: u64 = 0;
     let ending = loop {
-        if let Some(path) = &mut witnesses.path {
-            path.take(&y, t);
+        if let (Some(path), Some((heading, speed))) = (&mut witnesses.path, drive.motion()) {
+            path.take(heading, speed, t);
         }
         transitions.clear();
-        let turn = machine.turn(&y, t, &mut transitions);
+        let turn = drive.turn(t, &mut transitions);
         fresh |= !transitions.is_empty();
-        if let Err(error) = witnesses.tell(&machine, &turn, number, t, &transitions) {
-            break Ending::Log(error.to_string());
-        }
-        match turn {
-            Turn::Law(_) if std::mem::take(&mut fresh) => {
-                began(robot, &machine, t);
+        if let (observer, Some(position)) = drive.parts() {
+            if let Err(error) = witnesses.tell(position, turn, number, t, &transitions) {
+                break Ending::Log(error.to_string());
             }
-            Turn::Law(_) | Turn::Cut => {}
-            Turn::Over => break Ending::Over,
+            let has_begun = turn == Turn::Law(()) && std::mem::take(&mut fresh);
+            if let Some(observer) = observer {
+                watched(observer, position, turn, has_begun, t, witnesses.report);
+            }
         }
-        if let Some(observer) = robot.observer().filter(|observer| observer.looks()) {
-            observer.turned(&standing(&machine, t, witnesses.report));
+        if turn == Turn::Over {
+            break Ending::Over;
         }
         number = number.saturating_add(1);
         if let Some(ending) = limits.reached(number, t) {
@@ -100,54 +93,58 @@ where
         if let Err(ending) = clock.next_turn(signals) {
             break ending;
         }
-        y = match exchange(&mut robot.robot, &turn.input()) {
-            Ok(output) => output,
-            Err(ending) => break ending,
-        };
+        if let Err(fault) = drive.exchange() {
+            break Ending::Robot(fault);
+        }
         t = clock.taken();
     };
-    ended(robot, &machine, &ending, witnesses.report, t);
+    if let (Some(observer), Some(position)) = drive.parts() {
+        ended(observer, position, &ending, witnesses.report, t);
+    }
     ending
 }
 
-/// Tells the observer which atom has begun.
-fn began<R, P: Plan>(robot: &mut Followed<R>, machine: &Machine<P>, t: Nanos) {
-    let Some(observer) = robot.observer() else { return };
-    let plan = machine.plan();
-    let atom = machine.atom().and_then(|atom| Some((atom, plan.fsm().atoms.get(atom as usize)?)));
-    if let Some((atom, written)) = atom {
+/// Tells the observer about a turn, and first which atom `has_begun` in it.
+fn watched(
+    observer: &mut dyn Observer,
+    position: &dyn Position,
+    turn: Turn<()>,
+    has_begun: bool,
+    t: Nanos,
+    report: &Report<'_>,
+) {
+    let plan = position.texts();
+    let atom = position.atom().and_then(|atom| Some((atom, plan.fsm().atoms.get(atom as usize)?)));
+    if let Some((atom, written)) = atom.filter(|_| has_begun) {
         observer.began(written.state, plan.law(atom), t);
+    }
+    if turn != Turn::Over && observer.looks() {
+        observer.turned(&standing(position, t, report));
     }
 }
 
 /// Tells the observer that the turns have ended, and by what.
-fn ended<R, P: Plan>(robot: &mut Followed<R>, machine: &Machine<P>, ending: &Ending, report: &Report<'_>, t: Nanos) {
-    let Some(observer) = robot.observer() else { return };
+fn ended(observer: &mut dyn Observer, position: &dyn Position, ending: &Ending, report: &Report<'_>, t: Nanos) {
     let by = report.over().map_or_else(|| ending.brief(), |over| over.cause.clone());
-    observer.ended(&Ended { plan: machine.plan().name(0), is_over: *ending == Ending::Over, by: &by, t });
+    observer.ended(&Ended { plan: position.texts().name(0), is_over: *ending == Ending::Over, by: &by, t });
 }
 
 /// Returns the state of a plan that is not over.
-fn standing<'m, P: Plan>(machine: &'m Machine<P>, t: Nanos, report: &'m Report<'_>) -> Standing<'m> {
-    let (plan, fsm) = (machine.plan(), machine.plan().fsm());
-    let atom = machine.atom().and_then(|atom| fsm.atoms.get(atom as usize));
+fn standing<'m>(position: &'m dyn Position, t: Nanos, report: &'m Report<'_>) -> Standing<'m> {
+    let (plan, fsm) = (position.texts(), position.texts().fsm());
+    let atom = position.atom().and_then(|atom| fsm.atoms.get(atom as usize));
     let own = atom.and_then(|atom| fsm.brackets.get(atom.scope as usize)).map(|bracket| bracket.kind);
     let levels = match own {
         Some(Kind::Scope { level }) => 0..=level,
         Some(Kind::Loop { .. }) | None => 0..=0,
     };
     let scopes = levels.map(|level| {
-        let scope = machine.cursor().scope(fsm, level);
-        Around { name: plan.name(scope), condition: plan.condition(scope), since: machine.cursor().since(level, t) }
+        let scope = position.scope(level);
+        Around { name: plan.name(scope), condition: plan.condition(scope), since: position.since(level, t) }
     });
-    let law = machine.atom().map_or("", |atom| plan.law(atom));
-    let place = machine.atom().map_or_else(String::new, |atom| place(plan, report.passes(), atom));
-    Standing { t, state: machine.state(), law, place, since: report.since(), scopes: scopes.collect() }
-}
-
-/// Exchanges an input for the output that follows it.
-pub(crate) fn exchange<R: Robot>(robot: &mut R, input: &R::Input) -> Result<R::Output, Ending> {
-    robot.exchange(input).map_err(|fault| Ending::Robot(fault.to_string()))
+    let law = position.atom().map_or("", |atom| plan.law(atom));
+    let place = position.atom().map_or_else(String::new, |atom| place(plan, report.passes(), atom));
+    Standing { t, state: position.state(), law, place, since: report.since(), scopes: scopes.collect() }
 }
 
 impl Limits {
@@ -158,7 +155,7 @@ impl Limits {
     }
 }
 
-impl<Y> Witnesses<'_, '_, Y> {
+impl Witnesses<'_, '_> {
     /// Reports how late turns begin and how long they take.
     fn tell_timing(&mut self, timing: Option<&Timing>) {
         if let (Some(err), Some(timing)) = (&mut self.err, timing) {
@@ -167,26 +164,26 @@ impl<Y> Witnesses<'_, '_, Y> {
     }
 
     /// Reports a turn to the recipients.
-    fn tell<P: Plan>(
+    fn tell(
         &mut self,
-        machine: &Machine<P>,
-        turn: &Turn<P::Input>,
+        position: &dyn Position,
+        turn: Turn<()>,
         number: u64,
         t: Nanos,
         transitions: &Transitions,
     ) -> io::Result<()> {
-        let plan = machine.plan();
+        let plan = position.texts();
         self.report.turn(plan, t, transitions);
         if let Some(progress) = &mut self.progress {
-            let law = machine.atom().map_or("", |atom| plan.law(atom));
+            let law = position.atom().map_or("", |atom| plan.law(atom));
             progress.run(t, law, self.report);
         }
         let Some(log) = self.log.as_mut() else { return Ok(()) };
         let applied = match turn {
-            Turn::Law(_) => machine.atom(),
+            Turn::Law(()) => position.atom(),
             Turn::Cut | Turn::Over => None,
         };
-        let frame = machine.frame().filter(|_| applied.is_some());
-        log.turn(&Entry { plan, turn: number, t, state: machine.state(), applied, frame, transitions })
+        let frame = position.frame().filter(|_| applied.is_some());
+        log.turn(&Entry { plan, turn: number, t, state: position.state(), applied, frame, transitions })
     }
 }

@@ -2,15 +2,13 @@
 
 use std::io::{self, Write};
 
-use mdle_runtime::Robot;
-
+use crate::Judgement;
+use crate::drive::Drive;
 use crate::ending::{Ending, Fault};
 use crate::log::Log;
-use crate::observer::Followed;
 use crate::report::Report;
 use crate::required::Required;
 use crate::safety::{Panicked, shielded};
-use crate::{Judgement, turns};
 
 /// A panic as an ending.
 pub(crate) fn bug(Panicked(message): Panicked) -> Ending {
@@ -20,15 +18,15 @@ pub(crate) fn bug(Panicked(message): Panicked) -> Ending {
 /// Stops the robot; returns the ending after that, whether the robot's code can still be trusted, and the faults.
 ///
 /// The null input is sent once more where the robot still listens, then the stop command in any case.
-pub(crate) fn stop<R: Robot>(robot: &mut R, ending: Ending) -> (Ending, bool, Vec<Fault>) {
+pub(crate) fn stop(drive: &mut dyn Drive, ending: Ending) -> (Ending, bool, Vec<Fault>) {
     let last = if ending.robot_listens() {
-        let last = shielded(|| turns::exchange(robot, &R::Input::default()).map(drop));
+        let last = shielded(|| drive.release().map_err(Ending::Robot));
         last.unwrap_or_else(|panicked| Err(bug(panicked))).err()
     } else {
         None
     };
     let orderly = last.as_ref().unwrap_or(&ending).is_orderly();
-    let stopped = shielded(|| robot.stop().map_err(|fault| fault.to_string()));
+    let stopped = shielded(|| drive.stop());
     let stopped = stopped.unwrap_or_else(|Panicked(message)| Err(format!("its code panicked: {message}")));
     let (ending, stopped) = ending.with_stop(stopped.err());
     let mut faults = Vec::new();
@@ -46,16 +44,11 @@ pub(crate) fn stop<R: Robot>(robot: &mut R, ending: Ending) -> (Ending, bool, Ve
 
 /// Returns the ending of a plan that is over, or else an [`Ending::Otherwise`], by the causes that are required and by
 /// the robot's goal. The result of a goal is reported.
-pub(crate) fn judge<R>(
-    robot: &mut Followed<R>,
-    ending: Ending,
-    required: &Required,
-    report: &mut Report<'_>,
-) -> Ending {
+pub(crate) fn judge(drive: &mut dyn Drive, ending: Ending, required: &Required, report: &mut Report<'_>) -> Ending {
     if ending != Ending::Over {
         return ending;
     }
-    let judgement = match shielded(|| robot.observer().and_then(|observer| observer.judged())) {
+    let judgement = match shielded(|| drive.observer().and_then(|observer| observer.judged())) {
         Ok(judgement) => judgement,
         Err(panicked) => return bug(panicked),
     };
@@ -82,8 +75,8 @@ pub(crate) struct Files {
 }
 
 /// Reports why the run ended, and all faults, once the robot was stopped; returns the exit status.
-pub(crate) fn tell<R>(
-    robot: &mut Followed<R>,
+pub(crate) fn tell(
+    drive: &mut dyn Drive,
     ending: Ending,
     orderly: bool,
     mut faults: Vec<Fault>,
@@ -100,7 +93,7 @@ pub(crate) fn tell<R>(
     // Before the robot finishes, which may take a while.
     ending.tell(is_stopped, err);
     if orderly {
-        let finished = shielded(|| robot.observer().map_or(Ok(()), |observer| observer.finish()));
+        let finished = shielded(|| drive.observer().map_or(Ok(()), |observer| observer.finish()));
         let finished = finished.unwrap_or_else(|Panicked(message)| Err(format!("a panic: {message}")));
         faults.extend(finished.err().map(Fault::Finish));
     }

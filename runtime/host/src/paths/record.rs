@@ -2,34 +2,32 @@
 
 use std::io::{self, Write};
 
-use mdle_runtime::{MetersPerSecond, Nanos, Output, Radians};
+use mdle_runtime::{MetersPerSecond, Nanos, Radians};
 
 use crate::outlet::Outlet;
 
-/// A path that is being recorded, by the outputs `Y` of a robot.
-pub(crate) struct Recorder<Y, W: Write = Outlet> {
+/// A path that is being recorded.
+pub(crate) struct Recorder<W: Write = Outlet> {
     file: W,
-    speed: fn(&Y) -> MetersPerSecond,
     /// The heading in which the plan began, by odometry.
     begun: Option<Radians>,
     /// Nothing more is written after an error, which is reported at the end: a recording is no reason to stop a robot.
     written: io::Result<()>,
 }
 
-impl<Y: Output, W: Write> Recorder<Y, W> {
-    /// A recording to `file` of a robot that drives at this speed by an output.
-    pub(crate) fn new(mut file: W, speed: fn(&Y) -> MetersPerSecond) -> Self {
+impl<W: Write> Recorder<W> {
+    /// A recording to `file`.
+    pub(crate) fn new(mut file: W) -> Self {
         let written = file.write_all(b"time s, heading deg, speed cm/s\n");
-        Self { file, speed, begun: None, written }
+        Self { file, begun: None, written }
     }
 
-    /// Writes the row of the turn at time `t`.
-    pub(crate) fn take(&mut self, y: &Y, t: Nanos) {
-        let heading = y.here().theta;
+    /// Writes the row of the turn at time `t`, in which the robot had this heading by odometry, and drove this fast.
+    pub(crate) fn take(&mut self, heading: Radians, speed: MetersPerSecond, t: Nanos) {
         let begun = *self.begun.get_or_insert(heading);
         if self.written.is_ok() {
             let degrees = Radians(heading.0 - begun.0).wrapped().degrees();
-            let (seconds, speed) = (t.seconds(), (self.speed)(y).0 * 100.0);
+            let (seconds, speed) = (t.seconds(), speed.0 * 100.0);
             self.written = writeln!(self.file, "{seconds}, {degrees:.4}, {speed:.4}");
         }
     }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use mdle_runtime::{MetersPerSecond, Nanos, Output, Pose, Radians, RadiansPerSecond, Setpoint, Twist};
+use mdle_runtime::{MetersPerSecond, Nanos, Radians, RadiansPerSecond, Setpoint, Twist};
 
 use super::record::Recorder;
 use super::text::{Wrong, setpoints, utf8};
@@ -98,15 +98,6 @@ fn bytes_that_are_no_text_are_told_where_they_are() {
     assert_eq!(place(b"time s\n\xc3\n"), Some((2, 1)));
 }
 
-/// The output of a robot that reports its heading and its speed.
-struct Told(Pose, MetersPerSecond);
-
-impl Output for Told {
-    fn here(&self) -> Pose {
-        self.0
-    }
-}
-
 /// Numbers by chance, the same in every run: between 0 and 1.
 fn chance(state: &mut u64) -> f64 {
     *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -131,9 +122,9 @@ fn drive(state: &mut u64) -> Vec<(Nanos, Radians, MetersPerSecond)> {
 /// The recording of a drive.
 fn recorded(drive: &[(Nanos, Radians, MetersPerSecond)]) -> String {
     let mut file = Vec::new();
-    let mut recorder = Recorder::new(&mut file, |Told(_, speed)| *speed);
+    let mut recorder = Recorder::new(&mut file);
     for (t, theta, speed) in drive {
-        recorder.take(&Told(Pose { theta: theta.wrapped(), ..Pose::ORIGIN }, *speed), *t);
+        recorder.take(theta.wrapped(), *speed, *t);
     }
     recorder.close().unwrap();
     String::from_utf8(file).unwrap()
@@ -205,9 +196,9 @@ fn a_recording_that_cannot_be_written_is_told_in_the_end() {
             Ok(())
         }
     }
-    let mut recorder = Recorder::new(Full, |Told(_, speed)| *speed);
+    let mut recorder = Recorder::new(Full);
     for turn in 0..5_000 {
-        recorder.take(&Told(Pose::ORIGIN, MetersPerSecond(0.2)), Nanos(turn * 100_000_000));
+        recorder.take(Radians(0.0), MetersPerSecond(0.2), Nanos(turn * 100_000_000));
     }
     assert_eq!(recorder.close().unwrap_err().kind(), std::io::ErrorKind::StorageFull);
 }

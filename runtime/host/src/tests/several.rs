@@ -9,7 +9,8 @@ use mdle_runtime::{Cause, Robot};
 
 use super::plan::ToyPlan;
 use super::toy::Sensed;
-use crate::batch::{self, Batch, Terms};
+use crate::batch::{self, Batch, Runs, Terms};
+use crate::drive::PlanOnRobot;
 use crate::required::{self, Required};
 use crate::signals::{Signal, Signals};
 use crate::turns::Limits;
@@ -92,6 +93,7 @@ impl Several {
             }),
             alone: Box::new(|seed| ["--world", "my floor.toml", "--seed", &seed.to_string()].map(str::to_owned).into()),
         };
+        let runs = Runs::of(batch, |robot| Box::new(PlanOnRobot::new(robot, Some(|robot| robot), None, &ToyPlan::lab)));
         let limits = Limits { timeout: None, turns: Some(100) };
         let words = ["it"].iter().chain(require).copied();
         let matches = required::argument(Command::new("it")).try_get_matches_from(words).unwrap();
@@ -99,7 +101,7 @@ impl Several {
         let period = Duration::from_millis(100);
         let terms = Terms { period, limits, signals, program: "./it's", required: &required };
         let mut out = Vec::new();
-        let (status, unwritten) = batch::run(&batch, &ToyPlan::lab, Some(|robot| robot), &terms, &mut out, None);
+        let (status, unwritten) = batch::run(&runs, &terms, &mut out, None);
         assert!(unwritten.is_none());
         (status, String::from_utf8(out).unwrap())
     }

@@ -12,6 +12,7 @@ use mdle_runtime::{Cause, Nanos, Output, Robot};
 
 use super::plan::ToyPlan;
 use crate::clock::Instants;
+use crate::executable::PlanOnTarget;
 use crate::session::{Surroundings, session};
 use crate::signals::{Signal, Signals};
 use crate::{Around, Ended, Judgement, Observation, Observer, Pace, Refusal, Standing, StopRequest, Target, Time};
@@ -130,7 +131,8 @@ impl Stage {
             seen: None,
         };
         let arguments = [&self.program].into_iter().chain(arguments).map(OsString::from);
-        let status = session::<ToyTarget, _, _, _>("Lab".into(), arguments, &|| self.plan.clone(), surroundings);
+        let plan = || self.plan.clone();
+        let status = session("Lab".into(), arguments, &PlanOnTarget::<ToyTarget, _>::new(&plan), surroundings);
         // Otherwise a program may end before its last message is written.
         assert_ne!(patience.limit(), Some(Duration::ZERO), "readers are not waited for at the end");
         let text = out.borrow().text();

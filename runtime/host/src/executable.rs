@@ -1,0 +1,125 @@
+//! The target and the plan of an executable, behind one interface without the types of either.
+
+use std::marker::PhantomData;
+use std::time::Duration;
+
+use clap::{ArgMatches, Command};
+use mdle_runtime::{PathStore, Plan, Robot, Twist};
+
+use crate::batch::Runs;
+use crate::drive::{Drive, PlanOnRobot, Texts};
+use crate::{NamedFile, Refusal, Replays, StopRequest, Target, Time};
+
+/// The target and the plan of an executable.
+pub(crate) trait Executable: Sync {
+    /// Returns the target's options and their defaults.
+    fn target(&self) -> TargetOptions;
+    /// Makes a plan, for its texts.
+    fn plan(&self) -> Box<dyn Texts + '_>;
+    /// Opens the robot, with the plan that will drive it and the paths that the plan replays: [`Target::connect`].
+    ///
+    /// # Errors
+    /// Those of [`Target::connect`].
+    fn connect(
+        &self,
+        matches: &ArgMatches,
+        period: Duration,
+        request: &StopRequest,
+        store: PathStore,
+    ) -> Result<Box<dyn Drive + '_>, Refusal>;
+    /// Returns the runs to be made instead of one, if the options ask for several: [`Observation::batch`].
+    ///
+    /// # Errors
+    /// A bad option, or a fault.
+    fn batch(&self, matches: &ArgMatches, period: Duration, store: PathStore) -> Result<Option<Runs<'_>>, Refusal>;
+}
+
+/// The parts of [`Target`] that have none of its types.
+#[derive(Clone, Copy)]
+pub(crate) struct TargetOptions {
+    pub(crate) name: &'static str,
+    pub(crate) period: Duration,
+    pub(crate) arguments: fn(Command) -> Command,
+    pub(crate) time: fn(&ArgMatches) -> Result<Time, String>,
+    pub(crate) files: fn(&ArgMatches) -> Vec<NamedFile>,
+    pub(crate) answer: fn(&ArgMatches) -> Result<Option<String>, Refusal>,
+    /// The fastest that a path may ask the robot to drive; `None` if the target replays no paths.
+    pub(crate) fastest: Option<Twist>,
+    /// Returns `true` if the robot shows its run on standard output itself.
+    pub(crate) screen: fn(&ArgMatches) -> bool,
+    /// Gives the terminal back.
+    pub(crate) leave_screen: fn(),
+}
+
+impl TargetOptions {
+    /// Returns the options of the target `T`.
+    pub(crate) fn of<T: Target>() -> Self {
+        Self {
+            name: T::NAME,
+            period: T::PERIOD,
+            arguments: T::arguments,
+            time: T::time,
+            files: T::files,
+            answer: T::answer,
+            fastest: T::PATHS.map(|replays| replays.fastest),
+            screen: |matches| T::OBSERVATION.is_some_and(|observation| (observation.screen)(matches)),
+            leave_screen: T::OBSERVATION.map_or(|| {}, |observation| observation.leave_screen),
+        }
+    }
+}
+
+/// An executable of a plan for the target `T`.
+pub(crate) struct PlanOnTarget<'p, T, P> {
+    /// Makes the plan.
+    plan: &'p (dyn Fn() -> P + Sync),
+    target: PhantomData<fn() -> T>,
+}
+
+impl<'p, T: Target, P> PlanOnTarget<'p, T, P>
+where
+    P: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>,
+{
+    pub(crate) fn new(plan: &'p (dyn Fn() -> P + Sync)) -> Self {
+        Self { plan, target: PhantomData }
+    }
+
+    /// Returns the robot with the plan that drives it and the paths that the plan replays.
+    fn drive(&self, mut robot: T::Robot, store: PathStore) -> Box<dyn Drive + '_> {
+        let speed = T::PATHS.map(|Replays { take, speed, .. }| {
+            take(&mut robot, store);
+            speed
+        });
+        let observer = T::OBSERVATION.map(|observation| observation.observer);
+        Box::new(PlanOnRobot::new(robot, observer, speed, self.plan))
+    }
+}
+
+impl<T: Target, P> Executable for PlanOnTarget<'_, T, P>
+where
+    P: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>,
+{
+    fn target(&self) -> TargetOptions {
+        TargetOptions::of::<T>()
+    }
+
+    fn plan(&self) -> Box<dyn Texts + '_> {
+        Box::new((self.plan)())
+    }
+
+    fn connect(
+        &self,
+        matches: &ArgMatches,
+        period: Duration,
+        request: &StopRequest,
+        store: PathStore,
+    ) -> Result<Box<dyn Drive + '_>, Refusal> {
+        let robot = T::connect(matches, period, request)?;
+        Ok(self.drive(robot, store))
+    }
+
+    fn batch(&self, matches: &ArgMatches, period: Duration, store: PathStore) -> Result<Option<Runs<'_>>, Refusal> {
+        let Some(observation) = T::OBSERVATION else { return Ok(None) };
+        let batch = (observation.batch)(matches, period)?;
+        Ok(batch.map(|batch| Runs::of(batch, move |robot| self.drive(robot, store))))
+    }
+}
