@@ -210,7 +210,8 @@ fn one(batch: &Runs<'_>, seed: u64, terms: &Terms<'_>) -> Option<Done> {
         Ok(Ending::Signal(_)) => return None,
         Err(panic) => Outcome::Failed(panicked::<()>(panic).err().unwrap_or_default()),
         Ok(
-            Ending::Robot(fault)
+            Ending::Unstarted(fault)
+            | Ending::Robot(fault)
             | Ending::Unstopped(fault)
             | Ending::Log(fault)
             | Ending::Overrun(fault)

@@ -35,6 +35,8 @@ pub(crate) enum Ending {
     Turns(u64),
     /// A signal asked for it.
     Signal(Signal),
+    /// The first exchange failed, before any law was applied: the robot's sentence.
+    Unstarted(String),
     /// An exchange failed: the robot's sentence.
     Robot(String),
     /// An exchange failed, the robot's sentence, and so did the stop.
@@ -71,7 +73,8 @@ impl Ending {
             Self::Otherwise(_) => OTHERWISE,
             Self::Timeout(_) | Self::Turns(_) => LIMIT,
             Self::Signal(signal) => 128 + signal.number(),
-            Self::Robot(_)
+            Self::Unstarted(_)
+            | Self::Robot(_)
             | Self::Unstopped(_)
             | Self::Log(_)
             | Self::Overrun(_)
@@ -84,7 +87,7 @@ impl Ending {
     /// reported: after a failed exchange it is not, as the exchange's error says enough, and is mostly the same.
     pub(crate) fn with_stop(self, stop: Option<String>) -> (Self, Option<String>) {
         match (self, stop) {
-            (Self::Robot(fault), Some(_)) => (Self::Unstopped(fault), None),
+            (Self::Unstarted(fault) | Self::Robot(fault), Some(_)) => (Self::Unstopped(fault), None),
             untouched => untouched,
         }
     }
@@ -100,7 +103,7 @@ impl Ending {
             | Self::Signal(_)
             | Self::Log(_)
             | Self::Overrun(_) => true,
-            Self::Robot(_) | Self::Unstopped(_) | Self::Suspended { .. } | Self::Bug(_) => false,
+            Self::Unstarted(_) | Self::Robot(_) | Self::Unstopped(_) | Self::Suspended { .. } | Self::Bug(_) => false,
         }
     }
 
@@ -112,6 +115,7 @@ impl Ending {
             | Self::Timeout(_)
             | Self::Turns(_)
             | Self::Signal(_)
+            | Self::Unstarted(_)
             | Self::Robot(_)
             | Self::Unstopped(_)
             | Self::Log(_)
@@ -128,7 +132,8 @@ impl Ending {
             Self::Timeout(_) => "--timeout".to_owned(),
             Self::Turns(_) => "--turns".to_owned(),
             Self::Signal(signal) => signal.name().into_owned(),
-            Self::Robot(_)
+            Self::Unstarted(_)
+            | Self::Robot(_)
             | Self::Unstopped(_)
             | Self::Log(_)
             | Self::Overrun(_)
@@ -152,6 +157,7 @@ impl Ending {
                 say(err, format_args!("stopped by --turns: the plan was not over after {limit} {turns}"));
             }
             Self::Signal(signal) => say(err, format_args!("stopped by {}", signal.name())),
+            Self::Unstarted(fault) => say(err, format_args!("error: the plan was not started: {fault}")),
             Self::Robot(fault) | Self::Overrun(fault) => say(err, format_args!("error: {came}: {fault}")),
             Self::Suspended { gap, longest } => {
                 let [gap, longest] = [gap, longest].map(|nanos| Duration::from_nanos(*nanos).as_secs_f64());

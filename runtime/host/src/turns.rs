@@ -57,7 +57,7 @@ pub(crate) fn run<I: Instants>(
         return Ending::Signal(signal);
     }
     if let Err(fault) = drive.exchange() {
-        return Ending::Robot(fault);
+        return Ending::Unstarted(fault);
     }
     let mut t = clock.zero();
     let mut transitions = Transitions::default();

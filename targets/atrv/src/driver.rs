@@ -126,7 +126,7 @@ impl Atrv {
             self.hear(Nanos::ZERO, self.config.patience())?;
             let waits = self.hearing.waits_for();
             if waits.is_none() {
-                return Ok(());
+                return self.mouth.is_awake();
             }
             left = left.saturating_sub(period);
             if left.is_zero() {

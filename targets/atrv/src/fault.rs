@@ -25,8 +25,8 @@ pub enum Fault {
     Braked,
     /// The sonars of this direction, one of sixteen, do not report.
     Deaf(u8),
-    /// The watchdog has stopped the robot, because no motion was commanded in time.
-    Overslept,
+    /// The watchdog has stopped the robot, because no motion was commanded for this many milliseconds.
+    Overslept(u64),
     /// The robot reports, but does not answer requests: the line to it is cut.
     Unheard,
     /// The robot does not report this axis.
@@ -107,8 +107,10 @@ impl fmt::Display for Fault {
                 "the ATRV still moved when its time to stop was over: press its emergency stop",
             ),
             Self::Unbraked => f.write_str("the ATRV's brake is not set, although it got the command: press its emergency stop"),
-            Self::Overslept => f.write_str(
-                "the ATRV was stopped because no command came in time: is this computer too busy, or `watchdog` too short?",
+            Self::Overslept(limit) => write!(
+                f,
+                "the ATRV was stopped, as no command came for {limit} ms: was this computer suspended, or too busy? \
+                 `watchdog` in the configuration sets that time"
             ),
         }
     }

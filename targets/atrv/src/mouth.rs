@@ -86,13 +86,24 @@ impl Mouth {
     /// The line is closed, or takes nothing until `deadline`, or the watchdog has stopped the robot.
     pub(crate) fn say_motion(&self, frame: &Written, deadline: Instant) -> Result<(), Fault> {
         let mut watch = self.shared.watch();
-        // Where this program, or the computer, was stopped, so was the watchdog.
-        let is_late = watch.told.zip(self.limit).is_some_and(|(told, limit)| told.elapsed() >= limit);
-        if watch.has_bitten || is_late {
-            return Err(Fault::Overslept);
-        }
+        self.is_in_time(&watch)?;
         watch.told = Some(Moment::now());
         Ok(self.shared.line.write(frame.bytes(), deadline)?)
+    }
+
+    /// Checks that the watchdog has no reason to stop the robot.
+    ///
+    /// # Errors
+    /// The last motion command is too old.
+    pub(crate) fn is_awake(&self) -> Result<(), Fault> {
+        self.is_in_time(&self.shared.watch())
+    }
+
+    fn is_in_time(&self, watch: &Watch) -> Result<(), Fault> {
+        let Some(limit) = self.limit else { return Ok(()) };
+        // Where this program, or the computer, was suspended, so was the watchdog.
+        let is_late = watch.has_bitten || watch.told.is_some_and(|told| told.elapsed() >= limit);
+        if is_late { Err(Fault::Overslept(limit.as_millis() as u64)) } else { Ok(()) }
     }
 
     /// Disarms the watchdog, because the robot is being stopped.

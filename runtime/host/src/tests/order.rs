@@ -106,7 +106,7 @@ fn the_first_exchange_may_fail() {
     insta::assert_snapshot!(way_out(&run), @"
     exchange 0, stop, finish
     status 3
-    error: a fault stopped the robot: the emergency stop is pressed
+    error: the plan was not started: the emergency stop is pressed
     ");
 }
 

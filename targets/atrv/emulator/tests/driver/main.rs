@@ -184,7 +184,7 @@ fn who_comes_too_late_finds_the_robot_stopped() {
         }
         driver.exchange(&go).map(|_| ())
     });
-    assert_eq!((velocity, said), (0.0, Err(Fault::Overslept)));
+    assert_eq!((velocity, said), (0.0, Err(Fault::Overslept(3000))));
 }
 
 #[test]
