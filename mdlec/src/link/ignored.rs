@@ -17,7 +17,9 @@ pub fn ignored_configuration(folders: &[&Path]) -> Option<PathBuf> {
 
 fn first(folders: &[&Path], home: Option<&Path>) -> Option<PathBuf> {
     let home = home.and_then(|home| fs::canonicalize(home).ok());
-    let folders: Vec<PathBuf> = folders.iter().filter_map(|folder| path::absolute(folder).ok()).collect();
+    // As cargo looks: above the folder itself, wherever a link or `..` leads to it.
+    let place = |folder: &&Path| fs::canonicalize(folder).or_else(|_| path::absolute(folder)).ok();
+    let folders: Vec<PathBuf> = folders.iter().filter_map(place).collect();
     let files =
         folders.iter().flat_map(|folder| folder.ancestors()).flat_map(|folder| NAMES.map(|name| folder.join(name)));
     let is_in_home =
@@ -34,7 +36,7 @@ mod tests {
 
     #[test]
     fn configuration_in_the_home_of_cargo_is_not_ignored() {
-        let folder = folder("ignored");
+        let folder = fs::canonicalize(folder("ignored")).unwrap();
         let (home, plans) = (folder.join(".cargo"), folder.join("plans/new"));
         fs::create_dir_all(&home).unwrap();
         fs::create_dir_all(&plans).unwrap();
@@ -43,6 +45,7 @@ mod tests {
         let above = first(&[&folder.join("..")], Some(&home));
         assert_eq!(first(&[&plans], Some(&home)), above);
         assert_eq!(first(&[&plans], None), Some(home.join("config.toml")));
+        assert_eq!(first(&[&plans.join("..")], None), Some(home.join("config.toml")));
         let own = folder.join("plans/rust-toolchain.toml");
         fs::write(&own, "").unwrap();
         assert_eq!(first(&[&plans], Some(&home)), Some(own));
