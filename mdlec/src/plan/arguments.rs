@@ -11,8 +11,8 @@ use crate::syntax::tree::{Arg, Call, Number};
 pub(super) use examples::example;
 use examples::{bits_apart, swapped};
 
-/// Largest `f64` up to which all whole numbers are exact.
-const WHOLE: f64 = 9_007_199_254_740_992.0;
+/// Largest whole number up to which a 64-bit float holds each.
+const WHOLE: i64 = 1 << 53;
 
 /// The arguments of a quark, with their text in the quark's text.
 pub(super) struct Arguments {
@@ -248,16 +248,16 @@ impl Fitting<'_> {
             return Err(Diagnostic::new(Code::E0302, message, number.span, "not a whole number").into());
         };
         let text = decimal.to_string();
-        let value = self.in_range(number, param, decimal.to_f64())?;
+        self.in_range(number, param, decimal.to_f64())?;
         let is_sonar = param.kind == Kind::Sonar;
         let allowed = if is_sonar {
-            0.0..=15.0
+            0..=15
         } else if param.kind == Kind::Count {
-            1.0..=WHOLE
+            1..=WHOLE
         } else {
             -WHOLE..=WHOLE
         };
-        let Some(whole) = text.parse::<i64>().ok().filter(|_| allowed.contains(&value)) else {
+        let Some(whole) = text.parse::<i64>().ok().filter(|whole| allowed.contains(whole)) else {
             let message = format!("expected {}, found `{}`", param.kind.words(), number.digits());
             let report = Diagnostic::new(Code::E0304, message, number.span, "out of range");
             let help = "sonar 0 looks ahead, 4 left, 8 back, 12 right";

@@ -126,6 +126,18 @@ fn ranges_of_arguments() {
 }
 
 #[test]
+fn counts_are_compared_exactly() {
+    let found = |count: &str| {
+        let text = format!("{{ Main Leg({count}) }}\n{{ Leg (n: count) (Atom (wait 1) stop) }}");
+        let (_, found) = crate::compile(crate::diagnostic::SourceId(0), &text, &crate::samples::alphabet(None), None);
+        found.into_iter().map(|found| found.message).collect::<Vec<_>>()
+    };
+    assert_eq!(found("9007199254740992"), [""; 0]);
+    assert_eq!(found("9007199254740993"), ["expected a count, found `9007199254740993`"]);
+    assert_eq!(found("1e16"), ["expected a count, found `1e16`"]);
+}
+
+#[test]
 fn frames_that_are_no_angle_worth_the_name() {
     assert_judged!("{ P FRAME 1e308rad { Q FRAME -2e5 (Atom (wait 1) stop) } FRAME 30 (Atom (wait 1) stop) }");
 }
