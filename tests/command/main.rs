@@ -9,6 +9,7 @@ mod help;
 mod hostile_text;
 mod large_input;
 mod newcomer;
+mod proposals;
 mod random_input;
 mod settings;
 mod strange_files;

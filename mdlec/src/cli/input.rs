@@ -1,6 +1,6 @@
 //! Reads plans and alphabets, the input files of commands.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::{Failure, read, report};
@@ -312,12 +312,16 @@ pub(super) fn did_you_mean(name: &str, known: &[&str]) -> String {
     near.map(|near| format!("; did you mean `{near}`?")).unwrap_or_default()
 }
 
-/// Name of a plan file next to `path` that differs only in upper or lower case or in the extension.
+/// Name of the plan file next to `path` that was probably meant: one that differs in upper or lower case or in the
+/// extension, or else in few letters.
 fn like(path: &Path) -> Option<String> {
     let name = path.file_name()?.to_str()?.to_lowercase();
     let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
     let files = std::fs::read_dir(folder).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
-    files.filter(|file| [name.clone(), format!("{name}.mdle")].contains(&file.to_lowercase())).min()
+    let files: BTreeSet<String> = files.collect();
+    let same = files.iter().find(|file| [name.clone(), format!("{name}.mdle")].contains(&file.to_lowercase()));
+    let plans = || files.iter().map(String::as_str).filter(|file| file.ends_with(".mdle"));
+    same.map(String::as_str).or_else(|| alphabet::nearest(&name, plans())).map(str::to_owned)
 }
 
 /// Hint for a path without the extension `.mdle`.

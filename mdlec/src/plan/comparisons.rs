@@ -5,7 +5,7 @@ use super::arguments::{Fitted, value};
 use super::parameters::{Names, Parameter};
 use super::quarks::Quarks;
 use super::{Compared, Comparison, Condition, Operator, Quark, QuarkId, Value};
-use crate::alphabet::{Decimal, Declaration, DeclarationKind, Kind, Unit, family_to_si};
+use crate::alphabet::{self, Decimal, Declaration, DeclarationKind, Kind, Unit, family_to_si};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::tree::{self, Arg, Call, Number, Operand};
 
@@ -59,6 +59,11 @@ pub(super) fn resolve(
     names: Names<'_, '_>,
 ) -> Resolved<Condition> {
     let signal = signal(written.left, quarks, names);
+    if let (Ok(_), Operand::Signal(call)) = (&signal, &written.right)
+        && let Some(found) = like_parameter(call, quarks, names)
+    {
+        return Err(vec![found]);
+    }
     let parameter = match &written.right {
         Operand::Signal(call) if call.args.is_empty() => names.parameters.get(call.name),
         Operand::Signal(_) | Operand::Number(_) | Operand::Infinity(_) => None,
@@ -116,6 +121,17 @@ pub(super) fn resolve(
         Some((Counted::Way, (from, until))) => Condition::Driven { from, until, quark },
         None => Condition::Quark(quark),
     })
+}
+
+/// Reports a name that is nearly the one of a parameter, and no signal.
+fn like_parameter(call: &Call, quarks: &Quarks<'_>, names: Names<'_, '_>) -> Option<Diagnostic> {
+    let name = call.name;
+    let is_known = names.parameters.get(name).is_some() || names.parameters.is_untyped(name);
+    let is_signal = is_signal(name, quarks) || indexed(call, quarks).1.is_some();
+    let near = alphabet::nearest(name, names.parameters.names()).filter(|_| !is_known && !is_signal)?;
+    let message = format!("there is no parameter or signal called `{name}`");
+    let found = Diagnostic::new(Code::E0201, message, call.name_span(), "neither of them");
+    call.args.is_empty().then(|| found.fix("did you mean {}?", call.name_span(), near))
 }
 
 /// Returns the argument given to a parameter, as a value to compare a signal with.

@@ -22,6 +22,8 @@ pub(super) struct Labels {
 struct Label {
     span: Span,
     ends: Ends,
+    /// `true` if another element has this label too.
+    is_ambiguous: bool,
 }
 
 /// Causes that can end an element.
@@ -50,19 +52,24 @@ impl Labels {
 
     /// Adds a label, or reports its earlier use.
     pub(super) fn add(&mut self, label: Name<'_>, found: &mut Vec<Diagnostic>) {
-        if let Some(first) = self.labels.get(label.node) {
+        if let Some(first) = self.labels.get_mut(label.node) {
+            // Which element `after` means is not known.
+            (first.ends, first.is_ambiguous) = (Ends::Unknown, true);
             let message = format!("there are two labels `{}` in this plan", label.node);
             found.push(
-                Diagnostic::new(Code::E0203, message, label.span, "the second one").also(first.span, "the first one"),
+                Diagnostic::new(Code::E0203, message, label.span, "the second one")
+                    .also(first.span, "the first one")
+                    .help("give one of them another name"),
             );
             return;
         }
-        self.labels.insert(label.node.to_owned(), Label { span: label.span, ends: Ends::WithItsLast });
+        self.labels
+            .insert(label.node.to_owned(), Label { span: label.span, ends: Ends::WithItsLast, is_ambiguous: false });
     }
 
     /// Sets the causes that can end the element of a label.
     pub(super) fn ends(&mut self, label: &str, ends: Ends) {
-        if let Some(label) = self.labels.get_mut(label) {
+        if let Some(label) = self.labels.get_mut(label).filter(|label| !label.is_ambiguous) {
             label.ends = ends;
         }
     }
@@ -122,9 +129,16 @@ impl Labels {
                 let place = (0..).zip(operands).find(|(_, operand)| *operand == cause).map(|(place, _)| place);
                 place.map(Some).ok_or_else(|| {
                     let message = format!("`{cause}` is not an operand of the interrupt of `{label}`");
-                    let meant: BTreeSet<_> = operands.iter().map(|operand| cause_of(label, operand)).collect();
+                    // A cause that asks for the label itself would be another one as soon as it is written.
+                    let itself = format!("after {label}");
+                    let meant = operands.iter().filter(|operand| !operand.contains(&itself));
+                    let meant: BTreeSet<_> = meant.map(|operand| cause_of(label, operand)).collect();
                     let meant: Vec<_> = meant.into_iter().collect();
-                    here(&message).help(format!("write {}, or `after {label}`", meant.join(" or "))).into()
+                    let help = match meant.as_slice() {
+                        [] => format!("leave the cause out: `{itself}`"),
+                        meant => format!("write {}, or `{itself}`", meant.join(" or ")),
+                    };
+                    here(&message).help(help).into()
                 })
             }
         }
@@ -135,7 +149,13 @@ impl Labels {
         let found = Diagnostic::new(Code::E0201, message, span, "not a label");
         match alphabet::nearest(label, self.labels.keys().map(String::as_str)) {
             Some(near) => found.fix("did you mean {}?", span, near),
-            None => found.help(format!("a label is written before an element of the same plan: `{label}: (Atom …)`")),
+            None if self.labels.is_empty() => {
+                found.help(format!("a label is written before an element of the same plan: `{label}: (Atom …)`"))
+            }
+            None => {
+                let labels: Vec<_> = self.labels.keys().map(|label| format!("`{label}`")).collect();
+                found.help(format!("the labels of this plan are {}", labels.join(", ")))
+            }
         }
     }
 }

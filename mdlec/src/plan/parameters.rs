@@ -4,7 +4,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::arguments::{example, fit};
-use crate::alphabet::{self, Declaration, DeclarationKind, Kind, Origin, Param, Unit};
+use super::untyped;
+use crate::alphabet::{self, Alphabet, Declaration, DeclarationKind, Kind, Origin, Param, Unit};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::syntax::tree::{self, Arg, Call, Name};
 
@@ -57,11 +58,11 @@ impl Parameter<'_> {
 
 impl<'s> Parameters<'s> {
     /// Parameters that a plan declares, without arguments.
-    pub(super) fn declared(plan: &tree::Plan<'s>, found: &mut Vec<Diagnostic>) -> Self {
+    pub(super) fn declared(plan: &tree::Plan<'s>, alphabet: &Alphabet, found: &mut Vec<Diagnostic>) -> Self {
         let mut parameters = Self::default();
         for tree::Param { name, type_name } in plan.params {
             let Some(kind) = kind_of(type_name.node) else {
-                found.push(unknown_type(*type_name));
+                found.push(unknown_type(*type_name, untyped::kind_by_use(plan, name.node, alphabet)));
                 parameters.untyped.insert(name.node);
                 continue;
             };
@@ -79,9 +80,14 @@ impl<'s> Parameters<'s> {
     ///
     /// # Errors
     /// Fails if number, type or unit of the arguments differ from the declaration.
-    pub(super) fn given(plan: &tree::Plan<'s>, call: &Call<'s>, around: &Self) -> Result<Self, Vec<Diagnostic>> {
+    pub(super) fn given(
+        plan: &tree::Plan<'s>,
+        call: &Call<'s>,
+        around: &Self,
+        alphabet: &Alphabet,
+    ) -> Result<Self, Vec<Diagnostic>> {
         // What is wrong with the types was told where they stand.
-        let mut parameters = Self::declared(plan, &mut Vec::new());
+        let mut parameters = Self::declared(plan, alphabet, &mut Vec::new());
         if parameters.known.len() < plan.params.len() {
             return Ok(parameters);
         }
@@ -147,7 +153,8 @@ fn kind_of(name: &str) -> Option<Kind> {
     }
 }
 
-fn unknown_type(name: Name<'_>) -> Diagnostic {
+/// Reports an unknown type; `by_use` is the kind that the uses of the parameter need.
+fn unknown_type(name: Name<'_>, by_use: Option<Kind>) -> Diagnostic {
     let message = format!("there is no type of parameter called `{}`", name.node);
     let found = Diagnostic::new(Code::E0201, message, name.span, "not a type");
     if let Some(unit) = Unit::from_name(name.node) {
@@ -163,7 +170,6 @@ fn unknown_type(name: Name<'_>) -> Diagnostic {
     }
     let meant = match name.node {
         "distance" | "range" | "metres" | "meters" => Some("length"),
-        "float" | "double" | "real" | "num" => Some("number"),
         "duration" | "seconds" => Some("time"),
         "velocity" => Some("speed"),
         "degrees" | "heading" => Some("angle"),
@@ -172,7 +178,13 @@ fn unknown_type(name: Name<'_>) -> Diagnostic {
     };
     match meant {
         Some(near) => found.fix("did you mean {}?", name.span, near),
-        None => found.help(format!("the types are {} and bits[N]", Kind::NAMES.join(", "))),
+        None => {
+            let found = match by_use {
+                Some(kind) => found.fix("where it is used it has to be {}", name.span, untyped::type_name(kind)),
+                None => found,
+            };
+            found.help(format!("the types are {} and bits[N]", Kind::NAMES.join(", ")))
+        }
     }
 }
 

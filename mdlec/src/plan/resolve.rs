@@ -31,7 +31,7 @@ pub fn resolve(files: &Files, alphabet: &Alphabet, wanted: Option<&str>) -> (Vec
     let mut alone = BTreeMap::new();
     // Each plan by itself: what is wrong with it is said once, however often it is used.
     for (index, plan) in definitions.plans.iter().enumerate() {
-        let parameters = Parameters::declared(plan, &mut found);
+        let parameters = Parameters::declared(plan, alphabet, &mut found);
         let mut resolver = Resolver::new(&definitions, alphabet, Uses::Check);
         let (root, _) = resolver.plan(plan, parameters, Framing::PLAN);
         found.append(&mut resolver.found);
@@ -138,7 +138,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
     fn behavior(&mut self, plan: &tree::Plan<'a>, frame: Framing) -> (Scope, Ends) {
         if !plan.params.is_empty() {
             self.found.push(parameters::missing(plan, "it is written in place"));
-            let own = Parameters::declared(plan, &mut self.found);
+            let own = Parameters::declared(plan, self.quarks.alphabet(), &mut self.found);
             self.parameters.extend(own);
         }
         self.scope(plan, frame)
@@ -170,6 +170,10 @@ impl<'r, 'a> Resolver<'r, 'a> {
     }
 
     fn element(&mut self, element: &Element<'a>, frame: Framing, nodes: &mut Vec<Node>) {
+        if let Some(apart) = self.unit_apart(element) {
+            self.found.push(apart);
+            return;
+        }
         let first = nodes.len();
         if let Some(label) = element.label() {
             self.labels.add(label, &mut self.found);
@@ -334,7 +338,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
             }
             return None;
         };
-        match (Parameters::given(plan, call, &self.parameters), self.uses) {
+        match (Parameters::given(plan, call, &self.parameters, self.quarks.alphabet()), self.uses) {
             (Ok(parameters), Uses::Copy) => Some((plan, parameters)),
             (Ok(_), Uses::Check) => None,
             (Err(found), _) => {

@@ -88,8 +88,13 @@ fn named<'s>(call: &Call<'s>) -> Name<'s> {
     Spanned { node: call.name, span: call.name_span() }
 }
 
+/// Kind that the first use of a parameter in its plan needs.
+pub(super) fn kind_by_use(plan: &Plan<'_>, name: &str, alphabet: &Alphabet) -> Option<Kind> {
+    Uses { alphabet, elements: plan.elements }.kind_of(name)
+}
+
 /// Writes a type as in a plan.
-fn type_name(kind: Kind) -> String {
+pub(super) fn type_name(kind: Kind) -> String {
     let name = Kind::NAMES.iter().find(|name| Kind::from_name(name) == Some(kind));
     if let Kind::Bits(length) = kind {
         return format!("bits[{length}]");

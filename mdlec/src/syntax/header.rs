@@ -62,13 +62,23 @@ pub(super) fn names<'s>(tokens: &[Token<'s>]) -> BTreeSet<&'s str> {
 /// Determines if the tokens after a parenthesis begin parameters: a name and a colon with a type, or with a name that
 /// must be one. A string whose first element has a label begins alike.
 pub(super) fn begins<'s>(mut behind: impl Iterator<Item = Tok<'s>>) -> Begins<'s> {
-    if !matches!((behind.next(), behind.next()), (Some(Tok::Name(_)), Some(Tok::Colon))) {
-        return Begins::Others;
+    match (behind.next(), behind.next()) {
+        (Some(Tok::Name(_)), Some(Tok::Colon)) => {}
+        // `(bumper, v: speed)`, where a condition is before the parameters, or a parameter has no type.
+        (Some(Tok::Name(_)), Some(Tok::Comma)) => {
+            let next = [behind.next(), behind.next(), behind.next()];
+            let is_typed =
+                matches!(next, [Some(Tok::Name(_)), Some(Tok::Colon), Some(Tok::Name(kind))] if is_type(kind));
+            return if is_typed { Begins::Parameters } else { Begins::Others };
+        }
+        _ => return Begins::Others,
     }
     #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens cannot begin an element")]
     match behind.next() {
-        Some(Tok::Name(name)) if name == "bits" || Kind::NAMES.contains(&name) => Begins::Parameters,
+        Some(Tok::Name(name)) if is_type(name) => Begins::Parameters,
         Some(Tok::Name(name)) => match [behind.next(), behind.next(), behind.next()] {
+            // A colon is missing between the second name and its type.
+            [Some(Tok::Comma), Some(Tok::Name(_)), Some(Tok::Name(kind))] if is_type(kind) => Begins::Parameters,
             [Some(Tok::LBracket), ..] | [Some(Tok::Comma), Some(Tok::Name(_)), Some(Tok::Colon)] => Begins::Parameters,
             // What has a power is no list.
             [Some(Tok::RParen), Some(Tok::Caret), ..] => Begins::Others,
@@ -78,6 +88,11 @@ pub(super) fn begins<'s>(mut behind: impl Iterator<Item = Tok<'s>>) -> Begins<'s
         Some(Tok::LParen | Tok::LBrace | Tok::ExecPlan | Tok::Frame | Tok::Label(_)) => Begins::Others,
         _ => Begins::Parameters,
     }
+}
+
+/// Returns `true` if a name is that of a type of parameters.
+fn is_type(name: &str) -> bool {
+    name == "bits" || Kind::NAMES.contains(&name)
 }
 
 /// Returns `true` if the group whose parenthesis is before `behind` contains something that no condition does, at any

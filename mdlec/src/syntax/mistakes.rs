@@ -5,6 +5,7 @@ mod calls;
 mod conditions;
 mod files;
 mod labels;
+mod parameters;
 
 use super::errors::Site;
 use super::token::{Tok, split};
@@ -14,6 +15,7 @@ use calls::{apart, bare_call, decimal_comma, element_touches, square_brackets, t
 use conditions::condition;
 use files::at_file_level;
 use labels::{label_and_equals, label_behind, label_in_quotes, label_of_after};
+use parameters::parameters;
 
 /// Returns the message about the first known mistake that fits.
 pub(super) fn known(site: &Site<'_, '_>) -> Option<Diagnostic> {
@@ -168,14 +170,15 @@ fn keyword_argument(site: &Site<'_, '_>) -> Option<Diagnostic> {
     }
     #[allow(clippy::wildcard_enum_match_arm, reason = "only keywords are looked at")]
     match site.before(1)? {
-        Tok::Frame => Some(
-            site.about(
-                site.at,
-                format!("expected an angle or `here` after `FRAME`, found {}", site.found_words()),
-                "expected a number or `here`",
-            )
-            .help("write `FRAME 180deg Name`, or `FRAME here Name` for the heading at its entry"),
-        ),
+        Tok::Frame => {
+            let message = format!("expected an angle or `here` after `FRAME`, found {}", site.found_words());
+            let diagnostic = site.about(site.at, message, "expected a number or `here`");
+            let help = "write `FRAME 180deg Name`, or `FRAME here Name` for the heading at its entry";
+            Some(match site.name_at(site.at) {
+                Some(_) => diagnostic.help("the angle of a frame is a number, and cannot be a parameter").help(help),
+                None => diagnostic.help(help),
+            })
+        }
         Tok::After if label_of_after(site).is_some() => label_of_after(site),
         Tok::After => Some(
             site.about(
@@ -238,15 +241,6 @@ fn comma_in_atom(site: &Site<'_, '_>) -> Option<Diagnostic> {
         }
         _ => None,
     }
-}
-
-/// Reports a malformed list of parameters.
-fn parameters(site: &Site<'_, '_>) -> Option<Diagnostic> {
-    (site.opener_kind() == Some(Tok::ParamParen)).then(|| {
-        let expected = if site.before(1) == Some(Tok::Comma) { "a parameter".to_owned() } else { site.expectation() };
-        let message = format!("expected {expected}, found {}", site.found_words());
-        site.about(site.at, message, "not expected here").help("parameters are written `(v: speed, t: time)`")
-    })
 }
 
 /// Index of a name that is a keyword except for capitals, with that keyword.

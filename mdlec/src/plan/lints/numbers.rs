@@ -121,7 +121,7 @@ impl Numbers<'_> {
 
     /// Checks the arguments of a plan.
     fn given(&mut self, call: &Call, plan: &tree::Plan) {
-        let parameters = Parameters::declared(plan, &mut Vec::new());
+        let parameters = Parameters::declared(plan, self.alphabet, &mut Vec::new());
         for (arg, param) in call.args.iter().zip(plan.params) {
             let parameter = parameters.get(param.name.node);
             if let (Arg::Number(number), Some((kind, Some(unit)))) =

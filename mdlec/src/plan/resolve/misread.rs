@@ -1,11 +1,11 @@
 //! Reports usual mistakes that the parser accepts, and names of no plan, with what was probably meant.
 
 use super::Resolver;
-use crate::alphabet::{self, DeclarationKind};
+use crate::alphabet::{self, DeclarationKind, Kind, Unit};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::plan::arguments::{kind_words, written};
-use crate::syntax::foreign;
-use crate::syntax::tree::{self, Call, ConditionNode, Element, Primary};
+use crate::syntax::tree::{self, Call, ConditionNode, Element, Frame, Primary};
+use crate::syntax::{foreign, nearest_unit};
 
 impl<'a> Resolver<'_, 'a> {
     /// Reports `{ My Plan (bumper) …`, a name of two words; returns the number of elements that belong to the mistake.
@@ -49,6 +49,21 @@ impl<'a> Resolver<'_, 'a> {
         let words = "the condition of a plan is written in parentheses after its name: {}";
         self.found.push(found.fix(words, call.span, format!("({})", written(call))));
         1
+    }
+
+    /// Reports `FRAME 90 deg (Atom …)`, where the unit is read as a plan by name.
+    pub(super) fn unit_apart(&self, element: &Element<'a>) -> Option<Diagnostic> {
+        let (Some(Frame::Turned(number)), Primary::Ref(call)) = (element.frame(), &element.primary) else {
+            return None;
+        };
+        let unit = nearest_unit(call.name).and_then(Unit::from_name).filter(|unit| unit.kind == Kind::Angle)?.name;
+        if !call.args.is_empty() || number.unit().is_some() || self.definitions.get(call.name).is_some() {
+            return None;
+        }
+        let (digits, span) = (number.digits(), call.name_span());
+        let message = format!("there is a space between `{digits}` and its unit `{unit}`");
+        let found = Diagnostic::new(Code::E0104, message, span, "remove the space before this unit");
+        Some(found.fix("write {}", number.span.to(span), format!("{digits}{unit}")))
     }
 
     /// Reports `(Atom (u) ξ)`: law and condition exchanged.
@@ -95,6 +110,12 @@ impl<'a> Resolver<'_, 'a> {
         }
         match alphabet::nearest(name, self.definitions.names.iter().copied()) {
             Some(near) => report.fix("did you mean {}?", span, near),
+            None if Unit::from_name(name).is_some() => {
+                report.help(format!("`{name}` is a unit, which touches its number: `5{name}`"))
+            }
+            None if Kind::NAMES.contains(&name) => {
+                report.help(format!("`{name}` is a type, which follows a parameter's name: `{{ Leg (x: {name}) … }}`"))
+            }
             None if name == "here" => report.help("`here` follows `FRAME`: `FRAME here (Atom (bumper) stop)`"),
             None if is_joining(name) => report.fix("elements follow each other without a word: remove it", span, ""),
             None if call.args.is_empty() && self.next.is_some_and(|next| next.start == span.end + 1) => {

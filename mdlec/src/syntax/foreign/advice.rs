@@ -46,6 +46,20 @@ pub(super) fn is_word(name: &str) -> bool {
             | "const"
             | "int"
             | "float"
+            | "parallel"
+            | "Parallel"
+            | "PARALLEL"
+            | "par"
+            | "concurrent"
+            | "concurrently"
+            | "simultaneously"
+            | "async"
+            | "spawn"
+            | "fork"
+            | "sequence"
+            | "Sequence"
+            | "SEQUENCE"
+            | "seq"
     )
 }
 
@@ -93,6 +107,16 @@ pub(super) fn advice_for(word: &str, condition: &str) -> Option<String> {
             "an interrupt ends what is in its scope: `{ Drive (bumper) ExecPlan inf { (Atom (wait 5) (go 20 0)) } }`"
                 .to_owned()
         }
+        "parallel" | "Parallel" | "PARALLEL" | "par" | "concurrent" | "concurrently" | "simultaneously" | "async"
+        | "spawn" | "fork" => {
+            "a robot runs one law at a time; what has to be watched at the same time is joined in a condition: \
+             `(Atom (bumper OR wait 5) (go 20 0))`"
+                .to_owned()
+        }
+        "sequence" | "Sequence" | "SEQUENCE" | "seq" => {
+            "elements run one after the other as they are written; to group them, write `{ Name … }` or `( … )`"
+                .to_owned()
+        }
         "def" | "function" | "fn" | "func" | "procedure" => {
             "a plan is written `{ Name (Atom (wait 5) stop) }` and used by its name".to_owned()
         }
@@ -110,7 +134,9 @@ mod tests {
 
     #[test]
     fn every_word_has_an_advice() {
-        for word in ["if", "else", "while", "until", "repeat", "import", "break", "def", "let", "go", "Leg"] {
+        for word in
+            ["if", "else", "while", "until", "repeat", "import", "break", "def", "let", "parallel", "seq", "go", "Leg"]
+        {
             assert_eq!(is_word(word), advice(word).is_some(), "{word}");
         }
     }

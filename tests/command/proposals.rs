@@ -1,0 +1,137 @@
+//! Mistakes with the text that a writer meant: a message proposes what leads to that text, and nothing that compiles
+//! into another mission.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+
+use mdle_tests::executable::{folder, run_mdlec};
+
+/// A plan with each mistake, a part of the help, a text that must not be proposed, and the plan that was meant.
+const PROPOSALS: &[(&str, &str, &str, &str)] = &[
+    (
+        "{ P (bumper) FRAME 90 deg (Atom (null) rotate 0) }",
+        "write `90deg`",
+        "a plan of this name",
+        "{ P (bumper) FRAME 90deg (Atom (null) rotate 0) }",
+    ),
+    (
+        "{ P (bumper) FRAME 90 degrees (Atom (null) rotate 0) }",
+        "write `90deg`",
+        "has a colon",
+        "{ P (bumper) FRAME 90deg (Atom (null) rotate 0) }",
+    ),
+    (
+        "{ P (bumper) parallel { (Atom (wait 5s) (go 20 0)) (Atom (null) turn 90) } }",
+        "a robot runs one law at a time",
+        "{ parallel",
+        "{ P (bumper) ((Atom (wait 5s) (go 20 0)) (Atom (null) turn 90)) }",
+    ),
+    (
+        "{ P (bumper) sequence { (Atom (wait 5s) (go 20 0)) (Atom (null) turn 90) } }",
+        "elements run one after the other as they are written",
+        "{ sequence",
+        "{ P (bumper) ((Atom (wait 5s) (go 20 0)) (Atom (null) turn 90)) }",
+    ),
+    ("{ P (bumper) deg }", "`deg` is a unit", "a plan of this name", "{ P (bumper) (Atom (null) turn 5deg) }"),
+    (
+        "{ P (bumper) length }",
+        "`length` is a type",
+        "a plan of this name",
+        "{ P (bumper) Leg(1m) } { Leg (x: length) (Atom (null) advance x) }",
+    ),
+    (
+        "{ P a: (Atom (wait 5s) (go 20 0)) a: (Atom (after a wait 2s) (go -15 0)) }",
+        "give one of them another name",
+        "after a (",
+        "{ P a: (Atom (wait 5s) (go 20 0)) b: (Atom (after a wait 5s) (go -15 0)) }",
+    ),
+    (
+        "{ P a: (Atom (after a wait 2s) (go 20 0)) }",
+        "leave the cause out: `after a`",
+        "after a (",
+        "{ P a: (Atom (after a) (go 20 0)) }",
+    ),
+    (
+        "{ P a: (Atom (wait 5s) (go 20 0)) (Atom (after behind bumper) (go -15 0)) }",
+        "the labels of this plan are `a`",
+        "behind: (Atom",
+        "{ P a: (Atom (wait 5s) (go 20 0)) (Atom (after a) (go -15 0)) }",
+    ),
+    (
+        "{ P (bumper) Leg(3m) } { Leg (far: float) (Atom (null) advance far) }",
+        "where it is used it has to be `length`",
+        "`number`",
+        "{ P (bumper) Leg(3m) } { Leg (far: length) (Atom (null) advance far) }",
+    ),
+    (
+        "{ P (bumper) Leg(3m) } { Leg (far: double) (Atom (way > far) (go 20 0)) }",
+        "the types are length, speed, angle",
+        "did you mean",
+        "{ P (bumper) Leg(3m) } { Leg (far: length) (Atom (way > far) (go 20 0)) }",
+    ),
+    (
+        "{ P (bumper) Leg(3m) } { Leg (far: length) (Atom (way > fr) (go 20 0)) }",
+        "did you mean `far`?",
+        "`r <sonar",
+        "{ P (bumper) Leg(3m) } { Leg (far: length) (Atom (way > far) (go 20 0)) }",
+    ),
+    (
+        "{ P (bumper) Leg(90) } { Leg (a: angle) FRAME a (Atom (null) rotate 0) }",
+        "the angle of a frame is a number, and cannot be a parameter",
+        "a plan of this name",
+        "{ P (bumper) Leg } { Leg FRAME 90deg (Atom (null) rotate 0) }",
+    ),
+    (
+        "{ Q P(20) } { P (bumper, speed: speed) (Atom (wait 2s) (go speed 0)) }",
+        "of its own: `(speed: speed) (bumper)`",
+        "{ speed (",
+        "{ Q P(20) } { P (speed: speed) (bumper) (Atom (wait 2s) (go speed 0)) }",
+    ),
+    (
+        "{ Q P(1m, 20) } { P (far, v: speed) (Atom (null) advance far v) }",
+        "a type follows each name: `(far: length, v: speed)`",
+        "of its own",
+        "{ Q P(1m, 20) } { P (far: length, v: speed) (Atom (null) advance far v) }",
+    ),
+    (
+        "{ Q P(1m, 20) } { P (far: lenght, v speed) (Atom (null) advance far v) }",
+        "write `v: speed`",
+        "a plan of this name",
+        "{ Q P(1m, 20) } { P (far: length, v: speed) (Atom (null) advance far v) }",
+    ),
+    (
+        "{ P (bumper) Leg(3m) } { Leg (far: length = 1m) (Atom (null) advance far) }",
+        "each use of the plan gives the values",
+        "`[`",
+        "{ P (bumper) Leg(3m) } { Leg (far: length) (Atom (null) advance far) }",
+    ),
+];
+
+#[test]
+fn proposals_lead_to_what_was_meant() {
+    let folder = folder("proposals");
+    let check = |plan: &str| {
+        fs::write(folder.join("plan.mdle"), plan).unwrap();
+        let output = run_mdlec(&folder, &["check", "plan.mdle"]);
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    for (plan, proposed, misleading, meant) in PROPOSALS {
+        let (status, message) = check(plan);
+        assert_eq!(status, Some(1), "{message}");
+        let help: String = message.lines().filter(|line| line.trim_start().starts_with('=')).collect();
+        assert!(help.contains(proposed), "{proposed}\n{message}");
+        assert!(!message.contains(misleading), "{misleading}\n{message}");
+        let (status, message) = check(meant);
+        assert_eq!(status, Some(0), "{message}");
+    }
+}
+
+#[test]
+fn a_used_file_with_a_letter_too_few_names_the_near_one() {
+    let folder = folder("proposals_use");
+    fs::write(folder.join("corridors.mdle"), "{ Corridor (Atom (null) advance 1m) }").unwrap();
+    fs::write(folder.join("plan.mdle"), "use \"coridors.mdle\"\n{ P (bumper) Corridor }").unwrap();
+    let output = run_mdlec(&folder, &["check", "plan.mdle"]);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(message.contains("there is no file `coridors.mdle`; did you mean `corridors.mdle`?"), "{message}");
+}
