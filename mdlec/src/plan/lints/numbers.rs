@@ -26,6 +26,8 @@ pub fn bare_numbers(files: &Files, alphabet: &Alphabet) -> Vec<Diagnostic> {
 const SONAR: f64 = 20.0;
 /// Length in metres that hardly any plan drives.
 const FAR: f64 = 100.0;
+/// Length in metres that is unusual for one law.
+const UNUSUAL: f64 = 50.0;
 
 struct Numbers<'a> {
     alphabet: &'a Alphabet,
@@ -114,7 +116,7 @@ impl Numbers<'_> {
         let Some(declaration) = meant else { return };
         for (arg, param) in call.args.iter().zip(&declaration.params) {
             if let (Arg::Number(number), Some(unit)) = (arg, param.unit) {
-                self.number(number, param.kind, unit.name, &format!("`{}` of `{}`", param.name, call.name));
+                self.argument(number, param.kind, unit.name, &format!("`{}` of `{}`", param.name, call.name));
             }
         }
     }
@@ -127,8 +129,18 @@ impl Numbers<'_> {
             if let (Arg::Number(number), Some((kind, Some(unit)))) =
                 (arg, parameter.map(|parameter| (parameter.kind, parameter.unit())))
             {
-                self.number(number, kind, unit.name, &format!("`{}` of `{}`", param.name.node, call.name));
+                self.argument(number, kind, unit.name, &format!("`{}` of `{}`", param.name.node, call.name));
             }
+        }
+    }
+
+    /// Checks an argument: a length in it is driven, and so shorter than a position may be.
+    fn argument(&mut self, number: &Number, kind: Kind, unit: &str, what: &str) {
+        let size = number.digits().parse::<f64>().map_or(0.0, f64::abs);
+        if kind == Kind::Length && unit == "m" && number.unit().is_none() && (UNUSUAL..=FAR).contains(&size) {
+            self.doubtful(number, unit, what, ("cm", "far for one law"));
+        } else {
+            self.number(number, kind, unit, what);
         }
     }
 
@@ -186,6 +198,12 @@ fn doubt(kind: Kind, unit: &str, value: f64) -> Option<(&'static str, &'static s
         () if is("m") && size > 1000.0 => ("mm", "farther than a robot goes"),
         () if is("m") && size > FAR => ("cm", "farther than a robot goes"),
         () if is("s") && size > 10_000.0 => ("ms", "more than two hours"),
+        () if is("s") && is_like_milliseconds(size) => ("ms", "more than a quarter of an hour"),
         () => return None,
     })
+}
+
+/// Returns `true` for 1000 and more that people write for milliseconds: times in seconds are whole minutes, as 1800 is.
+fn is_like_milliseconds(size: f64) -> bool {
+    size >= 1000.0 && (size % 60.0 != 0.0 || size % 1000.0 == 0.0)
 }

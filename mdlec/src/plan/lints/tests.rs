@@ -86,15 +86,20 @@ fn numbers_that_look_like_another_unit() {
         "{ P
   (Atom (wait 20000) go 0.5 90)
   (Atom (wait 5) rotate(1.57))
+  (Atom (wait 5000) advance 100)
+  (Atom (t >= 1000) advance -50)
+  Leg(60)
   (Atom (wait 5) goAvoid 90 4000 2000)
   FRAME 3.14 { Q (wait 86400) (Atom (wait 1) go -0.25 0.36) }
   (Atom (r0 < 50 OR way > 300) advance 300)
   (Atom (v > 500 OR NOT r 3 < 2000) goAvoid 0 400)
-}"
+}
+{ Leg (far: length) (Atom (null) advance far) }"
     );
     assert_silent(&[
         "{ P (Atom (wait 20000s) go 0.5cm/s 90rad/s) (Atom (wait 3600) rotate(1.57deg)) }",
-        "{ P (Atom (r0 < 50m OR way > 300m OR x > 90 OR r_3 < 3.5) advance 100) (Atom (age 3 > 50) stop) }",
+        "{ P (Atom (wait 1800 OR t > 1260) advance 49) (Atom (wait 5000s) advance 100m) (Atom (wait 999) turn 90) }",
+        "{ P (Atom (r0 < 50m OR way > 300m OR x > 90 OR r_3 < 3.5) advance 40) (Atom (age 3 > 50) stop) }",
         "{ P (Atom (wait 0.5) go 0 0.36) (Atom (wait 9) rotate 22.5) (Atom (wait 9) turn 3) (Atom (wait 9) goAvoid(heading module)) }",
     ]);
 }
