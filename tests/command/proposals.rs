@@ -105,6 +105,103 @@ const PROPOSALS: &[(&str, &str, &str, &str)] = &[
         "`[`",
         "{ P (bumper) Leg(3m) } { Leg (far: length) (Atom (null) advance far) }",
     ),
+    (
+        "{ P (bumper) (Atom (wait T#5s) (go 20 0)) }",
+        "its unit touches: `5s`",
+        "a comment begins",
+        "{ P (bumper) (Atom (wait 5s) (go 20 0)) }",
+    ),
+    ("{ P (bumper) (Atom (null) turn pi/2) }", "write `90deg`", "20cm/s", "{ P (bumper) (Atom (null) turn 90deg) }"),
+    (
+        "{ P (bumper) (Atom (null) turn 2*pi) }",
+        "or `6.2832rad`",
+        "one signal on each side",
+        "{ P (bumper) (Atom (null) turn 6.2832rad) }",
+    ),
+    (
+        "{ P (bumper) Leg(90) } { Leg (a: angle) (Atom (null) turn -a) }",
+        "its negative value where the plan is used, as in `Leg(-90)`",
+        "one signal on each side",
+        "{ P (bumper) Leg(-90) } { Leg (a: angle) (Atom (null) turn a) }",
+    ),
+    (
+        "{ P (bumper) Leg(90) } { Leg (a: angle) (Atom (null) (turn (-a))) }",
+        "its negative value where the plan is used",
+        "a sign touches its number",
+        "{ P (bumper) Leg(-90) } { Leg (a: angle) (Atom (null) (turn a)) }",
+    ),
+    (
+        "{ P (bumper) (Atom (null) path bend.csv) }",
+        "between double quotes: `\"bend.csv\"`",
+        "`Leg(3m)`",
+        "{ P (bumper) (Atom (null) path \"bend.csv\") }",
+    ),
+    (
+        "{ P (bumper) (Atom (r0 != 50cm) (go 20 0)) }",
+        "before an equality: `NOT r0 == 50cm`",
+        "r 3",
+        "{ P (bumper) (Atom (NOT r0 == 50cm) (go 20 0)) }",
+    ),
+    (
+        "{ P (bumper) (Atom (r0 < 2*r4) (go 20 0)) }",
+        "without a factor: `r0 < r4`",
+        "AND",
+        "{ P (bumper) (Atom (r0 < r4) (go 20 0)) }",
+    ),
+    (
+        "{ P (bumper) (Atom (wait 5s) (go v=20 omega=0)) }",
+        "write the values alone: `20 0`",
+        "expected an argument",
+        "{ P (bumper) (Atom (wait 5s) (go 20 0)) }",
+    ),
+    (
+        "{ P (bumper) for i in 1..3 (Atom (wait 1s) (go 20 0)) }",
+        "a loop is written `ExecPlan 3 {",
+        "has one dot",
+        "{ P (bumper) ExecPlan 3 { (Atom (wait 1s) (go 20 0)) } }",
+    ),
+    (
+        "{ P (bumper)\n  for i in range(3):\n    (Atom (wait 1s) (go 20 0))\n}",
+        "a loop is written `ExecPlan 3 {",
+        "range (bumper)",
+        "{ P (bumper)\n  ExecPlan 3 {\n    (Atom (wait 1s) (go 20 0))\n  }\n}",
+    ),
+    (
+        "{ P (bumper)\n  for i = 1:3\n    (Atom (wait 1s) (go 20 0))\n}",
+        "a loop is written `ExecPlan 3 {",
+        "goAvoid",
+        "{ P (bumper)\n  ExecPlan 3 {\n    (Atom (wait 1s) (go 20 0))\n  }\n}",
+    ),
+    (
+        "{ P (bumper) (Atom (wait 5s) { go 20 0 }) }",
+        "write `(go 20 0)`",
+        "stop",
+        "{ P (bumper) (Atom (wait 5s) (go 20 0)) }",
+    ),
+    (
+        "{ P (bumper) (Atom (wait 5s) (go 20 0) (turn 90)) }",
+        "an atom of its own: `(Atom (null) turn 90)`",
+        "stop",
+        "{ P (bumper) (Atom (wait 5s) (go 20 0)) (Atom (null) turn 90) }",
+    ),
+    (
+        "{ P (bumper) (Atom (RISING r0 < 50cm wait 5s) (go 20 0)) }",
+        "if one of them is enough, write `OR` before it",
+        "expected `OR`",
+        "{ P (bumper) (Atom (RISING r0 < 50cm OR wait 5s) (go 20 0)) }",
+    ),
+    (
+        "{ P (bumper) (Atom (wait 2m) (go 20 0)) }",
+        "for minutes write `2min`",
+        "did you mean",
+        "{ P (bumper) (Atom (wait 2min) (go 20 0)) }",
+    ),
+    (
+        "{ P (bumper) a: (Atom (wait 5s) (go 20 0)) goto a }",
+        "a plan has no jumps",
+        "{ Drive",
+        "{ P (bumper) ExecPlan 3 { (Atom (wait 5s) (go 20 0)) } }",
+    ),
 ];
 
 #[test]

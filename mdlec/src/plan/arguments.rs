@@ -316,6 +316,10 @@ impl Fitting<'_> {
         let here = format!("`{}` of `{}` is {}", param.name, self.declaration.name, param.kind.words());
         let units: Vec<_> = Unit::ALL.iter().filter(|unit| unit.kind == param.kind).map(|unit| unit.name).collect();
         let report = Diagnostic::new(Code::E0303, message, number.span, here);
+        let report = match (param.kind, found) {
+            (Kind::Time, "m") => report.fix("for minutes write {}", number.span, format!("{}min", number.digits())),
+            _ => report,
+        };
         match units.split_last() {
             Some((last, [])) => report.help(format!("its unit is {last}")),
             Some((last, others)) => report.help(format!("its unit is {} or {last}", others.join(", "))),

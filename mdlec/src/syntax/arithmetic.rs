@@ -63,8 +63,14 @@ pub(super) fn arithmetic(source: Source<'_>, found: &str, place: Place) -> Optio
     let before = source.text.get(..place.start)?.trim_end_matches([' ', '\t']);
     let after = source.text.get(place.end..)?.trim_start_matches([' ', '\t']);
     let report = |message: String| Diagnostic::new(Code::E0101, message, source.span(place), "MDLe has no arithmetic");
+    if let Some(angle) = part_of_pi(source, place) {
+        return Some(angle);
+    }
     if operator.starts_with('*') && before.ends_with([')', '}']) {
         return Some(power(source, place, after));
+    }
+    if let Some(negative) = negative_name(source, operator, place) {
+        return Some(negative);
     }
     let left = word(before);
     let left_start = before.len() - left.len();
@@ -90,7 +96,10 @@ pub(super) fn arithmetic(source: Source<'_>, found: &str, place: Place) -> Optio
         }
         let is_sum = matches!(operator, "+" | "*") || !is_number(right);
         let message = format!("`{operator}` cannot be used here: nothing is computed in a plan");
-        let help = "a comparison has one signal on each side: `r0 < 1m AND r1 < 1m`";
+        let help = match operator {
+            "*" => "a comparison has one signal on each side, without a factor: `r0 < r4`",
+            _ => "a comparison has one signal on each side: `r0 < 1m AND r1 < 1m`",
+        };
         return is_sum.then(|| report(message).help(help));
     }
     let diagnostic = report(format!("`{left} {operator} {right}` is not computed"));
@@ -104,6 +113,43 @@ pub(super) fn arithmetic(source: Source<'_>, found: &str, place: Place) -> Optio
         Some(result) => diagnostic.fix("write the result: {}", whole, result),
         None => diagnostic.help("write the result as one number"),
     })
+}
+
+/// Reports `-far`: a sign before a name.
+fn negative_name(source: Source<'_>, operator: &str, place: Place) -> Option<Diagnostic> {
+    let (before, after) = (source.text.get(..place.start)?, source.text.get(place.end..)?);
+    let name = after.get(..after.find(|c: char| !is_in_word(c)).unwrap_or(after.len()))?;
+    let follows = after.get(name.len()..)?.trim_start();
+    let is_sign = operator == "-" && before.ends_with([' ', '(', ',']) && name.starts_with(char::is_alphabetic);
+    // In a comparison it is a difference of signals.
+    (is_sign && !follows.starts_with(['<', '>', '=', '≤', '≥'])).then(|| {
+        let message = format!("`-` cannot be used here: `{name}` has no sign");
+        Diagnostic::new(Code::E0101, message, source.span(place), "MDLe has no arithmetic")
+            .help("give a parameter its negative value where the plan is used, as in `Leg(-90)`")
+    })
+}
+
+/// Reports `pi/2`, `2*pi` and `pi*0.5` as the angles that they are.
+fn part_of_pi(source: Source<'_>, place: Place) -> Option<Diagnostic> {
+    let before = source.text.get(..place.start)?.trim_end_matches([' ', '\t']);
+    let after = source.text.get(place.end..)?.trim_start_matches([' ', '\t']);
+    let left = word(before);
+    let right = after.get(..after.find(|c: char| !is_in_word(c)).unwrap_or(after.len()))?;
+    let is_pi = |text: &str| matches!(text, "pi" | "PI" | "Pi" | "π");
+    let part = match source.slice(place) {
+        "/" if is_pi(left) => 1.0 / right.parse::<f64>().ok()?,
+        "*" if is_pi(left) => right.parse::<f64>().ok()?,
+        "*" if is_pi(right) => left.parse::<f64>().ok()?,
+        _ => return None,
+    };
+    let start = before.len() - left.len();
+    let sign = if before.get(..start)?.ends_with('-') { "-" } else { "" };
+    let whole = source.span(Place::new(start - sign.len(), source.text.len() - after.len() + right.len()));
+    let angle = |factor: f64, unit: &str| Some(format!("{sign}{}{unit}", rounded(part * factor)?));
+    let message = "nothing is computed in a plan, and there are no constants";
+    let found = Diagnostic::new(Code::E0101, message, source.span(place), "MDLe has no arithmetic");
+    let found = found.fix("for an angle write {}", whole, angle(180.0, "deg")?);
+    Some(found.fix("or {}", whole, angle(std::f64::consts::PI, "rad")?))
 }
 
 /// Proposes a name for `Return-Home` in the place of a plan's name.
@@ -129,7 +175,7 @@ fn power(source: Source<'_>, place: Place, after: &str) -> Diagnostic {
 }
 
 /// Word at the end of a text.
-fn word(text: &str) -> &str {
+pub(super) fn word(text: &str) -> &str {
     let start = text.char_indices().rev().take_while(|(_, c)| is_in_word(*c)).last().map_or(text.len(), |(at, _)| at);
     text.get(start..).unwrap_or("")
 }

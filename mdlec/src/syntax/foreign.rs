@@ -299,6 +299,9 @@ impl<'s> Rewriting<'_, 's> {
 
     /// Processes `repeat 3 { … }`, `repeat(3) { … }` and `forever { … }`.
     fn repeat(&mut self, at: usize, name: &str) -> Option<usize> {
+        if let Some(body) = self.after_loop_variable(at, name) {
+            return Some(body);
+        }
         let is_count = |kind| matches!(kind, Some(Tok::Number(_) | Tok::Infinity));
         let (count, next) = if is_count(self.kind(at + 1)) {
             (Some(at + 1), at + 2)
@@ -342,6 +345,31 @@ impl<'s> Rewriting<'_, 's> {
         }
         self.report(place, diagnostic.help(help));
         Some(if count.is_some() { next } else { self.past_condition(next) })
+    }
+
+    /// Processes `for i in 1..3 …`, `for i in range(3): …` and `for i = 1:3 …`, up to what is repeated.
+    fn after_loop_variable(&mut self, at: usize, name: &str) -> Option<usize> {
+        let variable = self.kind(at + 1).filter(|kind| matches!(kind, Tok::Name(_)) && !is_like_loop(name))?;
+        if !matches!(self.kind(at + 2), Some(Tok::Name("in" | "from" | "of") | Tok::Assign)) {
+            return None;
+        }
+        let mut body = at + 3;
+        while let Some(kind) = self.kind(body) {
+            let begins = matches!(kind, Tok::LParen | Tok::LBrace | Tok::RBrace | Tok::ExecPlan | Tok::Frame);
+            if begins || self.source.slice(self.place(at, body)).contains('\n') {
+                break;
+            }
+            if body > at + 16 {
+                return None;
+            }
+            body = if kind == Tok::TouchParen { self.end_of(body)? + 1 } else { body + 1 };
+        }
+        let Tok::Name(variable) = variable else { return None };
+        let (place, span) = (self.place(at, body - 1), self.source.span(self.place(at, at)));
+        let message = format!("MDLe has no `{name}`, and no variables such as `{variable}`");
+        let diagnostic = Diagnostic::new(Code::E0102, message, span, "not expected here");
+        self.report(place, diagnostic.help(advice("for")?));
+        Some(self.past_condition(body))
     }
 
     /// `[Atom (bumper) stop]`; what closes it is left for when it is reached.

@@ -1,7 +1,7 @@
 //! Messages about text that is not a token: unexpected characters, malformed numbers, and unterminated comments and
 //! strings.
 
-use super::arithmetic::{arithmetic, computed, foreign_unit};
+use super::arithmetic::{arithmetic, computed, foreign_unit, word};
 use super::source::{Place, Source};
 use super::token::split;
 use crate::alphabet::Unit;
@@ -29,6 +29,9 @@ fn characters_help(diagnostic: Diagnostic, source: Source<'_>, found: &str, plac
     let next = after.chars().next();
     let operator =
         |diagnostic: Diagnostic, word| diagnostic.fix("write {}", source.span(place), apart(source, place, word));
+    if let Some(words) = words_around(&diagnostic, source, found, place) {
+        return words;
+    }
     match found {
         "&&" | "&" | "∧" => operator(diagnostic, "AND"),
         "||" | "|" | "∨" => operator(diagnostic, "OR"),
@@ -64,6 +67,45 @@ fn characters_help(diagnostic: Diagnostic, source: Source<'_>, found: &str, plac
         "/" => diagnostic.help("a unit is written out and touches its number: `20cm/s`"),
         "\\" => diagnostic.help(TYPESETTING),
         _ => diagnostic,
+    }
+}
+
+/// Adds help about a text that these characters are a part of: `T#5s`, `bend.csv`, `r0 != 50cm`.
+fn words_around(diagnostic: &Diagnostic, source: Source<'_>, found: &str, place: Place) -> Option<Diagnostic> {
+    let (before, after) = (source.text.get(..place.start)?, source.text.get(place.end..)?);
+    let left = word(before);
+    let is_part = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.');
+    let of = |text: &'_ str| text.find(|c: char| !is_part(c)).unwrap_or(text.len());
+    let (skipped, right) = match after.strip_prefix('=').filter(|_| found == "!") {
+        Some(rest) => {
+            let operand = rest.trim_start_matches(' ');
+            (after.len() - operand.len(), operand.get(..of(operand))?)
+        }
+        None => (0, after.get(..of(after))?),
+    };
+    let end = place.end + skipped + right.len();
+    let whole = |left: &str| source.span(Place::new(place.start - left.len(), end));
+    let (number, unit) = split(right);
+    let diagnostic = diagnostic.clone();
+    match found {
+        "#" if matches!(left, "T" | "t" | "TIME" | "Time") && !number.is_empty() && Unit::from_name(unit).is_some() => {
+            Some(diagnostic.fix("a time is a number that its unit touches: {}", whole(left), right))
+        }
+        "." if matches!(right, "csv" | "tsv" | "txt" | "dat" | "path") && ends_name(source, place.start) => {
+            let file = format!("\"{left}.{right}\"");
+            Some(diagnostic.fix("the name of a file is written between double quotes: {}", whole(left), file))
+        }
+        "!" if skipped > 0 && !right.is_empty() => {
+            let signal = word(before.trim_end_matches(' '));
+            let start = before.trim_end_matches(' ').len() - signal.len();
+            let begins = before.get(..start)?.trim_end();
+            let is_whole = ["(", " OR", " AND", " or", " and"].iter().any(|end| begins.ends_with(end));
+            let is_signal = signal.starts_with(char::is_alphabetic) && is_whole;
+            let words = "write `NOT` before an equality: {}";
+            let span = source.span(Place::new(start, end));
+            is_signal.then(|| diagnostic.fix(words, span, format!("NOT {signal} == {right}")))
+        }
+        _ => None,
     }
 }
 

@@ -103,7 +103,10 @@ pub(super) fn advice_for(word: &str, condition: &str) -> Option<String> {
         "import" | "include" | "require" => {
             "other files are named at the top of the file: `use \"corridors.mdle\"`".to_owned()
         }
-        "break" | "continue" | "return" | "goto" => {
+        "goto" => {
+            "a plan has no jumps: what is repeated is in a loop, as in `ExecPlan 3 { (Atom (wait 5) stop) }`".to_owned()
+        }
+        "break" | "continue" | "return" => {
             "an interrupt ends what is in its scope: `{ Drive (bumper) ExecPlan inf { (Atom (wait 5) (go 20 0)) } }`"
                 .to_owned()
         }

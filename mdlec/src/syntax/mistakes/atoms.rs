@@ -126,6 +126,9 @@ pub(super) fn atom_law(site: &Site<'_, '_>) -> Option<Diagnostic> {
                 .help("an atom is a condition and a law: `(Atom (bumper) stop)`"),
         );
     }
+    if let Some(law) = law_in_braces(site) {
+        return Some(law);
+    }
     if site.found() == Some(Tok::LBrace) {
         let diagnostic = site.about(site.at, "an atom runs a law, not a plan", "not expected here");
         let help = "a behavior has a name and an interrupt of its own, and no `Atom`: `{ Inner (wait 5) (Atom (bumper) stop) }`";
@@ -146,8 +149,28 @@ pub(super) fn atom_law(site: &Site<'_, '_>) -> Option<Diagnostic> {
         Tok::Comma => diagnostic
             .fix("remove the comma: arguments are separated by spaces, as in `go 5 0`", site.span(site.at, site.at), "")
             .help("or write them in parentheses that touch the name: `go(5, 0)`"),
-        _ => diagnostic.help(
-            "an atom is one condition and one law; a second law needs an atom of its own: `(Atom (bumper) stop)`",
-        ),
+        _ => {
+            let law = second_law(site).unwrap_or_else(|| "(Atom (bumper) stop)".to_owned());
+            let words = "an atom is one condition and one law; a second law needs an atom of its own";
+            diagnostic.help(format!("{words}: `{law}`"))
+        }
     })
+}
+
+/// Atom of the law `(turn 90)` that follows the law of another atom.
+fn second_law(site: &Site<'_, '_>) -> Option<String> {
+    let (first, last) = (site.at + 1, site.end_of_group(site.at).checked_sub(1)?);
+    let is_law = site.found() == Some(Tok::LParen) && site.name_at(first).is_some_and(is_law);
+    let law = site.text(first, last).filter(|_| is_law && site.is_call(first, last))?;
+    Some(format!("(Atom ({}) {law})", condition_for(law)))
+}
+
+/// `(Atom (wait 5s) { go 20 0 })`
+fn law_in_braces(site: &Site<'_, '_>) -> Option<Diagnostic> {
+    let (first, end) = (site.at + 1, site.end_of_group(site.at));
+    let last = end.checked_sub(1).filter(|last| *last >= first && site.kind(end) == Some(Tok::RBrace))?;
+    let is_law = site.found() == Some(Tok::LBrace) && site.name_at(first).is_some_and(is_law);
+    let law = site.text(first, last).filter(|_| is_law && site.is_call(first, last))?;
+    let diagnostic = site.about(site.at, "the law of an atom is written in parentheses", "no brace is expected here");
+    Some(diagnostic.fix("write {}", site.span(site.at, end), format!("({law})")))
 }

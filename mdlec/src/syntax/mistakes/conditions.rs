@@ -7,7 +7,7 @@ use crate::syntax::token::Tok;
 /// Reports text that is not a condition where a condition is allowed.
 pub(super) fn condition(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if !site.expects_condition() {
-        return None;
+        return not_joined(site);
     }
     #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are told as they are")]
     match (site.before(1)?, site.found()?) {
@@ -81,6 +81,22 @@ fn turned(site: &Site<'_, '_>) -> Option<Diagnostic> {
     };
     let diagnostic = site.about(site.at, "a comparison begins with its signal", "not expected here");
     Some(diagnostic.fix("write {}", site.span(site.at, end), replacement))
+}
+
+/// `(r0 < 50cm wait 5s)`
+fn not_joined(site: &Site<'_, '_>) -> Option<Diagnostic> {
+    let next = site.name_at(site.at).filter(|_| site.expects("OR") && site.expects("AND"))?;
+    let is_compared =
+        matches!(site.before(2)?, Tok::Equal | Tok::Less | Tok::LessOrEqual | Tok::Greater | Tok::GreaterOrEqual);
+    is_compared.then(|| {
+        let message = format!("nothing joins `{next}` to the condition before it");
+        let diagnostic = site.about(site.at, message, "a second condition");
+        diagnostic.fix("if one of them is enough, write {} before it", site.before_token(site.at), "OR ").fix(
+            "if both are needed, {}",
+            site.before_token(site.at),
+            "AND ",
+        )
+    })
 }
 
 fn operator(token: Tok<'_>) -> &'static str {

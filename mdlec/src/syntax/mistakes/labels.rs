@@ -24,7 +24,7 @@ pub(super) fn label_and_equals(site: &Site<'_, '_>) -> Option<Diagnostic> {
                 "==",
             ));
         }
-        if let Some(argument) = named_argument(site) {
+        if let Some(argument) = named_argument(site).or_else(|| named_arguments_of_law(site)) {
             return Some(argument);
         }
         let name = site.at.checked_sub(1).filter(|_| site.expects_element())?;
@@ -95,6 +95,19 @@ fn named_argument(site: &Site<'_, '_>) -> Option<Diagnostic> {
         Some(before) => diagnostic.fix(&words, site.span(plan, site.at), before),
         None => diagnostic.fix(&words, site.span(name, site.at), ""),
     })
+}
+
+/// `(go v=20 omega=0)`
+fn named_arguments_of_law(site: &Site<'_, '_>) -> Option<Diagnostic> {
+    let first = site.at.checked_sub(1).filter(|_| site.expects_argument())?;
+    let names = (first..).step_by(3).take_while(|at| {
+        let is_value = matches!(site.kind(at + 2), Some(Tok::Number(_) | Tok::Infinity | Tok::Str(_) | Tok::Name(_)));
+        site.name_at(*at).is_some() && site.kind(at + 1) == Some(Tok::Assign) && is_value
+    });
+    let values = names.map(|at| site.text(at + 2, at + 2)).collect::<Option<Vec<_>>>()?;
+    let last = (first + 3 * values.len()).checked_sub(1).filter(|last| *last > site.at)?;
+    let diagnostic = site.about(site.at, "arguments have no names: they are given in order", "not expected here");
+    Some(diagnostic.fix("write the values alone: {}", site.span(first, last), values.join(" ")))
 }
 
 /// `"there": (Atom …)`
