@@ -24,7 +24,7 @@ const TURNS: f64 = 0.02;
 
 /// An echo: its place in the odometry's axes, and its time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Heard {
+struct Echo {
     at: Nanos,
     /// Place of the echo; the heading is the direction of the sonar's axis.
     place: Pose,
@@ -42,7 +42,7 @@ struct Relative {
 /// The last echoes ahead, newest first, without silence between them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Approach {
-    heard: [Option<Heard>; PINGS_KEPT],
+    heard: [Option<Echo>; PINGS_KEPT],
 }
 
 impl Approach {
@@ -59,7 +59,7 @@ impl Approach {
         self.heard = match ping.range.filter(|_| looked) {
             Some(range) => {
                 let place = ping.pose.towards(axis, Meters(y.ring_radius().0 + range.0));
-                [Some(Heard { at: ping.at, place }), first, second]
+                [Some(Echo { at: ping.at, place }), first, second]
             }
             None => Default::default(),
         };
@@ -71,7 +71,7 @@ impl Approach {
     /// that is still kept may contradict them.
     pub(crate) fn seconds(&self, here: Pose, way: Radians, confirmation: usize) -> Option<f64> {
         let (sin, cos) = libm::sincos(way.0);
-        let mut heard = self.heard.iter().flatten().map(|Heard { at, place }| {
+        let mut heard = self.heard.iter().flatten().map(|Echo { at, place }| {
             let (x, y) = (place.x.0 - here.x.0, place.y.0 - here.y.0);
             Relative { at: *at, axis: place.theta, along: x * cos + y * sin, across: y * cos - x * sin }
         });

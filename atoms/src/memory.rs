@@ -14,7 +14,7 @@ const NEAR: f64 = 1.2;
 
 /// A place, in the odometry's axes, and when something was last heard there.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Heard {
+struct Echo {
     x: f64,
     y: f64,
     at: Nanos,
@@ -23,7 +23,7 @@ struct Heard {
 /// Places where something was heard.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Memory {
-    places: [Option<Heard>; PLACES],
+    places: [Option<Echo>; PLACES],
 }
 
 impl Memory {
@@ -38,14 +38,14 @@ impl Memory {
             if range.0 < NEAR {
                 let axis = Radians(ping.pose.theta.0 + sonar.bearing().0);
                 let place = ping.pose.towards(axis, Meters(y.ring_radius().0 + range.0));
-                self.keep(Heard { x: place.x.0, y: place.y.0, at: ping.at });
+                self.keep(Echo { x: place.x.0, y: place.y.0, at: ping.at });
             }
         }
     }
 
     /// Keeps a place in the stead of the same one, of a free one, or of the oldest.
-    fn keep(&mut self, heard: Heard) {
-        let same = |place: &Option<Heard>| {
+    fn keep(&mut self, heard: Echo) {
+        let same = |place: &Option<Echo>| {
             place.is_some_and(|place| {
                 let (x, y) = (place.x - heard.x, place.y - heard.y);
                 // One axis alone tells most places apart.

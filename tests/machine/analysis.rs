@@ -9,7 +9,7 @@ use mdle_runtime::{Cursor, Frame, Machine};
 use mdle_scripted::INTERRUPTS;
 use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::executable::{folder, run_mdlec};
-use mdle_tests::explore::{Explorer, Run, Said, Turn};
+use mdle_tests::explore::{Explorer, QuarkValues, Run, Turn};
 use mdle_tests::golden::judge;
 use mdle_tests::pipeline::compile;
 use mdle_tests::random_plan::RandomPlan;
@@ -20,7 +20,7 @@ use mdlec::Compiled;
 use mdlec::analysis::{Analysis, Reach, analyze, lints};
 use mdlec::fsm::ElementKind;
 use mdlec::plan::{Plan, Quark, condition_text};
-use mdlec::trace::{Applied, Counted, Line, Outcome, Script, run};
+use mdlec::trace::{Applied, Counted, Outcome, Script, TraceLine, run};
 
 /// The Rust of two plans, as it is recorded and compiled.
 mod recorded {
@@ -222,7 +222,8 @@ fn runs_of_the_machine_take_as_long_as_is_said() {
         let analysis = analyze(&compiled.lowered);
         let times: Vec<f64> = script.turns().iter().map(|turn| turn.t.0 as f64 / 1e9).collect();
         let gap = times.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
-        for Line { turn, outcome: Outcome { applied, fired, .. }, .. } in run(Counted::new(&compiled.lowered), &script)
+        for TraceLine { turn, outcome: Outcome { applied, fired, .. }, .. } in
+            run(Counted::new(&compiled.lowered), &script)
         {
             let now = times[turn];
             let said = || format!("seed {seed}, turn {turn} at {now} s\n{text}\n{}", analysis.to_text());
@@ -243,7 +244,7 @@ fn runs_of_the_machine_take_as_long_as_is_said() {
 
 /// Returns combinations of quark values of a plan, and `true` if these are all. Signals have values, so that their
 /// comparisons agree.
-fn choices(plan: &Plan, chance: &mut Chance) -> (Vec<Said>, bool) {
+fn choices(plan: &Plan, chance: &mut Chance) -> (Vec<QuarkValues>, bool) {
     let is_free = |quark: &Quark| quark.completes || INTERRUPTS.contains(&quark.text.as_str());
     let bits: Vec<usize> = (0..plan.quarks.len()).filter(|number| is_free(&plan.quarks[*number])).collect();
     let is_compared = plan.quarks.iter().any(|quark| quark.comparison.is_some());
@@ -259,7 +260,7 @@ fn choices(plan: &Plan, chance: &mut Chance) -> (Vec<Said>, bool) {
         for (fired, quark) in fired.iter_mut().zip(&plan.quarks).filter(|(_, quark)| quark.comparison.is_some()) {
             *fired = values.contains(&quark.text);
         }
-        Said { fired, completed }
+        QuarkValues { fired, completed }
     });
     (said.collect(), all)
 }

@@ -15,7 +15,7 @@ use mdle_tests::random_script::script;
 use mdlec::alphabet::Unit;
 use mdlec::diagnostic::SourceId;
 use mdlec::syntax::{arena_for, parse};
-use mdlec::trace::{Applied, COMPLETED, Line, Outcome, Script};
+use mdlec::trace::{Applied, COMPLETED, Outcome, Script, TraceLine};
 
 /// Number of random plans.
 const PLANS: u64 = 10_000;
@@ -150,7 +150,7 @@ fn compare(seed: u64, foresight: bool, text: &str, script: &str, seen: &mut Seen
     productions::count(text, &parse(SourceId(0), text, &arena).0, &mut seen.productions);
     seen.plans += 1;
     seen.repeated += usize::from(compiled.nondegenerate.plan() != &compiled.plan);
-    for Line { outcome: Outcome { applied, fired, .. }, .. } in tree {
+    for TraceLine { outcome: Outcome { applied, fired, .. }, .. } in tree {
         seen.turns += 1;
         seen.over += usize::from(*applied == Applied::Over);
         seen.cut += usize::from(*applied == Applied::Cut);
@@ -164,8 +164,8 @@ fn compare(seed: u64, foresight: bool, text: &str, script: &str, seen: &mut Seen
 }
 
 /// Returns the first lines in which two traces differ, with the plan and the script.
-fn difference(one: (&str, &[Line<'_>]), other: (&str, &[Line<'_>]), text: &str, script: &str) -> String {
+fn difference(one: (&str, &[TraceLine<'_>]), other: (&str, &[TraceLine<'_>]), text: &str, script: &str) -> String {
     let turn = one.1.iter().zip(other.1).take_while(|(one, other)| one == other).count();
-    let line = |trace: &[Line<'_>]| trace.get(turn).map_or("(no line)".into(), ToString::to_string);
+    let line = |trace: &[TraceLine<'_>]| trace.get(turn).map_or("(no line)".into(), ToString::to_string);
     format!("turn {turn}\n{}: {}\n{}: {}\n{text}\n{script}", one.0, line(one.1), other.0, line(other.1))
 }

@@ -11,7 +11,7 @@ use mdle_tests::pipeline::compile;
 use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::random_script::script;
 use mdlec::fsm::{Terms, equation, matrix_files, most_states, terms};
-use mdlec::trace::{COMPLETED, Fired, Line, Script, Table, run};
+use mdlec::trace::{COMPLETED, Fired, Script, Table, TraceLine, run};
 use serde_json::Value;
 
 /// Number of random plans.
@@ -47,9 +47,9 @@ impl Matrices {
     }
 
     /// Follows a trace by the product of the matrices of what fired; how many there were.
-    fn follow(&self, trace: &[Line<'_>], combined: bool) -> usize {
+    fn follow(&self, trace: &[TraceLine<'_>], combined: bool) -> usize {
         let (mut e, mut count) = (1, 0);
-        for Line { turn, outcome, .. } in trace {
+        for TraceLine { turn, outcome, .. } in trace {
             for Fired { from, level, by, .. } in &outcome.fired {
                 assert_eq!(e as u64, *from, "turn {turn}");
                 let number = self.around(e)[*level];

@@ -21,7 +21,7 @@ use mdlec::Compiled;
 use mdlec::fsm::{Machine, expand, lower};
 use mdlec::picture::{dot, mermaid, svg};
 use mdlec::plan::Condition;
-use mdlec::trace::{Line, Script, Table, run};
+use mdlec::trace::{Script, Table, TraceLine, run};
 
 /// Number of random plans.
 const PLANS: u64 = 300;
@@ -173,7 +173,7 @@ fn graphs_have_the_transitions_of_the_plan() {
         let graph = read_dot(&dot(&expanded).unwrap());
         let name = |state: u64| if state == expanded.states() { "over".into() } else { format!("a{state}") };
         let turns = Script::read(&script).unwrap();
-        for Line { outcome, .. } in
+        for TraceLine { outcome, .. } in
             run(Table::new(&compiled.nondegenerate).unwrap(), &turns).filter(|line| line.outcome.fired.len() < 100)
         {
             let behind = outcome.fired.iter().skip(1).map(|fired| fired.from).chain([outcome.state]);

@@ -13,7 +13,7 @@ use mdle_tests::scxml::Machine;
 use mdle_tests::xml::read;
 use mdlec::picture::scxml;
 use mdlec::plan::Nondegenerate;
-use mdlec::trace::{Applied, Line, Script, Table, run};
+use mdlec::trace::{Applied, Script, Table, TraceLine, run};
 
 /// Number of random plans.
 const PLANS: u64 = 150;
@@ -56,7 +56,7 @@ fn compare(plan: &Nondegenerate, script: &str, seen: &mut Seen) {
     let turns = Script::read(script).unwrap();
     let trace: Vec<_> = run(Table::new(plan).unwrap(), &turns).collect();
     let last = trace.last().map_or(0, |line| line.outcome.state);
-    for (Line { turn, outcome, .. }, line) in trace.iter().zip(script.lines()) {
+    for (TraceLine { turn, outcome, .. }, line) in trace.iter().zip(script.lines()) {
         let left = machine.event("turn", data(line));
         let froms: Vec<_> = outcome.fired.iter().map(|fired| format!("a{}", fired.from)).collect();
         assert_eq!(left, froms, "turn {turn}");

@@ -161,7 +161,7 @@ pub fn run(text: &str) {
     }
 }
 
-fn lines(trace: &[mdlec::trace::Line<'_>]) -> String {
+fn lines(trace: &[mdlec::trace::TraceLine<'_>]) -> String {
     trace.iter().map(|line| format!("{line}\n")).collect()
 }
 

@@ -8,7 +8,7 @@ use mdlec::plan::{Condition, Interrupt, Mark, Node, Plan, QuarkId, Record, Recor
 
 /// Values of the quarks in a turn, by their numbers.
 #[derive(Debug, Clone, Default)]
-pub struct Said {
+pub struct QuarkValues {
     /// Interrupts that have fired.
     pub fired: Vec<bool>,
     /// Laws that are done.
@@ -75,7 +75,7 @@ struct At<'r, 'p> {
     explorer: &'r Explorer<'p>,
     run: &'r Run,
     frame: &'r Frame,
-    said: &'r Said,
+    said: &'r QuarkValues,
 }
 
 impl Situation for At<'_, '_> {
@@ -173,7 +173,7 @@ impl<'p> Explorer<'p> {
 
     /// Makes one turn.
     #[must_use]
-    pub fn turn(&self, run: &mut Run, said: &Said) -> Turn {
+    pub fn turn(&self, run: &mut Run, said: &QuarkValues) -> Turn {
         let mut turn = Turn::default();
         loop {
             turn.current.push(run.frames.last().expect("an atom").part);
@@ -195,7 +195,7 @@ impl<'p> Explorer<'p> {
     }
 
     /// Returns the outermost part that ends, by its place among the parts that enclose the current atom.
-    fn fired(&self, run: &Run, said: &Said) -> Option<(usize, Vec<usize>)> {
+    fn fired(&self, run: &Run, said: &QuarkValues) -> Option<(usize, Vec<usize>)> {
         for (place, frame) in run.frames.iter().enumerate() {
             let at = At { explorer: self, run, frame, said };
             let operands = self.operands(frame.part).iter().enumerate();
@@ -252,7 +252,7 @@ impl<'p> Explorer<'p> {
     }
 
     /// Sets the memories of RISING conditions whose operand has not fired.
-    fn remember(&self, run: &mut Run, said: &Said) {
+    fn remember(&self, run: &mut Run, said: &QuarkValues) {
         let mut set = Vec::new();
         for (place, frame) in run.frames.iter().enumerate() {
             let at = At { explorer: self, run, frame, said };
@@ -280,7 +280,13 @@ impl<'p> Explorer<'p> {
     /// Visits every turn from every situation that can be reached, breadth first, with these combinations of quark
     /// values and these steps of time, with and without a step of the way if a condition reads it; at most `most`
     /// situations. Returns `true` if these were all.
-    pub fn explore(&self, said: &[Said], steps: &[u64], most: usize, visit: &mut impl FnMut(&Turn, &Run)) -> bool {
+    pub fn explore(
+        &self,
+        said: &[QuarkValues],
+        steps: &[u64],
+        most: usize,
+        visit: &mut impl FnMut(&Turn, &Run),
+    ) -> bool {
         /// Mean number of transitions that a situation may take: searches that are cut are long.
         const TRANSITIONS_EACH: usize = 500;
         let longest = 20_000_000_000;

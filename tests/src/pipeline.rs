@@ -7,7 +7,7 @@ use mdlec::alphabet::{self, Alphabet};
 use mdlec::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
 use mdlec::fsm::{Machine, expand, lower};
 use mdlec::syntax::Loader;
-use mdlec::trace::{Counted, Line, MatrixProduct, Script, Table, Tree, run};
+use mdlec::trace::{Counted, MatrixProduct, Script, Table, TraceLine, Tree, run};
 
 /// The most states of a plan whose expanded form is run as well.
 const EXPANDED: u64 = 2000;
@@ -107,7 +107,7 @@ impl<'c> Machines<'c> {
 
     /// The trace of each machine, by its name.
     #[must_use]
-    pub fn traces(&self, script: &Script) -> Vec<(&'static str, Vec<Line<'_>>)> {
+    pub fn traces(&self, script: &Script) -> Vec<(&'static str, Vec<TraceLine<'_>>)> {
         let mut traces = vec![
             ("tree", run(Tree::new(&self.compiled.plan), script).collect()),
             ("counted", run(Counted::new(&self.compiled.lowered), script).collect()),

@@ -16,14 +16,14 @@ const TELLS: f64 = 5.0;
 
 /// The state of its supply that a robot reports.
 #[derive(Debug, Clone, Copy)]
-struct Said {
+struct ReportedSupply {
     volts: f64,
     is_low: bool,
     is_plugged: bool,
 }
 
 /// Returns the state that the robot reports `TELLS` seconds after it is supplied like this.
-fn said<S: Stage>(stage: &mut S, supplied: Supplied) -> Result<Said, Verdict>
+fn said<S: Stage>(stage: &mut S, supplied: Supplied) -> Result<ReportedSupply, Verdict>
 where
     Out<S>: Power,
 {
@@ -31,7 +31,7 @@ where
     trial.supply(supplied);
     trial.drive(0.0, 0.0, TELLS)?;
     let y = &trial.y;
-    let said = Said { volts: y.battery().0, is_low: y.is_low(), is_plugged: y.is_plugged() };
+    let said = ReportedSupply { volts: y.battery().0, is_low: y.is_low(), is_plugged: y.is_plugged() };
     let (least, most) = VOLTS;
     if !(least..=most).contains(&said.volts) {
         return Err(Verdict::Broken(format!("`battery` is {} V, and {least} to {most} V are meant", said.volts)));
@@ -41,7 +41,7 @@ where
 }
 
 /// Checks that the quarks and the signal of the alphabet agree with the output.
-fn agree<S: Stage>(y: &Out<S>, said: Said) -> Result<(), Verdict> {
+fn agree<S: Stage>(y: &Out<S>, said: ReportedSupply) -> Result<(), Verdict> {
     for (name, wanted) in [("lowBattery", said.is_low), ("charger", said.is_plugged)] {
         let interrupt = S::Alphabet::interrupt(name, &[]).ok_or(Verdict::NotOffered)?;
         if interrupt.fired(y) != wanted {
@@ -87,7 +87,7 @@ where
 }
 
 /// Returns the states that the robot reports when it is well supplied, when its battery is low, and on its charger.
-fn each<S: Stage>(stage: &mut S) -> Result<[Said; 3], Verdict>
+fn each<S: Stage>(stage: &mut S) -> Result<[ReportedSupply; 3], Verdict>
 where
     Out<S>: Power,
 {

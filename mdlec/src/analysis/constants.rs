@@ -3,14 +3,14 @@
 use std::collections::BTreeMap;
 
 use super::choices::{Read, When};
-use super::world::{Wanted, World};
+use super::known::{KnownFacts, Wanted};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::fsm::Machine;
 use crate::plan::{Condition, Interrupt, condition_text};
 
 /// Judges conditions by themselves, without their scopes; every signal counts as a number.
 pub(super) struct Constants<'l> {
-    alone: World<'l>,
+    alone: KnownFacts<'l>,
 }
 
 /// A condition that joins two others of which the value of both together is always the same.
@@ -23,7 +23,7 @@ struct Pair {
 
 impl<'l> Constants<'l> {
     pub(super) fn new(machine: &'l Machine) -> Self {
-        Self { alone: World::of_numbers(machine) }
+        Self { alone: KnownFacts::of_numbers(machine) }
     }
 
     /// Returns `true` if an interrupt may be one that has not fired when the scope of this bracket is entered.

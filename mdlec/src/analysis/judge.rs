@@ -3,9 +3,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::choices::When;
+use super::known::Wanted;
 use super::variables::Variable;
 use super::walk::{Found, Outcome, Reach, Skip, Walk};
-use super::world::Wanted;
 use crate::plan::Condition;
 
 impl<'l> Walk<'l> {

@@ -7,6 +7,7 @@ mod choices;
 mod constants;
 mod durations;
 mod judge;
+mod known;
 mod lints;
 mod report;
 mod sizes;
@@ -16,7 +17,6 @@ mod tests;
 mod transitions;
 mod variables;
 mod walk;
-mod world;
 
 use durations::Longest;
 use mdle_runtime::TRANSITIONS_PER_TURN;

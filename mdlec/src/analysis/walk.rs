@@ -1,7 +1,7 @@
 //! Walks over a machine in the order in which it runs: which atoms run, which are skipped, which are never reached, and
 //! what can end each scope.
 //!
-//! One pass over the brackets: what a scope around a place does to it is in [`World`], when it is reached at the
+//! One pass over the brackets: what a scope around a place does to it is in [`KnownFacts`], when it is reached at the
 //! earliest is counted on the way. A loop's body is walked over once: its first pass comes first.
 
 use std::collections::BTreeMap;
@@ -10,7 +10,7 @@ use std::iter;
 use serde::Serialize;
 
 use super::choices::{Read, When};
-use super::world::{Added, World};
+use super::known::{Added, KnownFacts};
 use crate::fsm::{Element, ElementKind, Machine, Visit};
 use crate::plan::{Condition, QuarkId};
 
@@ -91,8 +91,8 @@ pub(super) struct Walked {
 /// Walks over a machine. `one_turn` is `true` if every search for the next atom ends within one turn.
 pub(super) fn walk(machine: &Machine, one_turn: bool) -> Walked {
     let mut walk = Walk {
-        world: World::new(machine),
-        alone: World::new(machine),
+        world: KnownFacts::new(machine),
+        alone: KnownFacts::new(machine),
         open: Vec::new(),
         found: Vec::with_capacity(machine.elements().len()),
         waits: BTreeMap::new(),
@@ -113,9 +113,9 @@ pub(super) fn walk(machine: &Machine, one_turn: bool) -> Walked {
 }
 
 pub(super) struct Walk<'l> {
-    pub(super) world: World<'l>,
+    pub(super) world: KnownFacts<'l>,
     /// The knowledge about a place that no scope encloses.
-    pub(super) alone: World<'l>,
+    pub(super) alone: KnownFacts<'l>,
     open: Vec<Open>,
     found: Vec<Found>,
     /// The timers that are operands of interrupts around, by their brackets.

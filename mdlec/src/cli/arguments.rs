@@ -271,8 +271,8 @@ pub(super) struct Trace {
     #[arg(long, value_name = "FILE")]
     pub(super) script: PathBuf,
     /// State machine to use; all print the same trace
-    #[arg(long, value_enum, default_value_t = Machine::Counted)]
-    pub(super) machine: Machine,
+    #[arg(long, value_enum, default_value_t = TraceMachine::Counted)]
+    pub(super) machine: TraceMachine,
     /// Name of the plan to run [default: the only plan that no other plan uses]
     #[arg(long = "plan", value_name = "NAME")]
     pub(super) name: Option<String>,
@@ -299,7 +299,7 @@ pub(super) struct Draw {
 
 /// The machines of `mdlec trace`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum Machine {
+pub(super) enum TraceMachine {
     /// Walk over the tree of the plan
     Tree,
     /// State machine with unrolled loops, as a table

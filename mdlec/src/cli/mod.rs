@@ -32,7 +32,7 @@ use std::process::ExitCode;
 
 use arguments::{
     Analyze, Bare, Bind, Build, Check, Cli, Color, Command, Completions, Decompile, Draw, Emulator, Executable, Fmt,
-    Machine, Man, MessageFormat, NewTarget, Run, Trace,
+    Man, MessageFormat, NewTarget, Run, Trace, TraceMachine,
 };
 use clap::{CommandFactory as _, FromArgMatches as _, ValueEnum as _};
 pub(crate) use embed::embed;

@@ -3,8 +3,8 @@
 use std::io::{self, BufWriter, Write};
 
 use super::read::LARGEST_DATA;
-use super::{Failure, Machine, Trace, input, report, settings};
-use crate::trace::{Counted, Line, MatrixProduct, Script, Table, Tree, run};
+use super::{Failure, Trace, TraceMachine, input, report, settings};
+use crate::trace::{Counted, MatrixProduct, Script, Table, TraceLine, Tree, run};
 
 /// Runs the plan and prints the trace, one line per turn.
 pub(super) fn trace(options: &Trace) -> Result<(), Failure> {
@@ -23,14 +23,14 @@ pub(super) fn trace(options: &Trace) -> Result<(), Failure> {
         Failure::PLAN
     };
     match options.machine {
-        Machine::Tree => print(run(Tree::new(&compiled.plan), &script)),
-        Machine::Table => print(run(Table::new(&compiled.nondegenerate).map_err(too_large)?, &script)),
-        Machine::Matrix => print(run(MatrixProduct::new(&compiled.nondegenerate).map_err(too_large)?, &script)),
-        Machine::Counted => print(run(Counted::new(&compiled.lowered), &script)),
+        TraceMachine::Tree => print(run(Tree::new(&compiled.plan), &script)),
+        TraceMachine::Table => print(run(Table::new(&compiled.nondegenerate).map_err(too_large)?, &script)),
+        TraceMachine::Matrix => print(run(MatrixProduct::new(&compiled.nondegenerate).map_err(too_large)?, &script)),
+        TraceMachine::Counted => print(run(Counted::new(&compiled.lowered), &script)),
     }
 }
 
-fn print<'p>(lines: impl Iterator<Item = Line<'p>>) -> Result<(), Failure> {
+fn print<'p>(lines: impl Iterator<Item = TraceLine<'p>>) -> Result<(), Failure> {
     let mut out = BufWriter::new(io::stdout().lock());
     report::printed(lines.into_iter().try_for_each(|line| writeln!(out, "{line}")).and_then(|()| out.flush()))
 }

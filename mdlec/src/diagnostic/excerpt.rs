@@ -31,12 +31,12 @@ pub(super) struct Excerpt<'s> {
 struct Lines {
     text: String,
     /// Lines in the order of the file.
-    lines: Vec<Line>,
+    lines: Vec<ExcerptLine>,
 }
 
 /// A line of a file, as far as it is shown.
 #[derive(Debug)]
-struct Line {
+struct ExcerptLine {
     /// Number of the line in its file, from 0.
     index: usize,
     /// Byte range of the line in the excerpt.
@@ -144,7 +144,7 @@ impl Lines {
             self.text += CUT;
         }
         self.text.push('\n');
-        self.lines.push(Line { index, range: start..self.text.len(), kept });
+        self.lines.push(ExcerptLine { index, range: start..self.text.len(), kept });
     }
 
     /// Offset in the excerpt for an offset in the file.

@@ -35,7 +35,7 @@ pub fn lower(nondegenerate: &Nondegenerate) -> Result<Machine, Diagnostic> {
             sizes: Sizes::default(),
         },
     };
-    let states = lowering.scope(&plan.root, Place { parent: 0, level: 0, slot: 0, state: 1, here: None })?;
+    let states = lowering.scope(&plan.root, NodePlace { parent: 0, level: 0, slot: 0, state: 1, here: None })?;
     lowering.draft.termination = states + 1;
     validate(nondegenerate, &lowering.draft)?;
     let machine = Machine::new(lowering.draft);
@@ -49,7 +49,7 @@ struct Lowering {
 
 /// Place of a node: the enclosing bracket, the number of scopes and of loops around the node, and its first state.
 #[derive(Clone, Copy)]
-struct Place {
+struct NodePlace {
     parent: u32,
     level: u16,
     slot: u16,
@@ -60,7 +60,7 @@ struct Place {
 
 impl Lowering {
     /// Lowers a scope and returns the number of its states.
-    fn scope(&mut self, scope: &Scope, place: Place) -> Result<u64, Diagnostic> {
+    fn scope(&mut self, scope: &Scope, place: NodePlace) -> Result<u64, Diagnostic> {
         let meaning = ScopeMeaning { name: scope.name.clone(), interrupt: scope.interrupt.clone() };
         let bracket =
             self.bracket(Kind::Scope { level: place.level }, place.parent, Some(meaning), &scope.marks, scope.span);
@@ -70,16 +70,16 @@ impl Lowering {
             self.memories(first.saturating_add(facts));
         }
         let here = self.here(scope.here, place);
-        let inside = Place { parent: bracket, level: place.level.saturating_add(1), here, ..place };
+        let inside = NodePlace { parent: bracket, level: place.level.saturating_add(1), here, ..place };
         let states = self.sequence(&scope.body, inside, scope.span)?;
         self.close(bracket);
         Ok(states)
     }
 
-    fn sequence(&mut self, body: &[Node], place: Place, span: Span) -> Result<u64, Diagnostic> {
+    fn sequence(&mut self, body: &[Node], place: NodePlace, span: Span) -> Result<u64, Diagnostic> {
         let mut states = 0;
         for node in body {
-            let here = Place { state: place.state.saturating_add(states), ..place };
+            let here = NodePlace { state: place.state.saturating_add(states), ..place };
             states += match node {
                 Node::Atom(atom) => self.atom(atom, here),
                 Node::Scope(scope) => self.scope(scope, here)?,
@@ -92,7 +92,7 @@ impl Lowering {
         Ok(states)
     }
 
-    fn atom(&mut self, atom: &plan::Atom, place: Place) -> u64 {
+    fn atom(&mut self, atom: &plan::Atom, place: NodePlace) -> u64 {
         let meaning = ScopeMeaning { name: String::new(), interrupt: atom.interrupt.clone() };
         let scope =
             self.bracket(Kind::Scope { level: place.level }, place.parent, Some(meaning), &atom.marks, atom.span);
@@ -104,7 +104,7 @@ impl Lowering {
     }
 
     /// The innermost scope with `FRAME here` for what is inside a scope at `place`, which may have one itself.
-    fn here(&mut self, is_here: bool, place: Place) -> Option<u16> {
+    fn here(&mut self, is_here: bool, place: NodePlace) -> Option<u16> {
         if !is_here {
             return place.here;
         }
@@ -113,7 +113,7 @@ impl Lowering {
         Some(place.level)
     }
 
-    fn repeated(&mut self, repeated: &plan::Loop, place: Place) -> Result<u64, Diagnostic> {
+    fn repeated(&mut self, repeated: &plan::Loop, place: NodePlace) -> Result<u64, Diagnostic> {
         let times = repeated.times.unwrap_or(0);
         let bracket = self.bracket(
             Kind::Loop { times, slot: place.slot, stride: 0 },
@@ -123,7 +123,7 @@ impl Lowering {
             repeated.span,
         );
         self.draft.sizes.slots = self.draft.sizes.slots.max(usize::from(place.slot) + 1);
-        let inside = Place { parent: bracket, slot: place.slot.saturating_add(1), ..place };
+        let inside = NodePlace { parent: bracket, slot: place.slot.saturating_add(1), ..place };
         let pass = self.sequence(&repeated.body, inside, repeated.span)?;
         self.close(bracket);
         if repeated.times.is_none() {

@@ -115,10 +115,10 @@ impl Mul<UnitVector> for &Matrix {
 pub fn matrices(plan: &Nondegenerate) -> Result<Matrices<'_>, Diagnostic> {
     expanded_states(plan)?;
     let mut brackets = Brackets { all: Vec::new(), laws: Vec::new(), frames: Vec::new(), interrupts: 0 };
-    brackets.scope(&plan.plan().root, Place { around: None, level: 0 });
+    brackets.scope(&plan.plan().root, BracketPlace { around: None, level: 0 });
     let size = brackets.laws.len() + 1;
     let transitions = brackets.all.iter().filter_map(|bracket| {
-        let Kind::Scope { interrupt, name, level, here, record } = bracket.kind else { return None };
+        let BracketKind::Scope { interrupt, name, level, here, record } = bracket.kind else { return None };
         let Destination { row, afresh, ends_with } = brackets.destination(bracket);
         let matrix = Matrix { size, first: bracket.first, last: bracket.last, row };
         Some(Transition { interrupt, name, level, here, matrix, afresh, record, marks: bracket.marks, ends_with })
@@ -137,7 +137,7 @@ struct Brackets<'p> {
 
 /// A scope or a loop.
 struct Bracket<'p> {
-    kind: Kind<'p>,
+    kind: BracketKind<'p>,
     around: Option<usize>,
     /// The labels of what ends with it.
     marks: &'p [Mark],
@@ -150,7 +150,7 @@ struct Bracket<'p> {
 }
 
 #[derive(Clone, Copy)]
-enum Kind<'p> {
+enum BracketKind<'p> {
     Scope {
         interrupt: &'p Interrupt,
         name: &'p str,
@@ -165,7 +165,7 @@ enum Kind<'p> {
 
 /// Place of a bracket: the enclosing bracket, and the number of scopes around it.
 #[derive(Clone, Copy)]
-struct Place {
+struct BracketPlace {
     around: Option<usize>,
     level: usize,
 }
@@ -180,24 +180,24 @@ struct Destination<'p> {
 }
 
 impl<'p> Brackets<'p> {
-    fn scope(&mut self, scope: &'p Scope, place: Place) {
+    fn scope(&mut self, scope: &'p Scope, place: BracketPlace) {
         let (interrupt, name) = (&scope.interrupt, scope.name.as_str());
-        let kind = Kind::Scope { interrupt, name, level: place.level, here: scope.here, record: scope.record };
+        let kind = BracketKind::Scope { interrupt, name, level: place.level, here: scope.here, record: scope.record };
         let here = self.open(kind, place, &scope.marks);
-        self.sequence(&scope.body, Place { around: Some(here), level: place.level + 1 });
+        self.sequence(&scope.body, BracketPlace { around: Some(here), level: place.level + 1 });
         self.close(here);
     }
 
-    fn sequence(&mut self, body: &'p [Node], place: Place) {
+    fn sequence(&mut self, body: &'p [Node], place: BracketPlace) {
         for node in body {
             match node {
                 Node::Atom(atom) => self.atom(atom, place),
                 Node::Scope(scope) => self.scope(scope, place),
                 Node::Loop(repeated) => {
-                    let kind = if repeated.times.is_some() { Kind::WrittenOut } else { Kind::WithoutEnd };
+                    let kind = if repeated.times.is_some() { BracketKind::WrittenOut } else { BracketKind::WithoutEnd };
                     let here = self.open(kind, place, &repeated.marks);
                     for _ in 0..repeated.times.unwrap_or(1) {
-                        self.sequence(&repeated.body, Place { around: Some(here), ..place });
+                        self.sequence(&repeated.body, BracketPlace { around: Some(here), ..place });
                     }
                     self.close(here);
                 }
@@ -205,18 +205,18 @@ impl<'p> Brackets<'p> {
         }
     }
 
-    fn atom(&mut self, atom: &'p Atom, place: Place) {
+    fn atom(&mut self, atom: &'p Atom, place: BracketPlace) {
         let (interrupt, level, here) = (&atom.interrupt, place.level, atom.here);
-        let kind = Kind::Scope { interrupt, name: "", level, here, record: None };
+        let kind = BracketKind::Scope { interrupt, name: "", level, here, record: None };
         let here = self.open(kind, place, &atom.marks);
         self.laws.push(atom.law);
         self.frames.push(atom.frame);
         self.close(here);
     }
 
-    fn open(&mut self, kind: Kind<'p>, place: Place, marks: &'p [Mark]) -> usize {
+    fn open(&mut self, kind: BracketKind<'p>, place: BracketPlace, marks: &'p [Mark]) -> usize {
         let (first, begins) = (self.laws.len(), self.interrupts);
-        self.interrupts += usize::from(matches!(kind, Kind::Scope { .. }));
+        self.interrupts += usize::from(matches!(kind, BracketKind::Scope { .. }));
         self.all.push(Bracket { kind, around: place.around, marks, first, last: first, begins, ends: begins });
         self.all.len() - 1
     }
@@ -235,7 +235,7 @@ impl<'p> Brackets<'p> {
             if around.last > scope.last {
                 break;
             }
-            if matches!(around.kind, Kind::WithoutEnd) {
+            if matches!(around.kind, BracketKind::WithoutEnd) {
                 return Destination { row: around.first, afresh: around.begins, ends_with };
             }
             ends_with.extend(around.marks);

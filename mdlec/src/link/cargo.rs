@@ -8,7 +8,7 @@ use std::{env, io};
 use super::messages::{self, Run};
 use super::package::PlanPackage;
 use super::seal::Seal;
-use super::{Cache, LinkError, Progress, orphan, stop};
+use super::{Cache, LinkError, Progress, cleanup, orphan};
 
 /// Oldest Rust version that compiles the packed sources.
 const NEEDED: &str = env!("CARGO_PKG_RUST_VERSION");
@@ -107,7 +107,7 @@ impl Job<'_> {
             command.arg("--offline");
         }
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
-        let (child, _watched) = stop::spawn(&mut command).map_err(|error| unusable("cargo", &error))?;
+        let (child, _watched) = cleanup::spawn(&mut command).map_err(|error| unusable("cargo", &error))?;
         let _noted = orphan::note(self.cache, &child);
         messages::follow(child, online, &self.plan.manifest(), seal, progress)
             .map_err(|error| unusable("cargo", &error))

@@ -85,7 +85,7 @@ impl Run {
 }
 
 /// A line from cargo.
-enum Heard {
+enum CargoLine {
     /// From standard output.
     Message(Vec<u8>),
     /// From standard error: another cargo holds a lock.
@@ -111,19 +111,19 @@ pub(super) fn follow(
             each_line(stderr, |line| {
                 said.extend_from_slice(line);
                 said.push(b'\n');
-                !line.trim_ascii_start().starts_with(BLOCKED) || sender.send(Heard::Blocked).is_ok()
+                !line.trim_ascii_start().starts_with(BLOCKED) || sender.send(CargoLine::Blocked).is_ok()
             });
             String::from_utf8_lossy(&said).into_owned()
         })
     };
-    thread::spawn(move || each_line(stdout, |line| sender.send(Heard::Message(line.to_owned())).is_ok()));
+    thread::spawn(move || each_line(stdout, |line| sender.send(CargoLine::Message(line.to_owned())).is_ok()));
     let mut log =
         Log { plan, seal, executable: None, complaints: Vec::new(), artifacts: 0, reused: false, compiled: 0 };
     for heard in heard {
         match heard {
-            Heard::Blocked => progress(Progress::Blocked),
+            CargoLine::Blocked => progress(Progress::Blocked),
             // A line that is no message, such as a compiler wrapper's, is none of ours.
-            Heard::Message(line) => {
+            CargoLine::Message(line) => {
                 if let Ok(line) = serde_json::from_slice(&line) {
                     log.take(line, progress);
                 }
@@ -160,9 +160,9 @@ struct Log<'a> {
 }
 
 impl Log<'_> {
-    fn take(&mut self, line: Line, progress: &mut dyn FnMut(Progress)) {
+    fn take(&mut self, line: CargoMessage, progress: &mut dyn FnMut(Progress)) {
         match line {
-            Line::Artifact { manifest_path, target, filenames, executable, fresh } => {
+            CargoMessage::Artifact { manifest_path, target, filenames, executable, fresh } => {
                 self.artifacts += 1;
                 self.reused |= fresh;
                 if manifest_path == self.plan {
@@ -179,13 +179,13 @@ impl Log<'_> {
                     progress(Progress::Compiling(self.compiled));
                 }
             }
-            Line::Message { manifest_path, message } => self.complaints.push(Complaint {
+            CargoMessage::Message { manifest_path, message } => self.complaints.push(Complaint {
                 manifest: manifest_path,
                 is_error: message.level.starts_with("error"),
                 text: message.rendered.unwrap_or_default(),
             }),
-            Line::Script { out_dir } => self.seal.add_script(&out_dir, false),
-            Line::Other => {}
+            CargoMessage::Script { out_dir } => self.seal.add_script(&out_dir, false),
+            CargoMessage::Other => {}
         }
     }
 }
@@ -193,7 +193,7 @@ impl Log<'_> {
 /// A JSON message of cargo.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "reason")]
-enum Line {
+enum CargoMessage {
     #[serde(rename = "compiler-artifact")]
     Artifact {
         manifest_path: PathBuf,
@@ -205,7 +205,7 @@ enum Line {
     #[serde(rename = "build-script-executed")]
     Script { out_dir: PathBuf },
     #[serde(rename = "compiler-message")]
-    Message { manifest_path: PathBuf, message: Said },
+    Message { manifest_path: PathBuf, message: RustcMessage },
     #[serde(other)]
     Other,
 }
@@ -218,7 +218,7 @@ struct Target {
 
 /// A message of rustc.
 #[derive(Debug, Deserialize)]
-struct Said {
+struct RustcMessage {
     level: String,
     rendered: Option<String>,
 }

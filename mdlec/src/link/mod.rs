@@ -21,11 +21,13 @@
 #![allow(clippy::disallowed_methods, reason = "what is done here is I/O")]
 
 mod access;
-mod blame;
+mod build_failure;
+mod build_record;
 mod cache;
+mod cache_damage;
 mod cargo;
+mod cleanup;
 mod clear;
-mod damage;
 mod error;
 mod ignored;
 mod messages;
@@ -33,23 +35,21 @@ mod orphan;
 mod output;
 mod package;
 mod progress;
-mod record;
 mod seal;
 mod sources;
-mod stop;
 mod target;
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
 pub use cache::Cache;
+pub use cleanup::leave_nothing_behind;
 pub use clear::clear;
 pub use error::LinkError;
 pub use ignored::ignored_configuration;
 pub use output::{must_not_be_read, write_whole};
 pub use progress::Progress;
 pub use sources::{Alphabet, alphabets, emulators};
-pub use stop::leave_nothing_behind;
 pub use target::TargetCrate;
 
 use cargo::{Job, Toolchain};
@@ -150,10 +150,10 @@ fn make(
     let run = run(job, target, progress)?;
     match &run.executable {
         Some(executable) if run.status.success() => {
-            record::write(job.plan, &executable.path)?;
+            build_record::write(job.plan, &executable.path)?;
             Ok(executable.clone())
         }
-        Some(_) | None => Err(blame::fault(job, &run, target, dependencies)),
+        Some(_) | None => Err(build_failure::fault(job, &run, target, dependencies)),
     }
 }
 
@@ -163,9 +163,9 @@ fn run(job: &Job<'_>, target: &TargetCrate<'_>, progress: &mut dyn FnMut(Progres
     let mut seal = Seal::check(job.cache, progress)?;
     loop {
         let run = job.build(&mut seal, progress)?;
-        match damage::found(job, &run, target) {
+        match cache_damage::found(job, &run, target) {
             Some(damage) if !mended.contains(&damage) => {
-                damage::clear(damage, job, progress)?;
+                cache_damage::clear(damage, job, progress)?;
                 mended.push(damage);
             }
             Some(_) | None => return Ok(run),

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::process;
 use std::sync::atomic::{AtomicU32, Ordering};
 
-use super::{LinkError, stop};
+use super::{LinkError, cleanup};
 
 /// Writes `bytes` to the file `output`, whole or not at all; a device gets them directly. A file that is overwritten
 /// keeps its permissions. `inputs` are the files that `bytes` were made from.
@@ -72,7 +72,7 @@ impl Destination {
         let destination = Self { shown, path };
         // Nothing stays behind: a signal in the build must not leave a file.
         let trial = destination.beside();
-        let tried = stop::create(&trial).and_then(|_watched| fs::remove_file(&trial));
+        let tried = cleanup::create(&trial).and_then(|_watched| fs::remove_file(&trial));
         tried.map_err(|error| LinkError::output(&destination.shown, error))?;
         Ok(destination)
     }
@@ -90,7 +90,7 @@ impl Destination {
     fn put<T>(&self, write: impl FnOnce(&mut File) -> io::Result<T>) -> Result<T, LinkError> {
         let new = self.beside();
         let refused = |error| LinkError::output(&self.shown, error);
-        let (mut file, _watched) = stop::create(&new).map_err(refused)?;
+        let (mut file, _watched) = cleanup::create(&new).map_err(refused)?;
         let written = write(&mut file).and_then(|written| fs::rename(&new, &self.path).map(|()| written));
         written.map_err(|error| {
             // The first error is the one that counts.

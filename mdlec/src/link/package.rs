@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::cache::{remove, write_if_changed};
 use super::target::Dependencies;
-use super::{Cache, LinkError, Package, record};
+use super::{Cache, LinkError, Package, build_record};
 
 /// A plan's package that has been written.
 #[derive(Debug)]
@@ -80,7 +80,7 @@ fn write_package(
         }
     }
     let texts: Vec<_> = files.iter().map(|(_, text)| *text).chain([lock]).collect();
-    Ok(PlanPackage { folder, hash: record::hash(texts.join("\0").as_bytes()) })
+    Ok(PlanPackage { folder, hash: build_record::hash(texts.join("\0").as_bytes()) })
 }
 
 /// Writes `files` to `folder`, and `lock` as cargo's initial lock file.
@@ -89,7 +89,7 @@ fn write_files(folder: &Path, files: &[(&str, &str)], lock: &str) -> Result<(), 
         write_if_changed(&folder.join(name), text.as_bytes())?;
     }
     // Cargo adds the plan's own package to the lock file and drops what the plan does not need.
-    if write_if_changed(&folder.join("seed.lock"), lock.as_bytes())? || !record::has_lock(folder) {
+    if write_if_changed(&folder.join("seed.lock"), lock.as_bytes())? || !build_record::has_lock(folder) {
         write_if_changed(&folder.join("Cargo.lock"), lock.as_bytes())?;
     }
     Ok(())
@@ -157,7 +157,7 @@ mod tests {
     use std::path::{Path, PathBuf};
 
     use super::super::tests::cache;
-    use super::super::{Package, TargetCrate, record};
+    use super::super::{Package, TargetCrate, build_record};
     use super::{Dependencies, manifest, name, write};
 
     const TARGET: TargetCrate<'static> = TargetCrate::Builtin { name: "sim", crate_name: "mdle_sim" };
@@ -220,7 +220,7 @@ mod tests {
         let text = || fs::read_to_string(&lock).unwrap();
         let package = write();
         fs::write(&lock, "grown").unwrap();
-        record::write(&package, &lock).unwrap();
+        build_record::write(&package, &lock).unwrap();
         write();
         assert_eq!(text(), "grown");
         for damaged in ["garbage", ""] {

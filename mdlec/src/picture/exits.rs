@@ -45,7 +45,7 @@ pub(super) fn destinations(element: Element<'_>) -> Vec<Destination<'_>> {
 
 /// The ways in which an element can end.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Ends {
+pub(super) struct WaysOut {
     /// `true` if it ends at all, by itself or with its last element.
     pub(super) ever: bool,
     /// `true` if it ends with its last element; of an atom, if anything ends it.
@@ -53,8 +53,8 @@ pub(super) struct Ends {
 }
 
 /// Returns the ways in which each element can end, by its number.
-pub(super) fn ends(machine: &Machine) -> Vec<Ends> {
-    let mut ends = vec![Ends::default(); machine.elements().len()];
+pub(super) fn ends(machine: &Machine) -> Vec<WaysOut> {
+    let mut ends = vec![WaysOut::default(); machine.elements().len()];
     // Inner elements come before those that hold them.
     for element in machine.elements().rev() {
         let by_itself = until(element).ends();
@@ -65,7 +65,7 @@ pub(super) fn ends(machine: &Machine) -> Vec<Ends> {
                 element.children().last().is_some_and(|last| ends[last.index()].ever)
             }
         };
-        ends[element.index()] = Ends { ever: by_itself || at_its_end, at_its_end };
+        ends[element.index()] = WaysOut { ever: by_itself || at_its_end, at_its_end };
     }
     ends
 }

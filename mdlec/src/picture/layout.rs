@@ -1,147 +1,205 @@
-//! The arrows of a picture, between boxes that have their places: what follows what, and how a scope is left.
+//! Positions of the boxes of a picture: children are in rows inside their scope or loop.
 
-use super::places::{GAP, Placed, SIDE};
-use super::texts::until;
-use crate::fsm::{Element, ElementKind, Machine};
+use super::exits::ends;
+use super::measure::{LINE, letters, width, wrapped};
+use super::texts::{Until, exponent, labels, passes, until};
+use crate::fsm::{Atom, Element, ElementKind, Machine};
+use crate::plan::frame_text;
 
-/// Meaning of an arrow.
+/// Width of a picture, if nothing in it needs more.
+const PICTURE: i64 = 1180;
+/// Minimum width of a box's content, at any depth.
+const LEAST: i64 = 400;
+/// Between boxes beside each other, and between a box and what it holds.
+pub(super) const GAP: i64 = 34;
+pub(super) const SIDE: i64 = 26;
+const BETWEEN_ROWS: i64 = 34;
+const BOTTOM: i64 = 16;
+/// The room below for the arrow that begins the next pass.
+const AGAIN: i64 = 30;
+const PADDING: i64 = 10;
+/// Maximum width of an atom in letters; `LINES` is the maximum number of lines of a text in it.
+const LETTERS: usize = 30;
+const LINES: usize = 3;
+
+/// Style of a line in a box.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Arrow {
-    /// The way to the element that follows.
-    Flow,
-    /// The way into the first element of a box, or out of its last one: a line without a head.
-    Port,
-    /// The way out of a scope when its own condition fires.
-    Exit,
-    /// The next pass of a loop.
-    Again,
+pub(super) enum Style {
+    Law,
+    Name,
+    Until,
+    Quiet,
 }
 
-/// A line through these points with rounded corners.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Line {
-    pub(super) arrow: Arrow,
-    pub(super) points: Vec<(i64, i64)>,
-    /// Nesting depth of the box to which the line belongs.
+/// The box of a bracket; at first its place is relative to the box around it.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Placed {
+    pub(super) x: i64,
+    pub(super) y: i64,
+    pub(super) width: i64,
+    pub(super) height: i64,
+    /// Distance from the upper edge of the arrow that leads to the box; `leaves` is that of the arrow that leaves it.
+    pub(super) enters: i64,
+    pub(super) leaves: i64,
+    /// Lines at the head of the box, from above.
+    pub(super) lines: Vec<(Style, String)>,
+    pub(super) children: Vec<usize>,
+    /// The children that begin a row.
+    pub(super) rows: Vec<usize>,
+    /// Number of scopes and loops around the box.
     pub(super) depth: usize,
+    /// Set to `true` if the element ends at all; `flows`, if it ends with its last element, or is an atom that ends.
+    pub(super) ends: bool,
+    pub(super) flows: bool,
 }
 
-/// Width on either side of the plan's box, for the signs where the plan begins and ends.
-pub(super) const MARGIN: i64 = 44;
-/// Distance of a scope's own exit from the scope's upper edge.
-pub(super) const EXIT: i64 = 16;
-
-/// Returns all arrows, in the order of their boxes.
-pub(super) fn arrows(machine: &Machine, all: &[Placed]) -> Vec<Line> {
-    let mut lines = Vec::new();
-    if let Some(root) = all.first() {
-        let (y, right) = (root.y + root.enters, root.x + root.width);
-        lines.push(line(Arrow::Flow, 0, &[(root.x - MARGIN + 16, y), (root.x, y)]));
-        let end = (right + MARGIN - 18, root.y + root.leaves);
-        if root.flows {
-            lines.push(line(Arrow::Flow, 0, &[(right, end.1), end]));
-        }
-        lines.extend(exit(machine.root(), root, (end.0 + 6, end.1 - 9), right + MARGIN - 12));
+/// Returns the boxes of all elements, by their numbers. No recursion: an element comes after those that enclose it.
+pub(super) fn places(machine: &Machine) -> Vec<Placed> {
+    let mut all: Vec<Placed> = Vec::new();
+    for (element, ends) in machine.elements().zip(ends(machine)) {
+        let depth = element.parent().map_or(0, |parent| all[parent.index()].depth + 1);
+        let children = element.children().map(Element::index).collect();
+        all.push(Placed { depth, children, ends: ends.ever, flows: ends.at_its_end, ..Placed::default() });
     }
-    for (element, placed) in machine.elements().zip(all) {
-        inside(element, placed, all, &mut lines);
-    }
-    lines
-}
-
-fn line(arrow: Arrow, depth: usize, points: &[(i64, i64)]) -> Line {
-    Line { arrow, points: points.to_vec(), depth }
-}
-
-/// The arrows between the children of a box, into the first and out of the last.
-fn inside(element: Element<'_>, placed: &Placed, all: &[Placed], lines: &mut Vec<Line>) {
-    let depth = placed.depth + 1;
-    let (Some(first), Some(last)) = (element.children().next(), element.children().last()) else { return };
-    let entry = placed.y + placed.enters;
-    lines.push(line(Arrow::Port, depth, &[(placed.x, entry), (all[first.index()].x, entry)]));
-    for (before, after) in element.children().zip(element.children().skip(1)) {
-        let (one, next) = (&all[before.index()], &all[after.index()]);
-        let (from, to) = ((one.x + one.width, one.y + one.leaves), (next.x, next.y + next.enters));
-        let is_below = placed.rows.contains(&after.index());
-        if one.flows {
-            let points =
-                if is_below { around(from, to, gap_above(after.index(), placed, all)) } else { beside(from, to) };
-            lines.push(line(Arrow::Flow, depth, &points));
+    for element in machine.elements().rev() {
+        match element.kind() {
+            ElementKind::Atom(of) => atom(of, &mut all[element.index()]),
+            ElementKind::Scope | ElementKind::Loop { .. } => holder(element, &mut all),
         }
-        if is_below {
-            let gap = gap_above(after.index(), placed, all);
-            lines.extend(exit_below(before, one, to, gap));
+    }
+    if let Some(root) = all.first_mut() {
+        (root.x, root.y) = (0, 0);
+    }
+    for number in 0..all.len() {
+        let (x, y) = (all[number].x, all[number].y);
+        for child in all[number].children.clone() {
+            all[child].x += x;
+            all[child].y += y;
+        }
+    }
+    all
+}
+
+fn atom(atom: Atom<'_>, placed: &mut Placed) {
+    let parts = [
+        (Style::Quiet, labels(atom.element()), 1),
+        (Style::Quiet, frame_text(atom.frame()), 1),
+        (Style::Law, atom.law().text.clone(), LINES),
+    ];
+    let wrap = |(style, text, most): (Style, String, usize)| {
+        wrapped(&text, LETTERS, most).into_iter().map(move |line| (style, line))
+    };
+    let mut lines: Vec<_> = parts.into_iter().flat_map(wrap).collect();
+    lines.extend(until_lines(&until(atom.element()), LETTERS));
+    placed.width = widest(&lines).max(80) + 2 * PADDING;
+    placed.height = lines.len() as i64 * LINE + 2 * PADDING;
+    placed.enters = placed.height / 2;
+    placed.leaves = placed.enters;
+    placed.lines = lines;
+}
+
+/// Returns the lines that show the condition by which an element ends.
+fn until_lines(until: &Until, letters: usize) -> Vec<(Style, String)> {
+    let (style, text) = match until {
+        Until::Fires(text) => (Style::Until, format!("until {text}")),
+        Until::Done => (Style::Until, "until done".into()),
+        Until::FiresOrDone(text) => (Style::Until, format!("until {text} or done")),
+        Until::Removed(_) | Until::Never => (Style::Quiet, "never ends by itself".into()),
+    };
+    wrapped(&text, letters, LINES).into_iter().map(|line| (style, line)).collect()
+}
+
+fn widest(lines: &[(Style, String)]) -> i64 {
+    lines.iter().map(|(_, line)| width(line)).max().unwrap_or(0)
+}
+
+/// Places the elements of a scope or a loop, whose sizes are known, and computes its own size.
+fn holder(element: Element<'_>, all: &mut [Placed]) {
+    let number = element.index();
+    let children = all[number].children.clone();
+    let room = (PICTURE - 2 * SIDE * all[number].depth as i64).max(LEAST);
+    let limit = even(&children, all, room);
+    let rows = rows(&children, all, limit);
+    let content = rows.iter().map(|row| row_width(row, all)).max().unwrap_or(0);
+    let lines = head(element, content);
+    let inside = content.max(widest(&lines) - SIDE);
+    let mut y = PADDING + lines.len() as i64 * LINE + PADDING;
+    let (mut enters, mut leaves) = (y, y);
+    for (place, row) in rows.iter().enumerate() {
+        let above = row.iter().map(|child| all[*child].enters).max().unwrap_or(0);
+        let mut x = SIDE;
+        for child in row {
+            let child = &mut all[*child];
+            (child.x, child.y) = (x, y + above - child.enters);
+            x += child.width + GAP;
+        }
+        if place == 0 {
+            enters = y + above;
+        }
+        let bottom = row.iter().map(|child| all[*child].y + all[*child].height).max().unwrap_or(y);
+        leaves = row.last().map_or(leaves, |last| all[*last].y + all[*last].leaves);
+        y = bottom + if place + 1 < rows.len() { BETWEEN_ROWS } else { 0 };
+    }
+    let again = if matches!(element.kind(), ElementKind::Loop { .. }) { AGAIN } else { 0 };
+    let placed = &mut all[number];
+    placed.width = inside + 2 * SIDE;
+    placed.height = y + BOTTOM + again;
+    (placed.enters, placed.leaves, placed.lines) = (enters, leaves, lines);
+    placed.rows = rows.iter().filter_map(|row| row.first().copied()).collect();
+}
+
+/// Returns the lines at the head of a scope or a loop.
+fn head(element: Element<'_>, content: i64) -> Vec<(Style, String)> {
+    let letters = letters(content + SIDE).max(34);
+    let labels = labels(element);
+    let named =
+        |name: &str| wrapped(&format!("{labels}{name}"), letters, 1).into_iter().map(|line| (Style::Name, line));
+    match element.kind() {
+        ElementKind::Loop { times } => named(&format!("{} ({})", exponent(times), passes(times))).collect(),
+        ElementKind::Scope => {
+            let until = until(element);
+            let until = if until.ends() { until_lines(&until, letters) } else { Vec::new() };
+            named(element.name()).chain(until).collect()
+        }
+        ElementKind::Atom(_) => Vec::new(),
+    }
+}
+
+/// The width at which the children take no more rows than in this room, and rows are as even as they can be.
+fn even(children: &[usize], all: &[Placed], room: i64) -> i64 {
+    let needed = rows(children, all, room).len();
+    let (mut low, mut high) = (0, room);
+    while low + 1 < high {
+        let middle = i64::midpoint(low, high);
+        if rows(children, all, middle).len() > needed {
+            low = middle;
         } else {
-            lines.extend(exit(before, one, to, from.0 + GAP / 2));
+            high = middle;
         }
     }
-    let end = &all[last.index()];
-    let (from, right) = ((end.x + end.width, end.y + end.leaves), placed.x + placed.width);
-    let is_loop = matches!(element.kind(), ElementKind::Loop { .. });
-    if is_loop && end.ends {
-        lines.push(again(placed, from, (all[first.index()].x, entry)));
+    high
+}
+
+/// The children in rows, each at most so wide, if a single child is not wider.
+fn rows(children: &[usize], all: &[Placed], limit: i64) -> Vec<Vec<usize>> {
+    let mut rows: Vec<Vec<usize>> = Vec::new();
+    let mut taken = 0;
+    for child in children {
+        let wide = all[*child].width;
+        match rows.last_mut() {
+            Some(row) if taken + GAP + wide <= limit => {
+                row.push(*child);
+                taken += GAP + wide;
+            }
+            Some(_) | None => {
+                rows.push(vec![*child]);
+                taken = wide;
+            }
+        }
     }
-    let leads_on = !matches!(element.kind(), ElementKind::Loop { times: None });
-    let port = if leads_on { right } else { from.0 + SIDE / 2 };
-    if end.flows && leads_on {
-        lines.push(line(Arrow::Port, depth, &[from, (right, from.1)]));
-    }
-    lines.extend(exit(last, end, (port, from.1), from.0 + SIDE / 2));
+    rows
 }
 
-/// Returns the points from one box to the next in its row, whose arrow may arrive at another height.
-fn beside(from: (i64, i64), to: (i64, i64)) -> Vec<(i64, i64)> {
-    if from.1 == to.1 {
-        return vec![from, to];
-    }
-    let middle = i64::midpoint(from.0, to.0);
-    vec![from, (middle, from.1), (middle, to.1), to]
-}
-
-/// Returns the points from the end of a row to the beginning of the next one, through the gap between them.
-fn around(from: (i64, i64), to: (i64, i64), gap: i64) -> Vec<(i64, i64)> {
-    vec![
-        from,
-        (from.0 + SIDE / 2, from.1),
-        (from.0 + SIDE / 2, gap),
-        (to.0 - SIDE / 2, gap),
-        (to.0 - SIDE / 2, to.1),
-        to,
-    ]
-}
-
-/// Returns the middle of the gap above the row that begins with this child.
-fn gap_above(child: usize, placed: &Placed, all: &[Placed]) -> i64 {
-    let row = placed.children.iter().skip_while(|other| **other != child);
-    let next = row.clone().skip(1).find(|other| placed.rows.contains(other));
-    let tops = row.take_while(|other| Some(*other) != next).map(|other| all[*other].y);
-    tops.min().unwrap_or(0) - GAP / 2
-}
-
-/// Returns the line of a loop's next pass: below all its elements, back to the first.
-fn again(placed: &Placed, from: (i64, i64), to: (i64, i64)) -> Line {
-    let (right, left, below) = (from.0 + SIDE / 2, to.0 - SIDE / 2, placed.y + placed.height - 16);
-    line(Arrow::Again, placed.depth, &[from, (right, from.1), (right, below), (left, below), (left, to.1), to])
-}
-
-/// Returns the line of a scope's exit by its own condition, from its head to `to`; no line for other elements.
-fn exit(element: Element<'_>, placed: &Placed, to: (i64, i64), over: i64) -> Vec<Line> {
-    if !element.is_scope() || !until(element).ends() {
-        return Vec::new();
-    }
-    let from = (placed.x + placed.width, placed.y + EXIT);
-    vec![line(Arrow::Exit, placed.depth, &[from, (over, from.1), (over, to.1), to])]
-}
-
-/// Returns the lines of the exit of a scope at the end of a row by its own condition: down to the arrow in the gap,
-/// which leads on.
-fn exit_below(element: Element<'_>, placed: &Placed, to: (i64, i64), gap: i64) -> Vec<Line> {
-    let right = placed.x + placed.width;
-    if placed.flows {
-        return exit(element, placed, (right - 8, gap), right + GAP / 2);
-    }
-    // Nothing else draws the way to the next row.
-    let mut lines = exit(element, placed, (to.0 - SIDE / 2, gap), right + GAP / 2);
-    lines.iter_mut().for_each(|line| line.points.extend([(to.0 - SIDE / 2, to.1), to]));
-    lines
+fn row_width(row: &[usize], all: &[Placed]) -> i64 {
+    row.iter().map(|child| all[*child].width).sum::<i64>() + GAP * (row.len() as i64 - 1)
 }

@@ -6,7 +6,7 @@
 use mdle_runtime::{Printable, is_printable};
 
 use super::can_be_shown;
-use super::exits::{Ends, ends};
+use super::exits::{WaysOut, ends};
 use super::measure::wrapped;
 use super::texts::{exponent, labels, law, passes, until};
 use crate::diagnostic::Diagnostic;
@@ -33,7 +33,7 @@ pub fn mermaid(machine: &Machine) -> Result<String, Diagnostic> {
 }
 
 struct Diagram {
-    ends: Vec<Ends>,
+    ends: Vec<WaysOut>,
     depth: usize,
     text: String,
 }

@@ -3,12 +3,12 @@
 //! A picture shows the plan as it is written: loops are not expanded. Only the SCXML machine, which is to do what the
 //! plan does, has a state for each atom of the expanded plan.
 
+mod arrows;
 mod dot;
 mod exits;
 mod layout;
 mod measure;
 mod mermaid;
-mod places;
 mod scxml;
 mod svg;
 mod texts;

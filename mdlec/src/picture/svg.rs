@@ -2,10 +2,10 @@
 
 use std::fmt::Write;
 
+use super::arrows::{Arrow, MARGIN, Polyline, arrows};
 use super::can_be_shown;
-use super::layout::{Arrow, Line, MARGIN, arrows};
+use super::layout::{Placed, Style, places};
 use super::measure::{LINE, letters, wrapped};
-use super::places::{Placed, Style, places};
 use super::texts::{tooltip, until};
 use super::xml::escaped;
 use crate::diagnostic::Diagnostic;
@@ -155,7 +155,7 @@ impl Picture<'_> {
         }
     }
 
-    fn arrow(&mut self, line: &Line) {
+    fn arrow(&mut self, line: &Polyline) {
         let (class, tip) = match line.arrow {
             Arrow::Flow => ("flow", " marker-end=\"url(#flow)\""),
             Arrow::Port => ("flow", ""),

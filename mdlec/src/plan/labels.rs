@@ -21,14 +21,14 @@ pub(super) struct Labels {
 #[derive(Debug, Clone)]
 struct Label {
     span: Span,
-    ends: Ends,
+    ends: EndCauses,
     /// `true` if another element has this label too.
     is_ambiguous: bool,
 }
 
 /// Causes that can end an element.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Ends {
+pub(super) enum EndCauses {
     /// These operands of the element's interrupt.
     Operands(Vec<String>),
     /// The end of the element's last element: it has no interrupt of its own.
@@ -54,7 +54,7 @@ impl Labels {
     pub(super) fn add(&mut self, label: Name<'_>, found: &mut Vec<Diagnostic>) {
         if let Some(first) = self.labels.get_mut(label.node) {
             // Which element `after` means is not known.
-            (first.ends, first.is_ambiguous) = (Ends::Unknown, true);
+            (first.ends, first.is_ambiguous) = (EndCauses::Unknown, true);
             let message = format!("there are two labels `{}` in this plan", label.node);
             found.push(
                 Diagnostic::new(Code::E0203, message, label.span, "the second one")
@@ -63,12 +63,14 @@ impl Labels {
             );
             return;
         }
-        self.labels
-            .insert(label.node.to_owned(), Label { span: label.span, ends: Ends::WithItsLast, is_ambiguous: false });
+        self.labels.insert(
+            label.node.to_owned(),
+            Label { span: label.span, ends: EndCauses::WithItsLast, is_ambiguous: false },
+        );
     }
 
     /// Sets the causes that can end the element of a label.
-    pub(super) fn ends(&mut self, label: &str, ends: Ends) {
+    pub(super) fn ends(&mut self, label: &str, ends: EndCauses) {
         if let Some(label) = self.labels.get_mut(label).filter(|label| !label.is_ambiguous) {
             label.ends = ends;
         }
@@ -120,12 +122,12 @@ impl Labels {
         let (Some(cause), Some(span)) = (cause, asked.cause) else { return Ok(None) };
         let here = |text: &str| Diagnostic::new(Code::E0207, text, span, "not a cause").also(known.span, "the label");
         match &known.ends {
-            Ends::Unknown => Ok(None),
-            Ends::WithItsLast => {
+            EndCauses::Unknown => Ok(None),
+            EndCauses::WithItsLast => {
                 let message = format!("`{label}` has no interrupt of its own: only its last element ends it");
                 Err(here(&message).help(format!("leave the cause out: `after {label}`")).into())
             }
-            Ends::Operands(operands) => {
+            EndCauses::Operands(operands) => {
                 let place = (0..).zip(operands).find(|(_, operand)| *operand == cause).map(|(place, _)| place);
                 place.map(Some).ok_or_else(|| {
                     let message = format!("`{cause}` is not an operand of the interrupt of `{label}`");

@@ -6,7 +6,6 @@ mod angle;
 mod arguments;
 mod comparisons;
 mod condition;
-mod conditions;
 mod definitions;
 pub(crate) mod families;
 mod formal;
@@ -18,6 +17,7 @@ mod parameters;
 mod print;
 mod quarks;
 mod resolve;
+mod resolve_conditions;
 mod size;
 #[cfg(test)]
 mod tests;
@@ -30,10 +30,10 @@ pub use angle::{HERE, frame_text, in_degrees};
 pub use arguments::signature;
 pub use comparisons::{is_time, is_way};
 pub use condition::{After, Condition, Situation};
-pub use conditions::condition_text;
 pub use functions::{Function, Functions};
 pub use nondegenerate::{Nondegenerate, remove_degeneracy};
 pub use resolve::resolve;
+pub use resolve_conditions::condition_text;
 pub use walk::{Part, Visit, Walk};
 pub(crate) use words::Words;
 

@@ -4,11 +4,11 @@ mod misread;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::conditions::{self, Around};
 use super::definitions::Definitions;
-use super::labels::{Ends, Labels};
+use super::labels::{EndCauses, Labels};
 use super::parameters::{self, Names, Parameter, Parameters};
 use super::quarks::Quarks;
+use super::resolve_conditions::{self, Around};
 use super::{Atom, Decimal, Interrupt, Loop, Node, Plan, RecordId, Scope};
 use crate::alphabet::{Alphabet, DeclarationKind, Kind, Unit};
 use crate::diagnostic::{Code, Diagnostic, Span, has_errors};
@@ -124,7 +124,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
     }
 
     /// Resolves a plan of the file, with labels and parameters of its own.
-    fn plan(&mut self, plan: &tree::Plan<'a>, parameters: Parameters<'a>, frame: Framing) -> (Scope, Ends) {
+    fn plan(&mut self, plan: &tree::Plan<'a>, parameters: Parameters<'a>, frame: Framing) -> (Scope, EndCauses) {
         let labels = std::mem::replace(&mut self.labels, Labels::new(RecordId(self.begun)));
         self.begun = self.begun.saturating_add(1);
         let parameters = std::mem::replace(&mut self.parameters, parameters);
@@ -135,7 +135,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
     }
 
     /// Resolves a behavior in place.
-    fn behavior(&mut self, plan: &tree::Plan<'a>, frame: Framing) -> (Scope, Ends) {
+    fn behavior(&mut self, plan: &tree::Plan<'a>, frame: Framing) -> (Scope, EndCauses) {
         if !plan.params.is_empty() {
             self.found.push(parameters::missing(plan, "it is written in place"));
             let own = Parameters::declared(plan, self.quarks.alphabet(), &mut self.found);
@@ -144,7 +144,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
         self.scope(plan, frame)
     }
 
-    fn scope(&mut self, plan: &tree::Plan<'a>, frame: Framing) -> (Scope, Ends) {
+    fn scope(&mut self, plan: &tree::Plan<'a>, frame: Framing) -> (Scope, EndCauses) {
         let (interrupt, ends) = self.interrupt(plan.condition.as_ref(), plan.name.span);
         let first = self.words_of_name(plan).max(self.bare_condition(plan));
         let body = self.sequence(plan.elements.get(first..).unwrap_or(&[]), frame);
@@ -152,11 +152,11 @@ impl<'r, 'a> Resolver<'r, 'a> {
         (Scope { name, interrupt, body, here: frame.here, record: None, marks: Vec::new(), span }, ends)
     }
 
-    fn interrupt(&mut self, condition: Option<&tree::Condition<'_>>, scope: Span) -> (Interrupt, Ends) {
+    fn interrupt(&mut self, condition: Option<&tree::Condition<'_>>, scope: Span) -> (Interrupt, EndCauses) {
         let names = Names { plans: &self.definitions.names, parameters: &self.parameters };
         let around = Around { quarks: &mut self.quarks, names, labels: &mut self.labels, found: &mut self.found };
-        let (interrupt, operands) = conditions::interrupt(condition, scope, around);
-        (interrupt, Ends::Operands(operands))
+        let (interrupt, operands) = resolve_conditions::interrupt(condition, scope, around);
+        (interrupt, EndCauses::Operands(operands))
     }
 
     fn sequence(&mut self, elements: &[Element<'a>], frame: Framing) -> Vec<Node> {
@@ -197,7 +197,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
     }
 
     /// Resolves the main part of an element. Each form has a function of its own, to save stack where plans use plans.
-    fn primary(&mut self, element: &Element<'a>, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
+    fn primary(&mut self, element: &Element<'a>, frame: Framing, nodes: &mut Vec<Node>) -> EndCauses {
         match &element.primary {
             Primary::Atom(atom) => self.written(atom, element.span, frame, nodes),
             Primary::Plan(plan) => self.in_place(plan, frame, nodes),
@@ -205,31 +205,31 @@ impl<'r, 'a> Resolver<'r, 'a> {
             Primary::Exec(exec) => self.exec(exec, element.span, frame, nodes),
             Primary::String(elements) => self.string(elements, element.span, frame, nodes),
             Primary::Formal(formal) => self.formal(formal, element.span, frame, nodes),
-            Primary::Broken => Ends::Unknown,
+            Primary::Broken => EndCauses::Unknown,
         }
     }
 
     /// Resolves `(s)`: an open string, which `FRAME here` makes a scope.
-    fn string(&mut self, elements: &[Element<'a>], span: Span, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
+    fn string(&mut self, elements: &[Element<'a>], span: Span, frame: Framing, nodes: &mut Vec<Node>) -> EndCauses {
         if frame.here {
             nodes.extend(framed(self.sequence(elements, frame), span));
         } else {
             elements.iter().for_each(|inner| self.element(inner, frame, nodes));
         }
-        Ends::WithItsLast
+        EndCauses::WithItsLast
     }
 
     /// Resolves `s^n`.
-    fn power(&mut self, power: &Count, element: &Element<'a>, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
+    fn power(&mut self, power: &Count, element: &Element<'a>, frame: Framing, nodes: &mut Vec<Node>) -> EndCauses {
         let mut body = Vec::new();
         self.primary(element, frame, &mut body);
         let times = self.count(power);
         nodes.push(Node::Loop(Loop { times, body, marks: Vec::new(), span: element.span }));
-        Ends::WithItsLast
+        EndCauses::WithItsLast
     }
 
     /// Resolves `ExecPlan n { s }`.
-    fn exec(&mut self, exec: &tree::Exec<'a>, span: Span, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
+    fn exec(&mut self, exec: &tree::Exec<'a>, span: Span, frame: Framing, nodes: &mut Vec<Node>) -> EndCauses {
         let times = self.count(&exec.count);
         let mut body = self.sequence(exec.body, frame);
         if frame.here {
@@ -237,14 +237,14 @@ impl<'r, 'a> Resolver<'r, 'a> {
             body = framed(body, span);
         }
         nodes.push(Node::Loop(Loop { times, body, marks: Vec::new(), span }));
-        Ends::WithItsLast
+        EndCauses::WithItsLast
     }
 
     /// Resolves `(Atom (ξ) u)`.
-    fn written(&mut self, atom: &tree::Atom<'a>, span: Span, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
+    fn written(&mut self, atom: &tree::Atom<'a>, span: Span, frame: Framing, nodes: &mut Vec<Node>) -> EndCauses {
         if let Some(swapped) = self.swapped(atom) {
             self.found.push(swapped);
-            return Ends::Unknown;
+            return EndCauses::Unknown;
         }
         let (interrupt, ends) = self.interrupt(Some(&atom.condition), span);
         self.atom(atom.control, interrupt, frame, span, nodes);
@@ -252,15 +252,15 @@ impl<'r, 'a> Resolver<'r, 'a> {
     }
 
     /// Resolves `{ Behavior … }`.
-    fn in_place(&mut self, plan: &tree::Plan<'a>, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
+    fn in_place(&mut self, plan: &tree::Plan<'a>, frame: Framing, nodes: &mut Vec<Node>) -> EndCauses {
         let (scope, ends) = self.behavior(plan, frame);
         nodes.push(Node::Scope(scope));
         ends
     }
 
     /// Resolves a plan by name.
-    fn used(&mut self, call: &Call<'a>, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
-        let Some((plan, parameters)) = self.reference(call) else { return Ends::Unknown };
+    fn used(&mut self, call: &Call<'a>, frame: Framing, nodes: &mut Vec<Node>) -> EndCauses {
+        let Some((plan, parameters)) = self.reference(call) else { return EndCauses::Unknown };
         let (scope, ends) = self.plan(plan, parameters, frame);
         nodes.push(Node::Scope(scope));
         ends
@@ -282,7 +282,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
     }
 
     /// Resolves `(u, ξ, T)` or `(s, ξ, T)`: to an atom if the body is one law, else to a scope without a name.
-    fn formal(&mut self, formal: &Formal<'a>, span: Span, frame: Framing, nodes: &mut Vec<Node>) -> Ends {
+    fn formal(&mut self, formal: &Formal<'a>, span: Span, frame: Framing, nodes: &mut Vec<Node>) -> EndCauses {
         let (interrupt, ends) = self.timed(formal, span);
         match formal.body {
             [Element { primary: Primary::Ref(law), marks: None, .. }] if self.is_law(law) => {
@@ -306,7 +306,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
     }
 
     /// Resolves the interrupt of a scope in formal notation: `ξ OR wait T`.
-    fn timed(&mut self, formal: &Formal<'a>, span: Span) -> (Interrupt, Ends) {
+    fn timed(&mut self, formal: &Formal<'a>, span: Span) -> (Interrupt, EndCauses) {
         let Some(time) = formal.time else { return self.interrupt(Some(&formal.condition), span) };
         let (args, here) = ([time], time.span());
         let wait = Call { name: "wait", args: &args, span: here };

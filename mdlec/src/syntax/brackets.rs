@@ -95,7 +95,7 @@ fn pass<'s>(source: Source<'s>, lexed: &Lexed<'s>, ends: &BTreeMap<usize, End>) 
 
 /// Kind of an open bracket.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum BracketKind {
     Brace,
     Parenthesis,
     Atom,
@@ -104,7 +104,7 @@ enum Kind {
 /// A bracket that is open.
 #[derive(Debug, Clone, Copy)]
 struct Open {
-    kind: Kind,
+    kind: BracketKind,
     /// Place of the bracket; `None` if it was inserted.
     place: Option<Place>,
     /// Index of the bracket in the text's tokens, or of the token before which it was inserted.
@@ -147,14 +147,14 @@ impl<'s> Pass<'_, 's> {
                 if self.in_complete_atom() {
                     self.close_atom(token.place);
                 }
-                return self.open(Kind::Brace, index, token);
+                return self.open(BracketKind::Brace, index, token);
             }
             Tok::LParen | Tok::TouchParen => {
                 let atom = matches!(self.raw.get(index + 1), Some(Token { kind: Tok::Atom, .. }));
                 if atom {
                     self.close_atom(token.place);
                 }
-                return self.open(if atom { Kind::Atom } else { Kind::Parenthesis }, index, token);
+                return self.open(if atom { BracketKind::Atom } else { BracketKind::Parenthesis }, index, token);
             }
             Tok::Atom if self.label_inside() => self.push(token),
             Tok::Atom if !self.after_parenthesis() => {
@@ -201,7 +201,7 @@ impl<'s> Pass<'_, 's> {
 
     /// Returns `true` in an atom that has its condition and its law.
     fn in_complete_atom(&self) -> bool {
-        if self.open.last().is_none_or(|open| open.kind != Kind::Atom) {
+        if self.open.last().is_none_or(|open| open.kind != BracketKind::Atom) {
             return false;
         }
         let (mut depth, mut groups, mut others) = (0_usize, 0, 0);
@@ -223,7 +223,7 @@ impl<'s> Pass<'_, 's> {
         matches!(self.balanced.tokens.last(), Some(Token { kind: Tok::LParen | Tok::TouchParen, .. }))
     }
 
-    fn open(&mut self, kind: Kind, raw: usize, token: Token<'s>) -> bool {
+    fn open(&mut self, kind: BracketKind, raw: usize, token: Token<'s>) -> bool {
         if self.open.len() >= MAX_DEPTH {
             let message = format!("brackets nested more than {MAX_DEPTH} deep");
             let help = "give an inner part a name, as a plan of its own, and use it by that name";
@@ -234,12 +234,12 @@ impl<'s> Pass<'_, 's> {
         let place = (!token.place.is_empty()).then_some(token.place);
         self.open.push(Open { kind, place, raw, stray: None });
         match kind {
-            Kind::Brace => {
+            BracketKind::Brace => {
                 self.braces += 1;
                 self.push(token);
                 self.balanced.regions.open_brace();
             }
-            Kind::Parenthesis | Kind::Atom => {
+            BracketKind::Parenthesis | BracketKind::Atom => {
                 self.balanced.regions.open_parenthesis();
                 self.push(token);
             }
@@ -252,18 +252,18 @@ impl<'s> Pass<'_, 's> {
         let open = self.open.pop()?;
         self.push(token);
         match open.kind {
-            Kind::Brace => {
+            BracketKind::Brace => {
                 self.braces -= 1;
                 self.balanced.regions.close_brace();
             }
-            Kind::Parenthesis | Kind::Atom => self.balanced.regions.close_parenthesis(),
+            BracketKind::Parenthesis | BracketKind::Atom => self.balanced.regions.close_parenthesis(),
         }
         Some(open)
     }
 
     /// Closes the innermost open bracket where the text has no closing bracket.
     fn force(&mut self) -> Option<Open> {
-        let kind = if self.open.last()?.kind == Kind::Brace { Tok::RBrace } else { Tok::RParen };
+        let kind = if self.open.last()?.kind == BracketKind::Brace { Tok::RBrace } else { Tok::RParen };
         self.balanced.regions.spoil();
         let end = self.balanced.tokens.last().map_or(0, |token| token.place.end);
         self.close(Token { kind, place: Place::new(end, end) })
@@ -274,7 +274,7 @@ impl<'s> Pass<'_, 's> {
         let mut unclosed = Vec::new();
         let mut atom = false;
         while let Some(open) = (self.open.len() > depth).then(|| self.force()).flatten() {
-            atom |= open.kind == Kind::Atom;
+            atom |= open.kind == BracketKind::Atom;
             unclosed.extend(open.place);
         }
         unclosed.reverse();
@@ -298,8 +298,9 @@ impl<'s> Pass<'_, 's> {
 
     /// Closes the atom inside which another atom begins.
     fn close_atom(&mut self, at: Place) {
-        let inside = self.open.iter().rev().take_while(|open| open.kind != Kind::Brace);
-        if let Some(up) = inside.enumerate().filter(|(_, open)| open.kind == Kind::Atom).map(|(up, _)| up).last() {
+        let inside = self.open.iter().rev().take_while(|open| open.kind != BracketKind::Brace);
+        if let Some(up) = inside.enumerate().filter(|(_, open)| open.kind == BracketKind::Atom).map(|(up, _)| up).last()
+        {
             self.force_down_to(self.open.len() - up - 1, at, "before this");
         }
     }
@@ -307,7 +308,7 @@ impl<'s> Pass<'_, 's> {
     /// Inserts the parenthesis of an `Atom` that lacks it.
     fn lone_atom(&mut self, index: usize, token: Token<'s>) -> bool {
         let place = Place::new(token.place.start, token.place.start);
-        if !self.open(Kind::Atom, index, Token { kind: Tok::LParen, place }) {
+        if !self.open(BracketKind::Atom, index, Token { kind: Tok::LParen, place }) {
             return false;
         }
         let span = self.source.span(token.place);
@@ -347,14 +348,14 @@ impl<'s> Pass<'_, 's> {
             self.spoil(diagnostic.help("remove it, or open a plan: `{ Name (Atom (bumper) stop) }`"));
             return;
         }
-        let above = self.open.iter().rev().take_while(|open| open.kind != Kind::Brace).count();
+        let above = self.open.iter().rev().take_while(|open| open.kind != BracketKind::Brace).count();
         self.force_down_to(self.open.len() - above, token.place, "before this");
         self.close(token);
     }
 
     fn close_parenthesis(&mut self, index: usize, token: Token<'s>) {
         let brace = match self.open.last() {
-            Some(open) if open.kind != Kind::Brace => {
+            Some(open) if open.kind != BracketKind::Brace => {
                 self.close(token);
                 return;
             }
@@ -383,12 +384,12 @@ impl<'s> Pass<'_, 's> {
         while let Some(open) = self.open.last().copied() {
             match open.kind {
                 _ if stopped => drop(self.force()),
-                Kind::Brace => {
+                BracketKind::Brace => {
                     self.force();
                     self.unclosed_brace(open, end);
                 }
-                Kind::Parenthesis | Kind::Atom => {
-                    let above = self.open.iter().rev().take_while(|open| open.kind != Kind::Brace).count();
+                BracketKind::Parenthesis | BracketKind::Atom => {
+                    let above = self.open.iter().rev().take_while(|open| open.kind != BracketKind::Brace).count();
                     self.force_down_to(self.open.len() - above, end, "at the latest here");
                 }
             }
@@ -429,7 +430,7 @@ impl<'s> Pass<'_, 's> {
 
     /// Closes the brace that opens at token `brace` of the text, and all brackets open inside it.
     fn close_brace_of(&mut self, brace: usize, at: Place) {
-        if let Some(depth) = self.open.iter().position(|open| open.raw == brace && open.kind == Kind::Brace) {
+        if let Some(depth) = self.open.iter().position(|open| open.raw == brace && open.kind == BracketKind::Brace) {
             self.close_down_to(depth, at);
         }
     }
@@ -437,11 +438,11 @@ impl<'s> Pass<'_, 's> {
     /// Closes the brackets above the first `depth` before a token that seems to follow them.
     fn close_down_to(&mut self, depth: usize, at: Place) {
         while let Some(open) = self.open.last().copied().filter(|_| self.open.len() > depth) {
-            if open.kind == Kind::Brace {
+            if open.kind == BracketKind::Brace {
                 self.force();
                 self.report_brace(open, at, "perhaps a `}` is missing before this");
             } else {
-                let above = self.open.iter().rev().take_while(|open| open.kind != Kind::Brace).count();
+                let above = self.open.iter().rev().take_while(|open| open.kind != BracketKind::Brace).count();
                 self.force_down_to(self.open.len() - above, at, "before this");
             }
         }

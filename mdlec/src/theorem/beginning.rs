@@ -17,7 +17,7 @@ pub(super) struct Open {
 
 /// Scopes and loops that end between two states.
 #[derive(Default)]
-pub(super) struct Ending {
+pub(super) struct Boundary {
     runs: Vec<Run>,
     /// First places of the loops that end here, in ascending order.
     loops: Vec<usize>,
@@ -84,9 +84,9 @@ impl<'m> Beginning<'m> {
     ///
     /// # Errors
     /// Fails with the condition that `next` breaks.
-    pub(super) fn ending(&self, open: &[Open], next: State, extra: Option<usize>) -> Result<Option<Ending>, Broken> {
+    pub(super) fn ending(&self, open: &[Open], next: State, extra: Option<usize>) -> Result<Option<Boundary>, Broken> {
         let Some(here) = self.order.len().checked_sub(1) else {
-            return Ok(extra.is_none().then(Ending::default));
+            return Ok(extra.is_none().then(Boundary::default));
         };
         let mut ends = Vec::with_capacity(open.len());
         let mut widest = here + 1;
@@ -169,9 +169,9 @@ impl<'m> Beginning<'m> {
     }
 
     /// Returns the scopes and loops that end, if they can.
-    fn ended(&self, open: &[Open], next: State, ends: &[bool], widest: usize) -> Result<Ending, Broken> {
+    fn ended(&self, open: &[Open], next: State, ends: &[bool], widest: usize) -> Result<Boundary, Broken> {
         let here = self.order.len() - 1;
-        let mut ending = Ending { widest: Some(widest), ..Ending::default() };
+        let mut ending = Boundary { widest: Some(widest), ..Boundary::default() };
         for (run, ends) in open.iter().zip(ends) {
             if !ends {
                 ending.open.push(*run);
@@ -194,7 +194,7 @@ impl<'m> Beginning<'m> {
     }
 
     /// Appends a state; returns the scopes that are open with it, and the data that undo this step.
-    pub(super) fn fill(&mut self, ending: Ending, next: State) -> (Vec<Open>, Before) {
+    pub(super) fn fill(&mut self, ending: Boundary, next: State) -> (Vec<Open>, Before) {
         let place = self.order.len();
         let mut before = Before { runs: self.runs.len(), loops: self.loops.len(), ..Before::default() };
         if let (Some(widest), Some(last)) = (ending.widest, place.checked_sub(1)) {

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use super::beginning::{Before, Beginning, Ending, Open};
+use super::beginning::{Before, Beginning, Boundary, Open};
 use super::{Answer, Broken, Found, InterruptId, Machine, State};
 
 /// Maximum number of continuations of the furthest beginning that are reported.
@@ -158,7 +158,7 @@ impl<'m> Search<'m> {
     }
 
     /// Scopes and loops that end if `next` follows, for the next choice of an additional scope; `None` if they cannot.
-    fn ending(&mut self, step: &mut Step, next: State) -> Option<Ending> {
+    fn ending(&mut self, step: &mut Step, next: State) -> Option<Boundary> {
         let extra = step.extra.checked_sub(1);
         let result = self.beginning.ending(&step.open, next, extra);
         step.extra += 1;

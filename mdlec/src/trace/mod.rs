@@ -14,7 +14,7 @@ use script::Moment;
 pub use script::{Reports, Script, ScriptError};
 pub use table::Table;
 pub use tree::Tree;
-pub use write::{Applied, COMPLETED, Fired, Line, Outcome};
+pub use write::{Applied, COMPLETED, Fired, Outcome, TraceLine};
 
 /// An interpreter of a plan.
 pub trait Machine<'p> {
@@ -23,7 +23,7 @@ pub trait Machine<'p> {
 }
 
 /// Traces a machine from its first turn to the turn in which the plan ends, or to the end of the script.
-pub fn run<'p, 's>(mut machine: impl Machine<'p> + 's, script: &'s Script) -> impl Iterator<Item = Line<'p>> {
+pub fn run<'p, 's>(mut machine: impl Machine<'p> + 's, script: &'s Script) -> impl Iterator<Item = TraceLine<'p>> {
     let mut over = false;
     script.turns().iter().enumerate().map_while(move |(turn, reports)| {
         if over {
@@ -31,6 +31,6 @@ pub fn run<'p, 's>(mut machine: impl Machine<'p> + 's, script: &'s Script) -> im
         }
         let outcome = machine.turn(reports);
         over = outcome.applied == Applied::Over;
-        Some(Line { turn, t: reports.t, outcome })
+        Some(TraceLine { turn, t: reports.t, outcome })
     })
 }

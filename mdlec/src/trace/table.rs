@@ -19,7 +19,7 @@ use crate::plan::{Interrupt, Mark, Node, Nondegenerate, Plan, Quark, QuarkId, Re
 pub struct Table<'p> {
     plan: &'p Plan,
     /// States except the termination state, in order.
-    states: Vec<State<'p>>,
+    states: Vec<AtomState<'p>>,
     /// Interrupts, numbered in pre-order: a scope before its elements.
     rows: Vec<Row<'p>>,
     /// For each row the memory of its scope, valid since the scope was entered.
@@ -34,7 +34,7 @@ pub struct Table<'p> {
 
 /// A state: an atom.
 #[derive(Debug)]
-struct State<'p> {
+struct AtomState<'p> {
     law: &'p Quark,
     /// Row of the atom's own interrupt.
     own: usize,
@@ -77,7 +77,7 @@ struct Memory {
 
 /// A row that has fired, its text, its operands that have fired, and the operand that was the cause; `None` if the law
 /// has completed.
-struct Ending<'p> {
+struct FiredRow<'p> {
     row: usize,
     by: &'p str,
     operands: Vec<String>,
@@ -145,20 +145,20 @@ impl<'p> Table<'p> {
     }
 
     /// Returns the outermost interrupt that has fired, or else the completion of the law.
-    fn fired(&self, reports: &Reports) -> Option<Ending<'p>> {
+    fn fired(&self, reports: &Reports) -> Option<FiredRow<'p>> {
         let has_fired = |row: &usize| self.rows[*row].interrupt.condition.fired(&self.reading(*row, reports));
         if let Some(row) = self.around().filter(has_fired).last() {
             let interrupt = self.rows[row].interrupt;
             let (condition, reading) = (&interrupt.condition, self.reading(row, reports));
             let operands = self.plan.operands_fired(interrupt, &reading);
-            return Some(Ending { row, by: &interrupt.text, operands, operand: Some(condition.cause(&reading)) });
+            return Some(FiredRow { row, by: &interrupt.text, operands, operand: Some(condition.cause(&reading)) });
         }
         let state = self.states.get(self.state)?;
         let done = state.law.completes && reports.completed.contains(&state.law.text);
-        done.then_some(Ending { row: state.own, by: COMPLETED, operands: Vec::new(), operand: None })
+        done.then_some(FiredRow { row: state.own, by: COMPLETED, operands: Vec::new(), operand: None })
     }
 
-    fn follow(&mut self, ending: &Ending<'p>, now: Moment) {
+    fn follow(&mut self, ending: &FiredRow<'p>, now: Moment) {
         self.record(ending);
         let Next { state, afresh } = self.rows[ending.row].next.clone();
         for row in afresh {
@@ -173,7 +173,7 @@ impl<'p> Table<'p> {
     }
 
     /// Replaces the records whose labelled elements end now.
-    fn record(&mut self, ending: &Ending<'p>) {
+    fn record(&mut self, ending: &FiredRow<'p>) {
         let Row { marks, ends_with, .. } = &self.rows[ending.row];
         let own = marks.iter().map(|mark| (mark, ending.operand));
         let ended = || own.clone().chain(ends_with.iter().map(|mark| (*mark, None)));
@@ -240,7 +240,7 @@ fn empty(record: Record) -> Vec<bool> {
 /// A table that is being filled from left to right.
 struct Filling<'p> {
     plan: &'p Plan,
-    states: Vec<State<'p>>,
+    states: Vec<AtomState<'p>>,
     rows: Vec<Row<'p>>,
     /// Rows of the scopes that have just ended: they lead to the next state.
     ended: Vec<usize>,
@@ -266,7 +266,7 @@ impl<'p> Filling<'p> {
                     let from = self.begun.take().unwrap_or(own);
                     self.lead_to(&Next { state: self.states.len(), afresh: from..own + 1 });
                     let here = if atom.here { Some(own) } else { here };
-                    self.states.push(State { law: self.plan.quark(atom.law), own, turned: atom.frame, here });
+                    self.states.push(AtomState { law: self.plan.quark(atom.law), own, turned: atom.frame, here });
                     self.ended.push(own);
                 }
                 Node::Scope(scope) => self.scope(scope, Some(around), here),

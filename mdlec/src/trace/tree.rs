@@ -24,7 +24,7 @@ pub struct Tree<'p> {
 /// A scope, a loop or an atom.
 #[derive(Debug)]
 struct Element<'p> {
-    kind: Kind<'p>,
+    kind: NodeKind<'p>,
     /// Nodes of the body; the first of them is element number `held`, the others follow it.
     body: &'p [Node],
     held: usize,
@@ -33,7 +33,7 @@ struct Element<'p> {
 }
 
 #[derive(Debug, Clone, Copy)]
-enum Kind<'p> {
+enum NodeKind<'p> {
     Scope(&'p Scope),
     Loop(&'p Loop),
     Atom(&'p Atom),
@@ -58,7 +58,7 @@ struct Open {
 }
 
 /// A scope that ends.
-struct Ending<'p> {
+struct EndedScope<'p> {
     /// Index of the scope in the open elements.
     place: usize,
     level: usize,
@@ -114,8 +114,8 @@ impl<'p> Tree<'p> {
             let Element { kind, body, held, .. } = self.elements[element];
             let memories = kind.interrupt().map_or(0, |interrupt| interrupt.memories as usize);
             let facts = match kind {
-                Kind::Scope(Scope { record: Some(record), .. }) => record.facts as usize,
-                Kind::Scope(_) | Kind::Loop(_) | Kind::Atom(_) => 0,
+                NodeKind::Scope(Scope { record: Some(record), .. }) => record.facts as usize,
+                NodeKind::Scope(_) | NodeKind::Loop(_) | NodeKind::Atom(_) => 0,
             };
             let (memories, facts) = (vec![false; memories], vec![false; facts]);
             self.open.push(Open { element, entered, index: 0, pass: 1, first, here: first, memories, facts });
@@ -124,7 +124,7 @@ impl<'p> Tree<'p> {
     }
 
     /// Returns the outermost scope whose interrupt has fired, or else the completion of the atom's law.
-    fn fired(&self, reports: &Reports) -> Option<Ending<'p>> {
+    fn fired(&self, reports: &Reports) -> Option<EndedScope<'p>> {
         let mut level = 0;
         for (place, open) in self.open.iter().enumerate() {
             let Some(interrupt) = self.elements[open.element].kind.interrupt() else { continue };
@@ -132,13 +132,13 @@ impl<'p> Tree<'p> {
             if interrupt.condition.fired(&read) {
                 let operand = Some(interrupt.condition.cause(&read));
                 let operands = self.plan.operands_fired(interrupt, &read);
-                return Some(Ending { place, level, by: &interrupt.text, operands, operand });
+                return Some(EndedScope { place, level, by: &interrupt.text, operands, operand });
             }
             level += 1;
         }
         let done = self.law().is_some_and(|law| law.completes && reports.completed.contains(&law.text));
         let (place, level) = (self.open.len().checked_sub(1)?, level.checked_sub(1)?);
-        done.then(|| Ending { place, level, by: COMPLETED, operands: Vec::new(), operand: None })
+        done.then(|| EndedScope { place, level, by: COMPLETED, operands: Vec::new(), operand: None })
     }
 
     /// Sets each memory of RISING around the current atom whose operand does not hold.
@@ -160,14 +160,14 @@ impl<'p> Tree<'p> {
 
     fn law(&self) -> Option<&'p crate::plan::Quark> {
         match self.elements[self.open.last()?.element].kind {
-            Kind::Atom(atom) => Some(self.plan.quark(atom.law)),
-            Kind::Scope(_) | Kind::Loop(_) => None,
+            NodeKind::Atom(atom) => Some(self.plan.quark(atom.law)),
+            NodeKind::Scope(_) | NodeKind::Loop(_) => None,
         }
     }
 
     /// Frame of the current atom, if the atom or an enclosing scope is entered in a frame of its own.
     fn frame(&self) -> Option<Frame> {
-        let Kind::Atom(atom) = self.elements[self.open.last()?.element].kind else { return None };
+        let NodeKind::Atom(atom) = self.elements[self.open.last()?.element].kind else { return None };
         let anew = self.open.iter().rev().find(|open| self.elements[open.element].kind.is_here())?;
         Some(anew.entered.frame(atom.frame))
     }
@@ -181,7 +181,7 @@ impl<'p> Tree<'p> {
     }
 
     /// Ends a scope, continues outwards to the first element that has a successor, and enters that successor.
-    fn leave(&mut self, ending: &Ending<'p>, now: Moment) {
+    fn leave(&mut self, ending: &EndedScope<'p>, now: Moment) {
         let mut ended = Vec::new();
         let first = self.elements[self.open[ending.place].element].kind;
         ended.push((first.marks(), ending.operand));
@@ -191,7 +191,7 @@ impl<'p> Tree<'p> {
             if open.index + 1 < body.len() {
                 open.here = open.here.saturating_add(self.elements[held + open.index].all_states());
                 open.index += 1;
-            } else if let Kind::Loop(repeated) = kind
+            } else if let NodeKind::Loop(repeated) = kind
                 && repeated.times.is_none_or(|times| open.pass < times)
             {
                 open.pass = open.pass.saturating_add(1);
@@ -253,7 +253,7 @@ impl<'p> Machine<'p> for Tree<'p> {
     }
 }
 
-impl<'p> Kind<'p> {
+impl<'p> NodeKind<'p> {
     /// Interrupt of a scope or an atom; `None` for a loop.
     fn interrupt(self) -> Option<&'p Interrupt> {
         match self {
@@ -286,32 +286,32 @@ impl Element<'_> {
     /// Record that is kept with the element.
     fn record(&self) -> Option<RecordId> {
         match self.kind {
-            Kind::Scope(scope) => scope.record.map(|record| record.id),
-            Kind::Loop(_) | Kind::Atom(_) => None,
+            NodeKind::Scope(scope) => scope.record.map(|record| record.id),
+            NodeKind::Loop(_) | NodeKind::Atom(_) => None,
         }
     }
 
     /// Number of states in the expanded plan, all passes of a finite loop included.
     fn all_states(&self) -> u64 {
         match self.kind {
-            Kind::Loop(repeated) => self.states.saturating_mul(repeated.times.unwrap_or(1)),
-            Kind::Scope(_) | Kind::Atom(_) => self.states,
+            NodeKind::Loop(repeated) => self.states.saturating_mul(repeated.times.unwrap_or(1)),
+            NodeKind::Scope(_) | NodeKind::Atom(_) => self.states,
         }
     }
 }
 
 /// Elements of a plan, each before its own elements; the elements of a body are neighbours.
 fn flat(root: &Scope) -> Vec<Element<'_>> {
-    let mut elements = vec![Element { kind: Kind::Scope(root), body: &root.body, held: 0, states: 0 }];
+    let mut elements = vec![Element { kind: NodeKind::Scope(root), body: &root.body, held: 0, states: 0 }];
     let mut next = 0;
     while next < elements.len() {
         elements[next].held = elements.len();
         let body = elements[next].body;
         elements.extend(body.iter().map(|node| {
             let (kind, body, states): (_, &[Node], _) = match node {
-                Node::Atom(atom) => (Kind::Atom(atom), &[], 1),
-                Node::Scope(scope) => (Kind::Scope(scope), &scope.body, 0),
-                Node::Loop(repeated) => (Kind::Loop(repeated), &repeated.body, 0),
+                Node::Atom(atom) => (NodeKind::Atom(atom), &[], 1),
+                Node::Scope(scope) => (NodeKind::Scope(scope), &scope.body, 0),
+                Node::Loop(repeated) => (NodeKind::Loop(repeated), &repeated.body, 0),
             };
             Element { kind, body, held: 0, states }
         }));

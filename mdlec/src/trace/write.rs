@@ -10,7 +10,7 @@ pub type Fired<'p> = trace::Fired<'p, Vec<String>>;
 
 /// Result of one turn, with its number and time.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Line<'p> {
+pub struct TraceLine<'p> {
     /// Number of the turn, from 0.
     pub turn: usize,
     /// Time of the turn.
@@ -43,7 +43,7 @@ pub enum Applied<'p> {
     Over,
 }
 
-impl fmt::Display for Line<'_> {
+impl fmt::Display for TraceLine<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Outcome { state, applied, frame, fired } = &self.outcome;
         let law = match applied {
@@ -62,14 +62,14 @@ mod tests {
     #[test]
     fn lines_look_as_the_interface_says() {
         let outcome = Outcome { state: 1, applied: Applied::Law("goAvoid 90 40 20"), frame: None, fired: Vec::new() };
-        let line = Line { turn: 0, t: Nanos::ZERO, outcome };
+        let line = TraceLine { turn: 0, t: Nanos::ZERO, outcome };
         assert_eq!(line.to_string(), r#"{"turn":0,"t":0.0,"state":1,"law":"goAvoid 90 40 20","fired":[]}"#);
 
         let fired = vec![
             Fired { from: 1, level: 2, by: "completed", operands: Vec::new() },
             Fired { from: 2, level: 0, by: "bumper OR path \"x\"", operands: vec!["bumper".to_owned()] },
         ];
-        let line = Line {
+        let line = TraceLine {
             turn: 1,
             t: Nanos(100_000_000),
             outcome: Outcome { state: 9, applied: Applied::Over, frame: None, fired },

@@ -16,10 +16,10 @@ use mdle_runtime::{Nanos, PrintableLines};
 
 use crate::clock::{Clock, Instants};
 use crate::drive::Drive;
-use crate::ending::Ending;
 use crate::progress::Progress;
 use crate::report::{Over, Report};
 use crate::required::Required;
+use crate::run_end::RunEnd;
 use crate::safety::{Panicked, shielded};
 use crate::signals::Signals;
 use crate::summary::Summary;
@@ -187,7 +187,7 @@ fn one(batch: &Runs<'_>, seed: u64, terms: &Terms<'_>) -> Option<Done> {
         Ok(drive) => drive,
         Err(sentence) => return Some(Done { outcome: Outcome::Failed(sentence), ..run }),
     };
-    let mut clock = Clock::begin(Standing, Time::Stepped(Pace::Max), terms.period, None);
+    let mut clock = Clock::begin(StoppedClock, Time::Stepped(Pace::Max), terms.period, None);
     let mut nobody = std::io::sink();
     let mut over = None;
     let limits = Limits { timeout: terms.limits.timeout.or(terms.by_default()), ..terms.limits };
@@ -200,27 +200,27 @@ fn one(batch: &Runs<'_>, seed: u64, terms: &Terms<'_>) -> Option<Done> {
     });
     run.t = clock.taken();
     let stopped = shielded(|| {
-        if ending.as_ref().is_ok_and(Ending::robot_listens) {
+        if ending.as_ref().is_ok_and(RunEnd::robot_listens) {
             let _ = drive.release();
         }
         drive.stop()
     });
     let failure = stopped.unwrap_or_else(panicked).err();
     run.outcome = match ending {
-        Ok(Ending::Signal(_)) => return None,
+        Ok(RunEnd::Signal(_)) => return None,
         Err(panic) => Outcome::Failed(panicked::<()>(panic).err().unwrap_or_default()),
         Ok(
-            Ending::Unstarted(fault)
-            | Ending::Robot(fault)
-            | Ending::Unstopped(fault)
-            | Ending::Log(fault)
-            | Ending::Overrun(fault)
-            | Ending::Bug(fault),
+            RunEnd::Unstarted(fault)
+            | RunEnd::Robot(fault)
+            | RunEnd::Unstopped(fault)
+            | RunEnd::Log(fault)
+            | RunEnd::Overrun(fault)
+            | RunEnd::Bug(fault),
         ) => Outcome::Failed(fault),
-        Ok(Ending::Suspended { .. }) => Outcome::Failed("it went without a command".to_owned()),
+        Ok(RunEnd::Suspended { .. }) => Outcome::Failed("it went without a command".to_owned()),
         Ok(_) if failure.is_some() => Outcome::Failed(failure.unwrap_or_default()),
-        Ok(Ending::Timeout(_) | Ending::Turns(_)) => Outcome::TimedOut,
-        Ok(Ending::Over | Ending::Otherwise(_)) => {
+        Ok(RunEnd::Timeout(_) | RunEnd::Turns(_)) => Outcome::TimedOut,
+        Ok(RunEnd::Over | RunEnd::Otherwise(_)) => {
             run.over = over;
             match shielded(|| Ok(drive.observer().and_then(|observer| observer.judged()))).unwrap_or_else(panicked) {
                 Err(panic) => Outcome::Failed(panic),
@@ -242,9 +242,9 @@ fn panicked<T>(Panicked(message): Panicked) -> Result<T, String> {
 
 /// Clock of a batch, whose time never advances: runs are made as fast as possible.
 #[derive(Debug)]
-struct Standing;
+struct StoppedClock;
 
-impl Instants for Standing {
+impl Instants for StoppedClock {
     fn now(&mut self) -> Duration {
         Duration::ZERO
     }

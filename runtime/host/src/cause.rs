@@ -36,7 +36,7 @@ impl fmt::Display for CauseText<'_> {
             return if name.is_empty() { f.write_str(by) } else { write!(f, "{by} ({name})") };
         };
         if matches!(cause, Cause::Completed(_)) {
-            return write!(f, "{COMPLETED} ({})", Place(source.file(bracket.at), bracket.at));
+            return write!(f, "{COMPLETED} ({})", FileLine(source.file(bracket.at), bracket.at));
         }
         let all = source.operands_of(scope);
         let mut words: Vec<String> = Vec::new();
@@ -51,7 +51,7 @@ impl fmt::Display for CauseText<'_> {
                 words.push(text);
             }
         }
-        write!(f, "{} ({}", words.join(" and "), Place(source.file(at), at))?;
+        write!(f, "{} ({}", words.join(" and "), FileLine(source.file(at), at))?;
         if all.len() > 1 {
             write!(f, ", of \"{}\"", bracket.condition)?;
         }
@@ -70,15 +70,15 @@ pub(crate) fn place(plan: &dyn Texts, passes: &Passes, atom: u32) -> String {
         Kind::Loop { times, .. } => Some(format!("pass {} of {times}", passes.of(number))),
     });
     let mut words: Vec<String> = around.collect();
-    words.extend(source.brackets.get(own as usize).map(|own| Place(source.file(own.at), own.at).to_string()));
+    words.extend(source.brackets.get(own as usize).map(|own| FileLine(source.file(own.at), own.at).to_string()));
     words.reverse();
     words.join(", ")
 }
 
 /// A line of a file: `wall.mdle:7`.
-struct Place<'a>(&'a str, SourceLine);
+struct FileLine<'a>(&'a str, SourceLine);
 
-impl fmt::Display for Place<'_> {
+impl fmt::Display for FileLine<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}:{}", self.0, self.1.line)
     }

@@ -8,10 +8,10 @@ use std::time::Duration;
 use mdle_runtime::Nanos;
 use rustix::time::{ClockId, clock_gettime};
 
-use crate::ending::Ending;
+use crate::run_end::RunEnd;
 use crate::signals::Signals;
 use crate::timing::Timing;
-use crate::{Pace, Time, urgency};
+use crate::{Pace, Time, scheduling};
 
 /// The longest sleep without a look at the signals.
 const SLICE: Duration = Duration::from_millis(20);
@@ -52,7 +52,7 @@ impl Instants for SinceBoot {
     }
 
     fn keep_time(&mut self) -> Result<(), String> {
-        urgency::claim()
+        scheduling::claim()
     }
 }
 
@@ -111,15 +111,15 @@ impl<I: Instants> Clock<I> {
     /// # Errors
     /// A signal, which ends the wait early; too many successive turns longer than the period; or too long a time
     /// without a command to the robot.
-    pub(crate) fn next_turn(&mut self, signals: &Signals) -> Result<(), Ending> {
+    pub(crate) fn next_turn(&mut self, signals: &Signals) -> Result<(), RunEnd> {
         if self.time == Time::Wall {
             let took = nanos(self.instants.now()).saturating_sub(self.begun);
-            self.timing.took(took).map_err(Ending::Overrun)?;
+            self.timing.took(took).map_err(RunEnd::Overrun)?;
         }
         let deadline = self.deadline();
         loop {
             if let Some(signal) = signals.caught() {
-                return Err(Ending::Signal(signal));
+                return Err(RunEnd::Signal(signal));
             }
             let Some(deadline) = deadline else { return Ok(()) };
             let now = nanos(self.instants.now());
@@ -127,7 +127,7 @@ impl<I: Instants> Clock<I> {
             if left == 0 {
                 let gap = now.saturating_sub(self.begun);
                 if self.time == Time::Wall && gap > self.longest_gap {
-                    return Err(Ending::Suspended { gap, longest: self.longest_gap });
+                    return Err(RunEnd::Suspended { gap, longest: self.longest_gap });
                 }
                 self.begun = now;
                 self.timing.begins(now.saturating_sub(deadline));
@@ -218,7 +218,7 @@ mod tests {
         }
         clock.instants.0 += Duration::from_millis(101);
         let ending = clock.next_turn(&Signals::unheard()).expect_err("an overrun");
-        let Ending::Overrun(sentence) = ending else { panic!("{ending:?}") };
+        let RunEnd::Overrun(sentence) = ending else { panic!("{ending:?}") };
         assert!(sentence.starts_with("10 turns in a row took longer than the period of 100ms, "), "{sentence}");
     }
 
@@ -268,7 +268,7 @@ mod tests {
         let second = Duration::from_secs(1);
         let mut clock = Clock::begin(ByHand::default(), Time::Wall, PERIOD, Some(second));
         assert_eq!([900, 1000].map(|took| gap(&mut clock, took)), [Ok(()), Ok(())]);
-        let Err(Ending::Suspended { gap: 1_100_000_000, longest }) = gap(&mut clock, 1001) else { panic!("a fault") };
+        let Err(RunEnd::Suspended { gap: 1_100_000_000, longest }) = gap(&mut clock, 1001) else { panic!("a fault") };
         assert_eq!(longest, nanos(second));
         // Of a robot that does not say.
         let mut clock = Clock::begin(ByHand::default(), Time::Wall, PERIOD, None);
@@ -290,7 +290,7 @@ mod tests {
         signals.raise(Signal::TERMINATE);
         for time in [Time::Wall, Time::Stepped(Pace::Times(0.001)), Time::Stepped(Pace::Max)] {
             let mut clock = Clock::begin(ByHand::default(), time, PERIOD, None);
-            assert_eq!(clock.next_turn(&signals), Err(Ending::Signal(Signal::TERMINATE)));
+            assert_eq!(clock.next_turn(&signals), Err(RunEnd::Signal(Signal::TERMINATE)));
             assert_eq!(clock.instants.0, Duration::ZERO);
         }
     }

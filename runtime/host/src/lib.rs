@@ -9,19 +9,18 @@
 #![forbid(unsafe_code)]
 
 mod arguments;
+mod background_writer;
 mod batch;
 mod cause;
 mod clock;
 mod drive;
-mod ending;
 mod executable;
 mod files;
-mod held;
+mod held_report;
 mod log;
 mod named_file;
 mod observer;
 mod operand_text;
-mod outlet;
 mod output_format;
 mod panic_hook;
 mod passes;
@@ -32,7 +31,9 @@ mod progress;
 mod quantity;
 mod report;
 mod required;
+mod run_end;
 mod safety;
+mod scheduling;
 mod second_signal;
 mod session;
 mod signals;
@@ -45,7 +46,6 @@ mod timing;
 mod transitions;
 mod turns;
 mod unwinding;
-mod urgency;
 mod way_out;
 
 use std::fs::File;
@@ -53,14 +53,14 @@ use std::io::{self, IsTerminal, Write};
 use std::os::fd::{AsFd, BorrowedFd};
 use std::process::ExitCode;
 
+use background_writer::{Keeps, Outlet};
 pub use batch::Batch;
 pub use clap;
 use executable::{Executable, PlanOnTarget};
 pub use files::{read_file, read_text};
 use mdle_runtime::{Plan, Robot};
 pub use named_file::NamedFile;
-pub use observer::{Around, Ended, Judgement, Observation, Observer, SeveralRuns, Standing};
-use outlet::{Keeps, Outlet};
+pub use observer::{Around, Ended, Judgement, Observation, Observer, PlanPosition, SeveralRuns};
 pub use output_format::output_format;
 pub use paths::{Replays, setpoints};
 use patience::Patience;
@@ -94,15 +94,15 @@ fn execute(program: Program<'_>, executable: &dyn Executable) -> ExitCode {
         Ok(signals) => signals,
         Err(error) => {
             // Without them Ctrl-C would leave the robot moving.
-            ending::say(&mut io::stderr(), format_args!("error: signals cannot be caught: {error}"));
-            return ExitCode::from(ending::FAULT);
+            run_end::say(&mut io::stderr(), format_args!("error: signals cannot be caught: {error}"));
+            return ExitCode::from(run_end::FAULT);
         }
     };
     let (out, err) = match standard_streams(signals.patience()) {
         Ok(streams) => streams,
         Err(error) => {
-            ending::say(&mut io::stderr(), format_args!("error: the system gives no threads: {error}"));
-            return ExitCode::from(ending::FAULT);
+            run_end::say(&mut io::stderr(), format_args!("error: the system gives no threads: {error}"));
+            return ExitCode::from(run_end::FAULT);
         }
     };
     panic_hook::tell_to(err.aside());

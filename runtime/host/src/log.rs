@@ -7,8 +7,8 @@ use std::path::Path;
 use mdle_runtime::trace::{Fired, Line};
 use mdle_runtime::{Frame, Nanos};
 
+use crate::background_writer::{Keeps, Outlet};
 use crate::drive::Texts;
-use crate::outlet::{Keeps, Outlet};
 use crate::patience::Patience;
 use crate::transitions::{Operand, Transitions};
 

@@ -24,7 +24,7 @@ pub trait Observer {
     }
 
     /// A turn was made, and this is where the plan stands.
-    fn turned(&mut self, _standing: &Standing<'_>) {}
+    fn turned(&mut self, _standing: &PlanPosition<'_>) {}
 
     /// Returns the result of a run whose plan is over; `None` if the robot was to come to no goal. Asked after the
     /// robot was stopped.
@@ -82,7 +82,7 @@ pub(crate) type Observes<R> = Option<fn(&mut R) -> &mut dyn Observer>;
 
 /// The place in a plan after a turn that did not end it.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Standing<'a> {
+pub struct PlanPosition<'a> {
     /// The time of the turn.
     pub t: Nanos,
     /// The number of the current atom's state.

@@ -4,7 +4,7 @@ use std::backtrace::{Backtrace, BacktraceStatus};
 use std::panic::{self, PanicHookInfo};
 use std::thread;
 
-use crate::outlet::Aside;
+use crate::background_writer::Aside;
 use crate::safety::text;
 
 /// Sends reports of panics through `outlet` from now on.

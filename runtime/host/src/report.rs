@@ -19,7 +19,7 @@ pub(crate) struct Report<'a> {
     /// `true` if lines are shown as soon as they are written: not at the fastest pace.
     prompt: bool,
     /// Nothing more is written after an error; the error is kept unless it means that the reader has gone.
-    state: State,
+    state: ReportState,
     /// The passes of loops.
     passes: Passes,
     /// Why the current atom runs; empty for the plan's first.
@@ -46,7 +46,7 @@ pub(crate) struct Over {
 }
 
 /// State of a report: open, or no longer written.
-enum State {
+enum ReportState {
     Open,
     Closed(Option<io::Error>),
 }
@@ -54,7 +54,7 @@ enum State {
 impl<'a> Report<'a> {
     /// A report to `out`.
     pub(crate) fn new(out: &'a mut dyn Write, prompt: bool) -> Self {
-        Self { out, prompt, state: State::Open, passes: Passes::default(), since: String::new(), over: None }
+        Self { out, prompt, state: ReportState::Open, passes: Passes::default(), since: String::new(), over: None }
     }
 
     /// Returns how the plan ended, if it has.
@@ -78,13 +78,13 @@ impl<'a> Report<'a> {
             self.passes.step(plan.fsm(), transition);
             let cause = Printable(CauseText { plan, transition, operands }).to_string();
             let written = match (&self.state, transition.atom) {
-                (State::Closed(_), _) => Ok(()),
-                (State::Open, Some(atom)) => {
+                (ReportState::Closed(_), _) => Ok(()),
+                (ReportState::Open, Some(atom)) => {
                     let (law, place) = (Printable(plan.law(atom)), place(plan, &self.passes, atom));
                     let place = if place.is_empty() { place } else { format!(" ({place})") };
                     writeln!(self.out, "{}  {law}{}  <- {cause}", Clocked(t), Printable(&place))
                 }
-                (State::Open, None) => writeln!(self.out, "{}  plan over: {cause}", Clocked(t)),
+                (ReportState::Open, None) => writeln!(self.out, "{}  plan over: {cause}", Clocked(t)),
             };
             self.note(written);
             if transition.atom.is_none() {
@@ -100,8 +100,8 @@ impl<'a> Report<'a> {
     /// Reports the result of a run that had a goal.
     pub(crate) fn judged(&mut self, judgement: &Judgement) {
         let written = match self.state {
-            State::Open => writeln!(self.out, "{}", Printable(judgement)),
-            State::Closed(_) => Ok(()),
+            ReportState::Open => writeln!(self.out, "{}", Printable(judgement)),
+            ReportState::Closed(_) => Ok(()),
         };
         self.note(written);
     }
@@ -109,11 +109,11 @@ impl<'a> Report<'a> {
     /// Shows the lines that have been written so far.
     pub(crate) fn flush(&mut self) {
         match self.state {
-            State::Open => {
+            ReportState::Open => {
                 let flushed = self.out.flush();
                 self.note(flushed);
             }
-            State::Closed(_) => {}
+            ReportState::Closed(_) => {}
         }
     }
 
@@ -124,15 +124,15 @@ impl<'a> Report<'a> {
     pub(crate) fn close(mut self) -> io::Result<()> {
         self.flush();
         match self.state {
-            State::Open | State::Closed(None) => Ok(()),
-            State::Closed(Some(error)) => Err(error),
+            ReportState::Open | ReportState::Closed(None) => Ok(()),
+            ReportState::Closed(Some(error)) => Err(error),
         }
     }
 
     /// Goes quiet on an error: a report is no reason to stop a robot.
     fn note(&mut self, written: io::Result<()>) {
         if let Err(error) = written {
-            self.state = State::Closed((error.kind() != io::ErrorKind::BrokenPipe).then_some(error));
+            self.state = ReportState::Closed((error.kind() != io::ErrorKind::BrokenPipe).then_some(error));
         }
     }
 }

@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 use signal_hook::iterator::Signals as Incoming;
 use signal_hook::low_level;
 
-use crate::ending;
-use crate::outlet::STACK;
+use crate::background_writer::STACK;
 use crate::patience::Stopped;
+use crate::run_end;
 use crate::signals::Signals;
 
 /// The time that the program may go on after the attempt to stop, if a second signal came.
@@ -45,7 +45,7 @@ fn end(signals: &Signals, leave_screen: fn()) {
             Some(_) | None => thread::sleep(LOOK),
         }
     };
-    let of_the_signal = || signals.caught().map_or(ending::FAULT, |signal| 128_u8.saturating_add(signal.number()));
+    let of_the_signal = || signals.caught().map_or(run_end::FAULT, |signal| 128_u8.saturating_add(signal.number()));
     let status = known.unwrap_or_else(of_the_signal);
     leave_screen();
     // Not by way of what the libraries do at an exit: they write what is left, and nobody may read that.

@@ -12,14 +12,14 @@ use crate::arguments::{self, Options};
 use crate::batch::{self, Runs, Terms};
 use crate::clock::{Clock, Instants};
 use crate::drive::Drive;
-use crate::ending::{self, Ending, Fault, say};
 use crate::executable::{Executable, TargetOptions};
-use crate::held::Held;
+use crate::held_report::Held;
 use crate::log::{Log, Untouched};
 use crate::paths::{self, Recorder};
 use crate::progress::Progress;
 use crate::report::Report;
 use crate::required::Required;
+use crate::run_end::{self, RunEnd, RunFault, say};
 use crate::safety::{Panicked, shielded};
 use crate::signals::Signals;
 use crate::turns::{self, Limits, Witnesses};
@@ -106,7 +106,7 @@ where
     let ending = shielded(|| {
         let log = match &mut log {
             Ok(log) => log.as_mut(),
-            Err(error) => return Ending::Log(error.to_string()),
+            Err(error) => return RunEnd::Log(error.to_string()),
         };
         let seen = seen.filter(|_| !screen && !is_watched(time));
         let (progress, err): (_, Option<&mut dyn Write>) = match seen {
@@ -214,7 +214,7 @@ fn several<'e>(
     let progress = seen.map(|now| Progress::new(&mut *err, now));
     let (status, unwritten) = batch::run(batch, terms, out, progress);
     if let Some(signal) = terms.signals.caught() {
-        Ending::Signal(signal).tell(true, err);
+        RunEnd::Signal(signal).tell(true, err);
     }
     if let Some(error) = unwritten.filter(|error| error.kind() != io::ErrorKind::BrokenPipe) {
         say(err, format_args!("warning: standard output could not be written: {error}"));
@@ -226,7 +226,7 @@ fn several<'e>(
 fn unparsed<'o>(error: &clap::Error, out: impl FnOnce() -> Box<dyn Write + 'o>, err: &mut dyn Write) -> u8 {
     if error.use_stderr() {
         say(err, format_args!("{}", error.render().to_string().trim_end()));
-        return ending::USAGE;
+        return run_end::USAGE;
     }
     answered(&error.render().to_string(), &mut *out())
 }
@@ -234,7 +234,7 @@ fn unparsed<'o>(error: &clap::Error, out: impl FnOnce() -> Box<dyn Write + 'o>, 
 /// Prints the answer that an option asks for instead of a run. Its reader may go before the end.
 fn answered(answer: &str, out: &mut dyn Write) -> u8 {
     let _ = write!(out, "{}", PrintableLines(answer)).and_then(|()| out.flush());
-    ending::OVER
+    run_end::OVER
 }
 
 /// Parts that a run needs before its first turn.
@@ -279,8 +279,8 @@ fn ended_at_the_start(signals: &Signals, stopped: Result<(), String>, err: &mut 
         signals.patience().stop_was_tried(None);
         return Refusal::Fault("the robot's code ended the start, and nothing asked for that".to_owned()).tell(err);
     };
-    let ending = Ending::Signal(signal);
-    let faults: Vec<Fault> = stopped.err().map(Fault::Stop).into_iter().collect();
+    let ending = RunEnd::Signal(signal);
+    let faults: Vec<RunFault> = stopped.err().map(RunFault::Stop).into_iter().collect();
     signals.patience().stop_was_tried(Some(ending.status(&faults)));
     ending.tell(faults.is_empty(), err);
     faults.iter().for_each(|fault| fault.tell(faults.is_empty(), err));

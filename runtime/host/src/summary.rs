@@ -8,8 +8,8 @@ use mdle_runtime::Nanos;
 use mdle_runtime::trace::{Json, Seconds};
 
 use crate::batch::{Done, Outcome};
-use crate::ending;
 use crate::report::Over;
+use crate::run_end;
 
 /// The runs of a batch, in the order of their seeds.
 pub(crate) struct Summary<'a> {
@@ -55,11 +55,11 @@ impl Summary<'_> {
     /// The exit status of the batch, if no signal ended it.
     pub(crate) fn status(&self) -> u8 {
         if self.count("failed") > 0 {
-            ending::FAULT
+            run_end::FAULT
         } else if self.good().count() as u64 == self.asked {
-            ending::OVER
+            run_end::OVER
         } else {
-            ending::MISSED
+            run_end::MISSED
         }
     }
 

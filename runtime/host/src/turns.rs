@@ -10,15 +10,15 @@ use mdle_runtime::{Nanos, Turn};
 use crate::cause::place;
 use crate::clock::{Clock, Instants, nanos};
 use crate::drive::{Drive, Position};
-use crate::ending::{Ending, say};
 use crate::log::{Entry, Log};
 use crate::paths::Recorder;
 use crate::progress::Progress;
 use crate::report::Report;
+use crate::run_end::{RunEnd, say};
 use crate::signals::Signals;
 use crate::timing::Timing;
 use crate::transitions::Transitions;
-use crate::{Around, Ended, Observer, Standing};
+use crate::{Around, Ended, Observer, PlanPosition};
 
 /// Limits at which a run ends whose plan is not over.
 #[derive(Debug, Clone, Copy)]
@@ -52,12 +52,12 @@ pub(crate) fn run<I: Instants>(
     clock: &mut Clock<I>,
     signals: &Signals,
     witnesses: &mut Witnesses<'_, '_>,
-) -> Ending {
+) -> RunEnd {
     if let Some(signal) = signals.caught() {
-        return Ending::Signal(signal);
+        return RunEnd::Signal(signal);
     }
     if let Err(fault) = drive.exchange() {
-        return Ending::Unstarted(fault);
+        return RunEnd::Unstarted(fault);
     }
     let mut t = clock.zero();
     let mut transitions = Transitions::default();
@@ -73,7 +73,7 @@ pub(crate) fn run<I: Instants>(
         fresh |= !transitions.is_empty();
         if let (observer, Some(position)) = drive.parts() {
             if let Err(error) = witnesses.tell(position, turn, number, t, &transitions) {
-                break Ending::Log(error.to_string());
+                break RunEnd::Log(error.to_string());
             }
             let has_begun = turn == Turn::Law(()) && std::mem::take(&mut fresh);
             if let Some(observer) = observer {
@@ -81,7 +81,7 @@ pub(crate) fn run<I: Instants>(
             }
         }
         if turn == Turn::Over {
-            break Ending::Over;
+            break RunEnd::Over;
         }
         number = number.saturating_add(1);
         if let Some(ending) = limits.reached(number, t) {
@@ -94,7 +94,7 @@ pub(crate) fn run<I: Instants>(
             break ending;
         }
         if let Err(fault) = drive.exchange() {
-            break Ending::Robot(fault);
+            break RunEnd::Robot(fault);
         }
         t = clock.taken();
     };
@@ -124,13 +124,13 @@ fn watched(
 }
 
 /// Tells the observer that the turns have ended, and by what.
-fn ended(observer: &mut dyn Observer, position: &dyn Position, ending: &Ending, report: &Report<'_>, t: Nanos) {
+fn ended(observer: &mut dyn Observer, position: &dyn Position, ending: &RunEnd, report: &Report<'_>, t: Nanos) {
     let by = report.over().map_or_else(|| ending.brief(), |over| over.cause.clone());
-    observer.ended(&Ended { plan: position.texts().name(0), is_over: *ending == Ending::Over, by: &by, t });
+    observer.ended(&Ended { plan: position.texts().name(0), is_over: *ending == RunEnd::Over, by: &by, t });
 }
 
 /// Returns the state of a plan that is not over.
-fn standing<'m>(position: &'m dyn Position, t: Nanos, report: &'m Report<'_>) -> Standing<'m> {
+fn standing<'m>(position: &'m dyn Position, t: Nanos, report: &'m Report<'_>) -> PlanPosition<'m> {
     let (plan, fsm) = (position.texts(), position.texts().fsm());
     let atom = position.atom().and_then(|atom| fsm.atoms.get(atom as usize));
     let own = atom.and_then(|atom| fsm.brackets.get(atom.scope as usize)).map(|bracket| bracket.kind);
@@ -144,14 +144,14 @@ fn standing<'m>(position: &'m dyn Position, t: Nanos, report: &'m Report<'_>) ->
     });
     let law = position.atom().map_or("", |atom| plan.law(atom));
     let place = position.atom().map_or_else(String::new, |atom| place(plan, report.passes(), atom));
-    Standing { t, state: position.state(), law, place, since: report.since(), scopes: scopes.collect() }
+    PlanPosition { t, state: position.state(), law, place, since: report.since(), scopes: scopes.collect() }
 }
 
 impl Limits {
     /// Returns the limit that a plan has reached, if it is not over after `turns` turns, the last one at time `t`.
-    fn reached(&self, turns: u64, t: Nanos) -> Option<Ending> {
-        let timeout = self.timeout.filter(|limit| t.0 >= nanos(*limit)).map(Ending::Timeout);
-        timeout.or(self.turns.filter(|limit| turns >= *limit).map(Ending::Turns))
+    fn reached(&self, turns: u64, t: Nanos) -> Option<RunEnd> {
+        let timeout = self.timeout.filter(|limit| t.0 >= nanos(*limit)).map(RunEnd::Timeout);
+        timeout.or(self.turns.filter(|limit| turns >= *limit).map(RunEnd::Turns))
     }
 }
 

@@ -4,23 +4,23 @@ use std::io::{self, Write};
 
 use crate::Judgement;
 use crate::drive::Drive;
-use crate::ending::{Ending, Fault};
 use crate::log::Log;
 use crate::report::Report;
 use crate::required::Required;
+use crate::run_end::{RunEnd, RunFault};
 use crate::safety::{Panicked, shielded};
 
 /// A panic as an ending.
-pub(crate) fn bug(Panicked(message): Panicked) -> Ending {
-    Ending::Bug(message)
+pub(crate) fn bug(Panicked(message): Panicked) -> RunEnd {
+    RunEnd::Bug(message)
 }
 
 /// Stops the robot; returns the ending after that, whether the robot's code can still be trusted, and the faults.
 ///
 /// The null input is sent once more where the robot still listens, then the stop command in any case.
-pub(crate) fn stop(drive: &mut dyn Drive, ending: Ending) -> (Ending, bool, Vec<Fault>) {
+pub(crate) fn stop(drive: &mut dyn Drive, ending: RunEnd) -> (RunEnd, bool, Vec<RunFault>) {
     let last = if ending.robot_listens() {
-        let last = shielded(|| drive.release().map_err(Ending::Robot));
+        let last = shielded(|| drive.release().map_err(RunEnd::Robot));
         last.unwrap_or_else(|panicked| Err(bug(panicked))).err()
     } else {
         None
@@ -33,19 +33,19 @@ pub(crate) fn stop(drive: &mut dyn Drive, ending: Ending) -> (Ending, bool, Vec<
     let stopped = match last {
         Some(last) => {
             let (last, stopped) = last.with_stop(stopped);
-            faults.push(Fault::Exchange(last));
+            faults.push(RunFault::Exchange(last));
             stopped
         }
         None => stopped,
     };
-    faults.extend(stopped.map(Fault::Stop));
+    faults.extend(stopped.map(RunFault::Stop));
     (ending, orderly, faults)
 }
 
 /// Returns the ending of a plan that is over, or else an [`Ending::Otherwise`], by the causes that are required and by
 /// the robot's goal. The result of a goal is reported.
-pub(crate) fn judge(drive: &mut dyn Drive, ending: Ending, required: &Required, report: &mut Report<'_>) -> Ending {
-    if ending != Ending::Over {
+pub(crate) fn judge(drive: &mut dyn Drive, ending: RunEnd, required: &Required, report: &mut Report<'_>) -> RunEnd {
+    if ending != RunEnd::Over {
         return ending;
     }
     let judgement = match shielded(|| drive.observer().and_then(|observer| observer.judged())) {
@@ -57,12 +57,12 @@ pub(crate) fn judge(drive: &mut dyn Drive, ending: Ending, required: &Required, 
     }
     if let Some(over) = report.over().filter(|over| !required.allows(over)) {
         let (cause, asked) = (&over.cause, required.words());
-        return Ending::Otherwise(format!("the plan ended by {cause}, and --require asks for {asked}"));
+        return RunEnd::Otherwise(format!("the plan ended by {cause}, and --require asks for {asked}"));
     }
     match judgement {
-        None | Some(Judgement::Arrived) => Ending::Over,
+        None | Some(Judgement::Arrived) => RunEnd::Over,
         Some(missed @ (Judgement::Bumped | Judgement::Astray(_))) => {
-            Ending::Otherwise(format!("the run is {missed}, and --goal asks for arrived"))
+            RunEnd::Otherwise(format!("the run is {missed}, and --goal asks for arrived"))
         }
     }
 }
@@ -77,25 +77,25 @@ pub(crate) struct Files {
 /// Reports why the run ended, and all faults, once the robot was stopped; returns the exit status.
 pub(crate) fn tell(
     drive: &mut dyn Drive,
-    ending: Ending,
+    ending: RunEnd,
     orderly: bool,
-    mut faults: Vec<Fault>,
+    mut faults: Vec<RunFault>,
     report: &mut Report<'_>,
     files: Files,
     err: &mut dyn Write,
 ) -> u8 {
-    let is_stopped = !faults.iter().any(|fault| matches!(fault, Fault::Stop(_)));
+    let is_stopped = !faults.iter().any(|fault| matches!(fault, RunFault::Stop(_)));
     // Without a word on a broken log the reader of a short one would take it for a whole run.
     let logged = files.log.map_or(Ok(()), |mut log| log.flush());
-    faults.extend(logged.err().filter(|_| !matches!(ending, Ending::Log(_))).map(Fault::Log));
-    faults.extend(files.path.map(Fault::Path));
+    faults.extend(logged.err().filter(|_| !matches!(ending, RunEnd::Log(_))).map(RunFault::Log));
+    faults.extend(files.path.map(RunFault::Path));
     report.flush();
     // Before the robot finishes, which may take a while.
     ending.tell(is_stopped, err);
     if orderly {
         let finished = shielded(|| drive.observer().map_or(Ok(()), |observer| observer.finish()));
         let finished = finished.unwrap_or_else(|Panicked(message)| Err(format!("a panic: {message}")));
-        faults.extend(finished.err().map(Fault::Finish));
+        faults.extend(finished.err().map(RunFault::Finish));
     }
     faults.iter().for_each(|fault| fault.tell(is_stopped, err));
     ending.status(&faults)

@@ -10,10 +10,10 @@ use mdle_serial::{Clock, Line, LineFault, Obedience, Times, time_of};
 use crate::command::Command;
 use crate::config::Config;
 use crate::fault::Fault;
-use crate::hearing::Hearing;
 use crate::layout::RING_RADIUS;
 use crate::motion;
-use crate::mouth::Mouth;
+use crate::receiver::Hearing;
+use crate::sender::Mouth;
 
 /// Bits a second, 8N1.
 const SPEED: u32 = 115_200;

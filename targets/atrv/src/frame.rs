@@ -111,7 +111,7 @@ impl Written {
 
 /// State of a reader within the stream of bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Place {
+enum ReaderState {
     /// Outside of any frame. `marked`: the last byte was 1B; `told`: an error was returned for these bytes.
     Outside { marked: bool, told: bool },
     /// Inside a frame. `marked`: the last byte was 1B.
@@ -121,14 +121,14 @@ enum Place {
 /// Finds frames in the bytes of the line.
 #[derive(Debug)]
 pub struct Reader {
-    place: Place,
+    place: ReaderState,
     bytes: [u8; LONGEST],
     count: usize,
 }
 
 impl Default for Reader {
     fn default() -> Self {
-        Self { place: Place::Outside { marked: false, told: false }, bytes: [0; LONGEST], count: 0 }
+        Self { place: ReaderState::Outside { marked: false, told: false }, bytes: [0; LONGEST], count: 0 }
     }
 }
 
@@ -139,36 +139,40 @@ impl Reader {
     /// The bytes so far are not a frame. The reader waits for the next one to begin.
     pub fn take(&mut self, byte: u8) -> Result<Option<Packet<'_>>, Garbled> {
         match (self.place, byte) {
-            (Place::Outside { marked: true, .. }, START) | (Place::Inside { marked: true }, START) => {
-                let cut = matches!(self.place, Place::Inside { .. }) && self.count > 0;
+            (ReaderState::Outside { marked: true, .. }, START) | (ReaderState::Inside { marked: true }, START) => {
+                let cut = matches!(self.place, ReaderState::Inside { .. }) && self.count > 0;
                 let found = self.count;
-                (self.place, self.count) = (Place::Inside { marked: false }, 0);
+                (self.place, self.count) = (ReaderState::Inside { marked: false }, 0);
                 // The one before it never ended.
                 if cut { Err(Garbled::Length(self.said(), found.saturating_sub(HEAD + 1))) } else { Ok(None) }
             }
-            (Place::Outside { told, .. }, ESCAPE) => self.goes_on(Place::Outside { marked: true, told }),
-            (Place::Outside { marked: true, told }, FILLER) => self.goes_on(Place::Outside { marked: false, told }),
-            (Place::Outside { told: false, .. }, _) => {
-                self.place = Place::Outside { marked: false, told: true };
+            (ReaderState::Outside { told, .. }, ESCAPE) => self.goes_on(ReaderState::Outside { marked: true, told }),
+            (ReaderState::Outside { marked: true, told }, FILLER) => {
+                self.goes_on(ReaderState::Outside { marked: false, told })
+            }
+            (ReaderState::Outside { told: false, .. }, _) => {
+                self.place = ReaderState::Outside { marked: false, told: true };
                 Err(Garbled::Outside(byte))
             }
-            (Place::Outside { told: true, .. }, _) => self.goes_on(Place::Outside { marked: false, told: true }),
-            (Place::Inside { marked: true }, FILLER) => self.goes_on(Place::Inside { marked: false }),
-            (Place::Inside { marked: true }, LITERAL) => self.keep(ESCAPE),
-            (Place::Inside { marked: true }, END) => {
-                self.place = Place::Outside { marked: false, told: false };
+            (ReaderState::Outside { told: true, .. }, _) => {
+                self.goes_on(ReaderState::Outside { marked: false, told: true })
+            }
+            (ReaderState::Inside { marked: true }, FILLER) => self.goes_on(ReaderState::Inside { marked: false }),
+            (ReaderState::Inside { marked: true }, LITERAL) => self.keep(ESCAPE),
+            (ReaderState::Inside { marked: true }, END) => {
+                self.place = ReaderState::Outside { marked: false, told: false };
                 self.packet().map(Some)
             }
-            (Place::Inside { marked: true }, _) => {
-                self.place = Place::Outside { marked: byte == ESCAPE, told: true };
+            (ReaderState::Inside { marked: true }, _) => {
+                self.place = ReaderState::Outside { marked: byte == ESCAPE, told: true };
                 Err(Garbled::Mark(byte))
             }
-            (Place::Inside { marked: false }, ESCAPE) => self.goes_on(Place::Inside { marked: true }),
-            (Place::Inside { marked: false }, _) => self.keep(byte),
+            (ReaderState::Inside { marked: false }, ESCAPE) => self.goes_on(ReaderState::Inside { marked: true }),
+            (ReaderState::Inside { marked: false }, _) => self.keep(byte),
         }
     }
 
-    fn goes_on(&mut self, place: Place) -> Result<Option<Packet<'_>>, Garbled> {
+    fn goes_on(&mut self, place: ReaderState) -> Result<Option<Packet<'_>>, Garbled> {
         self.place = place;
         Ok(None)
     }
@@ -179,10 +183,10 @@ impl Reader {
             Some(place) => {
                 *place = byte;
                 self.count += 1;
-                self.goes_on(Place::Inside { marked: false })
+                self.goes_on(ReaderState::Inside { marked: false })
             }
             None => {
-                self.place = Place::Outside { marked: false, told: true };
+                self.place = ReaderState::Outside { marked: false, told: true };
                 Err(Garbled::Length(self.said(), self.count))
             }
         }

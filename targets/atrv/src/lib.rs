@@ -11,13 +11,13 @@ mod config;
 mod driver;
 mod fault;
 mod frame;
-mod hearing;
 mod layout;
 mod motion;
-mod mouth;
 pub mod quarks;
+mod receiver;
 mod report;
 mod ring;
+mod sender;
 mod target;
 
 pub use avoid::avoided;

@@ -1,6 +1,6 @@
 //! The simulated robot with its observers: pictures, the live view, and the table of its poses.
 
-use mdle_host::{Ended, Judgement, Observer, Standing};
+use mdle_host::{Ended, Judgement, Observer, PlanPosition};
 use mdle_runtime::capability::Bumpers as _;
 use mdle_runtime::{Nanos, PathStore, Pose, Robot, Sensed, Twist};
 
@@ -171,7 +171,7 @@ impl Observer for Observed {
         self.watch.is_some()
     }
 
-    fn turned(&mut self, standing: &Standing<'_>) {
+    fn turned(&mut self, standing: &PlanPosition<'_>) {
         if let Some(watch) = &mut self.watch {
             watch.turned(standing);
         }

@@ -7,7 +7,7 @@ mod view;
 
 use std::time::{Duration, Instant};
 
-use mdle_host::Standing;
+use mdle_host::PlanPosition;
 use mdle_runtime::{Nanos, Pose, Sensed};
 
 use crate::trail;
@@ -91,7 +91,7 @@ impl Watch {
     }
 
     /// A turn was made: shows it, if it is time to show anything.
-    pub(crate) fn turned(&mut self, standing: &Standing<'_>) {
+    pub(crate) fn turned(&mut self, standing: &PlanPosition<'_>) {
         if self.shown.is_some_and(|shown| shown.elapsed() < EVERY) {
             return;
         }

@@ -26,13 +26,13 @@ const OUT_OF_TIME: i32 = 24;
 #[derive(Debug)]
 pub(crate) struct AtOnce<'m> {
     checkout: Checkout,
-    mutants: Vec<(Standing, &'m Mutant)>,
+    mutants: Vec<(BuildState, &'m Mutant)>,
     tests: Vec<Test>,
 }
 
 /// State of a mutant after all were built.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Standing {
+pub(crate) enum BuildState {
     Built,
     DoesNotCompile,
     /// It cannot be chosen while the program runs.
@@ -52,7 +52,7 @@ struct Test {
 impl<'m> AtOnce<'m> {
     /// Builds these mutants of these files, and runs every test without a fault.
     pub(crate) fn prepare(checkout: Checkout, sources: &[Source], mutants: &[&'m Mutant]) -> Self {
-        let mutants = mutants.iter().map(|mutant| (Standing::Built, *mutant)).collect();
+        let mutants = mutants.iter().map(|mutant| (BuildState::Built, *mutant)).collect();
         let mut this = Self { checkout, mutants, tests: Vec::new() };
         for source in sources {
             this.refuse_what_is_no_syntax(source);
@@ -75,7 +75,7 @@ impl<'m> AtOnce<'m> {
     }
 
     /// Returns each mutant with its place and state, in the given order.
-    pub(crate) fn mutants(&self) -> impl Iterator<Item = (usize, Standing, &'m Mutant)> {
+    pub(crate) fn mutants(&self) -> impl Iterator<Item = (usize, BuildState, &'m Mutant)> {
         self.mutants.iter().enumerate().map(|(place, (standing, mutant))| (place, *standing, *mutant))
     }
 
@@ -105,7 +105,7 @@ impl<'m> AtOnce<'m> {
     fn refuse_what_is_no_syntax(&mut self, source: &Source) {
         for (standing, mutant) in self.mutants.iter_mut().filter(|(_, mutant)| mutant.file == source.file) {
             if syn::parse_file(&mutant.apply(&source.text)).is_err() {
-                *standing = Standing::DoesNotCompile;
+                *standing = BuildState::DoesNotCompile;
             }
         }
     }
@@ -115,7 +115,7 @@ impl<'m> AtOnce<'m> {
     fn is_built(&mut self, sources: &[Source]) -> bool {
         let schemata: BTreeMap<_, _> =
             sources.iter().map(|source| (source.file.clone(), self.schema(source))).collect();
-        let left = self.mutants.iter().filter(|(standing, _)| *standing == Standing::Built).count();
+        let left = self.mutants.iter().filter(|(standing, _)| *standing == BuildState::Built).count();
         println!("building {left} mutants");
         let packages = ["--package", "mdle-runtime", "--package", "mdlec"];
         let (is_built, printed) = self.cargo(&[&["check", "--message-format=json"], &packages]);
@@ -125,7 +125,7 @@ impl<'m> AtOnce<'m> {
         for refusal in refusals(&printed) {
             self.refuse(&refusal, &schemata);
         }
-        let now = self.mutants.iter().filter(|(standing, _)| *standing == Standing::Built).count();
+        let now = self.mutants.iter().filter(|(standing, _)| *standing == BuildState::Built).count();
         assert!(now < left, "rustc refuses more than mutants:\n{printed}");
         false
     }
@@ -133,12 +133,12 @@ impl<'m> AtOnce<'m> {
     /// Writes a file with its mutants; mutants that cannot be chosen at run time are set apart.
     fn schema(&mut self, source: &Source) -> Schema {
         let built =
-            self.mutants().filter(|(_, standing, mutant)| *standing == Standing::Built && mutant.file == source.file);
+            self.mutants().filter(|(_, standing, mutant)| *standing == BuildState::Built && mutant.file == source.file);
         let built: Vec<_> = built.map(|(place, _, mutant)| (number(place), mutant)).collect();
         let schema = Schema::new(&source.text, &built).unwrap_or_else(|error| panic!("{}: {error}", source.file));
         for (number, _) in built {
             if !schema.holds(number) {
-                self.mutants[place(number)].0 = Standing::Apart;
+                self.mutants[place(number)].0 = BuildState::Apart;
             }
         }
         self.checkout.write(&source.file, &schema.text);
@@ -147,9 +147,9 @@ impl<'m> AtOnce<'m> {
 
     fn refuse(&mut self, refusal: &Refusal, schemata: &BTreeMap<String, Schema>) {
         match refusal.places.iter().find_map(|(file, byte)| schemata.get(file)?.at(*byte)) {
-            Some(Body::Changed(number)) => self.mutants[place(*number)].0 = Standing::DoesNotCompile,
+            Some(Body::Changed(number)) => self.mutants[place(*number)].0 = BuildState::DoesNotCompile,
             Some(Body::Original(numbers)) => {
-                numbers.iter().for_each(|number| self.mutants[place(*number)].0 = Standing::Apart);
+                numbers.iter().for_each(|number| self.mutants[place(*number)].0 = BuildState::Apart);
             }
             None => println!("{}", refusal.text),
         }

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use crate::at_once::{AtOnce, Standing};
+use crate::at_once::{AtOnce, BuildState};
 use crate::checkout::Checkout;
 use crate::choice::Source;
 use crate::equivalent::Equivalents;
@@ -32,15 +32,15 @@ impl Judge<'_> {
         for (place, standing, mutant) in at_once.mutants() {
             let start = Instant::now();
             match standing {
-                Standing::Built => match at_once.run(place) {
+                BuildState::Built => match at_once.run(place) {
                     Outcome::Survived => {
                         println!("{mutant}: survived the fast tests [{:.0?}]", start.elapsed());
                         apart.push(mutant);
                     }
                     outcome => self.tried(mutant, outcome, start, &mut report),
                 },
-                Standing::DoesNotCompile => self.tried(mutant, Outcome::DoesNotCompile, start, &mut report),
-                Standing::Apart => apart.push(mutant),
+                BuildState::DoesNotCompile => self.tried(mutant, Outcome::DoesNotCompile, start, &mut report),
+                BuildState::Apart => apart.push(mutant),
             }
         }
         let checkout = at_once.restored(self.sources);

@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 /// A line of cargo's output, as far as it is read here.
 #[derive(Debug, Deserialize)]
-struct Line {
+struct CargoMessage {
     reason: String,
     message: Option<Message>,
     manifest_path: Option<PathBuf>,
@@ -80,8 +80,8 @@ pub(crate) fn executables(printed: &str) -> Vec<Executable> {
     tests.collect()
 }
 
-fn lines(printed: &str) -> impl Iterator<Item = Line> {
-    let lines = printed.lines().filter_map(|line| serde_json::from_str::<Line>(line).ok());
+fn lines(printed: &str) -> impl Iterator<Item = CargoMessage> {
+    let lines = printed.lines().filter_map(|line| serde_json::from_str::<CargoMessage>(line).ok());
     lines.filter(|line| matches!(&*line.reason, "compiler-message" | "compiler-artifact"))
 }
 

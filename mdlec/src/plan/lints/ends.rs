@@ -5,7 +5,7 @@ use crate::plan::{Atom, Condition, Interrupt, Node, Plan};
 
 /// Warns of atoms that never end and of unreachable elements.
 pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
-    let mut ends = Ends { plan, pause: 10.0, found };
+    let mut ends = EndsLint { plan, pause: 10.0, found };
     ends.enter(&plan.root.interrupt);
     if let (Some(Endless { atom: Some(atom), told: false }), Condition::Null) =
         (ends.sequence(&plan.root.body), &plan.root.interrupt.condition)
@@ -15,7 +15,7 @@ pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
     }
 }
 
-struct Ends<'p, 'f> {
+struct EndsLint<'p, 'f> {
     plan: &'p Plan,
     /// Duration in seconds proposed for an atom, shorter than the timers of all enclosing scopes.
     pause: f64,
@@ -31,7 +31,7 @@ struct Endless<'p> {
     told: bool,
 }
 
-impl<'p> Ends<'p, '_> {
+impl<'p> EndsLint<'p, '_> {
     /// Keeps the proposed duration in a scope below the timers of its interrupt.
     fn enter(&mut self, interrupt: &Interrupt) {
         for operand in interrupt.condition.operands() {

@@ -1,6 +1,6 @@
 //! Mistakes from which the grammar could not recover: a label inside its atom, and a `use` inside a plan.
 
-use super::{Kind, Pass};
+use super::{BracketKind, Pass};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::token::{Tok, Token};
 use crate::syntax::tree::Name;
@@ -22,7 +22,7 @@ impl<'s> Pass<'_, 's> {
         let diagnostic = diagnostic.help(format!("a label is written before its element: `{label}: (Atom …)`"));
         self.spoil(diagnostic);
         if let Some(open) = self.open.last_mut() {
-            open.kind = Kind::Atom;
+            open.kind = BracketKind::Atom;
         }
         true
     }

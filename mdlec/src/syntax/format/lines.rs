@@ -5,7 +5,7 @@ const GAP: usize = 4;
 
 /// A line.
 #[derive(Debug, Default)]
-struct Line {
+struct FormattedLine {
     code: String,
     /// The trailing comment, or nothing.
     comment: String,
@@ -16,21 +16,21 @@ struct Line {
 /// A text that is being written.
 #[derive(Debug, Default)]
 pub(super) struct Lines {
-    done: Vec<Line>,
-    line: Option<Line>,
+    done: Vec<FormattedLine>,
+    line: Option<FormattedLine>,
 }
 
 impl Lines {
     /// Begins a line that is indented by `indent` columns.
     pub(super) fn start(&mut self, indent: usize) {
         self.done.extend(self.line.take());
-        self.line = Some(Line { code: " ".repeat(indent), ..Line::default() });
+        self.line = Some(FormattedLine { code: " ".repeat(indent), ..FormattedLine::default() });
     }
 
     /// Adds an empty line.
     pub(super) fn skip(&mut self) {
         self.done.extend(self.line.take());
-        self.line = Some(Line::default());
+        self.line = Some(FormattedLine::default());
     }
 
     /// Appends a word to the line.
@@ -102,12 +102,12 @@ impl Lines {
 }
 
 /// Returns `true` if the comments of two neighbouring lines are aligned.
-fn are_aligned(one: &Line, next: &Line) -> bool {
-    let indent = |line: &Line| line.code.len() - line.code.trim_start_matches(' ').len();
+fn are_aligned(one: &FormattedLine, next: &FormattedLine) -> bool {
+    let indent = |line: &FormattedLine| line.code.len() - line.code.trim_start_matches(' ').len();
     is_commented(one) && is_commented(next) && indent(one) == indent(next)
 }
 
-fn is_commented(line: &Line) -> bool {
+fn is_commented(line: &FormattedLine) -> bool {
     !line.comment.is_empty()
 }
 

@@ -1,13 +1,13 @@
 //! Checks whether scopes and loops can end after the beginning of an order: no interrupt may lead into the middle of a
 //! closed stretch (Theorem 1, R4).
 
-use super::{Beginning, Ending};
+use super::{Beginning, Boundary};
 use crate::theorem::{Broken, InterruptId, State, Stretch};
 
 impl Beginning<'_> {
     /// Checks that each ending scope leads to a place where a loop can begin, and not past the start of a loop that
     /// ends with it (R4).
-    pub(super) fn loops_fit(&self, ending: &Ending, next: State) -> Result<(), Broken> {
+    pub(super) fn loops_fit(&self, ending: &Boundary, next: State) -> Result<(), Broken> {
         let here = self.order.len() - 1;
         let stretch = |first: usize, last: usize| Stretch { first: self.order[first], last: self.order[last] };
         for run in &ending.runs {
@@ -40,7 +40,7 @@ impl Beginning<'_> {
 
     /// Checks that every state that leads into the middle of an ending or continuing stretch has a place in it, or can
     /// still get one (R4).
-    pub(super) fn nothing_leads_inside(&self, ending: &Ending, next: State, widest: usize) -> Result<(), Broken> {
+    pub(super) fn nothing_leads_inside(&self, ending: &Boundary, next: State, widest: usize) -> Result<(), Broken> {
         let here = self.order.len() - 1;
         let inside = self.wholes.partition_point(|(first, _)| *first <= widest);
         let middles = self.wholes[inside..].iter().map(|(first, _)| *first).chain((here > widest).then_some(here));

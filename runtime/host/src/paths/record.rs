@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use mdle_runtime::{MetersPerSecond, Nanos, Radians};
 
-use crate::outlet::Outlet;
+use crate::background_writer::Outlet;
 
 /// A path that is being recorded.
 pub(crate) struct Recorder<W: Write = Outlet> {

@@ -15,7 +15,7 @@ use crate::clock::Instants;
 use crate::executable::PlanOnTarget;
 use crate::session::{Surroundings, session};
 use crate::signals::{Signal, Signals};
-use crate::{Around, Ended, Judgement, Observation, Observer, Pace, Refusal, Standing, StopRequest, Target, Time};
+use crate::{Around, Ended, Judgement, Observation, Observer, Pace, PlanPosition, Refusal, StopRequest, Target, Time};
 
 /// An output: what fires while which atom, as written, is the current one.
 #[derive(Debug, Clone, Default)]
@@ -278,7 +278,7 @@ impl Observer for Toy {
         }
     }
 
-    fn turned(&mut self, standing: &Standing<'_>) {
+    fn turned(&mut self, standing: &PlanPosition<'_>) {
         let scopes: Vec<String> = standing
             .scopes
             .iter()

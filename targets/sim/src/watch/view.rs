@@ -1,6 +1,6 @@
 //! The words around the map: time and place above it, the running atom and the scopes around it below.
 
-use mdle_host::{Around, Standing};
+use mdle_host::{Around, PlanPosition};
 use mdle_runtime::{Pose, Printable};
 
 /// The most scopes that are shown: the outermost and the innermost count most.
@@ -30,7 +30,7 @@ struct Scope {
 
 impl Now {
     /// Takes in the current state of the plan.
-    pub(super) fn stands(&mut self, standing: &Standing<'_>) {
+    pub(super) fn stands(&mut self, standing: &PlanPosition<'_>) {
         self.seconds = standing.t.seconds();
         let place = if standing.place.is_empty() { String::new() } else { format!("  ({})", standing.place) };
         let since = if standing.since.is_empty() { String::new() } else { format!("  <- {}", standing.since) };
@@ -128,7 +128,7 @@ mod tests {
         let scopes = (0..scopes).map(around).collect();
         let mut now = Now { contacts: 2, ..Now::default() };
         let (place, since) = ("tour.mdle:12, pass 2 of 3".to_owned(), "wait 7s (tour.mdle:11)");
-        now.stands(&Standing { t: Nanos(73_800_000_000), state: 5, law: "go 0 0.36", place, since, scopes });
+        now.stands(&PlanPosition { t: Nanos(73_800_000_000), state: 5, law: "go 0 0.36", place, since, scopes });
         now
     }
 

@@ -7,7 +7,7 @@ use super::cache::remove;
 use super::cargo::Job;
 use super::messages::{Complaint, Run};
 use super::package::PlanPackage;
-use super::{LinkError, Progress, TargetCrate, record};
+use super::{LinkError, Progress, TargetCrate, build_record};
 
 /// Message of rustc about a library that is missing or empty.
 const ABSENT: &str = "can't find crate for `";
@@ -40,7 +40,7 @@ pub(super) enum Damage {
 pub(super) fn found(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>) -> Option<Damage> {
     if run.status.success() {
         let stored = run.executable.as_ref().filter(|executable| executable.fresh)?;
-        return (!record::fits(job.plan, &stored.path)).then_some(Damage::Executable);
+        return (!build_record::fits(job.plan, &stored.path)).then_some(Damage::Executable);
     }
     if run.lacks_room() || run.status.signal().is_some() {
         return None;

@@ -24,7 +24,7 @@ pub(crate) const OTHERWISE: u8 = 5;
 
 /// Why a run ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum Ending {
+pub(crate) enum RunEnd {
     /// The plan is over.
     Over,
     /// The plan is over, and ended otherwise than `--require` or `--goal` ask: a sentence.
@@ -56,16 +56,16 @@ pub(crate) enum Ending {
     Bug(String),
 }
 
-impl Ending {
+impl RunEnd {
     /// Returns the exit status of the executable, after these faults on the way out.
     ///
     /// A robot that could not be stopped in good order, or a log that is cut short, is a fault whatever came before.
     /// What [`Observer::finish`](crate::Observer::finish) could not write makes one only of a plan that is over: any
     /// other ending says more.
-    pub(crate) fn status(&self, faults: &[Fault]) -> u8 {
+    pub(crate) fn status(&self, faults: &[RunFault]) -> u8 {
         let grave = faults.iter().any(|fault| match fault {
-            Fault::Exchange(_) | Fault::Log(_) | Fault::Stop(_) => true,
-            Fault::Path(_) | Fault::Finish(_) => matches!(self, Self::Over | Self::Otherwise(_)),
+            RunFault::Exchange(_) | RunFault::Log(_) | RunFault::Stop(_) => true,
+            RunFault::Path(_) | RunFault::Finish(_) => matches!(self, Self::Over | Self::Otherwise(_)),
         });
         match self {
             _ if grave => FAULT,
@@ -185,9 +185,9 @@ impl Ending {
 
 /// Fault on the way out.
 #[derive(Debug)]
-pub(crate) enum Fault {
+pub(crate) enum RunFault {
     /// The null input could not be exchanged once more.
-    Exchange(Ending),
+    Exchange(RunEnd),
     /// The rest of the run log could not be written.
     Log(io::Error),
     /// The path that was driven could not be written whole.
@@ -198,7 +198,7 @@ pub(crate) enum Fault {
     Finish(String),
 }
 
-impl Fault {
+impl RunFault {
     /// Reports the fault on standard error; `is_stopped` is `true` if the robot was stopped.
     pub(crate) fn tell(&self, is_stopped: bool, err: &mut dyn Write) {
         match self {

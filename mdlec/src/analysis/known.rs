@@ -24,7 +24,7 @@ pub(super) struct Wanted<'l> {
 
 /// Knowledge at a place of a plan.
 #[derive(Debug)]
-pub(super) struct World<'l> {
+pub(super) struct KnownFacts<'l> {
     pub(super) machine: &'l Machine,
     /// Earliest entry of the scope of each bracket, in nanoseconds since the plan began.
     pub(super) entered: Vec<u64>,
@@ -50,7 +50,7 @@ pub(super) struct Added {
     distance: bool,
 }
 
-impl<'l> World<'l> {
+impl<'l> KnownFacts<'l> {
     pub(super) fn new(machine: &'l Machine) -> Self {
         Self {
             machine,
