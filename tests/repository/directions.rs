@@ -235,6 +235,23 @@ fn tables_of_a_machine_are_read_by_its_face() {
     assert_eq!(breaches, [""; 0]);
 }
 
+#[test]
+fn the_host_is_generic_in_few_files() {
+    // What is generic over a plan or its robot is compiled in the crate of each plan.
+    let generic = ["drive", "executable", "lib", "target"].map(|name| format!("runtime/host/src/{name}.rs"));
+    let mut breaches = Vec::new();
+    for file in files(&[".rs"]).into_iter().filter(|file| file.path.starts_with("runtime/host/src/")) {
+        let is_test = file.path.contains("tests");
+        let bounds = [": Plan", ": Target", "Machine<"];
+        let code = file.text.lines().map(str::trim).filter(|line| !line.starts_with("//"));
+        let lines: Vec<_> = code.filter(|line| bounds.iter().any(|bound| line.contains(bound))).collect();
+        if !is_test && !generic.contains(&file.path) {
+            breaches.extend(lines.iter().map(|line| format!("{}: take a `dyn Drive`: {line}", file.path)));
+        }
+    }
+    assert_eq!(breaches, [""; 0]);
+}
+
 /// The lines that take an entry of a machine's tables by its number.
 fn indexed(text: &str) -> impl Iterator<Item = &str> {
     let tables = ["brackets", "scopes", "atoms", "laws"];
