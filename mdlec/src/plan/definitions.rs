@@ -47,10 +47,16 @@ impl<'a> Definitions<'a> {
             let name = plan.name.node;
             if let Some(first) = by_name.get(name).and_then(|first: &usize| files.plans.get(*first)) {
                 let message = format!("there are two plans called `{name}`");
+                // A string before σ_null has no name of its own.
+                let is_bare = [plan, first].iter().any(|plan| plan.name.span.start == plan.name.span.end);
+                let help = match is_bare {
+                    true => "write one of them with braces and a name of its own: `{ Name … }`",
+                    false => "give one of them another name",
+                };
                 found.push(
                     Diagnostic::new(Code::E0203, message, plan.name.span, "the second one")
                         .also(first.name.span, "the first one")
-                        .help("give one of them another name"),
+                        .help(help),
                 );
                 continue;
             }

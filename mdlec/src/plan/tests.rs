@@ -4,6 +4,7 @@ mod degeneracy;
 mod files;
 mod formal;
 mod motion;
+mod numbers;
 
 use crate::samples::{compiled, judged, sources};
 
@@ -123,18 +124,6 @@ fn ranges_of_arguments() {
   (Atom (wait 1e11) go 1e999 0)
 }"
     );
-}
-
-#[test]
-fn counts_are_compared_exactly() {
-    let found = |count: &str| {
-        let text = format!("{{ Main Leg({count}) }}\n{{ Leg (n: count) (Atom (wait 1) stop) }}");
-        let (_, found) = crate::compile(crate::diagnostic::SourceId(0), &text, &crate::samples::alphabet(None), None);
-        found.into_iter().map(|found| found.message).collect::<Vec<_>>()
-    };
-    assert_eq!(found("9007199254740992"), [""; 0]);
-    assert_eq!(found("9007199254740993"), ["expected a count, found `9007199254740993`"]);
-    assert_eq!(found("1e16"), ["expected a count, found `1e16`"]);
 }
 
 #[test]

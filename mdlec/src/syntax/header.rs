@@ -30,8 +30,25 @@ pub(super) fn mark(tokens: &mut [Token<'_>]) {
 /// Marks the parenthesis at `at`, and the next one if the first holds parameters; `plans` caches the names of the
 /// file's plans.
 fn mark_header<'s>(tokens: &mut [Token<'s>], at: usize, plans: &mut Option<BTreeSet<&'s str>>) {
+    for (at, kind) in groups(tokens, at, plans).into_iter().flatten() {
+        set(tokens, at, kind);
+    }
+}
+
+/// Index of the last token of the header of the plan whose opening brace is at `brace`; `None` for the brace of a loop,
+/// or without a name.
+pub(super) fn end<'s>(tokens: &[Token<'s>], brace: usize, plans: &mut Option<BTreeSet<&'s str>>) -> Option<usize> {
+    if is_loop(tokens, brace) || !is_name(tokens, brace + 1) {
+        return None;
+    }
+    let mut groups = groups(tokens, brace + 2, plans).into_iter().flatten().filter(|(_, kind)| *kind != Tok::LParen);
+    Some(groups.next_back().map_or(brace + 1, |(at, _)| end_of_group(tokens, at)))
+}
+
+/// The parentheses that follow the name of a plan at `at`, at most two, each with the token that it becomes.
+fn groups<'s>(tokens: &[Token<'s>], at: usize, plans: &mut Option<BTreeSet<&'s str>>) -> [Option<(usize, Tok<'s>)>; 2] {
     if !is_parenthesis(tokens, at) {
-        return;
+        return [None; 2];
     }
     let mut condition = at;
     let has_parameters = match begins(behind(tokens, at)) {
@@ -39,15 +56,15 @@ fn mark_header<'s>(tokens: &mut [Token<'s>], at: usize, plans: &mut Option<BTree
         Begins::Others => false,
         Begins::Either(name) => !plans.get_or_insert_with(|| names(tokens)).contains(name),
     };
+    let parameters = has_parameters.then_some((at, Tok::ParamParen));
     if has_parameters {
-        set(tokens, at, Tok::ParamParen);
         condition = end_of_group(tokens, at) + 1;
         if !is_parenthesis(tokens, condition) {
-            return;
+            return [parameters, None];
         }
     }
     let kind = if is_element(behind(tokens, condition)) { Tok::LParen } else { Tok::ConditionParen };
-    set(tokens, condition, kind);
+    [parameters, Some((condition, kind))]
 }
 
 /// Returns the names of all plans.

@@ -91,11 +91,16 @@ fn found(tokens: &[Token<'_>]) -> (Vec<usize>, Vec<(usize, usize)>) {
     let (mut commas, mut plans, mut open) = (Vec::new(), Vec::new(), Vec::new());
     // The first token of what is outside of all plans.
     let mut first = 0;
+    // The last token of the header of the plan that has begun last.
+    let (mut header, mut names) = (None, None);
     let before = |at: usize, back: usize| at.checked_sub(back).and_then(|at| tokens.get(at)).map(|token| token.kind);
     for (at, token) in tokens.iter().enumerate() {
         #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens say nothing")]
         match token.kind {
-            Tok::LBrace => open.push(Inside::Braces),
+            Tok::LBrace => {
+                open.push(Inside::Braces);
+                header = header::end(tokens, at, &mut names).or(header);
+            }
             Tok::LParen | Tok::TouchParen => {
                 let is_head = before(at, 2) == Some(Tok::LBrace) && matches!(before(at, 1), Some(Tok::Name(_)));
                 let is_list = is_head && header::begins(behind(tokens, at)) != Begins::Others;
@@ -116,7 +121,11 @@ fn found(tokens: &[Token<'_>]) -> (Vec<usize>, Vec<(usize, usize)>) {
                 }
                 first = at + 1;
             }
-            Tok::Comma if ends_element(before(at, 1)) && begins_element(tokens, at, open.last().copied()) => {
+            Tok::Comma
+                if header.is_none_or(|last| at != last + 1)
+                    && ends_element([before(at, 2), before(at, 1)], open.is_empty())
+                    && begins_element(tokens, at, open.last().copied()) =>
+            {
                 commas.push(at);
             }
             _ => {}
@@ -140,8 +149,16 @@ fn is_string(tokens: &[Token<'_>], first: usize, end: usize) -> bool {
     })
 }
 
-fn ends_element(token: Option<Tok<'_>>) -> bool {
-    matches!(token, Some(Tok::RParen | Tok::RBrace | Tok::Name(_) | Tok::Number(_) | Tok::Infinity))
+/// Returns `true` if an element ends with the last of two tokens: neither an angle of `FRAME` nor a count of `ExecPlan`,
+/// and outside of all plans no plan.
+fn ends_element([before, last]: [Option<Tok<'_>>; 2], is_outside: bool) -> bool {
+    let is_word = matches!(before, Some(Tok::Frame | Tok::ExecPlan));
+    match last {
+        Some(Tok::RBrace) => !is_outside,
+        Some(Tok::RParen) => true,
+        Some(Tok::Name(_) | Tok::Number(_) | Tok::Infinity) => !is_word,
+        _ => false,
+    }
 }
 
 /// Returns `true` if an element follows this comma. In parentheses a condition may follow it, so that a name, or a

@@ -95,5 +95,31 @@ fn sonars_of_laws_may_be_written_as_their_ranges() {
     assert_eq!(printed[0].plan.formal(), written[0].plan.formal());
     let judged = |law: &str| judged(&format!("{{ P (bumper) (Atom (null) {law}) }}"), None);
     assert!(judged("align r_16 r_9").contains("expected a sonar, 0 to 15, found `16`"));
+    assert!(judged("rotate r_7").contains("expected an angle, found the name `r_7`"));
+    assert!(judged("go r_7 0").contains("expected a speed, found the name `r_7`"));
+    assert!(judged("align r_ r_9").contains("expected a sonar, 0 to 15, found the name `r_`"));
     assert!(judged("align x_7 r_9").contains("expected a sonar, 0 to 15, found the name `x_7`"));
+}
+
+#[test]
+fn strings_without_a_name_are_one_plan_of_a_file() {
+    let text = "((stop, bumper)(stop, wait 1), wait 3)σ_null";
+    assert_eq!(compiled(text)[0].plan.root.name, "Plan");
+    let two = judged(&format!("{text}\n{text}"), None);
+    assert!(two.contains("there are two plans called `Plan`"), "{two}");
+    assert!(two.contains("write one of them with braces and a name of its own: `{ Name … }`"), "{two}");
+    let named = judged(&format!("{{ Plan (wait 3) (Atom (wait 1) stop) }}\n{text}"), None);
+    assert!(named.contains("write one of them with braces"), "{named}");
+}
+
+#[test]
+fn commas_are_between_elements_and_not_in_conditions() {
+    let of = |head: &str| judged(&format!("{{ P {head} (Atom (wait 1) stop) }}"), None);
+    assert!(
+        of("(bumper, atIsection 0100)").contains("`bumper` is an interrupt"),
+        "{}",
+        of("(bumper, atIsection 0100)")
+    );
+    assert!(of("(bumper),").contains("this comma is not between two elements"));
+    assert!(of("(null) (Atom (wait r_7) stop)").contains("expected a time, found the name `r_7`"));
 }

@@ -69,6 +69,11 @@ pub(super) fn at_file_level(site: &Site<'_, '_>) -> Option<Diagnostic> {
                 format!("{{ {name} {condition}"),
             ))
         }
+        Tok::Comma => Some(site.about(site.at, "plans are not separated by commas", "not expected here").fix(
+            "remove it",
+            site.span(site.at, site.at),
+            "",
+        )),
         Tok::LParen | Tok::ExecPlan | Tok::Name(_) | Tok::Frame => Some(
             site.about(site.at, format!("expected a plan, found {}", site.found_words()), "outside of any plan").help(
                 "a file consists of plans, and a plan has braces around its atoms: `{ Name (Atom (bumper) stop) }`",

@@ -20,6 +20,27 @@ fn atoms() {
 }
 
 #[test]
+fn printed_strings() {
+    check(
+        "mistakes_printed_strings",
+        &[
+            "{ A, B } { A (n: count), B } { A (n: count) (bumper), B } { A (s1: B), C }",
+            "{ A (bumper), B } { A (null), { B (bumper), C } } { A B, }",
+            "{ A B,, C } { A (Atom (bumper) stop),, (Atom (bumper) stop) }",
+            "{ A ExecPlan 3 {, B } ExecPlan 3, { B } ExecPlan 3 { B, } FRAME 90, B FRAME here, B s1:, B }",
+            "{ A (,(Atom (bumper) stop))^2 } { A ((Atom (bumper) stop),)^2 }",
+            "{ A B }, { C D }",
+            "{ A (Atom (bumper, wait 2) stop) (Atom (bumper OR, wait 2) stop) (Atom (bumper), stop) }",
+            "σ_null",
+            "{ A B } σ_null",
+            "((u, x),)σ_null",
+            "((u, x), (u, y), z)",
+            "((u, x) (u, y), z) { A B }",
+        ],
+    );
+}
+
+#[test]
 fn plans() {
     check(
         "mistakes_plans",
