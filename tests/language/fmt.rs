@@ -77,6 +77,20 @@ fn random_plans_keep_their_trees_and_every_comment() {
 }
 
 #[test]
+fn commas_between_elements_change_nothing() {
+    let mut commas = 0;
+    for seed in 0..400 {
+        let mut chance = Chance::new(seed);
+        let plan = RandomPlan::new(&mut chance, 12, false);
+        let (plain, with) = (plan.to_string(), plan.with_commas(&mut chance));
+        assert_eq!(tree(&with), tree(&plain), "seed {seed}:\n{with}");
+        assert_eq!(format(SourceId(0), &with), format(SourceId(0), &plain), "seed {seed}:\n{with}");
+        commas += with.len() - plain.len();
+    }
+    assert!(commas > 1000, "{commas}");
+}
+
+#[test]
 fn layout_does_not_depend_on_where_the_lines_of_a_plan_end() {
     for seed in 0..200 {
         let plan = RandomPlan::new(&mut Chance::new(seed), 12, false).to_string();

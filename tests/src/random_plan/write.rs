@@ -3,15 +3,38 @@
 use std::fmt;
 
 use super::{Element, PARAMETERS, RandomPlan, Scope};
+use crate::chance::Chance;
 use crate::pipeline::LIBRARY_FILE;
+
+/// Marks a place between two elements that may have a comma; in no text.
+const BETWEEN: char = '\u{1}';
 
 impl fmt::Display for RandomPlan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.uses {
+        f.write_str(&Marked(self).to_string().replace(BETWEEN, ""))
+    }
+}
+
+impl RandomPlan {
+    /// Returns the text with a comma at some of the places between two elements that may have one
+    /// (docs/src/reference/language.md, 3.2).
+    pub fn with_commas(&self, chance: &mut Chance) -> String {
+        let marked = Marked(self).to_string();
+        marked.chars().filter(|one| *one != BETWEEN || chance.percent(60)).collect::<String>().replace(BETWEEN, ",")
+    }
+}
+
+/// The text of a plan with all marks.
+struct Marked<'p>(&'p RandomPlan);
+
+impl fmt::Display for Marked<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(RandomPlan { definitions, parameters, uses }) = self;
+        if *uses {
             writeln!(f, "use \"{LIBRARY_FILE}\"")?;
         }
-        for (name, scope) in &self.definitions {
-            let parameters = if self.parameters && *name == "Other" { PARAMETERS } else { "" };
+        for (name, scope) in definitions {
+            let parameters = if *parameters && *name == "Other" { PARAMETERS } else { "" };
             scope.write(name, parameters, f)?;
             writeln!(f)?;
         }
@@ -22,7 +45,7 @@ impl fmt::Display for RandomPlan {
 impl Scope {
     fn write_formally(&self, time: &str, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("(")?;
-        write_all(&self.body, f)?;
+        write_all(&self.body, Element::is_no_condition, f)?;
         write!(f, ", {}{time})", self.condition.as_deref().unwrap_or("null"))
     }
 
@@ -35,7 +58,7 @@ impl Scope {
             (None, Some(Element::Labelled(..) | Element::Framed(..) | Element::Loop { .. }))
             | (None, Some(Element::String(_) | Element::Reference(..))) => write!(f, " (null)")?,
         }
-        write_all(&self.body, f)?;
+        write_all(&self.body, |_| true, f)?;
         write!(f, "{} }}", self.end)
     }
 }
@@ -45,8 +68,28 @@ fn bare(law: &str) -> &str {
     law.strip_prefix('(').and_then(|law| law.strip_suffix(')')).unwrap_or(law)
 }
 
-fn write_all(elements: &[Element], f: &mut fmt::Formatter<'_>) -> fmt::Result {
-    elements.iter().try_for_each(|element| write!(f, " {element}"))
+/// Writes elements, with a mark before each but the first that a comma `may_precede`.
+fn write_all(elements: &[Element], may_precede: impl Fn(&Element) -> bool, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+    elements.iter().enumerate().try_for_each(|(number, element)| {
+        if number > 0 && may_precede(element) {
+            write!(f, "{BETWEEN}")?;
+        }
+        write!(f, " {element}")
+    })
+}
+
+impl Element {
+    /// Returns `true` if the text of this element, after a comma in parentheses, cannot be a condition.
+    fn is_no_condition(&self) -> bool {
+        match self {
+            Self::Labelled(..) | Self::Framed(..) | Self::Atom { .. } | Self::Scope(_) => true,
+            Self::Reference(..) => false,
+            Self::Loop { exec: true, .. } => true,
+            Self::Loop { body, exec: false, .. } | Self::String(body) => {
+                body.iter().any(|element| element.is_no_condition() || matches!(element, Self::Loop { .. }))
+            }
+        }
+    }
 }
 
 impl fmt::Display for Element {
@@ -64,7 +107,7 @@ impl fmt::Display for Element {
             Self::Reference(name, Some(arguments)) => write!(f, "{name}({arguments})"),
             Self::String(body) => {
                 f.write_str("(")?;
-                write_all(body, f)?;
+                write_all(body, Self::is_no_condition, f)?;
                 f.write_str(")")
             }
             Self::Loop { times, body, exec: true } => {
@@ -72,7 +115,7 @@ impl fmt::Display for Element {
                     return write!(f, "ExecPlan {times} {}", body[0]);
                 }
                 write!(f, "ExecPlan {times} {{")?;
-                write_all(body, f)?;
+                write_all(body, |_| true, f)?;
                 f.write_str(" }")
             }
             Self::Loop { times, body, exec: false } => {
@@ -80,7 +123,7 @@ impl fmt::Display for Element {
                     [one @ (Self::Atom { .. } | Self::Scope(_) | Self::Reference(..))] => write!(f, "{one}")?,
                     _ => {
                         f.write_str("(")?;
-                        write_all(body, f)?;
+                        write_all(body, Self::is_no_condition, f)?;
                         f.write_str(" )")?;
                     }
                 }
