@@ -149,8 +149,8 @@ fn is_string(tokens: &[Token<'_>], first: usize, end: usize) -> bool {
     })
 }
 
-/// Returns `true` if an element ends with the last of two tokens: neither an angle of `FRAME` nor a count of `ExecPlan`,
-/// and outside of all plans no plan.
+/// Returns `true` if an element ends with the last of two tokens: neither an angle of `FRAME` nor a count of
+/// `ExecPlan`, and outside of all plans no plan.
 fn ends_element([before, last]: [Option<Tok<'_>>; 2], is_outside: bool) -> bool {
     let is_word = matches!(before, Some(Tok::Frame | Tok::ExecPlan));
     match last {

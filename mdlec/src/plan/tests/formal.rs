@@ -106,7 +106,7 @@ fn strings_without_a_name_are_one_plan_of_a_file() {
     let text = "((stop, bumper)(stop, wait 1), wait 3)σ_null";
     assert_eq!(compiled(text)[0].plan.root.name, "Plan");
     let two = judged(&format!("{text}\n{text}"), None);
-    assert!(two.contains("there are two plans called `Plan`"), "{two}");
+    assert!(two.contains("error[E0203]: there are two plans called `Plan`"), "{two}");
     assert!(two.contains("write one of them with braces and a name of its own: `{ Name … }`"), "{two}");
     let named = judged(&format!("{{ Plan (wait 3) (Atom (wait 1) stop) }}\n{text}"), None);
     assert!(named.contains("write one of them with braces"), "{named}");
