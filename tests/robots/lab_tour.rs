@@ -104,13 +104,17 @@ fn it_goes_from_lab_2_past_lab_1_to_the_office() {
         atoms = atom;
     }
     assert_eq!(atoms, 12, "{said}");
-    let (_, over) = over.split_once(" s  ").unwrap();
+    let (end, over) = over.split_once(" s  ").unwrap();
     let place = "(lab_tour.mdle:30)";
     assert!(
         [format!("plan over: completed {place}"), format!("plan over: wait 10 {place}")].contains(&over.to_owned())
     );
     assert_in_zone(13, trail.last().unwrap().1);
     let record = fs::read_to_string(folder.join("record.svg")).unwrap();
+    // The title of a picture, the end of its film, and the last line of the run.
+    for clock in [format!(" over after {end} s: "), format!(">{end} s, shown ")] {
+        assert!(record.contains(&clock), "{clock}");
+    }
     assert!(record.len() < 1_000_000 && record.contains("goAvoid 180 40 20"), "{} bytes", record.len());
     let picture = fs::read(folder.join("tour.svg")).unwrap();
     let shown = fs::read(root().join("docs/lab_tour.svg")).unwrap();

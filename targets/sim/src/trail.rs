@@ -38,6 +38,8 @@ pub(crate) struct Trail {
     touched: BTreeSet<(i64, i64)>,
     /// Time of the robot's last output.
     sensed: Option<Nanos>,
+    /// Time at which the turns ended; `None` before that.
+    ended: Option<Nanos>,
     /// For a picture that moves.
     pub(crate) frames: Option<Frames>,
 }
@@ -68,6 +70,7 @@ impl Trail {
             contacts: Vec::new(),
             touched: BTreeSet::new(),
             sensed: None,
+            ended: None,
             frames: None,
         }
     }
@@ -88,6 +91,8 @@ impl Trail {
             }
         }
         if let Some(frames) = &mut self.frames {
+            // What follows the last turn only stops the robot: a film is as long as the plan has run.
+            let t = self.ended.map_or(t, |ended| t.min(ended));
             frames.push(Frame { t, pose: self.here, echoes, things: self.things.clone() });
         }
     }
@@ -106,6 +111,7 @@ impl Trail {
 
     /// The turns of the run have ended.
     pub(crate) fn ended(&mut self, ended: &Ended<'_>) {
+        self.ended = Some(ended.t);
         self.ways.ended(ended.t);
         ended.plan.clone_into(&mut self.about.plan);
         let how = if ended.is_over { "over" } else { "stopped" };
