@@ -170,6 +170,14 @@ fn options_of_other_commands_name_these() {
         &["fmt", "--deny-warnings", "plan.mdle"],
         &["run", "plan.mdle", "--emit", "plan"],
         &["check", "plan.mdle", "--nonsense"],
+        &["check", "plan.mdle", "-t", "sim"],
+        &["fmt", "plan.mdle", "--in-place"],
+        &["run", "plan.mdle", "--target", "sim", "--speed", "max"],
+        &["plan.mdle", "--target", "sim", "--speed", "max"],
+        &["quarks", "sim"],
+        &["run", "plan.mdle", "scuot"],
+        &["simulate", "plan.mdle"],
+        &["compile", "plan.mdle"],
     ];
     insta::assert_snapshot!(commands.map(|arguments| said(&folder, arguments)).join("\n"));
 }

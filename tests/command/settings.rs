@@ -120,6 +120,7 @@ fn errors_name_the_file_and_the_line() {
         "target = \"sin\"\n",
         "target = \"../rover\"\n",
         "target = \"sim\"\nworld = \"rooms/other.toml\"\n",
+        "target = \"sim\"\nworld = \"hal\"\n",
         "target = \"sim\"\n[options]\nsped = \"max\"\n",
         "target = \"sim\"\n[options]\nspeed = \"max\"\nturns = 0\n",
         "target = \"sim\"\n[options]\nwatch = \"yes\"\n",
@@ -134,6 +135,21 @@ fn errors_name_the_file_and_the_line() {
     insta::assert_snapshot!(messages.join("\n"));
     let unknown = said(&folder, &["check", "home/plan.mdle"]);
     assert!(unknown.contains("home/mdle.toml:1: there is no key"), "a check reads it too: {unknown}");
+}
+
+#[test]
+fn a_check_names_a_world_that_is_none() {
+    let folder = home("settings_world", "target = \"sim\"\nworld = \"hal\"\n");
+    let refusal = "error: home/mdle.toml:2: there is no such world or file: `hal`; the worlds are";
+    let unknown = said(&folder, &["check", "home/plan.mdle"]);
+    assert!(unknown.contains(&format!("{refusal} hall, maze, office, room\nexit status 2\n")), "{unknown}");
+    // Nothing is built for it.
+    assert!(said(&folder, &["run", "home/plan.mdle"]).contains(refusal));
+    assert!(!folder.join("plan").exists());
+    // The command line has another robot, or the folder a file of that name.
+    assert!(said(&folder, &["check", "home/plan.mdle", "--target", "scout"]).ends_with("exit status 0\n"));
+    fs::write(folder.join("home/hal"), WORLD).unwrap();
+    assert!(said(&folder, &["check", "home/plan.mdle"]).ends_with("exit status 0\n"));
 }
 
 #[test]

@@ -19,6 +19,9 @@ pub(super) fn bare(options: &Bare) -> Result<(), Failure> {
     if options.run && makes_none {
         return Err(Failure::usage("`--run` runs an executable, and this `--emit` makes none"));
     }
+    if options.run {
+        executable::settings_fit(&options.build.executable, &options.args)?;
+    }
     let built = build(&options.build)?;
     built
         .filter(|_| options.run)

@@ -20,7 +20,7 @@ pub(super) fn check(options: &Check) -> Result<(), Failure> {
         let target = match (&named, beside.entry(settings::file_beside(path))) {
             (Some(named), _) => named,
             (None, Entry::Occupied(known)) => known.into_mut(),
-            (None, Entry::Vacant(unknown)) => unknown.insert(settings::target(path, None)?),
+            (None, Entry::Vacant(unknown)) => unknown.insert(settings::checked_target(path)?),
         };
         let mut input = input::read_plan(path, target)?;
         let found = input.check(&target.alphabet);

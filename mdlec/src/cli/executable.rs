@@ -23,7 +23,14 @@ pub(super) fn run(options: &Run) -> Result<(), Failure> {
     if let Some(output) = &output {
         endings::no_picture(output, EmitKind::Exe, path)?;
     }
+    settings_fit(&options.executable, &options.args)?;
     build(&options.executable, path, output)?.become_it(options.executable.target.as_deref(), &options.args)
+}
+
+/// Checks, before anything is built, what a run with the arguments `args` takes from an `mdle.toml`.
+pub(super) fn settings_fit(options: &Executable, args: &[String]) -> Result<(), Failure> {
+    let Some(path) = &options.plan else { return Ok(()) };
+    Settings::beside(path)?.run_options(options.target.as_deref(), args).map(drop)
 }
 
 /// Prepares for signals, so that they leave no processes or files, and returns the file of the plan.

@@ -3,12 +3,26 @@
 use std::env;
 use std::path::Path;
 
+use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, Command, CommandFactory as _};
 
 use super::words::words;
 use super::{Cli, Failure};
-use crate::alphabet;
+use crate::{alphabet, link};
+
+/// Names of commands, each with other words for it.
+const SYNONYMS: &[(&str, &[&str])] = &[
+    ("run", &["simulate", "start", "exec", "execute", "launch", "play"]),
+    ("build", &["compile", "make"]),
+    ("check", &["lint", "verify", "validate", "test"]),
+    ("fmt", &["format", "indent"]),
+    ("draw", &["plot", "picture", "graph", "render"]),
+    ("quarks", &["laws", "interrupts", "signals", "atoms"]),
+    ("targets", &["robots", "list"]),
+    ("new-target", &["new", "init", "create"]),
+    ("emulator", &["emulate"]),
+];
 
 /// Returns the error for a first argument that resembles a command and is not a file, so that clap took it for a plan.
 pub(super) fn command() -> Option<Failure> {
@@ -19,7 +33,8 @@ pub(super) fn command() -> Option<Failure> {
     if names.contains(&word.as_str()) || Path::new(&word).exists() {
         return None;
     }
-    let near = alphabet::nearest(&word, names.iter().copied())?;
+    let meant = || SYNONYMS.iter().find(|(_, words)| words.contains(&word.as_str())).map(|(command, _)| *command);
+    let near = meant().or_else(|| alphabet::nearest(&word, names.iter().copied()))?;
     Some(Failure::usage(format!(
         "there is no command `{word}`; did you mean `mdlec {near}`?\nhelp: `mdlec --help` lists all commands"
     )))
@@ -51,4 +66,48 @@ pub(super) fn option(answer: &clap::Error) -> Option<Failure> {
     Some(Failure::usage(format!(
         "`mdlec {command}` has no option `{given}`: it belongs to {owners}\nhelp: `mdlec {command} --help` lists the options"
     )))
+}
+
+/// Returns the error for the name of a robot without `--target`; `answer` is the error of clap.
+pub(super) fn robot(answer: &clap::Error) -> Option<Failure> {
+    let (given, cli) = (unexpected(answer)?, Cli::command());
+    let command = env::args().skip(1).find_map(|word| cli.find_subcommand(word))?;
+    command.get_arguments().find(|argument| argument.get_long() == Some("target"))?;
+    let robots = link::alphabets().iter().filter(|alphabet| alphabet.target).map(|alphabet| &*alphabet.name);
+    let (name, robot) = (command.get_name(), alphabet::nearest(given, robots)?);
+    Some(Failure::usage(format!(
+        "`mdlec {name}` does not expect `{given}` here\nhelp: a robot is named with an option: `--target {robot}`"
+    )))
+}
+
+/// Text that clap did not expect.
+fn unexpected(answer: &clap::Error) -> Option<&str> {
+    match answer.get(ContextKind::InvalidArg) {
+        Some(ContextValue::String(given)) if answer.kind() == ErrorKind::UnknownArgument => Some(given),
+        Some(_) | None => None,
+    }
+}
+
+/// Replaces clap's tip to pass an unknown option as a value: no command of mdlec takes a value that looks like one.
+pub(super) fn with_tip(mut answer: clap::Error) -> clap::Error {
+    let Some(given) = unexpected(&answer).filter(|given| given.starts_with('-')).map(str::to_owned) else {
+        return answer;
+    };
+    let cli = Cli::command();
+    let command = env::args().skip(1).find_map(|word| cli.find_subcommand(word));
+    let letter = given.strip_prefix('-').filter(|rest| rest.chars().count() == 1);
+    let mut longs = command.unwrap_or(&cli).get_arguments().filter_map(Arg::get_long);
+    let long = letter.and_then(|letter| longs.find(|long| long.starts_with(letter)));
+    let tip = match (command.map(Command::get_name), long) {
+        (_, Some(long)) => Some(format!("the option is written '--{long}'")),
+        (Some("fmt"), None) => Some("each file is rewritten in place, without an option".to_owned()),
+        (Some("emulator"), None) => Some(format!("options of the emulator follow '--', as in '-- {given}'")),
+        (Some("run") | None, None) => Some(format!("options of the executable follow '--', as in '-- {given}'")),
+        (Some(_), None) => None,
+    };
+    let is_replaced = answer.remove(ContextKind::Suggested).is_some();
+    if let Some(tip) = tip.filter(|_| is_replaced) {
+        answer.insert(ContextKind::Suggested, ContextValue::StyledStrs(vec![StyledStr::from(tip)]));
+    }
+    answer
 }

@@ -79,9 +79,11 @@ pub fn main() -> ExitCode {
     let done = match parsed {
         Ok(cli) => run(cli),
         Err(answer) => {
-            match mistyped::command().or_else(|| mistyped::option(&answer)).filter(|_| answer.use_stderr()) {
+            let failure =
+                mistyped::command().or_else(|| mistyped::option(&answer)).or_else(|| mistyped::robot(&answer));
+            match failure.filter(|_| answer.use_stderr()) {
                 Some(failure) => Err(failure),
-                None => report::answer(&answer),
+                None => report::answer(&mistyped::with_tip(answer)),
             }
         }
     };

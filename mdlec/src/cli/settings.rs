@@ -40,6 +40,14 @@ pub(super) fn file_beside(plan: &Path) -> Option<PathBuf> {
     (plan != Path::new("-")).then(|| plan.with_file_name(NAME))
 }
 
+/// Returns the target of the `mdle.toml` beside the plan in the file `plan`, after a check of what a run would take from
+/// the file.
+pub(super) fn checked_target(plan: &Path) -> Result<Target, Failure> {
+    let settings = Settings::beside(plan)?;
+    let target = settings.target(None)?;
+    settings.run_options(None, &[]).map(|_| target)
+}
+
 /// Returns the target for the plan in the file `plan`: the one that the command line names with `option`, or else that
 /// of the `mdle.toml` beside the plan.
 pub(super) fn target(plan: &Path, option: Option<&str>) -> Result<Target, Failure> {
@@ -102,7 +110,8 @@ impl Settings {
             let names = given.iter().filter_map(|argument| argument.strip_prefix("--"));
             names.map(|argument| argument.split_once('=').map_or(argument, |(name, _)| name)).any(|given| given == name)
         };
-        let world = self.text.world.as_ref().filter(|_| !is_given("world")).map(|world| self.world(world));
+        let world = self.text.world.as_ref().filter(|_| !is_given("world"));
+        let world = world.map(|world| self.world(world, target.or(own)));
         let others = self.text.options.iter().filter(|option| !is_given(&option.name)).map(|option| {
             let arguments = option.arguments.iter().map(OsString::from).collect();
             Ok(RunOption { place: self.place(option.line), arguments })
@@ -112,10 +121,16 @@ impl Settings {
 
     /// The option `--world`: a file of that name in the folder of the `mdle.toml`, or else a world that the target
     /// knows.
-    fn world(&self, world: &Setting) -> Result<RunOption, Failure> {
+    fn world(&self, world: &Setting, robot: Option<&str>) -> Result<RunOption, Failure> {
         let (place, file) = (self.place(world.line), self.in_folder(&world.value));
         if !file.is_file() && world.value.contains(['.', '/']) {
             return Err(Failure::usage(format!("{place}: there is no file `{}`", file.display())));
+        }
+        let worlds: Vec<_> = robot.into_iter().flat_map(link::worlds).collect();
+        if !file.is_file() && !worlds.is_empty() && !worlds.contains(&&*world.value) {
+            let (name, worlds) = (&world.value, worlds.join(", "));
+            let message = format!("{place}: there is no such world or file: `{name}`; the worlds are {worlds}");
+            return Err(Failure::usage(message));
         }
         let mut argument = OsString::from("--world=");
         argument.push(if file.is_file() { file.as_os_str() } else { world.value.as_ref() });

@@ -57,6 +57,12 @@ pub(super) fn emulator(robot: &str) -> Option<(String, &'static str)> {
     Some((format!("targets/{name}/emulator"), package))
 }
 
+/// Worlds that come with a built-in target, in the order of their names; empty for a target that takes none.
+pub fn worlds(target: &str) -> impl Iterator<Item = &'static str> {
+    let folder = format!("targets/{target}/worlds/");
+    embedded::FILES.iter().filter_map(move |(file, _)| file.strip_prefix(&*folder)?.strip_suffix(".toml"))
+}
+
 /// Text of a packed file.
 pub(super) fn text(name: &str) -> &'static str {
     let file = embedded::FILES.iter().find(|(file, _)| *file == name);

@@ -197,6 +197,10 @@ fn world(name: &str) -> Result<World, String> {
     if let Some(world) = World::named(name) {
         return world.map_err(|error| error.to_string());
     }
+    if !Path::new(name).exists() {
+        let worlds = World::names().collect::<Vec<_>>().join(", ");
+        return Err(format!("--world {name}: there is no such world or file; the worlds are {worlds}"));
+    }
     let text = read_text(Path::new(name), LARGEST).map_err(|error| format!("--world {name}: {error}"))?;
     World::parse(name, &text).map_err(|error| error.to_string())
 }
@@ -209,6 +213,13 @@ mod tests {
     fn a_world_is_a_regular_file() {
         let refusal = world("/dev/zero").map(drop).expect_err("a device");
         assert_eq!(refusal, "--world /dev/zero: it is a device; expected a regular file");
+    }
+
+    #[test]
+    fn an_unknown_world_lists_the_worlds() {
+        let refusal = world("hal").map(drop).expect_err("no such world");
+        let worlds = "there is no such world or file; the worlds are office, maze, hall, room";
+        assert_eq!(refusal, format!("--world hal: {worlds}"));
     }
 
     #[test]
