@@ -40,8 +40,8 @@ pub(super) fn file_beside(plan: &Path) -> Option<PathBuf> {
     (plan != Path::new("-")).then(|| plan.with_file_name(NAME))
 }
 
-/// Returns the target of the `mdle.toml` beside the plan in the file `plan`, after a check of what a run would take from
-/// the file.
+/// Returns the target of the `mdle.toml` beside the plan in the file `plan`, after a check of what a run would take
+/// from the file.
 pub(super) fn checked_target(plan: &Path) -> Result<Target, Failure> {
     let settings = Settings::beside(plan)?;
     let target = settings.target(None)?;
