@@ -1,6 +1,6 @@
 //! Truth tables: for every choice of some variables, whether something holds. A bit a choice, sixty-four at a time.
 
-/// Maximum number of variables whose choices are all tried.
+/// Maximum number of variables for which all assignments are enumerated.
 pub(super) const VARIABLES: usize = 12;
 
 /// A truth table by the number of the choice: bit `i` of that number is the value of variable `i`.

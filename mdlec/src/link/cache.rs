@@ -76,7 +76,7 @@ impl Cache {
         self.folder.join("plans")
     }
 
-    /// Returns an empty folder for the temporary files of a build: a compiler that is killed leaves its own there.
+    /// Returns an empty folder for the temporary files of a build, so that those of a killed compiler can be removed.
     pub(super) fn scratch(&self) -> Result<PathBuf, LinkError> {
         let folder = self.folder.join("tmp");
         remove(&folder)?;

@@ -15,7 +15,7 @@ use signal_hook::iterator::Signals;
 /// Processes and files under way in this process.
 static UNFINISHED: Mutex<Vec<Unfinished>> = Mutex::new(Vec::new());
 
-/// A process that a signal has to end, or a file that it has to remove.
+/// A process to kill, or a file to remove, when a signal arrives.
 #[derive(Debug, Clone, PartialEq, Eq)]
 enum Unfinished {
     /// A child process that leads a process group of its own.

@@ -22,7 +22,7 @@ const LONGEST: usize = 64 << 20;
 /// Value of `n`, the number of transitions in this turn, before the first turn.
 const BEFORE: u32 = TRANSITIONS_PER_TURN + 1;
 
-/// The machine of a plan.
+/// Writes the state machine of a plan as SCXML.
 ///
 /// # Errors
 /// E0501 and E0502, as [`fsm::expand`](crate::fsm::expand) has them; E0502 for a machine of more than 64 MB.

@@ -46,7 +46,8 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// The most scopes, loops and atoms of a plan that becomes code: what rustc compiles in half a second.
+    /// Maximum number of scopes, loops and atoms of a plan that is emitted as code and not as tables: about what rustc
+    /// compiles in half a second.
     const CODE: usize = 64;
     /// The most parts of all conditions of a plan that becomes code: rustc takes another half a second for these.
     const PARTS: usize = 512;

@@ -203,7 +203,8 @@ impl<'s> Rewriting<'_, 's> {
         is_like_atom(name) && !self.plans.contains(name) && is_open(self.before(at, 1)) && is_open(self.kind(at + 1))
     }
 
-    /// Processes a name that is not a plan of the file.
+    /// Reads a name that is not a plan of the file: if it is a keyword of another language, reports it, and returns the
+    /// index of the token from which reading goes on.
     fn word(&mut self, at: usize, name: &'s str) -> Option<usize> {
         let place = self.place(at, at);
         if self.is_atom(at, name) {

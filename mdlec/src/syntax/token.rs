@@ -370,7 +370,7 @@ pub(super) fn split(text: &str) -> (&str, &str) {
     text.split_at_checked(end).unwrap_or((text, ""))
 }
 
-/// Length in bytes of the text that touches a number.
+/// Returns the length in bytes of the text that follows a number without a space.
 fn touching(rest: &str) -> usize {
     let mut chars = rest.chars();
     while let Some(c) = chars.next() {

@@ -78,7 +78,7 @@ pub enum Broken {
         /// The closed stretch.
         whole: Stretch,
     },
-    /// An interrupt would have to lead past the beginning of a loop that ends with it.
+    /// An interrupt would have to lead back to the first state of a loop around it, but leads elsewhere.
     PastALoop {
         /// The interrupt.
         interrupt: InterruptId,

@@ -20,7 +20,7 @@ use crate::plan::{Nondegenerate, Plan, Quark, QuarkId, RecordId, Situation};
 pub struct MatrixProduct<'p> {
     plan: &'p Plan,
     matrices: Matrices<'p>,
-    /// For each column the numbers of the interrupts whose matrices list it, the outermost first.
+    /// For each column, the indices of the interrupts whose matrices move it, outermost first.
     listing: Vec<Vec<u32>>,
     /// For each interrupt the moment when its scope was entered.
     entered: Vec<Moment>,

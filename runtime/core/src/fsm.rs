@@ -20,8 +20,8 @@ pub struct Fsm<'a> {
 }
 
 impl<'a> Fsm<'a> {
-    /// Returns a bracket and its enclosing brackets with their numbers, outwards to the plan's own. Enclosing brackets
-    /// have lower numbers, so that the iteration ends even if the parents in a table form a circle.
+    /// Returns a bracket and its enclosing brackets with their numbers, outwards to the plan's own. Stops at a parent
+    /// whose number is not lower, so it ends even if a table contains a cycle.
     pub(crate) fn outwards(self, bracket: u32) -> impl Iterator<Item = (u32, &'a Bracket)> {
         let at = move |number: u32| self.brackets.get(number as usize).map(|bracket| (number, bracket));
         core::iter::successors(

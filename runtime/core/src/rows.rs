@@ -15,7 +15,7 @@ pub struct Rows<'a, A: Alphabet> {
     pub fsm: Fsm<'a>,
     /// Condition by which each bracket ends, in the order of the brackets.
     pub guards: &'a [Guard<A::Interrupt>],
-    /// The operands of conditions. The operands of an operand come after it, so that a table cannot form a circle.
+    /// The operands of conditions. The operands of an operand come after it, so there can be no cycle.
     pub operands: &'a [Condition<A::Interrupt>],
     /// Law of each atom, in the order of the atoms.
     pub laws: &'a [LawRow<A::Control>],

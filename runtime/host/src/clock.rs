@@ -160,7 +160,7 @@ impl<I: Instants> Clock<I> {
     }
 }
 
-/// A duration in nanoseconds; 584 years where it is longer.
+/// Converts a duration into nanoseconds, saturating at `u64::MAX`, which is 584 years.
 pub(crate) fn nanos(duration: Duration) -> u64 {
     u64::try_from(duration.as_nanos()).unwrap_or(u64::MAX)
 }

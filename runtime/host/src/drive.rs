@@ -56,7 +56,7 @@ pub(crate) trait Position {
     fn texts(&self) -> &dyn Texts;
     /// The number of the current state in the expanded plan.
     fn state(&self) -> u64;
-    /// The current atom, as written, from 0; `None` when the plan is over.
+    /// Returns the index of the current atom in source order, from 0; `None` when the plan is over.
     fn atom(&self) -> Option<u32>;
     /// Frame of the current atom if a `FRAME here` encloses it.
     fn frame(&self) -> Option<Frame>;

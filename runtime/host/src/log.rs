@@ -62,10 +62,10 @@ impl<'p> Untouched<'p> {
         }
     }
 
-    /// Begins a log in the file, in place of its earlier content. Each turn reaches the file at once if `prompt`.
+    /// Begins the log and truncates the file. If `prompt`, the log is flushed after each turn.
     ///
     /// # Errors
-    /// When the earlier content cannot be cut off.
+    /// If the file cannot be truncated.
     pub(crate) fn begin(self, prompt: bool, patience: &Patience) -> io::Result<Log> {
         Ok(Log { file: self.emptied(patience)?, prompt })
     }

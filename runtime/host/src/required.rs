@@ -16,7 +16,7 @@ const SIMILAR: f64 = 0.75;
 /// The causes of `--require`; empty if any end will do.
 #[derive(Debug, Default)]
 pub(crate) struct Required {
-    /// The causes as they were typed.
+    /// The required causes of the end, as typed on the command line.
     texts: Vec<String>,
     causes: Vec<Cause>,
 }

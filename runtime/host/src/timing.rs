@@ -20,7 +20,7 @@ const BOUNDS: [u64; 19] = {
 /// Number of successive turns longer than the period that ends a run: the robot does not get what the plan asks for.
 const LIMIT: u32 = 10;
 
-/// Counts of the turns of a run.
+/// Statistics of a run's turns: how many were on time, and how many were late.
 #[derive(Debug)]
 pub(crate) struct Timing {
     /// Period of a turn, in nanoseconds.

@@ -29,7 +29,7 @@ pub struct Obedience {
     forward: Band,
     turning: Band,
     last: Option<Nanos>,
-    /// The fastest that a side was when it was measured last, in m/s.
+    /// Speed of the faster side at the last measurement, in m/s.
     measured: f64,
     /// Since when the speeds have been outside of the band.
     since: Option<Nanos>,

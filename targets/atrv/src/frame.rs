@@ -45,7 +45,7 @@ pub struct Written {
 /// Reason why bytes are not a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Garbled {
-    /// The frame's length of data is the first number; the number of bytes is the second.
+    /// Length mismatch: the data length that the frame states, and the number of bytes received.
     Length(usize, usize),
     /// The check of the bytes is the first number; the frame's own check is the second.
     Check(u8, u8),

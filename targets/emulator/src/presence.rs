@@ -16,7 +16,7 @@ pub(crate) struct Presence {
     lines: Vec<Seen>,
 }
 
-/// State of a line.
+/// The last observation of a line: whether a program has it open.
 #[derive(Debug, Clone, Copy)]
 struct Seen {
     /// Number by which the system's reports name the line.

@@ -35,7 +35,7 @@ impl Reader {
         self.waiting.extend_from_slice(bytes);
     }
 
-    /// Returns how many bytes it keeps, of which something may still come.
+    /// Returns the number of bytes kept that may still become part of a report.
     #[must_use]
     pub fn kept(&self) -> usize {
         self.waiting.len()

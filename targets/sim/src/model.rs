@@ -47,7 +47,7 @@ pub enum Part {
     Noise,
     /// Ranges that mean nothing, which take a seed.
     Outliers,
-    /// The order in time: without it all sonars ping in every turn.
+    /// Firing order: sonars ping one after another; without it all of them ping in every turn.
     Order,
     /// The slip of the wheels, which takes a seed.
     Slip,

@@ -15,7 +15,7 @@ use crate::world::{Place, World};
 use map::Map;
 use screen::Screen;
 
-/// Gives the screen back, if it is taken, on whatever thread.
+/// Restores the terminal if the live view has taken it over. May be called from any thread.
 pub(crate) fn leave_screen() {
     screen::leave_at_once();
 }

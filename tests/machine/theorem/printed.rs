@@ -95,11 +95,11 @@ fn they_are_judged_in_the_one_numbering_in_which_they_can_hold() {
     assert_eq!(places, &(2, vec![vec![Some(2), Some(0)]], false));
 }
 
-/// A move: from one place to another, by an interrupt.
+/// A move: its interrupt, the state that it leaves, and the state that it enters.
 type Move = (usize, usize, usize);
 
-/// Returns the results of the sentences of R2 and R3, checked exhaustively, for machines whose states are in the order
-/// of the file.
+/// Checks conditions R2 and R3 by their printed wording, exhaustively, for states in the order of the file. Returns
+/// for each the violation that was found first, or `None` if it holds.
 fn sentences(atoms: usize, rows: &[Row]) -> [Option<String>; 2] {
     let row = |interrupt: usize, column: usize| rows[interrupt].get(column).copied().flatten().unwrap_or(column);
     let all = (0..atoms).flat_map(|from| (0..rows.len()).map(move |interrupt| (interrupt, from)));

@@ -31,7 +31,7 @@ const AT_ONCE: usize = 2;
 /// Number of seconds after which a test hangs: without a fault it takes two.
 const PATIENCE: &str = "120";
 
-/// Code that is added after each file.
+/// Code appended to each file, which selects the mutant to run.
 const CHOICE: &str = r#"
 fn __fault() -> u32 {
     static CHOSEN: std::sync::OnceLock<u32> = std::sync::OnceLock::new();

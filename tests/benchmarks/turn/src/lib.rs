@@ -24,8 +24,8 @@ impl mdle_runtime::Output for Output {}
 /// Input that a turn writes.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Input {
-    /// The first number.
+    /// First number of the command: what the law of an atom writes.
     pub left: f64,
-    /// The second.
+    /// Second number of the command.
     pub right: f64,
 }
