@@ -14,7 +14,8 @@ use super::Progress;
 use super::seal::Seal;
 
 /// Messages of the system, through rustc or the linker, when a disk is full or a file is too large.
-const FULL: [&str; 4] = ["No space left on device", "Disk quota exceeded", "File too large", "(signal: 25"];
+const FULL: [&str; 5] =
+    ["No space left on device", "Disk quota exceeded", "File too large", "(signal: 25", "File size limit exceeded"];
 
 /// Beginning of cargo's line about a lock that another cargo holds.
 const BLOCKED: &[u8] = b"Blocking waiting for file lock";
