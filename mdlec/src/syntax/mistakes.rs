@@ -219,11 +219,16 @@ fn comma_in_atom(site: &Site<'_, '_>) -> Option<Diagnostic> {
     };
     #[allow(clippy::wildcard_enum_match_arm, reason = "only parentheses of atoms are looked at")]
     match site.kind(before)? {
-        Tok::Atom => Some(diagnostic("conditions are not separated by commas").fix(
-            "if one of them is enough, write {}",
-            span,
-            " OR",
-        )),
+        Tok::Atom => {
+            let diagnostic = diagnostic("conditions are not separated by commas");
+            let joins = |kind| matches!(kind, None | Some(Tok::Or | Tok::And | Tok::Comma));
+            let begins = |kind| matches!(kind, Some(Tok::LParen | Tok::TouchParen | Tok::Not | Tok::Rising));
+            let (left, right) = (site.before(1), site.kind(site.at + 1));
+            let is_between = !joins(left) && !begins(left) && !joins(right) && right != Some(Tok::RParen);
+            let (words, text) =
+                if is_between { ("if one of them is enough, write {}", " OR") } else { ("remove it", "") };
+            Some(diagnostic.fix(words, span, text))
+        }
         Tok::RParen if is_law() => {
             let message = "a comma separates arguments only in parentheses that touch the name";
             let words = "remove the comma: arguments are separated by spaces, as in `go 5 0`";

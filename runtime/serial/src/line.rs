@@ -41,7 +41,7 @@ pub enum LineFault {
 }
 
 impl LineFault {
-    /// Converts an error of the operating system on the serial line into a fault; an unplugged device shows up as `EIO`.
+    /// Converts a system error of the serial line into a fault; an unplugged device shows up as `EIO`.
     fn of(error: Errno) -> Self {
         match error {
             Errno::IO | Errno::NXIO | Errno::NODEV | Errno::CONNRESET | Errno::PIPE => Self::Closed,
