@@ -87,8 +87,8 @@ mod tests {
     use super::*;
     use crate::trial::{PERIOD, Sensed, begun, framed};
 
-    /// Runs `advance` from a heading in degrees, with a push of so many degrees to the left in each of the first ten
-    /// turns; the turns that it took.
+    /// Runs `advance` from a heading in degrees, with a push of `push` degrees to the left in each of the first ten
+    /// turns. Returns the number of turns until it ends.
     fn advanced(distance: f64, speed: f64, y: &mut Sensed, push: f64) -> u64 {
         let mut law = Advance::new(Meters(distance), MetersPerSecond(speed)).begin(&*y, framed(77.0));
         for number in 0..2000 {

@@ -63,7 +63,7 @@ fn switched_on<T: Trial>(world: &World, at: Pose, seed: Option<u64>) -> Result<T
     T::emulated(Simulated::with(&make, world, at, step).map_err(|error| error.to_string())?, step)
 }
 
-/// Opens the robot at this device, whose answers may take so many milliseconds.
+/// Opens the robot at this device, whose answers may take `answer` milliseconds.
 fn connected<T: Trial>(device: &Path, answer: u64) -> Result<Result<T::Driver, FaultOf<T>>, String> {
     let mut config = Configured::<<T::Driver as SerialRobot>::Config>::read(None, device.to_str())?.config;
     *T::Driver::answer(&mut config) = answer;
@@ -153,7 +153,7 @@ pub struct Ran<T: Trial> {
     pub robot: T::Emulated,
 }
 
-/// Runs a driver that asks for `speed`, in m/s, for so many turns, and then stops, as the host does whatever has come.
+/// Runs a driver that asks for `speed`, in m/s, for this number of turns, and then stops, as the host always does.
 ///
 /// # Errors
 /// There is no such fault, the driver could not connect, or the line was closed without a fault that closes it, or left

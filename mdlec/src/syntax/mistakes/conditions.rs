@@ -9,7 +9,7 @@ pub(super) fn condition(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if !site.expects_condition() {
         return not_joined(site);
     }
-    #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are told as they are")]
+    #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are reported as they are")]
     match (site.before(1)?, site.found()?) {
         (Tok::LParen | Tok::ConditionParen, Tok::RParen) => Some(
             site.about(site.at, "this condition is empty", "an interrupt is missing before this")

@@ -19,7 +19,7 @@ pub(super) fn at_file_level(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if !site.expects("use") {
         return None;
     }
-    #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are told as they are")]
+    #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are reported as they are")]
     match site.found()? {
         Tok::Str(_) | Tok::Comma | Tok::Name("as") if site.before(2) == Some(Tok::Use) => after_used_file(site),
         Tok::LParen if plan_in_parentheses(site).is_some() => plan_in_parentheses(site),

@@ -110,7 +110,7 @@ fn units(header: &[Cell<'_>]) -> Result<[(&'static str, f64); 3], Wrong> {
     let mut units = [("", 0.0); 3];
     for (number, cell) in header.iter().enumerate() {
         if cell.text.parse::<f64>().is_ok() {
-            return Err(cell.wrong(format!("no units are told; put {HEADER} in front")));
+            return Err(cell.wrong(format!("no units are given; put {HEADER} in front")));
         }
         let (Some(column), Some(place)) = (COLUMNS.get(number), units.get_mut(number)) else {
             return Err(cell.wrong(format!("`{}` is one column too many; expected {HEADER}", cell.text)));
