@@ -10,17 +10,12 @@
 #![forbid(unsafe_code)]
 #![deny(clippy::indexing_slicing)]
 
-#[cfg(feature = "conformance")]
-extern crate std;
-
 mod advance;
 mod align;
 pub mod alphabet;
 mod approach;
 mod at_isection;
 mod bumper;
-#[cfg(feature = "conformance")]
-pub mod conformance;
 mod gains;
 mod go;
 mod go_avoid;

@@ -7,20 +7,19 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
+use crate::targets::targets;
+
 /// The packages that targets share; the targets come on top.
-const SHARED: [&str; 4] = ["runtime/core", "runtime/host", "runtime/serial", "atoms"];
+const SHARED: [&str; 5] = ["runtime/core", "runtime/host", "runtime/serial", "atoms", "atoms/conformance"];
 
 /// Folders that no build of an executable reads; a folder with a package of its own is left out as well.
 const LEFT_OUT: [&str; 5] = ["tests", "benches", "examples", "snapshots", "target"];
 
-/// The folder below `targets` that is no robot: `mdlec new-target` makes one of it.
-const TEMPLATE: &str = "template";
-
 /// The folder of the package that robot emulators share, and below a target's folder that of its emulator.
 const EMULATOR: &str = "emulator";
 
-/// Writes `$OUT_DIR/sources.rs`: the files with their contents, a hash of them all, the targets, their emulators and
-/// the alphabets.
+/// Writes `$OUT_DIR/sources.rs`: the files with their contents, a hash of them all, the targets, and their
+/// emulators.
 pub(crate) fn pack() -> Result<(), Box<dyn Error>> {
     let root = Path::new(&env::var("CARGO_MANIFEST_DIR")?).join("..").canonicalize()?;
     let out = PathBuf::from(env::var("OUT_DIR")?);
@@ -53,20 +52,6 @@ pub(crate) fn pack() -> Result<(), Box<dyn Error>> {
     files.sort();
     fs::write(out.join("sources.rs"), table(&root, &files, &targets, &emulated)?)?;
     Ok(())
-}
-
-/// The folders below `targets` that are packages with an alphabet, the template aside.
-fn targets(root: &Path) -> Result<Vec<String>, Box<dyn Error>> {
-    let mut targets = Vec::new();
-    for entry in fs::read_dir(root.join("targets"))? {
-        let folder = entry?.path();
-        let is_robot = !folder.ends_with(TEMPLATE);
-        if is_robot && folder.join("Cargo.toml").is_file() && folder.join("alphabet.mdle").is_file() {
-            targets.push(text(folder.file_name())?.to_owned());
-        }
-    }
-    targets.sort();
-    Ok(targets)
 }
 
 /// The root manifest, reduced to `packages`.
@@ -139,16 +124,6 @@ fn table(
     for name in emulated {
         let folder = root.join("targets").join(name).join(EMULATOR);
         writeln!(rust, "    ({name:?}, {:?}),", package_name(&folder)?)?;
-    }
-    rust.push_str("];\npub(super) static ALPHABETS: &[super::Alphabet] = &[\n");
-    let names = targets.iter().map(|name| (name.as_str(), format!("targets/{name}/alphabet.mdle"), true));
-    for (name, file, target) in [("atoms", "atoms/alphabet.mdle".to_owned(), false)].into_iter().chain(names) {
-        let path = root.join(&file);
-        let path = text(Some(path.as_os_str()))?;
-        writeln!(
-            rust,
-            "    super::Alphabet {{ name: {name:?}, file: {file:?}, text: include_str!({path:?}), target: {target} }},"
-        )?;
     }
     rust.push_str("];\n");
     Ok(rust)

@@ -6,13 +6,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
+use mdle_compiler::alphabet::{Kind, Unit};
+use mdle_compiler::rust::Shape;
 use mdle_host::Quantity;
 use mdle_runtime::Radians;
 use mdle_tests::executable::{folder, run_mdlec, run_mdlec_reading};
 use mdle_tests::golden::{judge, rust};
 use mdle_tests::repository::{TextFile, root};
-use mdlec::alphabet::{Kind, Unit};
-use mdlec::rust::Shape;
 use serde_json::Value;
 
 /// A plan in which each stage differs from the one before it: a unit, a plan by name, a repeated interrupt, a loop.

@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
+use mdle_compiler::diagnostic::{Code, Example};
 use mdle_tests::executable::{folder, run_mdlec};
-use mdlec::diagnostic::{Code, Example};
 use serde_json::Value;
 
 /// Code of a defect of the compiler, which no plan causes, so that it has no examples.

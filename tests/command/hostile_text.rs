@@ -6,14 +6,14 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
+use mdle_compiler::alphabet::combine;
+use mdle_compiler::compile;
+use mdle_compiler::diagnostic::{SourceId, Sources, has_errors};
+use mdle_compiler::rust::{Header, Shape, bind, emit_as};
 use mdle_runtime::is_printable;
 use mdle_tests::executable::{command, folder};
 use mdle_tests::golden::alphabet;
 use mdle_tests::xml;
-use mdlec::alphabet::combine;
-use mdlec::compile;
-use mdlec::diagnostic::{SourceId, Sources, has_errors};
-use mdlec::rust::{Header, Shape, bind, emit_as};
 
 /// Colours and clears a terminal, renames its window, rings, returns to the start of the line, and reverses text.
 const HOSTILE: &str = "a\u{1b}[2J\u{1b}]0;x\u{7}\u{9b}31m\r\u{202e}\u{2066}\u{200f}\u{2028}\u{7f}z";
@@ -157,7 +157,7 @@ fn emitted_rust_is_printable_in_every_shape() {
         assert!(syn::parse_file(&rust).is_ok_and(|file| !file.items.is_empty()), "{shape:?}: {rust}");
     }
     let own = hostile("target t : crate t;\n/// HOSTILE\ncontrol halt;\n/// HOSTILE\ninterrupt hit;\n");
-    let (own, found) = mdlec::alphabet::read(SourceId(0), &own);
+    let (own, found) = mdle_compiler::alphabet::read(SourceId(0), &own);
     assert!(found.is_empty(), "{found:?}");
     let bound = bind(&combine(own.unwrap(), &[]).0);
     assert!(bound.chars().all(|letter| letter == '\n' || is_printable(letter)), "{bound:?}");

@@ -11,13 +11,13 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::sync::LazyLock;
 
+use mdle_compiler::alphabet::{self, Alphabet};
+use mdle_compiler::diagnostic::{SourceId, Sources};
+use mdle_compiler::rust::{Header, Shape, emit_as};
+use mdle_compiler::trace::{Reports, Script, Tree, run};
+use mdle_compiler::{Compiled, builtin, compile};
 use mdle_tests::elf::sections;
 use mdle_tests::repository::root;
-use mdlec::alphabet::{self, Alphabet};
-use mdlec::diagnostic::{SourceId, Sources};
-use mdlec::rust::{Header, Shape, emit_as};
-use mdlec::trace::{Reports, Script, Tree, run};
-use mdlec::{Compiled, compile, link};
 
 /// The executables: what each is called, its plan, and the plan's shape.
 const EXECUTABLES: [(&str, &str, Shape); 4] = [
@@ -118,7 +118,7 @@ fn compiled(plan: &str) -> (Compiled, Alphabet) {
     let folder = root().join("tests/bare");
     let read = |text: &str| alphabet::read(SourceId(0), text).0.expect("an alphabet");
     let own = read(&fs::read_to_string(folder.join("alphabet.mdle")).unwrap());
-    let shared: Vec<_> = link::alphabets().iter().filter(|file| !file.target).map(|file| read(file.text)).collect();
+    let shared: Vec<_> = builtin::alphabets().iter().filter(|file| !file.target).map(|file| read(file.text)).collect();
     let alphabet = alphabet::combine(own, &shared).0;
     let text = fs::read_to_string(folder.join("plan.mdle")).unwrap();
     let (mut compiled, found) = compile(SourceId(0), &text, &alphabet, Some(plan));
@@ -252,7 +252,7 @@ fn memories_link_and_run() {
 /// The conditions of a plan that ended nothing in these turns.
 fn never_fired(plan: &str, turns: &str) -> Vec<String> {
     let (Compiled { lowered, .. }, _) = compiled(plan);
-    let interrupts = lowered.elements().filter_map(mdlec::fsm::Element::interrupt);
+    let interrupts = lowered.elements().filter_map(mdle_compiler::fsm::Element::interrupt);
     let conditions: BTreeSet<_> = interrupts.map(|interrupt| interrupt.text.clone()).collect();
     conditions.into_iter().filter(|text| !turns.contains(&format!("\"by\":\"{text}\""))).collect()
 }

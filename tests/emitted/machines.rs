@@ -9,6 +9,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use mdle_compiler::rust::{Header, Shape, emit_as, plan_type};
+use mdle_compiler::trace::Script;
 use mdle_scripted::{INTERRUPTS, LAWS};
 use mdle_tests::chance::Chance;
 use mdle_tests::outputs::outputs;
@@ -16,8 +18,6 @@ use mdle_tests::pipeline::{Machines, compile_plan, scripted, sources};
 use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::random_script::script;
 use mdle_tests::repository::root;
-use mdlec::rust::{Header, Shape, emit_as, plan_type};
-use mdlec::trace::Script;
 
 /// Number of random plans that are emitted, and of scripts on which each plan runs.
 const PLANS: u64 = 200;

@@ -4,8 +4,8 @@
 
 use std::collections::BTreeSet;
 
+use mdle_compiler::rust::{bind, plan_type};
 use mdle_tests::emission::{alphabet, emitted, emitted_for};
-use mdlec::rust::{bind, plan_type};
 
 #[test]
 fn names_keep_their_words_and_are_always_names() {

@@ -2,8 +2,8 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
+use mdle_compiler::rust::{Shape, bind};
 use mdle_tests::emission::{alphabet, emitted, emitted_as, emitted_for};
-use mdlec::rust::{Shape, bind};
 
 /// Returns the text without white space, and without a comma after the last argument, so that line breaks do not
 /// matter.

@@ -1,8 +1,8 @@
 //! Asserts that every machine has a trace that was written out by hand from the rules.
 #![allow(clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
+use mdle_compiler::trace::Script;
 use mdle_tests::pipeline::{Machines, compile};
-use mdlec::trace::Script;
 
 /// Reports of a turn: time, interrupts and completed laws, separated by commas.
 pub(crate) type Turn = (f64, &'static str, &'static str);

@@ -3,14 +3,14 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
+use mdle_compiler::Compiled;
+use mdle_compiler::fsm::expand;
+use mdle_compiler::plan::{Node, Plan, Scope, remove_degeneracy};
+use mdle_compiler::trace::{Script, Tree, run};
 use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::pipeline::compile;
 use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::random_script::script;
-use mdlec::Compiled;
-use mdlec::fsm::expand;
-use mdlec::plan::{Node, Plan, Scope, remove_degeneracy};
-use mdlec::trace::{Script, Tree, run};
 
 /// Number of plans that are tried, and the maximum number of states of a plan that is written out.
 const PLANS: u64 = 500;
@@ -84,7 +84,7 @@ fn write_out(node: &Node, all: &mut Vec<Node>) {
         Node::Loop(endless) if endless.times.is_none() => {
             let mut body = Vec::new();
             endless.body.iter().for_each(|node| write_out(node, &mut body));
-            all.push(Node::Loop(mdlec::plan::Loop { body, ..endless.clone() }));
+            all.push(Node::Loop(mdle_compiler::plan::Loop { body, ..endless.clone() }));
         }
         Node::Loop(counted) => {
             for _ in 0..counted.times.unwrap() {

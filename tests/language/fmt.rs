@@ -6,12 +6,12 @@ use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::Path;
 use std::process::Output;
 
+use mdle_compiler::diagnostic::SourceId;
+use mdle_compiler::syntax::{Arena, format, outline::outline, parse};
 use mdle_tests::chance::Chance;
 use mdle_tests::executable::{folder, run_mdlec, run_mdlec_reading};
 use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::repository::{files, root};
-use mdlec::diagnostic::SourceId;
-use mdlec::syntax::{Arena, format, outline::outline, parse};
 
 /// A plan in bad layout, and in the right layout.
 const ODD: &str = "{P(bumper)\n(Atom(wait 1 or bumper)stop)// one\r\n\n\n(Atom (wait 2) stop)\n}";

@@ -6,18 +6,18 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::LazyLock;
 
+use mdle_compiler::alphabet::Alphabet;
+use mdle_compiler::diagnostic::{Code, Diagnostic, Edit, SourceId, Sources};
+use mdle_compiler::{builtin, compile};
 use mdle_tests::golden::alphabet;
 use mdle_tests::texts;
-use mdlec::alphabet::Alphabet;
-use mdlec::diagnostic::{Code, Diagnostic, Edit, SourceId, Sources};
-use mdlec::{compile, link};
 
 static EVERYTHING: LazyLock<Alphabet> = LazyLock::new(|| alphabet(None));
 
 /// The diagnostics of a text, and the file in which their places are.
 fn judged(text: &str) -> (SourceId, Vec<Diagnostic>) {
     let mut sources = Sources::default();
-    for file in link::alphabets() {
+    for file in builtin::alphabets() {
         sources.add(file.file, file.text);
     }
     let id = sources.add("plan.mdle", text);

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use super::assert_trace::{Turn, assert_trace};
-use mdlec::trace::COMPLETED;
+use mdle_compiler::trace::COMPLETED;
 
 /// Returns a line of a trace: the state and the law that it ends with, and the transitions as `from level by`, with the
 /// operands that had fired where these are not the whole condition: `a OR b | b`.

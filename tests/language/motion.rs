@@ -3,8 +3,8 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
+use mdle_compiler::trace::Script;
 use mdle_tests::pipeline::{Machines, compile};
-use mdlec::trace::Script;
 
 /// Holds every machine to the trace, one line a turn.
 fn assert_trace(plan: &str, script: &[&str], expected: &[&str]) {

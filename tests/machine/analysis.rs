@@ -5,6 +5,11 @@
 
 use std::collections::BTreeSet;
 
+use mdle_compiler::Compiled;
+use mdle_compiler::analysis::{Analysis, Reach, analyze, lints};
+use mdle_compiler::fsm::ElementKind;
+use mdle_compiler::plan::{Plan, Quark, condition_text};
+use mdle_compiler::trace::{Applied, Counted, Outcome, Script, TraceLine, run};
 use mdle_runtime::{Cursor, Frame, Machine};
 use mdle_scripted::INTERRUPTS;
 use mdle_tests::chance::{Chance, repeated};
@@ -16,11 +21,6 @@ use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::random_script::script;
 use mdle_tests::repository::{TextFile, files, root};
 use mdle_tests::signals::Values;
-use mdlec::Compiled;
-use mdlec::analysis::{Analysis, Reach, analyze, lints};
-use mdlec::fsm::ElementKind;
-use mdlec::plan::{Plan, Quark, condition_text};
-use mdlec::trace::{Applied, Counted, Outcome, Script, TraceLine, run};
 
 /// The Rust of two plans, as it is recorded and compiled.
 mod recorded {

@@ -3,6 +3,10 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
+use mdle_compiler::alphabet::Unit;
+use mdle_compiler::diagnostic::SourceId;
+use mdle_compiler::syntax::{arena_for, parse};
+use mdle_compiler::trace::{Applied, COMPLETED, Outcome, Script, TraceLine};
 use mdle_scripted::drive;
 use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::grammar;
@@ -12,10 +16,6 @@ use mdle_tests::pipeline::{Machines, compile};
 use mdle_tests::productions::{self, Productions};
 use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::random_script::script;
-use mdlec::alphabet::Unit;
-use mdlec::diagnostic::SourceId;
-use mdlec::syntax::{arena_for, parse};
-use mdlec::trace::{Applied, COMPLETED, Outcome, Script, TraceLine};
 
 /// Number of random plans.
 const PLANS: u64 = 10_000;

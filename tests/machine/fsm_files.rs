@@ -2,9 +2,9 @@
 //! 8.3).
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
+use mdle_compiler::fsm::{FsmFile, fsm_file};
 use mdle_tests::golden::judge;
 use mdle_tests::repository::TextFile;
-use mdlec::fsm::{FsmFile, fsm_file};
 
 fn file(plan: &str) -> FsmFile {
     let plan = TextFile { path: "plan.mdle".into(), text: plan.into() };

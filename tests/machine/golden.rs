@@ -5,11 +5,11 @@
 //! read as one.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
+use mdle_compiler::rust::Shape;
 use mdle_runtime::Plan;
 use mdle_tests::golden::{alphabet, judge, machine, rust, tree};
 use mdle_tests::pipeline::scripted;
 use mdle_tests::repository::{TextFile, files, root};
-use mdlec::rust::Shape;
 
 /// The recorded Rust, compiled as it is under the lints of this workspace.
 mod recorded {
@@ -105,7 +105,10 @@ fn recorded_rust_compiles_and_has_the_tables_of_its_plan() {
 #[test]
 fn bound_alphabets_are_as_they_are_committed() {
     let committed = |target: &str| std::fs::read_to_string(root().join(target).join("src/alphabet.rs")).unwrap();
-    assert!(mdlec::rust::bind(&alphabet(None)) == committed("atoms"), "`mdlec bind` says what differs");
-    assert!(mdlec::rust::bind(&alphabet(Some("sim"))) == committed("targets/sim"), "`mdlec bind` says what differs");
-    assert!(mdlec::rust::bind(scripted()) == committed("tests/scripted"), "`mdlec bind` says what differs");
+    assert!(mdle_compiler::rust::bind(&alphabet(None)) == committed("atoms"), "`mdlec bind` says what differs");
+    assert!(
+        mdle_compiler::rust::bind(&alphabet(Some("sim"))) == committed("targets/sim"),
+        "`mdlec bind` says what differs"
+    );
+    assert!(mdle_compiler::rust::bind(scripted()) == committed("tests/scripted"), "`mdlec bind` says what differs");
 }

@@ -5,13 +5,13 @@
 use std::collections::BTreeMap;
 use std::fs;
 
+use mdle_compiler::trace::{COMPLETED, Fired, Script, Table, TraceLine, run};
 use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::pipeline::compile;
 use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::random_script::script;
-use mdlec::fsm::{Terms, equation, matrix_files, most_states, terms};
-use mdlec::trace::{COMPLETED, Fired, Script, Table, TraceLine, run};
+use mdle_theory::equations::{Terms, equation, matrix_files, most_states, terms};
 use serde_json::Value;
 
 /// Number of random plans.

@@ -8,6 +8,11 @@ use std::fs;
 use std::io::Write;
 use std::process::{Command, Stdio};
 
+use mdle_compiler::Compiled;
+use mdle_compiler::fsm::{Machine, expand, lower};
+use mdle_compiler::picture::{dot, mermaid, svg};
+use mdle_compiler::plan::Condition;
+use mdle_compiler::trace::{Script, Table, TraceLine, run};
 use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::golden::judge;
@@ -17,11 +22,6 @@ use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::random_script::script;
 use mdle_tests::repository::TextFile;
 use mdle_tests::xml::{Element, read};
-use mdlec::Compiled;
-use mdlec::fsm::{Machine, expand, lower};
-use mdlec::picture::{dot, mermaid, svg};
-use mdlec::plan::Condition;
-use mdlec::trace::{Script, Table, TraceLine, run};
 
 /// Number of random plans.
 const PLANS: u64 = 300;

@@ -2,6 +2,9 @@
 //! same turns as the machine `table`, and ends each turn with the same law.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
+use mdle_compiler::picture::scxml;
+use mdle_compiler::plan::Nondegenerate;
+use mdle_compiler::trace::{Applied, Script, Table, TraceLine, run};
 use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::ecmascript::Value;
 use mdle_tests::golden::judge;
@@ -11,9 +14,6 @@ use mdle_tests::random_script::script;
 use mdle_tests::repository::TextFile;
 use mdle_tests::scxml::Machine;
 use mdle_tests::xml::read;
-use mdlec::picture::scxml;
-use mdlec::plan::Nondegenerate;
-use mdlec::trace::{Applied, Script, Table, TraceLine, run};
 
 /// Number of random plans.
 const PLANS: u64 = 150;

@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
+use mdle_compiler::diagnostic::Code;
+use mdle_compiler::fsm::{Draft, validate};
 use mdle_runtime::fsm::Kind;
 use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::pipeline::compile;
 use mdle_tests::random_plan::RandomPlan;
-use mdlec::diagnostic::Code;
-use mdlec::fsm::{Draft, validate};
 
 /// Number of mutated machines.
 const MUTATIONS: u64 = 500;

@@ -2,8 +2,8 @@
 
 use std::collections::BTreeSet;
 
+use mdle_compiler::diagnostic::{Code, Severity};
 use mdle_tests::repository::{TextFile, files};
-use mdlec::diagnostic::{Code, Severity};
 
 /// Codes that no test can bring about, each with the reason.
 const UNTESTED: &[(Code, &str)] = &[];

@@ -4,13 +4,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use mdle_compiler::diagnostic::{Code, SourceId};
+use mdle_compiler::syntax::{arena_for, parse};
 use mdle_tests::book::pages;
 use mdle_tests::citations::numbered_sections;
 use mdle_tests::grammar::{Production, productions};
 use mdle_tests::productions::{Productions, count};
 use mdle_tests::repository::{TextFile, files, root};
-use mdlec::diagnostic::{Code, SourceId};
-use mdlec::syntax::{arena_for, parse};
 use serde::Deserialize;
 
 /// The table.

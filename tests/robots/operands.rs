@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
 
+use mdle_compiler::trace::{COMPLETED, Reports, Script, Tree, run};
 use mdle_tests::chance::Chance;
 use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::pipeline::compile;
 use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::random_script::script;
-use mdlec::trace::{COMPLETED, Reports, Script, Tree, run};
 
 /// Number of random plans.
 const PLANS: u64 = 3_000;

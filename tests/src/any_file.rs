@@ -6,13 +6,14 @@
 use std::fs;
 use std::sync::LazyLock;
 
+use mdle_compiler::alphabet::{self, AlphabetFile};
+use mdle_compiler::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
+use mdle_compiler::trace::{Counted, Script, run};
+use mdle_compiler::{Compiled, builtin, compile, rust};
 use mdle_host::setpoints;
 use mdle_runtime::{MetersPerSecond, Radians, RadiansPerSecond, Twist};
 use mdle_sim::{Place, Walls, World};
-use mdlec::alphabet::{self, AlphabetFile};
-use mdlec::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
-use mdlec::trace::{Counted, Script, run};
-use mdlec::{Compiled, compile, link, rust, theorem};
+use mdle_theory::theorem;
 
 use crate::any_text::text;
 use crate::pipeline::scripted;
@@ -22,7 +23,7 @@ const STEPS: u64 = 2_000;
 
 /// Alphabets that targets share.
 static SHARED: LazyLock<Vec<AlphabetFile>> = LazyLock::new(|| {
-    let shared = link::alphabets().iter().filter(|file| !file.target);
+    let shared = builtin::alphabets().iter().filter(|file| !file.target);
     shared.filter_map(|file| alphabet::read(SourceId(0), file.text).0).collect()
 });
 

@@ -5,15 +5,15 @@
 use std::cell::RefCell;
 use std::sync::LazyLock;
 
-use mdlec::alphabet::Alphabet;
-use mdlec::analysis::analyze;
-use mdlec::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
-use mdlec::fsm::{Element, Machine};
-use mdlec::plan::{Condition, RecordId};
-use mdlec::rust::{Header, Shape, emit_as};
-use mdlec::syntax::{arena_for, format, outline::outline, parse as read};
-use mdlec::trace::Script;
-use mdlec::{Compiled, compile, link};
+use mdle_compiler::alphabet::Alphabet;
+use mdle_compiler::analysis::analyze;
+use mdle_compiler::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
+use mdle_compiler::fsm::{Element, Machine};
+use mdle_compiler::plan::{Condition, RecordId};
+use mdle_compiler::rust::{Header, Shape, emit_as};
+use mdle_compiler::syntax::{arena_for, format, outline::outline, parse as read};
+use mdle_compiler::trace::Script;
+use mdle_compiler::{Compiled, builtin, compile};
 
 use crate::chance::Chance;
 use crate::golden::alphabet;
@@ -161,14 +161,14 @@ pub fn run(text: &str) {
     }
 }
 
-fn lines(trace: &[mdlec::trace::TraceLine<'_>]) -> String {
+fn lines(trace: &[mdle_compiler::trace::TraceLine<'_>]) -> String {
     trace.iter().map(|line| format!("{line}\n")).collect()
 }
 
 /// Returns the plans of a text, after all messages about it have been shown.
 fn compiled(text: &str, alphabet: &Alphabet) -> Vec<Compiled> {
     let mut sources = Sources::default();
-    for file in link::alphabets() {
+    for file in builtin::alphabets() {
         sources.add(file.file, file.text);
     }
     let id = sources.add("plan.mdle", text);

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use mdlec::diagnostic::Code;
+use mdle_compiler::diagnostic::Code;
 
 use crate::repository::{TextFile, files, root};
 

@@ -1,9 +1,9 @@
 //! Emitted Rust of a plan for the target `scripted`, or for a robot with other quarks.
 
-use mdlec::alphabet::{Alphabet, combine, read};
-use mdlec::diagnostic::{SourceId, Sources};
-use mdlec::fsm::Machine;
-use mdlec::rust::{Header, Shape, emit, emit_as};
+use mdle_compiler::alphabet::{Alphabet, combine, read};
+use mdle_compiler::diagnostic::{SourceId, Sources};
+use mdle_compiler::fsm::Machine;
+use mdle_compiler::rust::{Header, Shape, emit, emit_as};
 
 use crate::pipeline::scripted;
 
@@ -40,7 +40,7 @@ pub fn alphabet(declarations: &str) -> Alphabet {
 }
 
 fn lowered(alphabet: &Alphabet, plan: &str) -> Machine {
-    let (mut compiled, found) = mdlec::compile(SourceId(0), plan, alphabet, Some("Main"));
+    let (mut compiled, found) = mdle_compiler::compile(SourceId(0), plan, alphabet, Some("Main"));
     assert!(!compiled.is_empty(), "{plan}: {found:?}");
     compiled.swap_remove(0).lowered
 }

@@ -4,7 +4,7 @@
 
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
-use mdlec::plan::{Condition, Interrupt, Mark, Node, Plan, QuarkId, Record, RecordId, Situation};
+use mdle_compiler::plan::{Condition, Interrupt, Mark, Node, Plan, QuarkId, Record, RecordId, Situation};
 
 /// Values of the quarks in a turn, by their numbers.
 #[derive(Debug, Clone, Default)]

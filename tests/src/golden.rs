@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use mdlec::alphabet::{self, Alphabet};
-use mdlec::diagnostic::{SourceId, Sources};
-use mdlec::rust::{Header, Shape, emit_as};
-use mdlec::syntax::{Arena, outline::outline, parse};
-use mdlec::{Compiled, compile, fsm, link};
+use mdle_compiler::alphabet::{self, Alphabet};
+use mdle_compiler::diagnostic::{SourceId, Sources};
+use mdle_compiler::rust::{Header, Shape, emit_as};
+use mdle_compiler::syntax::{Arena, outline::outline, parse};
+use mdle_compiler::{Compiled, builtin, compile, fsm};
 
 use crate::repository::TextFile;
 
@@ -14,8 +14,8 @@ use crate::repository::TextFile;
 #[must_use]
 pub fn alphabet(target: Option<&str>) -> Alphabet {
     let mut sources = Sources::default();
-    let placed = link::alphabets().iter().map(|file| (sources.add(file.file, file.text), file));
-    let read = |(source, file): (SourceId, &link::Alphabet)| alphabet::read(source, file.text).0.expect(file.file);
+    let placed = builtin::alphabets().iter().map(|file| (sources.add(file.file, file.text), file));
+    let read = |(source, file): (SourceId, &builtin::Alphabet)| alphabet::read(source, file.text).0.expect(file.file);
     let (targets, shared): (Vec<_>, Vec<_>) = placed.partition(|(_, file)| file.target);
     let mut shared: Vec<_> = shared.into_iter().map(read).collect();
     match target.map(|name| targets.into_iter().find(|(_, file)| file.name == name).expect(name)) {
@@ -36,7 +36,7 @@ pub fn judge(file: &TextFile, target: Option<&str>) -> (Vec<Compiled>, String) {
 /// A file after those of the alphabets.
 fn sources(file: &TextFile) -> (Sources, SourceId) {
     let mut sources = Sources::default();
-    for alphabet in link::alphabets() {
+    for alphabet in builtin::alphabets() {
         sources.add(alphabet.file, alphabet.text);
     }
     let source = sources.add(&file.path, &file.text);

@@ -1,5 +1,8 @@
 //! Plans loaded at run time: rows whose quarks the bound alphabet of the target `scripted` makes by their names.
 
+use mdle_compiler::alphabet::{self, family_to_si};
+use mdle_compiler::fsm::{Element, Machine, RecordPlace};
+use mdle_compiler::plan::{self, Compared, Quark, Value};
 use mdle_runtime::{
     Alphabet, Argument, Begin, BracketWords, Cause, Comparison, Condition, Cursor, Ending, Fsm, Guard, InRows, LawRow,
     MarkRow, Measured, Memories, Meters, MetersPerSecond, Nanometers, Nanos, Operand, OperandWords, Operator, Plan,
@@ -7,9 +10,6 @@ use mdle_runtime::{
 };
 use mdle_scripted::alphabet::{self as scripted, AnyControl, AnyInterrupt};
 use mdle_scripted::{Input, Output};
-use mdlec::alphabet::{self, family_to_si};
-use mdlec::fsm::{Element, Machine, RecordPlace};
-use mdlec::plan::{self, Compared, Quark, Value};
 
 /// A plan's rows, owned.
 pub struct Loaded<'l> {

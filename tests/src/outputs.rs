@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use mdle_compiler::trace::{Reports, Script};
 use mdle_runtime::Nanos;
 use mdle_scripted::{INTERRUPTS, LAWS, Output};
-use mdlec::trace::{Reports, Script};
 
 use crate::signals::values;
 

@@ -2,12 +2,12 @@
 
 use std::sync::LazyLock;
 
-use mdlec::Compiled;
-use mdlec::alphabet::{self, Alphabet};
-use mdlec::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
-use mdlec::fsm::{Machine, expand, lower};
-use mdlec::syntax::Loader;
-use mdlec::trace::{Counted, MatrixProduct, Script, Table, TraceLine, Tree, run};
+use mdle_compiler::Compiled;
+use mdle_compiler::alphabet::{self, Alphabet};
+use mdle_compiler::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
+use mdle_compiler::fsm::{Machine, expand, lower};
+use mdle_compiler::syntax::Loader;
+use mdle_compiler::trace::{Counted, MatrixProduct, Script, Table, TraceLine, Tree, run};
 
 /// The most states of a plan whose expanded form is run as well.
 const EXPANDED: u64 = 2000;
@@ -48,7 +48,7 @@ pub fn compile(text: &str) -> Result<Compiled, String> {
 pub fn compile_plan(text: &str, name: &str) -> Result<Compiled, String> {
     let (sources, library, source) = placed(text);
     let mut library = Library(library);
-    let (mut compiled, found) = mdlec::compile_with(source, text, scripted(), Some(name), &mut library);
+    let (mut compiled, found) = mdle_compiler::compile_with(source, text, scripted(), Some(name), &mut library);
     assert_eq!(compiled.is_empty(), has_errors(&found), "a plan or an error:\n{text}");
     match compiled.pop() {
         Some(compiled) => Ok(compiled),

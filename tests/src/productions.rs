@@ -7,9 +7,11 @@ mod conditions;
 
 use std::collections::BTreeMap;
 
-use mdlec::alphabet::Unit;
-use mdlec::diagnostic::{SourceId, Span};
-use mdlec::syntax::tree::{Arg, Atom, Call, Count, Element, Exec, File, Formal, Frame, Number, Param, Plan, Primary};
+use mdle_compiler::alphabet::Unit;
+use mdle_compiler::diagnostic::{SourceId, Span};
+use mdle_compiler::syntax::tree::{
+    Arg, Atom, Call, Count, Element, Exec, File, Formal, Frame, Number, Param, Plan, Primary,
+};
 
 /// Number of times that each production, and each unit, has been met.
 pub type Productions = BTreeMap<&'static str, u64>;

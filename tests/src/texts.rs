@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use mdlec::diagnostic::Code;
+use mdle_compiler::diagnostic::Code;
 use proc_macro2::{TokenStream, TokenTree};
 
 use crate::any_text;

@@ -1,8 +1,8 @@
 //! `mdlec analyze`: static analysis of a plan.
 
 use super::{Analyze, Failure, build, input, report, settings};
-use crate::Compiled;
-use crate::analysis::analyze as analysis;
+use mdle_compiler::Compiled;
+use mdle_compiler::analysis::analyze as analysis;
 
 /// Prints the analysis of a plan; warnings go to standard error.
 pub(super) fn analyze(options: &Analyze) -> Result<(), Failure> {

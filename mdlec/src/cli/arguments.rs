@@ -10,7 +10,7 @@ use clap_complete::Shell;
 
 use super::emit::Emit;
 use crate::link;
-use crate::theorem::STEPS;
+use mdle_theory::theorem::STEPS;
 
 /// Compile plans in MDLe, the Motion Description Language, for robots
 ///

@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::read::{self, LARGEST_PLAN};
 use super::{Bind, Failure, input, report};
-use crate::alphabet::Alphabet;
-use crate::{link, rust};
+use crate::link;
+use mdle_compiler::alphabet::Alphabet;
+use mdle_compiler::rust;
 
 /// Writes `src/alphabet.rs` beside the alphabet, or reports whether it is up to date.
 pub(super) fn bind(options: &Bind) -> Result<(), Failure> {

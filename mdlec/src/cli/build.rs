@@ -7,11 +7,11 @@ use super::executable::{self, Runnable};
 use super::input::{self, Input, Target};
 use super::settings::{self, Settings};
 use super::{Bare, Build, Emit, EmitKind, Executable, Failure, endings, matrices, report};
-use crate::diagnostic::{Diagnostic, Sources};
 use crate::link;
-use crate::rust::{self, Header};
-use crate::syntax::outline;
-use crate::{Compiled, fsm, picture, syntax};
+use mdle_compiler::diagnostic::{Diagnostic, Sources};
+use mdle_compiler::rust::{self, Header};
+use mdle_compiler::syntax::outline;
+use mdle_compiler::{Compiled, fsm, picture, syntax};
 
 /// Runs a command line without a command.
 pub(super) fn bare(options: &Bare) -> Result<(), Failure> {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use super::everywhere::{ALL, everywhere};
 use super::{Check, Failure, input, report, settings};
-use crate::diagnostic::has_errors;
+use mdle_compiler::diagnostic::has_errors;
 
 /// Checks each plan file and prints its diagnostics.
 pub(super) fn check(options: &Check) -> Result<(), Failure> {

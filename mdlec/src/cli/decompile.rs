@@ -4,9 +4,9 @@ use std::path::Path;
 
 use super::read::LARGEST_DATA;
 use super::{Decompile, Failure, input, report};
-use crate::diagnostic::Sources;
-use crate::syntax;
-use crate::theorem::{Answer, Machine, as_printed, augment, decompile as theorem, monomial, read, string};
+use mdle_compiler::diagnostic::Sources;
+use mdle_compiler::syntax;
+use mdle_theory::theorem::{Answer, Machine, as_printed, augment, decompile as theorem, monomial, read, string};
 
 /// Maximum number of states of a machine that is shown as matrices.
 const SHOWN: usize = 12;

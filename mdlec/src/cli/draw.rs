@@ -1,7 +1,8 @@
 //! `mdlec draw`: draws a plan as a picture.
 
 use super::{Draw, Failure, build, endings, input, report, settings};
-use crate::{link, picture};
+use crate::link;
+use mdle_compiler::picture;
 
 /// Draws the plan, into a file or to standard output.
 pub(super) fn draw(options: &Draw) -> Result<(), Failure> {

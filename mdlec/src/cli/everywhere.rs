@@ -6,8 +6,7 @@ use super::check::each;
 use super::input::{self, Target};
 use super::read::LARGEST_PLAN;
 use super::{Check, Failure, report};
-use crate::diagnostic::{Severity, has_errors};
-use crate::link;
+use mdle_compiler::diagnostic::{Severity, has_errors};
 
 /// Value of `--target` for all robots that are part of mdlec.
 pub(super) const ALL: &str = "all";
@@ -22,7 +21,8 @@ struct Row {
 /// run a plan.
 pub(super) fn everywhere(options: &Check) -> Result<(), Failure> {
     let everything = input::target(None)?;
-    let names = link::alphabets().iter().filter(|alphabet| alphabet.target).map(|alphabet| alphabet.name);
+    let names =
+        mdle_compiler::builtin::alphabets().iter().filter(|alphabet| alphabet.target).map(|alphabet| alphabet.name);
     let robots = names.map(|name| Ok((name, input::target(Some(name))?))).collect::<Result<Vec<_>, Failure>>()?;
     let mut rows = Vec::new();
     let checked = each(&options.plans, |path| {

@@ -14,7 +14,7 @@ use super::settings::Settings;
 use super::version::version;
 use super::{EmitKind, Executable, Failure, Run, endings, report};
 use crate::link::{self, Cache, LinkError, Package, Progress, TargetCrate};
-use crate::rust;
+use mdle_compiler::rust;
 
 /// Builds the executable of a plan and becomes it.
 pub(super) fn run(options: &Run) -> Result<(), Failure> {

@@ -1,7 +1,7 @@
 //! `mdlec explain`: prints the meaning of a code, with a wrong and a right example.
 
 use super::{Failure, report};
-use crate::diagnostic::Code;
+use mdle_compiler::diagnostic::Code;
 
 /// Explains a code, or lists all codes.
 pub(super) fn explain(code: Option<&str>) -> Result<(), Failure> {

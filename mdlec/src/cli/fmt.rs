@@ -7,8 +7,9 @@ use std::path::Path;
 use super::check::each;
 use super::read::LARGEST_PLAN;
 use super::{Failure, Fmt, input, report};
-use crate::diagnostic::Sources;
-use crate::{link, syntax};
+use crate::link;
+use mdle_compiler::diagnostic::Sources;
+use mdle_compiler::syntax;
 
 /// Formats each file, or lists the files whose layout differs. A file with errors stays unchanged.
 pub(super) fn fmt(options: &Fmt) -> Result<(), Failure> {

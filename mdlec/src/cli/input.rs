@@ -4,10 +4,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::{Failure, read, report};
-use crate::alphabet::{self, Alphabet, AlphabetFile, Capability, Declaration, DeclarationKind};
-use crate::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
-use crate::plan::signature;
-use crate::{Compiled, check_with, compile_with, link, syntax};
+use mdle_compiler::alphabet::{self, Alphabet, AlphabetFile, Capability, Declaration, DeclarationKind};
+use mdle_compiler::diagnostic::{Diagnostic, SourceId, Sources, has_errors};
+use mdle_compiler::plan::signature;
+use mdle_compiler::{Compiled, builtin, check_with, compile_with, syntax};
 use read::Unread;
 
 /// The robot that plans are checked against.
@@ -123,7 +123,7 @@ pub(super) fn without_mark(bytes: Vec<u8>) -> Vec<u8> {
 /// Reads the target that an option names; without an option a robot with every capability.
 pub(super) fn target(option: Option<&str>) -> Result<Target, Failure> {
     let Some(name) = option else { return read_alphabets(None, "") };
-    if let Some(builtin) = link::alphabets().iter().find(|alphabet| alphabet.target && alphabet.name == name) {
+    if let Some(builtin) = builtin::alphabets().iter().find(|alphabet| alphabet.target && alphabet.name == name) {
         return read_alphabets(Some((builtin.file.to_owned(), builtin.text.to_owned())), name);
     }
     let folder = Path::new(name);
@@ -198,7 +198,7 @@ pub(super) fn read_text(path: &Path, most: u64) -> Result<String, Failure> {
 /// Prints the list of `mdlec targets`.
 pub(super) fn print_targets() -> Result<(), Failure> {
     let mut text = String::new();
-    for builtin in link::alphabets().iter().filter(|alphabet| alphabet.target) {
+    for builtin in builtin::alphabets().iter().filter(|alphabet| alphabet.target) {
         let target = target(Some(builtin.name))?;
         let capabilities: Vec<_> = target.alphabet.capabilities.iter().map(ToString::to_string).collect();
         text += &format!("{}: {}\n", builtin.name, capabilities.join(", "));
@@ -240,7 +240,7 @@ fn line(declaration: &Declaration, alphabet: &Alphabet, width: usize) -> String 
 fn read_alphabets(own: Option<(String, String)>, name: &str) -> Result<Target, Failure> {
     let mut reading = Reading::default();
     let mut shared = Vec::new();
-    for alphabet in link::alphabets().iter().filter(|alphabet| !alphabet.target) {
+    for alphabet in builtin::alphabets().iter().filter(|alphabet| !alphabet.target) {
         shared.extend(reading.read(alphabet.file.to_owned(), alphabet.text.to_owned()));
     }
     let alphabet = match own {
@@ -263,8 +263,8 @@ fn read_alphabets(own: Option<(String, String)>, name: &str) -> Result<Target, F
 
 /// Robots that are part of mdlec, each with its capabilities.
 fn robots() -> Vec<(String, Vec<Capability>)> {
-    let targets = link::alphabets().iter().filter(|alphabet| alphabet.target);
-    let head = |builtin: &link::Alphabet| {
+    let targets = builtin::alphabets().iter().filter(|alphabet| alphabet.target);
+    let head = |builtin: &builtin::Alphabet| {
         let (file, _) = alphabet::read(Sources::default().add(builtin.file, builtin.text), builtin.text);
         Some((builtin.name.to_owned(), file?.target?.capabilities))
     };
@@ -290,7 +290,7 @@ impl Reading {
 }
 
 fn unknown_target(name: &str) -> Failure {
-    let known: Vec<_> = link::alphabets().iter().filter(|found| found.target).map(|found| found.name).collect();
+    let known: Vec<_> = builtin::alphabets().iter().filter(|found| found.target).map(|found| found.name).collect();
     if name.contains('/') {
         return Failure::usage(format!(
             "there is no folder `{name}`\nhelp: the built-in targets are {}",

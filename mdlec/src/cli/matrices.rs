@@ -4,10 +4,11 @@ use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 use super::{Failure, executable, report};
-use crate::diagnostic::{Code, Diagnostic};
-use crate::fsm::{self, MatrixFiles};
-use crate::plan::Nondegenerate;
-use crate::{diagnostic::Sources, link};
+use crate::link;
+use mdle_compiler::diagnostic::Sources;
+use mdle_compiler::diagnostic::{Code, Diagnostic};
+use mdle_compiler::plan::Nondegenerate;
+use mdle_theory::equations::{self, MatrixFiles};
 
 /// Prints the matrices, or writes them into a folder without overwriting any of `inputs`. Printing is limited to a few
 /// small matrices; files are for programs, whatever their size.
@@ -22,19 +23,19 @@ pub(super) fn matrices(
         report::diagnostics(sources, &[found], false);
         Failure::PLAN
     };
-    let terms = fsm::terms(plan, combined).map_err(refused)?;
+    let terms = equations::terms(plan, combined).map_err(refused)?;
     let Some(folder) = folder else {
-        let text = fsm::equation(&terms).ok_or_else(|| {
+        let text = equations::equation(&terms).ok_or_else(|| {
             Failure::usage(format!(
                 "this plan has {} states, and matrices of more than {} are not for a terminal\nhelp: have them written as \
                  MatrixMarket files into a folder: `--emit matrices=FOLDER`; `--emit fsm` lists only what moves",
                 terms.states(),
-                fsm::most_states(),
+                equations::most_states(),
             ))
         })?;
         return report::print(&text);
     };
-    let files = fsm::matrix_files(&terms).map_err(|(ones, most)| {
+    let files = equations::matrix_files(&terms).map_err(|(ones, most)| {
         let root = plan.plan().root.span;
         let message =
             format!("the {} matrices of this plan have {ones} ones; written are at most {most}", terms.live.len());

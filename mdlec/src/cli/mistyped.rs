@@ -9,7 +9,7 @@ use clap::{Arg, Command, CommandFactory as _};
 
 use super::words::words;
 use super::{Cli, Failure};
-use crate::{alphabet, link};
+use mdle_compiler::{alphabet, builtin};
 
 /// Names of commands, each with other words for it.
 const SYNONYMS: &[(&str, &[&str])] = &[
@@ -73,7 +73,7 @@ pub(super) fn robot(answer: &clap::Error) -> Option<Failure> {
     let (given, cli) = (unexpected(answer)?, Cli::command());
     let command = env::args().skip(1).find_map(|word| cli.find_subcommand(word))?;
     command.get_arguments().find(|argument| argument.get_long() == Some("target"))?;
-    let robots = link::alphabets().iter().filter(|alphabet| alphabet.target).map(|alphabet| alphabet.name);
+    let robots = builtin::alphabets().iter().filter(|alphabet| alphabet.target).map(|alphabet| alphabet.name);
     let (name, robot) = (command.get_name(), alphabet::nearest(given, robots)?);
     Some(Failure::usage(format!(
         "`mdlec {name}` does not expect `{given}` here\nhelp: a robot is named with an option: `--target {robot}`"

@@ -5,7 +5,7 @@ use std::io;
 use std::path::Path;
 
 use super::{Bind, Failure, NewTarget, bind, report};
-use crate::link;
+use mdle_compiler::builtin;
 
 /// Word in the template's files that the robot's name replaces.
 const NAME: &str = "template";
@@ -96,7 +96,7 @@ fn is_good(name: &str) -> bool {
 }
 
 fn is_taken(name: &str) -> bool {
-    name == "all" || link::alphabets().iter().any(|alphabet| alphabet.name == name)
+    name == "all" || builtin::alphabets().iter().any(|alphabet| alphabet.name == name)
 }
 
 /// Proposes a valid name that resembles this one.

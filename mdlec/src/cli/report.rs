@@ -10,7 +10,7 @@ use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
 use mdle_runtime::{Printable, PrintableLines, is_printable};
 
 use super::{Color, Failure, MessageFormat};
-use crate::diagnostic::{Code, Diagnostic, Message, Severity, Sources, Span, has_errors};
+use mdle_compiler::diagnostic::{Code, Diagnostic, Message, Severity, Sources, Span, has_errors};
 
 /// Format of all messages of this process. It is set once, when the command line is read: every message goes through
 /// this file.

@@ -11,6 +11,7 @@ use super::Failure;
 use super::input::{self, Target};
 use super::read::{self, Unread};
 use crate::link;
+use mdle_compiler::builtin;
 use text::{Setting, SettingsText};
 
 /// Name of the settings file.
@@ -139,7 +140,7 @@ impl Settings {
 
     /// Name or folder of the target, as `--target` takes it: a relative folder is relative to the folder of the file.
     fn target_name(&self, value: &str) -> String {
-        let is_robot = link::alphabets().iter().any(|alphabet| alphabet.target && alphabet.name == value);
+        let is_robot = builtin::alphabets().iter().any(|alphabet| alphabet.target && alphabet.name == value);
         let folder = self.in_folder(value);
         if !is_robot && (folder.is_dir() || value.contains('/')) {
             folder.display().to_string()

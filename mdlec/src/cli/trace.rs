@@ -4,7 +4,7 @@ use std::io::{self, BufWriter, Write};
 
 use super::read::LARGEST_DATA;
 use super::{Failure, Trace, TraceMachine, input, report, settings};
-use crate::trace::{Counted, MatrixProduct, Script, Table, TraceLine, Tree, run};
+use mdle_compiler::trace::{Counted, MatrixProduct, Script, Table, TraceLine, Tree, run};
 
 /// Runs the plan and prints the trace, one line per turn.
 pub(super) fn trace(options: &Trace) -> Result<(), Failure> {

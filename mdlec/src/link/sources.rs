@@ -21,25 +21,6 @@ const FORGOTTEN: Duration = Duration::from_secs(30 * 24 * 60 * 60);
 /// Lock file with the versions of dependencies that mdlec was tested with.
 pub(super) const LOCK: &str = "Cargo.lock";
 
-/// An alphabet that is part of mdlec.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Alphabet {
-    /// Name of the alphabet in `--target` or `use`.
-    pub name: &'static str,
-    /// Name of the file in messages.
-    pub file: &'static str,
-    /// Text of the file.
-    pub text: &'static str,
-    /// `true` for the alphabet of a target, `false` for a shared one.
-    pub target: bool,
-}
-
-/// The alphabets that are part of mdlec: the shared ones first, then those of the targets in the order of their names.
-#[must_use]
-pub fn alphabets() -> &'static [Alphabet] {
-    embedded::ALPHABETS
-}
-
 /// Folder and package name of a built-in target, by its name for `--target`.
 pub(super) fn builtin(target: &str) -> Option<(String, &'static str)> {
     let (name, package) = embedded::TARGETS.iter().find(|(name, _)| *name == target)?;
@@ -147,7 +128,9 @@ mod tests {
 
     use super::super::Cache;
     use super::super::tests::cache;
-    use super::{FORGOTTEN, Sources, alphabets, builtin, embedded, text};
+    use mdle_compiler::builtin::alphabets;
+
+    use super::{FORGOTTEN, Sources, builtin, embedded, text};
 
     #[test]
     fn alphabets_come_with_names_that_can_be_shown() {

@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 use std::path::Path;
 use std::time::Duration;
 
-use mdle_atoms::conformance::{Room, Stage, Supplied};
+use mdle_conformance::{Room, Stage, Supplied};
 use mdle_host::StopRequest;
 use mdle_runtime::{Alphabet, MetersPerSecond, Nanos, PathStore, Pose, RadiansPerSecond, Robot, Sensed, Twist};
 use mdle_serial::{Clock, Configured, SerialRobot};

@@ -4,7 +4,7 @@
 
 use std::time::Duration;
 
-use mdle_atoms::conformance::{Room, Stage, Suite, Supplied, Verdict};
+use mdle_conformance::{Room, Stage, Suite, Supplied, Verdict};
 use mdle_host::Target as _;
 use mdle_runtime::{Meters, MetersPerSecond, Nanos, PathStore, Ping, Pings, Pose, Radians, Robot};
 use mdle_sim::{Body, Charger, Input, Make, Observed, Output, Simulated, Target, World, alphabet};

@@ -4,7 +4,7 @@
 use std::f64::consts::FRAC_PI_2;
 use std::time::Duration;
 
-use mdle_atoms::conformance::{Room, Stage, Suite};
+use mdle_conformance::{Room, Stage, Suite};
 use mdle_host::clap::Command;
 use mdle_host::{StopRequest, Target as _};
 use mdle_runtime::{Nanos, Pose, Radians, Robot as _};

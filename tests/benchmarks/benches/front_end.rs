@@ -9,8 +9,8 @@ use std::hint::black_box;
 use std::time::{Duration, Instant};
 
 use mdle_benchmarks::front_end::{one_megabyte, plans, ten_megabytes};
-use mdlec::diagnostic::SourceId;
-use mdlec::syntax::{Arena, arena_for, parse};
+use mdle_compiler::diagnostic::SourceId;
+use mdle_compiler::syntax::{Arena, arena_for, parse};
 
 /// Number of bytes that each parser reads in all its runs.
 const BYTES: usize = 200_000_000;

@@ -1,7 +1,7 @@
 //! A comparison is fair if what is measured is read without an error.
 
-use mdlec::diagnostic::SourceId;
-use mdlec::syntax::{Arena, parse};
+use mdle_compiler::diagnostic::SourceId;
+use mdle_compiler::syntax::{Arena, parse};
 
 use crate::front_end::{one_megabyte, plans};
 

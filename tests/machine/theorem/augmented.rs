@@ -1,10 +1,10 @@
 //! Any machine as a plan with `after`: it and the machine itself side by side, turn by turn.
 
+use mdle_compiler::alphabet;
+use mdle_compiler::diagnostic::{SourceId, Sources};
+use mdle_compiler::trace::{Applied, Counted, Script, run};
 use mdle_tests::chance::{Chance, repeated};
-use mdlec::alphabet;
-use mdlec::diagnostic::{SourceId, Sources};
-use mdlec::theorem::{Machine, augment};
-use mdlec::trace::{Applied, Counted, Script, run};
+use mdle_theory::theorem::{Machine, augment};
 
 use super::machines::{Row, Table, likely, machine};
 
@@ -61,7 +61,7 @@ fn the_plan_is_in_the_state_of_the_machine_turn_by_turn() {
         };
         let machine = machine(atoms, &rows);
         let text = augment(&machine);
-        let (compiled, found) = mdlec::compile(SourceId(0), &text, &alphabet(&machine), None);
+        let (compiled, found) = mdle_compiler::compile(SourceId(0), &text, &alphabet(&machine), None);
         let [compiled] = compiled.as_slice() else { panic!("seed {seed}: {found:?}\n{text}") };
         let often = 1 + chance.below(15);
         let fired: Vec<Vec<bool>> =

@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 use std::time::Instant;
 
 use mdle_tests::chance::{Chance, repeated};
-use mdlec::theorem::{Answer, STEPS, State, decompile};
+use mdle_theory::theorem::{Answer, STEPS, State, decompile};
 
 use super::definition::{Definition, assert_is_string};
 use super::machines::{Row, Table, likely, machine};

@@ -3,7 +3,7 @@
 //!
 //! It shares nothing with the compiler. What depends on the number of atoms only is written out once.
 
-use mdlec::theorem::{Found, Machine};
+use mdle_theory::theorem::{Found, Machine};
 
 use super::machines::Table;
 

@@ -1,7 +1,7 @@
 //! Small machines, as numbers: for each interrupt a row with the destination of each atom, if it has one.
 
 use mdle_tests::chance::Chance;
-use mdlec::theorem::{Machine, Named, State};
+use mdle_theory::theorem::{Machine, Named, State};
 
 /// A row: where an interrupt leads from each atom.
 pub(crate) type Row = Vec<Option<usize>>;

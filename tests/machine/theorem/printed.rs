@@ -2,7 +2,7 @@
 //! ones.
 
 use mdle_tests::chance::Chance;
-use mdlec::theorem::{Answer, Machine, Named, STEPS, State, as_printed, decompile};
+use mdle_theory::theorem::{Answer, Machine, Named, STEPS, State, as_printed, decompile};
 
 use super::machines::{Row, Table, likely, machine};
 

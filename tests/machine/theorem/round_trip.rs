@@ -3,13 +3,13 @@
 
 use std::collections::BTreeMap;
 
+use mdle_compiler::diagnostic::SourceId;
+use mdle_compiler::fsm::{FsmFile, fsm_file};
+use mdle_compiler::syntax::{arena_for, parse};
 use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::pipeline::{compile, compile_plan};
 use mdle_tests::random_plan::RandomPlan;
-use mdlec::diagnostic::SourceId;
-use mdlec::fsm::{FsmFile, fsm_file};
-use mdlec::syntax::{arena_for, parse};
-use mdlec::theorem::{Answer, augment, decompile, read, string};
+use mdle_theory::theorem::{Answer, augment, decompile, read, string};
 
 use super::definition::assert_is_string;
 use super::loops::plan_of_loops;

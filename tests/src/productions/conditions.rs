@@ -1,6 +1,6 @@
 //! Counts the productions of conditions and calls.
 
-use mdlec::syntax::tree::{Arg, Call, Comparison, Condition, ConditionNode, Operand};
+use mdle_compiler::syntax::tree::{Arg, Call, Comparison, Condition, ConditionNode, Operand};
 
 use super::Counter;
 

@@ -1,6 +1,6 @@
 //! The driver on the emulated robot does what any robot must do, over a pseudo-terminal, in lockstep.
 
-use mdle_atoms::conformance::Suite;
+use mdle_conformance::Suite;
 use mdle_emulator::OnItsLine;
 
 mod robot;

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use mdlec::alphabet::{self, Alphabet};
-use mdlec::diagnostic::Sources;
-use mdlec::rust::{Header, emit};
+use mdle_compiler::alphabet::{self, Alphabet};
+use mdle_compiler::diagnostic::Sources;
+use mdle_compiler::rust::{Header, emit};
 
 const ALPHABET: &str = include_str!("../alphabet.mdle");
 
@@ -39,7 +39,7 @@ pub fn emitted(text: &str) -> String {
     let mut sources = Sources::default();
     sources.add("alphabet.mdle", ALPHABET);
     let source = sources.add("T.mdle", text);
-    let (compiled, found) = mdlec::compile(source, text, &robot, Some("T"));
+    let (compiled, found) = mdle_compiler::compile(source, text, &robot, Some("T"));
     let said: String = found.iter().map(|diagnostic| sources.render(diagnostic)).collect();
     let compiled = compiled.first().unwrap_or_else(|| panic!("{said}"));
     emit(&compiled.lowered, Header { sources: &sources, file: "T.mdle", plan: "T" }, &robot)

@@ -1,0 +1,94 @@
+//! Checks of the battery and charger states that the robot reports.
+
+use std::format;
+
+use mdle_runtime::capability::Power;
+use mdle_runtime::{Alphabet, Interrupt as _, Signal as _};
+
+use super::trial::Trial;
+use super::{Out, Room, Stage, Supplied, Verdict};
+
+/// The lowest and the highest voltage that is meant, in volts.
+const VOLTS: (f64, f64) = (1.0, 1000.0);
+/// Time, in seconds, within which a robot must report a change of its supply.
+const TELLS: f64 = 5.0;
+
+/// The state of its supply that a robot reports.
+#[derive(Debug, Clone, Copy)]
+struct ReportedSupply {
+    volts: f64,
+    is_low: bool,
+    is_plugged: bool,
+}
+
+/// Returns the state that the robot reports `TELLS` seconds after it is supplied like this.
+fn said<S: Stage>(stage: &mut S, supplied: Supplied) -> Result<ReportedSupply, Verdict>
+where
+    Out<S>: Power,
+{
+    let mut trial = Trial::of(stage, &Room::open())?;
+    trial.supply(supplied);
+    trial.drive(0.0, 0.0, TELLS)?;
+    let y = &trial.y;
+    let said = ReportedSupply { volts: y.battery().0, is_low: y.is_low(), is_plugged: y.is_plugged() };
+    let (least, most) = VOLTS;
+    if !(least..=most).contains(&said.volts) {
+        return Err(Verdict::Broken(format!("`battery` is {} V, and {least} to {most} V are meant", said.volts)));
+    }
+    agree::<S>(y, said)?;
+    Ok(said)
+}
+
+/// Checks that the quarks and the signal of the alphabet agree with the output.
+fn agree<S: Stage>(y: &Out<S>, said: ReportedSupply) -> Result<(), Verdict> {
+    for (name, wanted) in [("lowBattery", said.is_low), ("charger", said.is_plugged)] {
+        let interrupt = S::Alphabet::interrupt(name, &[]).ok_or(Verdict::NotOffered)?;
+        if interrupt.fired(y) != wanted {
+            return Err(Verdict::Broken(format!("`{name}` and what the output says of it do not agree")));
+        }
+    }
+    let signal = S::Alphabet::signal("battery", &[]).ok_or(Verdict::NotOffered)?;
+    if signal.value(y) != said.volts {
+        return Err(Verdict::Broken("the signal `battery` is not the battery's voltage in volts".into()));
+    }
+    Ok(())
+}
+
+/// Checks that a state is reported where it holds, and not elsewhere.
+fn only(what: &str, where_it_is: bool, where_not: [bool; 2]) -> Result<(), String> {
+    match (where_it_is, where_not) {
+        (true, [false, false]) => Ok(()),
+        (false, _) => Err(format!("{what}, and it does not say so (or the stage does not do it: see `Stage::supply`)")),
+        (true, _) => Err(format!("it says so where it is not so: {what}")),
+    }
+}
+
+pub(super) fn battery<S: Stage>(stage: &mut S) -> Result<(), Verdict>
+where
+    Out<S>: Power,
+{
+    let [well, low, plugged] = each(stage)?;
+    only("its battery is low", low.is_low, [well.is_low, plugged.is_low])?;
+    if low.volts >= well.volts {
+        let why = format!("its battery is at {} V when it is low, and at {} V before", low.volts, well.volts);
+        return Err(Verdict::Broken(why));
+    }
+    Ok(())
+}
+
+pub(super) fn charger<S: Stage>(stage: &mut S) -> Result<(), Verdict>
+where
+    Out<S>: Power,
+{
+    let [well, low, plugged] = each(stage)?;
+    only("it is on its charger", plugged.is_plugged, [well.is_plugged, low.is_plugged])?;
+    Ok(())
+}
+
+/// Returns the states that the robot reports when it is well supplied, when its battery is low, and on its charger.
+fn each<S: Stage>(stage: &mut S) -> Result<[ReportedSupply; 3], Verdict>
+where
+    Out<S>: Power,
+{
+    Ok([said(stage, Supplied::Well)?, said(stage, Supplied::Low)?, said(stage, Supplied::Plugged)?])
+}

@@ -1,0 +1,96 @@
+//! The rooms that robots are tried in: straight walls round the place where the robot begins.
+
+use std::string::{String, ToString};
+
+use core::fmt;
+
+use mdle_runtime::{Meters, Pose, Radians};
+
+/// Distance of the outermost walls, in metres: further than any sonar hears.
+const FAR: f64 = 40.0;
+
+/// The pose at which robots begin: nowhere near the origin, and along no axis, so that the room's axes are not taken
+/// for the robot's.
+pub(super) const AT: Pose = Pose { x: Meters(1.0), y: Meters(-0.5), theta: Radians::from_degrees(30.0) };
+
+/// A straight wall without thickness.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Wall {
+    /// One end: its `x` and `y`; the heading means nothing.
+    pub from: Pose,
+    /// The other end; the heading means nothing.
+    pub to: Pose,
+}
+
+/// A flat floor with walls.
+///
+/// As text it is a file for the worlds of `mdle-sim`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Room {
+    walls: Vec<Wall>,
+}
+
+impl Room {
+    /// A hall whose walls no sonar hears.
+    pub(super) fn open() -> Self {
+        let sides = [0.0, 90.0, 180.0, 270.0];
+        sides.into_iter().fold(Self { walls: Vec::new() }, |room, side| room.across(side, FAR, FAR))
+    }
+
+    /// Adds a wall that is square to the direction `degrees` counter-clockwise of where the robot first looks,
+    /// `distance` metres from the robot's centre, and `half` metres long to both sides.
+    pub(super) fn across(mut self, degrees: f64, distance: f64, half: f64) -> Self {
+        let bearing = AT.theta.0 + Radians::from_degrees(degrees).0;
+        let foot = AT.towards(Radians(bearing), Meters(distance));
+        let end = |way: f64| foot.towards(Radians(bearing + core::f64::consts::FRAC_PI_2), Meters(way));
+        self.walls.push(Wall { from: end(-half), to: end(half) });
+        self
+    }
+
+    /// The walls.
+    #[must_use]
+    pub fn walls(&self) -> &[Wall] {
+        &self.walls
+    }
+
+    /// Returns the distance of the nearest wall from the place of this pose.
+    pub(super) fn nearest(&self, at: Pose) -> Meters {
+        let ways = self.walls.iter().map(|wall| wall.distance(at));
+        Meters(ways.fold(f64::INFINITY, f64::min))
+    }
+}
+
+impl Wall {
+    fn distance(&self, at: Pose) -> f64 {
+        let (x, y) = (self.to.x.0 - self.from.x.0, self.to.y.0 - self.from.y.0);
+        let along = (at.x.0 - self.from.x.0) * x + (at.y.0 - self.from.y.0) * y;
+        let part = (along / (x * x + y * y)).clamp(0.0, 1.0);
+        libm::hypot(at.x.0 - self.from.x.0 - part * x, at.y.0 - self.from.y.0 - part * y)
+    }
+}
+
+impl fmt::Display for Room {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let place = |pose: Pose| -> String { [pose.x.0, pose.y.0].map(|number| number.to_string()).join(", ") };
+        writeln!(f, "start = {{ x = {}, y = {}, heading = {} }}", AT.x.0, AT.y.0, AT.theta.degrees())?;
+        for Wall { from, to } in &self.walls {
+            writeln!(f, "[[wall]]\npoints = [[{}], [{}]]", place(*from), place(*to))?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wall_is_as_far_as_it_was_put() {
+        let room = Room::open().across(90.0, 0.8, 0.1);
+        assert!((room.nearest(AT).0 - 0.8).abs() < 1e-12);
+        let beside = AT.towards(Radians(AT.theta.0 + core::f64::consts::FRAC_PI_2), Meters(0.3));
+        assert!((room.nearest(beside).0 - 0.5).abs() < 1e-12);
+        assert!((room.nearest(AT.towards(AT.theta, Meters(0.7))).0 - libm::hypot(0.8, 0.6)).abs() < 1e-9);
+        assert!((Room::open().nearest(AT).0 - FAR).abs() < 1e-9);
+    }
+}

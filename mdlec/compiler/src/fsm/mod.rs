@@ -1,0 +1,22 @@
+//! State machine of a plan: lowering, validation, matrices, files. [`lower`] alone makes a [`Machine`]; everything
+//! reads it by its elements.
+
+mod draft;
+mod expand;
+mod file;
+mod lower;
+mod machine;
+mod matrices;
+mod observation;
+#[cfg(test)]
+mod tests;
+mod validation;
+
+pub use draft::{Draft, LawMeaning, RecordPlace, ScopeMeaning, Sizes};
+pub use expand::{expand, expanded_states};
+pub use file::{FsmFile, InterruptEntry, Moves, ScopeEntry, fsm_file};
+pub use lower::{STATES, lower};
+pub use machine::{Atom, Element, ElementKind, Exit, Machine, Visit};
+pub use matrices::{Matrices, Matrix, Transition, UnitVector, matrices};
+pub use observation::observation1;
+pub use validation::validate;

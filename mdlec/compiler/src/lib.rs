@@ -1,0 +1,110 @@
+//! The compiler of MDLe: text in, Rust out.
+//!
+//! ```text
+//! text ─syntax→ tree ─plan::resolve→ Plan ─plan::remove_degeneracy→ Nondegenerate
+//!      ─fsm::lower→ Machine ─rust::emit→ Rust ─link→ executable
+//! ```
+//!
+//! **A stage does no I/O**: only [`cli`], [`embed`] and [`link`] read and write files.
+
+pub mod alphabet;
+pub mod analysis;
+pub mod builtin;
+pub mod diagnostic;
+pub mod fsm;
+pub mod picture;
+pub mod plan;
+pub mod rust;
+#[cfg(test)]
+mod samples;
+pub mod syntax;
+pub mod trace;
+
+use alphabet::Alphabet;
+use diagnostic::{Diagnostic, SourceId};
+
+/// A plan after each stage.
+#[derive(Debug, Clone)]
+pub struct Compiled {
+    /// Plan with everything resolved, perhaps degenerate.
+    pub plan: plan::Plan,
+    /// Plan without repeated interrupts.
+    pub nondegenerate: plan::Nondegenerate,
+    /// Plan as a state machine.
+    pub lowered: fsm::Machine,
+}
+
+/// Compiles a text to state machines: the plan `wanted`, or every plan that no other plan uses; [`rust::emit`] turns a
+/// machine into Rust. Returns no plan if there is an error.
+#[must_use]
+pub fn compile(
+    source: SourceId,
+    text: &str,
+    alphabet: &Alphabet,
+    wanted: Option<&str>,
+) -> (Vec<Compiled>, Vec<Diagnostic>) {
+    compile_with(source, text, alphabet, wanted, &mut syntax::NoFiles)
+}
+
+/// Compiles a file that may use other files, which `loader` reads; see [`compile`].
+#[must_use]
+pub fn compile_with(
+    source: SourceId,
+    text: &str,
+    alphabet: &Alphabet,
+    wanted: Option<&str>,
+    loader: &mut dyn syntax::Loader,
+) -> (Vec<Compiled>, Vec<Diagnostic>) {
+    stages(source, text, alphabet, wanted, loader, true)
+}
+
+/// Returns the diagnostics of [`compile_with`] for a file that may use others, without keeping the compiled plans.
+#[must_use]
+pub fn check_with(
+    source: SourceId,
+    text: &str,
+    alphabet: &Alphabet,
+    loader: &mut dyn syntax::Loader,
+) -> Vec<Diagnostic> {
+    stages(source, text, alphabet, None, loader, false).1
+}
+
+/// Runs all stages, one plan after the other, and keeps the compiled plans if `keeps` is set.
+fn stages(
+    source: SourceId,
+    text: &str,
+    alphabet: &Alphabet,
+    wanted: Option<&str>,
+    loader: &mut dyn syntax::Loader,
+    keeps: bool,
+) -> (Vec<Compiled>, Vec<Diagnostic>) {
+    let arena = syntax::arena_for(text);
+    let (mut files, mut found) = syntax::parse_with(source, text, &arena, loader);
+    found.extend(plan::untyped::complete(&mut files, &arena, alphabet));
+    let (plans, names) = plan::resolve(&files, alphabet, wanted);
+    found.extend(names);
+    let mut compiled = Vec::new();
+    if !diagnostic::has_errors(&found) {
+        found.extend(plan::lints::bare_numbers(&files, alphabet));
+        for plan in plans {
+            let kept = keeps.then(|| plan.clone());
+            let (nondegenerate, warnings) = plan::remove_degeneracy(plan);
+            found.extend(warnings);
+            found.extend(plan::lints::lints(&nondegenerate));
+            match fsm::lower(&nondegenerate) {
+                Ok(lowered) => {
+                    found.extend(analysis::lints(&lowered));
+                    compiled.extend(kept.map(|plan| Compiled { plan, nondegenerate, lowered }));
+                }
+                Err(too_large) => found.push(too_large),
+            }
+        }
+    }
+    if diagnostic::has_errors(&found) {
+        compiled.clear();
+    }
+    diagnostic::sort(&mut found);
+    // What several plans copy is found in each of them.
+    found.dedup();
+    (compiled, found)
+}

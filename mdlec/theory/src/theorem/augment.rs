@@ -1,0 +1,110 @@
+//! Writes any machine as a plan with `after` (paper, below Theorem 1: "auxiliary variables"): one endless loop over all
+//! states, each guarded by the element that ended last.
+
+use std::collections::BTreeSet;
+use std::fmt::Write;
+
+use super::names::{in_a_comment, texts};
+use super::{COMPLETED, Machine, State};
+use mdle_compiler::syntax::operands;
+
+/// Writes a machine of any shape as a plan. If several interrupts lead on from a state, the first in the file takes
+/// precedence.
+///
+/// The plan's states are the machine's in the order of the file, after one that ends at once. In each turn the plan is
+/// in the machine's state, until a turn in which the machine would enter a state twice.
+#[must_use]
+pub fn augment(machine: &Machine) -> String {
+    let (texts, mut names) = texts(machine);
+    let (main, start) = (names.name("Augmented"), names.name("start"));
+    let labels: Vec<_> = machine.atoms().map(|_| names.name("L")).collect();
+    let mut ways = vec![Vec::new(); machine.states().len()];
+    let first = machine.start().unwrap_or(State(0));
+    ways[first.0 as usize].push(format!("after {start}"));
+    let mut own = Vec::with_capacity(labels.len());
+    for (state, label) in machine.atoms().zip(&labels) {
+        let exits = Exits::of(machine, state, &texts.conditions);
+        for (to, way) in exits.ways(label) {
+            ways[to.0 as usize].push(way);
+        }
+        own.push(exits.condition());
+    }
+    let mut text = String::new();
+    for (name, means) in &texts.renamed {
+        let _ = writeln!(text, "// {name}: {}", in_a_comment(means));
+    }
+    let over = ways.pop().unwrap_or_default();
+    let over = if over.is_empty() { "null".to_owned() } else { over.join(" OR ") };
+    let _ = writeln!(text, "{{ {main} ({over})\n  {start}: (Atom (wait 0) stop)\n  (");
+    for (state, (label, own)) in machine.atoms().zip(labels.iter().zip(&own)) {
+        let ways = &ways[state.0 as usize];
+        let guard = if ways.is_empty() { "NOT null".to_owned() } else { format!("NOT ({})", ways.join(" OR ")) };
+        let law = &texts.laws[state.0 as usize];
+        let (number, name) = (state.0 + 2, in_a_comment(machine.name(state)));
+        let scope = names.name("Is");
+        let _ = writeln!(
+            text,
+            "    {{ {scope} ({guard})\n      {label}: (Atom ({own}) {law})    // {number}: {name}\n    }}"
+        );
+    }
+    let _ = writeln!(
+        text,
+        "  )^inf\n}}    // {}: {}",
+        machine.states().len() + 1,
+        in_a_comment(machine.name(machine.end()))
+    );
+    text
+}
+
+/// Transitions out of a state.
+struct Exits<'t> {
+    /// Operands of the state's conditions in the order of the file, each once, with their destinations.
+    operands: Vec<(&'t str, State)>,
+    /// Destination after the state's law completes.
+    completed: Option<State>,
+}
+
+impl<'t> Exits<'t> {
+    fn of(machine: &Machine, state: State, conditions: &'t [String]) -> Self {
+        let mut exits = Self { operands: Vec::new(), completed: None };
+        let mut seen = BTreeSet::new();
+        for exit in machine.exits(state) {
+            if machine.interrupt(exit.interrupt).name == COMPLETED {
+                exits.completed = Some(exit.to);
+                continue;
+            }
+            let condition = &conditions[exit.interrupt.0 as usize];
+            let operands = operands(condition).unwrap_or_else(|| vec![condition]);
+            // What never fires leads nowhere, and what the first has led away from never comes to the second.
+            let new = operands.into_iter().filter(|operand| *operand != "null" && seen.insert(*operand));
+            exits.operands.extend(new.map(|operand| (operand, exit.to)));
+        }
+        exits
+    }
+
+    /// Interrupt of the state's atom.
+    fn condition(&self) -> String {
+        let operands: Vec<_> = self.operands.iter().map(|(operand, _)| *operand).collect();
+        if operands.is_empty() { "null".to_owned() } else { operands.join(" OR ") }
+    }
+
+    /// Conditions that show how the state was left, each with the destination.
+    fn ways(&self, label: &str) -> Vec<(State, String)> {
+        let after = |operand: &str| match is_a_name(operand) {
+            true => format!("after {label} {operand}"),
+            false => format!("after {label} ({operand})"),
+        };
+        let mut ways: Vec<_> = self.operands.iter().map(|(operand, to)| (*to, after(operand))).collect();
+        if let Some(to) = self.completed {
+            let others: Vec<_> = self.operands.iter().map(|(operand, _)| after(operand)).collect();
+            let none_other = format!(" AND NOT ({})", others.join(" OR "));
+            let none_other = if others.is_empty() { "" } else { &none_other };
+            ways.push((to, format!("after {label}{none_other}")));
+        }
+        ways
+    }
+}
+
+fn is_a_name(operand: &str) -> bool {
+    operand.chars().all(|letter| letter.is_alphanumeric() || letter == '_')
+}
