@@ -10,7 +10,15 @@ use std::{env, fs};
 use crate::targets::targets;
 
 /// The packages that targets share; the targets come on top.
-const SHARED: [&str; 5] = ["runtime/core", "runtime/host", "runtime/serial", "atoms", "atoms/conformance"];
+const SHARED: [&str; 7] = [
+    "runtime/core",
+    "runtime/quantity",
+    "runtime/host",
+    "runtime/serial",
+    "atoms",
+    "atoms/conformance",
+    "targets/sim/simulator",
+];
 
 /// Folders that no build of an executable reads; a folder with a package of its own is left out as well.
 const LEFT_OUT: [&str; 5] = ["tests", "benches", "examples", "snapshots", "target"];

@@ -209,7 +209,7 @@ fn the_book_shows_every_plan_to_learn_from() {
 #[test]
 fn the_page_on_worlds_names_every_key() {
     let page = pages().into_iter().find(|page| name(page) == "worlds.md").unwrap().text;
-    let format = fs::read_to_string(root().join("targets/sim/src/world_file/text.rs")).unwrap();
+    let format = fs::read_to_string(root().join("targets/sim/simulator/src/world_file/text.rs")).unwrap();
     let obstacles = format.split("rename = \"").skip(1).filter_map(|rest| rest.split('"').next());
     let obstacles: Vec<_> = obstacles.map(|kind| format!("`[[{kind}]]`")).collect();
     let fields = format.lines().filter(|line| !line.contains("Vec<Table<") && !line.contains("Vec<Spanned<Table<"));

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use mdle_sim::Disc;
+use mdle_simulator::Disc;
 
 use crate::fault::{Ailment, At, Fault};
 use crate::serve::{Embodied, Emulated};

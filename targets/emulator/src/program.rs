@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use clap::Args;
 use mdle_host::{Quantity, read_text};
-use mdle_sim::{Body, Make, Simulated, Start, StartError, World};
+use mdle_simulator::{Body, Make, Simulated, Start, StartError, World};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
 use crate::fault::At;

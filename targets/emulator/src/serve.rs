@@ -3,7 +3,7 @@
 use std::io;
 use std::time::{Duration, Instant};
 
-use mdle_sim::Disc;
+use mdle_simulator::Disc;
 
 use crate::fault::Ailment;
 use crate::port::Port;

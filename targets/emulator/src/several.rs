@@ -7,7 +7,7 @@
 use std::io;
 use std::time::{Duration, Instant};
 
-use mdle_sim::Disc;
+use mdle_simulator::Disc;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 

@@ -8,7 +8,7 @@ use mdle_conformance::{Room, Stage, Supplied};
 use mdle_host::StopRequest;
 use mdle_runtime::{Alphabet, MetersPerSecond, Nanos, PathStore, Pose, RadiansPerSecond, Robot, Sensed, Twist};
 use mdle_serial::{Clock, Configured, SerialRobot};
-use mdle_sim::{Body, Make, Simulated, World};
+use mdle_simulator::{Body, Make, Simulated, World};
 
 use crate::driven::{Driven, driven};
 use crate::fault::{Ailment, At};

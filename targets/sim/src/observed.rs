@@ -3,16 +3,10 @@
 use mdle_host::{Ended, Judgement, Observer, PlanPosition};
 use mdle_runtime::capability::Bumpers as _;
 use mdle_runtime::{Nanos, PathStore, Pose, Robot, Sensed, Twist};
+use mdle_simulator::{Charger, Drawing, Fault, Goal, Simulated, World};
 
-use crate::charger::Charger;
-use crate::frames::Frames;
-use crate::goal::Goal;
-use crate::plot;
-use crate::robot::{Fault, Simulated};
-use crate::trail::Trail;
 use crate::watch::Watch;
 use crate::whole_file::{Unfinished, WholeFile};
-use crate::world::World;
 
 /// A simulated robot and the observers of its run; it drives as it would unobserved.
 pub struct Observed {
@@ -29,8 +23,7 @@ pub struct Observed {
 struct Pictures {
     plot: Option<WholeFile>,
     record: Option<WholeFile>,
-    world: World,
-    trail: Trail,
+    drawing: Drawing,
 }
 
 /// A table of the robot's poses: one line of comma-separated values for each exchange, written during the run.
@@ -90,11 +83,8 @@ impl Observed {
         setup: String,
     ) -> Self {
         if plot.is_some() || record.is_some() {
-            let mut trail = Trail::from(&self.robot.pose(), self.robot.radius());
-            trail.things.extend(self.robot.gone());
-            trail.about.setup = setup;
-            trail.frames = record.is_some().then(Frames::new);
-            self.pictures = Some(Pictures { plot, record, world: world.clone(), trail });
+            let drawing = Drawing::of(&self.robot, world, setup, record.is_some());
+            self.pictures = Some(Pictures { plot, record, drawing });
         }
         self
     }
@@ -126,14 +116,8 @@ impl Robot for Observed {
         if let Some(table) = &mut self.table {
             table.went(now, &pose);
         }
-        if let Some(Pictures { trail, .. }) = &mut self.pictures {
-            trail.went(&pose);
-            trail.things.clear();
-            trail.things.extend(self.robot.gone());
-            trail.sensed(&sensed, now);
-            if comes_into_contact {
-                trail.touched(self.robot.touched(), now);
-            }
+        if let Some(Pictures { drawing, .. }) = &mut self.pictures {
+            drawing.exchanged(&self.robot, &sensed, now, comes_into_contact);
         }
         if let Some(watch) = &mut self.watch {
             watch.sensed(&pose, &sensed, now, self.robot.gone());
@@ -147,8 +131,8 @@ impl Robot for Observed {
         if let Some(watch) = &mut self.watch {
             watch.leave();
         }
-        if let Some(Pictures { trail, .. }) = &mut self.pictures {
-            trail.went(&self.robot.pose());
+        if let Some(Pictures { drawing, .. }) = &mut self.pictures {
+            drawing.stopped(&self.robot);
         }
         stopped
     }
@@ -156,14 +140,14 @@ impl Robot for Observed {
 
 impl Observer for Observed {
     fn began(&mut self, number: u64, law: &str, t: Nanos) {
-        if let Some(Pictures { trail, .. }) = &mut self.pictures {
-            trail.began(number, law, t);
+        if let Some(Pictures { drawing, .. }) = &mut self.pictures {
+            drawing.began(number, law, t);
         }
     }
 
     fn ended(&mut self, ended: &Ended<'_>) {
-        if let Some(Pictures { trail, .. }) = &mut self.pictures {
-            trail.ended(ended);
+        if let Some(Pictures { drawing, .. }) = &mut self.pictures {
+            drawing.ended(ended.plan, ended.is_over, ended.by, ended.t);
         }
     }
 
@@ -198,64 +182,13 @@ impl Observer for Observed {
         if let Some(lines) = self.table.take().and_then(|table| table.lines) {
             lines.finish("trail")?;
         }
-        let Some(Pictures { plot, record, world, trail }) = &self.pictures else { return Ok(()) };
+        let Some(Pictures { plot, record, drawing }) = &self.pictures else { return Ok(()) };
         if let Some(file) = plot {
-            file.write("plot", &plot::svg(world, trail))?;
+            file.write("plot", &drawing.picture())?;
         }
         if let Some(file) = record {
-            file.write("record", &plot::animated(world, trail))?;
+            file.write("record", &drawing.animation())?;
         }
         Ok(())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::time::Duration;
-
-    use super::*;
-    use crate::robot::Make;
-    use crate::world::Place;
-    use mdle_runtime::{MetersPerSecond, RadiansPerSecond};
-
-    /// Returns the trail of a robot that goes ahead at 20 cm/s from the origin for `turns` turns of 100 ms.
-    fn ahead(world: &str, turns: usize) -> Trail {
-        let world = World::parse("a test's world", world).expect("a good world");
-        let robot = Simulated::with(&Make::default(), &world, Pose::ORIGIN, Duration::from_millis(100));
-        let robot = Observed::from(robot.expect("a start on the floor"));
-        let folder = std::env::temp_dir();
-        let mut robot =
-            robot.drawn((WholeFile::at("plot", &folder.join("never written.svg")).ok(), None), &world, String::new());
-        for _ in 0..turns {
-            robot.exchange(&Twist { v: MetersPerSecond(0.2), omega: RadiansPerSecond(0.0) }).expect("finite inputs");
-        }
-        robot.pictures.expect("pictures").trail
-    }
-
-    #[test]
-    fn a_contact_is_where_the_body_touched_whether_that_moves_or_stands() {
-        let wall = ahead("[[wall]]\npoints = [[1, -1], [1, 0.1]]", 60);
-        let walker = "[[box]]\nsize = [0.4, 4]\nschedule = [[0, 2, 0], [4, 0.2, 0], [8, 2, 0]]\nrepeat = true";
-        let moving = ahead(walker, 100);
-        assert_eq!((wall.contacts.len(), wall.contacts[0].0), (1, Place { x: 1.0, y: 0.0 }));
-        let (Place { x, y }, t) = moving.contacts[0];
-        assert!((0.4..0.9).contains(&x) && y == 0.0 && (1.0..3.0).contains(&t.seconds()), "{:?}", moving.contacts);
-        assert!(moving.things[0].is_some_and(|gone| gone.x < 0.0), "{:?}", moving.things);
-    }
-
-    #[test]
-    fn the_echoes_of_sonars_that_fire_between_turns_are_where_they_were_heard() {
-        let world = World::parse("a wall ahead", "[[wall]]\npoints = [[3, -9], [3, 9]]").expect("a good world");
-        let make = Make { body: crate::model::Body::Scout, without: vec![crate::model::Part::Steps], seed: None };
-        let robot = Simulated::with(&make, &world, Pose::ORIGIN, Duration::from_secs(1)).expect("a start");
-        let file = WholeFile::at("plot", &std::env::temp_dir().join("never written.svg")).ok();
-        let mut robot = Observed::from(robot).drawn((file, None), &world, String::new());
-        for _ in 0..5 {
-            robot.exchange(&Twist { v: MetersPerSecond(0.4), omega: RadiansPerSecond(0.0) }).expect("finite inputs");
-        }
-        // The sonar in front hears the wall itself, its neighbours something nearer than where their axes meet it.
-        let echoes = robot.pictures.expect("pictures").trail.echoes;
-        let greatest = echoes.iter().map(|echo| echo.x).fold(0.0, f64::max);
-        assert!((greatest - 3.0).abs() < 1e-6 && robot.robot.pose().x.0 > 1.0, "{echoes:?}");
     }
 }

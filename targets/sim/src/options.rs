@@ -6,14 +6,7 @@ use std::path::{Path, PathBuf};
 use mdle_host::clap::parser::ValueSource;
 use mdle_host::clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use mdle_host::{NamedFile, Pace, Time, output_format, read_file};
-
-use crate::goal::Goal;
-use crate::model::{Body, PARTS};
-use crate::robot::Make;
-use crate::ros_map::Header;
-use crate::start::Start;
-use crate::start_noise::StartNoise;
-use crate::world::World;
+use mdle_simulator::{Body, Goal, Make, MapHeader, PARTS, Start, StartNoise, World};
 
 /// The largest file of a world or a map that is read, in bytes.
 const LARGEST: u64 = 64_000_000;
@@ -210,7 +203,7 @@ fn read(path: &Path) -> Result<World, String> {
     if !is_map {
         return World::parse(&shown, &text).map_err(|error| error.to_string());
     }
-    let header = Header::parse(&shown, &text).map_err(|error| error.to_string())?;
+    let header = MapHeader::parse(&shown, &text).map_err(|error| error.to_string())?;
     let image = path.with_file_name(&header.image);
     header.world(&image.display().to_string(), &bytes(&image)?).map_err(|error| error.to_string())
 }

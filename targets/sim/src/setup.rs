@@ -8,18 +8,12 @@ use std::time::Duration;
 use mdle_host::Batch;
 use mdle_host::clap::ArgMatches;
 use mdle_runtime::Pose;
+use mdle_simulator::{Goal, Make, PARTS, Simulated, Start, StartError, StartNoise, Walls, World};
 
-use crate::goal::Goal;
-use crate::model::PARTS;
 use crate::observed::Observed;
 use crate::options;
-use crate::robot::{Make, Simulated};
-use crate::start::{self, Start, StartError};
-use crate::start_noise::StartNoise;
-use crate::walls::Walls;
 use crate::watch::Watch;
 use crate::whole_file::WholeFile;
-use crate::world::World;
 
 /// A world, the robot to be simulated in it, and where it starts.
 struct Setup {
@@ -82,7 +76,7 @@ impl Setup {
             Some((text, _)) => format!("--start {text}: {error}; {}", hint(&world.start)),
             None => format!("the world's own start pose: {error}; give another, as in `--start 1,2,90`"),
         };
-        start::check(&start, make.radius(), &world, &walls).map_err(said)?;
+        mdle_simulator::check(&start, make.radius(), &world, &walls).map_err(said)?;
         let noise = options::start_noise(matches)?;
         let charge = options::battery(matches);
         Ok(Self { world, walls, make, start, noise, goal, charge, period })

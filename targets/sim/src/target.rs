@@ -5,9 +5,10 @@ use std::time::Duration;
 use mdle_host::clap::{ArgMatches, Command};
 use mdle_host::{NamedFile, Observation, Refusal, Replays, StopRequest, Target, Time};
 use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Twist};
+use mdle_simulator::alphabet;
 
 use crate::observed::Observed;
-use crate::{alphabet, options, setup};
+use crate::{options, setup};
 
 /// The target `sim`.
 #[derive(Debug, Clone, Copy)]

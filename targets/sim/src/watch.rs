@@ -9,9 +9,8 @@ use std::time::{Duration, Instant};
 
 use mdle_host::PlanPosition;
 use mdle_runtime::{Nanos, Pose, Sensed};
+use mdle_simulator::{Place, World};
 
-use crate::trail;
-use crate::world::{Place, World};
 use map::Map;
 use screen::Screen;
 
@@ -79,7 +78,7 @@ impl Watch {
             self.way.push(place);
         }
         self.echoes.clear();
-        self.echoes.extend(trail::echoes(pose, sensed, self.sensed.replace(t)).into_iter().flatten());
+        self.echoes.extend(mdle_simulator::echoes(pose, sensed, self.sensed.replace(t)).into_iter().flatten());
         self.things.clear();
         self.things.extend(things);
         self.now.pose = *pose;

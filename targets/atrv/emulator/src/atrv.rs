@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use mdle_emulator::{Ailment, Embodied, Emulated, Order, Orders, Pace, STEP};
 use mdle_runtime::{MetersPerSecond, Nanos, Pose, RadiansPerSecond, Robot as _, Twist};
-use mdle_sim::{Disc, Output, Simulated};
+use mdle_simulator::{Disc, Output, Simulated};
 
 use crate::wire::{Incoming, Request, number};
 use telling::Schedule;

@@ -8,7 +8,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use mdle_emulator::{Options, Pace, program};
-use mdle_sim::Body;
+use mdle_simulator::Body;
 
 use scout::Scout;
 

@@ -5,7 +5,7 @@ use std::time::Duration;
 use mdle_emulator::{Ailment, Embodied, Emulated, Order, Orders};
 use mdle_runtime::capability::{Odometry, SonarRing};
 use mdle_runtime::{MetersPerSecond, Pose, RadiansPerSecond, Robot as _, SonarId, Twist, Volts};
-use mdle_sim::{Disc, Output, Simulated};
+use mdle_simulator::{Disc, Output, Simulated};
 
 use crate::wire::{Incoming, Request, answer, number, two_bytes};
 

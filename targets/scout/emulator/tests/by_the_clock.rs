@@ -9,7 +9,7 @@ use mdle_host::StopRequest;
 use mdle_runtime::{MetersPerSecond, Robot as _, Twist};
 use mdle_scout::{Clock, Config, Configured, Fault, Scout};
 use mdle_scout_emulator::scout::Scout as Emulated;
-use mdle_sim::{Body, Make, Simulated, World};
+use mdle_simulator::{Body, Make, Simulated, World};
 
 const PERIOD: Duration = Duration::from_millis(100);
 const AHEAD: Twist = Twist { v: MetersPerSecond(0.2), omega: mdle_runtime::RadiansPerSecond(0.0) };

@@ -13,7 +13,7 @@ use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Robot as _, SonarId, Twist
 use mdle_scout::{Clock, Command, Configured, Fault, LineFault, Output, Scout};
 use mdle_scout_emulator::scout::Scout as Emulated;
 use mdle_scout_emulator::wire::{Incoming, Request, answer};
-use mdle_sim::{Body, Make, Simulated, World};
+use mdle_simulator::{Body, Make, Simulated, World};
 
 const PERIOD: Duration = Duration::from_millis(100);
 /// Walls 2 m ahead of the robot, 1.5 m to its left, 1 m to its right and 3 m to its rear.

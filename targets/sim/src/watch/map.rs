@@ -1,11 +1,9 @@
 //! The floor as dots: walls and goal once, the way as it grows, and over them the robot and what it hears.
 
 use mdle_runtime::{Meters, Pose, Radians};
+use mdle_simulator::{Place, Thing, World, Zone, edge};
 
 use super::canvas::{Canvas, Ink};
-use crate::goal::{Zone, edge};
-use crate::moving::Thing;
-use crate::world::{Place, World};
 
 /// Margin around the drawing, in metres.
 const AROUND: f64 = 0.3;

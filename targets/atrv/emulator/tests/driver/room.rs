@@ -11,7 +11,7 @@ use mdle_emulator::{Ailment, Pace, Port, serve};
 use mdle_host::StopRequest;
 use mdle_runtime::capability::Steering;
 use mdle_runtime::{Robot as _, Twist};
-use mdle_sim::{Body, Make, Simulated, World};
+use mdle_simulator::{Body, Make, Simulated, World};
 
 pub(crate) const PERIOD: Duration = Duration::from_millis(100);
 /// Walls 2 m ahead of the robot, 1.5 m to its left, 1 m to its right and 3 m to its rear.

@@ -6,7 +6,7 @@ use mdle_atrv::{Atrv, alphabet};
 use mdle_atrv_emulator::atrv::{Atrv as Emulated, step};
 use mdle_emulator::{Pace, Trial};
 use mdle_runtime::Pose;
-use mdle_sim::{Body, Simulated};
+use mdle_simulator::{Body, Simulated};
 
 /// The robot of these tests.
 pub(crate) enum Robot {}

@@ -6,7 +6,7 @@ use mdle_emulator::Trial;
 use mdle_runtime::Pose;
 use mdle_scout::{Scout, alphabet};
 use mdle_scout_emulator::scout::Scout as Emulated;
-use mdle_sim::{Body, Simulated};
+use mdle_simulator::{Body, Simulated};
 
 /// The robot of these tests.
 pub(crate) enum Robot {}

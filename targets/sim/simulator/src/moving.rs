@@ -49,7 +49,7 @@ pub struct Stop {
 
 impl Thing {
     /// Returns the corners of the thing when it has gone this far from where it begins.
-    pub(crate) fn corners(&self, gone: Place) -> impl Iterator<Item = Place> {
+    pub fn corners(&self, gone: Place) -> impl Iterator<Item = Place> {
         self.outline.points.iter().map(move |point| Place { x: point.x + gone.x, y: point.y + gone.y })
     }
 

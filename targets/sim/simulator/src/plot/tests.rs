@@ -1,6 +1,5 @@
 //! Pictures of runs of all sorts: well-formed, everything inside, the same bytes again, and small.
 
-use mdle_host::Ended;
 use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS};
 use svg::parser::Event;
 
@@ -94,7 +93,7 @@ fn passes(passes: u64) -> Trail {
         }
     }
     let t = Nanos(30 * passes * 100_000_000);
-    trail.ended(&Ended { plan: "Rounds", is_over: true, by: "completed (atom 6)", t });
+    trail.ended("Rounds", true, "completed (atom 6)", t);
     trail
 }
 

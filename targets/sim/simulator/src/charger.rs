@@ -39,7 +39,7 @@ impl Charger {
     }
 
     /// Corners of a sign: the circle within reach, and the place ahead of a robot on the charger.
-    pub(crate) fn circle(&self) -> impl Iterator<Item = Place> {
+    pub fn circle(&self) -> impl Iterator<Item = Place> {
         let at = self.pose;
         let reach = Meters(self.reach);
         (0..=24).map(move |corner| Place::of(&at.towards(Radians::from_degrees(f64::from(corner) * 15.0), reach)))

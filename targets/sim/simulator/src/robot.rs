@@ -25,7 +25,7 @@ pub struct Simulated {
     battery: Battery,
     charger: Option<Charger>,
     /// Paths that the plan can replay.
-    pub(crate) paths: PathStore,
+    pub paths: PathStore,
     /// Number of bumper switches.
     switches: u8,
     period: Duration,
@@ -46,7 +46,8 @@ pub struct Make {
 
 impl Make {
     /// The radius of the body, in metres.
-    pub(crate) fn radius(&self) -> f64 {
+    #[must_use]
+    pub fn radius(&self) -> f64 {
         Model::of(self.body, &self.without).drive.radius
     }
 }
@@ -155,12 +156,13 @@ impl Simulated {
     }
 
     /// The radius of the body, in metres.
-    pub(crate) fn radius(&self) -> f64 {
+    #[must_use]
+    pub fn radius(&self) -> f64 {
         self.shape.body_radius.0
     }
 
     /// Returns the displacement of each thing of the world; `None` for an open door.
-    pub(crate) fn gone(&self) -> impl Iterator<Item = Option<Place>> {
+    pub fn gone(&self) -> impl Iterator<Item = Option<Place>> {
         self.walls.gone()
     }
 
@@ -171,7 +173,8 @@ impl Simulated {
     }
 
     /// The time of the next exchange.
-    pub(crate) fn now(&self) -> Nanos {
+    #[must_use]
+    pub fn now(&self) -> Nanos {
         let period = u64::try_from(self.period.as_nanos()).unwrap_or(u64::MAX);
         Nanos(self.exchanges.saturating_mul(period))
     }

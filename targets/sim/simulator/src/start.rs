@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use mdle_host::Quantity;
+use mdle_quantity::Quantity;
 use mdle_runtime::{Meters, Pose, Radians};
 
 use crate::walls::{self, Walls};
@@ -66,8 +66,11 @@ impl FromStr for Start {
     }
 }
 
-/// Checks that a robot can start at `pose` in `world`.
-pub(crate) fn check(pose: &Pose, radius: f64, world: &World, walls: &Walls) -> Result<(), StartError> {
+/// Checks that a robot whose body has this radius, in metres, can start at `pose` in `world`, whose walls are `walls`.
+///
+/// # Errors
+/// The reason why it cannot start there.
+pub fn check(pose: &Pose, radius: f64, world: &World, walls: &Walls) -> Result<(), StartError> {
     let place = Place::of(pose);
     if let Some(outline) = world.solid(place) {
         return Err(StartError::Inside(outline.name.clone()));

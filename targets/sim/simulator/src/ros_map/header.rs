@@ -5,11 +5,11 @@ use crate::world_file::WorldError;
 /// The smallest and the largest pixel, in metres.
 const RESOLUTIONS: std::ops::RangeInclusive<f64> = 1e-4..=100.0;
 
-/// The content of the file.
+/// The content of the YAML file of a ROS map.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Header {
+pub struct Header {
     /// The path of the image, from the folder of the file.
-    pub(crate) image: String,
+    pub image: String,
     /// Metres for each pixel.
     pub(crate) resolution: f64,
     /// Position of the lower left corner of the image, and its rotation, in metres and radians.
@@ -31,7 +31,10 @@ struct Value<'t> {
 
 impl Header {
     /// Reads the text of the file, which errors call `file`.
-    pub(crate) fn parse(file: &str, text: &str) -> Result<Self, WorldError> {
+    ///
+    /// # Errors
+    /// The text lacks an image or a resolution, or has a value that is no number or out of range.
+    pub fn parse(file: &str, text: &str) -> Result<Self, WorldError> {
         let missing = |what: &str| WorldError::new(file, None, what.to_owned());
         let image = value(text, "image").ok_or_else(|| missing("no `image`: expected as in `image: map.pgm`"))?;
         let resolution = value(text, "resolution")

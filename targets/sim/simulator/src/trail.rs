@@ -4,7 +4,6 @@ mod ways;
 
 use std::collections::BTreeSet;
 
-use mdle_host::Ended;
 use mdle_runtime::capability::{Odometry as _, SonarRing as _};
 use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, Sensed, SonarId};
 
@@ -110,12 +109,12 @@ impl Trail {
     }
 
     /// The turns of the run have ended.
-    pub(crate) fn ended(&mut self, ended: &Ended<'_>) {
-        self.ended = Some(ended.t);
-        self.ways.ended(ended.t);
-        ended.plan.clone_into(&mut self.about.plan);
-        let how = if ended.is_over { "over" } else { "stopped" };
-        self.about.end = format!("{how} after {:.1} s: {}", ended.t.seconds(), ended.by);
+    pub(crate) fn ended(&mut self, plan: &str, is_over: bool, by: &str, t: Nanos) {
+        self.ended = Some(t);
+        self.ways.ended(t);
+        plan.clone_into(&mut self.about.plan);
+        let how = if is_over { "over" } else { "stopped" };
+        self.about.end = format!("{how} after {:.1} s: {by}", t.seconds());
     }
 
     /// All places kept.
@@ -126,7 +125,8 @@ impl Trail {
 
 /// Returns the places on the floor of the echoes of the newest pings, by sonar: on the axes of their cones. A sonar
 /// that has not pinged since `before` has no echo.
-pub(crate) fn echoes(pose: &Pose, sensed: &Sensed, before: Option<Nanos>) -> [Option<Place>; SONARS] {
+#[must_use]
+pub fn echoes(pose: &Pose, sensed: &Sensed, before: Option<Nanos>) -> [Option<Place>; SONARS] {
     let mut echoes = [None; SONARS];
     for (echo, number) in echoes.iter_mut().zip(0..) {
         let sonar = SonarId::new(number);

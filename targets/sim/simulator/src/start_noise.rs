@@ -1,6 +1,6 @@
 //! Random start poses near the given one: `--start-noise` limits the distance, and the seed selects the pose.
 
-use mdle_host::Quantity;
+use mdle_quantity::Quantity;
 use mdle_runtime::{Meters, Pose, Radians};
 
 use crate::noise::{Noise, Purpose};
@@ -15,7 +15,7 @@ const MOST: [f64; 2] = [100.0, 180.0];
 
 /// Greatest error of a start along each axis, and in heading; to either side, with a uniform distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct StartNoise {
+pub struct StartNoise {
     metres: f64,
     degrees: f64,
 }
@@ -25,7 +25,7 @@ impl StartNoise {
     ///
     /// # Errors
     /// The text is not a length and an angle within their limits: a sentence with what to type instead.
-    pub(crate) fn read(text: &str) -> Result<Self, String> {
+    pub fn read(text: &str) -> Result<Self, String> {
         let sentence = "expected metres,degrees: up to 100 and 180, as in `0.1,5`";
         let (metres, degrees) = text.split_once(',').ok_or(sentence)?;
         let metres = Quantity::Length.read(metres.trim(), "m")?;
@@ -38,14 +38,7 @@ impl StartNoise {
     ///
     /// # Errors
     /// The reason why the robot cannot stand at the last pose tried.
-    pub(crate) fn pose(
-        self,
-        start: &Pose,
-        seed: u64,
-        radius: f64,
-        world: &World,
-        walls: &Walls,
-    ) -> Result<Pose, StartError> {
+    pub fn pose(self, start: &Pose, seed: u64, radius: f64, world: &World, walls: &Walls) -> Result<Pose, StartError> {
         let mut noise = Noise::of(seed, Purpose::Start);
         let mut pose = self.drawn(start, &mut noise);
         for _ in 1..TRIES {

@@ -1,6 +1,6 @@
 //! The goal of a plan: a zone of the floor, and perhaps a heading.
 
-use mdle_host::Quantity;
+use mdle_quantity::Quantity;
 use mdle_runtime::{Pose, Radians};
 
 use crate::world::Place;
@@ -43,7 +43,7 @@ impl Goal {
     ///
     /// # Errors
     /// The text is no such goal: a sentence with what to type instead.
-    pub(crate) fn read(text: &str) -> Result<Self, String> {
+    pub fn read(text: &str) -> Result<Self, String> {
         let sentence = "expected `world`, or x,y,radius in metres and perhaps heading,tolerance in degrees, as in \
                         `7,3,0.5` or `7,3,50cm,90,15`";
         let parts: Vec<&str> = text.split(',').map(str::trim).collect();
@@ -82,7 +82,8 @@ impl Goal {
 
 impl Zone {
     /// The least and the greatest coordinates.
-    pub(crate) fn corners(&self) -> [Place; 2] {
+    #[must_use]
+    pub fn corners(&self) -> [Place; 2] {
         match *self {
             Self::Rectangle { min, max } => [min, max],
             Self::Circle { center: Place { x, y }, radius } => {
@@ -93,7 +94,7 @@ impl Zone {
 }
 
 /// Places on a circle, evenly spaced.
-pub(crate) fn edge(center: Place, radius: f64) -> impl Iterator<Item = Place> {
+pub fn edge(center: Place, radius: f64) -> impl Iterator<Item = Place> {
     (0..DOTS).map(move |dot| {
         let bearing = Radians::from_degrees(f64::from(dot) * (360.0 / f64::from(DOTS))).0;
         Place { x: center.x + radius * libm::cos(bearing), y: center.y + radius * libm::sin(bearing) }

@@ -12,10 +12,10 @@ use crate::world_file::{self, WorldError};
 
 /// The worlds that come with the simulator: first the floor of the paper's tour, box in the hallway included.
 const WORLDS: [(&str, &str); 4] = [
-    ("office", include_str!("../worlds/office.toml")),
-    ("maze", include_str!("../worlds/maze.toml")),
-    ("hall", include_str!("../worlds/hall.toml")),
-    ("room", include_str!("../worlds/room.toml")),
+    ("office", include_str!("../../worlds/office.toml")),
+    ("maze", include_str!("../../worlds/maze.toml")),
+    ("hall", include_str!("../../worlds/hall.toml")),
+    ("room", include_str!("../../worlds/room.toml")),
 ];
 
 /// The surroundings of the simulated robot. All coordinates are finite and no wall has length zero.
@@ -107,13 +107,13 @@ impl World {
     }
 
     /// Returns all corners: of the fixed outlines, and of the moving things at each of their stops.
-    pub(crate) fn places(&self) -> impl Iterator<Item = Place> {
+    pub fn places(&self) -> impl Iterator<Item = Place> {
         let standing = self.outlines.iter().flat_map(|outline| outline.points.iter().copied());
         standing.chain(self.things.iter().flat_map(Thing::places))
     }
 
     /// All walls and sides of boxes, each with its outline.
-    pub(crate) fn segments(&self) -> impl Iterator<Item = (&Outline, Place, Place)> {
+    pub fn segments(&self) -> impl Iterator<Item = (&Outline, Place, Place)> {
         self.outlines.iter().flat_map(Outline::segments)
     }
 
@@ -142,7 +142,8 @@ impl Outline {
 
 impl Place {
     /// Returns the place of a pose.
-    pub(crate) fn of(pose: &Pose) -> Self {
+    #[must_use]
+    pub fn of(pose: &Pose) -> Self {
         let (Meters(x), Meters(y)) = (pose.x, pose.y);
         Self { x, y }
     }

@@ -55,7 +55,8 @@ impl Quantity {
     }
 
     /// Returns the quantity that has this unit, and the factor and the divisor that convert a number of the unit.
-    pub(crate) fn of_unit(name: &str) -> Option<(Self, f64, f64)> {
+    #[must_use]
+    pub fn of_unit(name: &str) -> Option<(Self, f64, f64)> {
         Self::ALL.into_iter().find_map(|kind| {
             let unit = kind.units().iter().find(|unit| unit.0 == name);
             unit.map(|(_, factor, divisor)| (kind, *factor, *divisor))

@@ -15,12 +15,15 @@ use mdle_runtime::Pose;
 use crate::world::{Outline, Place, World};
 use crate::world_file::{WorldError, count};
 use contours::contours;
-pub(crate) use header::Header;
+pub use header::Header;
 use image::Image;
 
 impl Header {
     /// Returns the world of this header and the bytes of its image; errors call the image `file`.
-    pub(crate) fn world(&self, file: &str, bytes: &[u8]) -> Result<World, WorldError> {
+    ///
+    /// # Errors
+    /// The bytes are no image that can be read, or one with too many walls.
+    pub fn world(&self, file: &str, bytes: &[u8]) -> Result<World, WorldError> {
         let image = Image::read(bytes).map_err(|what| WorldError::new(file, None, what))?;
         let (sin, cos) = libm::sincos(self.yaw);
         // Rows count from the top of the image, the map's second axis from its bottom.

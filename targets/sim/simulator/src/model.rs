@@ -54,7 +54,7 @@ pub enum Part {
 }
 
 /// All parts with the names that options give them.
-pub(crate) const PARTS: [(&str, Part); 8] = [
+pub const PARTS: [(&str, Part); 8] = [
     ("lobe", Part::Lobe),
     ("specular", Part::Specular),
     ("minimum", Part::Minimum),

@@ -37,7 +37,7 @@ impl Walls {
     ///
     /// # Errors
     /// A sentence that names the part of the world that is too large.
-    pub(crate) fn of_any(world: &World) -> Result<Self, String> {
+    pub fn of_any(world: &World) -> Result<Self, String> {
         let segments = segments(world);
         let grid = Grid::of(&segments);
         let pairs = segments.iter().map(|segment| grid.beside(segment.from) + grid.beside(segment.to())).sum::<u64>();

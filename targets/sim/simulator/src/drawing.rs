@@ -1,0 +1,120 @@
+//! The pictures of a run, drawn from its record when it has ended.
+
+use mdle_runtime::{Nanos, Sensed};
+
+use crate::frames::Frames;
+use crate::plot;
+use crate::robot::Simulated;
+use crate::trail::Trail;
+use crate::world::World;
+
+/// The record of a run in a world, and the pictures of it.
+#[derive(Debug, Clone)]
+pub struct Drawing {
+    world: World,
+    trail: Trail,
+}
+
+impl Drawing {
+    /// Begins the record of `robot` in `world`; `setup` names the world, the body and the seed in titles. Only a record
+    /// that is `animated` keeps what a moving picture needs.
+    #[must_use]
+    pub fn of(robot: &Simulated, world: &World, setup: String, animated: bool) -> Self {
+        let mut trail = Trail::from(&robot.pose(), robot.radius());
+        trail.things.extend(robot.gone());
+        trail.about.setup = setup;
+        trail.frames = animated.then(Frames::new);
+        Self { world: world.clone(), trail }
+    }
+
+    /// Records an exchange of `robot` at time `t`, which gave `sensed`; `touches` is `true` if a contact begins with it.
+    pub fn exchanged(&mut self, robot: &Simulated, sensed: &Sensed, t: Nanos, touches: bool) {
+        self.trail.went(&robot.pose());
+        self.trail.things.clear();
+        self.trail.things.extend(robot.gone());
+        self.trail.sensed(sensed, t);
+        if touches {
+            self.trail.touched(robot.touched(), t);
+        }
+    }
+
+    /// Records the pose in which `robot` was stopped.
+    pub fn stopped(&mut self, robot: &Simulated) {
+        self.trail.went(&robot.pose());
+    }
+
+    /// Records that an atom with this law begins where the robot is; `number` is its state in the first pass of the
+    /// enclosing loops.
+    pub fn began(&mut self, number: u64, law: &str, t: Nanos) {
+        self.trail.began(number, law, t);
+    }
+
+    /// Records that the turns of `plan` have ended at time `t`, by this cause; `is_over` is `false` if it was stopped.
+    pub fn ended(&mut self, plan: &str, is_over: bool, by: &str, t: Nanos) {
+        self.trail.ended(plan, is_over, by, t);
+    }
+
+    /// Draws the run as an SVG picture.
+    #[must_use]
+    pub fn picture(&self) -> String {
+        plot::svg(&self.world, &self.trail)
+    }
+
+    /// Draws the run as an SVG picture that moves, for a browser.
+    #[must_use]
+    pub fn animation(&self) -> String {
+        plot::animated(&self.world, &self.trail)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use mdle_runtime::capability::Bumpers as _;
+    use mdle_runtime::{MetersPerSecond, Pose, RadiansPerSecond, Robot as _, Twist};
+
+    use super::*;
+    use crate::model::{Body, Part};
+    use crate::robot::Make;
+    use crate::world::Place;
+
+    /// Returns the trail of a robot that goes ahead at `speed`, in m/s, from the origin for `turns` periods, and the
+    /// robot.
+    fn ahead(world: &str, make: &Make, speed: f64, turns: usize, period: Duration) -> (Trail, Simulated) {
+        let world = World::parse("a test's world", world).expect("a good world");
+        let mut robot = Simulated::with(make, &world, Pose::ORIGIN, period).expect("a start on the floor");
+        let mut drawing = Drawing::of(&robot, &world, String::new(), false);
+        let mut touches = false;
+        for _ in 0..turns {
+            let now = robot.now();
+            let input = Twist { v: MetersPerSecond(speed), omega: RadiansPerSecond(0.0) };
+            let sensed = robot.exchange(&input).expect("finite inputs");
+            drawing.exchanged(&robot, &sensed, now, sensed.pressed() && !touches);
+            touches = sensed.pressed();
+        }
+        (drawing.trail, robot)
+    }
+
+    #[test]
+    fn a_contact_is_where_the_body_touched_whether_that_moves_or_stands() {
+        let period = Duration::from_millis(100);
+        let ahead = |world, turns| ahead(world, &Make::default(), 0.2, turns, period).0;
+        let wall = ahead("[[wall]]\npoints = [[1, -1], [1, 0.1]]", 60);
+        let walker = "[[box]]\nsize = [0.4, 4]\nschedule = [[0, 2, 0], [4, 0.2, 0], [8, 2, 0]]\nrepeat = true";
+        let moving = ahead(walker, 100);
+        assert_eq!((wall.contacts.len(), wall.contacts[0].0), (1, Place { x: 1.0, y: 0.0 }));
+        let (Place { x, y }, t) = moving.contacts[0];
+        assert!((0.4..0.9).contains(&x) && y == 0.0 && (1.0..3.0).contains(&t.seconds()), "{:?}", moving.contacts);
+        assert!(moving.things[0].is_some_and(|gone| gone.x < 0.0), "{:?}", moving.things);
+    }
+
+    #[test]
+    fn the_echoes_of_sonars_that_fire_between_turns_are_where_they_were_heard() {
+        let make = Make { body: Body::Scout, without: vec![Part::Steps], seed: None };
+        let (trail, robot) = ahead("[[wall]]\npoints = [[3, -9], [3, 9]]", &make, 0.4, 5, Duration::from_secs(1));
+        // The sonar in front hears the wall itself, its neighbours something nearer than where their axes meet it.
+        let greatest = trail.echoes.iter().map(|echo| echo.x).fold(0.0, f64::max);
+        assert!((greatest - 3.0).abs() < 1e-6 && robot.pose().x.0 > 1.0, "{:?}", trail.echoes);
+    }
+}

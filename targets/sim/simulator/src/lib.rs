@@ -1,0 +1,53 @@
+//! The simulator of the target `sim`, without a host: worlds, the robot in them, and its pictures as texts.
+//!
+//! It does no I/O and needs no operating system. Nothing here depends on the machine it runs on: no wall clock, no
+//! platform trigonometry, no unordered maps. Two runs with the same options give the same bytes.
+#![forbid(unsafe_code)]
+
+/// The alphabet of the target `sim`, which `mdlec bind` writes beside `alphabet.mdle`.
+#[path = "../../src/alphabet.rs"]
+pub mod alphabet;
+mod battery;
+mod body;
+mod charger;
+mod disc;
+mod drawing;
+mod frames;
+mod goal;
+mod grid;
+mod model;
+mod moving;
+mod noise;
+mod plot;
+pub mod quarks;
+mod robot;
+mod ros_map;
+mod sonar;
+mod start;
+mod start_noise;
+mod surfaces;
+mod trail;
+mod walls;
+mod world;
+mod world_file;
+
+pub use charger::Charger;
+pub use disc::Disc;
+pub use drawing::Drawing;
+pub use goal::{Goal, Zone, edge};
+pub use mdle_runtime::Sensed;
+/// The robot's output.
+pub use mdle_runtime::Sensed as Output;
+/// The robot's input.
+pub use mdle_runtime::Twist as Input;
+pub use model::{Body, PARTS, Part};
+pub use moving::{Schedule, Stop, Thing};
+pub use robot::{Fault, Make, Simulated};
+pub use ros_map::Header as MapHeader;
+pub use sonar::Heard;
+pub use start::{Start, StartError, check};
+pub use start_noise::StartNoise;
+pub use trail::echoes;
+pub use walls::Walls;
+pub use world::{Outline, Place, World};
+pub use world_file::WorldError;
