@@ -10,7 +10,7 @@ use mdle_compiler::trace::{Applied, COMPLETED, Outcome, Script, TraceLine};
 use mdle_scripted::drive;
 use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::grammar;
-use mdle_tests::loaded::{Loaded, marks};
+use mdle_tests::loaded::Loaded;
 use mdle_tests::outputs::outputs;
 use mdle_tests::pipeline::{Machines, compile};
 use mdle_tests::productions::{self, Productions};
@@ -140,11 +140,10 @@ fn compare(seed: u64, foresight: bool, text: &str, script: &str, seen: &mut Seen
     }
     let expected: String = tree.iter().map(|line| format!("{line}\n")).collect();
     let loaded = Loaded::new(&compiled.lowered, foresight);
-    let words = loaded.words();
-    let (rows, facts) = (loaded.rows(), loaded.facts());
-    let marks = marks(&facts);
+    let borrowed = loaded.borrowed();
+    let rows = loaded.rows(&borrowed);
     let mut printed = String::new();
-    drive(|| loaded.plan(&rows, &marks, &words), &outputs(&turns), &mut printed).expect("room for the trace");
+    drive(|| loaded.plan(&rows), &outputs(&turns), &mut printed).expect("room for the trace");
     assert!(printed == expected, "seed {seed}\n{reference}:\n{expected}loaded:\n{printed}{text}\n{script}");
     let arena = arena_for(text);
     productions::count(text, &parse(SourceId(0), text, &arena).0, &mut seen.productions);

@@ -1,15 +1,14 @@
 //! Plans loaded at run time: rows whose quarks the bound alphabet of the target `scripted` makes by their names.
 
 use mdle_compiler::alphabet::{self, family_to_si};
-use mdle_compiler::fsm::{Element, Machine, RecordPlace};
+use mdle_compiler::fsm::{Element, Machine};
 use mdle_compiler::plan::{self, Compared, Quark, Value};
 use mdle_runtime::{
-    Alphabet, Argument, Begin, BracketWords, Cause, Comparison, Condition, Cursor, Ending, Fsm, Guard, InRows, LawRow,
-    MarkRow, Measured, Memories, Meters, MetersPerSecond, Nanometers, Nanos, Operand, OperandWords, Operator, Plan,
-    Radians, RadiansPerSecond, Rows, SonarId, Source, SourceLine, Stamp, Stamps, Texts, Volts,
+    Alphabet, Argument, BracketWords, Comparison, Condition, Fact, Guard, Here, InRows, LawRow, MarkRow, Memories,
+    Meters, MetersPerSecond, Nanometers, Nanos, Operand, OperandWords, Operator, Radians, RadiansPerSecond, Rows,
+    SonarId, Source, SourceLine, Stamp, Stamps, Texts, Volts,
 };
 use mdle_scripted::alphabet::{self as scripted, AnyControl, AnyInterrupt};
-use mdle_scripted::{Input, Output};
 
 /// A plan's rows, owned.
 pub struct Loaded<'l> {
@@ -23,97 +22,22 @@ pub struct Loaded<'l> {
     first: Vec<usize>,
 }
 
-/// The texts of operands, as rows borrow them.
-pub struct Words<'l> {
+/// The texts of operands and the labels, as rows borrow them.
+pub struct Borrowed<'l> {
     operands: Vec<OperandWords<'l>>,
     brackets: Vec<BracketWords<'l>>,
+    marks: Vec<MarkRow>,
+    facts: Vec<Fact>,
 }
 
 /// The files and modules of the quarks that scripts report.
 const NAMES: &[&str] = &["horn", "bell.mid", "sun"];
 
-/// A label that ends with a bracket: the bracket, the label's record, and its facts, each with the operand that it is
-/// about.
-pub type Facts = (u32, RecordPlace, Vec<(u32, Option<u32>)>);
-
-/// Labels with their facts, as a plan takes them.
-#[must_use]
-pub fn marks(facts: &[Facts]) -> Vec<MarkRow<'_>> {
-    let marks = facts.iter().map(|(bracket, record, facts)| MarkRow {
-        bracket: *bracket,
-        level: record.level,
-        first: record.first,
-        count: record.facts,
-        facts,
-    });
-    marks.collect()
-}
-
 /// A plan that borrows them: storage for levels and loops is made when its size is known.
-type InMemory<'l> = InRows<'l, scripted::Alphabet, Entered<'l>, Box<[u64]>, Memories<'l, Box<[bool]>>>;
+pub type LoadedPlan<'l> = InRows<&'l Rows<'l, scripted::Alphabet>, Entered<'l>, Box<[u64]>, Memories<Box<[bool]>>>;
 
 /// The entries of a plan's scopes.
-type Entered<'l> = Stamps<'l, Box<[Stamp]>>;
-
-/// A plan of rows, with the texts of its operands.
-pub struct LoadedPlan<'l>(InMemory<'l>, &'l Words<'l>);
-
-impl<'l> Plan for LoadedPlan<'l> {
-    type Output = Output;
-    type Input = Input;
-    type Entered = Entered<'l>;
-    type Left = Box<[u64]>;
-
-    fn fsm(&self) -> Fsm<'_> {
-        self.0.fsm()
-    }
-
-    fn slots(&self) -> (Self::Entered, Self::Left) {
-        self.0.slots()
-    }
-
-    fn enter(&mut self, atom: u32, y: &Output, begin: Begin) {
-        self.0.enter(atom, y, begin);
-    }
-
-    fn next(&self, cursor: &At<'l>, y: &Output, t: Nanos) -> Option<Ending> {
-        self.0.next(cursor, y, t)
-    }
-
-    fn leave(&mut self, cursor: &At<'l>, cause: Cause, y: &Output, t: Nanos) {
-        self.0.leave(cursor, cause, y, t);
-    }
-
-    fn settle(&mut self, cursor: &At<'l>, y: &Output, t: Nanos) {
-        self.0.settle(cursor, y, t);
-    }
-
-    fn operands(&self, cursor: &At<'l>, scope: u32, y: &Output, t: Nanos, tell: &mut dyn FnMut(u32, Measured)) {
-        self.0.operands(cursor, scope, y, t, tell);
-    }
-
-    fn source(&self) -> Source<'_> {
-        Source { files: &[], brackets: &self.1.brackets, operands: &self.1.operands }
-    }
-
-    fn input(&mut self, y: &Output, t: Nanos) -> Input {
-        self.0.input(y, t)
-    }
-
-    fn law(&self, atom: u32) -> &str {
-        self.0.law(atom)
-    }
-
-    fn condition(&self, scope: u32) -> &str {
-        self.0.condition(scope)
-    }
-
-    fn name(&self, scope: u32) -> &str {
-        self.0.name(scope)
-    }
-}
-
-type At<'l> = Cursor<Entered<'l>, Box<[u64]>>;
+pub type Entered<'l> = Stamps<Box<[Stamp]>, &'l [Option<Here>]>;
 
 impl<'l> Loaded<'l> {
     /// Makes the rows of a plan. Without `foresight` they do not contain the successors of scopes.
@@ -158,15 +82,18 @@ impl<'l> Loaded<'l> {
 
     /// The rows as a plan takes them.
     #[must_use]
-    pub fn rows(&self) -> Rows<'_, scripted::Alphabet> {
+    pub fn rows<'r>(&'r self, borrowed: &'r Borrowed<'r>) -> Rows<'r, scripted::Alphabet> {
         let [laws, conditions, names] = &self.texts;
-        let texts = Texts { laws, conditions, names };
-        Rows { fsm: self.lowered.tables(), guards: &self.guards, operands: &self.operands, laws: &self.laws, texts }
+        let Borrowed { operands, brackets, marks, facts } = borrowed;
+        let source = Source { files: &[], brackets, operands };
+        let texts = Texts { laws, conditions, names, source, paths: &[] };
+        let (fsm, guards, operands) = (self.lowered.tables(), &self.guards, &self.operands);
+        Rows { fsm, guards, operands, laws: &self.laws, marks, facts, texts }
     }
 
-    /// The texts of operands as rows take them.
+    /// The texts of operands and the labels, as rows take them.
     #[must_use]
-    pub fn words(&self) -> Words<'_> {
+    pub fn borrowed(&self) -> Borrowed<'_> {
         const AT: SourceLine = SourceLine { file: 0, line: 0 };
         let bracket = |range: &[usize]| {
             let [first, count] = [range[0], range[1] - range[0]].map(|number| u32::try_from(number).unwrap());
@@ -174,36 +101,28 @@ impl<'l> Loaded<'l> {
         };
         let operands = self.words.iter().map(|text| OperandWords { text, written: text, at: AT, values: &[] });
         let brackets = self.first.windows(2).map(bracket);
-        Words { operands: operands.collect(), brackets: brackets.collect() }
-    }
-
-    /// Returns the labels that end with each bracket, with their facts.
-    #[must_use]
-    pub fn facts(&self) -> Vec<Facts> {
-        let elements = self.lowered.elements();
-        let marks = elements.flat_map(|element| element.marks().iter().map(move |mark| (element.number(), mark)));
-        let facts = marks.filter_map(|(element, mark)| {
-            let record = self.lowered.record(mark.record)?;
-            let facts = mark.facts.iter().map(|fact| (record.first + fact.number, fact.operand));
-            Some((element, record, facts.collect()))
-        });
-        facts.collect()
+        let (mut marks, mut facts) = (Vec::new(), Vec::new());
+        for (element, mark) in self.lowered.elements().flat_map(|it| it.marks().iter().map(move |mark| (it, mark))) {
+            let Some(record) = self.lowered.record(mark.record) else { continue };
+            let [first_fact, count] = [facts.len(), mark.facts.len()].map(|number| u32::try_from(number).unwrap());
+            facts.extend(
+                mark.facts.iter().map(|fact| Fact { memory: record.first + fact.number, operand: fact.operand }),
+            );
+            let (bracket, level, first) = (element.number(), record.level, record.first);
+            marks.push(MarkRow { bracket, level, first, count: record.facts, first_fact, facts: count });
+        }
+        Borrowed { operands: operands.collect(), brackets: brackets.collect(), marks, facts }
     }
 
     /// The plan of these rows before it begins.
     #[must_use]
-    pub fn plan<'r>(
-        &'r self,
-        rows: &'r Rows<'r, scripted::Alphabet>,
-        marks: &'r [MarkRow<'r>],
-        words: &'r Words<'r>,
-    ) -> LoadedPlan<'r> {
+    pub fn plan<'r>(&'r self, rows: &'r Rows<'r, scripted::Alphabet>) -> LoadedPlan<'r> {
         let (levels, slots) = (self.lowered.sizes().levels, self.lowered.sizes().slots);
         // No plan has more levels than brackets.
         let memories = vec![false; self.lowered.elements().len() * self.lowered.sizes().memories];
-        let memory = Memories::new(u32::try_from(self.lowered.sizes().memories).unwrap(), marks, memories.into());
+        let memory = Memories::new(u32::try_from(self.lowered.sizes().memories).unwrap(), memories.into());
         let entered = Stamps::new(vec![Stamp::START; levels].into(), self.lowered.frames());
-        LoadedPlan(InRows::remembering(rows, entered, vec![0; slots].into(), memory), words)
+        InRows::remembering(rows, entered, vec![0; slots].into(), memory)
     }
 
     /// Returns a condition; its operands are added after all earlier operands, and the operands of these after them.

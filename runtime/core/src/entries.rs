@@ -78,26 +78,26 @@ impl Stamp {
 
 /// The moments at which scopes were entered, and the odometer that they are read from.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stamps<'a, S> {
+pub struct Stamps<S, F = &'static [Option<Here>]> {
     slots: S,
     /// The frame of each atom, in their order.
-    frames: &'a [Option<Here>],
+    frames: F,
     /// The odometer and the heading in this turn; its time is that of no turn.
     now: Stamp,
     /// The pose in the turn before; `None` before the first.
     last: Option<Pose>,
 }
 
-impl<'a, S: Slots<Stamp>> Stamps<'a, S> {
+impl<S: Slots<Stamp>, F: AsRef<[Option<Here>]>> Stamps<S, F> {
     /// A stamp for each level that `slots` has room for; the values do not matter. `frames` has the frame of each atom
     /// as written, and may be empty in a plan without `FRAME here`.
     #[must_use]
-    pub const fn new(slots: S, frames: &'a [Option<Here>]) -> Self {
+    pub const fn new(slots: S, frames: F) -> Self {
         Self { slots, frames, now: Stamp::START, last: None }
     }
 }
 
-impl<S: Slots<Stamp>> Entries for Stamps<'_, S> {
+impl<S: Slots<Stamp>, F: AsRef<[Option<Here>]>> Entries for Stamps<S, F> {
     fn is_empty(&self) -> bool {
         self.slots.as_ref().is_empty()
     }
@@ -125,7 +125,7 @@ impl<S: Slots<Stamp>> Entries for Stamps<'_, S> {
     }
 
     fn here(&self, atom: u32) -> Option<Here> {
-        self.frames.get(atom as usize).copied().flatten()
+        self.frames.as_ref().get(atom as usize).copied().flatten()
     }
 
     fn heading(&self, level: u16) -> Radians {
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn the_way_is_the_sum_of_steps_there_and_back() {
-        let mut stamps = Stamps::new([Stamp::START; 2], &[]);
+        let mut stamps = Stamps::new([Stamp::START; 2], []);
         stamps.observe(&at(5.0, 0.0, 90.0));
         stamps.note(0, Nanos(0));
         stamps.observe(&at(5.3, 0.4, 90.0));
@@ -170,7 +170,7 @@ mod tests {
 
     #[test]
     fn a_robot_with_an_odometer_of_its_own_is_believed() {
-        let mut stamps = Stamps::new([Stamp::START; 1], &[]);
+        let mut stamps = Stamps::new([Stamp::START; 1], []);
         stamps.observe(&At(Pose::ORIGIN, Some(Nanometers(70))));
         stamps.note(0, Nanos(0));
         stamps.observe(&At(at(3.0, 0.0, 0.0).0, Some(Nanometers(100))));

@@ -4,22 +4,22 @@
 use crate::Slots;
 
 /// The memories of a plan, a row for each level of scopes; `()` for a plan that remembers nothing.
-pub trait Memory<'a> {
-    /// `true` if the plan has memories, which is known when it is compiled.
-    const KEEPS: bool;
-
+pub trait Memory {
+    /// Returns `true` if the plan has memories.
+    fn keeps(&self) -> bool;
     /// Returns `true` if this memory of the scope of this level is set.
     fn is_set(&self, level: u16, memory: u32) -> bool;
     /// Sets this memory of the scope of this level, or clears it.
     fn set(&mut self, level: u16, memory: u32, value: bool);
     /// Clears the memories of this level and of all nested levels.
     fn forget(&mut self, level: u16);
-    /// Returns the labels of the parts of the plan that end with a bracket.
-    fn marks(&self, bracket: u32) -> &'a [MarkRow<'a>];
 }
 
-impl<'a> Memory<'a> for () {
-    const KEEPS: bool = false;
+impl Memory for () {
+    #[inline(always)]
+    fn keeps(&self) -> bool {
+        false
+    }
 
     fn is_set(&self, _: u16, _: u32) -> bool {
         false
@@ -28,15 +28,11 @@ impl<'a> Memory<'a> for () {
     fn set(&mut self, _: u16, _: u32, _: bool) {}
 
     fn forget(&mut self, _: u16) {}
-
-    fn marks(&self, _: u32) -> &'a [MarkRow<'a>] {
-        &[]
-    }
 }
 
 /// A label of what ends with a bracket, and the record that it is written down in.
 #[derive(Debug, Clone, Copy)]
-pub struct MarkRow<'a> {
+pub struct MarkRow {
     /// The bracket.
     pub bracket: u32,
     /// The level of the record.
@@ -45,26 +41,49 @@ pub struct MarkRow<'a> {
     pub first: u32,
     /// ... and how many there are.
     pub count: u32,
-    /// Memories that `after` reads about the label, each with the operand of the bracket's interrupt that must be the
-    /// cause, if the condition names one.
-    pub facts: &'a [(u32, Option<u32>)],
+    /// The first of its facts in [`Table::facts`](crate::Table::facts) ...
+    pub first_fact: u32,
+    /// ... and how many there are.
+    pub facts: u32,
+}
+
+/// A memory that `after` reads about a label.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Fact {
+    /// The memory, which is of the level of the label's record.
+    pub memory: u32,
+    /// The operand of the bracket's interrupt that must be the cause, if the condition names one.
+    pub operand: Option<u32>,
+}
+
+impl MarkRow {
+    /// Returns the labels of the parts of a plan that end with a bracket; `marks` are those of the plan, in the order
+    /// of their brackets.
+    pub(crate) fn of(marks: &[Self], bracket: u32) -> &[Self] {
+        let before = |bound: u32| marks.partition_point(|mark| mark.bracket < bound);
+        marks.get(before(bracket)..before(bracket.saturating_add(1))).unwrap_or(&[])
+    }
+
+    /// Returns the facts of the label among `facts`, those of the plan.
+    pub(crate) fn facts(self, facts: &[Fact]) -> &[Fact] {
+        let (first, count) = (self.first_fact as usize, self.facts as usize);
+        facts.get(first..first.saturating_add(count)).unwrap_or(&[])
+    }
 }
 
 /// The memories of a plan that remembers.
 #[derive(Debug, Clone, Copy)]
-pub struct Memories<'a, S> {
+pub struct Memories<S> {
     /// Number of memories of each level.
     width: u32,
-    /// Labels in the order of their brackets.
-    marks: &'a [MarkRow<'a>],
     set: S,
 }
 
-impl<'a, S: Slots<bool>> Memories<'a, S> {
+impl<S: Slots<bool>> Memories<S> {
     /// Memories that are empty: `width` for each level of scopes, as many as `set` has room for.
     #[must_use]
-    pub const fn new(width: u32, marks: &'a [MarkRow<'a>], set: S) -> Self {
-        Self { width, marks, set }
+    pub const fn new(width: u32, set: S) -> Self {
+        Self { width, set }
     }
 
     fn place(&self, level: u16, memory: u32) -> usize {
@@ -72,8 +91,11 @@ impl<'a, S: Slots<bool>> Memories<'a, S> {
     }
 }
 
-impl<'a, S: Slots<bool>> Memory<'a> for Memories<'a, S> {
-    const KEEPS: bool = true;
+impl<S: Slots<bool>> Memory for Memories<S> {
+    #[inline(always)]
+    fn keeps(&self) -> bool {
+        self.width > 0
+    }
 
     fn is_set(&self, level: u16, memory: u32) -> bool {
         self.set.as_ref().get(self.place(level, memory)).copied().unwrap_or(false)
@@ -90,11 +112,6 @@ impl<'a, S: Slots<bool>> Memory<'a> for Memories<'a, S> {
         let first = self.place(level, 0);
         self.set.as_mut().iter_mut().skip(first).for_each(|memory| *memory = false);
     }
-
-    fn marks(&self, bracket: u32) -> &'a [MarkRow<'a>] {
-        let behind = |bound: u32| self.marks.partition_point(|mark| mark.bracket < bound);
-        self.marks.get(behind(bracket)..behind(bracket.saturating_add(1))).unwrap_or(&[])
-    }
 }
 
 #[cfg(test)]
@@ -103,7 +120,7 @@ mod tests {
 
     #[test]
     fn a_level_forgets_what_is_inside_it_and_nothing_else() {
-        let mut memories = Memories::new(2, &[], [false; 6]);
+        let mut memories = Memories::new(2, [false; 6]);
         for (level, memory) in [(0, 1), (1, 0), (2, 1)] {
             memories.set(level, memory, true);
         }
@@ -116,10 +133,24 @@ mod tests {
 
     #[test]
     fn marks_are_found_by_their_bracket() {
-        let mark = |bracket, first| MarkRow { bracket, level: 0, first, count: 1, facts: &[] };
+        let mark = |bracket, first| MarkRow { bracket, level: 0, first, count: 1, first_fact: 0, facts: 0 };
         let marks = [mark(1, 0), mark(3, 1), mark(3, 2), mark(4, 3)];
-        let memories = Memories::new(1, &marks, [false; 1]);
-        let found = |bracket| memories.marks(bracket).iter().map(|mark| mark.first).sum::<u32>();
+        let found = |bracket| MarkRow::of(&marks, bracket).iter().map(|mark| mark.first).sum::<u32>();
         assert_eq!([0, 1, 2, 3, 4, 5].map(found), [0, 0, 0, 3, 3, 0]);
+    }
+
+    #[test]
+    fn a_label_has_the_facts_that_it_numbers() {
+        let facts = [3, 1, 2].map(|memory| Fact { memory, operand: None });
+        let of = |first_fact, count| {
+            let mark = MarkRow { bracket: 0, level: 0, first: 0, count: 0, first_fact, facts: count };
+            mark.facts(&facts).iter().map(|fact| fact.memory).sum::<u32>()
+        };
+        assert_eq!([of(0, 1), of(1, 2), of(2, 0), of(2, 9), of(u32::MAX, u32::MAX)], [3, 3, 0, 0, 0]);
+    }
+
+    #[test]
+    fn a_plan_without_memories_keeps_none() {
+        assert!(!().keeps() && !Memories::new(0, [false; 4]).keeps() && Memories::new(1, [false; 4]).keeps());
     }
 }

@@ -3,8 +3,8 @@
 //! The operands of a condition are the parts that AND and OR join, from left to right. NOT and RISING belong to their
 //! operand.
 
+use crate::condition::Reading;
 use crate::fsm::Kind;
-use crate::rows::Reading;
 use crate::{Condition, Cursor, Entries, Fsm, Interrupt, Measured, Memory, Nanos, Slots};
 
 /// The conditions of a plan that is code, as rows: read only where a scope has ended and an observer is attached.
@@ -39,11 +39,8 @@ impl<I> Conditions<'_, I> {
 
 impl<I> Condition<I> {
     /// Calls `tell` with the number and the values of each operand that has fired, in their order.
-    pub(crate) fn tell_fired<'m, Y, M: Memory<'m>>(
-        &self,
-        at: &Reading<'_, I, Y, M>,
-        tell: &mut dyn FnMut(u32, Measured),
-    ) where
+    pub(crate) fn tell_fired<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>, tell: &mut dyn FnMut(u32, Measured))
+    where
         I: Interrupt<Y>,
     {
         let mut number: u32 = 0;
@@ -72,7 +69,7 @@ impl<I> Condition<I> {
     }
 
     /// The values of an operand; of what NOT and RISING are about, if that is no AND and no OR.
-    fn measured<'m, Y, M: Memory<'m>>(&self, at: &Reading<'_, I, Y, M>, from: u32) -> Measured
+    fn measured<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>, from: u32) -> Measured
     where
         I: Interrupt<Y>,
     {

@@ -1,7 +1,7 @@
 //! Answers of a plan to the machine: the enclosing scope that ends, and the cause (docs/src/reference/semantics.md,
 //! 5.2).
 
-use crate::{Begin, Cursor, Entries, Follows, Fsm, Measured, Nanos, Output, Slots, Source};
+use crate::{Begin, Cursor, Entries, Follows, Fsm, Measured, Nanos, Output, Slots, Source, Words};
 
 /// Meaning of the atoms and the scopes of a plan on one robot: emitted by `mdlec`, or loaded from text.
 ///
@@ -40,7 +40,7 @@ pub trait Plan {
     fn input(&mut self, y: &Self::Output, t: Nanos) -> Self::Input;
 
     /// Calls `tell` with each operand that has fired of the interrupt of `scope`, which encloses the current atom: its
-    /// number, in the order of [`Source::operands_of`], and its values. The machine calls it only for a
+    /// number, in the order of [`Words::operand`], and its values. The machine calls it only for a
     /// [`Watch`](crate::Watch), before the scope is left; a plan written by hand may know no operands.
     fn operands(
         &self,
@@ -60,8 +60,8 @@ pub trait Plan {
     fn name(&self, scope: u32) -> &str;
 
     /// The words and places of the plan's text, if it has one.
-    fn source(&self) -> Source<'_> {
-        Source::NONE
+    fn source(&self) -> &dyn Words {
+        &Source::NONE
     }
 
     /// Returns the names of the paths that its laws replay: the caller loads these paths before the plan begins.

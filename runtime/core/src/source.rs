@@ -1,6 +1,23 @@
 //! The text of a plan as its writer has it: the words of conditions and operands, and the lines that they are in.
 
-/// The words and places of a plan, for reports.
+/// The words and places of a plan, for reports: constants of an executable, or owned by a plan that was loaded.
+pub trait Words {
+    /// Returns the words of a bracket; `None` for a plan without source text.
+    fn bracket(&self, bracket: u32) -> Option<BracketWords<'_>>;
+    /// Returns the words of an operand of a bracket's condition, by its number among them, from 0.
+    fn operand(&self, bracket: u32, number: u32) -> Option<OperandWords<'_>>;
+    /// Returns the name of the file that a line is in; empty if there is none.
+    fn file(&self, at: SourceLine) -> &str;
+}
+
+impl<'w> dyn Words + 'w {
+    /// Returns the operands of a bracket, in the order in which they are written.
+    pub fn operands_of(&self, bracket: u32) -> impl Iterator<Item = OperandWords<'_>> {
+        (0..).map_while(move |number| self.operand(bracket, number))
+    }
+}
+
+/// The words and places of a plan as constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Source<'a> {
     /// The names of the files, without folders.
@@ -27,7 +44,7 @@ pub struct BracketWords<'a> {
     pub at: SourceLine,
     /// The condition of the scope as it is written; empty for a loop and for a scope without a condition.
     pub condition: &'a str,
-    /// The first of its operands in [`Source::operands`].
+    /// The first of its operands among those of all brackets.
     pub first: u32,
     /// The number of its operands.
     pub count: u32,
@@ -58,24 +75,22 @@ pub struct ValueWords<'a> {
     pub scale: f64,
 }
 
-impl<'a> Source<'a> {
+impl Source<'_> {
     /// The source of a plan without source text, such as a plan that is written in Rust.
     pub const NONE: Self = Self { files: &[], brackets: &[], operands: &[] };
+}
 
-    /// Returns the operands of a bracket, in the order in which they are written.
-    #[must_use]
-    pub fn operands_of(&self, bracket: u32) -> &'a [OperandWords<'a>] {
-        let words = self.brackets.get(bracket as usize);
-        let operands = words.and_then(|words| {
-            let first = words.first as usize;
-            self.operands.get(first..first.checked_add(words.count as usize)?)
-        });
-        operands.unwrap_or(&[])
+impl Words for Source<'_> {
+    fn bracket(&self, bracket: u32) -> Option<BracketWords<'_>> {
+        self.brackets.get(bracket as usize).copied()
     }
 
-    /// Returns the name of the file that a line is in; empty if there is none.
-    #[must_use]
-    pub fn file(&self, at: SourceLine) -> &'a str {
+    fn operand(&self, bracket: u32, number: u32) -> Option<OperandWords<'_>> {
+        let words = self.bracket(bracket).filter(|words| number < words.count)?;
+        self.operands.get(words.first.checked_add(number)? as usize).copied()
+    }
+
+    fn file(&self, at: SourceLine) -> &str {
         self.files.get(usize::from(at.file)).copied().unwrap_or("")
     }
 }

@@ -29,7 +29,7 @@ impl fmt::Display for CauseText<'_> {
         let Self { plan, transition, operands } = *self;
         let Transition { scope, cause, .. } = *transition;
         let source = plan.source();
-        let Some(bracket) = source.brackets.get(scope as usize) else {
+        let Some(bracket) = source.bracket(scope) else {
             // A plan that was written in Rust has no text.
             let name = plan.name(scope);
             let by = cause.by(plan.condition(scope));
@@ -38,12 +38,11 @@ impl fmt::Display for CauseText<'_> {
         if matches!(cause, Cause::Completed(_)) {
             return write!(f, "{COMPLETED} ({})", FileLine(source.file(bracket.at), bracket.at));
         }
-        let all = source.operands_of(scope);
         let mut words: Vec<String> = Vec::new();
         let mut at = bracket.at;
         for (number, measured) in operands {
-            let Some(operand) = all.get(*number as usize) else { continue };
-            let text = measured_words(operand, *measured);
+            let Some(operand) = source.operand(scope, *number) else { continue };
+            let text = measured_words(&operand, *measured);
             if words.is_empty() {
                 at = operand.at;
             }
@@ -52,7 +51,7 @@ impl fmt::Display for CauseText<'_> {
             }
         }
         write!(f, "{} ({}", words.join(" and "), FileLine(source.file(at), at))?;
-        if all.len() > 1 {
+        if bracket.count > 1 {
             write!(f, ", of \"{}\"", bracket.condition)?;
         }
         f.write_char(')')
@@ -70,7 +69,7 @@ pub(crate) fn place(plan: &dyn Texts, passes: &Passes, atom: u32) -> String {
         Kind::Loop { times, .. } => Some(format!("pass {} of {times}", passes.of(number))),
     });
     let mut words: Vec<String> = around.collect();
-    words.extend(source.brackets.get(own as usize).map(|own| FileLine(source.file(own.at), own.at).to_string()));
+    words.extend(source.bracket(own).map(|own| FileLine(source.file(own.at), own.at).to_string()));
     words.reverse();
     words.join(", ")
 }

@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use mdle_runtime::{Frame, Fsm, Machine, MetersPerSecond, Nanos, Output as _, Plan, Radians, Robot, Source, Turn};
+use mdle_runtime::{Frame, Fsm, Machine, MetersPerSecond, Nanos, Output as _, Plan, Radians, Robot, Turn, Words};
 
 use crate::observer::{Observer, Observes};
 use crate::transitions::Transitions;
@@ -19,7 +19,7 @@ pub(crate) trait Texts {
     /// The name of a scope, by its bracket; empty for an atom.
     fn name(&self, scope: u32) -> &str;
     /// The words and places of the plan's text, if it has one.
-    fn source(&self) -> Source<'_>;
+    fn source(&self) -> &dyn Words;
     /// Returns the names of the paths that its laws replay.
     fn paths(&self) -> &[&'static str];
 }
@@ -41,7 +41,7 @@ impl<P: Plan> Texts for P {
         Plan::name(self, scope)
     }
 
-    fn source(&self) -> Source<'_> {
+    fn source(&self) -> &dyn Words {
         Plan::source(self)
     }
 

@@ -108,8 +108,7 @@ impl Log {
         let law = applied.map(|atom| plan.law(atom));
         let source = plan.source();
         let fired = transitions.iter().map(|(transition, operands)| {
-            let texts = source.operands_of(transition.scope);
-            let text = |(number, _): &Operand| texts.get(*number as usize).map(|words| words.text);
+            let text = |(number, _): &Operand| source.operand(transition.scope, *number).map(|words| words.text);
             Fired {
                 from: transition.from,
                 level: usize::from(transition.cause.level()),

@@ -141,11 +141,10 @@ impl Over {
     /// Returns the end of `plan` by this transition.
     fn of(plan: &dyn Texts, transition: &Transition, operands: &[Operand], cause: String) -> Self {
         let source = plan.source();
-        let texts = source.operands_of(transition.scope);
         let unmeasured: Vec<Operand> = operands.iter().map(|(number, _)| (*number, Measured::Nothing)).collect();
         let words = Printable(CauseText { plan, transition, operands: &unmeasured }).to_string();
         let numbers: Vec<u32> = operands.iter().map(|(number, _)| *number).collect();
-        let operands = numbers.iter().filter_map(|number| texts.get(*number as usize));
+        let operands = numbers.iter().filter_map(|number| source.operand(transition.scope, *number));
         Self {
             cause,
             words,

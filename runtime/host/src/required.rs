@@ -89,7 +89,7 @@ fn endings(plan: &dyn Texts, text: &str, may: impl Fn(u32) -> bool) -> impl Iter
     let completed = (text == COMPLETED).then_some(Cause::Completed);
     let scopes = scopes(plan.fsm()).filter(|scope| may(*scope)).flat_map(|scope| {
         let named = (!text.is_empty() && plan.name(scope) == text).then_some(Cause::Scope(scope));
-        let operands = plan.source().operands_of(scope);
+        let operands: Vec<_> = plan.source().operands_of(scope).collect();
         // A plan that was written in Rust has conditions, and no operands.
         let whole = (operands.is_empty() && is_condition(text, plan.condition(scope))).then_some(Cause::Scope(scope));
         let parts = (0..).zip(operands).filter(|(_, operand)| is_operand(text, operand));
@@ -125,7 +125,7 @@ fn refused(plan: &dyn Texts, text: &str) -> String {
     let source = plan.source();
     let mut known: Vec<String> = Vec::new();
     for scope in scopes(plan.fsm()).filter(|scope| ends_plan(plan.fsm(), *scope)) {
-        let operands = source.operands_of(scope);
+        let operands: Vec<_> = source.operands_of(scope).collect();
         let whole = operands.is_empty().then(|| plan.condition(scope));
         let parts = operands.iter().map(|operand| operand.written);
         for word in parts.chain(whole).chain([plan.name(scope)]) {

@@ -33,7 +33,7 @@ fn turns(plan: impl Plan<Output = Output, Input = Input>) -> fmt::Result {
         };
         let source = machine.plan().source();
         let fired = transitions.made.iter().flatten().map(|Made { transition, operands }| {
-            let texts = source.operands_of(transition.scope).iter().zip(0_u32..);
+            let texts = source.operands_of(transition.scope).zip(0_u32..);
             let fired = texts.filter(|(_, number)| operands.iter().flatten().any(|operand| operand == number));
             transition.fired(machine.plan(), fired.map(|(words, _)| words.text))
         });

@@ -22,11 +22,10 @@ mod machine {
     /// The plan `Branching`.
     pub struct Branching(
         runtime::InRows<
-            'static,
-            robot::Alphabet,
+            &'static runtime::Rows<'static, robot::Alphabet>,
             [Nanos; 3],
             [u64; 0],
-            runtime::Memories<'static, [bool; 6]>,
+            runtime::Memories<[bool; 6]>,
         >,
     );
     impl Branching {
@@ -38,7 +37,7 @@ mod machine {
                     &ROWS,
                     [Nanos::ZERO; 3],
                     [0; 0],
-                    runtime::Memories::new(2, MARKS, [false; 6]),
+                    runtime::Memories::new(2, [false; 6]),
                 ),
             )
         }
@@ -105,8 +104,8 @@ mod machine {
         ) {
             runtime::Plan::operands(&self.0, cursor, scope, y, t, tell);
         }
-        fn source(&self) -> runtime::Source<'_> {
-            SOURCE
+        fn source(&self) -> &dyn runtime::Words {
+            runtime::Plan::source(&self.0)
         }
         fn law(&self, atom: u32) -> &str {
             runtime::Plan::law(&self.0, atom)
@@ -261,22 +260,34 @@ mod machine {
                 frame: runtime::Radians::from_degrees(0.0),
             },
         ],
+        marks: &[
+            runtime::MarkRow {
+                bracket: 1,
+                level: 0,
+                first: 0,
+                count: 2,
+                first_fact: 0,
+                facts: 2,
+            },
+        ],
+        facts: &[
+            runtime::Fact {
+                memory: 0,
+                operand: Some(0),
+            },
+            runtime::Fact {
+                memory: 1,
+                operand: Some(1),
+            },
+        ],
         texts: runtime::Texts {
             laws: LAWS,
             conditions: CONDITIONS,
             names: NAMES,
+            source: SOURCE,
+            paths: &[],
         },
     };
-    /// The labels of what ends with a bracket, for `after`.
-    static MARKS: &[runtime::MarkRow<'static>] = &[
-        runtime::MarkRow {
-            bracket: 1,
-            level: 0,
-            first: 0,
-            count: 2,
-            facts: &[(0, Some(0)), (1, Some(1))],
-        },
-    ];
     /// Scopes and loops in pre-order, the atoms as written, the termination state.
     const FSM: Fsm<'static> = Fsm {
         brackets: &[

@@ -142,8 +142,8 @@ mod machine {
         ) {
             OPERANDS.fired(FSM, cursor, scope, y, t, tell);
         }
-        fn source(&self) -> runtime::Source<'_> {
-            SOURCE
+        fn source(&self) -> &dyn runtime::Words {
+            &SOURCE
         }
         fn law(&self, atom: u32) -> &str {
             text(LAWS, atom)

@@ -20,7 +20,13 @@ mod machine {
         "the crate of target `sim` is bound to another alphabet: run `mdlec bind`"
     );
     /// The plan `LabTour`.
-    pub struct LabTour(runtime::InRows<'static, robot::Alphabet, [Nanos; 3], [u64; 0]>);
+    pub struct LabTour(
+        runtime::InRows<
+            &'static runtime::Rows<'static, robot::Alphabet>,
+            [Nanos; 3],
+            [u64; 0],
+        >,
+    );
     impl LabTour {
         /// The plan before it begins.
         #[must_use]
@@ -73,8 +79,8 @@ mod machine {
         ) {
             runtime::Plan::operands(&self.0, cursor, scope, y, t, tell);
         }
-        fn source(&self) -> runtime::Source<'_> {
-            SOURCE
+        fn source(&self) -> &dyn runtime::Words {
+            runtime::Plan::source(&self.0)
         }
         fn law(&self, atom: u32) -> &str {
             runtime::Plan::law(&self.0, atom)
@@ -353,10 +359,14 @@ mod machine {
                 frame: runtime::Radians::from_degrees(180.0),
             },
         ],
+        marks: &[],
+        facts: &[],
         texts: runtime::Texts {
             laws: LAWS,
             conditions: CONDITIONS,
             names: NAMES,
+            source: SOURCE,
+            paths: &[],
         },
     };
     /// Scopes and loops in pre-order, the atoms as written, the termination state.

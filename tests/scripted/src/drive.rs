@@ -47,8 +47,7 @@ where
         };
         let source = machine.plan().source();
         let fired = transitions.made.iter().map(|(transition, operands)| {
-            let texts = source.operands_of(transition.scope);
-            let text = |number: &u32| texts.get(*number as usize).map_or("unknown", |words| words.text);
+            let text = |number: &u32| source.operand(transition.scope, *number).map_or("unknown", |words| words.text);
             transition.fired(machine.plan(), operands.iter().map(text).collect::<Vec<_>>())
         });
         // The law tells the frame that it was given; the machine tells whether it comes from a `FRAME here`.

@@ -29,7 +29,7 @@ pub(super) fn bytes(machine: &Machine) -> Bytes {
     let number = |count: usize| u64::try_from(count).unwrap_or(u64::MAX);
     // A cursor begins with the number of its atom, in front of numbers of eight bytes.
     let entries = match machine.sizes().stamps {
-        true => size_of::<Stamps<'_, [Stamp; 0]>>() + machine.sizes().levels * size_of::<Stamp>(),
+        true => size_of::<Stamps<[Stamp; 0]>>() + machine.sizes().levels * size_of::<Stamp>(),
         false => machine.sizes().levels * size_of::<Nanos>(),
     };
     let cursor = size_of::<u64>() + entries + machine.sizes().slots * size_of::<u64>();

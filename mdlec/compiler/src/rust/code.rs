@@ -138,6 +138,7 @@ impl<'a> Meaning<'a> {
         let slots = Literal::usize_unsuffixed(self.machine.sizes().slots);
         let (entered, begins) = entries(self.machine);
         let [enter, next, input] = [self.enter(), self.next(), self.input()];
+        let paths = paths.map(|paths| quote!(fn paths(&self) -> &[&'static str] { &[#paths] }));
         quote! {
             impl runtime::Plan for #plan {
                 type Output = Output;
@@ -160,7 +161,7 @@ impl<'a> Meaning<'a> {
                 ) {
                     OPERANDS.fired(FSM, cursor, scope, y, t, tell);
                 }
-                fn source(&self) -> runtime::Source<'_> { SOURCE }
+                fn source(&self) -> &dyn runtime::Words { &SOURCE }
                 fn law(&self, atom: u32) -> &str { text(LAWS, atom) }
                 fn condition(&self, scope: u32) -> &str { text(CONDITIONS, scope) }
                 fn name(&self, scope: u32) -> &str { text(NAMES, scope) }

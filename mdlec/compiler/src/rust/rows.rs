@@ -16,12 +16,19 @@ use crate::plan::{Condition, Quark, QuarkId};
 pub(super) fn machine(plan: &Ident, doc: &str, machine: &Machine, paths: Option<&TokenStream>) -> TokenStream {
     let slots = Literal::usize_unsuffixed(machine.sizes().slots);
     let (entered, begins) = entries(machine);
-    let rows = rows(machine);
-    let (memory, new, marks) = memory(machine, &begins);
+    let rows = rows(machine, paths);
+    let (memory, new) = memory(machine, &begins);
     let told = told(machine);
+    let replayed = paths.map(|_| {
+        quote!(
+            fn paths(&self) -> &[&'static str] {
+                runtime::Plan::paths(&self.0)
+            }
+        )
+    });
     quote! {
         #[doc = #doc]
-        pub struct #plan(runtime::InRows<'static, robot::Alphabet, #entered, [u64; #slots] #memory>);
+        pub struct #plan(runtime::InRows<&'static runtime::Rows<'static, robot::Alphabet>, #entered, [u64; #slots] #memory>);
 
         impl #plan {
             #[doc = " The plan before it begins."]
@@ -65,15 +72,14 @@ pub(super) fn machine(plan: &Ident, doc: &str, machine: &Machine, paths: Option<
             ) {
                 runtime::Plan::operands(&self.0, cursor, scope, y, t, tell);
             }
-            fn source(&self) -> runtime::Source<'_> { SOURCE }
+            fn source(&self) -> &dyn runtime::Words { runtime::Plan::source(&self.0) }
             fn law(&self, atom: u32) -> &str { runtime::Plan::law(&self.0, atom) }
             fn condition(&self, scope: u32) -> &str { runtime::Plan::condition(&self.0, scope) }
             fn name(&self, scope: u32) -> &str { runtime::Plan::name(&self.0, scope) }
-            #paths
+            #replayed
         }
 
         #rows
-        #marks
     }
 }
 
@@ -97,47 +103,51 @@ fn told(machine: &Machine) -> Option<TokenStream> {
     })
 }
 
-/// The type of the plan's memory, how the plan is made, and `static MARKS`: nothing of it for a plan that remembers
-/// nothing.
-fn memory(machine: &Machine, begins: &TokenStream) -> (Option<TokenStream>, TokenStream, Option<TokenStream>) {
+/// The type of the plan's memory, none for a plan that remembers nothing, and how the plan is made.
+fn memory(machine: &Machine, begins: &TokenStream) -> (Option<TokenStream>, TokenStream) {
     let slots = Literal::usize_unsuffixed(machine.sizes().slots);
     let slots = quote!(#begins, [0; #slots]);
     if machine.sizes().memories == 0 {
-        return (None, quote!(runtime::InRows::new(&ROWS, #slots)), None);
+        return (None, quote!(runtime::InRows::new(&ROWS, #slots)));
     }
     let size = Literal::usize_unsuffixed(machine.depth() * machine.sizes().memories);
     let width = Literal::usize_unsuffixed(machine.sizes().memories);
-    let marks = machine.elements().flat_map(|element| element.marks().iter().map(move |mark| (element, mark)));
-    let marks = marks.filter_map(|(element, mark)| {
-        let record = machine.record(mark.record)?;
-        let facts = mark.facts.iter().map(|fact| {
-            let memory = Literal::u32_unsuffixed(record.first.saturating_add(fact.number));
-            let operand = match fact.operand.map(Literal::u32_unsuffixed) {
-                Some(operand) => quote!(Some(#operand)),
-                None => quote!(None),
-            };
-            quote!((#memory, #operand))
-        });
-        let [bracket, first, count] = [element.number(), record.first, record.facts].map(Literal::u32_unsuffixed);
-        let level = Literal::u16_unsuffixed(record.level);
-        Some(quote! {
-            runtime::MarkRow {
-                bracket: #bracket, level: #level, first: #first, count: #count, facts: &[#(#facts),*],
-            }
-        })
-    });
-    let marks = quote! {
-        #[doc = " The labels of what ends with a bracket, for `after`."]
-        static MARKS: &[runtime::MarkRow<'static>] = &[#(#marks),*];
-    };
-    let new = quote! {
-        runtime::InRows::remembering(&ROWS, #slots, runtime::Memories::new(#width, MARKS, [false; #size]))
-    };
-    (Some(quote!(, runtime::Memories<'static, [bool; #size]>)), new, Some(marks))
+    let new = quote!(runtime::InRows::remembering(&ROWS, #slots, runtime::Memories::new(#width, [false; #size])));
+    (Some(quote!(, runtime::Memories<[bool; #size]>)), new)
+}
+
+/// Returns the labels of what ends with a bracket, and their facts.
+fn marks(machine: &Machine) -> (Vec<TokenStream>, Vec<TokenStream>) {
+    let (mut rows, mut all) = (Vec::new(), Vec::new());
+    for element in machine.elements() {
+        for mark in element.marks() {
+            let Some(record) = machine.record(mark.record) else { continue };
+            let facts = mark.facts.iter().map(|fact| {
+                let memory = Literal::u32_unsuffixed(record.first.saturating_add(fact.number));
+                let operand = match fact.operand.map(Literal::u32_unsuffixed) {
+                    Some(operand) => quote!(Some(#operand)),
+                    None => quote!(None),
+                };
+                quote!(runtime::Fact { memory: #memory, operand: #operand })
+            });
+            let [bracket, first, count] = [element.number(), record.first, record.facts].map(Literal::u32_unsuffixed);
+            let level = Literal::u16_unsuffixed(record.level);
+            let [first_fact, facts_of_mark] = [all.len(), mark.facts.len()].map(Literal::usize_unsuffixed);
+            all.extend(facts);
+            rows.push(quote! {
+                runtime::MarkRow {
+                    bracket: #bracket, level: #level, first: #first, count: #count,
+                    first_fact: #first_fact, facts: #facts_of_mark,
+                }
+            });
+        }
+    }
+    (rows, all)
 }
 
 /// `static ROWS`: when each bracket ends, the operands of their conditions, the law of each atom.
-fn rows(machine: &Machine) -> TokenStream {
+fn rows(machine: &Machine, paths: Option<&TokenStream>) -> TokenStream {
+    let (marks, facts) = marks(machine);
     let mut operands = Operands::new(machine);
     let guards: Vec<_> = machine
         .elements()
@@ -165,7 +175,11 @@ fn rows(machine: &Machine) -> TokenStream {
             guards: &[#(#guards),*],
             operands: &[#(runtime::Condition::#operands),*],
             laws: &[#(#laws),*],
-            texts: runtime::Texts { laws: LAWS, conditions: CONDITIONS, names: NAMES },
+            marks: &[#(#marks),*],
+            facts: &[#(#facts),*],
+            texts: runtime::Texts {
+                laws: LAWS, conditions: CONDITIONS, names: NAMES, source: SOURCE, paths: &[#paths],
+            },
         };
     }
 }

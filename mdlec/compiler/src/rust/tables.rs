@@ -72,7 +72,7 @@ pub(super) fn entries(machine: &Machine) -> (TokenStream, TokenStream) {
     if machine.sizes().stamps {
         let frames = if has_frames(machine) { quote!(HERE) } else { quote!(&[]) };
         let new = quote!(runtime::Stamps::new([runtime::Stamp::START; #levels], #frames));
-        return (quote!(runtime::Stamps<'static, [runtime::Stamp; #levels]>), new);
+        return (quote!(runtime::Stamps<[runtime::Stamp; #levels]>), new);
     }
     (quote!([Nanos; #levels]), quote!([Nanos::ZERO; #levels]))
 }
@@ -104,7 +104,7 @@ pub(super) fn follows(follows: Follows) -> TokenStream {
     quote!(runtime::Follows::new(#atom, #from, #to))
 }
 
-/// Returns `fn paths`: the files whose paths laws replay, each once; `None` for a plan that replays no paths.
+/// Returns the files whose paths laws replay, each once; `None` for a plan that replays no paths.
 pub(super) fn paths(machine: &Machine, alphabet: &Alphabet) -> Option<TokenStream> {
     let replays = |quark: &Quark| {
         let declaration = alphabet.declarations_of(&quark.name).nth(quark.overload);
@@ -113,7 +113,7 @@ pub(super) fn paths(machine: &Machine, alphabet: &Alphabet) -> Option<TokenStrea
     let laws = machine.atoms().map(fsm::Atom::law).filter(|quark| replays(quark));
     let files: BTreeSet<_> = laws.flat_map(|quark| quark.args.iter().filter_map(file)).collect();
     let files = files.iter();
-    (files.len() > 0).then(|| quote!(fn paths(&self) -> &[&'static str] { &[#(#files),*] }))
+    (files.len() > 0).then(|| quote!(#(#files),*))
 }
 
 /// The name of the file that an argument is.

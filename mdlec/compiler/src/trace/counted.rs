@@ -2,7 +2,7 @@
 //! (docs/src/reference/semantics.md, 9). Robots run the same machine; here a script replaces the robot.
 
 use mdle_runtime::{
-    Begin, Cause, Cursor, Ending, Fsm, Measured, Nanometers, Nanos, Pose, Stamp, Stamps, Transition, Turn, Watch,
+    Begin, Cause, Cursor, Ending, Fsm, Here, Measured, Nanometers, Nanos, Pose, Stamp, Stamps, Transition, Turn, Watch,
 };
 
 use super::{Applied, Fired, Machine, Outcome, Reports};
@@ -85,7 +85,10 @@ struct Scripted<'p> {
     memories: Vec<bool>,
 }
 
-type At<'p> = Cursor<Stamps<'p, Box<[Stamp]>>, Box<[u64]>>;
+/// The entries of a plan's scopes.
+type Entered<'p> = Stamps<Box<[Stamp]>, &'p [Option<Here>]>;
+
+type At<'p> = Cursor<Entered<'p>, Box<[u64]>>;
 
 /// Situation of a condition: a scope's level in the current state, with the reports of the turn.
 struct Read<'r, 'p> {
@@ -189,7 +192,7 @@ impl<'p> Scripted<'p> {
 impl<'p> mdle_runtime::Plan for Scripted<'p> {
     type Output = Reports;
     type Input = ();
-    type Entered = Stamps<'p, Box<[Stamp]>>;
+    type Entered = Entered<'p>;
     type Left = Box<[u64]>;
 
     fn fsm(&self) -> Fsm<'_> {

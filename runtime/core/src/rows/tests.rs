@@ -2,11 +2,12 @@
 
 use std::vec::Vec;
 
-use super::{Condition, Guard, InRows, LawRow, Reading, Rows, Texts};
+use super::{InRows, Reading};
 use crate::fsm::{Atom, Bracket};
 use crate::{
-    Alphabet, Argument, Begin, Cause, Comparison, Completes, Control, Cursor, Follows, Frame, Fsm, Interrupt, Law,
-    Limit, MarkRow, Measured, Memories, Memory, Nanometers, Nanos, NoSignal, Output, Plan, Radians,
+    Alphabet, Argument, Begin, Cause, Comparison, Completes, Condition, Control, Cursor, Fact, Follows, Frame, Fsm,
+    Guard, Interrupt, Law, LawRow, Limit, MarkRow, Measured, Memories, Memory, Nanometers, Nanos, NoSignal, Output,
+    Plan, Radians, Rows, Texts,
 };
 
 /// The numbers of the interrupts that fire.
@@ -140,7 +141,7 @@ fn times_fire_from_their_first_moment_until_before_their_last() {
 fn rising_fires_if_its_operand_does_and_once_did_not() {
     let operands = [Condition::Quark(Fires(0))];
     let fired = |y: &Sensed, was_low: bool| {
-        let mut memories = Memories::new(2, &[], [false; 2]);
+        let mut memories = Memories::new(2, [false; 2]);
         memories.set(0, 1, was_low);
         Condition::Rising(1, 0).fired(&at(&operands, y, &memories), 0)
     };
@@ -216,14 +217,16 @@ struct Remembering {
 const BRACKETS: [Bracket; 4] =
     [Bracket::scope(0, 0, 1, 0), Bracket::scope(1, 0, 0, 0), Bracket::scope(2, 0, 0, 1), Bracket::scope(1, 1, 1, 0)];
 const ATOMS: [Atom; 2] = [Atom::new(2, 1), Atom::new(3, 2)];
-const MARKS: [MarkRow<'_>; 2] = [
-    MarkRow { bracket: 1, level: 0, first: 3, count: 1, facts: &[(3, Some(0))] },
-    MarkRow { bracket: 2, level: 0, first: 1, count: 2, facts: &[(1, None), (2, Some(1))] },
+const MARKS: [MarkRow; 2] = [
+    MarkRow { bracket: 1, level: 0, first: 3, count: 1, first_fact: 0, facts: 1 },
+    MarkRow { bracket: 2, level: 0, first: 1, count: 2, first_fact: 1, facts: 2 },
 ];
+const FACTS: [Fact; 3] =
+    [Fact { memory: 3, operand: Some(0) }, Fact { memory: 1, operand: None }, Fact { memory: 2, operand: Some(1) }];
 const WIDTH: usize = 5;
 const LEVELS: usize = 3;
 type Set = [bool; WIDTH * LEVELS];
-type Remembers<'r> = InRows<'r, Toy, [Nanos; LEVELS], [u64; 0], Memories<'r, Set>>;
+type Remembers<'r> = InRows<&'r Rows<'r, Toy>, [Nanos; LEVELS], [u64; 0], Memories<Set>>;
 type At = Cursor<[Nanos; LEVELS], [u64; 0]>;
 const BEGIN: Begin = Begin { now: Nanos::ZERO, frame: Frame(Radians(0.25)) };
 
@@ -244,11 +247,12 @@ impl Remembering {
     /// level.
     fn after<R>(&self, before: Set, act: impl FnOnce(&mut Remembers<'_>, &mut At) -> R) -> (R, Vec<usize>) {
         let laws = [0.0, 1.0].map(|angle| LawRow { control: Points::default(), frame: Radians(angle) });
-        let texts = Texts { laws: &[], conditions: &[], names: &[] };
         let fsm = Fsm { brackets: &BRACKETS, atoms: &ATOMS, termination: 3 };
-        let rows: Rows<'_, Toy> = Rows { fsm, guards: &self.guards, operands: &self.operands, laws: &laws, texts };
+        let (guards, operands) = (&self.guards, &self.operands);
+        let rows: Rows<'_, Toy> =
+            Rows { fsm, guards, operands, laws: &laws, marks: &MARKS, facts: &FACTS, texts: Texts::NONE };
         let slots = ([Nanos::ZERO; LEVELS], []);
-        let memories = Memories::new(WIDTH as u32, &MARKS, before);
+        let memories = Memories::new(WIDTH as u32, before);
         let mut plan = InRows::remembering(&rows, slots.0, slots.1, memories);
         let mut cursor = Cursor::start(fsm, slots.0, slots.1, Nanos::ZERO);
         plan.enter(0, &Sensed(&[]), BEGIN);

@@ -1,0 +1,120 @@
+//! Conditions of interrupts as rows, and their evaluation (docs/src/reference/semantics.md, 2).
+
+use crate::{Interrupt, Memory, Nanometers, Nanos};
+
+/// The condition of an interrupt, or an operand of one.
+#[derive(Debug)]
+pub enum Condition<I> {
+    /// Never fires.
+    Null,
+    /// A quark.
+    Quark(I),
+    /// Fires once this much time has passed since its scope was entered.
+    Wait(Nanos),
+    /// Fires while the time since its scope was entered is at least the first value and below the second.
+    Elapsed(Nanos, Nanos),
+    /// Fires while the length of the path driven since its scope was entered is at least the first value and below the
+    /// second.
+    Driven(Nanometers, Nanometers),
+    /// Fires when any operand fires: the number of the first operand, and the number of operands.
+    Or(u32, u32),
+    /// Fires when all operands fire: the number of the first operand, and the number of operands.
+    And(u32, u32),
+    /// Fires when its operand does not: the number of the operand.
+    Not(u32),
+    /// Fires when its operand fires and did not in an earlier turn of this scope, as the memory records: the numbers of
+    /// the memory and of the operand.
+    Rising(u32, u32),
+    /// Fires while a memory of an ending is set: the level of its scope, and its number.
+    After(u16, u32),
+}
+
+/// Values that a condition reads.
+pub(crate) struct Reading<'r, I, Y, M> {
+    pub(crate) y: &'r Y,
+    /// Time since the scope of the condition was entered, and the number of that scope's enclosing scopes.
+    pub(crate) since: Nanos,
+    pub(crate) level: u16,
+    /// The length of the path driven since then.
+    pub(crate) way: Nanometers,
+    pub(crate) operands: &'r [Condition<I>],
+    pub(crate) memory: &'r M,
+}
+
+impl<I> Condition<I> {
+    /// Returns `true` if the condition has fired; reads every operand, whose numbers are `from` or more. The recursion
+    /// is as deep as the text's parentheses.
+    pub(crate) fn fired<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>, from: u32) -> bool
+    where
+        I: Interrupt<Y>,
+    {
+        let operand = |number: u32| {
+            let operand = at.operands.get(number as usize).filter(|_| number >= from);
+            operand.is_some_and(|operand| operand.fired(at, number.saturating_add(1)))
+        };
+        let all = |first: u32, count: u32| (first..first.saturating_add(count)).map(operand);
+        match self {
+            Self::Null => false,
+            Self::Quark(interrupt) => interrupt.fired(at.y),
+            Self::Wait(time) => at.since >= *time,
+            Self::Elapsed(from, until) => (*from..*until).contains(&at.since),
+            Self::Driven(from, until) => (*from..*until).contains(&at.way),
+            Self::Or(first, count) => all(*first, *count).fold(false, |fired, operand| fired | operand),
+            Self::And(first, count) => all(*first, *count).fold(true, |fired, operand| fired & operand),
+            Self::Not(number) => !operand(*number),
+            Self::Rising(memory, number) => at.memory.is_set(at.level, *memory) & operand(*number),
+            Self::After(level, memory) => at.memory.is_set(*level, *memory),
+        }
+    }
+
+    /// Returns the place of the first operand of an OR that has fired; 0 for any other condition.
+    pub(crate) fn cause<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>) -> u32
+    where
+        I: Interrupt<Y>,
+    {
+        let Self::Or(first, count) = self else { return 0 };
+        let mut operands = (0..*count).zip(*first..).filter_map(|(place, number)| {
+            let operand = at.operands.get(number as usize)?;
+            operand.fired(at, number.saturating_add(1)).then_some(place)
+        });
+        operands.next().unwrap_or(0)
+    }
+
+    /// Returns the first RISING in the condition, from memory `from` on, whose operand has not fired.
+    pub(crate) fn first_low<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>, from: u32) -> Option<u32>
+    where
+        I: Interrupt<Y>,
+    {
+        let mut first: Option<u32> = None;
+        self.low(at, 0, &mut |memory| {
+            if memory >= from && first.is_none_or(|first| memory < first) {
+                first = Some(memory);
+            }
+        });
+        first
+    }
+
+    /// Calls `tell` with the memory of every RISING in the condition whose operand has not fired.
+    pub(crate) fn low<Y, M: Memory>(&self, at: &Reading<'_, I, Y, M>, from: u32, tell: &mut impl FnMut(u32))
+    where
+        I: Interrupt<Y>,
+    {
+        let inside = match self {
+            Self::Null | Self::Quark(_) | Self::Wait(_) | Self::Elapsed(..) | Self::Driven(..) | Self::After(..) => {
+                return;
+            }
+            Self::Or(first, count) | Self::And(first, count) => *first..first.saturating_add(*count),
+            Self::Not(number) | Self::Rising(_, number) => *number..number.saturating_add(1),
+        };
+        for number in inside {
+            let Some(operand) = at.operands.get(number as usize).filter(|_| number >= from) else { continue };
+            let behind = number.saturating_add(1);
+            if let Self::Rising(memory, _) = self
+                && !operand.fired(at, behind)
+            {
+                tell(*memory);
+            }
+            operand.low(at, behind, tell);
+        }
+    }
+}

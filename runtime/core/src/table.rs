@@ -1,0 +1,154 @@
+//! Tables of a plan: the meaning of its scopes and atoms, as values instead of code.
+//!
+//! `mdlec` emits tables for plans that are too long to be code of their own, and a plan loaded at run time owns its
+//! tables. A row costs rustc next to nothing, and a turn reads as many rows as there are scopes that enclose the current
+//! atom.
+
+use crate::{Alphabet, Condition, Fact, Follows, Fsm, MarkRow, Radians, Source, Words};
+
+/// The tables of a plan: [`Rows`] of constants, or tables that a loaded plan owns.
+pub trait Table {
+    /// The robot's alphabet.
+    type Alphabet: Alphabet;
+
+    /// Returns the machine's tables.
+    fn fsm(&self) -> Fsm<'_>;
+    /// Returns the condition by which each bracket ends, in the order of the brackets.
+    fn guards(&self) -> &[Guard<<Self::Alphabet as Alphabet>::Interrupt>];
+    /// Returns the operands of conditions. The operands of an operand come after it, so there can be no cycle.
+    fn operands(&self) -> &[Condition<<Self::Alphabet as Alphabet>::Interrupt>];
+    /// Returns the law of each atom, in the order of the atoms.
+    fn laws(&self) -> &[LawRow<<Self::Alphabet as Alphabet>::Control>];
+    /// Returns the labels of what ends with each bracket, in the order of the brackets.
+    fn marks(&self) -> &[MarkRow];
+    /// Returns the facts of all labels, which `after` reads.
+    fn facts(&self) -> &[Fact];
+    /// Returns the quark text of an atom's law.
+    fn law(&self, atom: u32) -> &str;
+    /// Returns the condition text of a bracket.
+    fn condition(&self, scope: u32) -> &str;
+    /// Returns the name of a bracket.
+    fn name(&self, scope: u32) -> &str;
+    /// Returns the words and places of the plan's text.
+    fn source(&self) -> &dyn Words;
+    /// Returns the names of the paths that its laws replay.
+    fn paths(&self) -> &[&'static str];
+}
+
+/// Meaning of the brackets and atoms of a plan.
+pub struct Rows<'a, A: Alphabet> {
+    /// The machine's tables.
+    pub fsm: Fsm<'a>,
+    /// Condition by which each bracket ends, in the order of the brackets.
+    pub guards: &'a [Guard<A::Interrupt>],
+    /// The operands of conditions. The operands of an operand come after it, so there can be no cycle.
+    pub operands: &'a [Condition<A::Interrupt>],
+    /// Law of each atom, in the order of the atoms.
+    pub laws: &'a [LawRow<A::Control>],
+    /// The labels of what ends with each bracket, in the order of the brackets.
+    pub marks: &'a [MarkRow],
+    /// The facts of all labels, which `after` reads.
+    pub facts: &'a [Fact],
+    /// Texts of the plan, for traces and messages.
+    pub texts: Texts<'a>,
+}
+
+impl<A: Alphabet> Table for &Rows<'_, A> {
+    type Alphabet = A;
+
+    #[inline(always)]
+    fn fsm(&self) -> Fsm<'_> {
+        self.fsm
+    }
+
+    #[inline(always)]
+    fn guards(&self) -> &[Guard<A::Interrupt>] {
+        self.guards
+    }
+
+    #[inline(always)]
+    fn operands(&self) -> &[Condition<A::Interrupt>] {
+        self.operands
+    }
+
+    #[inline(always)]
+    fn laws(&self) -> &[LawRow<A::Control>] {
+        self.laws
+    }
+
+    #[inline(always)]
+    fn marks(&self) -> &[MarkRow] {
+        self.marks
+    }
+
+    #[inline(always)]
+    fn facts(&self) -> &[Fact] {
+        self.facts
+    }
+
+    fn law(&self, atom: u32) -> &str {
+        text(self.texts.laws, atom)
+    }
+
+    fn condition(&self, scope: u32) -> &str {
+        text(self.texts.conditions, scope)
+    }
+
+    fn name(&self, scope: u32) -> &str {
+        text(self.texts.names, scope)
+    }
+
+    fn source(&self) -> &dyn Words {
+        &self.texts.source
+    }
+
+    fn paths(&self) -> &[&'static str] {
+        self.texts.paths
+    }
+}
+
+/// Condition by which a scope ends, and the successor; a loop has a row that never fires.
+#[derive(Debug)]
+pub struct Guard<I> {
+    /// Condition of the scope's interrupt.
+    pub condition: Condition<I>,
+    /// Number of enclosing scopes.
+    pub level: u16,
+    /// Nearest enclosing bracket whose condition can fire; the bracket's own number if there is no such bracket.
+    pub around: u32,
+    /// Successor of the scope, if it is known beforehand: [`Fsm::follows`].
+    pub follows: Option<Follows>,
+}
+
+/// The law of an atom, and the angle by which its frame is turned.
+#[derive(Debug)]
+pub struct LawRow<C> {
+    /// The law with its arguments.
+    pub control: C,
+    /// Counter-clockwise.
+    pub frame: Radians,
+}
+
+/// The texts of a plan; empty for a plan without texts.
+#[derive(Debug)]
+pub struct Texts<'a> {
+    /// The quark text of each atom's law.
+    pub laws: &'a [&'a str],
+    /// The condition text of each bracket.
+    pub conditions: &'a [&'a str],
+    /// The name of each bracket.
+    pub names: &'a [&'a str],
+    /// The words and places of the plan's text.
+    pub source: Source<'a>,
+    /// The names of the paths that its laws replay.
+    pub paths: &'a [&'static str],
+}
+
+impl Texts<'_> {
+    /// The texts of a plan without texts.
+    pub const NONE: Self = Self { laws: &[], conditions: &[], names: &[], source: Source::NONE, paths: &[] };
+}
+
+fn text<'a>(texts: &[&'a str], index: u32) -> &'a str {
+    texts.get(index as usize).copied().unwrap_or("")
+}
