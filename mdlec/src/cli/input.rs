@@ -234,7 +234,9 @@ fn line(declaration: &Declaration, alphabet: &Alphabet, width: usize) -> String 
         [] => String::new(),
         missing => format!(" (not on {}: it has no {})", alphabet.name, missing.join(", ")),
     };
-    format!("  {:width$}  {}{missing}\n", signature(declaration), declaration.docs)
+    let exclusive =
+        if declaration.exclusive { " Exclusive: fires for one value of its arguments at a time." } else { "" };
+    format!("  {:width$}  {}{exclusive}{missing}\n", signature(declaration), declaration.docs)
 }
 
 fn read_alphabets(own: Option<(String, String)>, name: &str) -> Result<Target, Failure> {

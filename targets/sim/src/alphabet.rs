@@ -13,7 +13,7 @@ pub const NAME: &str = "sim";
 /// The period of a turn, unless the operator says otherwise.
 pub const PERIOD: runtime::Nanos = runtime::Nanos(100000000);
 /// Tells this alphabet from any other: a plan that was compiled for another one does not compile.
-pub const HASH: u64 = 0x2f2d6a68f3e7ec1a;
+pub const HASH: u64 = 0xd823a7a03e7609a5;
 /// `go <v in cm/s> <omega in rad/s>`: Drives with a forward speed and a turn rate, counter-clockwise positive, for ever.
 const fn go(arguments: &[runtime::Argument<'_>]) -> Option<Go> {
     let &[runtime::Argument::Speed(v), runtime::Argument::AngularRate(omega)] = arguments

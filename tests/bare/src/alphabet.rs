@@ -12,7 +12,7 @@ pub const NAME: &str = "bare";
 /// The period of a turn, unless the operator says otherwise.
 pub const PERIOD: runtime::Nanos = runtime::Nanos(100000000);
 /// Tells this alphabet from any other: a plan that was compiled for another one does not compile.
-pub const HASH: u64 = 0xbb557fc286ec0d24;
+pub const HASH: u64 = 0x57b11509e2a7fe4d;
 
 runtime::alphabet! {
     capabilities: [

@@ -33,8 +33,33 @@ pub(super) fn check(alphabet: &AlphabetFile) -> Vec<Diagnostic> {
         if declaration.completes && declaration.kind != DeclarationKind::Control {
             found.push(at(declaration, format!("only a law completes, and `{}` is none", declaration.name)));
         }
+        if declaration.exclusive {
+            found.extend(exclusive(declaration));
+        }
     }
     found
+}
+
+/// Reports why an interrupt cannot be `exclusive`: its uses have to differ in arguments that have no rounding, and to
+/// fire alike in all scopes.
+fn exclusive(declaration: &Declaration) -> Option<Diagnostic> {
+    let name = &declaration.name;
+    let because = |message: String| Some(at(declaration, message));
+    if declaration.kind != DeclarationKind::Interrupt {
+        return because(format!("`{name}` is `exclusive`, but only an interrupt can be"));
+    }
+    if declaration.remembers {
+        return because(format!(
+            "`{name}` cannot be both `remembers` and `exclusive`: each scope has a memory of its own"
+        ));
+    }
+    if declaration.params.is_empty() {
+        return because(format!("`{name}` is `exclusive`, but has no parameters in which two uses could differ"));
+    }
+    let measured = declaration.params.iter().find(|param| !param.kind.is_discrete())?;
+    let kind = measured.kind.words();
+    because(format!("`{}` is {kind}, which an exclusive interrupt cannot have as a parameter", measured.name))
+        .map(|found| found.help("its parameters are of the types bits, integer, count, sonar, robot and module"))
 }
 
 fn kinds_of(declaration: &Declaration) -> Vec<Kind> {

@@ -180,6 +180,7 @@ impl fmt::Display for Declaration {
             }
         }
         let unit = self.unit.map(|(unit, tolerance)| (unit.name, tolerance));
-        write!(f, ") {unit:?} {} {} {:?}", self.completes, self.remembers, self.needs)
+        let exclusive = if self.exclusive { " exclusive" } else { "" };
+        write!(f, ") {unit:?} {} {}{exclusive} {:?}", self.completes, self.remembers, self.needs)
     }
 }

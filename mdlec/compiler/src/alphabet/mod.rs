@@ -79,6 +79,8 @@ pub struct Declaration {
     pub completes: bool,
     /// `true` if the quark has memory.
     pub remembers: bool,
+    /// `true` for an interrupt that fires for at most one value of its arguments in a turn.
+    pub exclusive: bool,
     /// Capabilities that the robot must have.
     pub needs: Vec<Capability>,
     /// File that declares the quark.

@@ -96,6 +96,17 @@ impl Kind {
         }
     }
 
+    /// Returns `true` if two values of the kind are equal only if they are written alike, without rounding or another
+    /// name.
+    #[must_use]
+    pub fn is_discrete(self) -> bool {
+        match self {
+            Self::Integer | Self::Count | Self::Bits(_) | Self::Sonar | Self::Robot | Self::Module => true,
+            Self::Length | Self::Speed | Self::Angle | Self::AngularRate | Self::Time | Self::Voltage => false,
+            Self::Frequency | Self::Number | Self::File => false,
+        }
+    }
+
     /// Unit in which values are compared and computed.
     #[must_use]
     pub fn base_unit(self) -> Option<Unit> {

@@ -157,11 +157,13 @@ impl<'t> Reader<'t> {
         self.at += 1;
         let (name, span) = self.name()?;
         let params = self.params()?;
-        let (unit, mut completes, mut remembers, mut needs) = (self.unit_and_tolerance()?, false, false, Vec::new());
+        let (unit, mut needs) = (self.unit_and_tolerance()?, Vec::new());
+        let (mut completes, mut remembers, mut exclusive) = (false, false, false);
         loop {
             match self.peek_word() {
                 Some("completes") => completes = true,
                 Some("remembers") => remembers = true,
+                Some("exclusive") => exclusive = true,
                 Some("needs") => {
                     self.at += 1;
                     needs = self.capability_list()?;
@@ -171,7 +173,7 @@ impl<'t> Reader<'t> {
             }
             self.at += 1;
         }
-        Ok(Declaration { docs, kind, name, params, unit, completes, remembers, needs, origin, span })
+        Ok(Declaration { docs, kind, name, params, unit, completes, remembers, exclusive, needs, origin, span })
     }
 
     fn params(&mut self) -> Read<Vec<Param>> {

@@ -37,7 +37,7 @@ pub(super) struct KnownFacts<'l> {
     distances: Vec<(u64, u32)>,
     /// Other conditions of enclosing scopes that have not fired, by the variables in them.
     clauses: BTreeMap<Variable, Vec<Read<'l>>>,
-    families: BTreeMap<Family, BTreeSet<QuarkId>>,
+    families: BTreeMap<Family<'l>, BTreeSet<QuarkId>>,
     readings: Readings,
 }
 

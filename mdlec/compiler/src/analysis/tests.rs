@@ -5,6 +5,9 @@ mod texts;
 use mdle_runtime::fsm::{Atom, Bracket};
 
 use super::{Reach, analyze};
+use crate::alphabet::{self, Alphabet};
+use crate::compile;
+use crate::diagnostic::{Code, SourceId};
 use crate::fsm::{LawMeaning, Machine, ScopeMeaning};
 use crate::samples::compiled;
 
@@ -39,6 +42,24 @@ fn durations(text: &str) -> (Option<f64>, Option<f64>, Option<u64>) {
 
 fn transitions(text: &str) -> u64 {
     analyze(&compiled(text)[0].lowered).transitions
+}
+
+#[test]
+fn uses_of_an_exclusive_interrupt_exclude_each_other() {
+    let alphabet = "alphabet a; control stop; interrupt lamp(of: sonar); interrupt wait(of: time);
+        interrupt door(of: sonar) exclusive; interrupt door(of: robot) exclusive; interrupt gate(of: sonar) exclusive;";
+    let (alphabet, _) = alphabet::read(SourceId(0), alphabet);
+    let alphabet = Alphabet::shared(alphabet.unwrap());
+    let codes = |condition: &str| {
+        let text = format!("{{ P (wait 9) (Atom ({condition}) stop) }}");
+        let (_, found) = compile(SourceId(1), &text, &alphabet, None);
+        found.iter().map(|found| found.code).collect::<Vec<_>>()
+    };
+    assert_eq!(codes("door 1 AND door 2"), [Code::W0203]);
+    assert_eq!(codes("NOT (NOT door 1 OR NOT door 2)"), [Code::W0203]);
+    for both in ["lamp 1 AND lamp 2", "door 1 AND gate 2", "door 1 AND door ada", "door 1 AND NOT door 2", "door 1"] {
+        assert_eq!(codes(both), [], "{both}");
+    }
 }
 
 #[test]

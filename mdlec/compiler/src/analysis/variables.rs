@@ -42,7 +42,7 @@ pub(super) fn possible(
     let mut possible = choices.constant(true);
     let mut timers: Vec<(u32, u64, &Table)> = Vec::new();
     let mut ways: Vec<(u32, u64, &Table)> = Vec::new();
-    let mut families: BTreeMap<Family, Vec<(&Quark, &Table)>> = BTreeMap::new();
+    let mut families: BTreeMap<Family<'_>, Vec<(&Quark, &Table)>> = BTreeMap::new();
     for (variable, column) in choices.columns() {
         match variable {
             Variable::Timer(bracket, nanos) => {

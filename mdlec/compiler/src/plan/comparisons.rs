@@ -113,6 +113,7 @@ pub(super) fn resolve(
         args: Vec::new(),
         completes: false,
         remembers: false,
+        exclusive: false,
         comparison: Some(comparison),
         text,
     });

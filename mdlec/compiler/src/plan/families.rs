@@ -1,32 +1,24 @@
-//! Families of interrupts whose values exclude each other: a signal has one value, and at most one pattern of obstacles
-//! matches.
+//! Families of interrupts whose values exclude each other: a signal has one value, and an interrupt that its alphabet
+//! declares `exclusive` fires for at most one value of its arguments.
 
 use super::{Compared, Comparison, Operator, Quark, QuarkId, Value};
 use crate::alphabet::{Kind, family_to_si};
 
 /// A family of interrupt quarks that depend on the same quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Family {
-    /// Patterns of obstacles; at most one of them matches.
-    Patterns,
+pub(crate) enum Family<'q> {
+    /// Uses of an exclusive interrupt, by its name and the index of its declaration among those of the name.
+    Exclusive(&'q str, usize),
     /// Comparisons of this signal with a value.
     Signal(QuarkId),
 }
 
 /// Family of a quark; `None` if its values are independent.
-pub(crate) fn family(quark: &Quark) -> Option<Family> {
+pub(crate) fn family(quark: &Quark) -> Option<Family<'_>> {
     match &quark.comparison {
         // An angle comes round to where it was.
         Some(comparison) => threshold(comparison).map(|_| Family::Signal(comparison.signal)),
-        None => (pattern(quark).is_some()).then_some(Family::Patterns),
-    }
-}
-
-/// Bits of `atIsection`: all must match, so two different patterns exclude each other.
-fn pattern(quark: &Quark) -> Option<&[bool]> {
-    match quark.args.as_slice() {
-        [Value::Bits(bits)] if quark.name == "atIsection" => Some(bits),
-        _ => None,
+        None => quark.exclusive.then_some(Family::Exclusive(&quark.name, quark.overload)),
     }
 }
 
@@ -56,16 +48,14 @@ pub(crate) enum Readings {
 /// quarks.
 pub(crate) fn at_once<'q>(quarks: impl Iterator<Item = &'q Quark>, readings: Readings) -> Vec<Vec<bool>> {
     let quarks: Vec<&Quark> = quarks.collect();
-    let are_numbers = readings == Readings::Numbers && quarks.iter().all(|quark| pattern(quark).is_none());
-    // No pattern need match.
+    let are_numbers = readings == Readings::Numbers && !quarks.iter().any(|quark| quark.exclusive);
+    // No exclusive interrupt has to fire.
     let mut all = if are_numbers { Vec::new() } else { vec![vec![false; quarks.len()]] };
     for value in values(&quarks) {
         all.push(quarks.iter().map(|quark| holds(quark, value)).collect());
     }
-    for one in &quarks {
-        if let Some(bits) = pattern(one) {
-            all.push(quarks.iter().map(|other| pattern(other) == Some(bits)).collect());
-        }
+    for one in quarks.iter().filter(|quark| quark.exclusive) {
+        all.push(quarks.iter().map(|other| other.args == one.args).collect());
     }
     all.sort_unstable();
     all.dedup();

@@ -82,6 +82,8 @@ pub struct Quark {
     pub completes: bool,
     /// `true` if the quark has memory, so that it is never the same function in two scopes.
     pub remembers: bool,
+    /// `true` for an interrupt that fires for at most one value of its arguments in a turn.
+    pub exclusive: bool,
     /// For a comparison of signals: its parts.
     pub comparison: Option<Comparison>,
     /// Quark text of the quark (docs/src/reference/language.md, 7).

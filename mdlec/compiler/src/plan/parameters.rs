@@ -203,6 +203,7 @@ fn declaration(plan: &tree::Plan<'_>, parameters: &Parameters<'_>) -> Declaratio
         unit: None,
         completes: false,
         remembers: false,
+        exclusive: false,
         needs: Vec::new(),
         origin: Origin::Target,
         span: plan.name.span,

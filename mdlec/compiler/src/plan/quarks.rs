@@ -82,6 +82,7 @@ impl<'a> Quarks<'a> {
             args: arguments.values,
             completes: declaration.completes,
             remembers: declaration.remembers,
+            exclusive: declaration.exclusive,
             comparison: None,
             text,
         })

@@ -115,7 +115,7 @@ impl Skipped<'_, '_> {
 
     /// Returns `true` if these quarks can have these values in one turn.
     fn can_be(&self, values: impl Iterator<Item = (QuarkId, bool)>) -> bool {
-        let mut families: BTreeMap<Family, Vec<(&Quark, bool)>> = BTreeMap::new();
+        let mut families: BTreeMap<Family<'_>, Vec<(&Quark, bool)>> = BTreeMap::new();
         let mut all = self.known.clone();
         for (id, value) in values {
             if all.insert(id, value).is_some_and(|known| known != value) {
