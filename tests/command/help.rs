@@ -160,11 +160,16 @@ fn a_version_names_what_was_built() {
     let texts = ["use \"legs.mdle\"\n{ Rest Legs }\n", "{ Legs (Atom (wait 1ms) stop) }\n"];
     let first = version("first", texts);
     let words: Vec<_> = first.split_whitespace().collect();
-    let ["Rest", "(text", own, "target", "sim,", "alphabet", alphabet, "mdlec", compiler] = *words else {
+    let ["Rest", "(text", own, "target", "sim,", "alphabet", alphabet, "mdlec", compiler, rest @ ..] = &*words else {
         panic!("{first}")
     };
-    assert_eq!((own.len(), alphabet.len(), compiler), (13, 13, "0.1.0)"));
+    assert_eq!((own.len(), alphabet.len(), *compiler), (13, 13, "0.1.0,"));
+    let ["code", code, "rustc", release] = rest else { panic!("{first}") };
+    assert!(code.len() == 13 && release.starts_with("1."), "{first}");
     assert_eq!(version("second", texts), first);
     let used = version("third", [texts[0], "{ Legs (Atom (wait 2ms) stop) }\n"]);
-    assert!(used != first && used.ends_with(&first[first.find(", target").unwrap()..]), "{used}");
+    assert!(
+        used != first && used.contains(&first[first.find(", target").unwrap()..first.find(", code").unwrap()]),
+        "{used}"
+    );
 }

@@ -11,6 +11,7 @@ mod large_input;
 mod newcomer;
 mod proposals;
 mod random_input;
+mod reproducible;
 mod settings;
 mod strange_files;
 mod used_files;

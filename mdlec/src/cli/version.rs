@@ -1,4 +1,4 @@
-//! Answer of an executable to `--version`: identifies its sources. It depends only on texts, not on place or time.
+//! Texts that an executable depends on, for its answer to `--version`: neither place nor time is among them.
 
 use super::input::{Input, Target};
 
@@ -6,7 +6,7 @@ use super::input::{Input, Target};
 /// and the version of the compiler.
 pub(super) fn version(input: &Input, target: &Target) -> String {
     format!(
-        "(text {}, target {}, alphabet {}, mdlec {})",
+        "text {}, target {}, alphabet {}, mdlec {}",
         hash(input.texts()),
         target.alphabet.name,
         hash(target.texts()),

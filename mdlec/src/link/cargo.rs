@@ -48,6 +48,8 @@ const PROFILE: [&str; 13] = [
 pub(super) struct Toolchain {
     /// Target triple of this machine.
     pub(super) host: String,
+    /// Version of rustc, as `1.95.0`.
+    pub(super) release: String,
 }
 
 impl Toolchain {
@@ -67,7 +69,7 @@ impl Toolchain {
         if version(release) < version(NEEDED) {
             return Err(LinkError::OldRust { needed: NEEDED, found: release.to_owned() });
         }
-        Ok(Self { host: host.to_owned() })
+        Ok(Self { host: host.to_owned(), release: release.to_owned() })
     }
 }
 

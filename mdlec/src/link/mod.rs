@@ -10,11 +10,15 @@
 //! src-VERSION-HASH/       the unpacked sources; those of versions that are no longer used are removed
 //! target/                 the build results of cargo, for all plans
 //! tmp/                    temporary files of the current build
-//! plans/plan-NAME-HASH/   the package of a plan; HASH is of the plan file's path, the plan and the target
+//! plans/plan-NAME-HASH/   the package of a plan; HASH is of its text as Rust and of the target
 //! ```
 //!
 //! Only its user has access to the cache. mdlec repairs damage in it: files of mdlec are compared byte by byte, build
 //! results by their hash, and where cargo cannot read the rest, everything is compiled again.
+//!
+//! An executable depends on the text of the plan, on mdlec, on the target, on Rust's version and on the path of the cache:
+//! not on the plan's folder, nor on earlier builds. Cargo puts the paths of packages into the symbols of their code, so
+//! that another cache gives other bytes.
 //!
 //! Versions are those of mdlec's own lock file, flags are set here in every environment, and the paths of the cache, of
 //! cargo's home and of the user's home do not get into the executable.
@@ -37,6 +41,7 @@ mod package;
 mod progress;
 mod seal;
 mod sources;
+mod superseded;
 mod target;
 
 use std::fs::File;
@@ -64,7 +69,7 @@ use target::Dependencies;
 pub struct Package<'a> {
     /// Name of the plan, which the executable shows.
     pub plan_name: &'a str,
-    /// Answer of the executable to `--version`, printed after the plan's name.
+    /// Texts that the executable depends on, for its answer to `--version`.
     pub version: &'a str,
     /// Plan file that contains the plan.
     pub plan_file: &'a Path,
@@ -104,7 +109,8 @@ pub fn build(
     let toolchain = Toolchain::find()?;
     let sources = Sources::unpack(cache)?;
     let dependencies = target::dependencies(package.target, &sources)?;
-    let plan = package::write(cache, package, &dependencies)?;
+    let plan = package::write(cache, package, &dependencies, &toolchain)?;
+    superseded::remove_before(cache, package.plan_file, &plan)?;
     let job = Job { cache, toolchain: &toolchain, plan: &plan };
     let executable = make(&job, package.target, &dependencies, progress)?;
     let size = destination.copy(&executable.path)?;

@@ -5,8 +5,9 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use super::cache::{remove, write_if_changed};
+use super::cargo::Toolchain;
 use super::target::Dependencies;
-use super::{Cache, LinkError, Package, build_record};
+use super::{Cache, LinkError, Package, build_record, sources};
 
 /// A plan's package that has been written.
 #[derive(Debug)]
@@ -41,9 +42,18 @@ pub(super) fn write(
     cache: &Cache,
     package: &Package<'_>,
     dependencies: &Dependencies,
+    toolchain: &Toolchain,
 ) -> Result<PlanPackage, LinkError> {
-    let name = name(package, &dependencies.identity);
-    write_package(cache, &name, &[("src/main.rs", &main(package)), ("src/plan.rs", package.rust)], dependencies)
+    let main = main(package, &version(package, dependencies, toolchain));
+    let name = name(package, &main, &dependencies.identity);
+    write_package(cache, &name, &[("src/main.rs", &main), ("src/plan.rs", package.rust)], dependencies)
+}
+
+/// Returns the answer of the executable to `--version`, after the plan's name. Of two builds with the same answer that
+/// differ, the crate of a target that is no part of mdlec differs, or the path of the cache.
+fn version(package: &Package<'_>, dependencies: &Dependencies, toolchain: &Toolchain) -> String {
+    let code = [package.rust, sources::hash(), &dependencies.lock].join("\0");
+    format!("({}, code {}, rustc {})", package.version, &build_record::hash(code.as_bytes())[..12], toolchain.release)
 }
 
 /// Writes the package of the emulator of `robot`, whose crate is `crate_name`.
@@ -95,12 +105,12 @@ fn write_files(folder: &Path, files: &[(&str, &str)], lock: &str) -> Result<(), 
     Ok(())
 }
 
-/// Returns a readable package name that no other plan has: all executables are built in one folder.
-fn name(package: &Package<'_>, target: &str) -> String {
-    let file = package.plan_file.canonicalize().unwrap_or_else(|_| package.plan_file.to_owned());
+/// Returns a readable package name that no other text or target has: all executables are built in one folder, and their
+/// bytes depend on the name.
+fn name(package: &Package<'_>, main: &str, target: &str) -> String {
     let mut hasher = blake3::Hasher::new();
-    for part in [file.as_os_str().as_encoded_bytes(), package.plan_name.as_bytes(), target.as_bytes()] {
-        hasher.update(&part.len().to_le_bytes()).update(part);
+    for part in [main, package.rust, target] {
+        hasher.update(&part.len().to_le_bytes()).update(part.as_bytes());
     }
     let stem = package.plan_file.file_stem().unwrap_or_default().to_string_lossy();
     let stem: String = stem.chars().take(40).map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
@@ -126,9 +136,8 @@ fn manifest(name: &str, dependencies: &Dependencies) -> Result<String, LinkError
 }
 
 /// Text of `src/main.rs`.
-fn main(package: &Package<'_>) -> String {
-    let (target, plan) = (package.target.crate_name(), package.plan_type);
-    let (name, version) = (package.plan_name, package.version);
+fn main(package: &Package<'_>, version: &str) -> String {
+    let (target, plan, name) = (package.target.crate_name(), package.plan_type, package.plan_name);
     format!(
         "//! Made by mdlec: runs the plan on its target.\n\n\
          // Included, as a build script's output is: emitted text must be fit for both.\n\
@@ -157,15 +166,15 @@ mod tests {
     use std::path::{Path, PathBuf};
 
     use super::super::tests::cache;
-    use super::super::{Package, TargetCrate, build_record};
-    use super::{Dependencies, manifest, name, write};
+    use super::super::{Cache, Package, TargetCrate, build_record};
+    use super::{Dependencies, PlanPackage, Toolchain, manifest};
 
     const TARGET: TargetCrate<'static> = TargetCrate::Builtin { name: "sim", crate_name: "mdle_sim" };
 
     fn package<'a>(plan_file: &'a str, rust: &'a str) -> Package<'a> {
         Package {
             plan_name: "Nap",
-            version: "(text 0, target sim)",
+            version: "text 0, target sim",
             plan_file: Path::new(plan_file),
             plan_type: "Nap",
             inputs: &[],
@@ -184,6 +193,14 @@ mod tests {
         }
     }
 
+    fn toolchain() -> Toolchain {
+        Toolchain { host: "x86_64-unknown-linux-gnu".to_owned(), release: "1.95.0".to_owned() }
+    }
+
+    fn write(cache: &Cache, plan_file: &str, rust: &str) -> PlanPackage {
+        super::write(cache, &package(plan_file, rust), &dependencies(), &toolchain()).unwrap()
+    }
+
     #[test]
     fn the_manifest_stands_alone() {
         insta::assert_snapshot!(manifest("plan-nap-0", &dependencies()).unwrap());
@@ -191,22 +208,39 @@ mod tests {
 
     #[test]
     fn the_program_runs_the_plan_on_its_target() {
-        insta::assert_snapshot!(super::main(&package("nap.mdle", "")));
+        insta::assert_snapshot!(super::main(&package("nap.mdle", ""), "(text 0)"));
     }
 
     #[test]
     fn a_name_is_one_that_cargo_takes() {
-        let name = |file| name(&package(file, ""), "sim");
-        assert!(name("plans/größe 2.mdle").starts_with("plan-gr__e_2-"));
-        assert!(name("-").starts_with("plan-_-"));
-        assert_ne!(name("left/nap.mdle"), name("right/nap.mdle"));
-        assert_ne!(name("nap.mdle"), super::name(&package("nap.mdle", ""), "scout"));
+        let name = |file, rust, target| super::name(&package(file, rust), "", target);
+        assert!(name("plans/größe 2.mdle", "", "sim").starts_with("plan-gr__e_2-"));
+        assert!(name("-", "", "sim").starts_with("plan-_-"));
+        let nap = name("nap.mdle", "", "sim");
+        assert_eq!(name("elsewhere/nap.mdle", "", "sim"), nap);
+        assert_ne!(name("nap.mdle", "mod a {}", "sim"), nap);
+        assert_ne!(name("nap.mdle", "", "scout"), nap);
+    }
+
+    #[test]
+    fn the_version_names_what_is_compiled() {
+        let version = |rust, lock: &str, release: &str| {
+            let dependencies = Dependencies { lock: lock.to_owned(), ..dependencies() };
+            let toolchain = Toolchain { release: release.to_owned(), ..toolchain() };
+            super::version(&package("nap.mdle", rust), &dependencies, &toolchain)
+        };
+        let first = version("", "", "1.95.0");
+        assert!(first.starts_with("(text 0, target sim, code ") && first.ends_with(", rustc 1.95.0)"), "{first}");
+        assert_eq!(version("", "", "1.95.0"), first);
+        for other in [version("mod a {}", "", "1.95.0"), version("", "#", "1.95.0"), version("", "", "1.96.0")] {
+            assert_ne!(other, first);
+        }
     }
 
     #[test]
     fn what_has_not_changed_keeps_its_time() {
         let cache = cache("package");
-        let file = |name| write(&cache, &package("nap.mdle", "mod a {}"), &dependencies()).unwrap().folder.join(name);
+        let file = |name| write(&cache, "nap.mdle", "mod a {}").folder.join(name);
         let time = |name| fs::metadata(file(name)).unwrap().modified().unwrap();
         assert_eq!(time("src/plan.rs"), time("src/plan.rs"));
         assert_eq!(fs::read_to_string(file("src/plan.rs")).unwrap(), "mod a {}");
@@ -215,7 +249,7 @@ mod tests {
     #[test]
     fn a_lock_file_stays_as_cargo_left_it() {
         let cache = cache("lock");
-        let write = || write(&cache, &package("nap.mdle", "mod a {}"), &dependencies()).unwrap();
+        let write = || write(&cache, "nap.mdle", "mod a {}");
         let lock = write().folder.join("Cargo.lock");
         let text = || fs::read_to_string(&lock).unwrap();
         let package = write();

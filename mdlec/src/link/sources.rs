@@ -44,6 +44,11 @@ pub fn worlds(target: &str) -> impl Iterator<Item = &'static str> {
     embedded::FILES.iter().filter_map(move |(file, _)| file.strip_prefix(&*folder)?.strip_suffix(".toml"))
 }
 
+/// Hash of all packed files.
+pub(super) fn hash() -> &'static str {
+    embedded::HASH
+}
+
 /// Text of a packed file.
 pub(super) fn text(name: &str) -> &'static str {
     let file = embedded::FILES.iter().find(|(file, _)| *file == name);

@@ -1,0 +1,55 @@
+//! Removes what a plan file's former text left in the cache: a package is named after its text, so that an edit leaves
+//! the package before it, with an executable of some megabytes.
+
+use std::ffi::OsStr;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::cache::{remove, write_if_changed};
+use super::package::PlanPackage;
+use super::{Cache, LinkError, build_record};
+
+/// Name of the file in a package's folder that contains the hash of the plan file's path.
+const OWNER: &str = "owner";
+
+/// Records that `plan_file` was last built as `package`, and removes the packages that it was built as before.
+pub(super) fn remove_before(cache: &Cache, plan_file: &Path, package: &PlanPackage) -> Result<(), LinkError> {
+    let file = plan_file.canonicalize().unwrap_or_else(|_| plan_file.to_owned());
+    let owner = build_record::hash(file.as_os_str().as_encoded_bytes());
+    write_if_changed(&package.folder.join(OWNER), owner.as_bytes())?;
+    for folder in entries(&cache.plans())? {
+        let is_before = || fs::read(folder.join(OWNER)).is_ok_and(|before| before == owner.as_bytes());
+        if folder != package.folder && is_before() {
+            remove_results(cache, folder.file_name().unwrap_or_default())?;
+            remove(&folder)?;
+        }
+    }
+    Ok(())
+}
+
+/// Removes cargo's results of the package `name`: the executable, under both of its names, and the notes on it.
+fn remove_results(cache: &Cache, name: &OsStr) -> Result<(), LinkError> {
+    let Some(name) = name.to_str() else { return Ok(()) };
+    let names = [name.to_owned(), name.replace('-', "_")];
+    for triple in entries(&cache.target())? {
+        for folder in ["release", "release/deps", "release/.fingerprint"] {
+            for result in entries(&triple.join(folder))? {
+                let found = result.file_name().and_then(OsStr::to_str).unwrap_or_default();
+                if names.iter().any(|name| found.starts_with(name)) {
+                    remove(&result)?;
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Paths of the entries of a folder; empty if there is no such folder.
+fn entries(folder: &Path) -> Result<Vec<PathBuf>, LinkError> {
+    let entries = fs::read_dir(folder).and_then(|entries| entries.map(|entry| Ok(entry?.path())).collect());
+    match entries {
+        Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => Ok(Vec::new()),
+        entries => entries.map_err(|error| LinkError::cache(folder, error)),
+    }
+}

@@ -1,0 +1,55 @@
+//! Executables of equal texts are equal to the last byte, wherever their plan is and whatever was built before.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use mdle_tests::executable::{cache, folder, run_mdlec};
+
+/// Builds a plan of this name that uses another, with a time by which two texts differ; returns the executable.
+fn build(folder: &Path, name: &str, milliseconds: u32) -> Vec<u8> {
+    let plan = format!("use \"legs.mdle\"\n{{ Rest (wait {milliseconds}ms) Legs }}\n");
+    fs::create_dir_all(folder).unwrap();
+    fs::write(folder.join(format!("{name}.mdle")), plan).unwrap();
+    fs::write(folder.join("legs.mdle"), "{ Legs (Atom (bumper) (go 20 0)) }\n").unwrap();
+    let built = run_mdlec(folder, &["build", &format!("{name}.mdle"), "--target", "sim"]);
+    assert_eq!(built.status.code(), Some(0), "{}", String::from_utf8_lossy(&built.stderr));
+    fs::read(folder.join(name)).unwrap()
+}
+
+/// Returns the paths of the cache below `folder` that belong to plans of this name.
+fn stored(folder: &Path, name: &str) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in fs::read_dir(folder).into_iter().flatten() {
+        let path = entry.unwrap().path();
+        let file = path.file_name().unwrap().to_str().unwrap();
+        if file.replace('_', "-").starts_with(&format!("plan-{name}-")) {
+            found.push(path);
+        } else if path.is_dir() {
+            found.extend(stored(&path, name));
+        }
+    }
+    found
+}
+
+#[test]
+fn equal_texts_give_equal_executables() {
+    let folder = folder("equal");
+    let (left, right) = (folder.join("left"), folder.join("a longer/name for the folder"));
+    let first = build(&left, "again", 1);
+    assert_ne!(build(&left, "again", 2), first);
+    assert_eq!(build(&left, "again", 1), first, "edited back");
+    assert_ne!(build(&right, "again", 3), first);
+    assert_eq!(build(&right, "again", 1), first, "elsewhere");
+}
+
+#[test]
+fn an_edit_removes_what_was_built_before() {
+    let folder = folder("edit");
+    build(&folder, "edited", 1);
+    let first = stored(&cache(), "edited");
+    build(&folder, "edited", 2);
+    let second = stored(&cache(), "edited");
+    assert!(first.len() >= 4 && first.len() == second.len(), "{first:?} {second:?}");
+    assert!(first.iter().all(|path| !second.contains(path)), "{first:?} {second:?}");
+}
