@@ -2,6 +2,8 @@
 #![forbid(unsafe_code)]
 
 mod driven;
+#[cfg(feature = "trial")]
+mod effects;
 mod fault;
 mod faulty;
 mod orders;
@@ -15,6 +17,8 @@ mod staged;
 mod trial;
 
 pub use driven::{Driven, driven};
+#[cfg(feature = "trial")]
+pub use effects::{Effect, Motion, Speed, untrue_effects};
 pub use fault::{Ailment, At, Fault};
 pub use faulty::Faulty;
 pub use orders::{Order, Orders};
@@ -24,4 +28,4 @@ pub use serve::{Embodied, Emulated, Pace, STEP, serve};
 pub use several::{Seat, Several};
 pub use staged::Staged;
 #[cfg(feature = "trial")]
-pub use trial::{OnItsLine, Ran, Trial, memory_asked_for, ran, started};
+pub use trial::{OnItsLine, Trial, memory_asked_for};

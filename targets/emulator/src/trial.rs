@@ -11,8 +11,10 @@ use mdle_serial::{Clock, Configured, SerialRobot};
 use mdle_simulator::{Body, Make, Simulated, World};
 
 use crate::driven::{Driven, driven};
+use crate::effects::Motion;
 use crate::fault::{Ailment, At};
 use crate::faulty::Faulty;
+use crate::orders::Orders;
 use crate::serve::{Emulated, Pace};
 use crate::staged::Staged;
 
@@ -49,6 +51,12 @@ pub trait Trial {
 
     /// Returns the true pose of the robot.
     fn pose(robot: &Self::Emulated) -> Pose;
+
+    /// Returns the motion of the robot's wheels.
+    fn motion(robot: &Self::Emulated) -> Motion;
+
+    /// Returns the orders that the robot has received.
+    fn orders(robot: &Self::Emulated) -> &Orders;
 }
 
 /// The period of the robot's turns.
@@ -144,13 +152,13 @@ pub fn memory_asked_for<T: Trial>(asked: fn() -> u64) -> Result<u64, String> {
 }
 
 /// A run that is over, of a robot with faults in front of a wall.
-pub struct Ran<T: Trial> {
+pub(crate) struct Ran<T: Trial> {
     /// The last output, or the fault that ended the run.
-    pub output: Result<Sensed, FaultOf<T>>,
+    pub(crate) output: Result<Sensed, FaultOf<T>>,
     /// The result of the stop.
-    pub stop: Result<(), FaultOf<T>>,
+    pub(crate) stop: Result<(), FaultOf<T>>,
     /// The robot.
-    pub robot: T::Emulated,
+    pub(crate) robot: T::Emulated,
 }
 
 /// Runs a driver that asks for `speed`, in m/s, for this number of turns, and then stops, as the host always does.
@@ -158,7 +166,7 @@ pub struct Ran<T: Trial> {
 /// # Errors
 /// There is no such fault, the driver could not connect, or the line was closed without a fault that closes it, or left
 /// open with one.
-pub fn ran<T: Trial>(turns: u32, faults: &[&str], speed: fn(turn: u32) -> f64) -> Result<Ran<T>, String> {
+pub(crate) fn ran<T: Trial>(turns: u32, faults: &[&str], speed: fn(turn: u32) -> f64) -> Result<Ran<T>, String> {
     let Driven { result, served, robot } = driven(faulty::<T>(faults)?, Pace::Lockstep(period::<T>()), |device| {
         let mut driver = connected::<T>(device, PATIENCE)?.map_err(|fault| fault.to_string())?;
         let mut exchange = |turn| driver.exchange(&Twist { v: MetersPerSecond(speed(turn)), ..Twist::default() });
@@ -178,7 +186,7 @@ pub fn ran<T: Trial>(turns: u32, faults: &[&str], speed: fn(turn: u32) -> f64) -
 ///
 /// # Errors
 /// There is no such fault, or the line failed.
-pub fn started<T: Trial>(fault: &str) -> Result<Result<(), FaultOf<T>>, String> {
+pub(crate) fn started<T: Trial>(fault: &str) -> Result<Result<(), FaultOf<T>>, String> {
     let Driven { result, served, .. } =
         driven(faulty::<T>(&[fault])?, Pace::Lockstep(period::<T>()), |device| connected::<T>(device, PATIENCE))
             .map_err(|error| error.to_string())?;

@@ -46,7 +46,7 @@ pub(crate) fn text(plan: &str, robots: &[(&str, Vec<(String, Row)>)]) -> String 
         receives nothing but still sends leaves two questions about its brake unanswered, which takes two and a half seconds, and \
         a bumper that is no longer reported is noticed after a second. A robot that does not stop on command gets time to, at most \
         five seconds. The plan continues where it can, but never with stale data.\n\n\
-        The tables are written by a test, `tests/faults`: it runs the executable of this plan on the emulated robots.\n\n\
+        The tables are written by a test, `tests/clock/faults`: it runs the executable of this plan on the emulated robots.\n\n\
         ```mdle\n{plan}```\n\n\
         The robot drives at 20 cm/s when something goes wrong, 2 m before a wall. \"Moves on\" is the distance that its body \
         then moves in its world, and \"for\" the time from the last correct answer until it has stopped. \"Last command\" is the \

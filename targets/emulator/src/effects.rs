@@ -1,0 +1,225 @@
+//! The effects of faults: one test of every robot on a line, which compares each run with a faulty robot with the row of
+//! the robot's table.
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+use std::time::Duration;
+
+use mdle_runtime::capability::{Bumpers, Odometry, SonarRing};
+use mdle_runtime::{Sensed, SonarId};
+
+use crate::fault::{At, Fault};
+use crate::orders::Order;
+use crate::trial::{Ran, Trial, ran, started};
+
+/// World time at which a fault begins, in seconds.
+const BEGINS: u64 = 3;
+/// The longest time for which a driver goes on giving orders, from the first order to stand after the fault.
+const STOPPING: Duration = Duration::from_millis(2500);
+/// Number of runs at the same time: most of them wait for an answer that never comes.
+const AT_ONCE: usize = 8;
+
+/// The speed that a driver asks for, in turns of 100 ms.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Speed {
+    /// 0.2 m/s.
+    Ahead,
+    /// 0.2 m/s for three seconds, until the fault begins, and then none.
+    Halts,
+    /// None.
+    Rests,
+}
+
+/// The motion of a robot at the end of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Motion {
+    /// The wheels turn.
+    Moves,
+    /// The wheels are at rest, without a brake.
+    Still,
+    /// The wheels are at rest, and the brake is set.
+    Braked,
+}
+
+/// The output of a driver whose robot goes ahead, after five seconds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Feels {
+    /// A metre straight ahead, and a wall before the robot.
+    Well,
+    /// A metre straight ahead, with a contact.
+    Contact,
+    /// A metre straight ahead, without an echo.
+    NoEcho,
+    /// A turn to the right.
+    Turn,
+}
+
+/// The effect of faults on a run. The faults begin after three seconds, unless they have a time of their own.
+#[derive(Debug, Clone, Copy)]
+pub struct Effect {
+    faults: &'static [&'static str],
+    speed: Speed,
+    turns: u32,
+    output: Result<Feels, &'static str>,
+    stop: Result<(), &'static str>,
+    motion: Motion,
+    orders: &'static [Order],
+}
+
+impl Effect {
+    /// Returns an effect of `faults` on five seconds ahead: the driver notices nothing and can stop the robot, which
+    /// then moves as in `motion`; the last orders that it has received are `orders`.
+    #[must_use]
+    pub const fn of(faults: &'static [&'static str], motion: Motion, orders: &'static [Order]) -> Self {
+        Self { faults, speed: Speed::Ahead, turns: 50, output: Ok(Feels::Well), stop: Ok(()), motion, orders }
+    }
+
+    /// Sets the speed that the driver asks for, and the number of turns of 100 ms.
+    #[must_use]
+    pub const fn asked(self, speed: Speed, turns: u32) -> Self {
+        Self { speed, turns, ..self }
+    }
+
+    /// The run ends with a fault whose sentence contains `words`.
+    #[must_use]
+    pub const fn fails(self, words: &'static str) -> Self {
+        Self { output: Err(words), ..self }
+    }
+
+    /// The stop fails with a sentence that contains `words`.
+    #[must_use]
+    pub const fn stop_fails(self, words: &'static str) -> Self {
+        Self { stop: Err(words), ..self }
+    }
+
+    /// The output reports a contact.
+    #[must_use]
+    pub const fn feels_contact(self) -> Self {
+        Self { output: Ok(Feels::Contact), ..self }
+    }
+
+    /// The sonar ahead hears nothing.
+    #[must_use]
+    pub const fn hears_nothing_ahead(self) -> Self {
+        Self { output: Ok(Feels::NoEcho), ..self }
+    }
+
+    /// The robot turns to the right.
+    #[must_use]
+    pub const fn turns_right(self) -> Self {
+        Self { output: Ok(Feels::Turn), ..self }
+    }
+
+    /// Runs the robot, and returns the differences from this effect.
+    fn differences<T: Trial>(&self) -> Result<(), String> {
+        let faults: Vec<String> = self.faults.iter().map(|fault| begun(fault)).collect();
+        let faults: Vec<&str> = faults.iter().map(String::as_str).collect();
+        let Ran { output, stop, robot } = ran::<T>(self.turns, &faults, self.speed.function())?;
+        let output = match (self.output, output) {
+            (Ok(feels), Ok(sensed)) if self.speed == Speed::Ahead && self.turns == 50 => feels.check(&sensed),
+            (expected, output) => {
+                same(expected.map(drop), output.map(drop)).map_err(|error| format!("the run: {error}"))
+            }
+        };
+        let stop = same(self.stop, stop).map_err(|error| format!("the stop: {error}"));
+        let motion = T::motion(&robot);
+        let motion =
+            if motion == self.motion { Ok(()) } else { Err(format!("{motion:?} instead of {:?}", self.motion)) };
+        let orders: Vec<(Duration, Order)> = T::orders(&robot).iter().collect();
+        [output, stop, motion, self.ordered(&orders)].into_iter().collect()
+    }
+
+    /// Compares the last orders, and requires that they end soon after the fault.
+    fn ordered(&self, orders: &[(Duration, Order)]) -> Result<(), String> {
+        let kinds: Vec<Order> = orders.iter().map(|(_, order)| *order).collect();
+        if !kinds.ends_with(self.orders) {
+            return Err(format!("the orders {kinds:?} do not end with {:?}", self.orders));
+        }
+        let stands = orders.iter().find(|(age, order)| age.as_secs() >= BEGINS && *order == Order::Stand);
+        match (stands, orders.last()) {
+            (Some((first, _)), Some((last, _))) if *last - *first > STOPPING => {
+                Err(format!("orders from {first:?} to {last:?}"))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Speed {
+    fn function(self) -> fn(turn: u32) -> f64 {
+        match self {
+            Self::Ahead => |_| 0.2,
+            Self::Halts => |turn| if turn < 30 { 0.2 } else { 0.0 },
+            Self::Rests => |_| 0.0,
+        }
+    }
+}
+
+impl Feels {
+    /// Compares an output, and returns a sentence if it differs.
+    fn check(self, y: &Sensed) -> Result<(), String> {
+        let (way, heading) = (y.pose().x.0, y.pose().theta.degrees());
+        let echo = y.pings(SonarId::new(0)).newest_first().next().and_then(|ping| ping.range);
+        let is_straight = (way - 1.0).abs() < 0.03 && heading.abs() < 1.0;
+        let is_so = match self {
+            Self::Well => is_straight && echo.is_some() && !y.pressed(),
+            Self::Contact => is_straight && y.pressed(),
+            Self::NoEcho => is_straight && echo.is_none(),
+            Self::Turn => (-170.0..-20.0).contains(&heading),
+        };
+        let is = || format!("{way} m ahead, {heading}°, {echo:?}, contact: {}; expected {self:?}", y.pressed());
+        if is_so { Ok(()) } else { Err(is()) }
+    }
+}
+
+/// Returns the fault with its time.
+fn begun(fault: &str) -> String {
+    if fault.contains('@') { fault.to_owned() } else { format!("{fault}@{BEGINS}") }
+}
+
+/// Compares a result with the words that the sentence of its fault has to contain.
+fn same<F: std::fmt::Display>(expected: Result<(), &str>, result: Result<(), F>) -> Result<(), String> {
+    match (expected, result.map_err(|fault| fault.to_string())) {
+        (Ok(()), Ok(())) => Ok(()),
+        (Err(words), Err(sentence)) if sentence.contains(words) => Ok(()),
+        (expected, result) => Err(format!("{result:?} instead of {expected:?}")),
+    }
+}
+
+/// Runs the robot with the faults of each row, and starts it with each of the faults of `refusals`, which the driver
+/// has to refuse with a sentence that contains the words beside it. Returns a sentence for each row that does not
+/// hold, and for each fault of the emulator that no row has.
+#[must_use]
+pub fn untrue_effects<T: Trial>(effects: &[Effect], refusals: &[(&'static str, &'static str)]) -> Vec<String> {
+    let run = |effect: &Effect| effect.differences::<T>().map_err(|error| format!("{:?}: {error}", effect.faults));
+    let refuse = |(fault, words): &(&'static str, &str)| {
+        let result = started::<T>(fault).and_then(|result| same(Err(words), result));
+        result.map_err(|error| format!("{fault} at the start: {error}"))
+    };
+    let (next, untrue) = (AtomicUsize::new(0), Mutex::new(missing::<T>(effects)));
+    let work = || {
+        loop {
+            let row = next.fetch_add(1, Ordering::Relaxed);
+            let result = match effects.get(row) {
+                Some(effect) => run(effect),
+                None => match refusals.get(row - effects.len()) {
+                    Some(refusal) => refuse(refusal),
+                    None => break,
+                },
+            };
+            untrue.lock().unwrap_or_else(PoisonError::into_inner).extend(result.err());
+        }
+    };
+    thread::scope(|scope| (0..AT_ONCE).for_each(|_| drop(scope.spawn(work))));
+    untrue.into_inner().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Returns a sentence for each fault that the robot can have and that no effect is of. Frames that come late need a
+/// clock, which robots in lockstep do not have.
+fn missing<T: Trial>(effects: &[Effect]) -> Vec<String> {
+    let faults = effects.iter().flat_map(|effect| effect.faults).filter_map(|fault| fault.parse::<At>().ok());
+    let names: Vec<String> = faults.map(|at| at.fault.to_string()).collect();
+    let is_missing = |fault: &Fault| !matches!(fault, Fault::Late(_)) && !names.contains(&fault.to_string());
+    Fault::all_of::<T::Emulated>().filter(is_missing).map(|fault| format!("no row has {fault}")).collect()
+}
