@@ -11,7 +11,7 @@ use mdle_emulator::Order::{Brake, Drive, Stand};
 use mdle_emulator::Speed::{Ahead, Halts, Rests};
 use mdle_emulator::{Effect, Motion, OnItsLine, Orders, Pace, Trial, memory_asked_for, untrue_effects};
 use mdle_runtime::Pose;
-use mdle_sim::{Body, Simulated};
+use mdle_simulator::{Body, Simulated};
 
 #[path = "../../../emulator/tests/counting/mod.rs"]
 mod counting;

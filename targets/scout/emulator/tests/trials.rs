@@ -11,7 +11,7 @@ use mdle_emulator::{Effect, Motion, OnItsLine, Orders, Trial, memory_asked_for, 
 use mdle_runtime::Pose;
 use mdle_scout::{Scout, alphabet};
 use mdle_scout_emulator::scout::Scout as Emulated;
-use mdle_sim::{Body, Simulated};
+use mdle_simulator::{Body, Simulated};
 
 #[path = "../../../emulator/tests/counting/mod.rs"]
 mod counting;
