@@ -3,5 +3,4 @@
 
 #[allow(clippy::disallowed_methods, reason = "the command line reads and writes files")]
 pub mod cli;
-pub mod embed;
 pub mod link;

@@ -1,5 +1,5 @@
 //! Makes Rust of the plan.
 
-fn main() {
-    mdlec::embed::plan("plans/round.mdle").target("sim").write();
+fn main() -> Result<(), mdle_embed::EmbedError> {
+    mdle_embed::plan("plans/round.mdle").target("sim").write()
 }

@@ -209,6 +209,18 @@ pub fn has_errors(diagnostics: &[Diagnostic]) -> bool {
     diagnostics.iter().any(|diagnostic| diagnostic.code.severity() == Severity::Error)
 }
 
+/// Maximum number of diagnostics that people are shown.
+const SHOWN: usize = 100;
+/// Maximum number if more than that are errors of notation: such a file is probably not a plan.
+const SHOWN_OF_NO_PLAN: usize = 10;
+
+/// Returns the maximum number of these diagnostics that people are shown.
+#[must_use]
+pub fn most_shown(diagnostics: &[Diagnostic]) -> usize {
+    let notation = diagnostics.iter().filter(|diagnostic| diagnostic.code.is_notation()).count();
+    if notation > SHOWN_OF_NO_PLAN { SHOWN_OF_NO_PLAN } else { SHOWN }
+}
+
 /// Sorts diagnostics in the order of the sources.
 pub fn sort(diagnostics: &mut [Diagnostic]) {
     diagnostics.sort_by_key(|diagnostic| (diagnostic.span(), diagnostic.code));

@@ -84,9 +84,6 @@ pub(super) enum MessageFormat {
     Human,
     /// One JSON object per line: code, severity, message, spans, help
     Json,
-    /// Format that cargo reads from a build script: warnings as `cargo::warning`, errors as text
-    #[value(skip)]
-    BuildScript,
 }
 
 /// The commands of `mdlec`.

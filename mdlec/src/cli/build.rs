@@ -2,16 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
-use super::bind;
 use super::executable::{self, Runnable};
-use super::input::{self, Input, Target};
 use super::settings::{self, Settings};
 use super::{Bare, Build, Emit, EmitKind, Executable, Failure, endings, matrices, report};
 use crate::link;
-use mdle_compiler::diagnostic::{Diagnostic, Sources};
-use mdle_compiler::rust::{self, Header};
 use mdle_compiler::syntax::outline;
 use mdle_compiler::{Compiled, fsm, picture, syntax};
+use mdle_files::{Input, InputError, Target, read_plan};
 
 /// Runs a command line without a command.
 pub(super) fn bare(options: &Bare) -> Result<(), Failure> {
@@ -50,7 +47,7 @@ pub(super) fn build(options: &Build) -> Result<Option<Runnable>, Failure> {
     }
     if kind == EmitKind::Matrices {
         let target = settings::target(path, about.target.as_deref())?;
-        let mut input = input::read_plan(path, &target)?;
+        let mut input = read_plan(path, &target)?;
         let compiled = compile_one(&mut input, &target, about.name.as_deref(), about.deny_warnings)?;
         let inputs = input.inputs(&target);
         matrices::matrices(&compiled.nondegenerate, *combine, file.as_deref(), &input.sources, &inputs)?;
@@ -81,54 +78,25 @@ pub(super) fn compile_judged<T>(
     target: &Target,
     name: Option<&str>,
     deny_warnings: bool,
-    judge: impl FnMut(Compiled) -> T,
+    mut judge: impl FnMut(Compiled) -> T,
 ) -> Result<T, Failure> {
     if let Some(name) = name {
-        known_plan(input, name)?;
+        input.must_have(name)?;
     }
     let (compiled, found) = input.compile(&target.alphabet, name);
-    let names: Vec<_> = compiled.iter().map(|compiled| compiled.plan.root.name.clone()).collect();
-    let mut judged: Vec<_> = compiled.into_iter().map(judge).collect();
+    let named = |compiled: Compiled| (compiled.plan.root.name.clone(), compiled);
+    let judged: Vec<_> = compiled.into_iter().map(named).map(|(name, compiled)| (name, judge(compiled))).collect();
     if !report::diagnostics(&input.sources, &found, deny_warnings) {
         return Err(Failure::PLAN);
     }
-    match (judged.pop(), judged.len()) {
-        (Some(only), 0) => Ok(only),
-        (None, _) => Err(Failure::usage(format!(
-            "every plan of `{}` is used by another or takes parameters\nhelp: name one of them, as in `{}`, or write a plan \
-             that uses it",
-            input.sources.name(input.source),
-            report::option("plan", "NAME"),
-        ))),
-        (Some(_), _) => Err(Failure::usage(format!(
-            "`{}` contains several plans that no other plan uses: {}\nhelp: name one of them, as in `{}`",
-            input.sources.name(input.source),
-            names.join(", "),
-            report::option("plan", names.first().map_or("NAME", String::as_str)),
-        ))),
-    }
-}
-
-/// Fails with exit status 2 if no plan of the file has this name.
-fn known_plan(input: &mut Input, name: &str) -> Result<(), Failure> {
-    let names = input.plan_names();
-    let names: Vec<_> = names.iter().map(String::as_str).collect();
-    if names.contains(&name) || names.is_empty() {
-        return Ok(());
-    }
-    Err(Failure::usage(format!(
-        "`{}` has no plan `{name}`{}\nhelp: its plans are {}",
-        input.sources.name(input.source),
-        input::did_you_mean(name, &names),
-        names.join(", ")
-    )))
+    Ok(input.only(judged)?)
 }
 
 /// Returns a form of the plan as text, with the files that were read for it.
 fn stage(options: &Executable, path: &Path, kind: EmitKind) -> Result<(String, Vec<PathBuf>), Failure> {
     let settings = Settings::beside(path)?;
     let target = settings.target(options.target.as_deref())?;
-    let mut input = input::read_plan(path, &target)?;
+    let mut input = read_plan(path, &target)?;
     if kind == EmitKind::Tree {
         let arena = syntax::Arena::new();
         let (tree, found) = syntax::parse(input.source, input.sources.text(input.source), &arena);
@@ -148,7 +116,7 @@ fn stage(options: &Executable, path: &Path, kind: EmitKind) -> Result<(String, V
         EmitKind::Scxml => picture::scxml(nondegenerate),
         EmitKind::Tree | EmitKind::Matrices | EmitKind::Rust | EmitKind::Exe => {
             needs_target(settings.names_target(options.target.as_deref()))?;
-            rust_of(&compiled, path, &target, &input.sources)
+            input.rust(&compiled, &target)
         }
     };
     let text = text.map_err(|too_large| {
@@ -160,9 +128,7 @@ fn stage(options: &Executable, path: &Path, kind: EmitKind) -> Result<(String, V
 
 /// Fails if no target is named: Rust is written for a robot.
 pub(super) fn needs_target(is_named: bool) -> Result<(), Failure> {
-    let option = report::option("target", "sim");
-    let question = format!("for which robot? Name it, as in `{option}`; `mdlec targets` lists them");
-    if is_named { Ok(()) } else { Err(Failure::usage(question)) }
+    if is_named { Ok(()) } else { Err(InputError::NoTarget.into()) }
 }
 
 /// A plan as Rust, with its sources.
@@ -180,21 +146,12 @@ pub(super) fn emitted(
     name: Option<&str>,
     deny_warnings: bool,
 ) -> Result<Emitted, Failure> {
-    let mut input = input::read_plan(path, &target)?;
+    let mut input = read_plan(path, &target)?;
     let compiled = compile_one(&mut input, &target, name, deny_warnings)?;
-    if let Some(folder) = &target.folder {
-        bind::must_be_bound(folder, &target.alphabet)?;
-    }
-    let rust = rust_of(&compiled, path, &target, &input.sources).map_err(|too_large| {
+    target.must_be_bound()?;
+    let rust = input.rust(&compiled, &target).map_err(|too_large| {
         report::diagnostics(&input.sources, &[too_large], false);
         Failure::PLAN
     })?;
     Ok(Emitted { target, input, plan_name: compiled.plan.root.name, rust })
-}
-
-fn rust_of(compiled: &Compiled, path: &Path, target: &Target, sources: &Sources) -> Result<String, Diagnostic> {
-    rust::fits(&compiled.lowered, compiled.plan.root.span)?;
-    let file = path.file_name().map(|name| name.to_string_lossy()).unwrap_or_default();
-    let header = Header { sources, file: &file, plan: &compiled.plan.root.name };
-    Ok(rust::emit(&compiled.lowered, header, &target.alphabet))
 }

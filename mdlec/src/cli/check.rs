@@ -5,7 +5,7 @@ use std::collections::btree_map::Entry;
 use std::path::{Path, PathBuf};
 
 use super::everywhere::{ALL, everywhere};
-use super::{Check, Failure, input, report, settings};
+use super::{Check, Failure, report, settings};
 use mdle_compiler::diagnostic::has_errors;
 
 /// Checks each plan file and prints its diagnostics.
@@ -13,7 +13,7 @@ pub(super) fn check(options: &Check) -> Result<(), Failure> {
     if options.target.as_deref() == Some(ALL) {
         return everywhere(options);
     }
-    let named = options.target.as_deref().map(|name| input::target(Some(name))).transpose()?;
+    let named = options.target.as_deref().map(|name| mdle_files::target(Some(name))).transpose()?;
     // Without the option each folder may have another one.
     let mut beside = BTreeMap::new();
     each(&options.plans, |path| {
@@ -22,7 +22,7 @@ pub(super) fn check(options: &Check) -> Result<(), Failure> {
             (None, Entry::Occupied(known)) => known.into_mut(),
             (None, Entry::Vacant(unknown)) => unknown.insert(settings::checked_target(path)?),
         };
-        let mut input = input::read_plan(path, target)?;
+        let mut input = mdle_files::read_plan(path, target)?;
         let found = input.check(&target.alphabet);
         let good = report::diagnostics(&input.sources, &found, options.deny_warnings);
         if good && !has_errors(&found) { Ok(()) } else { Err(Failure::PLAN) }
@@ -33,10 +33,7 @@ pub(super) fn check(options: &Check) -> Result<(), Failure> {
 pub(super) fn each(paths: &[PathBuf], mut done: impl FnMut(&Path) -> Result<(), Failure>) -> Result<(), Failure> {
     let mut failed = None;
     for failure in paths.iter().filter_map(|path| done(path).err()) {
-        if let Some(message) = &failure.message {
-            report::error(message);
-        }
-        failed = failed.max(Some(failure.status));
+        failed = failed.max(Some(failure.told()));
     }
-    failed.map_or(Ok(()), |status| Err(Failure { status, message: None }))
+    failed.map_or(Ok(()), |status| Err(Failure::silent(status)))
 }

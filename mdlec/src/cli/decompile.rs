@@ -2,10 +2,10 @@
 
 use std::path::Path;
 
-use super::read::LARGEST_DATA;
-use super::{Decompile, Failure, input, report};
+use super::{Decompile, Failure, report};
 use mdle_compiler::diagnostic::Sources;
 use mdle_compiler::syntax;
+use mdle_files::read::LARGEST_DATA;
 use mdle_theory::theorem::{Answer, Machine, as_printed, augment, decompile as theorem, monomial, read, string};
 
 /// Maximum number of states of a machine that is shown as matrices.
@@ -14,7 +14,7 @@ const SHOWN: usize = 12;
 /// Prints the plan of a machine, or the results of the paper's own conditions.
 pub(super) fn decompile(options: &Decompile) -> Result<(), Failure> {
     let file = options.machine.display();
-    let text = input::read_text(&options.machine, LARGEST_DATA)?;
+    let text = mdle_files::read_text(&options.machine, LARGEST_DATA)?;
     let machine = read(&text).map_err(|error| {
         let line = error.line.map(|line| format!("{line}:")).unwrap_or_default();
         refused(format!("{file}:{line} {}", error.message))
@@ -50,13 +50,13 @@ pub(super) fn decompile(options: &Decompile) -> Result<(), Failure> {
 const CONDITIONS: usize = 100;
 
 fn refused(message: String) -> Failure {
-    Failure { status: 1, message: Some(message) }
+    Failure::of(1, message)
 }
 
 /// Prints a plan in the canonical layout. Laws and conditions of the file that are not MDLe are reported.
 fn print(file: &Path, plan: &str) -> Result<(), Failure> {
     let mut sources = Sources::default();
-    let source = input::add(&mut sources, Path::new(&format!("the plan of {}", file.display())), plan.to_owned())?;
+    let source = mdle_files::add(&mut sources, Path::new(&format!("the plan of {}", file.display())), plan.to_owned())?;
     match syntax::format(source, plan) {
         Ok(text) => report::print(&text),
         Err(found) => {

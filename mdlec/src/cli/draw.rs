@@ -1,6 +1,6 @@
 //! `mdlec draw`: draws a plan as a picture.
 
-use super::{Draw, Failure, build, endings, input, report, settings};
+use super::{Draw, Failure, build, endings, report, settings};
 use crate::link;
 use mdle_compiler::picture;
 
@@ -10,7 +10,7 @@ pub(super) fn draw(options: &Draw) -> Result<(), Failure> {
         endings::svg(file)?;
     }
     let target = settings::target(&options.plan, options.target.as_deref())?;
-    let mut input = input::read_plan(&options.plan, &target)?;
+    let mut input = mdle_files::read_plan(&options.plan, &target)?;
     let compiled = build::compile_one(&mut input, &target, options.name.as_deref(), false)?;
     let drawn = picture::svg(&compiled.lowered).map_err(|too_large| {
         report::diagnostics(&input.sources, &[too_large], false);
@@ -19,6 +19,6 @@ pub(super) fn draw(options: &Draw) -> Result<(), Failure> {
     match &options.output {
         None => report::print_exactly(&drawn),
         Some(file) => link::write_whole(file, drawn.as_bytes(), &input.inputs(&target))
-            .map_err(|error| Failure { status: error.exit_status(), message: Some(error.to_string()) }),
+            .map_err(|error| Failure::of(error.exit_status(), error.to_string())),
     }
 }

@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use super::check::each;
-use super::input::{self, Target};
-use super::read::LARGEST_PLAN;
 use super::{Check, Failure, report};
 use mdle_compiler::diagnostic::{Severity, has_errors};
+use mdle_files::Target;
+use mdle_files::read::LARGEST_PLAN;
 
 /// Value of `--target` for all robots that are part of mdlec.
 pub(super) const ALL: &str = "all";
@@ -20,14 +20,14 @@ struct Row {
 /// Checks each plan file for a robot with every capability, then for each robot. It is not an error if a robot cannot
 /// run a plan.
 pub(super) fn everywhere(options: &Check) -> Result<(), Failure> {
-    let everything = input::target(None)?;
+    let everything = mdle_files::target(None)?;
     let names =
         mdle_compiler::builtin::alphabets().iter().filter(|alphabet| alphabet.target).map(|alphabet| alphabet.name);
-    let robots = names.map(|name| Ok((name, input::target(Some(name))?))).collect::<Result<Vec<_>, Failure>>()?;
+    let robots = names.map(|name| Ok((name, mdle_files::target(Some(name))?))).collect::<Result<Vec<_>, Failure>>()?;
     let mut rows = Vec::new();
     let checked = each(&options.plans, |path| {
-        let text = input::read_text(path, LARGEST_PLAN)?;
-        let mut plan = input::plan(path, text.clone(), &everything)?;
+        let text = mdle_files::read_text(path, LARGEST_PLAN)?;
+        let mut plan = mdle_files::plan(path, text.clone(), &everything)?;
         let found = plan.check(&everything.alphabet);
         let good = report::diagnostics(&plan.sources, &found, options.deny_warnings);
         if !good || has_errors(&found) {
@@ -44,7 +44,7 @@ pub(super) fn everywhere(options: &Check) -> Result<(), Failure> {
 
 /// Errors of a plan file for a robot: places and messages.
 fn refusals(path: &Path, text: &str, robot: &Target) -> Result<Vec<String>, Failure> {
-    let mut plan = input::plan(path, text.to_owned(), robot)?;
+    let mut plan = mdle_files::plan(path, text.to_owned(), robot)?;
     let found = plan.check(&robot.alphabet);
     let errors = found.iter().filter(|found| found.code.severity() == Severity::Error);
     let refusals = errors.map(|error| {

@@ -9,12 +9,12 @@ use std::time::Instant;
 use mdle_runtime::Printable;
 
 use super::build::{Emitted, emitted, needs_target};
-use super::input::Target;
 use super::settings::Settings;
 use super::version::version;
 use super::{EmitKind, Executable, Failure, Run, endings, report};
 use crate::link::{self, Cache, LinkError, Package, Progress, TargetCrate};
 use mdle_compiler::rust;
+use mdle_files::Target;
 
 /// Builds the executable of a plan and becomes it.
 pub(super) fn run(options: &Run) -> Result<(), Failure> {
@@ -121,7 +121,7 @@ pub(super) fn become_program(command: &mut Command) -> Result<(), Failure> {
 }
 
 pub(super) fn failure(error: &LinkError) -> Failure {
-    Failure { status: error.exit_status(), message: Some(error.to_string()) }
+    Failure::of(error.exit_status(), error.to_string())
 }
 
 /// Progress output: a line that is overwritten on a terminal, else one line for each new step.

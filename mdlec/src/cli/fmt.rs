@@ -5,16 +5,16 @@ use std::io::{self, IsTerminal};
 use std::path::Path;
 
 use super::check::each;
-use super::read::LARGEST_PLAN;
-use super::{Failure, Fmt, input, report};
+use super::{Failure, Fmt, report};
 use crate::link;
 use mdle_compiler::diagnostic::Sources;
 use mdle_compiler::syntax;
+use mdle_files::read::LARGEST_PLAN;
 
 /// Formats each file, or lists the files whose layout differs. A file with errors stays unchanged.
 pub(super) fn fmt(options: &Fmt) -> Result<(), Failure> {
     each(&options.plans, |path| {
-        let text = input::read_text(path, LARGEST_PLAN)?;
+        let text = mdle_files::read_text(path, LARGEST_PLAN)?;
         let formatted = formatted(path, text.clone())?;
         if options.check {
             return if formatted == text { Ok(()) } else { differs(path) };
@@ -30,7 +30,7 @@ pub(super) fn fmt(options: &Fmt) -> Result<(), Failure> {
 
 fn formatted(path: &Path, text: String) -> Result<String, Failure> {
     let mut sources = Sources::default();
-    let source = input::add(&mut sources, path, text)?;
+    let source = mdle_files::add(&mut sources, path, text)?;
     syntax::format(source, sources.text(source)).map_err(|found| {
         report::diagnostics(&sources, &found, false);
         Failure::PLAN
@@ -48,6 +48,5 @@ fn write(path: &Path, text: &str) -> Result<(), Failure> {
     if fs::metadata(path).is_ok_and(|found| found.permissions().readonly()) {
         return Err(Failure::usage(format!("`{}` is read-only", path.display())));
     }
-    link::write_whole(path, text.as_bytes(), &[])
-        .map_err(|error| Failure { status: error.exit_status(), message: Some(error.to_string()) })
+    link::write_whole(path, text.as_bytes(), &[]).map_err(|error| Failure::of(error.exit_status(), error.to_string()))
 }

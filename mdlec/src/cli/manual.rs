@@ -4,8 +4,8 @@ use std::io;
 
 use clap::CommandFactory as _;
 
-use super::input::did_you_mean;
 use super::{Cli, Completions, Failure, Man, report};
+use mdle_compiler::alphabet::did_you_mean;
 
 /// Prints the completions for a shell.
 pub(super) fn completions(options: &Completions) -> Result<(), Failure> {

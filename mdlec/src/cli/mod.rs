@@ -8,7 +8,6 @@ mod check;
 mod clean;
 mod decompile;
 mod draw;
-mod embed;
 mod emit;
 mod emulator;
 mod endings;
@@ -16,12 +15,11 @@ mod everywhere;
 mod executable;
 mod explain;
 mod fmt;
-mod input;
+mod lists;
 mod manual;
 mod matrices;
 mod mistyped;
 mod new_target;
-mod read;
 mod report;
 mod settings;
 mod trace;
@@ -35,28 +33,62 @@ use arguments::{
     Man, MessageFormat, NewTarget, Run, Trace, TraceMachine,
 };
 use clap::{CommandFactory as _, FromArgMatches as _, ValueEnum as _};
-pub(crate) use embed::embed;
 use emit::{Emit, EmitKind};
+use mdle_compiler::diagnostic::{Diagnostic, Sources};
+use mdle_files::InputError;
 
 /// Message and exit status of a command that failed.
 #[derive(Debug)]
 struct Failure {
     status: u8,
+    /// Diagnostics of a file that was read, which are printed before the message.
+    found: Option<Box<(Sources, Vec<Diagnostic>)>>,
     /// `None` if the message was printed already.
     message: Option<String>,
+}
+
+impl From<InputError> for Failure {
+    /// A plan with errors ends with exit status 1, everything else with 2.
+    fn from(error: InputError) -> Self {
+        let message = Some(error.to_string()).filter(|message| !message.is_empty());
+        let (status, found) = match error {
+            InputError::Faulty { sources, diagnostics, target } => {
+                (if target.is_none() { 1 } else { 2 }, Some(Box::new((sources, diagnostics))))
+            }
+            InputError::Unusable(_)
+            | InputError::NoTarget
+            | InputError::UnknownTarget(_)
+            | InputError::UnknownPlan { .. }
+            | InputError::NotOnePlan { .. } => (2, None),
+        };
+        Self { status, found, message }
+    }
 }
 
 impl Failure {
     /// Wrong usage, or a file that cannot be read or written: exit status 2.
     fn usage(message: impl Into<String>) -> Self {
-        Self { status: 2, message: Some(message.into()) }
+        Self::of(2, message)
+    }
+
+    /// A message with an exit status.
+    fn of(status: u8, message: impl Into<String>) -> Self {
+        Self { status, found: None, message: Some(message.into()) }
+    }
+
+    /// An exit status alone, where everything was printed.
+    const fn silent(status: u8) -> Self {
+        Self { status, found: None, message: None }
     }
 
     /// Failure for a plan with errors, which were printed: exit status 1.
-    const PLAN: Self = Self { status: 1, message: None };
+    const PLAN: Self = Self::silent(1);
 
     /// Prints the message, if there is one, and returns the exit status.
     fn told(&self) -> u8 {
+        if let Some((sources, found)) = self.found.as_deref() {
+            report::diagnostics(sources, found, false);
+        }
         if let Some(message) = &self.message {
             report::error(message);
         }
@@ -121,13 +153,13 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Draw(draw)) => draw::draw(&draw),
         Some(Command::Decompile(decompile)) => decompile::decompile(&decompile),
         Some(Command::Explain(explain)) => explain::explain(explain.code.as_deref()),
-        Some(Command::Targets) => input::print_targets(),
+        Some(Command::Targets) => lists::print_targets(),
         Some(Command::Bind(bind)) => bind::bind(&bind),
         Some(Command::NewTarget(new_target)) => new_target::new_target(&new_target),
         Some(Command::Emulator(emulator)) => emulator::emulator(&emulator),
         Some(Command::Clean) => clean::clean(),
         Some(Command::Completions(completions)) => manual::completions(&completions),
         Some(Command::Man(man)) => manual::man(&man),
-        Some(Command::Quarks(quarks)) => input::print_quarks(quarks.target.as_deref()),
+        Some(Command::Quarks(quarks)) => lists::print_quarks(quarks.target.as_deref()),
     }
 }

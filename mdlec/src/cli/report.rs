@@ -7,10 +7,10 @@ use std::io::{self, IsTerminal, Write};
 use std::sync::OnceLock;
 
 use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
-use mdle_runtime::{Printable, PrintableLines, is_printable};
+use mdle_runtime::{PrintableLines, is_printable};
 
 use super::{Color, Failure, MessageFormat};
-use mdle_compiler::diagnostic::{Code, Diagnostic, Message, Severity, Sources, Span, has_errors};
+use mdle_compiler::diagnostic::{Diagnostic, Message, Severity, Sources, most_shown};
 
 /// Format of all messages of this process. It is set once, when the command line is read: every message goes through
 /// this file.
@@ -31,21 +31,6 @@ pub(super) fn is_json() -> bool {
     FORMAT.get() == Some(&MessageFormat::Json)
 }
 
-/// Returns `true` if messages are written for cargo, which runs a build script.
-fn is_build_script() -> bool {
-    FORMAT.get() == Some(&MessageFormat::BuildScript)
-}
-
-/// Writes an option as the user can type it: on the command line or in a build script.
-pub(super) fn option(name: &str, value: &str) -> String {
-    if is_build_script() { format!(".{name}({value:?})") } else { format!("--{name} {value}") }
-}
-
-/// Maximum number of diagnostics shown as text.
-const SHOWN: usize = 100;
-/// Maximum number if more than that are errors of notation: such a file is probably not a plan.
-const SHOWN_OF_NO_PLAN: usize = 10;
-
 /// Prints diagnostics in their order, then their number.
 ///
 /// Returns `true` if the plan may be used: no errors, and with `deny_warnings` no warnings.
@@ -53,8 +38,6 @@ pub(super) fn diagnostics(sources: &Sources, found: &[Diagnostic], deny_warnings
     if is_json() {
         // A program is told all of them.
         found.iter().for_each(|diagnostic| line(&sources.message(diagnostic)));
-    } else if is_build_script() && !has_errors(found) {
-        found.iter().for_each(|diagnostic| warn_cargo(&sources.message(diagnostic)));
     } else {
         render(sources, found);
     }
@@ -76,8 +59,7 @@ fn render(sources: &Sources, found: &[Diagnostic]) {
         Color::Auto | Color::Never => ColorChoice::Never,
     };
     let mut out = StandardStream::stderr(choice);
-    let notation = found.iter().filter(|diagnostic| diagnostic.code.is_notation()).count();
-    let most = if notation > SHOWN_OF_NO_PLAN { SHOWN_OF_NO_PLAN } else { SHOWN };
+    let most = most_shown(found);
     for diagnostic in found.iter().take(most) {
         // Nobody is left to be told when standard error is closed.
         let _ = sources.write(diagnostic, &mut out);
@@ -96,27 +78,6 @@ fn note_others(all: usize, shown: usize) {
 fn line(message: &Message<'_>) {
     // Nobody is left to be told when standard error is closed.
     let _ = writeln!(io::stderr().lock(), "{}", message.to_json());
-}
-
-/// Prints a warning for cargo, in the one line that cargo accepts.
-fn warn_cargo(warning: &Message<'_>) {
-    let place = warning.spans.first().map(|place| format!("{}:{}:{}: ", place.file, place.line, place.column));
-    let help: String = warning.help.iter().map(|help| format!("; help: {help}")).collect();
-    let text = format!("{}{}{help} [{}]", place.unwrap_or_default(), warning.message, warning.code.unwrap_or_default());
-    // Nobody is left to be told when standard output is closed.
-    let _ = writeln!(io::stdout().lock(), "cargo::warning={}", Printable(text));
-}
-
-/// Diagnostic for a file that is not text, with the part of the file that can be shown; its first `valid` bytes are
-/// valid.
-pub(super) fn not_utf8(name: &str, bytes: &[u8], valid: usize) -> (Sources, Diagnostic) {
-    let mut sources = Sources::default();
-    let source = sources.add(name, String::from_utf8_lossy(bytes));
-    // The replacement character that stands there now is three bytes long.
-    let span = Span::new(source, valid, valid + 3);
-    let found = Diagnostic::new(Code::E0109, "this file is not UTF-8 text", span, "no character of UTF-8")
-        .help("save it as UTF-8 in your editor, or convert it: `iconv -f latin1 -t utf-8`");
-    (sources, found)
 }
 
 /// Prints an error, in the format of the diagnostics.
@@ -167,7 +128,7 @@ pub(super) fn answer(answer: &clap::Error) -> Result<(), Failure> {
         let text = PrintableLines(answer.render()).to_string();
         if answer.use_stderr() { write!(io::stderr(), "{text}") } else { write!(io::stdout(), "{text}") }
     };
-    if answer.use_stderr() { Err(Failure { status: 2, message: None }) } else { printed(result) }
+    if answer.use_stderr() { Err(Failure::silent(2)) } else { printed(result) }
 }
 
 /// Writes a number with its noun: `1 error`, `2 errors`.

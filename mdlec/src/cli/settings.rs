@@ -8,10 +8,10 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use super::Failure;
-use super::input::{self, Target};
-use super::read::{self, Unread};
 use crate::link;
 use mdle_compiler::builtin;
+use mdle_files::Target;
+use mdle_files::read::{self, Unread};
 use text::{Setting, SettingsText};
 
 /// Name of the settings file.
@@ -69,7 +69,7 @@ impl Settings {
             }
             Err(why) => return Err(Failure::usage(why.of(file.display()))),
         };
-        let text = String::from_utf8(input::without_mark(bytes))
+        let text = String::from_utf8(mdle_files::without_mark(bytes))
             .map_err(|_| Failure::usage(format!("`{}` is not UTF-8 text", file.display())))?;
         let text = text::read(&text)
             .map_err(|error| Failure::usage(format!("{}:{}: {}", file.display(), error.line, error.message)))?;
@@ -80,11 +80,11 @@ impl Settings {
     /// that has every capability.
     pub(super) fn target(&self, option: Option<&str>) -> Result<Target, Failure> {
         let mut target = match (option, &self.text.target) {
-            (Some(_), _) | (None, None) => input::target(option),
+            (Some(_), _) | (None, None) => mdle_files::target(option).map_err(Failure::from),
             (None, Some(own)) => {
                 let named = |message| format!("{}: {message}", self.place(own.line));
-                input::target(Some(&self.target_name(&own.value)))
-                    .map_err(|failure| Failure { message: failure.message.map(named), ..failure })
+                let target = mdle_files::target(Some(&self.target_name(&own.value))).map_err(Failure::from);
+                target.map_err(|failure| Failure { message: failure.message.map(named), ..failure })
             }
         }?;
         target.settings = self.file.clone();

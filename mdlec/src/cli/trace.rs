@@ -2,9 +2,9 @@
 
 use std::io::{self, BufWriter, Write};
 
-use super::read::LARGEST_DATA;
-use super::{Failure, Trace, TraceMachine, input, report, settings};
+use super::{Failure, Trace, TraceMachine, report, settings};
 use mdle_compiler::trace::{Counted, MatrixProduct, Script, Table, TraceLine, Tree, run};
+use mdle_files::read::LARGEST_DATA;
 
 /// Runs the plan and prints the trace, one line per turn.
 pub(super) fn trace(options: &Trace) -> Result<(), Failure> {
@@ -12,9 +12,9 @@ pub(super) fn trace(options: &Trace) -> Result<(), Failure> {
         return Err(Failure::usage("standard input can be the plan or the script, but not both"));
     }
     let target = settings::target(&options.plan, options.target.as_deref())?;
-    let mut input = input::read_plan(&options.plan, &target)?;
+    let mut input = mdle_files::read_plan(&options.plan, &target)?;
     let compiled = super::build::compile_one(&mut input, &target, options.name.as_deref(), false)?;
-    let text = input::read_text(&options.script, LARGEST_DATA)?;
+    let text = mdle_files::read_text(&options.script, LARGEST_DATA)?;
     let script = Script::read(&text)
         .and_then(|script| script.in_words_of(&compiled.plan, &target.alphabet))
         .map_err(|error| Failure::usage(format!("{}:{}: {}", options.script.display(), error.line, error.message)))?;

@@ -1,6 +1,6 @@
 //! Texts that an executable depends on, for its answer to `--version`: neither place nor time is among them.
 
-use super::input::{Input, Target};
+use mdle_files::{Input, Target};
 
 /// Returns the hash of the plan's text and the files it uses, the target, the hash of its alphabet and the shared ones,
 /// and the version of the compiler.

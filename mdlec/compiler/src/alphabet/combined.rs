@@ -144,6 +144,13 @@ pub fn nearest<'n>(name: &str, names: impl Iterator<Item = &'n str>) -> Option<&
     names.map(|other| (distance(other), other)).filter(|(found, _)| *found <= allowed).min().map(|(_, other)| other)
 }
 
+/// Returns the end of a sentence about an unknown name: the similar name of these, or an empty text.
+#[must_use]
+pub fn did_you_mean(name: &str, known: &[&str]) -> String {
+    let near = nearest(name, known.iter().copied());
+    near.map(|near| format!("; did you mean `{near}`?")).unwrap_or_default()
+}
+
 /// Returns `true` if a target's own declaration replaces a shared one: same name, same kinds of arguments.
 fn replaces(own: &Declaration, shared: &Declaration) -> bool {
     let kinds = |declaration: &Declaration| -> Vec<_> { declaration.params.iter().map(|param| param.kind).collect() };

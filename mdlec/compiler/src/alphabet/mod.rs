@@ -11,7 +11,7 @@ mod synonyms;
 mod tests;
 mod token;
 
-pub use combined::{Alphabet, combine, nearest};
+pub use combined::{Alphabet, combine, did_you_mean, nearest};
 pub use decimal::Decimal;
 pub use quantity::{Kind, Unit, family_to_si};
 pub use read::read;

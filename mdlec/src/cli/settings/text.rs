@@ -6,7 +6,7 @@ use mdle_runtime::Printable;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::cli::input::did_you_mean;
+use mdle_compiler::alphabet::did_you_mean;
 
 /// The keys outside `[options]`.
 const KEYS: [&str; 3] = ["target", "world", "options"];

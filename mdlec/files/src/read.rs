@@ -10,13 +10,13 @@ use std::path::Path;
 use rustix::fs::OFlags;
 
 /// Maximum size in bytes of a plan, an alphabet or a file that a plan uses: files written by hand are far smaller.
-pub(super) const LARGEST_PLAN: u64 = 64_000_000;
+pub const LARGEST_PLAN: u64 = 64_000_000;
 /// Maximum size in bytes of a machine or a script, which programs write.
-pub(super) const LARGEST_DATA: u64 = 1_000_000_000;
+pub const LARGEST_DATA: u64 = 1_000_000_000;
 
 /// Reason why a file is not read.
 #[derive(Debug)]
-pub(super) enum Unread {
+pub enum Unread {
     /// The file is not a regular file, but of this kind.
     Irregular(&'static str),
     /// The file has more than this maximum of bytes.
@@ -29,12 +29,14 @@ pub(super) enum Unread {
 
 impl Unread {
     /// Returns `true` if the file does not exist.
-    pub(super) fn is_missing(&self) -> bool {
+    #[must_use]
+    pub fn is_missing(&self) -> bool {
         matches!(self, Self::System(error) if error.kind() == io::ErrorKind::NotFound)
     }
 
     /// A hint for commands that can read standard input.
-    pub(super) fn help(&self) -> &'static str {
+    #[must_use]
+    pub fn help(&self) -> &'static str {
         match self {
             Self::Irregular("pipe") | Self::Endless => "\nhelp: `-` in its place reads standard input",
             Self::Irregular(_) | Self::TooLarge(_) | Self::System(_) => "",
@@ -42,7 +44,8 @@ impl Unread {
     }
 
     /// Error message for the file that messages call `name`.
-    pub(super) fn of(&self, name: impl fmt::Display) -> String {
+    #[must_use]
+    pub fn of(&self, name: impl fmt::Display) -> String {
         match self {
             Self::Irregular(what) => format!("`{name}` is a {what}, not a file"),
             Self::TooLarge(most) => format!("`{name}` is larger than {} MB, which is the most", most / 1_000_000),
@@ -53,7 +56,10 @@ impl Unread {
 }
 
 /// Reads a regular file of at most `most` bytes.
-pub(super) fn file(path: &Path, most: u64) -> Result<Vec<u8>, Unread> {
+///
+/// # Errors
+/// The file cannot be read, is larger, or is not a regular file.
+pub fn file(path: &Path, most: u64) -> Result<Vec<u8>, Unread> {
     // To open a device or a pipe may already do something to it.
     regular(fs::metadata(path).map_err(Unread::System)?.file_type())?;
     let flags = (OFlags::NONBLOCK | OFlags::NOCTTY).bits() as i32;
@@ -65,7 +71,10 @@ pub(super) fn file(path: &Path, most: u64) -> Result<Vec<u8>, Unread> {
 }
 
 /// Reads standard input, at most `most` bytes.
-pub(super) fn standard_input(most: u64) -> Result<Vec<u8>, Unread> {
+///
+/// # Errors
+/// Standard input cannot be read or is longer.
+pub fn standard_input(most: u64) -> Result<Vec<u8>, Unread> {
     whole(io::stdin().lock(), most)
 }
 

@@ -1,0 +1,78 @@
+//! Reasons why no plan was embedded, as a build script shows them.
+
+use std::fmt;
+use std::io;
+use std::path::PathBuf;
+
+use mdle_compiler::diagnostic::{Diagnostic, Severity, Sources, most_shown};
+use mdle_files::{InputError, Spelling};
+
+/// Reason why no plan was embedded.
+///
+/// Its debug form is its message too, since that is what a `main` prints that returns the error.
+#[derive(thiserror::Error)]
+pub enum EmbedError {
+    /// The plan has errors.
+    #[error("{}", report(.sources, .diagnostics))]
+    Plan {
+        /// Files to which the diagnostics refer.
+        sources: Box<Sources>,
+        /// Diagnostics of `mdlec check`, errors among them.
+        diagnostics: Vec<Diagnostic>,
+    },
+    /// The plan or the target cannot be read, or the plan to compile is not determined.
+    #[error("{}", .0.message(Spelling::BuildScript))]
+    Input(InputError),
+    /// The process is no build script.
+    #[error("the variable OUT_DIR is not set: plans are embedded by the build script of a package")]
+    NoOutDir,
+    /// The name of an input has a line break, after which cargo would read another instruction.
+    #[error("the name {0:?} holds a line break, so cargo cannot watch this file\nhelp: rename the file or its folder")]
+    LineBreak(PathBuf),
+    /// The file to write is one that was read.
+    #[error("`{0}` is the plan itself and would be lost: rename the plan's file")]
+    OutputIsInput(PathBuf),
+    /// The Rust cannot be written.
+    #[error("`{path}` cannot be written: {error}")]
+    Output {
+        /// File to write.
+        path: PathBuf,
+        /// Error of the system.
+        error: io::Error,
+    },
+    /// Cargo cannot be informed on standard output.
+    #[error("cargo cannot be told what to watch: {0}")]
+    Cargo(io::Error),
+}
+
+impl fmt::Debug for EmbedError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(self, f)
+    }
+}
+
+impl From<InputError> for EmbedError {
+    fn from(error: InputError) -> Self {
+        match error {
+            InputError::Faulty { sources, diagnostics, .. } => Self::Plan { sources: Box::new(sources), diagnostics },
+            InputError::Unusable(_)
+            | InputError::NoTarget
+            | InputError::UnknownTarget(_)
+            | InputError::UnknownPlan { .. }
+            | InputError::NotOnePlan { .. } => Self::Input(error),
+        }
+    }
+}
+
+/// Number of errors, then the diagnostics as people read them.
+fn report(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
+    let errors = diagnostics.iter().filter(|found| found.code.severity() == Severity::Error).count();
+    let most = most_shown(diagnostics);
+    let texts: Vec<_> = diagnostics.iter().take(most).map(|found| sources.render(found)).collect();
+    let others = match diagnostics.len() - texts.len() {
+        0 => String::new(),
+        others => format!("… and {others} more\n"),
+    };
+    let errors = if errors == 1 { "1 error".to_owned() } else { format!("{errors} errors") };
+    format!("{errors}\n\n{}{others}", texts.concat())
+}

@@ -1,0 +1,119 @@
+//! The reasons why a plan or a target cannot be read, in sentences that tell the user what to type.
+
+use std::fmt;
+
+use mdle_compiler::alphabet::did_you_mean;
+use mdle_compiler::builtin;
+use mdle_compiler::diagnostic::{Diagnostic, Sources};
+
+/// Reason why a plan or a target cannot be read.
+#[derive(Debug)]
+pub enum InputError {
+    /// A file cannot be read, or a folder is no target: a sentence.
+    Unusable(String),
+    /// No target is named, and Rust is written for a robot.
+    NoTarget,
+    /// There is no target of this name.
+    UnknownTarget(String),
+    /// A file has errors.
+    Faulty {
+        /// Files to which the diagnostics refer.
+        sources: Sources,
+        /// Errors of the file, perhaps with warnings.
+        diagnostics: Vec<Diagnostic>,
+        /// Name of the target if the file is an alphabet.
+        target: Option<String>,
+    },
+    /// The file has no plan of the name asked for.
+    UnknownPlan {
+        /// Name of the file.
+        file: String,
+        /// Name asked for.
+        name: String,
+        /// Names of the file's plans.
+        plans: Vec<String>,
+    },
+    /// No name was asked for, and not exactly one plan of the file is used by no other plan.
+    NotOnePlan {
+        /// Name of the file.
+        file: String,
+        /// Names of the plans that no other plan uses.
+        plans: Vec<String>,
+    },
+}
+
+/// The way in which a user names targets and plans.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Spelling {
+    /// Options of a command line: `--target sim`.
+    CommandLine,
+    /// Calls in a build script: `.target("sim")`.
+    BuildScript,
+}
+
+impl Spelling {
+    /// Returns the text that sets the option `name` to `value`.
+    fn option(self, name: &str, value: &str) -> String {
+        match self {
+            Self::CommandLine => format!("--{name} {value}"),
+            Self::BuildScript => format!(".{name}({value:?})"),
+        }
+    }
+}
+
+impl InputError {
+    /// Returns the message, in which options are spelled for this user. The diagnostics of [`InputError::Faulty`] are
+    /// no part of it; without a target its message is empty.
+    #[must_use]
+    pub fn message(&self, spelling: Spelling) -> String {
+        match self {
+            Self::Unusable(sentence) => sentence.clone(),
+            Self::NoTarget => {
+                let option = spelling.option("target", "sim");
+                format!("for which robot? Name it, as in `{option}`; `mdlec targets` lists them")
+            }
+            Self::UnknownTarget(name) => unknown_target(name, spelling),
+            Self::Faulty { target: Some(name), .. } => format!("the alphabet of target `{name}` has errors"),
+            Self::Faulty { target: None, .. } => String::new(),
+            Self::UnknownPlan { file, name, plans } => {
+                let known: Vec<_> = plans.iter().map(String::as_str).collect();
+                let near = did_you_mean(name, &known);
+                format!("`{file}` has no plan `{name}`{near}\nhelp: its plans are {}", plans.join(", "))
+            }
+            Self::NotOnePlan { file, plans } => match plans.first() {
+                None => format!(
+                    "every plan of `{file}` is used by another or takes parameters\nhelp: name one of them, as in `{}`, \
+                     or write a plan that uses it",
+                    spelling.option("plan", "NAME"),
+                ),
+                Some(first) => format!(
+                    "`{file}` contains several plans that no other plan uses: {}\nhelp: name one of them, as in `{}`",
+                    plans.join(", "),
+                    spelling.option("plan", first),
+                ),
+            },
+        }
+    }
+}
+
+impl fmt::Display for InputError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message(Spelling::CommandLine))
+    }
+}
+
+impl std::error::Error for InputError {}
+
+fn unknown_target(name: &str, spelling: Spelling) -> String {
+    let known: Vec<_> = builtin::alphabets().iter().filter(|found| found.target).map(|found| found.name).collect();
+    if name.contains('/') {
+        return format!("there is no folder `{name}`\nhelp: the built-in targets are {}", known.join(", "));
+    }
+    format!(
+        "there is no target `{name}`{}\nhelp: the targets are {}; a target of your own is named by its folder, as in \
+         `{}`",
+        did_you_mean(name, &known),
+        known.join(", "),
+        spelling.option("target", "../rover")
+    )
+}

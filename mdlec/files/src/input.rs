@@ -1,0 +1,228 @@
+//! Reads plan files with the files that they use.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use mdle_compiler::alphabet::{Alphabet, nearest};
+use mdle_compiler::diagnostic::{Code, Diagnostic, SourceId, Sources, Span};
+use mdle_compiler::rust::{self, Header};
+use mdle_compiler::{Compiled, check_with, compile_with, syntax};
+
+use crate::read::Unread;
+use crate::{InputError, Target, read};
+
+/// A plan file, together with the alphabet's files and the files that it uses.
+#[derive(Debug)]
+pub struct Input {
+    /// All these files, for messages.
+    pub sources: Sources,
+    /// The plan file.
+    pub source: SourceId,
+    /// Paths of the plan file and of the files that it uses.
+    paths: BTreeMap<SourceId, PathBuf>,
+    /// Files that were read, by their canonical paths.
+    read: BTreeMap<PathBuf, SourceId>,
+}
+
+impl Input {
+    /// Compiles the plans of the file, or only its plan `wanted`.
+    pub fn compile(&mut self, alphabet: &Alphabet, wanted: Option<&str>) -> (Vec<Compiled>, Vec<Diagnostic>) {
+        let text = self.sources.text(self.source).to_owned();
+        compile_with(self.source, &text, alphabet, wanted, self)
+    }
+
+    /// Returns the diagnostics of the file.
+    pub fn check(&mut self, alphabet: &Alphabet) -> Vec<Diagnostic> {
+        let text = self.sources.text(self.source).to_owned();
+        check_with(self.source, &text, alphabet, self)
+    }
+
+    /// Files that were read for the plan, its own first.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        self.paths.values().map(PathBuf::as_path)
+    }
+
+    /// Texts of the files that were read for the plan, its own first.
+    pub fn texts(&self) -> impl Iterator<Item = &str> {
+        self.paths.keys().map(|source| self.sources.text(*source))
+    }
+
+    /// Files that were read for the plan and for `target`, which no output may overwrite.
+    pub fn inputs(&self, target: &Target) -> Vec<PathBuf> {
+        let named = |path: &Path| if path == Path::new("-") { PathBuf::from("/dev/stdin") } else { path.to_owned() };
+        self.files().map(named).chain(target.files()).collect()
+    }
+
+    /// Names of the plans in the file and in the files that it uses.
+    pub fn plan_names(&mut self) -> Vec<String> {
+        let (arena, text) = (syntax::Arena::new(), self.sources.text(self.source).to_owned());
+        let (files, _) = syntax::parse_with(self.source, &text, &arena, self);
+        files.plans.iter().map(|plan| plan.name.node.to_owned()).collect()
+    }
+
+    /// Checks that the file, or one that it uses, has a plan of this name.
+    ///
+    /// # Errors
+    /// There are plans, and none of them has the name.
+    pub fn must_have(&mut self, name: &str) -> Result<(), InputError> {
+        let plans = self.plan_names();
+        if plans.is_empty() || plans.iter().any(|plan| plan == name) {
+            return Ok(());
+        }
+        let file = self.sources.name(self.source).to_owned();
+        Err(InputError::UnknownPlan { file, name: name.to_owned(), plans })
+    }
+
+    /// Returns the only one of `plans`: those that [`compile`](Self::compile) found, by their names.
+    ///
+    /// # Errors
+    /// There is none, or there are several.
+    pub fn only<T>(&self, mut plans: Vec<(String, T)>) -> Result<T, InputError> {
+        match (plans.pop(), plans.len()) {
+            (Some((_, only)), 0) => Ok(only),
+            (last, _) => {
+                let plans = plans.into_iter().chain(last).map(|(name, _)| name).collect();
+                Err(InputError::NotOnePlan { file: self.sources.name(self.source).to_owned(), plans })
+            }
+        }
+    }
+
+    /// Emits a plan of the file as Rust, for the crate of `target`.
+    ///
+    /// # Errors
+    /// E0501 for a plan that is too large.
+    pub fn rust(&self, compiled: &Compiled, target: &Target) -> Result<String, Diagnostic> {
+        rust::fits(&compiled.lowered, compiled.plan.root.span)?;
+        let file = self.paths.get(&self.source).and_then(|path| path.file_name()).unwrap_or_default();
+        let header = Header { sources: &self.sources, file: &file.to_string_lossy(), plan: &compiled.plan.root.name };
+        Ok(rust::emit(&compiled.lowered, header, &target.alphabet))
+    }
+}
+
+impl syntax::Loader for Input {
+    fn find(&mut self, from: SourceId, path: &str) -> Result<SourceId, String> {
+        let folder = self.paths.get(&from).and_then(|path| path.parent()).unwrap_or(Path::new(""));
+        let file = folder.join(path);
+        let name = file.display().to_string();
+        let refused = |why: Unread| match why.is_missing() {
+            true => format!(
+                "there is no file `{name}`{}",
+                like(&file).map_or_else(String::new, |like| format!("; did you mean `{like}`?"))
+            ),
+            false => why.of(&name),
+        };
+        let place = file.canonicalize().map_err(|error| refused(Unread::System(error)))?;
+        if let Some(source) = self.read.get(&place) {
+            return Ok(*source);
+        }
+        let bytes = read::file(&place, read::LARGEST_PLAN).map_err(refused)?;
+        if let Some(refusal) = self.sources.refusal(&name, bytes.len()) {
+            return Err(refusal);
+        }
+        let text = String::from_utf8(without_mark(bytes)).map_err(|_| format!("`{name}` is not UTF-8 text"))?;
+        let source = self.sources.add(name, text);
+        self.paths.insert(source, file);
+        self.read.insert(place, source);
+        Ok(source)
+    }
+
+    fn text(&self, source: SourceId) -> &str {
+        self.sources.text(source)
+    }
+}
+
+/// Removes a byte order mark, which editors write and which is not part of a plan.
+#[must_use]
+pub fn without_mark(bytes: Vec<u8>) -> Vec<u8> {
+    bytes.strip_prefix(b"\xEF\xBB\xBF").map(<[u8]>::to_vec).unwrap_or(bytes)
+}
+
+/// Reads a plan file; `-` is standard input.
+///
+/// # Errors
+/// The file cannot be read or is not text.
+pub fn read_plan(path: &Path, target: &Target) -> Result<Input, InputError> {
+    plan(path, read_text(path, read::LARGEST_PLAN)?, target)
+}
+
+/// Makes the input of a plan file whose text was read.
+///
+/// # Errors
+/// The text is too long.
+pub fn plan(path: &Path, text: String, target: &Target) -> Result<Input, InputError> {
+    let mut sources = Sources::default();
+    for (name, text) in &target.sources {
+        sources.add(name, text);
+    }
+    let source = add(&mut sources, path, text)?;
+    let paths = BTreeMap::from([(source, path.to_owned())]);
+    let read = path.canonicalize().map(|place| (place, source)).into_iter().collect();
+    Ok(Input { sources, source, paths, read })
+}
+
+/// Adds the text of a plan file.
+///
+/// # Errors
+/// The text is too long.
+pub fn add(sources: &mut Sources, path: &Path, text: String) -> Result<SourceId, InputError> {
+    let name = shown(path);
+    match sources.refusal(&name, text.len()) {
+        Some(refusal) => Err(InputError::Unusable(refusal)),
+        None => Ok(sources.add(name, text)),
+    }
+}
+
+/// Name of a file in messages.
+fn shown(path: &Path) -> String {
+    if path == Path::new("-") { "standard input".into() } else { path.display().to_string() }
+}
+
+/// Reads a text file of at most `most` bytes, or standard input for `-`.
+///
+/// # Errors
+/// The file cannot be read or is not text.
+pub fn read_text(path: &Path, most: u64) -> Result<String, InputError> {
+    let name = shown(path);
+    let is_input = path == Path::new("-");
+    let bytes = if is_input { read::standard_input(most) } else { read::file(path, most) };
+    let bytes = bytes.map_err(|why| {
+        InputError::Unusable(if why.is_missing() {
+            format!("there is no file `{name}`{}", plan_nearby(path))
+        } else {
+            why.of(&name) + why.help()
+        })
+    })?;
+    String::from_utf8(without_mark(bytes)).map_err(|error| {
+        let valid = error.utf8_error().valid_up_to();
+        not_utf8(&name, error.as_bytes(), valid)
+    })
+}
+
+/// Error for a file that is not text, with the part of the file that can be shown; its first `valid` bytes are valid.
+fn not_utf8(name: &str, bytes: &[u8], valid: usize) -> InputError {
+    let mut sources = Sources::default();
+    let source = sources.add(name, String::from_utf8_lossy(bytes));
+    // The replacement character that stands there now is three bytes long.
+    let span = Span::new(source, valid, valid + 3);
+    let found = Diagnostic::new(Code::E0109, "this file is not UTF-8 text", span, "no character of UTF-8")
+        .help("save it as UTF-8 in your editor, or convert it: `iconv -f latin1 -t utf-8`");
+    InputError::Faulty { sources, diagnostics: vec![found], target: None }
+}
+
+/// Name of the plan file next to `path` that was probably meant: one that differs in upper or lower case or in the
+/// extension, or else in few letters.
+fn like(path: &Path) -> Option<String> {
+    let name = path.file_name()?.to_str()?.to_lowercase();
+    let folder = path.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
+    let files = std::fs::read_dir(folder).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let files: BTreeSet<String> = files.collect();
+    let same = files.iter().find(|file| [name.clone(), format!("{name}.mdle")].contains(&file.to_lowercase()));
+    let plans = || files.iter().map(String::as_str).filter(|file| file.ends_with(".mdle"));
+    same.map(String::as_str).or_else(|| nearest(&name, plans())).map(str::to_owned)
+}
+
+/// Hint for a path without the extension `.mdle`.
+fn plan_nearby(path: &Path) -> String {
+    let with_ending = path.with_extension("mdle");
+    if with_ending.is_file() { format!("\nhelp: there is `{}`", with_ending.display()) } else { String::new() }
+}

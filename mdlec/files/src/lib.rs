@@ -1,0 +1,14 @@
+//! The files of plans: reads plans, the files that they use, and the alphabets of targets, for the stages of
+//! [`mdle_compiler`].
+//!
+//! It prints nothing: what cannot be read is an [`InputError`], whose message names what to type instead.
+#![allow(clippy::disallowed_methods, reason = "what is done here is I/O")]
+
+mod error;
+mod input;
+pub mod read;
+mod target;
+
+pub use error::{InputError, Spelling};
+pub use input::{Input, add, plan, read_plan, read_text, without_mark};
+pub use target::{Target, alphabet, bound, out_of_date, target};

@@ -1,0 +1,154 @@
+//! The robot that plans are for: its alphabet, with the shared ones that it uses.
+
+use std::path::{Path, PathBuf};
+
+use mdle_compiler::alphabet::{self as language, Alphabet, AlphabetFile, Capability};
+use mdle_compiler::diagnostic::{Diagnostic, Sources, has_errors};
+use mdle_compiler::{builtin, rust};
+
+use crate::input::read_text;
+use crate::read::LARGEST_PLAN;
+use crate::{InputError, read};
+
+/// The robot that plans are checked against.
+#[derive(Debug)]
+pub struct Target {
+    /// Alphabet of the robot.
+    pub alphabet: Alphabet,
+    /// Folder of a target that is not part of mdlec.
+    pub folder: Option<PathBuf>,
+    /// The `mdle.toml` beside the plan, if there is one.
+    pub settings: Option<PathBuf>,
+    /// Files from which the alphabet was read, so that messages can show them.
+    pub(crate) sources: Vec<(String, String)>,
+}
+
+impl Target {
+    /// Texts of the alphabet's files: the shared ones, then the target's own.
+    pub fn texts(&self) -> impl Iterator<Item = &str> {
+        self.sources.iter().map(|(_, text)| text.as_str())
+    }
+
+    /// Files that were read for the target.
+    pub fn files(&self) -> impl Iterator<Item = PathBuf> {
+        let own =
+            self.folder.iter().flat_map(|folder| ["alphabet.mdle", "src/alphabet.rs"].map(|file| folder.join(file)));
+        own.chain(self.settings.clone())
+    }
+
+    /// Checks that the crate of a target that is not part of mdlec is bound to the target's alphabet: nothing can be
+    /// built for it otherwise.
+    ///
+    /// # Errors
+    /// The generated file `src/alphabet.rs` is missing or out of date.
+    pub fn must_be_bound(&self) -> Result<(), InputError> {
+        let Some(folder) = &self.folder else { return Ok(()) };
+        let file = folder.join("alphabet.mdle");
+        let is_up_to_date =
+            read::file(&bound(&file), LARGEST_PLAN).is_ok_and(|found| found == rust::bind(&self.alphabet).as_bytes());
+        if is_up_to_date { Ok(()) } else { Err(InputError::Unusable(out_of_date(&file))) }
+    }
+}
+
+/// Path of the Rust file that `mdlec bind` generates from the alphabet in `file`.
+#[must_use]
+pub fn bound(file: &Path) -> PathBuf {
+    file.with_file_name("src").join("alphabet.rs")
+}
+
+/// Sentence about the alphabet in `file` whose Rust is missing or out of date.
+#[must_use]
+pub fn out_of_date(file: &Path) -> String {
+    let (rust, file) = (bound(file), file.display());
+    let bound = rust.display();
+    if !rust.is_file() {
+        return format!("there is no `{bound}`\nhelp: `mdlec bind {file}` writes it");
+    }
+    format!("`{bound}` is not what `{file}` says\nhelp: `mdlec bind {file}` writes it anew")
+}
+
+/// Reads the target that `option` names: one that is part of mdlec, or the folder of another. Without a name it is a
+/// robot with every capability.
+///
+/// # Errors
+/// There is no such target, or its alphabet cannot be read or has errors.
+pub fn target(option: Option<&str>) -> Result<Target, InputError> {
+    let Some(name) = option else { return read_alphabets(None, "") };
+    if let Some(builtin) = builtin::alphabets().iter().find(|alphabet| alphabet.target && alphabet.name == name) {
+        return read_alphabets(Some((builtin.file.to_owned(), builtin.text.to_owned())), name);
+    }
+    let folder = Path::new(name);
+    if !folder.is_dir() {
+        return Err(InputError::UnknownTarget(name.to_owned()));
+    }
+    let file = folder.join("alphabet.mdle");
+    let text = read_text(&file, LARGEST_PLAN)?;
+    let mut target = read_alphabets(Some((file.display().to_string(), text)), name)?;
+    target.folder = Some(folder.to_owned());
+    Ok(target)
+}
+
+/// Reads the alphabet in this file, with the shared ones that it uses.
+///
+/// # Errors
+/// The file cannot be read or has errors.
+pub fn alphabet(file: &Path) -> Result<Alphabet, InputError> {
+    let name = file.display().to_string();
+    let text = read_text(file, LARGEST_PLAN)?;
+    read_alphabets(Some((name.clone(), text)), &name).map(|target| target.alphabet)
+}
+
+fn read_alphabets(own: Option<(String, String)>, name: &str) -> Result<Target, InputError> {
+    let mut reading = Reading::default();
+    let mut shared = Vec::new();
+    for alphabet in builtin::alphabets().iter().filter(|alphabet| !alphabet.target) {
+        shared.extend(reading.read(alphabet.file.to_owned(), alphabet.text.to_owned()));
+    }
+    let alphabet = match own {
+        Some((file, text)) => reading.read(file, text).map(|file| {
+            let (mut alphabet, found) = language::combine(file, &shared);
+            reading.found.extend(found);
+            alphabet.robots = robots();
+            alphabet
+        }),
+        None => shared.into_iter().next().map(Alphabet::shared),
+    };
+    match alphabet {
+        // An alphabet causes no warnings.
+        Some(alphabet) if !has_errors(&reading.found) => {
+            Ok(Target { alphabet, folder: None, settings: None, sources: reading.files })
+        }
+        Some(_) | None => {
+            let Reading { sources, found, .. } = reading;
+            Err(InputError::Faulty { sources, diagnostics: found, target: Some(name.to_owned()) })
+        }
+    }
+}
+
+/// Robots that are part of mdlec, each with its capabilities.
+fn robots() -> Vec<(String, Vec<Capability>)> {
+    let targets = builtin::alphabets().iter().filter(|alphabet| alphabet.target);
+    let head = |builtin: &builtin::Alphabet| {
+        let (file, _) = language::read(Sources::default().add(builtin.file, builtin.text), builtin.text);
+        Some((builtin.name.to_owned(), file?.target?.capabilities))
+    };
+    targets.filter_map(head).collect()
+}
+
+/// Alphabet files that are read one after the other.
+#[derive(Default)]
+struct Reading {
+    sources: Sources,
+    files: Vec<(String, String)>,
+    found: Vec<Diagnostic>,
+}
+
+impl Reading {
+    fn read(&mut self, file: String, text: String) -> Option<AlphabetFile> {
+        let source = self.sources.add(&file, &text);
+        let (alphabet, found) = language::read(source, &text);
+        self.found.extend(found);
+        self.files.push((file, text));
+        alphabet
+    }
+}
