@@ -3,16 +3,20 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
+use std::sync::Arc;
+
 use mdle_compiler::alphabet::Unit;
 use mdle_compiler::diagnostic::SourceId;
+use mdle_compiler::fsm::{self, Element};
+use mdle_compiler::load;
 use mdle_compiler::syntax::{arena_for, parse};
 use mdle_compiler::trace::{Applied, COMPLETED, Outcome, Script, TraceLine};
+use mdle_scripted::alphabet::Alphabet;
 use mdle_scripted::drive;
 use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::grammar;
-use mdle_tests::loaded::Loaded;
 use mdle_tests::outputs::outputs;
-use mdle_tests::pipeline::{Machines, compile};
+use mdle_tests::pipeline::{Machines, compile, scripted, sources};
 use mdle_tests::productions::{self, Productions};
 use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::random_script::script;
@@ -118,7 +122,8 @@ fn seeds(first: usize, step: usize) -> Seen {
     seen
 }
 
-/// Compares the traces of the machines, and of the plan when it is loaded, with or without foresight.
+/// Compares the traces of the machines, and of the plan when it is loaded, with or without the successors of scopes in
+/// its rows.
 fn compare(seed: u64, foresight: bool, text: &str, script: &str, seen: &mut Seen) {
     let compiled = match compile(text) {
         Ok(compiled) => compiled,
@@ -139,11 +144,18 @@ fn compare(seed: u64, foresight: bool, text: &str, script: &str, seen: &mut Seen
         }
     }
     let expected: String = tree.iter().map(|line| format!("{line}\n")).collect();
-    let loaded = Loaded::new(&compiled.lowered, foresight);
-    let borrowed = loaded.borrowed();
-    let rows = loaded.rows(&borrowed);
+    let machine = &compiled.lowered;
+    let mut rows = fsm::rows(machine);
+    if !foresight {
+        for (guard, element) in rows.guards.iter_mut().zip(machine.elements()) {
+            (guard.follows, guard.around) = (None, element.parent().map_or(0, Element::number));
+        }
+    }
+    let words = fsm::words(machine, &sources(text), scripted());
+    let loaded = load::with_rows::<Alphabet>(rows, words, machine, scripted()).expect("quarks that are bound");
+    let loaded = Arc::new(loaded);
     let mut printed = String::new();
-    drive(|| loaded.plan(&rows), &outputs(&turns), &mut printed).expect("room for the trace");
+    drive(|| loaded.plan(), &outputs(&turns), &mut printed).expect("room for the trace");
     assert!(printed == expected, "seed {seed}\n{reference}:\n{expected}loaded:\n{printed}{text}\n{script}");
     let arena = arena_for(text);
     productions::count(text, &parse(SourceId(0), text, &arena).0, &mut seen.productions);

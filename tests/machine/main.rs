@@ -4,6 +4,7 @@ mod analysis;
 mod differential;
 mod fsm_files;
 mod golden;
+mod loaded;
 mod matrices;
 mod pictures;
 mod scxml;

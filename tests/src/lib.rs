@@ -17,7 +17,6 @@ pub mod explore;
 pub mod golden;
 pub mod grammar;
 pub mod graphs;
-pub mod loaded;
 pub mod outputs;
 pub mod pipeline;
 pub mod productions;

@@ -12,6 +12,7 @@ pub mod analysis;
 pub mod builtin;
 pub mod diagnostic;
 pub mod fsm;
+pub mod load;
 pub mod picture;
 pub mod plan;
 pub mod rust;

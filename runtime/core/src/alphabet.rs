@@ -23,6 +23,10 @@ pub trait Alphabet {
     /// Any of its laws as it runs; a law that never completes is never done.
     type Law: Law<Self::Output, Input = Self::Input> + Completes<Self::Output>;
 
+    /// Name of the target, as `--target` takes it.
+    const NAME: &'static str;
+    /// Hash of the alphabet's text: a plan that was compiled for another alphabet does not run.
+    const HASH: u64;
     /// Capabilities of the robot, in the alphabet's words, such as `sonar[16]`.
     const CAPABILITIES: &'static [&'static str];
     /// Ranges of the parameters that the alphabet limits.
@@ -94,7 +98,7 @@ impl<const N: usize> Bits<N> {
 /// Declares `Alphabet`, `AnyInterrupt`, `AnySignal`, `AnyControl` and `AnyLaw` from the tables of a robot's alphabet,
 /// which `mdlec bind` writes.
 ///
-/// `Output` and `Input` are the robot's, in scope. A capability names the trait that `Output` has to implement, if
+/// `Output` and `Input` are the robot's, `NAME` and `HASH` those of its alphabet, all in scope. A capability names the trait that `Output` has to implement, if
 /// there is one. A limit is in SI units. A quark is its name, its type, and the constant function that makes it of its
 /// arguments, which returns `None` for arguments of another signature.
 #[macro_export]
@@ -199,6 +203,8 @@ macro_rules! alphabet {
             type Control = AnyControl;
             type Law = AnyLaw;
 
+            const NAME: &'static str = NAME;
+            const HASH: u64 = HASH;
             const CAPABILITIES: &'static [&'static str] = &[$($capability),*];
             const LIMITS: &'static [$crate::Limit] = &[
                 $($crate::Limit { quark: $quark, parameter: $parameter, least: $least, most: $most }),*

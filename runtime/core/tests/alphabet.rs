@@ -83,6 +83,11 @@ const fn go2(arguments: &[Argument<'_>]) -> Option<Go2> {
     Some(Go2)
 }
 
+/// Name of the target.
+pub const NAME: &str = "toy";
+/// Hash of the alphabet.
+pub const HASH: u64 = 7;
+
 mdle_runtime::alphabet! {
     capabilities: ["wings"];
     limits: ["go" "to" in -1.0..2.0];

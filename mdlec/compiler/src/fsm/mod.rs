@@ -8,9 +8,11 @@ mod lower;
 mod machine;
 mod matrices;
 mod observation;
+mod rows;
 #[cfg(test)]
 mod tests;
 mod validation;
+mod words;
 
 pub use draft::{Draft, LawMeaning, RecordPlace, ScopeMeaning, Sizes};
 pub use expand::{expand, expanded_states};
@@ -19,4 +21,6 @@ pub use lower::{STATES, lower};
 pub use machine::{Atom, Element, ElementKind, Exit, Machine, Visit};
 pub use matrices::{Matrices, Matrix, Transition, UnitVector, matrices};
 pub use observation::observation1;
+pub use rows::{Rows, replayed_files, rows};
 pub use validation::validate;
+pub use words::{BracketText, OperandText, PlanWords, words};

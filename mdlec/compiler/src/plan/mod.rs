@@ -39,7 +39,7 @@ pub(crate) use words::Words;
 
 use std::num::NonZeroU32;
 
-use crate::alphabet::{Decimal, Kind};
+use crate::alphabet::{Decimal, Kind, family_to_si};
 use crate::diagnostic::Span;
 
 /// A plan: the outermost scope, and the quarks used anywhere in the plan.
@@ -134,6 +134,19 @@ pub enum Value {
     Sonar(u8),
     /// A robot, a module or a file.
     Name(Kind, String),
+}
+
+impl Value {
+    /// Returns the value of a quantity in SI units, which is all that signals are compared with; 0 for what is no
+    /// quantity.
+    #[must_use]
+    pub fn in_si(&self) -> f64 {
+        match self {
+            Self::Quantity { exact, family, .. } => exact.to_f64() * family_to_si(family),
+            Self::Infinity(_) => f64::MAX,
+            Self::Bits(_) | Self::Integer(_) | Self::Sonar(_) | Self::Name(..) => 0.0,
+        }
+    }
 }
 
 /// A closed string: a sequence with an interrupt of its own.

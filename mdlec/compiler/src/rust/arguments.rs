@@ -4,7 +4,7 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::names::quark_type;
-use crate::alphabet::{Kind, family_to_si};
+use crate::alphabet::Kind;
 use crate::plan::{Compared, Comparison, Operator, Quark, QuarkId, Value, in_degrees};
 
 /// `robot::Go`, or for a comparison `runtime::Comparison<robot::R, robot::X>`: the type of a quark among `quarks`.
@@ -29,7 +29,7 @@ pub(super) fn compared(
     signal: impl Fn(QuarkId) -> TokenStream,
 ) -> TokenStream {
     let left = signal(comparison.signal);
-    let tolerance = number(in_si(&comparison.tolerance));
+    let tolerance = number(comparison.tolerance.in_si());
     let operator = match (comparison.operator, &comparison.tolerance) {
         (Operator::Equal, Value::Quantity { kind: Kind::Angle, .. }) => quote!(SameDirection(#tolerance)),
         (Operator::Equal, _) => quote!(Equal(#tolerance)),
@@ -44,20 +44,11 @@ pub(super) fn compared(
             quote!(runtime::Operand::Signal(#other))
         }
         Compared::Value(value) => {
-            let value = number(in_si(value));
+            let value = number(value.in_si());
             quote!(runtime::Operand::<#none>::Value(#value))
         }
     };
     quote!(runtime::Comparison::new(#left, runtime::Operator::#operator, #with))
-}
-
-/// The SI value of a quantity, which is all that signals are compared with.
-fn in_si(value: &Value) -> f64 {
-    match value {
-        Value::Quantity { exact, family, .. } => exact.to_f64() * family_to_si(family),
-        Value::Infinity(_) => f64::MAX,
-        Value::Bits(_) | Value::Integer(_) | Value::Sonar(_) | Value::Name(..) => 0.0,
-    }
 }
 
 /// `robot::Go::new(…)`: a quark among `quarks`, made of its arguments, for a constant.
@@ -89,8 +80,8 @@ pub(super) fn number(value: f64) -> TokenStream {
 /// An argument as its unit type.
 fn argument(value: &Value) -> TokenStream {
     match value {
-        Value::Quantity { kind, exact, family } => {
-            let si = exact.to_f64() * family_to_si(family);
+        Value::Quantity { kind, exact, .. } => {
+            let si = value.in_si();
             let number = number(si);
             match kind {
                 Kind::Length => quote!(runtime::Meters(#number)),

@@ -21,7 +21,7 @@ use quote::{format_ident, quote};
 
 use crate::alphabet::Alphabet;
 use crate::diagnostic::{Code, Diagnostic, Sources, Span};
-use crate::fsm::{Element, Machine};
+use crate::fsm::{self, Element, Machine};
 pub use bind::bind;
 pub use names::plan_type;
 
@@ -105,7 +105,7 @@ pub fn emit_as(shape: Shape, machine: &Machine, header: Header<'_>, alphabet: &A
     };
     let same_alphabet = same_alphabet(alphabet);
     let tables = tables::tables(machine);
-    let source = source::source(machine, header.sources, alphabet);
+    let source = source::source(&fsm::words(machine, header.sources, alphabet));
     let file = quote! {
         #[allow(unreachable_pub, reason = "who includes this file says how far it reaches")]
         pub use machine::#plan;

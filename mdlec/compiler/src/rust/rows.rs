@@ -1,16 +1,15 @@
 //! A plan as rows of tables, which the runtime looks up: for plans too long to be code of their own.
 
-use std::collections::VecDeque;
-
+use mdle_runtime::{Condition, Fact, Guard, LawRow, MarkRow, Nanos};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
 use super::arguments::{angle, compared, made};
 use super::names::quark_type;
 use super::scopes::nanometers;
-use super::tables::{entries, follows, level};
-use crate::fsm::{Element, Machine};
-use crate::plan::{Condition, Quark, QuarkId};
+use super::tables::{entries, follows};
+use crate::fsm::{self, Machine, Rows};
+use crate::plan::{Quark, QuarkId};
 
 /// The plan's type, which hands everything on to the runtime's, and its rows.
 pub(super) fn machine(plan: &Ident, doc: &str, machine: &Machine, paths: Option<&TokenStream>) -> TokenStream {
@@ -116,64 +115,31 @@ fn memory(machine: &Machine, begins: &TokenStream) -> (Option<TokenStream>, Toke
     (Some(quote!(, runtime::Memories<[bool; #size]>)), new)
 }
 
-/// Returns the labels of what ends with a bracket, and their facts.
-fn marks(machine: &Machine) -> (Vec<TokenStream>, Vec<TokenStream>) {
-    let (mut rows, mut all) = (Vec::new(), Vec::new());
-    for element in machine.elements() {
-        for mark in element.marks() {
-            let Some(record) = machine.record(mark.record) else { continue };
-            let facts = mark.facts.iter().map(|fact| {
-                let memory = Literal::u32_unsuffixed(record.first.saturating_add(fact.number));
-                let operand = match fact.operand.map(Literal::u32_unsuffixed) {
-                    Some(operand) => quote!(Some(#operand)),
-                    None => quote!(None),
-                };
-                quote!(runtime::Fact { memory: #memory, operand: #operand })
-            });
-            let [bracket, first, count] = [element.number(), record.first, record.facts].map(Literal::u32_unsuffixed);
-            let level = Literal::u16_unsuffixed(record.level);
-            let [first_fact, facts_of_mark] = [all.len(), mark.facts.len()].map(Literal::usize_unsuffixed);
-            all.extend(facts);
-            rows.push(quote! {
-                runtime::MarkRow {
-                    bracket: #bracket, level: #level, first: #first, count: #count,
-                    first_fact: #first_fact, facts: #facts_of_mark,
-                }
-            });
-        }
-    }
-    (rows, all)
-}
-
 /// `static ROWS`: when each bracket ends, the operands of their conditions, the law of each atom.
 fn rows(machine: &Machine, paths: Option<&TokenStream>) -> TokenStream {
-    let (marks, facts) = marks(machine);
-    let mut operands = Operands::new(machine);
-    let guards: Vec<_> = machine
-        .elements()
-        .map(|element| {
-            let condition = operands.row(element.condition());
-            let level = Literal::u16_unsuffixed(level(element));
-            let around = Literal::u32_unsuffixed(around(element).number());
-            let follows = match element.follows().map(follows) {
-                Some(follows) => quote!(Some(#follows)),
-                None => quote!(None),
-            };
-            quote!(runtime::Guard { condition: runtime::Condition::#condition, level: #level, around: #around, follows: #follows })
-        })
-        .collect();
-    let operands = operands.rows();
-    let laws = machine.atoms().map(|atom| {
-        let control = variant("AnyControl", atom.law(), machine.quarks());
-        let frame = angle(atom.turned());
+    let Rows { guards, operands, laws, marks, facts } = fsm::rows(machine);
+    let guards = guards.iter().map(|Guard { condition, level, around, follows: after }| {
+        let condition = row(condition, machine);
+        let (level, around) = (Literal::u16_unsuffixed(*level), Literal::u32_unsuffixed(*around));
+        let follows = match after.map(follows) {
+            Some(follows) => quote!(Some(#follows)),
+            None => quote!(None),
+        };
+        quote!(runtime::Guard { condition: #condition, level: #level, around: #around, follows: #follows })
+    });
+    let operands = operands.iter().map(|operand| row(operand, machine));
+    let laws = laws.iter().map(|LawRow { control, frame }| {
+        let control = variant("AnyControl", machine.quark(*control), machine.quarks());
+        let frame = angle(frame.0);
         quote!(runtime::LawRow { control: #control, frame: #frame })
     });
+    let (marks, facts) = (marks.iter().map(mark), facts.iter().map(fact));
     quote! {
         #[doc = " What brackets and atoms mean, in the order of the tables below."]
         static ROWS: runtime::Rows<'static, robot::Alphabet> = runtime::Rows {
             fsm: FSM,
             guards: &[#(#guards),*],
-            operands: &[#(runtime::Condition::#operands),*],
+            operands: &[#(#operands),*],
             laws: &[#(#laws),*],
             marks: &[#(#marks),*],
             facts: &[#(#facts),*],
@@ -186,99 +152,83 @@ fn rows(machine: &Machine, paths: Option<&TokenStream>) -> TokenStream {
 
 /// `static OPERANDS`: the conditions of a plan that is code, for reports of the ones that fired.
 pub(super) fn conditions(machine: &Machine) -> TokenStream {
-    let mut operands = Operands::new(machine);
-    let conditions: Vec<_> = machine.elements().map(|element| operands.row(element.condition())).collect();
-    let operands = operands.rows();
+    let rows = fsm::rows(machine);
+    let conditions = rows.guards.iter().map(|guard| row(&guard.condition, machine));
+    let operands = rows.operands.iter().map(|operand| row(operand, machine));
     quote! {
         #[doc = " The conditions of brackets once more, read when somebody asks what has fired."]
         static OPERANDS: runtime::Conditions<'static, robot::AnyInterrupt> = runtime::Conditions {
-            conditions: &[#(runtime::Condition::#conditions),*],
-            operands: &[#(runtime::Condition::#operands),*],
+            conditions: &[#(#conditions),*],
+            operands: &[#(#operands),*],
         };
     }
 }
 
-/// Returns the nearest enclosing element whose condition can fire; the element itself where there is none.
-fn around(element: Element<'_>) -> Element<'_> {
-    let can_fire = |enclosing: &Element<'_>| *enclosing.condition() != Condition::Null;
-    element.outwards().skip(1).find(can_fire).unwrap_or(element)
-}
-
-/// The operands of conditions, breadth first: so the operands of one condition are consecutive, and after the
-/// condition.
-struct Operands<'l> {
-    machine: &'l Machine,
-    waiting: VecDeque<&'l Condition>,
-    /// Number of conditions that have been given a number.
-    count: usize,
-}
-
-impl<'l> Operands<'l> {
-    fn new(machine: &'l Machine) -> Self {
-        Self { machine, waiting: VecDeque::new(), count: 0 }
-    }
-
-    /// Returns the variant of a condition, and gives its operands the next numbers.
-    fn row(&mut self, condition: &'l Condition) -> TokenStream {
-        let first = Literal::usize_unsuffixed(self.count);
-        match condition {
-            Condition::Null => quote!(Null),
-            Condition::Rising { memory, operand } => {
-                self.waiting.push_back(operand);
-                self.count += 1;
-                let memory = Literal::u32_unsuffixed(*memory);
-                quote!(Rising(#memory, #first))
-            }
-            Condition::After(after) => match self.machine.record(after.record) {
-                Some(record) => {
-                    let level = Literal::u16_unsuffixed(record.level);
-                    let memory = Literal::u32_unsuffixed(record.first.saturating_add(after.fact));
-                    quote!(After(#level, #memory))
-                }
-                None => quote!(Null),
-            },
-            Condition::Quark(id) => {
-                let interrupt = interrupt(*id, self.machine.quarks());
-                quote!(Quark(#interrupt))
-            }
-            Condition::Wait { nanos, .. } => {
-                let nanos = Literal::u64_unsuffixed(*nanos);
-                quote!(Wait(Nanos(#nanos)))
-            }
-            Condition::Elapsed { from, until, .. } => {
-                let [from, until] = [*from, until.unwrap_or(u64::MAX)].map(Literal::u64_unsuffixed);
-                quote!(Elapsed(Nanos(#from), Nanos(#until)))
-            }
-            Condition::Driven { from, until, .. } => {
-                let [from, until] = [*from, until.unwrap_or(u64::MAX)].map(nanometers);
-                quote!(Driven(#from, #until))
-            }
-            Condition::Or(operands) | Condition::And(operands) => {
-                self.waiting.extend(operands);
-                self.count += operands.len();
-                let count = Literal::usize_unsuffixed(operands.len());
-                if matches!(condition, Condition::Or(_)) {
-                    quote!(Or(#first, #count))
-                } else {
-                    quote!(And(#first, #count))
-                }
-            }
-            Condition::Not(operand) => {
-                self.waiting.push_back(operand);
-                self.count += 1;
-                quote!(Not(#first))
-            }
+/// `runtime::MarkRow { … }`.
+fn mark(mark: &MarkRow) -> TokenStream {
+    let MarkRow { bracket, level, first, count, first_fact, facts } = mark;
+    let level = Literal::u16_unsuffixed(*level);
+    let [bracket, first, count, first_fact, facts] =
+        [bracket, first, count, first_fact, facts].map(|number| Literal::u32_unsuffixed(*number));
+    quote! {
+        runtime::MarkRow {
+            bracket: #bracket, level: #level, first: #first, count: #count, first_fact: #first_fact, facts: #facts,
         }
     }
+}
 
-    /// The rows of all that were given a number, in that order.
-    fn rows(mut self) -> Vec<TokenStream> {
-        let mut rows = Vec::new();
-        while let Some(operand) = self.waiting.pop_front() {
-            rows.push(self.row(operand));
+/// `runtime::Fact { memory: 0, operand: Some(1) }`.
+fn fact(Fact { memory, operand }: &Fact) -> TokenStream {
+    let memory = Literal::u32_unsuffixed(*memory);
+    let operand = match operand.map(Literal::u32_unsuffixed) {
+        Some(operand) => quote!(Some(#operand)),
+        None => quote!(None),
+    };
+    quote!(runtime::Fact { memory: #memory, operand: #operand })
+}
+
+/// `runtime::Condition::Or(0, 2)`: a condition or an operand.
+fn row(condition: &Condition<QuarkId>, machine: &Machine) -> TokenStream {
+    let variant = match condition {
+        Condition::Null => quote!(Null),
+        Condition::Quark(id) => {
+            let interrupt = interrupt(*id, machine.quarks());
+            quote!(Quark(#interrupt))
         }
-        rows
-    }
+        Condition::Wait(Nanos(nanos)) => {
+            let nanos = Literal::u64_unsuffixed(*nanos);
+            quote!(Wait(Nanos(#nanos)))
+        }
+        Condition::Elapsed(Nanos(from), Nanos(until)) => {
+            let [from, until] = [*from, *until].map(Literal::u64_unsuffixed);
+            quote!(Elapsed(Nanos(#from), Nanos(#until)))
+        }
+        Condition::Driven(from, until) => {
+            let [from, until] = [from.0, until.0].map(nanometers);
+            quote!(Driven(#from, #until))
+        }
+        Condition::Or(first, count) => {
+            let [first, count] = [*first, *count].map(Literal::u32_unsuffixed);
+            quote!(Or(#first, #count))
+        }
+        Condition::And(first, count) => {
+            let [first, count] = [*first, *count].map(Literal::u32_unsuffixed);
+            quote!(And(#first, #count))
+        }
+        Condition::Not(number) => {
+            let number = Literal::u32_unsuffixed(*number);
+            quote!(Not(#number))
+        }
+        Condition::Rising(memory, number) => {
+            let [memory, number] = [*memory, *number].map(Literal::u32_unsuffixed);
+            quote!(Rising(#memory, #number))
+        }
+        Condition::After(level, memory) => {
+            let (level, memory) = (Literal::u16_unsuffixed(*level), Literal::u32_unsuffixed(*memory));
+            quote!(After(#level, #memory))
+        }
+    };
+    quote!(runtime::Condition::#variant)
 }
 
 /// An interrupt as one of its alphabet's.

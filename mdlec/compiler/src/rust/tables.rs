@@ -1,15 +1,12 @@
 //! The constant tables of a generated file: the machine and the texts that traces and messages show.
 
-use std::collections::BTreeSet;
-
 use mdle_runtime::{Follows, Here};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::arguments::angle;
-use crate::alphabet::{Alphabet, Kind as ValueKind};
+use crate::alphabet::Alphabet;
 use crate::fsm::{self, Element, ElementKind, Machine};
-use crate::plan::{Quark, Value};
 
 /// `const FSM`, `LAWS`, `CONDITIONS`, `NAMES`, and `HERE` for a plan with `FRAME here`.
 pub(super) fn tables(machine: &Machine) -> TokenStream {
@@ -106,25 +103,7 @@ pub(super) fn follows(follows: Follows) -> TokenStream {
 
 /// Returns the files whose paths laws replay, each once; `None` for a plan that replays no paths.
 pub(super) fn paths(machine: &Machine, alphabet: &Alphabet) -> Option<TokenStream> {
-    let replays = |quark: &Quark| {
-        let declaration = alphabet.declarations_of(&quark.name).nth(quark.overload);
-        declaration.is_some_and(|declaration| declaration.needs.iter().any(|need| need.name == "paths"))
-    };
-    let laws = machine.atoms().map(fsm::Atom::law).filter(|quark| replays(quark));
-    let files: BTreeSet<_> = laws.flat_map(|quark| quark.args.iter().filter_map(file)).collect();
+    let files = fsm::replayed_files(machine, alphabet);
     let files = files.iter();
     (files.len() > 0).then(|| quote!(#(#files),*))
-}
-
-/// The name of the file that an argument is.
-fn file(argument: &Value) -> Option<&str> {
-    match argument {
-        Value::Name(ValueKind::File, name) => Some(name),
-        Value::Name(..)
-        | Value::Quantity { .. }
-        | Value::Infinity(_)
-        | Value::Bits(_)
-        | Value::Integer(_)
-        | Value::Sonar(_) => None,
-    }
 }

@@ -59,6 +59,8 @@ impl Alphabet for Toy {
     type Control = Points;
     type Law = Points;
 
+    const NAME: &'static str = "toy";
+    const HASH: u64 = 0;
     const CAPABILITIES: &'static [&'static str] = &[];
     const LIMITS: &'static [Limit] = &[];
 

@@ -1,0 +1,92 @@
+//! A plan at run time: its rows with the quarks that the robot's bound alphabet makes by their names.
+
+mod entries;
+mod names;
+mod quarks;
+mod table;
+
+use std::error::Error;
+use std::fmt;
+
+use mdle_runtime::{Guard, LawRow};
+
+use crate::alphabet;
+use crate::diagnostic::Sources;
+use crate::fsm::{self, Machine, PlanWords, Rows};
+pub use entries::Entered;
+pub use names::MOST_NAMES;
+use quarks::Quarks;
+pub use table::{Loaded, LoadedPlan, Shared};
+
+/// Reason why a plan cannot be loaded.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum LoadError {
+    /// The target of this name is bound to another alphabet than the plan was compiled for.
+    OtherAlphabet(String),
+    /// The target makes no such quark, though its alphabet declares it: the text of the quark.
+    Unbound(String),
+    /// The plans of this process have more than [`MOST_NAMES`] bytes of names.
+    TooManyNames,
+}
+
+impl fmt::Display for LoadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::OtherAlphabet(name) => {
+                write!(f, "the crate of target `{name}` is bound to another alphabet: run `mdlec bind`")
+            }
+            Self::Unbound(text) => write!(f, "the crate of the target makes no quark `{text}`: run `mdlec bind`"),
+            Self::TooManyNames => write!(
+                f,
+                "the plans of this program have more than {} kB of names of files and modules, which is the most",
+                MOST_NAMES / 1000
+            ),
+        }
+    }
+}
+
+impl Error for LoadError {}
+
+/// Loads the plan of a machine for the robot of the bound alphabet `A`; `alphabet` is the text that it was compiled for.
+///
+/// # Errors
+/// The crate of the robot is bound to another alphabet, or lacks a quark, or the plans of this process have too many
+/// names.
+pub fn load<A: mdle_runtime::Alphabet>(
+    machine: &Machine,
+    sources: &Sources,
+    alphabet: &alphabet::Alphabet,
+) -> Result<Loaded<A>, LoadError> {
+    if alphabet.hash() != A::HASH {
+        return Err(LoadError::OtherAlphabet(A::NAME.to_owned()));
+    }
+    with_rows(fsm::rows(machine), fsm::words(machine, sources, alphabet), machine, alphabet)
+}
+
+/// Loads the plan of a machine that has these rows and words.
+///
+/// # Errors
+/// Those of [`load`].
+pub fn with_rows<A: mdle_runtime::Alphabet>(
+    rows: Rows,
+    words: PlanWords,
+    machine: &Machine,
+    alphabet: &alphabet::Alphabet,
+) -> Result<Loaded<A>, LoadError> {
+    let quarks = Quarks { machine, alphabet };
+    let Rows { guards, operands, laws, marks, facts } = rows;
+    let guards = guards.into_iter().map(|Guard { condition, level, around, follows }| {
+        Ok(Guard { condition: quarks.condition::<A>(condition)?, level, around, follows })
+    });
+    let operands = operands.into_iter().map(|operand| quarks.condition::<A>(operand));
+    let laws = laws
+        .into_iter()
+        .map(|LawRow { control, frame }| Ok(LawRow { control: quarks.by_name(control, A::control)?, frame }));
+    let paths = fsm::replayed_files(machine, alphabet).into_iter().map(names::interned);
+    let (guards, operands, laws) =
+        (guards.collect::<Result<_, _>>()?, operands.collect::<Result<_, _>>()?, laws.collect::<Result<_, _>>()?);
+    Ok(Loaded::new(
+        machine,
+        table::Owned { guards, operands, laws, marks, facts, words, paths: paths.collect::<Result<_, _>>()? },
+    ))
+}

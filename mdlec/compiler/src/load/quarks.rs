@@ -1,0 +1,107 @@
+//! The quarks of a plan, made by their names.
+
+use mdle_runtime::{
+    Alphabet, Argument, Comparison, Condition, Meters, MetersPerSecond, Nanos, Operand, Operator, Radians,
+    RadiansPerSecond, SonarId, Volts,
+};
+
+use super::{LoadError, names};
+use crate::alphabet::{self, Kind};
+use crate::fsm::Machine;
+use crate::plan::{self, Compared, Quark, QuarkId, Value};
+
+/// Makes the quarks of a machine.
+#[derive(Clone, Copy)]
+pub(super) struct Quarks<'m> {
+    pub(super) machine: &'m Machine,
+    pub(super) alphabet: &'m alphabet::Alphabet,
+}
+
+impl Quarks<'_> {
+    /// Returns a condition whose quark is made.
+    pub(super) fn condition<A: Alphabet>(
+        self,
+        condition: Condition<QuarkId>,
+    ) -> Result<Condition<A::Interrupt>, LoadError> {
+        Ok(match condition {
+            Condition::Quark(id) => Condition::Quark(self.interrupt::<A>(id)?),
+            Condition::Null => Condition::Null,
+            Condition::Wait(time) => Condition::Wait(time),
+            Condition::Elapsed(from, until) => Condition::Elapsed(from, until),
+            Condition::Driven(from, until) => Condition::Driven(from, until),
+            Condition::Or(first, count) => Condition::Or(first, count),
+            Condition::And(first, count) => Condition::And(first, count),
+            Condition::Not(number) => Condition::Not(number),
+            Condition::Rising(memory, number) => Condition::Rising(memory, number),
+            Condition::After(level, memory) => Condition::After(level, memory),
+        })
+    }
+
+    fn interrupt<A: Alphabet>(self, id: QuarkId) -> Result<A::Interrupt, LoadError> {
+        let quark = self.machine.quark(id);
+        let Some(comparison) = &quark.comparison else { return self.by_name(id, A::interrupt) };
+        let signal = |id| self.by_name(id, A::signal);
+        let with = match &comparison.with {
+            Compared::Signal(other) => Operand::Signal(signal(*other)?),
+            Compared::Value(value) => Operand::Value(value.in_si()),
+        };
+        let made = Comparison::new(signal(comparison.signal)?, operator(comparison), with);
+        A::comparison(made).ok_or_else(|| LoadError::Unbound(quark.text.clone()))
+    }
+
+    /// Returns the quark that `make` makes of its name and its arguments.
+    pub(super) fn by_name<Q>(self, id: QuarkId, make: fn(&str, &[Argument<'_>]) -> Option<Q>) -> Result<Q, LoadError> {
+        let Quark { name, overload, args, text, .. } = self.machine.quark(id);
+        let declaration = self.alphabet.declarations_of(name).nth(*overload);
+        let kinds = declaration.iter().flat_map(|declaration| declaration.params.iter().map(|param| param.kind));
+        let arguments = args.iter().zip(kinds).map(|(value, kind)| argument(value, kind));
+        let arguments: Vec<_> = arguments.collect::<Result<_, _>>()?;
+        make(name, &arguments).ok_or_else(|| LoadError::Unbound(text.clone()))
+    }
+}
+
+fn operator(comparison: &plan::Comparison) -> Operator {
+    let tolerance = comparison.tolerance.in_si();
+    let is_angle = matches!(comparison.tolerance, Value::Quantity { kind: Kind::Angle, .. });
+    match comparison.operator {
+        plan::Operator::Equal if is_angle => Operator::SameDirection(tolerance),
+        plan::Operator::Equal => Operator::Equal(tolerance),
+        plan::Operator::Less => Operator::Less,
+        plan::Operator::LessOrEqual => Operator::LessOrEqual,
+        plan::Operator::Greater => Operator::Greater,
+        plan::Operator::GreaterOrEqual => Operator::GreaterOrEqual,
+    }
+}
+
+/// Returns an argument for a parameter of this kind.
+fn argument(value: &Value, parameter: Kind) -> Result<Argument<'_>, LoadError> {
+    let si = value.in_si();
+    Ok(match value {
+        Value::Quantity { kind, exact, .. } => match kind {
+            Kind::Length => Argument::Length(Meters(si)),
+            Kind::Speed => Argument::Speed(MetersPerSecond(si)),
+            Kind::Angle => Argument::Angle(Radians(si)),
+            Kind::AngularRate => Argument::AngularRate(RadiansPerSecond(si)),
+            Kind::Voltage => Argument::Voltage(Volts(si)),
+            Kind::Time => Argument::Time(Nanos(exact.to_nanos().unwrap_or(u64::MAX))),
+            Kind::Frequency
+            | Kind::Number
+            | Kind::Integer
+            | Kind::Count
+            | Kind::Bits(_)
+            | Kind::Sonar
+            | Kind::Robot
+            | Kind::Module
+            | Kind::File => Argument::Number(si),
+        },
+        Value::Infinity(Kind::Time) => Argument::Time(Nanos::MAX),
+        Value::Infinity(_) => Argument::Count(u64::MAX),
+        Value::Bits(bits) => Argument::Bits(bits),
+        Value::Integer(whole) => match u64::try_from(*whole) {
+            Ok(count) if parameter == Kind::Count => Argument::Count(count),
+            Ok(_) | Err(_) => Argument::Integer(*whole),
+        },
+        Value::Sonar(sonar) => Argument::Sonar(SonarId::new(*sonar)),
+        Value::Name(_, name) => Argument::Name(names::interned(name)?),
+    })
+}

@@ -1,0 +1,129 @@
+//! The tables of a loaded plan, which own what they hold.
+
+use std::sync::Arc;
+
+use mdle_runtime::fsm::{Atom, Bracket};
+use mdle_runtime::{Alphabet, Condition, Fact, Fsm, Guard, InRows, LawRow, MarkRow, Memories, Table, Words};
+
+use super::Entered;
+use crate::fsm::{self, Element, Machine, PlanWords};
+
+/// A plan whose quarks are made, before it begins.
+pub struct Loaded<A: Alphabet> {
+    brackets: Vec<Bracket>,
+    atoms: Vec<Atom>,
+    termination: u64,
+    owned: Owned<A>,
+    laws: Vec<Box<str>>,
+    conditions: Vec<Box<str>>,
+    names: Vec<Box<str>>,
+    entered: Entered,
+    slots: usize,
+    /// The number of memories of each level of scopes, and the number of these levels.
+    memories: (usize, usize),
+}
+
+/// The rows of a plan.
+pub(super) struct Owned<A: Alphabet> {
+    pub(super) guards: Vec<Guard<A::Interrupt>>,
+    pub(super) operands: Vec<Condition<A::Interrupt>>,
+    pub(super) laws: Vec<LawRow<A::Control>>,
+    pub(super) marks: Vec<MarkRow>,
+    pub(super) facts: Vec<Fact>,
+    pub(super) words: PlanWords,
+    pub(super) paths: Vec<&'static str>,
+}
+
+/// Tables that several machines may run, each from its own position.
+pub struct Shared<A: Alphabet>(Arc<Loaded<A>>);
+
+/// A loaded plan before it begins. It owns all that it needs, so one thread can make it and another one run it.
+pub type LoadedPlan<A> = InRows<Shared<A>, Entered, Box<[u64]>, Memories<Box<[bool]>>>;
+
+impl<A: Alphabet> Loaded<A> {
+    pub(super) fn new(machine: &Machine, owned: Owned<A>) -> Self {
+        let Fsm { brackets, atoms, termination } = machine.tables();
+        let (brackets, atoms) = (brackets.to_vec(), atoms.to_vec());
+        let laws = machine.atoms().map(fsm::Atom::law).map(|law| law.text.as_str().into()).collect();
+        let conditions = machine.elements().map(Element::condition_text).map(Into::into).collect();
+        let names = machine.elements().map(Element::name).map(Into::into).collect();
+        let entered = Entered::of(machine);
+        let slots = machine.sizes().slots;
+        let memories = (machine.sizes().memories, machine.depth());
+        Self { brackets, atoms, termination, owned, laws, conditions, names, entered, slots, memories }
+    }
+
+    /// Returns the number of memories of RISING and `after` that a run keeps: those of a level of scopes, for each level.
+    #[must_use]
+    pub fn memories(&self) -> usize {
+        let (width, levels) = self.memories;
+        width.saturating_mul(levels)
+    }
+
+    /// Returns the plan before it begins.
+    #[must_use]
+    pub fn plan(self: &Arc<Self>) -> LoadedPlan<A> {
+        let width = u32::try_from(self.memories.0).unwrap_or(u32::MAX);
+        let memory = Memories::new(width, vec![false; self.memories()].into());
+        InRows::remembering(Shared(Arc::clone(self)), self.entered.clone(), vec![0; self.slots].into(), memory)
+    }
+}
+
+impl<A: Alphabet> Table for Shared<A> {
+    type Alphabet = A;
+
+    #[inline(always)]
+    fn fsm(&self) -> Fsm<'_> {
+        let Loaded { brackets, atoms, termination, .. } = &*self.0;
+        Fsm { brackets, atoms, termination: *termination }
+    }
+
+    #[inline(always)]
+    fn guards(&self) -> &[Guard<A::Interrupt>] {
+        &self.0.owned.guards
+    }
+
+    #[inline(always)]
+    fn operands(&self) -> &[Condition<A::Interrupt>] {
+        &self.0.owned.operands
+    }
+
+    #[inline(always)]
+    fn laws(&self) -> &[LawRow<A::Control>] {
+        &self.0.owned.laws
+    }
+
+    #[inline(always)]
+    fn marks(&self) -> &[MarkRow] {
+        &self.0.owned.marks
+    }
+
+    #[inline(always)]
+    fn facts(&self) -> &[Fact] {
+        &self.0.owned.facts
+    }
+
+    fn law(&self, atom: u32) -> &str {
+        text(&self.0.laws, atom)
+    }
+
+    fn condition(&self, scope: u32) -> &str {
+        text(&self.0.conditions, scope)
+    }
+
+    fn name(&self, scope: u32) -> &str {
+        text(&self.0.names, scope)
+    }
+
+    fn source(&self) -> &dyn Words {
+        &self.0.owned.words
+    }
+
+    fn paths(&self) -> &[&'static str] {
+        &self.0.owned.paths
+    }
+}
+
+fn text(texts: &[Box<str>], index: u32) -> &str {
+    texts.get(index as usize).map_or("", |text| text)
+}
