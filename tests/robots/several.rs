@@ -11,7 +11,7 @@ use std::time::Duration;
 use mdle_emulator::{Embodied, Pace, Port, Seat, Several};
 use mdle_runtime::{Meters, Pose, Radians};
 use mdle_scout_emulator::scout::Scout;
-use mdle_sim::{Body, Disc, Make, Simulated, World};
+use mdle_sim::{Body, Footprint, Make, Simulated, World};
 use mdle_tests::executable::{folder, run_mdlec};
 
 const PERIOD: Duration = Duration::from_millis(100);
@@ -41,7 +41,7 @@ fn seat(is_left: bool) -> Seat<Scout> {
 }
 
 /// Returns the output of two executables, each on a robot of its own, and the robots' places at the end.
-fn together(executables: [&Path; 2]) -> ([String; 2], [Disc; 2]) {
+fn together(executables: [&Path; 2]) -> ([String; 2], [Footprint; 2]) {
     let mut robots = Several::of(vec![seat(true), seat(false)]).unwrap();
     let mut started = executables.iter().zip(robots.seats()).map(|(executable, seat)| {
         let mut command = Command::new(executable);
@@ -57,19 +57,19 @@ fn together(executables: [&Path; 2]) -> ([String; 2], [Disc; 2]) {
         let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
         format!("{out}{err}[{}]", output.status.code().unwrap())
     });
-    let discs = [0, 1].map(|seat: usize| robots.seats()[seat].robot.disc());
-    (said, discs)
+    let footprints = [0, 1].map(|seat: usize| robots.seats()[seat].robot.footprint());
+    (said, footprints)
 }
 
-fn gap([one, other]: [Disc; 2]) -> f64 {
-    libm::hypot(one.at.x - other.at.x, one.at.y - other.at.y) - one.radius - other.radius
+fn gap([one, other]: [Footprint; 2]) -> f64 {
+    one.gap(&other)
 }
 
 #[test]
 fn a_robot_stops_before_another_one_whose_driver_has_gone() {
     let folder = folder("several_stop");
     let (approach, stay) = (executable(&folder, "approach", APPROACH), executable(&folder, "stay", STAY));
-    let (said, discs) = together([&approach, &stay]);
+    let (said, footprints) = together([&approach, &stay]);
     assert!(
         said[0].contains("plan over: r0 = ")
             && said[0].contains(" m < 60cm (approach.mdle:1)")
@@ -79,18 +79,18 @@ fn a_robot_stops_before_another_one_whose_driver_has_gone() {
     );
     assert!(said[1].contains("plan over: wait 3") && said[1].ends_with("[0]"), "{}", said[1]);
     // Behind the last ping it has gone on for a round of its sonars at most.
-    assert!((0.35..0.6).contains(&gap(discs)), "{}", gap(discs));
-    assert_eq!(together([&approach, &stay]), (said, discs));
+    assert!((0.35..0.6).contains(&gap(footprints)), "{}", gap(footprints));
+    assert_eq!(together([&approach, &stay]), (said, footprints));
 }
 
 #[test]
 fn robots_that_meet_touch_each_other() {
     let folder = folder("several_meet");
     let meet = executable(&folder, "meet", MEET);
-    let (said, discs) = together([&meet, &meet]);
+    let (said, footprints) = together([&meet, &meet]);
     for said in &said {
         assert!(said.contains("plan over: bumper") && said.ends_with("[0]"), "{said}");
     }
-    assert!((0.0..0.005).contains(&gap(discs)), "{}", gap(discs));
-    assert_eq!(together([&meet, &meet]), (said, discs));
+    assert!((0.0..0.005).contains(&gap(footprints)), "{}", gap(footprints));
+    assert_eq!(together([&meet, &meet]), (said, footprints));
 }

@@ -26,6 +26,8 @@ where
     let y = Trial::of(stage, &Room::open())?.y;
     let radius = y.body_radius().0;
     between("`body_radius`", radius, RADIUS)?;
+    between("`half_length`, of a body within its circle,", y.half_length().0, (RADIUS.0, radius))?;
+    between("`half_width`, of a body within its circle,", y.half_width().0, (RADIUS.0, radius))?;
     between("`wheel_base`, of wheels that are within the body,", y.wheel_base().0, (RADIUS.0, 2.0 * radius))?;
     Ok(())
 }

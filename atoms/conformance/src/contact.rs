@@ -19,14 +19,14 @@ pub(super) fn is_felt<S: Stage>(stage: &mut S) -> Result<(), Verdict>
 where
     Out<S>: Bumpers + DiffDrive,
 {
-    let radius = Trial::of(stage, &Room::open())?.y.body_radius().0;
-    let wall = radius + AWAY;
+    let front = Trial::of(stage, &Room::open())?.y.half_length().0;
+    let wall = front + AWAY;
     let mut trial = Trial::of(stage, &Room::open().across(0.0, wall, 1.0))?;
     let reach = FEELS + V * S::PERIOD.seconds();
     // To the wall, and for two seconds against it.
     let mut turns = 0;
     while Way::between(AT, trial.truth()).ahead < AWAY - reach {
-        not_felt(&trial, wall - radius, reach)?;
+        not_felt(&trial, wall - front, reach)?;
         trial.drive(V, 0.0, S::PERIOD.seconds())?;
         turns += 1;
         if turns > 1000 {
@@ -40,7 +40,7 @@ where
     }
     agrees(&trial)?;
     trial.drive(-V, 0.0, 3.0)?;
-    not_felt(&trial, wall - radius, reach)
+    not_felt(&trial, wall - front, reach)
 }
 
 /// Checks that no contact is reported where there is none.

@@ -21,6 +21,14 @@ pub trait Bumpers: Output {
 pub trait DiffDrive: Output {
     /// The radius of the smallest circle around the body.
     fn body_radius(&self) -> Meters;
+    /// Returns half the length of a rectangular body, along which it drives; the radius of a disc.
+    fn half_length(&self) -> Meters {
+        self.body_radius()
+    }
+    /// Returns half the width of a rectangular body; the radius of a disc.
+    fn half_width(&self) -> Meters {
+        self.body_radius()
+    }
     /// The distance between the wheels.
     fn wheel_base(&self) -> Meters;
     /// Returns the gains by which laws steer.

@@ -42,6 +42,10 @@ pub struct Supply {
 pub struct Shape {
     /// Radius of the smallest circle around the body.
     pub body_radius: Meters,
+    /// Half the length of the body, along which it drives; of a disc its radius.
+    pub half_length: Meters,
+    /// Half the width of the body; of a disc its radius.
+    pub half_width: Meters,
     /// The distance between its wheels.
     pub wheel_base: Meters,
     /// The distance of the sonars from its centre.
@@ -77,6 +81,14 @@ impl Bumpers for Sensed {
 impl DiffDrive for Sensed {
     fn body_radius(&self) -> Meters {
         self.shape.body_radius
+    }
+
+    fn half_length(&self) -> Meters {
+        self.shape.half_length
+    }
+
+    fn half_width(&self) -> Meters {
+        self.shape.half_width
     }
 
     fn wheel_base(&self) -> Meters {

@@ -17,7 +17,9 @@ use crate::sender::Mouth;
 
 /// Bits a second, 8N1.
 const SPEED: u32 = 115_200;
-/// The radius of the smallest circle around the body.
+/// Half the length and half the width of the body, and the radius of the smallest circle around it.
+const HALF_LENGTH: Meters = Meters(0.315);
+const HALF_WIDTH: Meters = Meters(0.27);
 const RADIUS: Meters = Meters(0.415);
 /// Number of pings that must agree that a way is free on a robot whose sonars fire in turn.
 const CONFIRMATION: usize = 2;
@@ -253,6 +255,8 @@ impl Robot for Atrv {
             supply: self.hearing.supply(),
             shape: Shape {
                 body_radius: RADIUS,
+                half_length: HALF_LENGTH,
+                half_width: HALF_WIDTH,
                 wheel_base: Meters(self.config.wheel_base),
                 ring_radius: Meters(RING_RADIUS),
                 confirmation: CONFIRMATION,

@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use mdle_simulator::Disc;
+use mdle_simulator::Footprint;
 
 use crate::fault::{Ailment, At, Fault};
 use crate::serve::{Embodied, Emulated};
@@ -144,11 +144,11 @@ impl<R: Emulated> Emulated for Faulty<R> {
 }
 
 impl<R: Embodied> Embodied for Faulty<R> {
-    fn disc(&self) -> Disc {
-        self.robot.disc()
+    fn footprint(&self) -> Footprint {
+        self.robot.footprint()
     }
 
-    fn see(&mut self, others: &[Disc]) {
+    fn see(&mut self, others: &[Footprint]) {
         self.robot.see(others);
     }
 }

@@ -162,9 +162,10 @@ fn bodies(
         }
         bodies.push((name, body));
     }
-    let discs: Vec<_> = bodies.iter().map(|(_, body)| body.disc()).collect();
+    let footprints: Vec<_> = bodies.iter().map(|(_, body)| body.footprint()).collect();
     for (number, (_, body)) in bodies.iter_mut().enumerate() {
-        let others = discs.iter().enumerate().filter(|(other, _)| *other != number).map(|(_, disc)| *disc);
+        let others =
+            footprints.iter().enumerate().filter(|(other, _)| *other != number).map(|(_, footprint)| *footprint);
         body.see(&others.collect::<Vec<_>>());
     }
     Ok(bodies)
@@ -176,7 +177,7 @@ fn refuse(name: &str, body: &Simulated, others: &[(Option<String>, Simulated)]) 
         if other.as_deref() == Some(name) {
             return Err(format!("--robot {name}: there are two of that name"));
         }
-        if known.disc().overlaps(&body.disc()) {
+        if known.footprint().overlaps(&body.footprint()) {
             let other = other.as_deref().unwrap_or_default();
             return Err(format!("--robot {name}: it would stand in {other}"));
         }

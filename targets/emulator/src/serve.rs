@@ -3,7 +3,7 @@
 use std::io;
 use std::time::{Duration, Instant};
 
-use mdle_simulator::Disc;
+use mdle_simulator::Footprint;
 
 use crate::fault::Ailment;
 use crate::port::Port;
@@ -40,11 +40,11 @@ pub trait Emulated {
 
 /// A robot that others in its world see and touch.
 pub trait Embodied {
-    /// Returns the disc of the robot's body, at its place.
-    fn disc(&self) -> Disc;
+    /// Returns the area that the robot's body covers.
+    fn footprint(&self) -> Footprint;
 
     /// Moves the other robots to these places.
-    fn see(&mut self, others: &[Disc]);
+    fn see(&mut self, others: &[Footprint]);
 }
 
 /// Pace of the world.

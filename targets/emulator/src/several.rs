@@ -7,7 +7,7 @@
 use std::io;
 use std::time::{Duration, Instant};
 
-use mdle_simulator::Disc;
+use mdle_simulator::Footprint;
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::io::Errno;
 
@@ -140,13 +140,14 @@ fn is_due(presence: &Presence, told: &[bool]) -> bool {
 
 /// Lets the world advance; each robot finds the others at their current places.
 fn pass<R: Emulated + Embodied>(seats: &mut [Seat<R>], step: Duration) -> io::Result<()> {
-    let mut discs: Vec<Disc> = seats.iter().map(|seat| seat.robot.disc()).collect();
+    let mut footprints: Vec<Footprint> = seats.iter().map(|seat| seat.robot.footprint()).collect();
     for (number, Seat { robot, port }) in seats.iter_mut().enumerate() {
-        let others = discs.iter().enumerate().filter(|(other, _)| *other != number).map(|(_, disc)| *disc);
+        let others =
+            footprints.iter().enumerate().filter(|(other, _)| *other != number).map(|(_, footprint)| *footprint);
         robot.see(&others.collect::<Vec<_>>());
         robot.pass(step).map_err(io::Error::other)?;
-        if let Some(disc) = discs.get_mut(number) {
-            *disc = robot.disc();
+        if let Some(footprint) = footprints.get_mut(number) {
+            *footprint = robot.footprint();
         }
         say(robot, port)?;
     }

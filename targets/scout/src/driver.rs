@@ -212,6 +212,8 @@ impl Robot for Scout {
             supply: supply(&state, &self.config),
             shape: Shape {
                 body_radius: RADIUS,
+                half_length: RADIUS,
+                half_width: RADIUS,
                 wheel_base: Meters(WHEEL_BASE),
                 ring_radius: Meters(self.config.ring_radius),
                 confirmation: CONFIRMATION,

@@ -12,8 +12,8 @@ mod watch;
 mod whole_file;
 
 pub use mdle_simulator::{
-    Body, Charger, Disc, Fault, Goal, Heard, Input, Make, Outline, Output, Part, Place, Schedule, Sensed, Simulated,
-    Start, StartError, Stop, Thing, Walls, World, WorldError, Zone, alphabet,
+    Body, Charger, Fault, Footprint, Form, Goal, Heard, Input, Make, Outline, Output, Part, Place, Schedule, Sensed,
+    Simulated, Start, StartError, Stop, Thing, Walls, World, WorldError, Zone, alphabet,
 };
 pub use observed::Observed;
 pub use target::Sim;

@@ -34,7 +34,7 @@ pub(crate) fn robot(matches: &ArgMatches, period: Duration) -> Result<Observed, 
     let setup = Setup::of(matches, period)?;
     let robot = setup.robot(setup.make.seed)?;
     let file = |option| options::file(matches, option).map(|path| WholeFile::at(option, path)).transpose();
-    let watch = options::watch(matches).then(|| Watch::of(&setup.world, setup.make.radius())).transpose()?;
+    let watch = options::watch(matches).then(|| Watch::of(&setup.world, setup.make.form())).transpose()?;
     let robot = robot.written_down(file("trail")?).watched(watch);
     Ok(robot.drawn((file("plot")?, file("record")?), &setup.world, setup.in_words(&options::world_name(matches))))
 }
@@ -76,7 +76,7 @@ impl Setup {
             Some((text, _)) => format!("--start {text}: {error}; {}", hint(&world.start)),
             None => format!("the world's own start pose: {error}; give another, as in `--start 1,2,90`"),
         };
-        mdle_simulator::check(&start, make.radius(), &world, &walls).map_err(said)?;
+        mdle_simulator::check(&start, make.form(), &world, &walls).map_err(said)?;
         let noise = options::start_noise(matches)?;
         let charge = options::battery(matches);
         Ok(Self { world, walls, make, start, noise, goal, charge, period })
@@ -97,7 +97,7 @@ impl Setup {
     fn robot(&self, seed: Option<u64>) -> Result<Observed, String> {
         let make = Make { seed, ..self.make.clone() };
         let start = match (self.noise, seed) {
-            (Some(noise), Some(seed)) => noise.pose(&self.start, seed, make.radius(), &self.world, &self.walls),
+            (Some(noise), Some(seed)) => noise.pose(&self.start, seed, make.form(), &self.world, &self.walls),
             (Some(_), None) => return Err("--start-noise: by which chance? Give a seed, as in `--seed 1`".to_owned()),
             (None, _) => Ok(self.start),
         };

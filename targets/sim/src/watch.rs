@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 use mdle_host::PlanPosition;
 use mdle_runtime::{Nanos, Pose, Sensed};
-use mdle_simulator::{Place, World};
+use mdle_simulator::{Footprint, Form, Place, World};
 
 use map::Map;
 use screen::Screen;
@@ -34,19 +34,19 @@ pub(crate) struct Watch {
     things: Vec<Option<Place>>,
     /// Time of the robot's last output.
     sensed: Option<Nanos>,
-    /// Radius of the body, in metres.
-    radius: f64,
+    /// Form of the body.
+    form: Form,
     now: view::Now,
     shown: Option<Instant>,
 }
 
 impl Watch {
-    /// Returns a view of `world` on standard output, with a robot of this radius in metres; it takes the screen at the
-    /// first turn.
+    /// Returns a view of `world` on standard output, with a robot of this form; it takes the screen at the first
+    /// turn.
     ///
     /// # Errors
     /// Standard output is not a terminal.
-    pub(crate) fn of(world: &World, radius: f64) -> Result<Self, String> {
+    pub(crate) fn of(world: &World, form: Form) -> Result<Self, String> {
         if !screen::is_there() {
             let hint = "run it in a terminal, or make a picture with --plot or --record";
             return Err(format!("--watch: standard output is not a terminal; {hint}"));
@@ -59,7 +59,7 @@ impl Watch {
             echoes: Vec::new(),
             things: Vec::new(),
             sensed: None,
-            radius,
+            form,
             now: view::Now::default(),
             shown: None,
         })
@@ -110,7 +110,7 @@ impl Watch {
         let things = self.world.things.iter().zip(&self.things).filter_map(|(thing, gone)| Some((thing, (*gone)?)));
         let mut now = map.with(things);
         now.heard(&self.echoes);
-        lines.extend(now.drawn(&self.now.pose, self.radius, self.now.touches));
+        lines.extend(now.drawn(&Footprint { pose: self.now.pose, form: self.form }, self.now.touches));
         lines.extend(below);
         lines.truncate(rows);
         screen.show(&lines);

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use mdle_emulator::{Ailment, Embodied, Emulated, Order, Orders, Pace, STEP};
 use mdle_runtime::{MetersPerSecond, Nanos, Pose, RadiansPerSecond, Robot as _, Twist};
-use mdle_simulator::{Disc, Output, Simulated};
+use mdle_simulator::{Footprint, Output, Simulated};
 
 use crate::wire::{Incoming, Request, number};
 use telling::Schedule;
@@ -251,11 +251,11 @@ fn left_alone(input: &Twist) -> Twist {
 }
 
 impl Embodied for Atrv {
-    fn disc(&self) -> Disc {
-        self.body.disc()
+    fn footprint(&self) -> Footprint {
+        self.body.footprint()
     }
 
-    fn see(&mut self, others: &[Disc]) {
+    fn see(&mut self, others: &[Footprint]) {
         self.body.see(others);
     }
 }

@@ -3,9 +3,9 @@
 
 use std::time::Duration;
 
-use mdle_conformance::Suite;
 use mdle_atrv::{Atrv, alphabet};
 use mdle_atrv_emulator::atrv::{Atrv as Emulated, step};
+use mdle_conformance::Suite;
 use mdle_emulator::Motion::{Braked, Moves, Still};
 use mdle_emulator::Order::{Brake, Drive, Stand};
 use mdle_emulator::Speed::{Ahead, Halts, Rests};

@@ -5,7 +5,7 @@ use std::time::Duration;
 use mdle_emulator::{Ailment, Embodied, Emulated, Order, Orders};
 use mdle_runtime::capability::{Odometry, SonarRing};
 use mdle_runtime::{MetersPerSecond, Pose, RadiansPerSecond, Robot as _, SonarId, Twist, Volts};
-use mdle_simulator::{Disc, Output, Simulated};
+use mdle_simulator::{Footprint, Output, Simulated};
 
 use crate::wire::{Incoming, Request, answer, number, two_bytes};
 
@@ -219,11 +219,11 @@ fn volts(battery: Volts) -> [u8; 2] {
 }
 
 impl Embodied for Scout {
-    fn disc(&self) -> Disc {
-        self.body.disc()
+    fn footprint(&self) -> Footprint {
+        self.body.footprint()
     }
 
-    fn see(&mut self, others: &[Disc]) {
+    fn see(&mut self, others: &[Footprint]) {
         self.body.see(others);
     }
 }

@@ -1,4 +1,4 @@
-//! The body: a disc on two driven wheels, with the limits of its motors, that slides along walls
+//! The body: a disc or rectangle on driven wheels, with the limits of its motors, that slides along walls
 //! (`dx/dt = f(x) + G(x) u`, paper, Eq. 1).
 
 mod contact;
@@ -8,10 +8,11 @@ mod tests;
 
 use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians, RadiansPerSecond, Twist};
 
+use crate::footprint::{Contact, Footprint};
 use crate::model::Drive;
 use crate::walls::Walls;
 use crate::world::Place;
-use contact::slid;
+use contact::{slid, turned};
 use odometry::Odometry;
 
 /// The radius of the disc that is a Scout, in metres.
@@ -46,14 +47,22 @@ pub(crate) struct Body {
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Met {
     Nothing,
-    /// A wall that lets it go forward only this fast, in m/s.
-    Wall(f64),
+    /// A wall that lets it go forward only this fast, in m/s, and does not let it turn if `turns` is `false`.
+    Wall {
+        forward: f64,
+        turns: bool,
+    },
 }
 
 impl Body {
     /// Creates a body at rest at `pose`, with the errors of this seed or none.
     pub(crate) fn new(drive: Drive, pose: Pose, seed: Option<u64>) -> Self {
         Self { pose, drive, odometry: Odometry::new(drive.slip, seed), left: 0.0, right: 0.0, clear: 0.0 }
+    }
+
+    /// Returns the area that the body covers.
+    pub(crate) fn footprint(&self) -> Footprint {
+        Footprint { pose: self.pose, form: self.drive.form }
     }
 
     /// Returns the pose by the turns of the wheels: the origin at the start.
@@ -76,15 +85,15 @@ impl Body {
 
     /// The bumper switches in contact: bit `i` for number `i` of this many, counted counter-clockwise from the front.
     pub(crate) fn pressed(&self, switches: u8, walls: &Walls) -> u32 {
-        let (at, felt) = (Place::of(&self.pose), self.drive.radius + FEELS);
-        if self.clear > FEELS && walls.moving(at) >= felt {
+        let body = self.footprint();
+        if self.clear > FEELS && walls.moving_gap(&body) >= FEELS {
             return 0;
         }
-        let mut pressed = 0;
-        walls.near(at, felt, |place| {
-            let (x, y) = (place.x - at.x, place.y - at.y);
-            if libm::hypot(x, y) < felt {
-                let bearing = (libm::atan2(y, x) - self.pose.theta.0) / std::f64::consts::TAU;
+        let (mut pressed, at) = (0, body.at());
+        walls.contacts(&body, FEELS, |Contact { gap, place, .. }| {
+            if gap < FEELS {
+                let bearing = libm::atan2(place.y - at.y, place.x - at.x) - self.pose.theta.0;
+                let bearing = bearing / std::f64::consts::TAU;
                 let number = libm::round(bearing * f64::from(switches)).rem_euclid(f64::from(switches));
                 pressed |= 1 << (number as u32);
             }
@@ -103,9 +112,9 @@ impl Body {
             let across = self.right - self.left;
             self.left = approached(self.left, left, acceleration * step);
             self.right = approached(self.right, right, acceleration * step);
-            if let Met::Wall(forward) = self.step(step, walls) {
+            if let Met::Wall { forward, turns } = self.step(step, walls) {
                 // The wheels stall as far as they push, and gain speed only against each other.
-                let across = approached(across, right - left, 2.0 * acceleration * step);
+                let across = if turns { approached(across, right - left, 2.0 * acceleration * step) } else { 0.0 };
                 (self.left, self.right) = (forward - across / 2.0, forward + across / 2.0);
             }
         }
@@ -121,39 +130,45 @@ impl Body {
         let Twist { v, omega } = self.velocity();
         let (way, turn) = (v.0 * step, omega.0 * step);
         let there = self.pose.moved(Meters(way), Radians(turn));
-        if way == 0.0 || self.is_free(Place::of(&there), way.abs(), walls) {
+        let moved = self.drive.form.moved(way, Radians(turn));
+        if moved == 0.0 || self.is_free(&there, moved, walls) {
             self.pose = there;
             self.odometry.rolled(way, turn);
             return Met::Nothing;
         }
         let here = Place::of(&self.pose);
         let straight = Place { x: there.x.0 - here.x, y: there.y.0 - here.y };
-        let slid = slid(here, straight, self.drive.radius, walls);
+        let body = turned(&self.footprint(), Radians(turn), walls);
+        let turns = body.pose.theta != self.pose.theta || turn == 0.0;
+        let turn = if turns { turn } else { 0.0 };
+        let slid = slid(&body, straight, walls);
+        let slid = Place { x: body.pose.x.0 - here.x + slid.x, y: body.pose.y.0 - here.y + slid.y };
         let (sin, cos) = libm::sincos(self.pose.theta.0 + turn / 2.0);
         let forward = slid.x * cos + slid.y * sin;
         match self.drive.slip {
             Some(_) => self.odometry.rolled(forward, turn),
             None => self.odometry.carried(self.pose.theta, slid, turn),
         }
-        self.pose = Pose { x: Meters(here.x + slid.x), y: Meters(here.y + slid.y), theta: there.theta };
+        self.pose = Pose { x: Meters(here.x + slid.x), y: Meters(here.y + slid.y), theta: body.pose.theta.wrapped() };
         self.clear = 0.0;
         let forward = forward / step;
-        if forward / v.0 >= GLANCES {
+        if turns && (v.0 == 0.0 || forward / v.0 >= GLANCES) {
             return Met::Nothing;
         }
         // It is not to come out faster, or backwards.
-        Met::Wall(if v.0 > 0.0 { forward.clamp(0.0, v.0) } else { forward.clamp(v.0, 0.0) })
+        let forward = if v.0 > 0.0 { forward.clamp(0.0, v.0) } else { forward.clamp(v.0, 0.0) };
+        Met::Wall { forward, turns }
     }
 
-    /// Returns `true` if the body overlaps nothing at `there`, after a further `way` metres.
-    fn is_free(&mut self, there: Place, way: f64, walls: &Walls) -> bool {
-        let radius = self.drive.radius;
-        if walls.moving(there) < radius {
+    /// Returns `true` if the body overlaps nothing at `there`, after its places have moved by at most `way` metres.
+    fn is_free(&mut self, there: &Pose, way: f64, walls: &Walls) -> bool {
+        let body = Footprint { pose: *there, form: self.drive.form };
+        if walls.moving_gap(&body) < 0.0 {
             return false;
         }
         self.clear -= way;
         if self.clear <= 0.0 {
-            self.clear = walls.standing(there, radius + LOOKS) - radius;
+            self.clear = walls.standing_gap(&body, LOOKS);
         }
         self.clear >= 0.0
     }

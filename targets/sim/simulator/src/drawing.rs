@@ -20,7 +20,7 @@ impl Drawing {
     /// that is `animated` keeps what a moving picture needs.
     #[must_use]
     pub fn of(robot: &Simulated, world: &World, setup: String, animated: bool) -> Self {
-        let mut trail = Trail::from(&robot.pose(), robot.radius());
+        let mut trail = Trail::from(&robot.footprint());
         trail.things.extend(robot.gone());
         trail.about.setup = setup;
         trail.frames = animated.then(Frames::new);

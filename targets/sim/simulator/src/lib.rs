@@ -10,8 +10,8 @@ pub mod alphabet;
 mod battery;
 mod body;
 mod charger;
-mod disc;
 mod drawing;
+mod footprint;
 mod frames;
 mod goal;
 mod grid;
@@ -32,8 +32,8 @@ mod world;
 mod world_file;
 
 pub use charger::Charger;
-pub use disc::Disc;
 pub use drawing::Drawing;
+pub use footprint::{Footprint, Form};
 pub use goal::{Goal, Zone, edge};
 pub use mdle_runtime::Sensed;
 /// The robot's output.

@@ -7,6 +7,7 @@ use std::fmt;
 use mdle_runtime::{Nanos, Radians, SonarId};
 
 use crate::battery::Pack;
+use crate::footprint::Form;
 use figures::{atrv, ideal, scout};
 
 /// A body to simulate.
@@ -18,7 +19,7 @@ pub enum Body {
     Ideal,
     /// A Nomadic Super Scout II: its sonars fire in turn, miss what they do not face, and err; its wheels slip.
     Scout,
-    /// An iRobot ATRV-mini, taken for the smallest disc around it: 24 sonars on four boards, skid steering.
+    /// An iRobot ATRV-mini, a rectangle of 0.63 m by 0.54 m: 24 sonars on four boards, skid steering.
     Atrv,
 }
 
@@ -78,8 +79,8 @@ pub(crate) struct Model {
 /// Wheels and outline. Metres and seconds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Drive {
-    /// Radius of the disc.
-    pub(crate) radius: f64,
+    /// Form of the body.
+    pub(crate) form: Form,
     /// The distance between the wheels.
     pub(crate) wheel_base: f64,
     /// Greatest speed of a wheel.

@@ -3,6 +3,7 @@
 //! Nothing moves into the robot: a door that would close on it stays open, and a box or disc that would move into it
 //! stops in contact with it, until it is gone. Its schedule goes on from there, so it comes later everywhere.
 
+use crate::footprint::{Footprint, Form};
 use crate::grid::{Hit, Segment};
 use crate::surfaces::{Ends, Surface, apart, ends, surface};
 use crate::world::{Outline, Place};
@@ -163,22 +164,21 @@ impl Moving {
         self.moved = moved;
     }
 
-    /// Lets the thing's clock go on, unless that would move it into the disc around `body`.
-    pub(crate) fn advance(&mut self, seconds: f64, body: Place, radius: f64) {
+    /// Lets the thing's clock go on, unless that would move it into `body`.
+    pub(crate) fn advance(&mut self, seconds: f64, body: &Footprint) {
         let moved = self.schedule.moved(self.t + seconds);
         if moved == self.moved {
             self.t += seconds;
             return;
         }
-        let free = radius + STOPS_AT;
         let mut part = 1.0;
         // Halved until it is free, which it was before it moved; a door has no half way.
         while part > 1e-3 {
             let moved = self.schedule.moved(self.t + seconds * part);
-            let (was, already) = (self.moved, self.distance(body, f64::INFINITY));
+            let (was, already) = (self.moved, self.gap(body, f64::INFINITY));
             self.put(moved);
-            let distance = self.distance(body, f64::INFINITY);
-            if distance >= free || distance >= already {
+            let gap = self.gap(body, f64::INFINITY);
+            if gap >= STOPS_AT || gap >= already {
                 self.t += seconds * part;
                 return;
             }
@@ -198,6 +198,19 @@ impl Moving {
         match self.around() {
             Some(around) if apart(around, at) - self.radius < most => {
                 self.now.iter().fold(f64::INFINITY, |least, segment| least.min(apart(segment.nearest(at), at)))
+            }
+            Some(_) | None => f64::INFINITY,
+        }
+    }
+
+    /// Returns the distance between the thing and a body, exact where it is below `most`; infinite for an open door.
+    pub(crate) fn gap(&self, body: &Footprint, most: f64) -> f64 {
+        if let Form::Disc { radius } = body.form {
+            return self.distance(body.at(), most + radius) - radius;
+        }
+        match self.around() {
+            Some(around) if apart(around, body.at()) - self.radius - body.form.radius() < most => {
+                self.now.iter().fold(f64::INFINITY, |least, segment| least.min(body.contact(segment).gap))
             }
             Some(_) | None => f64::INFINITY,
         }

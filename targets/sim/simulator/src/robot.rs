@@ -9,7 +9,7 @@ use mdle_runtime::{Meters, Nanos, PathStore, Pose, Robot, Sensed, Shape, Supply,
 use crate::battery::Battery;
 use crate::body::{Body, STEP};
 use crate::charger::Charger;
-use crate::disc::Disc;
+use crate::footprint::{Footprint, Form};
 use crate::model::{self, Model, Part};
 use crate::sonar::{Heard, Ring};
 use crate::start::{self, StartError};
@@ -45,10 +45,10 @@ pub struct Make {
 }
 
 impl Make {
-    /// The radius of the body, in metres.
+    /// The form of the body.
     #[must_use]
-    pub fn radius(&self) -> f64 {
-        Model::of(self.body, &self.without).drive.radius
+    pub fn form(&self) -> Form {
+        Model::of(self.body, &self.without).drive.form
     }
 }
 
@@ -86,9 +86,12 @@ impl Simulated {
     pub fn with(make: &Make, world: &World, start: Pose, period: Duration) -> Result<Self, StartError> {
         let walls = Walls::of(world);
         let Model { drive, hearing, switches, pack } = Model::of(make.body, &make.without);
-        start::check(&start, drive.radius, world, &walls)?;
+        start::check(&start, drive.form, world, &walls)?;
+        let (half_length, half_width) = drive.form.halves();
         let shape = Shape {
-            body_radius: Meters(drive.radius),
+            body_radius: Meters(drive.form.radius()),
+            half_length: Meters(half_length),
+            half_width: Meters(half_width),
             wheel_base: Meters(drive.wheel_base),
             ring_radius: Meters(hearing.ring_radius),
             confirmation: if hearing.order.is_some() { 2 } else { 3 },
@@ -139,12 +142,12 @@ impl Simulated {
 
     /// Returns the robot's outline in the world, as other robots hear and touch it.
     #[must_use]
-    pub fn disc(&self) -> Disc {
-        Disc { at: Place::of(&self.body.pose), radius: self.radius() }
+    pub fn footprint(&self) -> Footprint {
+        self.body.footprint()
     }
 
     /// Sets the places of the other robots in the world: the robot hears them and cannot pass through them.
-    pub fn see(&mut self, others: &[Disc]) {
+    pub fn see(&mut self, others: &[Footprint]) {
         self.walls.put_others(others);
     }
 
@@ -155,12 +158,6 @@ impl Simulated {
         &self.ring.heard
     }
 
-    /// The radius of the body, in metres.
-    #[must_use]
-    pub fn radius(&self) -> f64 {
-        self.shape.body_radius.0
-    }
-
     /// Returns the displacement of each thing of the world; `None` for an open door.
     pub fn gone(&self) -> impl Iterator<Item = Option<Place>> {
         self.walls.gone()
@@ -169,7 +166,8 @@ impl Simulated {
     /// The place of a wall that the body touches; its centre if it touches none.
     pub(crate) fn touched(&self) -> Place {
         let at = Place::of(&self.body.pose);
-        self.walls.nearest(at, 1.1 * self.radius()).unwrap_or(at)
+        let body = self.footprint();
+        self.walls.contact(&body, 0.1 * body.form.radius()).map_or(at, |contact| contact.place)
     }
 
     /// The time of the next exchange.
@@ -213,7 +211,7 @@ impl Simulated {
         }
         let steps = libm::ceil(seconds / STEP);
         for _ in 0..steps as u32 {
-            self.walls.advance(seconds / steps, Place::of(&self.body.pose), self.shape.body_radius.0);
+            self.walls.advance(seconds / steps, &self.body.footprint());
             self.body.advance(input, seconds / steps, &self.walls);
         }
     }

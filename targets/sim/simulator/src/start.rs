@@ -6,6 +6,7 @@ use std::str::FromStr;
 use mdle_quantity::Quantity;
 use mdle_runtime::{Meters, Pose, Radians};
 
+use crate::footprint::{Footprint, Form};
 use crate::walls::{self, Walls};
 use crate::world::{Place, World};
 
@@ -25,8 +26,8 @@ pub enum StartError {
     Malformed,
     /// A part of the text is not a number with a unit: a sentence with what to type instead.
     Quantity(String),
-    /// A body of this radius, in metres, would overlap this wall or box.
-    Overlaps(f64, String),
+    /// A body of this form would overlap this wall or box.
+    Overlaps(Form, String),
     /// The centre is inside this box.
     Inside(String),
     /// No walls are around it, though the world's own start pose has them.
@@ -40,9 +41,7 @@ impl fmt::Display for StartError {
                 write!(f, "expected x,y,heading: three numbers in metres and degrees, as in `0.1,-0.05,90`")
             }
             Self::Quantity(sentence) => f.write_str(sentence),
-            Self::Overlaps(radius, name) => {
-                write!(f, "the robot, {radius} m around its centre, would stand in {name:?}")
-            }
+            Self::Overlaps(form, name) => write!(f, "the robot, {form}, would stand in {name:?}"),
             Self::Inside(name) => write!(f, "the robot would stand inside {name:?}"),
             Self::OffTheFloor => write!(f, "that is off the floor"),
         }
@@ -66,18 +65,18 @@ impl FromStr for Start {
     }
 }
 
-/// Checks that a robot whose body has this radius, in metres, can start at `pose` in `world`, whose walls are `walls`.
+/// Checks that a robot of this form can start at `pose` in `world`, whose walls are `walls`.
 ///
 /// # Errors
 /// The reason why it cannot start there.
-pub fn check(pose: &Pose, radius: f64, world: &World, walls: &Walls) -> Result<(), StartError> {
-    let place = Place::of(pose);
+pub fn check(pose: &Pose, form: Form, world: &World, walls: &Walls) -> Result<(), StartError> {
+    let (place, body) = (Place::of(pose), Footprint { pose: *pose, form });
     if let Some(outline) = world.solid(place) {
         return Err(StartError::Inside(outline.name.clone()));
     }
-    if walls.clearance(place, 2.0 * radius) < radius {
-        let name = walls::nearest(world, place).map(|outline| outline.name.clone());
-        return Err(StartError::Overlaps(radius, name.unwrap_or_default()));
+    if walls.gap(&body, form.radius()) < 0.0 {
+        let name = walls::nearest(world, &body).map(|outline| outline.name.clone());
+        return Err(StartError::Overlaps(form, name.unwrap_or_default()));
     }
     // A world whose walls do not close has no outside.
     if encloses(walls, Place::of(&world.start)) && !encloses(walls, place) {
@@ -115,7 +114,7 @@ mod tests {
     /// Checks a start pose on the office floor.
     fn office(x: f64, y: f64) -> Result<(), StartError> {
         let world = World::office().expect("our own floor");
-        check(&Pose { x: Meters(x), y: Meters(y), theta: Radians(0.0) }, 0.205, &world, &Walls::of(&world))
+        check(&Pose { x: Meters(x), y: Meters(y), theta: Radians(0.0) }, Form::SCOUT, &world, &Walls::of(&world))
     }
 
     #[test]
@@ -123,18 +122,33 @@ mod tests {
         for (x, y) in [(0.0, 0.0), (3.0, 0.0), (7.5, 7.7), (11.5, -2.0), (0.75, 0.0)] {
             assert_eq!(office(x, y), Ok(()), "{x} {y}");
         }
-        assert_eq!(office(-0.6, 2.0), Err(StartError::Overlaps(0.205, "A west".into())));
+        assert_eq!(office(-0.6, 2.0), Err(StartError::Overlaps(Form::SCOUT, "A west".into())));
         assert_eq!(office(3.65, 4.25), Err(StartError::Inside("obstacle".into())));
-        assert_eq!(office(3.65, 4.55), Err(StartError::Overlaps(0.205, "obstacle".into())));
+        assert_eq!(office(3.65, 4.55), Err(StartError::Overlaps(Form::SCOUT, "obstacle".into())));
         for (x, y) in [(-3.0, 0.0), (11.5, 5.0), (100.0, 100.0), (3.0, 7.0)] {
             assert_eq!(office(x, y), Err(StartError::OffTheFloor), "{x} {y}");
         }
     }
 
     #[test]
+    fn a_rectangle_fits_by_its_heading_where_discs_do_or_do_not() {
+        let world = World::parse("one wall", "[[wall]]\nname = \"wall\"\npoints = [[0.3, -5], [0.3, 5]]")
+            .expect("a good world");
+        let walls = Walls::of(&world);
+        let form = Form::Rectangle { half_length: 0.315, half_width: 0.27 };
+        let turned = |degrees: f64| Pose { theta: Radians::from_degrees(degrees), ..Pose::ORIGIN };
+        let check = |degrees: f64, form: Form| check(&turned(degrees), form, &world, &walls);
+        assert_eq!([check(0.0, Form::Disc { radius: 0.27 }), check(90.0, form)], [Ok(()), Ok(())]);
+        let overlaps = Err(StartError::Overlaps(form, "wall".into()));
+        assert_eq!([check(0.0, form), check(45.0, form)], [overlaps.clone(), overlaps.clone()]);
+        let sentence = "the robot, 0.63 m long and 0.54 m wide, would stand in \"wall\"";
+        assert_eq!(overlaps.map_err(|error| error.to_string()), Err::<(), _>(sentence.to_owned()));
+    }
+
+    #[test]
     fn walls_that_do_not_close_have_no_outside() {
         let world = World::parse("one wall", "[[wall]]\npoints = [[0, 1], [5, 1]]").expect("a good world");
         let far = Pose { x: Meters(-50.0), ..Pose::ORIGIN };
-        assert_eq!(check(&far, 0.205, &world, &Walls::of(&world)), Ok(()));
+        assert_eq!(check(&far, Form::SCOUT, &world, &Walls::of(&world)), Ok(()));
     }
 }

@@ -3,6 +3,7 @@
 use mdle_quantity::Quantity;
 use mdle_runtime::{Meters, Pose, Radians};
 
+use crate::footprint::Form;
 use crate::noise::{Noise, Purpose};
 use crate::start::{self, StartError};
 use crate::walls::Walls;
@@ -34,20 +35,20 @@ impl StartNoise {
         is_within.then_some(Self { metres, degrees }).ok_or_else(|| sentence.to_owned())
     }
 
-    /// The start pose of `seed`: the first drawn around `start` at which a robot of this radius, in metres, can stand.
+    /// The start pose of `seed`: the first drawn around `start` at which a robot of this form can stand.
     ///
     /// # Errors
     /// The reason why the robot cannot stand at the last pose tried.
-    pub fn pose(self, start: &Pose, seed: u64, radius: f64, world: &World, walls: &Walls) -> Result<Pose, StartError> {
+    pub fn pose(self, start: &Pose, seed: u64, form: Form, world: &World, walls: &Walls) -> Result<Pose, StartError> {
         let mut noise = Noise::of(seed, Purpose::Start);
         let mut pose = self.drawn(start, &mut noise);
         for _ in 1..TRIES {
-            if start::check(&pose, radius, world, walls).is_ok() {
+            if start::check(&pose, form, world, walls).is_ok() {
                 return Ok(pose);
             }
             pose = self.drawn(start, &mut noise);
         }
-        start::check(&pose, radius, world, walls).map(|()| pose)
+        start::check(&pose, form, world, walls).map(|()| pose)
     }
 
     fn drawn(self, start: &Pose, noise: &mut Noise) -> Pose {
@@ -77,16 +78,16 @@ mod tests {
         let walls = Walls::of(&world);
         let noise = StartNoise { metres: 1.0, degrees: 30.0 };
         let poses: Vec<Pose> = (0..200)
-            .map(|seed| noise.pose(&world.start, seed, 0.205, &world, &walls).expect("there is room"))
+            .map(|seed| noise.pose(&world.start, seed, Form::SCOUT, &world, &walls).expect("there is room"))
             .collect();
         let greatest = |of: fn(&Pose) -> f64| poses.iter().map(|pose| of(pose).abs()).fold(0.0, f64::max);
         // The wall is 0.75 m away, and the body 0.205 m thick.
         assert!((0.5..=0.545).contains(&greatest(|pose| pose.x.0.min(0.0))));
         assert!((0.9..=1.0).contains(&greatest(|pose| pose.y.0)));
         assert!((28.0..=30.0).contains(&greatest(|pose| pose.theta.degrees())));
-        assert_eq!(noise.pose(&world.start, 7, 0.205, &world, &walls), Ok(poses[7]));
+        assert_eq!(noise.pose(&world.start, 7, Form::SCOUT, &world, &walls), Ok(poses[7]));
         let wall = Pose { x: Meters(-0.75), ..Pose::ORIGIN };
-        let stuck = StartNoise { metres: 0.0, degrees: 1.0 }.pose(&wall, 1, 0.205, &world, &walls);
-        assert_eq!(stuck, Err(StartError::Overlaps(0.205, "A west".into())));
+        let stuck = StartNoise { metres: 0.0, degrees: 1.0 }.pose(&wall, 1, Form::SCOUT, &world, &walls);
+        assert_eq!(stuck, Err(StartError::Overlaps(Form::SCOUT, "A west".into())));
     }
 }

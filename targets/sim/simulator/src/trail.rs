@@ -7,6 +7,7 @@ use std::collections::BTreeSet;
 use mdle_runtime::capability::{Odometry as _, SonarRing as _};
 use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, Sensed, SonarId};
 
+use crate::footprint::{Footprint, Form};
 use crate::frames::{Frame, Frames};
 use crate::world::Place;
 pub(crate) use ways::{Atom, Mark, Ways};
@@ -18,8 +19,8 @@ const SQUARE: f64 = 0.04;
 /// The way of a robot.
 #[derive(Debug, Clone)]
 pub(crate) struct Trail {
-    /// The radius of the body, in metres.
-    pub(crate) radius: f64,
+    /// The form of the body.
+    pub(crate) form: Form,
     pub(crate) start: Pose,
     /// Current pose of the robot.
     pub(crate) here: Pose,
@@ -55,10 +56,11 @@ pub(crate) struct About {
 }
 
 impl Trail {
-    /// The trail of a body of this radius, in metres, that begins here.
-    pub(crate) fn from(pose: &Pose, radius: f64) -> Self {
+    /// The trail of a body that begins here.
+    pub(crate) fn from(body: &Footprint) -> Self {
+        let pose = &body.pose;
         Self {
-            radius,
+            form: body.form,
             start: *pose,
             here: *pose,
             things: Vec::new(),

@@ -2,7 +2,7 @@
 
 use mdle_runtime::Radians;
 
-use crate::disc::Disc;
+use crate::footprint::{Contact, Footprint, Form};
 use crate::grid::{Grid, Hit, Segment};
 use crate::moving::Moving;
 use crate::surfaces::{Ends, Meeting, Surface, apart, surface};
@@ -19,7 +19,7 @@ pub struct Walls {
     grid: Grid,
     moving: Vec<Moving>,
     /// The other robots.
-    others: Vec<Disc>,
+    others: Vec<Footprint>,
     /// Roughness of all surfaces, from 0 to 1.
     pub(crate) rough: f64,
 }
@@ -78,7 +78,10 @@ impl Walls {
         let range = self.grid.ray(from, way, most).map_or(most, |hit| hit.range);
         let range =
             self.moving.iter().fold(range, |range, thing| thing.ray(from, way, range).map_or(range, |hit| hit.range));
-        let range = self.others.iter().fold(range, |range, other| other.ray(from, way, range).unwrap_or(range));
+        let range = self
+            .others
+            .iter()
+            .fold(range, |range, other| other.found(from, way, range).map_or(range, |surface| surface.range));
         (range < most).then_some(range)
     }
 
@@ -108,30 +111,58 @@ impl Walls {
     }
 
     /// Returns the distance to the nearest moving thing or other robot; infinite without any.
-    pub(crate) fn moving(&self, at: Place) -> f64 {
+    fn moving(&self, at: Place) -> f64 {
         let least = self.moving.iter().fold(f64::INFINITY, |least, thing| thing.distance(at, least).min(least));
         self.others.iter().fold(least, |least, other| least.min(other.distance(at)))
     }
 
-    /// The nearest place of a wall, if it is nearer than `reach`.
-    pub(crate) fn nearest(&self, at: Place, reach: f64) -> Option<Place> {
+    /// Returns the distance between a body and the nearest obstacle, in metres, or `reach` if that is less; negative
+    /// where they overlap.
+    #[must_use]
+    pub fn gap(&self, body: &Footprint, reach: f64) -> f64 {
+        self.standing_gap(body, reach).min(self.moving_gap(body))
+    }
+
+    /// Returns the distance between a body and the nearest obstacle that never moves, or `reach` if that is less.
+    pub(crate) fn standing_gap(&self, body: &Footprint, reach: f64) -> f64 {
+        if let Form::Disc { radius } = body.form {
+            return self.standing(body.at(), radius + reach) - radius;
+        }
+        let mut least = reach;
+        let touches = |segment: &Segment, least: f64| {
+            // Most walls are further away than the circle around the body.
+            let far = apart(segment.nearest(body.at()), body.at()) - body.form.radius();
+            if far < least { least.min(body.contact(segment).gap) } else { least }
+        };
+        self.grid.near(body.at(), body.form.radius() + reach, |_, segment| least = touches(segment, least));
+        least
+    }
+
+    /// Returns the distance between a body and the nearest moving thing or other robot; infinite without any.
+    pub(crate) fn moving_gap(&self, body: &Footprint) -> f64 {
+        let least = self.moving.iter().fold(f64::INFINITY, |least, thing| thing.gap(body, least).min(least));
+        self.others.iter().fold(least, |least, other| least.min(body.contact_with(other).gap))
+    }
+
+    /// The nearest contact of a body with an obstacle, if its gap is less than `reach`.
+    pub(crate) fn contact(&self, body: &Footprint, reach: f64) -> Option<Contact> {
         let mut nearest = (reach, None);
-        self.near(at, reach, |place| {
-            let distance = apart(place, at);
-            if distance < nearest.0 {
-                nearest = (distance, Some(place));
+        self.contacts(body, reach, |contact| {
+            if contact.gap < nearest.0 {
+                nearest = (contact.gap, Some(contact));
             }
         });
         nearest.1
     }
 
-    /// Calls `take` with the nearest place of each segment that may lie within `reach`.
-    pub(crate) fn near(&self, at: Place, reach: f64, mut take: impl FnMut(Place)) {
-        self.grid.near(at, reach, |_, segment| take(segment.nearest(at)));
+    /// Calls `take` with the contact of a body with each obstacle that may lie within `reach` of it.
+    pub(crate) fn contacts(&self, body: &Footprint, reach: f64, mut take: impl FnMut(Contact)) {
+        let around = body.form.radius() + reach;
+        self.grid.near(body.at(), around, |_, segment| take(body.contact(segment)));
         for segment in self.moving.iter().flat_map(Moving::segments) {
-            take(segment.nearest(at));
+            take(body.contact(segment));
         }
-        self.others.iter().for_each(|other| take(other.nearest(at)));
+        self.others.iter().for_each(|other| take(body.contact_with(other)));
     }
 
     /// Returns the displacement of each of the things from where it begins; `None` for an open door.
@@ -141,11 +172,11 @@ impl Walls {
 
     /// The middle of each of the things, but for open doors, and of each other robot.
     pub(crate) fn things(&self) -> impl Iterator<Item = Place> {
-        self.moving.iter().filter_map(Moving::around).chain(self.others.iter().map(|other| other.at))
+        self.moving.iter().filter_map(Moving::around).chain(self.others.iter().map(Footprint::at))
     }
 
     /// Sets the places of the other robots.
-    pub(crate) fn put_others(&mut self, others: &[Disc]) {
+    pub(crate) fn put_others(&mut self, others: &[Footprint]) {
         self.others.clear();
         self.others.extend_from_slice(others);
     }
@@ -155,10 +186,10 @@ impl Walls {
         !self.moving.is_empty()
     }
 
-    /// Moves all things for `seconds`, but none of them into a disc of this radius around `body`.
-    pub(crate) fn advance(&mut self, seconds: f64, body: Place, radius: f64) {
+    /// Moves all things for `seconds`, but none of them into `body`.
+    pub(crate) fn advance(&mut self, seconds: f64, body: &Footprint) {
         for thing in &mut self.moving {
-            thing.advance(seconds, body, radius);
+            thing.advance(seconds, body);
         }
     }
 }
@@ -167,10 +198,10 @@ fn segments(world: &World) -> Vec<Segment> {
     world.segments().map(|(_, from, to)| Segment::between(from, to)).collect()
 }
 
-/// Returns the wall or box of `world` that is nearest to `at`, with everything where it begins.
-pub(crate) fn nearest(world: &World, at: Place) -> Option<&Outline> {
+/// Returns the wall or box of `world` that is nearest to `body`, with everything where it begins.
+pub(crate) fn nearest<'w>(world: &'w World, body: &Footprint) -> Option<&'w Outline> {
     let distances =
-        world.everything().map(|(outline, from, to)| (outline, apart(Segment::between(from, to).nearest(at), at)));
+        world.everything().map(|(outline, from, to)| (outline, body.contact(&Segment::between(from, to)).gap));
     distances.min_by(|(_, one), (_, other)| one.total_cmp(other)).map(|(outline, _)| outline)
 }
 

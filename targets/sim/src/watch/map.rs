@@ -1,7 +1,7 @@
 //! The floor as dots: walls and goal once, the way as it grows, and over them the robot and what it hears.
 
-use mdle_runtime::{Meters, Pose, Radians};
-use mdle_simulator::{Place, Thing, World, Zone, edge};
+use mdle_runtime::{Meters, Radians};
+use mdle_simulator::{Footprint, Form, Place, Thing, World, Zone, edge};
 
 use super::canvas::{Canvas, Ink};
 
@@ -93,9 +93,10 @@ impl Map {
         }
     }
 
-    /// The rows of the map with the robot on it, whose body has this radius in metres.
-    pub(super) fn drawn(mut self, pose: &Pose, radius: f64, touches: bool) -> Vec<String> {
-        self.body(pose, radius);
+    /// The rows of the map with the robot on it.
+    pub(super) fn drawn(mut self, robot: &Footprint, touches: bool) -> Vec<String> {
+        let pose = &robot.pose;
+        self.body(robot);
         let eighths = libm::round(pose.theta.degrees() / 45.0) as i64;
         let arrow = usize::try_from(eighths.rem_euclid(8)).ok().and_then(|eighth| ARROWS.get(eighth)).unwrap_or(&'?');
         // Red where it touches something.
@@ -125,13 +126,17 @@ impl Map {
     }
 
     /// The edge of the body, where it is seen around its arrow.
-    fn body(&mut self, pose: &Pose, radius: f64) {
-        if radius * self.scale < BODY_LEAST {
+    fn body(&mut self, robot: &Footprint) {
+        if robot.form.radius() * self.scale < BODY_LEAST {
             return;
         }
+        for (from, to) in robot.edges() {
+            self.line(from, to, Ink::Wall);
+        }
+        let Form::Disc { radius } = robot.form else { return };
         for number in 0..BODY_DOTS {
             let bearing = Radians::from_degrees(f64::from(number) * (360.0 / f64::from(BODY_DOTS)));
-            self.dot(Place::of(&pose.towards(bearing, Meters(radius))), Ink::Wall);
+            self.dot(Place::of(&robot.pose.towards(bearing, Meters(radius))), Ink::Wall);
         }
     }
 
@@ -155,6 +160,7 @@ impl Map {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use mdle_runtime::Pose;
 
     fn shown(columns: usize, rows: usize) -> String {
         let world = World::office().unwrap();
@@ -164,7 +170,7 @@ mod tests {
         let pose = Pose { x: Meters(0.0), y: Meters(4.3), theta: Radians::from_degrees(90.0) };
         assert!(map.shows(Place::of(&pose)) && map.is_of(columns, rows));
         map.heard(&[Place { x: 0.0, y: 8.0 }]);
-        let text = map.drawn(&pose, 0.205, false).join("\n");
+        let text = map.drawn(&Footprint { pose, form: Form::Disc { radius: 0.205 } }, false).join("\n");
         // Colours aside.
         let mut plain = text.split('\x1b').map(|part| part.split_once('m').map_or(part, |(_, rest)| rest));
         plain.by_ref().collect()
@@ -181,6 +187,6 @@ mod tests {
             assert!(shown(columns, rows).contains('↑'), "{columns} {rows}");
         }
         let nothing = Map::of(&World::parse("empty", "").unwrap(), &[], 0, 0);
-        assert!(nothing.drawn(&Pose::ORIGIN, 0.205, true).is_empty());
+        assert!(nothing.drawn(&Footprint { pose: Pose::ORIGIN, form: Form::Disc { radius: 0.205 } }, true).is_empty());
     }
 }

@@ -1,5 +1,8 @@
-//! Contact of the disc with obstacles: it slides along them, and never overlaps them.
+//! Contact of the body with obstacles: it slides along them, is pushed off them when it turns, and never overlaps them.
 
+use mdle_runtime::{Meters, Pose, Radians};
+
+use crate::footprint::{Contact, Footprint};
 use crate::walls::Walls;
 use crate::world::Place;
 
@@ -8,12 +11,12 @@ const LED_OFF: f64 = 1e-8;
 /// Greatest number of surfaces along which one step slides: a corner has two.
 const SLIDES: usize = 3;
 
-/// Returns the way that the disc at `at` goes when it is to move by `way`: all of it if that is free, else up to the
-/// contact and on along the surface. The step must be shorter than the radius; where it ends, the disc overlaps
-/// nothing.
-pub(crate) fn slid(at: Place, way: Place, radius: f64, walls: &Walls) -> Place {
-    let reach = radius + libm::hypot(way.x, way.y) + LED_OFF;
-    let free = |place: Place| walls.clearance(place, reach) >= radius;
+/// Returns the way that `body` goes when it is to move by `way`: all of it if that is free, else up to the contact and
+/// on along the surface. The step must be shorter than the body; where it ends, the body overlaps nothing.
+pub(crate) fn slid(body: &Footprint, way: Place, walls: &Walls) -> Place {
+    let at = body.at();
+    let reach = libm::hypot(way.x, way.y) + LED_OFF;
+    let free = |place: Place| walls.gap(&moved(body, place), reach) >= 0.0;
     let (mut here, mut left) = (at, way);
     for _ in 0..SLIDES {
         let there = |part: f64| Place { x: here.x + part * left.x, y: here.y + part * left.y };
@@ -23,17 +26,40 @@ pub(crate) fn slid(at: Place, way: Place, radius: f64, walls: &Walls) -> Place {
         }
         let part = last_free(|part| free(there(part)));
         here = there(part);
-        let Some(normal) = normal(here, reach, walls) else { break };
+        let Some(normal) = walls.contact(&moved(body, here), reach).and_then(normal) else { break };
         let into = ((1.0 - part) * (left.x * normal.x + left.y * normal.y)).min(0.0) - LED_OFF;
         left = Place { x: (1.0 - part) * left.x - into * normal.x, y: (1.0 - part) * left.y - into * normal.y };
     }
     Place { x: here.x - at.x, y: here.y - at.y }
 }
 
-/// The direction away from the nearest surface.
-fn normal(at: Place, reach: f64, walls: &Walls) -> Option<Place> {
-    let nearest = walls.nearest(at, reach)?;
-    let (x, y) = (at.x - nearest.x, at.y - nearest.y);
+/// Returns `body` turned by `turn`. Where a corner or side of it would turn into an obstacle, it is pushed off by as
+/// much as the turn needs; if there is no room for that, it does not turn.
+pub(crate) fn turned(body: &Footprint, turn: Radians, walls: &Walls) -> Footprint {
+    let Radians(theta) = body.pose.theta;
+    let there = Footprint { pose: Pose { theta: Radians(theta + turn.0), ..body.pose }, ..*body };
+    let reach = body.form.moved(0.0, turn) + LED_OFF;
+    if walls.gap(&there, reach) >= 0.0 {
+        return there;
+    }
+    let Some(normal) = walls.contact(body, reach).and_then(normal) else { return *body };
+    // Twice the way of a corner: the side that turns into the obstacle may slant.
+    let pushed = |part: f64| {
+        let push = 2.0 * reach * part;
+        moved(&there, Place { x: there.pose.x.0 + push * normal.x, y: there.pose.y.0 + push * normal.y })
+    };
+    let free = |part: f64| walls.gap(&pushed(part), reach) >= 0.0;
+    if free(1.0) { pushed(1.0 - last_free(|part| free(1.0 - part))) } else { *body }
+}
+
+fn moved(body: &Footprint, to: Place) -> Footprint {
+    Footprint { pose: Pose { x: Meters(to.x), y: Meters(to.y), ..body.pose }, ..*body }
+}
+
+/// The direction away from the surface of a contact.
+fn normal(contact: Contact) -> Option<Place> {
+    let Contact { place, body, .. } = contact;
+    let (x, y) = (body.x - place.x, body.y - place.y);
     let length = libm::hypot(x, y);
     (length > 0.0).then(|| Place { x: x / length, y: y / length })
 }

@@ -131,6 +131,43 @@ fn a_corner_presses_the_switches_of_both_its_walls() {
     assert_eq!(body.pressed(12, &corner), 0b1001, "ahead and to the left: {:?}", body.pose);
 }
 
+/// A rectangle of 0.63 m by 0.54 m at the origin, at rest.
+fn atrv() -> Body {
+    at_rest(model::Body::Atrv, None)
+}
+
+#[test]
+fn a_rectangle_meets_a_wall_with_its_front_and_a_doorway_with_its_sides() {
+    let mut body = atrv();
+    let wall = walls("[[wall]]\npoints = [[1, -1], [1, 1]]");
+    body.advance(&twist(0.5, 0.0), 5.0, &wall);
+    assert!((body.pose.x.0 - (1.0 - 0.315)).abs() < 1e-6, "{:?}", body.pose);
+    assert_eq!(body.pressed(2, &wall), 0b01);
+    for (half, passes) in [(0.275, true), (0.265, false)] {
+        let doorway = format!("[[wall]]\npoints = [[1, 3], [1, {half}]]\n[[wall]]\npoints = [[1, -{half}], [1, -3]]");
+        let mut body = atrv();
+        body.advance(&twist(0.5, 0.0), 6.0, &walls(&doorway));
+        assert_eq!(body.pose.x.0 > 2.5, passes, "{half}: {:?}", body.pose);
+    }
+}
+
+#[test]
+fn a_rectangle_that_turns_beside_a_wall_is_pushed_off_it() {
+    let wall = walls("[[wall]]\npoints = [[-5, 0.28], [5, 0.28]]");
+    let mut body = atrv();
+    body.advance(&twist(0.0, 0.5), 6.0, &wall);
+    assert!((2.5..3.0).contains(&body.pose.theta.0), "{:?}", body.pose);
+    assert!((-0.14..-0.11).contains(&body.pose.y.0) && body.pose.x.0.abs() < 0.05, "{:?}", body.pose);
+    let narrow = walls("[[wall]]\npoints = [[-5, 0.28], [5, 0.28]]\n[[wall]]\npoints = [[-5, -0.28], [5, -0.28]]");
+    let mut body = atrv();
+    body.advance(&twist(0.0, 0.5), 6.0, &narrow);
+    assert!(body.pose.theta.0.abs() < 0.1 && body.velocity().omega.0.abs() < 0.1, "{:?}", body.pose);
+    body.advance(&twist(0.0, -0.25), 0.1, &narrow);
+    body.brake(&narrow);
+    body.advance(&twist(0.5, 0.0), 3.0, &narrow);
+    assert!(body.pose.x.0 > 1.0, "it turns back and leaves: {:?}", body.pose);
+}
+
 #[test]
 fn nothing_is_passed_through_at_any_speed_and_period() {
     let mut random = Noise::of(7, Purpose::Ranges);
@@ -149,12 +186,11 @@ fn nothing_is_passed_through_at_any_speed_and_period() {
         let walls = walls(&text);
         for kind in [model::Body::Ideal, model::Body::Scout, model::Body::Atrv] {
             let mut body = at_rest(kind, Some(world));
-            let radius = body.drive.radius;
             for _ in 0..40 {
                 let input = twist(0.3 + 1.5 * random.uniform(), 8.0 * (random.uniform() - 0.5));
                 body.advance(&input, 2.0 * random.uniform() * random.uniform(), &walls);
-                let overlap = radius - walls.clearance(Place::of(&body.pose), 2.0);
-                assert!(overlap <= 1e-6, "world {world}, {kind:?}: {overlap} m");
+                let gap = walls.gap(&body.footprint(), 2.0);
+                assert!(gap >= -1e-6, "world {world}, {kind:?}: {gap} m");
                 pressed += u32::from(touches(&body, &walls));
             }
         }

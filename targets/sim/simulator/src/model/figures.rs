@@ -3,6 +3,7 @@
 use mdle_runtime::{Nanos, Radians, SonarId};
 
 use crate::battery::Pack;
+use crate::footprint::Form;
 
 use super::{Drive, HALF_CONE, Hearing, Model, Order, Slip, Transducer};
 
@@ -20,7 +21,7 @@ pub(super) fn ideal() -> Model {
     });
     Model {
         drive: Drive {
-            radius: crate::body::RADIUS,
+            form: Form::SCOUT,
             wheel_base: 0.34519,
             fastest: 1.0,
             acceleration: 1.0,
@@ -116,8 +117,7 @@ pub(super) fn atrv() -> Model {
     });
     Model {
         drive: Drive {
-            // Around 0.63 m by 0.54 m.
-            radius: 0.415,
+            form: Form::Rectangle { half_length: 0.315, half_width: 0.27 },
             wheel_base: 0.4,
             fastest: 1.2,
             acceleration: 1.0,

@@ -11,6 +11,7 @@ use super::layout::{LEFT, Layout, MARGIN};
 use super::rows::ROWS_MOST;
 use super::shapes::{Pixel, badge, circle, cross, dots, line, simplified, tenths, through};
 use super::{floor, labels, legend, things};
+use crate::footprint::{Footprint, Form};
 use crate::trail::Trail;
 use crate::world::{Place, World};
 
@@ -26,10 +27,10 @@ pub(crate) fn svg(world: &World, trail: &Trail) -> String {
     let document = document(&layout, layout.height)
         .add(floor::drawn(&layout, world, layout.height))
         .add(floor::clipped().add(things::drawn(&layout, world, trail)).add(echoes(&layout, trail)))
-        .add(body(&layout, &trail.start, trail.radius, "faint"))
+        .add(body(&layout, &trail.start, trail.form, "faint"))
         .add(way(&layout, trail))
         .add(contacts(&layout, trail))
-        .add(body(&layout, &trail.here, trail.radius, "ink"))
+        .add(body(&layout, &trail.here, trail.form, "ink"))
         .add(marks(&layout, trail))
         .add(legend::drawn(&layout, world, trail));
     format!("{document}\n")
@@ -69,12 +70,20 @@ fn way(layout: &Layout, trail: &Trail) -> Group {
     driven.fold(group, |group, (atom, data)| group.add(path(data).set("class", class("way", atom))))
 }
 
-/// The body: a disc with a line to its front.
-pub(super) fn body(layout: &Layout, pose: &Pose, radius: f64, class: &str) -> Group {
+/// The body: a disc or rectangle with a line to its front.
+pub(super) fn body(layout: &Layout, pose: &Pose, form: Form, class: &str) -> Group {
     let centre = layout.at(Place::of(pose));
-    let front = layout.at(Place::of(&pose.towards(pose.theta, Meters(radius))));
-    let disc = circle(centre, radius * layout.scale).set("fill", "none");
-    Group::new().set("class", class).set("stroke-width", 1.2).add(disc).add(line(centre, front))
+    let front = layout.at(Place::of(&pose.towards(pose.theta, Meters(form.halves().0))));
+    let group = Group::new().set("class", class).set("stroke-width", 1.2);
+    let group = match form {
+        Form::Disc { radius } => group.add(circle(centre, radius * layout.scale).set("fill", "none")),
+        Form::Rectangle { .. } => {
+            let footprint = Footprint { pose: *pose, form };
+            let corners = footprint.sides().map(|side| layout.at(side.from));
+            group.add(Path::new().set("d", through(corners) + "z").set("fill", "none"))
+        }
+    };
+    group.add(line(centre, front))
 }
 
 /// A cross where the body touched something.

@@ -125,10 +125,11 @@ pub(super) fn round_step(least: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::footprint::{Footprint, Form};
     use mdle_runtime::{Nanos, Pose};
 
     fn layout(world: &str, marks: usize) -> Layout {
-        let mut trail = Trail::from(&Pose::ORIGIN, 0.205);
+        let mut trail = Trail::from(&Footprint { pose: Pose::ORIGIN, form: Form::SCOUT });
         trail.about.setup = "a long name of a world ".repeat(marks.min(9));
         for number in 0..marks {
             trail.began(number as u64 + 1, &"goAvoid 90 40 20 ".repeat(number % 5 + 1), Nanos(number as u64));

@@ -10,9 +10,10 @@ use super::colours::class;
 use super::drawing::{body, document};
 use super::film::Film;
 use super::layout::{LINE, Layout, MARGIN};
-use super::shapes::{Pixel, circle, cross, dots, line, polyline, simplified, tenths};
+use super::shapes::{Pixel, circle, cross, dots, line, polyline, simplified, tenths, through};
 use super::strip::{STRIP, strip};
 use super::{floor, legend, things};
+use crate::footprint::Form;
 use crate::frames::{Frame, Frames};
 use crate::trail::Trail;
 use crate::world::{Place, World};
@@ -28,7 +29,7 @@ pub(crate) fn animated(world: &World, trail: &Trail) -> String {
     let document = document(&layout, layout.height + STRIP)
         .add(floor::drawn(&layout, world, layout.height + STRIP))
         .add(floor::clipped().add(things::moving(&layout, world, trail, &film)))
-        .add(body(&layout, &trail.start, trail.radius, "faint"))
+        .add(body(&layout, &trail.start, trail.form, "faint"))
         .add(ways(&layout, trail, &film))
         .add(echoes(&layout, &film))
         .add(contacts(&layout, trail, &film))
@@ -119,11 +120,18 @@ fn robot(layout: &Layout, film: &Film<'_>, trail: &Trail) -> Group {
     });
     let turns = film.transform("rotate", headings);
     let drives = film.transform("translate", places);
-    let radius = trail.radius * layout.scale;
-    let disc = circle((0.0, 0.0), radius).set("class", "paper").set("fill-opacity", 0.75);
-    let front = line((0.0, 0.0), (radius, 0.0));
+    let (x, y) = trail.form.halves();
+    let (x, y) = (x * layout.scale, y * layout.scale);
+    let front = line((0.0, 0.0), (x, 0.0));
     let turned = Group::new().set("transform", format!("rotate({})", tenths(-trail.here.theta.degrees())));
-    let turned = turned.add(disc).add(front).add(turns);
+    let turned = match trail.form {
+        Form::Disc { .. } => turned.add(circle((0.0, 0.0), x).set("class", "paper").set("fill-opacity", 0.75)),
+        Form::Rectangle { .. } => {
+            let data = through([(x, y), (-x, y), (-x, -y), (x, -y)]) + "z";
+            turned.add(Path::new().set("d", data).set("class", "paper").set("fill-opacity", 0.75))
+        }
+    };
+    let turned = turned.add(front).add(turns);
     let moved = Group::new().set("transform", format!("translate({})", at(&trail.here))).set("class", "ink");
     moved.set("stroke-width", 1.8).add(turned).add(drives)
 }

@@ -4,13 +4,14 @@ use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS};
 use svg::parser::Event;
 
 use super::{animated, svg};
+use crate::footprint::{Footprint, Form};
 use crate::frames::{Frame, Frames};
 use crate::trail::Trail;
 use crate::world::{Place, World};
 
 /// Returns a run of this many turns in circles, in which an atom begins every `an_atom_every` turns.
 fn run(turns: u64, an_atom_every: u64, law: &str) -> Trail {
-    let mut trail = Trail::from(&Pose::ORIGIN, 0.205);
+    let mut trail = Trail::from(&Footprint { pose: Pose::ORIGIN, form: Form::SCOUT });
     trail.frames = Some(Frames::new());
     for turn in 0..turns {
         let (t, angle) = (Nanos(turn * 100_000_000), turn as f64 * 0.05);

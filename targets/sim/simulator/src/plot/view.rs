@@ -51,10 +51,11 @@ fn within((least, most): (f64, f64), (low, high): (f64, f64)) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::footprint::{Footprint, Form};
     use mdle_runtime::{Meters, Pose};
 
     fn view(world: &str, to: f64) -> View {
-        let mut trail = Trail::from(&Pose::ORIGIN, 0.2);
+        let mut trail = Trail::from(&Footprint { pose: Pose::ORIGIN, form: Form::SCOUT });
         trail.went(&Pose { x: Meters(to), ..Pose::ORIGIN });
         View::of(&World::parse("a world", world).expect("a good world"), &trail)
     }

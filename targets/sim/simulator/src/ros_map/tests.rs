@@ -3,6 +3,7 @@
 use mdle_runtime::{Meters, Radians};
 
 use super::*;
+use crate::footprint::Form;
 use crate::start;
 use crate::walls::Walls;
 
@@ -42,7 +43,9 @@ fn what_is_black_stands_where_the_header_says() {
     let ray = |degrees: f64| walls.ray(Place { x: 0.0, y: 0.0 }, Radians::from_degrees(degrees), 10.0).expect("a wall");
     let near = |one: f64, other: f64| (one - other).abs() < 1e-9;
     assert!(near(ray(0.0), 3.9) && near(ray(90.0), 1.9) && near(ray(180.0), 0.9) && near(ray(270.0), 1.9));
-    let start = |x, y| start::check(&Pose { x: Meters(x), y: Meters(y), ..Pose::ORIGIN }, 0.2, &world, &walls);
+    let start = |x, y| {
+        start::check(&Pose { x: Meters(x), y: Meters(y), ..Pose::ORIGIN }, Form::Disc { radius: 0.2 }, &world, &walls)
+    };
     assert_eq!(start(0.0, 0.0), Ok(()));
     assert!(start(3.8, 0.0).is_err() && start(3.95, 0.0).is_err() && start(9.0, 0.0).is_err());
 }
@@ -52,7 +55,7 @@ fn the_inside_of_what_stands_is_no_start() {
     let block = |column: usize, row: usize| (20..60).contains(&column) && (20..60).contains(&row);
     let world = header(HEADER).world("map.pgm", &map(100, 80, block)).expect("a good map");
     let middle = Pose { x: Meters(1.0), y: Meters(0.0), ..Pose::ORIGIN };
-    assert!(start::check(&middle, 0.2, &world, &Walls::of(&world)).is_err());
+    assert!(start::check(&middle, Form::Disc { radius: 0.2 }, &world, &Walls::of(&world)).is_err());
 }
 
 #[test]

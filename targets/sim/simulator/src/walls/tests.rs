@@ -8,6 +8,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::*;
 use crate::surfaces::End;
+use mdle_runtime::{Meters, Pose};
 
 fn uniform(random: &mut ChaCha8Rng) -> f64 {
     (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
@@ -38,6 +39,12 @@ fn beside(world: &World) -> Polyline {
     Polyline::new(vertices, Some(indices))
 }
 
+/// A body without extent.
+fn point(at: Place) -> Footprint {
+    let pose = Pose { x: Meters(at.x), y: Meters(at.y), ..Pose::ORIGIN };
+    Footprint { pose, form: Form::Disc { radius: 0.0 } }
+}
+
 #[test]
 fn rays_and_distances_are_those_of_parry() {
     let mut random = ChaCha8Rng::seed_from_u64(1);
@@ -60,7 +67,7 @@ fn rays_and_distances_are_those_of_parry() {
             }
             let expected = library.distance_to_local_point(Vector::new(from.x, from.y), true);
             assert!((ready.clearance(from, 1.0) - expected.min(1.0)).abs() < 1e-9);
-            let nearest = ready.nearest(from, 1.0).map(|place| apart(place, from));
+            let nearest = ready.contact(&point(from), 1.0).map(|contact| apart(contact.place, from));
             assert_eq!(nearest.is_some(), expected < 1.0);
             assert!(nearest.is_none_or(|nearest| (nearest - expected).abs() < 1e-9));
         }
@@ -97,7 +104,7 @@ fn a_world_without_walls_is_endless() {
 #[test]
 fn the_nearest_wall_is_named() {
     let world = World::office().expect("our own floor");
-    let name = |x, y| nearest(&world, Place { x, y }).map(|outline| outline.name.as_str());
+    let name = |x, y| nearest(&world, &point(Place { x, y })).map(|outline| outline.name.as_str());
     assert_eq!(name(3.6, 4.6), Some("obstacle"));
     assert_eq!(name(-0.5, 2.0), Some("A west"));
 }

@@ -1,0 +1,256 @@
+//! The area of the floor that a robot's body covers, a disc or a rectangle around its centre, as walls, things and
+//! other robots touch it and sonars hear it.
+
+#[cfg(test)]
+mod tests;
+
+use std::fmt;
+
+use mdle_runtime::{Pose, Radians};
+
+use crate::grid::Segment;
+use crate::surfaces::{Surface, apart};
+use crate::world::Place;
+
+/// The form of a body, in metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Form {
+    /// A disc.
+    Disc {
+        /// Radius of the disc.
+        radius: f64,
+    },
+    /// A rectangle that drives along its length.
+    Rectangle {
+        /// Half of the length.
+        half_length: f64,
+        /// Half of the width.
+        half_width: f64,
+    },
+}
+
+/// A body at its place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Footprint {
+    /// Pose of the centre.
+    pub pose: Pose,
+    /// Form of the body.
+    pub form: Form,
+}
+
+/// The nearest places of a body and of an obstacle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Contact {
+    /// The distance between both, in metres; negative where they overlap.
+    pub(crate) gap: f64,
+    /// Place on the obstacle.
+    pub(crate) place: Place,
+    /// The place of the body from which the obstacle pushes it off: of a disc the centre.
+    pub(crate) body: Place,
+}
+
+/// The gap of a rectangle that overlaps something: how deep is not known.
+const OVERLAPS: f64 = -1.0;
+
+impl Form {
+    /// The disc of a Scout.
+    pub(crate) const SCOUT: Self = Self::Disc { radius: crate::body::RADIUS };
+
+    /// Radius of the smallest circle around the body, in metres.
+    #[must_use]
+    pub fn radius(self) -> f64 {
+        match self {
+            Self::Disc { radius } => radius,
+            Self::Rectangle { half_length, half_width } => libm::hypot(half_length, half_width),
+        }
+    }
+
+    /// Half of the length and half of the width, in metres.
+    #[must_use]
+    pub fn halves(self) -> (f64, f64) {
+        match self {
+            Self::Disc { radius } => (radius, radius),
+            Self::Rectangle { half_length, half_width } => (half_length, half_width),
+        }
+    }
+
+    /// Greatest distance, in metres, by which a place of the outline moves when the body moves by `way` metres and
+    /// turns by `turn`: a disc may turn anywhere.
+    pub(crate) fn moved(self, way: f64, turn: Radians) -> f64 {
+        match self {
+            Self::Disc { .. } => way.abs(),
+            Self::Rectangle { .. } => way.abs() + self.radius() * turn.0.abs(),
+        }
+    }
+}
+
+impl fmt::Display for Form {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Disc { radius } => write!(f, "{radius} m around its centre"),
+            Self::Rectangle { half_length, half_width } => {
+                write!(f, "{} m long and {} m wide", 2.0 * half_length, 2.0 * half_width)
+            }
+        }
+    }
+}
+
+impl Footprint {
+    /// Returns the centre.
+    #[must_use]
+    pub fn at(&self) -> Place {
+        Place::of(&self.pose)
+    }
+
+    /// Returns `true` if the body overlaps `other`.
+    #[must_use]
+    pub fn overlaps(&self, other: &Self) -> bool {
+        self.contact_with(other).gap < 0.0
+    }
+
+    /// Returns the distance between the body and `other`, in metres; negative where they overlap.
+    #[must_use]
+    pub fn gap(&self, other: &Self) -> f64 {
+        self.contact_with(other).gap
+    }
+
+    /// Returns the sides of a rectangle, counter-clockwise from the front; a disc has none.
+    pub(crate) fn sides(&self) -> impl Iterator<Item = Segment> {
+        let corners = match self.form {
+            Form::Disc { .. } => None,
+            Form::Rectangle { half_length: x, half_width: y } => {
+                Some([(x, -y), (x, y), (-x, y), (-x, -y)].map(|(x, y)| self.outward(Place { x, y })))
+            }
+        };
+        let sides = corners.map(|[a, b, c, d]| [(a, b), (b, c), (c, d), (d, a)]);
+        sides.into_iter().flatten().map(|(from, to)| Segment::between(from, to))
+    }
+
+    /// Returns the ends of each side of a rectangle, counter-clockwise from the front; a disc has none.
+    pub fn edges(&self) -> impl Iterator<Item = (Place, Place)> {
+        self.sides().map(|side| (side.from, side.to()))
+    }
+
+    /// A place given from the centre, in axes that turn with the body, as a place on the floor.
+    fn outward(&self, place: Place) -> Place {
+        let (sin, cos) = libm::sincos(self.pose.theta.0);
+        let at = self.at();
+        Place { x: at.x + place.x * cos - place.y * sin, y: at.y + place.x * sin + place.y * cos }
+    }
+
+    /// A place on the floor as seen from the centre, in axes that turn with the body.
+    fn inward(&self, place: Place) -> Place {
+        let (sin, cos) = libm::sincos(self.pose.theta.0);
+        let (x, y) = (place.x - self.pose.x.0, place.y - self.pose.y.0);
+        Place { x: x * cos + y * sin, y: y * cos - x * sin }
+    }
+
+    /// Returns the distance from `at` to the edge, negative inside.
+    pub(crate) fn distance(&self, at: Place) -> f64 {
+        match self.form {
+            Form::Disc { radius } => apart(self.at(), at) - radius,
+            Form::Rectangle { half_length, half_width } => {
+                let Place { x, y } = self.inward(at);
+                let (x, y) = (x.abs() - half_length, y.abs() - half_width);
+                if x <= 0.0 && y <= 0.0 { x.max(y) } else { libm::hypot(x.max(0.0), y.max(0.0)) }
+            }
+        }
+    }
+
+    /// Returns the place of the body that is nearest to `at`, which is outside: of a disc, of its edge.
+    fn nearest(&self, at: Place) -> Place {
+        match self.form {
+            Form::Disc { radius } => {
+                let (x, y) = (at.x - self.pose.x.0, at.y - self.pose.y.0);
+                let part = radius / libm::hypot(x, y).max(f64::MIN_POSITIVE);
+                Place { x: self.pose.x.0 + part * x, y: self.pose.y.0 + part * y }
+            }
+            Form::Rectangle { half_length, half_width } => {
+                let Place { x, y } = self.inward(at);
+                self.outward(Place { x: x.clamp(-half_length, half_length), y: y.clamp(-half_width, half_width) })
+            }
+        }
+    }
+
+    /// Returns the contact of the body with a wall or side.
+    pub(crate) fn contact(&self, segment: &Segment) -> Contact {
+        let at = self.at();
+        if let Form::Disc { radius } = self.form {
+            let place = segment.nearest(at);
+            return Contact { gap: apart(place, at) - radius, place, body: at };
+        }
+        if self.is_crossed(segment) {
+            return Contact { gap: OVERLAPS, place: segment.nearest(at), body: at };
+        }
+        let from_ends = [segment.from, segment.to()].map(|place| (place, self.nearest(place)));
+        let from_corners = self.sides().map(|side| (segment.nearest(side.from), side.from));
+        let pairs = from_ends.into_iter().chain(from_corners);
+        let contacts = pairs.map(|(place, body)| Contact { gap: apart(place, body), place, body });
+        let nothing = Contact { gap: f64::INFINITY, place: at, body: at };
+        contacts.fold(nothing, |least, contact| if contact.gap < least.gap { contact } else { least })
+    }
+
+    /// Returns `true` if a part of the segment lies in the rectangle: it is cut off at each pair of sides.
+    fn is_crossed(&self, segment: &Segment) -> bool {
+        let (half_length, half_width) = self.form.halves();
+        let (from, to) = (self.inward(segment.from), self.inward(segment.to()));
+        let (mut least, mut most) = (0.0_f64, 1.0_f64);
+        for (from, to, half) in [(from.x, to.x, half_length), (from.y, to.y, half_width)] {
+            let along = to - from;
+            if along == 0.0 {
+                if from.abs() > half {
+                    return false;
+                }
+                continue;
+            }
+            let (one, other) = ((-half - from) / along, (half - from) / along);
+            (least, most) = (least.max(one.min(other)), most.min(one.max(other)));
+        }
+        least <= most
+    }
+
+    /// Returns the contact of the body with another one.
+    pub(crate) fn contact_with(&self, other: &Self) -> Contact {
+        let at = self.at();
+        match (self.form, other.form) {
+            (_, Form::Disc { radius }) => {
+                let body = if let Form::Disc { .. } = self.form { at } else { self.nearest(other.at()) };
+                Contact { gap: self.distance(other.at()) - radius, place: other.nearest(at), body }
+            }
+            (Form::Disc { radius }, Form::Rectangle { .. }) => {
+                Contact { gap: other.distance(at) - radius, place: other.nearest(at), body: at }
+            }
+            (Form::Rectangle { .. }, Form::Rectangle { .. }) => {
+                let contacts = other.sides().map(|side| self.contact(&side));
+                let apart = Contact { gap: self.distance(other.at()), place: other.at(), body: at };
+                contacts.fold(apart, |least, contact| if contact.gap < least.gap { contact } else { least })
+            }
+        }
+    }
+
+    /// Returns the surface that a ray from outside in the unit direction `way` meets, if its distance is less than
+    /// `most`: a disc has no edges.
+    pub(crate) fn found(&self, from: Place, way: Place, most: f64) -> Option<Surface> {
+        let Form::Disc { radius } = self.form else {
+            let met = self.sides().filter_map(|side| Some((side.met(from, way, most)?, side)));
+            let (range, side) = met.reduce(|one, other| if other.0 < one.0 { other } else { one })?;
+            let length = libm::hypot(side.along.x, side.along.y);
+            let at = Place { x: from.x + range * way.x, y: from.y + range * way.y };
+            let edge = apart(at, side.from).min(apart(at, side.to()));
+            return Some(Surface {
+                range,
+                normal: Place { x: side.along.y / length, y: -side.along.x / length },
+                edge,
+            });
+        };
+        let (x, y) = (self.pose.x.0 - from.x, self.pose.y.0 - from.y);
+        let (along, across) = (x * way.x + y * way.y, x * way.y - y * way.x);
+        let half = radius * radius - across * across;
+        let range = along - libm::sqrt(half.max(0.0));
+        if !(half >= 0.0 && range >= 0.0 && range < most) {
+            return None;
+        }
+        let (x, y) = (from.x + range * way.x - self.pose.x.0, from.y + range * way.y - self.pose.y.0);
+        Some(Surface { range, normal: Place { x: x / radius, y: y / radius }, edge: f64::INFINITY })
+    }
+}
