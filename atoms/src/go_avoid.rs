@@ -9,6 +9,7 @@ use mdle_runtime::{
 use crate::approach::Approach;
 use crate::gains::Gains;
 use crate::memory::Memory;
+use crate::stuck::Progress;
 use crate::tangent::{Obstacles, Side, Wish};
 
 /// Distance from the goal below which it is reached.
@@ -58,6 +59,7 @@ impl GoAvoid {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GoingRound {
     goal: Pose,
+    progress: Progress,
     speed: MetersPerSecond,
     look_ahead: Meters,
     previous: Option<Radians>,
@@ -169,6 +171,7 @@ impl<Y: DiffDrive + Odometry + SonarRing> Control<Y> for GoAvoid {
         let goal = y.pose().towards(begin.frame.outward(self.bearing), self.range);
         GoingRound {
             goal,
+            progress: Progress::begin(y.pose(), &goal, begin.now),
             speed: self.speed,
             look_ahead: Gains::of(y).look_ahead,
             previous: None,
@@ -185,6 +188,7 @@ impl<Y: DiffDrive + Odometry + SonarRing> Law<Y> for GoingRound {
 
     fn input(&mut self, y: &Y, t: Nanos) -> Twist {
         let here = y.pose();
+        self.progress.take(here, &self.goal, t);
         self.memory.take(y);
         let seen = Obstacles::seen(y, here);
         let obstacles = if self.goes_along(t) { seen.with(&self.memory, here, t) } else { seen };
@@ -196,6 +200,10 @@ impl<Y: DiffDrive + Odometry + SonarRing> Law<Y> for GoingRound {
         let v = (self.speed.0 * (1.0 - off.abs() / ON_THE_SPOT.0)).min(0.9 * (ahead - 0.03)).min(0.8 * distance + 0.03);
         let omega = (y.steering().avoid * off).clamp(-FASTEST, FASTEST);
         Twist { v: MetersPerSecond(v.max(0.0)), omega: RadiansPerSecond(omega) }
+    }
+
+    fn stalled(&self, y: &Y, t: Nanos) -> Option<Nanos> {
+        Some(self.progress.stalled(y.pose(), &self.goal, t))
     }
 }
 

@@ -26,6 +26,7 @@ mod power;
 mod rotate;
 mod signals;
 mod stop;
+mod stuck;
 mod tangent;
 #[cfg(test)]
 mod trial;
@@ -42,4 +43,5 @@ pub use power::{Battery, Charger, LowBattery};
 pub use rotate::{Rotate, Rotating};
 pub use signals::{Age, Omega, R, Theta, V, X, Y};
 pub use stop::Stop;
+pub use stuck::Stuck;
 pub use turn::{Turn, Turning};

@@ -1,5 +1,5 @@
-//! The rules of `way` (docs/src/reference/semantics.md, 3.3) and of `FRAME here` (docs/src/reference/semantics.md,
-//! 3.4), each by its smallest plan.
+//! The rules of `way` (docs/src/reference/semantics.md, 3.3), of `FRAME here` (docs/src/reference/semantics.md, 3.4) and of
+//! `stuck` (docs/src/reference/semantics.md, 4.1), each by its smallest plan.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -146,6 +146,33 @@ fn a_string_or_a_pass_in_a_frame_here_is_a_scope() {
             r#"{"turn":1,"t":1.0,"state":2,"law":"drift","frame":0.0,"fired":[{"from":1,"level":2,"by":"a","operands":["a"]}]}"#,
             r#"{"turn":2,"t":2.0,"state":3,"law":"idle","frame":0.0,"fired":[{"from":2,"level":1,"by":"b","operands":["b"]}]}"#,
             r#"{"turn":3,"t":3.0,"state":4,"law":null,"fired":[{"from":3,"level":1,"by":"c","operands":["c"]}]}"#,
+        ],
+    );
+}
+
+/// The law of the second atom has not run in the turn in which the first one ends: it is not stuck because that was.
+#[test]
+fn stuck_counts_from_its_own_scope_at_the_earliest() {
+    assert_trace(
+        "{ Main (stuck 5) (Atom (stuck 1) seek) (Atom (stuck 1s OR b) seek) { P (RISING stuck 1) (Atom (NOT stuck inf) climb) } }",
+        &[
+            r#"{"t":0,"fired":["stuck 1"]}"#,
+            r#"{"t":0.999999999,"fired":["stuck 1"]}"#,
+            r#"{"t":1,"fired":["stuck 1"]}"#,
+            r#"{"t":1.5,"fired":["stuck 1"]}"#,
+            r#"{"t":3}"#,
+            r#"{"t":4,"fired":["stuck 1"]}"#,
+        ],
+        &[
+            r#"{"turn":0,"t":0.0,"state":1,"law":"seek","fired":[]}"#,
+            r#"{"turn":1,"t":0.999999999,"state":1,"law":"seek","fired":[]}"#,
+            r#"{"turn":2,"t":1.0,"state":2,"law":"seek","fired":[{"from":1,"level":1,"by":"stuck 1","operands":["stuck 1"]}]}"#,
+            r#"{"turn":3,"t":1.5,"state":2,"law":"seek","fired":[]}"#,
+            r#"{"turn":4,"t":3.0,"state":2,"law":"seek","fired":[]}"#,
+            concat!(
+                r#"{"turn":5,"t":4.0,"state":4,"law":null,"fired":[{"from":2,"level":1,"by":"stuck 1 OR b","operands":["stuck 1"]},"#,
+                r#"{"from":3,"level":2,"by":"NOT stuck inf","operands":["NOT stuck inf"]}]}"#
+            ),
         ],
     );
 }

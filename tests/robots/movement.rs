@@ -357,3 +357,23 @@ fn the_yard_is_crossed_and_the_robot_turns_left() {
     let through = run.trail.windows(2).find(|pair| pair[0][1] < 4.0 && pair[1][1] >= 4.0);
     assert!(through.is_some_and(|pair| pair[1][2] > 1.5 && pair[1][2] < 3.0), "{through:?}");
 }
+
+/// In a closed room the first leg leads nowhere. The second one has all of its time, and the plan in rows does the same.
+#[test]
+fn stuck_ends_a_leg_that_leads_nowhere() {
+    let legs = of_book("quarks.md", "legs.mdle");
+    let in_rows = legs.replace("(bumper OR", "(RISING bumper OR");
+    assert_ne!(legs, in_rows);
+    let ends = [("legs", legs), ("legs_in_rows", in_rows)].map(|(name, text)| {
+        let executable = built(name, &text);
+        let closed = "[[wall]]\npoints = [[-1, -1.2], [1, -1.2], [1, 1.2], [-1, 1.2], [-1, -1.2]]\n";
+        fs::write(executable.with_file_name("closed.toml"), closed).unwrap();
+        let run = run(&executable, &["--world", "closed.toml"]);
+        // The lines without places, which differ.
+        let places =
+            |line: &String| line.split(" (").map(|part| part.split_once(')').map_or(part, |(_, rest)| rest)).collect();
+        run.lines.iter().map(places).collect::<Vec<String>>()
+    });
+    assert_eq!(ends[0], ends[1]);
+    insta::assert_snapshot!(ends[0].join("\n"));
+}

@@ -44,6 +44,9 @@ const INTERRUPTS: &[&str] = &[
     "low_battery 10.8",
     "played horn",
     "played(\"bell.mid\")",
+    "stuck 0.3",
+    "stuck(300ms)",
+    "stuck 1s",
 ];
 
 /// Timers; among the scripts' steps, so that they are over just before, at and just after a turn.

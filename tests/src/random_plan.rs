@@ -81,7 +81,7 @@ const GIVEN: [&[&str]; 7] = [
 const OF_STROLL: &[&[&str]] = &[&["0.25", "100ms", "inf"]];
 /// Conditions made of the parameters.
 const OF_PARAMETERS: &[&str] =
-    &["wait T", "farOff far", "farOff(far) OR wait T", "t > T AND a", "NOT wait T", "pattern mask OR played tune"];
+    &["wait T", "farOff far", "farOff(far) OR stuck 1", "t > T AND a", "NOT wait T", "pattern mask OR played tune"];
 /// Laws that use the parameters.
 const LAWS_OF_PARAMETERS: &[&str] = &["drive(v)", "chase(leader)", "replay(tune)"];
 

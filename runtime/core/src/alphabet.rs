@@ -126,6 +126,13 @@ macro_rules! alphabet {
                 }
             }
 
+            fn fired_during(&self, y: &Output, stalled: ::core::option::Option<$crate::Nanos>) -> bool {
+                match self {
+                    $(Self::$interrupt(interrupt) => $crate::Interrupt::fired_during(interrupt, y, stalled),)*
+                    Self::Comparison(comparison) => $crate::Interrupt::fired(comparison, y),
+                }
+            }
+
             fn measured(&self, y: &Output) -> $crate::Measured {
                 match self {
                     $(Self::$interrupt(_) => $crate::Measured::Nothing,)*
@@ -174,6 +181,10 @@ macro_rules! alphabet {
 
             fn input(&mut self, y: &Output, t: $crate::Nanos) -> Input {
                 match *self { $(Self::$control(ref mut law) => $crate::Law::input(law, y, t),)* }
+            }
+
+            fn stalled(&self, y: &Output, t: $crate::Nanos) -> ::core::option::Option<$crate::Nanos> {
+                match *self { $(Self::$control(ref law) => $crate::Law::stalled(law, y, t),)* }
             }
         }
 

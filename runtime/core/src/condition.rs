@@ -16,6 +16,8 @@ pub enum Condition<I> {
     /// Fires while the length of the path driven since its scope was entered is at least the first value and below the
     /// second.
     Driven(Nanometers, Nanometers),
+    /// Fires when its quark has fired and this much time has passed since its scope was entered: `stuck`.
+    Lasting(I, Nanos),
     /// Fires when any operand fires: the number of the first operand, and the number of operands.
     Or(u32, u32),
     /// Fires when all operands fire: the number of the first operand, and the number of operands.
@@ -37,6 +39,8 @@ pub(crate) struct Reading<'r, I, Y, M> {
     pub(crate) level: u16,
     /// The length of the path driven since then.
     pub(crate) way: Nanometers,
+    /// Time for which the law of the turn before has made no progress.
+    pub(crate) stalled: Option<Nanos>,
     pub(crate) operands: &'r [Condition<I>],
     pub(crate) memory: &'r M,
 }
@@ -56,6 +60,7 @@ impl<I> Condition<I> {
         match self {
             Self::Null => false,
             Self::Quark(interrupt) => interrupt.fired(at.y),
+            Self::Lasting(interrupt, time) => interrupt.fired_during(at.y, at.stalled) & (at.since >= *time),
             Self::Wait(time) => at.since >= *time,
             Self::Elapsed(from, until) => (*from..*until).contains(&at.since),
             Self::Driven(from, until) => (*from..*until).contains(&at.way),
@@ -100,9 +105,8 @@ impl<I> Condition<I> {
         I: Interrupt<Y>,
     {
         let inside = match self {
-            Self::Null | Self::Quark(_) | Self::Wait(_) | Self::Elapsed(..) | Self::Driven(..) | Self::After(..) => {
-                return;
-            }
+            Self::Null | Self::Quark(_) | Self::Wait(_) | Self::Lasting(..) => return,
+            Self::Elapsed(..) | Self::Driven(..) | Self::After(..) => return,
             Self::Or(first, count) | Self::And(first, count) => *first..first.saturating_add(*count),
             Self::Not(number) | Self::Rising(_, number) => *number..number.saturating_add(1),
         };

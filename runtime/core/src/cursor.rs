@@ -15,6 +15,8 @@ pub struct Cursor<E, P> {
     atom: u32,
     entered: E,
     left: P,
+    /// Time for which the law of the turn before has made no progress.
+    stalled: Option<Nanos>,
 }
 
 impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
@@ -23,7 +25,7 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
     /// `entered` needs a place for each level of scopes whose [`Cursor::since`] is asked, and `left` one for each level
     /// of loops; values do not matter.
     pub fn start(fsm: Fsm<'_>, entered: E, left: P, t: Nanos) -> Self {
-        let mut cursor = Self { atom: 0, entered, left };
+        let mut cursor = Self { atom: 0, entered, left, stalled: None };
         cursor.open(fsm, 0, None, t);
         cursor
     }
@@ -43,10 +45,19 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         self.entered.way(level)
     }
 
-    /// Takes the output of a turn, before anything in the turn is read or entered.
+    /// Returns how long the law of the turn before has made no progress towards its goal; `None` if it has no goal. The
+    /// value is the same throughout a turn.
     #[inline(always)]
-    pub(crate) fn observe<Y: Output>(&mut self, y: &Y) {
+    pub fn stalled(&self) -> Option<Nanos> {
+        self.stalled
+    }
+
+    /// Takes the output of a turn and the report of the law of the turn before, before anything in the turn is read or
+    /// entered.
+    #[inline(always)]
+    pub(crate) fn observe<Y: Output>(&mut self, y: &Y, stalled: Option<Nanos>) {
         self.entered.observe(y);
+        self.stalled = stalled;
     }
 
     /// Returns the frame of the current atom, if a `FRAME here` encloses it.

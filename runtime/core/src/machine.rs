@@ -85,7 +85,7 @@ impl<P: Plan> Machine<P> {
     /// Makes a turn with output `y` at time `t`: transitions until no enclosing interrupt fires, then the current
     /// atom's law.
     pub fn turn<W: Watch>(&mut self, y: &P::Output, t: Nanos, watch: &mut W) -> Turn<P::Input> {
-        self.cursor.observe(y);
+        self.cursor.observe(y, self.plan.stalled(y, t));
         let mut made: u32 = 0;
         while !self.is_over() {
             match self.plan.next(&self.cursor, y, t) {

@@ -32,8 +32,8 @@ impl<I> Conditions<'_, I> {
         let (Some(Kind::Scope { level }), Some(condition)) = (bracket, self.conditions.get(scope as usize)) else {
             return;
         };
-        let (since, way) = (cursor.since(level, t), cursor.way(level));
-        condition.tell_fired(&Reading { y, since, way, level, operands: self.operands, memory: &() }, tell);
+        let (since, way, stalled) = (cursor.since(level, t), cursor.way(level), cursor.stalled());
+        condition.tell_fired(&Reading { y, since, way, stalled, level, operands: self.operands, memory: &() }, tell);
     }
 }
 
@@ -61,9 +61,8 @@ impl<I> Condition<I> {
                     operand.each_operand(operands, number.saturating_add(1), visit);
                 }
             }
-            Self::Null | Self::Quark(_) | Self::Wait(_) | Self::Elapsed(..) | Self::Driven(..) | Self::Not(_) => {
-                visit(self, from);
-            }
+            Self::Null | Self::Quark(_) | Self::Wait(_) | Self::Lasting(..) => visit(self, from),
+            Self::Elapsed(..) | Self::Driven(..) | Self::Not(_) => visit(self, from),
             Self::Rising(..) | Self::After(..) => visit(self, from),
         }
     }
@@ -75,6 +74,7 @@ impl<I> Condition<I> {
     {
         match self {
             Self::Quark(interrupt) => interrupt.measured(at.y),
+            Self::Lasting(interrupt, _) => interrupt.measured(at.y),
             Self::Wait(_) | Self::Elapsed(..) => Measured::Elapsed(at.since),
             Self::Driven(..) => Measured::Driven(at.way),
             Self::Not(number) | Self::Rising(_, number) => {

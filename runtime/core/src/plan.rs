@@ -26,6 +26,15 @@ pub trait Plan {
     /// scope that ends, of the first that has fired; `None` if the atom goes on.
     fn next(&self, cursor: &Cursor<Self::Entered, Self::Left>, y: &Self::Output, t: Nanos) -> Option<Ending>;
 
+    /// Returns how long the current atom's law has made no progress towards its goal ([`Law::stalled`]); `None` in a
+    /// plan that does not ask.
+    ///
+    /// [`Law::stalled`]: crate::Law::stalled
+    #[inline(always)]
+    fn stalled(&self, _y: &Self::Output, _t: Nanos) -> Option<Nanos> {
+        None
+    }
+
     /// Called before the cursor leaves a scope: a plan that remembers endings records this one, and clears the memories
     /// of nested scopes. [`Cursor::ending`] returns the brackets that end.
     #[inline(always)]

@@ -8,6 +8,13 @@ pub trait Interrupt<Y: ?Sized> {
     /// Returns `true` if the interrupt has fired: where the paper's active-low function is 0.
     fn fired(&self, y: &Y) -> bool;
 
+    /// Returns `true` if the interrupt has fired, where the law of the turn before reports that it is `stalled`
+    /// ([`Law::stalled`]). Called instead of [`Interrupt::fired`]; only `stuck` reads the report.
+    #[inline(always)]
+    fn fired_during(&self, y: &Y, _stalled: Option<Nanos>) -> bool {
+        self.fired(y)
+    }
+
     /// Returns the values that it compares, for reports; not asked while nothing fires.
     fn measured(&self, _y: &Y) -> Measured {
         Measured::Nothing
@@ -48,6 +55,12 @@ pub trait Law<Y: ?Sized> {
 
     /// The input for this turn; called once a turn while the atom runs, with the output and the time of the turn.
     fn input(&mut self, y: &Y, t: Nanos) -> Self::Input;
+
+    /// Returns how long the law has made no progress towards its goal; `None` for a law without a goal. Read at the
+    /// start of each turn, for the interrupt `stuck`.
+    fn stalled(&self, _y: &Y, _t: Nanos) -> Option<Nanos> {
+        None
+    }
 }
 
 /// A law that can end its atom, as the alphabet declares with `completes`.

@@ -46,7 +46,8 @@ impl<T: Table, E: Entries, P: Slots<u64>, M: Memory> InRows<T, E, P, M> {
                 Condition::Null => false,
                 Condition::Quark(interrupt) => interrupt.fired(y),
                 Condition::Wait(time) => cursor.since(guard.level, t) >= *time,
-                Condition::Elapsed(..)
+                Condition::Lasting(..)
+                | Condition::Elapsed(..)
                 | Condition::Driven(..)
                 | Condition::Or(..)
                 | Condition::And(..)
@@ -130,7 +131,8 @@ fn reading<'r, T: Table, E: Entries, P: Slots<u64>, M>(
     t: Nanos,
 ) -> Reading<'r, InterruptOf<T>, OutputOf<T>, M> {
     let (since, way) = (cursor.since(guard.level, t), cursor.way(guard.level));
-    Reading { y, since, way, level: guard.level, operands: table.operands(), memory }
+    let (stalled, level) = (cursor.stalled(), guard.level);
+    Reading { y, since, way, stalled, level, operands: table.operands(), memory }
 }
 
 impl<T: Table, E: Entries + Clone, P: Slots<u64> + Clone, M: Memory> Plan for InRows<T, E, P, M> {
@@ -167,6 +169,11 @@ impl<T: Table, E: Entries + Clone, P: Slots<u64> + Clone, M: Memory> Plan for In
         }
         let Guard { level, follows, .. } = self.table.guards().get(self.own as usize)?;
         Some(Ending { cause: Cause::Completed(*level), follows: *follows })
+    }
+
+    #[inline(always)]
+    fn stalled(&self, y: &OutputOf<T>, t: Nanos) -> Option<Nanos> {
+        self.running.as_ref()?.stalled(y, t)
     }
 
     #[inline(always)]

@@ -3,8 +3,8 @@
 pub use crate::{Input, Output};
 pub use crate::quarks::{Go, Advance, GoAvoid};
 pub use ::mdle_atoms::{
-    Bumper, AtIsection, LowBattery, Charger, Stop, Rotate, Turn, Align, Path, R, Age, X,
-    Y, Theta, V, Omega, Battery,
+    Bumper, AtIsection, LowBattery, Charger, Stuck, Stop, Rotate, Turn, Align, Path, R,
+    Age, X, Y, Theta, V, Omega, Battery,
 };
 use ::mdle_atoms::alphabet as atoms;
 use ::mdle_runtime as runtime;
@@ -13,7 +13,7 @@ pub const NAME: &str = "sim";
 /// The period of a turn, unless the operator says otherwise.
 pub const PERIOD: runtime::Nanos = runtime::Nanos(100000000);
 /// Tells this alphabet from any other: a plan that was compiled for another one does not compile.
-pub const HASH: u64 = 0xd823a7a03e7609a5;
+pub const HASH: u64 = 0x4464bf5cdda51bc6;
 /// `go <v in cm/s> <omega in rad/s>`: Drives with a forward speed and a turn rate, counter-clockwise positive, for ever.
 const fn go(arguments: &[runtime::Argument<'_>]) -> Option<Go> {
     let &[runtime::Argument::Speed(v), runtime::Argument::AngularRate(omega)] = arguments
@@ -45,6 +45,7 @@ runtime::alphabet! {
         "power" as Power,
     ];
     limits: [
+        "stuck" "duration" in 0.0..10000000000.0,
         "go" "v" in -1.0..1.0,
         "go" "omega" in -6.0..6.0,
         "advance" "distance" in -1000.0..1000.0,
@@ -57,6 +58,7 @@ runtime::alphabet! {
         "atIsection" => AtIsection(atoms::at_isection),
         "lowBattery" => LowBattery(atoms::low_battery),
         "charger" => Charger(atoms::charger),
+        "stuck" => Stuck(atoms::stuck),
     ];
     signals: [
         "r" => R(atoms::r),

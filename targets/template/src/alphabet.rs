@@ -2,7 +2,7 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 pub use crate::{Input, Output};
 pub use crate::quarks::Go;
-pub use ::mdle_atoms::{Stop, Rotate, Turn, Advance, X, Y, Theta, V, Omega};
+pub use ::mdle_atoms::{Stuck, Stop, Rotate, Turn, Advance, X, Y, Theta, V, Omega};
 use ::mdle_atoms::alphabet as atoms;
 use ::mdle_runtime as runtime;
 /// The target's name, as `mdlec --target` takes it.
@@ -10,7 +10,7 @@ pub const NAME: &str = "template";
 /// The period of a turn, unless the operator says otherwise.
 pub const PERIOD: runtime::Nanos = runtime::Nanos(100000000);
 /// Tells this alphabet from any other: a plan that was compiled for another one does not compile.
-pub const HASH: u64 = 0xe6fb937b7338dd8b;
+pub const HASH: u64 = 0x2079885a1e5676d6;
 /// `go <v in cm/s> <omega in rad/s>`: Drives with a forward speed and a turn rate, counter-clockwise positive, for ever.
 const fn go(arguments: &[runtime::Argument<'_>]) -> Option<Go> {
     let &[runtime::Argument::Speed(v), runtime::Argument::AngularRate(omega)] = arguments
@@ -24,12 +24,15 @@ runtime::alphabet! {
         "odometry" as Odometry,
     ];
     limits: [
+        "stuck" "duration" in 0.0..10000000000.0,
         "go" "v" in -0.5..0.5,
         "go" "omega" in -2.0..2.0,
         "advance" "distance" in -1000.0..1000.0,
         "advance" "speed" in 0.001..10.0,
     ];
-    interrupts: [];
+    interrupts: [
+        "stuck" => Stuck(atoms::stuck),
+    ];
     signals: [
         "x" => X(atoms::x),
         "y" => Y(atoms::y),

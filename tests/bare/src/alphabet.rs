@@ -2,8 +2,8 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 pub use crate::{Input, Output};
 pub use ::mdle_atoms::{
-    Bumper, AtIsection, LowBattery, Charger, Go, Stop, Rotate, Turn, Advance, GoAvoid,
-    Align, Path, R, Age, X, Y, Theta, V, Omega, Battery,
+    Bumper, AtIsection, LowBattery, Charger, Stuck, Go, Stop, Rotate, Turn, Advance,
+    GoAvoid, Align, Path, R, Age, X, Y, Theta, V, Omega, Battery,
 };
 use ::mdle_atoms::alphabet as atoms;
 use ::mdle_runtime as runtime;
@@ -12,7 +12,7 @@ pub const NAME: &str = "bare";
 /// The period of a turn, unless the operator says otherwise.
 pub const PERIOD: runtime::Nanos = runtime::Nanos(100000000);
 /// Tells this alphabet from any other: a plan that was compiled for another one does not compile.
-pub const HASH: u64 = 0x57b11509e2a7fe4d;
+pub const HASH: u64 = 0x47b6f44f6695c133;
 
 runtime::alphabet! {
     capabilities: [
@@ -24,6 +24,7 @@ runtime::alphabet! {
         "power" as Power,
     ];
     limits: [
+        "stuck" "duration" in 0.0..10000000000.0,
         "advance" "distance" in -1000.0..1000.0,
         "advance" "speed" in 0.001..10.0,
     ];
@@ -32,6 +33,7 @@ runtime::alphabet! {
         "atIsection" => AtIsection(atoms::at_isection),
         "lowBattery" => LowBattery(atoms::low_battery),
         "charger" => Charger(atoms::charger),
+        "stuck" => Stuck(atoms::stuck),
     ];
     signals: [
         "r" => R(atoms::r),

@@ -2,9 +2,9 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 pub use crate::{Input, Output};
 pub use crate::quarks::{
-    R, X, Theta, V, A, B, C, D, E, F, FarOff, Faster, Facing, Spinning, LowBattery,
-    Pattern, Echo, Beyond, Played, Idle, Drift, Drive, Seek, Climb, Veer, Wander, Hold,
-    Replay, Chase,
+    Stuck, R, X, Theta, V, A, B, C, D, E, F, FarOff, Faster, Facing, Spinning,
+    LowBattery, Pattern, Echo, Beyond, Played, Idle, Drift, Drive, Seek, Climb, Veer,
+    Wander, Hold, Replay, Chase,
 };
 use ::mdle_runtime as runtime;
 /// The target's name, as `mdlec --target` takes it.
@@ -12,7 +12,13 @@ pub const NAME: &str = "scripted";
 /// The period of a turn, unless the operator says otherwise.
 pub const PERIOD: runtime::Nanos = runtime::Nanos(100000000);
 /// Tells this alphabet from any other: a plan that was compiled for another one does not compile.
-pub const HASH: u64 = 0x1491aef8c2880dca;
+pub const HASH: u64 = 0xc27050ccfd2b3202;
+/// `stuck <duration in s>`: Fires when the script says so and its scope has lasted as long.
+const fn stuck(arguments: &[runtime::Argument<'_>]) -> Option<Stuck> {
+    let &[runtime::Argument::Time(duration)] = arguments else { return None };
+    Some(Stuck::new(duration))
+}
+
 /// `r <sonar 0 to 15>`: The range that a sonar returns.
 const fn r(arguments: &[runtime::Argument<'_>]) -> Option<R> {
     let &[runtime::Argument::Sonar(which)] = arguments else { return None };
@@ -193,8 +199,11 @@ const fn chase(arguments: &[runtime::Argument<'_>]) -> Option<Chase> {
 
 runtime::alphabet! {
     capabilities: [];
-    limits: [];
+    limits: [
+        "stuck" "duration" in 0.0..10000000000.0,
+    ];
     interrupts: [
+        "stuck" => Stuck(stuck),
         "a" => A(a),
         "b" => B(b),
         "c" => C(c),

@@ -49,6 +49,7 @@ interrupts! {
     Echo "echo" (sonar: SonarId) [sonar.number() as f64];
     Beyond "beyond" (ratio: f64, times: i64) [ratio, times as f64];
     Played "played" (tune: &'static str) [tune];
+    Stuck "stuck" (time: Nanos) [duration(time)];
 }
 
 /// The signal `r`.

@@ -30,6 +30,8 @@ pub const INTERRUPTS: &[&str] = &[
     "spinning 1.5707963267948966",
     "played horn",
     "played \"bell.mid\"",
+    "stuck 0.3",
+    "stuck 1",
 ];
 
 /// The quark texts of every law.

@@ -105,6 +105,9 @@ struct Operands<'m> {
 impl<'m> Operands<'m> {
     /// Returns the row of a condition, and gives its operands the next numbers.
     fn row(&mut self, condition: &'m Condition) -> Row<QuarkId> {
+        if let Some((quark, nanos)) = condition.lasting() {
+            return Row::Lasting(quark, Nanos(nanos));
+        }
         match condition {
             Condition::Null => Row::Null,
             Condition::Quark(id) => Row::Quark(*id),

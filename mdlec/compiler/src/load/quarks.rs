@@ -25,6 +25,7 @@ impl Quarks<'_> {
     ) -> Result<Condition<A::Interrupt>, LoadError> {
         Ok(match condition {
             Condition::Quark(id) => Condition::Quark(self.interrupt::<A>(id)?),
+            Condition::Lasting(id, time) => Condition::Lasting(self.interrupt::<A>(id)?, time),
             Condition::Null => Condition::Null,
             Condition::Wait(time) => Condition::Wait(time),
             Condition::Elapsed(from, until) => Condition::Elapsed(from, until),

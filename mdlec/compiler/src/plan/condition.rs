@@ -145,10 +145,25 @@ impl Condition {
     /// RISING belong to their operands.
     #[must_use]
     pub fn joined(&self) -> Vec<&Self> {
-        if matches!(self, Self::Or(_) | Self::And(_)) {
+        if self.lasting().is_none() && matches!(self, Self::Or(_) | Self::And(_)) {
             self.children().iter().flat_map(Self::joined).collect()
         } else {
             vec![self]
+        }
+    }
+
+    /// The condition of `stuck T`: its quark has fired, and `T` has passed since its scope was entered.
+    pub(super) fn stuck(quark: QuarkId, nanos: u64) -> Self {
+        Self::And(vec![Self::Quark(quark), Self::Wait { nanos, quark }])
+    }
+
+    /// Returns the quark and the nanoseconds of a condition that is a `stuck T`: the quark of its timer is its own.
+    #[must_use]
+    pub fn lasting(&self) -> Option<(QuarkId, u64)> {
+        let Self::And(operands) = self else { return None };
+        match operands.as_slice() {
+            [Self::Quark(own), Self::Wait { nanos, quark }] if own == quark => Some((*own, *nanos)),
+            _ => None,
         }
     }
 

@@ -182,6 +182,11 @@ impl Resolving<'_, '_, '_> {
                     }
                     Some(_) | None => Condition::Wait { nanos: FOR_EVER, quark: id },
                 },
+                Some(quark) if quark.name == "stuck" => match quark.args.first() {
+                    Some(Value::Quantity { exact, .. }) => Condition::stuck(id, exact.to_nanos().unwrap_or(u64::MAX)),
+                    Some(Value::Infinity(_)) => Condition::Wait { nanos: FOR_EVER, quark: id },
+                    Some(_) | None => Condition::Quark(id),
+                },
                 Some(_) | None => Condition::Quark(id),
             },
             Err(found) => {
@@ -239,6 +244,9 @@ fn text(condition: &Condition, quark: &impl Fn(QuarkId) -> String, around: Prece
         Ors::Flattened => Precedence::Or,
         Ors::Nested => Precedence::And,
     };
+    if let Some((id, _)) = condition.lasting() {
+        return quark(id);
+    }
     let (text, precedence) = match condition {
         Condition::Null => ("null".to_owned(), Precedence::Test),
         Condition::Quark(id)

@@ -10,7 +10,7 @@ use quote::quote;
 use super::arguments::{angle, made, type_of};
 use super::names::{Distinct, atom_variant, quark_type};
 use super::rows::conditions;
-use super::scopes::ending;
+use super::scopes::{asks_for_progress, ending};
 use super::tables::entries;
 use crate::fsm::{Atom, Element, Machine};
 use crate::plan::{Compared, Condition, QuarkId, frame_text};
@@ -137,7 +137,7 @@ impl<'a> Meaning<'a> {
     fn implementation(&self, plan: &Ident, paths: Option<&TokenStream>) -> TokenStream {
         let slots = Literal::usize_unsuffixed(self.machine.sizes().slots);
         let (entered, begins) = entries(self.machine);
-        let [enter, next, input] = [self.enter(), self.next(), self.input()];
+        let ([enter, next, input], stalled) = ([self.enter(), self.next(), self.input()], self.stalled());
         let paths = paths.map(|paths| quote!(fn paths(&self) -> &[&'static str] { &[#paths] }));
         quote! {
             impl runtime::Plan for #plan {
@@ -150,6 +150,7 @@ impl<'a> Meaning<'a> {
                 fn slots(&self) -> (Self::Entered, Self::Left) { (#begins, [0; #slots]) }
                 #enter
                 #next
+                #stalled
                 #input
                 fn operands(
                     &self,
@@ -225,6 +226,21 @@ impl<'a> Meaning<'a> {
                 None
             }
         }
+    }
+
+    /// `fn stalled`: the report of the law of the current atom, in a plan with `stuck`.
+    fn stalled(&self) -> Option<TokenStream> {
+        let variants = self.machine.atoms().map(|atom| atom_variant(atom.index()));
+        asks_for_progress(self.machine).then(|| {
+            quote! {
+                fn stalled(&self, y: &Output, t: Nanos) -> Option<Nanos> {
+                    match &self.running {
+                        Running::Idle => None,
+                        #(Running::#variants(law) => runtime::Law::stalled(law, y, t),)*
+                    }
+                }
+            }
+        })
     }
 
     /// `fn input`: the law of the current atom.

@@ -6,7 +6,7 @@ use quote::quote;
 
 use super::arguments::{angle, compared, made};
 use super::names::quark_type;
-use super::scopes::nanometers;
+use super::scopes::{asks_for_progress, nanometers};
 use super::tables::{entries, follows};
 use crate::fsm::{self, Machine, Rows};
 use crate::plan::{Quark, QuarkId};
@@ -17,7 +17,7 @@ pub(super) fn machine(plan: &Ident, doc: &str, machine: &Machine, paths: Option<
     let (entered, begins) = entries(machine);
     let rows = rows(machine, paths);
     let (memory, new) = memory(machine, &begins);
-    let told = told(machine);
+    let (told, stalled) = (told(machine), stalled(machine));
     let replayed = paths.map(|_| {
         quote!(
             fn paths(&self) -> &[&'static str] {
@@ -58,6 +58,7 @@ pub(super) fn machine(plan: &Ident, doc: &str, machine: &Machine, paths: Option<
             ) -> Option<runtime::Ending> {
                 runtime::Plan::next(&self.0, cursor, y, t)
             }
+            #stalled
             #told
             #[inline(always)]
             fn input(&mut self, y: &Output, t: Nanos) -> Input { runtime::Plan::input(&mut self.0, y, t) }
@@ -80,6 +81,16 @@ pub(super) fn machine(plan: &Ident, doc: &str, machine: &Machine, paths: Option<
 
         #rows
     }
+}
+
+/// Returns the function by which the law of a plan with `stuck` reports its progress.
+fn stalled(machine: &Machine) -> Option<TokenStream> {
+    asks_for_progress(machine).then(|| {
+        quote! {
+            #[inline(always)]
+            fn stalled(&self, y: &Output, t: Nanos) -> Option<Nanos> { runtime::Plan::stalled(&self.0, y, t) }
+        }
+    })
 }
 
 /// Returns the functions by which the machine informs a plan with memories; `None` for a plan without memories.
@@ -194,6 +205,10 @@ fn row(condition: &Condition<QuarkId>, machine: &Machine) -> TokenStream {
         Condition::Quark(id) => {
             let interrupt = interrupt(*id, machine.quarks());
             quote!(Quark(#interrupt))
+        }
+        Condition::Lasting(id, Nanos(nanos)) => {
+            let (interrupt, nanos) = (interrupt(*id, machine.quarks()), Literal::u64_unsuffixed(*nanos));
+            quote!(Lasting(#interrupt, Nanos(#nanos)))
         }
         Condition::Wait(Nanos(nanos)) => {
             let nanos = Literal::u64_unsuffixed(*nanos);

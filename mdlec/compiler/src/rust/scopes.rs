@@ -7,7 +7,7 @@ use quote::quote;
 
 use super::code::Meaning;
 use super::tables::{follows, level};
-use crate::fsm::Element;
+use crate::fsm::{Element, Machine};
 use crate::plan::{Condition, QuarkId};
 
 impl Meaning<'_> {
@@ -57,6 +57,12 @@ impl Meaning<'_> {
                 Condition::Rising { .. } | Condition::After(_) => inner,
             }
         };
+        if let Some((QuarkId(id), nanos)) = condition.lasting() {
+            let (quark, nanos) = (&self.constants[id as usize], nanoseconds(nanos));
+            return quote! {
+                runtime::Interrupt::fired_during(&#quark, y, cursor.stalled()) & (cursor.since(#level, t) >= #nanos)
+            };
+        }
         match condition {
             // A plan with these is rows.
             Condition::Null | Condition::Rising { .. } | Condition::After(_) => quote!(false),
@@ -84,6 +90,11 @@ impl Meaning<'_> {
             }
         }
     }
+}
+
+/// Returns `true` if a condition of the plan asks whether a law makes progress.
+pub(super) fn asks_for_progress(machine: &Machine) -> bool {
+    machine.elements().any(|element| element.condition().any(&|part| part.lasting().is_some()))
 }
 
 /// The answer of the scope that this element is when it ends: `Cause::Fired(level).then(…)`, or without what follows

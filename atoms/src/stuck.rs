@@ -1,0 +1,96 @@
+//! `stuck T`: fires when the law that runs makes no progress towards its goal; ours, next to the paper's `goAvoid`
+//! (docs/src/reference/semantics.md, 4.1).
+
+use mdle_runtime::capability::Odometry;
+use mdle_runtime::{Interrupt, Meters, Nanos, Pose};
+
+/// Length, in metres, by which a law must come nearer to its goal to have made progress.
+const NEARER: f64 = 0.1;
+
+/// Fires once the law of the turn before has made no progress for this long.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Stuck {
+    duration: Nanos,
+}
+
+impl Stuck {
+    /// The quark `stuck duration`.
+    #[must_use]
+    pub const fn new(duration: Nanos) -> Self {
+        Self { duration }
+    }
+}
+
+impl<Y: Odometry> Interrupt<Y> for Stuck {
+    /// Returns `false`: nothing in the output itself is about a goal.
+    fn fired(&self, _: &Y) -> bool {
+        false
+    }
+
+    fn fired_during(&self, _: &Y, stalled: Option<Nanos>) -> bool {
+        stalled.is_some_and(|stalled| stalled >= self.duration)
+    }
+}
+
+/// The progress of a law towards a place, by odometry.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Progress {
+    /// Distance of the goal when progress was last made; at the beginning, that of the start.
+    from: Meters,
+    /// Time at which it was made.
+    at: Nanos,
+}
+
+impl Progress {
+    /// A law that begins at this time and place.
+    pub(crate) fn begin(here: Pose, goal: &Pose, now: Nanos) -> Self {
+        Self { from: here.distance(goal), at: now }
+    }
+
+    /// Takes the place of a turn.
+    pub(crate) fn take(&mut self, here: Pose, goal: &Pose, now: Nanos) {
+        let distance = here.distance(goal);
+        if self.is_made(distance) {
+            *self = Self { from: distance, at: now };
+        }
+    }
+
+    /// Returns how long the robot, now at `here`, has made no progress.
+    pub(crate) fn stalled(&self, here: Pose, goal: &Pose, now: Nanos) -> Nanos {
+        if self.is_made(here.distance(goal)) { Nanos::ZERO } else { now.since(self.at) }
+    }
+
+    fn is_made(&self, distance: Meters) -> bool {
+        distance.0 <= self.from.0 - NEARER
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trial::Sensed;
+
+    const GOAL: Pose = Pose { x: Meters(5.0), ..Pose::ORIGIN };
+
+    fn at(x: f64) -> Pose {
+        Pose { x: Meters(x), ..Pose::ORIGIN }
+    }
+
+    #[test]
+    fn ten_centimetres_towards_the_goal_are_progress() {
+        let mut progress = Progress::begin(at(0.0), &GOAL, Nanos(7));
+        for (x, now, stalled) in [(0.05, 10, 3), (0.09, 20, 13), (-1.0, 30, 23), (0.11, 40, 0), (0.2, 50, 10)] {
+            assert_eq!(progress.stalled(at(x), &GOAL, Nanos(now)), Nanos(stalled), "at {x}");
+            progress.take(at(x), &GOAL, Nanos(now));
+        }
+        assert_eq!(progress.stalled(at(0.22), &GOAL, Nanos(60)), Nanos(0));
+    }
+
+    #[test]
+    fn fires_by_what_the_law_reports() {
+        let (stuck, y) = (Stuck::new(Nanos(5)), Sensed::default());
+        let fired = [None, Some(Nanos(4)), Some(Nanos(5))].map(|stalled| stuck.fired_during(&y, stalled));
+        assert_eq!(fired, [false, false, true]);
+        assert!(!stuck.fired(&y));
+    }
+}
