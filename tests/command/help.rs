@@ -6,6 +6,7 @@ use std::fs;
 use std::process::{Command, Output};
 
 use mdle_tests::executable::{folder, run_mdlec};
+use mdle_tests::repository::root;
 
 /// The commands of `mdlec`; the first is the bare form, which builds.
 const COMMANDS: [&str; 18] = [
@@ -143,6 +144,36 @@ fn executables_describe_their_options_in_a_line() {
         }
     }
     insta::assert_snapshot!(shown);
+}
+
+/// Returns the options of an executable with the placeholders of their values, as its help lists them.
+fn options_of(help: &str) -> String {
+    let lines =
+        help.lines().filter_map(|line| line.trim_start().split_once("--").filter(|(before, _)| before.len() < 5));
+    let options = lines.map(|(_, option)| option.split("  ").next().unwrap_or_default());
+    let options = options.filter(|option| !["help", "version"].contains(option)).map(|option| format!("{option}\n"));
+    format!(
+        "# Options of an executable for this robot, as its help lists them; checked by tests/command/help.rs.\n{}",
+        options.collect::<String>()
+    )
+}
+
+#[test]
+fn listed_options_are_those_of_executables() {
+    let folder = folder("listed_options");
+    fs::write(folder.join("rest.mdle"), "{ Rest (Atom (wait 1ms) stop) }\n").unwrap();
+    for robot in ["sim", "scout", "atrv"] {
+        let built = run_mdlec(&folder, &["rest.mdle", "--target", robot, "-o", robot]);
+        assert_eq!(built.status.code(), Some(0), "{}", String::from_utf8_lossy(&built.stderr));
+        let options = options_of(&text(Command::new(folder.join(robot)).arg("-h").output().unwrap()));
+        assert!(options.lines().count() > 5, "{options}");
+        let list = root().join(format!("targets/{robot}/options.txt"));
+        if std::env::var("INSTA_UPDATE").as_deref() == Ok("always") {
+            fs::write(&list, &options).unwrap();
+        }
+        let listed = fs::read_to_string(&list).unwrap_or_default();
+        assert_eq!(listed, options, "INSTA_UPDATE=always writes {}", list.display());
+    }
 }
 
 #[test]

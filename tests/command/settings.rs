@@ -122,6 +122,7 @@ fn errors_name_the_file_and_the_line() {
         "target = \"sim\"\nworld = \"rooms/other.toml\"\n",
         "target = \"sim\"\nworld = \"hal\"\n",
         "target = \"sim\"\n[options]\nsped = \"max\"\n",
+        "target = \"sim\"\n[options]\nspeed = true\n",
         "target = \"sim\"\n[options]\nspeed = \"max\"\nturns = 0\n",
         "target = \"sim\"\n[options]\nwatch = \"yes\"\n",
         "target = \"sim\"\n\n[options]\nworld = \"hall\"\n",
@@ -135,6 +136,22 @@ fn errors_name_the_file_and_the_line() {
     insta::assert_snapshot!(messages.join("\n"));
     let unknown = said(&folder, &["check", "home/plan.mdle"]);
     assert!(unknown.contains("home/mdle.toml:1: there is no key"), "a check reads it too: {unknown}");
+}
+
+#[test]
+fn wrong_options_are_found_before_a_build() {
+    let folder = home("settings_early", "");
+    for option in ["sped = \"max\"", "speed = true", "watch = \"yes\"", "watch = [1]", "sped = false"] {
+        fs::write(folder.join("home/mdle.toml"), format!("target = \"sim\"\n[options]\n{option}\n")).unwrap();
+        for command in ["check", "run"] {
+            let refused = said(&folder, &[command, "home/plan.mdle"]);
+            assert!(refused.contains("error: home/mdle.toml:3: ") && refused.ends_with("status 2\n"), "{refused}");
+        }
+        assert!(!folder.join("plan").exists(), "nothing is built");
+    }
+    // Options of a robot of one's own are known to its executable alone.
+    fs::write(folder.join("home/mdle.toml"), "target = \"cart\"\n[options]\nsped = \"max\"\n").unwrap();
+    assert!(said(&folder, &["check", "home/plan.mdle"]).contains("error[E0401]"));
 }
 
 #[test]

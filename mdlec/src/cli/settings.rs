@@ -113,9 +113,14 @@ impl Settings {
         };
         let world = self.text.world.as_ref().filter(|_| !is_given("world"));
         let world = world.map(|world| self.world(world, target.or(own)));
+        let known = target.or(own).and_then(link::options);
         let others = self.text.options.iter().filter(|option| !is_given(&option.name)).map(|option| {
+            let place = self.place(option.line);
+            if let Some(known) = &known {
+                option.must_be_among(known).map_err(|message| Failure::usage(format!("{place}: {message}")))?;
+            }
             let arguments = option.arguments.iter().map(OsString::from).collect();
-            Ok(RunOption { place: self.place(option.line), arguments })
+            Ok(RunOption { place, arguments })
         });
         world.into_iter().chain(others).collect()
     }

@@ -36,6 +36,31 @@ pub(super) struct OptionText {
     pub(super) arguments: Vec<String>,
 }
 
+impl OptionText {
+    /// Checks the option against those of an executable, each with the placeholder of its value.
+    ///
+    /// # Errors
+    /// Fails with a message if there is no such option, if its value is missing, or if it takes none.
+    pub(super) fn must_be_among(&self, known: &[(&str, &str)]) -> Result<(), String> {
+        let name = &*self.name;
+        let Some((_, value)) = known.iter().find(|(known, _)| *known == name) else {
+            let names: Vec<_> = known.iter().map(|(name, _)| *name).collect();
+            let near = did_you_mean(name, &names);
+            return Err(format!("there is no option `{name}`{near}\nhelp: the options are {}", names.join(", ")));
+        };
+        let has_value = |argument: &String| argument.contains('=');
+        match value.is_empty() {
+            true if self.arguments.iter().any(has_value) => {
+                Err(format!("`{name}` takes no value: write `{name} = true`"))
+            }
+            false if !self.arguments.iter().all(has_value) => {
+                Err(format!("`{name}` needs a value, as in `{name} = \"{value}\"`"))
+            }
+            true | false => Ok(()),
+        }
+    }
+}
+
 /// An error, and the number of its line from 1.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct SettingsError {
