@@ -83,7 +83,7 @@ impl Alphabet for Toy {
 
 /// Returns the values that a condition with these operands reads three nanoseconds after its scope was entered.
 fn at<'r, M>(operands: &'r [Condition<Fires>], y: &'r Sensed, memory: &'r M) -> Reading<'r, Fires, Sensed, M> {
-    Reading { y, since: Nanos(3), level: 0, way: Nanometers(5), operands, memory }
+    Reading { stalled: None, y, since: Nanos(3), level: 0, way: Nanometers(5), operands, memory }
 }
 
 #[test]
