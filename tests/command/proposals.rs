@@ -202,6 +202,72 @@ const PROPOSALS: &[(&str, &str, &str, &str)] = &[
         "{ Drive",
         "{ P (bumper) ExecPlan 3 { (Atom (wait 5s) (go 20 0)) } }",
     ),
+    (
+        "{ P (bumper) (Atom (distance > 1m) (go 20 0)) }",
+        "or `way`? The length of the path driven",
+        "these are known",
+        "{ P (bumper) (Atom (way > 1m) (go 20 0)) }",
+    ),
+    (
+        "{ P (bumper) (Atom (null) rotate here) }",
+        "`here` is a frame, in front of an element: `FRAME here (Atom (null) rotate 90)`",
+        "did you mean",
+        "{ P (bumper) FRAME here (Atom (null) rotate 90) }",
+    ),
+    (
+        "{ P (bumper) (Atom (wait -5s) (go 20 0)) }",
+        "write it without the sign: `5s`",
+        "10000000000",
+        "{ P (bumper) (Atom (wait 5s) (go 20 0)) }",
+    ),
+    (
+        "(* there *) { P (bumper) (* and (back) *) (Atom (wait 5s) (go 20 0)) }",
+        "write `/* and (back) */`",
+        "unexpected character",
+        "/* there */ { P (bumper) /* and (back) */ (Atom (wait 5s) (go 20 0)) }",
+    ),
+    (
+        "{ P (bumper) (Atom (wait 1h30min) (go 20 0)) }",
+        "write the sum in one of them: `90min`",
+        "put a space before it",
+        "{ P (bumper) (Atom (wait 90min) (go 20 0)) }",
+    ),
+    (
+        "{ P (bumper) (Atom (wait 1h30m) (go 20 0)) }",
+        "write the sum in one of them: `90min`",
+        "put a space before it",
+        "{ P (bumper) (Atom (wait 90min) (go 20 0)) }",
+    ),
+    (
+        "{ P (bumper) (Atom (null) turn right 45deg) }",
+        "a turn to the right is negative: `turn -45deg`",
+        "one too many",
+        "{ P (bumper) (Atom (null) turn -45deg) }",
+    ),
+    (
+        "{ P (bumper) (Atom (null) turn -pi/2) }",
+        "for an angle write `-90deg`",
+        "has no sign",
+        "{ P (bumper) (Atom (null) turn -90deg) }",
+    ),
+    (
+        "{ P (bumper) (Atom (null) turn -pi) }",
+        "for an angle write `-180deg`",
+        "Leg(",
+        "{ P (bumper) (Atom (null) turn -180deg) }",
+    ),
+    (
+        "{ P (bumper) (turn 90,) }",
+        "say when it ends, as in `(turn(90), bumper)` and `(turn(90), null)`, or remove the comma",
+        "write a condition",
+        "{ P (bumper) (turn(90), null) }",
+    ),
+    (
+        "((go(20, 0), bumper)(turn(90), null))",
+        "`((go(20, 0), bumper)(turn(90), null), null)σ_null`",
+        "plans are not separated",
+        "((go(20, 0), bumper)(turn(90), null), bumper)σ_null",
+    ),
 ];
 
 #[test]
@@ -231,4 +297,30 @@ fn a_used_file_with_a_letter_too_few_names_the_near_one() {
     let output = run_mdlec(&folder, &["check", "plan.mdle"]);
     let message = String::from_utf8(output.stderr).unwrap();
     assert!(message.contains("there is no file `coridors.mdle`; did you mean `corridors.mdle`?"), "{message}");
+}
+
+#[test]
+fn a_warning_names_an_operand_as_it_is_written() {
+    let folder = folder("proposals_operand");
+    fs::write(folder.join("plan.mdle"), "{ P (bumper OR lowBattery AND wait inf) (Atom (null) (go 20 0)) }").unwrap();
+    let output = run_mdlec(&folder, &["check", "plan.mdle"]);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(message.contains("`lowBattery AND wait inf` is never true") && !message.contains("null` is"), "{message}");
+}
+
+#[test]
+fn a_robot_without_an_emulator_is_simulated() {
+    let output = run_mdlec(&folder("proposals_emulator"), &["emulator", "sim"]);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(message.contains("help: `mdlec run PLAN --target sim` runs a plan on it"), "{message}");
+}
+
+#[test]
+fn a_turn_rate_beyond_a_robot_may_be_in_degrees() {
+    let folder = folder("proposals_rate");
+    fs::write(folder.join("plan.mdle"), "{ P (bumper) (Atom (wait 5s) (go 20 45)) }").unwrap();
+    let output = run_mdlec(&folder, &["check", "plan.mdle", "--target", "sim"]);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(message.contains("E0402") && message.contains("for degrees per second write `45deg/s`"), "{message}");
 }

@@ -9,6 +9,7 @@ use clap::{Arg, Command, CommandFactory as _};
 
 use super::words::words;
 use super::{Cli, Failure};
+use crate::link;
 use mdle_compiler::{alphabet, builtin};
 
 /// Names of commands, each with other words for it.
@@ -78,6 +79,21 @@ pub(super) fn robot(answer: &clap::Error) -> Option<Failure> {
     Some(Failure::usage(format!(
         "`mdlec {name}` does not expect `{given}` here\nhelp: a robot is named with an option: `--target {robot}`"
     )))
+}
+
+/// Returns the error for the emulator of a robot that needs none; `answer` is the error of clap.
+pub(super) fn emulator(answer: &clap::Error) -> Option<Failure> {
+    let Some(ContextValue::String(given)) = answer.get(ContextKind::InvalidValue) else { return None };
+    let cli = Cli::command();
+    let command = env::args().skip(1).find_map(|word| cli.find_subcommand(word))?;
+    let is_robot = builtin::alphabets().iter().any(|alphabet| alphabet.target && alphabet.name == given);
+    (command.get_name() == "emulator" && is_robot).then(|| {
+        Failure::usage(format!(
+            "`{given}` has no emulator: it is simulated by each executable\nhelp: `mdlec run PLAN --target {given}` runs a \
+             plan on it; emulators are for {}",
+            link::emulators().collect::<Vec<_>>().join(" and ")
+        ))
+    })
 }
 
 /// Text that clap did not expect.

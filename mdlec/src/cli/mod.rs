@@ -111,8 +111,10 @@ pub fn main() -> ExitCode {
     let done = match parsed {
         Ok(cli) => run(cli),
         Err(answer) => {
-            let failure =
-                mistyped::command().or_else(|| mistyped::option(&answer)).or_else(|| mistyped::robot(&answer));
+            let failure = mistyped::command()
+                .or_else(|| mistyped::option(&answer))
+                .or_else(|| mistyped::robot(&answer))
+                .or_else(|| mistyped::emulator(&answer));
             match failure.filter(|_| answer.use_stderr()) {
                 Some(failure) => Err(failure),
                 None => report::answer(&mistyped::with_tip(answer)),

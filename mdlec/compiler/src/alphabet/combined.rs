@@ -115,6 +115,11 @@ impl Alphabet {
         nearest(name, names()).or_else(|| synonyms::meant(name).find_map(|meant| names().find(|name| *name == meant)))
     }
 
+    /// Quarks of this kind for which `name` is another word, in the order of their probability.
+    pub fn synonyms(&self, name: &str, kind: DeclarationKind) -> impl Iterator<Item = &Declaration> {
+        synonyms::meant(name).filter_map(move |meant| self.declarations_of(meant).find(|found| found.kind == kind))
+    }
+
     /// Hash of the target's name, crate, period and capabilities, and of all declarations: identifies the alphabet that
     /// a target was built for.
     #[must_use]

@@ -12,6 +12,7 @@ const SYNONYMS: &[(&str, &[&str])] = &[
     ("bumper", &["bump", "contact", "touch", "collision", "hit", "crash"]),
     ("lowBattery", &["batteryLow", "low"]),
     ("r", &["range", "sonar", "distance", "dist", "obstacle"]),
+    ("way", &["distance", "dist", "driven", "odometer", "travelled", "traveled", "mileage"]),
     ("t", &["time", "elapsed", "seconds", "clock"]),
     ("theta", &["heading", "yaw", "angle", "orientation", "direction"]),
     ("v", &["speed", "velocity"]),

@@ -49,7 +49,7 @@ impl<'l> Constants<'l> {
                 && **operand != Condition::Null
                 && !self.is_possible(bracket, &[(*operand, true)], When::Later)
         })?;
-        let text = if operands.len() == 1 { interrupt.text.clone() } else { self.text(never) };
+        let text = if operands.len() == 1 { interrupt.text.clone() } else { self.written(never, interrupt) };
         let span = interrupt.span;
         if let Some(Pair { one, other, may_be_joined_otherwise }) = self.pair(bracket, never, true) {
             let message = format!("`{one}` and `{other}` are never true at once");
@@ -154,9 +154,37 @@ impl<'l> Constants<'l> {
         self.alone.is_possible(&wanted.collect::<Vec<_>>(), &BTreeMap::new())
     }
 
+    /// Text of an operand of the interrupt's OR, as it is written if the interrupt's text has as many operands: `wait inf`
+    /// is `null` in the condition.
+    fn written(&self, operand: &Condition, interrupt: &Interrupt) -> String {
+        let operands = interrupt.condition.operands();
+        let texts = operands_of(&interrupt.text);
+        let at =
+            operands.iter().position(|other| std::ptr::eq(other, operand)).filter(|_| texts.len() == operands.len());
+        at.and_then(|at| texts.get(at)).map_or_else(|| self.text(operand), |text| (*text).to_owned())
+    }
+
     fn text(&self, condition: &Condition) -> String {
         condition_text(condition, &|id| self.alone.machine.quark(id).text.clone())
     }
+}
+
+/// Operands of the OR outside of all parentheses in the text of a condition.
+fn operands_of(text: &str) -> Vec<&str> {
+    let (mut depth, mut from, mut found) = (0_u32, 0, Vec::new());
+    for (at, letter) in text.char_indices() {
+        match letter {
+            '(' => depth += 1,
+            ')' => depth = depth.saturating_sub(1),
+            ' ' if depth == 0 && text.get(at..).is_some_and(|rest| rest.starts_with(" OR ")) => {
+                found.extend(text.get(from..at));
+                from = at + " OR ".len();
+            }
+            _ => {}
+        }
+    }
+    found.extend(text.get(from..));
+    found
 }
 
 /// Returns `true` if a condition can be seen to have two values.

@@ -1,7 +1,9 @@
 //! Checks arguments against a signature: count, type, unit, range (docs/src/reference/language.md, 6.2).
 
 mod examples;
+mod ranges;
 mod units;
+mod wrong_count;
 
 use super::parameters::Parameters;
 use super::{Decimal, Value};
@@ -9,7 +11,9 @@ use crate::alphabet::{Declaration, DeclarationKind, Kind, Origin, Param, Unit};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::syntax::tree::{Arg, Call, Number};
 pub(super) use examples::example;
-use examples::{bits_apart, swapped};
+use examples::swapped;
+use ranges::{limit, meant_in_range};
+use wrong_count::wrong_count;
 
 /// Largest whole number up to which a 64-bit float holds each.
 const WHOLE: i64 = 1 << 53;
@@ -205,6 +209,9 @@ impl Fitting<'_> {
         let here = format!("`{}` of `{}` is {}", param.name, self.declaration.name, param.kind.words());
         let diagnostic = Diagnostic::new(Code::E0302, message, arg.span(), here);
         match (example(param), arg) {
+            (Some(example), Arg::Name(here)) if here.node == "here" => diagnostic
+                .fix("for instance {}", arg.span(), example)
+                .help("`here` is a frame, in front of an element: `FRAME here (Atom (null) rotate 90)`"),
             (Some(example), _) => diagnostic.fix("for instance {}", arg.span(), example),
             (None, Arg::String(name)) if param.kind == Kind::Robot && is_name(name.node) => {
                 diagnostic.fix("the name of a robot has no quotes: {}", arg.span(), name.node)
@@ -293,10 +300,10 @@ impl Fitting<'_> {
                 "`{}` cannot do this: `{quark}` takes `{}` from {least} to {most}{unit}",
                 self.robot, param.name
             );
-            return Err(Diagnostic::new(Code::E0402, message, number.span, here).into());
+            return Err(meant_in_range(Diagnostic::new(Code::E0402, message, number.span, here), number, param).into());
         }
-        let message = format!("`{quark}` takes `{}` from {least} to {most}{unit}", param.name);
-        Err(Diagnostic::new(Code::E0304, message, number.span, here).into())
+        let message = format!("`{quark}` takes `{}` from {} to {}{unit}", param.name, limit(least), limit(most));
+        Err(meant_in_range(Diagnostic::new(Code::E0304, message, number.span, here), number, param).into())
     }
 
     /// Reports the only value that the range of a parameter excludes.
@@ -338,63 +345,6 @@ pub(super) fn written(call: &Call) -> String {
         Arg::Module(name) => format!("{} module", name.node),
     });
     [call.name.to_owned()].into_iter().chain(args).collect::<Vec<_>>().join(" ")
-}
-
-fn wrong_count(call: &Call, declaration: &Declaration, needed: usize) -> Diagnostic {
-    let most = declaration.params.len();
-    let takes = match (needed, most) {
-        (_, 0) => "no arguments".to_owned(),
-        (1, 1) => "one argument".to_owned(),
-        (least, most) if least == most => format!("{most} arguments"),
-        (least, most) => format!("{least} to {most} arguments"),
-    };
-    let found = match call.args.len() {
-        0 => "found none".to_owned(),
-        count => format!("found {count}"),
-    };
-    let span = match call.args.get(most) {
-        Some(first_too_many) => first_too_many.span(),
-        None => call.span,
-    };
-    let report = |here: String| {
-        let message = format!("`{}` takes {takes}, {found}", declaration.name);
-        Diagnostic::new(Code::E0301, message, span, here).help(format!("write it as `{}`", signature(declaration)))
-    };
-    if let Some(pattern) = bits_apart(call, declaration) {
-        return report("bits are written together".into()).fix("write {}", call.span, pattern);
-    }
-    if call.args.len() > most {
-        let report = report("one too many".into());
-        return match (call.args, declaration.params.as_slice()) {
-            ([Arg::Number(time)], []) if declaration.kind == DeclarationKind::Control && is_time(time) => {
-                let time = format!("{}{}", time.digits(), time.unit().unwrap_or_default());
-                report.help(format!("a time is waited for: `(Atom (wait {time}) {})`", call.name))
-            }
-            ([Arg::Name(robot), Arg::Number(number)], [Param { kind: Kind::Robot, .. }]) => {
-                let name = format!("{} {}{}", call.name, robot.node, number.digits());
-                report.fix("a name has no space: {}", call.span, name)
-            }
-            _ => report,
-        };
-    }
-    let missing = declaration.params.get(call.args.len()..needed).unwrap_or_default();
-    let names: Vec<_> = missing.iter().map(|param| format!("`{}`", param.name)).collect();
-    let report = report(format!("{} {} missing", names.join(" and "), if names.len() == 1 { "is" } else { "are" }));
-    let examples: Option<Vec<_>> = missing.iter().map(example).collect();
-    let are_sonars = declaration.params.iter().all(|param| param.kind == Kind::Sonar);
-    if are_sonars && call.args.iter().any(|arg| !matches!(arg, Arg::Number(_))) {
-        let sonars = (3..).step_by(2).take(most).map(|sonar| format!(" {sonar}")).collect::<String>();
-        return report.fix("for instance {}", call.span, format!("{}{sonars}", call.name));
-    }
-    match examples {
-        Some(examples) => report.fix("for instance {}", call.span, format!("{} {}", written(call), examples.join(" "))),
-        None => report,
-    }
-}
-
-/// Returns `true` if a number has a unit of time.
-fn is_time(number: &Number) -> bool {
-    number.unit().and_then(Unit::from_name).is_some_and(|unit| unit.kind == Kind::Time)
 }
 
 /// Returns `true` if a text can be a name in a plan.

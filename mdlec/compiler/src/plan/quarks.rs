@@ -1,7 +1,7 @@
 //! Resolves quarks by name: chooses the declaration of a call, checks that the robot has it, and gives equal calls one
 //! id.
 
-mod moves;
+pub(super) mod moves;
 
 use std::collections::BTreeMap;
 
@@ -161,7 +161,9 @@ impl<'a> Quarks<'a> {
         match self.alphabet.nearest(name, Some(kind)).and_then(|near| self.alphabet.declarations_of(near).next()) {
             Some(near) => {
                 let words = format!("did you mean `{}`?", signature(near));
-                report.fix(&words, call.name_span(), near.name.as_str())
+                let report = report.fix(&words, call.name_span(), near.name.as_str());
+                let others = self.alphabet.synonyms(name, kind).filter(|other| other.name != near.name);
+                others.fold(report, |report, other| report.help(format!("or `{}`? {}", signature(other), other.docs)))
             }
             None => report.help(format!("these are known: {}", self.known(kind))),
         }

@@ -51,6 +51,22 @@ pub(super) fn computed(left: &str, operator: &str, right: &str) -> Option<String
     Some(format!("{}{unit}", rounded(value)?))
 }
 
+/// Adds up `1h30min`, a number with several units of one kind; the sum is in the last of them.
+pub(super) fn sum_of_units(number: &str, tail: &str) -> Option<String> {
+    let text = format!("{number}{tail}");
+    let (mut rest, mut sum, mut last): (&str, f64, Option<Unit>) = (&text, 0.0, None);
+    while !rest.is_empty() {
+        let digits = rest.find(|c: char| !c.is_ascii_digit() && c != '.')?;
+        let (value, after) = rest.split_at(digits);
+        let (name, after) = after.split_at(after.find(|c: char| c.is_ascii_digit()).unwrap_or(after.len()));
+        let unit = Unit::from_name(name).filter(|unit| last.is_none_or(|last| last.kind == unit.kind))?;
+        sum += unit.to_si(value.parse().ok()?);
+        (rest, last) = (after, Some(unit));
+    }
+    let unit = last?;
+    Some(format!("{}{}", rounded(sum / unit.to_si(1.0))?, unit.name))
+}
+
 /// Rounds a value to four decimals; `None` if that makes a small value zero, or if the value is 10⁹ or more.
 fn rounded(value: f64) -> Option<String> {
     let rounded = (value * 1e4).round() / 1e4;
@@ -123,6 +139,11 @@ fn negative_name(source: Source<'_>, operator: &str, place: Place) -> Option<Dia
     let is_sign = operator == "-" && before.ends_with([' ', '(', ',']) && name.starts_with(char::is_alphabetic);
     // In a comparison it is a difference of signals.
     (is_sign && !follows.starts_with(['<', '>', '=', '≤', '≥'])).then(|| {
+        if is_pi(name) {
+            let whole = source.span(Place::new(place.start, place.end + name.len()));
+            let found = Diagnostic::new(Code::E0101, "there are no constants", whole, "not part of MDLe");
+            return found.fix("for an angle write {}", whole, "-180deg");
+        }
         let message = format!("`-` cannot be used here: `{name}` has no sign");
         Diagnostic::new(Code::E0101, message, source.span(place), "MDLe has no arithmetic")
             .help("give a parameter its negative value where the plan is used, as in `Leg(-90)`")
@@ -131,11 +152,17 @@ fn negative_name(source: Source<'_>, operator: &str, place: Place) -> Option<Dia
 
 /// Reports `pi/2`, `2*pi` and `pi*0.5` as the angles that they are.
 fn part_of_pi(source: Source<'_>, place: Place) -> Option<Diagnostic> {
+    if source.slice(place) == "-" {
+        // The sign and the operator after `pi` have the same message, which is reported once.
+        let after = source.text.get(place.end..)?;
+        let operator = place.end
+            + after.find(['*', '/']).filter(|at| after.get(..*at).is_some_and(|name| is_pi(name.trim_end())))?;
+        return part_of_pi(source, Place::new(operator, operator + 1));
+    }
     let before = source.text.get(..place.start)?.trim_end_matches([' ', '\t']);
     let after = source.text.get(place.end..)?.trim_start_matches([' ', '\t']);
     let left = word(before);
     let right = after.get(..after.find(|c: char| !is_in_word(c)).unwrap_or(after.len()))?;
-    let is_pi = |text: &str| matches!(text, "pi" | "PI" | "Pi" | "π");
     let part = match source.slice(place) {
         "/" if is_pi(left) => 1.0 / right.parse::<f64>().ok()?,
         "*" if is_pi(left) => right.parse::<f64>().ok()?,
@@ -150,6 +177,10 @@ fn part_of_pi(source: Source<'_>, place: Place) -> Option<Diagnostic> {
     let found = Diagnostic::new(Code::E0101, message, source.span(place), "MDLe has no arithmetic");
     let found = found.fix("for an angle write {}", whole, angle(180.0, "deg")?);
     Some(found.fix("or {}", whole, angle(std::f64::consts::PI, "rad")?))
+}
+
+fn is_pi(text: &str) -> bool {
+    matches!(text, "pi" | "PI" | "Pi" | "π")
 }
 
 /// Proposes a name for `Return-Home` in the place of a plan's name.

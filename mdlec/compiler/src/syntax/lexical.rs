@@ -1,7 +1,7 @@
 //! Messages about text that is not a token: unexpected characters, malformed numbers, and unterminated comments and
 //! strings.
 
-use super::arithmetic::{arithmetic, computed, foreign_unit, word};
+use super::arithmetic::{arithmetic, computed, foreign_unit, sum_of_units, word};
 use super::source::{Place, Source};
 use super::token::split;
 use crate::alphabet::Unit;
@@ -50,6 +50,7 @@ fn characters_help(diagnostic: Diagnostic, source: Source<'_>, found: &str, plac
             diagnostic.fix("a comment begins with {}", source.span(place), "//")
         }
         "#" | "%" => diagnostic.help("a comment begins with `//`"),
+        "*" => pascal_comment(diagnostic, source, place),
         "'" | "“" | "”" | "„" | "‘" | "’" | "`" => {
             diagnostic.help("text is written between plain double quotes: `\"path.txt\"`")
         }
@@ -234,6 +235,13 @@ pub(super) fn number(source: Source<'_>, number: &str, tail: &str, place: Place)
         let digits = number.trim_start_matches(['+', '-']).replace('.', "_");
         return diagnostic.fix("a name begins with a letter: {}", whole, format!("{tail}{digits}"));
     }
+    // Beside hours, `m` means minutes.
+    let of_time = || Some(format!("{tail}in")).filter(|_| tail.starts_with('h') && tail.ends_with('m'));
+    if let Some(sum) = sum_of_units(number, tail).or_else(|| sum_of_units(number, &of_time()?)) {
+        let message = format!("`{number}{tail}` is a sum of two units");
+        let diagnostic = Diagnostic::new(Code::E0104, message, whole, "a number has one unit");
+        return diagnostic.fix("write the sum in one of them: {}", whole, sum);
+    }
     let shown = if tail.len() > 40 { "…" } else { tail };
     let message = format!("`{shown}` is not a unit");
     let mut diagnostic = Diagnostic::new(Code::E0104, message, span, format!("touches the number `{number}`"));
@@ -313,4 +321,18 @@ fn shown(text: &str) -> String {
         .map(|c| if c.is_control() || c.is_whitespace() { format!("U+{:04X}", u32::from(c)) } else { c.to_string() })
         .collect();
     format!("`{shown}`")
+}
+
+/// Adds help about a comment between `(*` and `*)`; both ends have the same message.
+fn pascal_comment(diagnostic: Diagnostic, source: Source<'_>, place: Place) -> Diagnostic {
+    let text = source.text;
+    let begins = |at: usize| text.get(..at).filter(|before| before.ends_with('(')).map(|before| before.len() - 1);
+    let ends = |at: usize| text.get(at..).filter(|after| after.starts_with("*)")).map(|_| at + 2);
+    let start = begins(place.start).or_else(|| text.get(..place.start)?.rfind("(*"));
+    let end = ends(place.start).or_else(|| Some(place.end + text.get(place.end..)?.find("*)")? + 2));
+    let (Some(start), Some(end)) = (start, end) else { return diagnostic };
+    let span = source.span(Place::new(start, end));
+    let inside = text.get(start + 2..end - 2).unwrap_or_default();
+    let message = "a comment is not written between `(*` and `*)`";
+    Diagnostic::new(Code::E0101, message, span, "not part of MDLe").fix("write {}", span, format!("/*{inside}*/"))
 }

@@ -4,15 +4,15 @@ use crate::alphabet::{Kind, Unit};
 use crate::syntax::tree::{Arg, Call, Number};
 
 /// A law that is probably meant.
-pub(super) struct Meant {
-    pub(super) name: &'static str,
-    pub(super) call: String,
+pub(in crate::plan) struct Meant {
+    pub(in crate::plan) name: &'static str,
+    pub(in crate::plan) call: String,
     /// The help, where `{}` is the call.
-    pub(super) words: &'static str,
+    pub(in crate::plan) words: &'static str,
 }
 
 /// The law that a call such as `turnLeft 90`, `backup 50cm` or `forward 20` means.
-pub(super) fn meant(call: &Call) -> Option<Meant> {
+pub(in crate::plan) fn meant(call: &Call) -> Option<Meant> {
     let word = call.name.to_ascii_lowercase().replace('_', "");
     let number = match call.args {
         [] => None,

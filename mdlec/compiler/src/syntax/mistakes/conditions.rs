@@ -40,6 +40,10 @@ pub(super) fn condition(site: &Site<'_, '_>) -> Option<Diagnostic> {
             )
             .help("it joins two conditions: `(bumper OR wait 5)`"),
         ),
+        (Tok::Comma, Tok::RParen) => Some(
+            site.about(site.at, "expected a condition after `,`, found `)`".to_owned(), "a condition is missing")
+                .help("say when it ends, as in `(turn(90), bumper)` and `(turn(90), null)`, or remove the comma"),
+        ),
         (_, Tok::Number(_)) if turned(site).is_some() => turned(site),
         (_, Tok::Number(_)) => Some(
             site.about(site.at, format!("expected a condition, found {}", site.found_words()), "not a condition")

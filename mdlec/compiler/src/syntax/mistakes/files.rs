@@ -74,6 +74,11 @@ pub(super) fn at_file_level(site: &Site<'_, '_>) -> Option<Diagnostic> {
             site.span(site.at, site.at),
             "",
         )),
+        Tok::LParen if site.kind(site.at + 1) == Some(Tok::LParen) => Some(
+            site.about(site.at, "expected a plan, found `(`".to_owned(), "outside of any plan")
+                .help("a string of the paper has an interrupt and ends with its mark: `((go(20, 0), bumper)(turn(90), null), null)σ_null`")
+                .help("or a plan has braces around its atoms: `{ Name (Atom (bumper) stop) }`"),
+        ),
         Tok::LParen | Tok::ExecPlan | Tok::Name(_) | Tok::Frame => Some(
             site.about(site.at, format!("expected a plan, found {}", site.found_words()), "outside of any plan").help(
                 "a file consists of plans, and a plan has braces around its atoms: `{ Name (Atom (bumper) stop) }`",

@@ -1,0 +1,33 @@
+//! Messages about numbers out of range: how limits are written, and which number is meant.
+
+use crate::alphabet::{Param, Unit};
+use crate::diagnostic::Diagnostic;
+use crate::syntax::tree::Number;
+
+/// Writes a limit of a range; a large one as `1e10`.
+pub(super) fn limit(value: f64) -> String {
+    if value.abs() >= 1e7 { format!("{value:e}") } else { value.to_string() }
+}
+
+/// Adds help about a number out of range that would be in it with degrees for radians, or without its sign.
+pub(super) fn meant_in_range(report: Diagnostic, number: &Number, param: &Param) -> Diagnostic {
+    let (digits, own) = (number.digits(), number.unit().or(param.unit.map(|unit| unit.name)).unwrap_or_default());
+    let fits = |digits: &str, unit: &str| {
+        let (Some((least, most)), Ok(value)) = (param.range, digits.parse::<f64>()) else { return false };
+        let value = match (Unit::from_name(unit), param.unit) {
+            (Some(unit), Some(own)) => unit.to_si(value) / own.to_si(1.0),
+            _ => value,
+        };
+        least <= value && value <= most
+    };
+    if number.unit().is_none() && own == "rad/s" && fits(digits, "deg/s") {
+        return report.fix("for degrees per second write {}", number.span, format!("{digits}deg/s"));
+    }
+    match digits.strip_prefix('-').filter(|positive| fits(positive, own)) {
+        Some(positive) => {
+            let positive = format!("{positive}{}", number.unit().unwrap_or_default());
+            report.fix("write it without the sign: {}", number.span, positive)
+        }
+        None => report,
+    }
+}

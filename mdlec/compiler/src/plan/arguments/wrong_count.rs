@@ -1,0 +1,75 @@
+//! Message about a call with too many or too few arguments.
+
+use super::examples::{bits_apart, example};
+use super::{signature, written};
+use crate::alphabet::{Declaration, DeclarationKind, Kind, Param, Unit};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::plan::quarks::moves;
+use crate::syntax::tree::{Arg, Call, Number};
+
+/// Reports the number of arguments of `call`, of which `declaration` needs at least `needed`.
+pub(super) fn wrong_count(call: &Call, declaration: &Declaration, needed: usize) -> Diagnostic {
+    let most = declaration.params.len();
+    let takes = match (needed, most) {
+        (_, 0) => "no arguments".to_owned(),
+        (1, 1) => "one argument".to_owned(),
+        (least, most) if least == most => format!("{most} arguments"),
+        (least, most) => format!("{least} to {most} arguments"),
+    };
+    let found = match call.args.len() {
+        0 => "found none".to_owned(),
+        count => format!("found {count}"),
+    };
+    let span = match call.args.get(most) {
+        Some(first_too_many) => first_too_many.span(),
+        None => call.span,
+    };
+    let report = |here: String| {
+        let message = format!("`{}` takes {takes}, {found}", declaration.name);
+        Diagnostic::new(Code::E0301, message, span, here).help(format!("write it as `{}`", signature(declaration)))
+    };
+    if let Some(pattern) = bits_apart(call, declaration) {
+        return report("bits are written together".into()).fix("write {}", call.span, pattern);
+    }
+    if let [Arg::Name(side), amount @ ..] = call.args
+        && let Some(law) = moves::meant(&Call { name: side.node, args: amount, ..*call })
+        && declaration.kind == DeclarationKind::Control
+        && matches!(declaration.params.first(), Some(Param { kind: Kind::Angle, .. }))
+    {
+        let message = format!("`{}` takes {takes}, and `{}` is none of them", declaration.name, side.node);
+        let found = Diagnostic::new(Code::E0301, message, side.span, "a number with a sign says it");
+        return found.fix(law.words, call.span, law.call);
+    }
+    if call.args.len() > most {
+        let report = report("one too many".into());
+        return match (call.args, declaration.params.as_slice()) {
+            ([Arg::Number(time)], []) if declaration.kind == DeclarationKind::Control && is_time(time) => {
+                let time = format!("{}{}", time.digits(), time.unit().unwrap_or_default());
+                report.help(format!("a time is waited for: `(Atom (wait {time}) {})`", call.name))
+            }
+            ([Arg::Name(robot), Arg::Number(number)], [Param { kind: Kind::Robot, .. }]) => {
+                let name = format!("{} {}{}", call.name, robot.node, number.digits());
+                report.fix("a name has no space: {}", call.span, name)
+            }
+            _ => report,
+        };
+    }
+    let missing = declaration.params.get(call.args.len()..needed).unwrap_or_default();
+    let names: Vec<_> = missing.iter().map(|param| format!("`{}`", param.name)).collect();
+    let report = report(format!("{} {} missing", names.join(" and "), if names.len() == 1 { "is" } else { "are" }));
+    let examples: Option<Vec<_>> = missing.iter().map(example).collect();
+    let are_sonars = declaration.params.iter().all(|param| param.kind == Kind::Sonar);
+    if are_sonars && call.args.iter().any(|arg| !matches!(arg, Arg::Number(_))) {
+        let sonars = (3..).step_by(2).take(most).map(|sonar| format!(" {sonar}")).collect::<String>();
+        return report.fix("for instance {}", call.span, format!("{}{sonars}", call.name));
+    }
+    match examples {
+        Some(examples) => report.fix("for instance {}", call.span, format!("{} {}", written(call), examples.join(" "))),
+        None => report,
+    }
+}
+
+/// Returns `true` if a number has a unit of time.
+fn is_time(number: &Number) -> bool {
+    number.unit().and_then(Unit::from_name).is_some_and(|unit| unit.kind == Kind::Time)
+}
