@@ -6,6 +6,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use clap::ArgMatches;
+use clap::error::{ContextKind, ContextValue};
 use mdle_runtime::{PathStore, PrintableLines};
 
 use crate::arguments::{self, Options};
@@ -55,7 +56,7 @@ where
     let target = executable.target();
     let matches = match arguments::command(&target, program).try_get_matches_from(&arguments) {
         Ok(matches) => matches,
-        Err(error) => return unparsed(&error, out, err),
+        Err(error) => return unparsed(&with_near_option(error), out, err),
     };
     let options = arguments::options(&target, &matches);
     let limits = Limits { timeout: options.timeout, turns: options.turns };
@@ -220,6 +221,21 @@ fn several<'e>(
         say(err, format_args!("warning: standard output could not be written: {error}"));
     }
     status
+}
+
+/// Removes an option that clap proposes for an unknown one, unless a letter of three or less differs: `--period` is no
+/// help for `--speed`, which a simulated robot has.
+fn with_near_option(mut error: clap::Error) -> clap::Error {
+    let text = |kind| match error.get(kind) {
+        Some(ContextValue::String(text)) => text.trim_start_matches('-').split('=').next().unwrap_or_default(),
+        Some(_) | None => "",
+    };
+    let (given, proposed) = (text(ContextKind::InvalidArg), text(ContextKind::SuggestedArg));
+    if !proposed.is_empty() && strsim::damerau_levenshtein(given, proposed) > (given.chars().count() / 3).max(1) {
+        let _ = error.remove(ContextKind::SuggestedArg);
+        let _ = error.remove(ContextKind::Usage);
+    }
+    error
 }
 
 /// Prints help, or the error in the arguments; returns the exit status.

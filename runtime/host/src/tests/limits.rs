@@ -77,6 +77,8 @@ fn a_bad_option_opens_no_robot() {
         assert_eq!((run.status, &*run.out, &*run.journal), (2, "", ""), "{arguments:?}");
         assert!(run.err.starts_with("error: "), "{arguments:?}: {}", run.err);
     }
+    let tip = |option: &str| Stage::default().run(&[option]).err.contains("a similar argument exists: '--period'");
+    assert_eq!(["--perid", "--peroid=1", "--speed", "--record"].map(tip), [true, true, false, false]);
     insta::assert_snapshot!(Stage::default().run(&["--period=0"]).err, @"
     error: invalid value '0' for '--period <TIME>': expected a time from 100µs to 60s
 
