@@ -60,7 +60,7 @@ fn a_robot_that_lacks_something_names_those_that_have_it() {
 
 #[test]
 fn what_is_no_plan_is_a_few_messages() {
-    let source = fs::read_to_string(mdle_tests::repository::root().join("mdlec/src/lib.rs")).unwrap();
+    let source = fs::read_to_string(mdle_tests::repository::root().join("mdlec/compiler/src/lib.rs")).unwrap();
     let folder = with_plan("no_plan", source);
     let output = said(&folder, &["check", "plan.mdle"]);
     assert_eq!(output.matches("\nerror[").count(), 10, "{output}");

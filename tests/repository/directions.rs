@@ -10,19 +10,33 @@ use mdle_tests::repository::{TextFile, files, names_from, root};
 /// Packages of the workspace that each package may use. A folder that is not listed may not hold a package.
 const PACKAGES: &[(&str, &[&str])] = &[
     ("runtime/core", &[]),
-    ("runtime/host", &["mdle-runtime"]),
+    ("runtime/quantity", &[]),
+    ("runtime/host", &["mdle-runtime", "mdle-quantity"]),
     ("runtime/serial", &["mdle-runtime", "mdle-host"]),
     ("atoms", &["mdle-runtime"]),
-    ("mdlec", &["mdle-runtime"]),
-    ("targets/sim", &["mdle-runtime", "mdle-host", "mdle-atoms"]),
+    ("atoms/conformance", &["mdle-runtime"]),
+    ("mdlec/compiler", &["mdle-runtime"]),
+    ("mdlec/theory", &["mdle-runtime", "mdle-compiler"]),
+    ("mdlec/files", &["mdle-compiler"]),
+    ("mdlec/embed", &["mdle-runtime", "mdle-compiler", "mdle-files"]),
+    ("mdlec", &["mdle-runtime", "mdle-compiler", "mdle-theory", "mdle-files"]),
+    ("targets/sim/simulator", &["mdle-runtime", "mdle-quantity", "mdle-atoms"]),
+    // The conformance of robots is there for their tests alone.
+    ("targets/sim", &["mdle-runtime", "mdle-host", "mdle-simulator", "mdle-conformance"]),
     ("targets/scout", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms"]),
     ("targets/atrv", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms"]),
-    ("targets/template", &["mdle-runtime", "mdle-host", "mdle-atoms"]),
+    ("targets/template", &["mdle-runtime", "mdle-host", "mdle-atoms", "mdle-conformance"]),
     // The runtime, the line and the conformance are there for the tests of robots alone.
-    ("targets/emulator", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-atoms", "mdle-sim"]),
+    ("targets/emulator", &["mdle-runtime", "mdle-host", "mdle-serial", "mdle-simulator", "mdle-conformance"]),
     // The drivers and the conformance of robots are there for their tests alone: they share no word of the language.
-    ("targets/scout/emulator", &["mdle-runtime", "mdle-host", "mdle-atoms", "mdle-sim", "mdle-emulator", "mdle-scout"]),
-    ("targets/atrv/emulator", &["mdle-runtime", "mdle-host", "mdle-atoms", "mdle-sim", "mdle-emulator", "mdle-atrv"]),
+    (
+        "targets/scout/emulator",
+        &["mdle-runtime", "mdle-host", "mdle-conformance", "mdle-simulator", "mdle-emulator", "mdle-scout"],
+    ),
+    (
+        "targets/atrv/emulator",
+        &["mdle-runtime", "mdle-host", "mdle-conformance", "mdle-simulator", "mdle-emulator", "mdle-atrv"],
+    ),
     (
         "tests",
         &[
@@ -36,36 +50,71 @@ const PACKAGES: &[(&str, &[&str])] = &[
             "mdle-atrv",
             "mdle-atrv-emulator",
             "mdle-scripted",
-            "mdlec",
+            "mdle-compiler",
+            "mdle-theory",
         ],
     ),
     ("tests/scripted", &["mdle-runtime"]),
-    ("tests/benchmarks", &["mdle-host", "mdle-runtime", "mdle-sim", "mdle-tests", "mdlec"]),
-    ("tests/benchmarks/turn", &["mdle-runtime", "mdlec"]),
+    ("tests/benchmarks", &["mdle-host", "mdle-runtime", "mdle-sim", "mdle-tests", "mdle-compiler"]),
+    ("tests/benchmarks/turn", &["mdle-runtime", "mdle-compiler"]),
     ("tests/bare", &["mdle-runtime", "mdle-atoms"]),
-    ("tests/application", &["mdle-runtime", "mdle-host", "mdle-sim", "mdlec"]),
+    ("tests/application", &["mdle-runtime", "mdle-host", "mdle-sim", "mdle-embed"]),
     ("tests/mutants", &[]),
     ("tests/fuzz", &["mdle-tests"]),
 ];
 
-/// Rooms of the compiler that each room may use. `crate` is the text of `lib.rs` itself.
+/// Packages that need no operating system, so that a browser or a robot's own program can have them.
+const PURE: &[&str] = &[
+    "runtime/core",
+    "runtime/quantity",
+    "atoms",
+    "atoms/conformance",
+    "mdlec/compiler",
+    "mdlec/theory",
+    "targets/sim/simulator",
+];
+
+/// Packages of the operating system, and of what asks it for arguments, signals, threads and folders.
+const OF_THE_SYSTEM: &[&str] = &[
+    "clap",
+    "clap_builder",
+    "etcetera",
+    "getrandom",
+    "home",
+    "libc",
+    "linux-raw-sys",
+    "nix",
+    "rustix",
+    "signal-hook",
+    "thread-priority",
+    "windows-sys",
+];
+
+/// Folders of the compiler's rooms, with their packages as Rust names them.
+const ROOM_FOLDERS: &[(&str, &str)] =
+    &[("mdlec/compiler/src/", "mdle_compiler"), ("mdlec/theory/src/", "mdle_theory"), ("mdlec/src/", "mdlec")];
+
+/// Rooms of the compiler that each room may use. `crate` is the text of a `lib.rs` itself.
 const ROOMS: &[(&str, &[&str])] = &[
     ("diagnostic", &[]),
+    ("builtin", &[]),
     ("alphabet", &["diagnostic"]),
     ("syntax", &["diagnostic", "alphabet"]),
     ("plan", &["diagnostic", "syntax", "alphabet"]),
     ("fsm", &["diagnostic", "alphabet", "plan"]),
     ("trace", &["diagnostic", "alphabet", "plan", "fsm"]),
     ("picture", &["diagnostic", "plan", "fsm"]),
-    ("theorem", &["alphabet", "syntax"]),
     ("rust", &["diagnostic", "syntax", "alphabet", "plan", "fsm"]),
     ("analysis", &["diagnostic", "alphabet", "plan", "fsm", "rust"]),
-    ("link", &["crate", "diagnostic", "syntax", "alphabet", "plan", "fsm", "rust"]),
+    ("theorem", &["alphabet", "syntax"]),
+    ("equations", &["diagnostic", "plan", "fsm"]),
+    ("link", &[]),
     (
         "cli",
         &[
             "crate",
             "diagnostic",
+            "builtin",
             "syntax",
             "alphabet",
             "plan",
@@ -73,17 +122,17 @@ const ROOMS: &[(&str, &[&str])] = &[
             "trace",
             "picture",
             "theorem",
+            "equations",
             "rust",
             "analysis",
             "link",
         ],
     ),
-    ("embed", &["cli"]),
     ("main", &["cli"]),
 ];
 
 /// The rooms that may read files and the environment.
-const WITH_IO: &[&str] = &["main", "cli", "embed", "link"];
+const WITH_IO: &[&str] = &["main", "cli", "link"];
 
 #[test]
 fn packages_use_only_those_below_them() {
@@ -104,18 +153,39 @@ fn packages_use_only_those_below_them() {
 
 #[test]
 fn what_a_robot_runs_needs_no_package_but_libm() {
-    let needed = |folder: &str| {
-        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-        let shown = ["--no-default-features", "--edges", "normal", "--prefix", "none", "--format", "{p}"];
-        let output =
-            Command::new(cargo).args(["tree", "--offline"]).args(shown).current_dir(root().join(folder)).output();
-        let output = output.expect("cargo runs");
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        let packages = String::from_utf8(output.stdout).expect("names");
-        packages.lines().filter_map(|line| line.split(' ').next()).map(str::to_owned).collect::<BTreeSet<_>>()
-    };
     assert_eq!(needed("runtime/core"), BTreeSet::from(["libm", "mdle-runtime"].map(str::to_owned)));
     assert_eq!(needed("atoms"), BTreeSet::from(["libm", "mdle-atoms", "mdle-runtime"].map(str::to_owned)));
+}
+
+#[test]
+fn pure_packages_need_no_operating_system() {
+    for package in PURE {
+        let needed = needed(package);
+        let system: Vec<_> = OF_THE_SYSTEM.iter().filter(|name| needed.contains(**name)).collect();
+        assert!(system.is_empty(), "{package} needs {system:?}; `cargo tree --invert NAME` says by which package");
+    }
+    // The names are those that cargo has for what the host needs.
+    assert!(
+        ["clap", "rustix", "signal-hook", "thread-priority"].iter().all(|name| needed("runtime/host").contains(*name))
+    );
+}
+
+/// Returns the packages that the package in `folder` is built with, itself among them, on Linux or in a browser.
+fn needed(folder: &str) -> BTreeSet<String> {
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let shown = ["--no-default-features", "--edges", "normal", "--prefix", "none", "--format", "{p}"];
+    let targets = ["--target", "x86_64-unknown-linux-gnu", "--target", "wasm32-unknown-unknown"];
+    let mut command = Command::new(cargo);
+    command.args(["tree", "--offline"]).args(shown).args(targets).current_dir(root().join(folder));
+    let output = command.output().expect("cargo runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let packages = String::from_utf8(output.stdout).expect("names");
+    packages
+        .lines()
+        .filter_map(|line| line.split(' ').next())
+        .filter(|name| !name.is_empty())
+        .map(str::to_owned)
+        .collect()
 }
 
 /// Returns the packages of the workspace that a manifest names as dependencies, of any sort.
@@ -133,43 +203,54 @@ fn ours(manifest: &TextFile) -> impl Iterator<Item = &str> {
 #[test]
 fn rooms_of_the_compiler_use_only_those_before_them() {
     let mut breaches = Vec::new();
-    for (room, file) in rooms() {
+    for Room { room, inside, file } in rooms() {
         let Some((_, allowed)) = ROOMS.iter().find(|(name, _)| *name == room) else {
             breaches.push(format!("{}: say in tests/repository/directions.rs what it may use", file.path));
             continue;
         };
-        for name in names_from(&file.text, "crate").into_iter().chain(names_from(&file.text, "mdlec")) {
+        let crates = ["crate"].into_iter().chain(ROOM_FOLDERS.iter().map(|(_, name)| *name));
+        for name in crates.flat_map(|name| names_from(&file.text, name)) {
             let is_room = ROOMS.iter().any(|(room, _)| *room == name);
             let used = if is_room { name.as_str() } else { "crate" };
             if used != room && !allowed.contains(&used) {
                 breaches.push(format!("{}: may not use {name}", file.path));
             }
         }
-        if let Some(line) = climbs_to_the_root(&file) {
+        if let Some(line) = climbs_to_the_root(&inside, &file) {
             breaches.push(format!("{}: say `crate::` and not `{line}`", file.path));
         }
     }
     assert_eq!(breaches, [""; 0]);
 }
 
-/// Returns the files of the compiler's rooms without tests. `lib.rs`, which shows them all on one screen, belongs to no
+/// A file of a room of the compiler.
+struct Room {
+    /// Name of the room.
+    room: String,
+    /// Path of the file from its package's `src`.
+    inside: String,
+    /// Text of the file, without tests.
+    file: TextFile,
+}
+
+/// Returns the files of the compiler's rooms without tests. A `lib.rs`, which shows them on one screen, belongs to no
 /// room, nor do files that only tests share.
-fn rooms() -> impl Iterator<Item = (String, TextFile)> {
+fn rooms() -> impl Iterator<Item = Room> {
     files(&[".rs"]).into_iter().filter_map(|file| {
-        let inside =
-            file.path.strip_prefix("mdlec/src/").filter(|inside| !["lib.rs", "samples.rs"].contains(inside))?;
+        let inside = ROOM_FOLDERS.iter().find_map(|(folder, _)| file.path.strip_prefix(folder))?.to_owned();
         let room = inside.split(['/', '.']).next().unwrap_or_default().to_owned();
         let text = file.text.split("#[cfg(test)]").next().unwrap_or_default().to_owned();
+        let is_left_out = ["lib.rs", "samples.rs"].contains(&inside.as_str());
         let is_test = inside.ends_with("/tests.rs") || inside.contains("/tests/");
-        (!is_test).then_some((room, TextFile { text, ..file }))
+        (!is_left_out && !is_test).then_some(Room { room, inside, file: TextFile { text, ..file } })
     })
 }
 
 /// A line whose `super::` lead out of the room, where the names of other rooms could be had without `crate::`.
-fn climbs_to_the_root(file: &TextFile) -> Option<&str> {
-    let folders = file.path.matches('/').count();
-    // mdlec/src/room.rs and mdlec/src/room/mod.rs are one step below the root.
-    let depth = if file.path.ends_with("/mod.rs") { folders - 2 } else { folders - 1 };
+fn climbs_to_the_root<'f>(inside: &str, file: &'f TextFile) -> Option<&'f str> {
+    let folders = inside.matches('/').count();
+    // room.rs and room/mod.rs are one step below the root.
+    let depth = if inside.ends_with("/mod.rs") { folders } else { folders + 1 };
     let climb = "super::".repeat(depth);
     file.text.lines().map(str::trim).find(|line| !line.starts_with("//") && line.contains(&climb))
 }
@@ -183,7 +264,7 @@ fn machines_written_from_the_rules_share_no_stepping_with_others() {
         ("matrix", &["Matrices", "Transition", "UnitVector", "matrices"]),
     ];
     for (machine, of_fsm) in machines {
-        let path = format!("mdlec/src/trace/{machine}.rs");
+        let path = format!("mdlec/compiler/src/trace/{machine}.rs");
         let file = files(&[".rs"]).into_iter().find(|file| file.path == path).expect(&path);
         let used = [
             (names_from(&file.text, "mdle_runtime"), &["Frame", "TRANSITIONS_PER_TURN"][..]),
@@ -199,13 +280,14 @@ fn machines_written_from_the_rules_share_no_stepping_with_others() {
             assert_eq!(others, [""; 0], "in {path}");
         }
     }
-    let lowering = files(&[".rs"]).into_iter().find(|file| file.path == "mdlec/src/fsm/matrices.rs").expect("matrices");
+    let lowering =
+        files(&[".rs"]).into_iter().find(|file| file.path == "mdlec/compiler/src/fsm/matrices.rs").expect("matrices");
     assert_eq!(names_from(&lowering.text, "mdle_runtime"), [""; 0], "in {}", lowering.path);
 }
 
 #[test]
 fn the_lowering_is_validated_by_code_of_its_own() {
-    let path = "mdlec/src/fsm/validation.rs";
+    let path = "mdlec/compiler/src/fsm/validation.rs";
     let file = files(&[".rs"]).into_iter().find(|file| file.path == path).expect(path);
     // Of the lowering it may know what a machine is, and of the runtime what its tables are.
     assert_eq!(names_from(&file.text, "super"), ["Draft", "RecordPlace", "Sizes"]);
@@ -217,13 +299,13 @@ fn the_lowering_is_validated_by_code_of_its_own() {
 #[test]
 fn tables_of_a_machine_are_read_by_its_face() {
     let mut breaches = Vec::new();
-    for (room, file) in rooms() {
+    for Room { room, file, .. } in rooms() {
         if ["picture", "rust", "analysis"].contains(&room.as_str()) {
             let kinds = names_from(&file.text, "mdle_runtime::fsm").contains(&"Kind".to_owned());
             breaches.extend(kinds.then(|| format!("{}: an element has a kind of its own", file.path)));
         }
         // Lowering writes the tables, the face reads them, and validation shares no code with either.
-        let has_tables = ["lower", "machine", "validation"].map(|name| format!("mdlec/src/fsm/{name}.rs"));
+        let has_tables = ["lower", "machine", "validation"].map(|name| format!("mdlec/compiler/src/fsm/{name}.rs"));
         let uses_machines = room == "fsm" || names_from(&file.text, "crate").contains(&"fsm".to_owned());
         if has_tables.contains(&file.path) || !uses_machines {
             continue;
@@ -275,7 +357,7 @@ fn an_index_into_a_table_is_found() {
 #[test]
 fn stages_of_the_compiler_read_no_files() {
     let mut breaches = Vec::new();
-    for (room, file) in rooms().filter(|(room, _)| !WITH_IO.contains(&room.as_str())) {
+    for Room { room, file, .. } in rooms().filter(|file| !WITH_IO.contains(&file.room.as_str())) {
         for name in names_from(&file.text, "std") {
             if ["fs", "env", "process", "net", "time", "thread"].contains(&name.as_str()) {
                 breaches.push(format!("{}: std::{name} is not for {room}", file.path));

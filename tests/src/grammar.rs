@@ -35,7 +35,7 @@ impl Production {
 /// Returns every production of `grammar.lalrpop` except those of tokens, whose spellings are no grammar.
 #[must_use]
 pub fn productions() -> Vec<Production> {
-    let path = root().join("mdlec/src/syntax/grammar.lalrpop");
+    let path = root().join("mdlec/compiler/src/syntax/grammar.lalrpop");
     let text = std::fs::read_to_string(path).expect("the grammar");
     let (_, rules) = text.split_once("\npub(crate) File").expect("the first production");
     let (rules, _) = rules.split_once("// ---- Tokens ----").expect("the tokens are last");

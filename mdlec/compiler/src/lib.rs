@@ -2,10 +2,10 @@
 //!
 //! ```text
 //! text ─syntax→ tree ─plan::resolve→ Plan ─plan::remove_degeneracy→ Nondegenerate
-//!      ─fsm::lower→ Machine ─rust::emit→ Rust ─link→ executable
+//!      ─fsm::lower→ Machine ─rust::emit→ Rust
 //! ```
 //!
-//! **A stage does no I/O**: only [`cli`], [`embed`] and [`link`] read and write files.
+//! **A stage does no I/O**, and the package needs no operating system: `mdle-files` reads plans, `mdlec` links Rust.
 
 pub mod alphabet;
 pub mod analysis;

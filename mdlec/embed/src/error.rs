@@ -74,5 +74,5 @@ fn report(sources: &Sources, diagnostics: &[Diagnostic]) -> String {
         others => format!("… and {others} more\n"),
     };
     let errors = if errors == 1 { "1 error".to_owned() } else { format!("{errors} errors") };
-    format!("{errors}\n\n{}{others}", texts.concat())
+    format!("the plan is not embedded: {errors}\n\n{}{others}", texts.concat())
 }

@@ -20,8 +20,8 @@
 //! ```
 //!
 //! The package has `mdle-embed` among its `[build-dependencies]`, and among its `[dependencies]` what the Rust refers
-//! to: `mdle-runtime` and the target's crate, here `mdle-sim`. [`write`](Embed::write) makes one type of the plan, which
-//! implements `mdle_runtime::Plan`: `mdle_host::run` runs it as an executable that `mdlec` makes, and
+//! to: `mdle-runtime` and the target's crate, here `mdle-sim`. [`write`](Embed::write) makes one type of the plan,
+//! which implements `mdle_runtime::Plan`: `mdle_host::run` runs it as an executable that `mdlec` makes, and
 //! `mdle_runtime::Machine` turn by turn.
 #![allow(clippy::disallowed_methods, reason = "a build script writes files")]
 

@@ -117,7 +117,7 @@ impl<'m> AtOnce<'m> {
             sources.iter().map(|source| (source.file.clone(), self.schema(source))).collect();
         let left = self.mutants.iter().filter(|(standing, _)| *standing == BuildState::Built).count();
         println!("building {left} mutants");
-        let packages = ["--package", "mdle-runtime", "--package", "mdlec"];
+        let packages = ["--package", "mdle-runtime", "--package", "mdle-compiler"];
         let (is_built, printed) = self.cargo(&[&["check", "--message-format=json"], &packages]);
         if is_built {
             return true;

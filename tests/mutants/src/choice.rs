@@ -20,9 +20,9 @@ const AREAS: &[&[&str]] = &[
         "runtime/core/src/rows.rs",
         "runtime/core/src/signal.rs",
     ],
-    &["mdlec/src/plan/functions.rs", "mdlec/src/plan/nondegenerate.rs"],
-    &["mdlec/src/fsm/lower.rs"],
-    &["mdlec/src/rust"],
+    &["mdlec/compiler/src/plan/functions.rs", "mdlec/compiler/src/plan/nondegenerate.rs"],
+    &["mdlec/compiler/src/fsm/lower.rs"],
+    &["mdlec/compiler/src/rust"],
 ];
 
 /// A file that is mutated.

@@ -10,7 +10,7 @@ use crate::mutant::Mutant;
 /// Packages that are built together, as what cargo builds of one depends on which others it is asked for.
 pub(crate) type Packages = &'static [&'static str];
 pub(crate) const RUNTIME: Packages = &["--package", "mdle-runtime"];
-const COMPILER: Packages = &["--package", "mdlec", "--package", "mdle-tests"];
+const COMPILER: Packages = &["--package", "mdle-compiler", "--package", "mdle-tests"];
 
 /// The tests, as `cargo test` takes them: those first that catch much and are fast.
 pub(crate) const TESTS: &[(Packages, &[&str])] = &[

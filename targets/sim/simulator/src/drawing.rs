@@ -27,7 +27,8 @@ impl Drawing {
         Self { world: world.clone(), trail }
     }
 
-    /// Records an exchange of `robot` at time `t`, which gave `sensed`; `touches` is `true` if a contact begins with it.
+    /// Records an exchange of `robot` at time `t`, which gave `sensed`; `touches` is `true` if a contact begins with
+    /// it.
     pub fn exchanged(&mut self, robot: &Simulated, sensed: &Sensed, t: Nanos, touches: bool) {
         self.trail.went(&robot.pose());
         self.trail.things.clear();
