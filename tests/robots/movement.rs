@@ -358,7 +358,7 @@ fn the_yard_is_crossed_and_the_robot_turns_left() {
     assert!(through.is_some_and(|pair| pair[1][2] > 1.5 && pair[1][2] < 3.0), "{through:?}");
 }
 
-/// In a closed room the first leg leads nowhere. The second one has all of its time, and the plan in rows does the same.
+/// In a closed room the first leg leads nowhere. The second one has all of its time; a plan in rows does likewise.
 #[test]
 fn stuck_ends_a_leg_that_leads_nowhere() {
     let legs = of_book("quarks.md", "legs.mdle");

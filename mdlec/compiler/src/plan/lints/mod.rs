@@ -8,6 +8,7 @@ mod numbers;
 mod skipped;
 #[cfg(test)]
 mod tests;
+mod unlimited;
 
 use std::collections::BTreeSet;
 
@@ -24,6 +25,7 @@ pub fn lints(plan: &Nondegenerate) -> Vec<Diagnostic> {
     ends::check(plan, &mut found);
     frames::check(plan, &mut found);
     skipped::check(plan, &mut found);
+    unlimited::check(plan, &mut found);
     let mut told: BTreeSet<(Option<Span>, Code)> = BTreeSet::new();
     found.retain(|lint| told.insert((lint.span(), lint.code)));
     found

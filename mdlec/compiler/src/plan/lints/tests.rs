@@ -47,6 +47,26 @@ fn frames_that_no_law_uses() {
 }
 
 #[test]
+fn a_drive_that_may_never_arrive() {
+    assert_judged!(
+        "{ P (bumper)
+  (Atom (null) (goAvoid 0 4m))
+  { Q (bumper) (Atom (bumper OR null) (goAvoid 90 4m))^2 }
+  Leg
+  { R (wait 1min) Leg }
+}
+{ Leg (Atom (null) (goAvoid 180 4m)) }"
+    );
+    assert_silent(&[
+        "{ P (bumper) (Atom (stuck 30) (goAvoid 0 4m)) (Atom (atIsection 1000) (goAvoid 0 40)) }",
+        "{ P (bumper OR wait 2min) (Atom (null) (goAvoid 0 4m)) }",
+        "{ P (bumper) { Q (t > 60) ((Atom (null) (goAvoid 0 4m)))^2 } (Atom (way > 20) (goAvoid 0 4m)) }",
+        "{ P (lowBattery) (Atom (null) (goAvoid 0 4m)) }",
+        "{ P (bumper) (Atom (null) (goAvoid(sun module))) }",
+    ]);
+}
+
+#[test]
 fn what_is_never_reached() {
     assert_judged!(
         "{ P (bumper)

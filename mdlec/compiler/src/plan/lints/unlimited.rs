@@ -1,0 +1,63 @@
+//! W0208: a `goAvoid` to a point that only arrival or contact ends, and that never ends where no way leads there.
+
+use crate::diagnostic::{Code, Diagnostic};
+use crate::plan::{Atom, Condition, Interrupt, Node, Plan};
+
+/// Warns of every such atom.
+pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
+    let mut lint = Unlimited { plan, found };
+    let is_limited = lint.limits(&plan.root.interrupt);
+    lint.sequence(&plan.root.body, is_limited);
+}
+
+struct Unlimited<'p, 'f> {
+    plan: &'p Plan,
+    found: &'f mut Vec<Diagnostic>,
+}
+
+impl<'p> Unlimited<'p, '_> {
+    /// Checks a sequence; `is_limited` if an enclosing scope ends it.
+    fn sequence(&mut self, body: &'p [Node], is_limited: bool) {
+        for node in body {
+            match node {
+                Node::Atom(atom) => {
+                    let law = self.plan.quark(atom.law);
+                    // `goAvoid` with a module follows it, and has no point to arrive at.
+                    let arrives = law.name == "goAvoid" && law.completes;
+                    if arrives && !is_limited && !self.limits(&atom.interrupt) {
+                        self.warn(atom);
+                    }
+                }
+                Node::Scope(scope) => {
+                    let is_limited = is_limited || self.limits(&scope.interrupt);
+                    self.sequence(&scope.body, is_limited);
+                }
+                Node::Loop(repeated) => self.sequence(&repeated.body, is_limited),
+            }
+        }
+    }
+
+    /// Returns `true` if an interrupt may end a drive that leads nowhere. Contact does not: obstacles are avoided.
+    fn limits(&self, interrupt: &Interrupt) -> bool {
+        interrupt.condition.operands().iter().any(|operand| match operand {
+            Condition::Null => false,
+            Condition::Quark(id) => self.plan.quark(*id).name != "bumper",
+            Condition::Wait { .. } | Condition::Elapsed { .. } | Condition::Driven { .. } | Condition::Or(_) => true,
+            Condition::And(_) | Condition::Not(_) | Condition::Rising { .. } | Condition::After(_) => true,
+        })
+    }
+
+    fn warn(&mut self, atom: &Atom) {
+        let law = &self.plan.quark(atom.law).text;
+        let (span, text) = (atom.interrupt.span, &atom.interrupt.text);
+        let message = format!("where no way leads to its point, `{law}` never ends");
+        let lint = Diagnostic::new(Code::W0208, message, span, "neither this nor an enclosing scope limits its time");
+        // The text of an interrupt that was removed is one of an enclosing scope.
+        let with = |limit: &str| match atom.interrupt.condition {
+            Condition::Null => format!("({limit})"),
+            _ => format!("({text} OR {limit})"),
+        };
+        let lint = lint.fix("end it where it comes no nearer for some time: {}", span, with("stuck 30s"));
+        self.found.push(lint.fix("or give it a time: {}", span, with("wait 2min")));
+    }
+}
