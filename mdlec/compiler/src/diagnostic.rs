@@ -222,6 +222,27 @@ pub fn most_shown(diagnostics: &[Diagnostic]) -> usize {
     if notation > SHOWN_OF_NO_PLAN { SHOWN_OF_NO_PLAN } else { SHOWN }
 }
 
+/// Decides whether a plan with these diagnostics may be used: without errors, and with `deny_warnings` without
+/// warnings.
+///
+/// # Errors
+/// A sentence with their number.
+pub fn judged(diagnostics: &[Diagnostic], deny_warnings: bool) -> Result<(), String> {
+    let count = |severity| diagnostics.iter().filter(|found| found.code.severity() == severity).count();
+    match (count(Severity::Error), count(Severity::Warning)) {
+        (0, warnings) if deny_warnings && warnings > 0 => {
+            Err(format!("{}, and `--deny-warnings` counts them as errors", number(warnings, "warning")))
+        }
+        (0, _) => Ok(()),
+        (errors, _) => Err(number(errors, "error")),
+    }
+}
+
+/// Writes a number with its noun: `1 error`, `2 errors`.
+fn number(count: usize, thing: &str) -> String {
+    if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
+}
+
 /// Sorts diagnostics in the order of the sources.
 pub fn sort(diagnostics: &mut [Diagnostic]) {
     diagnostics.sort_by_key(|diagnostic| (diagnostic.span(), diagnostic.code));

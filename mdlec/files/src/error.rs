@@ -15,6 +15,13 @@ pub enum InputError {
     NoTarget,
     /// There is no target of this name.
     UnknownTarget(String),
+    /// An `mdle.toml` names a target that cannot be read.
+    InSettings {
+        /// Line of the file, as in `plans/mdle.toml:3`.
+        place: String,
+        /// Reason.
+        error: Box<InputError>,
+    },
     /// A file has errors.
     Faulty {
         /// Files to which the diagnostics refer.
@@ -62,6 +69,15 @@ impl Spelling {
 }
 
 impl InputError {
+    /// Returns the error itself, without the line of an `mdle.toml` that leads to it.
+    #[must_use]
+    pub fn cause(self) -> Self {
+        match self {
+            Self::InSettings { error, .. } => error.cause(),
+            other => other,
+        }
+    }
+
     /// Returns the message, in which options are spelled for this user. The diagnostics of [`InputError::Faulty`] are
     /// no part of it; without a target its message is empty.
     #[must_use]
@@ -73,6 +89,10 @@ impl InputError {
                 format!("for which robot? Name it, as in `{option}`; `mdlec targets` lists them")
             }
             Self::UnknownTarget(name) => unknown_target(name, spelling),
+            Self::InSettings { place, error } => match error.message(spelling) {
+                message if message.is_empty() => message,
+                message => format!("{place}: {message}"),
+            },
             Self::Faulty { target: Some(name), .. } => format!("the alphabet of target `{name}` has errors"),
             Self::Faulty { target: None, .. } => String::new(),
             Self::UnknownPlan { file, name, plans } => {

@@ -7,8 +7,10 @@
 mod error;
 mod input;
 pub mod read;
+mod settings;
 mod target;
 
 pub use error::{InputError, Spelling};
 pub use input::{Input, add, plan, read_plan, read_text, without_mark};
+pub use settings::{RunOption, Settings, file_beside};
 pub use target::{Target, alphabet, bound, out_of_date, target};

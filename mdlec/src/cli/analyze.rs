@@ -1,12 +1,13 @@
 //! `mdlec analyze`: static analysis of a plan.
 
-use super::{Analyze, Failure, build, report, settings};
+use super::{Analyze, Failure, build, report};
 use mdle_compiler::Compiled;
 use mdle_compiler::analysis::analyze as analysis;
+use mdle_files::Settings;
 
 /// Prints the analysis of a plan; warnings go to standard error.
 pub(super) fn analyze(options: &Analyze) -> Result<(), Failure> {
-    let target = settings::target(&options.plan, options.target.as_deref())?;
+    let target = Settings::beside(&options.plan)?.target(options.target.as_deref())?;
     let mut input = mdle_files::read_plan(&options.plan, &target)?;
     // An analysis needs the machine alone, and of a long plan the rest is as large again.
     let judge = |Compiled { lowered, .. }: Compiled| analysis(&lowered);

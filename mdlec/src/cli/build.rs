@@ -3,12 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use super::executable::{self, Runnable};
-use super::settings::{self, Settings};
 use super::{Bare, Build, Emit, EmitKind, Executable, Failure, endings, matrices, report};
 use crate::link;
 use mdle_compiler::syntax::outline;
 use mdle_compiler::{Compiled, fsm, picture, syntax};
-use mdle_files::{Input, InputError, Target, read_plan};
+use mdle_files::{Input, InputError, Settings, Target, read_plan};
 
 /// Runs a command line without a command.
 pub(super) fn bare(options: &Bare) -> Result<(), Failure> {
@@ -46,7 +45,7 @@ pub(super) fn build(options: &Build) -> Result<Option<Runnable>, Failure> {
         return Err(Failure::usage("`--combine` sums matrices: it goes with `--emit matrices`"));
     }
     if kind == EmitKind::Matrices {
-        let target = settings::target(path, about.target.as_deref())?;
+        let target = Settings::beside(path)?.target(about.target.as_deref())?;
         let mut input = read_plan(path, &target)?;
         let compiled = compile_one(&mut input, &target, about.name.as_deref(), about.deny_warnings)?;
         let inputs = input.inputs(&target);

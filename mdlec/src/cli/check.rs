@@ -5,8 +5,10 @@ use std::collections::btree_map::Entry;
 use std::path::{Path, PathBuf};
 
 use super::everywhere::{ALL, everywhere};
-use super::{Check, Failure, report, settings};
+use super::{Check, Failure, report};
+use crate::link;
 use mdle_compiler::diagnostic::has_errors;
+use mdle_files::{Settings, Target, file_beside};
 
 /// Checks each plan file and prints its diagnostics.
 pub(super) fn check(options: &Check) -> Result<(), Failure> {
@@ -17,16 +19,25 @@ pub(super) fn check(options: &Check) -> Result<(), Failure> {
     // Without the option each folder may have another one.
     let mut beside = BTreeMap::new();
     each(&options.plans, |path| {
-        let target = match (&named, beside.entry(settings::file_beside(path))) {
+        let target = match (&named, beside.entry(file_beside(path))) {
             (Some(named), _) => named,
             (None, Entry::Occupied(known)) => known.into_mut(),
-            (None, Entry::Vacant(unknown)) => unknown.insert(settings::checked_target(path)?),
+            (None, Entry::Vacant(unknown)) => unknown.insert(checked_target(path)?),
         };
         let mut input = mdle_files::read_plan(path, target)?;
         let found = input.check(&target.alphabet);
         let good = report::diagnostics(&input.sources, &found, options.deny_warnings);
         if good && !has_errors(&found) { Ok(()) } else { Err(Failure::PLAN) }
     })
+}
+
+/// Returns the target of the `mdle.toml` beside the plan in the file `plan`, after a check of what a run would take
+/// from the file.
+fn checked_target(plan: &Path) -> Result<Target, Failure> {
+    let settings = Settings::beside(plan)?;
+    let target = settings.target(None)?;
+    settings.run_options(None, &[], |robot| link::worlds(robot).collect())?;
+    Ok(target)
 }
 
 /// Calls `done` for every file, even if it fails for earlier ones; fails with the highest exit status.

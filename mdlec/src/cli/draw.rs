@@ -1,15 +1,16 @@
 //! `mdlec draw`: draws a plan as a picture.
 
-use super::{Draw, Failure, build, endings, report, settings};
+use super::{Draw, Failure, build, endings, report};
 use crate::link;
 use mdle_compiler::picture;
+use mdle_files::Settings;
 
 /// Draws the plan, into a file or to standard output.
 pub(super) fn draw(options: &Draw) -> Result<(), Failure> {
     if let Some(file) = &options.output {
         endings::svg(file)?;
     }
-    let target = settings::target(&options.plan, options.target.as_deref())?;
+    let target = Settings::beside(&options.plan)?.target(options.target.as_deref())?;
     let mut input = mdle_files::read_plan(&options.plan, &target)?;
     let compiled = build::compile_one(&mut input, &target, options.name.as_deref(), false)?;
     let drawn = picture::svg(&compiled.lowered).map_err(|too_large| {

@@ -3,18 +3,17 @@
 use std::io::{self, IsTerminal, Write};
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 use std::time::Instant;
 
 use mdle_runtime::Printable;
 
 use super::build::{Emitted, emitted, needs_target};
-use super::settings::Settings;
 use super::version::version;
 use super::{EmitKind, Executable, Failure, Run, endings, report};
 use crate::link::{self, Cache, LinkError, Package, Progress, TargetCrate};
 use mdle_compiler::rust;
-use mdle_files::Target;
+use mdle_files::{RunOption, Settings, Target};
 
 /// Builds the executable of a plan and becomes it.
 pub(super) fn run(options: &Run) -> Result<(), Failure> {
@@ -30,7 +29,9 @@ pub(super) fn run(options: &Run) -> Result<(), Failure> {
 /// Checks, before anything is built, what a run with the arguments `args` takes from an `mdle.toml`.
 pub(super) fn settings_fit(options: &Executable, args: &[String]) -> Result<(), Failure> {
     let Some(path) = &options.plan else { return Ok(()) };
-    Settings::beside(path)?.run_options(options.target.as_deref(), args).map(drop)
+    let settings = Settings::beside(path)?;
+    settings.run_options(options.target.as_deref(), args, |robot| link::worlds(robot).collect())?;
+    Ok(())
 }
 
 /// Prepares for signals, so that they leave no processes or files, and returns the file of the plan.
@@ -107,10 +108,22 @@ impl Runnable {
     /// Becomes the executable, with the options of `mdle.toml` before `args`; `target` is the one of the command line.
     pub(super) fn become_it(&self, target: Option<&str>, args: &[String]) -> Result<(), Failure> {
         let program = if self.path.is_absolute() { self.path.clone() } else { Path::new(".").join(&self.path) };
-        let options = self.settings.run_options(target, args)?;
-        options.iter().try_for_each(|option| option.must_fit(&program))?;
+        let options = self.settings.run_options(target, args, |robot| link::worlds(robot).collect())?;
+        options.iter().try_for_each(|option| must_fit(option, &program))?;
         let options = options.iter().flat_map(|option| &option.arguments);
         become_program(Command::new(&program).args(options).args(args))
+    }
+}
+
+/// Fails if the executable `program` does not have the option, or not with this value.
+///
+/// An executable judges its arguments one by one, and does nothing else before it answers `--version`.
+fn must_fit(option: &RunOption, program: &Path) -> Result<(), Failure> {
+    let answer = Command::new(program).args(&option.arguments).arg("--version").stdin(Stdio::null()).output();
+    // A program that cannot be run cannot become this process either, which says why.
+    match answer.ok().filter(|answer| answer.status.code() == Some(2)) {
+        Some(refusal) => Err(option.refused(&String::from_utf8_lossy(&refusal.stderr)).into()),
+        None => Ok(()),
     }
 }
 

@@ -21,7 +21,6 @@ mod matrices;
 mod mistyped;
 mod new_target;
 mod report;
-mod settings;
 mod trace;
 mod version;
 mod words;
@@ -51,13 +50,14 @@ impl From<InputError> for Failure {
     /// A plan with errors ends with exit status 1, everything else with 2.
     fn from(error: InputError) -> Self {
         let message = Some(error.to_string()).filter(|message| !message.is_empty());
-        let (status, found) = match error {
+        let (status, found) = match error.cause() {
             InputError::Faulty { sources, diagnostics, target } => {
                 (if target.is_none() { 1 } else { 2 }, Some(Box::new((sources, diagnostics))))
             }
             InputError::Unusable(_)
             | InputError::NoTarget
             | InputError::UnknownTarget(_)
+            | InputError::InSettings { .. }
             | InputError::UnknownPlan { .. }
             | InputError::NotOnePlan { .. } => (2, None),
         };

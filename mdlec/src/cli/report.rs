@@ -10,7 +10,7 @@ use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
 use mdle_runtime::{PrintableLines, is_printable};
 
 use super::{Color, Failure, MessageFormat};
-use mdle_compiler::diagnostic::{Diagnostic, Message, Severity, Sources, most_shown};
+use mdle_compiler::diagnostic::{Diagnostic, Message, Sources, has_errors, judged};
 
 /// Format of all messages of this process. It is set once, when the command line is read: every message goes through
 /// this file.
@@ -41,14 +41,13 @@ pub(super) fn diagnostics(sources: &Sources, found: &[Diagnostic], deny_warnings
     } else {
         render(sources, found);
     }
-    let count = |severity| found.iter().filter(|diagnostic| diagnostic.code.severity() == severity).count();
-    let (errors, warnings) = (count(Severity::Error), count(Severity::Warning));
-    if errors > 0 && !is_json() {
-        error(&number(errors, "error"));
-    } else if errors == 0 && deny_warnings && warnings > 0 {
-        error(&format!("{}, and `--deny-warnings` counts them as errors", number(warnings, "warning")));
+    let judged = judged(found, deny_warnings);
+    if let Err(sentence) = &judged
+        && !(is_json() && has_errors(found))
+    {
+        error(sentence);
     }
-    errors == 0 && (warnings == 0 || !deny_warnings)
+    judged.is_ok()
 }
 
 /// Renders diagnostics as text.
@@ -58,20 +57,8 @@ fn render(sources: &Sources, found: &[Diagnostic]) {
         Color::Auto if io::stderr().is_terminal() => ColorChoice::Auto,
         Color::Auto | Color::Never => ColorChoice::Never,
     };
-    let mut out = StandardStream::stderr(choice);
-    let most = most_shown(found);
-    for diagnostic in found.iter().take(most) {
-        // Nobody is left to be told when standard error is closed.
-        let _ = sources.write(diagnostic, &mut out);
-    }
-    note_others(found.len(), most);
-}
-
-/// Prints the number of diagnostics that are not shown.
-fn note_others(all: usize, shown: usize) {
-    if all > shown {
-        note(format_args!("… and {} more", all - shown));
-    }
+    // Nobody is left to be told when standard error is closed.
+    let _ = sources.write_all(found, &mut StandardStream::stderr(choice));
 }
 
 /// Writes a message as one line of JSON.
@@ -129,9 +116,4 @@ pub(super) fn answer(answer: &clap::Error) -> Result<(), Failure> {
         if answer.use_stderr() { write!(io::stderr(), "{text}") } else { write!(io::stdout(), "{text}") }
     };
     if answer.use_stderr() { Err(Failure::silent(2)) } else { printed(result) }
-}
-
-/// Writes a number with its noun: `1 error`, `2 errors`.
-fn number(count: usize, thing: &str) -> String {
-    if count == 1 { format!("1 {thing}") } else { format!("{count} {thing}s") }
 }

@@ -2,8 +2,9 @@
 
 use std::io::{self, BufWriter, Write};
 
-use super::{Failure, Trace, TraceMachine, report, settings};
+use super::{Failure, Trace, TraceMachine, report};
 use mdle_compiler::trace::{Counted, MatrixProduct, Script, Table, TraceLine, Tree, run};
+use mdle_files::Settings;
 use mdle_files::read::LARGEST_DATA;
 
 /// Runs the plan and prints the trace, one line per turn.
@@ -11,7 +12,7 @@ pub(super) fn trace(options: &Trace) -> Result<(), Failure> {
     if options.plan.as_os_str() == "-" && options.script.as_os_str() == "-" {
         return Err(Failure::usage("standard input can be the plan or the script, but not both"));
     }
-    let target = settings::target(&options.plan, options.target.as_deref())?;
+    let target = Settings::beside(&options.plan)?.target(options.target.as_deref())?;
     let mut input = mdle_files::read_plan(&options.plan, &target)?;
     let compiled = super::build::compile_one(&mut input, &target, options.name.as_deref(), false)?;
     let text = mdle_files::read_text(&options.script, LARGEST_DATA)?;

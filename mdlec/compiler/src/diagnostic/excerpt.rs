@@ -9,7 +9,7 @@ use codespan_reporting::term;
 use codespan_reporting::term::termcolor::WriteColor;
 use mdle_runtime::{Printable, PrintableLines};
 
-use super::{Diagnostic, Severity, SourceId, Sources};
+use super::{Diagnostic, Severity, SourceId, Sources, most_shown};
 
 /// Maximum length of a line that is shown whole, in bytes.
 const WHOLE: usize = 240;
@@ -61,6 +61,20 @@ impl Sources {
     pub fn write(&self, diagnostic: &Diagnostic, out: &mut impl WriteColor) -> Result<(), FilesError> {
         let excerpt = Excerpt::new(self, diagnostic)?;
         term::emit_to_write_style(out, &term::Config::default(), &excerpt, &excerpt.report)
+    }
+
+    /// Writes diagnostics to a terminal, and the number of those above the maximum, which are not shown.
+    ///
+    /// # Errors
+    /// Fails if writing one of them fails; the others are written.
+    pub fn write_all(&self, diagnostics: &[Diagnostic], out: &mut impl WriteColor) -> Result<(), FilesError> {
+        let most = most_shown(diagnostics);
+        let written = diagnostics.iter().take(most).map(|diagnostic| self.write(diagnostic, out));
+        let failed = written.filter_map(Result::err).last();
+        if diagnostics.len() > most {
+            writeln!(out, "… and {} more", diagnostics.len() - most)?;
+        }
+        failed.map_or(Ok(()), Err)
     }
 
     /// Converts the diagnostic, with its places in the files as they are shown.
