@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use clap::{Arg, ArgMatches, Command, value_parser};
 
+use crate::call::Call;
 use crate::executable::TargetOptions;
 use crate::{Program, Quantity, paths, required};
 
@@ -45,9 +46,9 @@ pub(crate) struct Options {
     pub(crate) path: Option<PathBuf>,
 }
 
-/// Returns the command line of an executable for this target. The usage line names the executable's
-/// file, or the plan if the file name is unknown.
-pub(crate) fn command(target: &TargetOptions, program: Program<'_>) -> Command {
+/// Returns the command line of a program for this target. The usage line has the words by which the program was called,
+/// or the plan if these are unknown.
+pub(crate) fn command(target: &TargetOptions, program: Program<'_>, call: &Call) -> Command {
     let seconds = target.period.as_secs_f64();
     let name = program.plan;
     let command = Command::new(name.to_owned())
@@ -81,7 +82,10 @@ pub(crate) fn command(target: &TargetOptions, program: Program<'_>) -> Command {
                 .help("File for a log of the run, one JSON object per turn, in the format of `mdlec trace`")
                 .value_parser(value_parser!(PathBuf)),
         );
-    let command = required::argument(command);
+    let command = match call.several_words() {
+        Some(words) => required::argument(command).bin_name(words),
+        None => required::argument(command),
+    };
     let command = if program.version.is_empty() { command } else { command.version(program.version.to_owned()) };
     with_statuses((target.arguments)(if target.fastest.is_some() { paths::arguments(command) } else { command }))
 }

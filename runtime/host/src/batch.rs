@@ -110,7 +110,7 @@ pub(crate) struct Terms<'a> {
     pub(crate) period: Duration,
     pub(crate) limits: Limits,
     pub(crate) signals: &'a Signals,
-    /// Name by which the executable was called.
+    /// The words by which the program was called, as a shell takes them.
     pub(crate) program: &'a str,
     /// The causes by which the plan must end.
     pub(crate) required: &'a Required,

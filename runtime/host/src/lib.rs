@@ -11,6 +11,7 @@
 mod arguments;
 mod background_writer;
 mod batch;
+mod call;
 mod cause;
 mod clock;
 mod drive;
@@ -54,6 +55,7 @@ use std::process::ExitCode;
 
 use background_writer::{Keeps, Outlet};
 pub use batch::Batch;
+pub use call::Call;
 pub use clap;
 use executable::{Executable, PlanOnTarget};
 pub use files::{read_file, read_text};
@@ -81,11 +83,36 @@ pub fn run<'a, T: Target, P>(program: impl Into<Program<'a>>, plan: impl Fn() ->
 where
     P: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>,
 {
-    execute(program.into(), &PlanOnTarget::<T, P>::new(&plan))
+    run_called::<T, P>(program, Call::of_executable(std::env::args_os()), plan)
 }
 
-/// Runs an executable with the arguments of this process.
-fn execute(program: Program<'_>, executable: &dyn Executable) -> ExitCode {
+/// Runs the plan that `plan` makes on the robot of the target `T`, for a program that was called like this: as [`run`]
+/// does with the arguments of this process.
+pub fn run_called<'a, T: Target, P>(
+    program: impl Into<Program<'a>>,
+    call: Call,
+    plan: impl Fn() -> P + Sync,
+) -> ExitCode
+where
+    P: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>,
+{
+    execute(program.into(), call, &PlanOnTarget::<T, P>::new(&plan))
+}
+
+/// Returns the text that [`run_called`] refuses these options with, if a program for the target `T` does not have them.
+///
+/// # Errors
+/// The message for standard error.
+pub fn check_options<T: Target>(program: Program<'_>, call: &Call) -> Result<(), String> {
+    let command = arguments::command(&executable::TargetOptions::of::<T>(), program, call);
+    match command.try_get_matches_from(call.arguments()) {
+        Err(error) if error.use_stderr() => Err(error.render().to_string()),
+        Ok(_) | Err(_) => Ok(()),
+    }
+}
+
+/// Runs an executable that was called like this.
+fn execute(program: Program<'_>, call: Call, executable: &dyn Executable) -> ExitCode {
     let signals = signals::Signals::listen();
     let leave_screen = executable.target().leave_screen;
     let signals = signals.and_then(|signals| second_signal::watch(&signals, leave_screen).map(|()| signals));
@@ -109,7 +136,7 @@ fn execute(program: Program<'_>, executable: &dyn Executable) -> ExitCode {
     let seen = io::stderr().is_terminal().then(|| Box::new(move || begun.elapsed()) as Box<dyn FnMut() -> _>);
     let (out, mut err) = (|| Box::new(out) as Box<dyn Write>, err);
     let surroundings = session::Surroundings { instants: clock::SinceBoot, signals, out, err: &mut err, seen };
-    ExitCode::from(session::session(program, std::env::args_os(), executable, surroundings))
+    ExitCode::from(session::session(program, call, executable, surroundings))
 }
 
 /// Returns standard output and standard error, each with a thread that writes to it. The library's own buffer of

@@ -11,6 +11,7 @@ use mdle_runtime::{PathStore, PrintableLines};
 
 use crate::arguments::{self, Options};
 use crate::batch::{self, Runs, Terms};
+use crate::call::Call;
 use crate::clock::{Clock, Instants};
 use crate::drive::Drive;
 use crate::executable::{Executable, TargetOptions};
@@ -40,10 +41,10 @@ pub(crate) struct Surroundings<'e, I, O> {
     pub(crate) seen: Option<Box<dyn FnMut() -> Duration + 'e>>,
 }
 
-/// Runs an executable with these arguments, the program's own name first; returns the exit status.
+/// Runs an executable that was called like this; returns the exit status.
 pub(crate) fn session<'o, I, O>(
     program: Program<'_>,
-    arguments: impl IntoIterator<Item = OsString>,
+    call: Call,
     executable: &dyn Executable,
     surroundings: Surroundings<'_, I, O>,
 ) -> u8
@@ -52,9 +53,8 @@ where
     O: FnOnce() -> Box<dyn Write + 'o>,
 {
     let Surroundings { mut instants, signals, out, err, seen } = surroundings;
-    let arguments: Vec<OsString> = arguments.into_iter().collect();
     let target = executable.target();
-    let matches = match arguments::command(&target, program).try_get_matches_from(&arguments) {
+    let matches = match arguments::command(&target, program, &call).try_get_matches_from(call.arguments()) {
         Ok(matches) => matches,
         Err(error) => return unparsed(&with_near_option(error), out, err),
     };
@@ -75,7 +75,7 @@ where
             // Nothing has to be stopped.
             signals.robot_runs(Time::Stepped(Pace::Max));
             signals.patience().stop_was_tried(None);
-            let program = arguments.first().map_or_else(|| program.plan.into(), |called| called.to_string_lossy());
+            let program = call.command(program.plan);
             let terms =
                 Terms { period: options.period, limits, signals: &signals, program: &program, required: &required };
             return several(&batch, &terms, &mut *out(), err, seen);
@@ -101,7 +101,7 @@ where
     if time == Time::Wall
         && let Err(refused) = instants.keep_time()
     {
-        warn_of_lateness(&refused, arguments.first(), err);
+        warn_of_lateness(&refused, call.words.first(), err);
     }
     let mut clock = Clock::begin(instants, time, options.period, drive.longest_gap());
     let ending = shielded(|| {

@@ -8,6 +8,7 @@ use mdle_runtime::Nanos;
 use mdle_runtime::trace::{Json, Seconds};
 
 use crate::batch::{Done, Outcome};
+use crate::call::quoted;
 use crate::report::Over;
 use crate::run_end;
 
@@ -22,7 +23,7 @@ pub(crate) struct Summary<'a> {
     pub(crate) alone: &'a dyn Fn(u64) -> Vec<String>,
     /// Timeout of the runs, if no option limits them.
     pub(crate) timeout: Option<Duration>,
-    /// Name by which the executable was called.
+    /// The words by which the program was called, as a shell takes them.
     pub(crate) program: &'a str,
 }
 
@@ -95,7 +96,7 @@ impl Summary<'_> {
         let timeout = self.timeout.filter(|_| run.outcome == Outcome::TimedOut);
         let timeout = timeout.map(|timeout| ["--timeout".to_owned(), timeout.as_secs().to_string()]);
         let options = (self.alone)(run.seed).into_iter().chain(timeout.into_iter().flatten());
-        options.fold(quoted(self.program), |command, word| command + " " + &quoted(&word))
+        options.fold(self.program.to_owned(), |command, word| command + " " + &quoted(&word))
     }
 
     /// Runs that went alike, in the order of their first seeds. Those that arrived need no second look.
@@ -215,14 +216,4 @@ impl fmt::Display for Group<'_> {
 
 fn counted(count: u64, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
-}
-
-/// A word as a shell takes it.
-fn quoted(word: &str) -> String {
-    let plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./,=:+@%".contains(letter);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', "'\\''"))
-    }
 }

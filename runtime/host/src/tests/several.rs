@@ -99,7 +99,7 @@ impl Several {
         let matches = required::argument(Command::new("it")).try_get_matches_from(words).unwrap();
         let required = Required::of(&matches, &ToyPlan::lab()).unwrap();
         let period = Duration::from_millis(100);
-        let terms = Terms { period, limits, signals, program: "./it's", required: &required };
+        let terms = Terms { period, limits, signals, program: r"'./it'\''s'", required: &required };
         let mut out = Vec::new();
         let (status, unwritten) = batch::run(&runs, &terms, &mut out, None);
         assert!(unwritten.is_none());

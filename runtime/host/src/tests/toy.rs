@@ -11,6 +11,7 @@ use clap::{Arg, ArgMatches, Command};
 use mdle_runtime::{Cause, Nanos, Output, Robot};
 
 use super::plan::ToyPlan;
+use crate::call::Call;
 use crate::clock::Instants;
 use crate::executable::PlanOnTarget;
 use crate::session::{Surroundings, session};
@@ -132,7 +133,12 @@ impl Stage {
         };
         let arguments = [&self.program].into_iter().chain(arguments).map(OsString::from);
         let plan = || self.plan.clone();
-        let status = session("Lab".into(), arguments, &PlanOnTarget::<ToyTarget, _>::new(&plan), surroundings);
+        let status = session(
+            "Lab".into(),
+            Call::of_executable(arguments),
+            &PlanOnTarget::<ToyTarget, _>::new(&plan),
+            surroundings,
+        );
         // Otherwise a program may end before its last message is written.
         assert_ne!(patience.limit(), Some(Duration::ZERO), "readers are not waited for at the end");
         let text = out.borrow().text();

@@ -1,0 +1,67 @@
+//! The call of a program that runs a plan: the words that name it, and its options.
+
+use std::ffi::OsString;
+use std::path::Path;
+
+/// The words by which a program that runs a plan was called.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Call {
+    /// The words before the options, the program's own name first: `./dock`, or `mdle run dock.mdle --target sim`.
+    /// Usage and summaries show them.
+    pub words: Vec<OsString>,
+    /// The options.
+    pub options: Vec<OsString>,
+}
+
+impl Call {
+    /// Returns the call of an executable with these arguments, its own name first.
+    pub(crate) fn of_executable(arguments: impl IntoIterator<Item = OsString>) -> Self {
+        let mut arguments = arguments.into_iter();
+        Self { words: arguments.next().into_iter().collect(), options: arguments.collect() }
+    }
+
+    /// Returns the name by which usage calls the program, if it is more than the name of a file.
+    pub(crate) fn several_words(&self) -> Option<String> {
+        let (program, others) = self.words.split_first().filter(|(_, others)| !others.is_empty())?;
+        let name = Path::new(program).file_name().unwrap_or(program);
+        Some([&[name.to_owned()], others].concat().join(" ".as_ref()).to_string_lossy().into_owned())
+    }
+
+    /// Returns all words, as a command line is parsed.
+    pub(crate) fn arguments(&self) -> impl Iterator<Item = &OsString> {
+        self.words.iter().take(1).chain(&self.options)
+    }
+
+    /// Returns the words as a shell takes them; the name of the plan if the program was called without a name.
+    pub(crate) fn command(&self, plan: &str) -> String {
+        let words: Vec<String> = self.words.iter().map(|word| quoted(&word.to_string_lossy())).collect();
+        if words.is_empty() { quoted(plan) } else { words.join(" ") }
+    }
+}
+
+/// A word as a shell takes it.
+pub(crate) fn quoted(word: &str) -> String {
+    let plain = |letter: char| letter.is_ascii_alphanumeric() || "-_./,=:+@%".contains(letter);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_call_is_shown_as_a_shell_takes_it() {
+        let call = |words: &[&str]| Call { words: words.iter().map(Into::into).collect(), options: Vec::new() };
+        assert_eq!(call(&["./it's"]).command("P"), r"'./it'\''s'");
+        assert_eq!(call(&["mdle", "run", "a b.mdle"]).command("P"), "mdle run 'a b.mdle'");
+        assert_eq!(call(&[]).command("P"), "P");
+        assert_eq!(
+            (call(&["./p"]).several_words(), call(&["bin/a", "b"]).several_words()),
+            (None, Some("a b".to_owned()))
+        );
+    }
+}
