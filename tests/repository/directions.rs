@@ -12,6 +12,10 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("runtime/core", &[]),
     ("runtime/quantity", &[]),
     ("runtime/host", &["mdle-runtime", "mdle-quantity"]),
+    (
+        "runtime/mdle",
+        &["mdle-runtime", "mdle-host", "mdle-compiler", "mdle-files", "mdle-sim", "mdle-scout", "mdle-atrv"],
+    ),
     ("runtime/serial", &["mdle-runtime", "mdle-host"]),
     ("atoms", &["mdle-runtime"]),
     ("atoms/conformance", &["mdle-runtime"]),

@@ -1,0 +1,92 @@
+//! The reasons why a plan does not run, and how a user is told.
+
+use std::io::{self, IsTerminal, Write};
+use std::process::ExitCode;
+
+use codespan_reporting::term::termcolor::{ColorChoice, StandardStream};
+use mdle_compiler::diagnostic::{Diagnostic, Sources};
+use mdle_compiler::load::LoadError;
+use mdle_files::InputError;
+use mdle_runtime::PrintableLines;
+
+/// Exit status of a plan with errors.
+const PLAN: u8 = 1;
+/// Exit status of wrong usage.
+const USAGE: u8 = 2;
+
+/// Reason why a plan does not run.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// The command line is wrong, or asks for help.
+    Unparsed(clap::Error),
+    /// Wrong usage: a sentence.
+    Usage(String),
+    /// A plan or a target cannot be read.
+    Input(InputError),
+    /// The plan has errors, whose diagnostics were printed.
+    Plan,
+}
+
+impl From<InputError> for Failure {
+    fn from(error: InputError) -> Self {
+        Self::Input(error)
+    }
+}
+
+impl From<LoadError> for Failure {
+    fn from(error: LoadError) -> Self {
+        Self::Usage(error.to_string())
+    }
+}
+
+impl Failure {
+    /// Prints the message, if there is one, and returns the exit status.
+    pub(crate) fn tell(self) -> ExitCode {
+        let status = match self {
+            Self::Unparsed(answer) => {
+                // Nobody is left to be told when the stream is closed.
+                let _ = answer.print();
+                if answer.use_stderr() { USAGE } else { 0 }
+            }
+            Self::Usage(sentence) => {
+                error(&sentence);
+                USAGE
+            }
+            Self::Input(reason) => {
+                let message = reason.to_string();
+                let status = match reason.cause() {
+                    InputError::Faulty { sources, diagnostics, target } => {
+                        print(&sources, &diagnostics);
+                        if target.is_none() { PLAN } else { USAGE }
+                    }
+                    InputError::Unusable(_)
+                    | InputError::NoTarget
+                    | InputError::UnknownTarget(_)
+                    | InputError::InSettings { .. }
+                    | InputError::UnknownPlan { .. }
+                    | InputError::NotOnePlan { .. } => USAGE,
+                };
+                if message.is_empty() {
+                    error("1 error");
+                } else {
+                    error(&message);
+                }
+                status
+            }
+            Self::Plan => PLAN,
+        };
+        ExitCode::from(status)
+    }
+}
+
+/// Prints an error.
+pub(crate) fn error(message: &str) {
+    let _ = writeln!(io::stderr().lock(), "error: {}", PrintableLines(message));
+}
+
+/// Prints diagnostics, in colours on a terminal.
+pub(crate) fn print(sources: &Sources, diagnostics: &[Diagnostic]) {
+    let choice = if io::stderr().is_terminal() { ColorChoice::Auto } else { ColorChoice::Never };
+    // Nobody is left to be told when standard error is closed.
+    let _ = sources.write_all(diagnostics, &mut StandardStream::stderr(choice));
+}

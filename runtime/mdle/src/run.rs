@@ -1,0 +1,60 @@
+//! `mdle run`: compiles a plan, loads it and runs it.
+
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+use mdle_compiler::diagnostic::judged;
+use mdle_files::{Input, InputError, Settings, Target, read_plan};
+use mdle_host::{Call, Program};
+
+use crate::arguments::Run;
+use crate::failure::{self, Failure};
+use crate::targets::{self, Linked, Ready};
+
+/// Runs a plan; returns the exit status of the run.
+///
+/// # Errors
+/// The plan does not run.
+pub(crate) fn run(arguments: Run) -> Result<ExitCode, Failure> {
+    let settings = Settings::beside(&arguments.file)?;
+    let name = settings.name_of_target(arguments.target.as_deref()).ok_or(InputError::NoTarget)?;
+    let linked = targets::linked(&name).map_err(Failure::Usage)?;
+    let target = settings.target(arguments.target.as_deref())?;
+    let mut input = read_plan(&arguments.file, &target)?;
+    let (plan, ready) = compiled(&arguments, &linked, &target, &mut input)?;
+    let program = Program { plan: &plan, version: "" };
+    let given: Vec<_> = arguments.options.iter().map(|option| option.to_string_lossy().into_owned()).collect();
+    let mut options: Vec<OsString> = Vec::new();
+    for option in settings.run_options(arguments.target.as_deref(), &given, |_| Vec::new())? {
+        let call = Call { words: arguments.words.clone(), options: option.arguments.clone() };
+        (linked.check)(program, &call).map_err(|text| option.refused(&text))?;
+        options.extend(option.arguments);
+    }
+    options.extend(arguments.options);
+    drop(input);
+    Ok(ready.run(&plan, Call { words: arguments.words, options }))
+}
+
+/// Compiles the only plan to run and loads it; returns it with its name. Messages go to standard error.
+fn compiled(
+    arguments: &Run,
+    linked: &Linked,
+    target: &Target,
+    input: &mut Input,
+) -> Result<(String, Box<dyn Ready>), Failure> {
+    let wanted = arguments.plan.as_deref();
+    if let Some(name) = wanted {
+        input.must_have(name)?;
+    }
+    let (plans, diagnostics) = input.compile(&target.alphabet, wanted);
+    failure::print(&input.sources, &diagnostics);
+    if let Err(sentence) = judged(&diagnostics, arguments.deny_warnings) {
+        failure::error(&sentence);
+        return Err(Failure::Plan);
+    }
+    let named = plans.into_iter().map(|compiled| (compiled.plan.root.name, compiled.lowered));
+    let named = named.map(|(name, machine)| (name.clone(), (name, machine)));
+    let (name, machine) = input.only(named.collect())?;
+    let ready = (linked.load)(&machine, input, target)?;
+    Ok((name, ready))
+}

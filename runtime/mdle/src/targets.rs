@@ -1,0 +1,90 @@
+//! The robots that this program can run plans on.
+
+use std::process::ExitCode;
+use std::sync::Arc;
+
+use mdle_compiler::alphabet::did_you_mean;
+use mdle_compiler::fsm::Machine;
+use mdle_compiler::load::{self, LoadError, Loaded};
+use mdle_files::{Input, Target};
+use mdle_host::{Call, Program};
+use mdle_runtime::{Alphabet, Robot};
+
+/// A robot whose driver is part of this program.
+#[derive(Clone, Copy)]
+pub(crate) struct Linked {
+    /// Name of the target.
+    pub(crate) name: &'static str,
+    /// Loads a plan.
+    pub(crate) load: fn(&Machine, &Input, &Target) -> Result<Box<dyn Ready>, LoadError>,
+    /// Returns the message if a run has no such options.
+    pub(crate) check: fn(Program<'_>, &Call) -> Result<(), String>,
+}
+
+/// A plan that is ready to run.
+pub(crate) trait Ready {
+    /// Runs the plan of this name.
+    fn run(&self, name: &str, call: Call) -> ExitCode;
+}
+
+/// The robots.
+const LINKED: [Linked; 3] = [
+    Linked::new::<mdle_atrv::Target, mdle_atrv::alphabet::Alphabet>(),
+    Linked::new::<mdle_scout::Target, mdle_scout::alphabet::Alphabet>(),
+    Linked::new::<mdle_sim::Target, mdle_sim::alphabet::Alphabet>(),
+];
+
+/// Returns the robot of this name.
+///
+/// # Errors
+/// A sentence with the names that there are.
+pub(crate) fn linked(name: &str) -> Result<Linked, String> {
+    if let Some(linked) = LINKED.iter().find(|linked| linked.name == name) {
+        return Ok(*linked);
+    }
+    let known = LINKED.map(|linked| linked.name);
+    Err(format!(
+        "`mdle` has no target `{name}`{}\nhelp: its targets are {}; `mdlec run` builds the executable of a plan for a \
+         target of your own",
+        did_you_mean(name, &known),
+        known.join(", ")
+    ))
+}
+
+impl Linked {
+    const fn new<T, A>() -> Self
+    where
+        T: mdle_host::Target + 'static,
+        A: Alphabet<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input> + 'static,
+        Loaded<A>: Send + Sync,
+    {
+        Self { name: T::NAME, load: load::<T, A>, check: mdle_host::check_options::<T> }
+    }
+}
+
+/// A plan for the target `T`.
+struct PlanFor<T, A: Alphabet> {
+    loaded: Arc<Loaded<A>>,
+    target: std::marker::PhantomData<fn() -> T>,
+}
+
+impl<T, A> Ready for PlanFor<T, A>
+where
+    T: mdle_host::Target,
+    A: Alphabet<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>,
+    Loaded<A>: Send + Sync,
+{
+    fn run(&self, name: &str, call: Call) -> ExitCode {
+        mdle_host::run_called::<T, _>(name, call, || self.loaded.plan())
+    }
+}
+
+fn load<T, A>(machine: &Machine, input: &Input, target: &Target) -> Result<Box<dyn Ready>, LoadError>
+where
+    T: mdle_host::Target + 'static,
+    A: Alphabet<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input> + 'static,
+    Loaded<A>: Send + Sync,
+{
+    let loaded = Arc::new(load::load::<A>(machine, &input.sources, &target.alphabet)?);
+    Ok(Box::new(PlanFor::<T, A> { loaded, target: std::marker::PhantomData }))
+}
