@@ -7,7 +7,7 @@ use mdle_runtime::{Begin, Completes, Control, Law, Nanos, Ping, Radians, Radians
 
 use crate::gains::{Gains, fire_in_turn};
 
-/// The slowest turn, in rad/s: less would not get the wheels moving.
+/// Minimum turn rate, in rad/s: a lower one does not move the wheels.
 const SLOWEST: f64 = 0.08;
 /// Differences of opposite sign that lie no further apart than this, in metres, have equal ranges between them; further
 /// apart, one of the sonars looks past an edge, or has strayed.
@@ -229,7 +229,7 @@ mod tests {
         at: f64,
         /// The share of pings of the first and of the second sonar that bring nothing.
         misses: [f64; 2],
-        /// Greatest error of a range, in metres.
+        /// Maximum error of a range, in metres.
         error: f64,
         confirmation: usize,
     }

@@ -5,20 +5,20 @@ use mdle_runtime::{Meters, Nanos, PINGS_KEPT, Pose, Radians, SONARS, SonarId};
 
 /// A sonar listens for somebody if its axis is no further off the way ahead than this.
 const AHEAD: Radians = Radians::from_degrees(14.0);
-/// Least time between two echoes that are compared, so that their errors do not hide the way between them.
+/// Minimum time between two echoes that are compared: the difference of their ranges then exceeds their errors.
 const APART: Nanos = Nanos(200_000_000);
-/// Least speed of somebody who comes, in m/s; the robot drives round anything slower as round a fixed obstacle.
+/// Minimum speed of a person who approaches, in m/s; the robot avoids anything slower as a fixed obstacle.
 const SLOWEST: f64 = 0.3;
-/// Greatest speed of a person, in m/s; faster echoes are of two different things.
+/// Maximum speed of a person, in m/s; faster echoes belong to two different objects.
 const FASTEST: f64 = 2.0;
-/// Least way, in metres, by which the echoes of something that comes get nearer; less may be the error of a fixed
+/// Minimum decrease, in metres, of the range of an object that approaches; less may be the error of a fixed
 /// obstacle's ranges, which is 1.5 cm and a step of an inch.
 const NEARER: f64 = 0.1;
 
-/// Greatest distance across the way, in metres, between two echoes of one thing.
+/// Maximum lateral distance, in metres, between two echoes of one object.
 const ACROSS: f64 = 0.25;
 
-/// Greatest turn rate of the robot, in rad/s, between echoes that are compared: a wall that the edge of a cone just
+/// Maximum turn rate of the robot, in rad/s, between echoes that are compared: a wall that the edge of a cone just
 /// touches appears and disappears as the robot turns.
 const TURNS: f64 = 0.02;
 

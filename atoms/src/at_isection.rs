@@ -8,7 +8,7 @@ use crate::gains::fire_in_turn;
 /// The sonars that look front, left, back and right: the order in which the bits are written.
 const DIRECTIONS: [SonarId; 4] = [SonarId::new(0), SonarId::new(4), SonarId::new(8), SonarId::new(12)];
 
-/// Greatest angle between a ping's axis and a direction for the ping to count there: half the angle between two sonars
+/// Maximum angle between a ping's axis and a direction for the ping to count there: half the angle between two sonars
 /// and a little more, so that a robot that turns slowly always has one sonar in each direction.
 const WITHIN: Radians = Radians::from_degrees(14.0);
 /// Multiple of the range below which a direction is blocked; up to it a wall faces a diagonal.
@@ -72,7 +72,8 @@ fn blocked_in_turn<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<bool> {
     Some(near < y.blocked_within())
 }
 
-/// The smallest range of the two newest pings in the direction of a sonar now; infinite where both heard nothing.
+/// Returns the minimum range of the two newest pings in the present direction of a sonar; infinite if both heard
+/// nothing.
 ///
 /// `None` where too few looked there: one ping that hears something near is believed, one that does not opens no way.
 fn towards<Y: SonarRing>(y: &Y, direction: SonarId) -> Option<Meters> {

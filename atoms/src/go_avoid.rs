@@ -14,7 +14,7 @@ use crate::tangent::{Obstacles, Side, Wish};
 
 /// Distance from the goal below which it is reached.
 const ARRIVED: Meters = Meters(0.12);
-/// The fastest turn, in rad/s.
+/// Maximum turn rate, in rad/s.
 const FASTEST: f64 = 0.9;
 /// Angle off the chosen direction from which the robot turns on the spot.
 const ON_THE_SPOT: Radians = Radians::from_degrees(50.0);
@@ -35,7 +35,7 @@ const ASIDE: Radians = Radians::from_degrees(60.0);
 const ROOM: Meters = Meters(0.4);
 /// Time, in seconds, for which the robot keeps out of the way after somebody should have passed.
 const PASSES: f64 = 1.0;
-/// Longest time, in seconds, for which the robot keeps out of the way of somebody who does not come nearer any more.
+/// Maximum time, in seconds, for which the robot avoids a person who no longer approaches.
 const PASSES_MOST: f64 = 8.0;
 
 /// Drives to the point at a bearing and range from where the atom begins.

@@ -3,9 +3,9 @@
 use mdle_runtime::capability::{DiffDrive, Odometry};
 use mdle_runtime::{Nanos, Radians, RadiansPerSecond, Twist};
 
-/// The fastest turn, in rad/s.
+/// Maximum turn rate, in rad/s.
 const FASTEST: f64 = 0.8;
-/// Greatest part of the remaining angle that is turned before the law runs again: with more the robot would go too far.
+/// Maximum fraction of the remaining angle to turn before the law runs again: a larger one overshoots.
 const AT_ONCE: f64 = 0.5;
 /// Tolerance of the final heading.
 const NEAR: Radians = Radians::from_degrees(2.0);

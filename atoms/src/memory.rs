@@ -3,7 +3,7 @@
 use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, SonarId};
 
-/// Greatest number of places kept.
+/// Maximum number of places kept.
 pub(crate) const PLACES: usize = 96;
 /// Echoes from nearer to each other than this, in metres, are one place.
 const ONE_PLACE: f64 = 0.1;

@@ -21,7 +21,7 @@ const APART: f64 = 0.15;
 const ACROSS: f64 = 0.5;
 /// The points taken of what is heard, and those of what was heard before.
 const POINTS: usize = SONARS * (ARC.len() + EXTENDS.len()) + PLACES;
-/// Least distance kept around the body, whatever the cost, in metres.
+/// Minimum distance between the body and an obstacle, in metres.
 const MARGIN: f64 = 0.06;
 /// Cost of a way that lacks free length, in radians of detour for the whole look-ahead.
 const BLOCKED_COSTS: f64 = 6.0;
@@ -32,7 +32,7 @@ const CLOSE_COSTS: f64 = 0.9;
 const CHANGE_COSTS: f64 = 0.15;
 /// Cost of a change of direction on a detour, in radians of detour for each radian.
 const CHANGE_COSTS_ON_A_DETOUR: f64 = 0.6;
-/// Greatest angle of a detour from the goal's direction: beyond it the robot would go in circles.
+/// Maximum angle of a detour from the goal's direction: beyond it the robot would go in circles.
 const TURNED_MOST: Radians = Radians::from_degrees(215.0);
 /// Costs differ by less than this through the order in which they are added up.
 const ROUNDING: f64 = 1e-9;

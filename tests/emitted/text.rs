@@ -134,7 +134,7 @@ fn a_condition_of_many_operands_has_sixty_four_at_each_depth() {
     }
 }
 
-/// The most operands of `|` between two parentheses.
+/// Maximum number of operands of `|` between two parentheses.
 fn operands_at_one_depth(text: &str) -> usize {
     let mut open = vec![1];
     let mut most = 1;

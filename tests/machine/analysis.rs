@@ -36,7 +36,7 @@ mod recorded {
 const PLANS: u64 = 1000;
 /// Maximum number of combinations of quark values of which all are tried; of more, this many random ones are tried.
 const CHOICES: usize = 16;
-/// The most situations of a plan, if all choices are tried, and if they are not.
+/// Maximum number of situations of a plan, if all choices are tried, and if they are not.
 const SITUATIONS: [usize; 2] = [1000, 80];
 /// Steps between turns, in nanoseconds: zero, timers' own lengths and windows, and one longer than all timers.
 const STEPS: [u64; 4] = [0, 100_000_000, 1_000_000_000, 5_000_000_000];

@@ -11,7 +11,7 @@ use mdle_scout_emulator::wire;
 /// No reader keeps more bytes than this of what may still become something.
 const KEPT: usize = 1100;
 
-/// The bytes that come, and how many at once.
+/// Splits all bytes but the first, which gives the length of a piece less 1.
 fn in_pieces(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
     let (size, stream) =
         bytes.split_first().map_or((1, bytes), |(size, stream)| (1 + usize::from(*size) % 100, stream));

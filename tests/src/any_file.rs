@@ -18,7 +18,7 @@ use mdle_theory::theorem;
 use crate::any_text::text;
 use crate::pipeline::scripted;
 
-/// The most steps of the search for the plan of a machine.
+/// Maximum number of steps of the search for the plan of a machine.
 const STEPS: u64 = 2_000;
 
 /// Alphabets that targets share.

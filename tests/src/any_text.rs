@@ -23,11 +23,11 @@ use crate::random_script::script;
 static SIMULATOR: LazyLock<Alphabet> = LazyLock::new(|| alphabet(Some("sim")));
 static EVERYTHING: LazyLock<Alphabet> = LazyLock::new(|| alphabet(None));
 
-/// The most brackets of a plan of which Rust is emitted, and the most of one that is run.
+/// Maximum number of brackets of a plan of which Rust is emitted, and the most of one that is run.
 const EMITTED: usize = 1000;
 const RUN: usize = 100;
 
-/// The most turns of a run: each may make as many transitions as there are.
+/// Maximum number of turns of a run: each may make as many transitions as there are.
 const TURNS: usize = 6;
 
 /// Returns bytes as a text: each invalid sequence becomes one character.

@@ -15,7 +15,7 @@ pub struct QuarkValues {
     pub completed: Vec<bool>,
 }
 
-/// The most transitions of one turn.
+/// Maximum number of transitions of one turn.
 const TRANSITIONS: usize = 4096;
 
 /// A scope, a loop or an atom.

@@ -9,7 +9,7 @@ use mdle_compiler::fsm::{Machine, expand, lower};
 use mdle_compiler::syntax::Loader;
 use mdle_compiler::trace::{Counted, MatrixProduct, Script, Table, TraceLine, Tree, run};
 
-/// The most states of a plan whose expanded form is run as well.
+/// Maximum number of states of a plan whose expanded form is run as well.
 const EXPANDED: u64 = 2000;
 
 /// The one file that plans may use here, and its text.

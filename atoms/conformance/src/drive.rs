@@ -20,9 +20,9 @@ pub(super) const SECONDS: f64 = 2.0;
 /// Commanded speeds, in m/s and rad/s.
 pub(super) const V: f64 = 0.2;
 pub(super) const OMEGA: f64 = 0.4;
-/// Greatest motion of a body at rest, in metres and radians.
+/// Maximum motion of a body at rest, in metres and radians.
 const STANDS: (f64, f64) = (0.01, 0.02);
-/// Least braking of a body that is stopped, in m/s² and rad/s².
+/// Minimum braking of a body that is stopped, in m/s² and rad/s².
 const BRAKES: (f64, f64) = (0.5, 1.5);
 /// Part of the speeds in the alphabet's limits that the body has to reach.
 const REACHED: f64 = 0.9;

@@ -16,7 +16,7 @@ use super::{Out, Room, Stage, Verdict};
 const DONE: f64 = 5.0;
 /// Tolerance of the heading of `align`, in degrees; its ranges may be an inch off and a second late.
 const SQUARE: f64 = 8.0;
-/// The longest that a law may turn, in seconds.
+/// Maximum duration of a turn, in seconds.
 const TURNS: f64 = 25.0;
 /// Distance of the wall beside which `align` runs, in metres beyond the body, and half the wall's length.
 const WALL: (f64, f64) = (0.5, 1.8);

@@ -15,7 +15,7 @@ const NAME: &str = "bend.csv";
 static BEND: [Setpoint; 4] =
     [setpoint(0, 0.0, SPEED), setpoint(1, 0.0, SPEED), setpoint(3, 90.0, SPEED), setpoint(4, 90.0, SPEED)];
 const SPEED: f64 = 0.2;
-/// Greatest distance of the body from the end of the path, in metres and degrees: it has to accelerate and to stop.
+/// Maximum distance of the body from the end of the path, in metres and degrees: it has to accelerate and to stop.
 const ENDS: (f64, f64) = (0.1, 10.0);
 
 const fn setpoint(seconds: u64, degrees: f64, speed: f64) -> Setpoint {

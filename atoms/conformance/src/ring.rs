@@ -21,7 +21,7 @@ const WALLS: [f64; SONARS] =
 /// Half the width of a wall of an even number and of an odd one, for each metre of its distance: neighbours do not hear
 /// it.
 const HALF: [f64; 2] = [0.05, 0.08];
-/// Greatest age of a ping, in seconds: a full ring takes a second.
+/// Maximum age of a ping, in seconds: a full ring takes a second.
 const OLD: f64 = 2.0;
 /// Tolerance of the pose at which a ping was made, in metres and radians.
 const THERE: (f64, f64) = (0.06, 0.1);

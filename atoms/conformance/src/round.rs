@@ -8,12 +8,12 @@ use mdle_runtime::{Argument, Meters, MetersPerSecond, Pose, Radians};
 use super::trial::{Trial, Way};
 use super::{Out, Room, Stage, Verdict};
 
-/// Greatest distance from the goal at the end, in metres: 0.12 of the law's own, and the error of odometry.
+/// Maximum distance from the goal at the end, in metres: 0.12 of the law's own, and the error of odometry.
 const ARRIVED: f64 = 0.2;
 /// Distance of the goal, in metres, and the speed, in m/s.
 const RANGE: f64 = 1.0;
 const SPEED: f64 = 0.2;
-/// Greatest distance, in metres, at which a body touches a wall.
+/// Maximum distance, in metres, at which a body touches a wall.
 const TOUCHES: f64 = 0.002;
 
 fn arguments(degrees: f64, range: f64) -> [Argument<'static>; 3] {

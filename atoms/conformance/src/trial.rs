@@ -10,7 +10,7 @@ use mdle_runtime::{
 use super::room::AT;
 use super::{Out, Room, Stage, Supplied, Verdict, replay};
 
-/// Greatest distance of a robot from where the stage was to put it, in metres and radians.
+/// Maximum distance of a robot from where the stage was to put it, in metres and radians.
 const PUT: (f64, f64) = (0.02, 0.02);
 
 /// A robot in a room.

@@ -16,9 +16,9 @@
 //! Only its user has access to the cache. mdlec repairs damage in it: files of mdlec are compared byte by byte, build
 //! results by their hash, and where cargo cannot read the rest, everything is compiled again.
 //!
-//! An executable depends on the text of the plan, on mdlec, on the target, on Rust's version and on the path of the cache:
-//! not on the plan's folder, nor on earlier builds. Cargo puts the paths of packages into the symbols of their code, so
-//! that another cache gives other bytes.
+//! An executable depends on the text of the plan, on mdlec, on the target, on Rust's version and on the path of the
+//! cache: not on the plan's folder, nor on earlier builds. Cargo puts the paths of packages into the symbols of their
+//! code, so that another cache gives other bytes.
 //!
 //! Versions are those of mdlec's own lock file, flags are set here in every environment, and the paths of the cache, of
 //! cargo's home and of the user's home do not get into the executable.

@@ -44,8 +44,8 @@ pub fn worlds(target: &str) -> impl Iterator<Item = &'static str> {
     embedded::FILES.iter().filter_map(move |(file, _)| file.strip_prefix(&*folder)?.strip_suffix(".toml"))
 }
 
-/// Options of the executables for a built-in target, each with the placeholder of its value, which is empty for an option
-/// without one; `None` for a target that is no part of mdlec.
+/// Options of the executables for a built-in target, each with the placeholder of its value, which is empty for an
+/// option without one; `None` for a target that is no part of mdlec.
 pub fn options(target: &str) -> Option<Vec<(&'static str, &'static str)>> {
     let (folder, _) = builtin(target)?;
     let lines = text(&format!("{folder}/options.txt")).lines().filter(|line| !line.starts_with('#'));

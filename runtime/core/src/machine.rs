@@ -3,7 +3,7 @@
 
 use crate::{Begin, Cause, Cursor, Ending, Entries as _, Frame, Measured, Nanos, Output as _, Plan};
 
-/// The most transitions of one turn; the search for the next atom then goes on in the next turn.
+/// Maximum number of transitions of one turn; the search for the next atom then goes on in the next turn.
 pub const TRANSITIONS_PER_TURN: u32 = 4096;
 
 /// A transition of the machine.

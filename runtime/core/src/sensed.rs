@@ -7,7 +7,7 @@ use crate::{Meters, Nanos, Output, PathStore, Pings, Pose, SONARS, Setpoint, Son
 /// The output of one turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sensed {
-    /// The time of the exchange that brought it, counted from the first, as that of its pings.
+    /// Time of the exchange that brought this output, since the first exchange; pings have times on the same clock.
     pub at: Nanos,
     /// Pose of the robot by its own odometry.
     pub odometry: Pose,

@@ -9,11 +9,11 @@ use crate::call::Call;
 use crate::executable::TargetOptions;
 use crate::{Program, Quantity, paths, required};
 
-/// The shortest period: a turn must leave time for the exchange.
+/// Minimum period: a turn must leave time for the exchange.
 const PERIOD_LEAST: Duration = Duration::from_micros(100);
-/// The longest period: a robot that is commanded once a minute is not controlled.
+/// Maximum period: a robot that is commanded once a minute is not controlled.
 const PERIOD_MOST: Duration = Duration::from_secs(60);
-/// The longest timeout, some 31 years: far below what nanoseconds in 64 bits can count.
+/// Maximum timeout, some 31 years: far below what nanoseconds in 64 bits can count.
 const TIMEOUT_MOST: Duration = Duration::from_secs(1_000_000_000);
 
 /// The exit statuses and their meanings.

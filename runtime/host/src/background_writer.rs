@@ -19,9 +19,9 @@ const WAITING: usize = 1 << 20;
 const PIECE: usize = 1 << 16;
 /// Maximum size of a single write, in bytes: a reader that takes this much counts as one that reads.
 const CHUNK: usize = 1 << 13;
-/// The longest time that a file which must be complete may take nothing while a robot drives.
+/// Maximum time without progress on a file that must be complete, while a robot drives.
 const LAG: Duration = Duration::from_secs(5);
-/// The longest wait without a look at how long to wait.
+/// Maximum wait between two checks of the deadline.
 const LOOK: Duration = Duration::from_millis(20);
 
 /// The treatment of pieces for which a slow reader leaves no room while a robot drives.

@@ -41,7 +41,7 @@ pub struct Batch<R> {
     pub json: bool,
     /// Makes the robot of a seed, or returns why that failed.
     pub robot: Box<dyn Fn(u64) -> Result<R, String> + Send + Sync>,
-    /// The options with which the run of a seed is made alone.
+    /// Returns the options that repeat the run of a seed by itself.
     pub alone: Box<dyn Fn(u64) -> Vec<String> + Send + Sync>,
 }
 
@@ -180,7 +180,7 @@ fn work(batch: &Runs<'_>, terms: &Terms<'_>, next: &AtomicU64, done: Sender<Done
     }
 }
 
-/// Makes the run of a seed; `None` if a signal cut it short.
+/// Performs the run of a seed; `None` if a signal cut it short.
 fn one(batch: &Runs<'_>, seed: u64, terms: &Terms<'_>) -> Option<Done> {
     let mut run = Done { seed, outcome: Outcome::Ended, t: Nanos::ZERO, over: None, contacts: 0 };
     let mut drive = match shielded(|| (batch.drive)(seed)).unwrap_or_else(panicked) {

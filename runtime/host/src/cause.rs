@@ -14,7 +14,7 @@ use crate::transitions::Operand;
 
 /// Decimals of a value, unless more are needed to distinguish it from the value that it is compared with.
 const DECIMALS: usize = 2;
-/// The most decimals of a value.
+/// Maximum number of decimals of a value.
 const DECIMALS_MOST: usize = 9;
 
 /// Why a scope ended, as a report has it: `r1 = 0.38 m < 40cm (wall.mdle:7)`.

@@ -13,7 +13,7 @@ use crate::signals::Signals;
 use crate::timing::Timing;
 use crate::{Pace, Time, scheduling};
 
-/// The longest sleep without a look at the signals.
+/// Maximum sleep between two checks of the signals.
 const SLICE: Duration = Duration::from_millis(20);
 /// Maximum lateness that stepped time catches up, in nanoseconds. After more, as when the process was suspended, it
 /// goes on from now.
@@ -71,7 +71,7 @@ pub(crate) struct Clock<I> {
     place: u64,
     /// Start of the current turn, in real nanoseconds.
     begun: u64,
-    /// The longest time that a robot in real time may go without a command, in nanoseconds.
+    /// Maximum time between two commands to a robot in real time, in nanoseconds.
     longest_gap: u64,
     timing: Timing,
 }

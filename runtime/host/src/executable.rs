@@ -43,7 +43,7 @@ pub(crate) struct TargetOptions {
     pub(crate) time: fn(&ArgMatches) -> Result<Time, String>,
     pub(crate) files: fn(&ArgMatches) -> Vec<NamedFile>,
     pub(crate) answer: fn(&ArgMatches) -> Result<Option<String>, Refusal>,
-    /// The fastest that a path may ask the robot to drive; `None` if the target replays no paths.
+    /// Maximum speeds of a path; `None` if the target replays no paths.
     pub(crate) fastest: Option<Twist>,
     /// Returns `true` if the robot shows its run on standard output itself.
     pub(crate) screen: fn(&ArgMatches) -> bool,

@@ -55,7 +55,7 @@ fn regular(found: FileType) -> io::Result<()> {
     Err(io::Error::other(format!("it is a {what}; expected a regular file")))
 }
 
-/// A limit in the unit that it is a whole number of.
+/// Returns a size in words, in the largest unit in which it is a whole number.
 fn size(bytes: u64) -> String {
     if bytes.is_multiple_of(1_000_000) { format!("{} MB", bytes / 1_000_000) } else { format!("{bytes} bytes") }
 }

@@ -4,7 +4,7 @@ use mdle_runtime::OperandWords;
 
 use crate::Quantity;
 
-/// The greatest relative difference of two numbers that are the same: converting units may change the last digits.
+/// Maximum relative difference of two numbers that count as equal: converting units may change the last digits.
 const TOLERANCE: f64 = 1e-9;
 
 /// A word of a condition.

@@ -14,7 +14,7 @@ impl Passes {
         self.0.get(bracket as usize).copied().unwrap_or(1)
     }
 
-    /// Counts what begins with a transition.
+    /// Counts the passes of the loops that begin with a transition.
     pub(crate) fn step(&mut self, fsm: Fsm<'_>, transition: &Transition) {
         self.0.resize(fsm.brackets.len(), 1);
         let own = transition.atom.and_then(|atom| fsm.atoms.get(atom as usize));

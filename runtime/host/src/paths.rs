@@ -21,12 +21,12 @@ use crate::executable::TargetOptions;
 use crate::files::read_file;
 use crate::output_format::output_format;
 
-/// The largest file that is read, in bytes: at ten rows a second some eleven hours.
+/// Maximum size of a file that is read, in bytes: some eleven hours at ten rows a second.
 const LARGEST: u64 = 10_000_000;
 
 /// Functions and limits to replay and to record paths on a robot whose alphabet has the capability `paths`.
 pub struct Replays<R: Robot> {
-    /// The fastest that a path may ask the robot to drive, forwards or backwards, and to turn.
+    /// Maximum forward or backward speed and turn rate of a path.
     pub fastest: Twist,
     /// Hands the robot what the plan replays, before the first exchange: from then on each output has it.
     pub take: fn(&mut R, PathStore),

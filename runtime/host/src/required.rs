@@ -10,7 +10,7 @@ use crate::operand_text::{is_condition, is_operand};
 use crate::passes::outwards;
 use crate::report::Over;
 
-/// The least similarity, from 0 to 1, of a name that is proposed.
+/// Minimum similarity, from 0 to 1, of a name that is proposed.
 const SIMILAR: f64 = 0.75;
 
 /// The causes of `--require`; empty if any end will do.

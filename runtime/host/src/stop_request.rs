@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-/// The longest wait without a look at the request.
+/// Maximum wait between two checks of the request.
 const SLICE: Duration = Duration::from_millis(20);
 
 /// The request to end a run, which a signal makes. The default is one that nothing makes.

@@ -19,7 +19,7 @@ pub(crate) struct Summary<'a> {
     pub(crate) asked: u64,
     /// The first seed.
     pub(crate) first: u64,
-    /// The options with which the run of a seed is made alone.
+    /// Returns the options that repeat the run of a seed by itself.
     pub(crate) alone: &'a dyn Fn(u64) -> Vec<String>,
     /// Timeout of the runs, if no option limits them.
     pub(crate) timeout: Option<Duration>,

@@ -14,7 +14,7 @@ pub fn time_of(bytes: usize, speed: u32) -> Duration {
 /// Checks that turns of this period are long enough for their transmission, which takes `takes`.
 ///
 /// # Errors
-/// The sentence that says that they are not.
+/// Fails with a sentence for the operator if they are too short.
 pub fn carries(period: Duration, takes: Duration) -> Result<(), String> {
     if takes <= period {
         return Ok(());

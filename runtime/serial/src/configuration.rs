@@ -53,7 +53,7 @@ pub struct Key {
     pub help: &'static str,
     /// `false` if nobody has compared the default with a real robot.
     pub is_verified: bool,
-    /// The least and the greatest value of a number.
+    /// Minimum and maximum of a number.
     pub range: Option<(f64, f64)>,
 }
 
@@ -77,7 +77,7 @@ impl Key {
 
 /// The type of a value.
 pub trait Setting: Sized {
-    /// The type that it has in a file, and that its default is written in.
+    /// Type of the value in a file, and of its default.
     type Written: DeserializeOwned + fmt::Debug;
 
     /// Returns the value.

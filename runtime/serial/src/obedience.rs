@@ -15,7 +15,7 @@ const PART: f64 = 0.5;
 /// A side may be this far outside of the band: in m/s, and as a part of the fastest speed in the band.
 const ERROR: f64 = 0.05;
 const ERROR_PART: f64 = 0.2;
-/// The maximum time that a robot gets to stop.
+/// Maximum time for a robot to stop.
 const LONGEST: Duration = Duration::from_secs(5);
 /// The time that it may take until it begins to brake.
 const REACTION: Duration = Duration::from_millis(100);
@@ -23,7 +23,7 @@ const REACTION: Duration = Duration::from_millis(100);
 /// Compares measured speeds with commands, turn by turn.
 #[derive(Debug, Clone)]
 pub struct Obedience {
-    /// The longest time that the speeds may be outside of the band; zero for ever.
+    /// Maximum time for which the speeds may be outside the band; zero for no limit.
     limit: Nanos,
     /// Bands of the common speed of both sides, and of half their difference.
     forward: Band,

@@ -9,7 +9,7 @@ use serde::de::DeserializeOwned;
 
 use crate::configuration::{Key, Setting};
 
-/// The largest configuration that is read, in bytes.
+/// Maximum size of a configuration that is read, in bytes.
 const LARGEST: u64 = 1_000_000;
 
 /// A key with its value, and where that came from.

@@ -19,7 +19,7 @@ mdle_serial::configuration! {
     units_per_radian: f64 = 49_784.5, in 1000.0..=1e6, "" "what the controller counts", unverified;
     /// Sonar's counts per metre.
     counts_per_metre: f64 = 1550.0, in 100.0..=10_000.0, "" "what a sonar counts", unverified;
-    /// The fastest that a side may go, in m/s.
+    /// Maximum speed of a side, in m/s.
     fastest: f64 = 1.2, in 0.01..=1.5, "m/s" "of a side", unverified;
     /// The distance between the sides, as laws are to take it, in metres.
     wheel_base: f64 = 0.4, in 0.1..=1.0, "m" "between the sides", unverified;
@@ -51,9 +51,9 @@ mdle_serial::configuration! {
     status: u64 = 1000, in 200..=60_000, "ms" "between two questions for its brake";
     /// Maximum time without a position report, in milliseconds.
     answer: u64 = 300, in 50..=400, "ms" "that it may say nothing";
-    /// The longest time between two reports of a bumper, in milliseconds; 0 for ever.
+    /// Maximum time between two reports of a bumper, in milliseconds; 0 for no limit.
     inputs: u64 = 1000, in 0..=60_000, "ms" "that a bumper may say nothing, 0 for ever", unverified;
-    /// The longest time in which the robot moves faster than commanded, or in the opposite direction, in milliseconds;
+    /// Maximum time for which the robot moves faster than commanded, or in the opposite direction, in milliseconds;
     /// 0 for no limit.
     disobey: u64 = 500, in 0..=60_000,
         "ms" "that it may move faster than commanded, or in the opposite direction, 0 for no limit", unverified;

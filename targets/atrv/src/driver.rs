@@ -29,7 +29,7 @@ const STARTING: Duration = Duration::from_millis(1000);
 const STOPPING: Duration = Duration::from_millis(800);
 /// Maximum time in lockstep for a report during a stop, and for the line to accept the last commands.
 const ANSWER: Duration = Duration::from_millis(150);
-/// The longest time from the command to brake until the robot reports that its brake is set.
+/// Maximum time from the command to brake until the robot reports that its brake is set.
 const BRAKING: Duration = Duration::from_millis(500);
 /// The time between two commands to brake.
 const AGAIN: Duration = Duration::from_millis(100);

@@ -15,7 +15,7 @@ const END: u8 = 0x03;
 const LITERAL: u8 = 0x00;
 /// Port, id, opcode and length.
 const HEAD: usize = 4;
-/// The longest packet: its head, 255 bytes of data, the check.
+/// Maximum length of a packet: its head, 255 bytes of data, the check.
 const LONGEST: usize = HEAD + 255 + 1;
 /// Maximum number of data bytes of a packet that is written.
 const MOST: usize = 32;

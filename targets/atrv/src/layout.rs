@@ -2,7 +2,7 @@
 
 use mdle_runtime::SONARS;
 
-/// The most sonars that an ATRV-mini has.
+/// Maximum number of sonars that an ATRV-mini has.
 pub(crate) const MOST: usize = 24;
 /// The distance from the centre at which laws take the sonars to be, in metres.
 pub(crate) const RING_RADIUS: f64 = 0.28;

@@ -29,7 +29,7 @@ pub(crate) struct Hearing {
     told: Option<Instant>,
     /// Fault found since the last position report.
     trouble: Option<Fault>,
-    /// The longest time between two answers about its brake.
+    /// Maximum time between two reports of the brake.
     unanswered: Nanos,
 }
 

@@ -9,7 +9,7 @@ use mdle_host::Quantity;
 
 /// The latest time at which a fault can begin.
 const LATEST: Duration = Duration::from_secs(1_000_000);
-/// The largest number that a fault takes: bytes of noise, milliseconds of delay.
+/// Maximum number of a fault: bytes of noise, milliseconds of delay.
 const MOST: u32 = 60_000;
 
 /// A fault of the line, or of the body.
@@ -23,7 +23,7 @@ pub enum Fault {
     Check,
     /// Each frame but every third is lost.
     Lose,
-    /// Each frame comes twice.
+    /// Each frame is sent twice.
     Double,
     /// Each frame comes this many milliseconds late.
     Late(u32),

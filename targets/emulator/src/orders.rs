@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// The most orders that are kept.
+/// Maximum number of orders that are kept.
 const KEPT: usize = 64;
 
 /// The meaning of a motion command.

@@ -19,7 +19,7 @@ use crate::port::Port;
 use crate::serve::{Embodied, Emulated, Pace};
 use crate::several::{Seat, Several};
 
-/// The largest file of a world that is read, in bytes.
+/// Maximum size of the file of a world, in bytes.
 const LARGEST: u64 = 64_000_000;
 
 /// The options of all robot emulators.

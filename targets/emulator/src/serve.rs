@@ -10,7 +10,7 @@ use crate::port::Port;
 
 /// A step of the world in real time.
 pub const STEP: Duration = Duration::from_millis(10);
-/// The longest wait without a look at whether to go on.
+/// Maximum wait between two checks of the request to stop.
 pub(crate) const SLICE: Duration = Duration::from_millis(5);
 
 /// A robot emulator: its language and its body.

@@ -21,7 +21,7 @@ pub enum Command {
     Watchdog(u8),
     /// Ping with these sonars, one after the other, at an interval given in units of 4 ms; 255 ends the list (CONF_SN).
     Sonars(u8, [u8; SONARS]),
-    /// The greatest accelerations of the right and the left wheel, a tenth of an inch per second squared (AC).
+    /// Maximum accelerations of the right and the left wheel, a tenth of an inch per second squared (AC).
     Accelerations(u16, u16),
     /// The speeds of the right and the left wheel (VM).
     Velocities(i16, i16),

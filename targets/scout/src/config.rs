@@ -12,9 +12,9 @@ mdle_serial::configuration! {
     /// Properties of one robot.
     Config;
 
-    /// The fastest that a wheel may go, in m/s.
+    /// Maximum speed of a wheel, in m/s.
     fastest: f64 = 1.0, in 0.01..=1.0, "m/s" "of a wheel", unverified;
-    /// The greatest acceleration of a wheel, in m/s².
+    /// Maximum acceleration of a wheel, in m/s².
     acceleration: f64 = 2.0, in 0.1..=10.0, "m/s²" "of a wheel", unverified;
     /// Time without a command after which the robot stops itself, in seconds.
     watchdog: u8 = 1, in 1..=60, "s" "without a command until the robot stops itself";
@@ -24,7 +24,7 @@ mdle_serial::configuration! {
     stale: u64 = 500, in 0..=60_000, "ms" "that its clock may stand, 0 for ever", unverified;
     /// Maximum distance that the robot drives while its sonars report the same ranges, in metres; 0 for no limit.
     frozen: f64 = 1.0, in 0.0..=100.0, "m" "of way on which its sonars may say the same, 0 for ever";
-    /// The longest time in which the robot moves faster than commanded, or in the opposite direction, in milliseconds;
+    /// Maximum time for which the robot moves faster than commanded, or in the opposite direction, in milliseconds;
     /// 0 for no limit.
     disobey: u64 = 500, in 0..=60_000,
         "ms" "that it may move faster than commanded, or in the opposite direction, 0 for no limit", unverified;

@@ -9,7 +9,7 @@ pub(crate) const START: u8 = 0x01;
 const END: u8 = 0x5C;
 /// Number of a frame's bytes besides its arguments: start, two bytes of length, type, sum, end.
 pub(crate) const AROUND: usize = 6;
-/// The longest length that is believed: no reply of a Scout comes near it, and a garbled length must not be waited for.
+/// Maximum length of a reply that is accepted: a garbled length must not be waited for, and replies are far shorter.
 const LONGEST: usize = 255;
 /// Maximum number of argument bytes: type and sum count to the length.
 const MOST: usize = LONGEST - 2;

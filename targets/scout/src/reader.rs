@@ -2,7 +2,7 @@
 
 use crate::frame::{Frame, Garbled, START};
 
-/// The most bytes that are read from the line at once.
+/// Maximum number of bytes that are read from the line at once.
 pub(crate) const CHUNK: usize = 512;
 
 /// The bytes received since a command was sent, and the frames in them.

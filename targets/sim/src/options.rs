@@ -8,7 +8,7 @@ use mdle_host::clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 use mdle_host::{NamedFile, Pace, Time, output_format, read_file};
 use mdle_simulator::{Body, Goal, Make, MapHeader, PARTS, Start, StartNoise, World};
 
-/// The largest file of a world or a map that is read, in bytes.
+/// Maximum size of the file of a world or a map, in bytes.
 const LARGEST: u64 = 64_000_000;
 
 /// Adds the options of the simulator to `command`.

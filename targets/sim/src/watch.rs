@@ -19,7 +19,7 @@ pub(crate) fn leave_screen() {
     screen::leave_at_once();
 }
 
-/// Least time from one picture to the next: nobody sees faster changes.
+/// Minimum time between two pictures: nobody sees faster changes.
 const EVERY: Duration = Duration::from_millis(50);
 
 /// A live view.

@@ -15,7 +15,7 @@ struct Driven {
     /// Ahead, and to the left.
     ahead: f64,
     aside: f64,
-    /// The farthest, on the side to which it was to go.
+    /// Maximum distance on the intended side.
     furthest: f64,
     /// Number of changes between ahead and back.
     hunts: u32,

@@ -14,7 +14,7 @@ use mdle_sim::{Body, Make, Sensed, Simulated, World};
 struct Turned {
     /// Total turn, counter-clockwise positive.
     by: f64,
-    /// Greatest angle from the heading at the start, on the side of the turn.
+    /// Maximum angle from the heading at the start, on the side of the turn.
     furthest: f64,
     seconds: f64,
 }

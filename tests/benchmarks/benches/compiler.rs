@@ -22,7 +22,7 @@ struct Cost {
     wall: Duration,
     /// Processor time in user mode, in seconds.
     user: f64,
-    /// The most that was in memory at one time, in kB.
+    /// Maximum memory of the process, in kB.
     memory: u64,
 }
 
@@ -106,7 +106,7 @@ fn run(mdlec: &Path, file: &Path, arguments: &[&str]) -> Cost {
     Cost { wall: start.elapsed(), user: used_by_children() - used, memory }
 }
 
-/// The most memory that a process has had, in kB, if it still runs.
+/// Maximum memory that a process has had, in kB, if it still runs.
 fn most_memory(process: u32) -> Option<u64> {
     let status = fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

@@ -1,4 +1,4 @@
-//! An emulated robot whose real way is taken down, and what can happen to it besides `--fault`.
+//! An emulated robot whose true path is recorded, and events that `--fault` does not cover.
 
 use std::cell::RefCell;
 use std::process::Child;
@@ -114,7 +114,7 @@ impl<'a, R: Emulated> Watched<'a, R> {
         self.happening == happening && self.age.checked_sub(BEGINS).is_some_and(|since| since < lasts)
     }
 
-    /// Lets the robot move on while a driver waits without an answer by its own clock, although in lockstep no command
+    /// Keeps the robot moving while a driver waits without an answer by its own clock, although in lockstep no command
     /// lets time pass. The driver waits for an end of garbage as for an end of silence, and gives up the first time.
     fn waited(&mut self) {
         let in_vain = self.told.replace(Instant::now()).is_some_and(|told| told.elapsed() >= IN_VAIN);

@@ -17,7 +17,7 @@ const PERIOD: Duration = Duration::from_millis(100);
 pub(crate) const LOCKSTEP: Pace = Pace::Lockstep(PERIOD);
 /// A robot that moves less than this in a period is at rest, in metres.
 pub(crate) const AT_REST: f64 = 0.001;
-/// No machine is slower than this.
+/// Time after which a test fails; every machine is faster.
 const SLOW: Duration = Duration::from_secs(120);
 const ROOM: &str =
     "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[9, -9], [9, 9], [-9, 9], [-9, -9], [9, -9]]";

@@ -24,7 +24,7 @@ const ROOM: &str =
     "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[4, -2], [4, 2], [-2, 2], [-2, -2], [4, -2]]";
 /// Time of the robot's world at which faults begin: it drives by then, and for two seconds more.
 pub(crate) const BEGINS: Duration = Duration::from_millis(3500);
-/// No machine is slower than this.
+/// Time after which a test fails; every machine is faster.
 const SLOW: Duration = Duration::from_secs(30);
 
 /// An emulated robot with what a test asks of it.

@@ -21,7 +21,7 @@ pub(crate) struct Definition {
     crossing: Vec<Set>,
     /// For each family of loops, and each row of destinations, the sets of runs that it can be cut into.
     cuts: Vec<Vec<Vec<Set>>>,
-    /// For each row of destinations, the families in which it can be cut.
+    /// Ways to cut each row of destinations, as families of sets.
     families: Vec<Vec<u64>>,
     /// For each numbering, the place of each atom, and the renumbered row of each row.
     numberings: Vec<(Vec<usize>, Vec<usize>)>,

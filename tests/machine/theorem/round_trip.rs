@@ -17,7 +17,7 @@ use super::loops::plan_of_loops;
 /// Number of plans that make the round trip.
 const PLANS: u64 = 1000;
 
-/// The most states of a plan that does.
+/// Maximum number of states of a plan that is decompiled.
 const STATES: usize = 200;
 
 /// Maximum number of steps of the search.

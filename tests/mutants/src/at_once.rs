@@ -17,7 +17,7 @@ use crate::trial::{FAST, Outcome, RUNTIME, TESTS, cargo, environment};
 const PATIENCE: Duration = Duration::from_secs(5);
 /// Duration of a wait after which a test hangs.
 const ENDLESS: Duration = Duration::from_secs(1800);
-/// The most memory of a process, in KiB.
+/// Maximum memory of a process, in KiB.
 const MEMORY: &str = "6291456";
 const KILLED: i32 = 9;
 const OUT_OF_TIME: i32 = 24;

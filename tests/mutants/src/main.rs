@@ -42,7 +42,7 @@ struct Options {
     /// Try this many, other ones with every seed.
     #[arg(long, default_value_t = 5, conflicts_with = "all")]
     count: usize,
-    /// What decides which; the hash of the commit if it is not given.
+    /// Random seed that selects the mutants; the hash of the commit by default.
     #[arg(long)]
     seed: Option<u64>,
     /// Only mutants whose lines, as they are printed, contain this.

@@ -50,7 +50,7 @@ pub(crate) fn name(test: usize) -> String {
 const PATIENCE: Duration = Duration::from_secs(30);
 /// A build that takes longer hangs.
 const BUILD: Duration = Duration::from_secs(600);
-/// The most memory of a process, in KiB: a fault may fill all there is.
+/// Maximum memory of a process, in KiB: a fault may fill all there is.
 const MEMORY: &str = "8388608";
 
 /// Result of a mutant.

@@ -154,8 +154,8 @@ impl<'l> Constants<'l> {
         self.alone.is_possible(&wanted.collect::<Vec<_>>(), &BTreeMap::new())
     }
 
-    /// Text of an operand of the interrupt's OR, as it is written if the interrupt's text has as many operands: `wait inf`
-    /// is `null` in the condition.
+    /// Text of an operand of the interrupt's OR, as it is written if the interrupt's text has as many operands: `wait
+    /// inf` is `null` in the condition.
     fn written(&self, operand: &Condition, interrupt: &Interrupt) -> String {
         let operands = interrupt.condition.operands();
         let texts = operands_of(&interrupt.text);

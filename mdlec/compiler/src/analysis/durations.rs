@@ -9,7 +9,7 @@ use super::walk::{Found, Reach};
 use crate::fsm::{ElementKind, Machine};
 use crate::plan::Condition;
 
-/// The longest time of a plan.
+/// Maximum duration of a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Longest {
     /// At most these nanoseconds plus this number of times from one turn to the next.

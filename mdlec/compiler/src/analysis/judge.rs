@@ -52,7 +52,7 @@ impl<'l> Walk<'l> {
 
     /// The nanoseconds after which an operand can end its scope at the earliest; `None` if it cannot.
     fn earliest(&self, operand: &'l Condition, number: u32) -> Option<u64> {
-        /// The most timers of which every order with the present is tried.
+        /// Maximum number of timers of which every order with the present is tried.
         const TIMERS: usize = 8;
         let asked = [Wanted { any: vec![self.read(operand, number, When::Later)], fired: true }];
         let mut variables = BTreeSet::new();

@@ -12,7 +12,7 @@ use crate::fsm::Machine;
 use crate::plan::families::{Family, Readings, family};
 use crate::plan::{Condition, QuarkId};
 
-/// The most conditions around a place that are looked at for each variable of a question.
+/// Maximum number of conditions around a place that are looked at for each variable of a question.
 const CLAUSES: usize = 8;
 
 /// Question about some conditions: that one of them has fired, or that they all have not.

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::{Analysis, AtomAnswer, Duration, Reach, ScopeAnswer};
 
-/// The most scopes that are named for what ends an atom.
+/// Maximum number of scopes that are named for what ends an atom.
 const AROUND: usize = 3;
 
 impl Analysis {

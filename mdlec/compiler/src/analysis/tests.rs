@@ -34,7 +34,7 @@ fn atoms(text: &str) -> Vec<(Reach, String)> {
     analysis.atoms.into_iter().map(|atom| (atom.reach, atom.ended_by.join(", "))).collect()
 }
 
-/// The shortest and the longest time in seconds, and the turns beyond that.
+/// Returns the minimum and the maximum duration in seconds, and the turns in addition to the latter.
 fn durations(text: &str) -> (Option<f64>, Option<f64>, Option<u64>) {
     let analysis = analyze(&compiled(text)[0].lowered);
     (analysis.shortest, analysis.longest.seconds, analysis.longest.turns)

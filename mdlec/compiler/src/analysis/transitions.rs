@@ -23,7 +23,7 @@ pub(super) struct Most {
 
 /// Counts the transitions of a machine's longest turn.
 pub(super) fn most(machine: &Machine) -> Most {
-    /// The most quarks of which every choice is counted, and the most brackets times choices.
+    /// Maximum number of quarks of which every choice is counted, and of brackets times choices.
     const QUARKS: usize = 8;
     const WORK: usize = 2_000_000;
     let mut quarks: Vec<QuarkId> = Vec::new();

@@ -67,8 +67,8 @@ pub struct RecordPlace {
 /// The sizes of what a machine keeps from turn to turn.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Sizes {
-    /// The most memories of a level of scopes: those of RISING in the scope's interrupt, and after them the facts of
-    /// its record. All are empty when the scope is entered.
+    /// Maximum number of memories of a level of scopes: those of RISING in the scope's interrupt, and after them the
+    /// facts of its record. All are empty when the scope is entered.
     pub memories: usize,
     /// The levels of scopes down to the last one that has a `wait`, a `way` or a `FRAME here`: nothing is kept of the
     /// entry of those below.
@@ -76,6 +76,6 @@ pub struct Sizes {
     /// `true` if the machine keeps odometer and heading at the entry of scopes, and not the time alone: where there is
     /// a `way` or a `FRAME here`.
     pub stamps: bool,
-    /// The most loops that enclose an atom.
+    /// Maximum number of loops that enclose an atom.
     pub slots: usize,
 }

@@ -4,9 +4,10 @@ use super::lower;
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::plan::{Loop, Node, Nondegenerate, Part, Scope};
 
-/// The most states that an expanded form is made for.
+/// Maximum number of states that an expanded form is made for.
 const EXPANDED: u64 = 100_000;
-/// The most parts of its conditions, and the most bytes of their texts and of names, unless the plan has more itself.
+/// Maximum number of parts of its conditions, and of bytes of their texts and of names, unless the plan has more
+/// itself.
 const PARTS: u64 = 1 << 20;
 const TEXT: u64 = 1 << 26;
 

@@ -10,7 +10,7 @@ use super::{Machine, observation1, validate};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::plan::{self, Mark, Node, Nondegenerate, Record, Scope};
 
-/// The most states a plan may have: numbers up to here are exact in JSON as well.
+/// Maximum number of states of a plan: numbers up to here are exact in JSON as well.
 pub const STATES: u64 = 1 << 53;
 
 /// Lowers a plan, and validates the machine against it.

@@ -12,7 +12,7 @@ use crate::fsm::{Atom, Element, ElementKind, Machine, Visit};
 /// Maximum number of letters in a line of a label; `LINES` is the maximum number of its lines.
 const LETTERS: usize = 30;
 const LINES: usize = 3;
-/// The most edges: loops that end together have one each.
+/// Maximum number of edges: loops that end together have one each.
 const EDGES: usize = 10_000;
 
 /// The plan in Graphviz's language.

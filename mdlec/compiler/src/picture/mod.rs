@@ -22,7 +22,7 @@ pub use svg::svg;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::fsm::Machine;
 
-/// The most atoms, and the most scopes and loops, that a picture shows: a person does not find his way in more.
+/// Maximum number of atoms, and of scopes and loops, that a picture shows: a person does not find his way in more.
 const SHOWN: usize = 1000;
 
 /// Refuses a machine with too many atoms, or scopes and loops, for a picture.

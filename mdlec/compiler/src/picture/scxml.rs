@@ -17,7 +17,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::fsm::{Matrices, Transition, matrices};
 use crate::plan::{Condition, Mark, Nondegenerate, Plan, Quark, RecordId};
 
-/// The longest text, in bytes.
+/// Maximum length of the text, in bytes.
 const LONGEST: usize = 64 << 20;
 /// Value of `n`, the number of transitions in this turn, before the first turn.
 const BEFORE: u32 = TRANSITIONS_PER_TURN + 1;

@@ -5,7 +5,7 @@ use std::mem;
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
 use quote::quote;
 
-/// The most elements of a list that are laid out at one time.
+/// Maximum number of elements of a list that are laid out at one time.
 const PIECE: usize = 256;
 /// The columns of a line, as prettyplease fills it.
 const WIDTH: usize = 89;

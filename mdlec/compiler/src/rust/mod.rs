@@ -49,7 +49,8 @@ impl Shape {
     /// Maximum number of scopes, loops and atoms of a plan that is emitted as code and not as tables: about what rustc
     /// compiles in half a second.
     const CODE: usize = 64;
-    /// The most parts of all conditions of a plan that becomes code: rustc takes another half a second for these.
+    /// Maximum number of parts of all conditions of a plan that becomes code: rustc takes another half a second for
+    /// these.
     const PARTS: usize = 512;
 
     /// The shape that suits a plan.
@@ -60,7 +61,8 @@ impl Shape {
     }
 }
 
-/// The most scopes, loops, atoms and parts of conditions of a plan that is emitted: rustc takes minutes for more.
+/// Maximum number of scopes, loops, atoms and parts of conditions of a plan that is emitted: rustc takes minutes for
+/// more.
 const EMITTED: usize = 1 << 18;
 
 /// Checks that a plan, which is defined at `place`, is not too large to be emitted.

@@ -2,9 +2,10 @@
 
 use super::terms::{Extent, Term, Terms};
 
-/// The most states whose matrices are printed in the paper's notation: more do not fit a line beside each other.
+/// Maximum number of states whose matrices are printed in the paper's notation: more do not fit a line beside each
+/// other.
 const STATES: usize = 16;
-/// The longest line, in characters.
+/// Maximum length of a line, in characters.
 const WIDTH: usize = 100;
 
 /// Returns the equation with the meaning of its symbols; `None` for a plan with more states than people can read
@@ -14,7 +15,7 @@ pub fn equation(terms: &Terms<'_>) -> Option<String> {
     (terms.states() <= STATES).then(|| format!("{}\n{}", sum(terms), symbols(terms)))
 }
 
-/// The most states that [`equation`] prints.
+/// Maximum number of states that [`equation`] prints.
 #[must_use]
 pub fn most_states() -> usize {
     STATES

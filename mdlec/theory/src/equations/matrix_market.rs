@@ -8,9 +8,9 @@ use super::terms::{Extent, Term, Terms};
 
 /// The version of the list.
 const VERSION: u32 = 1;
-/// The most ones that all files have together: each is a line.
+/// Maximum number of ones that all files have together: each is a line.
 const ONES: usize = 10_000_000;
-/// The longest comment, in characters: a line of a MatrixMarket file has at most 1024 bytes.
+/// Maximum length of a comment, in characters: a line of a MatrixMarket file has at most 1024 bytes.
 const COMMENT: usize = 200;
 
 /// The files of a plan's matrices.

@@ -58,7 +58,7 @@ pub struct Atrv {
     silence: Duration,
     /// Time since the robot was switched on.
     age: Duration,
-    /// Set to `true` while the emergency stop is pressed.
+    /// `true` while the emergency stop is pressed.
     pub emergency: bool,
     /// Ailments that the robot suffers from.
     ailments: Vec<Ailment>,

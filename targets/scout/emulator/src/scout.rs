@@ -45,7 +45,7 @@ pub struct Scout {
     silence: Duration,
     /// Time since the robot was switched on.
     age: Duration,
-    /// Set to `true` while the emergency stop is pressed.
+    /// `true` while the emergency stop is pressed.
     pub emergency: bool,
     /// Ailments: a stuck right wheel, a dead front sonar, a pressed first bumper, a low battery, a plugged charger, and
     /// sonars that do not ping.

@@ -17,12 +17,12 @@ use odometry::Odometry;
 
 /// The radius of the disc that is a Scout, in metres.
 pub(crate) const RADIUS: f64 = 0.205;
-/// The longest step of the integration, in seconds: little more than a centimetre of way, so no wall is stepped over.
+/// Maximum step of the integration, in seconds: the robot moves about a centimetre in it, less than any wall is thick.
 pub(crate) const STEP: f64 = 0.01;
-/// Greatest distance, in metres, at which the bumper feels a wall.
+/// Maximum distance, in metres, at which the bumper feels a wall.
 const FEELS: f64 = 0.001;
-/// Least part of the forward speed that a wall must leave for the wheels to go on turning unchanged: that of a wall met
-/// at 45°.
+/// Minimum fraction of the forward speed that contact with a wall must leave so that the wheels keep turning: that at a
+/// wall met at 45°.
 const GLANCES: f64 = 0.5;
 /// Range of the search for walls, in metres beyond the body: the body moves as far as the search has found free without
 /// another one.

@@ -4,7 +4,7 @@ use mdle_runtime::{Meters, Pose, Radians};
 
 use crate::world::{Place, World};
 
-/// The most that the heading of a robot on its charger may be off, to either side.
+/// Maximum error of the heading of a robot on its charger, to either side.
 const HEADING: Radians = Radians::from_degrees(15.0);
 
 /// A charger on the floor.
@@ -12,7 +12,7 @@ const HEADING: Radians = Radians::from_degrees(15.0);
 pub struct Charger {
     /// The centre of a robot on the charger, in metres, and its heading.
     pub pose: Pose,
-    /// The greatest distance of the robot's centre from there, in metres; above 0.
+    /// Maximum distance of the robot's centre from there, in metres; above 0.
     pub reach: f64,
 }
 

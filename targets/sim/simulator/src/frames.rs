@@ -4,7 +4,7 @@ use mdle_runtime::{Nanos, Pose, SONARS};
 
 use crate::world::Place;
 
-/// The most moments kept; when there are as many, every second one goes.
+/// Maximum number of moments kept; at this number every second one is removed.
 pub(crate) const FRAMES_MOST: usize = 800;
 
 /// A moment.

@@ -24,9 +24,9 @@ pub struct Goal {
 pub enum Zone {
     /// A rectangle along the axes of the floor.
     Rectangle {
-        /// Least coordinates.
+        /// Minimum coordinates.
         min: Place,
-        /// Greatest coordinates.
+        /// Maximum coordinates.
         max: Place,
     },
     /// A circle.
@@ -81,7 +81,7 @@ impl Goal {
 }
 
 impl Zone {
-    /// The least and the greatest coordinates.
+    /// Returns the corners with the minimum and the maximum coordinates.
     #[must_use]
     pub fn corners(&self) -> [Place; 2] {
         match *self {

@@ -8,7 +8,7 @@ use crate::world::Place;
 
 /// Cells for each segment, about: more are faster and take more memory.
 const CELLS_FOR_EACH: f64 = 3.0;
-/// The most cells along one axis.
+/// Maximum number of cells along one axis.
 const CELLS_MOST: f64 = 4096.0;
 /// The cells that a segment of mean length crosses at most: a world of long walls gets larger cells.
 const CROSSED_MOST: f64 = 8.0;

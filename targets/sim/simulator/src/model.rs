@@ -40,7 +40,7 @@ pub enum Part {
     Lobe,
     /// Surfaces that reflect like mirrors: without it they are heard from any angle.
     Specular,
-    /// The least range: without it things are heard however near.
+    /// Minimum range: without it the sonars hear objects at any distance.
     Minimum,
     /// The steps in which ranges come: without them ranges are exact.
     Steps,
@@ -83,7 +83,7 @@ pub(crate) struct Drive {
     pub(crate) form: Form,
     /// The distance between the wheels.
     pub(crate) wheel_base: f64,
-    /// Greatest speed of a wheel.
+    /// Maximum speed of a wheel.
     pub(crate) fastest: f64,
     /// Acceleration of a wheel.
     pub(crate) acceleration: f64,
@@ -114,9 +114,10 @@ pub(crate) struct Hearing {
     pub(crate) ring_radius: f64,
     /// Angle of the outermost rays from the axis.
     pub(crate) half_cone: Radians,
-    /// Greatest angle off the axis at which something that faces the sonar is heard; `None`: as far as there are rays.
+    /// Maximum angle off the axis at which something that faces the sonar is heard; `None` for the angle of the
+    /// outermost ray.
     pub(crate) lobe: Option<Radians>,
-    /// Greatest angle between the axis and the normal of a surface on it at which the surface is heard; `None`: any
+    /// Maximum angle between the axis and the normal of a surface on it at which the surface is heard; `None`: any
     /// angle.
     pub(crate) facing: Option<Radians>,
     pub(crate) least: f64,
@@ -125,7 +126,7 @@ pub(crate) struct Hearing {
     pub(crate) step: f64,
     /// The spread of a range's error.
     pub(crate) spread: f64,
-    /// Greatest common error of all ranges of a run, as a part: the air's temperature.
+    /// Maximum common error of all ranges of a run, as a fraction: it depends on the temperature of the air.
     pub(crate) scale: f64,
     /// Standard deviation of the loudness of an echo, as a part of the loudness needed to hear it.
     pub(crate) fading: f64,

@@ -8,7 +8,7 @@ use crate::grid::{Hit, Segment};
 use crate::surfaces::{Ends, Surface, apart, ends, surface};
 use crate::world::{Outline, Place};
 
-/// Least distance to which something approaches the robot, in metres: the bumper feels it.
+/// Minimum distance to which a moving object approaches the robot, in metres: the bumper feels it.
 const STOPS_AT: f64 = 1e-4;
 
 /// Something that moves.

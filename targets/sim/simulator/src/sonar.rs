@@ -176,7 +176,7 @@ fn stepped(range: f64, step: f64) -> f64 {
     if step > 0.0 { libm::floor(range / step + 1e-9) * step } else { range }
 }
 
-/// The least range that a transducer of this sonar heard last.
+/// Returns the minimum of the ranges that the transducers of this sonar heard last.
 fn nearest(hearing: &Hearing, ranges: &[Option<f64>], sonar: usize) -> Option<Meters> {
     let speaking = hearing.transducers.iter().zip(ranges).filter(|(transducer, _)| transducer.sonar.number() == sonar);
     speaking.filter_map(|(_, range)| *range).reduce(f64::min).map(Meters)

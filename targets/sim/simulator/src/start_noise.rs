@@ -11,10 +11,10 @@ use crate::world::World;
 
 /// Number of poses tried before the search fails.
 const TRIES: u32 = 1000;
-/// The most by which a start may be off, in metres and degrees.
+/// Maximum values of `--start-noise`, in metres and degrees.
 const MOST: [f64; 2] = [100.0, 180.0];
 
-/// Greatest error of a start along each axis, and in heading; to either side, with a uniform distribution.
+/// Maximum error of a start along each axis, and in heading; to either side, with a uniform distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StartNoise {
     metres: f64,

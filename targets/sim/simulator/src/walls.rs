@@ -8,7 +8,7 @@ use crate::moving::Moving;
 use crate::surfaces::{Ends, Meeting, Surface, apart, surface};
 use crate::world::{Outline, Place, World};
 
-/// The most pairs of an end of a segment and what shares its cell: each is looked at once, in a second or so.
+/// Maximum number of pairs of an end of a segment and what shares its cell: each is looked at once, in a second or so.
 const PAIRS_MOST: u64 = 100_000_000;
 
 /// The walls of a world at a time.

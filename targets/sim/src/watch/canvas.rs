@@ -39,7 +39,7 @@ impl Canvas {
         Self { columns, rows, letters: vec![(0, Ink::None); columns * rows] }
     }
 
-    /// Draws a dot, from the upper left, if it is on the canvas.
+    /// Draws a dot if it is on the canvas; coordinates count from the upper left corner.
     pub(super) fn dot(&mut self, x: i64, y: i64, ink: Ink) {
         let (Ok(x), Ok(y)) = (usize::try_from(x), usize::try_from(y)) else { return };
         if x >= 2 * self.columns || y >= 4 * self.rows {

@@ -7,7 +7,7 @@ use super::canvas::{Canvas, Ink};
 
 /// Margin around the drawing, in metres.
 const AROUND: f64 = 0.3;
-/// The least radius of a body, in dots, whose edge is drawn, and in how many dots.
+/// Minimum radius of a body, in dots, whose edge is drawn, and the number of dots of the edge.
 const BODY_LEAST: f64 = 2.5;
 const BODY_DOTS: u32 = 60;
 /// Eight directions of a robot, from the first axis counter-clockwise.
@@ -105,7 +105,7 @@ impl Map {
         self.canvas.text(Some((((x / 2.0).max(0.0) as usize, (y / 4.0).max(0.0) as usize), &sign)))
     }
 
-    /// A place in dots.
+    /// Converts a place to dots, from the upper left corner.
     fn at(&self, place: Place) -> (f64, f64) {
         ((place.x - self.corner.x) * self.scale, (self.corner.y - place.y) * self.scale)
     }

@@ -32,7 +32,7 @@ struct Terminal {
     left: Vec<u8>,
 }
 
-/// The most columns and rows that are drawn: a terminal may say that it has very many.
+/// Maximum number of columns and rows that are drawn: a terminal may say that it has very many.
 const SIZE_MOST: (usize, usize) = (500, 200);
 /// The time that restoring the terminal may take.
 const LEAVING: Duration = Duration::from_millis(500);

@@ -3,7 +3,7 @@
 use mdle_host::{Around, PlanPosition};
 use mdle_runtime::{Pose, Printable};
 
-/// The most scopes that are shown: the outermost and the innermost count most.
+/// Maximum number of scopes that are shown: the outermost and the innermost count most.
 const SCOPES_MOST: usize = 4;
 /// The letters of a bar.
 const BAR: usize = 20;

@@ -14,7 +14,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 
 /// The side of a room, in metres.
 const SIDE: f64 = 8.0;
-/// The least gap: the body and 40 cm.
+/// Minimum gap: the diameter of the body and 40 cm.
 const GAP: f64 = 0.81;
 /// Given up after this many turns: five minutes.
 const TURNS: u64 = 3000;

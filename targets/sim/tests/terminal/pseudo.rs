@@ -74,7 +74,7 @@ impl Terminal {
         self.child.wait().unwrap()
     }
 
-    /// The most memory that the program has used so far, in kB.
+    /// Maximum memory that the program has used so far, in kB.
     pub(crate) fn memory(&self) -> u64 {
         let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).unwrap();
         let most = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).unwrap();

@@ -8,7 +8,7 @@ use crate::world::Place;
 
 /// Distance, in metres, by which a slide is led off the surface, so that rounding does not turn it into the surface.
 const LED_OFF: f64 = 1e-8;
-/// Greatest number of surfaces along which one step slides: a corner has two.
+/// Maximum number of surfaces along which one step slides: a corner has two.
 const SLIDES: usize = 3;
 
 /// Returns the way that `body` goes when it is to move by `way`: all of it if that is free, else up to the contact and
@@ -64,7 +64,8 @@ fn normal(contact: Contact) -> Option<Place> {
     (length > 0.0).then(|| Place { x: x / length, y: y / length })
 }
 
-/// The largest part of a step, to a millionth, after which the body is still free; 0 if none is.
+/// Returns the largest fraction of a step, to a millionth, after which the body is still free; 0 if it is not free at
+/// all.
 fn last_free(free: impl Fn(f64) -> bool) -> f64 {
     let (mut least, mut most) = (0.0, 1.0);
     for _ in 0..20 {

@@ -8,11 +8,12 @@ use crate::frames::Frame;
 use crate::trail::{Mark, Trail};
 use crate::world::Place;
 
-/// The longest film, in seconds, before the rest.
+/// Maximum duration of the film, in seconds, before its pause at the end.
 const SHOWN_MOST: f64 = 20.0;
-/// The most places of a way that are written down one by one: some 200 m.
+/// Maximum number of places of a way that are written down one by one: some 200 m.
 const PLACES_MOST: usize = 20_000;
-/// The most atoms that begin and are all shown; of more, those that begin and end between two moments are left out.
+/// Maximum number of atoms that begin and are all shown; of more, those that begin and end between two moments are left
+/// out.
 const ACTS_MOST: usize = 1000;
 /// The rest at the end, in seconds.
 const REST: f64 = 2.5;

@@ -7,11 +7,11 @@ use super::view::{View, range};
 use crate::trail::Trail;
 use crate::world::{Place, World};
 
-/// The most that the floor may take up, in pixels.
+/// Maximum width and height of the floor in a plot, in pixels.
 const FLOOR_MOST: (f64, f64) = (1080.0, 860.0);
-/// The least, so that axes have room for their numbers.
+/// Minimum width and height of the floor in a plot, in pixels, so that its axes have room for their numbers.
 const FLOOR_LEAST: f64 = 160.0;
-/// The most pixels a metre may take up.
+/// Maximum scale of a plot, in pixels per metre.
 const SCALE_MOST: f64 = 220.0;
 /// Around the whole plot.
 pub(super) const MARGIN: f64 = 18.0;
@@ -27,9 +27,9 @@ pub(super) const LETTERS: u32 = 14;
 pub(super) const LETTER: f64 = 0.56;
 /// The lines of the legend besides the atoms: the heads of the columns, a free one, the signs, and the scale.
 pub(super) const KEY: usize = 9;
-/// Greatest number of signs of moving things.
+/// Maximum number of symbols of moving objects.
 const SIGNS: usize = 2;
-/// The least width of a legend: that of its signs.
+/// Minimum width of a legend, in pixels: that of its symbols.
 const LEGEND_LEAST: f64 = 170.0;
 
 /// The sizes of a plot.

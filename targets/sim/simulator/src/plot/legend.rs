@@ -9,7 +9,7 @@ use super::{floor, rows, things};
 use crate::trail::Trail;
 use crate::world::World;
 
-/// The longest scale bar, in pixels.
+/// Maximum length of the scale bar, in pixels.
 const BAR_MOST: f64 = 100.0;
 
 /// The legend of a run.

@@ -5,9 +5,9 @@ use mdle_runtime::Printable;
 use super::layout::{LETTER, LETTERS};
 use crate::trail::{Atom, Trail};
 
-/// The most atoms that are marked and listed.
+/// Maximum number of atoms that are marked and listed.
 pub(super) const ROWS_MOST: usize = 40;
-/// The most letters of a law that are shown.
+/// Maximum number of letters of a law that are shown.
 const LAW_MOST: usize = 44;
 /// Between two columns, in pixels.
 const APART: f64 = 22.0;

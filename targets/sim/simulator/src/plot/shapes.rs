@@ -69,7 +69,7 @@ fn pair((x, y): (i64, i64)) -> String {
     if y < 0.0 { format!("{x}{y}") } else { format!("{x} {y}") }
 }
 
-/// Greatest distance, in pixels, of a place that is left out from the line without it.
+/// Maximum distance, in pixels, of an omitted point from the line that is drawn without it.
 const BESIDE: f64 = 0.2;
 
 /// Returns the places that a line needs to be drawn as well as with all of them.
@@ -93,7 +93,7 @@ pub(super) fn simplified(pixels: impl IntoIterator<Item = Pixel>) -> Vec<Pixel> 
     kept
 }
 
-/// Greatest number of places that one straight line replaces, so that a long one takes no long time.
+/// Maximum number of points that one straight line replaces: the time grows with the square of this number.
 const LONGEST: usize = 500;
 
 /// The distance of a place from a line between two others.

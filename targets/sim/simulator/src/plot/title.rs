@@ -10,9 +10,9 @@ use crate::trail::About;
 /// The sizes of letters of the plan's name and of the lines below it.
 const NAME: u32 = 18;
 const REST: u32 = 14;
-/// The most letters of the whole title, which a viewer shows as the picture's name.
+/// Maximum number of letters of the whole title, which a viewer shows as the picture's name.
 const WHOLE: usize = 400;
-/// The most lines that one text is broken into.
+/// Maximum number of lines that one text is broken into.
 const LINES: usize = 3;
 
 /// The lines of a title.

@@ -33,7 +33,7 @@ impl View {
     }
 }
 
-/// The least and greatest of some coordinates.
+/// Returns the minimum and the maximum of some coordinates.
 pub(super) fn range(coordinates: impl Iterator<Item = f64>) -> (f64, f64) {
     coordinates.fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), coordinate| {
         (least.min(coordinate), most.max(coordinate))

@@ -1,11 +1,11 @@
 //! Contours of the occupied pixels of a map, without the steps that pixels make of slanted lines.
 
-/// Greatest distance, in pixels, between a line and the corners of pixels that it replaces. The steps of a slanted line
+/// Maximum distance, in pixels, between a line and the corners of pixels that it replaces. The steps of a slanted line
 /// lie up to 1 off it, and a little more where it begins at the wrong one.
 const TOLERANCE: f64 = 1.25;
-/// Greatest number of sides of pixels between occupied and free: 200 km of walls at 5 cm.
+/// Maximum number of sides of pixels between occupied and free: 200 km of walls at 5 cm.
 const SIDES_MOST: usize = 4_000_000;
-/// The most corners that are smoothed together: the time for these grows with their square.
+/// Maximum number of corners that are smoothed together: the time for these grows with their square.
 const TOGETHER: usize = 1024;
 
 /// A corner of pixels: column and row of lines between them.

@@ -2,7 +2,7 @@
 
 use crate::world_file::WorldError;
 
-/// The smallest and the largest pixel, in metres.
+/// Minimum and maximum size of a pixel, in metres.
 const RESOLUTIONS: std::ops::RangeInclusive<f64> = 1e-4..=100.0;
 
 /// The content of the YAML file of a ROS map.

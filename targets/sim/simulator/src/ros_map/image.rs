@@ -1,6 +1,6 @@
 //! The image of a map: a portable grey map, in text (P2) or bytes (P5).
 
-/// The most pixels: a floor of 500 m by 500 m at 5 cm.
+/// Maximum number of pixels: a floor of 500 m by 500 m at 5 cm.
 const PIXELS_MOST: usize = 100_000_000;
 
 /// Rows of grey, from the top; 0 is black.

@@ -17,7 +17,7 @@ use crate::world::Place;
 
 /// The rays of a cone, evenly spread.
 const RAYS: u8 = 7;
-/// Greatest distance from an edge, in metres, at which the edge scatters a ray.
+/// Maximum distance from an edge, in metres, at which the edge scatters a ray.
 const SCATTERS: f64 = 0.08;
 /// Loss at an edge: an edge is heard up to 0.6 of the lobe, so 12.5° of 21°.
 const EDGE_COSTS: f64 = 0.65;
@@ -25,10 +25,10 @@ const EDGE_COSTS: f64 = 0.65;
 const GAIN_LASTS: f64 = 2.0;
 /// Loss for each metre beyond: at 6.5 m a wall is heard up to 26° off its normal.
 const METRE_COSTS: f64 = 0.13;
-/// Greatest distance between the two bounces of a ray in a corner, for each metre of range, at which the sound comes
+/// Maximum distance between the two bounces of a ray in a corner, for each metre of range, at which the sound comes
 /// back to the sonar: as for a ray that is one beside that into the corner itself.
 const CORNER: f64 = 0.35;
-/// Greatest angle, as a cosine, between the opposite direction and a ray that leaves a corner: 15°.
+/// Maximum angle, as a cosine, between the opposite direction and a ray that leaves a corner: 15°.
 const BACK: f64 = -0.966;
 /// Distance from a surface, in metres, at which a reflected ray begins, so that it does not meet the surface again.
 const OFF: f64 = 1e-6;

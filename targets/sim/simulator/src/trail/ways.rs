@@ -8,9 +8,9 @@ use crate::world::Place;
 
 /// Places nearer to the last than this, in metres, are not kept: less than a pixel.
 const APART: f64 = 0.01;
-/// The most places of the way that are kept; when there are more, every second one goes.
+/// Maximum number of places of the way that are kept; above it every second one is removed.
 const PLACES_MOST: usize = 100_000;
-/// The most passes whose ways are kept apart, and the most atoms that are counted.
+/// Maximum number of passes whose ways are kept apart, and of atoms that are counted.
 const MARKS_MOST: usize = 10_000;
 
 /// The way driven, and the atoms that drove it.
@@ -29,7 +29,7 @@ pub(crate) struct Ways {
     running: Option<(usize, Nanos)>,
     /// Number of places kept.
     count: usize,
-    /// Least distance between two places kept, in metres.
+    /// Minimum distance between two places kept, in metres.
     apart: f64,
 }
 
