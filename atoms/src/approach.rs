@@ -1,4 +1,4 @@
-//! Detects somebody who comes towards the robot: the echoes ahead get nearer faster than the robot drives.
+//! Detects a person who approaches the robot: the echoes ahead get nearer faster than the robot drives.
 
 use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Meters, Nanos, PINGS_KEPT, Pose, Radians, SONARS, SonarId};
@@ -65,7 +65,8 @@ impl Approach {
         };
     }
 
-    /// Returns the seconds from the newest echo until somebody who comes reaches the robot; `None` if nobody comes.
+    /// Returns the seconds from the newest echo until a person who approaches reaches the robot; `None` if nobody
+    /// approaches.
     ///
     /// Fixed obstacles stay at the same place. As many echoes must agree as confirm that a way is free, and no echo
     /// that is still kept may contradict them.

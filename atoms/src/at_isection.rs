@@ -54,7 +54,7 @@ impl<Y: SonarRing> Interrupt<Y> for AtIsection {
     }
 }
 
-/// Returns `Some(true)` if something is near in the direction of this one sonar; `None` before its first ping.
+/// Returns `Some(true)` if an obstacle is near in the direction of this one sonar; `None` before its first ping.
 ///
 /// The smallest of the last pings decides, so "blocked" is believed at once and "free" only when they agree: a missed
 /// echo opens no way. Only the sonar in that direction counts: its neighbours see the walls along a corridor.
@@ -64,7 +64,7 @@ fn blocked<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<bool> {
     Some(pings.nearest(y.confirmation()).is_some_and(|range| range < y.blocked_within()))
 }
 
-/// Returns `Some(true)` if something is near in the direction of `sonar`, on a robot whose sonars fire in turn. The
+/// Returns `Some(true)` if an obstacle is near in the direction of `sonar`, on a robot whose sonars fire in turn. The
 /// pings of any sonar that looked in that direction of the room count: while the robot turns, the last pings of one
 /// sonar were in other directions.
 fn blocked_in_turn<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<bool> {

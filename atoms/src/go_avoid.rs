@@ -1,5 +1,5 @@
 //! `goAvoid ψ r v`: drives to a point given by bearing and range, round obstacles (paper, section IV-A), and out of the
-//! way of somebody who comes towards the robot.
+//! way of a person who approaches the robot.
 
 use mdle_runtime::capability::{DiffDrive, Odometry, SonarRing};
 use mdle_runtime::{
@@ -28,7 +28,7 @@ const ALONG: Radians = Radians::from_degrees(40.0);
 const GAINED: Meters = Meters(0.1);
 /// ... and has lasted this long.
 const DETOUR_LEAST: Nanos = Nanos(1_000_000_000);
-/// Angle from the goal's direction in which the robot gives way to somebody who comes.
+/// Angle from the goal's direction in which the robot gives way to a person who approaches.
 const ASIDE: Radians = Radians::from_degrees(60.0);
 /// Room on its right with which the robot gives way to the right, as people do; with less it gives way to the side with
 /// more room.
@@ -79,7 +79,7 @@ struct Detour {
     since: Nanos,
 }
 
-/// The side and the end of giving way to somebody who comes towards the robot.
+/// The side and the end of giving way to a person who approaches the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct GivesWay {
     side: Side,
@@ -87,7 +87,7 @@ struct GivesWay {
 }
 
 impl GoingRound {
-    /// Looks out for somebody who comes along the way to the goal, to give way to.
+    /// Detects a person who approaches along the way to the goal, so that the robot gives way.
     fn look_out<Y: SonarRing>(&mut self, y: &Y, obstacles: &Obstacles, here: Pose, t: Nanos) {
         let goal = self.direction(here);
         self.approach.take(y, here, goal);

@@ -12,7 +12,7 @@ const KEPT: Nanos = Nanos(15_000_000_000);
 /// Echoes from further away than this, in metres, are not kept.
 const NEAR: f64 = 1.2;
 
-/// A place, in the odometry's axes, and when something was last heard there.
+/// A place, in the odometry's axes, and when an echo was last heard there.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Echo {
     x: f64,
@@ -20,7 +20,7 @@ struct Echo {
     at: Nanos,
 }
 
-/// Places where something was heard.
+/// Places of echoes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Memory {
     places: [Option<Echo>; PLACES],

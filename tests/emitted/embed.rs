@@ -55,7 +55,7 @@ fn printed(folder: &Path) -> String {
     out
 }
 
-/// Puts something else into a file.
+/// Replaces a text in a file.
 fn change(file: &Path, from: &str, to: &str) {
     let text = fs::read_to_string(file).unwrap();
     assert!(text.contains(from), "{text}");

@@ -8,7 +8,7 @@ use mdle_atrv_emulator::wire as rflex;
 use mdle_scout::{Frame, Reader as Answers, State};
 use mdle_scout_emulator::wire;
 
-/// No reader keeps more bytes than this of what may still become something.
+/// Maximum number of bytes that a reader keeps of an incomplete message.
 const KEPT: usize = 1100;
 
 /// Splits all bytes but the first, which gives the length of a piece less 1.

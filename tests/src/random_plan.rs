@@ -79,7 +79,7 @@ const GIVEN: [&[&str]; 7] = [
 ];
 /// Arguments for the parameters of `Stroll`, the plan of the file that is used.
 const OF_STROLL: &[&[&str]] = &[&["0.25", "100ms", "inf"]];
-/// Conditions made of the parameters.
+/// Conditions with parameters.
 const OF_PARAMETERS: &[&str] =
     &["wait T", "farOff far", "farOff(far) OR stuck 1", "t > T AND a", "NOT wait T", "pattern mask OR played tune"];
 /// Laws that use the parameters.

@@ -10,8 +10,8 @@ use mdle_compiler::diagnostic::{Code, Diagnostic};
 use mdle_compiler::plan::Nondegenerate;
 use mdle_theory::equations::{self, MatrixFiles};
 
-/// Prints the matrices, or writes them into a folder without overwriting any of `inputs`. Printing is limited to a few
-/// small matrices; files are for programs, whatever their size.
+/// Prints the matrices, or writes them into a folder without overwriting any of `inputs`. Only small
+/// matrices are printed; files have no limit of size.
 pub(super) fn matrices(
     plan: &Nondegenerate,
     combined: bool,

@@ -81,7 +81,7 @@ pub(crate) enum Outcome {
     Ended,
     /// The plan is over, and the robot is in its goal.
     Arrived,
-    /// The plan is over, and the robot touches something.
+    /// The plan is over, and the robot touches an obstacle.
     Bumped,
     /// The plan is over, and the robot is outside its goal: where.
     Astray(String),

@@ -32,7 +32,7 @@ pub trait Observer {
         None
     }
 
-    /// Returns the number of contacts with something so far.
+    /// Returns the number of contacts with obstacles so far.
     fn contacts(&self) -> u64 {
         0
     }
@@ -127,7 +127,7 @@ pub struct Around<'a> {
 pub enum Judgement {
     /// The robot is in its goal, and touches nothing.
     Arrived,
-    /// The robot touches something.
+    /// The robot touches an obstacle.
     Bumped,
     /// The robot is outside its goal; a few words that say where.
     Astray(String),

@@ -165,7 +165,7 @@ macro_rules! configuration {
                 file: Option<&::std::path::Path>,
                 device: Option<&str>,
             ) -> Result<(Self, $crate::Settings), String> {
-                /// The file: whatever it does not say stays as it is.
+                /// The configuration file; a key that is missing keeps its value.
                 #[derive(Default, $crate::serde::Deserialize)]
                 #[serde(crate = "mdle_serial::serde", deny_unknown_fields, rename_all = "kebab-case")]
                 struct File {

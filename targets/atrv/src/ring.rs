@@ -9,7 +9,7 @@ use crate::layout::{MOST, Transducer, transducers};
 /// A direction that has not pinged for this time is deaf: a sweep takes a fifth of it.
 const DEAF: Nanos = Nanos(1_000_000_000);
 
-/// The sonars and their pings.
+/// State of the sonars and their pings.
 ///
 /// A direction has pinged when each of its sonars has reported since it pinged last, or when one of them reports a
 /// second time before another has: a report may be lost.

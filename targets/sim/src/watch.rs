@@ -30,7 +30,7 @@ pub(crate) struct Watch {
     /// The way so far, not denser than a centimetre.
     way: Vec<Place>,
     echoes: Vec<Place>,
-    /// Displacement of each thing of the world; `None` for an open door.
+    /// Displacement of each moving object of the world; `None` for an open door.
     things: Vec<Option<Place>>,
     /// Time of the robot's last output.
     sensed: Option<Nanos>,
@@ -65,7 +65,7 @@ impl Watch {
         })
     }
 
-    /// The robot has come to `pose` and senses this, and the things of the world have gone so far.
+    /// The robot has come to `pose` and senses this, and the moving objects of the world have gone so far.
     pub(crate) fn sensed(
         &mut self,
         pose: &Pose,
@@ -84,7 +84,7 @@ impl Watch {
         self.now.pose = *pose;
     }
 
-    /// Takes in whether the robot is in contact with something, and the number of contacts so far.
+    /// Takes in whether the robot is in contact with an obstacle, and the number of contacts so far.
     pub(crate) fn touched(&mut self, touches: bool, contacts: u64) {
         (self.now.touches, self.now.contacts) = (touches, contacts);
     }

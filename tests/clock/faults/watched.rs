@@ -53,7 +53,7 @@ pub(crate) struct Nature<R> {
     pub(crate) pose: fn(&R) -> Pose,
     /// The orders that have reached the robot.
     pub(crate) orders: fn(&R) -> &Orders,
-    /// Returns a frame that answers something else, from a frame of the robot.
+    /// Changes a frame of the robot into the answer to another command.
     pub(crate) wrong: fn(&[u8]) -> Vec<u8>,
     /// Number of additional periods for which a driver without an answer waits, while the world of an emulator in
     /// lockstep pauses.

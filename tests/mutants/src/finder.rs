@@ -1,4 +1,4 @@
-//! The places of a file where something can be changed: expressions and statements outside its tests.
+//! Places of a file that a mutant can change: expressions and statements outside its tests.
 
 use std::ops::Range;
 
@@ -58,7 +58,7 @@ impl Finder<'_> {
         self.function = around;
     }
 
-    /// Two things next to each other change places.
+    /// Exchanges two adjacent operands or statements.
     fn exchange(&mut self, one: &impl Spanned, other: &impl Spanned) {
         let (start, end) = (range(one), range(other));
         let between = self.text[start.end..end.start].to_owned();

@@ -15,7 +15,7 @@ use crate::plan::{Condition, QuarkId};
 /// Maximum number of conditions around a place that are looked at for each variable of a question.
 const CLAUSES: usize = 8;
 
-/// Question about some conditions: that one of them has fired, or that they all have not.
+/// Question about conditions: whether at least one has fired, or none has.
 #[derive(Debug, Clone)]
 pub(super) struct Wanted<'l> {
     pub(super) any: Vec<Read<'l>>,
@@ -85,7 +85,7 @@ impl<'l> KnownFacts<'l> {
         self.distances.iter().rev().find(|(_, outer)| *outer <= bracket).copied()
     }
 
-    /// The brackets around this place whose conditions have something to do with these variables.
+    /// The brackets around this place whose conditions depend on these variables.
     pub(super) fn around(&self, variables: &BTreeSet<Variable>) -> Option<u32> {
         let unit = variables.iter().find_map(|variable| self.unit(*variable));
         let relative = || self.relatives(variables).iter().find_map(|variable| self.unit(*variable));
@@ -219,7 +219,7 @@ impl<'l> KnownFacts<'l> {
         leaf(read.condition).map(|variable| (variable, false))
     }
 
-    /// Adds the variables of a condition, whatever is known of them; `false` where there are too many.
+    /// Adds the variables of a condition, known or not; returns `false` if there are too many.
     pub(super) fn variables(&self, read: Read<'l>, found: &mut BTreeSet<Variable>) -> bool {
         choices::variables(read, self.machine, found)
     }

@@ -1,4 +1,4 @@
-//! Truth tables: for every choice of some variables, whether something holds. A bit a choice, sixty-four at a time.
+//! Truth tables: for every choice of some variables one bit, sixty-four bits at a time.
 
 /// Maximum number of variables for which all assignments are enumerated.
 pub(super) const VARIABLES: usize = 12;

@@ -107,7 +107,7 @@ struct Count {
     of: fn(Part<'_>) -> u64,
 }
 
-/// The amount of something in a plan, and the loop that multiplies it most.
+/// A count over a plan, and the loop that multiplies it most.
 #[derive(Default)]
 struct Expanded {
     all: u64,

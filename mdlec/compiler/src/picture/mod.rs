@@ -33,7 +33,7 @@ fn can_be_shown(machine: &Machine) -> Result<(), Diagnostic> {
     if count > SHOWN { Err(too_many(machine, count, what, SHOWN)) } else { Ok(()) }
 }
 
-/// The diagnostic of a plan that has too much of something for a picture.
+/// Reports a plan that is too large for a picture: `count` exceeds `most`.
 fn too_many(machine: &Machine, count: usize, what: &str, most: usize) -> Diagnostic {
     let message = format!("this plan has {count} {what}; a picture shows {most} at most");
     let help = "draw a part of it: `--plan NAME` takes any plan of the file, also one that others use";

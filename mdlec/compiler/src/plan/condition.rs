@@ -105,7 +105,7 @@ impl Condition {
         (0..).zip(self.operands()).find(|(_, operand)| operand.fired(at)).map_or(0, |(number, _)| number)
     }
 
-    /// The conditions that it is made of, from left to right; a quark, a timer or `after` has none.
+    /// Returns the direct operands of the condition, from left to right; a quark, a timer or `after` has none.
     #[must_use]
     pub fn children(&self) -> &[Self] {
         match self {
@@ -116,18 +116,18 @@ impl Condition {
         }
     }
 
-    /// Folds over the condition and all that it is made of: an operator comes before its operands.
+    /// Folds over the condition and all its operands; an operator comes before its operands.
     pub fn fold<'c, T>(&'c self, first: T, join: &mut impl FnMut(T, &'c Self) -> T) -> T {
         let own = join(first, self);
         self.children().iter().fold(own, |folded, operand| operand.fold(folded, join))
     }
 
-    /// Returns `true` if this is so of the condition or of anything that it is made of.
+    /// Returns `true` if `is_so` returns `true` for the condition or any of its operands.
     pub fn any(&self, is_so: &impl Fn(&Self) -> bool) -> bool {
         is_so(self) || self.children().iter().any(|operand| operand.any(is_so))
     }
 
-    /// Replaces the condition and all that it is made of: operands before their operator.
+    /// Replaces the condition and all its operands; operands come before their operator.
     #[must_use]
     pub fn map(self, replace: &impl Fn(Self) -> Self) -> Self {
         let all = |operands: Vec<Self>| operands.into_iter().map(|operand| operand.map(replace)).collect();

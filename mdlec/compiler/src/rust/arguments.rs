@@ -51,7 +51,7 @@ pub(super) fn compared(
     quote!(runtime::Comparison::new(#left, runtime::Operator::#operator, #with))
 }
 
-/// `robot::Go::new(…)`: a quark among `quarks`, made of its arguments, for a constant.
+/// `robot::Go::new(…)`: a quark among `quarks`, with its arguments, for a constant.
 pub(super) fn made(quark: &Quark, quarks: &[Quark]) -> TokenStream {
     if let Some(comparison) = &quark.comparison {
         return compared(comparison, &quote!(runtime::NoSignal), |signal| made(&quarks[signal.0 as usize], quarks));

@@ -1,4 +1,4 @@
-//! Messages about usual mistakes, each with something to type instead.
+//! Messages about usual mistakes, each with a text to type instead.
 
 mod atoms;
 mod calls;

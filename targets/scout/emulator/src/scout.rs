@@ -58,7 +58,7 @@ pub struct Scout {
     /// State that a hung robot repeats.
     hung: Option<Vec<u8>>,
     is_cut_off: bool,
-    /// The speeds that the wheels keep, whatever is commanded.
+    /// The speeds that the wheels keep, regardless of commands.
     runaway: Option<(i32, i32)>,
     /// Offset of the reported positions, in tenths of an inch, which grows while `leaps` is `true`.
     off: i64,

@@ -39,7 +39,7 @@ pub(crate) struct Body {
     left: f64,
     /// The speed of the right wheel, in m/s.
     right: f64,
-    /// Distance, in metres, that the body can go in any direction before it may touch something that never moves.
+    /// Distance, in metres, that the body can go in any direction before it may touch an obstacle that never moves.
     clear: f64,
 }
 

@@ -14,7 +14,7 @@ pub(crate) struct Frame {
     pub(crate) pose: Pose,
     /// Place of each sonar's new echo; `None` if it has none.
     pub(crate) echoes: [Option<Place>; SONARS],
-    /// Displacement of each thing of the world; `None` for an open door.
+    /// Displacement of each moving object of the world; `None` for an open door.
     pub(crate) things: Vec<Option<Place>>,
 }
 

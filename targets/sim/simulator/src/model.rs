@@ -13,8 +13,8 @@ use figures::{atrv, ideal, scout};
 /// A body to simulate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Body {
-    /// The size and the motors of a Super Scout, whose sonars all ping in every turn and hear the nearest thing in
-    /// their cones, and whose odometry is true whatever happens.
+    /// The size and the motors of a Super Scout, whose sonars all ping in every turn and hear the nearest object in
+    /// their cones, and whose odometry has no errors.
     #[default]
     Ideal,
     /// A Nomadic Super Scout II: its sonars fire in turn, miss what they do not face, and err; its wheels slip.
@@ -89,7 +89,7 @@ pub(crate) struct Drive {
     pub(crate) acceleration: f64,
     /// Wheel speeds are commanded in whole numbers of this, rounded towards zero.
     pub(crate) unit: f64,
-    /// `None` for odometry that is true whatever happens.
+    /// `None` for odometry without errors.
     pub(crate) slip: Option<Slip>,
 }
 
@@ -130,7 +130,7 @@ pub(crate) struct Hearing {
     pub(crate) scale: f64,
     /// Standard deviation of the loudness of an echo, as a part of the loudness needed to hear it.
     pub(crate) fading: f64,
-    /// The share of pings that bring no echo, whatever the distance.
+    /// The share of pings that bring no echo, at any distance.
     pub(crate) misses: f64,
     /// The share of pings that bring a random range.
     pub(crate) outliers: f64,

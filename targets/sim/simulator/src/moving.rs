@@ -16,11 +16,11 @@ const STOPS_AT: f64 = 1e-4;
 pub struct Thing {
     /// A closed door, or a box or disc where its schedule begins.
     pub outline: Outline,
-    /// Motion of the thing.
+    /// Motion of the object.
     pub schedule: Schedule,
 }
 
-/// The motion of a thing over time, in seconds since the robot was switched on.
+/// The motion of a moving object over time, in seconds since the robot was switched on.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Schedule {
     /// A door, closed except at these times: from, to.
@@ -32,14 +32,15 @@ pub enum Schedule {
     },
     /// A box or disc that moves straight from place to place.
     Way {
-        /// Times and places of the centre: at least one, in order. The thing rests before the first and after the last.
+        /// Times and places of the centre: at least one, in order. The object rests before the first and after the
+        /// last.
         stops: Vec<Stop>,
         /// `true` if the way begins again at the first stop after the last.
         repeats: bool,
     },
 }
 
-/// A place of a thing at one time.
+/// A place of a moving object at one time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stop {
     /// Time of the stop, in seconds.
@@ -49,12 +50,12 @@ pub struct Stop {
 }
 
 impl Thing {
-    /// Returns the corners of the thing when it has gone this far from where it begins.
+    /// Returns the corners of the object when it has gone this far from where it begins.
     pub fn corners(&self, gone: Place) -> impl Iterator<Item = Place> {
         self.outline.points.iter().map(move |point| Place { x: point.x + gone.x, y: point.y + gone.y })
     }
 
-    /// Returns the places between which the centre of the thing moves; a door has no such places.
+    /// Returns the places between which the centre of the object moves; a door has no such places.
     pub(crate) fn way(&self) -> impl Iterator<Item = Place> {
         let stops = match &self.schedule {
             Schedule::Open { .. } => [].as_slice(),
@@ -73,7 +74,7 @@ impl Thing {
 }
 
 impl Schedule {
-    /// Returns the displacement at time `t` from the place where the thing begins; `None` for an open door.
+    /// Returns the displacement at time `t` from the place where the object begins; `None` for an open door.
     fn moved(&self, t: f64) -> Option<Place> {
         match self {
             Self::Open { times, every } => {
@@ -103,18 +104,18 @@ fn at(stops: &[Stop], t: f64) -> Option<Place> {
     Some(Place { x: between(from.at.x, to.at.x), y: between(from.at.y, to.at.y) })
 }
 
-/// A thing at a time.
+/// State of a moving object.
 #[derive(Debug, Clone)]
 pub(crate) struct Moving {
     schedule: Schedule,
-    /// Time of the thing's own clock, in seconds; it stops while the thing waits for the robot.
+    /// Time of the object's own clock, in seconds; it stops while the object waits for the robot.
     t: f64,
-    /// Sides at the place where the thing begins.
+    /// Sides at the place where the object begins.
     first: Vec<Segment>,
     ends: Vec<Ends>,
     /// Sides at the current place; empty for an open door.
     now: Vec<Segment>,
-    /// A circle around the thing where it begins, and its displacement from there.
+    /// A circle around the object where it begins, and its displacement from there.
     centre: Place,
     radius: f64,
     moved: Option<Place>,
@@ -145,12 +146,12 @@ impl Moving {
         moving
     }
 
-    /// Returns the displacement from the place where the thing begins; `None` for an open door.
+    /// Returns the displacement from the place where the object begins; `None` for an open door.
     pub(crate) fn gone(&self) -> Option<Place> {
         self.moved
     }
 
-    /// Returns the sides of the thing at its current place.
+    /// Returns the sides of the object at its current place.
     pub(crate) fn segments(&self) -> impl Iterator<Item = &Segment> {
         self.now.iter()
     }
@@ -193,7 +194,7 @@ impl Moving {
         Some(Place { x: self.centre.x + x, y: self.centre.y + y })
     }
 
-    /// Returns the distance of the thing from `at`, exact where it is below `most`; infinite for an open door.
+    /// Returns the distance of the object from `at`, exact where it is below `most`; infinite for an open door.
     pub(crate) fn distance(&self, at: Place, most: f64) -> f64 {
         match self.around() {
             Some(around) if apart(around, at) - self.radius < most => {

@@ -158,7 +158,7 @@ impl Simulated {
         &self.ring.heard
     }
 
-    /// Returns the displacement of each thing of the world; `None` for an open door.
+    /// Returns the displacement of each moving object of the world; `None` for an open door.
     pub fn gone(&self) -> impl Iterator<Item = Option<Place>> {
         self.walls.gone()
     }
@@ -200,7 +200,7 @@ impl Simulated {
         }
     }
 
-    /// Moves the robot and the moving things of the world.
+    /// Moves the robot and the moving objects of the world.
     fn advance(&mut self, input: &Twist, seconds: f64) {
         if seconds <= 0.0 {
             return;

@@ -67,7 +67,7 @@ impl Ring {
         self.hearing.order.as_ref().map(|_| self.next.1)
     }
 
-    /// Pings whatever is due at `at`, from the robot at `pose`, which is at `odometry` by its own reckoning.
+    /// Fires the sonars that are due at `at`, from the robot at `pose`, which is at `odometry` by its own reckoning.
     pub(crate) fn ping(&mut self, pose: &Pose, odometry: Pose, at: Nanos, walls: &Walls) {
         let Some(Order { groups, gap }) = &self.hearing.order else {
             for number in 0..self.ranges.len() {

@@ -24,7 +24,7 @@ pub(crate) struct Trail {
     pub(crate) start: Pose,
     /// Current pose of the robot.
     pub(crate) here: Pose,
-    /// Current displacement of each thing of the world; `None` for an open door.
+    /// Current displacement of each moving object of the world; `None` for an open door.
     pub(crate) things: Vec<Option<Place>>,
     /// The way, by the atoms that drove it.
     pub(crate) ways: Ways,
@@ -49,7 +49,7 @@ pub(crate) struct Trail {
 pub(crate) struct About {
     /// World, body and seed.
     pub(crate) setup: String,
-    /// Name of the plan; empty if it has none, or before the run has ended.
+    /// Name of the plan; empty if it has no name, or before the run has ended.
     pub(crate) plan: String,
     /// Cause and time of the end; empty before that.
     pub(crate) end: String,
@@ -98,7 +98,7 @@ impl Trail {
         }
     }
 
-    /// The body comes into contact with something here, at time `t`.
+    /// The body comes into contact with an obstacle here, at time `t`.
     pub(crate) fn touched(&mut self, place: Place, t: Nanos) {
         if self.touched.insert(square(place)) {
             self.contacts.push((place, t));

@@ -25,7 +25,7 @@ pub struct Walls {
 }
 
 impl Walls {
-    /// Returns the walls and the sides of the fixed obstacles in `world`, and the moving things where they begin.
+    /// Returns the walls and the sides of the fixed obstacles in `world`, and the moving objects where they begin.
     #[must_use]
     pub fn of(world: &World) -> Self {
         let segments = segments(world);
@@ -110,7 +110,7 @@ impl Walls {
         least
     }
 
-    /// Returns the distance to the nearest moving thing or other robot; infinite without any.
+    /// Returns the distance to the nearest moving object or other robot; infinite without any.
     fn moving(&self, at: Place) -> f64 {
         let least = self.moving.iter().fold(f64::INFINITY, |least, thing| thing.distance(at, least).min(least));
         self.others.iter().fold(least, |least, other| least.min(other.distance(at)))
@@ -165,12 +165,12 @@ impl Walls {
         self.others.iter().for_each(|other| take(body.contact_with(other)));
     }
 
-    /// Returns the displacement of each of the things from where it begins; `None` for an open door.
+    /// Returns the displacement of each of the moving objects from where it begins; `None` for an open door.
     pub(crate) fn gone(&self) -> impl Iterator<Item = Option<Place>> {
         self.moving.iter().map(Moving::gone)
     }
 
-    /// The middle of each of the things, but for open doors, and of each other robot.
+    /// The middle of each of the moving objects, but for open doors, and of each other robot.
     pub(crate) fn things(&self) -> impl Iterator<Item = Place> {
         self.moving.iter().filter_map(Moving::around).chain(self.others.iter().map(Footprint::at))
     }

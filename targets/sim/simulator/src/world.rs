@@ -106,7 +106,7 @@ impl World {
         outlines.into_iter().find(|outline| outline.solid && outline.surrounds(place))
     }
 
-    /// Returns all corners: of the fixed outlines, and of the moving things at each of their stops.
+    /// Returns all corners: of the fixed outlines, and of the moving objects at each of their stops.
     pub fn places(&self) -> impl Iterator<Item = Place> {
         let standing = self.outlines.iter().flat_map(|outline| outline.points.iter().copied());
         standing.chain(self.things.iter().flat_map(Thing::places))

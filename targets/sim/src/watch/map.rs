@@ -75,7 +75,7 @@ impl Map {
         self.went = way.len();
     }
 
-    /// Returns the map with the moving things on it, each with its displacement.
+    /// Returns the map with the moving objects on it, each with its displacement.
     pub(super) fn with<'t>(&self, things: impl Iterator<Item = (&'t Thing, Place)>) -> Self {
         let mut map = self.clone();
         for (thing, gone) in things {

@@ -1,4 +1,4 @@
-//! The screen of a terminal, taken and given back: whatever happens, the terminal is left as it was found.
+//! The alternate screen of a terminal: its settings are restored on every way out.
 
 use std::fs::File;
 use std::io::{self, IsTerminal, Write, stdout};

@@ -48,7 +48,7 @@ impl Odometry {
         self.pose = self.pose.moved(Meters(told), Radians(turned));
     }
 
-    /// The body, of true heading `heading`, was moved by `way` and turned by `turn`, by whatever means, and knows it.
+    /// Records that the body, of true heading `heading`, was moved by `way` and turned by `turn`.
     pub(crate) fn carried(&mut self, heading: Radians, way: Place, turn: f64) {
         let (sin, cos) = libm::sincos(self.pose.theta.0 - heading.0);
         self.pose = Pose {

@@ -86,7 +86,7 @@ pub(super) fn body(layout: &Layout, pose: &Pose, form: Form, class: &str) -> Gro
     group.add(line(centre, front))
 }
 
-/// A cross where the body touched something.
+/// A cross where the body touched an obstacle.
 fn contacts(layout: &Layout, trail: &Trail) -> Group {
     let touched = trail.contacts.iter().map(|(place, _)| cross(layout.at(*place)));
     touched.fold(Group::new(), Group::add)

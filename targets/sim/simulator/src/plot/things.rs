@@ -1,4 +1,4 @@
-//! Drawings of the moving things of a world: doors dashed, the rest at its last place, with the way it goes.
+//! Drawings of the moving objects of a world: doors dashed, the rest at its last place, with the way it goes.
 
 use svg::node::element::{Group, Path};
 
@@ -12,7 +12,7 @@ use crate::world::{Place, World};
 
 /// Dashes of the lines of doors.
 const DASHES: &str = "5 4";
-/// Displacement of a thing that has not moved.
+/// Displacement of a moving object that has not moved.
 const NOWHERE: Place = Place { x: 0.0, y: 0.0 };
 
 /// A sign that the legend explains.
@@ -50,7 +50,7 @@ impl Sign {
     }
 }
 
-/// Returns the signs of the things that move in the part of the floor that is shown.
+/// Returns the symbols of the moving objects in the part of the floor that is shown.
 pub(super) fn signs(layout: &Layout, world: &World) -> impl Iterator<Item = Sign> {
     let shown = |thing: &&Thing| layout.shows_any(thing.places());
     let shown: Vec<Sign> = world.things.iter().filter(shown).map(Sign::of).collect();

@@ -108,7 +108,7 @@ impl Sides {
     }
 }
 
-/// The line through fewer of its corners that passes none further than the tolerance.
+/// Returns the line with fewer corners: no omitted corner is further from it than the tolerance.
 fn smoothed(line: &[Corner]) -> Vec<Corner> {
     let far = |from: Corner| {
         let distance = |to: &Corner| i64::from(to.0 - from.0).pow(2) + i64::from(to.1 - from.1).pow(2);

@@ -6,7 +6,7 @@
 //! is left out. A right-angled corner sends everything back where it came from.
 //!
 //! The rays of a cone lie so far apart that a person 4 m away may be between two of them. One more ray is therefore
-//! aimed at each moving thing and each other robot, of which there are few.
+//! aimed at each moving object and each other robot, of which there are few.
 
 use mdle_runtime::Radians;
 
@@ -33,8 +33,8 @@ const BACK: f64 = -0.966;
 /// Distance from a surface, in metres, at which a reflected ray begins, so that it does not meet the surface again.
 const OFF: f64 = 1e-6;
 
-/// The distance from a transducer to the nearest thing heard in its cone, in metres. `fade` is how much better or worse
-/// than usual it hears.
+/// The distance from a transducer to the nearest object heard in its cone, in metres. `fade` is how much better or
+/// worse than usual it hears.
 pub(crate) fn echo(walls: &Walls, from: Place, axis: Radians, hearing: &Hearing, fade: f64) -> Option<f64> {
     let spread = (0..RAYS).map(|ray| hearing.half_cone.0 * (2.0 * f64::from(ray) / f64::from(RAYS - 1) - 1.0));
     let aimed = walls.things().map(|thing| {

@@ -1,4 +1,4 @@
-//! Rays and distances compared with parry2d and with brute force, and moving things.
+//! Rays and distances compared with parry2d and with brute force, and moving objects.
 
 use parry2d_f64::math::Vector;
 use parry2d_f64::query::{PointQuery, Ray, RayCast};

@@ -23,7 +23,7 @@ const UNITS: [(&str, f64); 5] = [("m", 1.0), ("cm", 0.01), ("mm", 0.001), ("in",
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Unit(f64);
 
-/// A fixed outline or a moving thing.
+/// A fixed outline or a moving object of a world file.
 pub(super) enum Stands {
     Still(Outline),
     Never(Thing),

@@ -24,7 +24,7 @@ macro_rules! machines {
             include!(concat!(env!("OUT_DIR"), $file));
         }
 
-        /// A machine that gets its event until one of its actions has written something.
+        /// A machine that gets its event until one of its actions has set the input.
         #[allow(missing_debug_implementations, reason = "smlang's machine has none")]
         pub struct $machine($module::StateMachine<Context>);
 
