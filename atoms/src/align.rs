@@ -132,7 +132,7 @@ impl Aligning {
         }
     }
 
-    /// The turn rate towards equal ranges, where it is not known yet where it ends.
+    /// Returns the turn rate towards equal ranges while the heading with equal ranges is not known yet.
     fn towards<Y: DiffDrive + SonarRing>(&self, y: &Y, sample: Option<Sample>, t: Nanos) -> f64 {
         let rate = sample.map_or_else(|| self.unheard(y, t), |sample| y.steering().align * sample.difference);
         self.sense() * bounded(rate, Gains::of(y).align_fastest)

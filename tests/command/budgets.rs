@@ -127,7 +127,7 @@ fn arguments_that_plans_multiply_are_limited() {
     assert_refused("arguments", &plan, "bytes of text");
 }
 
-/// A plan has no error, and these commands come to a result, or name a limit.
+/// Asserts that a plan has no error, and that these commands print a result or name a limit.
 fn assert_ends(test: &str, plan: &str, commands: &[&[&str]]) {
     let folder = with_plan(test, plan);
     let (status, messages) = judged(&folder, &["check", "plan.mdle"]);

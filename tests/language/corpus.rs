@@ -65,7 +65,7 @@ fn both_ends_of_a_line_read_on() {
     }
 }
 
-/// Something that holds for all bytes.
+/// Assertion about a text of the corpus.
 type Property = fn(&[u8]);
 
 #[test]

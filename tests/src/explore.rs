@@ -104,7 +104,7 @@ impl Situation for At<'_, '_> {
 }
 
 impl<'p> Explorer<'p> {
-    /// The parts of a plan.
+    /// Nodes of a plan, as the explorer numbers them.
     #[must_use]
     pub fn new(plan: &'p Plan) -> Self {
         let mut explorer = Self { plan, parts: Vec::new() };

@@ -91,7 +91,7 @@ pub struct Suite<'s, S: Stage> {
 type Check<S> = fn(&mut S) -> Result<(), Verdict>;
 
 impl<'s, S: Stage> Suite<'s, S> {
-    /// No check yet.
+    /// Returns an empty report.
     #[must_use]
     pub fn on(stage: &'s mut S) -> Self {
         Self { stage, asked: Vec::new(), checked: Vec::new() }

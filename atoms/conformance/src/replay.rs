@@ -1,4 +1,4 @@
-//! Paths: that the robot has those it was given, and replays one (section IV-A).
+//! Checks that the robot has the paths that it was given, and replays one (section IV-A).
 
 use std::format;
 

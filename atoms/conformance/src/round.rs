@@ -1,4 +1,4 @@
-//! `goAvoid`: that it arrives where it was sent, and touches nothing on its way (section IV-A).
+//! Checks that `goAvoid` reaches its goal without contact (section IV-A).
 
 use std::format;
 

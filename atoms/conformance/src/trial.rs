@@ -1,4 +1,4 @@
-//! A robot in a room while it is tried: turn by turn, and what became of its body.
+//! A trial of a robot in a room: runs turns, and records the motion of the body.
 
 use std::format;
 

@@ -87,9 +87,9 @@ impl Run {
 
 /// A line from cargo.
 enum CargoLine {
-    /// From standard output.
+    /// Message of cargo on standard output.
     Message(Vec<u8>),
-    /// From standard error: another cargo holds a lock.
+    /// Note on standard error that another cargo holds a lock.
     Blocked,
 }
 

@@ -85,7 +85,7 @@ pub enum Argument<'a> {
 }
 
 impl<const N: usize> Bits<N> {
-    /// These bits, if there are `N`.
+    /// Returns the bits if their number is `N`.
     #[must_use]
     pub const fn from_slice(bits: &[bool]) -> Option<Self> {
         match bits.first_chunk() {

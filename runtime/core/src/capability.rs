@@ -17,7 +17,7 @@ pub trait Bumpers: Output {
     fn pressed(&self) -> bool;
 }
 
-/// `diff_drive`: two driven wheels, so an input is a [`Twist`]; what laws must know of the body.
+/// `diff_drive`: two driven wheels, so that an input is a [`Twist`]; gives the dimensions that laws need.
 pub trait DiffDrive: Output {
     /// The radius of the smallest circle around the body.
     fn body_radius(&self) -> Meters;

@@ -11,17 +11,17 @@ pub trait Signal<Y: ?Sized> {
 /// Operator of a comparison.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Operator {
-    /// Not further apart than this.
+    /// The values differ by at most this tolerance.
     Equal(f64),
     /// Two directions not further apart than this, the shortest way round.
     SameDirection(f64),
-    /// Below.
+    /// The first value is less than the second.
     Less,
-    /// Not above.
+    /// The first value is at most the second.
     LessOrEqual,
-    /// Above.
+    /// The first value is greater than the second.
     Greater,
-    /// Not below.
+    /// The first value is at least the second.
     GreaterOrEqual,
 }
 

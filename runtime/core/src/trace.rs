@@ -31,7 +31,7 @@ pub struct Fired<'a, O> {
     pub level: usize,
     /// The condition text of its interrupt, or [`COMPLETED`].
     pub by: &'a str,
-    /// Condition texts of the operands of its interrupt that have fired, in order; empty if the law completed.
+    /// Condition texts of the interrupt's operands that have fired, in order; empty if the law completed.
     pub operands: O,
 }
 

@@ -8,7 +8,7 @@ use crate::Meters;
 pub struct Nanometers(pub u64);
 
 impl Nanometers {
-    /// No way at all.
+    /// Way of length zero.
     pub const ZERO: Self = Self(0);
 
     /// Returns the length rounded to the nearest nanometre; zero for a negative length or NaN.

@@ -38,7 +38,7 @@ struct Cart {
     broken: Option<(u64, Breakdown)>,
     /// `true` if the cart prints its commands to standard error.
     tells: bool,
-    /// The file in which it writes that down.
+    /// File of the cart's journal.
     journal: Option<File>,
 }
 

@@ -72,7 +72,7 @@ pub enum Time {
 /// Pace of stepped time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Pace {
-    /// This many times as fast as the wall clock; positive and finite.
+    /// A multiple of the wall clock's speed; positive and finite.
     Times(f64),
     /// The fastest pace possible.
     Max,

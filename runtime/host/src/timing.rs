@@ -45,7 +45,7 @@ impl Timing {
         self.took.most > 0
     }
 
-    /// No turns yet, of a period in nanoseconds.
+    /// Creates an empty record for turns with a period in nanoseconds.
     pub(crate) fn new(period: u64) -> Self {
         Self { period, late: Counts::default(), took: Counts::default(), overruns: 0, in_a_row: 0 }
     }

@@ -10,7 +10,7 @@ use mdle_runtime::Nanos;
 pub enum Clock {
     /// The time that has passed since the first output.
     Wall,
-    /// This time for each output: a robot in lockstep.
+    /// Time advances by this duration with each output, as for a robot in lockstep.
     Stepped(Duration),
 }
 

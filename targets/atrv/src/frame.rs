@@ -49,7 +49,7 @@ pub enum Garbled {
     Length(usize, usize),
     /// The check of the bytes is the first number; the frame's own check is the second.
     Check(u8, u8),
-    /// This byte follows 1B, and is no mark.
+    /// This byte follows 1B, but is not a mark.
     Mark(u8),
     /// This byte is outside of any frame.
     Outside(u8),

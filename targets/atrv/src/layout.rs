@@ -67,7 +67,7 @@ fn four_boards(number: usize) -> Option<Transducer> {
     Some(at(board * 16 + number % 6, (x, y, degrees), &[direction]))
 }
 
-/// Two boards of eight: the left, and from it the right.
+/// Returns the directions of two boards of eight sonars; the right board mirrors the left one.
 fn two_boards(number: usize) -> Option<Transducer> {
     let (board, channel) = (number / 8, number % 8);
     // The last two are the other way round on the right.

@@ -6,7 +6,7 @@ use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians, RadiansPerSecond, Twi
 use crate::command::{Axis, Command, Motion};
 use crate::config::Config;
 
-/// No robot goes further than this between two reports, in metres; a number that says so is another one's.
+/// Maximum way of a robot between two reports, in metres; a greater difference of positions is not accepted.
 const LEAP: f64 = 1.0;
 /// If leaps outnumber steps by this many, the positions are meaningless.
 const LEAPS: u8 = 4;

@@ -6,7 +6,7 @@ use mdle_runtime::{Meters, Nanos, PINGS_KEPT, Ping, Pings, Pose, SONARS};
 use crate::config::Config;
 use crate::layout::{MOST, Transducer, transducers};
 
-/// A direction that has not pinged for this time is deaf: a sweep takes a fifth of it.
+/// Time without a ping after which a direction counts as defective; a sweep takes a fifth of it.
 const DEAF: Nanos = Nanos(1_000_000_000);
 
 /// State of the sonars and their pings.

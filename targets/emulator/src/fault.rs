@@ -15,11 +15,11 @@ const MOST: u32 = 60_000;
 /// A fault of the line, or of the body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fault {
-    /// This many bytes that mean nothing come before each frame.
+    /// This number of random bytes precedes each frame.
     Noise(u32),
     /// Frames come byte by byte.
     Dribble,
-    /// In each frame a bit is wrong.
+    /// One bit of each frame is inverted.
     Check,
     /// Each frame but every third is lost.
     Lose,
@@ -103,7 +103,7 @@ const KINDS: [(&str, Fault); 24] = [
 /// A fault, and how long after the robot was switched on it begins, by the time of its world.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct At {
-    /// Fault that begins.
+    /// The fault.
     pub fault: Fault,
     /// Time at which the fault begins, by the clock of the robot's world.
     pub time: Duration,

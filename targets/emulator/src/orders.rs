@@ -9,13 +9,13 @@ const KEPT: usize = 64;
 /// The meaning of a motion command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Order {
-    /// To move.
+    /// Order to move.
     Drive,
-    /// To stand still.
+    /// Order to stop.
     Stand,
-    /// To leave the motors without current.
+    /// Order to switch off the motors' current.
     LetGo,
-    /// To set the brake.
+    /// Order to set the brake.
     Brake,
 }
 

@@ -112,7 +112,8 @@ impl Line {
         }
     }
 
-    /// Returns why there is no answer to `command`, when one of type `wrong` came, if any.
+    /// Returns the fault for a missing answer to `command`; `wrong` is the type of an answer to another command, if
+    /// any.
     fn unanswered(&self, command: &Command, wrong: Option<u8>) -> Fault {
         let wrong = wrong.map(|answered| Fault::Wrong { asked: command.kind(), answered });
         let garbled = self.reader.garbled().map(Fault::Garbled);

@@ -16,7 +16,7 @@ const GARBAGE: Duration = Duration::from_secs(60);
 const GARBAGE_A_SECOND: u32 = 3840;
 /// Time for which a line is dead that comes back.
 const DEAD: Duration = Duration::from_secs(2);
-/// In lockstep a driver without an answer waits for longer than this, and a driver with answers for much less.
+/// Time that distinguishes drivers in lockstep: without an answer they wait longer, with answers much less.
 const IN_VAIN: Duration = Duration::from_millis(2000);
 /// Maximum movement in a period of a body that counts as still, in metres.
 const STANDS: f64 = 1e-4;

@@ -58,11 +58,11 @@ const MEMORY: &str = "8388608";
 pub(crate) enum Outcome {
     /// The mutant is no valid program, so no test has to find it.
     DoesNotCompile,
-    /// This test failed.
+    /// The test of this index failed.
     Caught(usize),
-    /// This test did not end.
+    /// The test of this index did not end.
     Hangs(usize),
-    /// No test noticed.
+    /// No test failed.
     Survived,
 }
 

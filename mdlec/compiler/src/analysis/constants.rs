@@ -96,7 +96,7 @@ impl<'l> Constants<'l> {
         }
     }
 
-    /// The scope of a bracket in words, and what comes of it if its interrupt has fired at once.
+    /// Returns the scope of a bracket in words, and the effect of an interrupt that has fired at once.
     fn what(&self, bracket: u32) -> (&'static str, &'static str) {
         match bracket {
             0 => ("plan", "is over before it begins"),

@@ -12,7 +12,7 @@ use crate::plan::Condition;
 /// Maximum duration of a plan.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Longest {
-    /// At most these nanoseconds plus this number of times from one turn to the next.
+    /// At most `nanos` nanoseconds and `turns` periods of a turn.
     Bounded { nanos: u128, turns: u64 },
     /// No bound, because this bracket, an atom or a loop, may go on for ever.
     Unbounded(u32),

@@ -69,12 +69,12 @@ impl<'l> KnownFacts<'l> {
         Self { readings: Readings::Numbers, ..Self::new(machine) }
     }
 
-    /// The time at which a timer around is over, and its bracket.
+    /// Returns the time at which the first timer of an enclosing scope is over, and its bracket.
     pub(super) fn deadline(&self) -> Option<(u64, u32)> {
         self.deadlines.last().copied()
     }
 
-    /// The bracket around this place that gives a variable its value.
+    /// Returns the enclosing bracket that gives a variable its value.
     pub(super) fn unit(&self, variable: Variable) -> Option<u32> {
         self.units.get(&variable).map(|(_, bracket)| *bracket)
     }
@@ -100,7 +100,7 @@ impl<'l> KnownFacts<'l> {
         unit.or_else(clause).or_else(relative).or_else(distance)
     }
 
-    /// From now on the interrupt of this bracket has not fired.
+    /// Adds the knowledge that the interrupt of this bracket has not fired.
     pub(super) fn open(&mut self, bracket: u32, condition: &'l Condition) -> Added {
         let mut added = Added::default();
         for condition in flat(condition) {
@@ -157,7 +157,7 @@ impl<'l> KnownFacts<'l> {
         }
     }
 
-    /// The scope of this bracket ends after a path of this length, as do those inside.
+    /// Adds the knowledge that the scope of this bracket ends after a path of this length.
     fn add_distance(&mut self, nanometers: u64, bracket: u32, added: &mut Added) {
         match self.distances.last_mut() {
             Some((shortest, _)) if *shortest <= nanometers => {}
@@ -205,7 +205,7 @@ impl<'l> KnownFacts<'l> {
         }
     }
 
-    /// The one variable that has to have this value for a condition not to have fired, if it is one.
+    /// Returns the only variable of a condition, with the value at which the condition has not fired.
     fn unit_of(&self, read: Read<'l>) -> Option<(Variable, bool)> {
         let leaf = |condition: &'l Condition| {
             let mut variables = BTreeSet::new();
@@ -224,7 +224,7 @@ impl<'l> KnownFacts<'l> {
         choices::variables(read, self.machine, found)
     }
 
-    /// The value that a variable has here, if it has only one.
+    /// Returns the value of a variable at this place, if only one value is possible.
     fn known(&self, variable: Variable) -> Option<bool> {
         if let Variable::Way(bracket, nanometers) = variable {
             // The path since an outer entry is as long at least.
@@ -310,7 +310,7 @@ impl<'l> KnownFacts<'l> {
     }
 }
 
-/// The operands of an OR, and those of an OR in it.
+/// Returns the operands of an OR; nested ORs are flattened.
 fn flat(condition: &Condition) -> Vec<&Condition> {
     let (mut waiting, mut operands) = (vec![condition], Vec::new());
     while let Some(condition) = waiting.pop() {

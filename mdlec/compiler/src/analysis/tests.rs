@@ -28,7 +28,7 @@ fn assert_silent(plans: &[&str]) {
     }
 }
 
-/// For each atom whether it runs, and what can end it by itself.
+/// Returns for each atom its reachability, and the operands that can end it by themselves.
 fn atoms(text: &str) -> Vec<(Reach, String)> {
     let analysis = analyze(&compiled(text)[0].lowered);
     analysis.atoms.into_iter().map(|atom| (atom.reach, atom.ended_by.join(", "))).collect()

@@ -20,7 +20,7 @@ use crate::plan::{Condition, QuarkId};
 pub enum Reach {
     /// The atom's law may be applied.
     Runs,
-    /// The atom may become the current one, but then an interrupt around it has always fired.
+    /// The atom may become the current one, but an interrupt of an enclosing scope has then always fired.
     Skipped,
     /// The atom never becomes the current one.
     Never,
@@ -224,7 +224,7 @@ impl<'l> Walk<'l> {
         Vec::new()
     }
 
-    /// Leaves the innermost element: what follows it is reached when it ends at the earliest.
+    /// Leaves the innermost element: the next one is entered at its earliest end.
     fn leave(&mut self, element: Element<'l>) {
         let Some(open) = self.open.pop() else { return };
         let inside = self.clock.filter(|_| element.atom().is_none());

@@ -194,7 +194,7 @@ impl<'m> Element<'m> {
         }
     }
 
-    /// Returns the atom that the element is, if it is one.
+    /// Returns the atom, if the element is an atom.
     #[must_use]
     pub fn atom(self) -> Option<Atom<'m>> {
         let first = self.first();
@@ -227,13 +227,13 @@ impl<'m> Element<'m> {
         iter::successors(Some(self), |element| element.parent())
     }
 
-    /// The first atom in it.
+    /// Returns the first atom in the element.
     #[must_use]
     pub fn first(self) -> Atom<'m> {
         self.machine.atom(self.bracket().first)
     }
 
-    /// The last atom in it.
+    /// Returns the last atom in the element.
     #[must_use]
     pub fn last(self) -> Atom<'m> {
         self.machine.atom(self.bracket().last)
@@ -251,7 +251,7 @@ impl<'m> Element<'m> {
         self.machine.0.scopes[self.index()].as_ref().map(|scope| &scope.interrupt)
     }
 
-    /// Returns the condition of its interrupt; that of a loop is null.
+    /// Returns the condition of the element's interrupt; null for a loop.
     #[must_use]
     pub fn condition(self) -> &'m Condition {
         self.interrupt().map_or(&Condition::Null, |interrupt| &interrupt.condition)
@@ -282,13 +282,13 @@ impl<'m> Element<'m> {
         }
     }
 
-    /// Returns `true` if it is an atom whose law may complete.
+    /// Returns `true` if the element is an atom whose law may complete.
     #[must_use]
     pub fn completes(self) -> bool {
         self.atom().is_some_and(|atom| atom.law().completes)
     }
 
-    /// The labels of what ends with it.
+    /// Returns the labels of the elements that end together with this one.
     #[must_use]
     pub fn marks(self) -> &'m [Mark] {
         self.machine.0.marks.get(&self.number).map_or(&[], Vec::as_slice)
@@ -376,7 +376,8 @@ impl<'m> Atom<'m> {
         self.machine.quark(self.law_id())
     }
 
-    /// Returns the angle by which its frame is turned, in radians; from the innermost `FRAME here` on, if there is one.
+    /// Returns the angle by which the atom's frame is turned, in radians; relative to the innermost `FRAME here`, if
+    /// any.
     #[must_use]
     pub fn frame(self) -> f64 {
         self.machine.0.laws[self.index()].frame

@@ -50,14 +50,14 @@ pub struct Transition<'p> {
     pub here: bool,
     /// Transition matrix of the interrupt.
     pub matrix: Matrix,
-    /// The first interrupt, in pre-order, whose scope starts afresh when this one has fired: from there on all do that
-    /// hold the new state. Matrices cannot say that; it is the tree's business.
+    /// Index of the first interrupt, in pre-order, whose scope starts afresh when this one has fired: all later ones
+    /// that list the new state start afresh too. Matrices do not express that; the tree does.
     pub afresh: usize,
     /// The record that is kept with its scope.
     pub record: Option<Record>,
     /// The labels of its scope.
     pub marks: &'p [Mark],
-    /// The labels of what ends because its scope was the last element in it.
+    /// Labels of the elements that end because the interrupt's scope was their last element.
     pub ends_with: Vec<&'p Mark>,
 }
 
@@ -78,7 +78,7 @@ pub struct UnitVector {
 }
 
 impl Matrix {
-    /// The columns that it lists: those of the states which its scope holds.
+    /// Returns the columns that the interrupt lists: those of the states in its scope.
     pub fn listed(&self) -> RangeInclusive<usize> {
         self.first..=self.last
     }
@@ -128,7 +128,7 @@ struct Brackets<'p> {
 struct Bracket<'p> {
     kind: BracketKind<'p>,
     around: Option<usize>,
-    /// The labels of what ends with it.
+    /// Labels of the elements that end together with the atom.
     marks: &'p [Mark],
     /// First and last state of the bracket, from 0.
     first: usize,

@@ -10,7 +10,7 @@ use crate::plan::frame_text;
 const PICTURE: i64 = 1180;
 /// Minimum width of a box's content, at any depth.
 const LEAST: i64 = 400;
-/// Between boxes beside each other, and between a box and what it holds.
+/// Distance between adjacent boxes, and between a box and its content.
 pub(super) const GAP: i64 = 34;
 pub(super) const SIDE: i64 = 26;
 const BETWEEN_ROWS: i64 = 34;

@@ -9,15 +9,15 @@ const TOOLTIP: usize = 4000;
 /// Condition that ends an atom or a scope, in words.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Until {
-    /// This condition.
+    /// The element ends when this condition fires.
     Fires(String),
     /// The law's completion.
     Done,
-    /// This condition, or the law's completion.
+    /// The atom ends when this condition fires or its law completes.
     FiresOrDone(String),
-    /// No condition of its own: it was removed, because an outer scope repeats it.
+    /// The element has no condition any more: it was removed, because an outer scope repeats it.
     Removed(String),
-    /// No condition of its own.
+    /// The element has no condition.
     Never,
 }
 
@@ -59,7 +59,7 @@ pub(super) fn until(element: Element<'_>) -> Until {
     element.interrupt().map_or(Until::Never, |interrupt| Until::of(interrupt, element.completes()))
 }
 
-/// Returns the labels of what ends with an element: `s1: `, or nothing.
+/// Returns the labels of the elements that end with this one, as in `s1: `; empty without labels.
 pub(super) fn labels(element: Element<'_>) -> String {
     element.marks().iter().rev().map(|mark| format!("{}: ", mark.label)).collect()
 }

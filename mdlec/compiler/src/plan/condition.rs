@@ -35,7 +35,7 @@ pub enum Condition {
         /// Quark of the comparison, for its text.
         quark: QuarkId,
     },
-    /// At least one of these operands; there are two or more.
+    /// Fires when at least one of two or more operands has fired.
     Or(Vec<Condition>),
     /// All of these operands; there are two or more.
     And(Vec<Condition>),

@@ -29,7 +29,7 @@ struct Label {
 /// Causes that can end an element.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum EndCauses {
-    /// These operands of the element's interrupt.
+    /// The element ends by these operands of its interrupt.
     Operands(Vec<String>),
     /// The end of the element's last element: it has no interrupt of its own.
     WithItsLast,

@@ -309,7 +309,7 @@ impl Interrupt {
 /// Place of an operand as it is written.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OperandPlace {
-    /// From the operand's first word to its last.
+    /// Span from the operand's first word to its last.
     pub span: Span,
     /// Ends of the signals that the operand compares, if it is a comparison, or NOT or RISING of one.
     pub signals: [Option<NonZeroU32>; 2],

@@ -11,9 +11,9 @@ use crate::syntax::tree::{Arg, Call, Condition, ConditionNode, Element, Frame, O
 /// Maximum number of atoms, scopes and loops of a plan; loops are not expanded. `check` takes half a second for this
 /// many, and `analyze` a second.
 const BRACKETS: u64 = 1 << 18;
-/// Maximum number of operands of all its conditions, which take as long.
+/// Maximum number of operands of a plan's conditions; `check` takes half a second for this many.
 const OPERANDS: u64 = 1 << 19;
-/// Maximum bytes of its text, as `--emit plan` prints it.
+/// Maximum length of a plan's text in bytes, as `--emit plan` prints it.
 const TEXT: u64 = 1 << 26;
 /// Maximum nesting depth.
 pub(super) const DEPTH: u32 = 512;

@@ -21,7 +21,7 @@ pub enum Part<'p> {
 pub enum Visit<'p> {
     /// The part is entered.
     Enter(Part<'p>),
-    /// The part is left: all that it holds has been.
+    /// The walk leaves the part, after all parts inside it.
     Leave(Part<'p>),
 }
 
@@ -34,7 +34,7 @@ pub struct Walk<'p> {
 }
 
 impl Plan {
-    /// Walks over all parts: each is entered, then all inside it, then it is left.
+    /// Walks over all parts: enters each, visits the parts inside, and leaves it.
     #[must_use]
     pub fn walk(&self) -> Walk<'_> {
         Walk { root: Some(&self.root), open: Vec::new() }
@@ -54,7 +54,7 @@ impl<'p> Walk<'p> {
         self.open.len()
     }
 
-    /// Returns the scopes that enclose the next part to be visited, the innermost first; atoms are none.
+    /// Returns the scopes that enclose the next part to be visited, the innermost first.
     pub fn scopes(&self) -> impl Iterator<Item = &'p Scope> {
         self.open.iter().rev().filter_map(|(part, _)| part.scope())
     }
@@ -80,7 +80,7 @@ impl<'p> Iterator for Walk<'p> {
 }
 
 impl<'p> Visit<'p> {
-    /// The part, if it is entered.
+    /// Returns the part, if this step enters it.
     #[must_use]
     pub fn entered(self) -> Option<Part<'p>> {
         match self {
@@ -111,7 +111,7 @@ impl<'p> Part<'p> {
         }
     }
 
-    /// The scope, if it is one.
+    /// Returns the scope, if the part is a scope.
     #[must_use]
     pub fn scope(self) -> Option<&'p Scope> {
         match self {
@@ -120,7 +120,7 @@ impl<'p> Part<'p> {
         }
     }
 
-    /// The atom, if it is one.
+    /// Returns the atom, if the part is an atom.
     #[must_use]
     pub fn atom(self) -> Option<&'p Atom> {
         match self {
@@ -141,7 +141,7 @@ impl<'p> Part<'p> {
 }
 
 impl Node {
-    /// The part of the plan that it is.
+    /// Returns the node as a part of the plan.
     #[must_use]
     pub fn part(&self) -> Part<'_> {
         match self {

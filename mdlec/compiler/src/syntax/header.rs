@@ -11,7 +11,7 @@ use crate::alphabet::Kind;
 pub(super) enum Begins<'s> {
     /// Parameters.
     Parameters,
-    /// No parameters.
+    /// The parentheses do not contain parameters.
     Others,
     /// `(v: spead)`: a parameter with an unknown type or, if a plan has this name, that plan with a label.
     Either(&'s str),

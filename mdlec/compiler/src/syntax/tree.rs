@@ -44,7 +44,7 @@ pub struct Plan<'s> {
     pub condition: Option<Condition<'s>>,
     /// Elements of the plan, in order.
     pub elements: &'s [Element<'s>],
-    /// From the plan's label or brace to its closing brace.
+    /// Span from the plan's label or brace to its closing brace.
     pub span: Span,
 }
 
@@ -64,7 +64,7 @@ pub struct Element<'s> {
     pub primary: Primary<'s>,
     /// Label, frame and count of the element; `None` for most elements.
     pub marks: Option<&'s Marks<'s>>,
-    /// From the element's first token to its last.
+    /// Span from the element's first token to its last.
     pub span: Span,
 }
 
@@ -255,7 +255,7 @@ pub struct Call<'s> {
     pub name: &'s str,
     /// Arguments, flattened: parentheses around several of them have no meaning.
     pub args: &'s [Arg<'s>],
-    /// From the name to the last argument or the closing parenthesis.
+    /// Span from the name to the last argument or the closing parenthesis.
     pub span: Span,
 }
 

@@ -2,7 +2,7 @@
 //!
 //! It shares nothing with the driver's: what one of them gets wrong about the language, the other one finds.
 
-/// No command is longer on the line: one that is has no end, but filler.
+/// Maximum length of a command on the line, in bytes: a longer one has lost its end.
 const LONGEST: usize = 1000;
 
 /// A command: for which part of the robot, what, with which arguments.
@@ -99,7 +99,7 @@ impl Incoming {
 enum Body {
     /// The command has not ended yet.
     Open,
-    /// This number of bytes is not a command.
+    /// Number of bytes that do not belong to a command.
     Lost(usize),
     /// The command's bytes, and the number of bytes that it takes on the line.
     Whole(Vec<u8>, usize),

@@ -15,7 +15,7 @@ const DOTS: u16 = 72;
 pub struct Goal {
     /// The places of the robot's centre.
     pub zone: Zone,
-    /// A heading and by how much, to either side, it may be missed.
+    /// A heading and its tolerance to either side.
     pub heading: Option<(Radians, Radians)>,
 }
 

@@ -11,7 +11,7 @@ use crate::world::{Outline, Place};
 /// Minimum distance to which a moving object approaches the robot, in metres: the bumper feels it.
 const STOPS_AT: f64 = 1e-4;
 
-/// Something that moves.
+/// A moving object.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Thing {
     /// A closed door, or a box or disc where its schedule begins.

@@ -30,7 +30,7 @@ pub enum StartError {
     Overlaps(Form, String),
     /// The centre is inside this box.
     Inside(String),
-    /// No walls are around it, though the world's own start pose has them.
+    /// The pose is outside the walls that enclose the world's own start pose.
     OffTheFloor,
 }
 

@@ -40,7 +40,7 @@ pub(crate) struct Trail {
     sensed: Option<Nanos>,
     /// Time at which the turns ended; `None` before that.
     ended: Option<Nanos>,
-    /// For a picture that moves.
+    /// Frames of an animated picture, if one is recorded.
     pub(crate) frames: Option<Frames>,
 }
 

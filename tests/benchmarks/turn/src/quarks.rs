@@ -46,7 +46,7 @@ impl Interrupt<Output> for Halt {
 pub struct Write(Input);
 
 impl Write {
-    /// These two numbers.
+    /// Creates an input of two numbers.
     #[must_use]
     pub const fn new(left: f64, right: f64) -> Self {
         Self(Input { left, right })

@@ -15,7 +15,7 @@ use crate::footprint::{Footprint, Form};
 use crate::trail::Trail;
 use crate::world::{Place, World};
 
-/// Between two places of the way that callouts keep clear of, in pixels.
+/// Distance between two points of the way that callouts avoid, in pixels.
 const STEP: f64 = 6.0;
 
 /// Side of a square in which one echo is drawn, in pixels.

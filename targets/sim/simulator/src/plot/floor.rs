@@ -7,7 +7,7 @@ use super::shapes::{Pixel, circle, line, polyline, tenths, text, through};
 use crate::goal::Zone;
 use crate::world::{Outline, Place, World};
 
-/// Between two numbers of an axis, in pixels.
+/// Minimum distance between two numbers of an axis, in pixels.
 const APART: f64 = 50.0;
 
 /// Name of the region in which anything of the floor is drawn.

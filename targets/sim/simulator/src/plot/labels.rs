@@ -12,7 +12,7 @@ pub(super) const DOT: f64 = 3.0;
 const DIRECTIONS: u8 = 16;
 /// Distances tried, nearest first.
 const DISTANCES: [f64; 6] = [22.0, 36.0, 50.0, 66.0, 84.0, 104.0];
-/// Between two labels.
+/// Minimum distance between two labels, in pixels.
 const APART: f64 = 3.0;
 
 /// A rectangle: from left to right, and from top to bottom.

@@ -15,9 +15,9 @@ const FLOOR_LEAST: f64 = 160.0;
 const SCALE_MOST: f64 = 220.0;
 /// Around the whole plot.
 pub(super) const MARGIN: f64 = 18.0;
-/// For the numbers below the floor.
+/// Height of the numbers below the floor, in pixels.
 pub(super) const BELOW: f64 = 44.0;
-/// For the numbers to the left of the floor.
+/// Width of the numbers to the left of the floor, in pixels.
 pub(super) const LEFT: f64 = 52.0;
 /// The height of a line of the legend.
 pub(super) const LINE: f64 = 22.0;

@@ -9,7 +9,7 @@ use crate::trail::{Atom, Trail};
 pub(super) const ROWS_MOST: usize = 40;
 /// Maximum number of letters of a law that are shown.
 const LAW_MOST: usize = 44;
-/// Between two columns, in pixels.
+/// Distance between two columns, in pixels.
 const APART: f64 = 22.0;
 
 /// An atom in the legend.

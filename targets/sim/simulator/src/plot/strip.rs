@@ -15,7 +15,7 @@ use crate::trail::Trail;
 pub(super) const STRIP: f64 = 84.0;
 /// Half the height of the line of time, in pixels.
 const HALF: f64 = 5.0;
-/// Between two numbers of the line of time, in pixels.
+/// Minimum distance between two numbers of the time line, in pixels.
 const APART: f64 = 70.0;
 /// Half the height of the signs of the button, in pixels.
 const BUTTON: f64 = 9.0;

@@ -48,7 +48,7 @@ pub(super) fn contours(
 
 /// The sides of pixels that are occupied on the left only, as steps from each corner.
 struct Sides {
-    /// For each corner the steps from it, a bit each; column by column.
+    /// Steps from each corner, as bits; column by column.
     steps: Vec<u8>,
     rows: usize,
     /// The corners before this one have no steps left.
