@@ -12,5 +12,5 @@ mod target;
 
 pub use error::{InputError, Spelling};
 pub use input::{Input, add, plan, read_plan, read_text, without_mark};
-pub use settings::{RunOption, Settings, file_beside};
+pub use settings::{Known, RunOption, Settings, file_beside};
 pub use target::{Target, alphabet, bound, out_of_date, target};

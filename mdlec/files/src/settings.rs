@@ -25,6 +25,16 @@ pub struct Settings {
     text: SettingsText,
 }
 
+/// What is known of a target before a run.
+#[derive(Debug, Default)]
+pub struct Known {
+    /// Names of its worlds; empty if they are not known.
+    pub worlds: Vec<&'static str>,
+    /// Its options, each with the placeholder of its value, which is empty for an option without one; `None` if they are
+    /// not known.
+    pub options: Option<Vec<(&'static str, &'static str)>>,
+}
+
 /// An option that a run gets from an `mdle.toml`.
 #[derive(Debug)]
 pub struct RunOption {
@@ -96,15 +106,15 @@ impl Settings {
 
     /// Returns the options of the file for a run, except those that are also in `given`, the arguments of the command
     /// line. The options are for the target of the file: if the command line names another one with `target`, there are
-    /// none. `worlds` returns the worlds that a target knows, or nothing if the run itself will judge them.
+    /// none. `known` returns what is known of a target; the run itself judges the rest.
     ///
     /// # Errors
-    /// There is no such world.
+    /// There is no such world or option.
     pub fn run_options(
         &self,
         target: Option<&str>,
         given: &[String],
-        worlds: impl Fn(&str) -> Vec<&'static str>,
+        known: impl Fn(&str) -> Known,
     ) -> Result<Vec<RunOption>, InputError> {
         let own = self.text.target.as_ref().map(|own| &*own.value);
         if let (Some(target), Some(own)) = (target, own)
@@ -118,13 +128,12 @@ impl Settings {
             names.map(|argument| argument.split_once('=').map_or(argument, |(name, _)| name)).any(|given| given == name)
         };
         let world = self.text.world.as_ref().filter(|_| !is_given("world"));
-        let known = target.or(own).map(worlds).unwrap_or_default();
-        let world = world.map(|world| self.world(world, &known));
-        let known = target.or(own).and_then(link::options);
+        let Known { worlds, options } = target.or(own).map(known).unwrap_or_default();
+        let world = world.map(|world| self.world(world, &worlds));
         let others = self.text.options.iter().filter(|option| !is_given(&option.name)).map(|option| {
             let place = self.place(option.line);
-            if let Some(known) = &known {
-                option.must_be_among(known).map_err(|message| Failure::usage(format!("{place}: {message}")))?;
+            if let Some(known) = &options {
+                option.must_be_among(known).map_err(|message| InputError::Unusable(format!("{place}: {message}")))?;
             }
             let arguments = option.arguments.iter().map(OsString::from).collect();
             Ok(RunOption { place, arguments })

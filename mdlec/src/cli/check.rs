@@ -36,7 +36,7 @@ pub(super) fn check(options: &Check) -> Result<(), Failure> {
 fn checked_target(plan: &Path) -> Result<Target, Failure> {
     let settings = Settings::beside(plan)?;
     let target = settings.target(None)?;
-    settings.run_options(None, &[], |robot| link::worlds(robot).collect())?;
+    settings.run_options(None, &[], link::known)?;
     Ok(target)
 }
 

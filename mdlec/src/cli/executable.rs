@@ -30,7 +30,7 @@ pub(super) fn run(options: &Run) -> Result<(), Failure> {
 pub(super) fn settings_fit(options: &Executable, args: &[String]) -> Result<(), Failure> {
     let Some(path) = &options.plan else { return Ok(()) };
     let settings = Settings::beside(path)?;
-    settings.run_options(options.target.as_deref(), args, |robot| link::worlds(robot).collect())?;
+    settings.run_options(options.target.as_deref(), args, link::known)?;
     Ok(())
 }
 
@@ -108,7 +108,7 @@ impl Runnable {
     /// Becomes the executable, with the options of `mdle.toml` before `args`; `target` is the one of the command line.
     pub(super) fn become_it(&self, target: Option<&str>, args: &[String]) -> Result<(), Failure> {
         let program = if self.path.is_absolute() { self.path.clone() } else { Path::new(".").join(&self.path) };
-        let options = self.settings.run_options(target, args, |robot| link::worlds(robot).collect())?;
+        let options = self.settings.run_options(target, args, link::known)?;
         options.iter().try_for_each(|option| must_fit(option, &program))?;
         let options = options.iter().flat_map(|option| &option.arguments);
         become_program(Command::new(&program).args(options).args(args))

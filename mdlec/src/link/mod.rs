@@ -54,7 +54,7 @@ pub use error::LinkError;
 pub use ignored::ignored_configuration;
 pub use output::{must_not_be_read, write_whole};
 pub use progress::Progress;
-pub use sources::{emulators, options, worlds};
+pub use sources::{emulators, known};
 pub use target::TargetCrate;
 
 use cargo::{Job, Toolchain};

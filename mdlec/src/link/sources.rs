@@ -5,6 +5,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
+use mdle_files::Known;
+
 use super::cache::{remove, write_if_changed};
 use super::{Cache, LinkError};
 
@@ -39,14 +41,19 @@ pub(super) fn emulator(robot: &str) -> Option<(String, &'static str)> {
 }
 
 /// Worlds that come with a built-in target, in the order of their names; empty for a target that takes none.
-pub fn worlds(target: &str) -> impl Iterator<Item = &'static str> {
+fn worlds(target: &str) -> impl Iterator<Item = &'static str> {
     let folder = format!("targets/{target}/worlds/");
     embedded::FILES.iter().filter_map(move |(file, _)| file.strip_prefix(&*folder)?.strip_suffix(".toml"))
 }
 
+/// Returns what is known of a target before a run; nothing of a target that is no part of mdlec.
+pub fn known(target: &str) -> Known {
+    Known { worlds: worlds(target).collect(), options: options(target) }
+}
+
 /// Options of the executables for a built-in target, each with the placeholder of its value, which is empty for an
 /// option without one; `None` for a target that is no part of mdlec.
-pub fn options(target: &str) -> Option<Vec<(&'static str, &'static str)>> {
+fn options(target: &str) -> Option<Vec<(&'static str, &'static str)>> {
     let (folder, _) = builtin(target)?;
     let lines = text(&format!("{folder}/options.txt")).lines().filter(|line| !line.starts_with('#'));
     let options: Vec<_> = lines.map(|line| line.split_once(' ').unwrap_or((line, ""))).collect();

@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::process::ExitCode;
 
 use mdle_compiler::diagnostic::judged;
-use mdle_files::{Input, InputError, Settings, Target, read_plan};
+use mdle_files::{Input, InputError, Known, Settings, Target, read_plan};
 use mdle_host::{Call, Program};
 
 use crate::arguments::Run;
@@ -25,7 +25,7 @@ pub(crate) fn run(arguments: Run) -> Result<ExitCode, Failure> {
     let program = Program { plan: &plan, version: "" };
     let given: Vec<_> = arguments.options.iter().map(|option| option.to_string_lossy().into_owned()).collect();
     let mut options: Vec<OsString> = Vec::new();
-    for option in settings.run_options(arguments.target.as_deref(), &given, |_| Vec::new())? {
+    for option in settings.run_options(arguments.target.as_deref(), &given, |_| Known::default())? {
         let call = Call { words: arguments.words.clone(), options: option.arguments.clone() };
         (linked.check)(program, &call).map_err(|text| option.refused(&text))?;
         options.extend(option.arguments);
