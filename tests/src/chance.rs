@@ -13,9 +13,25 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 /// If the variable is not a whole number from 1 on.
 #[must_use]
 pub fn repeated(count: u64) -> u64 {
-    let Ok(factor) = std::env::var("MDLE_LONG") else { return count };
+    count * factor()
+}
+
+/// Returns `most` if the variable `MDLE_LONG` is more than 1, and `less` otherwise: the size of an input that takes an
+/// unoptimized mdlec long.
+///
+/// # Panics
+///
+/// If the variable is not a whole number from 1 on.
+#[must_use]
+pub fn sized<T>(less: T, most: T) -> T {
+    if factor() > 1 { most } else { less }
+}
+
+/// Returns the number in the variable `MDLE_LONG`, or 1 without it.
+fn factor() -> u64 {
+    let Ok(factor) = std::env::var("MDLE_LONG") else { return 1 };
     let factor = factor.parse().ok().filter(|factor: &u64| *factor >= 1);
-    count * factor.expect("MDLE_LONG is a whole number from 1 on")
+    factor.expect("MDLE_LONG is a whole number from 1 on")
 }
 
 /// A source of choices.
