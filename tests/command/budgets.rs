@@ -1,7 +1,7 @@
 //! Inputs that ask for more than any computer has, through the real binaries: each ends within stated memory and time,
 //! with a result or with a message that names the limit.
 //!
-//! Plans just within the limits take an unoptimized mdlec two minutes: without `MDLE_LONG` these have a part of that size.
+//! Plans just within the limits take an unoptimized mdlec two minutes: without `MDLE_LONG` the plans here are smaller.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
 use std::ffi::OsStr;

@@ -1,5 +1,5 @@
-//! The effects of faults: one test of every robot on a line, which compares each run with a faulty robot with the row of
-//! the robot's table.
+//! The effects of faults: one test of every robot on a line, which compares each run with a faulty robot with the row
+//! of the robot's table.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
