@@ -128,10 +128,6 @@ impl Trials {
     fn cargo(&self, arguments: &[&[&str]], limit: Duration) -> Ended {
         let mut command = Command::new("sh");
         environment(&mut command, &self.checkout);
-        if arguments.iter().any(|part| part.contains(&"machines::")) {
-            // As many compiled plans as it takes to reach every line of the emitter in several ways.
-            command.env("MDLE_LONG", "3");
-        }
         let status = command
             .args(["-c", "ulimit -v $0 && exec timeout --signal=KILL \"$@\"", MEMORY])
             .arg(limit.as_secs().to_string())
