@@ -60,7 +60,7 @@ const SCOUT: Gains = Gains {
 };
 
 /// An ATRV-mini, twice as wide.
-const ATRV: Gains = Gains { look_ahead: Meters(0.4), room_at: 0.3, beyond: 0.6, ..SCOUT };
+const ATRV: Gains = Gains { look_ahead: Meters(0.5), room_at: 0.3, beyond: 0.3, ..SCOUT };
 
 impl Gains {
     /// Returns the gains of the body that has this output.

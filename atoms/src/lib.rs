@@ -19,6 +19,7 @@ mod bumper;
 mod gains;
 mod go;
 mod go_avoid;
+mod hallway;
 mod heading;
 mod memory;
 mod path;

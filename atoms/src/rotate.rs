@@ -20,6 +20,8 @@ impl Rotate {
 }
 
 /// The law of [`Rotate`]: done within 2° of the heading and at rest.
+///
+/// A robot that measures the drift of its heading at a wall corrects it when the atom begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rotating {
     /// The final heading by odometry.
@@ -38,8 +40,9 @@ impl Rotating {
 impl<Y: DiffDrive + Odometry> Control<Y> for Rotate {
     type Law = Rotating;
 
-    fn begin(&self, _: &Y, begin: Begin) -> Rotating {
-        Rotating { goal: begin.frame.outward(self.heading), before: None }
+    fn begin(&self, y: &Y, begin: Begin) -> Rotating {
+        let drift = y.drift(begin.frame.outward(Radians(0.0)));
+        Rotating { goal: Radians(begin.frame.outward(self.heading).0 + drift.0), before: None }
     }
 }
 

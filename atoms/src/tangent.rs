@@ -56,6 +56,8 @@ pub(crate) struct Obstacles {
     count: usize,
     hard: f64,
     soft: f64,
+    /// Distance by which the body reaches further ahead than to its sides, in metres.
+    nose: f64,
     room_at: f64,
     beyond: f64,
 }
@@ -108,11 +110,13 @@ impl Side {
 impl Obstacles {
     /// The points that the sonars of `y` saw, around the body at `here`.
     pub(crate) fn seen<Y: DiffDrive + SonarRing>(y: &Y, here: Pose) -> Self {
-        let radius = y.body_radius().0;
+        let (half_length, half_width) = (y.half_length().0, y.half_width().0);
         let Gains { soft_margin, room_at, beyond, .. } = *Gains::of(y);
-        let (hard, soft) = (radius + MARGIN, radius + soft_margin);
+        let half_width = (half_width + y.body_radius().0) / 2.0;
+        let (hard, soft) = (half_width + MARGIN, half_width + soft_margin);
         let points = [Point { x: 0.0, y: 0.0 }; POINTS];
-        let mut seen = Self { points, count: 0, hard, soft, room_at, beyond };
+        let nose = half_length - half_width;
+        let mut seen = Self { points, count: 0, hard, soft, nose, room_at, beyond };
         for sonar in (0..SONARS as u8).map(SonarId::new) {
             if let Some((ping, range)) = heard(y, sonar) {
                 on_arc(&ping, range, sonar, y.ring_radius(), here, ARC).into_iter().for_each(|point| seen.push(point));
@@ -151,7 +155,7 @@ impl Obstacles {
         let mut free = FREE_MOST;
         for (along, across) in self.along(direction) {
             if along > 0.0 && across.abs() < self.hard {
-                free = free.min(along - libm::sqrt(self.hard * self.hard - across * across));
+                free = free.min(along - self.nose - libm::sqrt(self.hard * self.hard - across * across));
             }
         }
         Meters(free)

@@ -1,7 +1,7 @@
 //! Capabilities: one trait for each capability that an alphabet can name, implemented by the robot's output.
 //! `state_link` and `modules` have no trait yet, so no robot can offer them. See docs/src/reference/interfaces.md, 7.2.
 
-use crate::{Meters, Nanos, Output, Pings, Pose, Setpoint, SonarId, Twist, Volts};
+use crate::{Meters, Nanos, Output, Pings, Pose, Radians, Setpoint, SonarId, Twist, Volts};
 
 /// `odometry`: the robot knows where it is and how fast it moves, in axes that stay put while it is switched on.
 pub trait Odometry: Output {
@@ -9,6 +9,11 @@ pub trait Odometry: Output {
     fn pose(&self) -> Pose;
     /// The measured velocities.
     fn velocity(&self) -> Twist;
+    /// Returns the angle by which walls beside the robot are off the axes of a frame, one of which has the direction
+    /// `axis`, as far as the heading has drifted: 0 unless the robot can measure it better than it drifts.
+    fn drift(&self, _axis: Radians) -> Radians {
+        Radians(0.0)
+    }
 }
 
 /// `bumper`: the robot feels contact.

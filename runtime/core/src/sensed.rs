@@ -2,7 +2,8 @@
 //! paths: the values, and the capabilities that they give it (`y = h(x)`, paper, Eq. 1).
 
 use crate::capability::{Bumpers, DiffDrive, Odometry, Paths, Power, SonarRing, Steering};
-use crate::{Meters, Nanos, Output, PathStore, Pings, Pose, SONARS, Setpoint, SonarId, Twist, Volts};
+use crate::drift::drift;
+use crate::{Meters, Nanos, Output, PathStore, Pings, Pose, Radians, SONARS, Setpoint, SonarId, Twist, Volts};
 
 /// The output of one turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,6 +49,9 @@ pub struct Shape {
     pub half_width: Meters,
     /// The distance between its wheels.
     pub wheel_base: Meters,
+    /// Distance between the places on a wall beside the robot that two sonars hear, which look before and behind the
+    /// direction to it; `None` on a robot whose heading by odometry is better than one by such a wall.
+    pub sonars_apart: Option<Meters>,
     /// The distance of the sonars from its centre.
     pub ring_radius: Meters,
     /// Number of pings that must agree that a way is free.
@@ -69,6 +73,11 @@ impl Odometry for Sensed {
 
     fn velocity(&self) -> Twist {
         self.velocity
+    }
+
+    fn drift(&self, axis: Radians) -> Radians {
+        let Some(apart) = self.shape.sonars_apart else { return Radians(0.0) };
+        drift(&self.pings, self.odometry.theta, axis, apart)
     }
 }
 

@@ -21,6 +21,8 @@ const SPEED: u32 = 115_200;
 const HALF_LENGTH: Meters = Meters(0.315);
 const HALF_WIDTH: Meters = Meters(0.27);
 const RADIUS: Meters = Meters(0.415);
+/// Distance between the places of a wall beside the robot that the sonars 18° off the direction to it hear.
+const SONARS_APART: Meters = Meters(0.33);
 /// Number of pings that must agree that a way is free on a robot whose sonars fire in turn.
 const CONFIRMATION: usize = 2;
 /// Maximum time for the robot to release its brake, and for each of its sonars to ping a few times.
@@ -257,6 +259,7 @@ impl Robot for Atrv {
                 body_radius: RADIUS,
                 half_length: HALF_LENGTH,
                 half_width: HALF_WIDTH,
+                sonars_apart: Some(SONARS_APART),
                 wheel_base: Meters(self.config.wheel_base),
                 ring_radius: Meters(RING_RADIUS),
                 confirmation: CONFIRMATION,

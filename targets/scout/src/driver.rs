@@ -214,6 +214,7 @@ impl Robot for Scout {
                 body_radius: RADIUS,
                 half_length: RADIUS,
                 half_width: RADIUS,
+                sonars_apart: None,
                 wheel_base: Meters(WHEEL_BASE),
                 ring_radius: Meters(self.config.ring_radius),
                 confirmation: CONFIRMATION,

@@ -19,6 +19,7 @@ const SHAPE: Shape = Shape {
     body_radius: Meters(0.2),
     half_length: Meters(0.2),
     half_width: Meters(0.2),
+    sonars_apart: None,
     wheel_base: Meters(0.35),
     ring_radius: Meters(0.2),
     confirmation: 3,

@@ -92,6 +92,7 @@ impl Simulated {
             body_radius: Meters(drive.form.radius()),
             half_length: Meters(half_length),
             half_width: Meters(half_width),
+            sonars_apart: hearing.beside_apart.map(Meters),
             wheel_base: Meters(drive.wheel_base),
             ring_radius: Meters(hearing.ring_radius),
             confirmation: if hearing.order.is_some() { 2 } else { 3 },

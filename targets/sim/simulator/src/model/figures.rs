@@ -32,6 +32,7 @@ pub(super) fn ideal() -> Model {
         hearing: Hearing {
             transducers: transducers.collect(),
             ring_radius: RING_RADIUS,
+            beside_apart: None,
             half_cone: HALF_CONE,
             lobe: None,
             facing: None,
@@ -128,6 +129,8 @@ pub(super) fn atrv() -> Model {
         hearing: Hearing {
             transducers: left.into_iter().chain(right).collect(),
             ring_radius: 0.28,
+            // Of the sonars 18° off it, 35 cm apart.
+            beside_apart: Some(0.33),
             most: 4.0,
             // A count of the controller's clock.
             step: 1.0 / 1550.0,
