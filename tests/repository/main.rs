@@ -1,6 +1,7 @@
 //! The repository: its files, its directions, its book, and the table of what tests cover.
 
 mod book;
+mod circles;
 mod codes;
 mod coverage;
 mod directions;

@@ -27,6 +27,7 @@ mod ring;
 mod room;
 mod round;
 mod sides;
+mod stored_path;
 mod trial;
 
 use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, Paths, Power, SonarRing};

@@ -3,25 +3,15 @@
 use std::format;
 
 use mdle_runtime::capability::Paths;
-use mdle_runtime::{Argument, Meters, MetersPerSecond, Nanos, PathStore, Radians, Setpoint, StoredPath};
+use mdle_runtime::{Argument, Meters, Radians};
 
 use super::drive::SETTLES;
+use super::stored_path::{BEND, NAME, SPEED};
 use super::trial::{Trial, Way};
 use super::{Out, Room, Stage, Verdict};
 
-/// The path that every robot is given: a second ahead, a quarter of a circle to the left in two, a second ahead.
-pub(super) static STORED: PathStore = PathStore::new(&[StoredPath { name: NAME, setpoints: &BEND }]);
-const NAME: &str = "bend.csv";
-static BEND: [Setpoint; 4] =
-    [setpoint(0, 0.0, SPEED), setpoint(1, 0.0, SPEED), setpoint(3, 90.0, SPEED), setpoint(4, 90.0, SPEED)];
-const SPEED: f64 = 0.2;
 /// Maximum distance of the body from the end of the path, in metres and degrees: it has to accelerate and to stop.
 const ENDS: (f64, f64) = (0.1, 10.0);
-
-const fn setpoint(seconds: u64, degrees: f64, speed: f64) -> Setpoint {
-    let at = Nanos(seconds * 1_000_000_000);
-    Setpoint { at, heading: Radians::from_degrees(degrees), speed: MetersPerSecond(speed) }
-}
 
 pub(super) fn are_there<S: Stage>(stage: &mut S) -> Result<(), Verdict>
 where

@@ -8,7 +8,7 @@ use mdle_runtime::{
 };
 
 use super::room::AT;
-use super::{Out, Room, Stage, Supplied, Verdict, replay};
+use super::{Out, Room, Stage, Supplied, Verdict, stored_path};
 
 /// Maximum distance of a robot from where the stage was to put it, in metres and radians.
 const PUT: (f64, f64) = (0.02, 0.02);
@@ -58,7 +58,7 @@ impl<'s, S: Stage> Trial<'s, S> {
     /// Puts a robot at the start pose of this room and makes its first exchange.
     pub(super) fn of(stage: &'s mut S, room: &Room) -> Result<Self, String> {
         let mut robot = stage.robot(room, AT).map_err(|why| format!("the stage has no robot: {why}"))?;
-        stage.take_paths(&mut robot, replay::STORED);
+        stage.take_paths(&mut robot, stored_path::STORED);
         let put = Way::between(AT, stage.truth(&robot));
         if put.far() > PUT.0 || put.turn.abs() > PUT.1 {
             let (far, turned) = (put.far(), put.turn.to_degrees());

@@ -4,11 +4,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use mdle_compiler::alphabet::{Alphabet, nearest};
-use mdle_compiler::diagnostic::{Code, Diagnostic, SourceId, Sources, Span};
+use mdle_compiler::diagnostic::{Diagnostic, SourceId, Sources};
 use mdle_compiler::rust::{self, Header};
 use mdle_compiler::{Compiled, check_with, compile_with, syntax};
 
 use crate::read::Unread;
+use crate::text::{read_text, shown, without_mark};
 use crate::{InputError, Target, read};
 
 /// A plan file, together with the alphabet's files and the files that it uses.
@@ -131,12 +132,6 @@ impl syntax::Loader for Input {
     }
 }
 
-/// Removes a byte order mark, which editors write and which is not part of a plan.
-#[must_use]
-pub fn without_mark(bytes: Vec<u8>) -> Vec<u8> {
-    bytes.strip_prefix(b"\xEF\xBB\xBF").map(<[u8]>::to_vec).unwrap_or(bytes)
-}
-
 /// Reads a plan file; `-` is standard input.
 ///
 /// # Errors
@@ -172,43 +167,6 @@ pub fn add(sources: &mut Sources, path: &Path, text: String) -> Result<SourceId,
     }
 }
 
-/// Name of a file in messages.
-fn shown(path: &Path) -> String {
-    if path == Path::new("-") { "standard input".into() } else { path.display().to_string() }
-}
-
-/// Reads a text file of at most `most` bytes, or standard input for `-`.
-///
-/// # Errors
-/// The file cannot be read or is not text.
-pub fn read_text(path: &Path, most: u64) -> Result<String, InputError> {
-    let name = shown(path);
-    let is_input = path == Path::new("-");
-    let bytes = if is_input { read::standard_input(most) } else { read::file(path, most) };
-    let bytes = bytes.map_err(|why| {
-        InputError::Unusable(if why.is_missing() {
-            format!("there is no file `{name}`{}", plan_nearby(path))
-        } else {
-            why.of(&name) + why.help()
-        })
-    })?;
-    String::from_utf8(without_mark(bytes)).map_err(|error| {
-        let valid = error.utf8_error().valid_up_to();
-        not_utf8(&name, error.as_bytes(), valid)
-    })
-}
-
-/// Error for a file that is not text, with the part of the file that can be shown; its first `valid` bytes are valid.
-fn not_utf8(name: &str, bytes: &[u8], valid: usize) -> InputError {
-    let mut sources = Sources::default();
-    let source = sources.add(name, String::from_utf8_lossy(bytes));
-    // The replacement character that stands there now is three bytes long.
-    let span = Span::new(source, valid, valid + 3);
-    let found = Diagnostic::new(Code::E0109, "this file is not UTF-8 text", span, "no character of UTF-8")
-        .help("save it as UTF-8 in your editor, or convert it: `iconv -f latin1 -t utf-8`");
-    InputError::Faulty { sources, diagnostics: vec![found], target: None }
-}
-
 /// Name of the plan file next to `path` that was probably meant: one that differs in upper or lower case or in the
 /// extension, or else in few letters.
 fn like(path: &Path) -> Option<String> {
@@ -219,10 +177,4 @@ fn like(path: &Path) -> Option<String> {
     let same = files.iter().find(|file| [name.clone(), format!("{name}.mdle")].contains(&file.to_lowercase()));
     let plans = || files.iter().map(String::as_str).filter(|file| file.ends_with(".mdle"));
     same.map(String::as_str).or_else(|| nearest(&name, plans())).map(str::to_owned)
-}
-
-/// Hint for a path without the extension `.mdle`.
-fn plan_nearby(path: &Path) -> String {
-    let with_ending = path.with_extension("mdle");
-    if with_ending.is_file() { format!("\nhelp: there is `{}`", with_ending.display()) } else { String::new() }
 }

@@ -9,8 +9,10 @@ mod input;
 pub mod read;
 mod settings;
 mod target;
+mod text;
 
 pub use error::{InputError, Spelling};
-pub use input::{Input, add, plan, read_plan, read_text, without_mark};
+pub use input::{Input, add, plan, read_plan};
 pub use settings::{Known, RunOption, Settings, file_beside};
 pub use target::{Target, alphabet, bound, out_of_date, target};
+pub use text::{read_text, without_mark};

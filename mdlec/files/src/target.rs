@@ -6,8 +6,8 @@ use mdle_compiler::alphabet::{self as language, Alphabet, AlphabetFile, Capabili
 use mdle_compiler::diagnostic::{Diagnostic, Sources, has_errors};
 use mdle_compiler::{builtin, rust};
 
-use crate::input::read_text;
 use crate::read::LARGEST_PLAN;
+use crate::text::read_text;
 use crate::{InputError, read};
 
 /// The robot that plans are checked against.

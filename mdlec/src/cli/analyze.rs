@@ -1,6 +1,6 @@
 //! `mdlec analyze`: static analysis of a plan.
 
-use super::{Analyze, Failure, build, report};
+use super::{Analyze, Failure, compiled, report};
 use mdle_compiler::Compiled;
 use mdle_compiler::analysis::analyze as analysis;
 use mdle_files::Settings;
@@ -11,6 +11,7 @@ pub(super) fn analyze(options: &Analyze) -> Result<(), Failure> {
     let mut input = mdle_files::read_plan(&options.plan, &target)?;
     // An analysis needs the machine alone, and of a long plan the rest is as large again.
     let judge = |Compiled { lowered, .. }: Compiled| analysis(&lowered);
-    let analysis = build::compile_judged(&mut input, &target, options.name.as_deref(), options.deny_warnings, judge)?;
+    let analysis =
+        compiled::compile_judged(&mut input, &target, options.name.as_deref(), options.deny_warnings, judge)?;
     if options.json { report::print_exactly(&analysis.to_json()) } else { report::print(&analysis.to_text()) }
 }

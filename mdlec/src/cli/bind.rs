@@ -19,8 +19,7 @@ pub(super) fn bind(options: &Bind) -> Result<(), Failure> {
     if options.check {
         return Err(Failure::of(1, out_of_date(file)));
     }
-    link::write_whole(&bound, text.as_bytes(), std::slice::from_ref(file))
-        .map_err(|error| Failure::of(error.exit_status(), error.to_string()))?;
+    link::write_whole(&bound, text.as_bytes(), std::slice::from_ref(file))?;
     report::note(format_args!("{} is written", bound.display()));
     Ok(())
 }

@@ -2,12 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use super::compiled::{compile_one, needs_target};
 use super::executable::{self, Runnable};
 use super::{Bare, Build, Emit, EmitKind, Executable, Failure, endings, matrices, report};
 use crate::link;
 use mdle_compiler::syntax::outline;
-use mdle_compiler::{Compiled, fsm, picture, syntax};
-use mdle_files::{Input, InputError, Settings, Target, read_plan};
+use mdle_compiler::{fsm, picture, syntax};
+use mdle_files::{Settings, read_plan};
 
 /// Runs a command line without a command.
 pub(super) fn bare(options: &Bare) -> Result<(), Failure> {
@@ -54,41 +55,11 @@ pub(super) fn build(options: &Build) -> Result<Option<Runnable>, Failure> {
     }
     let (text, inputs) = stage(about, path, kind)?;
     match file {
-        Some(file) => link::write_whole(&file, text.as_bytes(), &inputs).map_err(|error| executable::failure(&error)),
+        Some(file) => link::write_whole(&file, text.as_bytes(), &inputs).map_err(Failure::from),
         None if kind.is_for_people() => report::print(&text),
         None => report::print_exactly(&text),
     }?;
     Ok(None)
-}
-
-/// Compiles the only plan to run; messages go to standard error.
-pub(super) fn compile_one(
-    input: &mut Input,
-    target: &Target,
-    name: Option<&str>,
-    deny_warnings: bool,
-) -> Result<Compiled, Failure> {
-    compile_judged(input, target, name, deny_warnings, |compiled| compiled)
-}
-
-/// Compiles the only plan to run, and passes it to `judge` by value, which can drop the parts that it does not need.
-pub(super) fn compile_judged<T>(
-    input: &mut Input,
-    target: &Target,
-    name: Option<&str>,
-    deny_warnings: bool,
-    mut judge: impl FnMut(Compiled) -> T,
-) -> Result<T, Failure> {
-    if let Some(name) = name {
-        input.must_have(name)?;
-    }
-    let (compiled, found) = input.compile(&target.alphabet, name);
-    let named = |compiled: Compiled| (compiled.plan.root.name.clone(), compiled);
-    let judged: Vec<_> = compiled.into_iter().map(named).map(|(name, compiled)| (name, judge(compiled))).collect();
-    if !report::diagnostics(&input.sources, &found, deny_warnings) {
-        return Err(Failure::PLAN);
-    }
-    Ok(input.only(judged)?)
 }
 
 /// Returns a form of the plan as text, with the files that were read for it.
@@ -123,34 +94,4 @@ fn stage(options: &Executable, path: &Path, kind: EmitKind) -> Result<(String, V
         Failure::PLAN
     })?;
     Ok((text, input.inputs(&target)))
-}
-
-/// Fails if no target is named: Rust is written for a robot.
-pub(super) fn needs_target(is_named: bool) -> Result<(), Failure> {
-    if is_named { Ok(()) } else { Err(InputError::NoTarget.into()) }
-}
-
-/// A plan as Rust, with its sources.
-pub(super) struct Emitted {
-    pub(super) target: Target,
-    pub(super) input: Input,
-    pub(super) plan_name: String,
-    pub(super) rust: String,
-}
-
-/// Generates Rust from the only plan to compile, for the crate of this target.
-pub(super) fn emitted(
-    path: &Path,
-    target: Target,
-    name: Option<&str>,
-    deny_warnings: bool,
-) -> Result<Emitted, Failure> {
-    let mut input = read_plan(path, &target)?;
-    let compiled = compile_one(&mut input, &target, name, deny_warnings)?;
-    target.must_be_bound()?;
-    let rust = input.rust(&compiled, &target).map_err(|too_large| {
-        report::diagnostics(&input.sources, &[too_large], false);
-        Failure::PLAN
-    })?;
-    Ok(Emitted { target, input, plan_name: compiled.plan.root.name, rust })
 }

@@ -2,8 +2,9 @@
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use super::each::each;
 use super::everywhere::{ALL, everywhere};
 use super::{Check, Failure, report};
 use crate::link;
@@ -38,13 +39,4 @@ fn checked_target(plan: &Path) -> Result<Target, Failure> {
     let target = settings.target(None)?;
     settings.run_options(None, &[], link::known)?;
     Ok(target)
-}
-
-/// Calls `done` for every file, even if it fails for earlier ones; fails with the highest exit status.
-pub(super) fn each(paths: &[PathBuf], mut done: impl FnMut(&Path) -> Result<(), Failure>) -> Result<(), Failure> {
-    let mut failed = None;
-    for failure in paths.iter().filter_map(|path| done(path).err()) {
-        failed = failed.max(Some(failure.told()));
-    }
-    failed.map_or(Ok(()), |status| Err(Failure::silent(status)))
 }

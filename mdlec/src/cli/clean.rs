@@ -1,16 +1,16 @@
 //! `mdlec clean`: empties the cache.
 
-use super::executable::{Shown, failure};
+use super::executable::Shown;
 use super::{Failure, report};
 use crate::link::{self, Cache};
 
 /// Removes the contents of the cache, and prints their size.
 pub(super) fn clean() -> Result<(), Failure> {
-    let folder = Cache::folder_of_user().map_err(|error| failure(&error))?;
+    let folder = Cache::folder_of_user()?;
     let mut shown = Shown::default();
     let freed = link::clear(&folder, &mut |progress| shown.progress(&progress));
     shown.close();
-    let freed = freed.map_err(|error| failure(&error))?;
+    let freed = freed?;
     report::note(format_args!("{}: {:.1} MB freed", folder.display(), freed as f64 / 1e6));
     Ok(())
 }

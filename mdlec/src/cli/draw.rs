@@ -1,6 +1,6 @@
 //! `mdlec draw`: draws a plan as a picture.
 
-use super::{Draw, Failure, build, endings, report};
+use super::{Draw, Failure, compiled, endings, report};
 use crate::link;
 use mdle_compiler::picture;
 use mdle_files::Settings;
@@ -12,14 +12,13 @@ pub(super) fn draw(options: &Draw) -> Result<(), Failure> {
     }
     let target = Settings::beside(&options.plan)?.target(options.target.as_deref())?;
     let mut input = mdle_files::read_plan(&options.plan, &target)?;
-    let compiled = build::compile_one(&mut input, &target, options.name.as_deref(), false)?;
+    let compiled = compiled::compile_one(&mut input, &target, options.name.as_deref(), false)?;
     let drawn = picture::svg(&compiled.lowered).map_err(|too_large| {
         report::diagnostics(&input.sources, &[too_large], false);
         Failure::PLAN
     })?;
     match &options.output {
         None => report::print_exactly(&drawn),
-        Some(file) => link::write_whole(file, drawn.as_bytes(), &input.inputs(&target))
-            .map_err(|error| Failure::of(error.exit_status(), error.to_string())),
+        Some(file) => link::write_whole(file, drawn.as_bytes(), &input.inputs(&target)).map_err(Failure::from),
     }
 }

@@ -3,7 +3,7 @@
 use std::os::unix::process::CommandExt;
 use std::process::Command;
 
-use super::executable::{Shown, become_program, failure, take_signals};
+use super::executable::{Shown, become_program, take_signals};
 use super::{Emulator, Failure};
 use crate::link::{self, Cache};
 
@@ -15,6 +15,6 @@ pub(super) fn emulator(options: &Emulator) -> Result<(), Failure> {
     let built =
         Cache::of_user().and_then(|cache| link::emulator(&cache, robot, &mut |progress| shown.progress(&progress)));
     shown.close();
-    let built = built.map_err(|error| failure(&error))?;
+    let built = built?;
     become_program(Command::new(&built.path).arg0(format!("{robot}-emulator")).args(&options.args))
 }

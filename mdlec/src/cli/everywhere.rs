@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::check::each;
+use super::each::each;
 use super::{Check, Failure, report};
 use mdle_compiler::diagnostic::{Severity, has_errors};
 use mdle_files::Target;

@@ -8,10 +8,10 @@ use std::time::Instant;
 
 use mdle_runtime::Printable;
 
-use super::build::{Emitted, emitted, needs_target};
+use super::compiled::{Emitted, emitted, needs_target};
 use super::version::version;
 use super::{EmitKind, Executable, Failure, Run, endings, report};
-use crate::link::{self, Cache, LinkError, Package, Progress, TargetCrate};
+use crate::link::{self, Cache, Package, Progress, TargetCrate};
 use mdle_compiler::rust;
 use mdle_files::{RunOption, Settings, Target};
 
@@ -85,7 +85,7 @@ pub(super) fn build(options: &Executable, path: &Path, output: Option<PathBuf>) 
     if !built.as_ref().is_ok_and(|built| built.fresh) {
         note_ignored(path, &target);
     }
-    let built = built.map_err(|error| failure(&error))?;
+    let built = built?;
     let seconds = started.elapsed().as_secs_f64();
     let size = built.size as f64 / 1e6;
     report::note(format_args!("{}: built in {seconds:.2} s, {size:.1} MB", output.display()));
@@ -131,10 +131,6 @@ fn must_fit(option: &RunOption, program: &Path) -> Result<(), Failure> {
 pub(super) fn become_program(command: &mut Command) -> Result<(), Failure> {
     let error = command.exec();
     Err(Failure::usage(format!("cannot run `{}`: {error}", Path::new(command.get_program()).display())))
-}
-
-pub(super) fn failure(error: &LinkError) -> Failure {
-    Failure::of(error.exit_status(), error.to_string())
 }
 
 /// Progress output: a line that is overwritten on a terminal, else one line for each new step.

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{self, IsTerminal};
 use std::path::Path;
 
-use super::check::each;
+use super::each::each;
 use super::{Failure, Fmt, report};
 use crate::link;
 use mdle_compiler::diagnostic::Sources;
@@ -48,5 +48,5 @@ fn write(path: &Path, text: &str) -> Result<(), Failure> {
     if fs::metadata(path).is_ok_and(|found| found.permissions().readonly()) {
         return Err(Failure::usage(format!("`{}` is read-only", path.display())));
     }
-    link::write_whole(path, text.as_bytes(), &[]).map_err(|error| Failure::of(error.exit_status(), error.to_string()))
+    link::write_whole(path, text.as_bytes(), &[]).map_err(Failure::from)
 }

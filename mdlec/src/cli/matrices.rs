@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
-use super::{Failure, executable, report};
+use super::{Failure, report};
 use crate::link;
 use mdle_compiler::diagnostic::Sources;
 use mdle_compiler::diagnostic::{Code, Diagnostic};
@@ -60,13 +60,12 @@ fn write(files: &MatrixFiles<'_, '_>, folder: &Path, inputs: &[PathBuf]) -> Resu
     let old = matrix_files_in(folder).map_err(failed)?;
     let list = folder.join(MatrixFiles::LIST);
     let lost = old.iter().chain([&list]).try_for_each(|file| link::must_not_be_read(file, inputs));
-    lost.map_err(|error| executable::failure(&error))?;
+    lost?;
     if list.exists() {
         old.iter().try_for_each(fs::remove_file).map_err(failed)?;
     }
-    let put = |name: &str, text: &str| {
-        link::write_whole(&folder.join(name), text.as_bytes(), inputs).map_err(|error| executable::failure(&error))
-    };
+    let put =
+        |name: &str, text: &str| link::write_whole(&folder.join(name), text.as_bytes(), inputs).map_err(Failure::from);
     let mut count = 0;
     for (name, text) in files.files() {
         put(&name, &text)?;

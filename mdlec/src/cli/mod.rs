@@ -6,8 +6,10 @@ mod bind;
 mod build;
 mod check;
 mod clean;
+mod compiled;
 mod decompile;
 mod draw;
+mod each;
 mod emit;
 mod emulator;
 mod endings;
@@ -36,6 +38,8 @@ use emit::{Emit, EmitKind};
 use mdle_compiler::diagnostic::{Diagnostic, Sources};
 use mdle_files::InputError;
 
+use crate::link::LinkError;
+
 /// Message and exit status of a command that failed.
 #[derive(Debug)]
 struct Failure {
@@ -62,6 +66,12 @@ impl From<InputError> for Failure {
             | InputError::NotOnePlan { .. } => (2, None),
         };
         Self { status, found, message }
+    }
+}
+
+impl From<LinkError> for Failure {
+    fn from(error: LinkError) -> Self {
+        Self::of(error.exit_status(), error.to_string())
     }
 }
 

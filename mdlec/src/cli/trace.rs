@@ -14,7 +14,7 @@ pub(super) fn trace(options: &Trace) -> Result<(), Failure> {
     }
     let target = Settings::beside(&options.plan)?.target(options.target.as_deref())?;
     let mut input = mdle_files::read_plan(&options.plan, &target)?;
-    let compiled = super::build::compile_one(&mut input, &target, options.name.as_deref(), false)?;
+    let compiled = super::compiled::compile_one(&mut input, &target, options.name.as_deref(), false)?;
     let text = mdle_files::read_text(&options.script, LARGEST_DATA)?;
     let script = Script::read(&text)
         .and_then(|script| script.in_words_of(&compiled.plan, &target.alphabet))

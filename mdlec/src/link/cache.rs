@@ -101,7 +101,7 @@ impl Cache {
         }
         // For those who wait; on a full disk they learn no number.
         let _ = file.set_len(0).and_then(|()| writeln!(file, "{}", process::id()));
-        orphan::end(self);
+        orphan::end(&self.folder);
         Ok(file)
     }
 }

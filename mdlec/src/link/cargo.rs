@@ -110,7 +110,7 @@ impl Job<'_> {
         }
         command.stdout(Stdio::piped()).stderr(Stdio::piped());
         let (child, _watched) = cleanup::spawn(&mut command).map_err(|error| unusable("cargo", &error))?;
-        let _noted = orphan::note(self.cache, &child);
+        let _noted = orphan::note(self.cache.folder(), &child);
         messages::follow(child, online, &self.plan.manifest(), seal, progress)
             .map_err(|error| unusable("cargo", &error))
     }

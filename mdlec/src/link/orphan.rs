@@ -4,14 +4,12 @@
 //! finds a note knows that the mdlec which wrote it is gone.
 
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Child;
 use std::thread;
 use std::time::{Duration, Instant};
 
 use rustix::process::{Pid, Signal, kill_process_group};
-
-use super::Cache;
 
 /// Name of the note in the cache.
 const NOTE: &str = "cargo";
@@ -30,18 +28,19 @@ impl Drop for Note {
     }
 }
 
-/// Writes the note that `child`, which leads a process group, is running. Returns `None` if the note cannot be written,
-/// such as on a full disk: the build continues without it.
-pub(super) fn note(cache: &Cache, child: &Child) -> Option<Note> {
-    let note = cache.folder().join(NOTE);
+/// Writes the note into the folder of the cache that `child`, which leads a process group, is running. Returns `None`
+/// if the note cannot be written, such as on a full disk: the build continues without it.
+pub(super) fn note(cache: &Path, child: &Child) -> Option<Note> {
+    let note = cache.join(NOTE);
     let leader = child.id();
     fs::write(&note, format!("{leader} {}\n", started(leader)?)).ok()?;
     Some(Note(note))
 }
 
-/// Ends the cargo that the note names, with all its children, if it is still running. Call it with the cache locked.
-pub(super) fn end(cache: &Cache) {
-    let note = cache.folder().join(NOTE);
+/// Ends the cargo that the note in the folder of the cache names, with all its children, if it is still running. Call
+/// it with the cache locked.
+pub(super) fn end(cache: &Path) {
+    let note = cache.join(NOTE);
     let Ok(text) = fs::read_to_string(&note) else { return };
     let numbers = text.trim_end().split_once(' ');
     if let Some((Ok(leader), Ok(start))) = numbers.map(|(leader, start)| (leader.parse(), start.parse())) {
@@ -93,8 +92,8 @@ mod tests {
         let cache = cache("orphan");
         let mut child = sleep();
         // The mdlec that was killed did not remove its note.
-        std::mem::forget(note(&cache, &child).unwrap());
-        end(&cache);
+        std::mem::forget(note(cache.folder(), &child).unwrap());
+        end(cache.folder());
         assert_eq!(child.wait().unwrap().signal(), Some(15));
         assert!(!cache.folder().join(NOTE).exists());
     }
@@ -106,7 +105,7 @@ mod tests {
         let start = started(child.id()).unwrap();
         for text in [format!("{} {}\n", child.id(), start + 1), format!("{}\n", child.id()), "garbage 1\n".to_owned()] {
             fs::write(cache.folder().join(NOTE), text).unwrap();
-            end(&cache);
+            end(cache.folder());
             assert_eq!(started(child.id()), Some(start));
         }
         child.kill().unwrap();

@@ -11,6 +11,7 @@ mod legend;
 mod record;
 mod rows;
 mod shapes;
+mod sizes;
 mod strip;
 #[cfg(test)]
 mod tests;

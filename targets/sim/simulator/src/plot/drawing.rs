@@ -7,9 +7,10 @@ use svg::Document;
 use svg::node::element::{Group, Path, Style, Title};
 
 use super::colours::{class, style};
-use super::layout::{LEFT, Layout, MARGIN};
+use super::layout::Layout;
 use super::rows::ROWS_MOST;
 use super::shapes::{Pixel, badge, circle, cross, dots, line, simplified, tenths, through};
+use super::sizes::{LEFT, MARGIN};
 use super::{floor, labels, legend, things};
 use crate::footprint::{Footprint, Form};
 use crate::trail::Trail;

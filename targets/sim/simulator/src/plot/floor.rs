@@ -2,8 +2,9 @@
 
 use svg::node::element::{ClipPath, Group, Path, Rectangle};
 
-use super::layout::{LEFT, Layout, MARGIN, round_step};
+use super::layout::{Layout, round_step};
 use super::shapes::{Pixel, circle, line, polyline, tenths, text, through};
+use super::sizes::{LEFT, MARGIN};
 use crate::goal::Zone;
 use crate::world::{Outline, Place, World};
 

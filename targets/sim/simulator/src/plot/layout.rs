@@ -2,6 +2,7 @@
 
 use super::rows::{self, Row};
 use super::shapes::Pixel;
+use super::sizes::{LEFT, LETTER, LETTERS, MARGIN};
 use super::title::Title;
 use super::view::{View, range};
 use crate::trail::Trail;
@@ -13,18 +14,10 @@ const FLOOR_MOST: (f64, f64) = (1080.0, 860.0);
 const FLOOR_LEAST: f64 = 160.0;
 /// Maximum scale of a plot, in pixels per metre.
 const SCALE_MOST: f64 = 220.0;
-/// Around the whole plot.
-pub(super) const MARGIN: f64 = 18.0;
 /// Height of the numbers below the floor, in pixels.
 pub(super) const BELOW: f64 = 44.0;
-/// Width of the numbers to the left of the floor, in pixels.
-pub(super) const LEFT: f64 = 52.0;
 /// The height of a line of the legend.
 pub(super) const LINE: f64 = 22.0;
-/// The size of letters in the legend.
-pub(super) const LETTERS: u32 = 14;
-/// The average width of a sans-serif letter, as a part of its height.
-pub(super) const LETTER: f64 = 0.56;
 /// The lines of the legend besides the atoms: the heads of the columns, a free one, the signs, and the scale.
 pub(super) const KEY: usize = 9;
 /// Maximum number of symbols of moving objects.

@@ -3,8 +3,9 @@
 use svg::node::element::{Group, Path, Rectangle};
 
 use super::labels::RADIUS;
-use super::layout::{LETTERS, Layout, MARGIN, round_step};
+use super::layout::{Layout, round_step};
 use super::shapes::{badge, circle, cross, dots, polyline, text};
+use super::sizes::{LETTERS, MARGIN};
 use super::{floor, rows, things};
 use crate::trail::Trail;
 use crate::world::World;

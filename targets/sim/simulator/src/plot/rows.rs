@@ -2,7 +2,7 @@
 
 use mdle_runtime::Printable;
 
-use super::layout::{LETTER, LETTERS};
+use super::sizes::{LETTER, LETTERS};
 use crate::trail::{Atom, Trail};
 
 /// Maximum number of atoms that are marked and listed.

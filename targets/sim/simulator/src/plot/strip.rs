@@ -6,9 +6,10 @@ use svg::node::element::{Group, Path, Rectangle, TSpan, Text};
 use super::colours::class;
 use super::film::{Act, Film};
 use super::labels::RADIUS;
-use super::layout::{LEFT, LETTERS, Layout, MARGIN, round_step};
+use super::layout::{Layout, round_step};
 use super::rows::shortened;
 use super::shapes::{badge, line, polyline, tenths, text};
+use super::sizes::{LEFT, LETTERS, MARGIN};
 use crate::trail::Trail;
 
 /// Height of the part below the floor: the running atom, and the time.

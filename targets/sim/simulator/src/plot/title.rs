@@ -3,8 +3,8 @@
 use mdle_runtime::Printable;
 use svg::node::element::Group;
 
-use super::layout::{LEFT, LETTER, MARGIN};
 use super::shapes::text;
+use super::sizes::{LEFT, LETTER, MARGIN};
 use crate::trail::About;
 
 /// The sizes of letters of the plan's name and of the lines below it.

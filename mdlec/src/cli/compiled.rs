@@ -1,0 +1,68 @@
+//! The plan to run of a file, compiled, and its Rust; messages go to standard error.
+
+use std::path::Path;
+
+use mdle_compiler::Compiled;
+use mdle_files::{Input, InputError, Target, read_plan};
+
+use super::{Failure, report};
+
+/// Compiles the only plan to run; messages go to standard error.
+pub(super) fn compile_one(
+    input: &mut Input,
+    target: &Target,
+    name: Option<&str>,
+    deny_warnings: bool,
+) -> Result<Compiled, Failure> {
+    compile_judged(input, target, name, deny_warnings, |compiled| compiled)
+}
+
+/// Compiles the only plan to run, and passes it to `judge` by value, which can drop the parts that it does not need.
+pub(super) fn compile_judged<T>(
+    input: &mut Input,
+    target: &Target,
+    name: Option<&str>,
+    deny_warnings: bool,
+    mut judge: impl FnMut(Compiled) -> T,
+) -> Result<T, Failure> {
+    if let Some(name) = name {
+        input.must_have(name)?;
+    }
+    let (compiled, found) = input.compile(&target.alphabet, name);
+    let named = |compiled: Compiled| (compiled.plan.root.name.clone(), compiled);
+    let judged: Vec<_> = compiled.into_iter().map(named).map(|(name, compiled)| (name, judge(compiled))).collect();
+    if !report::diagnostics(&input.sources, &found, deny_warnings) {
+        return Err(Failure::PLAN);
+    }
+    Ok(input.only(judged)?)
+}
+
+/// Fails if no target is named: Rust is written for a robot.
+pub(super) fn needs_target(is_named: bool) -> Result<(), Failure> {
+    if is_named { Ok(()) } else { Err(InputError::NoTarget.into()) }
+}
+
+/// A plan as Rust, with its sources.
+pub(super) struct Emitted {
+    pub(super) target: Target,
+    pub(super) input: Input,
+    pub(super) plan_name: String,
+    pub(super) rust: String,
+}
+
+/// Generates Rust from the only plan to compile, for the crate of this target.
+pub(super) fn emitted(
+    path: &Path,
+    target: Target,
+    name: Option<&str>,
+    deny_warnings: bool,
+) -> Result<Emitted, Failure> {
+    let mut input = read_plan(path, &target)?;
+    let compiled = compile_one(&mut input, &target, name, deny_warnings)?;
+    target.must_be_bound()?;
+    let rust = input.rust(&compiled, &target).map_err(|too_large| {
+        report::diagnostics(&input.sources, &[too_large], false);
+        Failure::PLAN
+    })?;
+    Ok(Emitted { target, input, plan_name: compiled.plan.root.name, rust })
+}

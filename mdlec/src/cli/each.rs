@@ -1,0 +1,14 @@
+//! Commands that take several files go on after one that fails.
+
+use std::path::{Path, PathBuf};
+
+use super::Failure;
+
+/// Calls `done` for every file, even if it fails for earlier ones; fails with the highest exit status.
+pub(super) fn each(paths: &[PathBuf], mut done: impl FnMut(&Path) -> Result<(), Failure>) -> Result<(), Failure> {
+    let mut failed = None;
+    for failure in paths.iter().filter_map(|path| done(path).err()) {
+        failed = failed.max(Some(failure.told()));
+    }
+    failed.map_or(Ok(()), |status| Err(Failure::silent(status)))
+}
