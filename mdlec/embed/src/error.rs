@@ -56,6 +56,7 @@ impl From<InputError> for EmbedError {
         match error {
             InputError::Faulty { sources, diagnostics, .. } => Self::Plan { sources: Box::new(sources), diagnostics },
             InputError::Unusable(_)
+            | InputError::InSettings { .. }
             | InputError::NoTarget
             | InputError::UnknownTarget(_)
             | InputError::UnknownPlan { .. }
