@@ -15,6 +15,7 @@ use std::time::Duration;
 use mdle_runtime::{Nanos, PrintableLines};
 
 use crate::clock::{Clock, Instants};
+use crate::cycle::Limits;
 use crate::drive::Drive;
 use crate::progress::Progress;
 use crate::report::{Over, Report};
@@ -23,7 +24,7 @@ use crate::run_end::RunEnd;
 use crate::safety::{Panicked, shielded};
 use crate::signals::Signals;
 use crate::summary::Summary;
-use crate::turns::{self, Limits, Witnesses};
+use crate::turns::{self, Witnesses};
 use crate::{Judgement, Pace, Time};
 
 /// Timeout of runs that no option limits: no batch shall go on for ever.

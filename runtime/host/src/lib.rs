@@ -14,6 +14,7 @@ mod batch;
 mod call;
 mod cause;
 mod clock;
+mod cycle;
 mod drive;
 mod executable;
 mod files;

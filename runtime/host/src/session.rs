@@ -13,6 +13,7 @@ use crate::arguments::{self, Options};
 use crate::batch::{self, Runs, Terms};
 use crate::call::Call;
 use crate::clock::{Clock, Instants};
+use crate::cycle::Limits;
 use crate::drive::Drive;
 use crate::executable::{Executable, TargetOptions};
 use crate::held_report::Held;
@@ -24,7 +25,7 @@ use crate::required::Required;
 use crate::run_end::{self, RunEnd, RunFault, say};
 use crate::safety::{Panicked, shielded};
 use crate::signals::Signals;
-use crate::turns::{self, Limits, Witnesses};
+use crate::turns::{self, Witnesses};
 use crate::{NamedFile, Pace, Program, Refusal, Time, named_file, way_out};
 
 /// Environment of a run: time, signals and output; a test provides its own.

@@ -1,14 +1,13 @@
-//! The turns of a plan on a robot: exchange, time, machine, and the wait for the next (docs/src/reference/semantics.md,
-//! 5.1).
+//! The turns of a plan on a robot, and their recipients.
 
 use std::io::{self, Write};
-use std::time::Duration;
 
 use mdle_runtime::fsm::Kind;
 use mdle_runtime::{Nanos, Turn};
 
 use crate::cause::place;
-use crate::clock::{Clock, Instants, nanos};
+use crate::clock::{Clock, Instants};
+use crate::cycle::{Limits, Step, Turns, cycle};
 use crate::drive::{Drive, Position};
 use crate::log::{Entry, Log};
 use crate::paths::Recorder;
@@ -19,15 +18,6 @@ use crate::signals::Signals;
 use crate::timing::Timing;
 use crate::transitions::Transitions;
 use crate::{Around, Ended, Observer, PlanPosition};
-
-/// Limits at which a run ends whose plan is not over.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Limits {
-    /// Time of the plan at which the run ends. The turn at that time is still made: the plan may be over in it.
-    pub(crate) timeout: Option<Duration>,
-    /// Number of turns after which the run ends.
-    pub(crate) turns: Option<u64>,
-}
 
 /// Recipients of the turns' reports.
 pub(crate) struct Witnesses<'a, 'o> {
@@ -43,9 +33,7 @@ pub(crate) struct Witnesses<'a, 'o> {
     pub(crate) err: Option<&'a mut dyn Write>,
 }
 
-/// Makes the turns of a plan on its robot, from the exchange of turn 0 until something ends them.
-///
-/// The robot still executes its last input: the caller has to send the null input and the stop, also after a panic.
+/// Makes the turns of a plan on its robot: see [`cycle`].
 pub(crate) fn run<I: Instants>(
     drive: &mut dyn Drive,
     limits: Limits,
@@ -53,55 +41,55 @@ pub(crate) fn run<I: Instants>(
     signals: &Signals,
     witnesses: &mut Witnesses<'_, '_>,
 ) -> RunEnd {
-    if let Some(signal) = signals.caught() {
-        return RunEnd::Signal(signal);
+    let mut turns = OnePlan { drive, witnesses, transitions: Transitions::default(), fresh: true };
+    cycle(&mut turns, limits, clock, signals)
+}
+
+/// The turns of an executable: those of its plan.
+struct OnePlan<'t, 'a, 'o> {
+    drive: &'t mut dyn Drive,
+    witnesses: &'t mut Witnesses<'a, 'o>,
+    /// The transitions of the last turn.
+    transitions: Transitions,
+    /// `true` if the current atom has been entered since a law was applied last.
+    fresh: bool,
+}
+
+impl Turns for OnePlan<'_, '_, '_> {
+    fn exchange(&mut self) -> Result<(), String> {
+        self.drive.exchange()
     }
-    if let Err(fault) = drive.exchange() {
-        return RunEnd::Unstarted(fault);
-    }
-    let mut t = clock.zero();
-    let mut transitions = Transitions::default();
-    // Whether the current atom has been entered since a law was applied last.
-    let mut fresh = true;
-    let mut number: u64 = 0;
-    let ending = loop {
+
+    fn turn(&mut self, t: Nanos, number: u64) -> Result<Step, RunEnd> {
+        let Self { drive, witnesses, transitions, fresh } = self;
         if let (Some(path), Some((heading, speed))) = (&mut witnesses.path, drive.motion()) {
             path.take(heading, speed, t);
         }
         transitions.clear();
-        let turn = drive.turn(t, &mut transitions);
-        fresh |= !transitions.is_empty();
+        let turn = drive.turn(t, transitions);
+        *fresh |= !transitions.is_empty();
         if let (observer, Some(position)) = drive.parts() {
-            if let Err(error) = witnesses.tell(position, turn, number, t, &transitions) {
-                break RunEnd::Log(error.to_string());
-            }
-            let has_begun = turn == Turn::Law(()) && std::mem::take(&mut fresh);
+            let told = witnesses.tell(position, turn, number, t, transitions);
+            told.map_err(|error| RunEnd::Log(error.to_string()))?;
+            let has_begun = turn == Turn::Law(()) && std::mem::take(fresh);
             if let Some(observer) = observer {
                 watched(observer, position, turn, has_begun, t, witnesses.report);
             }
         }
-        if turn == Turn::Over {
-            break RunEnd::Over;
-        }
-        number = number.saturating_add(1);
-        if let Some(ending) = limits.reached(number, t) {
-            break ending;
-        }
-        if signals.timing_is_asked_for() {
-            witnesses.tell_timing(clock.timing());
-        }
-        if let Err(ending) = clock.next_turn(signals) {
-            break ending;
-        }
-        if let Err(fault) = drive.exchange() {
-            break RunEnd::Robot(fault);
-        }
-        t = clock.taken();
-    };
-    if let (Some(observer), Some(position)) = drive.parts() {
-        ended(observer, position, &ending, witnesses.report, t);
+        Ok(if turn == Turn::Over { Step::Over } else { Step::Next })
     }
-    ending
+
+    fn tell_timing(&mut self, timing: &Timing) {
+        if let Some(err) = &mut self.witnesses.err {
+            say(err, format_args!("{timing}"));
+        }
+    }
+
+    fn ended(&mut self, ending: &RunEnd, t: Nanos) {
+        if let (Some(observer), Some(position)) = self.drive.parts() {
+            ended(observer, position, ending, self.witnesses.report, t);
+        }
+    }
 }
 
 /// Tells the observer about a turn, and first which atom `has_begun` in it.
@@ -147,22 +135,7 @@ fn standing<'m>(position: &'m dyn Position, t: Nanos, report: &'m Report<'_>) ->
     PlanPosition { t, state: position.state(), law, place, since: report.since(), scopes: scopes.collect() }
 }
 
-impl Limits {
-    /// Returns the limit that a plan has reached, if it is not over after `turns` turns, the last one at time `t`.
-    fn reached(&self, turns: u64, t: Nanos) -> Option<RunEnd> {
-        let timeout = self.timeout.filter(|limit| t.0 >= nanos(*limit)).map(RunEnd::Timeout);
-        timeout.or(self.turns.filter(|limit| turns >= *limit).map(RunEnd::Turns))
-    }
-}
-
 impl Witnesses<'_, '_> {
-    /// Reports how late turns begin and how long they take.
-    fn tell_timing(&mut self, timing: Option<&Timing>) {
-        if let (Some(err), Some(timing)) = (&mut self.err, timing) {
-            say(err, format_args!("{timing}"));
-        }
-    }
-
     /// Reports a turn to the recipients.
     fn tell(
         &mut self,

@@ -10,10 +10,10 @@ use mdle_runtime::{Cause, Robot};
 use super::plan::ToyPlan;
 use super::toy::Sensed;
 use crate::batch::{self, Batch, Runs, Terms};
+use crate::cycle::Limits;
 use crate::drive::PlanOnRobot;
 use crate::required::{self, Required};
 use crate::signals::{Signal, Signals};
-use crate::turns::Limits;
 use crate::{Judgement, Observer};
 
 /// A robot whose run is decided by its seed: the plan's outermost interrupt fires in turn `seed`, if ever.
