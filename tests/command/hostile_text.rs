@@ -152,7 +152,7 @@ fn emitted_rust_is_printable_in_every_shape() {
     let mut sources = Sources::default();
     sources.add(HOSTILE, text);
     for shape in [Shape::Code, Shape::Rows] {
-        let rust = emit_as(shape, &compiled[0].lowered, Header { sources: &sources, file: HOSTILE, plan: "P" }, &sim);
+        let rust = emit_as(shape, &compiled[0].machine, Header { sources: &sources, file: HOSTILE, plan: "P" }, &sim);
         assert!(rust.chars().all(|letter| letter == '\n' || is_printable(letter)), "{shape:?}: {rust:?}");
         assert!(syn::parse_file(&rust).is_ok_and(|file| !file.items.is_empty()), "{shape:?}: {rust}");
     }

@@ -130,10 +130,10 @@ fn compiled(plan: &str) -> (Compiled, Alphabet) {
 fn built() -> &'static Path {
     static BUILT: LazyLock<PathBuf> = LazyLock::new(|| {
         for (name, plan, shape) in EXECUTABLES {
-            let (Compiled { lowered, .. }, alphabet) = compiled(plan);
+            let (Compiled { machine, .. }, alphabet) = compiled(plan);
             let mut sources = Sources::default();
             sources.add("plan.mdle", fs::read_to_string(root().join("tests/bare/plan.mdle")).unwrap());
-            let text = emit_as(shape, &lowered, Header { sources: &sources, file: "plan.mdle", plan }, &alphabet);
+            let text = emit_as(shape, &machine, Header { sources: &sources, file: "plan.mdle", plan }, &alphabet);
             write_if_changed(&plans().join(name).with_extension("rs"), &text);
         }
         let bins = EXECUTABLES.iter().flat_map(|(name, ..)| ["--bin", name]);
@@ -251,8 +251,8 @@ fn memories_link_and_run() {
 
 /// The conditions of a plan that ended nothing in these turns.
 fn never_fired(plan: &str, turns: &str) -> Vec<String> {
-    let (Compiled { lowered, .. }, _) = compiled(plan);
-    let interrupts = lowered.elements().filter_map(mdle_compiler::fsm::Element::interrupt);
+    let (Compiled { machine, .. }, _) = compiled(plan);
+    let interrupts = machine.elements().filter_map(mdle_compiler::fsm::Element::interrupt);
     let conditions: BTreeSet<_> = interrupts.map(|interrupt| interrupt.text.clone()).collect();
     conditions.into_iter().filter(|text| !turns.contains(&format!("\"by\":\"{text}\""))).collect()
 }

@@ -76,7 +76,7 @@ fn random(seed: u64) -> Case {
         let text = RandomPlan::new(&mut chance, 4 + seed as usize / 10, seed % 40 == 39).named(root).to_string();
         // Loops in loops in loops can make too many states.
         let compiled = compile_plan(&text, root).ok()?;
-        if seed.is_multiple_of(2) && compiled.lowered.sizes().memories > 0 {
+        if seed.is_multiple_of(2) && compiled.machine.sizes().memories > 0 {
             return None;
         }
         let scripts = (0..SCRIPTS).map(|_| script(&mut chance, 12)).collect();
@@ -138,7 +138,7 @@ impl Package {
             let compiled = compile_plan(&case.text, case.root).unwrap_or_else(|report| panic!("{report}"));
             let sources = sources(&case.text);
             let header = Header { sources: &sources, file: "plan.mdle", plan: case.root };
-            package.file(&format!("src/plan_{number}.rs"), &emit_as(shape, &compiled.lowered, header, scripted()));
+            package.file(&format!("src/plan_{number}.rs"), &emit_as(shape, &compiled.machine, header, scripted()));
             writeln!(library, "\n/// Plan {number}.\npub mod plan_{number};").unwrap();
             let plan = plan_type(case.root);
             writeln!(arms, "        {number} => drive(emitted::plan_{number}::{plan}::new, script, trace),").unwrap();

@@ -35,7 +35,7 @@ fn removing_degeneracy_and_writing_loops_out_commute_and_change_no_trace() {
         let script = script(&mut chance, 12);
         // Loops in loops in loops can make too many states.
         let Ok(compiled) = compile(&text) else { continue };
-        if compiled.lowered.states() > STATES {
+        if compiled.machine.states() > STATES {
             continue;
         }
         let (degenerate, looping) = hold(&compiled, &Script::read(&script).unwrap(), &format!("{text}\n{script}"));

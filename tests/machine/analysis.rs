@@ -120,10 +120,10 @@ enum Part {
 
 impl<'c> Trial<'c> {
     fn new(seed: u64, text: &'c str, compiled: &'c Compiled) -> Self {
-        let analysis = analyze(&compiled.lowered);
-        let lowered = &compiled.lowered;
+        let analysis = analyze(&compiled.machine);
+        let machine = &compiled.machine;
         let (mut atoms, mut scopes) = (0, 0);
-        let parts = lowered.elements().map(|element| match element.kind() {
+        let parts = machine.elements().map(|element| match element.kind() {
             ElementKind::Atom(_) => {
                 atoms += 1;
                 Part::Atom(atoms - 1)
@@ -183,7 +183,7 @@ impl<'c> Trial<'c> {
                 Part::Loop => panic!("a loop has no interrupt"),
             };
             let texts = operands.iter().map(|operand| {
-                let quark = |id| self.compiled.lowered.quark(id).text.clone();
+                let quark = |id| self.compiled.machine.quark(id).text.clone();
                 condition_text(&explorer.operands(*part)[*operand], &quark)
             });
             let texts: Vec<_> = texts.collect();
@@ -219,11 +219,11 @@ fn runs_of_the_machine_take_as_long_as_is_said() {
         let text = RandomPlan::new(&mut chance, 2 + seed as usize % 12, long).to_string();
         let script = Script::read(&script(&mut chance, 12)).expect("a script");
         let Ok(compiled) = compile(&text) else { continue };
-        let analysis = analyze(&compiled.lowered);
+        let analysis = analyze(&compiled.machine);
         let times: Vec<f64> = script.turns().iter().map(|turn| turn.t.0 as f64 / 1e9).collect();
         let gap = times.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
         for TraceLine { turn, outcome: Outcome { applied, fired, .. }, .. } in
-            run(Counted::new(&compiled.lowered), &script)
+            run(Counted::new(&compiled.machine), &script)
         {
             let now = times[turn];
             let said = || format!("seed {seed}, turn {turn} at {now} s\n{text}\n{}", analysis.to_text());
@@ -274,7 +274,7 @@ fn plans() -> Vec<TextFile> {
 fn analysis(path: &str) -> Analysis {
     let text = std::fs::read_to_string(root().join(path)).expect(path);
     let (compiled, said) = judge(&TextFile { path: path.into(), text }, None);
-    analyze(&compiled.first().expect(&said).lowered)
+    analyze(&compiled.first().expect(&said).machine)
 }
 
 #[test]
@@ -282,8 +282,8 @@ fn plans_are_analysed_without_a_false_alarm() {
     for file in plans() {
         let (compiled, _) = judge(&file, None);
         for compiled in compiled {
-            let analysis = analyze(&compiled.lowered);
-            assert_eq!(lints(&compiled.lowered), [], "{}", file.path);
+            let analysis = analyze(&compiled.machine);
+            assert_eq!(lints(&compiled.machine), [], "{}", file.path);
             assert!(analysis.atoms.iter().all(|atom| atom.reach == Reach::Runs && atom.ends), "{}", file.path);
             let never: Vec<_> = analysis.atoms.iter().filter(|atom| !atom.never_by.is_empty()).collect();
             assert_eq!(never.len(), 0, "{}", file.path);

@@ -144,7 +144,7 @@ fn compare(seed: u64, foresight: bool, text: &str, script: &str, seen: &mut Seen
         }
     }
     let expected: String = tree.iter().map(|line| format!("{line}\n")).collect();
-    let machine = &compiled.lowered;
+    let machine = &compiled.machine;
     let mut rows = fsm::rows(machine);
     if !foresight {
         for (guard, element) in rows.guards.iter_mut().zip(machine.elements()) {

@@ -73,7 +73,7 @@ fn machines_of_what_the_simulator_runs_and_why_it_does_not_run_the_rest() {
 fn rust_for_the_simulator() {
     for file in plans() {
         for compiled in judge(&file, Some("sim")).0 {
-            let text = rust(&file, &compiled, Shape::of(&compiled.lowered));
+            let text = rust(&file, &compiled, Shape::of(&compiled.machine));
             insta::assert_binary_snapshot!(&format!("rust-{}.rs", name(&file)), text.into_bytes());
         }
     }
@@ -90,7 +90,7 @@ fn rust_in_rows() {
 fn recorded_rust_compiles_and_has_the_tables_of_its_plan() {
     let tables = |file: &str| {
         let file = plans().into_iter().find(|plan| name(plan) == file).unwrap();
-        judge(&file, Some("sim")).0.swap_remove(0).lowered
+        judge(&file, Some("sim")).0.swap_remove(0).machine
     };
     assert_eq!(recorded::lab_tour::LabTour::new().fsm(), tables("lab_tour").tables());
     assert_eq!(recorded::rows_lab_tour::LabTour::new().fsm(), tables("lab_tour").tables());

@@ -12,7 +12,7 @@ use mdle_tests::pipeline::{compile, scripted, sources};
 
 /// Loads the plan `Main` of a text.
 fn loaded(text: &str) -> Result<Arc<Loaded<Alphabet>>, LoadError> {
-    let machine = compile(text).expect("a plan").lowered;
+    let machine = compile(text).expect("a plan").machine;
     load::load(&machine, &sources(text), scripted()).map(Arc::new)
 }
 
@@ -38,7 +38,7 @@ fn a_loaded_plan_runs_on_any_thread() {
 #[test]
 fn a_plan_for_another_alphabet_is_refused() {
     let text = "{ Main (Atom (a) seek) }";
-    let machine = compile(text).expect("a plan").lowered;
+    let machine = compile(text).expect("a plan").machine;
     let refused = load::load::<mdle_sim::alphabet::Alphabet>(&machine, &sources(text), scripted()).err().unwrap();
     assert_eq!(refused.to_string(), "the crate of target `sim` is bound to another alphabet: run `mdlec bind`");
     let words = fsm::words(&machine, &sources(text), scripted());
@@ -51,7 +51,7 @@ fn a_plan_for_another_alphabet_is_refused() {
 fn memories_grow_with_depth_and_not_with_length() {
     let rising: String = (0..100).map(|_| "(Atom (RISING a) seek)").collect();
     let text = format!("{{ Main {rising} }}");
-    let machine = compile(&text).expect("a plan").lowered;
+    let machine = compile(&text).expect("a plan").machine;
     assert_eq!((machine.depth(), machine.sizes().memories, machine.elements().len()), (2, 1, 101));
     let size = loaded(&text).unwrap().memories();
     assert_eq!(size, 2);

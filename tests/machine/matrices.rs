@@ -178,7 +178,7 @@ fn matrices_that_are_read_back_drive_the_transitions_of_the_table() {
         let text = RandomPlan::new(&mut chance, 2 + (seed % 20) as usize, false).to_string();
         let script = Script::read(&script(&mut chance, 12)).unwrap();
         let Ok(compiled) = compile(&text) else { continue };
-        if compiled.lowered.states() > STATES {
+        if compiled.machine.states() > STATES {
             continue;
         }
         println!("seed {seed}\n{text}");

@@ -57,10 +57,10 @@ fn boxes(picture: &Element) -> Vec<(&Element, Edges)> {
 }
 
 /// Asserts that a picture is well drawn.
-fn assert_well_drawn(lowered: &Machine, picture: &Element) {
+fn assert_well_drawn(machine: &Machine, picture: &Element) {
     let whole = edges(picture);
     let boxes = boxes(picture);
-    assert_eq!(boxes.len(), lowered.elements().len());
+    assert_eq!(boxes.len(), machine.elements().len());
     let outside_boxes =
         picture.children.iter().filter(|child| child.name == "text" && child.attribute("class") == "quiet");
     for text in outside_boxes.filter(|text| !text.attributes.contains_key("text-anchor")) {
@@ -68,11 +68,11 @@ fn assert_well_drawn(lowered: &Machine, picture: &Element) {
         let right = x + text.text.chars().count() as i64 * 73 / 10;
         assert!(right <= whole[2], "{:?} leaves the picture", text.text);
     }
-    for (element, (number, (group, here))) in lowered.elements().zip(boxes.iter().enumerate()) {
+    for (element, (number, (group, here))) in machine.elements().zip(boxes.iter().enumerate()) {
         let parent = element.parent().map(|around| around.index());
         let around = parent.map_or(whole, |parent| boxes[parent].1);
         assert!(is_inside(*here, around), "box {number} leaves the one around it: {here:?} {around:?}");
-        for (other, (_, there)) in lowered.elements().zip(&boxes).take(number) {
+        for (other, (_, there)) in machine.elements().zip(&boxes).take(number) {
             let beside = other.parent().map(|around| around.index()) == parent;
             let other = other.number();
             let apart = here[0] >= there[2] || there[0] >= here[2] || here[1] >= there[3] || there[1] >= here[3];
@@ -104,10 +104,10 @@ fn assert_well_drawn(lowered: &Machine, picture: &Element) {
 fn boxes_are_inside_each_other_and_beside_each_other_and_tell_everything() {
     let mut atoms = 0;
     for (_, compiled, _) in plans() {
-        let text = svg(&compiled.lowered).unwrap();
-        assert_well_drawn(&compiled.lowered, &read(&text));
-        assert_eq!(svg(&compiled.lowered).unwrap(), text);
-        atoms += compiled.lowered.atoms().len();
+        let text = svg(&compiled.machine).unwrap();
+        assert_well_drawn(&compiled.machine, &read(&text));
+        assert_eq!(svg(&compiled.machine).unwrap(), text);
+        atoms += compiled.machine.atoms().len();
     }
     assert!(atoms > 2000, "{atoms} atoms");
 }
@@ -122,9 +122,9 @@ fn compiled(text: &str) -> Compiled {
 fn plans_of_3_to_1000_atoms_are_no_wider_than_a_screen() {
     for atoms in [3, 10, 60, 1000] {
         let atom = "(Atom (atIsection 0100 OR wait 20) (goAvoid 90 40 20))";
-        let lowered = compiled(&format!("{{ P (bumper) {} }}", atom.repeat(atoms))).lowered;
-        let picture = read(&svg(&lowered).unwrap());
-        assert_well_drawn(&lowered, &picture);
+        let machine = compiled(&format!("{{ P (bumper) {} }}", atom.repeat(atoms))).machine;
+        let picture = read(&svg(&machine).unwrap());
+        assert_well_drawn(&machine, &picture);
         let [.., width, height] = edges(&picture);
         assert!(width <= 1300 && height <= 200 + 40 * atoms as i64, "{atoms} atoms: {width} by {height}");
     }
@@ -134,14 +134,14 @@ fn plans_of_3_to_1000_atoms_are_no_wider_than_a_screen() {
 fn a_long_condition_is_shortened_and_told_whole_to_who_asks() {
     let operands: Vec<_> = (1..=50).map(|seconds| format!("wait {seconds}")).collect();
     let condition = operands.join(" OR ");
-    let text = svg(&compiled(&format!("{{ P ({condition}) (Atom (bumper) stop) }}")).lowered).unwrap();
+    let text = svg(&compiled(&format!("{{ P ({condition}) (Atom (bumper) stop) }}")).machine).unwrap();
     let picture = read(&text);
     let (group, _) = boxes(&picture)[0];
     assert_eq!(group.children[0].text, format!("P\nuntil {condition}"));
     assert!(group.children.iter().any(|child| child.text.ends_with('…')), "{text}");
     // What is longer than anybody reads is not told either.
     let long: Vec<_> = (1..=2000).map(|seconds| format!("wait {seconds}")).collect();
-    let text = svg(&compiled(&format!("{{ P (Atom ({}) stop) }}", long.join(" OR "))).lowered).unwrap();
+    let text = svg(&compiled(&format!("{{ P (Atom ({}) stop) }}", long.join(" OR "))).machine).unwrap();
     assert!(text.len() < 20_000 && text.contains("more characters"), "{} bytes", text.len());
 }
 
@@ -157,8 +157,8 @@ fn leads(graph: &Graph, from: &str, to: &str) -> bool {
 fn graphs_have_the_transitions_of_the_plan() {
     let mut transitions = 0;
     for (seed, compiled, script) in plans() {
-        let graph = read_dot(&dot(&compiled.lowered).unwrap());
-        assert_eq!(graph.nodes.len(), compiled.lowered.atoms().len() + 2);
+        let graph = read_dot(&dot(&compiled.machine).unwrap());
+        assert_eq!(graph.nodes.len(), compiled.machine.atoms().len() + 2);
         for (from, to, attributes) in &graph.edges {
             assert!(graph.nodes.contains_key(from) && graph.nodes.contains_key(to), "{from} -> {to}");
             if let Some(cluster) = attributes.get("ltail") {
@@ -166,7 +166,7 @@ fn graphs_have_the_transitions_of_the_plan() {
                 assert!(inside.contains(from) && !inside.contains(to), "{from} -> {to} of {cluster}");
             }
         }
-        if compiled.lowered.states() > 300 {
+        if compiled.machine.states() > 300 {
             continue;
         }
         let expanded = lower(&expand(&compiled.nondegenerate).unwrap()).unwrap();
@@ -197,7 +197,7 @@ fn graphviz_takes_the_graphs_where_it_is_installed() {
         child.wait_with_output().ok()
     };
     for (seed, compiled, _) in plans().filter(|(seed, ..)| seed % 30 == 29) {
-        let text = dot(&compiled.lowered).unwrap();
+        let text = dot(&compiled.machine).unwrap();
         // Whether it is there or not, the graph has Graphviz's grammar.
         assert!(!read_dot(&text).nodes.is_empty());
         let Some(output) = with(&text) else { continue };
@@ -209,10 +209,10 @@ fn graphviz_takes_the_graphs_where_it_is_installed() {
 #[test]
 fn diagrams_have_every_atom_and_lead_nowhere_outside() {
     for (_, compiled, _) in plans() {
-        let lowered = &compiled.lowered;
-        let diagram = read_mermaid(&mermaid(lowered).unwrap());
+        let machine = &compiled.machine;
+        let diagram = read_mermaid(&mermaid(machine).unwrap());
         let states: BTreeSet<_> = diagram.states.values().flatten().collect();
-        assert_eq!(states.len(), lowered.elements().len());
+        assert_eq!(states.len(), machine.elements().len());
         // Each composite state has a begin.
         let begins = diagram.transitions.values().flatten().filter(|(from, ..)| from == "[*]");
         assert_eq!(begins.count(), diagram.transitions.len());
@@ -226,9 +226,9 @@ const PLAN: &str = "{ Patrol (bumper OR wait 600)\n  s1: (Atom (r_3 < 40cm) (goA
 
 #[test]
 fn pictures_as_text() {
-    let lowered = compiled(PLAN).lowered;
-    insta::assert_snapshot!("patrol_dot", dot(&lowered).unwrap());
-    insta::assert_snapshot!("patrol_mermaid", mermaid(&lowered).unwrap());
+    let machine = compiled(PLAN).machine;
+    insta::assert_snapshot!("patrol_dot", dot(&machine).unwrap());
+    insta::assert_snapshot!("patrol_mermaid", mermaid(&machine).unwrap());
 }
 
 #[test]

@@ -88,7 +88,7 @@ fn the_machine_does_what_the_plan_does() {
         let text = RandomPlan::new(&mut chance, 2 + (seed % 20) as usize, false).to_string();
         let script = script(&mut chance, 12);
         let Ok(compiled) = compile(&text) else { continue };
-        if compiled.lowered.states() <= STATES {
+        if compiled.machine.states() <= STATES {
             println!("seed {seed}\n{text}\n{script}");
             compare(&compiled.nondegenerate, &script, &mut seen);
         }

@@ -115,7 +115,7 @@ fn every_mutated_machine_is_told_apart() {
         let mut chance = Chance::new(seed);
         let text = RandomPlan::new(&mut chance, 2 + (seed % 20) as usize, false).to_string();
         let Ok(compiled) = compile(&text) else { continue };
-        let valid = compiled.lowered.draft();
+        let valid = compiled.machine.draft();
         assert_eq!(validate(&compiled.nondegenerate, &valid), Ok(()), "seed {seed}\n{text}");
         let (what, wrong) = WRONG[seed as usize % WRONG.len()];
         let mut machine = valid.clone();

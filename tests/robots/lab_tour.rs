@@ -189,8 +189,8 @@ fn law(state: u64) -> &'static str {
     let laws = LAWS.get_or_init(|| {
         let path = "plans/lab_tour.mdle".to_owned();
         let text = fs::read_to_string(root().join(&path)).unwrap();
-        let lowered = judge(&TextFile { path, text }, Some("sim")).0.swap_remove(0).lowered;
-        lowered.atoms().map(|atom| atom.law().text.clone()).collect()
+        let machine = judge(&TextFile { path, text }, Some("sim")).0.swap_remove(0).machine;
+        machine.atoms().map(|atom| atom.law().text.clone()).collect()
     });
     &laws[usize::try_from(state).unwrap() - 1]
 }

@@ -72,7 +72,7 @@ pub fn script(bytes: &[u8]) {
     let Ok(script) = Script::read(&text(bytes)) else { return };
     assert!(script.turns().is_sorted_by_key(|turn| turn.t), "{script:?}");
     for plan in PLAN.iter() {
-        let lines = run(Counted::new(&plan.lowered), &script);
+        let lines = run(Counted::new(&plan.machine), &script);
         assert!(lines.count() <= script.turns().len());
     }
 }

@@ -84,29 +84,29 @@ pub fn layout(text: &str) {
 pub fn check(text: &str) {
     for alphabet in [&*EVERYTHING, &*SIMULATOR, scripted()] {
         let all = compiled(text, alphabet);
-        all.iter().for_each(|compiled| analysed(&compiled.lowered));
-        for Compiled { plan, lowered, .. } in &all {
+        all.iter().for_each(|compiled| analysed(&compiled.machine));
+        for Compiled { plan, machine, .. } in &all {
             let formal = plan.formal();
             let again = compiled(&formal, alphabet);
             assert_eq!(again.len(), 1, "{formal}");
             assert_eq!(again[0].plan.formal(), formal);
-            assert_eq!(machine(&again[0].lowered), machine(lowered), "{formal}");
+            assert_eq!(behavior(&again[0].machine), behavior(machine), "{formal}");
         }
     }
 }
 
 /// An analysis has a result, and agrees with itself.
-fn analysed(lowered: &Machine) {
-    let analysis = analyze(lowered);
-    assert_eq!((analysis.states, analysis.atoms.len()), (lowered.states(), lowered.atoms().len()));
+fn analysed(machine: &Machine) {
+    let analysis = analyze(machine);
+    assert_eq!((analysis.states, analysis.atoms.len()), (machine.states(), machine.atoms().len()));
     let is_shorter = analysis.shortest.zip(analysis.longest.seconds).is_none_or(|(short, long)| short <= long);
     assert!(is_shorter && !analysis.to_json().is_empty(), "{}", analysis.to_text());
 }
 
 /// Returns the behavior of a machine, without the names of its scopes and the numbers of its records.
-fn machine(lowered: &Machine) -> String {
-    let place = |record: &RecordId| lowered.record(*record).map(|record| (record.level, record.first));
-    let marks = lowered.elements().flat_map(|element| element.marks().iter().map(move |mark| (element.number(), mark)));
+fn behavior(machine: &Machine) -> String {
+    let place = |record: &RecordId| machine.record(*record).map(|record| (record.level, record.first));
+    let marks = machine.elements().flat_map(|element| element.marks().iter().map(move |mark| (element.number(), mark)));
     let marks: Vec<_> = marks.map(|(element, mark)| (element, place(&mark.record), &mark.label, &mark.facts)).collect();
     let asks = |condition: &Condition| {
         let places = RefCell::new(Vec::new());
@@ -118,12 +118,12 @@ fn machine(lowered: &Machine) -> String {
         });
         places.into_inner()
     };
-    let scopes = lowered.elements().filter_map(Element::interrupt);
+    let scopes = machine.elements().filter_map(Element::interrupt);
     let scopes: Vec<_> =
         scopes.map(|own| (&own.text, &own.nested, own.memories, own.removed, asks(&own.condition))).collect();
-    let laws: Vec<_> = lowered.atoms().map(|atom| (atom.law_id(), atom.frame())).collect();
-    let quarks: Vec<_> = lowered.quarks().iter().map(|quark| &quark.text).collect();
-    format!("{:?} {scopes:?} {laws:?} {marks:?} {} {quarks:?}", lowered.tables(), lowered.sizes().memories)
+    let laws: Vec<_> = machine.atoms().map(|atom| (atom.law_id(), atom.frame())).collect();
+    let quarks: Vec<_> = machine.quarks().iter().map(|quark| &quark.text).collect();
+    format!("{:?} {scopes:?} {laws:?} {marks:?} {} {quarks:?}", machine.tables(), machine.sizes().memories)
 }
 
 /// The Rust of a plan is Rust, in every shape.
@@ -131,13 +131,13 @@ pub fn emit(text: &str) {
     let mut sources = Sources::default();
     sources.add("plan.mdle", text);
     for alphabet in [&*SIMULATOR, scripted()] {
-        for Compiled { plan, lowered, .. } in compiled(text, alphabet) {
+        for Compiled { plan, machine, .. } in compiled(text, alphabet) {
             let header = Header { sources: &sources, file: "plan.mdle", plan: &plan.root.name };
             for shape in [Shape::Code, Shape::Rows] {
-                if lowered.elements().len() > EMITTED {
+                if machine.elements().len() > EMITTED {
                     continue;
                 }
-                let rust = emit_as(shape, &lowered, header, alphabet);
+                let rust = emit_as(shape, &machine, header, alphabet);
                 if let Err(error) = syn::parse_file(&rust) {
                     panic!("{shape:?}: {error}\n{rust}");
                 }
@@ -151,7 +151,7 @@ pub fn run(text: &str) {
     let seed = text.bytes().fold(0_u64, |seed, byte| seed.wrapping_mul(31).wrapping_add(u64::from(byte)));
     let script = script(&mut Chance::new(seed), TURNS);
     let turns = Script::read(&script).expect("a script");
-    for plan in compiled(text, scripted()).iter().filter(|plan| plan.lowered.elements().len() <= RUN) {
+    for plan in compiled(text, scripted()).iter().filter(|plan| plan.machine.elements().len() <= RUN) {
         let machines = Machines::new(plan);
         let traces = machines.traces(&turns);
         let (reference, tree) = &traces[0];

@@ -17,14 +17,14 @@ pub fn emitted(plan: &str) -> String {
 #[must_use]
 pub fn emitted_as(shape: Shape, plan: &str) -> String {
     let sources = sources(plan);
-    emit_as(shape, &lowered(scripted(), plan), header(&sources), scripted())
+    emit_as(shape, &machine(scripted(), plan), header(&sources), scripted())
 }
 
 /// Returns the file of plan `Main` for the robot of this alphabet, in the shape that suits the plan.
 #[must_use]
 pub fn emitted_for(alphabet: &Alphabet, plan: &str) -> String {
     let sources = sources(plan);
-    emit(&lowered(alphabet, plan), header(&sources), alphabet)
+    emit(&machine(alphabet, plan), header(&sources), alphabet)
 }
 
 /// The alphabet of a robot that has these quarks.
@@ -39,10 +39,10 @@ pub fn alphabet(declarations: &str) -> Alphabet {
     alphabet
 }
 
-fn lowered(alphabet: &Alphabet, plan: &str) -> Machine {
+fn machine(alphabet: &Alphabet, plan: &str) -> Machine {
     let (mut compiled, found) = mdle_compiler::compile(SourceId(0), plan, alphabet, Some("Main"));
     assert!(!compiled.is_empty(), "{plan}: {found:?}");
-    compiled.swap_remove(0).lowered
+    compiled.swap_remove(0).machine
 }
 
 fn sources(plan: &str) -> Sources {

@@ -71,5 +71,5 @@ pub fn rust(file: &TextFile, compiled: &Compiled, shape: Shape) -> String {
     let name = file.path.rsplit('/').next().unwrap();
     let sources = sources(file).0;
     let header = Header { sources: &sources, file: name, plan: &compiled.plan.root.name };
-    emit_as(shape, &compiled.lowered, header, &alphabet(Some("sim")))
+    emit_as(shape, &compiled.machine, header, &alphabet(Some("sim")))
 }

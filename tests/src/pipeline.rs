@@ -101,7 +101,7 @@ impl<'c> Machines<'c> {
     #[must_use]
     pub fn new(compiled: &'c Compiled) -> Self {
         let expand = || lower(&expand(&compiled.nondegenerate)?);
-        let is_small = compiled.lowered.states() <= EXPANDED;
+        let is_small = compiled.machine.states() <= EXPANDED;
         Self { compiled, expanded: is_small.then(|| expand().expect("a small plan")) }
     }
 
@@ -110,7 +110,7 @@ impl<'c> Machines<'c> {
     pub fn traces(&self, script: &Script) -> Vec<(&'static str, Vec<TraceLine<'_>>)> {
         let mut traces = vec![
             ("tree", run(Tree::new(&self.compiled.plan), script).collect()),
-            ("counted", run(Counted::new(&self.compiled.lowered), script).collect()),
+            ("counted", run(Counted::new(&self.compiled.machine), script).collect()),
         ];
         if let Some(expanded) = &self.expanded {
             let plan = &self.compiled.nondegenerate;

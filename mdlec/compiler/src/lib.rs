@@ -32,7 +32,7 @@ pub struct Compiled {
     /// Plan without repeated interrupts.
     pub nondegenerate: plan::Nondegenerate,
     /// Plan as a state machine.
-    pub lowered: fsm::Machine,
+    pub machine: fsm::Machine,
 }
 
 /// Compiles a text to state machines: the plan `wanted`, or every plan that no other plan uses; [`rust::emit`] turns a
@@ -93,9 +93,9 @@ fn stages(
             found.extend(warnings);
             found.extend(plan::lints::lints(&nondegenerate));
             match fsm::lower(&nondegenerate) {
-                Ok(lowered) => {
-                    found.extend(analysis::lints(&lowered));
-                    compiled.extend(kept.map(|plan| Compiled { plan, nondegenerate, lowered }));
+                Ok(machine) => {
+                    found.extend(analysis::lints(&machine));
+                    compiled.extend(kept.map(|plan| Compiled { plan, nondegenerate, machine }));
                 }
                 Err(too_large) => found.push(too_large),
             }

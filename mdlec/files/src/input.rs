@@ -93,10 +93,10 @@ impl Input {
     /// # Errors
     /// E0501 for a plan that is too large.
     pub fn rust(&self, compiled: &Compiled, target: &Target) -> Result<String, Diagnostic> {
-        rust::fits(&compiled.lowered, compiled.plan.root.span)?;
+        rust::fits(&compiled.machine, compiled.plan.root.span)?;
         let file = self.paths.get(&self.source).and_then(|path| path.file_name()).unwrap_or_default();
         let header = Header { sources: &self.sources, file: &file.to_string_lossy(), plan: &compiled.plan.root.name };
-        Ok(rust::emit(&compiled.lowered, header, &target.alphabet))
+        Ok(rust::emit(&compiled.machine, header, &target.alphabet))
     }
 }
 

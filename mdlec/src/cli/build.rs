@@ -81,8 +81,8 @@ fn stage(options: &Executable, path: &Path, kind: EmitKind) -> Result<(String, V
         EmitKind::Nondegenerate => Ok(nondegenerate.plan().to_string()),
         EmitKind::Expanded => fsm::expand(nondegenerate).map(|expanded| expanded.plan().numbered()),
         EmitKind::Fsm => fsm::fsm_file(nondegenerate).map(|file| file.to_json()),
-        EmitKind::Dot => picture::dot(&compiled.lowered),
-        EmitKind::Mermaid => picture::mermaid(&compiled.lowered),
+        EmitKind::Dot => picture::dot(&compiled.machine),
+        EmitKind::Mermaid => picture::mermaid(&compiled.machine),
         EmitKind::Scxml => picture::scxml(nondegenerate),
         EmitKind::Tree | EmitKind::Matrices | EmitKind::Rust | EmitKind::Exe => {
             needs_target(settings.names_target(options.target.as_deref()))?;

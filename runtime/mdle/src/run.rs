@@ -52,7 +52,7 @@ fn compiled(
         failure::error(&sentence);
         return Err(Failure::Plan);
     }
-    let named = plans.into_iter().map(|compiled| (compiled.plan.root.name, compiled.lowered));
+    let named = plans.into_iter().map(|compiled| (compiled.plan.root.name, compiled.machine));
     let named = named.map(|(name, machine)| (name.clone(), (name, machine)));
     let (name, machine) = input.only(named.collect())?;
     let ready = (linked.load)(&machine, input, target)?;

@@ -73,7 +73,7 @@ fn the_plan_is_in_the_state_of_the_machine_turn_by_turn() {
         });
         let script = Script::read(&lines.collect::<String>()).expect("a script");
         let expected = states(atoms, &rows, &fired);
-        for (turn, (line, state)) in run(Counted::new(&compiled.lowered), &script).zip(&expected).enumerate() {
+        for (turn, (line, state)) in run(Counted::new(&compiled.machine), &script).zip(&expected).enumerate() {
             let outcome = &line.outcome;
             assert_eq!((outcome.state - 2) as usize, *state, "seed {seed}, turn {turn}\n{rows:?}\n{text}");
             let is_over = outcome.applied == Applied::Over;

@@ -14,7 +14,7 @@ use crate::samples::compiled;
 /// The lints of the first plan of a text, each with the place that it is about.
 fn lints(text: &str) -> String {
     let compiled = compiled(text).swap_remove(0);
-    let found = super::lints(&compiled.lowered);
+    let found = super::lints(&compiled.machine);
     let places = found.iter().map(|lint| {
         let notes: String = lint.labels.iter().skip(1).map(|label| format!(" [{}]", label.text)).collect();
         format!("{}: {}{notes}\n", lint.code, lint.message)
@@ -30,18 +30,18 @@ fn assert_silent(plans: &[&str]) {
 
 /// Returns for each atom its reachability, and the operands that can end it by themselves.
 fn atoms(text: &str) -> Vec<(Reach, String)> {
-    let analysis = analyze(&compiled(text)[0].lowered);
+    let analysis = analyze(&compiled(text)[0].machine);
     analysis.atoms.into_iter().map(|atom| (atom.reach, atom.ended_by.join(", "))).collect()
 }
 
 /// Returns the minimum and the maximum duration in seconds, and the turns in addition to the latter.
 fn durations(text: &str) -> (Option<f64>, Option<f64>, Option<u64>) {
-    let analysis = analyze(&compiled(text)[0].lowered);
+    let analysis = analyze(&compiled(text)[0].machine);
     (analysis.shortest, analysis.longest.seconds, analysis.longest.turns)
 }
 
 fn transitions(text: &str) -> u64 {
-    analyze(&compiled(text)[0].lowered).transitions
+    analyze(&compiled(text)[0].machine).transitions
 }
 
 #[test]
@@ -183,7 +183,7 @@ fn transitions_of_a_turn_are_counted_for_one_output_at_a_time() {
 
 /// Ten thousand scopes, one in the other, each with the condition of the one scope of this plan, and one atom.
 fn nested(text: &str, depth: u32) -> Machine {
-    let mut draft = compiled(text).swap_remove(0).lowered.draft();
+    let mut draft = compiled(text).swap_remove(0).machine.draft();
     let meaning: ScopeMeaning = draft.scopes[0].clone().expect("a plan");
     draft.brackets = (0..=depth).map(|level| Bracket::scope(level as u16, 0, 0, level.saturating_sub(1))).collect();
     draft.scopes = vec![Some(meaning); depth as usize + 1];
@@ -207,7 +207,7 @@ fn nesting_as_deep_as_you_like_comes_to_a_result() {
 fn loops_are_not_written_out() {
     let nested = |loops: u32| {
         let body = (0..loops).fold("(Atom (wait 1) stop)".to_owned(), |body, _| format!("ExecPlan 10 {{ {body} }}"));
-        analyze(&compiled(&format!("{{ P {body} }}"))[0].lowered)
+        analyze(&compiled(&format!("{{ P {body} }}"))[0].machine)
     };
     assert_eq!((nested(9).states, nested(9).shortest), (1_000_000_001, Some(1e9)));
     let analysis = nested(12);

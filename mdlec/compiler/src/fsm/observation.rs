@@ -55,7 +55,7 @@ mod tests {
         ];
         for text in found {
             let compiled = compiled(text).swap_remove(0);
-            assert_eq!(observation1(&compiled.lowered), Ok(()), "{text}");
+            assert_eq!(observation1(&compiled.machine), Ok(()), "{text}");
             let degenerate = compiled.nondegenerate.map(|_| compiled.plan.root.clone());
             let said = lower(&degenerate).unwrap_err();
             assert!(said.code == Code::E0901 && said.message.contains("is repeated inside"), "{text}: {said:?}");
@@ -66,12 +66,12 @@ mod tests {
     fn an_interrupt_of_scopes_side_by_side_is_not_repeated() {
         let text =
             "{ P { Q (bumper) (Atom (wait 1) stop) (Atom (wait 2) stop) } (Atom (bumper) stop) (Atom (wait 1) stop) }";
-        assert_eq!(observation1(&compiled(text)[0].lowered), Ok(()));
+        assert_eq!(observation1(&compiled(text)[0].machine), Ok(()));
     }
 
     #[test]
     fn what_is_another_function_in_each_place_may_stand_inside_itself() {
         let text = "{ P (RISING bumper) { Q (NOT wait 1) (Atom (RISING bumper) stop) (Atom (NOT wait 1) stop) } }";
-        assert_eq!(observation1(&compiled(text)[0].lowered), Ok(()));
+        assert_eq!(observation1(&compiled(text)[0].machine), Ok(()));
     }
 }

@@ -12,7 +12,7 @@ fn brackets_are_in_pre_order_and_count_the_scopes_and_loops_around_them() {
         (Atom (wait 1) stop)
         (((Atom (wait 2) stop) { Q (wait 9) (Atom (wait 3) stop) })^2 (Atom (wait 4) stop))^3
         ((Atom (wait 5) stop)^4)^inf }";
-    let lowered = &compiled(plan)[0].lowered;
+    let machine = &compiled(plan)[0].machine;
     let brackets = [
         Bracket::scope(0, 0, 4, 0),
         Bracket::scope(1, 0, 0, 0),
@@ -28,11 +28,11 @@ fn brackets_are_in_pre_order_and_count_the_scopes_and_loops_around_them() {
         Bracket::repeat(4, 1, 1, 4, 4, 8),
         Bracket::scope(1, 4, 4, 9),
     ];
-    assert_eq!(lowered.tables().brackets, brackets);
+    assert_eq!(machine.tables().brackets, brackets);
     let atoms = [Atom::new(1, 1), Atom::new(4, 2), Atom::new(6, 3), Atom::new(7, 6), Atom::new(10, 17)];
-    assert_eq!((lowered.tables().atoms, lowered.states()), (&atoms[..], 21));
-    assert_eq!((lowered.sizes().levels, lowered.sizes().slots), (3, 2));
-    let names = lowered.elements().map(|element| element.interrupt().map(|_| element.name()));
+    assert_eq!((machine.tables().atoms, machine.states()), (&atoms[..], 21));
+    assert_eq!((machine.sizes().levels, machine.sizes().slots), (3, 2));
+    let names = machine.elements().map(|element| element.interrupt().map(|_| element.name()));
     let (atom, of_loop) = (Some(""), None);
     let expected = [Some("P"), atom, of_loop, of_loop, atom, Some("Q"), atom, atom, of_loop, of_loop, atom];
     assert_eq!(names.collect::<Vec<_>>(), expected);
@@ -40,13 +40,13 @@ fn brackets_are_in_pre_order_and_count_the_scopes_and_loops_around_them() {
 
 #[test]
 fn a_plan_without_loops_has_no_place_for_a_counter() {
-    let lowered = &compiled("{ P (Atom (wait 1) stop) }")[0].lowered;
-    assert_eq!((lowered.sizes().levels, lowered.sizes().slots, lowered.states()), (2, 0, 2));
+    let machine = &compiled("{ P (Atom (wait 1) stop) }")[0].machine;
+    assert_eq!((machine.sizes().levels, machine.sizes().slots, machine.states()), (2, 0, 2));
 }
 
 #[test]
 fn entry_times_have_places_down_to_the_last_level_that_has_a_wait() {
-    let levels = |text: &str| compiled(text)[0].lowered.sizes().levels;
+    let levels = |text: &str| compiled(text)[0].machine.sizes().levels;
     assert_eq!(levels("{ P (bumper) (Atom (bumper) stop) }"), 0);
     assert_eq!(levels("{ P (wait 1) { Q (Atom (bumper) stop) } }"), 1);
     assert_eq!(levels("{ P { Q (NOT (bumper AND wait 1)) (Atom (bumper) stop) } (Atom (bumper) stop) }"), 2);
@@ -55,7 +55,7 @@ fn entry_times_have_places_down_to_the_last_level_that_has_a_wait() {
 #[test]
 fn a_plan_of_more_than_two_to_the_53_states_is_refused() {
     let most = "ExecPlan 9007199254740991 { (Atom (wait 1) stop) }";
-    let termination = |body: &str| compiled(&format!("{{ P {body} }}"))[0].lowered.states();
+    let termination = |body: &str| compiled(&format!("{{ P {body} }}"))[0].machine.states();
     assert_eq!(termination(most), 1 << 53, "the termination state is the last of them");
     let more = [
         "ExecPlan 9007199254740992 { (Atom (wait 1) stop) }",
@@ -88,7 +88,7 @@ fn word(element: Element<'_>) -> String {
 
 #[test]
 fn elements_know_what_encloses_them_and_what_they_hold() {
-    let machine = &compiled(NESTED)[0].lowered;
+    let machine = &compiled(NESTED)[0].machine;
     let rows = machine.elements().map(|element| {
         let children: Vec<_> = element.children().map(word).collect();
         let outwards: Vec<_> = element.outwards().skip(1).map(word).collect();
@@ -112,7 +112,7 @@ fn elements_know_what_encloses_them_and_what_they_hold() {
 
 #[test]
 fn an_exit_leads_one_step_outwards() {
-    let machine = &compiled(NESTED)[0].lowered;
+    let machine = &compiled(NESTED)[0].machine;
     let exits = machine.elements().map(|element| match element.exit() {
         Exit::Over => "over".to_owned(),
         Exit::Next(next) => format!("next {}", word(next)),
@@ -124,7 +124,7 @@ fn an_exit_leads_one_step_outwards() {
 
 #[test]
 fn a_walk_enters_and_leaves_each_element_once() {
-    let machine = &compiled(NESTED)[0].lowered;
+    let machine = &compiled(NESTED)[0].machine;
     let walk: String = machine.walk().fold(String::new(), |text, visit| match visit {
         Visit::Enter(element) => format!("{text}({}", word(element)),
         Visit::Leave(_) => text + ")",
@@ -134,7 +134,7 @@ fn a_walk_enters_and_leaves_each_element_once() {
 
 #[test]
 fn an_element_tells_its_interrupt_and_a_loop_has_none() {
-    let machine = &compiled(NESTED)[0].lowered;
+    let machine = &compiled(NESTED)[0].machine;
     let texts: Vec<_> = machine.elements().map(Element::condition_text).collect();
     assert_eq!(texts, ["bumper", "", "", "wait 1", "wait 9", "null", "wait 3", "wait 4"]);
     let completing: Vec<_> = machine.elements().filter(|element| element.completes()).map(word).collect();

@@ -311,7 +311,7 @@ fn a_plan_of_too_many_states_names_its_loop() {
 }"
     );
     assert!(judged("{ P ExecPlan 99999999999999999999999999 { (Atom (wait 1) stop) } }", None).contains("E0501"));
-    assert_eq!(compiled("{ P ExecPlan 9007199254740991 { (Atom (wait 1) stop) } }")[0].lowered.states(), 1 << 53);
+    assert_eq!(compiled("{ P ExecPlan 9007199254740991 { (Atom (wait 1) stop) } }")[0].machine.states(), 1 << 53);
 }
 
 #[test]

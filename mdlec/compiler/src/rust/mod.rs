@@ -172,7 +172,7 @@ mod tests {
         for shape in [Shape::Code, Shape::Rows] {
             let sources = Sources::default();
             let header = Header { sources: &sources, file: "plan.mdle", plan: "P" };
-            let rust = emit_as(shape, &compiled.lowered, header, &alphabet(Some("sim")));
+            let rust = emit_as(shape, &compiled.machine, header, &alphabet(Some("sim")));
             let body = rust.split_once("/// The plan `P`.").expect("a plan").1;
             insta::assert_snapshot!(format!("conditions-{shape:?}"), body.split_once("const FSM").expect("tables").0);
         }
@@ -182,10 +182,12 @@ mod tests {
     fn a_plan_says_once_which_paths_it_replays() {
         let text = "{ P (bumper) (Atom (null) path hall) (Atom (null) path \"a b.csv\") (Atom (wait 5) path(hall)) }";
         let compiled = compiled(text).swap_remove(0);
-        for shape in [Shape::Code, Shape::Rows] {
+        for (shape, before) in
+            [(Shape::Code, "fnpaths(&self)->&[&'staticstr]{&["), (Shape::Rows, "source:SOURCE,paths:&[")]
+        {
             let sources = Sources::default();
             let header = Header { sources: &sources, file: "plan.mdle", plan: "P" };
-            let rust = emit_as(shape, &compiled.lowered, header, &alphabet(Some("sim")));
+            let rust = emit_as(shape, &compiled.machine, header, &alphabet(Some("sim")));
             let dense: String = rust.split_whitespace().collect();
             assert!(dense.contains(&format!("{before}\"ab.csv\",\"hall\"]")), "{shape:?}: {rust}");
             assert!(dense.contains("fnpaths(&self)->&[&'staticstr]{"), "{shape:?}: {rust}");
@@ -214,7 +216,7 @@ mod tests {
         let compiled = compiled(text).swap_remove(0);
         let (mut sources, name) = (sources(), &compiled.plan.root.name);
         sources.add("plan.mdle", text);
-        emit(&compiled.lowered, Header { sources: &sources, file, plan: name }, &alphabet(Some("sim")))
+        emit(&compiled.machine, Header { sources: &sources, file, plan: name }, &alphabet(Some("sim")))
     }
 
     #[test]
@@ -224,7 +226,7 @@ mod tests {
         let sources = Sources::default();
         let header = Header { sources: &sources, file: "plan.mdle", plan: "P" };
         // It would be rows.
-        let rust = emit_as(Shape::Code, &compiled.lowered, header, &alphabet(Some("sim")));
+        let rust = emit_as(Shape::Code, &compiled.machine, header, &alphabet(Some("sim")));
         assert!(syn::parse_file(&rust).is_ok());
         let dense: String = rust.split_whitespace().collect();
         assert_eq!(dense.matches("cursor.since(").count(), 5_000);
@@ -232,7 +234,7 @@ mod tests {
 
     #[test]
     fn long_plans_and_memories_are_rows() {
-        let shape = |atoms: &str| Shape::of(&compiled(&format!("{{ P {atoms} }}"))[0].lowered);
+        let shape = |atoms: &str| Shape::of(&compiled(&format!("{{ P {atoms} }}"))[0].machine);
         let atoms = |count: usize| shape(&"(Atom (wait 1) stop)".repeat(count));
         assert_eq!([63, 64].map(atoms), [Shape::Code, Shape::Rows]);
         let operands = |count| shape(&format!("(Atom ({}) stop)", vec!["wait 1"; count].join(" OR ")));

@@ -12,7 +12,7 @@ use crate::plan::{Interrupt, QuarkId, RecordId, Situation};
 /// A run of a lowered plan.
 #[derive(Debug)]
 pub struct Counted<'p> {
-    lowered: &'p fsm::Machine,
+    plan_machine: &'p fsm::Machine,
     /// The machine; `None` before the first turn, since the machine needs that turn's output to begin.
     machine: Option<mdle_runtime::Machine<Scripted<'p>>>,
 }
@@ -20,20 +20,20 @@ pub struct Counted<'p> {
 impl<'p> Counted<'p> {
     /// Creates the machine, before its first turn.
     #[must_use]
-    pub fn new(lowered: &'p fsm::Machine) -> Self {
-        Self { lowered, machine: None }
+    pub fn new(plan_machine: &'p fsm::Machine) -> Self {
+        Self { plan_machine, machine: None }
     }
 }
 
 impl<'p> Machine<'p> for Counted<'p> {
     fn turn(&mut self, reports: &Reports) -> Outcome<'p> {
-        let lowered = self.lowered;
-        let begin = || mdle_runtime::Machine::begin(Scripted::new(lowered), reports, reports.t);
+        let plan_machine = self.plan_machine;
+        let begin = || mdle_runtime::Machine::begin(Scripted::new(plan_machine), reports, reports.t);
         let machine = self.machine.get_or_insert_with(begin);
-        let mut transitions = Transitions { lowered, operands: Vec::new(), fired: Vec::new() };
+        let mut transitions = Transitions { plan_machine, operands: Vec::new(), fired: Vec::new() };
         let turn = machine.turn(reports, reports.t, &mut transitions);
         let applied = match (turn, machine.atom()) {
-            (Turn::Law(()), Some(atom)) => Applied::Law(&lowered.atom(atom).law().text),
+            (Turn::Law(()), Some(atom)) => Applied::Law(&plan_machine.atom(atom).law().text),
             (Turn::Cut, _) => Applied::Cut,
             (Turn::Over, _) | (Turn::Law(()), None) => Applied::Over,
         };
@@ -44,7 +44,7 @@ impl<'p> Machine<'p> for Counted<'p> {
 
 /// Records the transitions of a turn.
 struct Transitions<'p> {
-    lowered: &'p fsm::Machine,
+    plan_machine: &'p fsm::Machine,
     /// Numbers of the operands that fired for the next transition.
     operands: Vec<usize>,
     fired: Vec<Fired<'p>>,
@@ -56,11 +56,11 @@ impl Watch for Transitions<'_> {
     }
 
     fn transition(&mut self, Transition { from, scope, cause, .. }: Transition) {
-        let by = cause.by(self.lowered.element(scope).condition_text());
+        let by = cause.by(self.plan_machine.element(scope).condition_text());
         let operands = std::mem::take(&mut self.operands);
-        let operands = self.lowered.element(scope).interrupt().map_or_else(Vec::new, |interrupt| {
+        let operands = self.plan_machine.element(scope).interrupt().map_or_else(Vec::new, |interrupt| {
             let parts = interrupt.condition.joined();
-            let quark = |id| self.lowered.quark(id).text.clone();
+            let quark = |id| self.plan_machine.quark(id).text.clone();
             operands.iter().map(|number| interrupt.operand_text(*number, parts[*number], &quark)).collect()
         });
         self.fired.push(Fired { from, level: usize::from(cause.level()), by, operands });
@@ -80,7 +80,7 @@ impl mdle_runtime::Output for Reports {
 /// A lowered plan whose robot is a script.
 #[derive(Debug)]
 struct Scripted<'p> {
-    lowered: &'p fsm::Machine,
+    plan_machine: &'p fsm::Machine,
     /// Memories of all levels of scopes, level after level.
     memories: Vec<bool>,
 }
@@ -100,7 +100,7 @@ struct Read<'r, 'p> {
 
 impl Situation for Read<'_, '_> {
     fn quark(&self, quark: QuarkId) -> bool {
-        self.y.fired.contains(&self.scripted.lowered.quark(quark).text)
+        self.y.fired.contains(&self.scripted.plan_machine.quark(quark).text)
     }
 
     fn waited(&self, nanos: u64) -> bool {
@@ -116,25 +116,25 @@ impl Situation for Read<'_, '_> {
     }
 
     fn recorded(&self, record: RecordId, fact: u32) -> bool {
-        let Some(record) = self.scripted.lowered.record(record) else { return false };
+        let Some(record) = self.scripted.plan_machine.record(record) else { return false };
         self.scripted.memories[self.scripted.place(record.level, record.first + fact)]
     }
 }
 
 impl<'p> Scripted<'p> {
-    fn new(lowered: &'p fsm::Machine) -> Self {
-        let memories = lowered.sizes().memories;
-        let levels = if memories == 0 { 0 } else { lowered.depth() };
-        Self { lowered, memories: vec![false; levels * memories] }
+    fn new(plan_machine: &'p fsm::Machine) -> Self {
+        let memories = plan_machine.sizes().memories;
+        let levels = if memories == 0 { 0 } else { plan_machine.depth() };
+        Self { plan_machine, memories: vec![false; levels * memories] }
     }
 
     fn place(&self, level: u16, memory: u32) -> usize {
-        usize::from(level) * self.lowered.sizes().memories + memory as usize
+        usize::from(level) * self.plan_machine.sizes().memories + memory as usize
     }
 
     /// Scopes around the current atom, from its own outwards: level and interrupt.
     fn scopes(&self, cursor: &At) -> impl Iterator<Item = (u16, &'p Interrupt)> + use<'p> {
-        let own = self.lowered.atom(cursor.atom()).element();
+        let own = self.plan_machine.atom(cursor.atom()).element();
         own.outwards().filter_map(|element| Some((element.level()?, element.interrupt()?)))
     }
 
@@ -150,7 +150,7 @@ impl<'p> Scripted<'p> {
 
     /// The completion of the current atom's law.
     fn completed(&self, cursor: &At<'_>, y: &Reports) -> Option<Cause> {
-        let atom = self.lowered.atom(cursor.atom());
+        let atom = self.plan_machine.atom(cursor.atom());
         let level = atom.element().level()?;
         (atom.law().completes && y.completed.contains(&atom.law().text)).then_some(Cause::Completed(level))
     }
@@ -168,11 +168,11 @@ impl<'p> Scripted<'p> {
         };
         let mut outermost = level;
         let (mut records, mut facts) = (Vec::new(), Vec::new());
-        for (place, (number, _)) in cursor.ending(self.lowered.tables(), level).enumerate() {
-            let element = self.lowered.element(number);
+        for (place, (number, _)) in cursor.ending(self.plan_machine.tables(), level).enumerate() {
+            let element = self.plan_machine.element(number);
             outermost = element.level().unwrap_or(outermost);
             for mark in element.marks() {
-                let Some(record) = self.lowered.record(mark.record) else { continue };
+                let Some(record) = self.plan_machine.record(mark.record) else { continue };
                 records.push(record);
                 let operand = operand.filter(|_| place == 0);
                 let hold = mark.facts.iter().filter(|fact| fact.holds(operand));
@@ -196,13 +196,13 @@ impl<'p> mdle_runtime::Plan for Scripted<'p> {
     type Left = Box<[u64]>;
 
     fn fsm(&self) -> Fsm<'_> {
-        self.lowered.tables()
+        self.plan_machine.tables()
     }
 
     fn slots(&self) -> (Self::Entered, Self::Left) {
         (
-            Stamps::new(vec![Stamp::START; self.lowered.sizes().levels].into(), self.lowered.frames()),
-            vec![0; self.lowered.sizes().slots].into(),
+            Stamps::new(vec![Stamp::START; self.plan_machine.sizes().levels].into(), self.plan_machine.frames()),
+            vec![0; self.plan_machine.sizes().slots].into(),
         )
     }
 
@@ -213,13 +213,13 @@ impl<'p> mdle_runtime::Plan for Scripted<'p> {
     }
 
     fn leave(&mut self, cursor: &At<'p>, cause: Cause, y: &Reports, _: Nanos) {
-        if self.lowered.sizes().memories > 0 {
+        if self.plan_machine.sizes().memories > 0 {
             self.record(cursor, cause, y);
         }
     }
 
     fn settle(&mut self, cursor: &At<'p>, y: &Reports, _: Nanos) {
-        if self.lowered.sizes().memories == 0 {
+        if self.plan_machine.sizes().memories == 0 {
             return;
         }
         let mut set = Vec::new();
@@ -235,7 +235,7 @@ impl<'p> mdle_runtime::Plan for Scripted<'p> {
     }
 
     fn operands(&self, cursor: &At<'p>, scope: u32, y: &Reports, _: Nanos, tell: &mut dyn FnMut(u32, Measured)) {
-        let element = self.lowered.element(scope);
+        let element = self.plan_machine.element(scope);
         let (Some(level), Some(interrupt)) = (element.level(), element.interrupt()) else { return };
         let read = Read { scripted: self, cursor, level, y };
         let operands = (0..).zip(interrupt.condition.joined());
@@ -245,14 +245,14 @@ impl<'p> mdle_runtime::Plan for Scripted<'p> {
     fn input(&mut self, _: &Reports, _: Nanos) {}
 
     fn law(&self, atom: u32) -> &str {
-        &self.lowered.atom(atom).law().text
+        &self.plan_machine.atom(atom).law().text
     }
 
     fn condition(&self, scope: u32) -> &str {
-        self.lowered.element(scope).condition_text()
+        self.plan_machine.element(scope).condition_text()
     }
 
     fn name(&self, scope: u32) -> &str {
-        self.lowered.element(scope).name()
+        self.plan_machine.element(scope).name()
     }
 }

@@ -42,5 +42,5 @@ pub fn emitted(text: &str) -> String {
     let (compiled, found) = mdle_compiler::compile(source, text, &robot, Some("T"));
     let said: String = found.iter().map(|diagnostic| sources.render(diagnostic)).collect();
     let compiled = compiled.first().unwrap_or_else(|| panic!("{said}"));
-    emit(&compiled.lowered, Header { sources: &sources, file: "T.mdle", plan: "T" }, &robot)
+    emit(&compiled.machine, Header { sources: &sources, file: "T.mdle", plan: "T" }, &robot)
 }
