@@ -1,5 +1,5 @@
-//! `goAvoid ψ r v`: drives to a point given by bearing and range, round obstacles (paper, section IV-A), and out of the
-//! way of a person who approaches the robot.
+//! `goAvoid ψ r v`: drives to a point given by bearing and range, round obstacles (paper, section IV-A), out of the way of
+//! a person who approaches the robot, and not before a person who is about to cross its way.
 
 use mdle_runtime::capability::{DiffDrive, Odometry, SonarRing};
 use mdle_runtime::{
@@ -7,6 +7,7 @@ use mdle_runtime::{
 };
 
 use crate::approach::Approach;
+use crate::crossing::crosses;
 use crate::gains::{Gains, fire_in_turn};
 use crate::hallway::Hallway;
 use crate::memory::Memory;
@@ -15,6 +16,11 @@ use crate::tangent::{Obstacles, Side, Wish};
 
 /// Distance from the goal below which it is reached.
 const ARRIVED: Meters = Meters(0.12);
+/// Distance from the goal below which the robot is near enough if something keeps it from coming nearer: odometry drifts,
+/// so a goal near a wall comes to lie in the wall.
+const NEAR: Meters = Meters(0.3);
+/// Time for which something must have kept the robot from coming nearer.
+const KEPT_OFF: Nanos = Nanos(1_000_000_000);
 /// Maximum turn rate, in rad/s.
 const FASTEST: f64 = 0.9;
 /// Angle off the chosen direction from which the robot turns on the spot.
@@ -38,6 +44,10 @@ const ROOM: Meters = Meters(0.4);
 const PASSES: f64 = 1.0;
 /// Maximum time, in seconds, for which the robot avoids a person who no longer approaches.
 const PASSES_MOST: f64 = 8.0;
+/// Number of turns in a row in which somebody must be heard: the edge of a cone that touches a wall is heard in fewer.
+const SURE: u32 = 5;
+/// Time for which the robot stands after it has heard somebody come who is about to cross its way.
+const STANDS: Nanos = Nanos(2_500_000_000);
 
 /// Drives to the point at a bearing and range from where the atom begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,7 +66,7 @@ impl GoAvoid {
     }
 }
 
-/// The law of [`GoAvoid`]: done within 0.12 m of the goal.
+/// The law of [`GoAvoid`]: done within 0.12 m of the goal, or within 0.3 m where something is in the way of the rest.
 ///
 /// Wheels that slip when they turn leave odometry a heading that is off, and the goal off with it. On a robot whose
 /// sonars fire in turn, the law therefore corrects its heading by walls: where it drives between two straight and
@@ -77,6 +87,12 @@ pub struct GoingRound {
     detour: Option<Detour>,
     approach: Approach,
     gives_way: Option<GivesWay>,
+    /// Time since when something has kept the robot, which is near the goal, from coming nearer.
+    kept_off: Option<Nanos>,
+    /// Number of turns in a row in which somebody was about to cross the way.
+    crossed: u32,
+    /// Time until which the robot stands, since somebody crosses its way.
+    stands_until: Nanos,
     memory: Memory,
 }
 
@@ -117,6 +133,13 @@ impl GoingRound {
     /// The direction of the goal.
     fn direction(&self, here: Pose) -> Radians {
         Radians(libm::atan2(self.goal.y.0 - here.y.0, self.goal.x.0 - here.x.0))
+    }
+
+    /// Notes whether something keeps the robot, which is near the goal, from coming nearer.
+    fn notice(&mut self, obstacles: &Obstacles, here: Pose, t: Nanos) {
+        let Meters(distance) = here.distance(&self.goal);
+        let is_kept_off = distance <= NEAR.0 && obstacles.free(self.direction(here)).0 < distance - ARRIVED.0;
+        self.kept_off = self.kept_off.or(Some(t)).filter(|_| is_kept_off);
     }
 
     /// Returns `true` if the detour has lasted long enough to go along its obstacle.
@@ -193,6 +216,9 @@ impl<Y: DiffDrive + Odometry + SonarRing> Control<Y> for GoAvoid {
             detour: None,
             approach: Approach::default(),
             gives_way: None,
+            kept_off: None,
+            crossed: 0,
+            stands_until: Nanos::ZERO,
             memory: Memory::EMPTY,
         }
     }
@@ -212,6 +238,17 @@ impl<Y: DiffDrive + Odometry + SonarRing> Law<Y> for GoingRound {
         let seen = Obstacles::seen(y, here);
         let obstacles = if self.goes_along(t) { seen.with(&self.memory, here, t) } else { seen };
         self.look_out(y, &seen, here, t);
+        self.notice(&seen, here, t);
+        let crosses = self.gives_way.is_none() && crosses(y, here, self.speed.0);
+        self.crossed = if crosses { self.crossed.saturating_add(1) } else { 0 };
+        if self.gives_way.is_some() {
+            self.stands_until = Nanos::ZERO;
+        } else if self.crossed >= SURE {
+            self.stands_until = Nanos(t.0.saturating_add(STANDS.0));
+        }
+        if t < self.stands_until {
+            return Twist::default();
+        }
         let chosen = self.choose(&obstacles, here, t);
         let Radians(off) = Radians(chosen.0 - here.theta.0).wrapped();
         let Meters(ahead) = seen.free(here.theta);
@@ -227,8 +264,8 @@ impl<Y: DiffDrive + Odometry + SonarRing> Law<Y> for GoingRound {
 }
 
 impl<Y: DiffDrive + Odometry + SonarRing> Completes<Y> for GoingRound {
-    fn completed(&self, y: &Y, _: Nanos) -> bool {
-        y.pose().distance(&self.goal) <= ARRIVED
+    fn completed(&self, y: &Y, t: Nanos) -> bool {
+        y.pose().distance(&self.goal) <= ARRIVED || self.kept_off.is_some_and(|since| t.since(since) > KEPT_OFF)
     }
 }
 

@@ -16,6 +16,7 @@ pub mod alphabet;
 mod approach;
 mod at_isection;
 mod bumper;
+mod crossing;
 mod gains;
 mod go;
 mod go_avoid;

@@ -14,8 +14,6 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 
 /// The side of a room, in metres.
 const SIDE: f64 = 8.0;
-/// Minimum gap: the diameter of the body and 40 cm.
-const GAP: f64 = 0.81;
 /// Given up after this many turns: five minutes.
 const TURNS: u64 = 3000;
 
@@ -30,8 +28,9 @@ pub(crate) enum Outcome {
     TimedOut,
 }
 
-/// A room with a dozen boxes and discs between the start, lower left, and the upper right corner.
-pub(crate) fn room(seed: u64) -> World {
+/// A room with a dozen boxes and discs between the start, lower left, and the upper right corner, at least `gap` metres
+/// apart from each other and from the walls.
+pub(crate) fn room(seed: u64, gap: f64) -> World {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut uniform =
         |least: f64, most: f64| least + (most - least) * ((random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64);
@@ -47,13 +46,13 @@ pub(crate) fn room(seed: u64) -> World {
         let is_disc = uniform(0.0, 1.0) < 0.4;
         let (w, h) = (uniform(0.1, 0.6), uniform(0.1, 0.6));
         let (w, h) = if is_disc { (w, w) } else { (w, h) };
-        let (x, y) = (uniform(GAP + w, SIDE - GAP - w), uniform(GAP + h, SIDE - GAP - h));
+        let (x, y) = (uniform(gap + w, SIDE - gap - w), uniform(gap + h, SIDE - gap - h));
         let apart = |other: &[f64; 4]| {
             let dx = (other[0] - (x + w)).max((x - w) - other[2]).max(0.0);
             let dy = (other[1] - (y + h)).max((y - h) - other[3]).max(0.0);
             libm::hypot(dx, dy)
         };
-        if taken.iter().any(|other| apart(other) < GAP) {
+        if taken.iter().any(|other| apart(other) < gap) {
             continue;
         }
         taken.push([x - w, y - h, x + w, y + h]);

@@ -1,0 +1,100 @@
+//! Detects somebody who is about to cross the robot's way: the echoes of a sonar that looks to a side of the way get
+//! nearer faster than the robot drives.
+
+use mdle_runtime::capability::{DiffDrive, SonarRing};
+use mdle_runtime::{Meters, PINGS_KEPT, Pose, Radians, SONARS, SonarId};
+
+/// Speeds, in m/s, of somebody who comes: anything slower is as good as fixed, faster echoes are of different things.
+const SPEEDS: [f64; 2] = [0.25, 2.0];
+/// Greatest turn rate of the robot, in rad/s, between echoes that are compared: as it turns, the echo of a wall moves
+/// along the wall.
+const TURNS: f64 = 0.02;
+/// Least way, in metres, by which the echoes of somebody who comes get nearer; less may be the error of ranges.
+const NEARER: f64 = 0.075;
+/// The radius of a person, in metres.
+const PERSON: f64 = 0.25;
+/// Least distance, in metres, to the side of the way: whoever is nearer to it is an obstacle, or comes along the way.
+const ASIDE: f64 = 0.45;
+/// Greatest time, in seconds, in which somebody reaches the way.
+const SOON: f64 = 5.0;
+
+/// An echo: its time in seconds, and its distance along the way and to the left of it.
+struct Echo {
+    at: f64,
+    heading: Radians,
+    along: f64,
+    across: f64,
+}
+
+/// Returns `true` if somebody comes from a side and would cross the way ahead of a robot that stands still here, but
+/// perhaps not ahead of one that goes on at this speed, in m/s.
+pub(crate) fn crosses<Y: DiffDrive + SonarRing>(y: &Y, here: Pose, speed: f64) -> bool {
+    (0..SONARS as u8).map(SonarId::new).any(|sonar| comes(y, sonar, here, speed).unwrap_or(false))
+}
+
+/// Returns `true` if the sonar hears such a person in all the pings kept; `None` if it misses an echo.
+fn comes<Y: DiffDrive + SonarRing>(y: &Y, sonar: SonarId, here: Pose, speed: f64) -> Option<bool> {
+    const { assert!(PINGS_KEPT == 3) };
+    if sonar.bearing().wrapped().0.abs() > core::f64::consts::FRAC_PI_2 {
+        return Some(false);
+    }
+    let (sin, cos) = libm::sincos(here.theta.0);
+    let mut echoes = y.pings(sonar).newest_first().map(|ping| {
+        let axis = Radians(ping.pose.theta.0 + sonar.bearing().0);
+        let place = ping.pose.towards(axis, Meters(y.ring_radius().0 + ping.range?.0));
+        let (x, y) = (place.x.0 - here.x.0, place.y.0 - here.y.0);
+        Some(Echo {
+            at: ping.at.seconds(),
+            heading: ping.pose.theta,
+            along: x * cos + y * sin,
+            across: y * cos - x * sin,
+        })
+    });
+    let [new, middle, old] = [echoes.next()??, echoes.next()??, echoes.next()??];
+    let approach = |from: &Echo, to: &Echo| {
+        let seconds = to.at - from.at;
+        let turned = Radians(to.heading.0 - from.heading.0).wrapped().0.abs();
+        (turned <= TURNS * seconds)
+            .then(|| (libm::hypot(from.along, from.across) - libm::hypot(to.along, to.across)) / seconds)
+    };
+    let moves = |speed: f64| (SPEEDS[0]..=SPEEDS[1]).contains(&speed);
+    let (first, second) = (approach(&old, &middle)?, approach(&middle, &new)?);
+    let passes = new.along > y.body_radius().0 + PERSON && new.across.abs() > ASIDE;
+    let mean = (first + second) / 2.0;
+    let seconds = new.across.abs() / mean;
+    let meets = new.along < y.body_radius().0 + 2.0 * PERSON + speed * seconds && seconds < SOON;
+    let is_nearer = mean * (new.at - old.at) >= NEARER;
+    Some(moves(first) && moves(second) && is_nearer && passes && meets)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trial::Sensed;
+    use mdle_runtime::Nanos;
+
+    /// Returns `true` if a robot at rest waits for somebody whom its sonar 3, at 67.5°, hears at these ranges, one second
+    /// apart.
+    fn waits(ranges: [f64; 3]) -> bool {
+        let mut y = Sensed::default();
+        for (second, range) in (0..).zip(ranges) {
+            y.ping_at(SonarId::new(3), Some(range), Nanos(second * 1_000_000_000));
+        }
+        crosses(&y, y.pose, 0.2)
+    }
+
+    #[test]
+    fn somebody_who_comes_from_the_side_is_waited_for() {
+        assert!(waits([2.8, 2.3, 1.8]));
+        assert!(!waits([1.8, 1.8, 1.8]), "a wall");
+        assert!(!waits([1.8, 2.3, 2.8]), "somebody who leaves");
+        assert!(!waits([2.8, 2.8, 1.8]), "two different things");
+        assert!(!waits([6.0, 5.5, 5.0]), "somebody far away");
+    }
+
+    #[test]
+    fn whoever_comes_abreast_is_not_waited_for() {
+        // 1 m away at 67.5°, he is 46 cm ahead: he would walk into a robot that stands.
+        assert!(!waits([1.8, 1.4, 0.9]));
+    }
+}

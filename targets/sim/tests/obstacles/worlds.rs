@@ -1,0 +1,95 @@
+//! Worlds with ways that a body can just pass: doorways, boxes in a hallway, corners, and random rooms; and the worlds
+//! of the simulator.
+
+use mdle_sim::{Body, Place, World};
+
+use crate::chance::Chance;
+
+/// A world to cross, and the place to drive to.
+pub(crate) struct Crossing {
+    pub(crate) world: World,
+    pub(crate) to: Place,
+}
+
+/// The width of a body, in metres, that ways are measured by.
+pub(crate) fn width(body: Body) -> f64 {
+    match body {
+        Body::Ideal | Body::Scout => 0.41,
+        Body::Atrv => 0.83,
+    }
+}
+
+/// A world of these outlines with a start near the origin, and a place `far` metres ahead.
+fn ahead(seed: u64, far: f64, outlines: &str) -> Crossing {
+    let mut chance = Chance::new(seed);
+    let (y, heading) = (chance.within(0.05), chance.within(5.0));
+    let text = format!("start = {{ y = {y}, heading = {heading} }}\n{outlines}");
+    Crossing { world: World::parse("a test's world", &text).expect("a good world"), to: Place { x: far, y } }
+}
+
+/// A hallway of this width along the first axis, closed at its ends.
+fn hallway(width: f64) -> String {
+    let half = width / 2.0;
+    format!("[[wall]]\npoints = [[-1, {half}], [9, {half}], [9, -{half}], [-1, -{half}], [-1, {half}]]\n")
+}
+
+/// A doorway 15 cm wider than the body, up to 30 cm off the way, across a hallway.
+pub(crate) fn doorway(body: Body, seed: u64) -> Crossing {
+    let off = Chance::new(seed ^ 0xd00).within(0.3);
+    let half = (width(body) + 0.15) / 2.0;
+    let (wide, left, right) = (2.5, off + half, off - half);
+    let jambs = format!("[[wall]]\npoints = [[3, {left}], [3, 1.25]]\n[[wall]]\npoints = [[3, {right}], [3, -1.25]]");
+    ahead(seed, 6.0, &[hallway(wide), jambs].concat())
+}
+
+/// A box in the middle of a hallway, with a gap of the body and 25 cm on both sides.
+pub(crate) fn middle(body: Body, seed: u64) -> Crossing {
+    let side = 0.3 + 0.2 * Chance::new(seed ^ 0xb0c).unit();
+    let wide = side + 2.0 * (width(body) + 0.25);
+    let block = format!("[[box]]\ncentre = [3, 0]\nsize = [{side}, {side}]");
+    ahead(seed, 6.0, &[hallway(wide), block].concat())
+}
+
+/// A U across the way, open towards the start, up to 1.5 m deep.
+pub(crate) fn corner(body: Body, seed: u64) -> Crossing {
+    let mut chance = Chance::new(seed ^ 0xc0);
+    let (depth, half) = (0.5 + chance.unit(), width(body) / 2.0 + 0.5 + 0.4 * chance.unit());
+    let mouth = 4.0 - depth;
+    let around = "[[wall]]\npoints = [[-2, -4], [10, -4], [10, 4], [-2, 4], [-2, -4]]\n";
+    let pocket = format!("[[wall]]\npoints = [[{mouth}, {half}], [4, {half}], [4, -{half}], [{mouth}, -{half}]]");
+    ahead(seed, 7.0, &[around, &pocket].concat())
+}
+
+/// The world `room`, and a point 7 m from the start along its heading.
+pub(crate) fn room(_: Body, seed: u64) -> Crossing {
+    let mut world = World::named("room").expect("a world").expect("a good world");
+    let mut chance = Chance::new(seed);
+    let far = 7.0 * libm::cos(world.start.theta.0);
+    let to = Place { x: world.start.x.0 + far, y: world.start.y.0 + far };
+    world.start.theta.0 += chance.within(5.0_f64.to_radians());
+    Crossing { world, to }
+}
+
+/// The world `hall`: from the start to the other end, past the walker.
+pub(crate) fn hall(_: Body, seed: u64) -> Crossing {
+    let mut world = World::named("hall").expect("a world").expect("a good world");
+    let mut chance = Chance::new(seed);
+    world.start.x.0 += 1.5 * chance.unit();
+    world.start.y.0 += chance.within(0.5);
+    Crossing { to: Place { x: 14.5, y: world.start.y.0 }, world }
+}
+
+/// A random room whose gaps are 15 cm wider than the body.
+pub(crate) fn random(body: Body, seed: u64) -> Crossing {
+    let world = crate::room::room(seed, width(body) + 0.15);
+    Crossing { world, to: Place { x: 7.0, y: 7.0 } }
+}
+
+/// The first passages of `maze`, from the start to its first corner.
+pub(crate) fn maze(_: Body, seed: u64) -> Crossing {
+    let mut world = World::named("maze").expect("a world").expect("a good world");
+    let mut chance = Chance::new(seed);
+    world.start.x.0 += chance.within(0.05);
+    world.start.theta.0 = core::f64::consts::FRAC_PI_2 + chance.within(0.1);
+    Crossing { to: Place { x: 1.8, y: 4.2 }, world }
+}
