@@ -73,8 +73,7 @@ mod tests {
     use crate::trial::Sensed;
     use mdle_runtime::Nanos;
 
-    /// Returns `true` if a robot at rest waits for somebody whom its sonar 3, at 67.5°, hears at these ranges, one second
-    /// apart.
+    /// Returns `true` if a robot at rest waits for somebody whom its sonar 3 hears at these ranges, one second apart.
     fn waits(ranges: [f64; 3]) -> bool {
         let mut y = Sensed::default();
         for (second, range) in (0..).zip(ranges) {

@@ -16,8 +16,8 @@ use crate::tangent::{Obstacles, Side, Wish};
 
 /// Distance from the goal below which it is reached.
 const ARRIVED: Meters = Meters(0.12);
-/// Distance from the goal below which the robot is near enough if something keeps it from coming nearer: odometry drifts,
-/// so a goal near a wall comes to lie in the wall.
+/// Distance from the goal below which the robot is near enough if something keeps it from coming nearer: odometry
+/// drifts, so a goal near a wall comes to lie in the wall.
 const NEAR: Meters = Meters(0.3);
 /// Time for which something must have kept the robot from coming nearer.
 const KEPT_OFF: Nanos = Nanos(1_000_000_000);

@@ -1,5 +1,5 @@
 //! `stuck T`: fires when the law that runs makes no progress towards its goal; ours, next to the paper's `goAvoid`
-//! (docs/src/reference/semantics.md, 4.1).
+//! (docs/src/reference/semantics.md, 3.5).
 
 use mdle_runtime::capability::Odometry;
 use mdle_runtime::{Interrupt, Meters, Nanos, Pose};

@@ -1,7 +1,7 @@
 //! `goAvoid` where the way is narrow: doorways, boxes in hallways, corners, rooms, and somebody who walks across.
 //!
-//! Each test tries a few seeds. `MDLE_LONG=10 cargo test --release -p mdle-sim --test obstacles -- --nocapture` tries ten
-//! times as many and prints how they end; `MDLE_FIRST` is the first seed.
+//! Each test tries a few seeds. `MDLE_LONG=10 cargo test --release -p mdle-sim --test obstacles -- --nocapture` tries
+//! ten times as many and prints how they end; `MDLE_FIRST` is the first seed.
 #![allow(clippy::expect_used, clippy::print_stdout, reason = "a test fails by panicking, and tells what happened")]
 
 mod chance;
