@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use mdle_tests::book::{Fence, anchors, fences, leads_to, links, messages, name, pages};
-use mdle_tests::executable::{folder, run_mdlec};
+use mdle_tests::executable::{folder, mdle, run_mdlec};
 use mdle_tests::repository::{TextFile, root};
 use serde_json::Value;
 
@@ -140,6 +140,7 @@ impl Walk<'_> {
         let words: Vec<_> = command.split(' ').collect();
         let output = match words[0] {
             "mdlec" => run_mdlec(&self.folder, &words[1..]),
+            "mdle" => Command::new(mdle()).args(&words[1..]).current_dir(&self.folder).output().unwrap(),
             // By the name that is typed, which the program may print.
             program => Command::new(program).args(&words[1..]).current_dir(&self.folder).output().unwrap(),
         };

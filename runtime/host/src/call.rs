@@ -1,7 +1,7 @@
 //! The call of a program that runs a plan: the words that name it, and its options.
 
 use std::ffi::OsString;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The words by which a program that runs a plan was called.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -11,13 +11,15 @@ pub struct Call {
     pub words: Vec<OsString>,
     /// The options.
     pub options: Vec<OsString>,
+    /// Files that the program has read for the plan: no option may name one of them to be written.
+    pub read: Vec<PathBuf>,
 }
 
 impl Call {
     /// Returns the call of an executable with these arguments, its own name first.
     pub(crate) fn of_executable(arguments: impl IntoIterator<Item = OsString>) -> Self {
         let mut arguments = arguments.into_iter();
-        Self { words: arguments.next().into_iter().collect(), options: arguments.collect() }
+        Self { words: arguments.next().into_iter().collect(), options: arguments.collect(), read: Vec::new() }
     }
 
     /// Returns the name by which usage calls the program, if it is more than the name of a file.
@@ -55,7 +57,11 @@ mod tests {
 
     #[test]
     fn a_call_is_shown_as_a_shell_takes_it() {
-        let call = |words: &[&str]| Call { words: words.iter().map(Into::into).collect(), options: Vec::new() };
+        let call = |words: &[&str]| Call {
+            words: words.iter().map(Into::into).collect(),
+            options: Vec::new(),
+            read: Vec::new(),
+        };
         assert_eq!(call(&["./it's"]).command("P"), r"'./it'\''s'");
         assert_eq!(call(&["mdle", "run", "a b.mdle"]).command("P"), "mdle run 'a b.mdle'");
         assert_eq!(call(&[]).command("P"), "P");

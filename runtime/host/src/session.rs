@@ -2,7 +2,7 @@
 
 use std::ffi::OsString;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::ArgMatches;
@@ -83,7 +83,8 @@ where
         }
         Ok(None) => {}
     }
-    let ready = ready(executable, &matches, &options, store, &paths, &signals);
+    let read = PlanFiles { read: &call.read, paths: &paths };
+    let ready = ready(executable, &matches, &options, store, read, &signals);
     let Ready { mut drive, time, mut log, mut path } = match ready {
         Ok(ready) => ready,
         Err(Refusal::Ended(stopped)) => return ended_at_the_start(&signals, stopped, err),
@@ -172,18 +173,26 @@ fn prepared(target: &TargetOptions, matches: &ArgMatches, executable: &dyn Execu
     prepared.unwrap_or_else(bug_before)
 }
 
+/// The files of a plan.
+#[derive(Clone, Copy)]
+struct PlanFiles<'a> {
+    /// Files that the program has read for it.
+    read: &'a [PathBuf],
+    /// Names of the paths that it replays.
+    paths: &'a [&'static str],
+}
+
 /// The files that the options of a run name.
-fn named_files(
-    target: &TargetOptions,
-    matches: &ArgMatches,
-    options: &Options,
-    paths: &[&'static str],
-) -> Vec<NamedFile> {
+fn named_files(target: &TargetOptions, matches: &ArgMatches, options: &Options, plan: PlanFiles<'_>) -> Vec<NamedFile> {
     let written = [("--log", &options.log), ("--record-path", &options.path)];
     let written = written
         .into_iter()
         .filter_map(|(option, path)| path.clone().map(|path| NamedFile { option, path, is_written: true }));
-    let read = paths::files(matches, paths).map(|path| NamedFile { option: "the plan", path, is_written: false });
+    let read = paths::files(matches, plan.paths).chain(plan.read.iter().cloned()).map(|path| NamedFile {
+        option: "the plan",
+        path,
+        is_written: false,
+    });
     written.chain(read).chain((target.files)(matches)).collect()
 }
 
@@ -270,13 +279,13 @@ fn ready<'p>(
     matches: &ArgMatches,
     options: &Options,
     store: PathStore,
-    paths: &[&'static str],
+    plan: PlanFiles<'_>,
     signals: &Signals,
 ) -> Result<Ready<'p>, Refusal> {
     let target = executable.target();
     let opened = shielded(|| {
         let time = (target.time)(matches).map_err(Refusal::Usage)?;
-        named_file::check(named_files(&target, matches, options, paths))?;
+        named_file::check(named_files(&target, matches, options, plan))?;
         let log = untouched("run log", options.log.as_deref())?;
         let path = untouched("path", options.path.as_deref())?;
         paths::check_period(options)?;

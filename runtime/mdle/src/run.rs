@@ -26,13 +26,14 @@ pub(crate) fn run(arguments: Run) -> Result<ExitCode, Failure> {
     let given: Vec<_> = arguments.options.iter().map(|option| option.to_string_lossy().into_owned()).collect();
     let mut options: Vec<OsString> = Vec::new();
     for option in settings.run_options(arguments.target.as_deref(), &given, |_| Known::default())? {
-        let call = Call { words: arguments.words.clone(), options: option.arguments.clone() };
+        let call = Call { words: arguments.words.clone(), options: option.arguments.clone(), read: Vec::new() };
         (linked.check)(program, &call).map_err(|text| option.refused(&text))?;
         options.extend(option.arguments);
     }
     options.extend(arguments.options);
+    let read = input.inputs(&target);
     drop(input);
-    Ok(ready.run(&plan, Call { words: arguments.words, options }))
+    Ok(ready.run(&plan, Call { words: arguments.words, options, read }))
 }
 
 /// Compiles the only plan to run and loads it; returns it with its name. Messages go to standard error.
