@@ -70,9 +70,9 @@ impl GoAvoid {
 ///
 /// Wheels that slip when they turn leave odometry a heading that is off, and the goal off with it. On a robot whose
 /// sonars fire in turn, the law therefore corrects its heading by walls: where it drives between two straight and
-/// parallel ones, at most 1.5 m from both, that run within 40° of an axis of the frame, they are taken to run along that
-/// axis, and the goal is turned by the difference, around the place where the atom began. Until it knows them it goes by
-/// the drift that the robot measures at one wall, if it does.
+/// parallel ones, at most 1.5 m from both, that run within 40° of an axis of the frame, they are taken to run along
+/// that axis, and the goal is turned by the difference, around the place where the atom began. Until it knows them it
+/// goes by the drift that the robot measures at one wall, if it does.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GoingRound {
     goal: Pose,

@@ -49,16 +49,16 @@ struct Line {
 }
 
 impl Hallway {
-    /// No echoes yet, for a robot at `here` that will drive in the direction of `way`. Hallways run along the axes of the
-    /// frame, of which one has the direction `axis`.
+    /// No echoes yet, for a robot at `here` that will drive in the direction of `way`. Hallways run along the axes of
+    /// the frame, of which one has the direction `axis`.
     pub(crate) fn begin<Y: Odometry + SonarRing>(y: &Y, here: Pose, way: Radians, axis: Radians) -> Self {
         let theta = Radians(axis.0 + off_axis(way, axis).0);
         let line = Line { last: y.now(), ..Line::default() };
         Self { origin: Pose { theta, ..here }, sides: [line; 2], turned: y.drift(axis) }
     }
 
-    /// Takes the newest echoes to both sides in, and returns the angle from the frame's axis, as odometry has it, to the
-    /// hallway: the last one that was known, or 0.
+    /// Takes the newest echoes to both sides in, and returns the angle from the frame's axis, as odometry has it, to
+    /// the hallway: the last one that was known, or the drift measured at the beginning.
     pub(crate) fn turned<Y: SonarRing>(&mut self, y: &Y) -> Radians {
         let (mut takes, ring) = (false, y.ring_radius().0);
         for (line, (sonar, side)) in self.sides.iter_mut().zip(SIDES.into_iter().zip([1.0, -1.0])) {
