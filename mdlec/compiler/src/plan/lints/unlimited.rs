@@ -53,10 +53,8 @@ impl<'p> Unlimited<'p, '_> {
         let message = format!("where no way leads to its point, `{law}` never ends");
         let lint = Diagnostic::new(Code::W0208, message, span, "neither this nor an enclosing scope limits its time");
         // The text of an interrupt that was removed is one of an enclosing scope.
-        let with = |limit: &str| match atom.interrupt.condition {
-            Condition::Null => format!("({limit})"),
-            _ => format!("({text} OR {limit})"),
-        };
+        let is_null = atom.interrupt.condition == Condition::Null;
+        let with = |limit: &str| if is_null { format!("({limit})") } else { format!("({text} OR {limit})") };
         let lint = lint.fix("end it where it comes no nearer for some time: {}", span, with("stuck 30s"));
         self.found.push(lint.fix("or give it a time: {}", span, with("wait 2min")));
     }
