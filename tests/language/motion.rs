@@ -1,5 +1,5 @@
-//! The rules of `way` (docs/src/reference/semantics.md, 3.3), of `FRAME here` (docs/src/reference/semantics.md, 3.4) and
-//! of `stuck` (docs/src/reference/semantics.md, 3.5), each by its smallest plan.
+//! The rules of `way` (docs/src/reference/semantics.md, 3.3), of `FRAME here` (docs/src/reference/semantics.md, 3.4)
+//! and of `stuck` (docs/src/reference/semantics.md, 3.5), each by its smallest plan.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
 
