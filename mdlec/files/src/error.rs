@@ -72,10 +72,7 @@ impl InputError {
     /// Returns the error itself, without the line of an `mdle.toml` that leads to it.
     #[must_use]
     pub fn cause(self) -> Self {
-        match self {
-            Self::InSettings { error, .. } => error.cause(),
-            other => other,
-        }
+        if let Self::InSettings { error, .. } = self { error.cause() } else { self }
     }
 
     /// Returns the message, in which options are spelled for this user. The diagnostics of [`InputError::Faulty`] are

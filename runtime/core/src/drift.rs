@@ -30,8 +30,8 @@ pub(crate) fn drift(pings: &[Pings; SONARS], heading: Radians, axis: Radians, ap
     let range = |sonar: usize| pings.get(sonar % SONARS)?.nearest(2).map(|range| range.0);
     let mut nearest = None;
     for sonar in (0..SONARS).step_by(4) {
-        let (Some(before), Some(middle), Some(behind)) = (range(sonar + SONARS - 1), range(sonar), range(sonar + 1))
-        else {
+        let around = [sonar.wrapping_add(SONARS - 1), sonar, sonar.wrapping_add(1)];
+        let [Some(before), Some(middle), Some(behind)] = around.map(range) else {
             continue;
         };
         let is_wall = (before - behind).abs() < SQUARE && ((before + behind) / 2.0 - middle).abs() < STRAIGHT;

@@ -10,13 +10,16 @@ use mdle_files::{Input, Target};
 use mdle_host::{Call, Program};
 use mdle_runtime::{Alphabet, Robot};
 
+/// Loads a plan as a machine with its files, for a target.
+type Load = fn(&Machine, &Input, &Target) -> Result<Box<dyn Ready>, LoadError>;
+
 /// A robot whose driver is part of this program.
 #[derive(Clone, Copy)]
 pub(crate) struct Linked {
     /// Name of the target.
     pub(crate) name: &'static str,
     /// Loads a plan.
-    pub(crate) load: fn(&Machine, &Input, &Target) -> Result<Box<dyn Ready>, LoadError>,
+    pub(crate) load: Load,
     /// Returns the message if a run has no such options.
     pub(crate) check: fn(Program<'_>, &Call) -> Result<(), String>,
 }
