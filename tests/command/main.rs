@@ -8,6 +8,7 @@ mod explain;
 mod help;
 mod hostile_text;
 mod large_input;
+mod mdle_run;
 mod newcomer;
 mod proposals;
 mod random_input;

@@ -4,6 +4,7 @@ mod atrv;
 mod batches;
 mod emulators;
 mod lab_tour;
+mod loaded;
 mod movement;
 mod operands;
 mod paths;

@@ -13,18 +13,28 @@ use crate::repository::root;
 #[must_use]
 pub fn mdlec() -> &'static Path {
     static MDLEC: OnceLock<PathBuf> = OnceLock::new();
-    MDLEC.get_or_init(|| {
-        let target = target();
-        let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-        let built = Command::new(cargo)
-            .args(["build", "--quiet", "--package", "mdlec", "--bin", "mdlec", "--target-dir"])
-            .arg(&target)
-            .current_dir(root())
-            .status()
-            .expect("cargo runs");
-        assert!(built.success(), "mdlec does not build");
-        target.join("debug/mdlec")
-    })
+    MDLEC.get_or_init(|| built("mdlec"))
+}
+
+/// The binary `mdle`, as it is now.
+#[must_use]
+pub fn mdle() -> &'static Path {
+    static MDLE: OnceLock<PathBuf> = OnceLock::new();
+    MDLE.get_or_init(|| built("mdle"))
+}
+
+/// Builds the binary of this package.
+fn built(package: &str) -> PathBuf {
+    let target = target();
+    let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
+    let built = Command::new(cargo)
+        .args(["build", "--quiet", "--package", package, "--bin", package, "--target-dir"])
+        .arg(&target)
+        .current_dir(root())
+        .status()
+        .expect("cargo runs");
+    assert!(built.success(), "{package} does not build");
+    target.join("debug").join(package)
 }
 
 /// The target folder of the build that this test belongs to, wherever `CARGO_TARGET_DIR` put it.

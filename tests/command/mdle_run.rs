@@ -1,0 +1,111 @@
+//! `mdle run`: what its command line answers, and the exit statuses of what does not run.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::io::Write as _;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use mdle_tests::executable::{folder, mdle, run_mdlec};
+
+/// A plan that drives ahead for two seconds.
+const PLAN: &str = "{ Ahead (bumper)\n  (Atom (wait 2s) (go 20 0))\n}\n";
+
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    Command::new(mdle()).args(arguments).current_dir(folder).output().unwrap()
+}
+
+/// Both streams of `mdle` with these arguments, and its exit status.
+fn told(folder: &Path, line: &str) -> String {
+    let Output { status, stdout, stderr } = run(folder, &line.split(' ').collect::<Vec<_>>());
+    let [out, err] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+    format!("$ mdle {line}\n{out}{err}[{}]\n", status.code().unwrap())
+}
+
+fn with_plan(test: &str) -> std::path::PathBuf {
+    let folder = folder(test);
+    fs::write(folder.join("plan.mdle"), PLAN).unwrap();
+    folder
+}
+
+#[test]
+fn what_does_not_run_is_told_with_what_to_type() {
+    let folder = with_plan("refused");
+    fs::write(folder.join("two.mdle"), "{ A (Atom (wait 1) stop) }\n{ B (Atom (wait 1) stop) }\n").unwrap();
+    fs::write(folder.join("bad.mdle"), "{ P (Atom (bumber) stop) }\n").unwrap();
+    let lines = [
+        "run missing.mdle --target sim",
+        "run . --target sim",
+        "run plan --target sim",
+        "run plan.mdle",
+        "run plan.mdle --target sym",
+        "run plan.mdle --target ./rover",
+        "run two.mdle --target sim",
+        "run two.mdle --target sim --plan C",
+        "run bad.mdle --target sim",
+        "run --world office plan.mdle",
+        "run plan.mdle --target sim --wrold office",
+        "run plan.mdle --target sim --world moon",
+        "run plan.mdle --target sim --turns 0",
+        "run plan.mdle --target sim --log plan.mdle",
+    ];
+    insta::assert_snapshot!(lines.map(|line| told(&folder, line)).join("\n"));
+    assert_eq!(fs::read_to_string(folder.join("plan.mdle")).unwrap(), PLAN);
+}
+
+#[test]
+fn help_names_every_option() {
+    let folder = with_plan("help");
+    insta::assert_snapshot!([told(&folder, "--help"), told(&folder, "run --help")].join("\n"));
+    let help = told(&folder, "run plan.mdle --target sim --help");
+    assert!(help.contains("Usage: mdle run plan.mdle --target sim [OPTIONS]\n"), "{help}");
+    assert!(help.contains("--start-noise") && help.ends_with("[0]\n"), "{help}");
+}
+
+#[test]
+fn a_bad_plan_has_the_messages_of_the_compiler() {
+    let folder = folder("messages");
+    for (name, text) in [("one", "{ P (Atom (bumber) stop) }\n"), ("many", "{ P (Atom (bumper) go 1\n) ) ^ { }\n")] {
+        let file = format!("{name}.mdle");
+        fs::write(folder.join(&file), text).unwrap();
+        let [mdlec, mdle] =
+            [run_mdlec(&folder, &["run", &file, "--target", "sim"]), run(&folder, &["run", &file, "--target", "sim"])];
+        assert_eq!((mdle.status.code(), mdle.stderr), (Some(1), mdlec.stderr), "{name}");
+        assert_eq!(mdlec.status.code(), Some(1));
+    }
+    let latin = b"{ P (Atom (bumper) stop) } -- \xE4\n";
+    fs::write(folder.join("latin.mdle"), latin).unwrap();
+    let [mdlec, mdle] = [
+        run_mdlec(&folder, &["run", "latin.mdle", "--target", "sim"]),
+        run(&folder, &["run", "latin.mdle", "--target", "sim"]),
+    ];
+    assert_eq!((mdle.status.code(), mdle.stderr), (mdlec.status.code(), mdlec.stderr));
+}
+
+#[test]
+fn the_settings_beside_a_plan_hold_for_its_run() {
+    let folder = with_plan("settings");
+    fs::write(folder.join("mdle.toml"), "target = \"sim\"\nworld = \"hall\"\n\n[options]\nspeed = \"max\"\n").unwrap();
+    let run = told(&folder, "run plan.mdle");
+    assert!(run.contains("plan over: wait 2s") && run.ends_with("[0]\n"), "{run}");
+    assert_eq!(
+        run.replace("run plan.mdle", ""),
+        told(&folder, "run plan.mdle --world hall").replace("run plan.mdle --world hall", "")
+    );
+    fs::write(folder.join("mdle.toml"), "target = \"sim\"\n\n[options]\nspede = \"max\"\n").unwrap();
+    insta::assert_snapshot!(told(&folder, "run plan.mdle"));
+    fs::write(folder.join("mdle.toml"), "target = \"./rover\"\n").unwrap();
+    assert!(told(&folder, "run plan.mdle").starts_with("$ mdle run plan.mdle\nerror: `mdle` has no target `./rover`"));
+}
+
+#[test]
+fn a_plan_comes_from_standard_input() {
+    let folder = folder("standard_input");
+    let mut command = Command::new(mdle());
+    command.args(["run", "-", "--target", "sim", "--speed", "max"]).current_dir(&folder);
+    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+    child.stdin.take().unwrap().write_all(PLAN.as_bytes()).unwrap();
+    let output = child.wait_with_output().unwrap();
+    let text = String::from_utf8(output.stdout).unwrap();
+    assert!(output.status.success() && text.contains("plan over: wait 2s (standard input:2"), "{text}");
+}
