@@ -88,7 +88,7 @@ fn circles(folder: &str, sources: &[TextFile]) -> Vec<String> {
         let others = reached[**module].iter().filter(|other| reached[**other].contains(**module));
         others.copied().collect()
     };
-    let circles: BTreeSet<_> = uses.keys().map(|module| circle(&&module)).filter(|circle| circle.len() > 1).collect();
+    let circles: BTreeSet<_> = uses.keys().map(|module| circle(&module)).filter(|circle| circle.len() > 1).collect();
     circles.into_iter().map(|circle| format!("{folder}: {}", circle.join(", "))).collect()
 }
 
