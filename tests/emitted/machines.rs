@@ -12,15 +12,15 @@ use std::process::Command;
 use mdle_compiler::rust::{Header, Shape, emit_as, plan_type};
 use mdle_compiler::trace::Script;
 use mdle_scripted::{INTERRUPTS, LAWS};
-use mdle_tests::chance::Chance;
+use mdle_tests::chance::{Chance, repeated};
 use mdle_tests::outputs::outputs;
 use mdle_tests::pipeline::{Machines, compile_plan, scripted, sources};
 use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::random_script::script;
 use mdle_tests::repository::root;
 
-/// Number of random plans that are emitted, and of scripts on which each plan runs.
-const PLANS: u64 = 200;
+/// Number of random plans that are emitted in each shape, and of scripts on which each plan runs.
+const PLANS: u64 = 60;
 const SCRIPTS: u64 = 25;
 
 /// Names of plans, each of which a generated file may have a use of its own for.
@@ -47,7 +47,7 @@ fn plans_as_rows_do_what_the_other_machines_do() {
 }
 
 fn compare(shape: Shape) {
-    let cases: Vec<_> = (0..PLANS).map(random).chain([every_quark(), deep()]).collect();
+    let cases: Vec<_> = (0..repeated(PLANS)).map(random).chain([every_quark(), deep()]).collect();
     let package = Package::write(shape, &cases);
     let printed = package.run(&cases);
     let mut traces = printed.split("== next\n");
@@ -72,8 +72,11 @@ fn compare(shape: Shape) {
 fn random(seed: u64) -> Case {
     let root = ROOTS[seed as usize % ROOTS.len()];
     let draw = |drawn: u64| {
-        let mut chance = Chance::new(1_000_000 + seed + drawn * PLANS);
-        let text = RandomPlan::new(&mut chance, 4 + seed as usize / 10, seed % 40 == 39).named(root).to_string();
+        let plans = repeated(PLANS);
+        let mut chance = Chance::new(1_000_000 + seed + drawn * plans);
+        // From the first plan to the last, some 4 to 24 atoms.
+        let size = 4 + (20 * seed / plans) as usize;
+        let text = RandomPlan::new(&mut chance, size, seed % 40 == 39).named(root).to_string();
         // Loops in loops in loops can make too many states.
         let compiled = compile_plan(&text, root).ok()?;
         if seed.is_multiple_of(2) && compiled.machine.sizes().memories > 0 {
