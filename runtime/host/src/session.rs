@@ -83,7 +83,7 @@ where
         }
         Ok(None) => {}
     }
-    let read = PlanFiles { read: &call.read, paths: &paths };
+    let read = KnownFiles { read: &call.read, paths: &paths };
     let ready = ready(executable, &matches, &options, store, read, &signals);
     let Ready { mut drive, time, mut log, mut path } = match ready {
         Ok(ready) => ready,
@@ -175,7 +175,7 @@ fn prepared(target: &TargetOptions, matches: &ArgMatches, executable: &dyn Execu
 
 /// The files of a plan.
 #[derive(Clone, Copy)]
-struct PlanFiles<'a> {
+struct KnownFiles<'a> {
     /// Files that the program has read for it.
     read: &'a [PathBuf],
     /// Names of the paths that it replays.
@@ -183,7 +183,7 @@ struct PlanFiles<'a> {
 }
 
 /// The files that the options of a run name.
-fn named_files(target: &TargetOptions, matches: &ArgMatches, options: &Options, plan: PlanFiles<'_>) -> Vec<NamedFile> {
+fn named_files(target: &TargetOptions, matches: &ArgMatches, options: &Options, plan: KnownFiles<'_>) -> Vec<NamedFile> {
     let written = [("--log", &options.log), ("--record-path", &options.path)];
     let written = written
         .into_iter()
@@ -279,7 +279,7 @@ fn ready<'p>(
     matches: &ArgMatches,
     options: &Options,
     store: PathStore,
-    plan: PlanFiles<'_>,
+    plan: KnownFiles<'_>,
     signals: &Signals,
 ) -> Result<Ready<'p>, Refusal> {
     let target = executable.target();

@@ -47,7 +47,7 @@ impl fmt::Display for LoadError {
 
 impl Error for LoadError {}
 
-/// Loads the plan of a machine for the robot of the bound alphabet `A`; `alphabet` is the text that it was compiled for.
+/// Loads the plan of a machine for the robot of the bound alphabet `A`; `alphabet` is the one that it was compiled for.
 ///
 /// # Errors
 /// The crate of the robot is bound to another alphabet, or lacks a quark, or the plans of this process have too many

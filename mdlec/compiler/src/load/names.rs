@@ -7,7 +7,7 @@ use super::LoadError;
 
 /// The most bytes of all names in the plans that a process loads.
 ///
-/// A quark keeps its names for ever, so a process that loads plan after plan with new names would need ever more memory.
+/// A quark keeps its names for ever, so a process that loads plan after plan with new names needs ever more memory.
 pub const MOST_NAMES: usize = 1_000_000;
 
 /// Returns a name that stays; a text is kept once.
