@@ -35,7 +35,7 @@ struct Left {
     files: Vec<Option<String>>,
 }
 
-/// Takes what a run in `folder` left; `called` are the words of its command before the options, which messages may show.
+/// Takes what a run in `folder` left; `called` are the words of its command before the options, for messages.
 fn left(folder: &Path, called: &str, output: Output) -> Left {
     let files = FILES.map(|file| {
         let text = fs::read_to_string(folder.join(file)).ok();

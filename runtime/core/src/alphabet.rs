@@ -99,8 +99,8 @@ impl<const N: usize> Bits<N> {
 /// which `mdlec bind` writes.
 ///
 /// `Output` and `Input` are the robot's, `NAME` and `HASH` those of its alphabet, all in scope. A capability names the
-/// trait that `Output` has to implement, if there is one. A limit is in SI units. A quark is its name, its type, and the
-/// constant function that makes it of its arguments, which returns `None` for arguments of another signature.
+/// trait that `Output` has to implement, if there is one. A limit is in SI units. A quark is its name, its type, and
+/// the constant function that makes it of its arguments, which returns `None` for arguments of another signature.
 #[macro_export]
 macro_rules! alphabet {
     (

@@ -1,8 +1,8 @@
 //! Tables of a plan: the meaning of its scopes and atoms, as values instead of code.
 //!
 //! `mdlec` emits tables for plans that are too long to be code of their own, and a plan loaded at run time owns its
-//! tables. A row costs rustc next to nothing, and a turn reads as many rows as there are scopes that enclose the current
-//! atom.
+//! tables. A row costs rustc next to nothing, and a turn reads as many rows as there are scopes that enclose the
+//! current atom.
 
 use crate::{Alphabet, Condition, Fact, Follows, Fsm, MarkRow, Radians, Source, Words};
 

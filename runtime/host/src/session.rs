@@ -183,7 +183,12 @@ struct KnownFiles<'a> {
 }
 
 /// The files that the options of a run name.
-fn named_files(target: &TargetOptions, matches: &ArgMatches, options: &Options, plan: KnownFiles<'_>) -> Vec<NamedFile> {
+fn named_files(
+    target: &TargetOptions,
+    matches: &ArgMatches,
+    options: &Options,
+    plan: KnownFiles<'_>,
+) -> Vec<NamedFile> {
     let written = [("--log", &options.log), ("--record-path", &options.path)];
     let written = written
         .into_iter()

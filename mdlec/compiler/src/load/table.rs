@@ -53,7 +53,7 @@ impl<A: Alphabet> Loaded<A> {
         Self { brackets, atoms, termination, owned, laws, conditions, names, entered, slots, memories }
     }
 
-    /// Returns the number of memories that RISING and `after` need in a run: those of a level of scopes, for each level.
+    /// Returns the number of memories that RISING and `after` need in a run: as many for each level of scopes.
     #[must_use]
     pub fn memories(&self) -> usize {
         let (width, levels) = self.memories;
