@@ -24,6 +24,9 @@ pub(crate) struct Linked {
     pub(crate) check: fn(Program<'_>, &Call) -> Result<(), String>,
 }
 
+/// Loads a plan of a file for a target.
+type Load = fn(&Machine, &Input, &Target) -> Result<Box<dyn Ready>, LoadError>;
+
 /// A plan that is ready to run.
 pub(crate) trait Ready {
     /// Runs the plan of this name.
