@@ -10,9 +10,6 @@ use mdle_files::{Input, Target};
 use mdle_host::{Call, Program};
 use mdle_runtime::{Alphabet, Robot};
 
-/// Loads a plan as a machine with its files, for a target.
-type Load = fn(&Machine, &Input, &Target) -> Result<Box<dyn Ready>, LoadError>;
-
 /// A robot whose driver is part of this program.
 #[derive(Clone, Copy)]
 pub(crate) struct Linked {
