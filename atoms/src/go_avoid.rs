@@ -1,5 +1,5 @@
-//! `goAvoid ψ r v`: drives to a point given by bearing and range, round obstacles (paper, section IV-A), out of the way of
-//! a person who approaches the robot, and not before a person who is about to cross its way.
+//! `goAvoid ψ r v`: drives to a point given by bearing and range, round obstacles (paper, section IV-A), out of the way
+//! of a person who approaches the robot, and not before a person who is about to cross its way.
 
 use mdle_runtime::capability::{DiffDrive, Odometry, SonarRing};
 use mdle_runtime::{

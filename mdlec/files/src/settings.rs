@@ -30,8 +30,8 @@ pub struct Settings {
 pub struct Known {
     /// Names of its worlds; empty if they are not known.
     pub worlds: Vec<&'static str>,
-    /// Its options, each with the placeholder of its value, which is empty for an option without one; `None` if they are
-    /// not known.
+    /// Its options, each with the placeholder of its value, which is empty for an option without one; `None` if they
+    /// are not known.
     pub options: Option<Vec<(&'static str, &'static str)>>,
 }
 

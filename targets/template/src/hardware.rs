@@ -13,8 +13,8 @@ use mdle_runtime::{
 
 use crate::{Input, Output, alphabet};
 
-/// REPLACE by the measures of your robot. `body_radius` is the radius of the smallest circle around it, which is also half
-/// the length and half the width of a round one.
+/// REPLACE by the measures of your robot. `body_radius` is the radius of the smallest circle around it, which is also
+/// half the length and half the width of a round one.
 const SHAPE: Shape = Shape {
     body_radius: Meters(0.2),
     half_length: Meters(0.2),

@@ -15,8 +15,8 @@ use crate::syntax::one_line;
 pub struct PlanWords {
     /// The names of the files, in the order in which they are met.
     pub files: Vec<String>,
-    /// The words of each bracket, in the order of the brackets.
-    pub brackets: Vec<BracketText>,
+    /// The words of each element, in the order of elements.
+    pub elements: Vec<BracketText>,
     /// The operands of all brackets, in the order of the brackets.
     pub operands: Vec<OperandText>,
 }
@@ -49,12 +49,12 @@ pub struct OperandText {
 
 impl Words for PlanWords {
     fn bracket(&self, bracket: u32) -> Option<BracketWords<'_>> {
-        let BracketText { at, condition, first, count } = self.brackets.get(bracket as usize)?;
+        let BracketText { at, condition, first, count } = self.elements.get(bracket as usize)?;
         Some(BracketWords { at: *at, condition, first: *first, count: *count })
     }
 
     fn operand(&self, bracket: u32, number: u32) -> Option<OperandWords<'_>> {
-        let words = self.brackets.get(bracket as usize).filter(|words| number < words.count)?;
+        let words = self.elements.get(bracket as usize).filter(|words| number < words.count)?;
         let OperandText { text, written, at, values } = self.operands.get(words.first.checked_add(number)? as usize)?;
         Some(OperandWords { text, written, at: *at, values })
     }
@@ -86,7 +86,7 @@ impl Writing<'_> {
         let at = self.line(element.interrupt().map(|_| element.span()));
         let first = number(self.words.operands.len());
         let Some(interrupt) = element.interrupt() else {
-            self.words.brackets.push(BracketText { at, condition: String::new(), first, count: 0 });
+            self.words.elements.push(BracketText { at, condition: String::new(), first, count: 0 });
             return;
         };
         let parts = interrupt.condition.joined();
@@ -102,7 +102,7 @@ impl Writing<'_> {
             (_, "") => interrupt.text.clone(),
             (_, words) => printable(&one_line(words, []).0),
         };
-        self.words.brackets.push(BracketText { at, condition, first, count: number(operands.len()) });
+        self.words.elements.push(BracketText { at, condition, first, count: number(operands.len()) });
     }
 
     fn operand(&mut self, text: String, part: &Condition, place: &OperandPlace) -> OperandText {

@@ -12,6 +12,7 @@ mod formal;
 mod functions;
 mod labels;
 pub mod lints;
+mod moves;
 mod nondegenerate;
 mod parameters;
 mod print;

@@ -1,11 +1,10 @@
 //! Resolves quarks by name: chooses the declaration of a call, checks that the robot has it, and gives equal calls one
 //! id.
 
-pub(super) mod moves;
-
 use std::collections::BTreeMap;
 
 use super::arguments::{Arguments, complaints, fit, kind_words, signature, written};
+use super::moves;
 use super::parameters::Names;
 use super::{Quark, QuarkId, Value};
 use crate::alphabet::{Alphabet, Declaration, DeclarationKind};

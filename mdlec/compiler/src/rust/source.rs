@@ -9,8 +9,8 @@ use crate::fsm::{BracketText, OperandText, PlanWords};
 
 /// `const SOURCE`: the words of each bracket, and those of each operand.
 pub(super) fn source(words: &PlanWords) -> TokenStream {
-    let PlanWords { files, brackets, operands } = words;
-    let brackets = brackets.iter().map(bracket);
+    let PlanWords { files, elements, operands } = words;
+    let brackets = elements.iter().map(bracket);
     let operands = operands.iter().map(operand);
     quote! {
         #[doc = " The words and lines of the plan's text."]

@@ -4,7 +4,7 @@ use super::examples::{bits_apart, example};
 use super::{signature, written};
 use crate::alphabet::{Declaration, DeclarationKind, Kind, Param, Unit};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::plan::quarks::moves;
+use crate::plan::moves;
 use crate::syntax::tree::{Arg, Call, Number};
 
 /// Reports the number of arguments of `call`, of which `declaration` needs at least `needed`.
