@@ -68,6 +68,10 @@ fn faults_are_told_with_their_place() {
         "rough = -0.1",
         "rough = nan",
         "rough = \"very\"",
+        "[[wall]]\npoints = [[0, 0], [1, 0]]\nrough = 2",
+        "[[box]]\nmin = [0, 0]\nmax = [1, 1]\nrough = -0.1",
+        "[[disc]]\nrough = nan\ncentre = [0, 0]\nradius = 1",
+        "[[door]]\nrough = 1.5\npoints = [[0, 0], [1, 0]]\nopen = []",
         "units = \"ft\"\n[[wall]]\npoints = [[0, 0], [1e7, 0]]",
         "[[disc]]\ncentre = [0, 0]\nradius = 0",
         "[[disc]]\nradius = 1",
@@ -88,7 +92,7 @@ fn faults_are_told_with_their_place() {
     insta::assert_snapshot!(faults.join("\n"), @r#"
     room.toml:3:1: missing comma between array elements, expected `,`
     room.toml:1:3: unknown field `wal`, expected one of `units`, `rough`, `start`, `goal`, `charger`, `wall`, `box`, `disc`, `door`
-    room.toml:2:1: unknown field `nmae`, expected `name` or `points`
+    room.toml:2:1: unknown field `nmae`, expected one of `name`, `points`, `rough`
     room.toml:1:1: missing field `points`
     room.toml:2:10: a wall needs at least two points, as in `points = [[0, 0], [2.5, 0]]`
     room.toml:2:27: a wall of length zero: the point before it is (1, 0) too
@@ -120,6 +124,10 @@ fn faults_are_told_with_their_place() {
     room.toml:1:9: `rough` is -0.1; expected 0, for smooth surfaces, to 1, for those heard at any angle
     room.toml:1:9: `rough` is NaN; expected 0, for smooth surfaces, to 1, for those heard at any angle
     room.toml:1:9: invalid type: string "very", expected a number
+    room.toml:3:9: `rough` is 2; expected 0, for smooth surfaces, to 1, for those heard at any angle
+    room.toml:4:9: `rough` is -0.1; expected 0, for smooth surfaces, to 1, for those heard at any angle
+    room.toml:2:9: `rough` is NaN; expected 0, for smooth surfaces, to 1, for those heard at any angle
+    room.toml:2:9: `rough` is 1.5; expected 0, for smooth surfaces, to 1, for those heard at any angle
     room.toml:3:20: 1e7 is no coordinate: expected a number, at most 1000 km
     room.toml:3:10: a disc without an inside: expected a radius above 0
     room.toml:1:1: a disc has a `radius` and a `centre`, or a `schedule` if it moves

@@ -229,7 +229,7 @@ impl Footprint {
     }
 
     /// Returns the surface that a ray from outside in the unit direction `way` meets, if its distance is less than
-    /// `most`: a disc has no edges.
+    /// `most`: a disc has no edges. The surface is smooth.
     pub(crate) fn found(&self, from: Place, way: Place, most: f64) -> Option<Surface> {
         let Form::Disc { radius } = self.form else {
             let met = self.sides().filter_map(|side| Some((side.met(from, way, most)?, side)));
@@ -241,6 +241,7 @@ impl Footprint {
                 range,
                 normal: Place { x: side.along.y / length, y: -side.along.x / length },
                 edge,
+                rough: 0.0,
             });
         };
         let (x, y) = (self.pose.x.0 - from.x, self.pose.y.0 - from.y);
@@ -251,6 +252,7 @@ impl Footprint {
             return None;
         }
         let (x, y) = (from.x + range * way.x - self.pose.x.0, from.y + range * way.y - self.pose.y.0);
-        Some(Surface { range, normal: Place { x: x / radius, y: y / radius }, edge: f64::INFINITY })
+        let normal = Place { x: x / radius, y: y / radius };
+        Some(Surface { range, normal, edge: f64::INFINITY, rough: 0.0 })
     }
 }

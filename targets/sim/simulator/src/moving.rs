@@ -113,6 +113,8 @@ pub(crate) struct Moving {
     /// Sides at the place where the object begins.
     first: Vec<Segment>,
     ends: Vec<Ends>,
+    /// Roughness of the sides, from 0 to 1.
+    rough: f64,
     /// Sides at the current place; empty for an open door.
     now: Vec<Segment>,
     /// A circle around the object where it begins, and its displacement from there.
@@ -137,6 +139,7 @@ impl Moving {
             t: 0.0,
             first,
             ends,
+            rough: thing.outline.rough,
             now: Vec::new(),
             centre,
             radius,
@@ -239,6 +242,7 @@ impl Moving {
     pub(crate) fn found(&self, from: Place, way: Place, most: f64) -> Option<Surface> {
         let Hit { range, segment } = self.ray(from, way, most)?;
         let at = Place { x: from.x + range * way.x, y: from.y + range * way.y };
-        Some(surface(self.now.get(segment)?, self.ends.get(segment)?, at, way, range))
+        let smooth = surface(self.now.get(segment)?, self.ends.get(segment)?, at, way, range);
+        Some(Surface { rough: self.rough, ..smooth })
     }
 }

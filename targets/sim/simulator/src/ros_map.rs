@@ -41,6 +41,7 @@ impl Header {
                 name: format!("contour {number}"),
                 points: corners.into_iter().map(place).collect(),
                 solid: false,
+                rough: 0.0,
             })
             .collect();
         let world = World {

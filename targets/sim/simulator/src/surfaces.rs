@@ -31,6 +31,8 @@ pub(crate) struct Surface {
     pub(crate) normal: Place,
     /// Distance of the nearest edge that sends sound back to where the ray came from, in metres; infinite without one.
     pub(crate) edge: f64,
+    /// Roughness, from 0 to 1.
+    pub(crate) rough: f64,
 }
 
 /// Returns the form of both ends of `segment` among `others`, which may contain the segment itself.
@@ -87,7 +89,8 @@ fn met(other: &Segment, at: Place) -> End {
     }
 }
 
-/// Returns the surface that a ray in the unit direction `way` meets at `at`, on `segment`, after `range` metres.
+/// Returns the surface that a ray in the unit direction `way` meets at `at`, on `segment`, after `range` metres. It is
+/// smooth.
 pub(crate) fn surface(segment: &Segment, ends: &Ends, at: Place, way: Place, range: f64) -> Surface {
     let length = libm::hypot(segment.along.x, segment.along.y);
     let along = Place { x: segment.along.x / length, y: segment.along.y / length };
@@ -101,7 +104,7 @@ pub(crate) fn surface(segment: &Segment, ends: &Ends, at: Place, way: Place, ran
             edge = edge.min(apart(to, at));
         }
     }
-    Surface { range, normal, edge }
+    Surface { range, normal, edge, rough: 0.0 }
 }
 
 /// Returns `true` if the end of a surface that runs `outward` to it and looks along `normal` is an edge seen from that

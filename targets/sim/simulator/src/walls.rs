@@ -16,12 +16,14 @@ const PAIRS_MOST: u64 = 100_000_000;
 pub struct Walls {
     segments: Vec<Segment>,
     ends: Vec<Ends>,
+    /// Roughness of each segment, from 0 to 1.
+    roughs: Vec<f64>,
     grid: Grid,
     moving: Vec<Moving>,
     /// The other robots.
     others: Vec<Footprint>,
-    /// Roughness of all surfaces, from 0 to 1.
-    pub(crate) rough: f64,
+    /// Roughness of the other robots, from 0 to 1.
+    rough: f64,
 }
 
 impl Walls {
@@ -60,8 +62,9 @@ impl Walls {
             meeting.ends()
         };
         let ends = segments.iter().map(meets).collect();
+        let roughs = world.segments().map(|(outline, ..)| outline.rough).collect();
         let moving = world.things.iter().map(Moving::of).collect();
-        Self { segments, ends, grid, moving, others: Vec::new(), rough: world.rough }
+        Self { segments, ends, roughs, grid, moving, others: Vec::new(), rough: world.rough }
     }
 
     /// Returns the distance that a ray from `from` goes before it hits a wall; `None` if that is `most` metres or more.
@@ -89,12 +92,15 @@ impl Walls {
     pub(crate) fn found(&self, from: Place, way: Place, most: f64) -> Option<Surface> {
         let at = |range: f64| Place { x: from.x + range * way.x, y: from.y + range * way.y };
         let standing = self.grid.ray(from, way, most).and_then(|Hit { range, segment }| {
-            let (segment, ends) = (self.segments.get(segment)?, self.ends.get(segment)?);
-            Some(surface(segment, ends, at(range), way, range))
+            let (side, ends) = (self.segments.get(segment)?, self.ends.get(segment)?);
+            Some(Surface { rough: *self.roughs.get(segment)?, ..surface(side, ends, at(range), way, range) })
         });
         let nearer = |found: Option<Surface>| found.map_or(most, |surface| surface.range);
         let found = self.moving.iter().fold(standing, |found, thing| thing.found(from, way, nearer(found)).or(found));
-        self.others.iter().fold(found, |found, other| other.found(from, way, nearer(found)).or(found))
+        self.others.iter().fold(found, |found, other| {
+            let other = other.found(from, way, nearer(found));
+            other.map(|surface| Surface { rough: self.rough, ..surface }).or(found)
+        })
     }
 
     /// The distance from `at` to the nearest wall, in metres, or `reach` if that is less.

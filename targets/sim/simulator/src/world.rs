@@ -31,7 +31,8 @@ pub struct World {
     pub goal: Option<Goal>,
     /// The charger, if the world has one.
     pub charger: Option<Charger>,
-    /// Roughness of the world's surfaces, from 0 (as smooth as the body's model) to 1 (heard by sonars at any angle).
+    /// Roughness of other robots, and of the outlines and things of a file that give none of their own: from 0 (as
+    /// smooth as the body's model) to 1 (heard by sonars at any angle).
     pub rough: f64,
     /// Number of the first outlines that are contours of a map: inside an odd number of them it is solid.
     pub(crate) contours: usize,
@@ -46,6 +47,8 @@ pub struct Outline {
     pub points: Vec<Place>,
     /// `true` for a box or a disc, which is solid inside; a wall has no thickness.
     pub solid: bool,
+    /// Roughness of the surface, from 0 to 1 as in `World`.
+    pub rough: f64,
 }
 
 /// A place on the floor, in metres.

@@ -88,27 +88,27 @@ fn read(text: &str) -> Result<World, Wrong> {
         Wrong(error.span(), what)
     })?;
     let unit = Unit::of(written.units.as_ref())?;
-    let rough = written.rough.as_ref().map_or(Ok(0.0), outlines::rough)?;
+    let rough = outlines::rough(written.rough.as_ref(), 0.0)?;
     let start = unit.start(&written.start.0)?;
     let goal = written.goal.as_ref().map(|goal| unit.goal(goal)).transpose()?;
     let (mut outlines, mut things) = (Vec::new(), Vec::new());
     for (number, wall) in (1..).zip(&written.walls) {
-        outlines.push(unit.wall(number, &wall.0)?);
+        outlines.push(unit.wall(number, &wall.0, rough)?);
     }
     for (number, text) in (1..).zip(&written.boxes) {
-        match unit.box_(number, text)? {
+        match unit.box_(number, text, rough)? {
             Stands::Still(outline) => outlines.push(outline),
             Stands::Never(thing) => things.push(thing),
         }
     }
     for (number, text) in (1..).zip(&written.discs) {
-        match unit.disc(number, text)? {
+        match unit.disc(number, text, rough)? {
             Stands::Still(outline) => outlines.push(outline),
             Stands::Never(thing) => things.push(thing),
         }
     }
     for (number, door) in (1..).zip(&written.doors) {
-        things.push(unit.door(number, door)?);
+        things.push(unit.door(number, door, rough)?);
     }
     let charger = written.charger.as_ref().map(|charger| unit.charger(charger)).transpose()?;
     let world = World { outlines, things, start, goal, charger, rough, contours: 0 };

@@ -2,7 +2,7 @@
 //!
 //! A ray at angle α off the axis that meets a surface at angle β off its normal is heard when
 //! (α / lobe)² + (β / facing)² is at most what the distance leaves of 1. Near an edge sound goes everywhere, but little
-//! of it: there β counts as a fixed loss. A rough surface scatters too: of what β costs, the part `rough` of the world
+//! of it: there β counts as a fixed loss. A rough surface scatters too: of what β costs, the part `rough` of the surface
 //! is left out. A right-angled corner sends everything back where it came from.
 //!
 //! The rays of a cone lie so far apart that a person 4 m away may be between two of them. One more ray is therefore
@@ -63,7 +63,7 @@ fn heard(walls: &Walls, from: Place, way: Place, surface: &Surface, hearing: &He
     let left = 1.0 - METRE_COSTS * (surface.range - GAIN_LASTS).max(0.0) - lost;
     let Some(facing) = hearing.facing else { return (left >= 0.0).then_some(surface.range) };
     let incidence = libm::acos((-dot(way, surface.normal)).min(1.0)) / facing.0;
-    let slant = (1.0 - walls.rough) * incidence * incidence;
+    let slant = (1.0 - surface.rough) * incidence * incidence;
     let costs = if surface.edge < SCATTERS { EDGE_COSTS.min(slant) } else { slant };
     if costs <= left {
         return Some(surface.range);

@@ -122,6 +122,29 @@ fn rough_walls_are_heard_at_wider_angles() {
 }
 
 #[test]
+fn every_kind_of_obstacle_may_have_its_own_roughness() {
+    let corners = "[[2, -9], [2, 9]]";
+    let obstacles = [
+        format!("[[wall]]\npoints = {corners}"),
+        format!("[[door]]\npoints = {corners}\nopen = []"),
+        "[[box]]\nmin = [2, 0.3]\nmax = [3, 9]".to_owned(),
+        "[[box]]\nsize = [1, 8.7]\nschedule = [[0, 2.5, 4.65]]".to_owned(),
+        "[[disc]]\ncentre = [6, 0]\nradius = 5".to_owned(),
+    ];
+    for obstacle in obstacles {
+        let heard = |world: &str, own: &str| {
+            let ring = pinged(Body::Scout, &[], &format!("{world}\n{obstacle}\n{own}"));
+            (0..16).filter(|sonar| range(&ring, *sonar).is_some()).count()
+        };
+        let (smooth, rough) = (heard("", ""), heard("rough = 1", ""));
+        assert!(smooth < rough, "{obstacle}: {smooth} {rough}");
+        assert_eq!(heard("", "rough = 1"), rough, "{obstacle}");
+        assert_eq!(heard("rough = 1", "rough = 0"), smooth, "{obstacle}");
+        assert_eq!(heard("", "[[wall]]\nrough = 1\npoints = [[-30, -9], [-30, 9]]"), smooth, "{obstacle}");
+    }
+}
+
+#[test]
 fn a_wall_end_is_heard_only_near_the_axis() {
     // The end of a wall that lies along the ray's direction, so that its face is not heard.
     let end = |degrees: f64| {

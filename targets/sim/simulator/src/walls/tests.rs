@@ -134,7 +134,7 @@ fn bundle(count: usize) -> World {
     let outline = |number: usize| {
         let x = 5.0 + number as f64 / 1000.0;
         let points = [-1e5, 1e5].map(|y| Place { x, y }).to_vec();
-        Outline { name: format!("wall {number}"), points, solid: false }
+        Outline { name: format!("wall {number}"), points, solid: false, rough: 0.0 }
     };
     World { outlines: (0..count).map(outline).collect(), ..World::parse("empty", "").expect("a good world") }
 }
@@ -153,7 +153,7 @@ fn walls_that_meet_in_one_point_cover_each_other() {
     let spoke = |number: u32| {
         let (sin, cos) = libm::sincos(f64::from(number));
         let points = vec![Place { x: 5.0, y: 5.0 }, Place { x: 5.0 + 3.0 * cos, y: 5.0 + 3.0 * sin }];
-        Outline { name: String::new(), points, solid: false }
+        Outline { name: String::new(), points, solid: false, rough: 0.0 }
     };
     let world = World { outlines: (0..2000).map(spoke).collect(), ..World::parse("empty", "").expect("a good world") };
     let walls = Walls::of_any(&world).expect("few enough");

@@ -82,7 +82,7 @@ impl Unit {
         }
     }
 
-    pub(super) fn wall(self, number: usize, text: &WallText) -> Result<Outline, Wrong> {
+    pub(super) fn wall(self, number: usize, text: &WallText, whole: f64) -> Result<Outline, Wrong> {
         let written = text.points.get_ref();
         if written.len() < 2 {
             let what = "a wall needs at least two points, as in `points = [[0, 0], [2.5, 0]]`";
@@ -96,10 +96,11 @@ impl Unit {
             }
             points.push(place);
         }
-        Ok(Outline { name: named(text.name.as_ref(), "wall", number), points, solid: false })
+        let rough = rough(text.rough.as_ref(), whole)?;
+        Ok(Outline { name: named(text.name.as_ref(), "wall", number), points, solid: false, rough })
     }
 
-    pub(super) fn box_(self, number: usize, text: &Spanned<Table<BoxText>>) -> Result<Stands, Wrong> {
+    pub(super) fn box_(self, number: usize, text: &Spanned<Table<BoxText>>, whole: f64) -> Result<Stands, Wrong> {
         let Table(written) = text.get_ref();
         let stops = self.schedule(written.schedule.as_ref())?;
         let first = stops.first().map(|stop| stop.at);
@@ -124,11 +125,12 @@ impl Unit {
             return Err(Wrong::at(told, format!("a box without an inside: it would reach from {min} to {max}")));
         }
         let points = vec![min, Place { x: max.x, y: min.y }, max, Place { x: min.x, y: max.y }, min];
-        let outline = Outline { name: named(written.name.as_ref(), "box", number), points, solid: true };
+        let rough = rough(written.rough.as_ref(), whole)?;
+        let outline = Outline { name: named(written.name.as_ref(), "box", number), points, solid: true, rough };
         Ok(standing(outline, stops, written.repeat))
     }
 
-    pub(super) fn disc(self, number: usize, text: &Spanned<Table<DiscText>>) -> Result<Stands, Wrong> {
+    pub(super) fn disc(self, number: usize, text: &Spanned<Table<DiscText>>, whole: f64) -> Result<Stands, Wrong> {
         let Table(written) = text.get_ref();
         let stops = self.schedule(written.schedule.as_ref())?;
         let centre = match (&written.centre, stops.first()) {
@@ -147,17 +149,19 @@ impl Unit {
             Place { x: centre.x + radius * cos, y: centre.y + radius * sin }
         };
         let points = (0..=CORNERS).map(corner).collect();
-        let outline = Outline { name: named(written.name.as_ref(), "disc", number), points, solid: true };
+        let rough = rough(written.rough.as_ref(), whole)?;
+        let outline = Outline { name: named(written.name.as_ref(), "disc", number), points, solid: true, rough };
         Ok(standing(outline, stops, written.repeat))
     }
 
-    pub(super) fn door(self, number: usize, text: &Table<DoorText>) -> Result<Thing, Wrong> {
+    pub(super) fn door(self, number: usize, text: &Table<DoorText>, whole: f64) -> Result<Thing, Wrong> {
         let Table(written) = text;
         if written.points.get_ref().len() != 2 {
             return Err(Wrong::at(&written.points, "a door has two points, as in `points = [[0, 0], [0.9, 0]]`"));
         }
-        let wall = WallText { name: written.name.clone(), points: written.points.clone() };
-        let outline = Outline { name: named(written.name.as_ref(), "door", number), ..self.wall(number, &wall)? };
+        let (points, rough) = (written.points.clone(), written.rough.clone());
+        let wall = self.wall(number, &WallText { name: written.name.clone(), points, rough }, whole)?;
+        let outline = Outline { name: named(written.name.as_ref(), "door", number), ..wall };
         let every = written.every.as_ref().map(|every| seconds(every).map(|value| (every, value))).transpose()?;
         let mut times: Vec<[f64; 2]> = Vec::new();
         for written in written.open.get_ref() {
@@ -216,8 +220,9 @@ impl Unit {
     }
 }
 
-/// Roughness of all surfaces of a file.
-pub(super) fn rough(written: &Spanned<f64>) -> Result<f64, Wrong> {
+/// Roughness of a file or of one obstacle; `whole` where the text gives none.
+pub(super) fn rough(written: Option<&Spanned<f64>>, whole: f64) -> Result<f64, Wrong> {
+    let Some(written) = written else { return Ok(whole) };
     let value = *written.get_ref();
     if (0.0..=1.0).contains(&value) {
         return Ok(value);

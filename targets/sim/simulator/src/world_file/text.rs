@@ -61,6 +61,7 @@ pub(super) struct ChargerText {
 pub(super) struct WallText {
     pub(super) name: Option<String>,
     pub(super) points: Spanned<Vec<Numbers>>,
+    pub(super) rough: Option<Spanned<f64>>,
 }
 
 #[derive(Deserialize)]
@@ -71,6 +72,7 @@ pub(super) struct BoxText {
     pub(super) max: Option<Numbers>,
     pub(super) centre: Option<Numbers>,
     pub(super) size: Option<Numbers>,
+    pub(super) rough: Option<Spanned<f64>>,
     pub(super) schedule: Option<Spanned<Vec<Numbers>>>,
     #[serde(default)]
     pub(super) repeat: bool,
@@ -82,6 +84,7 @@ pub(super) struct DiscText {
     pub(super) name: Option<String>,
     pub(super) centre: Option<Numbers>,
     pub(super) radius: Spanned<f64>,
+    pub(super) rough: Option<Spanned<f64>>,
     pub(super) schedule: Option<Spanned<Vec<Numbers>>>,
     #[serde(default)]
     pub(super) repeat: bool,
@@ -93,6 +96,7 @@ pub(super) struct DoorText {
     pub(super) name: Option<String>,
     pub(super) points: Spanned<Vec<Numbers>>,
     pub(super) open: Spanned<Vec<Numbers>>,
+    pub(super) rough: Option<Spanned<f64>>,
     pub(super) every: Option<Spanned<f64>>,
 }
 
