@@ -16,10 +16,15 @@ const ALSO_FACES: f64 = 1.5;
 /// Ranges that differ by less, in metres, are alike.
 const ALIKE: f64 = 0.06;
 
-/// The sonars to both sides of one that a straight wall faces hear it, on average, further from the centre of the body
-/// by this factor and length, in metres, at most. Those beside the edge of a way hear walls that run off from there,
-/// where walls are rough.
-const FLAT: (f64, f64) = (1.08, 0.04);
+/// Half the angle of the cone in which a sonar hears a rough wall.
+const CONE: Radians = Radians::from_degrees(12.5);
+/// Greatest distance, in metres, from the edge of a cone to the wall that it reaches.
+const OF_WALL: f64 = 0.08;
+/// Minimum angle between a diagonal and the axis of a ping that tells a wall there from an edge.
+const BESIDE: Radians = Radians::from_degrees(16.0);
+/// Greatest distance, in metres, of an echo beyond the line of a wall that faces a diagonal. Beside the edge of a way
+/// the walls that run off from there are heard further away, where they are rough.
+const OF_LINE: f64 = 0.04;
 /// Factor and step, in metres, by which the ranges of the neighbours of a sonar may exceed its own along a straight
 /// wall; an echo from beyond an opening is further.
 const SLANT: (f64, f64) = (1.08, 0.02);
@@ -77,26 +82,30 @@ fn blocked_in_turn<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<bool> {
 ///
 /// `None` where too few looked there: one ping that hears something near is believed, one that does not opens no way.
 fn towards<Y: SonarRing>(y: &Y, direction: SonarId) -> Option<Meters> {
-    let newest = newest(y, direction);
-    let heard = newest.into_iter().flatten().filter_map(|ping| ping.range);
-    let nearest = heard.reduce(|one, other| if other < one { other } else { one });
+    let newest = newest(y, direction, |sonar, ping| !is_of_side(y, direction, sonar, ping));
+    let nearest = nearest(newest);
     match nearest.filter(|range| *range < y.blocked_within()) {
         Some(near) => Some(near),
         None => newest[1].map(|_| overheard(y, direction).or(nearest).unwrap_or(Meters(f64::INFINITY))),
     }
 }
 
-/// The two newest pings in the direction of a sonar now.
-fn newest<Y: SonarRing>(y: &Y, direction: SonarId) -> [Option<&Ping>; 2] {
-    let mut newest: [Option<&Ping>; 2] = [None; 2];
+/// The two newest pings in the direction of a sonar now that count.
+fn newest<Y: SonarRing>(
+    y: &Y,
+    direction: SonarId,
+    counts: impl Fn(SonarId, &Ping) -> bool,
+) -> [Option<(SonarId, &Ping)>; 2] {
+    let mut newest: [Option<(SonarId, &Ping)>; 2] = [None; 2];
     for number in 0..SONARS as u8 {
         let sonar = SonarId::new(number);
-        for ping in y.pings(sonar).newest_first().filter(|ping| looked_there(y, direction, sonar, ping)) {
+        let is_there = |ping: &&Ping| looked_there(y, direction, sonar, ping) && counts(sonar, ping);
+        for ping in y.pings(sonar).newest_first().filter(is_there) {
             let [first, second] = newest;
-            if first.is_none_or(|first| first.at < ping.at) {
-                newest = [Some(ping), first];
-            } else if second.is_none_or(|second| second.at < ping.at) {
-                newest = [first, Some(ping)];
+            if first.is_none_or(|(_, first)| first.at < ping.at) {
+                newest = [Some((sonar, ping)), first];
+            } else if second.is_none_or(|(_, second)| second.at < ping.at) {
+                newest = [first, Some((sonar, ping))];
             }
         }
     }
@@ -114,6 +123,37 @@ fn looked_there<Y: SonarRing>(y: &Y, direction: SonarId, sonar: SonarId, ping: &
     is_within(axis.0) && is_within(libm::atan2(place.y.0 - here.y.0, place.x.0 - here.x.0))
 }
 
+/// Returns the angle from the direction of a sonar now to the axis of this ping of `sonar`.
+fn off<Y: SonarRing>(y: &Y, direction: SonarId, sonar: SonarId, ping: &Ping) -> Radians {
+    Radians(ping.pose.theta.0 + sonar.bearing().0 - y.here().theta.0 - direction.bearing().0).wrapped()
+}
+
+/// Returns `true` if the near echo of this ping may be of a wall along the way in `direction`: the ping looked to the
+/// side of that wall, and the edge of its cone reaches it. A rough wall along the way is heard so, and closes nothing.
+fn is_of_side<Y: SonarRing>(y: &Y, direction: SonarId, sonar: SonarId, ping: &Ping) -> bool {
+    let Some(range) = ping.range.filter(|range| *range < y.blocked_within()) else { return false };
+    let (Radians(off), here) = (off(y, direction, sonar, ping), y.here());
+    let side = after(direction, if off < 0.0 { 12 } else { 4 });
+    let Some(wall) = nearest(newest(y, side, |_, _| true)) else { return false };
+    let axis = ping.pose.theta.0 + sonar.bearing().0;
+    let transducer = ping.pose.towards(Radians(axis), y.ring_radius());
+    let edge = transducer.towards(Radians(axis + libm::copysign(CONE.0, off)), range);
+    let (sin, cos) = libm::sincos(here.theta.0 + side.bearing().0);
+    let to_side = (edge.x.0 - here.x.0) * cos + (edge.y.0 - here.y.0) * sin;
+    to_side > y.ring_radius().0 + wall.0 - OF_WALL
+}
+
+/// Returns the sonar this many places counter-clockwise after another.
+fn after(sonar: SonarId, further: usize) -> SonarId {
+    SonarId::new(((sonar.number() + further) % SONARS) as u8)
+}
+
+/// Returns the minimum range of these pings; `None` if none of them heard anything.
+fn nearest(pings: [Option<(SonarId, &Ping)>; 2]) -> Option<Meters> {
+    let heard = pings.into_iter().flatten().filter_map(|(_, ping)| ping.range);
+    heard.reduce(|one, other| if other < one { other } else { one })
+}
+
 /// Returns the range of a wall that a sonar no longer hears in its two last pings, because they missed it, strayed, or
 /// look past it by now. The sonar must have heard the wall before, and both its neighbours must have heard it lately
 /// and nothing further.
@@ -129,16 +169,28 @@ fn overheard<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<Meters> {
 }
 
 /// Returns `true` if a wall faces the diagonal that comes counter-clockwise after `direction`: something near is heard
-/// there and to both sides, and nothing nearer than there. An edge is heard in one direction or two.
+/// there and to both sides, nothing nearer than there, and no edge. An edge is heard in one direction or two.
 fn faces_between<Y: SonarRing>(y: &Y, direction: SonarId) -> bool {
-    let near = |further: u8| {
-        let sonar = SonarId::new(direction.number() as u8 + further);
-        towards(y, sonar).filter(|range| range.0 < ALSO_FACES * y.blocked_within().0)
+    let near = |further: usize| {
+        towards(y, after(direction, further)).filter(|range| range.0 < ALSO_FACES * y.blocked_within().0)
     };
-    let (Some(before), Some(diagonal), Some(after)) = (near(1), near(2), near(3)) else { return false };
+    let (Some(before), Some(diagonal), Some(behind)) = (near(1), near(2), near(3)) else { return false };
     let in_a_corner = [near(0), near(4)].iter().all(|wall| wall.is_some_and(|wall| wall < diagonal));
-    let is_flat = (before.0 + after.0) / 2.0 <= FLAT.0 * (diagonal.0 + y.ring_radius().0) - y.ring_radius().0 + FLAT.1;
-    !in_a_corner && is_flat && diagonal.0 <= before.0.min(after.0) + ALIKE
+    let is_edge = |further: usize| runs_off(y, after(direction, 2), diagonal, after(direction, further));
+    !in_a_corner && diagonal.0 <= before.0.min(behind.0) + ALIKE && !is_edge(1) && !is_edge(3)
+}
+
+/// Returns `true` if the two newest pings in the direction of `beside` heard only what is further away than a straight wall
+/// that faces `diagonal` at this range.
+fn runs_off<Y: SonarRing>(y: &Y, diagonal: SonarId, range: Meters, beside: SonarId) -> bool {
+    let ring = y.ring_radius().0;
+    let angle = |sonar: SonarId, ping: &Ping| off(y, diagonal, sonar, ping).0.abs();
+    let pings = newest(y, beside, |sonar, ping| ping.range.is_some() && angle(sonar, ping) > BESIDE.0);
+    let is_beyond = |(sonar, ping): (SonarId, &Ping)| {
+        let line = (range.0 + ring) / libm::cos(angle(sonar, ping)) - ring;
+        ping.range.is_some_and(|heard| heard.0 > line + OF_LINE)
+    };
+    pings[1].is_some() && pings.into_iter().flatten().all(is_beyond)
 }
 
 #[cfg(test)]
@@ -298,6 +350,39 @@ mod tests {
         assert!(fires("0100", &in_turn(ranges)));
         ranges[13..=15].copy_from_slice(&[0.9, 0.87, 0.9]);
         assert!(!fires("0100", &in_turn(ranges)), "a wall");
+    }
+
+    #[test]
+    fn a_rough_wall_along_the_way_closes_nothing() {
+        let mut y = in_turn([9.0; 16]);
+        // A wall 0.47 m to the right of the centre, heard ahead while the robot had turned 11 degrees towards it.
+        y.ping_at(SonarId::new(12), Some(0.28), Nanos(1));
+        y.pose.theta = Radians::from_degrees(-11.0);
+        y.ping_at(SonarId::new(0), Some(1.04), Nanos(2));
+        y.pose.theta = Radians(0.0);
+        assert!(fires("0001", &y) && !fires("1001", &y));
+        // Without that wall the same echo is of an obstacle ahead.
+        let mut open = in_turn([9.0; 16]);
+        open.pose.theta = Radians::from_degrees(-11.0);
+        open.ping_at(SonarId::new(0), Some(1.04), Nanos(2));
+        open.pose.theta = Radians(0.0);
+        assert!(fires("1000", &open) && !fires("0000", &open));
+    }
+
+    #[test]
+    fn a_wall_is_one_line_for_pings_at_any_angle() {
+        let mut y = in_turn([9.0; 16]);
+        // A wall 1.16 m off that faces the diagonal behind the right, heard by sonars while the robot turned.
+        for (sonar, turned, range) in [(9, 0.0, 0.99), (10, 0.0, 0.97), (12, -10.0, 1.12)] {
+            y.pose.theta = Radians::from_degrees(turned);
+            y.ping_at(SonarId::new(sonar), Some(range), Nanos(1));
+            y.ping_at(SonarId::new(sonar), Some(range), Nanos(2));
+        }
+        y.pose.theta = Radians(0.0);
+        assert!(faces_between(&y, SonarId::new(8)));
+        y.ping_at(SonarId::new(9), Some(1.35), Nanos(3));
+        y.ping_at(SonarId::new(9), Some(1.35), Nanos(4));
+        assert!(!faces_between(&y, SonarId::new(8)), "an edge");
     }
 
     #[test]
