@@ -11,11 +11,11 @@ pub(crate) struct Crossing {
     pub(crate) to: Place,
 }
 
-/// The width of a body, in metres, that ways are measured by.
+/// The width of a body, in metres, that ways are measured by: a Scout's diameter, the shorter side of an ATRV-mini.
 pub(crate) fn width(body: Body) -> f64 {
     match body {
         Body::Ideal | Body::Scout => 0.41,
-        Body::Atrv => 0.83,
+        Body::Atrv => 0.54,
     }
 }
 
