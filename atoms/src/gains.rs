@@ -23,6 +23,12 @@ pub(crate) struct Gains {
     /// before `atIsection` has confirmed it; where sonars fire in turn, ranges are a second old, and obstacles nearer
     /// by now.
     pub(crate) look_ahead: Meters,
+    /// `goAvoid`: distance between the body and an obstacle, in metres, at which a way still counts as free. A doorway
+    /// 15 cm wider than the body leaves 7.5 cm on both sides, of which errors of ranges of 1.5 cm and drift take some.
+    pub(crate) hard_margin: f64,
+    /// `goAvoid`: range, in metres, below which an obstacle may be nearer than it is heard: a Scout reports 6 inches
+    /// for anything nearer, so that a wall into which it drifts looks parallel.
+    pub(crate) least_range: f64,
     /// `goAvoid`: kept around the body where there is room, in metres. Where sonars fire in turn odometry drifts too,
     /// and the middle of a hallway must be kept by what is heard.
     pub(crate) soft_margin: f64,
@@ -43,6 +49,8 @@ const RING: Gains = Gains {
     align_equal: 0.008,
     align_waits: 0.3,
     look_ahead: Meters(0.4),
+    hard_margin: 0.06,
+    least_range: 0.0,
     soft_margin: 0.35,
     room_at: 0.6,
     beyond: 0.0,
@@ -54,13 +62,17 @@ const SCOUT: Gains = Gains {
     align_equal: 0.026,
     align_waits: 2.0,
     look_ahead: Meters(0.5),
+    hard_margin: 0.04,
+    least_range: 0.16,
     soft_margin: 0.4,
     room_at: 0.6,
     beyond: 0.0,
 };
 
-/// An ATRV-mini, twice as wide.
-const ATRV: Gains = Gains { look_ahead: Meters(0.5), room_at: 0.3, beyond: 0.3, ..SCOUT };
+/// An ATRV-mini, twice as wide. Its corners take what a smaller margin would leave, and what it hears at 6 inches is
+/// within its margin anyhow.
+const ATRV: Gains =
+    Gains { look_ahead: Meters(0.5), hard_margin: 0.06, least_range: 0.0, room_at: 0.3, beyond: 0.3, ..SCOUT };
 
 impl Gains {
     /// Returns the gains of the body that has this output.

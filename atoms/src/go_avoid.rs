@@ -295,6 +295,22 @@ mod tests {
     }
 
     #[test]
+    fn arrives_by_one_sonar_that_still_works() {
+        for number in 0..16 {
+            for confirmation in [2, 3] {
+                let mut y = Sensed { confirmation, ..Sensed::default() };
+                for _ in 0..3 {
+                    y.ping(mdle_runtime::SonarId::new(number), Some(0.8));
+                }
+                let mut law = quark(0.0, 2.0).begin(&y, begun());
+                until_completed(&mut law, &mut y);
+                let goal = Pose { x: Meters(2.0), ..Pose::ORIGIN };
+                assert!(y.pose.distance(&goal) <= ARRIVED, "sonar {number}: {:?}", y.pose);
+            }
+        }
+    }
+
+    #[test]
     fn never_drives_backwards_nor_into_what_is_close_ahead() {
         let mut y = Sensed::default();
         for number in 0..16 {

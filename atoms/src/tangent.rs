@@ -21,11 +21,14 @@ const APART: f64 = 0.15;
 const ACROSS: f64 = 0.5;
 /// The points taken of what is heard, and those of what was heard before.
 const POINTS: usize = SONARS * (ARC.len() + EXTENDS.len()) + PLACES;
-/// Minimum distance between the body and an obstacle, in metres.
+/// Distance between the body and an obstacle, in metres, at which a way costs `CLOSE_COSTS`; nearer it costs more.
 const MARGIN: f64 = 0.06;
+/// Distance from the body, in metres, at which the law takes an obstacle to be that may be nearer than it is heard:
+/// near enough that the robot steers away from it, and further than what blocks a gap.
+const AT_LEAST_RANGE: f64 = 0.08;
 /// Cost of a way that lacks free length, in radians of detour for the whole look-ahead.
 const BLOCKED_COSTS: f64 = 6.0;
-/// Cost of a way along the hard margin, in radians of detour. With 0.6 the robot may drift off the middle of a hallway
+/// Cost of a way along `MARGIN`, in radians of detour. With 0.6 the robot may drift off the middle of a hallway
 /// so far that at the next junction `atIsection` sees, half turned, the pattern it is to see at the end.
 const CLOSE_COSTS: f64 = 0.9;
 /// Cost of a change of direction from turn to turn, in radians of detour for each radian.
@@ -55,11 +58,11 @@ pub(crate) struct Obstacles {
     /// The number of points in use, from the first one on.
     count: usize,
     hard: f64,
+    close: f64,
     soft: f64,
     /// Distance by which the body reaches further ahead than to its sides, in metres.
     nose: f64,
-    room_at: f64,
-    beyond: f64,
+    gains: &'static Gains,
 }
 
 /// The direction in which a law wants to go.
@@ -111,15 +114,19 @@ impl Obstacles {
     /// The points that the sonars of `y` saw, around the body at `here`.
     pub(crate) fn seen<Y: DiffDrive + SonarRing>(y: &Y, here: Pose) -> Self {
         let (half_length, half_width) = (y.half_length().0, y.half_width().0);
-        let Gains { soft_margin, room_at, beyond, .. } = *Gains::of(y);
+        let gains = Gains::of(y);
+        let Gains { hard_margin, least_range, soft_margin, .. } = *gains;
         let half_width = (half_width + y.body_radius().0) / 2.0;
-        let (hard, soft) = (half_width + MARGIN, half_width + soft_margin);
+        let (hard, close, soft) = (half_width + hard_margin, half_width + MARGIN, half_width + soft_margin);
+        let ring = y.ring_radius();
         let points = [Point { x: 0.0, y: 0.0 }; POINTS];
         let nose = half_length - half_width;
-        let mut seen = Self { points, count: 0, hard, soft, nose, room_at, beyond };
+        let mut seen = Self { points, count: 0, hard, close, soft, nose, gains };
         for sonar in (0..SONARS as u8).map(SonarId::new) {
             if let Some((ping, range)) = heard(y, sonar) {
-                on_arc(&ping, range, sonar, y.ring_radius(), here, ARC).into_iter().for_each(|point| seen.push(point));
+                let may_be_nearer = range.0 < least_range;
+                let range = if may_be_nearer { Meters(half_width + AT_LEAST_RANGE - ring.0) } else { range };
+                on_arc(&ping, range, sonar, ring, here, ARC).into_iter().for_each(|point| seen.push(point));
             }
         }
         if fire_in_turn(y) {
@@ -165,8 +172,8 @@ impl Obstacles {
     ///
     /// What the way ends at after its `free` length is not beside it, but on a wide body.
     fn beside(&self, direction: Radians, free: Meters) -> f64 {
-        let (back, ahead) = (BESIDE.0, BESIDE.1.min(free.0 + self.beyond));
-        let place = self.room_at.min(free.0).max(0.0);
+        let (back, ahead) = (BESIDE.0, BESIDE.1.min(free.0 + self.gains.beyond));
+        let place = self.gains.room_at.min(free.0).max(0.0);
         let mut least = f64::INFINITY;
         for (along, across) in self.along(direction).filter(|(along, _)| back < *along && *along < ahead) {
             // Most points lie further away by one axis alone, which is quickly seen.
@@ -210,7 +217,7 @@ impl Obstacles {
         }
         let beside = self.beside(direction, free);
         if beside < self.soft {
-            cost += CLOSE_COSTS * (self.soft - beside) / (self.soft - self.hard);
+            cost += CLOSE_COSTS * (self.soft - beside) / (self.soft - self.close);
         }
         cost + turns
     }
@@ -317,6 +324,41 @@ mod tests {
         y.pose = Pose::ORIGIN;
         let chosen = Obstacles::seen(&y, y.pose).best(&wish(None));
         assert!((-40.0..=-10.0).contains(&chosen.degrees()), "{}", chosen.degrees());
+    }
+
+    /// The distance, beside a place 60 cm ahead, of a wall that sonar 4 heard there at this range.
+    fn beside_a_wall_at(range: f64, confirmation: usize) -> f64 {
+        let mut y = Sensed { confirmation, ..Sensed::default() };
+        y.pose.x = Meters(0.6);
+        y.ping(SonarId::new(4), Some(range));
+        y.pose = Pose::ORIGIN;
+        Obstacles::seen(&y, y.pose).beside(Radians(0.0), Meters(FREE_MOST))
+    }
+
+    #[test]
+    fn a_wall_at_the_least_range_may_be_nearer() {
+        assert!((beside_a_wall_at(0.1524, 2) - 0.205 - AT_LEAST_RANGE).abs() < 0.001);
+        assert!((beside_a_wall_at(0.1524, 3) - 0.19 - 0.1524).abs() < 0.002, "full rings hear how near it is");
+        assert!((beside_a_wall_at(0.1778, 2) - 0.19 - 0.1778).abs() < 0.002);
+    }
+
+    /// Returns `true` if a robot 1 m before two posts, whose edges leave its body 5.5 cm on both sides, takes the way
+    /// between them for free.
+    fn passes(confirmation: usize) -> bool {
+        let mut y = Sensed { confirmation, ..Sensed::default() };
+        for (sonar, side) in [(4, 1.0), (12, -1.0)] {
+            // From 20 cm beyond the middle, since a Scout hears what is near at its least range.
+            y.pose = Pose { x: Meters(1.0), y: Meters(-0.2 * side), ..Pose::ORIGIN };
+            y.ping(SonarId::new(sonar), Some(0.2 + 0.205 + 0.055 - 0.19));
+        }
+        y.pose = Pose::ORIGIN;
+        Obstacles::seen(&y, y.pose).free(Radians(0.0)).0 == FREE_MOST
+    }
+
+    #[test]
+    fn a_gap_is_free_by_the_hard_margin_of_the_body() {
+        assert!(passes(2));
+        assert!(!passes(3), "full rings keep 6 cm");
     }
 
     #[test]
