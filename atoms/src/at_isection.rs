@@ -180,8 +180,8 @@ fn faces_between<Y: SonarRing>(y: &Y, direction: SonarId) -> bool {
     !in_a_corner && diagonal.0 <= before.0.min(behind.0) + ALIKE && !is_edge(1) && !is_edge(3)
 }
 
-/// Returns `true` if the two newest pings in the direction of `beside` heard only what is further away than a straight wall
-/// that faces `diagonal` at this range.
+/// Returns `true` if the two newest pings in the direction of `beside` heard only what is further away than a straight
+/// wall that faces `diagonal` at this range.
 fn runs_off<Y: SonarRing>(y: &Y, diagonal: SonarId, range: Meters, beside: SonarId) -> bool {
     let ring = y.ring_radius().0;
     let angle = |sonar: SonarId, ping: &Ping| off(y, diagonal, sonar, ping).0.abs();

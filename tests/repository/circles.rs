@@ -21,7 +21,9 @@ const KNOWN: &[&str] = &[
     "runtime/host/src: batch, summary",
     "runtime/host/src: cause, report",
     "runtime/serial/src: configuration, settings",
-    "targets/sim/simulator/src: body, charger, disc, goal, grid, model, moving, ros_map, surfaces, walls, world, \
+    "targets/emulator/src: effects, trial",
+    "targets/emulator/src: fault, serve",
+    "targets/sim/simulator/src: body, charger, goal, grid, moving, ros_map, surfaces, walls, world, \
      world_file",
     "targets/sim/simulator/src/plot: labels, shapes",
 ];

@@ -106,7 +106,7 @@ const ROOMS: &[(&str, &[&str])] = &[
     ("syntax", &["diagnostic", "alphabet"]),
     ("plan", &["diagnostic", "syntax", "alphabet"]),
     ("fsm", &["diagnostic", "syntax", "alphabet", "plan"]),
-    ("load", &["alphabet", "plan", "fsm"]),
+    ("load", &["diagnostic", "alphabet", "plan", "fsm"]),
     ("trace", &["diagnostic", "alphabet", "plan", "fsm"]),
     ("picture", &["diagnostic", "plan", "fsm"]),
     ("rust", &["diagnostic", "syntax", "alphabet", "plan", "fsm"]),

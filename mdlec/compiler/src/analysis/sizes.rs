@@ -27,7 +27,8 @@ pub struct Bytes {
 /// Counts the bytes of the emitted machine.
 pub(super) fn bytes(machine: &Machine) -> Bytes {
     let number = |count: usize| u64::try_from(count).unwrap_or(u64::MAX);
-    // A cursor holds the number of its atom, in front of numbers of eight bytes, and the report of the law on its progress.
+    // A cursor holds the number of its atom, in front of numbers of eight bytes, and the report of the law on its
+    // progress.
     let entries = match machine.sizes().stamps {
         true => size_of::<Stamps<[Stamp; 0]>>() + machine.sizes().levels * size_of::<Stamp>(),
         false => machine.sizes().levels * size_of::<Nanos>(),

@@ -2,8 +2,8 @@
 //!
 //! A ray at angle α off the axis that meets a surface at angle β off its normal is heard when
 //! (α / lobe)² + (β / facing)² is at most what the distance leaves of 1. Near an edge sound goes everywhere, but little
-//! of it: there β counts as a fixed loss. A rough surface scatters too: of what β costs, the part `rough` of the surface
-//! is left out. A right-angled corner sends everything back where it came from.
+//! of it: there β counts as a fixed loss. A rough surface scatters too: of what β costs, the part `rough` of the
+//! surface is left out. A right-angled corner sends everything back where it came from.
 //!
 //! The rays of a cone lie so far apart that a person 4 m away may be between two of them. One more ray is therefore
 //! aimed at each moving object and each other robot, of which there are few.
