@@ -59,7 +59,12 @@ fn value(operand: &str, reports: &Reports, since: f64) -> Option<bool> {
         let fired = if inside.starts_with('(') { None } else { value(inside, reports, since) };
         return fired.filter(|fired| !fired);
     }
-    if let Some(wait) = operand.strip_prefix("wait ") {
+    let stuck = operand.strip_prefix("stuck ");
+    if stuck.is_some() && !reports.fired.contains(operand) {
+        return Some(false);
+    }
+    // `stuck` counts from its own scope as well.
+    if let Some(wait) = stuck.or_else(|| operand.strip_prefix("wait ")) {
         let Some(wait) = seconds(wait) else { return Some(false) };
         // Its scope was entered by the last transition at the latest, and not before the plan began.
         return if wait <= now - since - 1e-6 {
