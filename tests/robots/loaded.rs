@@ -235,7 +235,7 @@ fn condition(chance: &mut Chance, depth: usize) -> String {
             _ => format!("RISING ({one})"),
         };
     }
-    let simple = ["bumper", "r0 < 60cm", "r3 < r5", "r12 > 1.5m", "x > 3m", "heading > 30deg", "atIsection 0100"];
+    let simple = ["bumper", "r0 < 60cm", "r3 < r5", "r12 > 1.5m", "x > 3m", "theta > 30deg", "atIsection 0100"];
     match chance.below(3) {
         0 => format!("wait {}", 1 + chance.below(9)),
         1 => format!("way > {}cm", 10 + chance.below(200)),
