@@ -121,7 +121,7 @@ mod tests {
     }
 
     #[test]
-    fn whoever_comes_faster_than_the_robot_drives_is_told_from_a_wall() {
+    fn a_person_faster_than_the_robot_differs_from_a_wall() {
         let comes = [Some(5.0), Some(3.8), Some(2.6)];
         // 2.6 m and the ring's radius, of which the robot has driven 0.2 m since.
         let arrives = seconds(&comes, 0.2, 0.0, 3).expect("somebody");

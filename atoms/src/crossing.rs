@@ -13,7 +13,7 @@ const TURNS: f64 = 0.02;
 const NEARER: f64 = 0.075;
 /// The radius of a person, in metres.
 const PERSON: f64 = 0.25;
-/// Least distance, in metres, to the side of the way: whoever is nearer to it is an obstacle, or comes along the way.
+/// Minimum distance, in metres, to the side of the way: a person nearer to it is an obstacle, or comes along the way.
 const ASIDE: f64 = 0.45;
 /// Greatest time, in seconds, in which somebody reaches the way.
 const SOON: f64 = 5.0;
@@ -92,7 +92,7 @@ mod tests {
     }
 
     #[test]
-    fn whoever_comes_abreast_is_not_waited_for() {
+    fn a_person_who_comes_abreast_is_not_waited_for() {
         // 1 m away at 67.5°, he is 46 cm ahead: he would walk into a robot that stands.
         assert!(!waits([1.8, 1.4, 0.9]));
     }

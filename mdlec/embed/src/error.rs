@@ -9,7 +9,7 @@ use mdle_files::{InputError, Spelling};
 
 /// Reason why no plan was embedded.
 ///
-/// Its debug form is its message too, since that is what a `main` prints that returns the error.
+/// `Debug` prints the message as well, since a `main` that returns the error prints that form.
 #[derive(thiserror::Error)]
 pub enum EmbedError {
     /// The plan has errors.

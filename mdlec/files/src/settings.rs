@@ -25,12 +25,12 @@ pub struct Settings {
     text: SettingsText,
 }
 
-/// What is known of a target before a run.
+/// Worlds and options of a target, as far as they are known before a run.
 #[derive(Debug, Default)]
 pub struct Known {
-    /// Names of its worlds; empty if they are not known.
+    /// Names of the worlds; empty if they are not known.
     pub worlds: Vec<&'static str>,
-    /// Its options, each with the placeholder of its value, which is empty for an option without one; `None` if they
+    /// Options of the target, each with the placeholder of its value, empty for an option without one; `None` if they
     /// are not known.
     pub options: Option<Vec<(&'static str, &'static str)>>,
 }

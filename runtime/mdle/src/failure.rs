@@ -1,4 +1,4 @@
-//! The reasons why a plan does not run, and how a user is told.
+//! Reasons why a plan does not run, as messages on standard error with an exit status.
 
 use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;

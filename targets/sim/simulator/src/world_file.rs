@@ -83,7 +83,7 @@ fn read(text: &str) -> Result<World, Wrong> {
         return Err(Wrong(None, format!("a world of {bytes} bytes is too large; expected at most {BYTES_MOST}")));
     }
     let written: WorldText = toml::from_str(text).map_err(|error| {
-        // In the words of whoever writes the file.
+        // In the words of the file's author.
         let what = error.message().replace('\n', " ").replace("expected f64", "expected a number");
         Wrong(error.span(), what)
     })?;
