@@ -28,8 +28,8 @@ fn robot() -> (Robot, MutexGuard<'static, ()>) {
 /// Builds the plan that ends by this cause, and runs it.
 fn assert_builds(robot: &Robot, cause: &str) {
     let (_, output) = robot.build("nap.mdle", &PLAN.replace("morning", cause)).unwrap();
-    let said = Command::new(output).output().unwrap();
-    assert!(String::from_utf8(said.stdout).unwrap().contains(&format!("plan over: {cause}")));
+    let message = Command::new(output).output().unwrap();
+    assert!(String::from_utf8(message.stdout).unwrap().contains(&format!("plan over: {cause}")));
 }
 
 /// The files below `folder` of whose names this is true.

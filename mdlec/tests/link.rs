@@ -24,9 +24,9 @@ fn the_executable_is_static_and_holds_no_path_of_this_machine() {
         let place = place.as_os_str().as_encoded_bytes();
         assert!(!bytes.windows(place.len()).any(|window| window == place), "{}", String::from_utf8_lossy(place));
     }
-    let said = Command::new(&output).output().unwrap();
-    assert_eq!(said.status.code(), Some(0), "{said:?}");
-    assert!(String::from_utf8(said.stdout).unwrap().contains("plan over: morning"));
+    let message = Command::new(&output).output().unwrap();
+    assert_eq!(message.status.code(), Some(0), "{message:?}");
+    assert!(String::from_utf8(message.stdout).unwrap().contains("plan over: morning"));
 }
 
 #[test]
@@ -45,8 +45,8 @@ fn plans_of_one_name_do_not_meet() {
     let (_, left) = robot.build("left/nap.mdle", &PLAN.replace("morning", "noon")).unwrap();
     let (_, right) = robot.build("right/nap.mdle", &PLAN.replace("morning", "night")).unwrap();
     for (output, cause) in [(left, "noon"), (right, "night")] {
-        let said = Command::new(output).output().unwrap();
-        assert!(String::from_utf8(said.stdout).unwrap().contains(cause));
+        let message = Command::new(output).output().unwrap();
+        assert!(String::from_utf8(message.stdout).unwrap().contains(cause));
     }
 }
 

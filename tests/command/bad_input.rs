@@ -295,17 +295,17 @@ fn no_output_goes_over_an_input() {
     assert_eq!(run_mdlec(&folder, &["new-target", "rover"]).status.code(), Some(0));
     let texts = || ["plan.mdle", "legs.mdle", "x1.mtx", "rover/alphabet.mdle"].map(|file| fs::read(folder.join(file)));
     let before = texts().map(Result::unwrap);
-    let told = OVER_AN_INPUT.map(|arguments| said(&folder, arguments)).join("\n");
+    let report = OVER_AN_INPUT.map(|arguments| said(&folder, arguments)).join("\n");
     assert_eq!(texts().map(Result::unwrap), before);
-    insta::assert_snapshot!(told);
+    insta::assert_snapshot!(report);
 }
 
 #[test]
 fn an_executable_does_not_go_over_a_source_of_its_robot() {
     let folder = with_plan("over_source", REST);
     assert_eq!(run_mdlec(&folder, &["new-target", "rover"]).status.code(), Some(0));
-    let told = said(&folder, &["plan.mdle", "--target", "rover", "-o", "rover/src/lib.rs"]);
-    insta::assert_snapshot!(told);
+    let report = said(&folder, &["plan.mdle", "--target", "rover", "-o", "rover/src/lib.rs"]);
+    insta::assert_snapshot!(report);
 }
 
 #[test]
@@ -314,8 +314,8 @@ fn a_plan_on_standard_input_is_not_written_over() {
     let plan = fs::File::open(folder.join("plan.mdle")).unwrap();
     let mut command = mdle_tests::executable::command(&folder, &["-", "--emit", "tree=plan.mdle"]);
     let output = command.stdin(plan).output().unwrap();
-    let told = String::from_utf8(output.stderr).unwrap();
-    assert!(told.starts_with("error: `plan.mdle` is an input of this command"), "{told}");
+    let report = String::from_utf8(output.stderr).unwrap();
+    assert!(report.starts_with("error: `plan.mdle` is an input of this command"), "{report}");
     assert_eq!((output.status.code(), fs::read_to_string(folder.join("plan.mdle")).unwrap().as_str()), (Some(2), REST));
 }
 

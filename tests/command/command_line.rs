@@ -198,12 +198,12 @@ fn which_robots_can_run_which_plan_is_a_table() {
     let output = run_mdlec(&folder, &["check", "--target", "all", "bad.mdle", "good.mdle", "none.mdle"]);
     assert_eq!(output.status.code(), Some(2), "the worst of them");
     let text = |bytes| String::from_utf8(bytes).unwrap();
-    let (table, told) = (text(output.stdout), text(output.stderr));
+    let (table, report) = (text(output.stdout), text(output.stderr));
     assert_eq!(table.lines().map(|line| line.split(' ').next().unwrap()).collect::<Vec<_>>(), ["plan", "good.mdle"]);
     assert_eq!(
-        ["error[E0201]", "there is no file `none.mdle`"].map(|part| told.matches(part).count()),
+        ["error[E0201]", "there is no file `none.mdle`"].map(|part| report.matches(part).count()),
         [1, 1],
-        "{told}"
+        "{report}"
     );
 }
 

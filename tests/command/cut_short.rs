@@ -31,15 +31,15 @@ fn listing(folder: &Path) -> Vec<OsString> {
 }
 
 /// Returns the exit status and standard error, without lines about the builds of other tests.
-fn told(output: &Output) -> (Option<i32>, String) {
-    let said = String::from_utf8(output.stderr.clone()).expect("UTF-8");
-    assert!(!said.contains("panicked"), "{said}");
-    (output.status.code(), without_waiting(&said))
+fn report(output: &Output) -> (Option<i32>, String) {
+    let message = String::from_utf8(output.stderr.clone()).expect("UTF-8");
+    assert!(!message.contains("panicked"), "{message}");
+    (output.status.code(), without_waiting(&message))
 }
 
 fn assert_builds(folder: &Path) {
     let output = run_mdlec(folder, &[PLAN, "--target", "sim", "-o", "afterwards"]);
-    assert_eq!(output.status.code(), Some(0), "{}", told(&output).1);
+    assert_eq!(output.status.code(), Some(0), "{}", report(&output).1);
     let run = Command::new(folder.join("afterwards")).args(["--speed", "max"]).output().unwrap();
     assert_eq!(run.stdout, b"0.1 s  plan over: wait 1ms (plan.mdle:1)\n");
 }
@@ -61,26 +61,26 @@ fn with_cargo_at_work(folder: &Path) -> (Child, BufReader<File>, JoinHandle<Stri
     let mut child = command.spawn().unwrap();
     let stderr = child.stderr.take().unwrap();
     let pipe = at_work.clone();
-    let said = thread::spawn(move || {
-        let said = io::read_to_string(stderr).unwrap();
+    let message = thread::spawn(move || {
+        let message = io::read_to_string(stderr).unwrap();
         // Should mdlec have ended before its cargo was there, the test must not wait for cargo any longer.
         File::options().read(true).write(true).open(pipe).unwrap();
-        said
+        message
     });
     let mut heard = BufReader::new(File::open(at_work).unwrap());
     let mut line = String::new();
     heard.read_line(&mut line).unwrap();
     assert_eq!(line, "at work\n");
-    (child, heard, said)
+    (child, heard, message)
 }
 
 fn assert_signal_ends_all(signal: &str, status: i32) {
     let folder = with_plan(&format!("signal_{signal}"));
-    let (mut child, heard, said) = with_cargo_at_work(&folder);
+    let (mut child, heard, message) = with_cargo_at_work(&folder);
     let kill = format!("kill -{signal} {}", child.id());
     assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
     let ended = child.wait().unwrap();
-    assert_eq!((ended.code(), without_waiting(&said.join().unwrap())), (Some(status), String::new()), "{signal}");
+    assert_eq!((ended.code(), without_waiting(&message.join().unwrap())), (Some(status), String::new()), "{signal}");
     // The end of it comes when nobody is left who could write: neither cargo nor its child.
     assert_eq!(io::read_to_string(heard).unwrap(), "", "{signal}");
     assert_eq!(listing(&folder), ["at_work", PLAN, "tools"], "{signal}");
@@ -90,10 +90,10 @@ fn assert_signal_ends_all(signal: &str, status: i32) {
 #[test]
 fn the_next_build_ends_the_cargo_of_one_that_was_killed() {
     let folder = with_plan("killed");
-    let (mut child, heard, said) = with_cargo_at_work(&folder);
+    let (mut child, heard, message) = with_cargo_at_work(&folder);
     child.kill().unwrap();
     assert_eq!(child.wait().unwrap().signal(), Some(9));
-    assert_eq!(without_waiting(&said.join().unwrap()), "");
+    assert_eq!(without_waiting(&message.join().unwrap()), "");
     assert_builds(&folder);
     assert_eq!(io::read_to_string(heard).unwrap(), "", "cargo and its child have ended");
 }
@@ -110,7 +110,7 @@ fn limited(folder: &Path, blocks: usize, arguments: &[&str], cache: &Path) -> (O
     let script = format!("ulimit -f {blocks}; exec \"$0\" \"$@\"");
     let mut command = Command::new("sh");
     command.args(["-c", &script]).arg(mdlec()).args(arguments).current_dir(folder).env("MDLEC_CACHE", cache);
-    told(&command.output().unwrap())
+    report(&command.output().unwrap())
 }
 
 fn no_room(path: &str) -> (Option<i32>, String) {
@@ -129,11 +129,11 @@ fn no_room_in_the_cache_is_told_and_the_next_build_works() {
     assert_eq!(limited(&folder, 400, &[PLAN, "--target", "sim"], &shared), no_room(shared.to_str().unwrap()));
     assert_eq!(listing(&folder), before);
     let built = run_mdlec(&folder, &[PLAN, "--target", "sim", "-o", "afterwards"]);
-    assert_eq!(built.status.code(), Some(0), "{}", told(&built).1);
+    assert_eq!(built.status.code(), Some(0), "{}", report(&built).1);
 
-    let (status, said) = limited(&folder, 0, &[PLAN, "--target", "sim"], &folder.join("cache"));
-    assert_eq!(status, Some(2), "{said}");
-    assert!(said.starts_with("error: there is no room left at `") && said.contains("/cache/src-"), "{said}");
+    let (status, message) = limited(&folder, 0, &[PLAN, "--target", "sim"], &folder.join("cache"));
+    assert_eq!(status, Some(2), "{message}");
+    assert!(message.starts_with("error: there is no room left at `") && message.contains("/cache/src-"), "{message}");
 }
 
 #[test]
@@ -159,11 +159,14 @@ fn a_full_device_is_told() {
         [&["targets"][..], &["quarks"], &["--help"], &[PLAN, "--emit", "plan"], &["trace", PLAN, "--script", "script"]]
     {
         let output = command(&folder, arguments).stdout(full()).output().unwrap();
-        let (status, said) = told(&output);
-        assert_eq!(status, Some(2), "{arguments:?}: {said}");
-        assert!(said.starts_with("error: standard output cannot be written (No space left"), "{arguments:?}: {said}");
+        let (status, message) = report(&output);
+        assert_eq!(status, Some(2), "{arguments:?}: {message}");
+        assert!(
+            message.starts_with("error: standard output cannot be written (No space left"),
+            "{arguments:?}: {message}"
+        );
     }
-    assert_eq!(told(&run_mdlec(&folder, &[PLAN, "--emit", "tree=/dev/full"])), no_room("/dev/full"));
+    assert_eq!(report(&run_mdlec(&folder, &[PLAN, "--emit", "tree=/dev/full"])), no_room("/dev/full"));
     // Nobody can be told, and the status still says it.
     let output = command(&folder, &["check", "missing.mdle"]).stderr(full()).output().unwrap();
     assert_eq!(output.status.code(), Some(2));

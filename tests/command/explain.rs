@@ -20,7 +20,7 @@ fn with_examples() -> impl Iterator<Item = Code> {
 }
 
 /// Returns the messages about an example, for people or as JSON.
-fn said(folder: &Path, example: &Example, format: &str) -> String {
+fn messages(folder: &Path, example: &Example, format: &str) -> String {
     // What an example calls `\xDF` is that byte.
     let bytes = example.text.split("\\xDF").map(str::as_bytes).collect::<Vec<_>>().join(&b'\xDF');
     let file = if example.arguments.iter().any(|argument| argument == ".") { "alphabet.mdle" } else { "plan.mdle" };
@@ -31,12 +31,12 @@ fn said(folder: &Path, example: &Example, format: &str) -> String {
 
 /// Returns the codes of the messages about an example, and the messages as JSON.
 fn codes(folder: &Path, example: &Example) -> (BTreeSet<String>, String) {
-    let said = said(folder, example, "json");
-    let codes = said.lines().map(|line| {
+    let messages = messages(folder, example, "json");
+    let codes = messages.lines().map(|line| {
         let message: Value = serde_json::from_str(line).unwrap_or_else(|error| panic!("{error}: {line}"));
         message["code"].as_str().map(str::to_owned)
     });
-    (codes.flatten().collect(), said)
+    (codes.flatten().collect(), messages)
 }
 
 #[test]
@@ -48,10 +48,10 @@ fn wrong_examples_have_just_that_code_and_right_ones_none() {
         let wrong = explanation.wrong().unwrap_or_else(|| panic!("{code} has no wrong example"));
         let right = explanation.right().unwrap_or_else(|| panic!("{code} has no right example"));
         assert!(!explanation.text().starts_with("Wrong"), "{code} has examples only");
-        let (codes_of_wrong, said) = codes(&folder, &wrong);
-        assert_eq!(codes_of_wrong, BTreeSet::from([code.name().to_owned()]), "{code}\n{}\n{said}", wrong.text);
-        let (_, said) = codes(&folder, &right);
-        assert_eq!(said, "", "{code}\n{}", right.text);
+        let (codes_of_wrong, messages) = codes(&folder, &wrong);
+        assert_eq!(codes_of_wrong, BTreeSet::from([code.name().to_owned()]), "{code}\n{}\n{messages}", wrong.text);
+        let (_, messages) = codes(&folder, &right);
+        assert_eq!(messages, "", "{code}\n{}", right.text);
     }
 }
 
@@ -62,7 +62,7 @@ fn every_code_is_shown_to_people_and_to_programs() {
     let mut shown = String::new();
     for code in with_examples() {
         let wrong = code.explanation().wrong().unwrap_or_else(|| panic!("{code} has no wrong example"));
-        let (human, json) = (said(&folder, &wrong, "human"), said(&folder, &wrong, "json"));
+        let (human, json) = (messages(&folder, &wrong, "human"), messages(&folder, &wrong, "json"));
         assert!(human.contains(&format!("[{code}]: ")) && json.contains(&format!("\"code\":\"{code}\"")), "{human}");
         let arguments = wrong.arguments.join(" ");
         shown += &format!("==== {code}: {}\n{}$ mdlec {arguments}\n{human}----\n{json}\n", code.title(), wrong.text);
@@ -90,11 +90,11 @@ fn a_code_is_explained_and_all_are_listed() {
 #[test]
 fn a_code_that_is_none_is_told_the_nearest() {
     let folder = folder("explain_none");
-    let said = ["E0210", "w999", "help"].map(|code| {
+    let messages = ["E0210", "w999", "help"].map(|code| {
         let output = run_mdlec(&folder, &["explain", code]);
         format!("{}exit status {}\n", String::from_utf8(output.stderr).unwrap(), output.status.code().unwrap())
     });
-    insta::assert_snapshot!(said.concat());
+    insta::assert_snapshot!(messages.concat());
 }
 
 #[test]

@@ -21,7 +21,7 @@ const COMMANDS: [&[&str]; 5] = [
 ];
 
 /// The exit status, standard output and standard error of a command.
-fn said(folder: &Path, plan: &str, arguments: &[&str]) -> (Option<i32>, String, String) {
+fn messages(folder: &Path, plan: &str, arguments: &[&str]) -> (Option<i32>, String, String) {
     fs::write(folder.join("plan.mdle"), plan).unwrap();
     fs::write(folder.join("script.jsonl"), "{\"t\": 0}\n{\"t\": 0.5}\n").unwrap();
     let output = run_mdlec(folder, arguments);
@@ -49,7 +49,7 @@ fn what_nests_too_deep_is_one_error_that_names_the_limit() {
         nested("{ P ", "ExecPlan 2 { ", "Q", " }", " }"),
     ];
     for plan in plans.as_flattened() {
-        let [first, others @ ..] = COMMANDS.map(|arguments| said(&folder, plan, arguments));
+        let [first, others @ ..] = COMMANDS.map(|arguments| messages(&folder, plan, arguments));
         let (status, printed, told) = &first;
         let start: String = told.chars().take(300).collect();
         assert_eq!((*status, printed.as_str()), (Some(1), ""), "{start}");
@@ -73,12 +73,12 @@ fn what_is_only_long_comes_to_a_result() {
     ];
     let [check, fmt, trace, _, analyze] = COMMANDS;
     for (plan, laid_out) in plans {
-        assert_eq!(said(&folder, &plan, check).0, Some(0));
-        let (status, listed, _) = said(&folder, &plan, fmt);
+        assert_eq!(messages(&folder, &plan, check).0, Some(0));
+        let (status, listed, _) = messages(&folder, &plan, fmt);
         assert_eq!((status, listed.as_str()), laid_out);
-        let (status, turns, _) = said(&folder, &plan, trace);
+        let (status, turns, _) = messages(&folder, &plan, trace);
         assert_eq!((status, turns.lines().count()), (Some(0), 2), "{turns}");
-        let (status, analysis, _) = said(&folder, &plan, analyze);
+        let (status, analysis, _) = messages(&folder, &plan, analyze);
         assert_eq!((status, analysis.starts_with("plan  ")), (Some(0), true), "{analysis}");
     }
 }
@@ -89,7 +89,7 @@ fn brackets_that_close_nothing_are_one_error() {
     for bracket in [")", "}"] {
         let plan = format!("{{ P (Atom (bumper) stop) }}{}", bracket.repeat(MANY));
         for arguments in COMMANDS {
-            let (status, _, told) = said(&folder, &plan, arguments);
+            let (status, _, told) = messages(&folder, &plan, arguments);
             let message = format!("error[E0103]: these 100000 `{bracket}` close nothing\n");
             assert!(status == Some(1) && told.starts_with(&message), "{}", &told[..300]);
             assert!(told.ends_with("\nerror: 1 error\n"));
@@ -101,13 +101,13 @@ fn brackets_that_close_nothing_are_one_error() {
 fn a_long_line_is_cut_around_its_mistake() {
     let folder = folder("long_line");
     let plan = format!("{{ P {}(Atom (bogus) stop) }}\n", "(Atom (wait 1) stop) ".repeat(60_000));
-    let (status, _, told) = said(&folder, &plan, &["check", "plan.mdle"]);
+    let (status, _, told) = messages(&folder, &plan, &["check", "plan.mdle"]);
     assert_eq!(status, Some(1));
     let lines: Vec<_> = told.lines().collect();
     assert!(told.len() < 1000 && lines[1].ends_with("plan.mdle:1:1260012"), "{}", &told[..told.len().min(2000)]);
     let at = |line: &str, part: char| line.chars().position(|letter| letter == part);
     assert_eq!(at(lines[4], '^'), lines[3].find("bogus").map(|byte| lines[3][..byte].chars().count()), "{told}");
-    let (_, _, told) = said(&folder, &plan, &["check", "plan.mdle", "--message-format", "json"]);
+    let (_, _, told) = messages(&folder, &plan, &["check", "plan.mdle", "--message-format", "json"]);
     assert!(told.contains(r#""line":1,"column":1260012,"end_line":1,"end_column":1260017"#), "{told}");
 }
 
@@ -115,10 +115,10 @@ fn a_long_line_is_cut_around_its_mistake() {
 fn errors_without_number_are_told_as_far_as_anybody_reads() {
     let folder = folder("without_number");
     let plan = format!("{{ P {} }}", "(} {) ".repeat(MANY / 2));
-    let (status, _, told) = said(&folder, &plan, &["check", "plan.mdle"]);
+    let (status, _, told) = messages(&folder, &plan, &["check", "plan.mdle"]);
     assert_eq!(status, Some(1));
     assert!(told.len() < 10_000 && told.contains("\n… and "), "{} bytes", told.len());
-    let (status, _, told) = said(&folder, &plan, &["check", "plan.mdle", "--message-format", "json"]);
+    let (status, _, told) = messages(&folder, &plan, &["check", "plan.mdle", "--message-format", "json"]);
     // A program is told all of them: each repetition has three mistakes.
     assert_eq!((status, told.lines().count()), (Some(1), MANY / 2 * 3));
 }

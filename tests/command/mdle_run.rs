@@ -16,7 +16,7 @@ fn run(folder: &Path, arguments: &[&str]) -> Output {
 }
 
 /// Both streams of `mdle` with these arguments, and its exit status.
-fn told(folder: &Path, line: &str) -> String {
+fn report(folder: &Path, line: &str) -> String {
     let Output { status, stdout, stderr } = run(folder, &line.split(' ').collect::<Vec<_>>());
     let [out, err] = [stdout, stderr].map(|bytes| String::from_utf8(bytes).unwrap());
     format!("$ mdle {line}\n{out}{err}[{}]\n", status.code().unwrap())
@@ -49,15 +49,15 @@ fn what_does_not_run_is_told_with_what_to_type() {
         "run plan.mdle --target sim --turns 0",
         "run plan.mdle --target sim --log plan.mdle",
     ];
-    insta::assert_snapshot!(lines.map(|line| told(&folder, line)).join("\n"));
+    insta::assert_snapshot!(lines.map(|line| report(&folder, line)).join("\n"));
     assert_eq!(fs::read_to_string(folder.join("plan.mdle")).unwrap(), PLAN);
 }
 
 #[test]
 fn help_names_every_option() {
     let folder = with_plan("help");
-    insta::assert_snapshot!([told(&folder, "--help"), told(&folder, "run --help")].join("\n"));
-    let help = told(&folder, "run plan.mdle --target sim --help");
+    insta::assert_snapshot!([report(&folder, "--help"), report(&folder, "run --help")].join("\n"));
+    let help = report(&folder, "run plan.mdle --target sim --help");
     assert!(help.contains("Usage: mdle run plan.mdle --target sim [OPTIONS]\n"), "{help}");
     assert!(help.contains("--start-noise") && help.ends_with("[0]\n"), "{help}");
 }
@@ -86,16 +86,18 @@ fn a_bad_plan_has_the_messages_of_the_compiler() {
 fn the_settings_beside_a_plan_hold_for_its_run() {
     let folder = with_plan("settings");
     fs::write(folder.join("mdle.toml"), "target = \"sim\"\nworld = \"hall\"\n\n[options]\nspeed = \"max\"\n").unwrap();
-    let run = told(&folder, "run plan.mdle");
+    let run = report(&folder, "run plan.mdle");
     assert!(run.contains("plan over: wait 2s") && run.ends_with("[0]\n"), "{run}");
     assert_eq!(
         run.replace("run plan.mdle", ""),
-        told(&folder, "run plan.mdle --world hall").replace("run plan.mdle --world hall", "")
+        report(&folder, "run plan.mdle --world hall").replace("run plan.mdle --world hall", "")
     );
     fs::write(folder.join("mdle.toml"), "target = \"sim\"\n\n[options]\nspede = \"max\"\n").unwrap();
-    insta::assert_snapshot!(told(&folder, "run plan.mdle"));
+    insta::assert_snapshot!(report(&folder, "run plan.mdle"));
     fs::write(folder.join("mdle.toml"), "target = \"./rover\"\n").unwrap();
-    assert!(told(&folder, "run plan.mdle").starts_with("$ mdle run plan.mdle\nerror: `mdle` has no target `./rover`"));
+    assert!(
+        report(&folder, "run plan.mdle").starts_with("$ mdle run plan.mdle\nerror: `mdle` has no target `./rover`")
+    );
 }
 
 #[test]

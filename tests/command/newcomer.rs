@@ -234,17 +234,17 @@ fn each_message_says_how_to_end_the_mistake() {
     let mut shown = String::new();
     for (mistake, plan, hint) in MISTAKES {
         fs::write(folder.join("plan.mdle"), plan).unwrap();
-        let said = |format: &str| {
+        let answer = |format: &str| {
             let output = run_mdlec(&folder, &["check", "plan.mdle", "--message-format", format]);
             assert_eq!(output.stdout, b"");
             (output.status.code(), String::from_utf8(output.stderr).unwrap())
         };
-        let ((status, human), (status_of_json, json)) = (said("human"), said("json"));
+        let ((status, human), (status_of_json, json)) = (answer("human"), answer("json"));
         assert_eq!(status, status_of_json);
         assert!(human.contains(hint), "{mistake}\n{human}");
-        let told: Vec<Value> = json.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+        let report: Vec<Value> = json.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
         assert!(json.contains(hint), "{mistake}\n{json}");
-        for message in &told {
+        for message in &report {
             let text = message["message"].as_str().unwrap();
             assert!(human.contains(text), "{mistake}: {text}");
             assert!(message["spans"][0]["primary"].as_bool().unwrap(), "{mistake}");
@@ -258,18 +258,18 @@ fn each_message_says_how_to_end_the_mistake() {
 fn what_is_no_diagnostic_is_json_as_well() {
     let folder = folder("newcomer_json");
     fs::write(folder.join("plan.mdle"), "{ P (bumper) (Atom (wait 5) (go 0.5 0)) }\n").unwrap();
-    let said = |arguments: &[&str]| {
+    let answer = |arguments: &[&str]| {
         let output = run_mdlec(&folder, arguments);
         let status = output.status.code().unwrap();
         format!("$ mdlec {}\n{}exit status {status}\n", arguments.join(" "), String::from_utf8(output.stderr).unwrap())
     };
     let json = ["--message-format", "json"];
-    let said = [
-        said(&["check", "plan.mdel", json[0], json[1]]),
-        said(&["check", "plan.mdle", "--deny-warnings", json[0], json[1]]),
-        said(&["plan.mdle", "--emit", "plan", json[0], json[1], "--target", "nowhere"]),
+    let answer = [
+        answer(&["check", "plan.mdel", json[0], json[1]]),
+        answer(&["check", "plan.mdle", "--deny-warnings", json[0], json[1]]),
+        answer(&["plan.mdle", "--emit", "plan", json[0], json[1], "--target", "nowhere"]),
     ];
-    insta::assert_snapshot!(said.concat());
+    insta::assert_snapshot!(answer.concat());
 }
 
 #[test]

@@ -91,11 +91,11 @@ fn spoilt(good: &[u8], chance: &mut Chance) -> Vec<u8> {
 /// Runs mdlec, which has to end with one of these.
 fn assert_ends(folder: &Path, arguments: &[&str], statuses: &[i32], seed: u64) {
     let output = run_mdlec(folder, arguments);
-    let said = String::from_utf8(output.stderr).expect("UTF-8");
-    let status = output.status.code().unwrap_or_else(|| panic!("{seed}: {arguments:?}: {}\n{said}", output.status));
-    assert!(statuses.contains(&status), "{seed}: {arguments:?}: {status}\n{said}");
-    assert!(status == 0 || said.contains("error: "), "{seed}: {arguments:?}: {status}\n{said}");
-    assert!(!said.contains("panicked"), "{seed}: {arguments:?}\n{said}");
+    let message = String::from_utf8(output.stderr).expect("UTF-8");
+    let status = output.status.code().unwrap_or_else(|| panic!("{seed}: {arguments:?}: {}\n{message}", output.status));
+    assert!(statuses.contains(&status), "{seed}: {arguments:?}: {status}\n{message}");
+    assert!(status == 0 || message.contains("error: "), "{seed}: {arguments:?}: {status}\n{message}");
+    assert!(!message.contains("panicked"), "{seed}: {arguments:?}\n{message}");
 }
 
 #[test]

@@ -29,7 +29,7 @@ fn home(test: &str, settings: &str) -> PathBuf {
 }
 
 /// Standard error and exit status, without what depends on earlier builds.
-fn said(folder: &Path, arguments: &[&str]) -> String {
+fn message(folder: &Path, arguments: &[&str]) -> String {
     let output = run_mdlec(folder, arguments);
     assert_eq!(String::from_utf8_lossy(&output.stdout), "", "{arguments:?}");
     let text = std::str::from_utf8(&output.stderr).unwrap();
@@ -101,13 +101,13 @@ fn every_command_takes_the_robot_of_the_file() {
         &["draw"],
         &["trace", "--script", "script"],
     ] {
-        let refused = said(&folder, &[arguments, &["home/plan.mdle"]].concat());
+        let refused = message(&folder, &[arguments, &["home/plan.mdle"]].concat());
         assert!(refused.contains("error[E0401]: `cart` cannot") && refused.ends_with("status 1\n"), "{refused}");
     }
     let output = run_mdlec(&folder, &["check", "home/plan.mdle", "--target", "sim"]);
     assert_success(&output);
     fs::write(folder.join("plan.mdle"), PLAN).unwrap();
-    let both = said(&folder, &["check", "plan.mdle", "home/plan.mdle"]);
+    let both = message(&folder, &["check", "plan.mdle", "home/plan.mdle"]);
     assert_eq!(both.matches("error[E0401]").count(), 1, "the other plan has no file beside it: {both}");
 }
 
@@ -131,10 +131,10 @@ fn errors_name_the_file_and_the_line() {
     let folder = home("settings_errors", "");
     let messages = settings.map(|text| {
         fs::write(folder.join("home/mdle.toml"), text).unwrap();
-        format!("{text}{}", said(&folder, &["run", "home/plan.mdle"]))
+        format!("{text}{}", message(&folder, &["run", "home/plan.mdle"]))
     });
     insta::assert_snapshot!(messages.join("\n"));
-    let unknown = said(&folder, &["check", "home/plan.mdle"]);
+    let unknown = message(&folder, &["check", "home/plan.mdle"]);
     assert!(unknown.contains("home/mdle.toml:1: there is no key"), "a check reads it too: {unknown}");
 }
 
@@ -144,29 +144,29 @@ fn wrong_options_are_found_before_a_build() {
     for option in ["sped = \"max\"", "speed = true", "watch = \"yes\"", "watch = [1]", "sped = false"] {
         fs::write(folder.join("home/mdle.toml"), format!("target = \"sim\"\n[options]\n{option}\n")).unwrap();
         for command in ["check", "run"] {
-            let refused = said(&folder, &[command, "home/plan.mdle"]);
+            let refused = message(&folder, &[command, "home/plan.mdle"]);
             assert!(refused.contains("error: home/mdle.toml:3: ") && refused.ends_with("status 2\n"), "{refused}");
         }
         assert!(!folder.join("plan").exists(), "nothing is built");
     }
     // Options of a robot of one's own are known to its executable alone.
     fs::write(folder.join("home/mdle.toml"), "target = \"cart\"\n[options]\nsped = \"max\"\n").unwrap();
-    assert!(said(&folder, &["check", "home/plan.mdle"]).contains("error[E0401]"));
+    assert!(message(&folder, &["check", "home/plan.mdle"]).contains("error[E0401]"));
 }
 
 #[test]
 fn a_check_names_a_world_that_is_none() {
     let folder = home("settings_world", "target = \"sim\"\nworld = \"hal\"\n");
     let refusal = "error: home/mdle.toml:2: there is no such world or file: `hal`; the worlds are";
-    let unknown = said(&folder, &["check", "home/plan.mdle"]);
+    let unknown = message(&folder, &["check", "home/plan.mdle"]);
     assert!(unknown.contains(&format!("{refusal} hall, maze, office, room\nexit status 2\n")), "{unknown}");
     // Nothing is built for it.
-    assert!(said(&folder, &["run", "home/plan.mdle"]).contains(refusal));
+    assert!(message(&folder, &["run", "home/plan.mdle"]).contains(refusal));
     assert!(!folder.join("plan").exists());
     // The command line has another robot, or the folder a file of that name.
-    assert!(said(&folder, &["check", "home/plan.mdle", "--target", "scout"]).ends_with("exit status 0\n"));
+    assert!(message(&folder, &["check", "home/plan.mdle", "--target", "scout"]).ends_with("exit status 0\n"));
     fs::write(folder.join("home/hal"), WORLD).unwrap();
-    assert!(said(&folder, &["check", "home/plan.mdle"]).ends_with("exit status 0\n"));
+    assert!(message(&folder, &["check", "home/plan.mdle"]).ends_with("exit status 0\n"));
 }
 
 #[test]
@@ -174,21 +174,21 @@ fn the_file_is_a_regular_one_of_text() {
     let folder = home("settings_files", "");
     let file = folder.join("home/mdle.toml");
     fs::write(&file, b"target = \"caf\xE9\"\n").unwrap();
-    let mut messages = vec![said(&folder, &["run", "home/plan.mdle"])];
+    let mut messages = vec![message(&folder, &["run", "home/plan.mdle"])];
     File::create(&file).unwrap().set_len(1 << 40).unwrap();
-    messages.push(said(&folder, &["check", "home/plan.mdle"]));
+    messages.push(message(&folder, &["check", "home/plan.mdle"]));
     fs::remove_file(&file).unwrap();
     fs::create_dir(&file).unwrap();
-    messages.push(said(&folder, &["check", "home/plan.mdle"]));
+    messages.push(message(&folder, &["check", "home/plan.mdle"]));
     insta::assert_snapshot!(messages.join("\n"));
 }
 
 #[test]
 fn no_output_goes_over_the_file() {
     let folder = home("settings_output", "target = \"sim\"\n");
-    let build = said(&folder, &["build", "home/plan.mdle", "-o", "home/mdle.toml"]);
+    let build = message(&folder, &["build", "home/plan.mdle", "-o", "home/mdle.toml"]);
     assert!(build.contains("home/mdle.toml") && build.ends_with("exit status 2\n"), "{build}");
-    let draw = said(&folder, &["draw", "home/plan.mdle", "-o", "home/cart/../mdle.toml"]);
+    let draw = message(&folder, &["draw", "home/plan.mdle", "-o", "home/cart/../mdle.toml"]);
     assert!(draw.ends_with("exit status 2\n"), "{draw}");
     assert_eq!(fs::read_to_string(folder.join("home/mdle.toml")).unwrap(), "target = \"sim\"\n");
 }

@@ -22,7 +22,7 @@ fn with_files(test: &str, files: &[(&str, &str)]) -> PathBuf {
 }
 
 /// Returns the output of mdlec in this folder, and its exit status.
-fn said(folder: &std::path::Path, arguments: &[&str]) -> String {
+fn message(folder: &std::path::Path, arguments: &[&str]) -> String {
     let output = run_mdlec(folder, arguments);
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
     format!("{}{}exit status {}\n", text(output.stdout), text(output.stderr), output.status.code().unwrap())
@@ -34,14 +34,14 @@ fn files_in_folders_make_one_plan() {
     let folder = with_files("used", &files);
     let plan =
         "{ Main\n  { Leg\n    ExecPlan 2 {\n      { Corner\n        (Atom (null) turn 90)\n      }\n    }\n  }\n}\n";
-    assert_eq!(said(&folder, &["main.mdle", "--emit", "plan"]), format!("{plan}exit status 0\n"));
+    assert_eq!(message(&folder, &["main.mdle", "--emit", "plan"]), format!("{plan}exit status 0\n"));
     // From another folder it is the same plan, and any of the plans can be asked for.
     let above = folder.parent().unwrap();
     let main = format!("{}/main.mdle", folder.file_name().unwrap().to_str().unwrap());
-    assert_eq!(said(above, &[&main, "--emit", "plan"]), format!("{plan}exit status 0\n"));
-    let corner = said(&folder, &["main.mdle", "--emit", "plan", "--plan", "Corner"]);
+    assert_eq!(message(above, &[&main, "--emit", "plan"]), format!("{plan}exit status 0\n"));
+    let corner = message(&folder, &["main.mdle", "--emit", "plan", "--plan", "Corner"]);
     assert_eq!(corner, "{ Corner\n  (Atom (null) turn 90)\n}\nexit status 0\n");
-    assert_eq!(said(&folder, &["check", "main.mdle", "parts/legs.mdle"]), "exit status 0\n");
+    assert_eq!(message(&folder, &["check", "main.mdle", "parts/legs.mdle"]), "exit status 0\n");
 }
 
 #[test]
@@ -53,15 +53,15 @@ fn files_that_cannot_be_used() {
     ];
     let folder = with_files("unusable", &files);
     fs::write(folder.join("parts/latin.mdle"), b"{ \xE9 }").unwrap();
-    insta::assert_snapshot!(said(&folder, &["check", "main.mdle"]));
+    insta::assert_snapshot!(message(&folder, &["check", "main.mdle"]));
 }
 
 #[test]
 fn a_file_of_plans_with_parameters_can_be_checked_and_not_run() {
     let folder = with_files("library", &[("legs.mdle", "{ Leg (n: count) (Atom (wait 1) stop)^n }\n")]);
-    assert_eq!(said(&folder, &["check", "legs.mdle"]), "exit status 0\n");
+    assert_eq!(message(&folder, &["check", "legs.mdle"]), "exit status 0\n");
     insta::assert_snapshot!(
-        said(&folder, &["legs.mdle", "--emit", "plan"])
-            + &said(&folder, &["legs.mdle", "--emit", "plan", "--plan", "Leg"])
+        message(&folder, &["legs.mdle", "--emit", "plan"])
+            + &message(&folder, &["legs.mdle", "--emit", "plan", "--plan", "Leg"])
     );
 }

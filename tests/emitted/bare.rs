@@ -138,8 +138,8 @@ fn built() -> &'static Path {
         }
         let bins = EXECUTABLES.iter().flat_map(|(name, ..)| ["--bin", name]);
         let output = cargo_build().args(bins).output().unwrap();
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "{said}\n`tests/bare/src/system.rs` says how to find a path that panics");
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{message}\n`tests/bare/src/system.rs` says how to find a path that panics");
         target().join("release")
     });
     &BUILT
@@ -191,11 +191,11 @@ fn printed(executable: &str, script: &Script) -> String {
 /// ranges are of the turn alone. The robot rests only where the script completes a law, so that no law completes by
 /// itself.
 fn record(reports: &Reports) -> Vec<u8> {
-    let said = |text: &str| reports.completed.contains(text);
+    let message = |text: &str| reports.completed.contains(text);
     let goals =
         [("rotate 90", 90.0), ("rotate -90", -90.0), ("rotate 45", 225.0), ("turn -90", -90.0), ("turn 90", 90.0)];
-    let heading = goals.iter().find(|(law, _)| said(law)).map_or(0.0, |(_, degrees)| degrees * (PI / 180.0));
-    let x = if said("goAvoid 0 2 20") { 2.0 } else { 0.0 };
+    let heading = goals.iter().find(|(law, _)| message(law)).map_or(0.0, |(_, degrees)| degrees * (PI / 180.0));
+    let x = if message("goAvoid 0 2 20") { 2.0 } else { 0.0 };
     let omega = if reports.completed.is_empty() { 0.5 } else { 0.0 };
     let pressed = f64::from(u8::from(reports.fired.contains("bumper")));
     // Without a pattern everything is near: `atIsection 1111`, which no plan asks for.
@@ -204,7 +204,7 @@ fn record(reports: &Reports) -> Vec<u8> {
     for (range, bit) in ranges.iter_mut().step_by(4).zip(pattern.chars()) {
         *range = if bit == '1' { 0.5 } else { -1.0 };
     }
-    ranges[9] = if said("align 7 9") { ranges[7] } else { 1.5 };
+    ranges[9] = if message("align 7 9") { ranges[7] } else { 1.5 };
     let compared = |text: &str| reports.fired.contains(text);
     ranges[2] = if compared("r2 < 0.3") { 0.2 } else { 1.0 };
     ranges[6] = if compared("r6 == r14") { ranges[14] } else { 1.5 };
@@ -265,9 +265,9 @@ fn every_quark_links_and_runs() {
 #[test]
 fn a_panic_that_is_left_does_not_link() {
     let output = cargo_build().args(["--bin", "indexing"]).output().unwrap();
-    let said = String::from_utf8_lossy(&output.stderr);
+    let message = String::from_utf8_lossy(&output.stderr);
     assert!(!output.status.success());
-    assert!(said.contains("undefined") && said.contains("a_panic_path_is_left"), "{said}");
+    assert!(message.contains("undefined") && message.contains("a_panic_path_is_left"), "{message}");
 }
 
 #[test]

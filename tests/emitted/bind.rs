@@ -27,14 +27,14 @@ fn with_rover(test: &str, alphabet: &str) -> PathBuf {
 }
 
 fn bind(folder: &Path, arguments: &[&str]) -> (Option<i32>, String) {
-    said(&run_mdlec(folder, &[&["bind", "rover/alphabet.mdle"], arguments].concat()))
+    message(&run_mdlec(folder, &[&["bind", "rover/alphabet.mdle"], arguments].concat()))
 }
 
 fn built(folder: &Path) -> (Option<i32>, String) {
-    said(&run_mdlec(folder, &["plan.mdle", "--target", "rover"]))
+    message(&run_mdlec(folder, &["plan.mdle", "--target", "rover"]))
 }
 
-fn said(output: &Output) -> (Option<i32>, String) {
+fn message(output: &Output) -> (Option<i32>, String) {
     (output.status.code(), String::from_utf8_lossy(&output.stderr).into_owned())
 }
 
@@ -45,8 +45,8 @@ fn the_alphabets_of_this_repository_are_bound() {
     let own: Vec<_> = own.collect();
     assert!(own.len() >= 2 && own.iter().any(|file| file.path == "atoms/alphabet.mdle"), "{own:?}");
     for file in own {
-        let (status, said) = said(&run_mdlec(&root(), &["bind", "--check", &file.path]));
-        assert_eq!(status, Some(0), "{said}");
+        let (status, message) = message(&run_mdlec(&root(), &["bind", "--check", &file.path]));
+        assert_eq!(status, Some(0), "{message}");
     }
 }
 
@@ -55,8 +55,8 @@ fn a_bound_target_runs_plans() {
     let folder = with_rover("bound", ALPHABET);
     assert_eq!(bind(&folder, &[]), (Some(0), "rover/src/alphabet.rs is written\n".into()));
     assert_eq!(bind(&folder, &[]), (Some(0), "rover/src/alphabet.rs is up to date\n".into()));
-    let (status, said) = built(&folder);
-    assert_eq!(status, Some(0), "{said}");
+    let (status, message) = built(&folder);
+    assert_eq!(status, Some(0), "{message}");
     let ran = Command::new(folder.join("plan")).output().unwrap();
     let printed = String::from_utf8(ran.stdout).unwrap();
     insta::assert_snapshot!(printed, @r"
@@ -68,13 +68,14 @@ fn a_bound_target_runs_plans() {
 #[test]
 fn a_target_that_is_not_bound_or_bound_to_another_alphabet_is_not_built() {
     let folder = with_rover("unbound", ALPHABET);
-    let mut told = vec![("bind --check", bind(&folder, &["--check"])), ("plan", built(&folder))];
+    let mut report = vec![("bind --check", bind(&folder, &["--check"])), ("plan", built(&folder))];
     assert_eq!(bind(&folder, &[]).0, Some(0));
     let changed = ALPHABET.replace("10.8", "11.5");
     fs::write(folder.join("rover/alphabet.mdle"), changed).unwrap();
-    told.extend([("bind --check", bind(&folder, &["--check"])), ("plan", built(&folder))]);
-    let told: Vec<_> = told.iter().map(|(what, (status, said))| format!("$ {what}: {status:?}\n{said}")).collect();
-    insta::assert_snapshot!(told.join("\n"));
+    report.extend([("bind --check", bind(&folder, &["--check"])), ("plan", built(&folder))]);
+    let report: Vec<_> =
+        report.iter().map(|(what, (status, message))| format!("$ {what}: {status:?}\n{message}")).collect();
+    insta::assert_snapshot!(report.join("\n"));
     assert!(!folder.join("plan").exists());
 }
 
@@ -83,14 +84,14 @@ fn an_alphabet_that_lies_fails_the_build_of_its_target() {
     let folder = with_rover("lie", &ALPHABET.replace("limit: voltage V", "limit: length m"));
     assert_eq!(bind(&folder, &[]).0, Some(0));
     fs::write(folder.join("plan.mdle"), "{ Main (low 11) (Atom (low 13) count -3) }").unwrap();
-    let (status, said) = built(&folder);
-    assert_eq!(status, Some(2), "{said}");
+    let (status, message) = built(&folder);
+    assert_eq!(status, Some(2), "{message}");
     let sentence = "error: the target crate `mdle_rover` does not compile; this is not a fault of your plan:\n";
-    assert!(said.contains(sentence), "{said}");
-    for told in
+    assert!(message.contains(sentence), "{message}");
+    for report in
         ["error[E0308]: mismatched types", "src/alphabet.rs", "Low::new(limit)", "expected `Volts`, found `Meters`"]
     {
-        assert!(said.contains(told), "{told}:\n{said}");
+        assert!(message.contains(report), "{report}:\n{message}");
     }
 }
 
@@ -98,9 +99,9 @@ fn an_alphabet_that_lies_fails_the_build_of_its_target() {
 fn a_wrong_plan_is_told_where_in_both_files() {
     let folder = with_rover("misfit", ALPHABET);
     fs::write(folder.join("plan.mdle"), "{ Main (low 2s) (Atom (null) count 0.5) }").unwrap();
-    let (status, said) = built(&folder);
+    let (status, message) = built(&folder);
     assert_eq!(status, Some(1));
-    insta::assert_snapshot!(said);
+    insta::assert_snapshot!(message);
 }
 
 #[test]
@@ -108,7 +109,7 @@ fn what_cannot_be_bound_is_said() {
     let folder = with_rover("no_target", "target rover : crate mdle_rover;\ncontrol f(a: speed parsec);\n");
     let broken = bind(&folder, &[]);
     fs::remove_file(folder.join("rover/alphabet.mdle")).unwrap();
-    let told: Vec<_> = [broken, bind(&folder, &[])].map(|(status, said)| format!("{status:?}\n{said}")).into();
-    insta::assert_snapshot!(told.join("\n"));
+    let report: Vec<_> = [broken, bind(&folder, &[])].map(|(status, message)| format!("{status:?}\n{message}")).into();
+    insta::assert_snapshot!(report.join("\n"));
     assert!(!folder.join("rover/src/alphabet.rs").exists());
 }

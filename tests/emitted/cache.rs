@@ -42,10 +42,10 @@ fn assert_rests(folder: &Path, seconds: usize) {
 /// Returns the message about a plan that does not become an executable.
 fn refused(command: &mut Command) -> String {
     let output = command.output().unwrap();
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(!said.contains("panicked"), "{said}");
-    without_waiting(&said)
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(!message.contains("panicked"), "{message}");
+    without_waiting(&message)
 }
 
 #[test]
@@ -78,13 +78,13 @@ fn clean_removes_a_cache_and_nothing_else() {
     let clean = || command(&folder, &["clean"]).env("MDLEC_CACHE", "cache").output().unwrap();
     fs::write(cache.join("notes.txt"), "mine").unwrap();
     let refused = clean();
-    let said = "error: `cache` is not a cache of mdlec: it contains `notes.txt`, which mdlec did not write; nothing was removed\n";
-    assert_eq!((refused.status.code(), String::from_utf8(refused.stderr).unwrap().as_str()), (Some(2), said));
+    let message = "error: `cache` is not a cache of mdlec: it contains `notes.txt`, which mdlec did not write; nothing was removed\n";
+    assert_eq!((refused.status.code(), String::from_utf8(refused.stderr).unwrap().as_str()), (Some(2), message));
     assert!(cache.join("target/release/plan").exists());
     fs::remove_file(cache.join("notes.txt")).unwrap();
-    for said in ["cache: 1.0 MB freed\n", "cache: 0.0 MB freed\n"] {
+    for message in ["cache: 1.0 MB freed\n", "cache: 0.0 MB freed\n"] {
         let output = clean();
-        assert_eq!((output.status.code(), String::from_utf8(output.stderr).unwrap().as_str()), (Some(0), said));
+        assert_eq!((output.status.code(), String::from_utf8(output.stderr).unwrap().as_str()), (Some(0), message));
     }
     assert_eq!(fs::read_dir(cache).unwrap().count(), 1, "the lock");
 }
@@ -134,14 +134,14 @@ fn a_place_that_cannot_be_a_cache_is_told() {
     let folder = with_plan("no_cache", 1);
     // Permissions do not bind a superuser; these bind everyone.
     for place in ["plan.mdle", "plan.mdle/cache", "/proc/mdlec"] {
-        let said = refused(command(&folder, &BUILD).env("MDLEC_CACHE", place));
-        assert!(said.starts_with(&format!("error: the cache cannot be used at `{place}` (")), "{said}");
+        let message = refused(command(&folder, &BUILD).env("MDLEC_CACHE", place));
+        assert!(message.starts_with(&format!("error: the cache cannot be used at `{place}` (")), "{message}");
         let advice = "): make it writable or delete it, or name another folder with the variable MDLEC_CACHE\n";
-        assert!(said.ends_with(advice), "{said}");
+        assert!(message.ends_with(advice), "{message}");
     }
     fs::create_dir_all(folder.join("cache/lock")).unwrap();
-    let said = refused(command(&folder, &BUILD).env("MDLEC_CACHE", "cache"));
-    assert!(said.contains("/cache/lock` (") && said.contains("delete it"), "{said}");
+    let message = refused(command(&folder, &BUILD).env("MDLEC_CACHE", "cache"));
+    assert!(message.contains("/cache/lock` (") && message.contains("delete it"), "{message}");
 }
 
 #[test]
@@ -149,13 +149,13 @@ fn a_cache_that_others_can_change_is_refused() {
     let folder = with_plan("open_cache", 1);
     let open = |path: &Path, mode| fs::set_permissions(path, fs::Permissions::from_mode(mode)).unwrap();
     open(&folder, 0o777);
-    let said = refused(command(&folder, &BUILD).env("MDLEC_CACHE", "cache"));
+    let message = refused(command(&folder, &BUILD).env("MDLEC_CACHE", "cache"));
     let place = folder.display();
     let start =
         format!("error: the cache is not safe: others can write to `{place}`, and could put code into executables");
     assert!(
-        said.starts_with(&start) && said.ends_with("or name another folder with the variable MDLEC_CACHE\n"),
-        "{said}"
+        message.starts_with(&start) && message.ends_with("or name another folder with the variable MDLEC_CACHE\n"),
+        "{message}"
     );
     open(&folder, 0o755);
     // The cache itself is closed to others, and what they may have put there goes.
@@ -179,10 +179,10 @@ fn whom_a_build_waits_for_is_told() {
         let file = File::options().create(true).append(true).open(lock).unwrap();
         file.lock().unwrap();
         let mut child = command(&folder, &BUILD).stderr(Stdio::piped()).spawn().unwrap();
-        let mut said = BufReader::new(child.stderr.take().unwrap()).lines().map(Result::unwrap);
-        let line = said.find(|line| line.starts_with("waiting for another ")).expect(sentence);
+        let mut message = BufReader::new(child.stderr.take().unwrap()).lines().map(Result::unwrap);
+        let line = message.find(|line| line.starts_with("waiting for another ")).expect(sentence);
         drop(file);
-        said.for_each(drop);
+        message.for_each(drop);
         assert_eq!(child.wait().unwrap().code(), Some(0));
         if line.starts_with(sentence) {
             break;
@@ -198,9 +198,9 @@ fn whom_a_build_waits_for_is_told() {
 #[test]
 fn without_rust_it_says_what_to_install() {
     let folder = with_plan("no_rust", 1);
-    let said = refused(command(&folder, &BUILD).env("PATH", &folder));
+    let message = refused(command(&folder, &BUILD).env("PATH", &folder));
     let advice = "install Rust from rustup.rs\n";
-    assert_eq!(said, format!("error: mdlec needs `rustc` to build an executable, and it is not there: {advice}"));
+    assert_eq!(message, format!("error: mdlec needs `rustc` to build an executable, and it is not there: {advice}"));
 }
 
 #[test]
@@ -222,8 +222,11 @@ fn libraries_that_cannot_be_fetched_are_told() {
         refused(command.env("CARGO_NET_RETRY", "1").env(name, value))
     };
     let missing = "error: the libraries that executables are built on are not on this machine yet, and ";
-    let said = nothing("CARGO_HTTP_PROXY", NOWHERE);
-    assert!(said.contains(&format!("{missing}they cannot be fetched: connect it to the network once")), "{said}");
-    let said = nothing("CARGO_NET_OFFLINE", "true");
-    assert!(said.contains(&format!("{missing}cargo is told not to fetch them: unset CARGO_NET_OFFLINE")), "{said}");
+    let message = nothing("CARGO_HTTP_PROXY", NOWHERE);
+    assert!(message.contains(&format!("{missing}they cannot be fetched: connect it to the network once")), "{message}");
+    let message = nothing("CARGO_NET_OFFLINE", "true");
+    assert!(
+        message.contains(&format!("{missing}cargo is told not to fetch them: unset CARGO_NET_OFFLINE")),
+        "{message}"
+    );
 }

@@ -115,10 +115,10 @@ fn a_panic_stops_the_robot_whatever_the_profile() {
     let folder = with_rover("profile", DRIVER);
     assert_done(&mdlec_among_strangers(&folder, &["plan.mdle", "--target", "rover"]));
     let run = Command::new(folder.join("plan")).args(["--speed", "max"]).current_dir(&folder).output().unwrap();
-    let said = String::from_utf8(run.stderr).unwrap();
-    assert!(said.contains("the driver of the test") && !said.contains("overflow"), "{said}");
-    assert_eq!(run.status.code(), Some(3), "{said}");
-    assert!(folder.join("stopped").exists(), "{said}");
+    let message = String::from_utf8(run.stderr).unwrap();
+    assert!(message.contains("the driver of the test") && !message.contains("overflow"), "{message}");
+    assert_eq!(run.status.code(), Some(3), "{message}");
+    assert!(folder.join("stopped").exists(), "{message}");
     assert!(!above().join("moved").exists(), "what is compiled stays in the cache");
 }
 

@@ -80,8 +80,8 @@ fn an_application_runs_its_plan_and_is_built_anew_when_a_file_of_it_changes() {
     change(&sides, "turn 90", "tern 90");
     let output = run(&folder);
     assert_eq!(output.status.code(), Some(101));
-    let said = String::from_utf8(output.stderr).unwrap();
-    let (cargo, script) = said.split_once("--- stderr\n").expect(&said);
+    let message = String::from_utf8(output.stderr).unwrap();
+    let (cargo, script) = message.split_once("--- stderr\n").expect(&message);
     assert!(cargo.contains("(exit status: 1)") && !cargo.contains("--- stdout"), "{cargo}");
     insta::assert_snapshot!(script);
 
@@ -90,8 +90,10 @@ fn an_application_runs_its_plan_and_is_built_anew_when_a_file_of_it_changes() {
     change(&sides, "(null)", "(bumper)");
     let output = cargo_run(&folder, "--color=never", &["--speed", "max"]);
     assert_eq!(output.status.code(), Some(0));
-    let said = String::from_utf8(output.stderr).unwrap();
-    insta::assert_snapshot!(said.lines().filter(|line| line.starts_with("warning: ")).collect::<Vec<_>>().join("\n"));
+    let message = String::from_utf8(output.stderr).unwrap();
+    insta::assert_snapshot!(
+        message.lines().filter(|line| line.starts_with("warning: ")).collect::<Vec<_>>().join("\n")
+    );
 }
 
 #[test]
@@ -108,14 +110,14 @@ fn an_application_calls_its_plan_from_its_own_loop() {
 fn what_is_missing_is_told_as_a_build_script_can_type_it() {
     let _alone = BUILDING.lock().unwrap_or_else(PoisonError::into_inner);
     let (folder, _) = application();
-    let mut told = String::new();
+    let mut report = String::new();
     let script = folder.join("build.rs");
     let good = fs::read_to_string(&script).unwrap();
     for wrong in [".target(\"sin\")", "", ".target(\"sim\").plan(\"Rond\")"] {
         fs::write(&script, good.replace(".target(\"sim\")", wrong)).unwrap();
-        let said = String::from_utf8(run(&folder).stderr).unwrap();
-        let (_, said) = said.split_once("--- stderr\n").expect(&said);
-        told += &format!("{wrong}\n{said}\n");
+        let message = String::from_utf8(run(&folder).stderr).unwrap();
+        let (_, message) = message.split_once("--- stderr\n").expect(&message);
+        report += &format!("{wrong}\n{message}\n");
     }
-    insta::assert_snapshot!(told);
+    insta::assert_snapshot!(report);
 }

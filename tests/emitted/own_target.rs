@@ -37,11 +37,12 @@ fn with_rover(test: &str) -> PathBuf {
 /// Returns the message about a plan for the rover that does not become an executable.
 fn refused(folder: &Path) -> String {
     let output = run_mdlec(folder, &["plan.mdle", "--target", "rover"]);
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!((output.status.code(), output.stdout.as_slice()), (Some(2), &b""[..]), "{said}");
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!((output.status.code(), output.stdout.as_slice()), (Some(2), &b""[..]), "{message}");
     assert!(!folder.join("plan").exists());
     // Of this, only the first build of all says something.
-    said.lines()
+    message
+        .lines()
         .filter(|line| !line.starts_with("compiling libraries") && !line.starts_with("waiting for"))
         .fold(String::new(), |text, line| text + line + "\n")
 }
@@ -53,13 +54,13 @@ fn a_crate_that_does_not_compile_is_quoted_whole_and_serves_when_mended() {
     let good = fs::read_to_string(&library).unwrap();
     let bad = "\npub(crate) fn first() {\n    whistle();\n}\n\npub(crate) const SECOND: u8 = \"bell\";\n";
     fs::write(&library, format!("{good}{bad}")).unwrap();
-    let said = refused(&folder);
-    assert!(said.starts_with(SENTENCE), "{said}");
+    let message = refused(&folder);
+    assert!(message.starts_with(SENTENCE), "{message}");
     for quoted in ["    whistle();\n", "error[E0308]: mismatched types", "pub(crate) const SECOND: u8 = \"bell\";\n"] {
-        assert!(said.contains(quoted), "{quoted:?} is missing in:\n{said}");
+        assert!(message.contains(quoted), "{quoted:?} is missing in:\n{message}");
     }
     for other in ["Compiling", "could not compile", "internal error", "rustc --crate-name"] {
-        assert!(!said.contains(other), "{other:?} is in:\n{said}");
+        assert!(!message.contains(other), "{other:?} is in:\n{message}");
     }
 
     fs::write(&library, good).unwrap();
@@ -80,8 +81,8 @@ fn a_new_target_drives_and_feels_contact_once_it_can() {
     };
     assert_eq!(done(&["new-target", "rover"]).0, Some(0));
     assert_eq!(done(&["bind", "--check", "rover/alphabet.mdle"]).0, Some(0));
-    let (status, said) = done(&["plan.mdle", "--target", "./rover"]);
-    assert!(status == Some(1) && said.contains("bumper"), "{said}");
+    let (status, message) = done(&["plan.mdle", "--target", "./rover"]);
+    assert!(status == Some(1) && message.contains("bumper"), "{message}");
 
     // As the book says.
     let change = |file: &str, from: &str, to: &str| {
@@ -93,8 +94,8 @@ fn a_new_target_drives_and_feels_contact_once_it_can() {
     change("alphabet.mdle", "odometry;", "odometry, bumper;");
     change("src/hardware.rs", "switches: 0,", "switches: u32::from(self.pose.x.0 > 0.795),");
     assert_eq!(done(&["bind", "rover/alphabet.mdle"]).0, Some(0));
-    let (status, said) = done(&["plan.mdle", "--target", "./rover"]);
-    assert_eq!(status, Some(0), "{said}");
+    let (status, message) = done(&["plan.mdle", "--target", "./rover"]);
+    assert_eq!(status, Some(0), "{message}");
     let run = Command::new(folder.join("plan")).args(["--speed", "max", "--timeout", "60"]).output().unwrap();
     let printed = String::from_utf8(run.stdout).unwrap();
     insta::assert_snapshot!(printed, @r"
@@ -111,8 +112,8 @@ fn conformance(robot: &Path) -> (bool, String) {
     // What is built of the same sources stays from run to run.
     let built = robot.parent().unwrap().with_file_name("new_target_built");
     let output = command.env("CARGO_TARGET_DIR", built).output().unwrap();
-    let said = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
-    (output.status.success(), said.concat())
+    let message = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+    (output.status.success(), message.concat())
 }
 
 #[test]
@@ -127,17 +128,17 @@ fn a_new_target_conforms_until_a_sign_is_wrong() {
     fs::write(robot.join("Cargo.toml"), manifest.replace("path = \"../mdle/", &here)).unwrap();
     // No network is needed.
     fs::copy(root().join("Cargo.lock"), robot.join("Cargo.lock")).unwrap();
-    let (passed, said) = conformance(&robot);
-    assert!(passed, "{said}");
+    let (passed, message) = conformance(&robot);
+    assert!(passed, "{message}");
 
     let hardware = robot.join("src/hardware.rs");
     let text = fs::read_to_string(&hardware).unwrap();
     let wrong = text.replace("Radians(speeds.omega.0 * seconds)", "Radians(-speeds.omega.0 * seconds)");
     assert_ne!(wrong, text);
     fs::write(&hardware, wrong).unwrap();
-    let (passed, said) = conformance(&robot);
+    let (passed, message) = conformance(&robot);
     let sentence = "the body turned counter-clockwise by -0.800 rad instead of 0.800 rad: a sign in the input";
-    assert!(!passed && said.contains(sentence), "{said}");
+    assert!(!passed && message.contains(sentence), "{message}");
 }
 
 #[test]
@@ -156,10 +157,10 @@ fn a_new_target_holds_every_file_of_the_template() {
 fn a_build_script_that_fails_is_quoted() {
     let folder = with_rover("own_build_script");
     fs::write(folder.join("rover/build.rs"), "fn main() {\n    panic!(\"no library of the whistle\");\n}\n").unwrap();
-    let said = refused(&folder);
-    let (sentence, quoted) = said.split_once('\n').unwrap();
-    assert!(SENTENCE.starts_with(sentence), "{said}");
-    assert!(quoted.contains("no library of the whistle"), "{said}");
+    let message = refused(&folder);
+    let (sentence, quoted) = message.split_once('\n').unwrap();
+    assert!(SENTENCE.starts_with(sentence), "{message}");
+    assert!(quoted.contains("no library of the whistle"), "{message}");
 }
 
 #[test]
@@ -168,7 +169,7 @@ fn a_manifest_that_cargo_refuses_is_no_fault_of_the_plan() {
     let manifest = folder.join("rover/Cargo.toml");
     let good = fs::read_to_string(&manifest).unwrap();
     fs::write(&manifest, format!("{good}\n[dependencies.whistle]\npath = \"../whistle\"\n")).unwrap();
-    let said = refused(&folder);
+    let message = refused(&folder);
     let sentence = "error: cargo cannot use the target crate `mdle_sim`; this is not a fault of your plan:\n";
-    assert!(said.starts_with(sentence) && said.contains("whistle"), "{said}");
+    assert!(message.starts_with(sentence) && message.contains("whistle"), "{message}");
 }

@@ -102,10 +102,10 @@ fn layout_does_not_depend_on_where_the_lines_of_a_plan_end() {
 
 /// Asserts the exit status and the standard output of a command; returns standard error.
 fn assert_says(output: &Output, status: i32, printed: &str) -> String {
-    let said = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert_eq!(output.status.code(), Some(status), "{said}");
-    assert_eq!(String::from_utf8_lossy(&output.stdout), printed, "{said}");
-    said
+    let message = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert_eq!(output.status.code(), Some(status), "{message}");
+    assert_eq!(String::from_utf8_lossy(&output.stdout), printed, "{message}");
+    message
 }
 
 fn text(folder: &Path, name: &str) -> String {
@@ -158,8 +158,8 @@ fn standard_input_is_printed() {
     assert_eq!(assert_says(&run_mdlec_reading(&folder, &["fmt", "-"], LAID_OUT), 0, LAID_OUT), "");
     assert_eq!(assert_says(&run_mdlec_reading(&folder, &["fmt", "--check", "-"], ODD), 1, "-\n"), "");
     assert_eq!(assert_says(&run_mdlec_reading(&folder, &["fmt", "--check", "-"], LAID_OUT), 0, ""), "");
-    let said = assert_says(&run_mdlec_reading(&folder, &["fmt", "-"], "{ P (Atom (bumper) }"), 1, "");
-    assert!(said.contains("error[E0103]") && said.contains("standard input:1:"), "{said}");
+    let message = assert_says(&run_mdlec_reading(&folder, &["fmt", "-"], "{ P (Atom (bumper) }"), 1, "");
+    assert!(message.contains("error[E0103]") && message.contains("standard input:1:"), "{message}");
 }
 
 #[test]
@@ -168,11 +168,11 @@ fn a_file_with_errors_stays_as_it_is_and_the_others_are_laid_out() {
     let wrong = "{P(bumper)\n(Atom(wait 1 stop)}\n";
     fs::write(folder.join("wrong.mdle"), wrong).unwrap();
     fs::write(folder.join("odd.mdle"), ODD).unwrap();
-    let said = assert_says(&run_mdlec(&folder, &["fmt", "wrong.mdle", "odd.mdle"]), 1, "");
-    assert!(said.contains("error[E0103]") && said.contains("wrong.mdle:2:"), "{said}");
+    let message = assert_says(&run_mdlec(&folder, &["fmt", "wrong.mdle", "odd.mdle"]), 1, "");
+    assert!(message.contains("error[E0103]") && message.contains("wrong.mdle:2:"), "{message}");
     assert_eq!((text(&folder, "wrong.mdle").as_str(), text(&folder, "odd.mdle").as_str()), (wrong, LAID_OUT));
 
-    let said = assert_says(&run_mdlec(&folder, &["fmt", "none.mdle", "wrong.mdle", "."]), 2, "");
-    assert!(said.contains("there is no file `none.mdle`") && said.contains("`.` is a folder"), "{said}");
+    let message = assert_says(&run_mdlec(&folder, &["fmt", "none.mdle", "wrong.mdle", "."]), 2, "");
+    assert!(message.contains("there is no file `none.mdle`") && message.contains("`.` is a folder"), "{message}");
     assert_says(&run_mdlec(&folder, &["fmt"]), 2, "");
 }

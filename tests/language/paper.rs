@@ -37,13 +37,13 @@ fn listings_are_accepted_as_printed() {
         let path = format!("plans/paper/{name}.mdle");
         let text = fs::read_to_string(root().join(&path)).expect(&path);
         assert!(text.trim_start().starts_with(first), "{path} is not as printed");
-        let (compiled, said) = judge(&TextFile { path, text: text.clone() }, None);
-        assert_eq!(compiled.len(), 1, "{said}");
-        assert_eq!(said.matches("warning[W0101]").count(), repeated, "{said}");
+        let (compiled, message) = judge(&TextFile { path, text: text.clone() }, None);
+        assert_eq!(compiled.len(), 1, "{message}");
+        assert_eq!(message.matches("warning[W0101]").count(), repeated, "{message}");
         // A forward speed of `0.5` is half a centimetre a second, and cannot be meant.
-        let slow = said.matches("warning[W0401]: `v` of `go` is 0.5 cm/s").count();
-        assert_eq!(slow, text.matches("go(0.5 0)").count(), "{said}");
-        assert_eq!(said.matches("[W").count(), repeated + slow, "{said}");
+        let slow = message.matches("warning[W0401]: `v` of `go` is 0.5 cm/s").count();
+        assert_eq!(slow, text.matches("go(0.5 0)").count(), "{message}");
+        assert_eq!(message.matches("[W").count(), repeated + slow, "{message}");
     }
 }
 

@@ -141,9 +141,9 @@ impl<'c> Trial<'c> {
     fn run(&self, chance: &mut Chance, count: &mut Count) {
         let plan = self.compiled.nondegenerate.plan();
         let explorer = Explorer::new(plan);
-        let (said, all) = choices(plan, chance);
+        let (message, all) = choices(plan, chance);
         let mut applied = BTreeSet::new();
-        let whole = explorer.explore(&said, &STEPS, SITUATIONS[usize::from(!all)], &mut |turn, run| {
+        let whole = explorer.explore(&message, &STEPS, SITUATIONS[usize::from(!all)], &mut |turn, run| {
             count.turns += 1;
             count.over += usize::from(turn.over);
             self.check(&explorer, turn, run);
@@ -226,16 +226,16 @@ fn runs_of_the_machine_take_as_long_as_is_said() {
             run(Counted::new(&compiled.machine), &script)
         {
             let now = times[turn];
-            let said = || format!("seed {seed}, turn {turn} at {now} s\n{text}\n{}", analysis.to_text());
-            assert!(fired.len() as u64 <= analysis.transitions, "{}", said());
+            let message = || format!("seed {seed}, turn {turn} at {now} s\n{text}\n{}", analysis.to_text());
+            assert!(fired.len() as u64 <= analysis.transitions, "{}", message());
             // Nothing is written with more digits than these.
             let longest = analysis.longest.seconds.zip(analysis.longest.turns);
             let longest = longest.map(|(seconds, turns)| seconds + turns as f64 * gap + 1e-9);
-            assert!(longest.is_none_or(|longest| now <= longest), "{}", said());
+            assert!(longest.is_none_or(|longest| now <= longest), "{}", message());
             if applied == Applied::Over {
                 over += 1;
                 bounded += usize::from(longest.is_some());
-                assert!(analysis.shortest.is_some_and(|shortest| shortest <= now + 1e-9), "{}", said());
+                assert!(analysis.shortest.is_some_and(|shortest| shortest <= now + 1e-9), "{}", message());
             }
         }
     }
@@ -250,7 +250,7 @@ fn choices(plan: &Plan, chance: &mut Chance) -> (Vec<QuarkValues>, bool) {
     let is_compared = plan.quarks.iter().any(|quark| quark.comparison.is_some());
     let all = 1 << bits.len().min(20) <= CHOICES && !is_compared;
     let count = if all { 1 << bits.len() } else { CHOICES };
-    let said = (0..count).map(|number| {
+    let message = (0..count).map(|number| {
         let mut fired = vec![false; plan.quarks.len()];
         for (place, bit) in bits.iter().enumerate() {
             fired[*bit] = if all { number >> place & 1 == 1 } else { chance.percent(35) };
@@ -262,7 +262,7 @@ fn choices(plan: &Plan, chance: &mut Chance) -> (Vec<QuarkValues>, bool) {
         }
         QuarkValues { fired, completed }
     });
-    (said.collect(), all)
+    (message.collect(), all)
 }
 
 fn plans() -> Vec<TextFile> {
@@ -273,8 +273,8 @@ fn plans() -> Vec<TextFile> {
 
 fn analysis(path: &str) -> Analysis {
     let text = std::fs::read_to_string(root().join(path)).expect(path);
-    let (compiled, said) = judge(&TextFile { path: path.into(), text }, None);
-    analyze(&compiled.first().expect(&said).machine)
+    let (compiled, message) = judge(&TextFile { path: path.into(), text }, None);
+    analyze(&compiled.first().expect(&message).machine)
 }
 
 #[test]
@@ -319,7 +319,7 @@ fn an_analysis_is_printed_for_people_and_for_programs() {
     let plan = "{ Outing (wait 20s OR bumper)\n  (Atom (bumper AND r0 < 1m OR wait 15s) (go 20 0))\n  \
                 ((Atom (null) turn 90) (Atom (wait 6s) stop))^2\n  (Atom (wait 9s) stop)\n}\n";
     std::fs::write(folder.join("plan.mdle"), plan).unwrap();
-    let said = |arguments: &[&str]| {
+    let message = |arguments: &[&str]| {
         let output = run_mdlec(&folder, &[&["analyze", "plan.mdle"], arguments].concat());
         let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
         format!(
@@ -329,7 +329,7 @@ fn an_analysis_is_printed_for_people_and_for_programs() {
         )
     };
     insta::assert_snapshot!(
-        [said(&[]), said(&["--json"]), said(&["--deny-warnings"]), said(&["--plan", "P"])].join("\n")
+        [message(&[]), message(&["--json"]), message(&["--deny-warnings"]), message(&["--plan", "P"])].join("\n")
     );
 }
 

@@ -8,8 +8,8 @@ use mdle_tests::repository::TextFile;
 
 fn file(plan: &str) -> FsmFile {
     let plan = TextFile { path: "plan.mdle".into(), text: plan.into() };
-    let (compiled, said) = judge(&plan, None);
-    assert_eq!(compiled.len(), 1, "{}: {said}", plan.text);
+    let (compiled, message) = judge(&plan, None);
+    assert_eq!(compiled.len(), 1, "{}: {message}", plan.text);
     fsm_file(&compiled[0].nondegenerate).unwrap()
 }
 

@@ -51,9 +51,9 @@ fn trees() {
 #[test]
 fn what_a_robot_that_has_everything_is_told() {
     for file in plans() {
-        let (compiled, said) = judge(&file, None);
-        assert!(!compiled.is_empty(), "{said}");
-        insta::assert_snapshot!(format!("check-{}", name(&file)), said);
+        let (compiled, message) = judge(&file, None);
+        assert!(!compiled.is_empty(), "{message}");
+        insta::assert_snapshot!(format!("check-{}", name(&file)), message);
     }
 }
 
@@ -61,10 +61,10 @@ fn what_a_robot_that_has_everything_is_told() {
 fn machines_of_what_the_simulator_runs_and_why_it_does_not_run_the_rest() {
     let mut runs = 0;
     for file in plans() {
-        let (compiled, said) = judge(&file, Some("sim"));
+        let (compiled, message) = judge(&file, Some("sim"));
         let machines: String = compiled.iter().map(machine).collect();
         runs += usize::from(!compiled.is_empty());
-        insta::assert_snapshot!(format!("sim-{}", name(&file)), format!("{said}{machines}"));
+        insta::assert_snapshot!(format!("sim-{}", name(&file)), format!("{message}{machines}"));
     }
     assert!(runs >= 3, "the simulator runs {runs} plans");
 }

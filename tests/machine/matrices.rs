@@ -209,13 +209,13 @@ const PLAN: &str = "{ P (bumper) { Q (wait 9) (Atom (wait 1) stop) (Atom (wait 2
 fn matrices_are_printed_or_written_into_a_folder() {
     let folder = folder("matrices");
     fs::write(folder.join("plan.mdle"), PLAN).unwrap();
-    let said = |arguments: &[&str]| {
+    let message = |arguments: &[&str]| {
         let output = run_mdlec(&folder, &[&["plan.mdle", "--emit"], arguments].concat());
         let text = |bytes| String::from_utf8(bytes).unwrap();
         (output.status.code(), text(output.stdout), text(output.stderr))
     };
-    let (status, printed, told) = said(&["matrices"]);
-    assert_eq!((status, &*told), (Some(0), ""));
+    let (status, printed, report) = message(&["matrices"]);
+    assert_eq!((status, &*report), (Some(0), ""));
     insta::assert_snapshot!("matrices_of_each_type", printed);
     let names = |folder: &str| {
         let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -224,10 +224,10 @@ fn matrices_are_printed_or_written_into_a_folder() {
         names
     };
     let there = folder.join("written/here");
-    let (status, printed, told) = said(&["matrices=written/here"]);
+    let (status, printed, report) = message(&["matrices=written/here"]);
     assert_eq!((status, &*printed), (Some(0), ""));
     assert_eq!(
-        told,
+        report,
         "7 matrices of 5 states as MatrixMarket files in `written/here`; `matrices.json` says which interrupt each belongs \
          to\n"
     );
@@ -240,7 +240,7 @@ fn matrices_are_printed_or_written_into_a_folder() {
     fs::write(folder.join("written/here/x.mtx"), "mine").unwrap();
     // Timers of different scopes are never counted once.
     fs::write(folder.join("plan.mdle"), PLAN.replace("(wait 1)", "(atIsection 1000)")).unwrap();
-    assert_eq!(said(&["matrices", "--combine", "-o", "written/here"]).0, Some(0));
+    assert_eq!(message(&["matrices", "--combine", "-o", "written/here"]).0, Some(0));
     assert_eq!(
         names(there),
         ["completed.mtx", "matrices.json", "x.mtx", "x1.mtx", "x2.mtx", "x3.mtx", "x4.mtx", "x5.mtx"]
@@ -250,22 +250,22 @@ fn matrices_are_printed_or_written_into_a_folder() {
 #[test]
 fn what_cannot_be_printed_or_written_is_told_with_what_to_do() {
     let folder = folder("no_matrices");
-    let said = |plan: &str, arguments: &[&str]| {
+    let message = |plan: &str, arguments: &[&str]| {
         fs::write(folder.join("plan.mdle"), plan).unwrap();
         let output = run_mdlec(&folder, &[&["plan.mdle", "--emit"], arguments].concat());
         assert_eq!(output.stdout, b"");
         (output.status.code(), String::from_utf8(output.stderr).unwrap())
     };
-    let (status, told) = said("{ P (Atom (wait 1) stop)^16 }", &["matrices"]);
-    assert!(status == Some(2) && told.contains("`--emit matrices=FOLDER`"), "{told}");
-    let (status, told) = said("{ P (Atom (wait 1) stop)^9999 }", &["matrices=large"]);
-    assert!(status == Some(1) && told.contains("error[E0502]") && told.contains("99990000 ones"), "{told}");
+    let (status, report) = message("{ P (Atom (wait 1) stop)^16 }", &["matrices"]);
+    assert!(status == Some(2) && report.contains("`--emit matrices=FOLDER`"), "{report}");
+    let (status, report) = message("{ P (Atom (wait 1) stop)^9999 }", &["matrices=large"]);
+    assert!(status == Some(1) && report.contains("error[E0502]") && report.contains("99990000 ones"), "{report}");
     assert!(!folder.join("large").exists());
     // Counted once, there is one.
-    let (status, told) = said("{ P (Atom (bumper) stop)^9999 }", &["matrices=large", "--combine"]);
-    assert!(status == Some(0) && told.contains("1 matrix of 10000 states"), "{told}");
-    let (status, told) = said(PLAN, &["matrices=plan.mdle"]);
-    assert!(status == Some(2) && told.contains("`plan.mdle` cannot be written"), "{told}");
-    let (status, told) = said(PLAN, &["fsm", "--combine"]);
-    assert!(status == Some(2) && told.contains("`--emit matrices`"), "{told}");
+    let (status, report) = message("{ P (Atom (bumper) stop)^9999 }", &["matrices=large", "--combine"]);
+    assert!(status == Some(0) && report.contains("1 matrix of 10000 states"), "{report}");
+    let (status, report) = message(PLAN, &["matrices=plan.mdle"]);
+    assert!(status == Some(2) && report.contains("`plan.mdle` cannot be written"), "{report}");
+    let (status, report) = message(PLAN, &["fsm", "--combine"]);
+    assert!(status == Some(2) && report.contains("`--emit matrices`"), "{report}");
 }

@@ -113,8 +113,8 @@ fn boxes_are_inside_each_other_and_beside_each_other_and_tell_everything() {
 }
 
 fn compiled(text: &str) -> Compiled {
-    let (mut compiled, said) = judge(&TextFile { path: "plan.mdle".into(), text: text.into() }, None);
-    assert_eq!(compiled.len(), 1, "{said}");
+    let (mut compiled, message) = judge(&TextFile { path: "plan.mdle".into(), text: text.into() }, None);
+    assert_eq!(compiled.len(), 1, "{message}");
     compiled.swap_remove(0)
 }
 
@@ -201,8 +201,8 @@ fn graphviz_takes_the_graphs_where_it_is_installed() {
         // Whether it is there or not, the graph has Graphviz's grammar.
         assert!(!read_dot(&text).nodes.is_empty());
         let Some(output) = with(&text) else { continue };
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success() && said.is_empty(), "seed {seed}: {said}\n{text}");
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success() && message.is_empty(), "seed {seed}: {message}\n{text}");
     }
 }
 
@@ -255,15 +255,18 @@ fn what_is_too_large_for_a_picture_is_told_with_what_to_do() {
         (format!("{{ P {} }}", "(Atom (wait 1) stop)\n".repeat(100_000)), "has 100000 atoms; a picture shows 1000"),
         (format!("{{ P {} }}", "({ Q (Atom (wait 1) stop) })^2\n".repeat(501)), "1003 scopes and loops"),
     ];
-    for (plan, told) in plans {
+    for (plan, report) in plans {
         fs::write(folder.join("plan.mdle"), plan).unwrap();
         for arguments in
             [&["draw", "plan.mdle"][..], &["plan.mdle", "--emit", "dot"], &["plan.mdle", "--emit", "mermaid"]]
         {
             let output = run_mdlec(&folder, arguments);
-            let said = String::from_utf8(output.stderr).unwrap();
-            assert_eq!((output.status.code(), output.stdout.len()), (Some(1), 0), "{said}");
-            assert!(said.contains("error[E0502]") && said.contains(told) && said.contains("`--plan NAME`"), "{said}");
+            let message = String::from_utf8(output.stderr).unwrap();
+            assert_eq!((output.status.code(), output.stdout.len()), (Some(1), 0), "{message}");
+            assert!(
+                message.contains("error[E0502]") && message.contains(report) && message.contains("`--plan NAME`"),
+                "{message}"
+            );
         }
     }
 }

@@ -102,8 +102,8 @@ fn the_machine_does_what_the_plan_does() {
 fn the_outer_interrupt_wins_and_a_behavior_can_be_left_from_each_of_its_atoms() {
     let text = "{ P (bumper) { Q (wait 2) (Atom (wait 1) stop) (Atom (null) rotate 90) } (Atom (wait 1) (go 5 0)) }";
     let plan = TextFile { path: "plan.mdle".into(), text: text.into() };
-    let (compiled, said) = judge(&plan, None);
-    assert_eq!(compiled.len(), 1, "{said}");
+    let (compiled, messages) = judge(&plan, None);
+    assert_eq!(compiled.len(), 1, "{messages}");
     let script = "{\"t\":7}\n{\"t\":8.5}\n{\"t\":9}\n{\"t\":9.5}\n{\"t\":10,\"fired\":[\"bumper\"]}\n";
     compare(&compiled[0].nondegenerate, script, &mut Seen::default());
     insta::assert_snapshot!(scxml(&compiled[0].nondegenerate).unwrap());

@@ -124,8 +124,11 @@ fn every_mutated_machine_is_told_apart() {
             continue;
         }
         *tried.entry(what).or_default() += 1;
-        let said = validate(&compiled.nondegenerate, &machine);
-        assert!(said.as_ref().is_err_and(|said| said.code == Code::E0901), "seed {seed}, {what}: {said:?}\n{text}");
+        let message = validate(&compiled.nondegenerate, &machine);
+        assert!(
+            message.as_ref().is_err_and(|message| message.code == Code::E0901),
+            "seed {seed}, {what}: {message:?}\n{text}"
+        );
     }
     println!("{tried:#?}");
     // Nothing is left untried.

@@ -77,7 +77,7 @@ impl Walk<'_> {
                 let file = self.write(fence.file().unwrap_or("./alphabet.mdle"), fence);
                 let target = file.strip_suffix("/alphabet.mdle").unwrap();
                 let output = run_mdlec(&self.folder, &["quarks", "--target", target]);
-                assert!(output.status.success(), "{}: {}", self.page.path, said(&output));
+                assert!(output.status.success(), "{}: {}", self.page.path, answer(&output));
             }
             "diff" => self.patch(fence),
             "console" => fence.text.split("$ ").skip(1).for_each(|command| self.run(command)),
@@ -114,13 +114,13 @@ impl Walk<'_> {
 
     /// Asserts that a plan causes exactly the expected codes.
     fn check(&self, fence: &Fence) {
-        let said = said(&run_mdlec(&self.folder, &["check", &self.plan, "--message-format", "json"]));
-        let codes = said.lines().filter_map(|line| {
+        let answer = answer(&run_mdlec(&self.folder, &["check", &self.plan, "--message-format", "json"]));
+        let codes = answer.lines().filter_map(|line| {
             let message: Value = serde_json::from_str(line).expect(line);
             message["code"].as_str().map(str::to_owned)
         });
         let expected: BTreeSet<_> = fence.codes().into_iter().map(str::to_owned).collect();
-        assert_eq!(codes.collect::<BTreeSet<_>>(), expected, "{}\n{}\n{said}", self.page.path, fence.text);
+        assert_eq!(codes.collect::<BTreeSet<_>>(), expected, "{}\n{}\n{answer}", self.page.path, fence.text);
     }
 
     /// Asserts that every machine has this trace of the last plan with the last script.
@@ -129,7 +129,7 @@ impl Walk<'_> {
             let arguments = ["trace", &self.plan, "--script", &self.script, "--machine", machine];
             let output = run_mdlec(&self.folder, &arguments);
             let trace = String::from_utf8_lossy(&output.stdout);
-            assert_eq!(trace, expected, "{}, machine {machine}: {}", self.page.path, said(&output));
+            assert_eq!(trace, expected, "{}, machine {machine}: {}", self.page.path, answer(&output));
         }
     }
 
@@ -144,11 +144,11 @@ impl Walk<'_> {
             // By the name that is typed, which the program may print.
             program => Command::new(program).args(&words[1..]).current_dir(&self.folder).output().unwrap(),
         };
-        let said = said(&output);
+        let answer = answer(&output);
         if expected.is_empty() {
-            assert!(output.status.success(), "{}: {command}\n{said}", self.page.path);
+            assert!(output.status.success(), "{}: {command}\n{answer}", self.page.path);
         } else {
-            assert!(is_alike(&said, expected), "{}: {command}\n{said}", self.page.path);
+            assert!(is_alike(&answer, expected), "{}: {command}\n{answer}", self.page.path);
         }
     }
 }
@@ -169,15 +169,15 @@ impl Walk<'_> {
     }
 }
 
-fn said(output: &Output) -> String {
+fn answer(output: &Output) -> String {
     format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
 }
 
 /// Returns `true` if the output is equal to the page's text, except where a line `…` leaves text out.
-fn is_alike(said: &str, shown: &str) -> bool {
+fn is_alike(answer: &str, shown: &str) -> bool {
     match shown.split_once("…\n") {
-        None => said == shown,
-        Some((start, end)) => said.len() > shown.len() && said.starts_with(start) && said.ends_with(end),
+        None => answer == shown,
+        Some((start, end)) => answer.len() > shown.len() && answer.starts_with(start) && answer.ends_with(end),
     }
 }
 

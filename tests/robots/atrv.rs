@@ -91,10 +91,10 @@ fn the_tour_ends_on_an_atrv_where_it_ends_in_the_simulator() {
 /// Returns the output of the executable with these arguments, and its exit status.
 fn said(arguments: &[&str]) -> String {
     let output = Command::new(on_atrv()).args(arguments).current_dir(on_atrv().parent().unwrap()).output().unwrap();
-    told(&output)
+    listed(&output)
 }
 
-fn told(output: &Output) -> String {
+fn listed(output: &Output) -> String {
     let [out, err] = [&output.stdout, &output.stderr].map(|bytes| String::from_utf8(bytes.clone()).unwrap());
     format!("{out}{err}[{}]\n", output.status.code().unwrap())
 }
@@ -162,7 +162,7 @@ impl Emulated for Answers {
 
 #[test]
 fn a_robot_that_is_none_is_a_fault() {
-    let of = |bytes: Vec<u8>| told(&emulated(Answers::with(bytes), IN_LOCKSTEP, &["--lockstep"]).0);
+    let of = |bytes: Vec<u8>| listed(&emulated(Answers::with(bytes), IN_LOCKSTEP, &["--lockstep"]).0);
     let busy = Port::open().unwrap();
     let held = fs::File::open(busy.path()).unwrap();
     held.try_lock().unwrap();
@@ -180,7 +180,7 @@ fn a_robot_that_is_none_is_a_fault() {
         said(&["--device", "/nowhere"]),
         said(&["--device", busy]).replace(busy, "/dev/pts/N"),
         answers.join("\n"),
-        told(&emulated(emergency, IN_LOCKSTEP, &["--lockstep"]).0),
+        listed(&emulated(emergency, IN_LOCKSTEP, &["--lockstep"]).0),
     ];
     insta::assert_snapshot!(all.join("\n"));
 }
@@ -222,9 +222,9 @@ fn a_robot_that_fails_on_its_way_is_stopped() {
         assert!(robot.is_braked());
         robot.pass(Duration::from_millis(300)).unwrap();
         assert_eq!(robot.velocity().v.0, 0.0);
-        let told = told(&output);
-        let end = told.find("error:").map(|place| told.split_at(place).1);
-        end.unwrap_or(&told).to_owned()
+        let listed = listed(&output);
+        let end = listed.find("error:").map(|place| listed.split_at(place).1);
+        end.unwrap_or(&listed).to_owned()
     };
     // It says nothing more, though it understands; or somebody presses its emergency stop.
     let silent = on_its_way(|_| true);
@@ -250,7 +250,7 @@ fn a_line_that_is_cut_ends_the_run() {
         drop(port);
         run.join().unwrap()
     });
-    insta::assert_snapshot!(told(&output));
+    insta::assert_snapshot!(listed(&output));
 }
 
 /// A robot that reports whether it moves.

@@ -42,13 +42,13 @@ const OFF: [&str; 8] = ["--goal", "world", "--runs", "40", "--start-noise", "0.1
 #[test]
 fn what_is_said_does_not_depend_on_the_number_of_jobs() {
     for form in [&[][..], &["--json"]] {
-        let said = |jobs| {
+        let message = |jobs| {
             let output = run(&[&OFF[..], form, &["--jobs", jobs]].concat());
             assert_eq!((output.status.code(), output.stderr.as_slice()), (Some(1), &b""[..]));
             text(output.stdout)
         };
-        let once = said("1");
-        assert!(once == said("2") && once == said("7"), "{once}");
+        let once = message("1");
+        assert!(once == message("2") && once == message("7"), "{once}");
         let starts =
             if form.is_empty() { "40 runs, seeds 7 to 46: " } else { "{\"runs\":40,\"done\":40,\"first_seed\":7," };
         assert!(once.starts_with(starts), "{once}");
@@ -70,8 +70,8 @@ fn each_run_told_is_the_run_that_its_command_makes() {
         let log = format!("seed{}.jsonl", run["seed"]);
         let command = format!("{} --log {log}", run["command"].as_str().unwrap());
         let alone = Command::new("sh").args(["-c", &command]).current_dir(ahead()).output().unwrap();
-        let told = text(alone.stdout);
-        let (_, end) = told.split_once(" s  plan over: ").expect("an end");
+        let report = text(alone.stdout);
+        let (_, end) = report.split_once(" s  plan over: ").expect("an end");
         let outcome = match run["outcome"].as_str().unwrap() {
             "astray" => format!("astray at {}", run["said"].as_str().unwrap()),
             outcome => outcome.to_owned(),
@@ -207,12 +207,12 @@ fn options_that_contradict_each_other_are_refused() {
         &["--start-noise", "0.1,5"],
         &["--runs", "3", "--start-noise", "0.1"],
     ];
-    let mut said = String::new();
+    let mut message = String::new();
     for options in cases {
         let output = run(options);
         assert_eq!((output.status.code(), output.stdout.as_slice()), (Some(2), &b""[..]), "{options:?}");
-        said += &format!("$ ./ahead {}\n{}\n", options.join(" "), text(output.stderr));
+        message += &format!("$ ./ahead {}\n{}\n", options.join(" "), text(output.stderr));
     }
-    insta::assert_snapshot!(said);
+    insta::assert_snapshot!(message);
     assert!(fs::read_dir(ahead()).unwrap().all(|file| !file.unwrap().file_name().to_string_lossy().starts_with('x')));
 }

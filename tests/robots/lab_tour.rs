@@ -19,9 +19,9 @@ fn tour() -> &'static Path {
         let folder = folder("lab_tour");
         let plan = root().join("plans/lab_tour.mdle");
         let output = run_mdlec(&folder, &[plan.to_str().unwrap(), "--target", "sim"]);
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert!(output.status.success(), "{said}");
-        assert!(said.contains("lab_tour: built in "), "{said}");
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.success(), "{message}");
+        assert!(message.contains("lab_tour: built in "), "{message}");
         folder.join("lab_tour")
     })
 }
@@ -90,10 +90,10 @@ fn it_goes_from_lab_2_past_lab_1_to_the_office() {
     let folder = folder("lab_tour_run");
     let options = ["--speed", "max", "--plot", "tour.svg", "--record", "record.svg", "--trail", "tour.csv"];
     let output = run(&folder, &options);
-    let said = String::from_utf8(output.stdout).unwrap();
-    assert_eq!((output.status.code(), output.stderr.as_slice()), (Some(0), &b""[..]), "{said}");
+    let message = String::from_utf8(output.stdout).unwrap();
+    assert_eq!((output.status.code(), output.stderr.as_slice()), (Some(0), &b""[..]), "{message}");
     let trail = places(&fs::read_to_string(folder.join("tour.csv")).unwrap());
-    let (ends, over) = said.trim_end().rsplit_once('\n').unwrap();
+    let (ends, over) = message.trim_end().rsplit_once('\n').unwrap();
     let mut atoms = 0;
     for (line, atom) in ends.lines().zip(1..) {
         let (t, entered) = line.split_once(" s  ").unwrap();
@@ -103,7 +103,7 @@ fn it_goes_from_lab_2_past_lab_1_to_the_office() {
         assert_in_zone(atom, *place);
         atoms = atom;
     }
-    assert_eq!(atoms, 12, "{said}");
+    assert_eq!(atoms, 12, "{message}");
     let (end, over) = over.split_once(" s  ").unwrap();
     let place = "(lab_tour.mdle:30)";
     assert!(
@@ -219,14 +219,14 @@ fn it_refuses_what_it_cannot_run_and_leaves_nothing_behind() {
         &["--period", "0"],
         &["--nonsense"],
     ];
-    let mut said = String::new();
+    let mut message = String::new();
     for arguments in cases {
         let output = run(&folder, arguments);
         assert_eq!((output.status.code(), output.stdout.as_slice()), (Some(2), &b""[..]), "{arguments:?}");
-        said += &format!("$ ./lab_tour {}\n{}\n", arguments.join(" "), String::from_utf8(output.stderr).unwrap());
+        message += &format!("$ ./lab_tour {}\n{}\n", arguments.join(" "), String::from_utf8(output.stderr).unwrap());
     }
     assert_eq!(fs::read_dir(&folder).unwrap().count(), 1, "only the broken world is there");
-    insta::assert_snapshot!(said);
+    insta::assert_snapshot!(message);
 }
 
 #[test]
@@ -269,8 +269,8 @@ fn run_passes_signals_to_the_executable() {
         let sent = Command::new("kill").args(["-s", signal, &child.id().to_string()]).status().unwrap();
         assert!(sent.success());
         let output = child.wait_with_output().unwrap();
-        let said = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(status), "{said}");
-        assert!(said.ends_with(&format!("stopped by SIG{signal}\n")), "{said}");
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(status), "{message}");
+        assert!(message.ends_with(&format!("stopped by SIG{signal}\n")), "{message}");
     }
 }

@@ -73,9 +73,9 @@ type At = [f64; 3];
 /// Returns the pose to which the setpoints of a path lead from `from`, in a frame turned by `frame` degrees, and the
 /// time at which they end: read and integrated here, in steps of a millisecond.
 fn integrated(path: &str, from: At, frame: f64) -> (At, f64) {
-    let told = path.lines().map(|line| line.split('#').next().unwrap()).filter(|line| !line.trim().is_empty());
+    let report = path.lines().map(|line| line.split('#').next().unwrap()).filter(|line| !line.trim().is_empty());
     let numbers = |row: &str| row.split(',').map(|number| number.trim().parse().unwrap()).collect::<Vec<f64>>();
-    let rows: Vec<_> = told.skip(1).map(numbers).collect();
+    let rows: Vec<_> = report.skip(1).map(numbers).collect();
     let [mut x, mut y, mut heading] = from;
     for pair in rows.windows(2) {
         let ([t, alpha, v], [until, beta, w]) = (&pair[0][..], &pair[1][..]) else { panic!("{pair:?}") };
@@ -115,9 +115,9 @@ fn was_at(trail: &str, seconds: &str) -> At {
 
 #[test]
 fn a_plan_ends_when_its_path_does_and_where_the_setpoints_lead() {
-    let said = good(&["--trail", "trail.csv", "--log", "log"]);
+    let message = good(&["--trail", "trail.csv", "--log", "log"]);
     assert_eq!(
-        said,
+        message,
         "9.0 s  path \"bend.csv\" (twice.mdle:1)  <- completed (twice.mdle:1)\n18.0 s  plan over: completed (twice.mdle:1)\n"
     );
     let log = fs::read_to_string(twice().join("log")).unwrap();
@@ -139,8 +139,8 @@ fn what_is_recorded_is_a_path_that_leads_to_the_same_place() {
 
     // Nor does it matter that turns are otherwise, and that the robot hears and drives with errors.
     let options = ["--paths", "recorded", "--period", "0.07", "--trail", "replayed.csv"];
-    let said = good(&options);
-    assert!(said.starts_with("9.03 s  path \"bend.csv\""), "the first turn from 9 s on: {said}");
+    let message = good(&options);
+    assert!(message.starts_with("9.03 s  path \"bend.csv\""), "the first turn from 9 s on: {message}");
     assert_near(was_at("replayed.csv", "18.06"), twice_integrated(&recorded), 0.06, 2.0);
     good(&[&options[..], &["--body", "scout", "--seed", "3"]].concat());
     assert_near(was_at("replayed.csv", "18.06"), twice_integrated(&recorded), 0.25, 8.0);
@@ -148,8 +148,8 @@ fn what_is_recorded_is_a_path_that_leads_to_the_same_place() {
 
 #[test]
 fn each_of_several_runs_has_the_paths() {
-    let said = good(&["--runs", "3", "--body", "scout", "--jobs", "2"]);
-    assert!(said.starts_with("3 runs, seeds 1 to 3: 3 ended"), "{said}");
+    let message = good(&["--runs", "3", "--body", "scout", "--jobs", "2"]);
+    assert!(message.starts_with("3 runs, seeds 1 to 3: 3 ended"), "{message}");
 }
 
 #[test]
@@ -161,8 +161,8 @@ fn what_is_no_path_is_refused_before_anything_begins() {
         let written: &[&str] =
             if options.contains(&"--runs") { &[] } else { &["--log", "bad/log", "--trail", "bad/trail"] };
         let output = run(&[options, written].concat());
-        let [said, why] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
-        all += &format!("{options:?} [{}]\n{said}{why}\n", output.status.code().unwrap());
+        let [message, why] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+        all += &format!("{options:?} [{}]\n{message}{why}\n", output.status.code().unwrap());
         let left: Vec<_> = ["log", "trail"].into_iter().filter(|file| bad.join(file).exists()).collect();
         assert!(left.is_empty(), "{options:?} leaves {left:?}");
     };

@@ -36,8 +36,8 @@ fn tour(target: &str) -> PathBuf {
 
 /// The atoms that a run passed, in order, and how it ended: its report without the times.
 fn passed(output: &Output) -> Vec<String> {
-    let said = String::from_utf8(output.stdout.clone()).unwrap();
-    said.lines().map(|line| line.split_once(" s  ").map_or(line, |(_, transition)| transition).to_owned()).collect()
+    let message = String::from_utf8(output.stdout.clone()).unwrap();
+    message.lines().map(|line| line.split_once(" s  ").map_or(line, |(_, transition)| transition).to_owned()).collect()
 }
 
 /// The executable on an emulated robot, and where that robot then was.
@@ -80,7 +80,7 @@ fn the_tour_ends_on_a_scout_where_it_ends_in_the_simulator() {
 }
 
 /// Returns the output of the executable with these arguments, and its exit status.
-fn said(arguments: &[&str]) -> String {
+fn message(arguments: &[&str]) -> String {
     let output = Command::new(on_scout()).args(arguments).current_dir(on_scout().parent().unwrap()).output().unwrap();
     let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
     format!("{out}{err}[{}]\n", output.status.code().unwrap())
@@ -95,18 +95,18 @@ fn the_configuration_says_what_holds_and_why() {
     file("gap.toml", "gap = 15\n");
     file("sonar.toml", "sonars = [0, 16]\n");
     let all = [
-        said(&["--print-config"]),
-        said(&["--print-config", "--config", "ours.toml", "--device", "tcp:192.168.1.7:65001"]),
-        said(&["--config", "key.toml"]),
-        said(&["--config", "value.toml"]),
-        said(&["--config", "gap.toml"]),
-        said(&["--config", "sonar.toml"]),
-        said(&["--config", "none.toml"]),
+        message(&["--print-config"]),
+        message(&["--print-config", "--config", "ours.toml", "--device", "tcp:192.168.1.7:65001"]),
+        message(&["--config", "key.toml"]),
+        message(&["--config", "value.toml"]),
+        message(&["--config", "gap.toml"]),
+        message(&["--config", "sonar.toml"]),
+        message(&["--config", "none.toml"]),
     ];
     insta::assert_snapshot!(all.join("\n"));
 }
 
 #[test]
 fn a_robot_that_is_not_there_is_a_fault() {
-    insta::assert_snapshot!([said(&["--device", "/dev/null"]), said(&["--device", "/nowhere"])].join("\n"));
+    insta::assert_snapshot!([message(&["--device", "/dev/null"]), message(&["--device", "/nowhere"])].join("\n"));
 }

@@ -52,13 +52,13 @@ fn together(executables: [&Path; 2]) -> ([String; 2], [Footprint; 2]) {
     drop(started);
     let goes_on = || children.borrow_mut().iter_mut().any(|child| child.try_wait().unwrap().is_none());
     robots.serve(Pace::Lockstep(PERIOD), &goes_on).unwrap();
-    let said = children.into_inner().map(|child| {
+    let message = children.into_inner().map(|child| {
         let output = child.wait_with_output().unwrap();
         let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
         format!("{out}{err}[{}]", output.status.code().unwrap())
     });
     let footprints = [0, 1].map(|seat: usize| robots.seats()[seat].robot.footprint());
-    (said, footprints)
+    (message, footprints)
 }
 
 fn gap([one, other]: [Footprint; 2]) -> f64 {
@@ -69,28 +69,28 @@ fn gap([one, other]: [Footprint; 2]) -> f64 {
 fn a_robot_stops_before_another_one_whose_driver_has_gone() {
     let folder = folder("several_stop");
     let (approach, stay) = (executable(&folder, "approach", APPROACH), executable(&folder, "stay", STAY));
-    let (said, footprints) = together([&approach, &stay]);
+    let (message, footprints) = together([&approach, &stay]);
     assert!(
-        said[0].contains("plan over: r0 = ")
-            && said[0].contains(" m < 60cm (approach.mdle:1)")
-            && said[0].ends_with("[0]"),
+        message[0].contains("plan over: r0 = ")
+            && message[0].contains(" m < 60cm (approach.mdle:1)")
+            && message[0].ends_with("[0]"),
         "{}",
-        said[0]
+        message[0]
     );
-    assert!(said[1].contains("plan over: wait 3") && said[1].ends_with("[0]"), "{}", said[1]);
+    assert!(message[1].contains("plan over: wait 3") && message[1].ends_with("[0]"), "{}", message[1]);
     // Behind the last ping it has gone on for a round of its sonars at most.
     assert!((0.35..0.6).contains(&gap(footprints)), "{}", gap(footprints));
-    assert_eq!(together([&approach, &stay]), (said, footprints));
+    assert_eq!(together([&approach, &stay]), (message, footprints));
 }
 
 #[test]
 fn robots_that_meet_touch_each_other() {
     let folder = folder("several_meet");
     let meet = executable(&folder, "meet", MEET);
-    let (said, footprints) = together([&meet, &meet]);
-    for said in &said {
-        assert!(said.contains("plan over: bumper") && said.ends_with("[0]"), "{said}");
+    let (message, footprints) = together([&meet, &meet]);
+    for message in &message {
+        assert!(message.contains("plan over: bumper") && message.ends_with("[0]"), "{message}");
     }
     assert!((0.0..0.005).contains(&gap(footprints)), "{}", gap(footprints));
-    assert_eq!(together([&meet, &meet]), (said, footprints));
+    assert_eq!(together([&meet, &meet]), (message, footprints));
 }

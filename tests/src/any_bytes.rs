@@ -30,12 +30,12 @@ pub fn scout(bytes: &[u8]) {
     let behind = requests(&mut robot, std::iter::repeat_n(state.as_slice(), 64));
     assert!(behind.iter().any(|request| request.command == 7 && request.data.is_empty()), "{behind:?}");
 
-    let said = whole.get(..whole.len().min(253)).unwrap_or_default();
-    let answer = wire::answer(5, said);
-    let frame = Frame { kind: 5, arguments: said.iter().copied().collect() };
+    let message = whole.get(..whole.len().min(253)).unwrap_or_default();
+    let answer = wire::answer(5, message);
+    let frame = Frame { kind: 5, arguments: message.iter().copied().collect() };
     assert_eq!(Frame::read(&answer), Ok(Some((frame.clone(), answer.len()))));
     let mut robot = wire::Incoming::default();
-    let asked = wire::Request { command: 5, data: said.to_vec() };
+    let asked = wire::Request { command: 5, data: message.to_vec() };
     assert_eq!(requests(&mut robot, [frame.bytes().as_slice()].into_iter()), [asked]);
 }
 
@@ -94,14 +94,14 @@ pub fn atrv(bytes: &[u8]) {
     let mut reader = Reader::default();
     packets(&mut reader, &whole);
     packets(&mut reader, &[0x1B, 0x03]);
-    let said = whole.get(..whole.len().min(255)).unwrap_or_default();
-    assert_eq!(packets(&mut reader, &rflex::report(3, 1, 2, said, &[0x1B, 0x01])), [(3, 2, said.to_vec())]);
+    let message = whole.get(..whole.len().min(255)).unwrap_or_default();
+    assert_eq!(packets(&mut reader, &rflex::report(3, 1, 2, message, &[0x1B, 0x01])), [(3, 2, message.to_vec())]);
 
-    let said = whole.get(..whole.len().min(32)).unwrap_or_default();
-    let written = Packet { port: 5, id: 0, opcode: 4, data: said }.written(true);
+    let message = whole.get(..whole.len().min(32)).unwrap_or_default();
+    let written = Packet { port: 5, id: 0, opcode: 4, data: message }.written(true);
     let mut robot = rflex::Incoming::new(true);
-    let told = rflex::Request { port: 5, code: 4, data: said.to_vec() };
-    assert_eq!(commands(&mut robot, [written.bytes()].into_iter()), [told]);
+    let listed = rflex::Request { port: 5, code: 4, data: message.to_vec() };
+    assert_eq!(commands(&mut robot, [written.bytes()].into_iter()), [listed]);
 }
 
 /// Returns the packets that the ATRV's driver reads from the bytes: port, opcode and data of each.

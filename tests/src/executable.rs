@@ -96,8 +96,8 @@ const WAITING: &str = "waiting for another ";
 
 /// The messages, without those about builds of other tests.
 #[must_use]
-pub fn without_waiting(said: &str) -> String {
-    said.lines().filter(|line| !line.starts_with(WAITING)).fold(String::new(), |text, line| text + line + "\n")
+pub fn without_waiting(message: &str) -> String {
+    message.lines().filter(|line| !line.starts_with(WAITING)).fold(String::new(), |text, line| text + line + "\n")
 }
 
 /// The cache that the tests share.

@@ -29,8 +29,8 @@ pub fn alphabet(target: Option<&str>) -> Alphabet {
 pub fn judge(file: &TextFile, target: Option<&str>) -> (Vec<Compiled>, String) {
     let (sources, source) = sources(file);
     let (compiled, found) = compile(source, &file.text, &alphabet(target), None);
-    let said = found.iter().map(|diagnostic| sources.render(diagnostic)).collect();
-    (compiled, said)
+    let message = found.iter().map(|diagnostic| sources.render(diagnostic)).collect();
+    (compiled, message)
 }
 
 /// A file after those of the alphabets.

@@ -23,7 +23,7 @@ pub fn outputs(script: &Script) -> Vec<(Nanos, Output)> {
 }
 
 /// Returns a number whose bit `i` is 1 if `said` contains text `i`.
-fn bits(texts: &[&str], said: &BTreeSet<String>) -> u64 {
-    let bits = texts.iter().zip(0..).filter(|(text, _)| said.contains(**text));
+fn bits(texts: &[&str], message: &BTreeSet<String>) -> u64 {
+    let bits = texts.iter().zip(0..).filter(|(text, _)| message.contains(**text));
     bits.fold(0, |number, (_, bit)| number | 1 << bit)
 }

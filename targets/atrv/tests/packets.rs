@@ -69,40 +69,40 @@ fn commands_are_the_worked_packets() {
 }
 
 /// Hands the report in these bytes to `is`.
-fn said(hex: &str, is: impl FnOnce(u8, Report<'_>)) {
+fn message(hex: &str, is: impl FnOnce(u8, Report<'_>)) {
     let (port, id, opcode, data) = packet(hex);
     is(id, Report::read(&Packet { port, id, opcode, data: &data }).unwrap());
 }
 
 #[test]
 fn reports_say_what_the_worked_packets_should() {
-    said(
+    message(
         "1B 02 02 07 21 19 00 00 00 00 00 01 23 45 00 00 03 32 4A 00 00 6D 1A 00 01 10 C3 00 00 75 30 C1 1B 03",
         |id, report| {
             let wanted = Report::Axis { axis: Axis::Translation, position: 209_482, velocity: 27_930, time: 0x12345 };
             assert_eq!((id, report), (7, wanted));
         },
     );
-    said(
+    message(
         "1B 02 02 08 21 19 00 00 00 00 00 01 23 46 01 FF FE CE 87 00 00 46 02 00 01 86 A0 00 00 88 B8 4C 1B 03",
         |id, report| {
             let wanted = Report::Axis { axis: Axis::Rotation, position: -78_201, velocity: 17_922, time: 0x12346 };
             assert_eq!((id, report), (8, wanted));
         },
     );
-    said("1B 02 01 09 01 09 00 01 23 50 00 00 09 7E 00 05 1B 03", |_, report| {
+    message("1B 02 01 09 01 09 00 01 23 50 00 00 09 7E 00 05 1B 03", |_, report| {
         assert_eq!(report, Report::Status { battery: 2430, is_braked: false });
     });
-    said("1B 02 04 0A 02 14 00 00 00 00 00 01 23 60 00 06 0E 10 04 D8 20 0C 1C 30 03 07 9A 1B 03", |_, report| {
+    message("1B 02 04 0A 02 14 00 00 00 00 00 01 23 60 00 06 0E 10 04 D8 20 0C 1C 30 03 07 9A 1B 03", |_, report| {
         let Report::Sonars(echoes) = report else { unreachable!("{report:?}") };
         assert_eq!(echoes.each().collect::<Vec<_>>(), [(0, 1550), (16, 1240), (32, 3100), (48, 775)]);
     });
     // Its check is 1B.
-    said("1B 02 05 0B 01 07 00 01 23 70 40 00 01 1B 00 1B 03", |_, report| {
+    message("1B 02 05 0B 01 07 00 01 23 70 40 00 01 1B 00 1B 03", |_, report| {
         assert_eq!(report, Report::Input { address: 0x40, state: 1 });
     });
     // A driver has no use for the joystick.
-    said("1B 02 03 0C 00 0D 00 01 23 80 00 00 00 00 00 00 00 00 01 A1 1B 03", |_, report| {
+    message("1B 02 03 0C 00 0D 00 01 23 80 00 00 00 00 00 00 00 00 01 A1 1B 03", |_, report| {
         assert_eq!(report, Report::Other);
     });
 }

@@ -117,8 +117,8 @@ fn an_input_that_is_not_a_number_is_a_fault() {
 fn the_target_is_what_its_alphabet_says() {
     let alphabet = include_str!("../alphabet.mdle");
     let target = alphabet.lines().find(|line| line.starts_with("target ")).expect("a target");
-    let said = format!("target {} : crate mdle_sim, period {}ms;", Sim::NAME, Sim::PERIOD.as_millis());
-    assert_eq!(target, said);
+    let message = format!("target {} : crate mdle_sim, period {}ms;", Sim::NAME, Sim::PERIOD.as_millis());
+    assert_eq!(target, message);
 }
 
 #[test]

@@ -58,10 +58,10 @@ fn a_scout_that_receives_nothing_ends_the_plan() {
 
 #[test]
 fn a_robot_that_does_not_obey_ends_the_plan() {
-    let said = ["may not have stopped", "does not obey"];
+    let message = ["may not have stopped", "does not obey"];
     let (scout, atrv) = (alone::<Scout>(&["runaway"]), alone::<Atrv>(&["runaway"]));
-    scout.assert(3, &said, &[Order::Drive, Order::Stand, Order::LetGo]);
-    atrv.assert(3, &said, &[Order::Drive, Order::Stand, Order::Brake]);
+    scout.assert(3, &message, &[Order::Drive, Order::Stand, Order::LetGo]);
+    atrv.assert(3, &message, &[Order::Drive, Order::Stand, Order::Brake]);
 }
 
 #[test]
@@ -70,9 +70,9 @@ fn a_stop_without_rest_is_told() {
     let arguments = ["--timeout", "3.5"];
     let scout = ran::<Scout>(&["runaway"], &arguments, Way::Terminal, |_, _| {});
     let atrv = ran::<Atrv>(&["runaway"], &arguments, Way::Terminal, |_, _| {});
-    let said = ["--timeout", "still moved", "may not have stopped"];
-    scout.assert(3, &said, &[Order::Drive, Order::Stand, Order::LetGo]);
-    atrv.assert(3, &said, &[Order::Drive, Order::Stand, Order::Brake]);
+    let message = ["--timeout", "still moved", "may not have stopped"];
+    scout.assert(3, &message, &[Order::Drive, Order::Stand, Order::LetGo]);
+    atrv.assert(3, &message, &[Order::Drive, Order::Stand, Order::Brake]);
 }
 
 #[test]

@@ -31,7 +31,7 @@ fn with_file(test: &str, text: &str) -> PathBuf {
 }
 
 /// Returns the output and the messages about a file, and the exit status.
-fn said(test: &str, text: &str, options: &[&str]) -> (String, Option<i32>) {
+fn message(test: &str, text: &str, options: &[&str]) -> (String, Option<i32>) {
     let output = run_mdlec(&with_file(test, text), &[&["decompile", "fsm.json"], options].concat());
     let [out, err] = [&output.stdout, &output.stderr].map(|text| String::from_utf8_lossy(text).into_owned());
     (out + &err, output.status.code())
@@ -39,29 +39,29 @@ fn said(test: &str, text: &str, options: &[&str]) -> (String, Option<i32>) {
 
 #[test]
 fn the_machine_of_figure_4_has_no_string() {
-    let (said, status) = said("figure_4", FIG_4, &[]);
+    let (message, status) = message("figure_4", FIG_4, &[]);
     assert_eq!(status, Some(1));
-    insta::assert_snapshot!(said);
+    insta::assert_snapshot!(message);
 }
 
 #[test]
 fn equation_6_is_printed_as_in_the_paper() {
-    let (said, status) = said("equation_6", FIG_4, &["--as-printed"]);
+    let (message, status) = message("equation_6", FIG_4, &["--as-printed"]);
     assert_eq!(status, Some(1));
-    assert_eq!(said.lines().take(4).collect::<Vec<_>>(), EQUATION_6);
-    insta::assert_snapshot!(said);
+    assert_eq!(message.lines().take(4).collect::<Vec<_>>(), EQUATION_6);
+    insta::assert_snapshot!(message);
 }
 
 #[test]
 fn the_machine_of_figure_4_has_a_plan_with_after() {
-    let (said, status) = said("figure_4_augmented", FIG_4, &["--augment"]);
+    let (message, status) = message("figure_4_augmented", FIG_4, &["--augment"]);
     assert_eq!(status, Some(0));
-    insta::assert_snapshot!(said);
+    insta::assert_snapshot!(message);
 }
 
 #[test]
 fn the_string_of_figure_3_needs_a_state_for_each_of_its_atoms() {
-    let (text, status) = said("figure_3", FIG_3, &[]);
+    let (text, status) = message("figure_3", FIG_3, &[]);
     assert_eq!(status, Some(1));
     insta::assert_snapshot!(text);
     let folder = folder("decompile_figure_3_string");
@@ -95,8 +95,8 @@ fn every_plan_to_learn_from_comes_back_and_is_accepted() {
             // What asks labels is called by its interrupt's name.
             if !fs::read_to_string(&plan).unwrap().contains("after ") {
                 let checked = run_mdlec_reading(&folder, &["check", "-", "--target", "sim"], &text);
-                let said = String::from_utf8_lossy(&checked.stderr).into_owned();
-                assert_eq!(checked.status.code(), Some(0), "{plan:?}: {said}\n{text}");
+                let message = String::from_utf8_lossy(&checked.stderr).into_owned();
+                assert_eq!(checked.status.code(), Some(0), "{plan:?}: {message}\n{text}");
             }
         }
     }
@@ -145,9 +145,9 @@ fn what_is_no_machine_is_told() {
     let mut all = String::new();
     for (what, text) in bad {
         let options: &[&str] = if what == "too short a search" { &["--steps", "2"] } else { &[] };
-        let (said, status) = said("bad", text, options);
-        assert_eq!(status, Some(1), "{what}: {said}");
-        writeln!(all, "# {what}\n{said}").unwrap();
+        let (message, status) = message("bad", text, options);
+        assert_eq!(status, Some(1), "{what}: {message}");
+        writeln!(all, "# {what}\n{message}").unwrap();
     }
     insta::assert_snapshot!(all);
 }
@@ -178,7 +178,7 @@ fn chain(states: usize, depth: usize) -> String {
 
 #[test]
 fn ten_thousand_states_are_no_trouble() {
-    let (text, status) = said("ten_thousand", &chain(10_000, 2), &[]);
+    let (text, status) = message("ten_thousand", &chain(10_000, 2), &[]);
     assert_eq!(status, Some(0), "{text}");
     assert_eq!(text.lines().count(), 10_003, "a line for each atom, two scopes, and the end");
     assert!(text.ends_with("// 9999: s9999\n  }\n}    // 10000: s10000\n"), "{}", &text[text.len() - 200..]);
@@ -186,7 +186,7 @@ fn ten_thousand_states_are_no_trouble() {
 
 #[test]
 fn scopes_nest_deeper_than_brackets_may() {
-    let (text, status) = said("deep", &chain(400, 398), &[]);
+    let (text, status) = message("deep", &chain(400, 398), &[]);
     assert_eq!(status, Some(0), "{text}");
     assert!(text.contains("Part"), "{text}");
 }

@@ -83,7 +83,7 @@ fn go_round(file: &FsmFile, chance: &mut Chance, what: &str, seen: &mut Seen) {
         return;
     }
     let text = string(&machine, &found);
-    let again = compile_plan(&text, "Decompiled").unwrap_or_else(|said| panic!("{what}\n{text}\n{said}"));
+    let again = compile_plan(&text, "Decompiled").unwrap_or_else(|message| panic!("{what}\n{text}\n{message}"));
     let again = fsm_file(&again.nondegenerate).expect("a small machine");
     let numbers = found.order.iter().map(|state| machine.states()[state.0 as usize].clone()).zip(0..).collect();
     let own = again.states.iter().cloned().zip(0..).collect();
@@ -121,7 +121,7 @@ fn plans_of_loops_without_end_go_round() {
     for seed in 0..plans as u64 {
         let mut chance = Chance::new(seed);
         let text = plan_of_loops(&mut chance, 2 + (seed % 16) as usize);
-        let compiled = compile(&text).unwrap_or_else(|said| panic!("seed {seed}\n{said}"));
+        let compiled = compile(&text).unwrap_or_else(|message| panic!("seed {seed}\n{message}"));
         let file = fsm_file(&compiled.nondegenerate).expect("a small machine");
         go_round(&file, &mut chance, &format!("seed {seed}\n{text}"), &mut seen);
     }

@@ -132,8 +132,8 @@ fn tried(tests: &[Executable], number: u32, fault: &Fault) -> Option<String> {
     if output.status.success() {
         return None;
     }
-    let said = String::from_utf8_lossy(&output.stderr);
-    let mut lines = said.lines().skip_while(|line| !line.starts_with("BROKEN"));
+    let message = String::from_utf8_lossy(&output.stderr);
+    let mut lines = message.lines().skip_while(|line| !line.starts_with("BROKEN"));
     let (name, why) = (lines.next().unwrap_or("it hangs"), lines.next().unwrap_or_default());
     Some(format!("{}\n    {}", name.trim_start_matches("BROKEN").trim(), why.trim()))
 }
@@ -168,9 +168,9 @@ mod tests {
 
     #[test]
     fn an_expression_that_is_not_there_once_is_told() {
-        let said = |from: &str| with_faults("a.rs", "b + b", &[fault(from, "0")]).unwrap_err();
-        assert_eq!(said("c"), "drivers.toml: a.rs has `c` not once (a fault)");
-        assert_eq!(said("b"), "drivers.toml: a.rs has `b` not once (a fault)");
+        let message = |from: &str| with_faults("a.rs", "b + b", &[fault(from, "0")]).unwrap_err();
+        assert_eq!(message("c"), "drivers.toml: a.rs has `c` not once (a fault)");
+        assert_eq!(message("b"), "drivers.toml: a.rs has `b` not once (a fault)");
         let inside = with_faults("a.rs", "b + b", &[fault("b + b", "0"), fault(" + b", "0")]);
         assert_eq!(inside.unwrap_err(), "drivers.toml: a.rs: ` + b` is in another");
     }

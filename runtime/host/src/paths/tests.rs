@@ -23,22 +23,22 @@ fn all_units_comments_and_line_ends_are_read() {
     ];
     for text in same {
         let read = read(text).unwrap();
-        let told = read.iter().map(|Setpoint { at, heading, speed }| (at.0, heading.degrees().round(), speed.0));
-        assert_eq!(told.collect::<Vec<_>>(), [(0, 0.0, 0.2), (500_000_000, 90.0, -0.1)], "{text}");
+        let report = read.iter().map(|Setpoint { at, heading, speed }| (at.0, heading.degrees().round(), speed.0));
+        assert_eq!(report.collect::<Vec<_>>(), [(0, 0.0, 0.2), (500_000_000, 90.0, -0.1)], "{text}");
     }
 }
 
 #[test]
 fn what_is_wrong_is_told_with_its_line_and_column() {
     let rows = |rows: &str| format!("{HEADER}\n0, 0, 20\n0.1, 0, 20\n{rows}");
-    let told = |texts: &[String]| {
-        let mut told = String::new();
+    let report = |texts: &[String]| {
+        let mut report = String::new();
         for text in texts {
             let Wrong { place, what } = read(text).unwrap_err();
             let wrong = text.lines().nth(place.map_or(0, |(line, _)| line - 1)).unwrap_or_default();
-            writeln!(told, "{wrong}\n  {place:?} {what}").unwrap();
+            writeln!(report, "{wrong}\n  {place:?} {what}").unwrap();
         }
-        told
+        report
     };
     let headers = [
         "",
@@ -54,7 +54,7 @@ fn what_is_wrong_is_told_with_its_line_and_column() {
         "time s, heading deg, speed cm/s",
         "time s, heading deg, speed cm/s\n0, 0, 20",
     ];
-    insta::assert_snapshot!("headers", told(&headers.map(str::to_owned)));
+    insta::assert_snapshot!("headers", report(&headers.map(str::to_owned)));
     let bad = [
         "0.2, 0",
         "0.2, , 20",
@@ -77,9 +77,9 @@ fn what_is_wrong_is_told_with_its_line_and_column() {
         "0.2, 90, 20",
         "0.2, -179.5, 20",
     ];
-    insta::assert_snapshot!("rows", told(&bad.map(rows)));
+    insta::assert_snapshot!("rows", report(&bad.map(rows)));
     let first = ["0.1, 0, 20", "-0.1, 0, 20", "0, 0, 200"].map(|row| format!("{HEADER}\n{row}"));
-    insta::assert_snapshot!("first_rows", told(&first));
+    insta::assert_snapshot!("first_rows", report(&first));
 }
 
 #[test]

@@ -32,10 +32,10 @@ fn a_closed_pipe_disturbs_nothing() {
         drop(child.stdout.take());
         let Output { status, stderr, .. } = child.wait_with_output().unwrap();
         let limit = "stopped by --turns: the plan was not over after 10 turns\n9 turns of 10ms, ";
-        let told: String = text(&stderr).split_inclusive('\n').filter(|line| is_no_refusal(line)).collect();
+        let listed: String = text(&stderr).split_inclusive('\n').filter(|line| is_no_refusal(line)).collect();
         match status.code() {
-            Some(0) => assert_eq!(told, ""),
-            code => assert!(code == Some(4) && told.starts_with(limit), "{code:?} {told}"),
+            Some(0) => assert_eq!(listed, ""),
+            code => assert!(code == Some(4) && listed.starts_with(limit), "{code:?} {listed}"),
         }
     }
 }
@@ -44,10 +44,10 @@ fn a_closed_pipe_disturbs_nothing() {
 fn a_panic_stops_the_cart() {
     let Output { status, stderr, .. } = cart(&["--tell", "--speed", "max", "--panic-at", "2"]).output().unwrap();
     assert_eq!(status.code(), Some(3));
-    let told = text(&stderr);
-    let told: Vec<_> = told.lines().filter(|line| line.starts_with("cart") || line.starts_with("error")).collect();
+    let listed = text(&stderr);
+    let listed: Vec<_> = listed.lines().filter(|line| line.starts_with("cart") || line.starts_with("error")).collect();
     assert_eq!(
-        told,
+        listed,
         [
             "cart: 0 m/s",
             "cart: 0.5 m/s",

@@ -259,17 +259,17 @@ fn a_device_that_is_none_is_refused() {
 fn a_start_that_is_asked_to_end_stops_the_robot() {
     let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
     let config = Configured::read(None, port.path().to_str()).unwrap().config;
-    let told = thread::scope(|scope| {
+    let report = thread::scope(|scope| {
         let robot = scope.spawn(|| {
-            let (mut incoming, mut told) = (Incoming::default(), Vec::new());
+            let (mut incoming, mut report) = (Incoming::default(), Vec::new());
             while !over.load(Ordering::Relaxed) {
                 port.read(Duration::from_millis(10), &mut |bytes| incoming.push(bytes)).unwrap();
                 while let Some(request) = incoming.next_request() {
-                    told.push(request.command);
+                    report.push(request.command);
                     port.write(&answer(request.command, &[0; 42])).unwrap();
                 }
             }
-            told
+            report
         });
         let config = mdle_scout::Config { answer: LONG, ..config };
         let started = Scout::connect(config, Clock::Stepped(PERIOD), PERIOD, &StopRequest::made());
@@ -278,5 +278,5 @@ fn a_start_that_is_asked_to_end_stops_the_robot() {
         robot.join().unwrap()
     });
     let [stop, limp] = [Command::Stop, Command::Limp].map(|command| Some(command.kind()));
-    assert_eq!((told.first().copied(), told.last().copied()), (stop, limp), "{told:?}");
+    assert_eq!((report.first().copied(), report.last().copied()), (stop, limp), "{report:?}");
 }

@@ -80,8 +80,8 @@ fn errors() -> Group {
     }
     let strays = heard.errors.iter().filter(|error| error.abs() >= 0.08).count();
     let percent = |count: usize| format!("{:.1} %", 100.0 * count as f64 / MANY as f64);
-    let said = [format!("no echo: {}", percent(heard.silent)), format!("anything else: {}", percent(strays))];
-    for (number, line) in said.iter().enumerate() {
+    let message = [format!("no echo: {}", percent(heard.silent)), format!("anything else: {}", percent(strays))];
+    for (number, line) in message.iter().enumerate() {
         group = group.add(label(line, (LEFT[1] + WIDTH - 8.0, TOP + 20.0 + 18.0 * number as f64), "end"));
     }
     group
