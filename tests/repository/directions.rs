@@ -12,6 +12,7 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("runtime/core", &[]),
     ("runtime/quantity", &[]),
     ("runtime/host", &["mdle-runtime", "mdle-quantity"]),
+    ("runtime/engine", &["mdle-runtime", "mdle-host", "mdle-compiler", "mdle-quantity"]),
     (
         "runtime/mdle",
         &["mdle-runtime", "mdle-host", "mdle-compiler", "mdle-files", "mdle-sim", "mdle-scout", "mdle-atrv"],
