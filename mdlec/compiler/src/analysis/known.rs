@@ -6,6 +6,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::choices::{self, Choices, Read, When};
+use super::ended::PossibleFacts;
 use super::tables::VARIABLES;
 use super::variables::{self, Variable};
 use crate::fsm::Machine;
@@ -38,6 +39,8 @@ pub(super) struct KnownFacts<'l> {
     /// Other conditions of enclosing scopes that have not fired, by the variables in them.
     clauses: BTreeMap<Variable, Vec<Read<'l>>>,
     families: BTreeMap<Family<'l>, BTreeSet<QuarkId>>,
+    /// The facts that `after` may find in a record.
+    recorded: PossibleFacts,
     readings: Readings,
 }
 
@@ -51,9 +54,10 @@ pub(super) struct Added {
 }
 
 impl<'l> KnownFacts<'l> {
-    pub(super) fn new(machine: &'l Machine) -> Self {
+    pub(super) fn new(machine: &'l Machine, recorded: &PossibleFacts) -> Self {
         Self {
             machine,
+            recorded: recorded.clone(),
             entered: vec![0; machine.elements().len()],
             units: BTreeMap::new(),
             deadlines: Vec::new(),
@@ -66,7 +70,7 @@ impl<'l> KnownFacts<'l> {
 
     /// Returns what is known of a place without anything around it, where every signal is a number.
     pub(super) fn of_numbers(machine: &'l Machine) -> Self {
-        Self { readings: Readings::Numbers, ..Self::new(machine) }
+        Self { readings: Readings::Numbers, ..Self::new(machine, &PossibleFacts::Any) }
     }
 
     /// Returns the time at which the first timer of an enclosing scope is over, and its bracket.
@@ -230,6 +234,11 @@ impl<'l> KnownFacts<'l> {
             // The path since an outer entry is as long at least.
             let is_beyond = || self.distance(bracket).is_some_and(|(shortest, _)| nanometers >= shortest);
             return if nanometers == 0 { Some(true) } else { is_beyond().then_some(false) };
+        }
+        if let Variable::Fact(record, fact) | Variable::PastFact(record, fact) = variable
+            && !self.recorded.has(record, fact)
+        {
+            return Some(false);
         }
         let Variable::Timer(bracket, nanos) = variable else {
             return self.units.get(&variable).map(|(value, _)| *value);

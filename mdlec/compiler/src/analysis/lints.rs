@@ -41,7 +41,8 @@ impl<'l> Lints<'l> {
         let operands = interrupt.condition.operands().iter().zip(&found.operands);
         let mut lints: Vec<_> =
             operands.map(|(operand, outcome)| self.operand(element, interrupt, operand, *outcome)).collect();
-        lints.push(self.constants.lint(element.number(), interrupt));
+        let constant = self.constants.lint(element.number(), interrupt);
+        lints.push(constant.or_else(|| self.unrecorded(interrupt, found)));
         lints.push(self.skipped(element, interrupt, found));
         lints.push(found.cut_off_by.map(|before| self.cut_off(interrupt, before)));
         lints
@@ -82,6 +83,22 @@ impl<'l> Lints<'l> {
             [_] => lint.fix("write {}, or another condition", span, "(null)"),
             _ => lint.help(format!("remove `{text}`")),
         })
+    }
+
+    /// An operand that asks a record for what is never in it.
+    fn unrecorded(&self, interrupt: &Interrupt, found: &Found) -> Option<Diagnostic> {
+        let operands = interrupt.condition.operands();
+        let asks = |operand: &Condition| operand.any(&|part| matches!(part, Condition::After(_)));
+        let never = operands.iter().zip(&found.operands).find(|(_, outcome)| **outcome == Outcome::Never);
+        let (operand, _) = never.filter(|(operand, _)| asks(operand))?;
+        let text = condition_text(operand, &|id| self.machine.quark(id).text.clone());
+        let message = format!("`{text}` is never true: what it asks for never ends before this is read");
+        let lint = Diagnostic::new(Code::W0203, message, interrupt.span, "never true");
+        Some(
+            lint.help(
+                "`after` asks for the labelled elements that ended last; ask for one that ends before this is read",
+            ),
+        )
     }
 
     /// An element that is always skipped.

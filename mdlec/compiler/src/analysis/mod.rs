@@ -6,6 +6,7 @@
 mod choices;
 mod constants;
 mod durations;
+mod ended;
 mod judge;
 mod known;
 mod lints;
@@ -116,14 +117,14 @@ pub struct AtomAnswer {
 #[must_use]
 pub fn lints(machine: &Machine) -> Vec<Diagnostic> {
     let most = transitions::most(machine);
-    lints::lints(machine, &walk::walk(machine, !most.is_cut).found)
+    lints::lints(machine, &ended::walk_with_records(machine, !most.is_cut).found)
 }
 
 /// Analyses a machine.
 #[must_use]
 pub fn analyze(machine: &Machine) -> Analysis {
     let most = transitions::most(machine);
-    let walked = walk::walk(machine, !most.is_cut);
+    let walked = ended::walk_with_records(machine, !most.is_cut);
     let longest = durations::longest(machine, &walked.found, most);
     let answers = Answers::new(machine, &walked.found);
     Analysis {

@@ -89,6 +89,25 @@ fn conditions_that_are_true_only_when_an_outer_one_is() {
 }
 
 #[test]
+fn records_without_what_is_asked_of_them() {
+    insta::assert_snapshot!(lints(
+        "{ P (wait 60) s1: { Q (wait 9) s2: (Atom (after s3 OR bumper) stop) }
+  (Atom (after s2 AND bumper OR wait 5) stop)
+  (Atom (after s1 wait 9 AND NOT after s3 OR wait 5) stop)
+  s3: (Atom (after s3) stop) }"
+    ), @"
+    W0203: `after s3` is never true: what it asks for never ends before this is read
+    W0203: `after s3` is never true: what it asks for never ends before this is read
+    ");
+    assert_silent(&[
+        "{ P (wait 60) s1: (Atom (bumper OR wait 5) stop) (Atom (after s1 bumper OR wait 5) stop) }",
+        // In the second pass the first has ended.
+        "{ P (wait 60) ((Atom (after s2 OR wait 5) stop) s2: (Atom (after s2 OR wait 1) stop))^2 }",
+        "{ P (wait 60) { Q (after s1 OR bumper) s1: (Atom (wait 5) stop) } }",
+    ]);
+}
+
+#[test]
 fn timers_that_an_outer_one_beats() {
     insta::assert_snapshot!(lints(
         "{ P (wait 10)

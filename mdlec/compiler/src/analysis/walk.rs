@@ -10,6 +10,7 @@ use std::iter;
 use serde::Serialize;
 
 use super::choices::{Read, When};
+use super::ended::PossibleFacts;
 use super::known::{Added, KnownFacts};
 use crate::fsm::{Element, ElementKind, Machine, Visit};
 use crate::plan::{Condition, QuarkId};
@@ -88,11 +89,12 @@ pub(super) struct Walked {
     pub(super) shortest: Option<u64>,
 }
 
-/// Walks over a machine. `one_turn` is `true` if every search for the next atom ends within one turn.
-pub(super) fn walk(machine: &Machine, one_turn: bool) -> Walked {
+/// Walks over a machine whose records may come to hold these facts. `one_turn` is `true` if every search for the next atom
+/// ends within one turn.
+pub(super) fn walk(machine: &Machine, one_turn: bool, facts: &PossibleFacts) -> Walked {
     let mut walk = Walk {
-        world: KnownFacts::new(machine),
-        alone: KnownFacts::new(machine),
+        world: KnownFacts::new(machine, facts),
+        alone: KnownFacts::new(machine, facts),
         open: Vec::new(),
         found: Vec::with_capacity(machine.elements().len()),
         waits: BTreeMap::new(),

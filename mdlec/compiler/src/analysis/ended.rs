@@ -1,0 +1,81 @@
+//! The facts that records can hold: a label whose element never ends is never in its record
+//! (docs/src/reference/semantics.md, 2.3).
+//!
+//! Which elements end depends on the conditions that ask the records, so the facts grow from none until a walk finds no
+//! further one.
+
+use std::collections::BTreeSet;
+
+use super::walk::{Found, Outcome, Reach, Walked, walk};
+use crate::fsm::{Element, ElementKind, Machine};
+use crate::plan::RecordId;
+
+/// The facts of records that may become true in some run.
+#[derive(Debug, Clone)]
+pub(super) enum PossibleFacts {
+    /// These alone, each by its record and its number there.
+    Only(BTreeSet<(RecordId, u32)>),
+    /// Any: the question was too large to decide.
+    Any,
+}
+
+impl PossibleFacts {
+    /// Returns `true` if the fact may become true.
+    pub(super) fn has(&self, record: RecordId, fact: u32) -> bool {
+        match self {
+            Self::Only(facts) => facts.contains(&(record, fact)),
+            Self::Any => true,
+        }
+    }
+}
+
+/// Walks over a machine with the records that its runs can have. `one_turn` is as for [`walk`].
+pub(super) fn walk_with_records(machine: &Machine, one_turn: bool) -> Walked {
+    /// Maximum number of walks: each but the last finds elements that end because of what the one before found.
+    const WALKS: usize = 8;
+    let mut facts = BTreeSet::new();
+    for _ in 1..WALKS {
+        let walked = walk(machine, one_turn, &PossibleFacts::Only(facts.clone()));
+        let before = facts.len();
+        facts.extend(recorded(machine, &walked.found));
+        if facts.len() == before {
+            return walked;
+        }
+    }
+    walk(machine, one_turn, &PossibleFacts::Any)
+}
+
+/// Returns the facts that the elements record which can end, by what a walk has found.
+fn recorded(machine: &Machine, found: &[Found]) -> BTreeSet<(RecordId, u32)> {
+    let mut ends = vec![false; found.len()];
+    let mut facts = BTreeSet::new();
+    // Those inside an element have higher numbers.
+    for (element, found) in machine.elements().zip(found).rev() {
+        ends[element.index()] = can_end(element, found, &ends);
+        let marks = element.marks().iter().flat_map(|mark| mark.facts.iter().map(|fact| (mark.record, fact)));
+        facts.extend(marks.filter_map(|(record, fact)| {
+            let is_possible = match fact.operand {
+                None => ends[element.index()],
+                Some(number) => found.operands.get(number as usize).is_none_or(|outcome| can_fire(found, *outcome)),
+            };
+            is_possible.then_some((record, fact.number))
+        }));
+    }
+    facts
+}
+
+/// Returns `true` if an element can end; `ends` has the answer for each element inside it.
+fn can_end(element: Element<'_>, found: &Found, ends: &[bool]) -> bool {
+    let inside = || element.children().last().is_some_and(|last| ends[last.index()]);
+    let by_its_body = match element.kind() {
+        ElementKind::Atom(_) => false,
+        ElementKind::Scope => inside(),
+        ElementKind::Loop { times } => times.is_some() && inside(),
+    };
+    found.completes || by_its_body || found.operands.iter().any(|outcome| can_fire(found, *outcome))
+}
+
+/// Returns `true` if an element can end by an operand with this outcome.
+fn can_fire(found: &Found, outcome: Outcome) -> bool {
+    found.reach != Reach::Never && outcome == Outcome::Possible
+}
