@@ -38,8 +38,9 @@ const PLANS: u64 = 1000;
 const CHOICES: usize = 16;
 /// Maximum number of situations of a plan, if all choices are tried, and if they are not.
 const SITUATIONS: [usize; 2] = [1000, 80];
-/// Steps between turns, in nanoseconds: zero, timers' own lengths and windows, and one longer than all timers.
-const STEPS: [u64; 4] = [0, 100_000_000, 1_000_000_000, 5_000_000_000];
+/// Steps between turns, in nanoseconds: zero, one shorter than the shortest timer, timers' own lengths and windows, and one
+/// longer than all timers.
+const STEPS: [u64; 5] = [0, 40_000_000, 100_000_000, 1_000_000_000, 5_000_000_000];
 
 /// Counts over all plans.
 #[derive(Debug, Default, Clone, Copy)]
@@ -84,7 +85,7 @@ fn what_is_said_never_to_happen_never_happens() {
     println!("{count:#?}");
     assert!(count.plans > 900 && count.turns > 500_000 && count.over > 10_000, "{count:?}");
     // Nearly all that never runs is foretold.
-    assert!(count.whole > 100 && count.idle > 30 && count.foretold * 10 >= count.idle * 9, "{count:?}");
+    assert!(count.whole > 80 && count.idle > 20 && count.foretold * 10 >= count.idle * 9, "{count:?}");
     assert!(count.never > 1000 && count.bounded > 300, "{count:?}");
 }
 
@@ -154,7 +155,7 @@ impl<'c> Trial<'c> {
         count.plans += 1;
         count.bounded += usize::from(self.analysis.longest.seconds.is_some());
         count.never += self.analysis.atoms.iter().map(|atom| atom.never_by.len()).sum::<usize>();
-        if whole && all {
+        if whole && all && !self.laws_complete_together() {
             count.whole += 1;
             count.atoms += self.analysis.atoms.len();
             let idle = self.parts.iter().enumerate().filter(|(number, _)| !applied.contains(number));
@@ -164,6 +165,13 @@ impl<'c> Trial<'c> {
                 count.foretold += usize::from(self.analysis.atoms[*atom].reach != Reach::Runs);
             }
         }
+    }
+
+    /// Returns `true` if two atoms have one law that completes: what is tried lets both of them complete, or neither.
+    fn laws_complete_together(&self) -> bool {
+        let mut laws = BTreeSet::new();
+        let mut completing = self.compiled.machine.atoms().map(|atom| atom.law()).filter(|law| law.completes);
+        !completing.all(|law| laws.insert(&law.text))
     }
 
     /// Compares the analysis of a plan with one of its turns.
@@ -195,7 +203,7 @@ impl<'c> Trial<'c> {
         let most = usize::try_from(self.analysis.transitions).unwrap();
         self.holds(turn.ended.len() <= most, &format!("{} transitions", turn.ended.len()));
         if turn.over {
-            let (now, gap) = (run.now as f64 / 1e9, STEPS[3] as f64 / 1e9);
+            let (now, gap) = (run.now as f64 / 1e9, STEPS[4] as f64 / 1e9);
             self.holds(self.analysis.shortest.is_some_and(|time| time <= now), &format!("it is over at {now} s"));
             if let (Some(seconds), Some(turns)) = (self.analysis.longest.seconds, self.analysis.longest.turns) {
                 self.holds(now <= seconds + turns as f64 * gap, &format!("it takes {now} s"));
