@@ -1,0 +1,164 @@
+//! Values of attributes, with their kinds and times.
+
+use std::sync::Arc;
+
+use mdle_compiler::alphabet::Kind;
+use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians, RadiansPerSecond, Volts};
+
+/// Kind of an attribute.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AttributeKind {
+    /// True or false.
+    Flag,
+    /// A whole number.
+    Integer,
+    /// A number without a unit.
+    Number,
+    /// A length.
+    Length,
+    /// A speed.
+    Speed,
+    /// An angle.
+    Angle,
+    /// A turn rate.
+    AngularRate,
+    /// A voltage.
+    Voltage,
+    /// A time.
+    Time,
+    /// A place and a heading in the plane.
+    Pose,
+    /// A text.
+    Text,
+    /// Numbers without a unit, in order.
+    Numbers,
+    /// Bytes, in order.
+    Bytes,
+}
+
+/// Value of an attribute with its kind, in SI units.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Value {
+    /// True or false.
+    Flag(bool),
+    /// A whole number.
+    Integer(i64),
+    /// A number without a unit.
+    Number(f64),
+    /// A length.
+    Length(Meters),
+    /// A speed.
+    Speed(MetersPerSecond),
+    /// An angle.
+    Angle(Radians),
+    /// A turn rate.
+    AngularRate(RadiansPerSecond),
+    /// A voltage.
+    Voltage(Volts),
+    /// A time.
+    Time(Nanos),
+    /// A place and a heading in the plane.
+    Pose(Pose),
+    /// A text.
+    Text(Arc<str>),
+    /// Numbers without a unit, in order.
+    Numbers(Arc<[f64]>),
+    /// Bytes, in order.
+    Bytes(Arc<[u8]>),
+}
+
+/// A value with the time of the turn break at which it was published, on the engine's clock.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reading {
+    /// The value.
+    pub value: Value,
+    /// Time of the turn that ended with the break.
+    pub at: Nanos,
+}
+
+impl AttributeKind {
+    /// Name of the kind in words, with its article: "an angle".
+    #[must_use]
+    pub fn words(self) -> String {
+        match (self, self.quantity()) {
+            (Self::Flag, _) => "a flag".into(),
+            (Self::Pose, _) => "a pose".into(),
+            (Self::Text, _) => "a text".into(),
+            (Self::Numbers, _) => "a list of numbers".into(),
+            (Self::Bytes, _) => "bytes".into(),
+            (_, Some(kind)) => kind.words(),
+            (_, None) => "a value".into(),
+        }
+    }
+
+    /// Returns the kind of quantity in alphabets; `None` for a kind that no plan reads as a number.
+    #[must_use]
+    pub fn quantity(self) -> Option<Kind> {
+        match self {
+            Self::Integer => Some(Kind::Integer),
+            Self::Number => Some(Kind::Number),
+            Self::Length => Some(Kind::Length),
+            Self::Speed => Some(Kind::Speed),
+            Self::Angle => Some(Kind::Angle),
+            Self::AngularRate => Some(Kind::AngularRate),
+            Self::Voltage => Some(Kind::Voltage),
+            Self::Time => Some(Kind::Time),
+            Self::Flag | Self::Pose | Self::Text | Self::Numbers | Self::Bytes => None,
+        }
+    }
+}
+
+impl Value {
+    /// Returns the kind of the value.
+    #[must_use]
+    pub fn kind(&self) -> AttributeKind {
+        match self {
+            Self::Flag(_) => AttributeKind::Flag,
+            Self::Integer(_) => AttributeKind::Integer,
+            Self::Number(_) => AttributeKind::Number,
+            Self::Length(_) => AttributeKind::Length,
+            Self::Speed(_) => AttributeKind::Speed,
+            Self::Angle(_) => AttributeKind::Angle,
+            Self::AngularRate(_) => AttributeKind::AngularRate,
+            Self::Voltage(_) => AttributeKind::Voltage,
+            Self::Time(_) => AttributeKind::Time,
+            Self::Pose(_) => AttributeKind::Pose,
+            Self::Text(_) => AttributeKind::Text,
+            Self::Numbers(_) => AttributeKind::Numbers,
+            Self::Bytes(_) => AttributeKind::Bytes,
+        }
+    }
+
+    /// Returns the number that a plan compares, in SI units; `None` for a kind that no plan reads.
+    #[must_use]
+    pub fn number(&self) -> Option<f64> {
+        match self {
+            // A whole number of more than 53 bits is rounded; a plan compares within a tolerance.
+            Self::Integer(number) => Some(*number as f64),
+            Self::Number(number)
+            | Self::Length(Meters(number))
+            | Self::Speed(MetersPerSecond(number))
+            | Self::Angle(Radians(number))
+            | Self::AngularRate(RadiansPerSecond(number))
+            | Self::Voltage(Volts(number)) => Some(*number),
+            Self::Time(time) => Some(time.seconds()),
+            Self::Flag(_) | Self::Pose(_) | Self::Text(_) | Self::Numbers(_) | Self::Bytes(_) => None,
+        }
+    }
+
+    /// Returns `true` if a number in the value is NaN, so that it must not be published.
+    #[must_use]
+    pub fn has_nan(&self) -> bool {
+        match self {
+            Self::Pose(pose) => pose.x.0.is_nan() || pose.y.0.is_nan() || pose.theta.0.is_nan(),
+            Self::Numbers(numbers) => numbers.iter().any(|number| number.is_nan()),
+            Self::Flag(_) | Self::Integer(_) | Self::Time(_) | Self::Text(_) | Self::Bytes(_) => false,
+            Self::Number(_)
+            | Self::Length(_)
+            | Self::Speed(_)
+            | Self::Angle(_)
+            | Self::AngularRate(_)
+            | Self::Voltage(_) => self.number().is_none_or(f64::is_nan),
+        }
+    }
+}
