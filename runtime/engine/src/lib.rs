@@ -1,6 +1,13 @@
 //! The Modular Engine (section III of the paper): modules and plans that make a robot's turns together.
+//!
+//! For people who write a module: [`Module`] or [`Background`], and [`Declare`], with which it says what it publishes
+//! and reads.
 #![forbid(unsafe_code)]
 
 mod attribute;
+mod module;
 
 pub use attribute::{Attribute, AttributeKind, AttributeName, In, Out, Reading, Value};
+pub use module::{
+    About, Background, Candidate, Declare, Exchange, Fault, Module, Offer, Refusal, Relevance, Stopped, Turn,
+};

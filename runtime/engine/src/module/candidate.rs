@@ -1,0 +1,174 @@
+//! Modules that are made and can be loaded at a turn break.
+
+use std::any::Any;
+use std::fmt;
+use std::ops::Deref;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::thread;
+
+use super::{Background, Declare, Declared, Exchange, Gate, Module, Ports};
+use crate::attribute::{AttributeKind, AttributeName, is_name};
+
+/// A module that is made, and not loaded yet. The robot's turns do not wait while it is made.
+pub struct Candidate<Y> {
+    pub(crate) name: Arc<str>,
+    pub(crate) declared: Declared,
+    pub(crate) form: Form<Y>,
+}
+
+/// The code of a module.
+pub(crate) enum Form<Y> {
+    /// It makes a turn in every turn of the engine.
+    Registered(Box<dyn Module<Y>>, Ports),
+    /// It has a thread of its own.
+    Background(ThreadGate),
+}
+
+/// Gate of a module's thread, which is asked to end when nothing needs the gate any more.
+#[derive(Debug)]
+pub(crate) struct ThreadGate(Arc<Gate>);
+
+impl Deref for ThreadGate {
+    type Target = Gate;
+
+    fn deref(&self) -> &Gate {
+        &self.0
+    }
+}
+
+impl Drop for ThreadGate {
+    fn drop(&mut self) {
+        self.0.stop();
+    }
+}
+
+/// Reason why a module cannot be loaded.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Refusal {
+    /// A loaded module has this name already.
+    NameTaken(String),
+    /// No module may have this name.
+    BadName(String),
+    /// No module of this name is loaded.
+    Unknown(String),
+    /// A module has no setting of this name: its name, and the setting's.
+    NoSetting(String, String),
+    /// A setting has another kind than the value: its path, and the kinds of the setting and of the value.
+    OtherSetting(AttributeName, AttributeKind, AttributeKind),
+    /// The value for a setting is NaN: its path.
+    NotANumber(AttributeName),
+    /// The declaration of the module is wrong: its name, and a sentence.
+    Declaration(String, String),
+    /// The function that makes the module panicked: its name, and the message.
+    Panicked(String, String),
+    /// A module reads an attribute as another kind than it has.
+    OtherKind {
+        /// The module that reads it.
+        reader: String,
+        /// The attribute.
+        name: AttributeName,
+        /// Kind that the reader expects.
+        read: AttributeKind,
+        /// Kind of the attribute.
+        published: AttributeKind,
+    },
+    /// The system gives no thread for the module: its name, and the system's message.
+    NoThread(String, String),
+}
+
+impl<Y> Candidate<Y> {
+    /// Makes a registered module of this name.
+    ///
+    /// # Errors
+    /// The name or the declaration is wrong, or `make` panicked.
+    pub fn registered<M: Module<Y> + 'static>(
+        name: &str,
+        make: impl FnOnce(&mut Declare) -> M,
+    ) -> Result<Self, Refusal> {
+        let (module, Declare { declared, ports, .. }) = made(name, make)?;
+        Ok(Self { name: name.into(), declared, form: Form::Registered(Box::new(module), ports) })
+    }
+
+    /// Makes a background module of this name. Its thread waits until it is loaded.
+    ///
+    /// # Errors
+    /// The name or the declaration is wrong, `make` panicked, or the system gives no thread.
+    pub fn background<M: Background>(name: &str, make: impl FnOnce(&mut Declare) -> M) -> Result<Self, Refusal> {
+        let (module, Declare { declared, ports, .. }) = made(name, make)?;
+        let gate = Arc::new(Gate::default());
+        let exchange = Exchange::new(Arc::clone(&gate), ports);
+        let own = Arc::clone(&gate);
+        let run = move || {
+            if own.wait_for_begin() {
+                let result = catch_unwind(AssertUnwindSafe(|| Box::new(module).run(exchange)));
+                own.has_ended(result.map_err(panicked));
+            }
+        };
+        let thread = thread::Builder::new().name(name.to_owned()).spawn(run);
+        thread.map_err(|error| Refusal::NoThread(name.to_owned(), error.to_string()))?;
+        Ok(Self { name: name.into(), declared, form: Form::Background(ThreadGate(gate)) })
+    }
+
+    /// Name of the module.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+}
+
+/// Calls the function that makes a module.
+fn made<M>(name: &str, make: impl FnOnce(&mut Declare) -> M) -> Result<(M, Declare), Refusal> {
+    if !is_name(name) {
+        return Err(Refusal::BadName(name.to_owned()));
+    }
+    let mut declare = Declare::default();
+    let module = catch_unwind(AssertUnwindSafe(|| make(&mut declare)));
+    let module = module.map_err(|payload| Refusal::Panicked(name.to_owned(), panicked(payload)))?;
+    match declare.fault.take() {
+        Some(sentence) => Err(Refusal::Declaration(name.to_owned(), sentence)),
+        None => Ok((module, declare)),
+    }
+}
+
+/// Returns the message of a panic.
+pub(crate) fn panicked(payload: Box<dyn Any + Send>) -> String {
+    let message = match (payload.downcast_ref::<&str>(), payload.downcast_ref::<String>()) {
+        (Some(message), _) => (*message).to_owned(),
+        (None, Some(message)) => message.clone(),
+        (None, None) => "no message".to_owned(),
+    };
+    // A payload may panic once more when it is dropped.
+    std::mem::forget(payload);
+    message
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NameTaken(name) => write!(f, "a module `{name}` is loaded already"),
+            Self::BadName(name) => {
+                write!(f, "`{name}` is no name of a module: letters, digits and `_`, and no digit first")
+            }
+            Self::Unknown(name) => write!(f, "no module `{name}` is loaded"),
+            Self::NoSetting(name, setting) => write!(f, "module `{name}` has no setting `{setting}`"),
+            Self::OtherSetting(name, kind, other) => {
+                write!(f, "{name} is {}, and the value is {}", kind.words(), other.words())
+            }
+            Self::NotANumber(name) => write!(f, "{name} cannot be NaN"),
+            Self::Declaration(name, sentence) => write!(f, "the declaration of module `{name}` is wrong: {sentence}"),
+            Self::Panicked(name, message) => {
+                write!(f, "module `{name}` panicked while it was made, which is a bug: {message}")
+            }
+            Self::OtherKind { reader, name, read, published } => write!(
+                f,
+                "module `{reader}` reads {name} as {}, and it is published as {}",
+                read.words(),
+                published.words()
+            ),
+            Self::NoThread(name, message) => write!(f, "the system gives no thread for module `{name}`: {message}"),
+        }
+    }
+}
+
+impl std::error::Error for Refusal {}

@@ -1,0 +1,217 @@
+//! Declaration of a module: the attributes that it publishes and reads, its settings, and its place among other modules.
+
+use std::sync::Arc;
+
+use mdle_compiler::alphabet::Unit;
+use mdle_runtime::Nanos;
+
+use crate::attribute::{Attribute, AttributeKind, AttributeName, In, Out, Reading, Value, is_name};
+
+/// Registers the attributes of a module while it is made.
+#[derive(Debug, Default)]
+pub struct Declare {
+    pub(crate) declared: Declared,
+    pub(crate) ports: Ports,
+    /// First fault of the declaration: a sentence.
+    pub(crate) fault: Option<String>,
+}
+
+/// The declaration of a module.
+#[derive(Debug, Default)]
+pub(crate) struct Declared {
+    pub(crate) doc: &'static str,
+    pub(crate) publishes: Vec<About>,
+    pub(crate) reads: Vec<Source>,
+    /// Modules of higher priority begin their turns first.
+    pub(crate) priority: i32,
+    pub(crate) relevance: Relevance,
+    pub(crate) latency: Nanos,
+}
+
+/// Source of a value that a module reads.
+#[derive(Debug)]
+pub(crate) enum Source {
+    /// An attribute of this kind.
+    Attribute(AttributeName, AttributeKind),
+    /// A setting of the module itself, and its value.
+    Setting(About, Reading),
+}
+
+/// Description of an attribute or of a setting, for people.
+#[derive(Debug, Clone, PartialEq)]
+pub struct About {
+    /// Name in its module.
+    pub name: Arc<str>,
+    /// Kind of its values.
+    pub kind: AttributeKind,
+    /// Unit in which people read and write it; `None` for a kind without units.
+    pub unit: Option<Unit>,
+    /// A sentence about it.
+    pub doc: &'static str,
+}
+
+/// Condition under which a module makes turns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Relevance {
+    /// In every turn.
+    #[default]
+    Always,
+    /// While the plan's current atom, an atom that can follow it, or a module that makes turns reads the module.
+    WhenRead,
+}
+
+/// The values of a module: those to be published at the next break, and its copies of what it reads.
+#[derive(Debug, Default)]
+pub(crate) struct Ports {
+    pub(crate) outs: Vec<Option<Value>>,
+    pub(crate) ins: Vec<Option<Reading>>,
+}
+
+impl Ports {
+    pub(crate) fn get<T: Attribute>(&self, attribute: In<T>) -> Option<T> {
+        self.reading(attribute).and_then(|reading| T::from_value(&reading.value))
+    }
+
+    pub(crate) fn reading<T>(&self, attribute: In<T>) -> Option<&Reading> {
+        self.ins.get(attribute.place()).and_then(Option::as_ref)
+    }
+
+    pub(crate) fn publish<T: Attribute>(&mut self, attribute: Out<T>, value: T) {
+        if let Some(out) = self.outs.get_mut(attribute.place()) {
+            *out = Some(value.into_value());
+        }
+    }
+}
+
+impl Declare {
+    /// Declares an attribute that the module publishes. Its name is a name of MDLe, unlike those of the module's other
+    /// attributes and settings.
+    pub fn publishes<T: Attribute>(&mut self, name: &str) -> Out<T> {
+        let about = self.about::<T>(name);
+        self.declared.publishes.push(about);
+        self.ports.outs.push(None);
+        Out::new(self.ports.outs.len().saturating_sub(1))
+    }
+
+    /// Declares an attribute of another module that this one reads. The other module may be loaded later, or never; if
+    /// it publishes the attribute with another kind, whichever of the two is loaded last is refused.
+    pub fn reads<T: Attribute>(&mut self, module: &str, attribute: &str) -> In<T> {
+        for name in [module, attribute] {
+            self.check_name(name);
+        }
+        self.input(Source::Attribute(AttributeName::new(module, attribute), T::KIND), None)
+    }
+
+    /// Declares a setting of the module that people can change, with its value at first.
+    pub fn setting<T: Attribute>(&mut self, name: &str, initial: T) -> In<T> {
+        let about = self.about::<T>(name);
+        let value = initial.into_value();
+        if value.has_nan() {
+            self.refuse(format!("the setting `{name}` is NaN at first"));
+        }
+        let reading = Reading { value, at: Nanos::ZERO };
+        self.input(Source::Setting(about, reading.clone()), Some(reading))
+    }
+
+    /// Describes an attribute or a setting that was declared before: the unit in which people read and write it, empty
+    /// for the SI unit or a kind without units, and a sentence.
+    pub fn describe(&mut self, name: &str, unit: &str, doc: &'static str) {
+        let known = self.declared.abouts_mut().find(|about| &*about.name == name);
+        let Some(about) = known else {
+            return self.refuse(format!("`{name}` is described, and no attribute or setting of this name is declared"));
+        };
+        about.doc = doc;
+        if unit.is_empty() {
+            return;
+        }
+        let quantity = about.kind.quantity();
+        match Unit::from_name(unit).filter(|unit| Some(unit.kind) == quantity) {
+            Some(unit) => about.unit = Some(unit),
+            None => {
+                let sentence = format!("`{unit}` is no unit for `{name}`, which is {}", about.kind.words());
+                self.refuse(sentence);
+            }
+        }
+    }
+
+    /// Describes the module in a sentence.
+    pub fn doc(&mut self, doc: &'static str) {
+        self.declared.doc = doc;
+    }
+
+    /// Sets the priority of the module, 0 by default: modules of higher priority begin their turns first. No result
+    /// depends on it, only who is late if there is too little time.
+    pub fn priority(&mut self, priority: i32) {
+        self.declared.priority = priority;
+    }
+
+    /// Sets when the module makes turns.
+    pub fn relevance(&mut self, relevance: Relevance) {
+        self.declared.relevance = relevance;
+    }
+
+    /// Sets the time that a background module needs from one exchange to the next, 0 by default. In stepped time its
+    /// next exchange is at the first break after this much of the engine's time, however fast this computer is. In real
+    /// time it has no effect.
+    pub fn latency(&mut self, latency: Nanos) {
+        self.declared.latency = latency;
+    }
+
+    fn input<T>(&mut self, source: Source, reading: Option<Reading>) -> In<T> {
+        self.declared.reads.push(source);
+        self.ports.ins.push(reading);
+        In::new(self.ports.ins.len().saturating_sub(1))
+    }
+
+    fn about<T: Attribute>(&mut self, name: &str) -> About {
+        self.check_name(name);
+        if self.declared.abouts().any(|about| &*about.name == name) {
+            self.refuse(format!("`{name}` is declared twice"));
+        }
+        let unit = T::KIND.quantity().and_then(mdle_compiler::alphabet::Kind::base_unit);
+        About { name: name.into(), kind: T::KIND, unit, doc: "" }
+    }
+
+    fn check_name(&mut self, name: &str) {
+        if !is_name(name) {
+            self.refuse(format!("`{name}` is no name of a module or an attribute"));
+        }
+    }
+
+    /// Notes the first fault.
+    fn refuse(&mut self, sentence: String) {
+        self.fault.get_or_insert(sentence);
+    }
+}
+
+impl Declared {
+    /// Returns the attributes that the module publishes, and its settings.
+    pub(crate) fn abouts(&self) -> impl Iterator<Item = &About> {
+        self.publishes.iter().chain(self.settings().map(|(about, _)| about))
+    }
+
+    /// Returns the settings with their values.
+    pub(crate) fn settings(&self) -> impl Iterator<Item = (&About, &Reading)> {
+        self.reads.iter().filter_map(|source| match source {
+            Source::Setting(about, reading) => Some((about, reading)),
+            Source::Attribute(..) => None,
+        })
+    }
+
+    /// Sets a setting; returns `false` if there is no such setting.
+    pub(crate) fn set(&mut self, name: &str, new: Reading) -> bool {
+        let mut readings = self.reads.iter_mut().filter_map(|source| match source {
+            Source::Setting(about, reading) if &*about.name == name => Some(reading),
+            Source::Setting(..) | Source::Attribute(..) => None,
+        });
+        readings.next().map(|reading| *reading = new).is_some()
+    }
+
+    fn abouts_mut(&mut self) -> impl Iterator<Item = &mut About> {
+        let settings = self.reads.iter_mut().filter_map(|source| match source {
+            Source::Setting(about, _) => Some(about),
+            Source::Attribute(..) => None,
+        });
+        self.publishes.iter_mut().chain(settings)
+    }
+}

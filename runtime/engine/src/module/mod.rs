@@ -1,0 +1,85 @@
+//! Modules: code that makes its turn in every turn of the engine, and code that runs in the background (paper,
+//! sections III-B to III-E).
+
+mod background;
+mod candidate;
+mod declare;
+
+use background::Gate;
+pub use background::{Background, Exchange, Offer, Stopped};
+pub use candidate::{Candidate, Refusal};
+pub(crate) use candidate::{Form, ThreadGate, panicked};
+pub use declare::{About, Declare, Relevance};
+pub(crate) use declare::{Declared, Ports, Source};
+use mdle_runtime::Nanos;
+
+use crate::attribute::{Attribute, In, Out, Reading};
+
+/// A registered module of an engine whose robot has the output `Y`. A function that declares its attributes makes it;
+/// to unload it is to drop it.
+///
+/// A module is called on any thread, but by one at a time.
+pub trait Module<Y>: Send {
+    /// Makes a turn: reads what was published up to the last break, and the robot's output of this turn.
+    ///
+    /// # Errors
+    /// Why the module cannot go on, for the operator. It makes no further turn.
+    fn turn(&mut self, turn: &mut Turn<'_, Y>) -> Result<(), Fault>;
+
+    /// Called before the first turn, and before the first turn after [`Module::stop`].
+    fn start(&mut self) {}
+
+    /// Called after the last turn for now: people stopped the module, or nothing reads it at present.
+    fn stop(&mut self) {}
+}
+
+impl<Y> Module<Y> for Box<dyn Module<Y>> {
+    fn turn(&mut self, turn: &mut Turn<'_, Y>) -> Result<(), Fault> {
+        (**self).turn(turn)
+    }
+
+    fn start(&mut self) {
+        (**self).start();
+    }
+
+    fn stop(&mut self) {
+        (**self).stop();
+    }
+}
+
+/// Reason why a module cannot go on: a sentence for the operator.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fault(pub String);
+
+/// A turn, as a module sees it.
+#[derive(Debug)]
+pub struct Turn<'t, Y> {
+    /// Number of the turn, from 0.
+    pub number: u64,
+    /// Time of the turn on the engine's clock: the first turn is at zero.
+    pub now: Nanos,
+    /// The robot's output of this turn.
+    pub y: &'t Y,
+    pub(crate) ports: &'t mut Ports,
+}
+
+impl<Y> Turn<'_, Y> {
+    /// Returns the value of an attribute as of the last break, or of a setting. `None` while no module has published
+    /// it, and once its module is unloaded.
+    #[must_use]
+    pub fn get<T: Attribute>(&self, attribute: In<T>) -> Option<T> {
+        self.ports.get(attribute)
+    }
+
+    /// Returns the value with the time at which it was published; a setting has the time at which it was set.
+    #[must_use]
+    pub fn reading<T>(&self, attribute: In<T>) -> Option<&Reading> {
+        self.ports.reading(attribute)
+    }
+
+    /// Publishes a value at the break that ends this turn. Of several values in one turn the last counts; a value with
+    /// a NaN is never published.
+    pub fn publish<T: Attribute>(&mut self, attribute: Out<T>, value: T) {
+        self.ports.publish(attribute, value);
+    }
+}
