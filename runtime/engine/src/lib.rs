@@ -5,9 +5,11 @@
 #![forbid(unsafe_code)]
 
 mod attribute;
+mod fork;
 mod module;
 
 pub use attribute::{Attribute, AttributeKind, AttributeName, In, Out, Reading, Value};
+pub use fork::Threads;
 pub use module::{
     About, Background, Candidate, Declare, Exchange, Fault, Module, Offer, Refusal, Relevance, Stopped, Turn,
 };

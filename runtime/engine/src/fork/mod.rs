@@ -1,0 +1,244 @@
+//! A turn on threads: workers take modules from one list, and the control thread only waits for them, until a deadline
+//! (paper, section III-A).
+
+mod seat;
+
+use std::io;
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::Instant;
+
+use mdle_runtime::Nanos;
+use rustix::thread::futex;
+use rustix::time::Timespec;
+pub(crate) use seat::{Progress, Seat, Task};
+
+/// Threads on which modules make their turns.
+#[derive(Debug, Clone, Copy)]
+pub enum Threads {
+    /// The control thread itself, one module after the other: no deadline holds.
+    Sequential,
+    /// This many workers, at least one, each of which calls this function first, as for its priority.
+    Workers(usize, fn()),
+}
+
+/// Threads that make turns.
+pub(crate) struct Fork<Y> {
+    crew: Option<Crew<Y>>,
+    /// Rounds in turn. A worker may keep the last one for a moment longer, and a module that hangs keeps one for ever.
+    rounds: Vec<Arc<Round<Y>>>,
+}
+
+/// The modules of one turn, and their progress.
+struct Round<Y> {
+    y: Option<Y>,
+    number: u64,
+    now: Nanos,
+    seats: Vec<Arc<Seat<Y>>>,
+    /// Place of the next module to be taken.
+    next: AtomicUsize,
+    /// Number of modules that are not done; the control thread waits for zero.
+    left: AtomicU32,
+}
+
+/// Workers with the round that they are to make.
+struct Crew<Y> {
+    call: Arc<Call<Y>>,
+    workers: usize,
+    prepare: fn(),
+}
+
+/// Meeting point of the control thread and the workers.
+struct Call<Y> {
+    round: Mutex<Option<Arc<Round<Y>>>>,
+    /// Number of rounds so far; workers wait for it to change.
+    epoch: AtomicU32,
+    quit: AtomicBool,
+}
+
+impl<Y: Send + Sync + 'static> Fork<Y> {
+    /// Starts the threads.
+    ///
+    /// # Errors
+    /// The system gives no threads.
+    pub(crate) fn new(threads: Threads) -> io::Result<Self> {
+        let crew = match threads {
+            Threads::Sequential => None,
+            Threads::Workers(workers, prepare) => Some(Crew::new(workers.max(1), prepare)?),
+        };
+        Ok(Self { crew, rounds: Vec::new() })
+    }
+
+    /// Makes the turn of these modules, which are taken in this order. Modules that are not done at the deadline are
+    /// late or skipped.
+    pub(crate) fn turn<'s>(
+        &mut self,
+        y: Y,
+        number: u64,
+        now: Nanos,
+        seats: impl Iterator<Item = &'s Arc<Seat<Y>>>,
+        deadline: Option<Instant>,
+    ) where
+        Y: 's,
+    {
+        let round = self.round(y, number, now, seats);
+        match &self.crew {
+            None => _ = round.work(),
+            Some(crew) => {
+                crew.call(&round);
+                round.wait(deadline);
+                crew.replace(round.seats.iter().filter(|seat| seat.cut()).count());
+            }
+        }
+        self.rounds.push(round);
+    }
+
+    /// Prepares a round; allocates nothing if a former round is free that is large enough.
+    fn round<'s>(
+        &mut self,
+        y: Y,
+        number: u64,
+        now: Nanos,
+        seats: impl Iterator<Item = &'s Arc<Seat<Y>>>,
+    ) -> Arc<Round<Y>>
+    where
+        Y: 's,
+    {
+        let free = self.rounds.iter_mut().position(|round| Arc::get_mut(round).is_some());
+        let mut round = free.map_or_else(|| Arc::new(Round::default()), |free| self.rounds.swap_remove(free));
+        // The round of a module that hangs is left to it.
+        if free.is_none() && self.rounds.len() > 8 {
+            self.rounds.clear();
+        }
+        if let Some(round) = Arc::get_mut(&mut round) {
+            round.y = Some(y);
+            (round.number, round.now) = (number, now);
+            round.seats.clear();
+            round.seats.extend(seats.map(Arc::clone));
+            round.seats.iter().for_each(|seat| seat.queue());
+            *round.next.get_mut() = 0;
+            *round.left.get_mut() = u32::try_from(round.seats.len()).unwrap_or(u32::MAX);
+        }
+        round
+    }
+}
+
+impl<Y> Default for Round<Y> {
+    fn default() -> Self {
+        Self {
+            y: None,
+            number: 0,
+            now: Nanos::ZERO,
+            seats: Vec::new(),
+            next: AtomicUsize::new(0),
+            left: AtomicU32::new(0),
+        }
+    }
+}
+
+impl<Y> Round<Y> {
+    /// Takes modules and runs them until no module is left; returns `false` if one of them was late, so that the thread
+    /// has been replaced.
+    fn work(&self) -> bool {
+        let Some(y) = &self.y else { return true };
+        while let Some(seat) = self.seats.get(self.next.fetch_add(1, Ordering::AcqRel)) {
+            let was_late = seat.run(y, self.number, self.now);
+            if self.left.fetch_sub(1, Ordering::AcqRel) == 1 {
+                wake(&self.left, 1);
+            }
+            if was_late {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Waits until all modules are done, or the deadline has come.
+    fn wait(&self, deadline: Option<Instant>) {
+        loop {
+            let left = self.left.load(Ordering::Acquire);
+            if left == 0 || deadline.is_some_and(|deadline| Instant::now() >= deadline) {
+                return;
+            }
+            wait(&self.left, left, deadline);
+        }
+    }
+}
+
+impl<Y: Send + Sync + 'static> Crew<Y> {
+    fn new(workers: usize, prepare: fn()) -> io::Result<Self> {
+        let call = Call { round: Mutex::default(), epoch: AtomicU32::new(0), quit: AtomicBool::new(false) };
+        let crew = Self { call: Arc::new(call), workers, prepare };
+        (0..workers).try_for_each(|_| crew.hire())?;
+        Ok(crew)
+    }
+
+    fn hire(&self) -> io::Result<()> {
+        let (call, prepare) = (Arc::clone(&self.call), self.prepare);
+        let seen = call.epoch.load(Ordering::Acquire);
+        let worker = move || {
+            prepare();
+            call.answer(seen);
+        };
+        thread::Builder::new().name("mdle worker".to_owned()).spawn(worker).map(|_| ())
+    }
+
+    /// Hires a worker for each that a late module keeps. If the system gives no thread, the others go on alone.
+    fn replace(&self, late: usize) {
+        (0..late).for_each(|_| _ = self.hire());
+    }
+
+    /// Has the workers make a round.
+    fn call(&self, round: &Arc<Round<Y>>) {
+        *self.call.round.lock().unwrap_or_else(PoisonError::into_inner) = Some(Arc::clone(round));
+        self.call.epoch.fetch_add(1, Ordering::AcqRel);
+        wake(&self.call.epoch, u32::try_from(self.workers).unwrap_or(u32::MAX));
+    }
+}
+
+impl<Y> Call<Y> {
+    /// On a worker: makes rounds, until it is to quit, or has been replaced.
+    fn answer(&self, mut seen: u32) {
+        loop {
+            wait(&self.epoch, seen, None);
+            if self.quit.load(Ordering::Acquire) {
+                return;
+            }
+            let epoch = self.epoch.load(Ordering::Acquire);
+            if epoch == seen {
+                continue;
+            }
+            seen = epoch;
+            let round = self.round.lock().unwrap_or_else(PoisonError::into_inner).clone();
+            if round.is_some_and(|round| !round.work()) {
+                return;
+            }
+        }
+    }
+}
+
+impl<Y> Drop for Crew<Y> {
+    /// Lets the workers end; nobody waits for a module that hangs.
+    fn drop(&mut self) {
+        self.call.quit.store(true, Ordering::Release);
+        self.call.epoch.fetch_add(1, Ordering::AcqRel);
+        wake(&self.call.epoch, u32::MAX >> 1);
+    }
+}
+
+/// Waits while `word` has this value, and until the deadline; may return early.
+fn wait(word: &AtomicU32, value: u32, deadline: Option<Instant>) {
+    let left = deadline.map(|deadline| deadline.saturating_duration_since(Instant::now()));
+    let left = left.map(|left| Timespec {
+        tv_sec: i64::try_from(left.as_secs()).unwrap_or(i64::MAX),
+        tv_nsec: left.subsec_nanos().into(),
+    });
+    // An error is a value that has changed, a signal, or the end of the time: the caller looks for itself.
+    let _ = futex::wait(word, futex::Flags::PRIVATE, value, left.as_ref());
+}
+
+/// Wakes up to this many threads that wait for `word` to change.
+fn wake(word: &AtomicU32, count: u32) {
+    let _ = futex::wake(word, futex::Flags::PRIVATE, count);
+}

@@ -1,0 +1,126 @@
+//! A registered module with its ports, and the progress of its turn.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::time::{Duration, Instant};
+
+use mdle_runtime::Nanos;
+
+use crate::module::{Fault, Module, Ports, Turn, panicked};
+
+/// Place of a module among those that make turns.
+pub(crate) struct Seat<Y> {
+    progress: AtomicU8,
+    occupant: Mutex<Occupant<Y>>,
+}
+
+/// A module with its values; the thread that runs the module locks them, and between turns the engine does.
+pub(crate) struct Occupant<Y> {
+    module: Box<dyn Module<Y>>,
+    pub(crate) ports: Ports,
+    /// Work of the module in the next round.
+    pub(crate) task: Task,
+    /// Why the module cannot go on.
+    pub(crate) fault: Option<Fault>,
+    /// Mean time of a turn.
+    pub(crate) cost: Duration,
+}
+
+/// Work of a module in a round.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Task {
+    /// [`Module::start`] and a turn.
+    Start,
+    /// A turn.
+    Turn,
+    /// [`Module::stop`].
+    Stop,
+}
+
+/// Progress of a module's turn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Progress {
+    /// It has nothing to do, or has done it.
+    Done,
+    /// No thread has taken it yet.
+    Queued,
+    /// A thread runs it.
+    Running,
+    /// A thread still runs it after the deadline.
+    Late,
+    /// No thread had taken it at the deadline.
+    Skipped,
+}
+
+const PROGRESS: [Progress; 5] =
+    [Progress::Done, Progress::Queued, Progress::Running, Progress::Late, Progress::Skipped];
+
+impl<Y> Seat<Y> {
+    pub(crate) fn new(module: Box<dyn Module<Y>>, ports: Ports) -> Arc<Self> {
+        let occupant = Occupant { module, ports, task: Task::Start, fault: None, cost: Duration::ZERO };
+        Arc::new(Self { progress: AtomicU8::new(Progress::Done as u8), occupant: Mutex::new(occupant) })
+    }
+
+    /// Returns the progress of the last turn.
+    pub(crate) fn progress(&self) -> Progress {
+        PROGRESS.get(usize::from(self.progress.load(Ordering::Acquire))).copied().unwrap_or(Progress::Done)
+    }
+
+    /// Queues the module for a round.
+    pub(crate) fn queue(&self) {
+        self.progress.store(Progress::Queued as u8, Ordering::Release);
+    }
+
+    /// At the deadline: lets no thread begin the module any more. Returns `true` if a thread runs it, so that it is late.
+    pub(crate) fn cut(&self) -> bool {
+        !self.moved(Progress::Queued, Progress::Skipped) && self.moved(Progress::Running, Progress::Late)
+    }
+
+    /// Locks the module between rounds; `None` if a thread still runs it.
+    pub(crate) fn occupant(&self) -> Option<MutexGuard<'_, Occupant<Y>>> {
+        match self.occupant.try_lock() {
+            Ok(occupant) => Some(occupant),
+            Err(TryLockError::Poisoned(poisoned)) => Some(poisoned.into_inner()),
+            Err(TryLockError::WouldBlock) => None,
+        }
+    }
+
+    /// Runs the module if no other thread has taken it; returns `true` if it was late.
+    pub(crate) fn run(&self, y: &Y, number: u64, now: Nanos) -> bool {
+        if !self.moved(Progress::Queued, Progress::Running) {
+            return false;
+        }
+        let mut occupant = self.occupant.lock().unwrap_or_else(PoisonError::into_inner);
+        occupant.run(y, number, now);
+        drop(occupant);
+        self.progress.swap(Progress::Done as u8, Ordering::AcqRel) == Progress::Late as u8
+    }
+
+    fn moved(&self, from: Progress, to: Progress) -> bool {
+        self.progress.compare_exchange(from as u8, to as u8, Ordering::AcqRel, Ordering::Acquire).is_ok()
+    }
+}
+
+impl<Y> Occupant<Y> {
+    fn run(&mut self, y: &Y, number: u64, now: Nanos) {
+        let Self { module, ports, task, fault, cost } = self;
+        let begun = Instant::now();
+        let result = catch_unwind(AssertUnwindSafe(|| {
+            match task {
+                Task::Start => module.start(),
+                Task::Turn => {}
+                Task::Stop => {
+                    module.stop();
+                    return Ok(());
+                }
+            }
+            module.turn(&mut Turn { number, now, y, ports })
+        }));
+        *cost = (*cost * 7 + begun.elapsed()) / 8;
+        *fault = match result {
+            Ok(result) => result.err(),
+            Err(payload) => Some(Fault(format!("its code panicked, which is a bug: {}", panicked(payload)))),
+        };
+    }
+}
