@@ -5,10 +5,14 @@
 #![forbid(unsafe_code)]
 
 mod attribute;
+mod board;
+mod engine;
 mod fork;
 mod module;
 
 pub use attribute::{Attribute, AttributeKind, AttributeName, In, Out, Reading, Value};
+pub use board::{Board, Post};
+pub use engine::{Arrivals, End, Event, Modules, Service, Standing};
 pub use fork::Threads;
 pub use module::{
     About, Background, Candidate, Declare, Exchange, Fault, Module, Offer, Refusal, Relevance, Stopped, Turn,

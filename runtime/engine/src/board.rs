@@ -1,0 +1,135 @@
+//! The board: every attribute of every module with its last value, changed at turn breaks only. Readers are wired to
+//! places on it when a module is loaded or unloaded, so that a turn looks up no names.
+
+use mdle_runtime::Nanos;
+
+use crate::attribute::{AttributeName, Reading, Value};
+use crate::module::{About, Declared, Ports, Refusal, Source};
+
+/// All attributes of the loaded modules, in the order in which the modules were loaded.
+#[derive(Debug, Default)]
+pub struct Board {
+    posts: Vec<Post>,
+    /// Attributes of which a NaN was refused for the first time.
+    refused: Vec<AttributeName>,
+}
+
+/// An attribute on the board.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Post {
+    /// Its name.
+    pub name: AttributeName,
+    /// Kind, unit and description.
+    pub about: About,
+    /// The value that was published last; `None` before the first.
+    pub reading: Option<Reading>,
+    /// Number of values with a NaN, which were not published.
+    pub refused: u64,
+}
+
+/// Places on the board from which a module's copies come; `None` for a setting, or what no module publishes.
+pub(crate) type Wires = Vec<Option<usize>>;
+
+impl Board {
+    /// Returns the attributes in the order in which their modules were loaded.
+    #[must_use]
+    pub fn posts(&self) -> &[Post] {
+        &self.posts
+    }
+
+    /// Returns an attribute.
+    #[must_use]
+    pub fn post(&self, module: &str, attribute: &str) -> Option<&Post> {
+        self.place(module, attribute).and_then(|place| self.posts.get(place))
+    }
+
+    /// Returns the place of an attribute.
+    pub(crate) fn place(&self, module: &str, attribute: &str) -> Option<usize> {
+        self.posts.iter().position(|post| &*post.name.module == module && &*post.name.attribute == attribute)
+    }
+
+    /// Adds the attributes of a module.
+    pub(crate) fn add(&mut self, module: &str, declared: &Declared) {
+        self.posts.extend(declared.publishes.iter().map(|about| Post {
+            name: AttributeName::new(module, &about.name),
+            about: about.clone(),
+            reading: None,
+            refused: 0,
+        }));
+    }
+
+    /// Removes the attributes of a module.
+    pub(crate) fn remove(&mut self, module: &str) {
+        self.posts.retain(|post| &*post.name.module != module);
+    }
+
+    /// Returns the place of the first attribute of a module.
+    pub(crate) fn first(&self, module: &str) -> usize {
+        self.posts.iter().position(|post| &*post.name.module == module).unwrap_or(self.posts.len())
+    }
+
+    /// Returns the places of all that a module reads.
+    ///
+    /// # Errors
+    /// It reads an attribute as another kind than it has.
+    pub(crate) fn wires(&self, reader: &str, declared: &Declared) -> Result<Wires, Refusal> {
+        let wire = |source: &Source| {
+            let Source::Attribute(name, read) = source else { return Ok(None) };
+            let Some(place) = self.place(&name.module, &name.attribute) else { return Ok(None) };
+            match self.posts.get(place).map(|post| post.about.kind) {
+                Some(published) if published != *read => {
+                    Err(Refusal::OtherKind { reader: reader.to_owned(), name: name.clone(), read: *read, published })
+                }
+                Some(_) | None => Ok(Some(place)),
+            }
+        };
+        declared.reads.iter().map(wire).collect()
+    }
+
+    /// Publishes the values of a module whose attributes begin at `first`; calls `published` with each place.
+    pub(crate) fn publish(
+        &mut self,
+        first: usize,
+        ports: &mut Ports,
+        now: Nanos,
+        mut published: impl FnMut(usize, &Value),
+    ) {
+        for (place, out) in (first..).zip(&mut ports.outs) {
+            if let Some(value) = out.take() {
+                published(place, &value);
+                self.put(place, value, now);
+            }
+        }
+    }
+
+    /// Publishes one value, unless there is a NaN in it.
+    pub(crate) fn put(&mut self, place: usize, value: Value, now: Nanos) {
+        let Some(post) = self.posts.get_mut(place) else { return };
+        if value.has_nan() {
+            post.refused = post.refused.saturating_add(1);
+            if post.refused == 1 {
+                self.refused.push(post.name.clone());
+            }
+        } else {
+            post.reading = Some(Reading { value, at: now });
+        }
+    }
+
+    /// Returns the attributes of which a NaN was refused for the first time since the last call.
+    pub(crate) fn newly_refused(&mut self) -> impl Iterator<Item = AttributeName> {
+        self.refused.drain(..)
+    }
+
+    /// Gives a module its copies of what it reads. An attribute that has vanished has no value any more.
+    pub(crate) fn hand(&self, declared: &Declared, wires: &[Option<usize>], ports: &mut Ports) {
+        for ((source, wire), copy) in declared.reads.iter().zip(wires).zip(&mut ports.ins) {
+            let reading = match source {
+                Source::Setting(_, reading) => Some(reading),
+                Source::Attribute(..) => wire.and_then(|place| self.posts.get(place)?.reading.as_ref()),
+            };
+            if copy.as_ref() != reading {
+                *copy = reading.cloned();
+            }
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! A loaded module, and its standing.
+
+use std::sync::Arc;
+
+use mdle_runtime::Nanos;
+
+use crate::board::Wires;
+use crate::fork::{Seat, Task};
+use crate::module::{Candidate, Declared, Form, Ports, Relevance, ThreadGate};
+
+/// A loaded module.
+pub(crate) struct Loaded<Y> {
+    pub(crate) name: Arc<str>,
+    pub(crate) declared: Declared,
+    /// Place of its first attribute on the board.
+    pub(crate) first: usize,
+    pub(crate) wires: Wires,
+    pub(crate) runs: Runs<Y>,
+    pub(crate) standing: Standing,
+    /// `true` while people have stopped it.
+    pub(crate) is_held: bool,
+}
+
+/// Code of a loaded module, and where it runs.
+pub(crate) enum Runs<Y> {
+    /// It makes turns.
+    InTurns(Arc<Seat<Y>>),
+    /// It has a thread.
+    InBackground(Visit),
+}
+
+/// Exchange of a background module with the breaks.
+pub(crate) struct Visit {
+    pub(crate) gate: ThreadGate,
+    /// Time at which its next exchange is due, in stepped time.
+    pub(crate) due: Nanos,
+    /// Values of the module during a break that serves it.
+    pub(crate) ports: Option<Ports>,
+}
+
+/// Standing of a loaded module.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Standing {
+    /// It makes turns, or exchanges values.
+    Active,
+    /// It makes no turns for now: people have stopped it, or nothing reads it.
+    Stopped,
+    /// A thread still runs it since the turn of this number and time.
+    Late(u64, Nanos),
+    /// It was late for too long, and makes no further turn.
+    GivenUp,
+    /// It has failed, and makes no further turn.
+    Failed,
+    /// The thread of this background module has ended.
+    Ended,
+}
+
+impl Standing {
+    /// Returns `true` if the module will never make a turn again.
+    #[must_use]
+    pub fn is_final(self) -> bool {
+        match self {
+            Self::Active | Self::Stopped | Self::Late(..) => false,
+            Self::GivenUp | Self::Failed | Self::Ended => true,
+        }
+    }
+}
+
+impl<Y> Loaded<Y> {
+    /// Returns a module that begins at `now`; its thread may run if `lives`, and may not in a replay.
+    pub(crate) fn new(candidate: Candidate<Y>, now: Nanos, lives: bool) -> Self {
+        let Candidate { name, declared, form } = candidate;
+        let (runs, standing) = match form {
+            Form::Registered(module, ports) => (Runs::InTurns(Seat::new(module, ports)), Standing::Stopped),
+            Form::Background(gate) => {
+                if lives {
+                    gate.begin();
+                }
+                let due = Nanos(now.0.saturating_add(declared.latency.0));
+                (Runs::InBackground(Visit { gate, due, ports: None }), Standing::Stopped)
+            }
+        };
+        Self { name, declared, first: 0, wires: Wires::new(), runs, standing, is_held: false }
+    }
+
+    /// Returns the seat of a module that makes turns.
+    pub(crate) fn seat(&self) -> Option<&Arc<Seat<Y>>> {
+        match &self.runs {
+            Runs::InTurns(seat) => Some(seat),
+            Runs::InBackground(_) => None,
+        }
+    }
+
+    /// Returns the seat if the module is to be queued for the next turn.
+    pub(crate) fn queued(&self) -> Option<&Arc<Seat<Y>>> {
+        let seat = self.seat()?;
+        let is_queued = match self.standing {
+            Standing::Active => true,
+            Standing::Stopped => seat.occupant().is_some_and(|occupant| occupant.task == Task::Stop),
+            Standing::Late(..) | Standing::GivenUp | Standing::Failed | Standing::Ended => false,
+        };
+        is_queued.then_some(seat)
+    }
+
+    /// Returns `true` if the module makes turns whether it is read or not.
+    pub(crate) fn is_always_relevant(&self) -> bool {
+        self.declared.relevance == Relevance::Always
+    }
+}

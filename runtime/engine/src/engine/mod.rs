@@ -1,0 +1,12 @@
+//! The engine: modules with their turns and turn breaks.
+
+mod event;
+mod janitor;
+mod loaded;
+mod modules;
+mod relevance;
+mod turns;
+
+pub use event::{Arrivals, End, Event};
+pub use loaded::Standing;
+pub use modules::{Modules, Service};

@@ -1,0 +1,203 @@
+//! The modules of an engine: their turns, and the turn breaks between them, in a fixed order.
+
+use std::collections::VecDeque;
+use std::io;
+use std::sync::Arc;
+
+use mdle_runtime::Nanos;
+
+use super::event::{Arrivals, Event};
+use super::janitor::Janitor;
+use super::loaded::{Loaded, Standing};
+use crate::attribute::{AttributeName, Reading, Value};
+use crate::board::Board;
+use crate::fork::{Fork, Threads};
+use crate::module::{About, Candidate, Refusal};
+
+/// The clock by which a module that waits is served.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Service {
+    /// Real time: at the first break at which it waits.
+    WhenReady,
+    /// Stepped time: at the first break at which its latency has passed. The break waits for the module, so that every
+    /// run with the same inputs is the same.
+    WhenDue,
+}
+
+/// Modules with the board on which they publish.
+///
+/// A turn is [`Modules::turn`], then [`Modules::settle`], then changes by requests, then [`Modules::prepare`]: the last
+/// three are the turn break.
+pub struct Modules<Y> {
+    pub(super) board: Board,
+    /// In the order in which they were loaded, which is the order of every break.
+    pub(super) loaded: Vec<Loaded<Y>>,
+    /// Order in which threads take the modules.
+    pub(super) order: Vec<usize>,
+    pub(super) fork: Fork<Y>,
+    pub(super) service: Service,
+    janitor: Janitor,
+    /// Places on the board that the plan reads, now or soon.
+    pub(super) plan_reads: Vec<usize>,
+    /// `true` if relevance has to be found anew.
+    pub(super) has_changed: bool,
+    pub(super) events: Vec<Event>,
+    pub(super) arrivals: Arrivals,
+    /// Arrivals of the breaks of a run that is replayed; no background module runs then.
+    pub(super) replayed: Option<VecDeque<Arrivals>>,
+    /// Number and time of the current turn.
+    pub(super) turn: (u64, Nanos),
+}
+
+impl<Y: Send + Sync + 'static> Modules<Y> {
+    /// Returns an engine's modules before any is loaded.
+    ///
+    /// # Errors
+    /// The system gives no threads.
+    pub fn new(threads: Threads, service: Service) -> io::Result<Self> {
+        Ok(Self {
+            board: Board::default(),
+            loaded: Vec::new(),
+            order: Vec::new(),
+            fork: Fork::new(threads)?,
+            service,
+            janitor: Janitor::new()?,
+            plan_reads: Vec::new(),
+            has_changed: true,
+            events: Vec::new(),
+            arrivals: Arrivals::default(),
+            replayed: None,
+            turn: (0, Nanos::ZERO),
+        })
+    }
+
+    /// Returns the modules of a run that repeats another, which had these arrivals at its breaks.
+    ///
+    /// # Errors
+    /// The system gives no threads.
+    pub fn replaying(threads: Threads, arrivals: impl IntoIterator<Item = Arrivals>) -> io::Result<Self> {
+        let modules = Self::new(threads, Service::WhenReady)?;
+        Ok(Self { replayed: Some(arrivals.into_iter().collect()), ..modules })
+    }
+
+    /// Returns the board as of the last break.
+    #[must_use]
+    pub fn board(&self) -> &Board {
+        &self.board
+    }
+
+    /// Returns the events since the last call of [`Modules::turn`].
+    #[must_use]
+    pub fn events(&self) -> &[Event] {
+        &self.events
+    }
+
+    /// Returns what arrived at the last break.
+    #[must_use]
+    pub fn arrivals(&self) -> &Arrivals {
+        &self.arrivals
+    }
+
+    /// Returns the loaded modules, with their standing.
+    pub fn names(&self) -> impl Iterator<Item = (&str, Standing)> {
+        self.loaded.iter().map(|module| (&*module.name, module.standing))
+    }
+
+    /// Loads a module, after those that are loaded; registered modules make their first turn after the next
+    /// [`Modules::prepare`].
+    ///
+    /// # Errors
+    /// The name is taken, or a kind is wrong; nothing has changed then.
+    pub fn load(&mut self, candidate: Candidate<Y>) -> Result<(), Refusal> {
+        let name = Arc::clone(&candidate.name);
+        if self.loaded.iter().any(|module| module.name == name) {
+            return Err(Refusal::NameTaken(name.to_string()));
+        }
+        self.board.add(&name, &candidate.declared);
+        let refused = self.board.wires(&name, &candidate.declared).err();
+        let refused = refused.or_else(|| self.loaded.iter().find_map(|module| self.rewired(module).err()));
+        if let Some(refusal) = refused {
+            self.board.remove(&name);
+            return Err(refusal);
+        }
+        self.loaded.push(Loaded::new(candidate, self.turn.1, self.replayed.is_none()));
+        self.rewire();
+        self.events.push(Event::Loaded(name));
+        Ok(())
+    }
+
+    /// Unloads a module; its attributes vanish. A thread that still runs it is left to it.
+    ///
+    /// # Errors
+    /// No module has this name.
+    pub fn unload(&mut self, name: &str) -> Result<(), Refusal> {
+        let number = self.number(name)?;
+        let module = self.loaded.remove(number);
+        self.board.remove(name);
+        self.rewire();
+        self.events.push(Event::Unloaded(Arc::clone(&module.name)));
+        // Code of the module runs when it is dropped.
+        self.janitor.drop_later(module.runs);
+        Ok(())
+    }
+
+    /// Stops a module for people, or lets it make turns again.
+    ///
+    /// # Errors
+    /// No module has this name.
+    pub fn hold(&mut self, name: &str, is_held: bool) -> Result<(), Refusal> {
+        let number = self.number(name)?;
+        if let Some(module) = self.loaded.get_mut(number) {
+            module.is_held = is_held;
+        }
+        self.has_changed = true;
+        Ok(())
+    }
+
+    /// Changes a setting of a module; the module has it from its next turn or exchange on.
+    ///
+    /// # Errors
+    /// There is no such module or setting, or the value has another kind or is NaN.
+    pub fn set(&mut self, name: &str, setting: &str, value: Value) -> Result<(), Refusal> {
+        let number = self.number(name)?;
+        let path = AttributeName::new(name, setting);
+        let about = self.settings(name).find(|(about, _)| &*about.name == setting).map(|(about, _)| about.kind);
+        let kind = about.ok_or_else(|| Refusal::NoSetting(name.to_owned(), setting.to_owned()))?;
+        if kind != value.kind() {
+            return Err(Refusal::OtherSetting(path, kind, value.kind()));
+        }
+        if value.has_nan() {
+            return Err(Refusal::NotANumber(path));
+        }
+        let reading = Reading { value, at: self.turn.1 };
+        self.loaded.get_mut(number).map(|module| module.declared.set(setting, reading));
+        Ok(())
+    }
+
+    /// Returns the settings of a module with their values.
+    pub fn settings(&self, name: &str) -> impl Iterator<Item = (&About, &Reading)> {
+        let module = self.loaded.iter().filter(move |module| &*module.name == name);
+        module.flat_map(|module| module.declared.settings())
+    }
+
+    fn number(&self, name: &str) -> Result<usize, Refusal> {
+        let number = self.loaded.iter().position(|module| &*module.name == name);
+        number.ok_or_else(|| Refusal::Unknown(name.to_owned()))
+    }
+
+    fn rewired(&self, module: &Loaded<Y>) -> Result<crate::board::Wires, Refusal> {
+        self.board.wires(&module.name, &module.declared)
+    }
+
+    fn rewire(&mut self) {
+        let Self { board, loaded, .. } = self;
+        for module in loaded.iter_mut() {
+            module.first = board.first(&module.name);
+            // Kinds were compared before.
+            module.wires = board.wires(&module.name, &module.declared).unwrap_or_default();
+        }
+        self.order = (0..self.loaded.len()).collect();
+        self.has_changed = true;
+        self.reorder();
+    }
+}

@@ -1,0 +1,262 @@
+//! A turn of all modules, and the turn break after it, in the order of docs/src/engine.md.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use mdle_runtime::Nanos;
+
+use super::event::{Arrivals, End, Event};
+use super::loaded::{Loaded, Runs, Standing};
+use super::modules::{Modules, Service};
+use super::relevance::relevant;
+use crate::fork::{Progress, Task};
+use crate::module::Fault;
+
+/// Number of turns after which a late module is given up, if [`PATIENCE`] has passed as well.
+const LATE_TURNS: u64 = 10;
+/// Time after which a late module is given up, and for which a background module is waited for in stepped time.
+const PATIENCE: Duration = Duration::from_secs(1);
+/// Number of turns after which modules are put in order by their cost.
+const REORDERED: u64 = 128;
+
+impl<Y: Send + Sync + 'static> Modules<Y> {
+    /// Has every module that is relevant make turn `number` with output `y`, which was taken at `now`. In real time
+    /// modules that are not done at `deadline` are left behind.
+    pub fn turn(&mut self, y: Y, number: u64, now: Nanos, deadline: Option<Instant>) {
+        let Self { loaded, order, fork, events, replayed, turn, .. } = self;
+        *turn = (number, now);
+        events.clear();
+        let recorded = replayed.as_ref().and_then(|arrivals| arrivals.front());
+        let was_skipped = |name: &Arc<str>| recorded.is_some_and(|arrivals| arrivals.skipped.contains(name));
+        let modules = order.iter().filter_map(|number| loaded.get(*number));
+        let seats = modules.filter(|module| !was_skipped(&module.name)).filter_map(Loaded::queued);
+        fork.turn(y, number, now, seats, deadline);
+    }
+
+    /// First part of the turn break: finds who is late or has failed, then publishes the values of registered modules,
+    /// then those of background modules that wait.
+    pub fn settle(&mut self) {
+        self.arrivals.clear();
+        if let Some(replayed) = &mut self.replayed {
+            self.arrivals = replayed.pop_front().unwrap_or_default();
+        }
+        for number in 0..self.loaded.len() {
+            self.settle_registered(number);
+        }
+        if self.replayed.is_some() {
+            self.settle_replayed();
+        } else {
+            for number in 0..self.loaded.len() {
+                self.settle_background(number);
+            }
+        }
+        self.events.extend(self.board.newly_refused().map(Event::NotANumber));
+    }
+
+    /// Last part of the turn break: finds who is relevant from now on, and gives every module its copies of what it
+    /// reads.
+    pub fn prepare(&mut self) {
+        if std::mem::take(&mut self.has_changed) {
+            let relevant = relevant(&self.loaded, &self.plan_reads);
+            for (module, is_relevant) in self.loaded.iter_mut().zip(relevant) {
+                let is_wanted = is_relevant && !module.is_held;
+                self.events.extend(module.becomes(is_wanted));
+            }
+        }
+        for module in &mut self.loaded {
+            let (declared, wires) = (&module.declared, &module.wires);
+            match &mut module.runs {
+                Runs::InTurns(seat) if module.standing == Standing::Active => {
+                    if let Some(mut occupant) = seat.occupant() {
+                        self.board.hand(declared, wires, &mut occupant.ports);
+                    }
+                }
+                Runs::InTurns(_) => {}
+                Runs::InBackground(visit) => {
+                    if let Some(mut ports) = visit.ports.take() {
+                        self.board.hand(declared, wires, &mut ports);
+                        visit.gate.give_back(ports);
+                    }
+                }
+            }
+        }
+        if self.turn.0.is_multiple_of(REORDERED) {
+            self.reorder();
+        }
+    }
+
+    /// Sets the places on the board that the plan reads, now or soon: modules that only it needs make turns as long as
+    /// it needs them.
+    pub fn plan_reads(&mut self, places: &[usize]) {
+        if self.plan_reads != places {
+            self.plan_reads.clear();
+            self.plan_reads.extend_from_slice(places);
+            self.has_changed = true;
+        }
+    }
+
+    /// Orders the modules by priority, then by cost, the longest first.
+    pub(super) fn reorder(&mut self) {
+        let Self { loaded, order, .. } = self;
+        let key = |number: &usize| {
+            let module = loaded.get(*number);
+            let priority = module.map_or(0, |module| module.declared.priority);
+            let occupant = module.and_then(|module| module.seat()?.occupant());
+            (std::cmp::Reverse((priority, occupant.map_or(Duration::ZERO, |occupant| occupant.cost))), *number)
+        };
+        order.sort_unstable_by_key(key);
+    }
+
+    /// Takes the result of a registered module's turn.
+    fn settle_registered(&mut self, number: usize) {
+        let Self { board, loaded, events, arrivals, replayed, turn, .. } = self;
+        let Some(module) = loaded.get_mut(number) else { return };
+        let Runs::InTurns(seat) = &module.runs else { return };
+        if module.standing.is_final() {
+            return;
+        }
+        let progress = match replayed {
+            Some(_) => arrivals.progress(&module.name),
+            None => seat.progress(),
+        };
+        let (name, standing) = (&module.name, &mut module.standing);
+        match progress {
+            Progress::Skipped if replayed.is_none() => arrivals.skipped.push(Arc::clone(name)),
+            Progress::Late => {
+                if replayed.is_none() {
+                    arrivals.late.push(Arc::clone(name));
+                }
+                events.extend(standing.is_late(name, *turn));
+            }
+            Progress::Done | Progress::Queued | Progress::Running | Progress::Skipped => {}
+        }
+        if progress != Progress::Done {
+            return;
+        }
+        let Some(mut occupant) = seat.occupant() else { return };
+        if let Standing::Late(..) = standing {
+            *standing = Standing::Active;
+            // It may have become irrelevant meanwhile.
+            self.has_changed = true;
+        }
+        if let Some(Fault(sentence)) = occupant.fault.take() {
+            *standing = Standing::Failed;
+            events.push(Event::Failed(Arc::clone(name), sentence));
+            return;
+        }
+        occupant.task = match (occupant.task, *standing) {
+            (Task::Start, Standing::Active) | (Task::Turn, _) => Task::Turn,
+            (Task::Start | Task::Stop, _) => Task::Start,
+        };
+        board.publish(module.first, &mut occupant.ports, turn.1, |_, _| ());
+    }
+
+    /// Takes the values of a background module that waits.
+    fn settle_background(&mut self, number: usize) {
+        let Self { board, loaded, events, arrivals, service, turn, .. } = self;
+        let Some(module) = loaded.get_mut(number) else { return };
+        let Runs::InBackground(visit) = &mut module.runs else { return };
+        if module.standing != Standing::Active || *service == Service::WhenDue && turn.1 < visit.due {
+            return;
+        }
+        let is_there = *service == Service::WhenReady || visit.gate.wait_for_offer(PATIENCE);
+        if let Some(mut ports) = visit.gate.take_offer() {
+            let keep = |place, value: &_| arrivals.values.push((place, Clone::clone(value)));
+            board.publish(module.first, &mut ports, turn.1, keep);
+            visit.ports = Some(ports);
+            visit.due = Nanos(turn.1.0.saturating_add(module.declared.latency.0));
+            return;
+        }
+        let end = match visit.gate.take_end() {
+            Some(Ok(())) => End::Returned,
+            Some(Err(message)) => End::Panicked(message),
+            None if is_there => return,
+            None => End::GivenUp,
+        };
+        events.push(module.ends(end.clone()));
+        arrivals.ended.push((Arc::clone(&module.name), end));
+    }
+
+    /// Publishes the values that arrived in the run that is repeated.
+    fn settle_replayed(&mut self) {
+        let Self { board, loaded, events, arrivals, turn, .. } = self;
+        for (place, value) in &arrivals.values {
+            board.put(*place, value.clone(), turn.1);
+        }
+        for (name, end) in &arrivals.ended {
+            let module = loaded.iter_mut().find(|module| module.name == *name);
+            events.extend(module.map(|module| module.ends(end.clone())));
+        }
+    }
+}
+
+impl Arrivals {
+    /// Returns the progress of a module in a run that is repeated.
+    fn progress(&self, name: &Arc<str>) -> Progress {
+        match (self.late.contains(name), self.skipped.contains(name)) {
+            (true, _) => Progress::Late,
+            (false, true) => Progress::Skipped,
+            (false, false) => Progress::Done,
+        }
+    }
+}
+
+impl Standing {
+    /// Notes that a module is late at the break of this turn.
+    fn is_late(&mut self, name: &Arc<str>, (number, now): (u64, Nanos)) -> Option<Event> {
+        let Self::Late(since, at) = *self else {
+            *self = Self::Late(number, now);
+            return Some(Event::Late(Arc::clone(name)));
+        };
+        let is_over = number.saturating_sub(since) >= LATE_TURNS && now.since(at).0 >= nanos(PATIENCE);
+        is_over.then(|| {
+            *self = Self::GivenUp;
+            Event::GivenUp(Arc::clone(name))
+        })
+    }
+}
+
+impl<Y> Loaded<Y> {
+    /// Lets a module make turns, or stops it.
+    fn becomes(&mut self, is_wanted: bool) -> Option<Event> {
+        let mut occupant = self.seat().and_then(|seat| seat.occupant());
+        let task = occupant.as_mut().map(|occupant| &mut occupant.task);
+        let (standing, event) = match (self.standing, is_wanted) {
+            (Standing::Stopped, true) => {
+                if let Some(task) = task {
+                    // A module that was not stopped yet goes on.
+                    *task = if *task == Task::Stop { Task::Turn } else { Task::Start };
+                }
+                (Standing::Active, Event::Started(Arc::clone(&self.name)))
+            }
+            (Standing::Active, false) => {
+                if let Some(task) = task.filter(|task| **task == Task::Turn) {
+                    *task = Task::Stop;
+                }
+                (Standing::Stopped, Event::Stopped(Arc::clone(&self.name)))
+            }
+            (_, true | false) => return None,
+        };
+        drop(occupant);
+        self.standing = standing;
+        Some(event)
+    }
+
+    /// Notes the end of a background module.
+    fn ends(&mut self, end: End) -> Event {
+        let name = Arc::clone(&self.name);
+        let (standing, event) = match end {
+            End::Returned => (Standing::Ended, Event::Ended(name)),
+            End::Panicked(message) => {
+                (Standing::Failed, Event::Failed(name, format!("its code panicked, which is a bug: {message}")))
+            }
+            End::GivenUp => (Standing::GivenUp, Event::GivenUp(name)),
+        };
+        self.standing = standing;
+        event
+    }
+}
+
+fn nanos(time: Duration) -> u64 {
+    u64::try_from(time.as_nanos()).unwrap_or(u64::MAX)
+}
