@@ -9,6 +9,8 @@ mod board;
 mod engine;
 mod fork;
 mod module;
+#[cfg(test)]
+mod tests;
 
 pub use attribute::{Attribute, AttributeKind, AttributeName, In, Out, Reading, Value};
 pub use board::{Board, Post};
