@@ -65,13 +65,13 @@ pub(crate) struct Runs<'p> {
 }
 
 /// A robot with its plan, before the first exchange, or why there is none.
-type Prepared<'p> = Result<Box<dyn Drive + 'p>, String>;
+pub(crate) type Prepared<'p> = Result<Box<dyn Drive + 'p>, String>;
 
 impl<'p> Runs<'p> {
-    /// Returns the runs of `batch`, in which the plan of `drive` drives each robot.
-    pub(crate) fn of<R: 'p>(batch: Batch<R>, drive: impl Fn(R) -> Box<dyn Drive + 'p> + Send + Sync + 'p) -> Self {
+    /// Returns the runs of `batch`, in which `drive` gives each robot its pilot.
+    pub(crate) fn of<R: 'p>(batch: Batch<R>, drive: impl Fn(R) -> Prepared<'p> + Send + Sync + 'p) -> Self {
         let Batch { first, runs, jobs, json, robot, alone } = batch;
-        Self { first, runs, jobs, json, drive: Box::new(move |seed| robot(seed).map(&drive)), alone }
+        Self { first, runs, jobs, json, drive: Box::new(move |seed| robot(seed).and_then(&drive)), alone }
     }
 }
 
@@ -216,6 +216,7 @@ fn one(batch: &Runs<'_>, seed: u64, terms: &Terms<'_>) -> Option<Done> {
             | RunEnd::Unstopped(fault)
             | RunEnd::Log(fault)
             | RunEnd::Overrun(fault)
+            | RunEnd::Pilot(fault)
             | RunEnd::Bug(fault),
         ) => Outcome::Failed(fault),
         Ok(RunEnd::Suspended { .. }) => Outcome::Failed("it went without a command".to_owned()),

@@ -6,6 +6,8 @@ use std::time::Duration;
 use mdle_runtime::{Frame, Fsm, Machine, MetersPerSecond, Nanos, Output as _, Plan, Radians, Robot, Turn, Words};
 
 use crate::observer::{Observer, Observes};
+use crate::pilot::{Moment, Pilot, PilotFault};
+use crate::run_end::RunEnd;
 use crate::transitions::Transitions;
 
 /// Texts and tables of a plan, for reports: [`Plan`] without the types of its robot.
@@ -113,10 +115,17 @@ pub(crate) trait Drive {
     fn longest_gap(&self) -> Option<Duration>;
     /// Returns the heading and the speed of the robot by its last output, if it has one and paths are recorded.
     fn motion(&self) -> Option<(Radians, MetersPerSecond)>;
-    /// Makes a turn with the last output at time `t`; the first turn begins the plan.
-    fn turn(&mut self, t: Nanos, transitions: &mut Transitions) -> Turn<()>;
+    /// Makes turn `number` with the last output at time `t`; the first turn begins the plan.
+    ///
+    /// # Errors
+    /// Why the run has to end, though the robot is well.
+    fn turn(&mut self, t: Nanos, number: u64, transitions: &mut Transitions) -> Result<Turn<()>, RunEnd>;
+    /// Calls `say` with each message for the operator since the last call.
+    fn messages(&mut self, say: &mut dyn FnMut(&str));
     /// Returns the robot's observer, if it has one, and the position in the plan, if it has begun.
     fn parts(&mut self) -> (Option<&mut dyn Observer>, Option<&dyn Position>);
+    /// Returns the time of the run at which the plan began.
+    fn zero(&self) -> Nanos;
 
     /// Returns the robot's observer, if it has one.
     fn observer(&mut self) -> Option<&mut dyn Observer> {
@@ -124,15 +133,13 @@ pub(crate) trait Drive {
     }
 }
 
-/// A robot, and the plan that drives it.
-pub(crate) struct PlanOnRobot<'p, R: Robot, P: Plan<Output = R::Output, Input = R::Input>> {
+/// A robot, and the pilot that drives it.
+pub(crate) struct PilotOnRobot<R: Robot, B> {
     robot: R,
     observer: Observes<R>,
     /// Returns the speed of the robot by an output, if paths are recorded.
     speed: Option<Speed<R>>,
-    /// Makes the plan.
-    plan: &'p dyn Fn() -> P,
-    machine: Option<Machine<P>>,
+    pilot: B,
     output: Option<R::Output>,
     input: R::Input,
 }
@@ -140,13 +147,17 @@ pub(crate) struct PlanOnRobot<'p, R: Robot, P: Plan<Output = R::Output, Input = 
 /// Returns the forward speed of a robot by an output.
 type Speed<R> = fn(&<R as Robot>::Output) -> MetersPerSecond;
 
-impl<'p, R: Robot, P: Plan<Output = R::Output, Input = R::Input>> PlanOnRobot<'p, R, P> {
-    pub(crate) fn new(robot: R, observer: Observes<R>, speed: Option<Speed<R>>, plan: &'p dyn Fn() -> P) -> Self {
-        Self { robot, observer, speed, plan, machine: None, output: None, input: R::Input::default() }
+impl<R: Robot, B> PilotOnRobot<R, B> {
+    pub(crate) fn new(robot: R, observer: Observes<R>, speed: Option<Speed<R>>, pilot: B) -> Self {
+        Self { robot, observer, speed, pilot, output: None, input: R::Input::default() }
     }
 }
 
-impl<R: Robot, P: Plan<Output = R::Output, Input = R::Input>> Drive for PlanOnRobot<'_, R, P> {
+impl<R, B> Drive for PilotOnRobot<R, B>
+where
+    R: Robot,
+    B: Pilot<Plan: Plan<Output = R::Output, Input = R::Input>>,
+{
     fn exchange(&mut self) -> Result<(), String> {
         self.output = Some(self.robot.exchange(&self.input).map_err(|fault| fault.to_string())?);
         Ok(())
@@ -170,22 +181,32 @@ impl<R: Robot, P: Plan<Output = R::Output, Input = R::Input>> Drive for PlanOnRo
         Some((output.here().theta, speed(output)))
     }
 
-    fn turn(&mut self, t: Nanos, transitions: &mut Transitions) -> Turn<()> {
+    fn turn(&mut self, t: Nanos, number: u64, transitions: &mut Transitions) -> Result<Turn<()>, RunEnd> {
         // Without an output no law can compute an input.
-        let Some(y) = &self.output else { return Turn::Cut };
-        let machine = self.machine.get_or_insert_with(|| Machine::begin((self.plan)(), y, t));
-        let turn = machine.turn(y, t, transitions);
+        let Some(y) = &self.output else { return Ok(Turn::Cut) };
+        let turn = self.pilot.turn(Moment { y, t, number }, transitions).map_err(|fault| match fault {
+            PilotFault::Stopped(sentence) => RunEnd::Pilot(sentence),
+            PilotFault::Panicked(message) => RunEnd::Bug(message),
+        })?;
         let kind = match turn {
             Turn::Law(_) => Turn::Law(()),
             Turn::Cut => Turn::Cut,
             Turn::Over => Turn::Over,
         };
         self.input = turn.input();
-        kind
+        Ok(kind)
+    }
+
+    fn messages(&mut self, say: &mut dyn FnMut(&str)) {
+        self.pilot.messages(say);
     }
 
     fn parts(&mut self) -> (Option<&mut dyn Observer>, Option<&dyn Position>) {
         let observer = self.observer.map(|observer| observer(&mut self.robot));
-        (observer, self.machine.as_ref().map(|machine| machine as _))
+        (observer, self.pilot.machine().map(|machine| machine as _))
+    }
+
+    fn zero(&self) -> Nanos {
+        self.pilot.zero()
     }
 }

@@ -7,8 +7,9 @@ use clap::{ArgMatches, Command};
 use mdle_runtime::{PathStore, Plan, Robot, Twist};
 
 use crate::batch::Runs;
-use crate::drive::{Drive, PlanOnRobot, Texts};
-use crate::{NamedFile, Refusal, Replays, StopRequest, Target, Time};
+use crate::drive::{Drive, PilotOnRobot, Texts};
+use crate::pilot::{MakePilot, Pilot, RunTerms};
+use crate::{NamedFile, Pace, Refusal, Replays, StopRequest, Target, Time};
 
 /// The target and the plan of an executable.
 pub(crate) trait Executable: Sync {
@@ -68,35 +69,37 @@ impl TargetOptions {
     }
 }
 
-/// An executable of a plan for the target `T`.
-pub(crate) struct PlanOnTarget<'p, T, P> {
+/// An executable of a plan for the target `T`, with the pilot `B` of its runs.
+pub(crate) struct PlanOnTarget<'p, T, P, B> {
     /// Makes the plan.
     plan: &'p (dyn Fn() -> P + Sync),
+    /// Makes the pilot of a run.
+    pilot: &'p MakePilot<'p, B>,
     target: PhantomData<fn() -> T>,
 }
 
-impl<'p, T: Target, P> PlanOnTarget<'p, T, P>
+impl<'p, T: Target, P, B> PlanOnTarget<'p, T, P, B>
 where
-    P: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>,
+    B: Pilot<Plan: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>> + 'p,
 {
-    pub(crate) fn new(plan: &'p (dyn Fn() -> P + Sync)) -> Self {
-        Self { plan, target: PhantomData }
+    pub(crate) fn new(plan: &'p (dyn Fn() -> P + Sync), pilot: &'p MakePilot<'p, B>) -> Self {
+        Self { plan, pilot, target: PhantomData }
     }
 
-    /// Returns the robot with the plan that drives it and the paths that the plan replays.
-    fn drive(&self, mut robot: T::Robot, store: PathStore) -> Box<dyn Drive + '_> {
+    /// Returns the robot with the pilot that drives it and the paths that the plan replays.
+    fn drive(&self, mut robot: T::Robot, pilot: B, store: PathStore) -> Box<dyn Drive + '_> {
         let speed = T::PATHS.map(|Replays { take, speed, .. }| {
             take(&mut robot, store);
             speed
         });
         let observer = T::OBSERVATION.map(|observation| observation.observer);
-        Box::new(PlanOnRobot::new(robot, observer, speed, self.plan))
+        Box::new(PilotOnRobot::new(robot, observer, speed, pilot))
     }
 }
 
-impl<T: Target, P> Executable for PlanOnTarget<'_, T, P>
+impl<'p, T: Target, P: Plan, B> Executable for PlanOnTarget<'p, T, P, B>
 where
-    P: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>,
+    B: Pilot<Plan: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>> + 'p,
 {
     fn target(&self) -> TargetOptions {
         TargetOptions::of::<T>()
@@ -113,13 +116,22 @@ where
         request: &StopRequest,
         store: PathStore,
     ) -> Result<Box<dyn Drive + '_>, Refusal> {
+        // Without a pilot the robot need not be opened.
+        let time = T::time(matches).map_err(Refusal::Usage)?;
+        let pilot = (self.pilot)(RunTerms { time, period })?;
         let robot = T::connect(matches, period, request)?;
-        Ok(self.drive(robot, store))
+        Ok(self.drive(robot, pilot, store))
     }
 
     fn batch(&self, matches: &ArgMatches, period: Duration, store: PathStore) -> Result<Option<Runs<'_>>, Refusal> {
         let Some(observation) = T::OBSERVATION else { return Ok(None) };
         let batch = (observation.batch)(matches, period)?;
-        Ok(batch.map(|batch| Runs::of(batch, move |robot| self.drive(robot, store))))
+        let terms = RunTerms { time: Time::Stepped(Pace::Max), period };
+        let drive = move |robot| match (self.pilot)(terms) {
+            Ok(pilot) => Ok(self.drive(robot, pilot, store)),
+            Err(Refusal::Usage(sentence) | Refusal::Fault(sentence) | Refusal::Ended(Err(sentence))) => Err(sentence),
+            Err(Refusal::Ended(Ok(()))) => Err("the run was asked to end before it began".to_owned()),
+        };
+        Ok(batch.map(|batch| Runs::of(batch, drive)))
     }
 }

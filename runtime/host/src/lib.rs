@@ -2,7 +2,8 @@
 //!
 //! For people who write a robot: [`Target`], [`Time`] and [`Refusal`], [`Observer`] where its runs are watched and
 //! [`Batch`] where it can be started over, [`Replays`] where it replays paths, [`read_file`] and [`output_format`]
-//! where its options name files, [`Quantity`] where they take lengths and times. For generated code: [`run`].
+//! where its options name files, [`Quantity`] where they take lengths and times. For generated code: [`run`]. For an engine that makes
+//! the turns of a run itself: [`Pilot`].
 //!
 //! The robot is stopped in every case: when the plan is over, when an exchange fails, when code panics, when a signal
 //! arrives, when a limit is reached.
@@ -28,6 +29,7 @@ mod panic_hook;
 mod passes;
 mod paths;
 mod patience;
+mod pilot;
 mod program;
 mod progress;
 mod report;
@@ -67,9 +69,13 @@ pub use observer::{Around, Ended, Judgement, Observation, Observer, PlanPosition
 pub use output_format::output_format;
 pub use paths::{Replays, setpoints};
 use patience::Patience;
+use pilot::PlanAlone;
+pub use pilot::{Moment, Pilot, PilotFault, RunTerms};
 pub use program::Program;
+pub use scheduling::claim_for_worker;
 pub use stop_request::StopRequest;
 pub use target::{Pace, Refusal, Target, Time};
+pub use transitions::Transitions;
 
 /// Runs the plan that `plan` makes on the robot of the target `T`, with the arguments of this process: the `main` of an
 /// executable that mdlec builds calls this function. `program` is the plan's name, for `--help`, whose usage names the
@@ -97,7 +103,21 @@ pub fn run_called<'a, T: Target, P>(
 where
     P: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>,
 {
-    execute(program.into(), call, &PlanOnTarget::<T, P>::new(&plan))
+    execute(program.into(), call, &PlanOnTarget::<T, P, _>::new(&plan, &|_| Ok(PlanAlone::new(&plan))))
+}
+
+/// Runs a plan as [`run_called`] does, with turns that the pilot makes which `pilot` returns. The plan that `plan` makes
+/// is read beforehand, for its texts and paths.
+pub fn run_piloted<'a, T: Target, B>(
+    program: impl Into<Program<'a>>,
+    call: Call,
+    plan: impl Fn() -> B::Plan + Sync,
+    pilot: impl Fn(RunTerms) -> Result<B, Refusal> + Sync,
+) -> ExitCode
+where
+    B: Pilot<Plan: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>>,
+{
+    execute(program.into(), call, &PlanOnTarget::<T, _, _>::new(&plan, &pilot))
 }
 
 /// Returns the text that [`run_called`] refuses these options with, if a program for the target `T` does not have them.

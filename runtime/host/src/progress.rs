@@ -6,6 +6,7 @@ use std::time::Duration;
 use mdle_runtime::{Nanos, Printable};
 
 use crate::report::Report;
+use crate::run_end::say;
 
 /// Minimum time between two updates of the line.
 const EVERY: Duration = Duration::from_millis(100);
@@ -36,6 +37,12 @@ impl<'e> Progress<'e> {
         report.flush();
         let times = t.seconds() / now.as_secs_f64();
         self.show(&format!("{:.1} s  {times:.0} times as fast as real  {}", t.seconds(), Printable(law)));
+    }
+
+    /// Shows a message in a line of its own, which stays.
+    pub(crate) fn say(&mut self, message: &str) {
+        self.clear();
+        say(self.err, format_args!("{message}"));
     }
 
     /// Shows that `done` of `all` runs are done.

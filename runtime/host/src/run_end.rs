@@ -45,6 +45,8 @@ pub(crate) enum RunEnd {
     Log(String),
     /// Too many turns took too long: how long.
     Overrun(String),
+    /// The turns could not go on: why.
+    Pilot(String),
     /// The robot went without a command for `gap`, longer than for `longest`, both in nanoseconds.
     Suspended {
         /// Length of the gap, in nanoseconds.
@@ -78,6 +80,7 @@ impl RunEnd {
             | Self::Unstopped(_)
             | Self::Log(_)
             | Self::Overrun(_)
+            | Self::Pilot(_)
             | Self::Suspended { .. }
             | Self::Bug(_) => FAULT,
         }
@@ -102,7 +105,8 @@ impl RunEnd {
             | Self::Turns(_)
             | Self::Signal(_)
             | Self::Log(_)
-            | Self::Overrun(_) => true,
+            | Self::Overrun(_)
+            | Self::Pilot(_) => true,
             Self::Unstarted(_) | Self::Robot(_) | Self::Unstopped(_) | Self::Suspended { .. } | Self::Bug(_) => false,
         }
     }
@@ -120,6 +124,7 @@ impl RunEnd {
             | Self::Unstopped(_)
             | Self::Log(_)
             | Self::Overrun(_)
+            | Self::Pilot(_)
             | Self::Suspended { .. } => true,
             Self::Bug(_) => false,
         }
@@ -137,6 +142,7 @@ impl RunEnd {
             | Self::Unstopped(_)
             | Self::Log(_)
             | Self::Overrun(_)
+            | Self::Pilot(_)
             | Self::Suspended { .. }
             | Self::Bug(_) => "a fault".to_owned(),
         }
@@ -158,7 +164,9 @@ impl RunEnd {
             }
             Self::Signal(signal) => say(err, format_args!("stopped by {}", signal.name())),
             Self::Unstarted(fault) => say(err, format_args!("error: the plan was not started: {fault}")),
-            Self::Robot(fault) | Self::Overrun(fault) => say(err, format_args!("error: {came}: {fault}")),
+            Self::Robot(fault) | Self::Overrun(fault) | Self::Pilot(fault) => {
+                say(err, format_args!("error: {came}: {fault}"))
+            }
             Self::Suspended { gap, longest } => {
                 let [gap, longest] = [gap, longest].map(|nanos| Duration::from_nanos(*nanos).as_secs_f64());
                 say(

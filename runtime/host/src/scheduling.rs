@@ -20,13 +20,24 @@ const MEMORY: &str = "locked memory";
 /// # Errors
 /// What the system does not permit, in words. The run goes on without it.
 pub(crate) fn claim() -> Result<(), String> {
-    let first_in_first_out = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
-    let is_scheduled = ThreadPriority::try_from(PRIORITY)
-        .is_ok_and(|priority| set_thread_priority_and_policy(thread_native_id(), priority, first_in_first_out).is_ok());
+    let is_scheduled = schedule(PRIORITY);
     let is_locked = mlockall(MlockAllFlags::CURRENT).is_ok();
     let claims = [(SCHEDULING, is_scheduled), (MEMORY, is_locked)];
     let refused: Vec<_> = claims.into_iter().filter(|(_, is_granted)| !is_granted).map(|(what, _)| what).collect();
     if refused.is_empty() { Ok(()) } else { Err(refused.join(" and ")) }
+}
+
+/// Lets this thread, which works for the one that makes the turns, run before all ordinary threads, and after that one.
+/// Without the permission it runs as an ordinary thread does; the run warns of that.
+pub fn claim_for_worker() {
+    let _ = schedule(PRIORITY.saturating_sub(1));
+}
+
+/// Schedules this thread in real time with this priority; returns `true` if the system permits it.
+fn schedule(priority: u8) -> bool {
+    let first_in_first_out = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
+    ThreadPriority::try_from(priority)
+        .is_ok_and(|priority| set_thread_priority_and_policy(thread_native_id(), priority, first_in_first_out).is_ok())
 }
 
 #[cfg(test)]

@@ -2,9 +2,9 @@
 
 use mdle_runtime::{Measured, Transition, Watch};
 
-/// The transitions of a turn. The plan, which has their texts, is not at hand while they are made.
+/// The transitions of a turn, for reports. The plan, which has their texts, is not at hand while they are made.
 #[derive(Debug, Default)]
-pub(crate) struct Transitions {
+pub struct Transitions {
     /// Transitions in order, each with the number of operands up to its own.
     made: Vec<(Transition, usize)>,
     operands: Vec<Operand>,
@@ -15,13 +15,14 @@ pub(crate) type Operand = (u32, Measured);
 
 impl Transitions {
     /// Removes the transitions of the previous turn.
-    pub(crate) fn clear(&mut self) {
+    pub fn clear(&mut self) {
         self.made.clear();
         self.operands.clear();
     }
 
     /// Returns `true` if there are no transitions.
-    pub(crate) fn is_empty(&self) -> bool {
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
         self.made.is_empty()
     }
 

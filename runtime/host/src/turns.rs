@@ -45,7 +45,7 @@ pub(crate) fn run<I: Instants>(
     cycle(&mut turns, limits, clock, signals)
 }
 
-/// The turns of an executable: those of its plan.
+/// The turns of a plan, with those who follow them.
 struct OnePlan<'t, 'a, 'o> {
     drive: &'t mut dyn Drive,
     witnesses: &'t mut Witnesses<'a, 'o>,
@@ -66,14 +66,17 @@ impl Turns for OnePlan<'_, '_, '_> {
             path.take(heading, speed, t);
         }
         transitions.clear();
-        let turn = drive.turn(t, transitions);
+        let turn = drive.turn(t, number, transitions);
+        drive.messages(&mut |message| witnesses.say(message));
+        let turn = turn?;
+        let zero = drive.zero();
         *fresh |= !transitions.is_empty();
         if let (observer, Some(position)) = drive.parts() {
             let told = witnesses.tell(position, turn, number, t, transitions);
             told.map_err(|error| RunEnd::Log(error.to_string()))?;
             let has_begun = turn == Turn::Law(()) && std::mem::take(fresh);
             if let Some(observer) = observer {
-                watched(observer, position, turn, has_begun, t, witnesses.report);
+                watched(observer, position, turn, has_begun, (t, zero), witnesses.report);
             }
         }
         Ok(if turn == Turn::Over { Step::Over } else { Step::Next })
@@ -92,13 +95,13 @@ impl Turns for OnePlan<'_, '_, '_> {
     }
 }
 
-/// Tells the observer about a turn, and first which atom `has_begun` in it.
+/// Tells the observer about a turn at time `t` of a plan that began at `zero`, and first which atom `has_begun` in it.
 fn watched(
     observer: &mut dyn Observer,
     position: &dyn Position,
     turn: Turn<()>,
     has_begun: bool,
-    t: Nanos,
+    (t, zero): (Nanos, Nanos),
     report: &Report<'_>,
 ) {
     let plan = position.texts();
@@ -107,7 +110,7 @@ fn watched(
         observer.began(written.state, plan.law(atom), t);
     }
     if turn != Turn::Over && observer.looks() {
-        observer.turned(&standing(position, t, report));
+        observer.turned(&standing(position, t, zero, report));
     }
 }
 
@@ -117,8 +120,8 @@ fn ended(observer: &mut dyn Observer, position: &dyn Position, ending: &RunEnd, 
     observer.ended(&Ended { plan: position.texts().name(0), is_over: *ending == RunEnd::Over, by: &by, t });
 }
 
-/// Returns the state of a plan that is not over.
-fn standing<'m>(position: &'m dyn Position, t: Nanos, report: &'m Report<'_>) -> PlanPosition<'m> {
+/// Returns the state of a plan that is not over, and that began at time `zero`.
+fn standing<'m>(position: &'m dyn Position, t: Nanos, zero: Nanos, report: &'m Report<'_>) -> PlanPosition<'m> {
     let (plan, fsm) = (position.texts(), position.texts().fsm());
     let atom = position.atom().and_then(|atom| fsm.atoms.get(atom as usize));
     let own = atom.and_then(|atom| fsm.brackets.get(atom.scope as usize)).map(|bracket| bracket.kind);
@@ -128,7 +131,7 @@ fn standing<'m>(position: &'m dyn Position, t: Nanos, report: &'m Report<'_>) ->
     };
     let scopes = levels.map(|level| {
         let scope = position.scope(level);
-        Around { name: plan.name(scope), condition: plan.condition(scope), since: position.since(level, t) }
+        Around { name: plan.name(scope), condition: plan.condition(scope), since: position.since(level, t.since(zero)) }
     });
     let law = position.atom().map_or("", |atom| plan.law(atom));
     let place = position.atom().map_or_else(String::new, |atom| place(plan, report.passes(), atom));
@@ -136,6 +139,15 @@ fn standing<'m>(position: &'m dyn Position, t: Nanos, report: &'m Report<'_>) ->
 }
 
 impl Witnesses<'_, '_> {
+    /// Reports a message for the operator.
+    fn say(&mut self, message: &str) {
+        match (&mut self.progress, &mut self.err) {
+            (Some(progress), _) => progress.say(message),
+            (None, Some(err)) => say(err, format_args!("{message}")),
+            (None, None) => {}
+        }
+    }
+
     /// Reports a turn to the recipients.
     fn tell(
         &mut self,

@@ -11,7 +11,8 @@ use super::plan::ToyPlan;
 use super::toy::Sensed;
 use crate::batch::{self, Batch, Runs, Terms};
 use crate::cycle::Limits;
-use crate::drive::PlanOnRobot;
+use crate::drive::PilotOnRobot;
+use crate::pilot::PlanAlone;
 use crate::required::{self, Required};
 use crate::signals::{Signal, Signals};
 use crate::{Judgement, Observer};
@@ -93,7 +94,10 @@ impl Several {
             }),
             alone: Box::new(|seed| ["--world", "my floor.toml", "--seed", &seed.to_string()].map(str::to_owned).into()),
         };
-        let runs = Runs::of(batch, |robot| Box::new(PlanOnRobot::new(robot, Some(|robot| robot), None, &ToyPlan::lab)));
+        let runs = Runs::of(batch, |robot| {
+            let pilot = PlanAlone::new(&ToyPlan::lab);
+            Ok(Box::new(PilotOnRobot::new(robot, Some(|robot| robot), None, pilot)))
+        });
         let limits = Limits { timeout: None, turns: Some(100) };
         let words = ["it"].iter().chain(require).copied();
         let matches = required::argument(Command::new("it")).try_get_matches_from(words).unwrap();

@@ -14,6 +14,7 @@ use super::plan::ToyPlan;
 use crate::call::Call;
 use crate::clock::Instants;
 use crate::executable::PlanOnTarget;
+use crate::pilot::PlanAlone;
 use crate::session::{Surroundings, session};
 use crate::signals::{Signal, Signals};
 use crate::{Around, Ended, Judgement, Observation, Observer, Pace, PlanPosition, Refusal, StopRequest, Target, Time};
@@ -136,7 +137,7 @@ impl Stage {
         let status = session(
             "Lab".into(),
             Call::of_executable(arguments),
-            &PlanOnTarget::<ToyTarget, _>::new(&plan),
+            &PlanOnTarget::<ToyTarget, _, _>::new(&plan, &|_| Ok(PlanAlone::new(&plan))),
             surroundings,
         );
         // Otherwise a program may end before its last message is written.

@@ -1,0 +1,99 @@
+//! Interface of the code that makes a run's turns: one plan in an executable, an engine with modules in `mdle`. Exchange,
+//! limits, signals, reports and the safe stop are the host's in every case.
+
+use std::time::Duration;
+
+use mdle_runtime::{Machine, Nanos, Plan, Turn};
+
+use crate::transitions::Transitions;
+use crate::{Refusal, Time};
+
+/// Computes the input of each turn.
+pub trait Pilot {
+    /// The plan, for reports.
+    type Plan: Plan;
+
+    /// Makes a turn; the first one begins the plan, or waits with null inputs until the plan can begin. `transitions`
+    /// is empty, and takes those of the plan.
+    ///
+    /// # Errors
+    /// Why the run has to end, though the robot is well.
+    fn turn(
+        &mut self,
+        moment: Moment<'_, <Self::Plan as Plan>::Output>,
+        transitions: &mut Transitions,
+    ) -> Result<Turn<<Self::Plan as Plan>::Input>, PilotFault>;
+
+    /// Returns the plan, once it has begun.
+    fn machine(&self) -> Option<&Machine<Self::Plan>>;
+
+    /// Returns the time of the run at which the plan began, by which it counts its own time.
+    fn zero(&self) -> Nanos {
+        Nanos::ZERO
+    }
+
+    /// Calls `say` with each message for the operator since the last call.
+    fn messages(&mut self, _say: &mut dyn FnMut(&str)) {}
+}
+
+/// A turn of a run.
+#[derive(Debug)]
+pub struct Moment<'y, Y> {
+    /// The robot's output.
+    pub y: &'y Y,
+    /// Time of the run at which the output was taken; the first output is at zero.
+    pub t: Nanos,
+    /// Number of the turn, from 0.
+    pub number: u64,
+}
+
+/// Reason why the run has to end, though the robot is well (exit status 3).
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum PilotFault {
+    /// The turns cannot go on: a sentence.
+    Stopped(String),
+    /// The plan panicked: the message.
+    Panicked(String),
+}
+
+/// Conditions of a run, for the code that makes its turns.
+#[derive(Debug, Clone, Copy)]
+pub struct RunTerms {
+    /// Time of the robot.
+    pub time: Time,
+    /// Period of a turn.
+    pub period: Duration,
+}
+
+/// Makes the pilot of a run.
+pub(crate) type MakePilot<'p, B> = dyn Fn(RunTerms) -> Result<B, Refusal> + Sync + 'p;
+
+/// The pilot of an executable: its plan alone.
+pub(crate) struct PlanAlone<'p, P: Plan> {
+    /// Makes the plan.
+    plan: &'p (dyn Fn() -> P + Sync),
+    machine: Option<Machine<P>>,
+}
+
+impl<'p, P: Plan> PlanAlone<'p, P> {
+    pub(crate) fn new(plan: &'p (dyn Fn() -> P + Sync)) -> Self {
+        Self { plan, machine: None }
+    }
+}
+
+impl<P: Plan> Pilot for PlanAlone<'_, P> {
+    type Plan = P;
+
+    fn turn(
+        &mut self,
+        Moment { y, t, .. }: Moment<'_, P::Output>,
+        transitions: &mut Transitions,
+    ) -> Result<Turn<P::Input>, PilotFault> {
+        let machine = self.machine.get_or_insert_with(|| Machine::begin((self.plan)(), y, t));
+        Ok(machine.turn(y, t, transitions))
+    }
+
+    fn machine(&self) -> Option<&Machine<P>> {
+        self.machine.as_ref()
+    }
+}
