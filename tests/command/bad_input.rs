@@ -11,15 +11,15 @@ use mdle_tests::executable::{folder, run_mdlec};
 const REST: &str = "{ Rest (Atom (wait 1ms) stop) }\n";
 
 /// Returns the exit status and standard error, as a person sees them.
-fn said(folder: &Path, arguments: &[&str]) -> String {
+fn transcript(folder: &Path, arguments: &[&str]) -> String {
     let before = listing(folder);
     let output = run_mdlec(folder, arguments);
     assert_eq!(output.stdout, b"", "nothing goes to standard output");
     assert_eq!(before, listing(folder), "something was left behind");
-    let said = String::from_utf8(output.stderr).expect("UTF-8");
-    assert!(!said.contains("panicked"), "{said}");
+    let messages = String::from_utf8(output.stderr).expect("UTF-8");
+    assert!(!messages.contains("panicked"), "{messages}");
     let status = output.status.code().expect("mdlec ends by itself");
-    format!("$ mdlec {}\n{said}exit status {status}\n", arguments.join(" "))
+    format!("$ mdlec {}\n{messages}exit status {status}\n", arguments.join(" "))
 }
 
 fn listing(folder: &Path) -> Vec<std::ffi::OsString> {
@@ -38,7 +38,7 @@ fn with_plan(test: &str, plan: impl AsRef<[u8]>) -> std::path::PathBuf {
 fn a_plan_with_errors() {
     let plan = "{ P (bumpr)\n  (Atom (wait 1 2) go fast 0)\n  { Inner (Atom (atIsection 0121) rotate 90)\n  Legg\n}\n";
     let folder = with_plan("errors", plan);
-    insta::assert_snapshot!(said(&folder, &["plan.mdle", "--target", "sim"]));
+    insta::assert_snapshot!(transcript(&folder, &["plan.mdle", "--target", "sim"]));
 }
 
 #[test]
@@ -46,7 +46,7 @@ fn commands_that_are_misspelled() {
     let folder = with_plan("commands", REST);
     let commands =
         [&["chekc", "plan.mdle"][..], &["chekc"], &["anlyze", "--json", "plan.mdle"], &["rnu", "plan.mdle"], &["plan"]];
-    insta::assert_snapshot!(commands.map(|arguments| said(&folder, arguments)).join("\n"));
+    insta::assert_snapshot!(commands.map(|arguments| transcript(&folder, arguments)).join("\n"));
 }
 
 #[test]
@@ -55,14 +55,14 @@ fn a_robot_that_lacks_something_names_those_that_have_it() {
     fs::create_dir_all(folder.join("cart")).unwrap();
     let cart = "target cart : crate cart, period 100ms;\ncapability diff_drive, odometry;\nuse atoms;\n";
     fs::write(folder.join("cart/alphabet.mdle"), cart).unwrap();
-    insta::assert_snapshot!(said(&folder, &["check", "plan.mdle", "--target", "./cart"]));
+    insta::assert_snapshot!(transcript(&folder, &["check", "plan.mdle", "--target", "./cart"]));
 }
 
 #[test]
 fn what_is_no_plan_is_a_few_messages() {
     let source = fs::read_to_string(mdle_tests::repository::root().join("mdlec/compiler/src/lib.rs")).unwrap();
     let folder = with_plan("no_plan", source);
-    let output = said(&folder, &["check", "plan.mdle"]);
+    let output = transcript(&folder, &["check", "plan.mdle"]);
     assert_eq!(output.matches("\nerror[").count(), 10, "{output}");
     assert!(output.contains("\n… and ") && output.ends_with(" errors\nexit status 1\n"), "{output}");
 }
@@ -70,9 +70,9 @@ fn what_is_no_plan_is_a_few_messages() {
 #[test]
 fn every_command_gives_a_plan_with_errors_the_same_status() {
     let folder = with_plan("status", "{ P (bumpr) (Atom (wait 1) stop) }");
-    let check = said(&folder, &["check", "plan.mdle"]);
+    let check = transcript(&folder, &["check", "plan.mdle"]);
     for arguments in [&["plan.mdle", "--emit", "fsm"][..], &["plan.mdle", "--emit", "rust", "--target", "sim"]] {
-        assert_eq!(check.split_once('\n').unwrap().1, said(&folder, arguments).split_once('\n').unwrap().1);
+        assert_eq!(check.split_once('\n').unwrap().1, transcript(&folder, arguments).split_once('\n').unwrap().1);
     }
 }
 
@@ -81,21 +81,22 @@ fn names_that_no_new_target_can_have() {
     let folder = with_plan("new_target", REST);
     fs::create_dir(folder.join("there")).unwrap();
     let names = ["there", "plan.mdle", "sim", "all", "My-Rover", "../rover", "2wheels", ""];
-    insta::assert_snapshot!(names.map(|name| said(&folder, &["new-target", name])).join("\n"));
+    insta::assert_snapshot!(names.map(|name| transcript(&folder, &["new-target", name])).join("\n"));
 }
 
 #[test]
 fn targets_that_are_none() {
     let folder = with_plan("target", REST);
-    let said = ["sin", "spaceship", "../rover"].map(|target| said(&folder, &["plan.mdle", "--target", target]));
-    insta::assert_snapshot!(said.join("\n") + &self::said(&folder, &["plan.mdle"]));
+    let transcripts =
+        ["sin", "spaceship", "../rover"].map(|target| transcript(&folder, &["plan.mdle", "--target", target]));
+    insta::assert_snapshot!(transcripts.join("\n") + &transcript(&folder, &["plan.mdle"]));
 }
 
 #[test]
 fn plans_by_name() {
     let folder = with_plan("several", format!("{REST}{{ Other Rest2 }}\n{{ Rest2 (Atom (wait 1ms) stop) }}\n"));
-    let none = said(&folder, &["plan.mdle", "--target", "sim"]);
-    let wrong = said(&folder, &["plan.mdle", "--target", "sim", "--plan", "Othre"]);
+    let none = transcript(&folder, &["plan.mdle", "--target", "sim"]);
+    let wrong = transcript(&folder, &["plan.mdle", "--target", "sim", "--plan", "Othre"]);
     insta::assert_snapshot!(format!("{none}\n{wrong}"));
 }
 
@@ -105,16 +106,16 @@ fn files_that_are_no_plans() {
     fs::create_dir(folder.join("folder.mdle")).unwrap();
     fs::write(folder.join("empty.mdle"), "// nothing yet\n").unwrap();
     let files = ["plan.mdle", "folder.mdle", "missing.mdle", "plan", "empty.mdle"];
-    insta::assert_snapshot!(files.map(|file| said(&folder, &["check", file])).join("\n"));
+    insta::assert_snapshot!(files.map(|file| transcript(&folder, &["check", file])).join("\n"));
 }
 
 #[test]
 fn places_that_cannot_be_written() {
     let folder = with_plan("places", REST);
     fs::create_dir(folder.join("taken")).unwrap();
-    let build = |output: &str| said(&folder, &["plan.mdle", "--target", "sim", "-o", output]);
-    let emit = said(&folder, &["plan.mdle", "--emit=plan=missing/plan.txt"]);
-    let drawn = said(&folder, &["draw", "plan.mdle", "-o", "taken"]);
+    let build = |output: &str| transcript(&folder, &["plan.mdle", "--target", "sim", "-o", output]);
+    let emit = transcript(&folder, &["plan.mdle", "--emit=plan=missing/plan.txt"]);
+    let drawn = transcript(&folder, &["draw", "plan.mdle", "-o", "taken"]);
     insta::assert_snapshot!([build("taken"), build("missing/plan"), build("plan.mdle"), emit, drawn].join("\n"));
 }
 
@@ -127,7 +128,7 @@ fn names_of_outputs_in_other_formats() {
         &["plan.mdle", "--emit", "dot=out/plan.svg"],
         &["plan.mdle", "--emit", "matrices", "-o", "plan.pdf"],
     ];
-    insta::assert_snapshot!(commands.map(|arguments| said(&folder, arguments)).join("\n"));
+    insta::assert_snapshot!(commands.map(|arguments| transcript(&folder, arguments)).join("\n"));
 }
 
 #[test]
@@ -146,8 +147,8 @@ fn options_that_are_wrong() {
         &["plan.mdle", "--target", "sim", "arg"],
         &[],
     ] {
-        let said = said(&folder, arguments);
-        assert!(said.ends_with("exit status 2\n"), "{said}");
+        let transcript = transcript(&folder, arguments);
+        assert!(transcript.ends_with("exit status 2\n"), "{transcript}");
     }
 }
 
@@ -156,7 +157,7 @@ fn emulators_that_are_none() {
     let folder = with_plan("emulators", REST);
     let commands =
         [&["emulator", "scuot"][..], &["emulator", "sim"], &["emulator"], &["emulator", "scout", "--link", "line"]];
-    insta::assert_snapshot!(commands.map(|arguments| said(&folder, arguments)).join("\n"));
+    insta::assert_snapshot!(commands.map(|arguments| transcript(&folder, arguments)).join("\n"));
 }
 
 #[test]
@@ -179,15 +180,15 @@ fn options_of_other_commands_name_these() {
         &["simulate", "plan.mdle"],
         &["compile", "plan.mdle"],
     ];
-    insta::assert_snapshot!(commands.map(|arguments| said(&folder, arguments)).join("\n"));
+    insta::assert_snapshot!(commands.map(|arguments| transcript(&folder, arguments)).join("\n"));
 }
 
 #[test]
 fn warnings_can_be_denied() {
     let folder = with_plan("warnings", "{ P (bumper) (Atom (bumper) rotate 90) }\n");
-    let allowed = said(&folder, &["check", "plan.mdle"]);
+    let allowed = transcript(&folder, &["check", "plan.mdle"]);
     assert!(allowed.contains("warning[W0101]") && allowed.ends_with("exit status 0\n"), "{allowed}");
-    let denied = said(&folder, &["check", "plan.mdle", "--deny-warnings"]);
+    let denied = transcript(&folder, &["check", "plan.mdle", "--deny-warnings"]);
     assert!(denied.ends_with("exit status 1\n"), "{denied}");
 }
 
@@ -228,22 +229,24 @@ fn scripts_that_are_wrong() {
     fs::write(folder.join("names.mdle"), plan).unwrap();
     let names = turns.map(|turn| {
         fs::write(folder.join("names"), turn.replace("\\n", "\n") + "\n").unwrap();
-        format!("{turn}\n{}", said(&folder, &["trace", "names.mdle", "--script", "names"]))
+        format!("{turn}\n{}", transcript(&folder, &["trace", "names.mdle", "--script", "names"]))
     });
     insta::assert_snapshot!("names_in_scripts_that_are_wrong", names.join("\n"));
     let scripts = ["script", "nonsense", "list", "plain", "unit", "missing"];
-    insta::assert_snapshot!(scripts.map(|file| said(&folder, &["trace", "plan.mdle", "--script", file])).join("\n"));
+    insta::assert_snapshot!(
+        scripts.map(|file| transcript(&folder, &["trace", "plan.mdle", "--script", file])).join("\n")
+    );
 }
 
 #[test]
 fn an_expanded_form_that_is_too_large_names_its_loop() {
     let folder = with_plan("large", "{ P ExecPlan 1000000 { (Atom (wait 1) stop) } }\n");
-    let emitted = said(&folder, &["plan.mdle", "--emit", "fsm"]);
+    let emitted = transcript(&folder, &["plan.mdle", "--emit", "fsm"]);
     insta::assert_snapshot!(emitted);
     fs::write(folder.join("script.jsonl"), "{\"t\":0}\n").unwrap();
-    let message = |said: &str| said.split_once('\n').map(|(_, message)| message.to_owned());
+    let message = |transcript: &str| transcript.split_once('\n').map(|(_, message)| message.to_owned());
     for machine in ["table", "matrix"] {
-        let traced = said(&folder, &["trace", "plan.mdle", "--script", "script.jsonl", "--machine", machine]);
+        let traced = transcript(&folder, &["trace", "plan.mdle", "--script", "script.jsonl", "--machine", machine]);
         assert_eq!(message(&traced), message(&emitted));
     }
 }
@@ -252,10 +255,10 @@ fn an_expanded_form_that_is_too_large_names_its_loop() {
 fn brackets_without_end_are_one_error_that_names_the_limit() {
     let folder = with_plan("brackets", format!("{{ P {} }}\n", "(".repeat(20_000)));
     for arguments in [&["check", "plan.mdle"][..], &["plan.mdle", "--target", "sim"]] {
-        let said = said(&folder, arguments);
-        assert_eq!(said.matches("error[").count(), 1);
-        assert!(said.contains("error[E0106]: brackets nested more than 256 deep\n"), "{}", &said[..200]);
-        assert!(said.ends_with("error: 1 error\nexit status 1\n"));
+        let transcript = transcript(&folder, arguments);
+        assert_eq!(transcript.matches("error[").count(), 1);
+        assert!(transcript.contains("error[E0106]: brackets nested more than 256 deep\n"), "{}", &transcript[..200]);
+        assert!(transcript.ends_with("error: 1 error\nexit status 1\n"));
     }
 }
 
@@ -265,8 +268,11 @@ fn more_passes_than_can_be_counted_are_an_error() {
     let folder = with_plan("passes", format!("{{ P {loops} }}\n"));
     let build = ["plan.mdle", "--target", "sim"];
     for arguments in [&["check", "plan.mdle"][..], &build, &["plan.mdle", "--emit", "fsm"]] {
-        let said = said(&folder, arguments);
-        assert!(said.contains("error[E0501]: ") && said.ends_with("error: 1 error\nexit status 1\n"), "{said}");
+        let transcript = transcript(&folder, arguments);
+        assert!(
+            transcript.contains("error[E0501]: ") && transcript.ends_with("error: 1 error\nexit status 1\n"),
+            "{transcript}"
+        );
     }
 }
 
@@ -295,7 +301,7 @@ fn no_output_goes_over_an_input() {
     assert_eq!(run_mdlec(&folder, &["new-target", "rover"]).status.code(), Some(0));
     let texts = || ["plan.mdle", "legs.mdle", "x1.mtx", "rover/alphabet.mdle"].map(|file| fs::read(folder.join(file)));
     let before = texts().map(Result::unwrap);
-    let report = OVER_AN_INPUT.map(|arguments| said(&folder, arguments)).join("\n");
+    let report = OVER_AN_INPUT.map(|arguments| transcript(&folder, arguments)).join("\n");
     assert_eq!(texts().map(Result::unwrap), before);
     insta::assert_snapshot!(report);
 }
@@ -304,7 +310,7 @@ fn no_output_goes_over_an_input() {
 fn an_executable_does_not_go_over_a_source_of_its_robot() {
     let folder = with_plan("over_source", REST);
     assert_eq!(run_mdlec(&folder, &["new-target", "rover"]).status.code(), Some(0));
-    let report = said(&folder, &["plan.mdle", "--target", "rover", "-o", "rover/src/lib.rs"]);
+    let report = transcript(&folder, &["plan.mdle", "--target", "rover", "-o", "rover/src/lib.rs"]);
     insta::assert_snapshot!(report);
 }
 

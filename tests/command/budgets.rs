@@ -138,8 +138,9 @@ fn assert_ends(test: &str, plan: &str, commands: &[&[&str]]) {
     for command in commands {
         let (status, messages) = judged(&folder, &[command, &["plan.mdle"][..]].concat());
         let start: String = messages.chars().take(1000).collect();
-        let is_told = status == Some(1) && (messages.contains("error[E0501]: ") || messages.contains("error[E0502]: "));
-        assert!(status == Some(0) || is_told, "{command:?}: {status:?}: {start}");
+        let is_reported =
+            status == Some(1) && (messages.contains("error[E0501]: ") || messages.contains("error[E0502]: "));
+        assert!(status == Some(0) || is_reported, "{command:?}: {status:?}: {start}");
     }
 }
 
@@ -176,8 +177,8 @@ fn loops_multiply_conditions_within_limits() {
     let folder = with_plan("loops", &plan);
     for kind in ["expanded", "fsm", "scxml"] {
         let (status, messages) = judged(&folder, &["plan.mdle", "--emit", kind]);
-        let is_told = messages.contains("error[E0502]: ");
-        assert!(status == Some(1) && is_told, "{kind}: {status:?}: {messages}");
+        let is_reported = messages.contains("error[E0502]: ");
+        assert!(status == Some(1) && is_reported, "{kind}: {status:?}: {messages}");
     }
     assert_ends("loops", &plan, &[ANALYZE, RUST]);
 }

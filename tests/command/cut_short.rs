@@ -119,7 +119,7 @@ fn no_room(path: &str) -> (Option<i32>, String) {
 }
 
 #[test]
-fn no_room_in_the_cache_is_told_and_the_next_build_works() {
+fn a_full_cache_fails_and_the_next_build_works() {
     let folder = with_plan("no_room_in_cache");
     assert_builds(&folder);
     // Room for the sources of another plan and the list of what is compiled, not for what is compiled from them.
@@ -151,7 +151,7 @@ fn no_room_for_the_output_leaves_what_was_there() {
 }
 
 #[test]
-fn a_full_device_is_told() {
+fn a_full_device_is_reported() {
     let folder = with_plan("full_device");
     fs::write(folder.join("script"), "{\"t\": 0}\n").unwrap();
     let full = || File::options().write(true).open("/dev/full").unwrap();

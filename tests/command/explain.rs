@@ -88,7 +88,7 @@ fn a_code_is_explained_and_all_are_listed() {
 }
 
 #[test]
-fn a_code_that_is_none_is_told_the_nearest() {
+fn an_unknown_code_has_the_nearest_as_help() {
     let folder = folder("explain_none");
     let messages = ["E0210", "w999", "help"].map(|code| {
         let output = run_mdlec(&folder, &["explain", code]);

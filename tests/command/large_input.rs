@@ -50,11 +50,11 @@ fn what_nests_too_deep_is_one_error_that_names_the_limit() {
     ];
     for plan in plans.as_flattened() {
         let [first, others @ ..] = COMMANDS.map(|arguments| messages(&folder, plan, arguments));
-        let (status, printed, told) = &first;
-        let start: String = told.chars().take(300).collect();
+        let (status, printed, messages) = &first;
+        let start: String = messages.chars().take(300).collect();
         assert_eq!((*status, printed.as_str()), (Some(1), ""), "{start}");
         assert!(start.starts_with("error[E0106]: brackets nested more than 256 deep\n"), "{start}");
-        assert!(told.ends_with("\nerror: 1 error\n"), "{start}");
+        assert!(messages.ends_with("\nerror: 1 error\n"), "{start}");
         assert!(others.iter().all(|other| *other == first), "{start}");
     }
 }
@@ -89,10 +89,10 @@ fn brackets_that_close_nothing_are_one_error() {
     for bracket in [")", "}"] {
         let plan = format!("{{ P (Atom (bumper) stop) }}{}", bracket.repeat(MANY));
         for arguments in COMMANDS {
-            let (status, _, told) = messages(&folder, &plan, arguments);
+            let (status, _, text) = messages(&folder, &plan, arguments);
             let message = format!("error[E0103]: these 100000 `{bracket}` close nothing\n");
-            assert!(status == Some(1) && told.starts_with(&message), "{}", &told[..300]);
-            assert!(told.ends_with("\nerror: 1 error\n"));
+            assert!(status == Some(1) && text.starts_with(&message), "{}", &text[..300]);
+            assert!(text.ends_with("\nerror: 1 error\n"));
         }
     }
 }
@@ -101,24 +101,24 @@ fn brackets_that_close_nothing_are_one_error() {
 fn a_long_line_is_cut_around_its_mistake() {
     let folder = folder("long_line");
     let plan = format!("{{ P {}(Atom (bogus) stop) }}\n", "(Atom (wait 1) stop) ".repeat(60_000));
-    let (status, _, told) = messages(&folder, &plan, &["check", "plan.mdle"]);
+    let (status, _, text) = messages(&folder, &plan, &["check", "plan.mdle"]);
     assert_eq!(status, Some(1));
-    let lines: Vec<_> = told.lines().collect();
-    assert!(told.len() < 1000 && lines[1].ends_with("plan.mdle:1:1260012"), "{}", &told[..told.len().min(2000)]);
+    let lines: Vec<_> = text.lines().collect();
+    assert!(text.len() < 1000 && lines[1].ends_with("plan.mdle:1:1260012"), "{}", &text[..text.len().min(2000)]);
     let at = |line: &str, part: char| line.chars().position(|letter| letter == part);
-    assert_eq!(at(lines[4], '^'), lines[3].find("bogus").map(|byte| lines[3][..byte].chars().count()), "{told}");
-    let (_, _, told) = messages(&folder, &plan, &["check", "plan.mdle", "--message-format", "json"]);
-    assert!(told.contains(r#""line":1,"column":1260012,"end_line":1,"end_column":1260017"#), "{told}");
+    assert_eq!(at(lines[4], '^'), lines[3].find("bogus").map(|byte| lines[3][..byte].chars().count()), "{text}");
+    let (_, _, text) = messages(&folder, &plan, &["check", "plan.mdle", "--message-format", "json"]);
+    assert!(text.contains(r#""line":1,"column":1260012,"end_line":1,"end_column":1260017"#), "{text}");
 }
 
 #[test]
-fn errors_without_number_are_told_as_far_as_anybody_reads() {
+fn a_hundred_errors_are_shown_on_a_terminal() {
     let folder = folder("without_number");
     let plan = format!("{{ P {} }}", "(} {) ".repeat(MANY / 2));
-    let (status, _, told) = messages(&folder, &plan, &["check", "plan.mdle"]);
+    let (status, _, text) = messages(&folder, &plan, &["check", "plan.mdle"]);
     assert_eq!(status, Some(1));
-    assert!(told.len() < 10_000 && told.contains("\n… and "), "{} bytes", told.len());
-    let (status, _, told) = messages(&folder, &plan, &["check", "plan.mdle", "--message-format", "json"]);
+    assert!(text.len() < 10_000 && text.contains("\n… and "), "{} bytes", text.len());
+    let (status, _, text) = messages(&folder, &plan, &["check", "plan.mdle", "--message-format", "json"]);
     // A program is told all of them: each repetition has three mistakes.
-    assert_eq!((status, told.lines().count()), (Some(1), MANY / 2 * 3));
+    assert_eq!((status, text.lines().count()), (Some(1), MANY / 2 * 3));
 }

@@ -29,7 +29,7 @@ fn with_plan(test: &str) -> std::path::PathBuf {
 }
 
 #[test]
-fn what_does_not_run_is_told_with_what_to_type() {
+fn failures_to_run_have_a_help() {
     let folder = with_plan("refused");
     fs::write(folder.join("two.mdle"), "{ A (Atom (wait 1) stop) }\n{ B (Atom (wait 1) stop) }\n").unwrap();
     fs::write(folder.join("bad.mdle"), "{ P (Atom (bumber) stop) }\n").unwrap();

@@ -96,7 +96,7 @@ fn an_alphabet_that_lies_fails_the_build_of_its_target() {
 }
 
 #[test]
-fn a_wrong_plan_is_told_where_in_both_files() {
+fn a_wrong_plan_has_its_place_in_both_files() {
     let folder = with_rover("misfit", ALPHABET);
     fs::write(folder.join("plan.mdle"), "{ Main (low 2s) (Atom (null) count 0.5) }").unwrap();
     let (status, message) = built(&folder);
@@ -105,7 +105,7 @@ fn a_wrong_plan_is_told_where_in_both_files() {
 }
 
 #[test]
-fn what_cannot_be_bound_is_said() {
+fn what_cannot_be_bound_is_an_error() {
     let folder = with_rover("no_target", "target rover : crate mdle_rover;\ncontrol f(a: speed parsec);\n");
     let broken = bind(&folder, &[]);
     fs::remove_file(folder.join("rover/alphabet.mdle")).unwrap();

@@ -130,7 +130,7 @@ fn stored(folder: &Path, start: &str) -> Vec<PathBuf> {
 }
 
 #[test]
-fn a_place_that_cannot_be_a_cache_is_told() {
+fn an_unusable_cache_folder_is_an_error() {
     let folder = with_plan("no_cache", 1);
     // Permissions do not bind a superuser; these bind everyone.
     for place in ["plan.mdle", "plan.mdle/cache", "/proc/mdlec"] {
@@ -171,7 +171,7 @@ fn a_cache_that_others_can_change_is_refused() {
 }
 
 #[test]
-fn whom_a_build_waits_for_is_told() {
+fn a_waiting_build_names_the_other() {
     let folder = with_plan("waits", 5);
     // Another test's build may be the one that is waited for, and itself wait for this lock: then all let go, and begin
     // again.
@@ -213,7 +213,7 @@ fn no_network_is_needed_when_all_was_fetched() {
 }
 
 #[test]
-fn libraries_that_cannot_be_fetched_are_told() {
+fn missing_libraries_are_an_error() {
     let folder = with_plan("not_fetched", 1);
     let nothing = |name: &str, value: &str| {
         let mut command = command(&folder, &BUILD);

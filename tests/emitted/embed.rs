@@ -107,7 +107,7 @@ fn an_application_calls_its_plan_from_its_own_loop() {
 }
 
 #[test]
-fn what_is_missing_is_told_as_a_build_script_can_type_it() {
+fn missing_arguments_are_named_for_build_scripts() {
     let _alone = BUILDING.lock().unwrap_or_else(PoisonError::into_inner);
     let (folder, _) = application();
     let mut report = String::new();

@@ -82,7 +82,7 @@ fn what_never_fires_is_false_among_others() {
 }
 
 #[test]
-fn a_plan_that_remembers_is_rows_with_a_memory_and_is_told_what_ends() {
+fn a_plan_with_after_has_a_memory_in_its_rows() {
     for shape in [Shape::Code, Shape::Rows] {
         let rust = dense_as(shape, "{ Main (a OR RISING b) (Atom (wait 1) idle) }");
         // The operands of the plan's OR, then the one of RISING.

@@ -64,7 +64,7 @@ fn a_finite_loop_in_one_without_end_is_written_out() {
 }
 
 #[test]
-fn loops_without_end_that_end_together_are_told_apart_by_the_scope_between_them() {
+fn a_scope_keeps_endless_loops_apart() {
     assert_moves(
         "{ P (bumper) ({ B (wait 9) (Atom (wait 1) stop) (Atom (wait 2) stop)^inf })^inf }",
         &["a1", "a2", "end"],

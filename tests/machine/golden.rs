@@ -49,7 +49,7 @@ fn trees() {
 }
 
 #[test]
-fn what_a_robot_that_has_everything_is_told() {
+fn plans_for_any_robot_have_no_errors() {
     for file in plans() {
         let (compiled, message) = judge(&file, None);
         assert!(!compiled.is_empty(), "{message}");

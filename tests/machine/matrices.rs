@@ -248,7 +248,7 @@ fn matrices_are_printed_or_written_into_a_folder() {
 }
 
 #[test]
-fn what_cannot_be_printed_or_written_is_told_with_what_to_do() {
+fn failures_to_print_or_write_have_a_help() {
     let folder = folder("no_matrices");
     let message = |plan: &str, arguments: &[&str]| {
         fs::write(folder.join("plan.mdle"), plan).unwrap();

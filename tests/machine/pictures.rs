@@ -86,8 +86,8 @@ fn assert_well_drawn(machine: &Machine, picture: &Element) {
         }
         if let Some(interrupt) = element.interrupt().filter(|interrupt| interrupt.condition != Condition::Null) {
             let title = &group.children[0].text;
-            let is_told = title.contains(&interrupt.text) || title.contains("done");
-            assert!(is_told, "{title:?} does not tell {}", interrupt.text);
+            let is_shown = title.contains(&interrupt.text) || title.contains("done");
+            assert!(is_shown, "{title:?} does not tell {}", interrupt.text);
         }
     }
     let lines =
@@ -131,7 +131,7 @@ fn plans_of_3_to_1000_atoms_are_no_wider_than_a_screen() {
 }
 
 #[test]
-fn a_long_condition_is_shortened_and_told_whole_to_who_asks() {
+fn a_long_condition_is_whole_in_its_tooltip() {
     let operands: Vec<_> = (1..=50).map(|seconds| format!("wait {seconds}")).collect();
     let condition = operands.join(" OR ");
     let text = svg(&compiled(&format!("{{ P ({condition}) (Atom (bumper) stop) }}")).machine).unwrap();
@@ -249,7 +249,7 @@ fn draw_writes_a_file_or_prints() {
 }
 
 #[test]
-fn what_is_too_large_for_a_picture_is_told_with_what_to_do() {
+fn too_large_a_picture_is_an_error_with_help() {
     let folder = folder("draw_large");
     let plans = [
         (format!("{{ P {} }}", "(Atom (wait 1) stop)\n".repeat(100_000)), "has 100000 atoms; a picture shows 1000"),

@@ -107,7 +107,7 @@ fn swap<T>(all: &mut [T], chance: &mut Chance) {
 }
 
 #[test]
-fn every_mutated_machine_is_told_apart() {
+fn every_mutated_machine_is_rejected() {
     let (mut seed, mut tried) = (0, BTreeMap::<_, usize>::new());
     let mutations = repeated(MUTATIONS) as usize;
     while tried.values().sum::<usize>() < mutations {

@@ -90,9 +90,9 @@ fn every_code_is_in_the_table_and_is_what_its_tests_are_about() {
         for test in named {
             let (_, name) = test.split_once(": ").expect("`path: name`");
             let is_in = |file: &TextFile| file.path.contains(name) && file.text.contains(code.as_str());
-            let is_told =
+            let is_shown =
                 tests.get(test).is_some_and(|body| body.contains(code.as_str())) || snapshots.iter().any(is_in);
-            breaches.extend((!is_told).then(|| format!("{code}: {test} and its snapshots say nothing of it")));
+            breaches.extend((!is_shown).then(|| format!("{code}: {test} and its snapshots say nothing of it")));
         }
         breaches.extend(named.is_empty().then(|| format!("{code}: no test")));
     }

@@ -38,8 +38,8 @@ fn tour(target: &str) -> PathBuf {
 
 /// The atoms that a run passed, in order, and how it ended: its report without the times.
 fn passed(output: &Output) -> Vec<String> {
-    let said = String::from_utf8(output.stdout.clone()).unwrap();
-    said.lines().map(|line| line.split_once(" s  ").map_or(line, |(_, transition)| transition).to_owned()).collect()
+    let text = String::from_utf8(output.stdout.clone()).unwrap();
+    text.lines().map(|line| line.split_once(" s  ").map_or(line, |(_, transition)| transition).to_owned()).collect()
 }
 
 /// An emulated robot where the tour begins.
@@ -89,7 +89,7 @@ fn the_tour_ends_on_an_atrv_where_it_ends_in_the_simulator() {
 }
 
 /// Returns the output of the executable with these arguments, and its exit status.
-fn said(arguments: &[&str]) -> String {
+fn printed(arguments: &[&str]) -> String {
     let output = Command::new(on_atrv()).args(arguments).current_dir(on_atrv().parent().unwrap()).output().unwrap();
     listed(&output)
 }
@@ -111,16 +111,16 @@ fn the_configuration_says_what_holds_and_why() {
     file("reports.toml", "reports = 200\nanswer = 150\n");
     file("watchdog.toml", "watchdog = 150\n");
     let all = [
-        said(&["--print-config"]),
-        said(&["--print-config", "--config", "ours.toml", "--device", "tcp:192.168.1.7:65001"]),
-        said(&["--config", "key.toml"]),
-        said(&["--config", "value.toml"]),
-        said(&["--config", "sonars.toml"]),
-        said(&["--config", "escape.toml"]),
-        said(&["--config", "bumpers.toml"]),
-        said(&["--config", "reports.toml"]),
-        said(&["--config", "watchdog.toml"]),
-        said(&["--config", "none.toml"]),
+        printed(&["--print-config"]),
+        printed(&["--print-config", "--config", "ours.toml", "--device", "tcp:192.168.1.7:65001"]),
+        printed(&["--config", "key.toml"]),
+        printed(&["--config", "value.toml"]),
+        printed(&["--config", "sonars.toml"]),
+        printed(&["--config", "escape.toml"]),
+        printed(&["--config", "bumpers.toml"]),
+        printed(&["--config", "reports.toml"]),
+        printed(&["--config", "watchdog.toml"]),
+        printed(&["--config", "none.toml"]),
     ];
     insta::assert_snapshot!(all.join("\n"));
 }
@@ -149,7 +149,7 @@ impl Emulated for Answers {
         Ok(())
     }
 
-    fn said(&mut self) -> Vec<Vec<u8>> {
+    fn take_frames(&mut self) -> Vec<Vec<u8>> {
         std::mem::take(&mut self.2)
     }
 
@@ -173,12 +173,12 @@ fn a_robot_that_is_none_is_a_fault() {
     let answers = thread::scope(|scope| {
         let noise = b"Noise on the line.".to_vec();
         let answers = [Vec::new(), noise, report(9, 0, 4, &[0; 25], &[]), report(2, 0, 33, &[0; 24], &[])];
-        answers.map(|bytes| scope.spawn(move || of(bytes))).map(|said| said.join().unwrap())
+        answers.map(|bytes| scope.spawn(move || of(bytes))).map(|answer| answer.join().unwrap())
     });
     let all = [
-        said(&["--device", "/dev/null"]),
-        said(&["--device", "/nowhere"]),
-        said(&["--device", busy]).replace(busy, "/dev/pts/N"),
+        printed(&["--device", "/dev/null"]),
+        printed(&["--device", "/nowhere"]),
+        printed(&["--device", busy]).replace(busy, "/dev/pts/N"),
         answers.join("\n"),
         listed(&emulated(emergency, IN_LOCKSTEP, &["--lockstep"]).0),
     ];
@@ -201,10 +201,10 @@ impl Emulated for Then {
         self.0.pass(time)
     }
 
-    fn said(&mut self) -> Vec<Vec<u8>> {
-        let said = self.0.said();
+    fn take_frames(&mut self) -> Vec<Vec<u8>> {
+        let frames = self.0.take_frames();
         self.2 |= self.0.velocity().v.0 > 0.1 && (self.1)(&mut self.0);
-        if self.2 { Vec::new() } else { said }
+        if self.2 { Vec::new() } else { frames }
     }
 
     fn can_suffer(_: Ailment) -> bool {
@@ -271,8 +271,8 @@ impl Emulated for Moves<'_> {
         Ok(())
     }
 
-    fn said(&mut self) -> Vec<Vec<u8>> {
-        self.0.said()
+    fn take_frames(&mut self) -> Vec<Vec<u8>> {
+        self.0.take_frames()
     }
 
     fn can_suffer(_: Ailment) -> bool {

@@ -40,7 +40,7 @@ fn text(bytes: Vec<u8>) -> String {
 const OFF: [&str; 8] = ["--goal", "world", "--runs", "40", "--start-noise", "0.1,50", "--seed", "7"];
 
 #[test]
-fn what_is_said_does_not_depend_on_the_number_of_jobs() {
+fn the_number_of_jobs_changes_no_output() {
     for form in [&[][..], &["--json"]] {
         let message = |jobs| {
             let output = run(&[&OFF[..], form, &["--jobs", jobs]].concat());
@@ -56,7 +56,7 @@ fn what_is_said_does_not_depend_on_the_number_of_jobs() {
 }
 
 #[test]
-fn each_run_told_is_the_run_that_its_command_makes() {
+fn each_runs_command_repeats_it() {
     let output = run(&[&OFF[..], &["--json"]].concat());
     let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
     let each = summary["each"].as_array().unwrap();

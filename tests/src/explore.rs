@@ -75,12 +75,12 @@ struct At<'r, 'p> {
     explorer: &'r Explorer<'p>,
     run: &'r Run,
     frame: &'r Frame,
-    said: &'r QuarkValues,
+    values: &'r QuarkValues,
 }
 
 impl Situation for At<'_, '_> {
     fn quark(&self, quark: QuarkId) -> bool {
-        self.said.fired[quark.0 as usize]
+        self.values.fired[quark.0 as usize]
     }
 
     fn waited(&self, nanos: u64) -> bool {
@@ -173,11 +173,11 @@ impl<'p> Explorer<'p> {
 
     /// Makes one turn.
     #[must_use]
-    pub fn turn(&self, run: &mut Run, said: &QuarkValues) -> Turn {
+    pub fn turn(&self, run: &mut Run, values: &QuarkValues) -> Turn {
         let mut turn = Turn::default();
         loop {
             turn.current.push(run.frames.last().expect("an atom").part);
-            let Some((place, operands)) = self.fired(run, said) else {
+            let Some((place, operands)) = self.fired(run, values) else {
                 turn.applied = true;
                 break;
             };
@@ -190,14 +190,14 @@ impl<'p> Explorer<'p> {
                 return turn;
             }
         }
-        self.remember(run, said);
+        self.remember(run, values);
         turn
     }
 
     /// Returns the outermost part that ends, by its place among the parts that enclose the current atom.
-    fn fired(&self, run: &Run, said: &QuarkValues) -> Option<(usize, Vec<usize>)> {
+    fn fired(&self, run: &Run, values: &QuarkValues) -> Option<(usize, Vec<usize>)> {
         for (place, frame) in run.frames.iter().enumerate() {
-            let at = At { explorer: self, run, frame, said };
+            let at = At { explorer: self, run, frame, values };
             let operands = self.operands(frame.part).iter().enumerate();
             let fired: Vec<_> = operands.filter(|(_, operand)| operand.fired(&at)).map(|(number, _)| number).collect();
             if !fired.is_empty() {
@@ -205,7 +205,7 @@ impl<'p> Explorer<'p> {
             }
         }
         let law = self.parts[run.frames.last()?.part].law?;
-        let is_done = self.plan.quark(law).completes && said.completed[law.0 as usize];
+        let is_done = self.plan.quark(law).completes && values.completed[law.0 as usize];
         is_done.then(|| (run.frames.len() - 1, Vec::new()))
     }
 
@@ -252,10 +252,10 @@ impl<'p> Explorer<'p> {
     }
 
     /// Sets the memories of RISING conditions whose operand has not fired.
-    fn remember(&self, run: &mut Run, said: &QuarkValues) {
+    fn remember(&self, run: &mut Run, values: &QuarkValues) {
         let mut set = Vec::new();
         for (place, frame) in run.frames.iter().enumerate() {
-            let at = At { explorer: self, run, frame, said };
+            let at = At { explorer: self, run, frame, values };
             let Some(interrupt) = self.parts[frame.part].interrupt else { continue };
             interrupt.condition.each_rising(&mut |memory, operand| {
                 if !operand.fired(&at) {
@@ -282,7 +282,7 @@ impl<'p> Explorer<'p> {
     /// situations. Returns `true` if these were all.
     pub fn explore(
         &self,
-        said: &[QuarkValues],
+        values: &[QuarkValues],
         steps: &[u64],
         most: usize,
         visit: &mut impl FnMut(&Turn, &Run),
@@ -299,11 +299,11 @@ impl<'p> Explorer<'p> {
             let steps = if is_first { &[0] } else { steps };
             let steps = steps.iter().flat_map(|step| ways.iter().map(move |way| (step, way)));
             for (step, way) in steps {
-                for said in said {
+                for values in values {
                     let mut next = run.clone();
                     next.now += step;
                     next.way += if is_first { 0 } else { *way };
-                    let turn = self.turn(&mut next, said);
+                    let turn = self.turn(&mut next, values);
                     made += turn.ended.len();
                     if made > most * TRANSITIONS_EACH {
                         return false;

@@ -71,9 +71,9 @@ pub fn comparison(chance: &mut Chance) -> String {
 }
 
 /// Returns the values of the signals in SI units from a script's texts; infinite where there is no text.
-pub fn values(said: &BTreeSet<String>) -> [f64; 5] {
+pub fn values(comparisons: &BTreeSet<String>) -> [f64; 5] {
     let value = |name: &str, values: &[f64], unit: f64| {
-        let value = values.iter().find(|value| said.contains(&format!("{name} == {value}")));
+        let value = values.iter().find(|value| comparisons.contains(&format!("{name} == {value}")));
         value.map_or(f64::INFINITY, |value| value * unit)
     };
     [
@@ -95,10 +95,10 @@ impl Values {
     /// Returns the texts of the comparisons that hold, and the texts of the values.
     pub fn texts(&self) -> Vec<String> {
         let hold = COMPARISONS.iter().filter(|(.., holds)| holds(self)).map(|(_, text, _)| (*text).to_owned());
-        hold.chain(self.said()).collect()
+        hold.chain(self.assignments()).collect()
     }
 
-    fn said(&self) -> [String; 5] {
+    fn assignments(&self) -> [String; 5] {
         let Self { r3, r5, x, theta, v } = self;
         [
             format!("r3 == {r3}"),

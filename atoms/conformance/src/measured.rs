@@ -80,20 +80,20 @@ mod tests {
 
     #[test]
     fn a_sentence_says_what_is_probably_wrong() {
-        let said = |found| {
+        let message = |found| {
             let measured =
                 Measured { what: "it went", unit: "m", whose: "the input", found, wanted: 0.4, within: 0.02 };
             measured.check().err().unwrap_or_default()
         };
-        assert_eq!(said(0.41), "");
-        assert_eq!(said(-0.4), "it went -0.400 m instead of 0.400 m: a sign in the input");
-        assert_eq!(said(0.0), "it went 0.000 m instead of 0.400 m: nothing comes of the input");
+        assert_eq!(message(0.41), "");
+        assert_eq!(message(-0.4), "it went -0.400 m instead of 0.400 m: a sign in the input");
+        assert_eq!(message(0.0), "it went 0.000 m instead of 0.400 m: nothing comes of the input");
         assert_eq!(
-            said(4.0),
+            message(4.0),
             "it went 4.000 m instead of 0.400 m: a scale in the input (as with tenths taken for wholes)"
         );
         assert_eq!(
-            said(-0.6),
+            message(-0.6),
             "it went -0.600 m instead of 0.400 m: a sign and a scale in the input (1.500 times as much)"
         );
     }

@@ -18,13 +18,13 @@ fn counted(what: &str, unit: &str, found: f64, wanted: f64, within: f64) -> Resu
     Measured { what, unit, whose: "odometry", found, wanted, within }.check()
 }
 
-/// Checks that odometry reports the way `told`, when the body truly went `went`.
-fn told(did: &str, told: &Way, went: &Way) -> Result<(), String> {
+/// Checks that odometry reports the way `reported`, when the body truly went `went`.
+fn check_way(did: &str, reported: &Way, went: &Way) -> Result<(), String> {
     let says = |what: &str| format!("{did}, and by odometry it {what}");
     let (metres, radians) = (METRES + PART * went.far(), RADIANS + PART * went.turn.abs());
-    counted(&says("turned counter-clockwise by"), "rad", told.turn, went.turn, radians)?;
-    counted(&says("went forward by"), "m", told.ahead, went.ahead, metres)?;
-    counted(&says("went to its left by"), "m", told.left, went.left, metres)
+    counted(&says("turned counter-clockwise by"), "rad", reported.turn, went.turn, radians)?;
+    counted(&says("went forward by"), "m", reported.ahead, went.ahead, metres)?;
+    counted(&says("went to its left by"), "m", reported.left, went.left, metres)
 }
 
 /// Drives with this input. Returns the true way of the body and the way that odometry reports.
@@ -44,7 +44,7 @@ where
     for v in [V, -V] {
         let mut trial = Trial::of(stage, &Room::open())?;
         let (went, way) = driven(&mut trial, v, 0.0, SECONDS)?;
-        told(&format!("the body went {:.2} m straight on", went.ahead), &way, &went)?;
+        check_way(&format!("the body went {:.2} m straight on", went.ahead), &way, &went)?;
     }
     Ok(())
 }
@@ -56,7 +56,7 @@ where
     for omega in [OMEGA, -OMEGA] {
         let mut trial = Trial::of(stage, &Room::open())?;
         let (went, way) = driven(&mut trial, 0.0, omega, SECONDS)?;
-        told(&format!("the body turned by {:.2} rad on the spot", went.turn), &way, &went)?;
+        check_way(&format!("the body turned by {:.2} rad on the spot", went.turn), &way, &went)?;
     }
     Ok(())
 }
@@ -73,7 +73,7 @@ where
         driven(&mut trial, V, 0.0, SECONDS)?;
         let (went, way) = (Way::between(began, trial.truth()), Way::between(from, trial.y.pose()));
         let did = format!("the body went ahead, an arc, and ahead: {:.2} m and {:.2} rad", went.far(), went.turn);
-        told(&did, &way, &went)?;
+        check_way(&did, &way, &went)?;
         if trial.y.here() != trial.y.pose() {
             let why = "`Output::here` is another pose than `Odometry::pose`: headings of plans go by the first";
             return Err(Verdict::Broken(why.into()));
@@ -143,14 +143,14 @@ where
     let arc = if half.abs() < 1e-9 { 1.0 } else { half / libm::sin(half) };
     let (direction, seconds) = (if way.ahead < 0.0 { -1.0 } else { 1.0 }, lasting::<S>(1.0));
     let (speed, rate) = (way.far() * arc * direction / seconds, way.turn / seconds);
-    let said = trial.y.velocity();
+    let velocity = trial.y.velocity();
     let did = format!("the body moves at {speed:.2} m/s and {rate:.2} rad/s, and `velocity` says");
     let measured = |unit, found, wanted: f64, within: f64| {
         let within = within + PART * wanted.abs();
         Measured { what: &did, unit, whose: "the measured velocity", found, wanted, within }.check()
     };
-    measured("m/s", said.v.0, speed, SPEED)?;
-    measured("rad/s", said.omega.0, rate, RATE)?;
+    measured("m/s", velocity.v.0, speed, SPEED)?;
+    measured("rad/s", velocity.omega.0, rate, RATE)?;
     Ok(())
 }
 

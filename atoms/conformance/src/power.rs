@@ -22,7 +22,7 @@ struct ReportedSupply {
 }
 
 /// Returns the state that the robot reports `TELLS` seconds after it is supplied like this.
-fn said<S: Stage>(stage: &mut S, supplied: Supplied) -> Result<ReportedSupply, Verdict>
+fn reported<S: Stage>(stage: &mut S, supplied: Supplied) -> Result<ReportedSupply, Verdict>
 where
     Out<S>: Power,
 {
@@ -30,25 +30,25 @@ where
     trial.supply(supplied);
     trial.drive(0.0, 0.0, TELLS)?;
     let y = &trial.y;
-    let said = ReportedSupply { volts: y.battery().0, is_low: y.is_low(), is_plugged: y.is_plugged() };
+    let supply = ReportedSupply { volts: y.battery().0, is_low: y.is_low(), is_plugged: y.is_plugged() };
     let (least, most) = VOLTS;
-    if !(least..=most).contains(&said.volts) {
-        return Err(Verdict::Broken(format!("`battery` is {} V, and {least} to {most} V are meant", said.volts)));
+    if !(least..=most).contains(&supply.volts) {
+        return Err(Verdict::Broken(format!("`battery` is {} V, and {least} to {most} V are meant", supply.volts)));
     }
-    agree::<S>(y, said)?;
-    Ok(said)
+    agree::<S>(y, supply)?;
+    Ok(supply)
 }
 
 /// Checks that the quarks and the signal of the alphabet agree with the output.
-fn agree<S: Stage>(y: &Out<S>, said: ReportedSupply) -> Result<(), Verdict> {
-    for (name, wanted) in [("lowBattery", said.is_low), ("charger", said.is_plugged)] {
+fn agree<S: Stage>(y: &Out<S>, supply: ReportedSupply) -> Result<(), Verdict> {
+    for (name, wanted) in [("lowBattery", supply.is_low), ("charger", supply.is_plugged)] {
         let interrupt = S::Alphabet::interrupt(name, &[]).ok_or(Verdict::NotOffered)?;
         if interrupt.fired(y) != wanted {
             return Err(Verdict::Broken(format!("`{name}` and what the output says of it do not agree")));
         }
     }
     let signal = S::Alphabet::signal("battery", &[]).ok_or(Verdict::NotOffered)?;
-    if signal.value(y) != said.volts {
+    if signal.value(y) != supply.volts {
         return Err(Verdict::Broken("the signal `battery` is not the battery's voltage in volts".into()));
     }
     Ok(())
@@ -90,5 +90,5 @@ fn each<S: Stage>(stage: &mut S) -> Result<[ReportedSupply; 3], Verdict>
 where
     Out<S>: Power,
 {
-    Ok([said(stage, Supplied::Well)?, said(stage, Supplied::Low)?, said(stage, Supplied::Plugged)?])
+    Ok([reported(stage, Supplied::Well)?, reported(stage, Supplied::Low)?, reported(stage, Supplied::Plugged)?])
 }

@@ -166,24 +166,24 @@ where
     while trial.now().seconds() < HEARD + 3.0 {
         trial.drive(0.2, 0.4, S::PERIOD.seconds())?;
         been.push((trial.now(), trial.y.here()));
-        let (now, said) = (trial.now(), trial.y.now());
-        if now.since(said).0.max(said.since(now).0) > S::PERIOD.0 {
-            let (now, said) = (now.seconds(), said.seconds());
-            let why = format!("`now` is {said:.1} s, and it is {now:.1} s from the first exchange on");
+        let (now, reported) = (trial.now(), trial.y.now());
+        if now.since(reported).0.max(reported.since(now).0) > S::PERIOD.0 {
+            let (now, reported) = (now.seconds(), reported.seconds());
+            let why = format!("`now` is {reported:.1} s, and it is {now:.1} s from the first exchange on");
             return Err(Verdict::Broken(why));
         }
         for sonar in sonars() {
             let pings: Vec<&Ping> = trial.y.pings(sonar).newest_first().collect();
-            let said = |what: &str| Verdict::Broken(format!("sonar {}: {what}", sonar.number()));
+            let broken = |what: &str| Verdict::Broken(format!("sonar {}: {what}", sonar.number()));
             if pings.windows(2).any(|two| matches!(two, [newer, older] if newer.at < older.at)) {
-                return Err(said("its newest ping is older than the one behind it"));
+                return Err(broken("its newest ping is older than the one behind it"));
             }
             let Some(newest) = pings.first() else { continue };
             if newest.at > trial.now() {
-                return Err(said("its newest ping is of a time to come: count from the first exchange"));
+                return Err(broken("its newest ping is of a time to come: count from the first exchange"));
             }
             if trial.now().seconds() > HEARD && trial.now().since(newest.at).seconds() > OLD {
-                return Err(said("its newest ping is more than 2 s old"));
+                return Err(broken("its newest ping is more than 2 s old"));
             }
             let near = |time: Nanos| time.since(newest.at).0.max(newest.at.since(time).0) <= S::PERIOD.0;
             let was_there = been.iter().filter(|(time, _)| near(*time)).any(|(_, pose)| {
@@ -191,7 +191,7 @@ where
                 off.far() <= THERE.0 && off.turn.abs() <= THERE.1
             });
             if !was_there {
-                return Err(said("its newest ping says another pose than the robot then had by odometry"));
+                return Err(broken("its newest ping says another pose than the robot then had by odometry"));
             }
         }
     }

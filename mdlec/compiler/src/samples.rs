@@ -38,16 +38,16 @@ pub(crate) fn sources() -> Sources {
 
 /// Compiles a text without errors.
 pub(crate) fn compiled(text: &str) -> Vec<Compiled> {
-    let (compiled, said) = said(text, None);
-    assert!(!compiled.is_empty(), "{said}");
+    let (compiled, messages) = diagnosed(text, None);
+    assert!(!compiled.is_empty(), "{messages}");
     compiled
 }
 
 /// Shows a text with its messages, and the plan without degeneracy if there is one.
 pub(crate) fn judged(text: &str, target: Option<&str>) -> String {
-    let (compiled, said) = said(text, target);
+    let (compiled, messages) = diagnosed(text, target);
     let plans: Vec<_> = compiled.iter().map(|compiled| compiled.nondegenerate.plan().to_string()).collect();
-    format!("{}\n----\n{said}{}", text.trim_end(), plans.join(""))
+    format!("{}\n----\n{messages}{}", text.trim_end(), plans.join(""))
 }
 
 /// Shows the first of these files with its messages and its plans; the file may use the others by their names.
@@ -70,16 +70,17 @@ pub(crate) fn judged_files(files: &[(&str, &str)]) -> String {
     }
     let (source, text) = (given.1[0].1, files[0].1);
     let (compiled, found) = compile_with(source, text, &alphabet(None), None, &mut given);
-    let said: String = found.iter().map(|diagnostic| given.0.render(diagnostic)).collect();
+    let messages: String = found.iter().map(|diagnostic| given.0.render(diagnostic)).collect();
     let plans: Vec<_> = compiled.iter().map(|compiled| compiled.nondegenerate.plan().to_string()).collect();
     let texts: Vec<_> = files.iter().map(|(name, text)| format!("{name}\n{}\n", text.trim_end())).collect();
-    format!("{}----\n{said}{}", texts.concat(), plans.concat())
+    format!("{}----\n{messages}{}", texts.concat(), plans.concat())
 }
 
-fn said(text: &str, target: Option<&str>) -> (Vec<Compiled>, String) {
+/// Compiles a text, and renders its messages.
+fn diagnosed(text: &str, target: Option<&str>) -> (Vec<Compiled>, String) {
     let mut sources = sources();
     let source = sources.add("plan.mdle", text);
     let (compiled, found) = compile(source, text, &alphabet(target), None);
-    let said = found.iter().map(|diagnostic| sources.render(diagnostic)).collect();
-    (compiled, said)
+    let messages = found.iter().map(|diagnostic| sources.render(diagnostic)).collect();
+    (compiled, messages)
 }

@@ -31,12 +31,12 @@ pub(super) fn decompile(options: &Decompile) -> Result<(), Failure> {
         Answer::String(found) => print(&options.machine, &string(&machine, &found)),
         Answer::None(broken) => {
             let count = broken.len();
-            let mut said = format!("{file}: no MDLe string is equivalent to this machine (Theorem 1)");
-            broken.iter().take(CONDITIONS).for_each(|broken| said += &format!("\n  {}", broken.sentence(&machine)));
+            let mut message = format!("{file}: no MDLe string is equivalent to this machine (Theorem 1)");
+            broken.iter().take(CONDITIONS).for_each(|broken| message += &format!("\n  {}", broken.sentence(&machine)));
             if count > CONDITIONS {
-                said += &format!("\n  … and {} more", count - CONDITIONS);
+                message += &format!("\n  … and {} more", count - CONDITIONS);
             }
-            Err(refused(format!("{said}\nhelp: `mdlec decompile --augment {file}` makes a plan with `after` of it")))
+            Err(refused(format!("{message}\nhelp: `mdlec decompile --augment {file}` makes a plan with `after` of it")))
         }
         Answer::Stopped(steps) => Err(refused(format!(
             "{file}: the search for an order of its states was stopped after {steps} steps: whether this machine has an MDLe string is \

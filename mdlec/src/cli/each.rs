@@ -8,7 +8,7 @@ use super::Failure;
 pub(super) fn each(paths: &[PathBuf], mut done: impl FnMut(&Path) -> Result<(), Failure>) -> Result<(), Failure> {
     let mut failed = None;
     for failure in paths.iter().filter_map(|path| done(path).err()) {
-        failed = failed.max(Some(failure.told()));
+        failed = failed.max(Some(failure.print()));
     }
     failed.map_or(Ok(()), |status| Err(Failure::silent(status)))
 }

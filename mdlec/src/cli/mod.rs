@@ -95,7 +95,7 @@ impl Failure {
     const PLAN: Self = Self::silent(1);
 
     /// Prints the message, if there is one, and returns the exit status.
-    fn told(&self) -> u8 {
+    fn print(&self) -> u8 {
         if let Some((sources, found)) = self.found.as_deref() {
             report::diagnostics(sources, found, false);
         }
@@ -133,7 +133,7 @@ pub fn main() -> ExitCode {
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => ExitCode::from(failure.told()),
+        Err(failure) => ExitCode::from(failure.print()),
     }
 }
 

@@ -80,8 +80,8 @@ fn others(
             let theirs = run.complaints.iter().filter(|complaint| !is_ours(&complaint.manifest));
             let theirs: String = theirs.map(|complaint| complaint.text.as_str()).collect();
             // A build script that fails says so through cargo only.
-            let said = if run.complaints.iter().any(|complaint| complaint.is_error) { theirs.as_str() } else { text };
-            LinkError::TargetBroken { crate_name: (*crate_name).to_owned(), text: said.trim_end().to_owned() }
+            let output = if run.complaints.iter().any(|complaint| complaint.is_error) { theirs.as_str() } else { text };
+            LinkError::TargetBroken { crate_name: (*crate_name).to_owned(), text: output.trim_end().to_owned() }
         }
     }
 }

@@ -58,12 +58,12 @@ impl Toolchain {
         let mut command = command("rustc");
         command.arg("-vV");
         let found = output(command, "rustc")?;
-        let said = String::from_utf8_lossy(&found.stdout);
-        let field = |name: &str| said.lines().find_map(|line| line.strip_prefix(name));
+        let description = String::from_utf8_lossy(&found.stdout);
+        let field = |name: &str| description.lines().find_map(|line| line.strip_prefix(name));
         let (Some(host), Some(release), true) = (field("host: "), field("release: "), found.status.success()) else {
             // Such as rustup without a toolchain; its first line says so.
-            let said = String::from_utf8_lossy(&found.stderr);
-            let why = said.lines().next().unwrap_or("it says nothing").trim_start_matches("error: ").to_owned();
+            let errors = String::from_utf8_lossy(&found.stderr);
+            let why = errors.lines().next().unwrap_or("it says nothing").trim_start_matches("error: ").to_owned();
             return Err(LinkError::NoRust { tool: "rustc", why });
         };
         if version(release) < version(NEEDED) {

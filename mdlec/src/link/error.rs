@@ -116,12 +116,12 @@ pub enum LinkError {
     #[error("`{0}` has no Cargo.toml: a target is the folder of its crate, with its alphabet")]
     NotACrate(PathBuf),
     /// The target's alphabet and its manifest name different crates.
-    #[error("the target's alphabet names the crate `{said}`, but the Cargo.toml in `{folder}` makes {found}")]
+    #[error("the target's alphabet names the crate `{name}`, but the Cargo.toml in `{folder}` makes {found}")]
     OtherCrate {
         /// The target's folder.
         folder: PathBuf,
         /// Name of the crate in the alphabet.
-        said: String,
+        name: String,
         /// Name of the crate in the manifest, as cargo reads it.
         found: String,
     },

@@ -105,16 +105,16 @@ pub(super) fn follow(
     let (stdout, stderr) = (child.stdout.take(), child.stderr.take());
     let (sender, heard) = mpsc::channel();
     // Both pipes must be emptied, or cargo waits for us.
-    let said = {
+    let stderr = {
         let sender = sender.clone();
         thread::spawn(move || {
-            let mut said = Vec::new();
+            let mut text = Vec::new();
             each_line(stderr, |line| {
-                said.extend_from_slice(line);
-                said.push(b'\n');
+                text.extend_from_slice(line);
+                text.push(b'\n');
                 !line.trim_ascii_start().starts_with(BLOCKED) || sender.send(CargoLine::Blocked).is_ok()
             });
-            String::from_utf8_lossy(&said).into_owned()
+            String::from_utf8_lossy(&text).into_owned()
         })
     };
     thread::spawn(move || each_line(stdout, |line| sender.send(CargoLine::Message(line.to_owned())).is_ok()));
@@ -132,7 +132,7 @@ pub(super) fn follow(
         }
     }
     let status = child.wait()?;
-    let stderr = said.join().unwrap_or_default();
+    let stderr = stderr.join().unwrap_or_default();
     let began = log.artifacts > 0 || !log.complaints.is_empty();
     let Log { reused, executable, complaints, .. } = log;
     Ok(Run { status, online, began, reused, executable, complaints, stderr })

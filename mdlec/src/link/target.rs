@@ -203,7 +203,7 @@ impl Described {
             return Ok(());
         }
         let found = library.map_or_else(|| "no library".to_owned(), |library| format!("`{}`", library.name));
-        Err(LinkError::OtherCrate { folder: folder.to_owned(), said: crate_name.to_owned(), found })
+        Err(LinkError::OtherCrate { folder: folder.to_owned(), name: crate_name.to_owned(), found })
     }
 }
 

@@ -174,16 +174,16 @@ mod tests {
     }
 
     #[test]
-    fn frames_are_told_in_degrees() {
+    fn headings_are_written_in_degrees() {
         let line = |degrees: f64| {
             let frame = Some(Frame(Radians::from_degrees(degrees)));
             let fired: [Fired<'_, [&str; 0]>; 0] = [];
             Line { turn: 0, t: Nanos::ZERO, state: 1, law: Some("stop"), frame, fired }.to_string()
         };
         assert_eq!(line(90.0), r#"{"turn":0,"t":0.0,"state":1,"law":"stop","frame":90.0,"fired":[]}"#);
-        let told = [0.0, -22.5, 180.0, -180.0, 190.0, 720.25, 33.333_333_333, -1e-9];
-        let told = told.map(|degrees| Degrees(Radians::from_degrees(degrees)).to_string());
-        assert_eq!(told, ["0.0", "-22.5", "180.0", "180.0", "-170.0", "0.25", "33.333333", "0.0"]);
+        let angles = [0.0, -22.5, 180.0, -180.0, 190.0, 720.25, 33.333_333_333, -1e-9];
+        let angles = angles.map(|degrees| Degrees(Radians::from_degrees(degrees)).to_string());
+        assert_eq!(angles, ["0.0", "-22.5", "180.0", "180.0", "-170.0", "0.25", "33.333333", "0.0"]);
     }
 
     #[test]

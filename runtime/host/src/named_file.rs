@@ -124,7 +124,7 @@ mod tests {
         assert_eq!(refused("input", "input", "new"), read("input"));
         assert_eq!(refused("link", "link", "new"), read("link"));
         let this = std::env::current_exe().unwrap().display().to_string();
-        let said = refused("program", &this, "new").unwrap();
-        assert!(said.ends_with("that is this program; name another file"), "{said}");
+        let message = refused("program", &this, "new").unwrap();
+        assert!(message.ends_with("that is this program; name another file"), "{message}");
     }
 }

@@ -9,18 +9,18 @@ use crate::safety::text;
 
 /// Sends reports of panics through `outlet` from now on.
 pub(crate) fn tell_to(outlet: Aside) {
-    panic::set_hook(Box::new(move |panic| outlet.tell(told(panic))));
+    panic::set_hook(Box::new(move |panic| outlet.tell(report(panic))));
 }
 
 /// Returns the text that the library's own hook writes.
-fn told(panic: &PanicHookInfo<'_>) -> String {
+fn report(panic: &PanicHookInfo<'_>) -> String {
     let current = thread::current();
     let thread = current.name().unwrap_or("<unnamed>");
     let place = panic.location().map(|place| format!(" at {place}")).unwrap_or_default();
-    let mut told = format!("thread '{thread}' panicked{place}:\n{}\n", text(panic.payload()));
+    let mut report = format!("thread '{thread}' panicked{place}:\n{}\n", text(panic.payload()));
     let backtrace = Backtrace::capture();
     if backtrace.status() == BacktraceStatus::Captured {
-        told += &format!("stack backtrace:\n{backtrace}");
+        report += &format!("stack backtrace:\n{backtrace}");
     }
-    told
+    report
 }

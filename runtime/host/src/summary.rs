@@ -136,8 +136,8 @@ impl Summary<'_> {
             let (by, operands, cause) = (Json(&by), operands.join(","), Json(&cause));
             let _ = write!(json, ",\"by\":{by},\"operands\":[{operands}],\"cause\":{cause}");
             let _ = write!(json, ",\"contacts\":{contacts}");
-            if let Outcome::Astray(said) | Outcome::Failed(said) = outcome {
-                let _ = write!(json, ",\"said\":{}", Json(said));
+            if let Outcome::Astray(message) | Outcome::Failed(message) = outcome {
+                let _ = write!(json, ",\"said\":{}", Json(message));
             }
             let _ = write!(json, ",\"command\":{}}}", Json(&self.command(run)));
         }

@@ -111,7 +111,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn classes_are_told_as_a_table() {
+    fn classes_are_printed_as_a_table() {
         let mut timing = Timing::new(100_000_000);
         for (late, took) in [(0, 10_000), (10_001, 100_000_000), (75_000, 100_000_001), (20_000_000_000, 30_000_000)] {
             timing.begins(late);

@@ -72,8 +72,8 @@ impl Turns for OnePlan<'_, '_, '_> {
         let zero = drive.zero();
         *fresh |= !transitions.is_empty();
         if let (observer, Some(position)) = drive.parts() {
-            let told = witnesses.tell(position, turn, number, t, transitions);
-            told.map_err(|error| RunEnd::Log(error.to_string()))?;
+            let written = witnesses.tell(position, turn, number, t, transitions);
+            written.map_err(|error| RunEnd::Log(error.to_string()))?;
             let has_begun = turn == Turn::Law(()) && std::mem::take(fresh);
             if let Some(observer) = observer {
                 watched(observer, position, turn, has_begun, (t, zero), witnesses.report);

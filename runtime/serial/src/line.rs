@@ -165,11 +165,11 @@ fn serial(path: &Path, speed: u32) -> Result<OwnedFd, LineFault> {
 
 /// Connects to a literal address.
 fn connect(address: &str) -> Result<OwnedFd, LineFault> {
-    let said = format!("tcp:{address}");
+    let name = format!("tcp:{address}");
     let address: SocketAddr = address.parse().map_err(|_| {
-        LineFault::Open(said.clone(), "an address and a port are meant, as in `tcp:192.168.1.7:65001`".to_owned())
+        LineFault::Open(name.clone(), "an address and a port are meant, as in `tcp:192.168.1.7:65001`".to_owned())
     })?;
-    let refused = |error: io::Error| LineFault::Open(said.clone(), error.to_string());
+    let refused = |error: io::Error| LineFault::Open(name.clone(), error.to_string());
     let stream = TcpStream::connect_timeout(&address, CONNECT).map_err(refused)?;
     // A command must not wait until there are more.
     stream.set_nodelay(true).map_err(refused)?;

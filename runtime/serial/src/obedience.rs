@@ -42,7 +42,7 @@ struct Band {
     low: f64,
     high: f64,
     /// The last command.
-    told: f64,
+    command: f64,
     /// The rate at which the band narrows, in m/s².
     brakes: f64,
 }
@@ -65,9 +65,9 @@ impl Obedience {
 
     /// Notes the speeds of the right and the left side at `at`, in m/s, with the command of this turn; returns `true`
     /// if the robot has disobeyed for the whole limit.
-    pub fn is_broken(&mut self, at: Nanos, told: [f64; 2], measured: [f64; 2]) -> bool {
+    pub fn is_broken(&mut self, at: Nanos, command: [f64; 2], measured: [f64; 2]) -> bool {
         let seconds = at.since(self.last.replace(at).unwrap_or(at)).seconds();
-        let [right, left] = told;
+        let [right, left] = command;
         self.forward.tell((right + left) / 2.0, seconds);
         self.turning.tell((right - left) / 2.0, seconds);
         let [right, left] = measured;
@@ -95,12 +95,12 @@ impl Obedience {
 
 impl Band {
     const fn new(brakes: f64) -> Self {
-        Self { low: 0.0, high: 0.0, told: 0.0, brakes }
+        Self { low: 0.0, high: 0.0, command: 0.0, brakes }
     }
 
     /// Narrows the band by the braking of the robot in `seconds` seconds, but not within the last two commands.
     fn tell(&mut self, command: f64, seconds: f64) {
-        let before = std::mem::replace(&mut self.told, command);
+        let before = std::mem::replace(&mut self.command, command);
         let by = self.brakes * seconds;
         self.high = (self.high - by).max(before).max(command).max(0.0);
         self.low = (self.low + by).min(before).min(command).min(0.0);
@@ -119,8 +119,8 @@ mod tests {
     /// second.
     fn broken(turns: &[([f64; 2], [f64; 2])]) -> Option<usize> {
         let mut obedience = Obedience::new(1.0, 1.0, Duration::from_millis(500));
-        turns.iter().enumerate().find_map(|(turn, (told, measured))| {
-            obedience.is_broken(Nanos(turn as u64 * 100_000_000), *told, *measured).then_some(turn)
+        turns.iter().enumerate().find_map(|(turn, (command, measured))| {
+            obedience.is_broken(Nanos(turn as u64 * 100_000_000), *command, *measured).then_some(turn)
         })
     }
 
@@ -138,10 +138,10 @@ mod tests {
 
     #[test]
     fn a_robot_that_goes_on_disobeys() {
-        let goes_on = |told| [[(AHEAD, AHEAD); 10], [(told, AHEAD); 10], [(told, AHEAD); 10]].concat();
+        let goes_on = |command| [[(AHEAD, AHEAD); 10], [(command, AHEAD); 10], [(command, AHEAD); 10]].concat();
         // In the third turn it is faster than one that brakes may be, and half a second later still.
-        for told in [NONE, [-0.2, -0.2], [0.1, 0.1]] {
-            assert_eq!(broken(&goes_on(told)), Some(17), "{told:?}");
+        for command in [NONE, [-0.2, -0.2], [0.1, 0.1]] {
+            assert_eq!(broken(&goes_on(command)), Some(17), "{command:?}");
         }
         assert_eq!(broken(&goes_on([0.18, 0.18])), None);
         let spins = [[([0.2, -0.2], [-0.2, 0.2]); 10]].concat();
@@ -167,9 +167,9 @@ mod tests {
     #[test]
     fn a_fast_robot_has_longer_to_stand() {
         let least = Duration::from_millis(600);
-        let after = |told: [f64; 2], measured| {
+        let after = |command: [f64; 2], measured| {
             let mut obedience = Obedience::new(1.0, 1.0, Duration::ZERO);
-            obedience.is_broken(Nanos::ZERO, told, measured);
+            obedience.is_broken(Nanos::ZERO, command, measured);
             obedience.time_to_stand(least).as_millis()
         };
         assert_eq!([after(AHEAD, NONE), after([1.0; 2], NONE), after(NONE, [1.0; 2])], [600, 2100, 2100]);

@@ -36,8 +36,8 @@ impl Settings {
         let Some(path) = file else { return Ok((F::default(), Self::default())) };
         let name = path.display().to_string();
         let text = read_text(path, LARGEST).map_err(|error| format!("{name}: {error}"))?;
-        let said = toml::from_str(&text).map_err(|error| format!("{name}: {}", error.to_string().trim_end()))?;
-        Ok((said, Self { file: Some(name), entries: Vec::new() }))
+        let values = toml::from_str(&text).map_err(|error| format!("{name}: {}", error.to_string().trim_end()))?;
+        Ok((values, Self { file: Some(name), entries: Vec::new() }))
     }
 
     /// Returns the value that the file has for this key, or the default.

@@ -242,10 +242,10 @@ impl Robot for Atrv {
             self.asked = at;
             self.say(Command::Status)?;
         }
-        let told = self.move_on(input)?;
+        let command = self.move_on(input)?;
         self.hear(at, self.config.patience())?;
         self.hearing.fault(at)?;
-        if self.obedience.is_broken(at, told, motion::sides(&self.hearing.velocity(), &self.config)) {
+        if self.obedience.is_broken(at, command, motion::sides(&self.hearing.velocity(), &self.config)) {
             return Err(Fault::Disobeys(self.config.disobey));
         }
         Ok(Sensed {

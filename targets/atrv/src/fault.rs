@@ -30,7 +30,7 @@ pub enum Fault {
     /// The robot reports, but does not answer requests: the line to it is cut.
     Unheard,
     /// The robot does not report this axis.
-    Untold(Axis),
+    NoAxis(Axis),
     /// The robot does not report this bumper.
     Numb(u8),
     /// The robot has moved faster than commanded, or in the opposite direction, for this many milliseconds.
@@ -83,10 +83,10 @@ impl fmt::Display for Fault {
                 "the ATRV does not receive commands: it sends reports, but answers no question; check the wires of the cable that \
                  lead to it",
             ),
-            Self::Untold(Axis::Translation) => f.write_str(
+            Self::NoAxis(Axis::Translation) => f.write_str(
                 "the ATRV does not report how far it has moved, only how far it has turned: check the cable, or switch its controller off and on",
             ),
-            Self::Untold(Axis::Rotation) => f.write_str(
+            Self::NoAxis(Axis::Rotation) => f.write_str(
                 "the ATRV does not report how far it has turned, only how far it has moved: check the cable, or switch its controller off and on",
             ),
             Self::Numb(bumper) => write!(

@@ -58,7 +58,9 @@ pub enum Garbled {
 impl core::fmt::Display for Garbled {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            Self::Length(said, found) => write!(f, "a frame says that it has {said} bytes of data, and has {found}"),
+            Self::Length(length, count) => {
+                write!(f, "a frame says that it has {length} bytes of data, and has {count}")
+            }
             Self::Check(right, wrong) => write!(f, "the check of a frame is {right:02X}, and it says {wrong:02X}"),
             Self::Mark(byte) => write!(f, "in a frame, 1B is followed by {byte:02X}"),
             Self::Outside(byte) => write!(f, "there is {byte:02X} outside of any frame"),
@@ -112,10 +114,11 @@ impl Written {
 /// State of a reader within the stream of bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum ReaderState {
-    /// Outside of any frame. `marked`: the last byte was 1B; `told`: an error was returned for these bytes.
-    Outside { marked: bool, told: bool },
-    /// Inside a frame. `marked`: the last byte was 1B.
-    Inside { marked: bool },
+    /// Outside of any frame. `after_escape`: the last byte was 1B; `is_reported`: an error was
+    /// returned for these bytes.
+    Outside { after_escape: bool, is_reported: bool },
+    /// Inside a frame. `after_escape`: the last byte was 1B.
+    Inside { after_escape: bool },
 }
 
 /// Finds frames in the bytes of the line.
@@ -128,7 +131,7 @@ pub struct Reader {
 
 impl Default for Reader {
     fn default() -> Self {
-        Self { place: ReaderState::Outside { marked: false, told: false }, bytes: [0; LONGEST], count: 0 }
+        Self { place: ReaderState::Outside { after_escape: false, is_reported: false }, bytes: [0; LONGEST], count: 0 }
     }
 }
 
@@ -139,36 +142,47 @@ impl Reader {
     /// The bytes so far are not a frame. The reader waits for the next one to begin.
     pub fn take(&mut self, byte: u8) -> Result<Option<Packet<'_>>, Garbled> {
         match (self.place, byte) {
-            (ReaderState::Outside { marked: true, .. }, START) | (ReaderState::Inside { marked: true }, START) => {
+            (ReaderState::Outside { after_escape: true, .. }, START)
+            | (ReaderState::Inside { after_escape: true }, START) => {
                 let cut = matches!(self.place, ReaderState::Inside { .. }) && self.count > 0;
                 let found = self.count;
-                (self.place, self.count) = (ReaderState::Inside { marked: false }, 0);
+                (self.place, self.count) = (ReaderState::Inside { after_escape: false }, 0);
                 // The one before it never ended.
-                if cut { Err(Garbled::Length(self.said(), found.saturating_sub(HEAD + 1))) } else { Ok(None) }
+                if cut {
+                    Err(Garbled::Length(self.declared_length(), found.saturating_sub(HEAD + 1)))
+                } else {
+                    Ok(None)
+                }
             }
-            (ReaderState::Outside { told, .. }, ESCAPE) => self.goes_on(ReaderState::Outside { marked: true, told }),
-            (ReaderState::Outside { marked: true, told }, FILLER) => {
-                self.goes_on(ReaderState::Outside { marked: false, told })
+            (ReaderState::Outside { is_reported, .. }, ESCAPE) => {
+                self.goes_on(ReaderState::Outside { after_escape: true, is_reported })
             }
-            (ReaderState::Outside { told: false, .. }, _) => {
-                self.place = ReaderState::Outside { marked: false, told: true };
+            (ReaderState::Outside { after_escape: true, is_reported }, FILLER) => {
+                self.goes_on(ReaderState::Outside { after_escape: false, is_reported })
+            }
+            (ReaderState::Outside { is_reported: false, .. }, _) => {
+                self.place = ReaderState::Outside { after_escape: false, is_reported: true };
                 Err(Garbled::Outside(byte))
             }
-            (ReaderState::Outside { told: true, .. }, _) => {
-                self.goes_on(ReaderState::Outside { marked: false, told: true })
+            (ReaderState::Outside { is_reported: true, .. }, _) => {
+                self.goes_on(ReaderState::Outside { after_escape: false, is_reported: true })
             }
-            (ReaderState::Inside { marked: true }, FILLER) => self.goes_on(ReaderState::Inside { marked: false }),
-            (ReaderState::Inside { marked: true }, LITERAL) => self.keep(ESCAPE),
-            (ReaderState::Inside { marked: true }, END) => {
-                self.place = ReaderState::Outside { marked: false, told: false };
+            (ReaderState::Inside { after_escape: true }, FILLER) => {
+                self.goes_on(ReaderState::Inside { after_escape: false })
+            }
+            (ReaderState::Inside { after_escape: true }, LITERAL) => self.keep(ESCAPE),
+            (ReaderState::Inside { after_escape: true }, END) => {
+                self.place = ReaderState::Outside { after_escape: false, is_reported: false };
                 self.packet().map(Some)
             }
-            (ReaderState::Inside { marked: true }, _) => {
-                self.place = ReaderState::Outside { marked: byte == ESCAPE, told: true };
+            (ReaderState::Inside { after_escape: true }, _) => {
+                self.place = ReaderState::Outside { after_escape: byte == ESCAPE, is_reported: true };
                 Err(Garbled::Mark(byte))
             }
-            (ReaderState::Inside { marked: false }, ESCAPE) => self.goes_on(ReaderState::Inside { marked: true }),
-            (ReaderState::Inside { marked: false }, _) => self.keep(byte),
+            (ReaderState::Inside { after_escape: false }, ESCAPE) => {
+                self.goes_on(ReaderState::Inside { after_escape: true })
+            }
+            (ReaderState::Inside { after_escape: false }, _) => self.keep(byte),
         }
     }
 
@@ -183,30 +197,30 @@ impl Reader {
             Some(place) => {
                 *place = byte;
                 self.count += 1;
-                self.goes_on(ReaderState::Inside { marked: false })
+                self.goes_on(ReaderState::Inside { after_escape: false })
             }
             None => {
-                self.place = ReaderState::Outside { marked: false, told: true };
-                Err(Garbled::Length(self.said(), self.count))
+                self.place = ReaderState::Outside { after_escape: false, is_reported: true };
+                Err(Garbled::Length(self.declared_length(), self.count))
             }
         }
     }
 
     /// The length that the packet says its data has.
-    fn said(&self) -> usize {
+    fn declared_length(&self) -> usize {
         self.bytes.get(HEAD - 1).copied().map_or(0, usize::from)
     }
 
     /// The packet that has ended.
     fn packet(&self) -> Result<Packet<'_>, Garbled> {
         let whole = self.bytes.get(..self.count).unwrap_or_default();
-        let [checked @ .., said] = whole else { return Err(Garbled::Length(0, 0)) };
+        let [checked @ .., check_byte] = whole else { return Err(Garbled::Length(0, 0)) };
         let [port, id, opcode, length, data @ ..] = checked else { return Err(Garbled::Length(0, 0)) };
         if usize::from(*length) != data.len() {
             return Err(Garbled::Length(usize::from(*length), data.len()));
         }
-        if check(checked) != *said {
-            return Err(Garbled::Check(check(checked), *said));
+        if check(checked) != *check_byte {
+            return Err(Garbled::Check(check(checked), *check_byte));
         }
         Ok(Packet { port: *port, id: *id, opcode: *opcode, data })
     }

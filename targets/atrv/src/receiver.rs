@@ -26,7 +26,7 @@ pub(crate) struct Hearing {
     reader: Reader,
     known: Known,
     /// Time of the last position report, by this computer's clock.
-    told: Option<Instant>,
+    last_report: Option<Instant>,
     /// Fault found since the last position report.
     trouble: Option<Fault>,
     /// Maximum time between two reports of the brake.
@@ -73,7 +73,7 @@ impl Hearing {
         };
         let unanswered = Duration::from_millis(config.status).max(period).saturating_mul(2).saturating_add(LATE);
         let unanswered = Nanos(u64::try_from(unanswered.as_nanos()).unwrap_or(u64::MAX));
-        Self { reader: Reader::default(), known, told: None, trouble: None, unanswered }
+        Self { reader: Reader::default(), known, last_report: None, trouble: None, unanswered }
     }
 
     /// Takes in the reports that have arrived, and waits for `count` position reports, or, for a `count` of 0, until
@@ -83,14 +83,14 @@ impl Hearing {
     /// The line is closed, or no such report has arrived within `patience`.
     pub(crate) fn take(&mut self, line: &Line, at: Nanos, count: u32, patience: Duration) -> Result<(), Fault> {
         let begun = Instant::now();
-        let mut told = 0;
+        let mut reports = 0;
         loop {
-            told += self.drain(line, at)?;
-            let is_fresh = self.told.is_some_and(|told| told.elapsed() <= patience);
-            if if count > 0 { told >= count } else { is_fresh } {
+            reports += self.drain(line, at)?;
+            let is_fresh = self.last_report.is_some_and(|time| time.elapsed() <= patience);
+            if if count > 0 { reports >= count } else { is_fresh } {
                 return Ok(());
             }
-            let since = if count > 0 { begun } else { self.told.unwrap_or(begun) };
+            let since = if count > 0 { begun } else { self.last_report.unwrap_or(begun) };
             match line.hear(since + patience) {
                 Ok(()) => {}
                 // What came meanwhile says more than that it was not enough.
@@ -107,7 +107,7 @@ impl Hearing {
     /// The line is closed.
     pub(crate) fn forget(&mut self, line: &Line) -> Result<(), Fault> {
         self.drain(line, Nanos::ZERO)?;
-        (self.told, self.trouble) = (None, None);
+        (self.last_report, self.trouble) = (None, None);
         Ok(())
     }
 
@@ -117,10 +117,10 @@ impl Hearing {
     /// # Errors
     /// The line is closed, or no position has been reported since then.
     pub(crate) fn speed(&mut self, line: &Line, count: u32, deadline: Instant) -> Result<Twist, Fault> {
-        let mut told = 0;
+        let mut reports = 0;
         loop {
-            told += self.drain(line, Nanos::ZERO)?;
-            if told >= count {
+            reports += self.drain(line, Nanos::ZERO)?;
+            if reports >= count {
                 break;
             }
             match line.hear(deadline) {
@@ -130,7 +130,7 @@ impl Hearing {
             }
         }
         let silent = || self.trouble.clone().unwrap_or(Fault::Line(LineFault::Silent));
-        if self.told.is_some() { Ok(self.velocity()) } else { Err(silent()) }
+        if self.last_report.is_some() { Ok(self.velocity()) } else { Err(silent()) }
     }
 
     /// Forgets what the robot has reported of its brake.
@@ -219,7 +219,7 @@ impl Hearing {
 
     /// Takes in the reports that have arrived, and returns the number of position reports among them.
     fn drain(&mut self, line: &Line, at: Nanos) -> Result<u32, Fault> {
-        let mut told = 0;
+        let mut reports = 0;
         for _ in 0..READS {
             let mut chunk = [0; CHUNK];
             let count = line.read(&mut chunk)?;
@@ -235,14 +235,14 @@ impl Hearing {
                 match heard {
                     Ok(false) => {}
                     Ok(true) => {
-                        told += 1;
-                        (self.told, self.trouble) = (Some(Instant::now()), None);
+                        reports += 1;
+                        (self.last_report, self.trouble) = (Some(Instant::now()), None);
                     }
                     Err(trouble) => self.trouble = Some(trouble),
                 }
             }
         }
-        Ok(told)
+        Ok(reports)
     }
 }
 
@@ -252,7 +252,7 @@ impl Known {
         match Report::read(packet).map_err(Fault::Unreadable)? {
             Report::Axis { axis: Axis::Translation, position, velocity, .. } => {
                 if self.along.replace((position, velocity)).is_some() {
-                    return Err(Fault::Untold(Axis::Rotation));
+                    return Err(Fault::NoAxis(Axis::Rotation));
                 }
             }
             Report::Axis { axis: Axis::Rotation, position, velocity, time } => {
@@ -260,7 +260,7 @@ impl Known {
                 if self.time.replace(time) == Some(time) {
                     return Err(Fault::Repeated);
                 }
-                let (along, speed) = along.ok_or(Fault::Untold(Axis::Translation))?;
+                let (along, speed) = along.ok_or(Fault::NoAxis(Axis::Translation))?;
                 self.odometer.take(along, position, &self.config);
                 self.velocity = twist(speed, velocity, &self.config);
                 return Ok(true);

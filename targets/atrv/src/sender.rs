@@ -36,7 +36,7 @@ struct Shared {
 #[derive(Debug)]
 struct Watch {
     /// Time of the last motion command; `None` while no further one is due.
-    told: Option<Moment>,
+    last_motion: Option<Moment>,
     /// Set to `true` when the watchdog has stopped the robot.
     has_bitten: bool,
     is_over: bool,
@@ -53,7 +53,7 @@ impl Mouth {
     /// Creates the output to `line`. With a limit, the watchdog sends `stop` when no motion command follows another
     /// within the limit.
     pub(crate) fn new(line: Line, watchdog: Option<(Duration, [Written; 2])>) -> Self {
-        let watch = Watch { told: None, has_bitten: false, is_over: false };
+        let watch = Watch { last_motion: None, has_bitten: false, is_over: false };
         let limit = watchdog.as_ref().map(|(limit, _)| *limit);
         let shared = Arc::new(Shared { line, watch: Mutex::new(watch), over: Condvar::new() });
         let watching = watchdog.and_then(|(limit, stop)| {
@@ -87,7 +87,7 @@ impl Mouth {
     pub(crate) fn say_motion(&self, frame: &Written, deadline: Instant) -> Result<(), Fault> {
         let mut watch = self.shared.watch();
         self.is_in_time(&watch)?;
-        watch.told = Some(Moment::now());
+        watch.last_motion = Some(Moment::now());
         Ok(self.shared.line.write(frame.bytes(), deadline)?)
     }
 
@@ -102,14 +102,14 @@ impl Mouth {
     fn is_in_time(&self, watch: &Watch) -> Result<(), Fault> {
         let Some(limit) = self.limit else { return Ok(()) };
         // Where this program, or the computer, was suspended, so was the watchdog.
-        let is_late = watch.has_bitten || watch.told.is_some_and(|told| told.elapsed() >= limit);
+        let is_late = watch.has_bitten || watch.last_motion.is_some_and(|time| time.elapsed() >= limit);
         if is_late { Err(Fault::Overslept(limit.as_millis() as u64)) } else { Ok(()) }
     }
 
     /// Disarms the watchdog, because the robot is being stopped.
     pub(crate) fn ends(&self) {
         let mut watch = self.shared.watch();
-        (watch.told, watch.has_bitten) = (None, false);
+        (watch.last_motion, watch.has_bitten) = (None, false);
     }
 }
 
@@ -128,9 +128,9 @@ impl Drop for Mouth {
 fn keep_watch(shared: &Shared, limit: Duration, stop: &[Written; 2]) {
     let mut watch = shared.watch();
     while !watch.is_over {
-        let silent = watch.told.map(Moment::elapsed);
+        let silent = watch.last_motion.map(Moment::elapsed);
         if silent.is_some_and(|silent| silent >= limit) {
-            (watch.told, watch.has_bitten) = (None, true);
+            (watch.last_motion, watch.has_bitten) = (None, true);
             let deadline = Instant::now() + STOPPING;
             for frame in stop {
                 // If the line takes it no longer, nothing else can be done.

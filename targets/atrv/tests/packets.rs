@@ -168,7 +168,7 @@ fn filler_means_nothing_wherever_it_is() {
 }
 
 #[test]
-fn what_is_no_frame_is_told_and_the_next_one_is_found() {
+fn after_garbage_the_next_frame_is_found() {
     let plain = bytes(AXIS);
     let wanted = read(&plain);
     let good = wanted[0].clone();

@@ -123,8 +123,8 @@ impl<R: Emulated> Emulated for Faulty<R> {
         if self.is_closed() { Err("closed".to_owned()) } else { Ok(()) }
     }
 
-    fn said(&mut self) -> Vec<Vec<u8>> {
-        let frames = self.robot.said();
+    fn take_frames(&mut self) -> Vec<Vec<u8>> {
+        let frames = self.robot.take_frames();
         let delay = self.number(|fault| if let Fault::Late(millis) = fault { Some(millis) } else { None });
         let due = self.age + Duration::from_millis(u64::from(delay.unwrap_or(0)));
         for frame in frames {
@@ -172,7 +172,7 @@ mod tests {
             Ok(())
         }
 
-        fn said(&mut self) -> Vec<Vec<u8>> {
+        fn take_frames(&mut self) -> Vec<Vec<u8>> {
             vec![vec![1, 2, 3, 4]]
         }
 
@@ -186,24 +186,24 @@ mod tests {
     }
 
     /// The pieces of three frames with these faults.
-    fn said(faults: &[&str]) -> Vec<Vec<u8>> {
+    fn frames(faults: &[&str]) -> Vec<Vec<u8>> {
         let faults: Vec<At> = faults.iter().map(|text| text.parse().expect("a fault")).collect();
         let mut robot = Faulty::new(Robot::default(), &faults).expect("a robot");
-        (0..3).flat_map(|_| robot.said()).collect()
+        (0..3).flat_map(|_| robot.take_frames()).collect()
     }
 
     #[test]
     fn frames_are_lost_and_doubled_and_damaged() {
         let frame = vec![1, 2, 3, 4];
-        assert_eq!(said(&[]), vec![frame.clone(); 3]);
-        assert_eq!(said(&["silence"]), [[0_u8; 0]; 0]);
-        assert_eq!(said(&["lose"]), vec![frame.clone()]);
-        assert_eq!(said(&["double"]), vec![frame.repeat(2); 3]);
-        assert_eq!(said(&["check"]), vec![vec![1, 2, 2, 4]; 3]);
-        assert_eq!(said(&["noise"]), vec![vec![0xFF, 0x00, 0xA5, 1, 2, 3, 4]; 3]);
-        assert_eq!(said(&["noise=1"]), vec![vec![0xFF, 1, 2, 3, 4]; 3]);
-        assert_eq!(said(&["dribble", "lose"]), [[1], [2], [3], [4]]);
-        assert_eq!(said(&["silence@0.1", "close@1"]), vec![frame; 3]);
+        assert_eq!(frames(&[]), vec![frame.clone(); 3]);
+        assert_eq!(frames(&["silence"]), [[0_u8; 0]; 0]);
+        assert_eq!(frames(&["lose"]), vec![frame.clone()]);
+        assert_eq!(frames(&["double"]), vec![frame.repeat(2); 3]);
+        assert_eq!(frames(&["check"]), vec![vec![1, 2, 2, 4]; 3]);
+        assert_eq!(frames(&["noise"]), vec![vec![0xFF, 0x00, 0xA5, 1, 2, 3, 4]; 3]);
+        assert_eq!(frames(&["noise=1"]), vec![vec![0xFF, 1, 2, 3, 4]; 3]);
+        assert_eq!(frames(&["dribble", "lose"]), [[1], [2], [3], [4]]);
+        assert_eq!(frames(&["silence@0.1", "close@1"]), vec![frame; 3]);
     }
 
     #[test]
@@ -211,7 +211,7 @@ mod tests {
         let faults = ["late=200@0.1"].map(|text| text.parse().expect("a fault"));
         let mut robot = Faulty::new(Robot::default(), &faults).expect("a robot");
         let frames = [(); 5].map(|()| {
-            let count = robot.said().len();
+            let count = robot.take_frames().len();
             robot.pass(Duration::from_millis(100)).expect("time");
             count
         });
@@ -232,7 +232,7 @@ mod tests {
 
     #[test]
     fn what_is_no_fault_or_none_of_this_robot_is_refused() {
-        for (text, said) in [
+        for (text, message) in [
             ("smoke@1", "the faults are noise, dribble, check,"),
             ("bumper=1", "`bumper=1`: noise and late take a whole number"),
             ("noise=", "`noise=`: noise and late take a whole number"),
@@ -245,7 +245,7 @@ mod tests {
             ("bumper@2m", "after the @: `2m` is a length: expected a time in s, ms, min, h"),
             ("bumper@1e9", "after the @: expected a time from 0ns"),
         ] {
-            assert!(text.parse::<At>().is_err_and(|error| error.starts_with(said)), "{text}");
+            assert!(text.parse::<At>().is_err_and(|error| error.starts_with(message)), "{text}");
         }
         for (text, same) in [("late=2500ms@1500ms", "late=2500@1.5"), ("late=2.5s@1min", "late=2500@60")] {
             assert_eq!(text.parse::<At>(), same.parse::<At>(), "{text}");

@@ -29,7 +29,7 @@ pub trait Emulated {
     fn pass(&mut self, time: Duration) -> Result<(), String>;
 
     /// Returns the frames that the robot has to send since the last call.
-    fn said(&mut self) -> Vec<Vec<u8>>;
+    fn take_frames(&mut self) -> Vec<Vec<u8>>;
 
     /// Returns `true` if this robot can have this ailment.
     fn can_suffer(ailment: Ailment) -> bool;
@@ -80,8 +80,8 @@ pub fn serve<R: Emulated>(robot: &mut R, port: &Port, pace: Pace, goes_on: &dyn 
             Pace::Lockstep(_) => SLICE,
             Pace::Real => next.saturating_duration_since(Instant::now()),
         };
-        let was_told = port.read(limit, &mut |bytes| robot.push(bytes))?;
-        if ends && !was_told {
+        let has_input = port.read(limit, &mut |bytes| robot.push(bytes))?;
+        if ends && !has_input {
             return Ok(());
         }
         while pace == Pace::Real && next <= Instant::now() {
@@ -102,5 +102,5 @@ pub fn serve<R: Emulated>(robot: &mut R, port: &Port, pace: Pace, goes_on: &dyn 
 }
 
 pub(crate) fn say<R: Emulated>(robot: &mut R, port: &Port) -> io::Result<()> {
-    robot.said().iter().try_for_each(|bytes| port.write(bytes))
+    robot.take_frames().iter().try_for_each(|bytes| port.write(bytes))
 }

@@ -69,8 +69,8 @@ fn serve_several<R: Emulated + Embodied>(
     pace: Pace,
     goes_on: &dyn Fn() -> bool,
 ) -> io::Result<()> {
-    // Who has been told its command for the coming step.
-    let mut told = vec![false; seats.len()];
+    // For each robot: `true` if its command for the coming step has arrived.
+    let mut have_commands = vec![false; seats.len()];
     let mut next = Instant::now() + STEP;
     loop {
         let ends = !goes_on();
@@ -80,19 +80,19 @@ fn serve_several<R: Emulated + Embodied>(
             Pace::Real => next.saturating_duration_since(Instant::now()).min(SLICE),
         };
         wait(seats, presence, limit)?;
-        let mut was_told = false;
-        for (seat, told) in seats.iter_mut().zip(&mut told) {
-            was_told |= seat.port.read(Duration::ZERO, &mut |bytes| seat.robot.push(bytes))?;
-            hear(seat, pace, told)?;
+        let mut has_input = false;
+        for (seat, has_command) in seats.iter_mut().zip(&mut have_commands) {
+            has_input |= seat.port.read(Duration::ZERO, &mut |bytes| seat.robot.push(bytes))?;
+            hear(seat, pace, has_command)?;
         }
         presence.look()?;
         match pace {
             Pace::Lockstep(step) => {
-                while is_due(presence, &told) {
+                while is_due(presence, &have_commands) {
                     pass(seats, step)?;
-                    for (seat, told) in seats.iter_mut().zip(&mut told) {
-                        *told = false;
-                        hear(seat, pace, told)?;
+                    for (seat, has_command) in seats.iter_mut().zip(&mut have_commands) {
+                        *has_command = false;
+                        hear(seat, pace, has_command)?;
                     }
                 }
             }
@@ -103,7 +103,7 @@ fn serve_several<R: Emulated + Embodied>(
                 }
             }
         }
-        if ends && !was_told {
+        if ends && !has_input {
             return Ok(());
         }
     }
@@ -121,11 +121,11 @@ fn wait<R>(seats: &[Seat<R>], presence: &Presence, limit: Duration) -> io::Resul
 }
 
 /// Lets a robot execute its requests, up to its command for the coming step.
-fn hear<R: Emulated>(seat: &mut Seat<R>, pace: Pace, told: &mut bool) -> io::Result<()> {
-    while !*told {
+fn hear<R: Emulated>(seat: &mut Seat<R>, pace: Pace, has_command: &mut bool) -> io::Result<()> {
+    while !*has_command {
         match seat.robot.obey() {
             None => break,
-            Some(passes) if passes && pace != Pace::Real => *told = true,
+            Some(passes) if passes && pace != Pace::Real => *has_command = true,
             Some(_) => say(&mut seat.robot, &seat.port)?,
         }
     }
@@ -133,9 +133,10 @@ fn hear<R: Emulated>(seat: &mut Seat<R>, pace: Pace, told: &mut bool) -> io::Res
 }
 
 /// Returns `true` if the world is to advance.
-fn is_due(presence: &Presence, told: &[bool]) -> bool {
-    let nobody_is_waited_for = presence.are_open().zip(told).all(|(is_open, told)| *told || !is_open);
-    presence.all_have_begun() && nobody_is_waited_for && told.contains(&true)
+fn is_due(presence: &Presence, have_commands: &[bool]) -> bool {
+    let nobody_is_waited_for =
+        presence.are_open().zip(have_commands).all(|(is_open, has_command)| *has_command || !is_open);
+    presence.all_have_begun() && nobody_is_waited_for && have_commands.contains(&true)
 }
 
 /// Lets the world advance; each robot finds the others at their current places.

@@ -100,15 +100,15 @@ impl<R: Emulated, T> Emulated for Watched<R, T> {
     }
 
     fn obey(&mut self) -> Option<bool> {
-        let told = self.robot.obey();
+        let outcome = self.robot.obey();
         // Whatever was said before has been done by then.
-        if told.is_none() {
+        if outcome.is_none() {
             for _ in 0..self.seen.idle.load(Ordering::Acquire) {
                 let _ = self.pass(self.period);
             }
             self.seen.idle.store(0, Ordering::Release);
         }
-        told
+        outcome
     }
 
     fn pass(&mut self, time: Duration) -> Result<(), String> {
@@ -120,8 +120,8 @@ impl<R: Emulated, T> Emulated for Watched<R, T> {
         Ok(())
     }
 
-    fn said(&mut self) -> Vec<Vec<u8>> {
-        self.robot.said()
+    fn take_frames(&mut self) -> Vec<Vec<u8>> {
+        self.robot.take_frames()
     }
 
     fn can_suffer(ailment: Ailment) -> bool {

@@ -92,18 +92,18 @@ impl Scout {
         let go_on = || if request.is_made() { Err(Fault::Ended(None)) } else { Ok(()) };
         go_on()?;
         // Another program may have left it moving.
-        self.tell(Command::Velocities(0, 0))?;
-        self.tell(Command::Watchdog(self.config.watchdog))?;
+        self.command(Command::Velocities(0, 0))?;
+        self.command(Command::Watchdog(self.config.watchdog))?;
         let acceleration = libm::trunc(self.config.acceleration / wheels::UNIT) as u16;
-        self.tell(Command::Accelerations(acceleration, acceleration))?;
+        self.command(Command::Accelerations(acceleration, acceleration))?;
         go_on()?;
-        self.tell(Command::Sonars((self.config.gap / 4) as u8, self.config.order()))?;
+        self.command(Command::Sonars((self.config.gap / 4) as u8, self.config.order()))?;
         let mut left = Duration::from_nanos(self.ring.around().0);
         while !left.is_zero() {
             self.clock.pass_unless(request, period.min(left));
             go_on()?;
             left = left.saturating_sub(period);
-            self.tell(Command::State)?;
+            self.command(Command::State)?;
         }
         // It stands by now.
         let (asked, limit) = (Moment::now(), ZEROING.max(self.config.patience()));
@@ -148,9 +148,9 @@ impl Scout {
     /// Sends "stop" repeatedly to a robot that does not answer, for the time that it may take to come to rest: it may
     /// receive commands even if its answers are lost.
     fn insist(&mut self, begun: Instant, limit: Duration) {
-        for said in 1.. {
+        for attempts in 1.. {
             let deadline = Instant::now() + AGAIN;
-            if self.clock.is_past(limit, begun, said) || self.line.say(&Command::Stop, deadline).is_err() {
+            if self.clock.is_past(limit, begun, attempts) || self.line.say(&Command::Stop, deadline).is_err() {
                 break;
             }
             self.clock.pass(AGAIN);
@@ -164,7 +164,7 @@ impl Scout {
     }
 
     /// Sends a command and reads the state that answers it.
-    fn tell(&mut self, command: Command) -> Result<State, Fault> {
+    fn command(&mut self, command: Command) -> Result<State, Fault> {
         if self.has_overslept() {
             return Err(Fault::Overslept(self.config.watchdog));
         }
@@ -195,7 +195,7 @@ impl Robot for Scout {
 
     fn exchange(&mut self, input: &Twist) -> Result<Sensed, Fault> {
         let (right, left) = wheels::speeds(input, self.config.fastest);
-        let state = self.tell(Command::Velocities(right, left))?;
+        let state = self.command(Command::Velocities(right, left))?;
         let at = self.times.now();
         let odometry = self.odometer.pose(&state, at, self.config.fastest)?;
         self.freshness.take(&state, at, odometry, &self.config)?;

@@ -85,9 +85,9 @@ impl Frame {
             return Err(Garbled::Length(length));
         }
         let Some(whole) = bytes.get(..count + AROUND - 2) else { return Ok(None) };
-        let [summed @ .., said, end] = whole else { return Ok(None) };
-        if sum(summed) != *said {
-            return Err(Garbled::Sum(sum(summed), *said));
+        let [summed @ .., found, end] = whole else { return Ok(None) };
+        if sum(summed) != *found {
+            return Err(Garbled::Sum(sum(summed), *found));
         }
         if *end != END {
             return Err(Garbled::End(*end));

@@ -56,9 +56,9 @@ mod tests {
     }
 
     #[test]
-    fn wheels_say_what_they_were_told() {
-        let told = twist(24, -24);
-        assert_eq!((told.v.0, libm::round(told.omega.0 * 100.0)), (0.0, 35.0));
+    fn wheel_speeds_return_as_commanded() {
+        let speeds = twist(24, -24);
+        assert_eq!((speeds.v.0, libm::round(speeds.omega.0 * 100.0)), (0.0, 35.0));
         assert_eq!(libm::round(twist(78, 78).v.0 * 1000.0), 198.0);
     }
 }

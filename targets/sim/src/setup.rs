@@ -72,11 +72,11 @@ impl Setup {
         let walls = Walls::of_any(&world).map_err(|what| format!("--world: {what}"))?;
         let given = options::start(matches)?;
         let Start(start) = given.map_or(Start(world.start), |(_, start)| start);
-        let said = |error: StartError| match given {
+        let with_option = |error: StartError| match given {
             Some((text, _)) => format!("--start {text}: {error}; {}", hint(&world.start)),
             None => format!("the world's own start pose: {error}; give another, as in `--start 1,2,90`"),
         };
-        mdle_simulator::check(&start, make.form(), &world, &walls).map_err(said)?;
+        mdle_simulator::check(&start, make.form(), &world, &walls).map_err(with_option)?;
         let noise = options::start_noise(matches)?;
         let charge = options::battery(matches);
         Ok(Self { world, walls, make, start, noise, goal, charge, period })

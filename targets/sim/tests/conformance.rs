@@ -82,12 +82,12 @@ struct Faulty {
 /// A faulty driver's changes to an input, to an output, and to a stop.
 #[derive(Clone, Copy)]
 struct Fault {
-    told: fn(Input) -> Input,
-    says: fn(&mut Output),
-    stops: fn(&mut Faulty) -> Result<(), &'static str>,
+    input: fn(Input) -> Input,
+    output: fn(&mut Output),
+    stop: fn(&mut Faulty) -> Result<(), &'static str>,
 }
 
-const NONE: Fault = Fault { told: |input| input, says: |_| {}, stops: |faulty| faulty.robot.stop().map_err(|_| "") };
+const NONE: Fault = Fault { input: |input| input, output: |_| {}, stop: |faulty| faulty.robot.stop().map_err(|_| "") };
 
 impl Robot for Faulty {
     type Output = Output;
@@ -96,14 +96,14 @@ impl Robot for Faulty {
 
     fn exchange(&mut self, input: &Input) -> Result<Output, &'static str> {
         self.last = *input;
-        let mut y = self.robot.exchange(&(self.fault.told)(*input)).map_err(|_| "no number")?;
-        (self.fault.says)(&mut y);
+        let mut y = self.robot.exchange(&(self.fault.input)(*input)).map_err(|_| "no number")?;
+        (self.fault.output)(&mut y);
         Ok(y)
     }
 
     fn stop(&mut self) -> Result<(), &'static str> {
         self.last = Input::default();
-        (self.fault.stops)(self)
+        (self.fault.stop)(self)
     }
 }
 
@@ -164,40 +164,40 @@ fn found(mut fault: Fault) -> String {
 }
 
 #[test]
-fn what_is_wrong_with_a_driver_is_told_in_a_sentence() {
+fn each_fault_of_a_driver_is_one_sentence() {
     let stuck = |faulty: &mut Faulty| {
         faulty.last = Input { v: MetersPerSecond(0.2), ..Input::default() };
         Ok(())
     };
     let once = |faulty: &mut Faulty| {
         let was = std::mem::replace(&mut faulty.is_stopped, true);
-        if was { Err("it is stopped") } else { (NONE.stops)(faulty) }
+        if was { Err("it is stopped") } else { (NONE.stop)(faulty) }
     };
-    let told = |told| found(Fault { told, ..NONE });
-    let says = |says| found(Fault { says, ..NONE });
+    let input = |input| found(Fault { input, ..NONE });
+    let output = |output| found(Fault { output, ..NONE });
     let all = [
         found(NONE),
-        told(|input| Input { v: MetersPerSecond(input.v.0 + 0.02), ..input }),
-        told(|input| Input { v: MetersPerSecond(if input.v.0.is_nan() { 0.2 } else { input.v.0 }), ..input }),
-        told(|input| Input { v: MetersPerSecond(if input.v.0 == 1.0 { 0.5 } else { input.v.0 }), ..input }),
-        found(Fault { stops: stuck, ..NONE }),
-        found(Fault { stops: once, ..NONE }),
-        says(|y| y.shape.body_radius = Meters(205.0)),
-        says(|y| y.shape.wheel_base = Meters(0.5)),
-        says(|y| y.shape.confirmation = 0),
-        says(|y| y.odometry.theta = Radians(y.odometry.theta.0.clamp(-1.5, 1.5))),
-        says(|y| y.odometry.x = Meters(1.2 * y.odometry.x.0)),
-        says(|y| y.velocity.v = MetersPerSecond(100.0 * y.velocity.v.0)),
-        says(|y| y.switches = 0),
-        says(|y| y.switches |= 4),
-        says(|y| y.paths = PathStore::EMPTY),
-        says(|y| y.at = Nanos::ZERO),
-        says(|y| y.pings.swap(3, 5)),
-        says(|y| repinged(y, |_, ping| Ping { range: ping.range.or(Some(Meters(9.0))), ..*ping })),
-        says(|y| repinged(y, |_, ping| Ping { at: Nanos(ping.at.0 + 1_000_000_000), ..*ping })),
-        says(|y| repinged(y, |_, ping| Ping { pose: Pose::ORIGIN, ..*ping })),
-        says(|y| repinged(y, |place, ping| Ping { at: Nanos(place as u64), ..*ping })),
-        says(|y| y.pings.iter_mut().for_each(|pings| *pings = Pings::default())),
+        input(|input| Input { v: MetersPerSecond(input.v.0 + 0.02), ..input }),
+        input(|input| Input { v: MetersPerSecond(if input.v.0.is_nan() { 0.2 } else { input.v.0 }), ..input }),
+        input(|input| Input { v: MetersPerSecond(if input.v.0 == 1.0 { 0.5 } else { input.v.0 }), ..input }),
+        found(Fault { stop: stuck, ..NONE }),
+        found(Fault { stop: once, ..NONE }),
+        output(|y| y.shape.body_radius = Meters(205.0)),
+        output(|y| y.shape.wheel_base = Meters(0.5)),
+        output(|y| y.shape.confirmation = 0),
+        output(|y| y.odometry.theta = Radians(y.odometry.theta.0.clamp(-1.5, 1.5))),
+        output(|y| y.odometry.x = Meters(1.2 * y.odometry.x.0)),
+        output(|y| y.velocity.v = MetersPerSecond(100.0 * y.velocity.v.0)),
+        output(|y| y.switches = 0),
+        output(|y| y.switches |= 4),
+        output(|y| y.paths = PathStore::EMPTY),
+        output(|y| y.at = Nanos::ZERO),
+        output(|y| y.pings.swap(3, 5)),
+        output(|y| repinged(y, |_, ping| Ping { range: ping.range.or(Some(Meters(9.0))), ..*ping })),
+        output(|y| repinged(y, |_, ping| Ping { at: Nanos(ping.at.0 + 1_000_000_000), ..*ping })),
+        output(|y| repinged(y, |_, ping| Ping { pose: Pose::ORIGIN, ..*ping })),
+        output(|y| repinged(y, |place, ping| Ping { at: Nanos(place as u64), ..*ping })),
+        output(|y| y.pings.iter_mut().for_each(|pings| *pings = Pings::default())),
     ];
     insta::assert_snapshot!(all.join("\n"));
 }

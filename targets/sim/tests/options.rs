@@ -31,7 +31,7 @@ fn folder(name: &str) -> PathBuf {
 }
 
 #[test]
-fn speed_is_real_unless_told_otherwise() {
+fn speed_is_real_by_default() {
     let speed = |options: &[&str]| Sim::time(&matches(options));
     assert_eq!(speed(&[]), Ok(Time::Stepped(Pace::Times(1.0))));
     assert_eq!(speed(&["--speed", "real"]), Ok(Time::Stepped(Pace::Times(1.0))));

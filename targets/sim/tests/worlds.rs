@@ -32,7 +32,7 @@ fn a_box_is_given_by_corners_or_by_centre_and_size() {
 }
 
 #[test]
-fn faults_are_told_with_their_place() {
+fn faults_have_their_place() {
     let faults = [
         "[[wall]]\npoints = [[0, 0], [1, 0]\nname = \"north\"",
         "[[wal]]\npoints = [[0, 0], [1, 0]]",

@@ -191,8 +191,8 @@ fn each_fault_stops_the_robot_or_is_borne() {
     let mut of_scout = rows(of_scout);
     let of_atrv = of_scout.split_off(count);
     for (what, row) in of_scout.iter().chain(&of_atrv) {
-        let is_one_sentence = !row.said.is_empty() && !row.said.contains('\n');
-        let is_over = row.status == Some(0) && row.said.starts_with("plan over: ");
+        let is_one_sentence = !row.message.is_empty() && !row.message.contains('\n');
+        let is_over = row.status == Some(0) && row.message.starts_with("plan over: ");
         assert!(is_over || row.status == Some(3) && is_one_sentence || row.status.is_none(), "{what}: {row:?}");
         // A robot that could receive a command received one to stop.
         let is_cut = ["deaf", "close", "killed", "dies in mid-frame"].iter().any(|word| what.contains(word));
@@ -243,11 +243,11 @@ fn assert_ends<R: Emulated>(robot: &Robot, made: Made<R>, (fault, happening, soo
         assert_eq!(row.status, Some(3), "{row:?}");
         least = (least.0.min(took.as_secs_f64()), least.1.min(row.way.metres - in_lockstep.way.metres));
         if least.0 <= soon && least.1 <= further {
-            println!("after {:.2} s, {:.3} m further than in lockstep: {}", least.0, least.1, row.said);
+            println!("after {:.2} s, {:.3} m further than in lockstep: {}", least.0, least.1, row.message);
             return;
         }
     }
-    panic!("after {} s, {} m further than in lockstep: {}", least.0, least.1, in_lockstep.said);
+    panic!("after {} s, {} m further than in lockstep: {}", least.0, least.1, in_lockstep.message);
 }
 
 #[test]

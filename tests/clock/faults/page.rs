@@ -10,7 +10,7 @@ use super::watched::Way;
 /// Result of a fault or another event.
 #[derive(Debug)]
 pub(crate) struct Row {
-    pub(crate) said: String,
+    pub(crate) message: String,
     /// `None` if the executable was killed.
     pub(crate) status: Option<i32>,
     pub(crate) way: Way,
@@ -22,7 +22,7 @@ impl Row {
     /// The executable has ended like this after this last order, and the body has gone that way since.
     pub(crate) fn of(output: Output, way: Way, order: Option<Order>) -> Self {
         let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
-        let said = match err.strip_prefix("error: ") {
+        let message = match err.strip_prefix("error: ") {
             Some(error) => error.trim_end().to_owned(),
             None => {
                 let last = out.lines().last().unwrap_or_default();
@@ -31,9 +31,9 @@ impl Row {
             }
         };
         // Which terminal it was chance decides.
-        let said = said.split(' ').map(|word| if word.starts_with("/dev/pts/") { "/dev/pts/N:" } else { word });
-        let said = said.collect::<Vec<_>>().join(" ");
-        Self { said, status: output.status.code(), way, order }
+        let message = message.split(' ').map(|word| if word.starts_with("/dev/pts/") { "/dev/pts/N:" } else { word });
+        let message = message.collect::<Vec<_>>().join(" ");
+        Self { message, status: output.status.code(), way, order }
     }
 }
 
@@ -65,8 +65,8 @@ pub(crate) fn text(plan: &str, robots: &[(&str, Vec<(String, Row)>)]) -> String 
         )
         .unwrap();
         writeln!(text, "|---|---|---|---|---|---|").unwrap();
-        for (what, Row { said, status, way, order }) in rows {
-            let said = if said.is_empty() { "nothing" } else { said };
+        for (what, Row { message, status, way, order }) in rows {
+            let message = if message.is_empty() { "nothing" } else { message };
             let status = status.map_or("killed".to_owned(), |status| status.to_string());
             let order = match order {
                 None => "nothing",
@@ -76,7 +76,7 @@ pub(crate) fn text(plan: &str, robots: &[(&str, Vec<(String, Row)>)]) -> String 
                 Some(Order::Brake) => "to brake",
             };
             let (centimetres, seconds) = ((way.metres * 100.0).round(), way.time.as_secs_f64());
-            writeln!(text, "| {what} | {said} | {status} | {order} | {centimetres} cm | {seconds:.1} s |").unwrap();
+            writeln!(text, "| {what} | {message} | {status} | {order} | {centimetres} cm | {seconds:.1} s |").unwrap();
         }
     }
     text

@@ -74,14 +74,14 @@ pub(crate) struct Watched<'a, R> {
     /// Pose of the robot at the end of each step.
     poses: Vec<(Duration, Pose)>,
     /// Time of the last bytes to the robot.
-    told: Option<Instant>,
+    last_command: Option<Instant>,
     garbage: Vec<u8>,
 }
 
 impl<'a, R: Emulated> Watched<'a, R> {
     pub(crate) fn new(robot: Faulty<R>, happening: Happening, nature: Nature<R>, child: &'a RefCell<Child>) -> Self {
         let (age, poses, garbage) = (Duration::ZERO, Vec::new(), Vec::new());
-        Self { robot, happening, nature, child, begun: None, age, poses, told: None, garbage }
+        Self { robot, happening, nature, child, begun: None, age, poses, last_command: None, garbage }
     }
 
     /// Lets the robot move on without commands until its watchdog stops it. Returns how far that was, from the last
@@ -117,7 +117,7 @@ impl<'a, R: Emulated> Watched<'a, R> {
     /// Keeps the robot moving while a driver waits without an answer by its own clock, although in lockstep no command
     /// lets time pass. The driver waits for an end of garbage as for an end of silence, and gives up the first time.
     fn waited(&mut self) {
-        let in_vain = self.told.replace(Instant::now()).is_some_and(|told| told.elapsed() >= IN_VAIN);
+        let in_vain = self.last_command.replace(Instant::now()).is_some_and(|time| time.elapsed() >= IN_VAIN);
         if in_vain || self.is(Happening::Garbage, GARBAGE) {
             (0..std::mem::take(&mut self.nature.waits)).for_each(|_| drop(self.pass(PERIOD)));
         }
@@ -164,8 +164,8 @@ impl<R: Emulated> Emulated for Watched<'_, R> {
         passed
     }
 
-    fn said(&mut self) -> Vec<Vec<u8>> {
-        let frames = self.robot.said();
+    fn take_frames(&mut self) -> Vec<Vec<u8>> {
+        let frames = self.robot.take_frames();
         if self.is(Happening::Garbage, GARBAGE) {
             return vec![std::mem::take(&mut self.garbage)];
         }

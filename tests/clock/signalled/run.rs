@@ -149,8 +149,8 @@ impl<R: Robot> Emulated for Watched<'_, R> {
         Ok(())
     }
 
-    fn said(&mut self) -> Vec<Vec<u8>> {
-        let mut frames = self.robot.said();
+    fn take_frames(&mut self) -> Vec<Vec<u8>> {
+        let mut frames = self.robot.take_frames();
         frames.retain(|frame| self.mute.is_none_or(|kind| frame.get(3) != Some(&kind)));
         frames
     }

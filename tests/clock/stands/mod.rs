@@ -65,7 +65,7 @@ fn a_robot_that_does_not_obey_ends_the_plan() {
 }
 
 #[test]
-fn a_stop_without_rest_is_told() {
+fn a_stop_without_rest_is_reported() {
     // The limit comes while it still does what it is told.
     let arguments = ["--timeout", "3.5"];
     let scout = ran::<Scout>(&["runaway"], &arguments, Way::Terminal, |_, _| {});

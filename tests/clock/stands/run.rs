@@ -88,7 +88,7 @@ pub(crate) fn executable<R: Robot>() -> &'static Path {
 /// The result of a run.
 pub(crate) struct Ran<R> {
     /// The program's messages at the end.
-    said: String,
+    output: String,
     status: Option<i32>,
     /// The time from the beginning of the fault to the end of the run.
     took: Duration,
@@ -105,9 +105,9 @@ impl<R: Robot> Ran<R> {
 
     /// Asserts that the run ended with this status and these words, and that the robot received these orders last.
     pub(crate) fn assert(&self, status: i32, words: &[&str], orders: &[Order]) {
-        println!("{} s after the fault: {}", self.took.as_secs_f64(), self.said);
-        assert_eq!(self.status, Some(status), "{}", self.said);
-        assert!(words.iter().all(|word| self.said.contains(word)), "{}", self.said);
+        println!("{} s after the fault: {}", self.took.as_secs_f64(), self.output);
+        assert_eq!(self.status, Some(status), "{}", self.output);
+        assert!(words.iter().all(|word| self.output.contains(word)), "{}", self.output);
         assert!(self.last_orders().ends_with(orders), "{:?}", self.last_orders());
         assert!(self.took < SLOW, "{:?}", self.took);
     }
@@ -146,8 +146,8 @@ pub(crate) fn ran<R: Robot>(
         (output, took)
     });
     let Output { status, stdout, stderr } = output;
-    let said = String::from_utf8(stdout).unwrap() + &String::from_utf8(stderr).unwrap();
-    Ran { said, status: status.code(), took, robot: robot.into_robot() }
+    let output = String::from_utf8(stdout).unwrap() + &String::from_utf8(stderr).unwrap();
+    Ran { output, status: status.code(), took, robot: robot.into_robot() }
 }
 
 /// The connection of the program to the robot.

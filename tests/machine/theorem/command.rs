@@ -103,7 +103,7 @@ fn every_plan_to_learn_from_comes_back_and_is_accepted() {
 }
 
 #[test]
-fn what_is_no_machine_is_told() {
+fn what_is_no_machine_is_an_error() {
     let bad = [
         ("an unknown state", r#"{"states": ["go", "end"], "interrupts": [{"name": "x", "moves": {"go": "ent"}}]}"#),
         ("no states", r#"{"states": [], "interrupts": []}"#),

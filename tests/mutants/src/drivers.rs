@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    fn an_expression_that_is_not_there_once_is_told() {
+    fn an_expression_must_occur_exactly_once() {
         let message = |from: &str| with_faults("a.rs", "b + b", &[fault(from, "0")]).unwrap_err();
         assert_eq!(message("c"), "drivers.toml: a.rs has `c` not once (a fault)");
         assert_eq!(message("b"), "drivers.toml: a.rs has `b` not once (a fault)");

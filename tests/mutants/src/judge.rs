@@ -68,7 +68,7 @@ impl Judge<'_> {
         report.add(mutant, outcome, equivalent.is_some());
         if outcome != Outcome::DoesNotCompile {
             let reason = equivalent.map_or(String::new(), |entry| format!(" (changes nothing: {})", entry.reason));
-            println!("{mutant}: {}{reason} [{:.0?}]", report::said(outcome), start.elapsed());
+            println!("{mutant}: {}{reason} [{:.0?}]", report::verdict(outcome), start.elapsed());
         }
     }
 }

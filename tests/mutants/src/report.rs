@@ -42,7 +42,7 @@ impl Report {
         match (outcome, listed) {
             (Outcome::Survived, false) => self.complaints.push(format!("survived: {mutant}")),
             (Outcome::Survived, true) | (_, false) => {}
-            (_, true) => self.complaints.push(format!("listed in equivalent.toml, but {}: {mutant}", said(outcome))),
+            (_, true) => self.complaints.push(format!("listed in equivalent.toml, but {}: {mutant}", verdict(outcome))),
         }
     }
 
@@ -75,7 +75,7 @@ impl fmt::Display for Report {
 }
 
 /// An outcome in words.
-pub(crate) fn said(outcome: Outcome) -> String {
+pub(crate) fn verdict(outcome: Outcome) -> String {
     match outcome {
         Outcome::DoesNotCompile => "does not compile".to_owned(),
         Outcome::Caught(test) => format!("caught by {}", trial::name(test)),

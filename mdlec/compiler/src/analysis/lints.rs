@@ -15,7 +15,7 @@ use crate::plan::{Condition, Interrupt, Quark, condition_text};
 pub(super) fn lints(machine: &Machine, found: &[Found]) -> Vec<Diagnostic> {
     let lints = Lints { machine, constants: Constants::new(machine) };
     let mut uses: BTreeMap<Span, usize> = BTreeMap::new();
-    let mut told: BTreeMap<(Span, Code), (usize, Diagnostic)> = BTreeMap::new();
+    let mut warnings: BTreeMap<(Span, Code), (usize, Diagnostic)> = BTreeMap::new();
     for (element, found) in machine.elements().zip(found) {
         let Some(interrupt) = element.interrupt() else { continue };
         *uses.entry(interrupt.span).or_default() += 1;
@@ -23,12 +23,12 @@ pub(super) fn lints(machine: &Machine, found: &[Found]) -> Vec<Diagnostic> {
         for lint in lints.element(element, interrupt, found).into_iter().flatten() {
             // What an interrupt says is told once, whichever of its operands are concerned.
             if once.insert(lint.code) {
-                told.entry((interrupt.span, lint.code)).or_insert((0, lint)).0 += 1;
+                warnings.entry((interrupt.span, lint.code)).or_insert((0, lint)).0 += 1;
             }
         }
     }
     let everywhere = |span: &Span, count: usize| uses.get(span).is_some_and(|uses| *uses == count);
-    told.into_iter().filter(|((span, _), (count, _))| everywhere(span, *count)).map(|(_, (_, lint))| lint).collect()
+    warnings.into_iter().filter(|((span, _), (count, _))| everywhere(span, *count)).map(|(_, (_, lint))| lint).collect()
 }
 
 struct Lints<'l> {

@@ -156,7 +156,7 @@ fn what_is_cut_off_and_what_is_always_skipped() {
 }
 
 #[test]
-fn atoms_that_run_are_told_from_those_that_do_not() {
+fn atoms_that_never_run_are_found() {
     use Reach::{Never, Runs, Skipped};
     let plan = "{ P (bumper) (Atom (wait 5 OR bumper AND wait 1) rotate 90) { Q (NOT bumper) (Atom (wait 1) stop)
       (Atom (wait 1) stop) } (Atom (null) go 5 0) (Atom (wait 1) stop) }";

@@ -57,8 +57,8 @@ mod tests {
             let compiled = compiled(text).swap_remove(0);
             assert_eq!(observation1(&compiled.machine), Ok(()), "{text}");
             let degenerate = compiled.nondegenerate.map(|_| compiled.plan.root.clone());
-            let said = lower(&degenerate).unwrap_err();
-            assert!(said.code == Code::E0901 && said.message.contains("is repeated inside"), "{text}: {said:?}");
+            let error = lower(&degenerate).unwrap_err();
+            assert!(error.code == Code::E0901 && error.message.contains("is repeated inside"), "{text}: {error:?}");
         }
     }
 

@@ -93,14 +93,14 @@ impl<'s> Parameters<'s> {
         }
         let declaration = declaration(plan, &parameters);
         if let Err(found) = fit(call, &declaration, "", around) {
-            let told = |mut found: Diagnostic| {
+            let at_call = |mut found: Diagnostic| {
                 if found.code == Code::E0301 {
                     found.help.clear();
                     found = usage(found, call, &declaration);
                 }
                 found.also(plan.name.span, format!("`{}` is written here", plan.name.node))
             };
-            return Err(found.into_iter().map(told).collect());
+            return Err(found.into_iter().map(at_call).collect());
         }
         for (param, arg) in plan.params.iter().zip(call.args) {
             if let Some(parameter) = parameters.known.get_mut(param.name.node) {

@@ -61,7 +61,7 @@ fn unknown_names_come_with_the_nearest_known_one() {
 }
 
 #[test]
-fn a_quark_of_the_other_kind_is_told_where_it_belongs() {
+fn a_quark_of_the_wrong_kind_has_a_help() {
     assert_judged!(
         "{ P (stop)
   (Atom (bumper) bumper)
@@ -363,7 +363,7 @@ fn a_plan_may_be_called_as_a_signal_is() {
 }
 
 #[test]
-fn a_string_behind_a_plans_name_is_told_how_to_be_one() {
+fn a_string_after_a_plan_name_has_a_help() {
     assert_judged!("{ P (Q) R }\n{ Q (Atom (wait 1) stop) }\n{ R (Atom (wait 1) stop) }");
 }
 
@@ -391,7 +391,7 @@ fn what_is_given_is_not_what_a_parameter_is() {
 }
 
 #[test]
-fn a_type_that_is_none_is_told_and_not_what_follows_from_it() {
+fn an_unknown_type_is_one_error() {
     assert_judged!(
         "{ Main Leg(20) Twice(3) Far(2m) }
 { Leg (v: spead) (bumper) (Atom (x > v) go v 0) }

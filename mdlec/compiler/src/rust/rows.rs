@@ -17,7 +17,7 @@ pub(super) fn machine(plan: &Ident, doc: &str, machine: &Machine, paths: Option<
     let (entered, begins) = entries(machine);
     let rows = rows(machine, paths);
     let (memory, new) = memory(machine, &begins);
-    let (told, stalled) = (told(machine), stalled(machine));
+    let (memory_updates, stalled) = (memory_updates(machine), stalled(machine));
     let replayed = paths.map(|_| {
         quote!(
             fn paths(&self) -> &[&'static str] {
@@ -59,7 +59,7 @@ pub(super) fn machine(plan: &Ident, doc: &str, machine: &Machine, paths: Option<
                 runtime::Plan::next(&self.0, cursor, y, t)
             }
             #stalled
-            #told
+            #memory_updates
             #[inline(always)]
             fn input(&mut self, y: &Output, t: Nanos) -> Input { runtime::Plan::input(&mut self.0, y, t) }
             fn operands(
@@ -94,7 +94,7 @@ fn stalled(machine: &Machine) -> Option<TokenStream> {
 }
 
 /// Returns the functions by which the machine informs a plan with memories; `None` for a plan without memories.
-fn told(machine: &Machine) -> Option<TokenStream> {
+fn memory_updates(machine: &Machine) -> Option<TokenStream> {
     (machine.sizes().memories > 0).then(|| {
         quote! {
             fn leave(

@@ -330,10 +330,14 @@ impl<'s> Pass<'_, 's> {
         self.balanced.regions.spoil();
         (strays.last, strays.count) = (index, strays.count + 1);
         let bracket = if token.kind == Tok::RBrace { '}' } else { ')' };
-        if let Some(told) = self.balanced.diagnostics.get_mut(strays.message) {
-            told.message = format!("these {} `{bracket}` close nothing", strays.count);
-            told.help.clear();
-            told.labels.iter_mut().take(1).for_each(|label| label.span = label.span.to(self.source.span(token.place)));
+        if let Some(message) = self.balanced.diagnostics.get_mut(strays.message) {
+            message.message = format!("these {} `{bracket}` close nothing", strays.count);
+            message.help.clear();
+            message
+                .labels
+                .iter_mut()
+                .take(1)
+                .for_each(|label| label.span = label.span.to(self.source.span(token.place)));
         }
         true
     }
@@ -400,10 +404,10 @@ impl<'s> Pass<'_, 's> {
         self.balanced.is_open = true;
         if let Some(diagnostic) = open.stray.and_then(|stray| self.balanced.diagnostics.get_mut(stray)) {
             let stray = diagnostic.span();
-            let told = diagnostic.clone();
+            let message = diagnostic.clone();
             *diagnostic = match stray {
-                Some(stray) => told.fix("a `{` is closed by {}", stray, "}"),
-                None => told.help("a `{` is closed by `}`"),
+                Some(stray) => message.fix("a `{` is closed by {}", stray, "}"),
+                None => message.help("a `{` is closed by `}`"),
             };
             return;
         }

@@ -15,7 +15,7 @@ use super::token::{Tok, Token};
 use crate::diagnostic::{Code, Diagnostic, Edit, Span};
 
 /// Returns the messages about the errors from which the parser recovered.
-pub(super) fn told(
+pub(super) fn diagnostics(
     source: Source<'_>,
     tokens: &[Token<'_>],
     regions: &mut Regions,
@@ -29,7 +29,7 @@ pub(super) fn told(
     errors.sort_by_key(|(at, _)| *at);
     let openers = openers(tokens);
     let plans = OnceCell::new();
-    let mut told = Vec::new();
+    let mut diagnostics = Vec::new();
     for (at, expected) in errors {
         let site = Site { source, tokens, openers: &openers, plans: &plans, at, expected };
         if site.in_nameless_head() {
@@ -39,10 +39,10 @@ pub(super) fn told(
         if !regions.is_spoiled_once(site.decisive()) {
             let diagnostic = mistakes::known(&site).unwrap_or_else(|| site.unexpected());
             rewritten(source, tokens, &diagnostic).for_each(|token| regions.spoil_at(token));
-            told.push(diagnostic);
+            diagnostics.push(diagnostic);
         }
     }
-    told
+    diagnostics
 }
 
 /// Indices of the tokens that an edit of this message replaces.

@@ -85,7 +85,7 @@ pub fn parse<'s>(source: SourceId, text: &'s str, arena: &'s Arena) -> (tree::Fi
     file.uses.append(&mut balanced.uses);
 
     let mut diagnostics = balanced.diagnostics;
-    diagnostics.extend(errors::told(source, &balanced.tokens, &mut balanced.regions, recoveries));
+    diagnostics.extend(errors::diagnostics(source, &balanced.tokens, &mut balanced.regions, recoveries));
     let spoiled = |range: &Range<usize>| range.clone().any(|token| balanced.regions.is_spoiled(token));
     diagnostics.extend(empty.into_iter().filter(|(range, _)| !spoiled(range)).map(|(_, empty)| empty));
     if file.plans.is_empty() && diagnostics.is_empty() {

@@ -95,9 +95,9 @@ fn a_condition_that_is_its_own_operand_holds_nobody_up() {
         // What refers to itself or back is as if it were not there, and so has not fired.
         assert_eq!(or.fired(&at(&operands, &nothing, &()), 0), matches!(operands[0], Condition::Not(_)));
         assert_eq!(or.cause(&at(&operands, &nothing, &())), 0);
-        let mut told = Vec::new();
-        or.low(&at(&operands, &nothing, &()), 0, &mut |memory| told.push(memory));
-        assert_eq!(told, []);
+        let mut memories = Vec::new();
+        or.low(&at(&operands, &nothing, &()), 0, &mut |memory| memories.push(memory));
+        assert_eq!(memories, []);
     }
     let (always, operands) = (Sensed(&[0]), [Condition::Quark(Fires(0))]);
     assert!(Condition::Or(0, 1).fired(&at(&operands, &always, &()), 0));
@@ -168,7 +168,7 @@ fn the_cause_is_the_first_operand_of_an_or_that_has_fired() {
 }
 
 #[test]
-fn the_operands_that_have_fired_are_told_with_their_values() {
+fn fired_operands_have_their_values() {
     let operands = [
         Condition::And(2, 2),
         Condition::Wait(Nanos(3)),
@@ -176,20 +176,20 @@ fn the_operands_that_have_fired_are_told_with_their_values() {
         Condition::Elapsed(Nanos(0), Nanos(9)),
         Condition::Quark(Fires(0)),
     ];
-    let told = |numbers: &'static [u8]| {
-        let mut told = Vec::new();
+    let fired = |numbers: &'static [u8]| {
+        let mut values = Vec::new();
         let sensed = Sensed(numbers);
-        let tell = &mut |number, measured| told.push((number, measured));
+        let tell = &mut |number, measured| values.push((number, measured));
         Condition::Or(0, 2).tell_fired(&at(&operands, &sensed, &()), tell);
-        told
+        values
     };
     let since = Measured::Elapsed(Nanos(3));
-    assert_eq!(told(&[]), [(0, Measured::Nothing), (1, since), (2, since)]);
-    assert_eq!(told(&[0]), [(1, since), (2, since)]);
+    assert_eq!(fired(&[]), [(0, Measured::Nothing), (1, since), (2, since)]);
+    assert_eq!(fired(&[0]), [(1, since), (2, since)]);
 }
 
 #[test]
-fn every_rising_whose_operand_has_not_fired_is_told_once() {
+fn each_low_rising_is_noted_once() {
     let operands = [
         Condition::Rising(0, 2),
         Condition::Not(3),
@@ -205,9 +205,9 @@ fn every_rising_whose_operand_has_not_fired_is_told_once() {
         Condition::Rising(5, 11),
         Condition::Quark(Fires(9)),
     ];
-    let mut told = Vec::new();
-    Condition::And(0, 2).low(&at(&operands, &Sensed(&[0]), &()), 0, &mut |memory| told.push(memory));
-    assert_eq!(told, [0, 1, 3, 4], "the operand of 2 has fired");
+    let mut memories = Vec::new();
+    Condition::And(0, 2).low(&at(&operands, &Sensed(&[0]), &()), 0, &mut |memory| memories.push(memory));
+    assert_eq!(memories, [0, 1, 3, 4], "the operand of 2 has fired");
 }
 
 /// `{ P { Q (Atom) } (Atom) }`, where all conditions are given, and what ends with the first atom and with `Q`.

@@ -29,7 +29,7 @@ fn all_units_comments_and_line_ends_are_read() {
 }
 
 #[test]
-fn what_is_wrong_is_told_with_its_line_and_column() {
+fn errors_have_their_line_and_column() {
     let rows = |rows: &str| format!("{HEADER}\n0, 0, 20\n0.1, 0, 20\n{rows}");
     let report = |texts: &[String]| {
         let mut report = String::new();
@@ -91,7 +91,7 @@ fn limits_are_met_exactly() {
 }
 
 #[test]
-fn bytes_that_are_no_text_are_told_where_they_are() {
+fn invalid_utf8_has_its_place() {
     let place = |bytes: &[u8]| utf8(bytes).unwrap_err().place;
     assert_eq!(place(b"\xff"), Some((1, 1)));
     assert_eq!(place(b"time s\n# \xc3\xa4\xc3\xb6\xc3"), Some((2, 5)));
@@ -150,7 +150,7 @@ fn what_is_recorded_is_read_as_it_was_driven() {
 }
 
 #[test]
-fn a_damaged_file_is_read_or_told_wrong_in_one_of_its_lines() {
+fn a_damaged_file_is_read_or_has_an_error_in_a_line() {
     let (mut state, mut wrong) = (11, 0);
     for _ in 0..3_000 {
         let mut bytes = recorded(&drive(&mut state)).into_bytes();
@@ -186,7 +186,7 @@ fn a_damaged_file_is_read_or_told_wrong_in_one_of_its_lines() {
 }
 
 #[test]
-fn a_recording_that_cannot_be_written_is_told_in_the_end() {
+fn a_failed_recording_is_reported_at_the_end() {
     struct Full;
     impl std::io::Write for Full {
         fn write(&mut self, _: &[u8]) -> std::io::Result<usize> {

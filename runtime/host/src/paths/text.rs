@@ -72,8 +72,8 @@ pub(super) fn utf8(bytes: &[u8]) -> Result<&str, Wrong> {
 pub(super) fn setpoints(text: &str, fastest: Twist) -> Result<Vec<Setpoint>, Wrong> {
     // Spreadsheets like to put it in front.
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let told = text.lines().map(|line| line.split_once('#').map_or(line, |(told, _)| told));
-    let mut lines = (1..).zip(told).filter(|(_, told)| !told.trim().is_empty());
+    let rows = text.lines().map(|line| line.split_once('#').map_or(line, |(row, _)| row));
+    let mut lines = (1..).zip(rows).filter(|(_, row)| !row.trim().is_empty());
     let Some((line, header)) = lines.next() else {
         return Err(Wrong { place: None, what: format!("there is nothing in it; a path begins with {HEADER}") });
     };
@@ -133,13 +133,13 @@ impl Column {
         if words.next() != Some(name) {
             return Err(cell.wrong(format!("expected the column `{name}`, found `{}`; as in {HEADER}", cell.text)));
         }
-        let told = words.collect::<Vec<_>>().join(" ");
-        let found = self.units.into_iter().find(|(unit, _)| *unit == told);
+        let word = words.collect::<Vec<_>>().join(" ");
+        let found = self.units.into_iter().find(|(unit, _)| *unit == word);
         found.ok_or_else(|| {
             let expected = format!("expected `{name} {one}` or `{name} {other}`");
-            cell.wrong(match told.as_str() {
+            cell.wrong(match word.as_str() {
                 "" => format!("the unit of `{name}` is missing: {expected}"),
-                told => format!("`{told}` is no unit of `{name}`: {expected}"),
+                word => format!("`{word}` is no unit of `{name}`: {expected}"),
             })
         })
     }

@@ -126,7 +126,7 @@ fn a_pace_decides_how_long_a_run_takes_and_nothing_else() {
 }
 
 #[test]
-fn what_the_computer_does_not_permit_is_told_once_where_time_is_real() {
+fn missing_permissions_are_reported_once_in_real_time() {
     let at = |time| Stage { time, ..Stage::default() }.run(&["--turns", "3"]).err;
     assert_eq!(at(Time::Stepped(Pace::Times(1.0))), "stopped by --turns: the plan was not over after 3 turns\n");
     insta::assert_snapshot!(at(Time::Wall).lines().take(3).collect::<Vec<_>>().join("\n"));

@@ -36,7 +36,7 @@ fn only_the_atom_that_is_left_standing_has_begun() {
 }
 
 #[test]
-fn a_robot_that_looks_is_told_in_each_turn_where_the_plan_stands() {
+fn an_observer_gets_the_position_in_each_turn() {
     let skip = Act::Senses(vec![(0, Fired(1)), (1, Completed(2))]);
     let over = Act::Senses(vec![(2, Fired(0))]);
     let run = Stage { looks: true, ..Stage::script([quiet(), skip, quiet(), over]) }.run(&[]);
@@ -68,7 +68,7 @@ fn a_plan_that_is_over_in_its_first_turn_is_never_applied() {
 }
 
 #[test]
-fn a_robot_is_told_what_ended_its_turns() {
+fn a_robot_gets_the_reason_of_the_end() {
     let ended = |acts: Vec<Act>, arguments: &[&str]| {
         let run = Stage { looks: true, ..Stage::script(acts) }.run(arguments);
         run.journal.split(", ").find(|line| line.contains(" by ")).unwrap_or_default().to_owned()
@@ -201,7 +201,7 @@ fn what_cannot_be_finished_is_a_fault_of_a_plan_that_is_over_only() {
 
 #[cfg(target_os = "linux")]
 #[test]
-fn everything_that_goes_wrong_on_the_way_out_is_told_in_order() {
+fn failures_while_ending_are_reported_in_order() {
     let script = [Act::Hears(Signal::INTERRUPT), Act::Fails("no answer")];
     let finish = Err("plot.svg cannot be written".to_owned());
     let stage = Stage { stop: Act::Fails("the line is dead"), finish, ..Stage::script(script) };

@@ -179,7 +179,7 @@ fn the_number_of_threads_changes_nothing() {
 }
 
 #[test]
-fn a_signal_ends_the_batch_and_what_was_done_is_told() {
+fn a_signal_ends_the_batch_with_a_summary() {
     let signals = Signals::unheard();
     // Listens, as a process does.
     let (status, summary) = Several { runs: 50, ..FIVE }.run(&signals);

@@ -10,7 +10,7 @@ use std::process::Output;
 use cart::{FAR, cart, is_no_refusal, is_no_timing, send, start, text, wait_until_it_moves};
 
 #[test]
-fn how_late_turns_are_is_told_on_sigusr1_and_at_the_end() {
+fn lateness_is_printed_on_sigusr1_and_at_the_end() {
     let mut child = start(&FAR);
     let mut lines = wait_until_it_moves(child.stderr.take().unwrap());
     let table = ["     up to      late      took", "      most"];

@@ -30,7 +30,7 @@ struct Cart {
     command: Command,
     journal: File,
     /// The commands that the cart got so far.
-    told: String,
+    text: String,
     /// Pipes that are never read.
     full: Vec<File>,
 }
@@ -52,7 +52,7 @@ impl Cart {
         command.arg(&journal).args(options).stdout(Stdio::null()).stderr(Stdio::null());
         let flags = OFlags::NONBLOCK.bits() as i32;
         let journal = File::options().read(true).custom_flags(flags).open(&journal).unwrap();
-        Self { folder, command, journal, told: String::new(), full: Vec::new() }
+        Self { folder, command, journal, text: String::new(), full: Vec::new() }
     }
 
     /// Lets a writer of the cart write to this file.
@@ -108,8 +108,8 @@ impl Cart {
     /// Reads the commands that the cart has reported, and returns all of them.
     fn hear(&mut self) -> &str {
         // There is nothing, or the cart has not opened it, or has ended.
-        let _ = self.journal.read_to_string(&mut self.told);
-        &self.told
+        let _ = self.journal.read_to_string(&mut self.text);
+        &self.text
     }
 
     /// Starts the cart and waits until it was commanded to move `times` times.
@@ -122,7 +122,7 @@ impl Cart {
     fn moves_on(&mut self, times: usize) {
         let begun = Instant::now();
         while self.hear().matches("0.5 m/s").count() < times {
-            assert!(begun.elapsed() < Duration::from_secs(60), "it does not move: {}", self.told);
+            assert!(begun.elapsed() < Duration::from_secs(60), "it does not move: {}", self.text);
             thread::sleep(Duration::from_millis(5));
         }
     }
@@ -238,7 +238,7 @@ fn a_path_whose_reader_goes_away_is_reported() {
 }
 
 #[test]
-fn a_panic_is_told_to_nobody_who_does_not_listen() {
+fn a_panic_needs_no_reader() {
     let mut cart = Cart::new("panic", &["--panic-at", "5"]);
     cart.blocked(Writer::Err);
     let mut child = cart.command.spawn().unwrap();

@@ -1,6 +1,6 @@
 //! An ATRV-mini in a simulated world: the effect of each command, and the reports that it sends as time passes.
 
-mod telling;
+mod reports;
 
 use std::time::Duration;
 
@@ -9,7 +9,7 @@ use mdle_runtime::{MetersPerSecond, Nanos, Pose, RadiansPerSecond, Robot as _, T
 use mdle_simulator::{Footprint, Output, Simulated};
 
 use crate::wire::{Incoming, Request, number};
-use telling::Schedule;
+use reports::Schedule;
 
 /// Controller's units per metre and per radian.
 const A_METRE: f64 = 139_654.7;
@@ -40,18 +40,18 @@ pub struct Atrv {
     sensed: Output,
     incoming: Incoming,
     /// Reports that are still to be sent; `count` is the number of the last report.
-    said: Vec<Vec<u8>>,
+    outgoing: Vec<Vec<u8>>,
     count: u8,
     /// The commands, forward and turning, in the robot's units per second, and the last command that arrived.
-    told: (i32, i32),
-    asked: (i32, i32),
+    command: (i32, i32),
+    last_command: (i32, i32),
     orders: Orders,
     /// Distances of both axes, in the controller's units.
     gone: (f64, f64),
     axes: Schedule,
     inputs: Schedule,
     /// Data of the last axis reports.
-    told_axes: Vec<Vec<u8>>,
+    axis_reports: Vec<Vec<u8>>,
     /// Time of the last reported ping of each sonar, while the sonars run.
     pings: Option<Vec<Nanos>>,
     is_braked: bool,
@@ -79,15 +79,15 @@ impl Atrv {
             step,
             sensed,
             incoming: Incoming::new(marks),
-            said: Vec::new(),
+            outgoing: Vec::new(),
             count: 0,
-            told: (0, 0),
-            asked: (0, 0),
+            command: (0, 0),
+            last_command: (0, 0),
             orders: Orders::default(),
             gone: (0.0, 0.0),
             axes: Schedule::default(),
             inputs: Schedule::default(),
-            told_axes: Vec::new(),
+            axis_reports: Vec::new(),
             pings: None,
             is_braked: true,
             silence: Duration::ZERO,
@@ -134,7 +134,7 @@ impl Atrv {
                 let brake = [u8::from(self.is_braked())];
                 let battery = self.battery();
                 let data = [&self.time()[..], &battery.to_be_bytes(), &brake].concat();
-                self.tell(1, 1, &data);
+                self.send(1, 1, &data);
             }
             (2, 7, [axis, v0, v1, v2, v3, .., direction]) if request.data.len() == 14 => {
                 let size = number(&[*v0, *v1, *v2, *v3]).min(i32::MAX as u32) as i32;
@@ -145,7 +145,7 @@ impl Atrv {
             (2, 11, _) => {
                 self.orders.push(self.age, Order::Brake);
                 if !self.has(Ailment::Runaway) {
-                    (self.told, self.is_braked) = ((0, 0), true);
+                    (self.command, self.is_braked) = ((0, 0), true);
                 }
             }
             (2, 12, _) => self.is_braked = false,
@@ -160,7 +160,7 @@ impl Atrv {
             (5, 0, period) => {
                 self.inputs = Schedule::new(number(period), self.age);
                 let done = [&[0; 4][..], &self.time()].concat();
-                self.tell(5, 0, &done);
+                self.send(5, 0, &done);
             }
             _ => {}
         }
@@ -170,11 +170,11 @@ impl Atrv {
     /// Takes in a velocity of an axis. Rotation is the second half of a motion command.
     fn moves(&mut self, axis: u8, velocity: i32) {
         match axis {
-            0 => self.asked.0 = velocity,
+            0 => self.last_command.0 = velocity,
             _ => {
-                self.asked.1 = velocity;
+                self.last_command.1 = velocity;
                 // One unit is what drivers say for none.
-                let stands = self.asked.0.abs() <= 1 && velocity == 0;
+                let stands = self.last_command.0.abs() <= 1 && velocity == 0;
                 self.orders.push(self.age, if stands { Order::Stand } else { Order::Drive });
             }
         }
@@ -182,8 +182,8 @@ impl Atrv {
             _ if self.has(Ailment::Runaway) => {}
             // As on the ATRV-Jr: nothing is no speed, so that the old one stays.
             0 if velocity == 0 => {}
-            0 => self.told.0 = velocity,
-            _ => self.told.1 = velocity,
+            0 => self.command.0 = velocity,
+            _ => self.command.1 = velocity,
         }
     }
 
@@ -193,24 +193,24 @@ impl Atrv {
         self.age = age;
         let fails_safe = self.silence >= self.failsafe && !self.has(Ailment::Runaway);
         if fails_safe || self.is_braked() {
-            self.told = (0, 0);
+            self.command = (0, 0);
         }
         // The body counts as well, and cuts off: a unit more leaves it these very numbers.
         let exactly = |units: i32, one: f64| f64::from(units + units.signum()) / one;
         let input = Twist {
-            v: MetersPerSecond(exactly(self.told.0, A_METRE)),
-            omega: RadiansPerSecond(exactly(self.told.1, A_RADIAN)),
+            v: MetersPerSecond(exactly(self.command.0, A_METRE)),
+            omega: RadiansPerSecond(exactly(self.command.1, A_RADIAN)),
         };
         let input = if self.has(Ailment::StuckWheel) { left_alone(&input) } else { input };
         let before = self.sensed.odometry;
         self.sensed = self.body.exchange(&input).map_err(|error| error.to_string())?;
         self.goes(&before);
-        self.tell_pings();
+        self.report_pings();
         if self.inputs.is_due(age) {
-            self.tell_bumpers();
+            self.report_bumpers();
         }
         if self.axes.is_due(age) {
-            self.tell_axes();
+            self.report_axes();
         }
         Ok(())
     }
@@ -276,8 +276,8 @@ impl Emulated for Atrv {
         (1..=steps).try_for_each(|step| self.tick(begun + time * step / steps))
     }
 
-    fn said(&mut self) -> Vec<Vec<u8>> {
-        std::mem::take(&mut self.said)
+    fn take_frames(&mut self) -> Vec<Vec<u8>> {
+        std::mem::take(&mut self.outgoing)
     }
 
     fn can_suffer(_: Ailment) -> bool {

@@ -267,7 +267,7 @@ impl Emulated for Scout {
         Ok(())
     }
 
-    fn said(&mut self) -> Vec<Vec<u8>> {
+    fn take_frames(&mut self) -> Vec<Vec<u8>> {
         match self.asked.take() {
             Some((request, true)) => {
                 self.off += if self.leaps { LEAP } else { 0 };

@@ -92,7 +92,7 @@ fn asked(
 }
 
 /// Returns the fault of a driver whose robot answers with these bytes.
-fn said_of(answers: impl Fn(usize, &Request) -> Vec<u8> + Sync) -> Fault {
+fn fault_of(answers: impl Fn(usize, &Request) -> Vec<u8> + Sync) -> Fault {
     exchanged(SHORT, |count, request, port| port.write(&answers(count, request)).unwrap()).unwrap_err()
 }
 
@@ -116,7 +116,7 @@ fn assert_near(what: &str, found: f64, wanted: f64, by: f64) {
 }
 
 #[test]
-fn what_is_told_is_done_and_told_back() {
+fn commands_are_executed_and_reported() {
     with_robot(|driver| {
         let y = driven(driver, 0.2, 0.0, 30);
         assert_near("x", y.pose().x.0, 0.58, 0.03);
@@ -176,24 +176,24 @@ fn a_robot_whose_wheels_jitter_stands() {
 }
 
 #[test]
-fn silence_garbage_and_other_robots_are_told_apart() {
-    assert_eq!(said_of(|_, _| Vec::new()), Fault::Line(LineFault::Silent));
-    assert!(matches!(said_of(|_, _| b"Noise on the line.".to_vec()), Fault::Garbled(_)));
-    assert_eq!(said_of(|_, _| state(7)), Fault::Wrong { asked: 5, answered: 7 });
-    assert_eq!(said_of(|_, _| answer(8, &[])), Fault::Refused(5));
-    assert_eq!(said_of(|_, request| answer(request.command, &[0; 41])), Fault::Short(41));
+fn silence_garbage_and_other_robots_differ() {
+    assert_eq!(fault_of(|_, _| Vec::new()), Fault::Line(LineFault::Silent));
+    assert!(matches!(fault_of(|_, _| b"Noise on the line.".to_vec()), Fault::Garbled(_)));
+    assert_eq!(fault_of(|_, _| state(7)), Fault::Wrong { asked: 5, answered: 7 });
+    assert_eq!(fault_of(|_, _| answer(8, &[])), Fault::Refused(5));
+    assert_eq!(fault_of(|_, request| answer(request.command, &[0; 41])), Fault::Short(41));
     let bad_sum = |kind: u8| {
         let mut bytes = state(kind);
         bytes[46] ^= 1;
         bytes
     };
-    assert!(matches!(said_of(|_, request| bad_sum(request.command)), Fault::Garbled(_)));
+    assert!(matches!(fault_of(|_, request| bad_sum(request.command)), Fault::Garbled(_)));
     let mut stopped = [0; 42];
     stopped[35] = 0b0100_0000;
-    assert_eq!(said_of(|_, request| answer(request.command, &stopped)), Fault::EmergencyStop);
+    assert_eq!(fault_of(|_, request| answer(request.command, &stopped)), Fault::EmergencyStop);
     // In a turn as well as at the start, which takes four commands, ten looks at the sonars and a zero.
     let late = |count: usize, request: &Request| if count < 15 { state(request.command) } else { Vec::new() };
-    assert_eq!(said_of(late), Fault::Line(LineFault::Silent));
+    assert_eq!(fault_of(late), Fault::Line(LineFault::Silent));
 }
 
 #[test]

@@ -22,7 +22,7 @@ pub(super) struct Now {
 /// A scope as it is shown.
 #[derive(Debug, Clone, PartialEq)]
 struct Scope {
-    said: String,
+    title: String,
     seconds: f64,
     /// Seconds of the scope's `wait`, if its condition has one.
     wait: Option<f64>,
@@ -38,9 +38,9 @@ impl Now {
         self.scopes = standing.scopes.iter().map(Scope::of).collect();
         let middle = 1..self.scopes.len().saturating_sub(SCOPES_MOST - 2).max(1);
         if self.scopes.len() > SCOPES_MOST {
-            let said = format!("… {} more …", middle.len());
+            let title = format!("… {} more …", middle.len());
             let seconds = self.scopes.get(1).map_or(0.0, |scope| scope.seconds);
-            self.scopes.splice(middle, [Scope { said, seconds, wait: None }]);
+            self.scopes.splice(middle, [Scope { title, seconds, wait: None }]);
         }
     }
 
@@ -60,7 +60,7 @@ impl Now {
     /// The lines below it.
     pub(super) fn below(&self, columns: usize) -> Vec<String> {
         let mut lines = vec![format!("\x1b[1m{}", cut(&self.atom, columns))];
-        let widest = self.scopes.iter().map(|scope| scope.said.chars().count()).max().unwrap_or(0);
+        let widest = self.scopes.iter().map(|scope| scope.title.chars().count()).max().unwrap_or(0);
         let room = columns.saturating_sub(BAR + 26).max(8).min(widest);
         lines.extend(self.scopes.iter().map(|scope| scope.line(room, columns)));
         lines.push(format!("\x1b[2m{}", cut("Ctrl-C stops the robot", columns)));
@@ -72,13 +72,13 @@ impl Scope {
     fn of(around: &Around<'_>) -> Self {
         // `null` never fires.
         let condition = if around.condition == "null" { "" } else { around.condition };
-        let said = match (around.name, condition) {
+        let title = match (around.name, condition) {
             ("", "") => "atom".to_owned(),
             ("", condition) => format!("until {condition}"),
             (name, "") => name.to_owned(),
             (name, condition) => format!("{name} until {condition}"),
         };
-        Self { said, seconds: around.since.seconds(), wait: wait(around.condition) }
+        Self { title, seconds: around.since.seconds(), wait: wait(around.condition) }
     }
 
     fn line(&self, room: usize, columns: usize) -> String {
@@ -87,7 +87,7 @@ impl Scope {
             let full = libm::round(part * BAR as f64) as usize;
             format!("  {}{}  of {wait} s", "█".repeat(full), "░".repeat(BAR - full))
         });
-        cut(&format!("  {:<room$} {:>8.1} s{bar}", cut(&self.said, room), self.seconds), columns)
+        cut(&format!("  {:<room$} {:>8.1} s{bar}", cut(&self.title, room), self.seconds), columns)
     }
 }
 
@@ -143,7 +143,7 @@ mod tests {
     fn many_scopes_and_narrow_screens_are_cut() {
         let all = now(30);
         assert_eq!(all.scopes.len(), SCOPES_MOST);
-        assert!(all.scopes[1].said.contains("27 more"), "{:?}", all.scopes);
+        assert!(all.scopes[1].title.contains("27 more"), "{:?}", all.scopes);
         for columns in [0, 1, 5, 20, 60, 200] {
             for line in all.below(columns).iter().chain([&all.above(columns)]) {
                 let plain = line.split('m').skip(usize::from(line.starts_with('\x1b'))).collect::<Vec<_>>().join("m");

@@ -86,7 +86,7 @@ pub fn smlang(atoms: u32) -> String {
     let functions = each(atoms, |atom| {
         format!(
             "    fn reached_{atom}(&self, y: &Output) -> Result<bool, ()> {{ Ok(y.measured >= {}.0) }}
-    fn write_{atom}(&mut self, _: &Output) -> Result<(), ()> {{ self.said = Some(Said::Law({})); Ok(()) }}
+    fn write_{atom}(&mut self, _: &Output) -> Result<(), ()> {{ self.turn = Some(PlanTurn::Law({})); Ok(()) }}
 ",
             atom + 1,
             law(atom)
@@ -100,7 +100,7 @@ pub fn smlang(atoms: u32) -> String {
 }}
 impl StateMachineContext for Context {{
     fn halted(&self, y: &Output) -> Result<bool, ()> {{ Ok(y.halt) }}
-    fn end(&mut self, _: &Output) -> Result<(), ()> {{ self.said = Some(Said::Over); Ok(()) }}
+    fn end(&mut self, _: &Output) -> Result<(), ()> {{ self.turn = Some(PlanTurn::Over); Ok(()) }}
 {functions}}}
 "
     )

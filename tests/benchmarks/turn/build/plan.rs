@@ -40,7 +40,7 @@ pub fn emitted(text: &str) -> String {
     sources.add("alphabet.mdle", ALPHABET);
     let source = sources.add("T.mdle", text);
     let (compiled, found) = mdle_compiler::compile(source, text, &robot, Some("T"));
-    let said: String = found.iter().map(|diagnostic| sources.render(diagnostic)).collect();
-    let compiled = compiled.first().unwrap_or_else(|| panic!("{said}"));
+    let messages: String = found.iter().map(|diagnostic| sources.render(diagnostic)).collect();
+    let compiled = compiled.first().unwrap_or_else(|| panic!("{messages}"));
     emit(&compiled.machine, Header { sources: &sources, file: "T.mdle", plan: "T" }, &robot)
 }

@@ -21,7 +21,7 @@ fn script(leap: u32) -> Vec<(f64, bool)> {
 
 /// Returns the result of a machine in each turn. When it is over it begins again, and so does the measurement: a plan
 /// makes a limited number of transitions in a turn, and the other machines have no such limit.
-fn said<M: Robot>(script: &[(f64, bool)]) -> Vec<Turn<Input>> {
+fn turns<M: Robot>(script: &[(f64, bool)]) -> Vec<Turn<Input>> {
     let mut y = Output::default();
     let mut machine = M::begin(&y, Nanos(0));
     let turn = |(t, (growth, halt)): (u64, &(f64, bool))| {
@@ -39,10 +39,10 @@ fn said<M: Robot>(script: &[(f64, bool)]) -> Vec<Turn<Input>> {
 /// Asserts that a machine gives the results of the table, and that these cover all cases.
 fn assert_same<M: Robot, const N: usize>(leap: u32) {
     let script = script(leap);
-    let expected = said::<Table<N>>(&script);
+    let expected = turns::<Table<N>>(&script);
     assert!(expected.contains(&Turn::Over), "it ends");
     assert!(expected.iter().any(|turn| matches!(turn, Turn::Law(input) if input.left > 2.0)), "it goes on");
-    assert!(said::<M>(&script) == expected, "{}", std::any::type_name::<M>());
+    assert!(turns::<M>(&script) == expected, "{}", std::any::type_name::<M>());
 }
 
 #[test]

@@ -7,7 +7,7 @@ use crate::plan::{Atom, Condition, Interrupt, Node, Plan};
 pub(super) fn check(plan: &Plan, found: &mut Vec<Diagnostic>) {
     let mut ends = EndsLint { plan, pause: 10.0, found };
     ends.enter(&plan.root.interrupt);
-    if let (Some(Endless { atom: Some(atom), told: false }), Condition::Null) =
+    if let (Some(Endless { atom: Some(atom), is_reported: false }), Condition::Null) =
         (ends.sequence(&plan.root.body), &plan.root.interrupt.condition)
     {
         let lint = ends.nothing_ends(atom);
@@ -28,7 +28,7 @@ struct Endless<'p> {
     /// Atom that never ends; `None` for an endless loop, which is intended.
     atom: Option<&'p Atom>,
     /// `true` if a warning has been given already.
-    told: bool,
+    is_reported: bool,
 }
 
 impl<'p> EndsLint<'p, '_> {
@@ -49,14 +49,14 @@ impl<'p> EndsLint<'p, '_> {
         let (place, endless) = nodes.by_ref().find_map(|node| Some((node.part().span(), self.node(node)?)))?;
         let Some(next) = nodes.next() else { return Some(endless) };
         self.unreachable(["this is never reached", "never runs"], next.part().span(), endless, place);
-        Some(Endless { told: true, ..endless })
+        Some(Endless { is_reported: true, ..endless })
     }
 
     fn node(&mut self, node: &'p Node) -> Option<Endless<'p>> {
         match node {
             Node::Atom(atom) => {
                 let ends = can_end(&atom.interrupt) || self.plan.quark(atom.law).completes;
-                (!ends).then_some(Endless { atom: Some(atom), told: false })
+                (!ends).then_some(Endless { atom: Some(atom), is_reported: false })
             }
             Node::Scope(scope) => {
                 let pause = self.pause;
@@ -66,16 +66,16 @@ impl<'p> EndsLint<'p, '_> {
                 endless
             }
             Node::Loop(repeated) => match (self.sequence(&repeated.body), repeated.times) {
-                (None, None) => Some(Endless { atom: None, told: false }),
+                (None, None) => Some(Endless { atom: None, is_reported: false }),
                 (None, Some(_)) => None,
                 (Some(endless), times) => {
-                    let once = times == Some(1) || endless.told || endless.atom.is_none();
+                    let once = times == Some(1) || endless.is_reported || endless.atom.is_none();
                     if !once {
                         let atom = endless.atom.map_or(repeated.span, |atom| atom.span);
                         let words = ["the second pass of this loop is never reached", "runs only once"];
                         self.unreachable(words, repeated.span, endless, atom);
                     }
-                    Some(Endless { told: endless.told || !once, ..endless })
+                    Some(Endless { is_reported: endless.is_reported || !once, ..endless })
                 }
             },
         }

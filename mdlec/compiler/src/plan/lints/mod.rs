@@ -26,7 +26,7 @@ pub fn lints(plan: &Nondegenerate) -> Vec<Diagnostic> {
     frames::check(plan, &mut found);
     skipped::check(plan, &mut found);
     unlimited::check(plan, &mut found);
-    let mut told: BTreeSet<(Option<Span>, Code)> = BTreeSet::new();
-    found.retain(|lint| told.insert((lint.span(), lint.code)));
+    let mut places: BTreeSet<(Option<Span>, Code)> = BTreeSet::new();
+    found.retain(|lint| places.insert((lint.span(), lint.code)));
     found
 }

@@ -40,19 +40,20 @@ impl Skipped<'_, '_> {
                 Condition::Or(_) | Condition::And(_) | Condition::Rising { .. } | Condition::After(_) => {}
             }
         }
-        let told = self.sequence(&scope.body);
+        let is_reported = self.sequence(&scope.body);
         self.known = known;
-        told
+        is_reported
     }
 
     /// Returns `true` if the sequence contains a reported loop; an enclosing loop can be skipped for the same reason.
     fn sequence(&mut self, body: &[Node]) -> bool {
-        body.iter().fold(false, |told, node| {
-            told | match node {
-                Node::Atom(_) => false,
-                Node::Scope(scope) => self.inside(scope),
-                Node::Loop(repeated) => self.sequence(&repeated.body) || self.repeated(repeated),
-            }
+        body.iter().fold(false, |is_reported, node| {
+            is_reported
+                | match node {
+                    Node::Atom(_) => false,
+                    Node::Scope(scope) => self.inside(scope),
+                    Node::Loop(repeated) => self.sequence(&repeated.body) || self.repeated(repeated),
+                }
         })
     }
 
@@ -86,15 +87,15 @@ impl Skipped<'_, '_> {
         if quarks.is_empty() || quarks.len() > QUARKS {
             return None;
         }
-        let said =
+        let value =
             |choice: u32, id| quarks.iter().position(|quark| *quark == id).is_some_and(|bit| choice >> bit & 1 == 1);
-        let skips = |choice: u32| skip.fired(&AtOnce(|id| said(choice, id)));
+        let skips = |choice: u32| skip.fired(&AtOnce(|id| value(choice, id)));
         let choices = || 0..1_u32 << quarks.len();
         // What is skipped in any case has a condition that is always true, and W0203.
         if choices().all(skips) {
             return None;
         }
-        let can_be = |choice: &u32| self.can_be(quarks.iter().map(|id| (*id, said(*choice, *id))));
+        let can_be = |choice: &u32| self.can_be(quarks.iter().map(|id| (*id, value(*choice, *id))));
         let choice =
             choices().filter(|choice| skips(*choice) && can_be(choice)).min_by_key(|choice| choice.count_ones())?;
         // Only what matters is told: the rest may be as it likes.
@@ -105,9 +106,9 @@ impl Skipped<'_, '_> {
                 matters = without;
             }
         }
-        let told = quarks.iter().enumerate().filter(|(bit, _)| matters >> bit & 1 == 1);
-        let words = told.map(|(_, id)| {
-            let not = if said(choice, *id) { "" } else { "NOT " };
+        let literals = quarks.iter().enumerate().filter(|(bit, _)| matters >> bit & 1 == 1);
+        let words = literals.map(|(_, id)| {
+            let not = if value(choice, *id) { "" } else { "NOT " };
             format!("{not}{}", self.plan.quark(*id).text)
         });
         Some(words.collect::<Vec<_>>().join(" AND "))

@@ -161,7 +161,7 @@ fn what_does_not_end() {
 }
 
 #[test]
-fn all_defects_of_a_file_are_told_in_order() {
+fn all_errors_of_a_file_come_in_order() {
     let text = "{ A (Atom bumper stop)\n  (Atom (wait 5x) stop)\n  7\n  ExecPlan { C }\n  (Atom (wait 5) stop }\n{ (Atom (b OR) u) }\n@";
     let arena = Arena::new();
     let (_, diagnostics) = parse(SourceId(0), text, &arena);

@@ -14,7 +14,7 @@ use mdle_emulator::Port;
 use mdle_host::StopRequest;
 use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, SonarRing};
 use mdle_runtime::{MetersPerSecond, RadiansPerSecond, Robot as _, SonarId, Twist};
-use room::{PERIOD, STEERING, driven_in, said_of, with_robot};
+use room::{PERIOD, STEERING, driven_in, fault_of, with_robot};
 
 fn driven(driver: &mut Atrv, v: f64, omega: f64, periods: usize) -> Output {
     let input = Twist { v: MetersPerSecond(v), omega: RadiansPerSecond(omega) };
@@ -31,7 +31,7 @@ fn assert_near(what: &str, found: f64, wanted: f64, by: f64) {
 }
 
 #[test]
-fn what_is_told_is_done_and_told_back() {
+fn commands_are_executed_and_reported() {
     let (robot, ()) = with_robot(|driver| {
         let y = driven(driver, 0.2, 0.0, 30);
         assert_near("x", y.pose().x.0, 0.58, 0.03);
@@ -93,16 +93,16 @@ fn numbers_with_a_1b_in_them_arrive_all_the_same() {
     for (v, omega) in [(6976.5 / 139_654.7, 0.0), (0.0, 6976.5 / 49_784.5), (0.1, 27.5 / 49_784.5)] {
         for escape in [Escape::Avoid, Escape::Mark] {
             driven_in(escape, |driver| {
-                let told = driven(driver, v, omega, 20).velocity();
-                assert_near("speed", told.v.0, v, 0.002);
-                assert_near("turn rate", told.omega.0, omega, 0.003);
+                let velocity = driven(driver, v, omega, 20).velocity();
+                assert_near("speed", velocity.v.0, v, 0.002);
+                assert_near("turn rate", velocity.omega.0, omega, 0.003);
             });
         }
     }
 }
 
 #[test]
-fn a_robot_that_is_told_nothing_stops_by_itself() {
+fn a_robot_without_commands_stops_by_itself() {
     let (mut robot, ()) = with_robot(|driver| {
         // Dropped at speed, as a program that is killed.
         driven(driver, 0.5, 0.0, 10);
@@ -123,16 +123,16 @@ fn a_robot_with_other_sonars_is_refused() {
 }
 
 #[test]
-fn an_emergency_stop_is_told() {
+fn an_emergency_stop_is_reported() {
     let pressed = AtomicBool::new(false);
-    let (robot, said) = room::with_emergency(&pressed, |driver| {
+    let (robot, result) = room::with_emergency(&pressed, |driver| {
         driven(driver, 0.5, 0.0, 15);
         pressed.store(true, Ordering::Relaxed);
         let go = Twist { v: MetersPerSecond(0.5), ..Twist::default() };
-        let said = (0..20).find_map(|_| driver.exchange(&go).err());
-        (said, driver.stop())
+        let result = (0..20).find_map(|_| driver.exchange(&go).err());
+        (result, driver.stop())
     });
-    assert_eq!(said, (Some(Fault::Braked), Ok(())));
+    assert_eq!(result, (Some(Fault::Braked), Ok(())));
     assert_near("speed", robot.velocity().v.0, 0.0, 1e-9);
     // One that is pressed from the beginning is told at the start.
     pressed.store(true, Ordering::Relaxed);
@@ -140,32 +140,32 @@ fn an_emergency_stop_is_told() {
 }
 
 #[test]
-fn silence_garbage_and_other_robots_are_told_apart() {
-    assert_eq!(said_of(|_| Vec::new()), Fault::Line(LineFault::Silent));
-    assert_eq!(said_of(|_| b"Noise on the line.".to_vec()), Fault::Garbled(Garbled::Outside(b'N')));
+fn silence_garbage_and_other_robots_differ() {
+    assert_eq!(fault_of(|_| Vec::new()), Fault::Line(LineFault::Silent));
+    assert_eq!(fault_of(|_| b"Noise on the line.".to_vec()), Fault::Garbled(Garbled::Outside(b'N')));
     let report = |port, code, data: &[u8]| mdle_atrv_emulator::wire::report(port, 0, code, data, &[]);
     let bad_check = || {
         let mut bytes = report(2, 33, &[0; 25]);
         bytes[10] ^= 1;
         bytes
     };
-    assert!(matches!(said_of(|_| bad_check()), Fault::Garbled(Garbled::Check(..))));
-    assert_eq!(said_of(|_| report(9, 4, &[0; 25])), Fault::Unreadable(Unreadable::Unknown(9, 4)));
-    assert_eq!(said_of(|_| report(2, 33, &[0; 24])), Fault::Unreadable(Unreadable::Short(2, 33, 24)));
+    assert!(matches!(fault_of(|_| bad_check()), Fault::Garbled(Garbled::Check(..))));
+    assert_eq!(fault_of(|_| report(9, 4, &[0; 25])), Fault::Unreadable(Unreadable::Unknown(9, 4)));
+    assert_eq!(fault_of(|_| report(2, 33, &[0; 24])), Fault::Unreadable(Unreadable::Short(2, 33, 24)));
     // It tells where it is, and nothing else; or where it was.
     let axes = |time: u8| {
         let axis = |axis: u8| report(2, 33, &[&[0, 0, 0, 0, 0, 0, 0, time][..], &[axis], &[0; 16]].concat());
         [axis(0), axis(1)].concat()
     };
     let time = AtomicU8::new(0);
-    assert_eq!(said_of(|_| axes(time.fetch_add(1, Ordering::Relaxed))), Fault::Unheard);
-    assert_eq!(said_of(|_| axes(0)), Fault::Repeated);
+    assert_eq!(fault_of(|_| axes(time.fetch_add(1, Ordering::Relaxed))), Fault::Unheard);
+    assert_eq!(fault_of(|_| axes(0)), Fault::Repeated);
 }
 
 #[test]
 fn reports_may_come_in_pieces_and_behind_noise() {
-    let said = room::dribbled(PERIOD);
-    assert_eq!(said, Ok(()));
+    let result = room::dribbled(PERIOD);
+    assert_eq!(result, Ok(()));
 }
 
 #[test]
@@ -175,7 +175,7 @@ fn a_line_that_is_cut_is_a_fault_at_once() {
 
 #[test]
 fn who_comes_too_late_finds_the_robot_stopped() {
-    let (velocity, said) = room::overslept(|driver, stands| {
+    let (velocity, result) = room::overslept(|driver, stands| {
         let go = Twist { v: MetersPerSecond(0.3), ..Twist::default() };
         driver.exchange(&go).unwrap();
         // The robot gets going, and nobody says anything more.
@@ -184,7 +184,7 @@ fn who_comes_too_late_finds_the_robot_stopped() {
         }
         driver.exchange(&go).map(|_| ())
     });
-    assert_eq!((velocity, said), (0.0, Err(Fault::Overslept(3000))));
+    assert_eq!((velocity, result), (0.0, Err(Fault::Overslept(3000))));
 }
 
 #[test]

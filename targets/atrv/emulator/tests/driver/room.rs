@@ -66,8 +66,8 @@ impl mdle_emulator::Emulated for Watched<'_> {
         Ok(())
     }
 
-    fn said(&mut self) -> Vec<Vec<u8>> {
-        self.robot.said()
+    fn take_frames(&mut self) -> Vec<Vec<u8>> {
+        self.robot.take_frames()
     }
 
     fn can_suffer(_: Ailment) -> bool {
@@ -160,7 +160,7 @@ pub(crate) fn overslept<T>(drive: impl FnOnce(&mut Atrv, &AtomicBool) -> T) -> (
 }
 
 /// Returns the fault of a driver whose robot answers each command with these bytes.
-pub(crate) fn said_of(answers: impl Fn(&Request) -> Vec<u8> + Sync) -> Fault {
+pub(crate) fn fault_of(answers: impl Fn(&Request) -> Vec<u8> + Sync) -> Fault {
     let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
     thread::scope(|scope| {
         scope.spawn(|| {
@@ -196,9 +196,9 @@ pub(crate) fn dribbled(period: Duration) -> Result<(), Fault> {
                     if turns {
                         robot.pass(period).unwrap();
                     }
-                    let said = robot.said().concat();
-                    let noise: &[u8] = if said.is_empty() { &[] } else { &[0xFF, 0x1B] };
-                    for piece in [noise, &said].concat().chunks(5) {
+                    let frames = robot.take_frames().concat();
+                    let noise: &[u8] = if frames.is_empty() { &[] } else { &[0xFF, 0x1B] };
+                    for piece in [noise, &frames].concat().chunks(5) {
                         port.write(piece).unwrap();
                         thread::yield_now();
                     }

@@ -39,13 +39,13 @@ impl Odometry {
 
     /// The wheels have rolled an arc of length `way` that turns by `turn`.
     pub(crate) fn rolled(&mut self, way: f64, turn: f64) {
-        let (mut told, mut turned) = (way, turn);
+        let (mut measured, mut turned) = (way, turn);
         if let Some(errors) = self.errors.as_mut().filter(|_| way != 0.0 || turn != 0.0) {
-            told = way * errors.way;
+            measured = way * errors.way;
             let wander = errors.wander * libm::sqrt(way.abs()) * errors.noise.normal();
             turned = turn * errors.turn + way.abs() * errors.bend + wander;
         }
-        self.pose = self.pose.moved(Meters(told), Radians(turned));
+        self.pose = self.pose.moved(Meters(measured), Radians(turned));
     }
 
     /// Records that the body, of true heading `heading`, was moved by `way` and turned by `turn`.

@@ -38,10 +38,10 @@ pub(super) fn drawn(layout: &Layout, world: &World, trail: &Trail) -> Group {
     let signs = signs(layout, left + RADIUS, world, trail);
     // A free line above them, if there is something to be free of.
     let first = layout.rows.len() + if layout.rows.is_empty() { 0 } else { 2 };
-    for (number, (sign, said)) in (first..).zip(signs) {
+    for (number, (sign, meaning)) in (first..).zip(signs) {
         let y = layout.line(number);
         let sign = sign.set("transform", format!("translate(0 {y})"));
-        legend = legend.add(sign).add(text(said, (indented, y), "start"));
+        legend = legend.add(sign).add(text(meaning, (indented, y), "start"));
     }
     legend.add(scale_bar(layout))
 }
@@ -65,7 +65,7 @@ fn signs(layout: &Layout, x: f64, world: &World, trail: &Trail) -> Vec<(Group, &
     if world.charger.is_some_and(|charger| layout.shows_any(charger.circle())) {
         signs.push((floor::socket([], (x, 0.0)), "charger"));
     }
-    signs.extend(things::signs(layout, world).map(|sign| (sign.drawn(x), sign.said())));
+    signs.extend(things::signs(layout, world).map(|sign| (sign.drawn(x), sign.meaning())));
     signs
 }
 

@@ -42,7 +42,7 @@ impl Sign {
     }
 
     /// Returns the meaning of the sign.
-    pub(super) fn said(self) -> &'static str {
+    pub(super) fn meaning(self) -> &'static str {
         match self {
             Self::Door => "door",
             Self::Moves => "moves",

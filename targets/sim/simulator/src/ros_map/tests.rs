@@ -83,7 +83,7 @@ fn text_two_bytes_and_turned_maps_are_read() {
 }
 
 #[test]
-fn faults_are_told_with_their_place() {
+fn faults_have_their_place() {
     let wrong = |text: &str| Header::parse("map.yaml", text).expect_err("a bad header").to_string();
     let image = |bytes: &[u8]| header(HEADER).world("map.pgm", bytes).expect_err("a bad image").to_string();
     let faults = [

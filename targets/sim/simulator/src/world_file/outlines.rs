@@ -109,7 +109,7 @@ impl Unit {
             let (w, h) = (half.x / 2.0, half.y / 2.0);
             Ok((Place { x: x - w, y: y - h }, Place { x: x + w, y: y + h }))
         };
-        let ((min, max), told) = match (&written.min, &written.max, &written.centre, &written.size, first) {
+        let ((min, max), place) = match (&written.min, &written.max, &written.centre, &written.size, first) {
             (Some(min), Some(max), None, None, None) => ((self.pair(min, "`min`")?, self.pair(max, "`max`")?), max),
             (None, None, Some(centre), Some(size), None) => (around(self.pair(centre, "`centre`")?, size)?, size),
             (None, None, None, Some(size), Some(first)) => (around(first, size)?, size),
@@ -122,7 +122,7 @@ impl Unit {
             }
         };
         if min.x >= max.x || min.y >= max.y {
-            return Err(Wrong::at(told, format!("a box without an inside: it would reach from {min} to {max}")));
+            return Err(Wrong::at(place, format!("a box without an inside: it would reach from {min} to {max}")));
         }
         let points = vec![min, Place { x: max.x, y: min.y }, max, Place { x: min.x, y: max.y }, min];
         let rough = rough(written.rough.as_ref(), whole)?;

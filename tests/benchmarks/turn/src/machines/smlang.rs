@@ -8,7 +8,7 @@ use crate::{Input, Output};
 /// Result of an action.
 #[derive(Debug, Default)]
 pub struct Context {
-    said: Option<Turn<Input>>,
+    turn: Option<Turn<Input>>,
 }
 
 /// Each generated machine in a module of its own, with the turn that runs it.
@@ -16,7 +16,7 @@ macro_rules! machines {
     ($($module:ident $machine:ident $file:literal),+) => {$(
         #[allow(missing_docs, clippy::result_unit_err, reason = "as smlang has it")]
         mod $module {
-            use mdle_runtime::Turn as Said;
+            use mdle_runtime::Turn as PlanTurn;
             use smlang::statemachine;
 
             use super::{Context, Input, Output};
@@ -35,11 +35,11 @@ macro_rules! machines {
 
             #[inline(never)]
             fn turn(&mut self, y: &Output, _: Nanos) -> Turn<Input> {
-                self.0.context_mut().said = None;
+                self.0.context_mut().turn = None;
                 loop {
                     // Never an error: some transition of each state has no guard.
                     let _ = self.0.process_event($module::Events::Turn(y));
-                    if let Some(turn) = self.0.context().said {
+                    if let Some(turn) = self.0.context().turn {
                         return turn;
                     }
                 }

@@ -27,10 +27,10 @@ macro_rules! charts {
 
             #[inline(never)]
             fn turn(&mut self, y: &Output, _: Nanos) -> Turn<Input> {
-                let mut said = None;
+                let mut turn = None;
                 loop {
-                    self.0.handle_with_context(y, &mut said);
-                    if let Some(turn) = said {
+                    self.0.handle_with_context(y, &mut turn);
+                    if let Some(turn) = turn {
                         return turn;
                     }
                 }

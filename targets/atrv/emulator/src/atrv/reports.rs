@@ -29,22 +29,22 @@ pub(super) struct Schedule {
 }
 
 impl Atrv {
-    pub(super) fn tell_axes(&mut self) {
-        if self.told_axes.is_empty() || !self.has(Ailment::Hang) {
+    pub(super) fn report_axes(&mut self) {
+        if self.axis_reports.is_empty() || !self.has(Ailment::Hang) {
             if self.has(Ailment::Leap) {
                 self.gone.0 += LEAP * A_METRE;
             }
             let Twist { v, omega } = self.sensed.velocity;
             let axes = [(0, self.gone.0, v.0 * A_METRE), (1, self.gone.1, omega.0 * A_RADIAN)];
-            self.told_axes = axes.map(|(axis, gone, speed)| self.axis(axis, gone, speed)).to_vec();
+            self.axis_reports = axes.map(|(axis, gone, speed)| self.axis(axis, gone, speed)).to_vec();
         }
-        let told = std::mem::take(&mut self.told_axes);
-        for (data, ailment) in told.iter().zip([Ailment::NoTranslation, Ailment::NoRotation]) {
+        let reports = std::mem::take(&mut self.axis_reports);
+        for (data, ailment) in reports.iter().zip([Ailment::NoTranslation, Ailment::NoRotation]) {
             if !self.has(ailment) {
-                self.tell(2, 33, data);
+                self.send(2, 33, data);
             }
         }
-        self.told_axes = told;
+        self.axis_reports = reports;
     }
 
     fn axis(&self, axis: u8, gone: f64, speed: f64) -> Vec<u8> {
@@ -55,14 +55,14 @@ impl Atrv {
     }
 
     /// Reports the sonars that have pinged since the last such report, if any have.
-    pub(super) fn tell_pings(&mut self) {
+    pub(super) fn report_pings(&mut self) {
         let is_dead = self.has(Ailment::DeadSonar);
         let is_mute = self.has(Ailment::NoPings);
-        let Some(told) = self.pings.as_mut().filter(|_| !is_mute) else { return };
+        let Some(times) = self.pings.as_mut().filter(|_| !is_mute) else { return };
         let mut data = Vec::new();
-        for ((heard, told), sonar) in self.body.heard().iter().zip(told).zip(0_u8..) {
-            if heard.at > *told {
-                *told = heard.at;
+        for ((heard, time), sonar) in self.body.heard().iter().zip(times).zip(0_u8..) {
+            if heard.at > *time {
+                *time = heard.at;
                 // Both that look ahead.
                 let range = heard.range.filter(|_| !(is_dead && [0, 12].contains(&sonar)));
                 let counts = range.map_or(NOTHING, |range| (range.0 * A_RANGE).round() as u16);
@@ -72,11 +72,11 @@ impl Atrv {
         }
         if !data.is_empty() {
             let data = [&[0; 4][..], &self.time(), &data].concat();
-            self.tell(4, 2, &data);
+            self.send(4, 2, &data);
         }
     }
 
-    pub(super) fn tell_bumpers(&mut self) {
+    pub(super) fn report_bumpers(&mut self) {
         if self.has(Ailment::NoBumpers) {
             return;
         }
@@ -84,7 +84,7 @@ impl Atrv {
             let is_pressed = bumper == 0 && self.has(Ailment::Bumper);
             let state = u8::from(is_pressed || self.sensed.switches & (1 << bumper) != 0);
             let data = [&self.time()[..], &[0x40 + bumper, 0, state]].concat();
-            self.tell(5, 1, &data);
+            self.send(5, 1, &data);
         }
     }
 
@@ -92,11 +92,11 @@ impl Atrv {
         (self.age.as_millis() as u32).to_be_bytes()
     }
 
-    pub(super) fn tell(&mut self, port: u8, code: u8, data: &[u8]) {
+    pub(super) fn send(&mut self, port: u8, code: u8, data: &[u8]) {
         self.count = self.count.wrapping_add(1);
         let filler: &[u8] =
             if self.has(Ailment::Filler) || self.count.is_multiple_of(FILLED) { &[0x1B, 0x01] } else { &[] };
-        self.said.push(report(port, self.count, code, data, filler));
+        self.outgoing.push(report(port, self.count, code, data, filler));
     }
 }
 
