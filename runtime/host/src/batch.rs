@@ -219,6 +219,8 @@ fn one(batch: &Runs<'_>, seed: u64, terms: &Terms<'_>) -> Option<Done> {
             | RunEnd::Pilot(fault)
             | RunEnd::Bug(fault),
         ) => Outcome::Failed(fault),
+        Ok(RunEnd::Safety(rule)) => Outcome::Failed(format!("the safety rules ended it: {rule}")),
+        Ok(RunEnd::Quit) => Outcome::Failed("it was asked to end".to_owned()),
         Ok(RunEnd::Suspended { .. }) => Outcome::Failed("it went without a command".to_owned()),
         Ok(_) if failure.is_some() => Outcome::Failed(failure.unwrap_or_default()),
         Ok(RunEnd::Timeout(_) | RunEnd::Turns(_)) => Outcome::TimedOut,

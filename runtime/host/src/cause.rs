@@ -7,8 +7,8 @@ use mdle_runtime::fsm::Kind;
 use mdle_runtime::trace::COMPLETED;
 use mdle_runtime::{Cause, Measured, OperandWords, Operator, SourceLine, Transition, ValueWords};
 
-use crate::drive::Texts;
 use crate::passes::{Passes, outwards};
+use crate::position::Texts;
 use crate::report::rounded;
 use crate::transitions::Operand;
 

@@ -63,12 +63,15 @@ pub(crate) struct Clock<I> {
     time: Time,
     /// Period of a turn in nanoseconds; at least 1.
     period: u64,
-    /// Start of turn 0, in real nanoseconds; in stepped time later by the lateness that is not caught up.
+    /// Start of turn 0, or of the turn in which the pace was changed, in real nanoseconds; in stepped time later by the
+    /// lateness that is not caught up.
     origin: u64,
     /// Time of the first output, in real nanoseconds: the plan's time 0.
     zero: u64,
-    /// Number of periods from the origin to the start of the current turn.
+    /// Number of periods from the start of turn 0 to the start of the current turn.
     place: u64,
+    /// Number of periods from the start of turn 0 to the origin: where the pace has been changed.
+    paced_from: u64,
     /// Start of the current turn, in real nanoseconds.
     begun: u64,
     /// Maximum time between two commands to a robot in real time, in nanoseconds.
@@ -84,7 +87,18 @@ impl<I: Instants> Clock<I> {
         let longest_gap = nanos(longest_gap.unwrap_or(period.saturating_add(GAP)));
         let period = nanos(period).max(1);
         let timing = Timing::new(period);
-        Self { instants, time, period, origin, zero: origin, place: 0, begun: origin, longest_gap, timing }
+        Self {
+            instants,
+            time,
+            period,
+            origin,
+            zero: origin,
+            place: 0,
+            paced_from: 0,
+            begun: origin,
+            longest_gap,
+            timing,
+        }
     }
 
     /// Notes that the first output has been taken: this is the plan's time 0.
@@ -99,6 +113,14 @@ impl<I: Instants> Clock<I> {
             Time::Wall => Nanos(nanos(self.instants.now()).saturating_sub(self.zero)),
             Time::Stepped(_) => Nanos(self.place.saturating_mul(self.period)),
         }
+    }
+
+    /// Changes the pace of stepped time: the next turn begins a period after now. The wall clock has one pace only.
+    pub(crate) fn set_pace(&mut self, pace: Pace) {
+        let Time::Stepped(before) = &mut self.time else { return };
+        *before = pace;
+        self.origin = nanos(self.instants.now());
+        self.paced_from = self.place;
     }
 
     /// Returns the lateness and the durations of the turns, if a robot in real time has made any turns.
@@ -148,7 +170,8 @@ impl<I: Instants> Clock<I> {
             }
             Time::Stepped(Pace::Times(times)) => {
                 // The conversion saturates, and 2^53 nanoseconds, up to which it is exact, are three months.
-                let after = (self.place as f64 * self.period as f64 / times) as u64;
+                let places = self.place.saturating_sub(self.paced_from);
+                let after = (places as f64 * self.period as f64 / times) as u64;
                 let late = nanos(self.instants.now()).saturating_sub(self.origin.saturating_add(after));
                 if late > CATCH_UP {
                     self.origin = self.origin.saturating_add(late);
@@ -249,6 +272,20 @@ mod tests {
         let mut clock = Clock::begin(ByHand::default(), Time::Stepped(Pace::Times(4.0)), PERIOD, None);
         let begins = [5, 25, 0, 24].map(|took| next_after(&mut clock, took));
         assert_eq!(begins, [25, 50, 75, 100]);
+    }
+
+    #[test]
+    fn a_changed_pace_holds_from_then_on() {
+        let mut clock = Clock::begin(ByHand::default(), Time::Stepped(Pace::Max), PERIOD, None);
+        assert_eq!([1, 1].map(|took| next_after(&mut clock, took)), [1, 2]);
+        clock.set_pace(Pace::Times(2.0));
+        assert_eq!([0, 10, 60].map(|took| next_after(&mut clock, took)), [52, 102, 162]);
+        clock.set_pace(Pace::Times(0.5));
+        assert_eq!([0, 0].map(|took| next_after(&mut clock, took)), [362, 562]);
+        assert_eq!(clock.taken(), Nanos(700_000_000));
+        let mut clock = Clock::begin(ByHand::default(), Time::Wall, PERIOD, None);
+        clock.set_pace(Pace::Max);
+        assert_eq!(next_after(&mut clock, 30), 100, "the wall clock has one pace");
     }
 
     #[test]

@@ -7,6 +7,7 @@ use std::time::Duration;
 
 use mdle_runtime::Nanos;
 
+use crate::Pace;
 use crate::clock::{Clock, Instants, nanos};
 use crate::run_end::RunEnd;
 use crate::signals::Signals;
@@ -42,6 +43,10 @@ pub(crate) trait Turns {
     /// # Errors
     /// The reason why the run has to end, though the robot is well.
     fn turn(&mut self, t: Nanos, number: u64) -> Result<Step, RunEnd>;
+    /// Returns the pace of stepped time from now on, if it is to change.
+    fn pace(&mut self) -> Option<Pace> {
+        None
+    }
     /// Reports how late turns begin and how long they take, as somebody has asked for it.
     fn tell_timing(&mut self, timing: &Timing);
     /// Called when the cycle ends, the last turn having been at `t`; the robot has not been stopped yet.
@@ -74,6 +79,9 @@ pub(crate) fn cycle<I: Instants>(
         number = number.saturating_add(1);
         if let Some(ending) = limits.reached(number, t) {
             break ending;
+        }
+        if let Some(pace) = turns.pace() {
+            clock.set_pace(pace);
         }
         if signals.timing_is_asked_for()
             && let Some(timing) = clock.timing()

@@ -3,96 +3,16 @@
 
 use std::time::Duration;
 
-use mdle_runtime::{Frame, Fsm, Machine, MetersPerSecond, Nanos, Output as _, Plan, Radians, Robot, Turn, Words};
+use mdle_runtime::{MetersPerSecond, Nanos, Output as _, Plan, Radians, Robot, Turn};
 
 use crate::observer::{Observer, Observes};
 use crate::pilot::{Moment, Pilot, PilotFault};
+use crate::position::Position;
+use crate::report::Report;
 use crate::run_end::RunEnd;
+use crate::standing::standing;
 use crate::transitions::Transitions;
-
-/// Texts and tables of a plan, for reports: [`Plan`] without the types of its robot.
-pub(crate) trait Texts {
-    /// The machine's tables.
-    fn fsm(&self) -> Fsm<'_>;
-    /// The quark text of an atom's law.
-    fn law(&self, atom: u32) -> &str;
-    /// The condition text of a scope's interrupt, by its bracket.
-    fn condition(&self, scope: u32) -> &str;
-    /// The name of a scope, by its bracket; empty for an atom.
-    fn name(&self, scope: u32) -> &str;
-    /// The words and places of the plan's text, if it has one.
-    fn source(&self) -> &dyn Words;
-    /// Returns the names of the paths that its laws replay.
-    fn paths(&self) -> &[&'static str];
-}
-
-impl<P: Plan> Texts for P {
-    fn fsm(&self) -> Fsm<'_> {
-        Plan::fsm(self)
-    }
-
-    fn law(&self, atom: u32) -> &str {
-        Plan::law(self, atom)
-    }
-
-    fn condition(&self, scope: u32) -> &str {
-        Plan::condition(self, scope)
-    }
-
-    fn name(&self, scope: u32) -> &str {
-        Plan::name(self, scope)
-    }
-
-    fn source(&self) -> &dyn Words {
-        Plan::source(self)
-    }
-
-    fn paths(&self) -> &[&'static str] {
-        Plan::paths(self)
-    }
-}
-
-/// The position in a plan that runs, for reports: [`Machine`] without the types of its plan.
-pub(crate) trait Position {
-    /// The plan's texts.
-    fn texts(&self) -> &dyn Texts;
-    /// The number of the current state in the expanded plan.
-    fn state(&self) -> u64;
-    /// Returns the index of the current atom in source order, from 0; `None` when the plan is over.
-    fn atom(&self) -> Option<u32>;
-    /// Frame of the current atom if a `FRAME here` encloses it.
-    fn frame(&self) -> Option<Frame>;
-    /// The bracket of the enclosing scope of this level.
-    fn scope(&self, level: u16) -> u32;
-    /// Time since the enclosing scope of this level was entered, at time `t`.
-    fn since(&self, level: u16, t: Nanos) -> Nanos;
-}
-
-impl<P: Plan> Position for Machine<P> {
-    fn texts(&self) -> &dyn Texts {
-        self.plan()
-    }
-
-    fn state(&self) -> u64 {
-        self.state()
-    }
-
-    fn atom(&self) -> Option<u32> {
-        self.atom()
-    }
-
-    fn frame(&self) -> Option<Frame> {
-        self.frame()
-    }
-
-    fn scope(&self, level: u16) -> u32 {
-        self.cursor().scope(self.plan().fsm(), level)
-    }
-
-    fn since(&self, level: u16, t: Nanos) -> Nanos {
-        self.cursor().since(level, t)
-    }
-}
+use crate::{Break, Intervention, Orders, Supervisor, Verdict};
 
 /// A robot with the plan that drives it: exchange and turn alternate, the exchange first.
 pub(crate) trait Drive {
@@ -126,6 +46,10 @@ pub(crate) trait Drive {
     fn parts(&mut self) -> (Option<&mut dyn Observer>, Option<&dyn Position>);
     /// Returns the time of the run at which the plan began.
     fn zero(&self) -> Nanos;
+    /// Returns what the supervisor did in the last turn, and the number of the plan that runs, from 1.
+    fn supervised(&self) -> (Option<Intervention<'_>>, u64);
+    /// Calls the supervisor, if there is one, at the break after `turns` turns, the last one at time `t`.
+    fn at_break(&mut self, turns: u64, t: Nanos, is_over: bool, report: &Report<'_>) -> Orders;
 
     /// Returns the robot's observer, if it has one.
     fn observer(&mut self) -> Option<&mut dyn Observer> {
@@ -134,26 +58,58 @@ pub(crate) trait Drive {
 }
 
 /// A robot, and the pilot that drives it.
-pub(crate) struct PilotOnRobot<R: Robot, B> {
+pub(crate) struct PilotOnRobot<'p, R: Robot, B: Pilot> {
     robot: R,
     observer: Observes<R>,
     /// Returns the speed of the robot by an output, if paths are recorded.
     speed: Option<Speed<R>>,
     pilot: B,
+    supervised: Option<Supervised<'p, R, B::Plan>>,
+    /// Time of the last turn.
+    t: Nanos,
     output: Option<R::Output>,
     input: R::Input,
+}
+
+/// The supervisor of a run, and the plans to which it may divert.
+pub(crate) struct Supervised<'p, R: Robot, P> {
+    pub(crate) supervisor: Box<dyn Supervisor<R::Output, R::Input> + 'p>,
+    pub(crate) diversions: &'p dyn Fn(usize) -> Option<P>,
 }
 
 /// Returns the forward speed of a robot by an output.
 type Speed<R> = fn(&<R as Robot>::Output) -> MetersPerSecond;
 
-impl<R: Robot, B> PilotOnRobot<R, B> {
+impl<'p, R: Robot, B: Pilot> PilotOnRobot<'p, R, B> {
     pub(crate) fn new(robot: R, observer: Observes<R>, speed: Option<Speed<R>>, pilot: B) -> Self {
-        Self { robot, observer, speed, pilot, output: None, input: R::Input::default() }
+        let (output, input) = (None, R::Input::default());
+        Self { robot, observer, speed, pilot, supervised: None, t: Nanos::ZERO, output, input }
+    }
+
+    /// Puts a supervisor between the plan and the robot.
+    pub(crate) fn supervised(self, supervised: Option<Supervised<'p, R, B::Plan>>) -> Self {
+        Self { supervised, ..self }
+    }
+
+    /// Sets the input that is sent next, as the supervisor changes it.
+    fn send(&mut self, asked: R::Input) {
+        self.input = match (&mut self.supervised, &self.output) {
+            (Some(supervised), Some(y)) => supervised.supervisor.filter(asked, y, self.t),
+            (Some(_) | None, _) => asked,
+        };
+    }
+
+    /// Returns the plan to which the last turn has diverted.
+    fn diversion(&self) -> Option<B::Plan> {
+        let supervised = self.supervised.as_ref()?;
+        match supervised.supervisor.intervention()?.verdict {
+            Verdict::Diverted(plan) => (supervised.diversions)(plan),
+            Verdict::Limited | Verdict::Held | Verdict::Ended => None,
+        }
     }
 }
 
-impl<R, B> Drive for PilotOnRobot<R, B>
+impl<R, B> Drive for PilotOnRobot<'_, R, B>
 where
     R: Robot,
     B: Pilot<Plan: Plan<Output = R::Output, Input = R::Input>>,
@@ -164,7 +120,7 @@ where
     }
 
     fn release(&mut self) -> Result<(), String> {
-        self.input = R::Input::default();
+        self.send(R::Input::default());
         self.exchange()
     }
 
@@ -182,8 +138,13 @@ where
     }
 
     fn turn(&mut self, t: Nanos, number: u64, transitions: &mut Transitions) -> Result<Turn<()>, RunEnd> {
+        self.t = t;
+        let diversion = self.diversion();
         // Without an output no law can compute an input.
         let Some(y) = &self.output else { return Ok(Turn::Cut) };
+        if let Some(plan) = diversion {
+            self.pilot.divert(plan, Moment { y, t, number });
+        }
         let turn = self.pilot.turn(Moment { y, t, number }, transitions).map_err(|fault| match fault {
             PilotFault::Stopped(sentence) => RunEnd::Pilot(sentence),
             PilotFault::Panicked(message) => RunEnd::Bug(message),
@@ -193,7 +154,7 @@ where
             Turn::Cut => Turn::Cut,
             Turn::Over => Turn::Over,
         };
-        self.input = turn.input();
+        self.send(turn.input());
         Ok(kind)
     }
 
@@ -208,5 +169,18 @@ where
 
     fn zero(&self) -> Nanos {
         self.pilot.zero()
+    }
+
+    fn supervised(&self) -> (Option<Intervention<'_>>, u64) {
+        let supervised = self.supervised.as_ref();
+        (supervised.and_then(|supervised| supervised.supervisor.intervention()), self.pilot.plan_number())
+    }
+
+    fn at_break(&mut self, turns: u64, t: Nanos, is_over: bool, report: &Report<'_>) -> Orders {
+        let Self { supervised: Some(supervised), output: Some(y), input, pilot, .. } = self else {
+            return Orders::default();
+        };
+        let position = || pilot.machine().map(|machine| standing(machine, t, pilot.zero(), report));
+        supervised.supervisor.at_break(&Break { turns, t, y, input, is_over, position: &position })
     }
 }

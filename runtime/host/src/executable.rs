@@ -7,9 +7,10 @@ use clap::{ArgMatches, Command};
 use mdle_runtime::{PathStore, Plan, Robot, Twist};
 
 use crate::batch::Runs;
-use crate::drive::{Drive, PilotOnRobot, Texts};
+use crate::drive::{Drive, PilotOnRobot, Supervised};
 use crate::pilot::{MakePilot, Pilot, RunTerms};
-use crate::{NamedFile, Pace, Refusal, Replays, StopRequest, Target, Time};
+use crate::position::Texts;
+use crate::{NamedFile, Pace, Refusal, Replays, StopRequest, Supervision, Target, Time};
 
 /// The target and the plan of an executable.
 pub(crate) trait Executable: Sync {
@@ -70,34 +71,43 @@ impl TargetOptions {
 }
 
 /// An executable of a plan for the target `T`, with the pilot `B` of its runs.
-pub(crate) struct PlanOnTarget<'p, T, P, B> {
+pub(crate) struct PlanOnTarget<'p, 's, T, P, B: Pilot> {
     /// Makes the plan.
     plan: &'p (dyn Fn() -> P + Sync),
     /// Makes the pilot of a run.
     pilot: &'p MakePilot<'p, B>,
+    supervision: Option<Supervision<'s, B::Plan>>,
     target: PhantomData<fn() -> T>,
 }
 
-impl<'p, T: Target, P, B> PlanOnTarget<'p, T, P, B>
+impl<'p, 's, T: Target, P, B> PlanOnTarget<'p, 's, T, P, B>
 where
     B: Pilot<Plan: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>> + 'p,
 {
     pub(crate) fn new(plan: &'p (dyn Fn() -> P + Sync), pilot: &'p MakePilot<'p, B>) -> Self {
-        Self { plan, pilot, target: PhantomData }
+        Self { plan, pilot, supervision: None, target: PhantomData }
     }
 
-    /// Returns the robot with the pilot that drives it and the paths that the plan replays.
-    fn drive(&self, mut robot: T::Robot, pilot: B, store: PathStore) -> Box<dyn Drive + '_> {
+    /// Puts a supervisor between the pilot and the robot.
+    pub(crate) fn supervised(self, supervision: Option<Supervision<'s, B::Plan>>) -> Self {
+        Self { supervision, ..self }
+    }
+
+    /// Returns the robot with the pilot that drives it, its supervisor, and the paths that the plan replays.
+    fn drive(&self, mut robot: T::Robot, pilot: B, store: PathStore, terms: &RunTerms) -> Box<dyn Drive + '_> {
         let speed = T::PATHS.map(|Replays { take, speed, .. }| {
             take(&mut robot, store);
             speed
         });
         let observer = T::OBSERVATION.map(|observation| observation.observer);
-        Box::new(PilotOnRobot::new(robot, observer, speed, pilot))
+        let supervised = self
+            .supervision
+            .map(|Supervision { supervisor, diversions, .. }| Supervised { supervisor: supervisor(terms), diversions });
+        Box::new(PilotOnRobot::new(robot, observer, speed, pilot).supervised(supervised))
     }
 }
 
-impl<'p, T: Target, P: Plan, B> Executable for PlanOnTarget<'p, T, P, B>
+impl<'p, 's, T: Target, P: Plan, B> Executable for PlanOnTarget<'p, 's, T, P, B>
 where
     B: Pilot<Plan: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>> + 'p,
 {
@@ -118,17 +128,21 @@ where
     ) -> Result<Box<dyn Drive + '_>, Refusal> {
         // Without a pilot the robot need not be opened.
         let time = T::time(matches).map_err(Refusal::Usage)?;
-        let pilot = (self.pilot)(RunTerms { time, period })?;
+        let terms = RunTerms { time, period, request: request.clone() };
+        let pilot = (self.pilot)(&terms)?;
         let robot = T::connect(matches, period, request)?;
-        Ok(self.drive(robot, pilot, store))
+        Ok(self.drive(robot, pilot, store, &terms))
     }
 
     fn batch(&self, matches: &ArgMatches, period: Duration, store: PathStore) -> Result<Option<Runs<'_>>, Refusal> {
         let Some(observation) = T::OBSERVATION else { return Ok(None) };
         let batch = (observation.batch)(matches, period)?;
-        let terms = RunTerms { time: Time::Stepped(Pace::Max), period };
-        let drive = move |robot| match (self.pilot)(terms) {
-            Ok(pilot) => Ok(self.drive(robot, pilot, store)),
+        if batch.is_some() && self.supervision.is_some_and(|supervision| !supervision.several) {
+            return Err(Refusal::Usage("a session is one run: leave --runs out".to_owned()));
+        }
+        let terms = RunTerms { time: Time::Stepped(Pace::Max), period, request: StopRequest::default() };
+        let drive = move |robot| match (self.pilot)(&terms) {
+            Ok(pilot) => Ok(self.drive(robot, pilot, store, &terms)),
             Err(Refusal::Usage(sentence) | Refusal::Fault(sentence) | Refusal::Ended(Err(sentence))) => Err(sentence),
             Err(Refusal::Ended(Ok(()))) => Err("the run was asked to end before it began".to_owned()),
         };

@@ -30,6 +30,7 @@ mod passes;
 mod paths;
 mod patience;
 mod pilot;
+mod position;
 mod program;
 mod progress;
 mod report;
@@ -40,8 +41,11 @@ mod scheduling;
 mod second_signal;
 mod session;
 mod signals;
+mod standing;
 mod stop_request;
 mod summary;
+mod supervised;
+mod supervisor;
 mod target;
 #[cfg(test)]
 mod tests;
@@ -74,6 +78,7 @@ pub use pilot::{Moment, Pilot, PilotFault, RunTerms};
 pub use program::Program;
 pub use scheduling::claim_for_worker;
 pub use stop_request::StopRequest;
+pub use supervisor::{Break, Intervention, MakeSupervisor, Orders, Supervision, Supervisor, Verdict};
 pub use target::{Pace, Refusal, Target, Time};
 pub use transitions::Transitions;
 
@@ -112,12 +117,27 @@ pub fn run_piloted<'a, T: Target, B>(
     program: impl Into<Program<'a>>,
     call: Call,
     plan: impl Fn() -> B::Plan + Sync,
-    pilot: impl Fn(RunTerms) -> Result<B, Refusal> + Sync,
+    pilot: impl Fn(&RunTerms) -> Result<B, Refusal> + Sync,
 ) -> ExitCode
 where
     B: Pilot<Plan: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>>,
 {
     execute(program.into(), call, &PlanOnTarget::<T, _, _>::new(&plan, &pilot))
+}
+
+/// Runs a plan as [`run_called`] does, under a supervisor. Exit status 6: the supervisor ended the plan; 0 also if it
+/// ended the run.
+pub fn run_supervised<'a, 's, T: Target, P>(
+    program: impl Into<Program<'a>>,
+    call: Call,
+    plan: &'s (dyn Fn() -> P + Sync),
+    supervision: Supervision<'s, P>,
+) -> ExitCode
+where
+    P: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>,
+{
+    let pilot = |_: &RunTerms| Ok(PlanAlone::new(plan));
+    execute(program.into(), call, &PlanOnTarget::<T, P, _>::new(plan, &pilot).supervised(Some(supervision)))
 }
 
 /// Returns the text that [`run_called`] refuses these options with, if a program for the target `T` does not have them.

@@ -4,12 +4,14 @@ use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::Path;
 
-use mdle_runtime::trace::{Fired, Line};
+use mdle_runtime::trace::{Fired, Json, Line};
 use mdle_runtime::{Frame, Nanos};
 
+use crate::Intervention;
 use crate::background_writer::{Keeps, Outlet};
-use crate::drive::Texts;
 use crate::patience::Patience;
+use crate::position::Texts;
+use crate::supervised::Supervised;
 use crate::transitions::{Operand, Transitions};
 
 /// A run log that is being written.
@@ -36,6 +38,21 @@ pub(crate) struct Entry<'a> {
     pub(crate) frame: Option<Frame>,
     /// Transitions of the turn, in order.
     pub(crate) transitions: &'a Transitions,
+    /// The number of the plan, from 1.
+    pub(crate) plan_number: u64,
+    /// The supervisor's part in the turn.
+    pub(crate) supervised: &'a Supervised,
+}
+
+impl Entry<'_> {
+    /// Returns the keys of the turn that a plan without a supervisor has not, each with a comma before it.
+    fn more(&self) -> Option<String> {
+        let plan = (self.plan_number > 1).then(|| format!(",\"plan\":{}", self.plan_number));
+        let safety = self.supervised.intervention().map(|Intervention { verdict, rule }| {
+            format!(",\"safety\":{{\"verdict\":\"{}\",\"rule\":{}}}", verdict.word(), Json(rule))
+        });
+        (plan.is_some() || safety.is_some()).then(|| plan.unwrap_or_default() + &safety.unwrap_or_default())
+    }
 }
 
 /// A file that is to be written in a run, such as its log, open and unchanged. If the file is new, dropping this
@@ -104,7 +121,7 @@ impl Log {
     /// # Errors
     /// When the file cannot be written, such as when the disk is full.
     pub(crate) fn turn(&mut self, entry: &Entry<'_>) -> io::Result<()> {
-        let Entry { plan, turn, t, state, applied, frame, transitions } = *entry;
+        let Entry { plan, turn, t, state, applied, frame, transitions, .. } = *entry;
         let law = applied.map(|atom| plan.law(atom));
         let source = plan.source();
         let fired = transitions.iter().map(|(transition, operands)| {
@@ -116,7 +133,14 @@ impl Log {
                 operands: operands.iter().filter_map(text),
             }
         });
-        writeln!(self.file, "{}", Line { turn, t, state, law, frame, fired })?;
+        let line = Line { turn, t, state, law, frame, fired };
+        match entry.more() {
+            None => writeln!(self.file, "{line}")?,
+            Some(more) => {
+                let line = line.to_string();
+                writeln!(self.file, "{}{more}}}", line.strip_suffix('}').unwrap_or(&line))?;
+            }
+        }
         if self.prompt { self.flush() } else { Ok(()) }
     }
 

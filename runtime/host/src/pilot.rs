@@ -6,7 +6,7 @@ use std::time::Duration;
 use mdle_runtime::{Machine, Nanos, Plan, Turn};
 
 use crate::transitions::Transitions;
-use crate::{Refusal, Time};
+use crate::{Refusal, StopRequest, Time};
 
 /// Computes the input of each turn.
 pub trait Pilot {
@@ -23,6 +23,12 @@ pub trait Pilot {
         moment: Moment<'_, <Self::Plan as Plan>::Output>,
         transitions: &mut Transitions,
     ) -> Result<Turn<<Self::Plan as Plan>::Input>, PilotFault>;
+
+    /// Replaces the plan by another one, which begins in this turn: a supervisor has asked for it.
+    fn divert(&mut self, plan: Self::Plan, moment: Moment<'_, <Self::Plan as Plan>::Output>);
+
+    /// Returns the number of the plan that runs, from 1; each plan that replaces one has the next.
+    fn plan_number(&self) -> u64;
 
     /// Returns the plan, once it has begun.
     fn machine(&self) -> Option<&Machine<Self::Plan>>;
@@ -56,28 +62,32 @@ pub enum PilotFault {
     Panicked(String),
 }
 
-/// Conditions of a run, for the code that makes its turns.
-#[derive(Debug, Clone, Copy)]
+/// Conditions of a run, for its pilot and its supervisor.
+#[derive(Debug, Clone)]
 pub struct RunTerms {
     /// Time of the robot.
     pub time: Time,
     /// Period of a turn.
     pub period: Duration,
+    /// The request to end the run, which a signal makes.
+    pub request: StopRequest,
 }
 
 /// Makes the pilot of a run.
-pub(crate) type MakePilot<'p, B> = dyn Fn(RunTerms) -> Result<B, Refusal> + Sync + 'p;
+pub(crate) type MakePilot<'p, B> = dyn Fn(&RunTerms) -> Result<B, Refusal> + Sync + 'p;
 
 /// The pilot of an executable: its plan alone.
 pub(crate) struct PlanAlone<'p, P: Plan> {
     /// Makes the plan.
     plan: &'p (dyn Fn() -> P + Sync),
     machine: Option<Machine<P>>,
+    /// Number of the plan that runs, from 1.
+    number: u64,
 }
 
 impl<'p, P: Plan> PlanAlone<'p, P> {
     pub(crate) fn new(plan: &'p (dyn Fn() -> P + Sync)) -> Self {
-        Self { plan, machine: None }
+        Self { plan, machine: None, number: 1 }
     }
 }
 
@@ -91,6 +101,15 @@ impl<P: Plan> Pilot for PlanAlone<'_, P> {
     ) -> Result<Turn<P::Input>, PilotFault> {
         let machine = self.machine.get_or_insert_with(|| Machine::begin((self.plan)(), y, t));
         Ok(machine.turn(y, t, transitions))
+    }
+
+    fn divert(&mut self, plan: P, Moment { y, t, .. }: Moment<'_, P::Output>) {
+        self.machine = Some(Machine::begin(plan, y, t));
+        self.number = self.number.saturating_add(1);
+    }
+
+    fn plan_number(&self) -> u64 {
+        self.number
     }
 
     fn machine(&self) -> Option<&Machine<P>> {

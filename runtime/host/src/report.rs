@@ -7,11 +7,12 @@ use std::io::{self, Write};
 use mdle_runtime::trace::COMPLETED;
 use mdle_runtime::{Cause, Measured, Nanos, Printable, Transition};
 
-use crate::Judgement;
 use crate::cause::{CauseText, place};
-use crate::drive::Texts;
 use crate::passes::Passes;
+use crate::position::Texts;
+use crate::supervised::Supervised;
 use crate::transitions::{Operand, Transitions};
+use crate::{Intervention, Judgement, Verdict};
 
 /// The report of a run; it stops writing when its reader has gone.
 pub(crate) struct Report<'a> {
@@ -26,6 +27,10 @@ pub(crate) struct Report<'a> {
     since: String,
     /// End of the plan, once it is over.
     over: Option<Over>,
+    /// The strength and the rule of the intervention that was reported last, if it lasts.
+    held: Option<(Verdict, String)>,
+    /// The rules that have limited an input.
+    limiting: Vec<String>,
 }
 
 /// End of a plan.
@@ -54,7 +59,16 @@ enum ReportState {
 impl<'a> Report<'a> {
     /// A report to `out`.
     pub(crate) fn new(out: &'a mut dyn Write, prompt: bool) -> Self {
-        Self { out, prompt, state: ReportState::Open, passes: Passes::default(), since: String::new(), over: None }
+        Self {
+            out,
+            prompt,
+            state: ReportState::Open,
+            passes: Passes::default(),
+            since: String::new(),
+            over: None,
+            held: None,
+            limiting: Vec::new(),
+        }
     }
 
     /// Returns how the plan ended, if it has.
@@ -93,6 +107,51 @@ impl<'a> Report<'a> {
             self.since = cause;
         }
         if self.prompt && !transitions.is_empty() {
+            self.flush();
+        }
+    }
+
+    /// Reports that `plan` began at time `t` with this atom, because a supervisor's rule replaced the plan before.
+    pub(crate) fn begins(&mut self, plan: &dyn Texts, t: Nanos, atom: Option<u32>, rule: &str) {
+        self.passes = Passes::default();
+        self.since = format!("safety: {rule}");
+        let Some(atom) = atom else { return };
+        let (law, place) = (plan.law(atom), place(plan, &self.passes, atom));
+        let place = if place.is_empty() { place } else { format!(" ({place})") };
+        let line = format!("{law}{place}  <- {}", self.since);
+        self.line(t, &line);
+    }
+
+    /// Reports the supervisor's part in the turn at time `t`, unless it is that of the turn before. A rule that limits
+    /// inputs is reported once, as it may come and go with every turn.
+    pub(crate) fn supervised(&mut self, t: Nanos, supervised: &Supervised) {
+        let intervention = supervised.intervention();
+        if let Some(limit) = intervention.filter(|it| it.verdict == Verdict::Limited)
+            && !self.limiting.iter().any(|rule| rule == limit.rule)
+        {
+            self.limiting.push(limit.rule.to_owned());
+            self.line(t, &format!("safety: {limit}"));
+        }
+        let intervention = intervention.filter(|it| it.verdict > Verdict::Limited);
+        if intervention == self.held.as_ref().map(|(verdict, rule)| Intervention { verdict: *verdict, rule }) {
+            return;
+        }
+        self.held = intervention.map(|it| (it.verdict, it.rule.to_owned()));
+        match intervention {
+            Some(intervention) => self.line(t, &format!("safety: {intervention}")),
+            None if supervised.begins => {}
+            None => self.line(t, "safety: the plan goes on"),
+        }
+    }
+
+    /// Writes a line of the turn at time `t`.
+    fn line(&mut self, t: Nanos, line: &str) {
+        let written = match self.state {
+            ReportState::Open => writeln!(self.out, "{}  {}", Clocked(t), Printable(line)),
+            ReportState::Closed(_) => Ok(()),
+        };
+        self.note(written);
+        if self.prompt {
             self.flush();
         }
     }

@@ -5,9 +5,9 @@ use mdle_runtime::Fsm;
 use mdle_runtime::fsm::Kind;
 use mdle_runtime::trace::COMPLETED;
 
-use crate::drive::Texts;
 use crate::operand_text::{is_condition, is_operand};
 use crate::passes::outwards;
+use crate::position::Texts;
 use crate::report::Over;
 
 /// Minimum similarity, from 0 to 1, of a name that is proposed.

@@ -21,6 +21,8 @@ pub(crate) const FAULT: u8 = 3;
 pub(crate) const LIMIT: u8 = 4;
 /// Exit status: the plan is over, and ended otherwise than required.
 pub(crate) const OTHERWISE: u8 = 5;
+/// Exit status: a rule of the supervisor ended the plan.
+pub(crate) const SAFETY: u8 = 6;
 
 /// Why a run ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -33,6 +35,10 @@ pub(crate) enum RunEnd {
     Timeout(Duration),
     /// The plan was not over after this many turns.
     Turns(u64),
+    /// The supervisor of the run asked for it.
+    Quit,
+    /// A rule of the supervisor ended the plan: its name.
+    Safety(String),
     /// A signal asked for it.
     Signal(Signal),
     /// The first exchange failed, before any law was applied: the robot's sentence.
@@ -71,7 +77,8 @@ impl RunEnd {
         });
         match self {
             _ if grave => FAULT,
-            Self::Over => OVER,
+            Self::Over | Self::Quit => OVER,
+            Self::Safety(_) => SAFETY,
             Self::Otherwise(_) => OTHERWISE,
             Self::Timeout(_) | Self::Turns(_) => LIMIT,
             Self::Signal(signal) => 128 + signal.number(),
@@ -103,6 +110,8 @@ impl RunEnd {
             | Self::Otherwise(_)
             | Self::Timeout(_)
             | Self::Turns(_)
+            | Self::Quit
+            | Self::Safety(_)
             | Self::Signal(_)
             | Self::Log(_)
             | Self::Overrun(_)
@@ -118,6 +127,8 @@ impl RunEnd {
             | Self::Otherwise(_)
             | Self::Timeout(_)
             | Self::Turns(_)
+            | Self::Quit
+            | Self::Safety(_)
             | Self::Signal(_)
             | Self::Unstarted(_)
             | Self::Robot(_)
@@ -136,6 +147,8 @@ impl RunEnd {
             Self::Over | Self::Otherwise(_) => "plan over".to_owned(),
             Self::Timeout(_) => "--timeout".to_owned(),
             Self::Turns(_) => "--turns".to_owned(),
+            Self::Quit => "quit".to_owned(),
+            Self::Safety(rule) => format!("safety: {rule}"),
             Self::Signal(signal) => signal.name().into_owned(),
             Self::Unstarted(_)
             | Self::Robot(_)
@@ -153,7 +166,8 @@ impl RunEnd {
     pub(crate) fn tell(&self, is_stopped: bool, err: &mut dyn Write) {
         let came = if is_stopped { "a fault stopped the robot" } else { "a fault ended the plan" };
         match self {
-            Self::Over => {}
+            Self::Over | Self::Quit => {}
+            Self::Safety(rule) => say(err, format_args!("stopped by the safety rules: {rule}")),
             Self::Otherwise(sentence) => say(err, format_args!("not as required: {sentence}")),
             Self::Timeout(limit) => {
                 say(err, format_args!("stopped by --timeout: the plan was not over after {} s", limit.as_secs_f64()));

@@ -7,4 +7,5 @@ mod order;
 mod output;
 mod plan;
 mod several;
+mod supervisor;
 mod toy;

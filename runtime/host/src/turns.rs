@@ -2,22 +2,23 @@
 
 use std::io::{self, Write};
 
-use mdle_runtime::fsm::Kind;
 use mdle_runtime::{Nanos, Turn};
 
-use crate::cause::place;
 use crate::clock::{Clock, Instants};
 use crate::cycle::{Limits, Step, Turns, cycle};
-use crate::drive::{Drive, Position};
+use crate::drive::Drive;
 use crate::log::{Entry, Log};
 use crate::paths::Recorder;
+use crate::position::Position;
 use crate::progress::Progress;
 use crate::report::Report;
 use crate::run_end::{RunEnd, say};
 use crate::signals::Signals;
+use crate::standing::standing;
+use crate::supervised::Supervised;
 use crate::timing::Timing;
 use crate::transitions::Transitions;
-use crate::{Around, Ended, Observer, PlanPosition};
+use crate::{Ended, Observer, Orders, Pace, Verdict};
 
 /// Recipients of the turns' reports.
 pub(crate) struct Witnesses<'a, 'o> {
@@ -41,7 +42,9 @@ pub(crate) fn run<I: Instants>(
     signals: &Signals,
     witnesses: &mut Witnesses<'_, '_>,
 ) -> RunEnd {
-    let mut turns = OnePlan { drive, witnesses, transitions: Transitions::default(), fresh: true };
+    let transitions = Transitions::default();
+    let mut turns =
+        OnePlan { drive, witnesses, transitions, fresh: true, plan: 1, supervised: Supervised::default(), pace: None };
     cycle(&mut turns, limits, clock, signals)
 }
 
@@ -53,6 +56,32 @@ struct OnePlan<'t, 'a, 'o> {
     transitions: Transitions,
     /// `true` if the current atom has been entered since a law was applied last.
     fresh: bool,
+    /// The number of the plan that runs, from 1: a supervisor may replace it.
+    plan: u64,
+    /// The supervisor's part in the last turn.
+    supervised: Supervised,
+    /// A pace that the supervisor has asked for.
+    pace: Option<Pace>,
+}
+
+impl OnePlan<'_, '_, '_> {
+    /// Calls the supervisor at the break after `turns` turns.
+    fn at_break(&mut self, turns: u64, t: Nanos, is_over: bool) -> Result<(), RunEnd> {
+        let Orders { pace, end } = self.drive.at_break(turns, t, is_over, self.witnesses.report);
+        self.pace = pace.or(self.pace);
+        if end && !is_over { Err(RunEnd::Quit) } else { Ok(()) }
+    }
+
+    /// Returns how the run goes on after a turn, as far as the plan and the supervisor's intervention decide it.
+    fn step(&self, turn: Turn<()>) -> Result<Step, RunEnd> {
+        let Supervised { verdict, rule, diverted_by, .. } = &self.supervised;
+        match turn {
+            _ if *verdict == Some(Verdict::Ended) => Err(RunEnd::Safety(rule.clone())),
+            Turn::Over if !diverted_by.is_empty() => Err(RunEnd::Safety(diverted_by.clone())),
+            Turn::Over => Ok(Step::Over),
+            Turn::Law(()) | Turn::Cut => Ok(Step::Next),
+        }
+    }
 }
 
 impl Turns for OnePlan<'_, '_, '_> {
@@ -61,7 +90,10 @@ impl Turns for OnePlan<'_, '_, '_> {
     }
 
     fn turn(&mut self, t: Nanos, number: u64) -> Result<Step, RunEnd> {
-        let Self { drive, witnesses, transitions, fresh } = self;
+        if number == 0 {
+            self.at_break(0, t, false)?;
+        }
+        let Self { drive, witnesses, transitions, fresh, plan, supervised, .. } = self;
         if let (Some(path), Some((heading, speed))) = (&mut witnesses.path, drive.motion()) {
             path.take(heading, speed, t);
         }
@@ -70,16 +102,24 @@ impl Turns for OnePlan<'_, '_, '_> {
         drive.messages(&mut |message| witnesses.say(message));
         let turn = turn?;
         let zero = drive.zero();
-        *fresh |= !transitions.is_empty();
+        let (intervention, number_of_plan) = drive.supervised();
+        supervised.note(intervention, std::mem::replace(plan, number_of_plan) != number_of_plan);
+        *fresh |= !transitions.is_empty() || supervised.begins;
         if let (observer, Some(position)) = drive.parts() {
-            let written = witnesses.tell(position, turn, number, t, transitions);
+            let written = witnesses.tell(position, MadeTurn { turn, number, t, plan: *plan }, transitions, supervised);
             written.map_err(|error| RunEnd::Log(error.to_string()))?;
             let has_begun = turn == Turn::Law(()) && std::mem::take(fresh);
             if let Some(observer) = observer {
                 watched(observer, position, turn, has_begun, (t, zero), witnesses.report);
             }
         }
-        Ok(if turn == Turn::Over { Step::Over } else { Step::Next })
+        let step = self.step(turn)?;
+        self.at_break(number.saturating_add(1), t, turn == Turn::Over)?;
+        Ok(step)
+    }
+
+    fn pace(&mut self) -> Option<Pace> {
+        self.pace.take()
     }
 
     fn tell_timing(&mut self, timing: &Timing) {
@@ -120,24 +160,6 @@ fn ended(observer: &mut dyn Observer, position: &dyn Position, ending: &RunEnd, 
     observer.ended(&Ended { plan: position.texts().name(0), is_over: *ending == RunEnd::Over, by: &by, t });
 }
 
-/// Returns the state of a plan that is not over, and that began at time `zero`.
-fn standing<'m>(position: &'m dyn Position, t: Nanos, zero: Nanos, report: &'m Report<'_>) -> PlanPosition<'m> {
-    let (plan, fsm) = (position.texts(), position.texts().fsm());
-    let atom = position.atom().and_then(|atom| fsm.atoms.get(atom as usize));
-    let own = atom.and_then(|atom| fsm.brackets.get(atom.scope as usize)).map(|bracket| bracket.kind);
-    let levels = match own {
-        Some(Kind::Scope { level }) => 0..=level,
-        Some(Kind::Loop { .. }) | None => 0..=0,
-    };
-    let scopes = levels.map(|level| {
-        let scope = position.scope(level);
-        Around { name: plan.name(scope), condition: plan.condition(scope), since: position.since(level, t.since(zero)) }
-    });
-    let law = position.atom().map_or("", |atom| plan.law(atom));
-    let place = position.atom().map_or_else(String::new, |atom| place(plan, report.passes(), atom));
-    PlanPosition { t, state: position.state(), law, place, since: report.since(), scopes: scopes.collect() }
-}
-
 impl Witnesses<'_, '_> {
     /// Reports a message for the operator.
     fn say(&mut self, message: &str) {
@@ -152,13 +174,17 @@ impl Witnesses<'_, '_> {
     fn tell(
         &mut self,
         position: &dyn Position,
-        turn: Turn<()>,
-        number: u64,
-        t: Nanos,
+        made: MadeTurn,
         transitions: &Transitions,
+        supervised: &Supervised,
     ) -> io::Result<()> {
         let plan = position.texts();
+        let MadeTurn { turn, number, t, plan: plan_number } = made;
+        if supervised.begins {
+            self.report.begins(plan, t, position.atom(), &supervised.diverted_by);
+        }
         self.report.turn(plan, t, transitions);
+        self.report.supervised(t, supervised);
         if let Some(progress) = &mut self.progress {
             let law = position.atom().map_or("", |atom| plan.law(atom));
             progress.run(t, law, self.report);
@@ -169,6 +195,18 @@ impl Witnesses<'_, '_> {
             Turn::Cut | Turn::Over => None,
         };
         let frame = position.frame().filter(|_| applied.is_some());
-        log.turn(&Entry { plan, turn: number, t, state: position.state(), applied, frame, transitions })
+        let state = position.state();
+        log.turn(&Entry { plan, turn: number, t, state, applied, frame, transitions, plan_number, supervised })
     }
+}
+
+/// A turn that was made.
+#[derive(Debug, Clone, Copy)]
+struct MadeTurn {
+    turn: Turn<()>,
+    /// The number of the turn, from 0.
+    number: u64,
+    t: Nanos,
+    /// The number of the plan that made it, from 1.
+    plan: u64,
 }

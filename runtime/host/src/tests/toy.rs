@@ -17,7 +17,10 @@ use crate::executable::PlanOnTarget;
 use crate::pilot::PlanAlone;
 use crate::session::{Surroundings, session};
 use crate::signals::{Signal, Signals};
-use crate::{Around, Ended, Judgement, Observation, Observer, Pace, PlanPosition, Refusal, StopRequest, Target, Time};
+use crate::{
+    Around, Ended, Judgement, Observation, Observer, Pace, PlanPosition, Refusal, RunTerms, StopRequest, Supervision,
+    Supervisor, Target, Time,
+};
 
 /// An output: what fires while which atom, as written, is the current one.
 #[derive(Debug, Clone, Default)]
@@ -33,6 +36,9 @@ pub(super) enum Act {
     Fails(&'static str),
     Panics(&'static str),
 }
+
+/// Makes the supervisor of a run.
+pub(super) type Makes = fn(&RunTerms) -> Box<dyn Supervisor<Sensed, u32>>;
 
 /// A stage: the robot's script, how it behaves on the way out, and everything that happens.
 #[derive(Debug)]
@@ -51,6 +57,8 @@ pub(super) struct Stage {
     pub(super) plan: ToyPlan,
     /// The name by which the program is called.
     pub(super) program: &'static str,
+    /// Makes the supervisor of the run, if it has one.
+    pub(super) supervisor: Option<Makes>,
 }
 
 impl Default for Stage {
@@ -67,6 +75,7 @@ impl Default for Stage {
             looks: false,
             plan: ToyPlan::lab(),
             program: "./lab_tour",
+            supervisor: None,
         }
     }
 }
@@ -134,12 +143,13 @@ impl Stage {
         };
         let arguments = [&self.program].into_iter().chain(arguments).map(OsString::from);
         let plan = || self.plan.clone();
-        let status = session(
-            "Lab".into(),
-            Call::of_executable(arguments),
-            &PlanOnTarget::<ToyTarget, _, _>::new(&plan, &|_| Ok(PlanAlone::new(&plan))),
-            surroundings,
-        );
+        let make = |terms: &RunTerms| (self.supervisor.expect("a supervisor"))(terms);
+        let diversions = |number| (number == 0).then(ToyPlan::lab);
+        let supervision = Supervision { supervisor: &make, diversions: &diversions, several: false };
+        let supervision = self.supervisor.map(|_| supervision);
+        let pilot = |_: &RunTerms| Ok(PlanAlone::new(&plan));
+        let executable = PlanOnTarget::<ToyTarget, _, _>::new(&plan, &pilot).supervised(supervision);
+        let status = session("Lab".into(), Call::of_executable(arguments), &executable, surroundings);
         // Otherwise a program may end before its last message is written.
         assert_ne!(patience.limit(), Some(Duration::ZERO), "readers are not waited for at the end");
         let text = out.borrow().text();

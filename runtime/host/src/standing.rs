@@ -1,0 +1,32 @@
+//! The state of a plan that runs, for observers and supervisors.
+
+use mdle_runtime::Nanos;
+use mdle_runtime::fsm::Kind;
+
+use crate::cause::place;
+use crate::position::Position;
+use crate::report::Report;
+use crate::{Around, PlanPosition};
+
+/// Returns the state of a plan that is not over, and that began at time `zero`.
+pub(crate) fn standing<'m>(
+    position: &'m dyn Position,
+    t: Nanos,
+    zero: Nanos,
+    report: &'m Report<'_>,
+) -> PlanPosition<'m> {
+    let (plan, fsm) = (position.texts(), position.texts().fsm());
+    let atom = position.atom().and_then(|atom| fsm.atoms.get(atom as usize));
+    let own = atom.and_then(|atom| fsm.brackets.get(atom.scope as usize)).map(|bracket| bracket.kind);
+    let levels = match own {
+        Some(Kind::Scope { level }) => 0..=level,
+        Some(Kind::Loop { .. }) | None => 0..=0,
+    };
+    let scopes = levels.map(|level| {
+        let scope = position.scope(level);
+        Around { name: plan.name(scope), condition: plan.condition(scope), since: position.since(level, t.since(zero)) }
+    });
+    let law = position.atom().map_or("", |atom| plan.law(atom));
+    let place = position.atom().map_or_else(String::new, |atom| place(plan, report.passes(), atom));
+    PlanPosition { t, state: position.state(), law, place, since: report.since(), scopes: scopes.collect() }
+}
