@@ -10,13 +10,11 @@ use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians, RadiansPerSecond, Twi
 
 use crate::footprint::{Contact, Footprint};
 use crate::model::Drive;
+use crate::place::Place;
 use crate::walls::Walls;
-use crate::world::Place;
 use contact::{slid, turned};
 use odometry::Odometry;
 
-/// The radius of the disc that is a Scout, in metres.
-pub(crate) const RADIUS: f64 = 0.205;
 /// Maximum step of the integration, in seconds: the robot moves about a centimetre in it, less than any wall is thick.
 pub(crate) const STEP: f64 = 0.01;
 /// Maximum distance, in metres, at which the bumper feels a wall.

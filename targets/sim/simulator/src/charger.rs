@@ -2,7 +2,7 @@
 
 use mdle_runtime::{Meters, Pose, Radians};
 
-use crate::world::{Place, World};
+use crate::place::Place;
 
 /// Maximum error of the heading of a robot on its charger, to either side.
 const HEADING: Radians = Radians::from_degrees(15.0);
@@ -22,20 +22,6 @@ impl Charger {
     pub fn holds(&self, pose: &Pose) -> bool {
         let off = Radians(pose.theta.0 - self.pose.theta.0).wrapped();
         pose.distance(&self.pose).0 <= self.reach && off.0.abs() <= HEADING.0
-    }
-
-    /// The wall, box or disc in which no robot can be on the charger: it surrounds that place, or is nearer than a body
-    /// is wide.
-    pub(crate) fn blocked(&self, world: &World, radius: f64) -> Option<String> {
-        let place = Place::of(&self.pose);
-        let inside = world.solid(place).map(|outline| outline.name.clone());
-        let near = world.segments().find(|(_, from, to)| {
-            let (dx, dy) = (to.x - from.x, to.y - from.y);
-            let along = ((place.x - from.x) * dx + (place.y - from.y) * dy) / (dx * dx + dy * dy);
-            let along = along.clamp(0.0, 1.0);
-            libm::hypot(place.x - from.x - along * dx, place.y - from.y - along * dy) < radius
-        });
-        inside.or_else(|| near.map(|(outline, ..)| outline.name.clone()))
     }
 
     /// Corners of a sign: the circle within reach, and the place ahead of a robot on the charger.

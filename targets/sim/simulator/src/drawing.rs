@@ -77,8 +77,8 @@ mod tests {
 
     use super::*;
     use crate::model::{Body, Part};
+    use crate::place::Place;
     use crate::robot::Make;
-    use crate::world::Place;
 
     /// Returns the trail of a robot that goes ahead at `speed`, in m/s, from the origin for `turns` periods, and the
     /// robot.

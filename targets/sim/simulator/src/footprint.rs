@@ -9,8 +9,11 @@ use std::fmt;
 use mdle_runtime::{Pose, Radians};
 
 use crate::grid::Segment;
+use crate::place::Place;
 use crate::surfaces::{Surface, apart};
-use crate::world::Place;
+
+/// The radius of the disc that is a Scout, in metres.
+pub(crate) const RADIUS: f64 = 0.205;
 
 /// The form of a body, in metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,7 +57,7 @@ const OVERLAPS: f64 = -1.0;
 
 impl Form {
     /// The disc of a Scout.
-    pub(crate) const SCOUT: Self = Self::Disc { radius: crate::body::RADIUS };
+    pub(crate) const SCOUT: Self = Self::Disc { radius: RADIUS };
 
     /// Radius of the smallest circle around the body, in metres.
     #[must_use]

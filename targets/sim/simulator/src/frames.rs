@@ -2,7 +2,7 @@
 
 use mdle_runtime::{Nanos, Pose, SONARS};
 
-use crate::world::Place;
+use crate::place::Place;
 
 /// Maximum number of moments kept; at this number every second one is removed.
 pub(crate) const FRAMES_MOST: usize = 800;

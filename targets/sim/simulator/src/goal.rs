@@ -3,7 +3,7 @@
 use mdle_quantity::Quantity;
 use mdle_runtime::{Pose, Radians};
 
-use crate::world::Place;
+use crate::place::Place;
 
 /// The furthest coordinate and the greatest radius, in metres, as in a world's file.
 const FURTHEST: f64 = 1e6;

@@ -4,7 +4,7 @@
 //! A ray visits the cells on its way in order (Amanatides and Woo, 1987) and stops in the first cell that it does not
 //! leave before a hit. Only additions, multiplications, divisions and square roots: the same bits on every machine.
 
-use crate::world::Place;
+use crate::place::Place;
 
 /// Cells for each segment, about: more are faster and take more memory.
 const CELLS_FOR_EACH: f64 = 3.0;

@@ -5,8 +5,9 @@
 
 use crate::footprint::{Footprint, Form};
 use crate::grid::{Hit, Segment};
+use crate::outline::Outline;
+use crate::place::Place;
 use crate::surfaces::{Ends, Surface, apart, ends, surface};
-use crate::world::{Outline, Place};
 
 /// Minimum distance to which a moving object approaches the robot, in metres: the bumper feels it.
 const STOPS_AT: f64 = 1e-4;

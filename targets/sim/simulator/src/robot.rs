@@ -11,10 +11,11 @@ use crate::body::{Body, STEP};
 use crate::charger::Charger;
 use crate::footprint::{Footprint, Form};
 use crate::model::{self, Model, Part};
+use crate::place::Place;
 use crate::sonar::{Heard, Ring};
 use crate::start::{self, StartError};
 use crate::walls::Walls;
-use crate::world::{Place, World};
+use crate::world::World;
 
 /// A robot in a world.
 pub struct Simulated {

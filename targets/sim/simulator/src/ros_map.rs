@@ -12,8 +12,10 @@ mod tests;
 
 use mdle_runtime::Pose;
 
-use crate::world::{Outline, Place, World};
-use crate::world_file::{WorldError, count};
+use crate::outline::Outline;
+use crate::place::Place;
+use crate::world::World;
+use crate::world_error::WorldError;
 use contours::contours;
 pub use header::Header;
 use image::Image;
@@ -53,7 +55,7 @@ impl Header {
             charger: None,
             rough: 0.0,
         };
-        count(&world).map_err(|what| WorldError::new(file, None, what))?;
+        world.check_size().map_err(|what| WorldError::new(file, None, what))?;
         Ok(world)
     }
 }

@@ -8,8 +8,8 @@ use mdle_runtime::{Meters, Nanos, Ping, Pings, Pose, Radians, SONARS};
 
 use crate::model::{Hearing, Order, Transducer};
 use crate::noise::{Noise, Purpose};
+use crate::place::Place;
 use crate::walls::Walls;
-use crate::world::Place;
 
 /// The sonars and their last pings.
 #[derive(Debug, Clone)]

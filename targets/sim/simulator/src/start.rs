@@ -7,8 +7,9 @@ use mdle_quantity::Quantity;
 use mdle_runtime::{Meters, Pose, Radians};
 
 use crate::footprint::{Footprint, Form};
+use crate::place::Place;
 use crate::walls::{self, Walls};
-use crate::world::{Place, World};
+use crate::world::World;
 
 /// Directions in which a closed floor must have a wall.
 const LOOKS: u16 = 180;

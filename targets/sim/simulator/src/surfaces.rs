@@ -1,7 +1,7 @@
 //! The surface that a ray meets: its normal, and the nearest edge.
 
 use crate::grid::Segment;
-use crate::world::Place;
+use crate::place::Place;
 
 /// Ends nearer to another segment than this, in metres, belong together.
 const TOGETHER: f64 = 1e-3;

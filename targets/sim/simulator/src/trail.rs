@@ -9,7 +9,7 @@ use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, Sensed, SonarId};
 
 use crate::footprint::{Footprint, Form};
 use crate::frames::{Frame, Frames};
-use crate::world::Place;
+use crate::place::Place;
 pub(crate) use ways::{Atom, Mark, Ways};
 
 /// Side of a square in which one echo is kept, in metres: however long a run, the number of squares of a floor is

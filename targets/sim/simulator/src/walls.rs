@@ -5,8 +5,10 @@ use mdle_runtime::Radians;
 use crate::footprint::{Contact, Footprint, Form};
 use crate::grid::{Grid, Hit, Segment};
 use crate::moving::Moving;
+use crate::outline::Outline;
+use crate::place::Place;
 use crate::surfaces::{Ends, Meeting, Surface, apart, surface};
-use crate::world::{Outline, Place, World};
+use crate::world::World;
 
 /// Maximum number of pairs of an end of a segment and what shares its cell: each is looked at once, in a second or so.
 const PAIRS_MOST: u64 = 100_000_000;

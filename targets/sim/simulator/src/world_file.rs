@@ -6,48 +6,18 @@
 mod outlines;
 mod text;
 
-use std::fmt;
 use std::ops::Range;
 
 use toml::Spanned;
 
-use crate::body::RADIUS;
+use crate::footprint::RADIUS;
 use crate::world::World;
+use crate::world_error::WorldError;
 use outlines::{Stands, Unit};
 use text::WorldText;
 
-/// More walls and sides than this are refused: a million of them takes a second to make ready.
-const SEGMENTS_MOST: usize = 1_000_000;
 /// A longer text is refused: to be read it takes up to 70 times its bytes of memory.
 const BYTES_MOST: usize = 8 << 20;
-
-/// The defect of a world file: `file:line:column: sentence`.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct WorldError {
-    file: String,
-    /// Line and column, from 1; `None` when it is about the file as a whole.
-    place: Option<(usize, usize)>,
-    what: String,
-}
-
-impl fmt::Display for WorldError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}:", self.file)?;
-        if let Some((line, column)) = self.place {
-            write!(f, "{line}:{column}:")?;
-        }
-        write!(f, " {}", self.what)
-    }
-}
-
-impl std::error::Error for WorldError {}
-
-impl WorldError {
-    /// The defect at a line and column, from 1, of a file, or of the file as a whole.
-    pub(crate) fn new(file: &str, place: Option<(usize, usize)>, what: impl Into<String>) -> Self {
-        Self { file: file.to_owned(), place, what: what.into() }
-    }
-}
 
 /// A defect of the text: its place, and a message.
 pub(crate) struct Wrong(pub(crate) Option<Range<usize>>, pub(crate) String);
@@ -60,21 +30,8 @@ impl Wrong {
 
 /// The world that `text` describes.
 pub(crate) fn parse(file: &str, text: &str) -> Result<World, WorldError> {
-    read(text).map_err(|Wrong(span, what)| WorldError {
-        file: file.to_owned(),
-        place: span.map(|span| line_and_column(text, span.start)),
-        what,
-    })
-}
-
-/// Checks that a world has no more walls and sides than can be made ready.
-pub(crate) fn count(world: &World) -> Result<(), String> {
-    match world.everything().count() {
-        count if count > SEGMENTS_MOST => {
-            Err(format!("{count} walls and sides are too many; expected at most {SEGMENTS_MOST}"))
-        }
-        _ => Ok(()),
-    }
+    read(text)
+        .map_err(|Wrong(span, what)| WorldError::new(file, span.map(|span| line_and_column(text, span.start)), what))
 }
 
 fn read(text: &str) -> Result<World, Wrong> {
@@ -112,8 +69,8 @@ fn read(text: &str) -> Result<World, Wrong> {
     }
     let charger = written.charger.as_ref().map(|charger| unit.charger(charger)).transpose()?;
     let world = World { outlines, things, start, goal, charger, rough, contours: 0 };
-    count(&world).map_err(|what| Wrong(None, what))?;
-    let blocked = charger.and_then(|charger| charger.blocked(&world, RADIUS));
+    world.check_size().map_err(|what| Wrong(None, what))?;
+    let blocked = charger.and_then(|charger| world.obstacle_at(&charger, RADIUS));
     if let (Some(name), Some(text)) = (blocked, &written.charger) {
         let what = format!("the charger is in {name:?}: a robot on it, {RADIUS} m around `at`, would overlap that");
         return Err(Wrong::at(&text.get_ref().0.at, what));

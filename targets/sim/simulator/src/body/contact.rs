@@ -3,8 +3,8 @@
 use mdle_runtime::{Meters, Pose, Radians};
 
 use crate::footprint::{Contact, Footprint};
+use crate::place::Place;
 use crate::walls::Walls;
-use crate::world::Place;
 
 /// Distance, in metres, by which a slide is led off the surface, so that rounding does not turn it into the surface.
 const LED_OFF: f64 = 1e-8;

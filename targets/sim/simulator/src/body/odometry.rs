@@ -4,7 +4,7 @@ use mdle_runtime::{Meters, Pose, Radians};
 
 use crate::model::Slip;
 use crate::noise::{Noise, Purpose};
-use crate::world::Place;
+use crate::place::Place;
 
 /// The pose that the body reckons from its wheels: the origin at the start.
 #[derive(Debug, Clone)]

@@ -9,12 +9,13 @@ use svg::node::element::{Group, Path, Style, Title};
 use super::colours::{class, style};
 use super::layout::Layout;
 use super::rows::ROWS_MOST;
-use super::shapes::{Pixel, badge, circle, cross, dots, line, simplified, tenths, through};
+use super::shapes::{Pixel, RADIUS, badge, circle, cross, dots, line, simplified, tenths, through};
 use super::sizes::{LEFT, MARGIN};
 use super::{floor, labels, legend, things};
 use crate::footprint::{Footprint, Form};
+use crate::place::Place;
 use crate::trail::Trail;
-use crate::world::{Place, World};
+use crate::world::World;
 
 /// Distance between two points of the way that callouts avoid, in pixels.
 const STEP: f64 = 6.0;
@@ -110,7 +111,7 @@ fn marks(layout: &Layout, trail: &Trail) -> Group {
     for ((number, atom), (dot, label)) in atoms().enumerate().zip(dots.iter().zip(&labels)) {
         lines = lines.add(line(*dot, *label));
         let dot = circle(*dot, labels::DOT).set("class", format!("{} halo", class("disc", number)));
-        let halo = circle(*label, labels::RADIUS + 0.5).set("fill", "none").set("class", "halo");
+        let halo = circle(*label, RADIUS + 0.5).set("fill", "none").set("class", "halo");
         group = group.add(dot).add(badge(*label, &atom.number.to_string(), number)).add(halo);
     }
     Group::new().add(lines).add(group)

@@ -5,8 +5,8 @@ use svg::node::element::{Animate, AnimateTransform};
 
 use super::layout::round_step;
 use crate::frames::Frame;
+use crate::place::Place;
 use crate::trail::{Mark, Trail};
-use crate::world::Place;
 
 /// Maximum duration of the film, in seconds, before its pause at the end.
 const SHOWN_MOST: f64 = 20.0;

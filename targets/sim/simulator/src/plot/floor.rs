@@ -6,7 +6,9 @@ use super::layout::{Layout, round_step};
 use super::shapes::{Pixel, circle, line, polyline, tenths, text, through};
 use super::sizes::{LEFT, MARGIN};
 use crate::goal::Zone;
-use crate::world::{Outline, Place, World};
+use crate::outline::Outline;
+use crate::place::Place;
+use crate::world::World;
 
 /// Minimum distance between two numbers of an axis, in pixels.
 const APART: f64 = 50.0;

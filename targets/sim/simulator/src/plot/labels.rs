@@ -2,10 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::shapes::Pixel;
+use super::shapes::{Pixel, RADIUS};
 
-/// The radius of a label, in pixels.
-pub(super) const RADIUS: f64 = 10.0;
 /// The radius of the dot at the place itself.
 pub(super) const DOT: f64 = 3.0;
 /// Directions tried around a place.

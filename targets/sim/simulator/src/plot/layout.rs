@@ -5,8 +5,9 @@ use super::shapes::Pixel;
 use super::sizes::{LEFT, LETTER, LETTERS, MARGIN};
 use super::title::Title;
 use super::view::{View, range};
+use crate::place::Place;
 use crate::trail::Trail;
-use crate::world::{Place, World};
+use crate::world::World;
 
 /// Maximum width and height of the floor in a plot, in pixels.
 const FLOOR_MOST: (f64, f64) = (1080.0, 860.0);

@@ -2,8 +2,8 @@
 
 use svg::node::element::{Group, Path, Rectangle};
 
-use super::labels::RADIUS;
 use super::layout::{Layout, round_step};
+use super::shapes::RADIUS;
 use super::shapes::{badge, circle, cross, dots, polyline, text};
 use super::sizes::{LETTERS, MARGIN};
 use super::{floor, rows, things};

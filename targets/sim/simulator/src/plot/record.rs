@@ -16,8 +16,9 @@ use super::strip::{STRIP, strip};
 use super::{floor, legend, things};
 use crate::footprint::Form;
 use crate::frames::{Frame, Frames};
+use crate::place::Place;
 use crate::trail::Trail;
-use crate::world::{Place, World};
+use crate::world::World;
 
 /// Shows the time, pauses and seeks. It has no letters that XML escapes.
 const SCRIPT: &str = include_str!("film.js");

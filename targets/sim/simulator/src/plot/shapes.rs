@@ -2,7 +2,7 @@
 
 use svg::node::element::{Circle, Group, Line, Path, Text};
 
-use super::{colours, labels};
+use super::colours;
 
 /// A place in a drawing, in pixels.
 pub(super) type Pixel = (f64, f64);
@@ -104,6 +104,9 @@ fn off((x, y): Pixel, (x1, y1): Pixel, (x2, y2): Pixel) -> f64 {
     libm::hypot(x - x1 - along * dx, y - y1 - along * dy)
 }
 
+/// The radius of a label, in pixels.
+pub(super) const RADIUS: f64 = 10.0;
+
 /// The number of an atom in a disc of its colour.
 pub(super) fn badge(at: Pixel, number: &str, atom: usize) -> Group {
     // Long numbers in smaller letters.
@@ -112,7 +115,7 @@ pub(super) fn badge(at: Pixel, number: &str, atom: usize) -> Group {
         3 => 9,
         _ => 7,
     };
-    let disc = circle(at, labels::RADIUS).set("class", colours::class("disc", atom));
+    let disc = circle(at, RADIUS).set("class", colours::class("disc", atom));
     let text = text(number, at, "middle").set("class", colours::class("on", atom)).set("font-size", size);
     Group::new().add(disc).add(text)
 }

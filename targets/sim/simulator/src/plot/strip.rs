@@ -5,9 +5,9 @@ use svg::node::element::{Group, Path, Rectangle, TSpan, Text};
 
 use super::colours::class;
 use super::film::{Act, Film};
-use super::labels::RADIUS;
 use super::layout::{Layout, round_step};
 use super::rows::shortened;
+use super::shapes::RADIUS;
 use super::shapes::{badge, line, polyline, tenths, text};
 use super::sizes::{LEFT, LETTERS, MARGIN};
 use crate::trail::Trail;

@@ -6,8 +6,9 @@ use svg::parser::Event;
 use super::{animated, svg};
 use crate::footprint::{Footprint, Form};
 use crate::frames::{Frame, Frames};
+use crate::place::Place;
 use crate::trail::Trail;
-use crate::world::{Place, World};
+use crate::world::World;
 
 /// Returns a run of this many turns in circles, in which an atom begins every `an_atom_every` turns.
 fn run(turns: u64, an_atom_every: u64, law: &str) -> Trail {

@@ -7,8 +7,9 @@ use super::layout::Layout;
 use super::shapes::{Pixel, polyline, tenths};
 use crate::frames::Frame;
 use crate::moving::{Schedule, Thing};
+use crate::place::Place;
 use crate::trail::Trail;
-use crate::world::{Place, World};
+use crate::world::World;
 
 /// Dashes of the lines of doors.
 const DASHES: &str = "5 4";

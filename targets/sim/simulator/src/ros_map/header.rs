@@ -1,6 +1,6 @@
 //! The YAML file of a map: lines `key: value`, of which it has seven at most.
 
-use crate::world_file::WorldError;
+use crate::world_error::WorldError;
 
 /// Minimum and maximum size of a pixel, in metres.
 const RESOLUTIONS: std::ops::RangeInclusive<f64> = 1e-4..=100.0;

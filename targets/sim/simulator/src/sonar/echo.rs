@@ -11,9 +11,9 @@
 use mdle_runtime::Radians;
 
 use crate::model::Hearing;
+use crate::place::Place;
 use crate::surfaces::{Surface, dot};
 use crate::walls::Walls;
-use crate::world::Place;
 
 /// The rays of a cone, evenly spread.
 const RAYS: u8 = 7;

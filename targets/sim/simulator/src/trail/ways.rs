@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use mdle_runtime::Nanos;
 
-use crate::world::Place;
+use crate::place::Place;
 
 /// Places nearer to the last than this, in metres, are not kept: less than a pixel.
 const APART: f64 = 0.01;

@@ -8,7 +8,8 @@ use super::text::{BoxText, ChargerText, DiscText, DoorText, GoalText, Numbers, S
 use crate::charger::Charger;
 use crate::goal::{Goal, Zone};
 use crate::moving::{Schedule, Stop, Thing};
-use crate::world::{Outline, Place};
+use crate::outline::Outline;
+use crate::place::Place;
 
 /// The furthest coordinate, in metres: beyond it millimetres would begin to blur.
 const FURTHEST: f64 = 1e6;

@@ -1,0 +1,32 @@
+//! The outline of a wall, a box or a disc.
+
+use crate::place::Place;
+
+/// A wall, a box or a disc, as the line around it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outline {
+    /// The name in messages.
+    pub name: String,
+    /// Corners in order; a box ends where it began. A disc has 48 of them.
+    pub points: Vec<Place>,
+    /// `true` for a box or a disc, which is solid inside; a wall has no thickness.
+    pub solid: bool,
+    /// Roughness of the surface, from 0 to 1 as in `World`.
+    pub rough: f64,
+}
+
+impl Outline {
+    /// Returns the sides of the outline.
+    pub(crate) fn segments(&self) -> impl Iterator<Item = (&Self, Place, Place)> {
+        self.points.iter().zip(self.points.iter().skip(1)).map(move |(from, to)| (self, *from, *to))
+    }
+
+    /// Returns `true` if `place` is inside: a line from it crosses an odd number of sides.
+    pub(crate) fn surrounds(&self, place: Place) -> bool {
+        let crossed = self.segments().filter(|(_, from, to)| {
+            let between = (from.y > place.y) != (to.y > place.y);
+            between && place.x < from.x + (to.x - from.x) * (place.y - from.y) / (to.y - from.y)
+        });
+        crossed.count() % 2 == 1
+    }
+}

@@ -1,0 +1,31 @@
+//! The defect of a file that describes a world.
+
+use std::fmt;
+
+/// The defect of a world file: `file:line:column: sentence`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct WorldError {
+    file: String,
+    /// Line and column, from 1; `None` when it is about the file as a whole.
+    place: Option<(usize, usize)>,
+    what: String,
+}
+
+impl fmt::Display for WorldError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}:", self.file)?;
+        if let Some((line, column)) = self.place {
+            write!(f, "{line}:{column}:")?;
+        }
+        write!(f, " {}", self.what)
+    }
+}
+
+impl std::error::Error for WorldError {}
+
+impl WorldError {
+    /// The defect at a line and column, from 1, of a file, or of the file as a whole.
+    pub(crate) fn new(file: &str, place: Option<(usize, usize)>, what: impl Into<String>) -> Self {
+        Self { file: file.to_owned(), place, what: what.into() }
+    }
+}

@@ -1,0 +1,54 @@
+//! Worlds from texts: those that come with the simulator, a user's TOML, and maps of ROS.
+
+use crate::ros_map::Header;
+use crate::world::World;
+use crate::world_error::WorldError;
+use crate::world_file;
+
+/// The worlds that come with the simulator: first the floor of the paper's tour, box in the hallway included.
+const WORLDS: [(&str, &str); 4] = [
+    ("office", include_str!("../../worlds/office.toml")),
+    ("maze", include_str!("../../worlds/maze.toml")),
+    ("hall", include_str!("../../worlds/hall.toml")),
+    ("room", include_str!("../../worlds/room.toml")),
+];
+
+impl World {
+    /// Returns the world of a TOML text, which errors call `file`.
+    ///
+    /// # Errors
+    /// What is wrong with the text, and where.
+    pub fn parse(file: &str, text: &str) -> Result<Self, WorldError> {
+        world_file::parse(file, text)
+    }
+
+    /// Returns the world of a map of ROS, from the text of its YAML file and the bytes of its image; errors call these
+    /// `file` and `image`.
+    ///
+    /// # Errors
+    /// The defect of either file, with its place.
+    pub fn of_map((file, text): (&str, &str), (image, bytes): (&str, &[u8])) -> Result<Self, WorldError> {
+        Header::parse(file, text)?.world(image, bytes)
+    }
+
+    /// The office floor of the paper's tour.
+    ///
+    /// # Errors
+    /// Never: a test reads it. It is the file of a user like any other.
+    pub fn office() -> Result<Self, WorldError> {
+        let [(_, office), ..] = WORLDS;
+        Self::parse("the office floor", office)
+    }
+
+    /// The world of this name that comes with the simulator, if there is one.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Result<Self, WorldError>> {
+        let (name, text) = WORLDS.iter().find(|(known, _)| *known == name)?;
+        Some(Self::parse(name, text))
+    }
+
+    /// The names of the worlds that come with the simulator.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        WORLDS.iter().map(|(name, _)| *name)
+    }
+}
