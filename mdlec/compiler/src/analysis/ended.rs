@@ -6,28 +6,10 @@
 
 use std::collections::BTreeSet;
 
+use super::facts::PossibleFacts;
 use super::walk::{Found, Outcome, Reach, Walked, walk};
 use crate::fsm::{Element, ElementKind, Machine};
 use crate::plan::RecordId;
-
-/// The facts of records that may become true in some run.
-#[derive(Debug, Clone)]
-pub(super) enum PossibleFacts {
-    /// These alone, each by its record and its number there.
-    Only(BTreeSet<(RecordId, u32)>),
-    /// Any: the question was too large to decide.
-    Any,
-}
-
-impl PossibleFacts {
-    /// Returns `true` if the fact may become true.
-    pub(super) fn has(&self, record: RecordId, fact: u32) -> bool {
-        match self {
-            Self::Only(facts) => facts.contains(&(record, fact)),
-            Self::Any => true,
-        }
-    }
-}
 
 /// Walks over a machine with the records that its runs can have. `one_turn` is as for [`walk`].
 pub(super) fn walk_with_records(machine: &Machine, one_turn: bool) -> Walked {

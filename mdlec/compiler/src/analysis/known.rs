@@ -6,9 +6,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::choices::{self, Choices, Read, When};
-use super::ended::PossibleFacts;
+use super::facts::PossibleFacts;
+use super::possible::possible;
 use super::tables::VARIABLES;
-use super::variables::{self, Variable};
+use super::variables::Variable;
 use crate::fsm::Machine;
 use crate::plan::families::{Family, Readings, family};
 use crate::plan::{Condition, QuarkId};
@@ -274,7 +275,7 @@ impl<'l> KnownFacts<'l> {
             (None, None) => return true,
         };
         let entered = |bracket: u32| self.entered[bracket as usize];
-        let mut table = variables::possible(&choices, self.machine.quarks(), self.readings, &entered);
+        let mut table = possible(&choices, self.machine.quarks(), self.readings, &entered);
         for read in clauses {
             table = table.and(&choices.fired(read, self.machine).not());
         }

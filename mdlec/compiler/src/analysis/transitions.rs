@@ -8,7 +8,8 @@ use std::collections::BTreeSet;
 use mdle_runtime::TRANSITIONS_PER_TURN;
 
 use super::choices::Choices;
-use super::variables::{self, Variable};
+use super::possible::possible;
+use super::variables::Variable;
 use crate::fsm::{ElementKind, Machine};
 use crate::plan::families::Readings;
 use crate::plan::{Condition, Interrupt, QuarkId};
@@ -40,8 +41,8 @@ pub(super) fn most(machine: &Machine) -> Most {
     // The bits of a choice are in the order of the variables.
     quarks.sort_unstable();
     let variables: BTreeSet<Variable> = quarks.iter().map(|id| Variable::Quark(*id)).collect();
-    let possible = Choices::new(&variables, |_| None)
-        .map(|free| variables::possible(&free, machine.quarks(), Readings::Any, &|_| 0));
+    let possible =
+        Choices::new(&variables, |_| None).map(|free| possible(&free, machine.quarks(), Readings::Any, &|_| 0));
     let is_possible = |choice: &usize| possible.as_ref().is_none_or(|possible| possible.holds(*choice));
     let choices = (0..1_usize << quarks.len()).filter(is_possible);
     let count = choices.map(|choice| longest(machine, &quarks, choice)).max().unwrap_or(0);

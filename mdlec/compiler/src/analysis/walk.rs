@@ -10,7 +10,7 @@ use std::iter;
 use serde::Serialize;
 
 use super::choices::{Read, When};
-use super::ended::PossibleFacts;
+use super::facts::PossibleFacts;
 use super::known::{Added, KnownFacts};
 use crate::fsm::{Element, ElementKind, Machine, Visit};
 use crate::plan::{Condition, QuarkId};

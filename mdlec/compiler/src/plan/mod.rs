@@ -15,6 +15,7 @@ pub mod lints;
 mod moves;
 mod nondegenerate;
 mod parameters;
+mod plan_arguments;
 mod print;
 mod quarks;
 mod resolve;

@@ -1,13 +1,12 @@
-//! Parameters of a plan: their types, and the arguments given to them where the plan is used
+//! Parameters of a plan: their types, and the arguments that they have
 //! (docs/src/reference/language.md, 3.4).
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::arguments::{example, fit};
 use super::untyped;
-use crate::alphabet::{self, Alphabet, Declaration, DeclarationKind, Kind, Origin, Param, Unit};
+use crate::alphabet::{self, Alphabet, Kind, Unit};
 use crate::diagnostic::{Code, Diagnostic, Span};
-use crate::syntax::tree::{self, Arg, Call, Name};
+use crate::syntax::tree::{self, Arg, Name};
 
 /// The names that a definition can use in addition to those of its alphabet.
 #[derive(Debug, Clone, Copy)]
@@ -76,41 +75,16 @@ impl<'s> Parameters<'s> {
         parameters
     }
 
-    /// Parameters of `plan` with the arguments of `call`, in a definition whose own parameters are `around`.
-    ///
-    /// # Errors
-    /// Fails if number, type or unit of the arguments differ from the declaration.
-    pub(super) fn given(
-        plan: &tree::Plan<'s>,
-        call: &Call<'s>,
-        around: &Self,
-        alphabet: &Alphabet,
-    ) -> Result<Self, Vec<Diagnostic>> {
-        // What is wrong with the types was told where they stand.
-        let mut parameters = Self::declared(plan, alphabet, &mut Vec::new());
-        if parameters.known.len() < plan.params.len() {
-            return Ok(parameters);
+    /// Number of the parameters that have a type.
+    pub(super) fn len(&self) -> usize {
+        self.known.len()
+    }
+
+    /// Gives the parameter of this name its argument.
+    pub(super) fn give(&mut self, name: &str, arg: Option<Arg<'s>>) {
+        if let Some(parameter) = self.known.get_mut(name) {
+            parameter.given = arg;
         }
-        let declaration = declaration(plan, &parameters);
-        if let Err(found) = fit(call, &declaration, "", around) {
-            let at_call = |mut found: Diagnostic| {
-                if found.code == Code::E0301 {
-                    found.help.clear();
-                    found = usage(found, call, &declaration);
-                }
-                found.also(plan.name.span, format!("`{}` is written here", plan.name.node))
-            };
-            return Err(found.into_iter().map(at_call).collect());
-        }
-        for (param, arg) in plan.params.iter().zip(call.args) {
-            if let Some(parameter) = parameters.known.get_mut(param.name.node) {
-                parameter.given = match around.of(arg) {
-                    Some(outer) => outer.given,
-                    None => Some(*arg),
-                };
-            }
-        }
-        Ok(parameters)
     }
 
     /// Returns the parameter of this name.
@@ -185,44 +159,6 @@ fn unknown_type(name: Name<'_>, by_use: Option<Kind>) -> Diagnostic {
             };
             found.help(format!("the types are {} and bits[N]", Kind::NAMES.join(", ")))
         }
-    }
-}
-
-/// Declares a plan with parameters like a quark, so that its arguments are checked in the same way.
-fn declaration(plan: &tree::Plan<'_>, parameters: &Parameters<'_>) -> Declaration {
-    let param = |param: &tree::Param<'_>| {
-        let parameter = parameters.get(param.name.node)?;
-        let (name, unit) = (param.name.node.to_owned(), parameter.unit());
-        Some(Param { name, kind: parameter.kind, unit, default: None, range: None, except: None })
-    };
-    Declaration {
-        docs: String::new(),
-        kind: DeclarationKind::Control,
-        name: plan.name.node.to_owned(),
-        params: plan.params.iter().filter_map(param).collect(),
-        unit: None,
-        completes: false,
-        remembers: false,
-        exclusive: false,
-        needs: Vec::new(),
-        origin: Origin::Target,
-        span: plan.name.span,
-    }
-}
-
-/// Adds help that shows how to use a plan with these parameters.
-fn usage(found: Diagnostic, call: &Call<'_>, declaration: &Declaration) -> Diagnostic {
-    let name = &declaration.name;
-    if declaration.params.is_empty() {
-        return found.fix("write it without parentheses: {}", call.span, name.as_str());
-    }
-    let params: Vec<_> = declaration.params.iter().map(|param| format!("<{}>", param.name)).collect();
-    let found = found.help(format!("write it as `{name}({})`", params.join(", ")));
-    match declaration.params.iter().map(example).collect::<Option<Vec<_>>>() {
-        Some(examples) if call.args.is_empty() => {
-            found.fix("for instance {}", call.span, format!("{name}({})", examples.join(", ")))
-        }
-        _ => found,
     }
 }
 

@@ -7,6 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::definitions::Definitions;
 use super::labels::{EndCauses, Labels};
 use super::parameters::{self, Names, Parameter, Parameters};
+use super::plan_arguments::with_arguments;
 use super::quarks::Quarks;
 use super::resolve_conditions::{self, Around};
 use super::{Atom, Decimal, Interrupt, Loop, Node, Plan, RecordId, Scope};
@@ -338,7 +339,7 @@ impl<'r, 'a> Resolver<'r, 'a> {
             }
             return None;
         };
-        match (Parameters::given(plan, call, &self.parameters, self.quarks.alphabet()), self.uses) {
+        match (with_arguments(plan, call, &self.parameters, self.quarks.alphabet()), self.uses) {
             (Ok(parameters), Uses::Copy) => Some((plan, parameters)),
             (Ok(_), Uses::Check) => None,
             (Err(found), _) => {

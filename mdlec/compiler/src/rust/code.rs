@@ -8,12 +8,13 @@ use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
 use super::arguments::{angle, made, type_of};
-use super::names::{Distinct, atom_variant, quark_type};
+use super::meaning::Meaning;
+use super::names::{atom_variant, quark_type};
 use super::rows::conditions;
 use super::scopes::{asks_for_progress, ending};
 use super::tables::entries;
-use crate::fsm::{Atom, Element, Machine};
-use crate::plan::{Compared, Condition, QuarkId, frame_text};
+use crate::fsm::{Atom, Machine};
+use crate::plan::{Compared, QuarkId, frame_text};
 
 /// The plan's type and its implementation, with an arm for each atom.
 pub(super) fn machine(plan: &Ident, doc: &str, machine: &Machine, paths: Option<&TokenStream>) -> TokenStream {
@@ -46,32 +47,7 @@ pub(super) fn machine(plan: &Ident, doc: &str, machine: &Machine, paths: Option<
     }
 }
 
-/// A plan's meaning with the names that its constants and functions have.
-pub(super) struct Meaning<'a> {
-    pub(super) machine: &'a Machine,
-    /// The constant of each quark.
-    pub(super) constants: Vec<Ident>,
-    /// The function of each element that is a scope, but no atom, with an interrupt that can fire.
-    functions: Vec<Option<Ident>>,
-}
-
-impl<'a> Meaning<'a> {
-    pub(super) fn new(machine: &'a Machine) -> Self {
-        let mut names = Distinct::constants();
-        let constants = machine.quarks().iter().map(|quark| names.constant(&quark.text)).collect();
-        let mut names = Distinct::functions();
-        let functions = machine.elements().map(|element| {
-            let has_function = element.is_scope() && *element.condition() != Condition::Null;
-            has_function.then(|| names.scope_function(element.name()))
-        });
-        Self { machine, constants, functions: functions.collect() }
-    }
-
-    /// The function of an element, if it has one.
-    pub(super) fn function(&self, element: Element<'_>) -> Option<&Ident> {
-        self.functions.get(element.index())?.as_ref()
-    }
-
+impl Meaning<'_> {
     /// `const GO_20_0: robot::Go = robot::Go::new(…);` for each quark that is not a `wait`.
     pub(super) fn constants(&self) -> TokenStream {
         let signals = self.signals();

@@ -6,8 +6,10 @@
 
 mod arguments;
 mod bind;
+mod bound;
 mod code;
 mod layout;
+mod meaning;
 mod names;
 mod rows;
 mod scopes;

@@ -5,7 +5,7 @@ use mdle_runtime::Printable;
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::quote;
 
-use super::code::Meaning;
+use super::meaning::Meaning;
 use super::tables::{follows, level};
 use crate::fsm::{Element, Machine};
 use crate::plan::{Condition, QuarkId};

@@ -3,8 +3,8 @@
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-use super::bind::Bound;
-use crate::alphabet::{Capability, Kind};
+use super::bound::Bound;
+use crate::alphabet::Kind;
 
 /// The function that makes a quark of its arguments, and does not compile where its type is not as the alphabet says:
 /// `const fn go(arguments: &[Argument<'_>]) -> Option<Go>`, after `visibility`.
@@ -29,20 +29,6 @@ pub(super) fn from_arguments(quark: &Bound<'_>, visibility: &TokenStream) -> Tok
             Some(#kind::new(#(#names),*))
         }
     }
-}
-
-/// Returns the trait of a capability; `None` if no trait represents it.
-pub(super) fn capability_trait(capability: &Capability) -> Option<Ident> {
-    let name = match capability.name.as_str() {
-        "odometry" => "Odometry",
-        "bumper" => "Bumpers",
-        "diff_drive" => "DiffDrive",
-        "sonar" => "SonarRing",
-        "paths" => "Paths",
-        "power" => "Power",
-        _ => return None,
-    };
-    Some(format_ident!("{name}"))
 }
 
 /// The variant of `Argument` that a parameter of this kind takes.

@@ -1,8 +1,8 @@
 //! Messages about arithmetic, which MDLe does not have: they give the result, and convert values in units that MDLe
 //! does not have.
 
+use super::number::split;
 use super::source::{Place, Source};
-use super::token::split;
 use crate::alphabet::Unit;
 use crate::diagnostic::{Code, Diagnostic};
 

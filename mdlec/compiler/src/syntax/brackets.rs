@@ -330,14 +330,10 @@ impl<'s> Pass<'_, 's> {
         self.balanced.regions.spoil();
         (strays.last, strays.count) = (index, strays.count + 1);
         let bracket = if token.kind == Tok::RBrace { '}' } else { ')' };
-        if let Some(message) = self.balanced.diagnostics.get_mut(strays.message) {
-            message.message = format!("these {} `{bracket}` close nothing", strays.count);
-            message.help.clear();
-            message
-                .labels
-                .iter_mut()
-                .take(1)
-                .for_each(|label| label.span = label.span.to(self.source.span(token.place)));
+        if let Some(first) = self.balanced.diagnostics.get_mut(strays.message) {
+            first.message = format!("these {} `{bracket}` close nothing", strays.count);
+            first.help.clear();
+            first.labels.iter_mut().take(1).for_each(|label| label.span = label.span.to(self.source.span(token.place)));
         }
         true
     }

@@ -2,8 +2,8 @@
 //! strings.
 
 use super::arithmetic::{arithmetic, computed, foreign_unit, sum_of_units, word};
+use super::number::split;
 use super::source::{Place, Source};
-use super::token::split;
 use crate::alphabet::Unit;
 use crate::diagnostic::{Code, Diagnostic, Span};
 

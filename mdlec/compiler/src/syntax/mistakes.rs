@@ -6,9 +6,11 @@ mod conditions;
 mod files;
 mod labels;
 mod parameters;
+mod plan_names;
 
-use super::errors::Site;
-use super::token::{Tok, split};
+use super::number::split;
+use super::site::Site;
+use super::token::Tok;
 use crate::diagnostic::Diagnostic;
 use atoms::{atom_condition, atom_law};
 use calls::{apart, bare_call, decimal_comma, element_touches, square_brackets, touching_parenthesis, unit_apart};

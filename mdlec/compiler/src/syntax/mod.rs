@@ -14,11 +14,13 @@ mod indentation;
 mod lexical;
 mod mistakes;
 mod nodes;
+mod number;
 mod one_line;
 pub mod outline;
 mod printed;
 mod regions;
 mod single;
+mod site;
 mod source;
 #[cfg(test)]
 mod tests;

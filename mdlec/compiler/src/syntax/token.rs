@@ -6,6 +6,7 @@ use std::borrow::Cow;
 use logos::{FilterResult, Lexer, Logos};
 
 use super::lexical;
+use super::number::split;
 use super::source::{Place, Source};
 use crate::alphabet::Unit;
 use crate::diagnostic::Diagnostic;
@@ -347,27 +348,6 @@ fn number<'s>(lexer: &mut Lexer<'s, Tok<'s>>) -> Result<&'s str, ()> {
     let is_sound = tail == 0 || rest.get(..tail).is_some_and(Unit::is_name);
     lexer.bump(tail);
     if is_sound { Ok(lexer.slice()) } else { Err(()) }
-}
-
-/// Splits a text into the number that it begins with (perhaps empty) and the text that touches that number.
-pub(super) fn split(text: &str) -> (&str, &str) {
-    let digits = |from: usize| text.bytes().skip(from).take_while(u8::is_ascii_digit).count();
-    let is = |at: usize, any: &[u8]| text.as_bytes().get(at).is_some_and(|byte| any.contains(byte));
-    let sign = usize::from(is(0, b"+-"));
-    let mut end = sign + digits(sign);
-    if end == sign {
-        return ("", text);
-    }
-    if is(end, b".") && digits(end + 1) > 0 {
-        end += 1 + digits(end + 1);
-    }
-    if is(end, b"eE") {
-        let first = end + 1 + usize::from(is(end + 1, b"+-"));
-        if digits(first) > 0 {
-            end = first + digits(first);
-        }
-    }
-    text.split_at_checked(end).unwrap_or((text, ""))
 }
 
 /// Returns the length in bytes of the text that follows a number without a space.

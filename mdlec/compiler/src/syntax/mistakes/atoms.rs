@@ -1,7 +1,7 @@
 //! Mistakes in atoms: a condition or a law that is missing or in the wrong place.
 
 use crate::diagnostic::Diagnostic;
-use crate::syntax::errors::Site;
+use crate::syntax::site::Site;
 use crate::syntax::token::Tok;
 
 /// Reports `(Atom bumper stop)`: the condition of an atom without its parentheses.

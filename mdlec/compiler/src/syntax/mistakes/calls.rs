@@ -4,8 +4,9 @@ use super::atoms::end_of_call;
 use super::spelling;
 use crate::alphabet::Unit;
 use crate::diagnostic::Diagnostic;
-use crate::syntax::errors::Site;
-use crate::syntax::token::{Tok, split};
+use crate::syntax::number::split;
+use crate::syntax::site::Site;
+use crate::syntax::token::Tok;
 
 /// Reports `r[0]` and `[bumper]`: square brackets.
 pub(super) fn square_brackets(site: &Site<'_, '_>) -> Option<Diagnostic> {

@@ -1,7 +1,7 @@
 //! Mistakes in conditions: operators without an operand, and text that is not a condition.
 
 use crate::diagnostic::Diagnostic;
-use crate::syntax::errors::Site;
+use crate::syntax::site::Site;
 use crate::syntax::token::Tok;
 
 /// Reports text that is not a condition where a condition is allowed.

@@ -1,9 +1,9 @@
 //! Between plans: what belongs into a plan, names before their plans, and files that are used.
 
-use super::labels::not_a_label;
+use super::plan_names::{name_before_plan, not_a_label};
 use crate::diagnostic::Diagnostic;
-use crate::syntax::errors::Site;
 use crate::syntax::foreign;
+use crate::syntax::site::Site;
 use crate::syntax::token::Tok;
 
 /// Between plans: no element, no name, no file without quotes.
@@ -107,14 +107,4 @@ fn plan_in_parentheses(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let name = site.name_at(site.at + 1).filter(|_| site.kind(site.at + 2) == Some(Tok::LParen))?;
     let diagnostic = site.about(site.at, format!("the plan `{name}` begins with `(`"), "expected a `{`");
     Some(diagnostic.help(format!("a plan has braces: `{{ {name} … }}`")))
-}
-
-pub(super) fn name_before_plan(site: &Site<'_, '_>, at: usize) -> Diagnostic {
-    let name = site.name_at(at).unwrap_or("Name");
-    let words = format!("the name of a plan is the first thing inside: `{{ {name} … }}`");
-    site.about(at, format!("the name `{name}` is before the brace of its plan"), "put it inside the braces").fix(
-        &words,
-        site.span(at, at + 1),
-        format!("{{ {name}"),
-    )
 }

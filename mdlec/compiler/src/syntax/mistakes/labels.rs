@@ -1,9 +1,9 @@
 //! Labels, colons and equals signs.
 
-use super::files::name_before_plan;
+use super::plan_names::{name_before_plan, not_a_label};
 use crate::alphabet::Kind;
 use crate::diagnostic::Diagnostic;
-use crate::syntax::errors::Site;
+use crate::syntax::site::Site;
 use crate::syntax::token::Tok;
 
 /// `=` without a label, a label without `=`, and `=` for `==`.
@@ -63,12 +63,6 @@ pub(super) fn label_and_equals(site: &Site<'_, '_>) -> Option<Diagnostic> {
         ),
         _ => None,
     }
-}
-
-pub(super) fn not_a_label(site: &Site<'_, '_>, at: usize, name: &str) -> Diagnostic {
-    site.about(at, format!("`{name}` is not a label"), "the label of a plan begins with `Γ_` or `Gamma_`")
-        .fix("write {}", site.span(at, at), format!("Gamma_{name}"))
-        .fix(&format!("or remove `{name} =`: a plan's own name is inside its braces"), site.span(at, at + 1), "")
 }
 
 /// `{ Leg (far = length) …`

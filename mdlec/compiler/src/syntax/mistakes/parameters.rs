@@ -1,7 +1,7 @@
 //! Mistakes in the list of a plan's parameters.
 
 use crate::diagnostic::Diagnostic;
-use crate::syntax::errors::Site;
+use crate::syntax::site::Site;
 use crate::syntax::token::Tok;
 
 /// Reports a malformed list of parameters.

@@ -1,0 +1,61 @@
+//! The values that variables can have at once: timers run from entries in a known order, and a signal has one value.
+
+use std::collections::BTreeMap;
+
+use super::choices::Choices;
+use super::tables::Table;
+use super::variables::Variable;
+use crate::plan::Quark;
+use crate::plan::families::{Family, Readings, at_once, family};
+
+/// Returns the choices whose values the variables can have at once. `entered` gives the earliest entry of a scope; the
+/// brackets of timers are nested, and the outer one has the smaller number.
+pub(super) fn possible(
+    choices: &Choices,
+    quarks: &[Quark],
+    readings: Readings,
+    entered: &impl Fn(u32) -> u64,
+) -> Table {
+    let mut possible = choices.constant(true);
+    let mut timers: Vec<(u32, u64, &Table)> = Vec::new();
+    let mut ways: Vec<(u32, u64, &Table)> = Vec::new();
+    let mut families: BTreeMap<Family<'_>, Vec<(&Quark, &Table)>> = BTreeMap::new();
+    for (variable, column) in choices.columns() {
+        match variable {
+            Variable::Timer(bracket, nanos) => {
+                timers.push((*bracket, entered(*bracket).saturating_add(*nanos), column))
+            }
+            Variable::Quark(id) => {
+                let Some(quark) = quarks.get(id.0 as usize) else { continue };
+                if let Some(family) = family(quark) {
+                    families.entry(family).or_default().push((quark, column));
+                }
+            }
+            Variable::Way(bracket, nanometers) => ways.push((*bracket, *nanometers, column)),
+            Variable::Own(..) | Variable::Past(..) | Variable::PastWay(..) | Variable::Memory(..) => {}
+            Variable::Fact(..) | Variable::PastFact(..) => {}
+        }
+    }
+    for counted in [timers, ways] {
+        for (inner, at, over) in &counted {
+            for (outer, until, column) in &counted {
+                // The outer one has run for longer, and farther.
+                if !std::ptr::eq(*over, *column) && outer <= inner && until <= at {
+                    possible = possible.and(&(*over).clone().not().or(column));
+                }
+            }
+        }
+    }
+    for members in families.values().filter(|members| members.len() > 1) {
+        let mut some = choices.constant(false);
+        for fired in at_once(members.iter().map(|(quark, _)| *quark), readings) {
+            let mut one = choices.constant(true);
+            for ((_, column), fired) in members.iter().zip(fired) {
+                one = if fired { one.and(column) } else { one.and(&(*column).clone().not()) };
+            }
+            some = some.or(&one);
+        }
+        possible = possible.and(&some);
+    }
+    possible
+}

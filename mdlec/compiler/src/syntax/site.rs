@@ -1,0 +1,262 @@
+//! A place where the parser found an unexpected token, and the tokens around it.
+
+use std::cell::OnceCell;
+use std::collections::BTreeSet;
+
+use super::header;
+use super::source::{Place, Source};
+use super::token::{Tok, Token};
+use crate::diagnostic::{Code, Diagnostic, Span};
+
+/// A place where the parser found an unexpected token.
+pub(super) struct Site<'t, 's> {
+    pub(super) source: Source<'s>,
+    pub(super) tokens: &'t [Token<'s>],
+    pub(super) openers: &'t [Option<usize>],
+    /// Names of the plans of the text, computed on first use.
+    pub(super) plans: &'t OnceCell<BTreeSet<&'s str>>,
+    /// Index of the unexpected token.
+    pub(super) at: usize,
+    pub(super) expected: Vec<String>,
+}
+
+impl<'s> Site<'_, 's> {
+    /// The unexpected token; `None` at the end of the text.
+    pub(super) fn found(&self) -> Option<Tok<'s>> {
+        self.kind(self.at)
+    }
+
+    /// The token `back` places before the unexpected one.
+    pub(super) fn before(&self, back: usize) -> Option<Tok<'s>> {
+        self.at.checked_sub(back).and_then(|at| self.kind(at))
+    }
+
+    /// Kind of the token at `at`.
+    pub(super) fn kind(&self, at: usize) -> Option<Tok<'s>> {
+        self.tokens.get(at).map(|token| token.kind)
+    }
+
+    /// The name at `at`; `None` if the token there is not a name.
+    pub(super) fn name_at(&self, at: usize) -> Option<&'s str> {
+        match self.kind(at) {
+            Some(Tok::Name(name)) => Some(name),
+            Some(_) | None => None,
+        }
+    }
+
+    /// Kind of the opening bracket that the one at `closer` closes.
+    pub(super) fn partner(&self, closer: usize) -> Option<Tok<'s>> {
+        self.openers.get(closer).copied().flatten().and_then(|at| self.kind(at))
+    }
+
+    /// Innermost bracket that is open before the unexpected token.
+    pub(super) fn opener(&self) -> Option<usize> {
+        self.openers.get(self.at).copied().flatten()
+    }
+
+    /// Kind of the innermost bracket that is open before the unexpected token.
+    pub(super) fn opener_kind(&self) -> Option<Tok<'s>> {
+        self.opener().and_then(|at| self.kind(at))
+    }
+
+    /// Returns `true` if the innermost open bracket belongs to an atom.
+    pub(super) fn in_atom(&self) -> bool {
+        self.opener().is_some_and(|at| self.kind(at + 1) == Some(Tok::Atom))
+    }
+
+    /// Returns `true` if the name of a plan is missing here.
+    pub(super) fn is_plan_without_name(&self) -> bool {
+        self.before(1) == Some(Tok::LBrace) && self.expects("name") && !self.expects("ExecPlan")
+    }
+
+    /// Returns `true` in the condition of a plan that has no name, which looks like a scope in formal notation.
+    pub(super) fn in_nameless_head(&self) -> bool {
+        let Some(paren) = self.opener().filter(|at| *at > 0 && self.kind(*at) == Some(Tok::LParen)) else {
+            return false;
+        };
+        let is_loop = paren >= 3 && self.kind(paren - 3) == Some(Tok::ExecPlan);
+        let is_condition = self.expects(",") && self.expects_argument() && self.name_at(paren + 1).is_some();
+        self.kind(paren - 1) == Some(Tok::LBrace) && is_condition && !is_loop
+    }
+
+    /// Token whose region the defect belongs to: for a plan without a name its brace, not the token where the name is
+    /// missing.
+    pub(super) fn decisive(&self) -> usize {
+        if self.is_plan_without_name() { self.at - 1 } else { self.at }
+    }
+
+    /// Index of the last token of the group whose bracket opens at `at`.
+    pub(super) fn end_of_group(&self, at: usize) -> usize {
+        let around = self.openers.get(at).copied().flatten();
+        let inside = |next: &usize| self.openers.get(*next).is_some_and(|opener| *opener != around);
+        (at + 1..self.openers.len()).take_while(inside).last().unwrap_or(at)
+    }
+
+    /// Returns `true` if the grammar allows this terminal here.
+    pub(super) fn expects(&self, terminal: &str) -> bool {
+        self.expected.iter().any(|expected| expected.trim_matches('"') == terminal)
+    }
+
+    /// Returns `true` if the grammar allows an element here.
+    pub(super) fn expects_element(&self) -> bool {
+        self.expects("ExecPlan")
+    }
+
+    /// Returns `true` if the grammar allows a condition here.
+    pub(super) fn expects_condition(&self) -> bool {
+        self.expects("null")
+    }
+
+    /// Returns `true` if the grammar allows an argument here.
+    pub(super) fn expects_argument(&self) -> bool {
+        self.expects("string") && self.expects("number")
+    }
+
+    /// Source text from token `first` to token `last`, if it is short enough for a sentence and on one line.
+    pub(super) fn text(&self, first: usize, last: usize) -> Option<&'s str> {
+        let (first, last) = (self.tokens.get(first)?, self.tokens.get(last)?);
+        let text = self.source.slice(Place::new(first.place.start, last.place.end));
+        (!text.is_empty() && text.len() <= 60 && !text.contains('\n')).then_some(text)
+    }
+
+    /// Span from one token to another.
+    pub(super) fn span(&self, first: usize, last: usize) -> Span {
+        self.source.span(Place::new(self.place(first).start, self.place(last).end))
+    }
+
+    /// Empty span before a token.
+    pub(super) fn before_token(&self, at: usize) -> Span {
+        let start = self.place(at).start;
+        self.source.span(Place::new(start, start))
+    }
+
+    /// Index of the brace after a name and the group that follows the name.
+    pub(super) fn brace_after_group(&self, name: usize) -> Option<usize> {
+        let is_group = matches!(self.kind(name + 1), Some(Tok::LParen | Tok::TouchParen));
+        let brace = self.end_of_group(name + 1) + 1;
+        (is_group && self.kind(brace) == Some(Tok::LBrace)).then_some(brace)
+    }
+
+    /// Returns `true` if the text has a plan of this name.
+    pub(super) fn has_plan(&self, name: &str) -> bool {
+        self.plans.get_or_init(|| header::names(self.tokens)).contains(name)
+    }
+
+    /// Returns `true` if these tokens look like quarks and comparisons: names, values, and operators between them.
+    pub(super) fn is_call(&self, first: usize, last: usize) -> bool {
+        let is_value = |at: usize| {
+            (first..=last).contains(&at)
+                && matches!(self.kind(at), Some(Tok::Name(_) | Tok::Number(_) | Tok::Infinity | Tok::Str(_)))
+        };
+        let is_negated = |at: usize| at <= last && matches!(self.kind(at), Some(Tok::Not | Tok::Rising));
+        let is_sound = |at: usize| match self.kind(at) {
+            Some(Tok::Not | Tok::Rising) => matches!(self.kind(at + 1), Some(Tok::Name(_))) && at < last,
+            Some(Tok::Or | Tok::And) => at > first && is_value(at - 1) && (is_value(at + 1) || is_negated(at + 1)),
+            Some(Tok::Less | Tok::LessOrEqual | Tok::Greater | Tok::GreaterOrEqual | Tok::Equal) => {
+                at > first && is_value(at - 1) && is_value(at + 1)
+            }
+            _ => is_value(at),
+        };
+        let begins = matches!(self.kind(first), Some(Tok::Name(_) | Tok::Not | Tok::Rising));
+        let is_comparison = |at: &usize| is_sound(*at) && !is_value(*at) && !is_negated(*at) && !self.joins(*at);
+        let operands = (first..=last).collect::<Vec<_>>();
+        let once = operands
+            .split(|at| self.joins(*at))
+            .all(|operand| operand.iter().copied().filter(is_comparison).count() <= 1);
+        begins && once && (first..=last).all(is_sound)
+    }
+
+    /// Returns `true` if this token is OR or AND.
+    fn joins(&self, at: usize) -> bool {
+        matches!(self.kind(at), Some(Tok::Or | Tok::And))
+    }
+
+    /// Index of the bracket that this closer closes.
+    pub(super) fn opener_of(&self, closer: usize) -> Option<usize> {
+        self.openers.get(closer).copied().flatten()
+    }
+
+    /// Returns `true` if a token touches the next one.
+    pub(super) fn touches_next(&self, at: usize) -> bool {
+        at + 1 < self.tokens.len() && self.place(at).end == self.place(at + 1).start
+    }
+
+    /// Returns a message about the token at `at`.
+    pub(super) fn about(&self, at: usize, message: impl Into<String>, here: impl Into<String>) -> Diagnostic {
+        Diagnostic::new(Code::E0102, message, self.source.span(self.place(at)), here)
+    }
+
+    /// Adds a label for the token at `at` to the message.
+    pub(super) fn also(&self, diagnostic: Diagnostic, at: usize, text: &str) -> Diagnostic {
+        diagnostic.also(self.source.span(self.place(at)), text)
+    }
+
+    fn place(&self, at: usize) -> Place {
+        let end = self.tokens.last().map_or(0, |token| token.place.end);
+        self.tokens.get(at).map_or(Place::new(end, end), |token| token.place)
+    }
+
+    /// Reports the expected terminals and the token that was found instead.
+    pub(super) fn unexpected(&self) -> Diagnostic {
+        let message = format!("expected {}, found {}", self.expectation(), self.found_words());
+        self.about(self.at, message, "not expected here")
+    }
+
+    /// The unexpected token in words.
+    pub(super) fn found_words(&self) -> String {
+        let Some(found) = self.found() else { return "the end of the file".to_owned() };
+        let text = self.text(self.at, self.at).unwrap_or("…");
+        #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens are what they look like")]
+        match found {
+            Tok::Name(_) => format!("the name `{text}`"),
+            Tok::Label(_) => format!("the label `{text}`"),
+            Tok::Number(_) => format!("the number `{text}`"),
+            Tok::Str(_) => format!("the text `{text}`"),
+            _ => format!("`{text}`"),
+        }
+    }
+
+    /// Describes in words the terminals that the grammar allows here.
+    pub(super) fn expectation(&self) -> String {
+        let mut left: Vec<&str> = self.expected.iter().map(|terminal| terminal.trim_matches('"')).collect();
+        let mut words: Vec<String> = Vec::new();
+        for (sign, whole, parts) in WHOLES {
+            if sign.iter().all(|sign| left.contains(sign)) {
+                words.push((*whole).to_owned());
+                left.retain(|terminal| !parts.contains(terminal));
+            }
+        }
+        let minor = ["^", ":", "module", "sigma_null", "touching (", "parameters (", "condition ("];
+        let (small, large): (Vec<&str>, Vec<&str>) = left.into_iter().partition(|terminal| minor.contains(terminal));
+        let left = if words.is_empty() && large.is_empty() { small } else { large };
+        words.extend(left.into_iter().map(terminal_words));
+        match words.split_last() {
+            None => "something else".to_owned(),
+            Some((only, [])) => only.clone(),
+            Some((last, others)) => format!("{} or {last}", others.join(", ")),
+        }
+    }
+}
+
+/// Names for sets of terminals: the terminals that reveal the set, its name, and the terminals that it covers.
+const WHOLES: &[(&[&str], &str, &[&str])] = &[
+    (&["ExecPlan"], "an element", &["name", "{", "(", "ExecPlan", "FRAME", "label"]),
+    (&["use", "{"], "a plan", &["use", "label", "{"]),
+    (&["null"], "a condition", &["name", "(", "NOT", "RISING", "null", "after"]),
+    (&["string", "number"], "an argument", &["name", "(", "number", "inf", "string"]),
+    (&["number", "inf", "name"], "a count", &["number", "inf", "name"]),
+    (&["=="], "a comparison", &["==", "<", "<=", ">", ">="]),
+    (&["name", "("], "a law", &["name", "("]),
+];
+
+/// A terminal of the grammar in words.
+fn terminal_words(terminal: &str) -> String {
+    match terminal {
+        "name" => "a name".to_owned(),
+        "label" => "a label".to_owned(),
+        "number" => "a number".to_owned(),
+        "string" => "a text in quotes".to_owned(),
+        "touching (" | "parameters (" | "condition (" => "`(`".to_owned(),
+        other => format!("`{other}`"),
+    }
+}
