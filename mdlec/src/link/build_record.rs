@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 
 use super::LinkError;
 use super::cache::write_if_changed;
-use super::package::PlanPackage;
+use super::hash::hash;
+use super::plan_package::PlanPackage;
 
 /// Records that `executable` was built from `plan` in its present state.
 pub(super) fn write(plan: &PlanPackage, executable: &Path) -> Result<(), LinkError> {
@@ -32,11 +33,6 @@ pub(super) fn fits(plan: &PlanPackage, executable: &Path) -> bool {
 /// Returns `true` if cargo's lock file in the package's `folder` is as cargo left it.
 pub(super) fn has_lock(folder: &Path) -> bool {
     read(folder).is_some_and(|[_, noted, _]| lock(folder).is_some_and(|lock| lock == noted))
-}
-
-/// Hash of some bytes, as text.
-pub(super) fn hash(bytes: &[u8]) -> String {
-    blake3::hash(bytes).to_hex().to_string()
 }
 
 /// Recorded hashes of the package, of its lock file, and of the executable.

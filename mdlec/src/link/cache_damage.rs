@@ -6,7 +6,7 @@ use std::os::unix::process::ExitStatusExt;
 use super::cache::remove;
 use super::cargo::Job;
 use super::messages::{Complaint, Run};
-use super::package::PlanPackage;
+use super::plan_package::PlanPackage;
 use super::{LinkError, Progress, TargetCrate, build_record};
 
 /// Message of rustc about a library that is missing or empty.

@@ -1,26 +1,14 @@
 //! Runs cargo as a child process: with the same flags in every environment, and without its output on the terminal.
 
-use std::ffi::{OsStr, OsString};
-use std::path::{self, PathBuf};
-use std::process::{Command, Output, Stdio};
-use std::{env, io};
+use std::env;
+use std::ffi::OsString;
+use std::process::{Command, Stdio};
 
 use super::messages::{self, Run};
-use super::package::PlanPackage;
+use super::plan_package::PlanPackage;
 use super::seal::Seal;
+use super::toolchain::{self, Toolchain, absolute, output, unusable};
 use super::{Cache, LinkError, Progress, cleanup, orphan};
-
-/// Oldest Rust version that compiles the packed sources.
-const NEEDED: &str = env!("CARGO_PKG_RUST_VERSION");
-
-/// Prefixes of variables that cargo may read, since they are the user's choice: its folders, its registries, the
-/// network, its use of the machine. All others would change builds, or repeat them.
-const KEPT: [&str; 6] =
-    ["CARGO_HOME", "CARGO_HTTP_", "CARGO_NET_", "CARGO_REGISTRIES_", "CARGO_REGISTRY_", "CARGO_BUILD_JOBS"];
-
-/// Working folder of cargo and rustc. They search it, and every folder above it, for `.cargo/config.toml` and
-/// `rust-toolchain.toml`, which can run code: here only the superuser can create them.
-const OUTSIDE: &str = "/";
 
 /// Settings of the profile for cargo's `--config`, which neither a configuration file nor the environment overrides.
 /// Executables rely on these settings.
@@ -42,42 +30,6 @@ const PROFILE: [&str; 13] = [
     // Options are read once, and are a seventh of an executable.
     "profile.release.package.clap_builder.opt-level='s'",
 ];
-
-/// The installed Rust.
-#[derive(Debug)]
-pub(super) struct Toolchain {
-    /// Target triple of this machine.
-    pub(super) host: String,
-    /// Version of rustc, as `1.95.0`.
-    pub(super) release: String,
-}
-
-impl Toolchain {
-    /// Runs `rustc` to find its version and host.
-    pub(super) fn find() -> Result<Self, LinkError> {
-        let mut command = command("rustc");
-        command.arg("-vV");
-        let found = output(command, "rustc")?;
-        let description = String::from_utf8_lossy(&found.stdout);
-        let field = |name: &str| description.lines().find_map(|line| line.strip_prefix(name));
-        let (Some(host), Some(release), true) = (field("host: "), field("release: "), found.status.success()) else {
-            // Such as rustup without a toolchain; its first line says so.
-            let errors = String::from_utf8_lossy(&found.stderr);
-            let why = errors.lines().next().unwrap_or("it says nothing").trim_start_matches("error: ").to_owned();
-            return Err(LinkError::NoRust { tool: "rustc", why });
-        };
-        if version(release) < version(NEEDED) {
-            return Err(LinkError::OldRust { needed: NEEDED, found: release.to_owned() });
-        }
-        Ok(Self { host: host.to_owned(), release: release.to_owned() })
-    }
-}
-
-/// First two numbers of a version.
-fn version(text: &str) -> Option<(u32, u32)> {
-    let mut parts = text.split('.');
-    Some((parts.next()?.parse().ok()?, parts.next()?.parse().ok()?))
-}
 
 /// A build of a plan's package.
 #[derive(Debug)]
@@ -125,7 +77,7 @@ impl Job<'_> {
 
     /// Returns cargo's command `name` for the plan.
     fn command(&self, name: &str) -> Command {
-        let mut command = command("cargo");
+        let mut command = toolchain::command("cargo");
         // With an explicit triple the flags are for the plan alone: a static procedural macro could not be loaded.
         command.args([name, "--release", "--color=never", "--target", &self.toolchain.host]);
         command.arg("--manifest-path").arg(self.plan.manifest());
@@ -155,73 +107,5 @@ impl Job<'_> {
             flags.push(name);
         }
         flags
-    }
-}
-
-/// Returns a command for `tool` that ignores the configuration of cargo and rustc in this process's environment and
-/// folder.
-pub(super) fn command(tool: &str) -> Command {
-    let mut command = Command::new(tool);
-    command.current_dir(OUTSIDE).stdin(Stdio::null());
-    for (name, _) in env::vars_os().filter(|(name, _)| is_about_builds(name)) {
-        command.env_remove(name);
-    }
-    for name in ["CARGO_HOME", "RUSTUP_HOME"] {
-        command.envs(absolute(name).map(|folder| (name, folder)));
-    }
-    command
-}
-
-/// Absolute path of the folder in the variable `name`; a relative path is relative to the current folder.
-pub(super) fn absolute(name: &str) -> Option<PathBuf> {
-    env::var_os(name).filter(|folder| !folder.is_empty()).and_then(|folder| path::absolute(folder).ok())
-}
-
-/// Runs `command`, whose program is `tool`, to its end.
-pub(super) fn output(mut command: Command, tool: &'static str) -> Result<Output, LinkError> {
-    command.output().map_err(|error| unusable(tool, &error))
-}
-
-/// Returns `true` if cargo or rustc would let this variable change their results. `RUSTUP_TOOLCHAIN` stays, since users
-/// choose their Rust with it.
-fn is_about_builds(name: &OsStr) -> bool {
-    let Some(name) = name.to_str() else { return false };
-    let own = name == "CARGO" || name.starts_with("CARGO_") || name.starts_with("__CARGO_");
-    let kept = KEPT.iter().any(|kept| name.starts_with(kept));
-    (own && !kept) || name == "RUSTC" || name.starts_with("RUSTC_") || matches!(name, "RUSTFLAGS" | "RUSTDOCFLAGS")
-}
-
-/// Error for a program that could not be run.
-fn unusable(tool: &'static str, error: &io::Error) -> LinkError {
-    let missing = error.kind() == io::ErrorKind::NotFound;
-    let why = if missing { "it is not there".to_owned() } else { format!("it cannot be run ({error})") };
-    LinkError::NoRust { tool, why }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::ffi::OsStr;
-
-    use super::{is_about_builds, version};
-
-    #[test]
-    fn what_changes_a_build_is_removed_and_the_rest_kept() {
-        for name in ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "CARGO_TARGET_DIR", "CARGO_BUILD_TARGET", "RUSTC_WRAPPER"]
-        {
-            assert!(is_about_builds(OsStr::new(name)), "{name}");
-        }
-        for name in ["CARGO", "CARGO_PROFILE_RELEASE_LTO", "CARGO_MANIFEST_DIR", "RUSTC", "RUSTC_WORKSPACE_WRAPPER"] {
-            assert!(is_about_builds(OsStr::new(name)), "{name}");
-        }
-        for name in ["CARGO_HOME", "CARGO_HTTP_PROXY", "CARGO_NET_OFFLINE", "CARGO_BUILD_JOBS", "RUSTUP_TOOLCHAIN"] {
-            assert!(!is_about_builds(OsStr::new(name)), "{name}");
-        }
-        assert!(!is_about_builds(OsStr::new("PATH")));
-    }
-
-    #[test]
-    fn versions_are_compared_as_numbers() {
-        assert!(version("1.100.0-nightly") > version("1.95"));
-        assert!(version("1.80.1") < version("1.95"));
     }
 }

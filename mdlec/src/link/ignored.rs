@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::{env, fs, path};
 
-use super::cargo::absolute;
+use super::toolchain::absolute;
 
 /// Files that cargo and rustup read in the folder of a build and in each folder above it.
 const NAMES: [&str; 4] = [".cargo/config.toml", ".cargo/config", "rust-toolchain.toml", "rust-toolchain"];

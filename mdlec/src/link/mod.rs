@@ -33,16 +33,19 @@ mod cargo;
 mod cleanup;
 mod clear;
 mod error;
+mod hash;
 mod ignored;
 mod messages;
 mod orphan;
 mod output;
 mod package;
+mod plan_package;
 mod progress;
 mod seal;
 mod sources;
 mod superseded;
 mod target;
+mod toolchain;
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -57,12 +60,13 @@ pub use progress::Progress;
 pub use sources::{emulators, known};
 pub use target::TargetCrate;
 
-use cargo::{Job, Toolchain};
+use cargo::Job;
 use messages::{Executable, Run};
 use output::Destination;
 use seal::Seal;
 use sources::Sources;
 use target::Dependencies;
+use toolchain::Toolchain;
 
 /// A plan as Rust, with the data for its executable.
 #[derive(Debug, Clone, Copy)]

@@ -1,41 +1,14 @@
 //! Writes the cargo package of a plan's emitted Rust.
 
-use std::ffi::OsStr;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::cache::{remove, write_if_changed};
-use super::cargo::Toolchain;
-use super::target::Dependencies;
+use super::hash::hash;
+use super::plan_package::PlanPackage;
+use super::target::{Dependencies, utf8};
+use super::toolchain::Toolchain;
 use super::{Cache, LinkError, Package, build_record, sources};
-
-/// A plan's package that has been written.
-#[derive(Debug)]
-pub(super) struct PlanPackage {
-    /// Folder of the package; package and executable have the same name.
-    pub(super) folder: PathBuf,
-    /// Hash of all files that mdlec wrote there.
-    pub(super) hash: String,
-}
-
-impl PlanPackage {
-    /// Name of the package and of its executable.
-    pub(super) fn name(&self) -> &OsStr {
-        self.folder.file_name().unwrap_or_default()
-    }
-
-    /// Path of the package's manifest.
-    pub(super) fn manifest(&self) -> PathBuf {
-        self.folder.join("Cargo.toml")
-    }
-
-    /// Keeps the output of a build in a log file, for a report; returns its path.
-    pub(super) fn keep(&self, text: &str) -> Result<PathBuf, LinkError> {
-        let log = self.folder.join("build.log");
-        write_if_changed(&log, text.as_bytes())?;
-        Ok(log)
-    }
-}
 
 /// Writes the package of `package`; unchanged files keep their times, which cargo compares.
 pub(super) fn write(
@@ -53,7 +26,7 @@ pub(super) fn write(
 /// differ, the crate of a target that is no part of mdlec differs, or the path of the cache.
 fn version(package: &Package<'_>, dependencies: &Dependencies, toolchain: &Toolchain) -> String {
     let code = [package.rust, sources::hash(), &dependencies.lock].join("\0");
-    format!("({}, code {}, rustc {})", package.version, &build_record::hash(code.as_bytes())[..12], toolchain.release)
+    format!("({}, code {}, rustc {})", package.version, &hash(code.as_bytes())[..12], toolchain.release)
 }
 
 /// Writes the package of the emulator of `robot`, whose crate is `crate_name`.
@@ -90,7 +63,7 @@ fn write_package(
         }
     }
     let texts: Vec<_> = files.iter().map(|(_, text)| *text).chain([lock]).collect();
-    Ok(PlanPackage { folder, hash: build_record::hash(texts.join("\0").as_bytes()) })
+    Ok(PlanPackage { folder, hash: hash(texts.join("\0").as_bytes()) })
 }
 
 /// Writes `files` to `folder`, and `lock` as cargo's initial lock file.
@@ -148,11 +121,6 @@ fn main(package: &Package<'_>, version: &str) -> String {
              ::mdle_host::run::<::{target}::Target, _>(program, plan::{plan}::new)\n\
          }}\n"
     )
-}
-
-/// Path as text for a manifest.
-pub(super) fn utf8(path: &Path) -> Result<&str, LinkError> {
-    path.to_str().ok_or_else(|| LinkError::NotUtf8(path.to_owned()))
 }
 
 /// Quotes a TOML string: JSON's escapes are valid in TOML.

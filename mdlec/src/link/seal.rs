@@ -13,8 +13,8 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-use super::build_record::hash;
 use super::cache::{remove, write_if_changed};
+use super::hash::hash;
 use super::{Cache, LinkError, Progress};
 
 /// Name of the list in the cache.

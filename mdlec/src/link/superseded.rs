@@ -7,8 +7,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use super::cache::{remove, write_if_changed};
-use super::package::PlanPackage;
-use super::{Cache, LinkError, build_record};
+use super::hash::hash;
+use super::plan_package::PlanPackage;
+use super::{Cache, LinkError};
 
 /// Name of the file in a package's folder that contains the hash of the plan file's path.
 const OWNER: &str = "owner";
@@ -16,7 +17,7 @@ const OWNER: &str = "owner";
 /// Records that `plan_file` was last built as `package`, and removes the packages that it was built as before.
 pub(super) fn remove_before(cache: &Cache, plan_file: &Path, package: &PlanPackage) -> Result<(), LinkError> {
     let file = plan_file.canonicalize().unwrap_or_else(|_| plan_file.to_owned());
-    let owner = build_record::hash(file.as_os_str().as_encoded_bytes());
+    let owner = hash(file.as_os_str().as_encoded_bytes());
     write_if_changed(&package.folder.join(OWNER), owner.as_bytes())?;
     for folder in entries(&cache.plans())? {
         let is_before = || fs::read(folder.join(OWNER)).is_ok_and(|before| before == owner.as_bytes());

@@ -10,9 +10,8 @@ use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
 
-use super::cargo;
 use super::sources::{self, SHARED, Sources};
-use super::{LinkError, package};
+use super::{LinkError, toolchain};
 
 /// Crate of a robot. It implements `mdle_host::Target` for a type that its root exports as `Target`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -143,23 +142,28 @@ fn by_path(folder: &Path, crate_name: &str, sources: &Sources) -> Result<Depende
         packages,
         patches,
         lock: lock.unwrap_or_else(|_| sources::text(sources::LOCK).to_owned()),
-        identity: package::utf8(&manifest)?.to_owned(),
+        identity: utf8(&manifest)?.to_owned(),
         ours: sources.folder.clone(),
     })
 }
 
 /// Runs `cargo metadata` for the package at `manifest`, with the settings of its workspace filled in.
 fn read(manifest: &Path, crate_name: &str) -> Result<Metadata, LinkError> {
-    let mut command = cargo::command("cargo");
+    let mut command = toolchain::command("cargo");
     command
         .args(["metadata", "--no-deps", "--offline", "--color=never", "--format-version=1", "--manifest-path"])
         .arg(manifest);
     let refused = |text| LinkError::TargetRefused { crate_name: crate_name.to_owned(), text };
-    let found = cargo::output(command, "cargo")?;
+    let found = toolchain::output(command, "cargo")?;
     if !found.status.success() {
         return Err(refused(String::from_utf8_lossy(&found.stderr).trim_end().to_owned()));
     }
     serde_json::from_slice(&found.stdout).map_err(|error| refused(error.to_string()))
+}
+
+/// Path as text for a manifest.
+pub(super) fn utf8(path: &Path) -> Result<&str, LinkError> {
+    path.to_str().ok_or_else(|| LinkError::NotUtf8(path.to_owned()))
 }
 
 /// Part of `cargo metadata` that is read.

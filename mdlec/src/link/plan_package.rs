@@ -1,0 +1,35 @@
+//! The folder of a plan's cargo package.
+
+use std::ffi::OsStr;
+use std::path::PathBuf;
+
+use super::LinkError;
+use super::cache::write_if_changed;
+
+/// A plan's package that has been written.
+#[derive(Debug)]
+pub(super) struct PlanPackage {
+    /// Folder of the package; package and executable have the same name.
+    pub(super) folder: PathBuf,
+    /// Hash of all files that mdlec wrote there.
+    pub(super) hash: String,
+}
+
+impl PlanPackage {
+    /// Name of the package and of its executable.
+    pub(super) fn name(&self) -> &OsStr {
+        self.folder.file_name().unwrap_or_default()
+    }
+
+    /// Path of the package's manifest.
+    pub(super) fn manifest(&self) -> PathBuf {
+        self.folder.join("Cargo.toml")
+    }
+
+    /// Keeps the output of a build in a log file, for a report; returns its path.
+    pub(super) fn keep(&self, text: &str) -> Result<PathBuf, LinkError> {
+        let log = self.folder.join("build.log");
+        write_if_changed(&log, text.as_bytes())?;
+        Ok(log)
+    }
+}
