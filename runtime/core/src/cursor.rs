@@ -2,12 +2,7 @@
 //! (docs/src/reference/semantics.md, 5.3 and 6; the paper's third type of transition with its counter c(t)).
 
 use crate::fsm::{Bracket, Kind};
-use crate::{Begin, Entries, Follows, Frame, Fsm, Here, Nanometers, Nanos, Output};
-
-/// Storage for one value a level or loop: an array in generated code, a boxed slice for a plan loaded at run time.
-pub trait Slots<T>: AsRef<[T]> + AsMut<[T]> {}
-
-impl<T, S: AsRef<[T]> + AsMut<[T]>> Slots<T> for S {}
+use crate::{Begin, Entries, Follows, Frame, Fsm, Here, Nanometers, Nanos, Output, Slots};
 
 /// Position in a plan: the current atom, the entry of each enclosing scope, and the passes left of each enclosing loop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,8 +4,6 @@
 use std::fmt;
 use std::path::Path;
 
-use serde::de::DeserializeOwned;
-
 use crate::settings::Settings;
 
 /// The values by which robots of one kind differ.
@@ -39,99 +37,6 @@ impl<C: Configuration> Configured<C> {
 impl<C> fmt::Display for Configured<C> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.settings.fmt(f)
-    }
-}
-
-/// A key of a configuration, as its table declares it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Key {
-    /// The name of the field.
-    pub name: &'static str,
-    /// The unit; empty for a value without one.
-    pub unit: &'static str,
-    /// A few words on the value, after the unit.
-    pub help: &'static str,
-    /// `false` if nobody has compared the default with a real robot.
-    pub is_verified: bool,
-    /// Minimum and maximum of a number.
-    pub range: Option<(f64, f64)>,
-}
-
-impl Key {
-    /// A key without a range, whose default is verified.
-    pub(crate) const fn of(name: &'static str, unit: &'static str, help: &'static str) -> Self {
-        Self { name, unit, help, is_verified: true, range: None }
-    }
-
-    /// Returns the name in a file.
-    pub(crate) fn in_a_file(&self) -> String {
-        self.name.replace('_', "-")
-    }
-
-    /// Returns the words on the value that `--print-config` shows.
-    pub(crate) fn about(&self) -> String {
-        let words: Vec<_> = [self.unit, self.help].into_iter().filter(|words| !words.is_empty()).collect();
-        format!("{}{}", words.join(" "), if self.is_verified { "" } else { "; unverified" })
-    }
-}
-
-/// The type of a value.
-pub trait Setting: Sized {
-    /// Type of the value in a file, and of its default.
-    type Written: DeserializeOwned + fmt::Debug;
-
-    /// Returns the value.
-    ///
-    /// # Errors
-    /// The sentence that says why `key` cannot have it.
-    fn of(key: &Key, written: Self::Written) -> Result<Self, String>;
-}
-
-macro_rules! written_as_it_is {
-    ($($type:ty, $value:ident, $number:expr;)*) => {
-        $(impl Setting for $type {
-            type Written = Self;
-
-            fn of(key: &Key, $value: Self) -> Result<Self, String> {
-                if let (Some((least, most)), Some(number)) = (key.range, $number) {
-                    within(&key.in_a_file(), number, least, most)?;
-                }
-                Ok($value)
-            }
-        })*
-    };
-}
-
-written_as_it_is! {
-    f64, value, Some(value);
-    u8, value, Some(f64::from(value));
-    u32, value, Some(f64::from(value));
-    u64, value, Some(value as f64);
-    bool, value, None::<f64>;
-    String, value, None::<f64>;
-    Vec<u8>, value, None::<f64>;
-}
-
-/// Returns the one of `choices` that has this name.
-///
-/// # Errors
-/// The sentence that says which there are.
-pub fn one_of<T: Copy>(key: &Key, written: &str, choices: &[(&str, T)]) -> Result<T, String> {
-    choices.iter().find(|(name, _)| *name == written).map(|(_, choice)| *choice).ok_or_else(|| {
-        let names: Vec<_> = choices.iter().map(|(name, _)| format!("{name:?}")).collect();
-        format!("`{}` is {written:?}, and has to be {}", key.in_a_file(), names.join(" or "))
-    })
-}
-
-/// Checks that a value is from `least` to `most`.
-///
-/// # Errors
-/// The sentence that says that it is not.
-pub fn within(name: &str, value: f64, least: f64, most: f64) -> Result<(), String> {
-    if (least..=most).contains(&value) {
-        Ok(())
-    } else {
-        Err(format!("`{name}` is {value}, and has to be from {least} to {most}"))
     }
 }
 

@@ -5,6 +5,7 @@
 mod capacity;
 mod clock;
 mod configuration;
+mod key;
 mod line;
 mod moment;
 mod obedience;
@@ -14,7 +15,8 @@ mod target;
 
 pub use capacity::{carries, time_of};
 pub use clock::{Clock, Times};
-pub use configuration::{Configuration, Configured, Key, Setting, one_of, within};
+pub use configuration::{Configuration, Configured};
+pub use key::{Key, Setting, one_of, within};
 pub use line::{Line, LineFault};
 pub use mdle_runtime::capability::Steering;
 pub use moment::Moment;

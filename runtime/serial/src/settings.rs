@@ -7,7 +7,7 @@ use mdle_host::read_text;
 use mdle_runtime::capability::Steering;
 use serde::de::DeserializeOwned;
 
-use crate::configuration::{Key, Setting};
+use crate::key::{Key, Setting};
 
 /// Maximum size of a configuration that is read, in bytes.
 const LARGEST: u64 = 1_000_000;

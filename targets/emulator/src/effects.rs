@@ -11,7 +11,8 @@ use mdle_runtime::{Sensed, SonarId};
 
 use crate::fault::{At, Fault};
 use crate::orders::Order;
-use crate::trial::{Ran, Trial, ran, started};
+use crate::serve::Emulated as _;
+use crate::trial::{Motion, Ran, Trial, ran, started};
 
 /// World time at which a fault begins, in seconds.
 const BEGINS: u64 = 3;
@@ -29,17 +30,6 @@ pub enum Speed {
     Halts,
     /// None.
     Rests,
-}
-
-/// The motion of a robot at the end of a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Motion {
-    /// The wheels turn.
-    Moves,
-    /// The wheels are at rest, without a brake.
-    Still,
-    /// The wheels are at rest, and the brake is set.
-    Braked,
 }
 
 /// The output of a driver whose robot goes ahead, after five seconds.
@@ -220,6 +210,7 @@ pub fn untrue_effects<T: Trial>(effects: &[Effect], refusals: &[(&'static str, &
 fn missing<T: Trial>(effects: &[Effect]) -> Vec<String> {
     let faults = effects.iter().flat_map(|effect| effect.faults).filter_map(|fault| fault.parse::<At>().ok());
     let names: Vec<String> = faults.map(|at| at.fault.to_string()).collect();
+    let can = |fault: &Fault| if let Fault::Body(ailment) = fault { T::Emulated::can_suffer(*ailment) } else { true };
     let is_missing = |fault: &Fault| !matches!(fault, Fault::Late(_)) && !names.contains(&fault.to_string());
-    Fault::all_of::<T::Emulated>().filter(is_missing).map(|fault| format!("no row has {fault}")).collect()
+    Fault::all().filter(can).filter(is_missing).map(|fault| format!("no row has {fault}")).collect()
 }

@@ -18,7 +18,7 @@ mod trial;
 
 pub use driven::{Driven, driven};
 #[cfg(feature = "trial")]
-pub use effects::{Effect, Motion, Speed, untrue_effects};
+pub use effects::{Effect, Speed, untrue_effects};
 pub use fault::{Ailment, At, Fault};
 pub use faulty::Faulty;
 pub use orders::{Order, Orders};
@@ -28,4 +28,4 @@ pub use serve::{Embodied, Emulated, Pace, STEP, serve};
 pub use several::{Seat, Several};
 pub use staged::Staged;
 #[cfg(feature = "trial")]
-pub use trial::{OnItsLine, Trial, memory_asked_for};
+pub use trial::{Motion, OnItsLine, Trial, memory_asked_for};

@@ -11,7 +11,6 @@ use mdle_serial::{Clock, Configured, SerialRobot};
 use mdle_simulator::{Body, Make, Simulated, World};
 
 use crate::driven::{Driven, driven};
-use crate::effects::Motion;
 use crate::fault::{Ailment, At};
 use crate::faulty::Faulty;
 use crate::orders::Orders;
@@ -26,6 +25,17 @@ const PATIENCE: u64 = 3000;
 /// A wall 4 m before the robot, and others far away.
 const HALL: &str =
     "start = { x = 0.0, y = 0.0, heading = 0.0 }\n[[wall]]\npoints = [[4, -3], [4, 3], [-3, 3], [-3, -3], [4, -3]]";
+
+/// The motion of a robot at the end of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Motion {
+    /// The wheels turn.
+    Moves,
+    /// The wheels are at rest, without a brake.
+    Still,
+    /// The wheels are at rest, and the brake is set.
+    Braked,
+}
 
 /// A robot with its driver.
 pub trait Trial {

@@ -16,6 +16,7 @@ const AREAS: &[&[&str]] = &[
         "runtime/core/src/fsm.rs",
         "runtime/core/src/machine.rs",
         "runtime/core/src/memory.rs",
+        "runtime/core/src/operator.rs",
         "runtime/core/src/plan.rs",
         "runtime/core/src/rows.rs",
         "runtime/core/src/signal.rs",
