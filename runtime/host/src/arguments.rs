@@ -6,7 +6,7 @@ use std::time::Duration;
 use clap::{Arg, ArgMatches, Command, value_parser};
 
 use crate::call::Call;
-use crate::executable::TargetOptions;
+use crate::target_options::TargetOptions;
 use crate::{Program, Quantity, paths, required};
 
 /// Minimum period: a turn must leave time for the exchange.

@@ -9,7 +9,7 @@ use mdle_runtime::{Cause, Measured, OperandWords, Operator, SourceLine, Transiti
 
 use crate::passes::{Passes, outwards};
 use crate::position::Texts;
-use crate::report::rounded;
+use crate::rounded::rounded;
 use crate::transitions::Operand;
 
 /// Decimals of a value, unless more are needed to distinguish it from the value that it is compared with.

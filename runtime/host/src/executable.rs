@@ -3,14 +3,15 @@
 use std::marker::PhantomData;
 use std::time::Duration;
 
-use clap::{ArgMatches, Command};
-use mdle_runtime::{PathStore, Plan, Robot, Twist};
+use clap::ArgMatches;
+use mdle_runtime::{PathStore, Plan, Robot};
 
-use crate::batch::Runs;
 use crate::drive::{Drive, PilotOnRobot, Supervised};
 use crate::pilot::{MakePilot, Pilot, RunTerms};
 use crate::position::Texts;
-use crate::{NamedFile, Pace, Refusal, Replays, StopRequest, Supervision, Target, Time};
+use crate::runs::Runs;
+use crate::target_options::TargetOptions;
+use crate::{Pace, Refusal, Replays, StopRequest, Supervision, Target, Time};
 
 /// The target and the plan of an executable.
 pub(crate) trait Executable: Sync {
@@ -34,40 +35,6 @@ pub(crate) trait Executable: Sync {
     /// # Errors
     /// A bad option, or a fault.
     fn batch(&self, matches: &ArgMatches, period: Duration, store: PathStore) -> Result<Option<Runs<'_>>, Refusal>;
-}
-
-/// The parts of [`Target`] that have none of its types.
-#[derive(Clone, Copy)]
-pub(crate) struct TargetOptions {
-    pub(crate) name: &'static str,
-    pub(crate) period: Duration,
-    pub(crate) arguments: fn(Command) -> Command,
-    pub(crate) time: fn(&ArgMatches) -> Result<Time, String>,
-    pub(crate) files: fn(&ArgMatches) -> Vec<NamedFile>,
-    pub(crate) answer: fn(&ArgMatches) -> Result<Option<String>, Refusal>,
-    /// Maximum speeds of a path; `None` if the target replays no paths.
-    pub(crate) fastest: Option<Twist>,
-    /// Returns `true` if the robot shows its run on standard output itself.
-    pub(crate) screen: fn(&ArgMatches) -> bool,
-    /// Gives the terminal back.
-    pub(crate) leave_screen: fn(),
-}
-
-impl TargetOptions {
-    /// Returns the options of the target `T`.
-    pub(crate) fn of<T: Target>() -> Self {
-        Self {
-            name: T::NAME,
-            period: T::PERIOD,
-            arguments: T::arguments,
-            time: T::time,
-            files: T::files,
-            answer: T::answer,
-            fastest: T::PATHS.map(|replays| replays.fastest),
-            screen: |matches| T::OBSERVATION.is_some_and(|observation| (observation.screen)(matches)),
-            leave_screen: T::OBSERVATION.map_or(|| {}, |observation| observation.leave_screen),
-        }
-    }
 }
 
 /// An executable of a plan for the target `T`, with the pilot `B` of its runs.

@@ -22,8 +22,10 @@ mod files;
 mod held_report;
 mod log;
 mod named_file;
+mod observation;
 mod observer;
 mod operand_text;
+mod outcome;
 mod output_format;
 mod panic_hook;
 mod passes;
@@ -33,9 +35,13 @@ mod pilot;
 mod position;
 mod program;
 mod progress;
+mod refusal;
+mod replays;
 mod report;
 mod required;
+mod rounded;
 mod run_end;
+mod runs;
 mod safety;
 mod scheduling;
 mod second_signal;
@@ -47,8 +53,10 @@ mod summary;
 mod supervised;
 mod supervisor;
 mod target;
+mod target_options;
 #[cfg(test)]
 mod tests;
+mod time;
 mod timing;
 mod transitions;
 mod turns;
@@ -69,17 +77,21 @@ pub use files::{read_file, read_text};
 pub use mdle_quantity::Quantity;
 use mdle_runtime::{Plan, Robot};
 pub use named_file::NamedFile;
-pub use observer::{Around, Ended, Judgement, Observation, Observer, PlanPosition, SeveralRuns};
+pub use observation::{Observation, SeveralRuns};
+pub use observer::{Around, Ended, Judgement, Observer, PlanPosition};
 pub use output_format::output_format;
-pub use paths::{Replays, setpoints};
+pub use paths::setpoints;
 use patience::Patience;
 use pilot::PlanAlone;
 pub use pilot::{Moment, Pilot, PilotFault, RunTerms};
 pub use program::Program;
+pub use refusal::Refusal;
+pub use replays::Replays;
 pub use scheduling::claim_for_worker;
 pub use stop_request::StopRequest;
 pub use supervisor::{Break, Intervention, MakeSupervisor, Orders, Supervision, Supervisor, Verdict};
-pub use target::{Pace, Refusal, Target, Time};
+pub use target::Target;
+pub use time::{Pace, Time};
 pub use transitions::Transitions;
 
 /// Runs the plan that `plan` makes on the robot of the target `T`, with the arguments of this process: the `main` of an
@@ -145,7 +157,7 @@ where
 /// # Errors
 /// The message for standard error.
 pub fn check_options<T: Target>(program: Program<'_>, call: &Call) -> Result<(), String> {
-    let command = arguments::command(&executable::TargetOptions::of::<T>(), program, call);
+    let command = arguments::command(&target_options::TargetOptions::of::<T>(), program, call);
     match command.try_get_matches_from(call.arguments()) {
         Err(error) if error.use_stderr() => Err(error.render().to_string()),
         Ok(_) | Err(_) => Ok(()),

@@ -2,12 +2,8 @@
 //! See docs/src/reference/interfaces.md, 7.4.
 
 use std::fmt;
-use std::time::Duration;
 
-use clap::ArgMatches;
 use mdle_runtime::Nanos;
-
-use crate::{Batch, Refusal};
 
 /// Follows what a plan does on a robot: for pictures, a live view, or a goal.
 pub trait Observer {
@@ -43,37 +39,6 @@ pub trait Observer {
     /// A sentence for the operator about what could not be written.
     fn finish(&mut self) -> Result<(), String> {
         Ok(())
-    }
-}
-
-/// The part of a target whose robot has an observer.
-pub struct Observation<R> {
-    /// Returns the observer.
-    pub observer: fn(&mut R) -> &mut dyn Observer,
-    /// Returns `true` if the robot shows its run on standard output itself, as with a live view: then the report waits
-    /// until the robot is stopped, and the robot leaves the screen when it is.
-    pub screen: fn(&ArgMatches) -> bool,
-    /// Gives the terminal back, if [`Observation::screen`] took it. Called on another thread when the program ends
-    /// while the robot's code hangs: it must neither wait nor panic.
-    pub leave_screen: fn(),
-    /// Returns the runs to be made instead of one, if these options ask for several: only robots that can be started
-    /// over have such options. No run has begun yet.
-    pub batch: fn(&ArgMatches, Duration) -> SeveralRuns<R>,
-}
-
-/// Runs to be made instead of one, if several were asked for; a bad option or a fault otherwise.
-pub type SeveralRuns<R> = Result<Option<Batch<R>>, Refusal>;
-
-impl<R> Observation<R> {
-    /// An observer without a screen, of one run at a time.
-    pub const fn by(observer: fn(&mut R) -> &mut dyn Observer) -> Self {
-        Self { observer, screen: |_| false, leave_screen: || {}, batch: |_, _| Ok(None) }
-    }
-}
-
-impl<R> fmt::Debug for Observation<R> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Observation").finish_non_exhaustive()
     }
 }
 

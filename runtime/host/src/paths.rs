@@ -8,31 +8,21 @@ mod text;
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use clap::{Arg, ArgMatches, Command, value_parser};
-use mdle_runtime::{MetersPerSecond, PathStore, Robot, Setpoint, StoredPath, Twist};
+use mdle_runtime::{PathStore, Setpoint, StoredPath, Twist};
 
 pub(crate) use record::Recorder;
 use text::{APART, Wrong};
 
 use crate::Refusal;
-use crate::arguments::Options;
-use crate::executable::TargetOptions;
 use crate::files::read_file;
 use crate::output_format::output_format;
+use crate::target_options::TargetOptions;
 
 /// Maximum size of a file that is read, in bytes: some eleven hours at ten rows a second.
 const LARGEST: u64 = 10_000_000;
-
-/// Functions and limits to replay and to record paths on a robot whose alphabet has the capability `paths`.
-pub struct Replays<R: Robot> {
-    /// Maximum forward or backward speed and turn rate of a path.
-    pub fastest: Twist,
-    /// Hands the robot what the plan replays, before the first exchange: from then on each output has it.
-    pub take: fn(&mut R, PathStore),
-    /// Returns the forward speed of the robot, by this output.
-    pub speed: fn(&R::Output) -> MetersPerSecond,
-}
 
 /// Adds the options of a target that replays paths.
 pub(crate) fn arguments(command: Command) -> Command {
@@ -59,11 +49,11 @@ pub(crate) fn recording(target: &TargetOptions, matches: &ArgMatches) -> Option<
 ///
 /// # Errors
 /// The turns are too long: the path could not be replayed.
-pub(crate) fn check_period(options: &Options) -> Result<(), Refusal> {
-    if options.path.is_none() || options.period <= APART {
+pub(crate) fn check_period(period: Duration) -> Result<(), Refusal> {
+    if period <= APART {
         return Ok(());
     }
-    let (apart, period) = (APART.as_secs_f64(), options.period.as_secs_f64());
+    let (apart, period) = (APART.as_secs_f64(), period.as_secs_f64());
     let sentence = format!("--record-path: a path has a row every {apart} s at least, and a turn takes {period} s");
     Err(Refusal::Usage(format!("{sentence}; choose a shorter --period")))
 }

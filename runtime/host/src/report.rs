@@ -1,7 +1,6 @@
 //! Report of a run on standard output: a line for each transition, and at the end why the plan is over. See
 //! docs/src/reference/interfaces.md, 6.2.
 
-use std::fmt;
 use std::io::{self, Write};
 
 use mdle_runtime::trace::COMPLETED;
@@ -10,6 +9,7 @@ use mdle_runtime::{Cause, Measured, Nanos, Printable, Transition};
 use crate::cause::{CauseText, place};
 use crate::passes::Passes;
 use crate::position::Texts;
+use crate::rounded::Clocked;
 use crate::supervised::Supervised;
 use crate::transitions::{Operand, Transitions};
 use crate::{Intervention, Judgement, Verdict};
@@ -215,39 +215,5 @@ impl Over {
             bracket: transition.scope,
             numbers,
         }
-    }
-}
-
-/// A time to the millisecond.
-struct Clocked(Nanos);
-
-impl fmt::Display for Clocked {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} s", rounded(self.0.0))
-    }
-}
-
-/// Nanoseconds as seconds, or nanometres as metres: to the thousandth, with at least one decimal.
-pub(crate) fn rounded(nanos: u64) -> String {
-    let thousandths = nanos / 1_000_000 + u64::from(nanos % 1_000_000 >= 500_000);
-    let text = format!("{}.{:03}", thousandths / 1000, thousandths % 1000);
-    let short = text.trim_end_matches('0');
-    if short.ends_with('.') { format!("{short}0") } else { short.to_owned() }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn times_are_rounded_to_milliseconds() {
-        let shown = |nanos| Clocked(Nanos(nanos)).to_string();
-        assert_eq!(shown(0), "0.0 s");
-        assert_eq!(shown(12_300_000_000), "12.3 s");
-        assert_eq!(shown(62_500_000), "0.063 s");
-        assert_eq!(shown(100_000_000_000), "100.0 s");
-        assert_eq!(shown(999_499_999), "0.999 s");
-        assert_eq!(shown(999_500_000), "1.0 s");
-        assert_eq!(shown(u64::MAX), "18446744073.71 s");
     }
 }

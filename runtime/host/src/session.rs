@@ -10,12 +10,11 @@ use clap::error::{ContextKind, ContextValue};
 use mdle_runtime::{PathStore, PrintableLines};
 
 use crate::arguments::{self, Options};
-use crate::batch::{self, Runs, Terms};
 use crate::call::Call;
 use crate::clock::{Clock, Instants};
 use crate::cycle::Limits;
 use crate::drive::Drive;
-use crate::executable::{Executable, TargetOptions};
+use crate::executable::Executable;
 use crate::held_report::Held;
 use crate::log::{Log, Untouched};
 use crate::paths::{self, Recorder};
@@ -23,8 +22,10 @@ use crate::progress::Progress;
 use crate::report::Report;
 use crate::required::Required;
 use crate::run_end::{self, RunEnd, RunFault, say};
+use crate::runs::{self, Runs, Terms};
 use crate::safety::{Panicked, shielded};
 use crate::signals::Signals;
+use crate::target_options::TargetOptions;
 use crate::turns::{self, Witnesses};
 use crate::{NamedFile, Pace, Program, Refusal, Time, named_file, way_out};
 
@@ -228,7 +229,7 @@ fn several<'e>(
     seen: Option<Box<dyn FnMut() -> Duration + 'e>>,
 ) -> u8 {
     let progress = seen.map(|now| Progress::new(&mut *err, now));
-    let (status, unwritten) = batch::run(batch, terms, out, progress);
+    let (status, unwritten) = runs::run(batch, terms, out, progress);
     if let Some(signal) = terms.signals.caught() {
         RunEnd::Signal(signal).tell(true, err);
     }
@@ -293,7 +294,9 @@ fn ready<'p>(
         named_file::check(named_files(&target, matches, options, plan))?;
         let log = untouched("run log", options.log.as_deref())?;
         let path = untouched("path", options.path.as_deref())?;
-        paths::check_period(options)?;
+        if options.path.is_some() {
+            paths::check_period(options.period)?;
+        }
         // From here on a signal must not end the program before the robot was stopped.
         signals.robot_runs(time);
         let drive = executable.connect(matches, options.period, &signals.stop_request(), store)?;

@@ -7,8 +7,8 @@ use std::time::Duration;
 use mdle_runtime::Nanos;
 use mdle_runtime::trace::{Json, Seconds};
 
-use crate::batch::{Done, Outcome};
 use crate::call::quoted;
+use crate::outcome::{Done, Outcome};
 use crate::report::Over;
 use crate::run_end;
 

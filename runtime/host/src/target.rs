@@ -5,7 +5,7 @@ use std::time::Duration;
 use clap::{ArgMatches, Command};
 use mdle_runtime::Robot;
 
-use crate::{NamedFile, Observation, Replays, StopRequest};
+use crate::{NamedFile, Observation, Refusal, Replays, StopRequest, Time};
 
 /// A robot that executables are built for; implemented once in each target crate. A driver needs no more than a
 /// [`Robot`] and [`Target::connect`].
@@ -58,34 +58,4 @@ pub trait Target {
     fn answer(_matches: &ArgMatches) -> Result<Option<String>, Refusal> {
         Ok(None)
     }
-}
-
-/// Time of a robot: real or stepped.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Time {
-    /// Time of the wall clock, read after each exchange.
-    Wall,
-    /// Turn `k` is at `k` periods exactly, independent of the wall clock: a simulated world.
-    Stepped(Pace),
-}
-
-/// Pace of stepped time.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Pace {
-    /// A multiple of the wall clock's speed; positive and finite.
-    Times(f64),
-    /// The fastest pace possible.
-    Max,
-}
-
-/// Why a robot could not be opened.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Refusal {
-    /// An option, a world or a start pose is no good.
-    Usage(String),
-    /// The robot does not answer, or answers that it cannot run.
-    Fault(String),
-    /// The run was asked to end while the robot was opened. The robot was stopped; if not, a sentence with the reason
-    /// (exit status 3).
-    Ended(Result<(), String>),
 }

@@ -9,13 +9,13 @@ use mdle_runtime::{Cause, Robot};
 
 use super::plan::ToyPlan;
 use super::toy::Sensed;
-use crate::batch::{self, Batch, Runs, Terms};
 use crate::cycle::Limits;
 use crate::drive::PilotOnRobot;
 use crate::pilot::PlanAlone;
 use crate::required::{self, Required};
+use crate::runs::{self, Runs, Terms};
 use crate::signals::{Signal, Signals};
-use crate::{Judgement, Observer};
+use crate::{Batch, Judgement, Observer};
 
 /// A robot whose run is decided by its seed: the plan's outermost interrupt fires in turn `seed`, if ever.
 struct Seeded {
@@ -105,7 +105,7 @@ impl Several {
         let period = Duration::from_millis(100);
         let terms = Terms { period, limits, signals, program: r"'./it'\''s'", required: &required };
         let mut out = Vec::new();
-        let (status, unwritten) = batch::run(&runs, &terms, &mut out, None);
+        let (status, unwritten) = runs::run(&runs, &terms, &mut out, None);
         assert!(unwritten.is_none());
         (status, String::from_utf8(out).unwrap())
     }

@@ -1,0 +1,39 @@
+//! The functions by which a target lets its runs be observed, and started over.
+
+use std::fmt;
+use std::time::Duration;
+
+use clap::ArgMatches;
+
+use crate::{Batch, Observer, Refusal};
+
+/// The part of a target whose robot has an observer.
+pub struct Observation<R> {
+    /// Returns the observer.
+    pub observer: fn(&mut R) -> &mut dyn Observer,
+    /// Returns `true` if the robot shows its run on standard output itself, as with a live view: then the report waits
+    /// until the robot is stopped, and the robot leaves the screen when it is.
+    pub screen: fn(&ArgMatches) -> bool,
+    /// Gives the terminal back, if [`Observation::screen`] took it. Called on another thread when the program ends
+    /// while the robot's code hangs: it must neither wait nor panic.
+    pub leave_screen: fn(),
+    /// Returns the runs to be made instead of one, if these options ask for several: only robots that can be started
+    /// over have such options. No run has begun yet.
+    pub batch: fn(&ArgMatches, Duration) -> SeveralRuns<R>,
+}
+
+/// Runs to be made instead of one, if several were asked for; a bad option or a fault otherwise.
+pub type SeveralRuns<R> = Result<Option<Batch<R>>, Refusal>;
+
+impl<R> Observation<R> {
+    /// An observer without a screen, of one run at a time.
+    pub const fn by(observer: fn(&mut R) -> &mut dyn Observer) -> Self {
+        Self { observer, screen: |_| false, leave_screen: || {}, batch: |_, _| Ok(None) }
+    }
+}
+
+impl<R> fmt::Debug for Observation<R> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Observation").finish_non_exhaustive()
+    }
+}

@@ -1,0 +1,203 @@
+//! Several runs of one plan, by robots that differ in a seed: made by several threads, reported in the order of the
+//! seeds.
+//!
+//! A run has the same result on every thread and beside any other runs: each has a robot, a clock and a plan
+//! of its own.
+
+use std::io::Write;
+use std::num::{NonZeroU64, NonZeroUsize};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Sender, channel};
+use std::thread;
+use std::time::Duration;
+
+use mdle_runtime::{Nanos, PrintableLines};
+
+use crate::clock::{Clock, Instants};
+use crate::cycle::Limits;
+use crate::drive::Drive;
+use crate::outcome::{Done, Outcome};
+use crate::progress::Progress;
+use crate::report::Report;
+use crate::required::Required;
+use crate::run_end::RunEnd;
+use crate::safety::{Panicked, shielded};
+use crate::signals::Signals;
+use crate::summary::Summary;
+use crate::turns::{self, Witnesses};
+use crate::{Batch, Judgement, Pace, Time};
+
+/// Timeout of runs that no option limits: no batch shall go on for ever.
+const TIMEOUT: Duration = Duration::from_secs(3600);
+
+/// The runs of a [`Batch`], without the type of its robots.
+pub(crate) struct Runs<'p> {
+    first: u64,
+    runs: NonZeroU64,
+    jobs: NonZeroUsize,
+    json: bool,
+    /// Makes the robot of a seed, with the plan that drives it, or returns why that failed.
+    drive: Box<dyn Fn(u64) -> Prepared<'p> + Send + Sync + 'p>,
+    alone: Box<dyn Fn(u64) -> Vec<String> + Send + Sync>,
+}
+
+/// A robot with its plan, before the first exchange, or why there is none.
+pub(crate) type Prepared<'p> = Result<Box<dyn Drive + 'p>, String>;
+
+impl<'p> Runs<'p> {
+    /// Returns the runs of `batch`, in which `drive` gives each robot its pilot.
+    pub(crate) fn of<R: 'p>(batch: Batch<R>, drive: impl Fn(R) -> Prepared<'p> + Send + Sync + 'p) -> Self {
+        let Batch { first, runs, jobs, json, robot, alone } = batch;
+        Self { first, runs, jobs, json, drive: Box::new(move |seed| robot(seed).and_then(&drive)), alone }
+    }
+}
+
+/// Settings that all runs share.
+pub(crate) struct Terms<'a> {
+    pub(crate) period: Duration,
+    pub(crate) limits: Limits,
+    pub(crate) signals: &'a Signals,
+    /// The words by which the program was called, as a shell takes them.
+    pub(crate) program: &'a str,
+    /// The causes by which the plan must end.
+    pub(crate) required: &'a Required,
+}
+
+impl Terms<'_> {
+    /// The timeout of runs that no option limits.
+    fn by_default(&self) -> Option<Duration> {
+        (self.limits.timeout.is_none() && self.limits.turns.is_none()).then_some(TIMEOUT)
+    }
+}
+
+/// Makes the runs and reports them; returns the exit status, and the error if `out` could not be written.
+pub(crate) fn run(
+    batch: &Runs<'_>,
+    terms: &Terms<'_>,
+    out: &mut dyn Write,
+    mut progress: Option<Progress<'_>>,
+) -> (u8, Option<std::io::Error>) {
+    let mut runs = Vec::new();
+    let next = AtomicU64::new(0);
+    thread::scope(|scope| {
+        let (sender, done) = channel();
+        let jobs = batch.jobs.get().min(usize::try_from(batch.runs.get()).unwrap_or(usize::MAX));
+        for _ in 0..jobs {
+            let sender = sender.clone();
+            scope.spawn(|| work(batch, terms, &next, sender));
+        }
+        drop(sender);
+        for run in done {
+            runs.push(run);
+            if let Some(progress) = &mut progress {
+                progress.runs(runs.len() as u64, batch.runs.get());
+            }
+        }
+    });
+    drop(progress);
+    runs.sort_by_key(|run: &Done| run.seed.wrapping_sub(batch.first));
+    let summary = Summary {
+        runs: &runs,
+        asked: batch.runs.get(),
+        first: batch.first,
+        alone: &*batch.alone,
+        timeout: terms.by_default(),
+        program: terms.program,
+    };
+    let written =
+        if batch.json { writeln!(out, "{}", summary.json()) } else { write!(out, "{}", PrintableLines(&summary)) };
+    let status = match terms.signals.caught() {
+        Some(signal) => 128 + signal.number(),
+        None => summary.status(),
+    };
+    (status, written.and_then(|()| out.flush()).err())
+}
+
+/// Makes runs as long as there are some to be made, and no signal comes.
+fn work(batch: &Runs<'_>, terms: &Terms<'_>, next: &AtomicU64, done: Sender<Done>) {
+    loop {
+        let number = next.fetch_add(1, Ordering::Relaxed);
+        if number >= batch.runs.get() || terms.signals.caught().is_some() {
+            return;
+        }
+        let seed = batch.first.wrapping_add(number);
+        // The batch listens until all threads have ended.
+        let Some(run) = one(batch, seed, terms) else { return };
+        let _ = done.send(run);
+    }
+}
+
+/// Performs the run of a seed; `None` if a signal cut it short.
+fn one(batch: &Runs<'_>, seed: u64, terms: &Terms<'_>) -> Option<Done> {
+    let mut run = Done { seed, outcome: Outcome::Ended, t: Nanos::ZERO, over: None, contacts: 0 };
+    let mut drive = match shielded(|| (batch.drive)(seed)).unwrap_or_else(panicked) {
+        Ok(drive) => drive,
+        Err(sentence) => return Some(Done { outcome: Outcome::Failed(sentence), ..run }),
+    };
+    let mut clock = Clock::begin(StoppedClock, Time::Stepped(Pace::Max), terms.period, None);
+    let mut nobody = std::io::sink();
+    let mut over = None;
+    let limits = Limits { timeout: terms.limits.timeout.or(terms.by_default()), ..terms.limits };
+    let ending = shielded(|| {
+        let mut report = Report::new(&mut nobody, false);
+        let mut witnesses = Witnesses { report: &mut report, log: None, path: None, progress: None, err: None };
+        let ending = turns::run(&mut *drive, limits, &mut clock, terms.signals, &mut witnesses);
+        over = witnesses.report.over().cloned();
+        ending
+    });
+    run.t = clock.taken();
+    let stopped = shielded(|| {
+        if ending.as_ref().is_ok_and(RunEnd::robot_listens) {
+            let _ = drive.release();
+        }
+        drive.stop()
+    });
+    let failure = stopped.unwrap_or_else(panicked).err();
+    run.outcome = match ending {
+        Ok(RunEnd::Signal(_)) => return None,
+        Err(panic) => Outcome::Failed(panicked::<()>(panic).err().unwrap_or_default()),
+        Ok(
+            RunEnd::Unstarted(fault)
+            | RunEnd::Robot(fault)
+            | RunEnd::Unstopped(fault)
+            | RunEnd::Log(fault)
+            | RunEnd::Overrun(fault)
+            | RunEnd::Pilot(fault)
+            | RunEnd::Bug(fault),
+        ) => Outcome::Failed(fault),
+        Ok(RunEnd::Safety(rule)) => Outcome::Failed(format!("the safety rules ended it: {rule}")),
+        Ok(RunEnd::Quit) => Outcome::Failed("it was asked to end".to_owned()),
+        Ok(RunEnd::Suspended { .. }) => Outcome::Failed("it went without a command".to_owned()),
+        Ok(_) if failure.is_some() => Outcome::Failed(failure.unwrap_or_default()),
+        Ok(RunEnd::Timeout(_) | RunEnd::Turns(_)) => Outcome::TimedOut,
+        Ok(RunEnd::Over | RunEnd::Otherwise(_)) => {
+            run.over = over;
+            match shielded(|| Ok(drive.observer().and_then(|observer| observer.judged()))).unwrap_or_else(panicked) {
+                Err(panic) => Outcome::Failed(panic),
+                Ok(_) if run.over.as_ref().is_some_and(|over| !terms.required.allows(over)) => Outcome::Otherwise,
+                Ok(None) => Outcome::Ended,
+                Ok(Some(Judgement::Arrived)) => Outcome::Arrived,
+                Ok(Some(Judgement::Bumped)) => Outcome::Bumped,
+                Ok(Some(Judgement::Astray(place))) => Outcome::Astray(place),
+            }
+        }
+    };
+    run.contacts = drive.observer().map_or(0, |observer| observer.contacts());
+    Some(run)
+}
+
+fn panicked<T>(Panicked(message): Panicked) -> Result<T, String> {
+    Err(format!("a panic, which is a bug: {message}"))
+}
+
+/// Clock of a batch, whose time never advances: runs are made as fast as possible.
+#[derive(Debug)]
+struct StoppedClock;
+
+impl Instants for StoppedClock {
+    fn now(&mut self) -> Duration {
+        Duration::ZERO
+    }
+
+    fn sleep(&mut self, _: Duration) {}
+}
