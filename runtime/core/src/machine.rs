@@ -141,6 +141,13 @@ impl<P: Plan> Machine<P> {
         (self.cursor.state(fsm), scope)
     }
 
+    /// Makes the law of the current atom anew, for a plan that goes on after another plan has driven the robot.
+    pub fn reenter(&mut self, y: &P::Output, t: Nanos) {
+        if !self.is_over() {
+            self.plan.enter(self.cursor.atom(), y, self.cursor.begins(Begin { now: t, frame: self.frame }));
+        }
+    }
+
     /// Returns `true` if the plan is over.
     pub fn is_over(&self) -> bool {
         self.cursor.atom() as usize >= self.plan.fsm().atoms.len()
