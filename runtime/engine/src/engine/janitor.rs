@@ -1,20 +1,30 @@
-//! A thread that drops what the control thread no longer needs: large plans, and modules, whose code runs then.
+//! A thread of the process that drops what the control thread no longer needs: large plans, and modules, whose code
+//! runs then.
 
 use std::any::Any;
 use std::io;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{Sender, channel};
+use std::sync::{Mutex, PoisonError};
 use std::thread;
 
-/// The thread; it ends once this value is dropped, and everything before it.
+/// Where the thread takes what it is to drop.
+#[derive(Debug, Clone)]
 pub(crate) struct Janitor(Sender<Box<dyn Any + Send>>);
 
+/// The janitor, once it is needed.
+static JANITOR: Mutex<Option<Janitor>> = Mutex::new(None);
+
 impl Janitor {
-    /// Starts the thread.
+    /// Returns the janitor; the first call starts the thread.
     ///
     /// # Errors
     /// The system gives no thread.
-    pub(crate) fn new() -> io::Result<Self> {
+    pub(crate) fn get() -> io::Result<Self> {
+        let mut janitor = JANITOR.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(janitor) = &*janitor {
+            return Ok(janitor.clone());
+        }
         let (sender, waste) = channel();
         let drop_all = move || {
             for thing in waste {
@@ -23,7 +33,7 @@ impl Janitor {
             }
         };
         thread::Builder::new().name("mdle janitor".to_owned()).spawn(drop_all)?;
-        Ok(Self(sender))
+        Ok(janitor.insert(Self(sender)).clone())
     }
 
     /// Drops a value on the janitor's thread, soon.

@@ -95,6 +95,11 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         }
     }
 
+    /// Drops values on another thread, soon.
+    pub(crate) fn drop_later(&self, things: impl Iterator<Item: Send + 'static>) {
+        things.for_each(|thing| self.janitor.drop_later(thing));
+    }
+
     /// Orders the modules by priority, then by cost, the longest first.
     pub(super) fn reorder(&mut self) {
         let Self { loaded, order, .. } = self;

@@ -1,0 +1,112 @@
+//! The turn of a plan on whatever thread makes it: all that the turn needs goes there, and comes back.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use mdle_host::Transitions;
+use mdle_runtime::{Alphabet, Nanos, Turn};
+
+use super::running::Running;
+use super::{EngineAlphabet, When};
+use crate::module::{self, Fault, Module, panicked};
+
+/// The turn of a plan, with the plan that may follow in the same turn.
+pub(crate) struct Flight<A: Alphabet> {
+    pub(crate) current: Running<A>,
+    /// The plan that takes over in this turn, if what it waits for happens.
+    pub(crate) next: Option<(Running<A>, When)>,
+    /// Transitions of the current plan.
+    pub(crate) transitions: Transitions,
+    /// Result of the turn.
+    pub(crate) turn: Option<Turn<A::Input>>,
+    /// Time of the turn.
+    pub(crate) at: Nanos,
+}
+
+/// Place where the control thread and the thread of the plan meet. It is never locked while code of a plan runs, so that
+/// a plan that hangs keeps its own turn and nothing else.
+pub(crate) struct Desk<A: Alphabet>(Mutex<OnDesk<A>>);
+
+struct OnDesk<A: Alphabet> {
+    flight: Option<Box<Flight<A>>>,
+    /// The plan that was replaced in this turn.
+    replaced: Option<Running<A>>,
+    /// Message of a panic in this turn.
+    panic: Option<String>,
+}
+
+/// A turn that is back.
+pub(crate) struct Landed<A: Alphabet> {
+    pub(crate) flight: Option<Box<Flight<A>>>,
+    pub(crate) replaced: Option<Running<A>>,
+    pub(crate) panic: Option<String>,
+}
+
+impl<A: Alphabet> Default for Desk<A> {
+    fn default() -> Self {
+        Self(Mutex::new(OnDesk { flight: None, replaced: None, panic: None }))
+    }
+}
+
+impl<A: Alphabet> Desk<A> {
+    fn lock(&self) -> MutexGuard<'_, OnDesk<A>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Lays a turn down before the threads are called.
+    pub(crate) fn lay(&self, flight: Box<Flight<A>>) {
+        self.lock().flight = Some(flight);
+    }
+
+    /// Takes what there is after the turn.
+    pub(crate) fn take(&self) -> Landed<A> {
+        let mut desk = self.lock();
+        Landed { flight: desk.flight.take(), replaced: desk.replaced.take(), panic: desk.panic.take() }
+    }
+}
+
+impl<A: EngineAlphabet> Flight<A> {
+    /// Returns the turns of a plan.
+    pub(crate) fn new(current: Running<A>) -> Box<Self> {
+        let transitions = Transitions::default();
+        Box::new(Self { current, next: None, transitions, turn: None, at: Nanos::ZERO })
+    }
+
+    /// Makes the turn. A plan that is replaced is laid on the desk before its successor runs, which may hang.
+    fn fly(&mut self, y: &A::Output, now: Nanos, desk: &Desk<A>) {
+        let turn = self.current.turn(y, now, &mut self.transitions);
+        let takes_over = match &self.next {
+            Some((_, When::Now)) => true,
+            Some((_, When::AtomEnds)) => !self.transitions.is_empty() || matches!(turn, Turn::Over),
+            Some((_, When::PlanEnds)) => matches!(turn, Turn::Over),
+            None => false,
+        };
+        self.turn = match self.next.take_if(|_| takes_over) {
+            Some((next, _)) => {
+                // The input of the turn is dropped, and the law that computed it has had no effect.
+                desk.lock().replaced = Some(std::mem::replace(&mut self.current, next));
+                self.transitions.clear();
+                Some(self.current.turn(y, now, &mut self.transitions))
+            }
+            None => Some(turn),
+        };
+    }
+}
+
+/// The module of the plans, which makes the turn that lies on the desk.
+pub(crate) struct PlanModule<A: Alphabet>(pub(crate) Arc<Desk<A>>);
+
+impl<A: EngineAlphabet> Module<A::Output> for PlanModule<A> {
+    fn turn(&mut self, turn: &mut module::Turn<'_, A::Output>) -> Result<(), Fault> {
+        let Self(desk) = self;
+        let Some(mut flight) = desk.lock().flight.take() else { return Ok(()) };
+        match catch_unwind(AssertUnwindSafe(|| {
+            flight.fly(turn.y, turn.now, desk);
+            flight
+        })) {
+            Ok(flight) => desk.lay(flight),
+            Err(payload) => desk.lock().panic = Some(panicked(payload)),
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,68 @@
+//! A plan that runs, or is about to, with its own clock.
+
+use mdle_compiler::load::LoadedPlan;
+use mdle_runtime::{Alphabet, Machine, Nanos, Turn, Watch};
+
+/// Alphabet of a robot whose plans an engine runs: its quarks move between threads.
+pub trait EngineAlphabet:
+    Alphabet<
+        Output: Clone + Send + Sync + 'static,
+        Input: Send + 'static,
+        Interrupt: Send + Sync,
+        Control: Send + Sync,
+        Law: Send,
+    > + 'static
+{
+}
+
+impl<A> EngineAlphabet for A
+where
+    A: Alphabet + 'static,
+    A::Output: Clone + Send + Sync + 'static,
+    A::Input: Send + 'static,
+    A::Interrupt: Send + Sync,
+    A::Control: Send + Sync,
+    A::Law: Send,
+{
+}
+
+/// A plan of the engine.
+pub(crate) struct Running<A: Alphabet> {
+    /// Number of the request that brought it.
+    pub(crate) number: u32,
+    /// The plan before its first turn.
+    ready: Option<LoadedPlan<A>>,
+    pub(crate) machine: Option<Machine<LoadedPlan<A>>>,
+    /// The engine's time at which the plan began, moved on by the time for which it was suspended.
+    pub(crate) zero: Nanos,
+    /// `true` if it was suspended before this turn.
+    is_back: bool,
+}
+
+impl<A: Alphabet> Running<A> {
+    /// Returns a plan before its first turn.
+    pub(crate) const fn new(number: u32, plan: LoadedPlan<A>) -> Self {
+        Self { number, ready: Some(plan), machine: None, zero: Nanos::ZERO, is_back: false }
+    }
+
+    /// Makes a turn at the engine's time `now`. The plan's time is zero in its first turn.
+    pub(crate) fn turn<W: Watch>(&mut self, y: &A::Output, now: Nanos, watch: &mut W) -> Turn<A::Input> {
+        if let Some(plan) = self.ready.take() {
+            self.zero = now;
+            self.machine = Some(Machine::begin(plan, y, Nanos::ZERO));
+        }
+        let Some(machine) = &mut self.machine else { return Turn::Over };
+        let t = now.since(self.zero);
+        if std::mem::take(&mut self.is_back) {
+            machine.reenter(y, t);
+        }
+        machine.turn(y, t, watch)
+    }
+
+    /// Lets the plan go on at `now` as if no time had passed since it was suspended. The law of its atom begins anew, as
+    /// the robot is somewhere else.
+    pub(crate) fn resume(&mut self, suspended: Nanos, now: Nanos) {
+        self.zero = Nanos(self.zero.0.saturating_add(now.since(suspended).0));
+        self.is_back = true;
+    }
+}
