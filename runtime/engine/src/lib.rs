@@ -8,14 +8,18 @@ mod attribute;
 mod board;
 mod engine;
 mod fork;
+mod library;
 mod module;
+mod plans;
 #[cfg(test)]
 mod tests;
 
 pub use attribute::{Attribute, AttributeKind, AttributeName, In, Out, Reading, Value};
 pub use board::{Board, Post};
-pub use engine::{Arrivals, End, Event, Modules, Service, Standing};
+pub use engine::{Arrivals, End, Engine, Event, Modules, PLAN, Service, Standing};
 pub use fork::Threads;
+pub use library::Library;
 pub use module::{
     About, Background, Candidate, Declare, Exchange, Fault, Module, Offer, Refusal, Relevance, Stopped, Turn,
 };
+pub use plans::{Compile, EngineAlphabet, NoTrial, PlanEvent, Plans, TRIAL, When};

@@ -4,9 +4,11 @@ mod event;
 mod janitor;
 mod loaded;
 mod modules;
+mod piloting;
 mod relevance;
 mod turns;
 
 pub use event::{Arrivals, End, Event};
 pub use loaded::Standing;
 pub use modules::{Modules, Service};
+pub use piloting::{Engine, PLAN};

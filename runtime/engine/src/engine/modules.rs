@@ -36,7 +36,7 @@ pub struct Modules<Y> {
     pub(super) order: Vec<usize>,
     pub(super) fork: Fork<Y>,
     pub(super) service: Service,
-    janitor: Janitor,
+    pub(super) janitor: Janitor,
     /// Places on the board that the plan reads, now or soon.
     pub(super) plan_reads: Vec<usize>,
     /// `true` if relevance has to be found anew.
@@ -61,7 +61,7 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
             order: Vec::new(),
             fork: Fork::new(threads)?,
             service,
-            janitor: Janitor::new()?,
+            janitor: Janitor::get()?,
             plan_reads: Vec::new(),
             has_changed: true,
             events: Vec::new(),
