@@ -15,7 +15,16 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("runtime/engine", &["mdle-runtime", "mdle-host", "mdle-compiler", "mdle-quantity"]),
     (
         "runtime/mdle",
-        &["mdle-runtime", "mdle-host", "mdle-compiler", "mdle-files", "mdle-sim", "mdle-scout", "mdle-atrv"],
+        &[
+            "mdle-runtime",
+            "mdle-host",
+            "mdle-engine",
+            "mdle-compiler",
+            "mdle-files",
+            "mdle-sim",
+            "mdle-scout",
+            "mdle-atrv",
+        ],
     ),
     ("runtime/serial", &["mdle-runtime", "mdle-host"]),
     ("atoms", &["mdle-runtime"]),
@@ -47,6 +56,7 @@ const PACKAGES: &[(&str, &[&str])] = &[
         &[
             "mdle-runtime",
             "mdle-host",
+            "mdle-engine",
             "mdle-atoms",
             "mdle-sim",
             "mdle-emulator",

@@ -1,4 +1,7 @@
-//! The program `mdle`: it compiles a plan, loads it, and runs it as an executable of `mdlec` would.
+//! The program `mdle`: it compiles a plan, loads it, and runs it as an executable of `mdlec` would, with modules beside
+//! it.
+//!
+//! A program with modules of its own calls [`main_with`].
 #![forbid(unsafe_code)]
 
 mod arguments;
@@ -9,11 +12,22 @@ mod targets;
 use std::process::ExitCode;
 
 use failure::Failure;
+use mdle_engine::Library;
+use mdle_runtime::Sensed;
 
 /// Runs the command line of this process. The exit status of a run is that of an executable; 1 means that the plan has
 /// errors, and 2 wrong usage or a file that cannot be read.
 #[must_use]
 pub fn main() -> ExitCode {
+    main_with(|_| ())
+}
+
+/// Runs the command line of this process, as [`main`] does, with the modules that `add` adds: each run loads them.
+#[must_use]
+pub fn main_with(add: impl FnOnce(&mut Library<Sensed>)) -> ExitCode {
+    let mut library = Library::new();
+    add(&mut library);
     let arguments = std::env::args_os().collect();
-    arguments::parse(arguments).and_then(run::run).unwrap_or_else(Failure::tell)
+    let run = |arguments| run::run(arguments, &library);
+    arguments::parse(arguments).and_then(run).unwrap_or_else(Failure::tell)
 }

@@ -4,18 +4,20 @@ use std::ffi::OsString;
 use std::process::ExitCode;
 
 use mdle_compiler::diagnostic::judged;
+use mdle_engine::Library;
 use mdle_files::{Input, InputError, Known, Settings, Target, read_plan};
 use mdle_host::{Call, Program};
+use mdle_runtime::Sensed;
 
 use crate::arguments::Run;
 use crate::failure::{self, Failure};
 use crate::targets::{self, Linked, Ready};
 
-/// Runs a plan; returns the exit status of the run.
+/// Runs a plan with these modules; returns the exit status of the run.
 ///
 /// # Errors
 /// The plan does not run.
-pub(crate) fn run(arguments: Run) -> Result<ExitCode, Failure> {
+pub(crate) fn run(arguments: Run, library: &Library<Sensed>) -> Result<ExitCode, Failure> {
     let settings = Settings::beside(&arguments.file)?;
     let name = settings.name_of_target(arguments.target.as_deref()).ok_or(InputError::NoTarget)?;
     let linked = targets::linked(&name).map_err(Failure::Usage)?;
@@ -33,7 +35,7 @@ pub(crate) fn run(arguments: Run) -> Result<ExitCode, Failure> {
     options.extend(arguments.options);
     let read = input.inputs(&target);
     drop(input);
-    Ok(ready.run(&plan, Call { words: arguments.words, options, read }))
+    Ok(ready.run(&plan, Call { words: arguments.words, options, read }, library))
 }
 
 /// Compiles the only plan to run and loads it; returns it with its name. Messages go to standard error.

@@ -6,9 +6,10 @@ use std::sync::Arc;
 use mdle_compiler::alphabet::did_you_mean;
 use mdle_compiler::fsm::Machine;
 use mdle_compiler::load::{self, LoadError, Loaded};
+use mdle_engine::{Engine, EngineAlphabet, Library};
 use mdle_files::{Input, Target};
 use mdle_host::{Call, Program};
-use mdle_runtime::{Alphabet, Robot};
+use mdle_runtime::{Alphabet, Robot, Sensed};
 
 /// A robot whose driver is part of this program.
 #[derive(Clone, Copy)]
@@ -26,8 +27,8 @@ type Load = fn(&Machine, &Input, &Target) -> Result<Box<dyn Ready>, LoadError>;
 
 /// A plan that is ready to run.
 pub(crate) trait Ready {
-    /// Runs the plan of this name.
-    fn run(&self, name: &str, call: Call) -> ExitCode;
+    /// Runs the plan of this name, with these modules.
+    fn run(&self, name: &str, call: Call, library: &Library<Sensed>) -> ExitCode;
 }
 
 /// The robots.
@@ -57,9 +58,8 @@ pub(crate) fn linked(name: &str) -> Result<Linked, String> {
 impl Linked {
     const fn new<T, A>() -> Self
     where
-        T: mdle_host::Target + 'static,
-        A: Alphabet<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input> + 'static,
-        Loaded<A>: Send + Sync,
+        T: mdle_host::Target<Robot: Robot<Output = Sensed>> + 'static,
+        A: EngineAlphabet<Output = Sensed, Input = <T::Robot as Robot>::Input>,
     {
         Self { name: T::NAME, load: load::<T, A>, check: mdle_host::check_options::<T> }
     }
@@ -73,20 +73,19 @@ struct PlanFor<T, A: Alphabet> {
 
 impl<T, A> Ready for PlanFor<T, A>
 where
-    T: mdle_host::Target,
-    A: Alphabet<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>,
-    Loaded<A>: Send + Sync,
+    T: mdle_host::Target<Robot: Robot<Output = Sensed>>,
+    A: EngineAlphabet<Output = Sensed, Input = <T::Robot as Robot>::Input>,
 {
-    fn run(&self, name: &str, call: Call) -> ExitCode {
-        mdle_host::run_called::<T, _>(name, call, || self.loaded.plan())
+    fn run(&self, name: &str, call: Call, library: &Library<Sensed>) -> ExitCode {
+        let engine = |terms| Engine::<A>::new(self.loaded.plan(), library, terms);
+        mdle_host::run_piloted::<T, _>(name, call, || self.loaded.plan(), engine)
     }
 }
 
 fn load<T, A>(machine: &Machine, input: &Input, target: &Target) -> Result<Box<dyn Ready>, LoadError>
 where
-    T: mdle_host::Target + 'static,
-    A: Alphabet<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input> + 'static,
-    Loaded<A>: Send + Sync,
+    T: mdle_host::Target<Robot: Robot<Output = Sensed>> + 'static,
+    A: EngineAlphabet<Output = Sensed, Input = <T::Robot as Robot>::Input>,
 {
     let loaded = Arc::new(load::load::<A>(machine, &input.sources, &target.alphabet)?);
     Ok(Box::new(PlanFor::<T, A> { loaded, target: std::marker::PhantomData }))
