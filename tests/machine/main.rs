@@ -2,6 +2,7 @@
 
 mod analysis;
 mod differential;
+mod engine;
 mod fsm_files;
 mod golden;
 mod loaded;

@@ -1,0 +1,176 @@
+//! Plans that are replaced while the robot runs: when the new one takes over, trial, and the way back.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use mdle_compiler::load::{self, Loaded};
+use mdle_engine::{Engine, Library, NoTrial, PlanEvent, Plans, When};
+use mdle_host::{Moment, Pace, Pilot, RunTerms, Time, Transitions};
+use mdle_runtime::{Nanos, Turn};
+use mdle_scripted::alphabet::Alphabet;
+use mdle_scripted::{INTERRUPTS, LAWS, Output};
+use mdle_tests::pipeline::{compile, scripted, sources};
+
+/// Loads the plan `Main` of a text.
+fn loaded(text: &str) -> Result<Arc<Loaded<Alphabet>>, String> {
+    let machine = compile(text)?.machine;
+    load::load(&machine, &sources(text), scripted()).map(Arc::new).map_err(|error| error.to_string())
+}
+
+/// An engine in stepped time.
+struct Run {
+    engine: Engine<Alphabet>,
+    turns: u64,
+    journal: Vec<PlanEvent>,
+}
+
+const FIRST: &str = "{ Main (b) (Atom (a) seek) (Atom (d OR wait 1) climb) (Atom (e) idle) }";
+const SECOND: &str = "{ Main (c OR wait 5) (Atom (f) drift) }";
+
+impl Run {
+    fn of(text: &str) -> Self {
+        let terms = RunTerms { time: Time::Stepped(Pace::Max), period: Duration::from_millis(100) };
+        let engine = Engine::new(loaded(text).unwrap().plan(), &Library::new(), terms).unwrap();
+        Self { engine, turns: 0, journal: Vec::new() }
+    }
+
+    fn plans(&mut self) -> &mut Plans<Alphabet> {
+        self.engine.plans()
+    }
+
+    /// Makes a turn in which this interrupt fires, and returns the law that is applied: the time at which its atom began
+    /// by the clock of its plan, and the number of inputs that it has computed.
+    fn turn(&mut self, interrupt: &str) -> String {
+        let bit = INTERRUPTS.iter().position(|known| *known == interrupt);
+        let y = Output { fired: bit.map_or(0, |bit| 1 << bit), ..Output::default() };
+        let t = Nanos(self.turns * 100_000_000);
+        let moment = Moment { y: &y, t, number: self.turns };
+        let turn = self.engine.turn(moment, &mut Transitions::default()).unwrap();
+        self.turns += 1;
+        self.journal.extend(self.engine.plans().take_events());
+        match turn {
+            Turn::Law(input) => {
+                let law = LAWS[input.law.unwrap()];
+                format!("{} {law} since {} input {}", self.plans().number(), input.began.seconds(), input.computed)
+            }
+            Turn::Cut => "cut".to_owned(),
+            Turn::Over => "over".to_owned(),
+        }
+    }
+
+    /// Makes turns in which nothing fires.
+    fn turns(&mut self, count: u64) -> String {
+        (0..count).map(|_| self.turn("")).last().unwrap()
+    }
+}
+
+#[test]
+fn now_is_the_next_turn() {
+    let mut run = Run::of(FIRST);
+    assert_eq!(run.turns(3), "1 seek since 0 input 3");
+    let number = run.plans().replace(loaded(SECOND).unwrap().plan(), When::Now);
+    assert_eq!((run.turn(""), number), ("2 drift since 0 input 1".to_owned(), 2));
+    assert_eq!(run.engine.zero(), Nanos(300_000_000), "its time begins with it");
+    assert_eq!(run.turn(""), "2 drift since 0 input 2");
+}
+
+#[test]
+fn the_end_of_an_atom_is_the_first_turn_of_the_next_plan() {
+    let mut run = Run::of(FIRST);
+    run.turns(2);
+    run.plans().replace(loaded(SECOND).unwrap().plan(), When::AtomEnds);
+    assert_eq!(run.turns(2), "1 seek since 0 input 4");
+    assert_eq!(run.turn("a"), "2 drift since 0 input 1");
+    assert_eq!(run.journal, [PlanEvent::Armed(2), PlanEvent::Began(2)]);
+}
+
+#[test]
+fn the_end_of_a_plan_is_the_first_turn_of_the_next() {
+    let mut run = Run::of(FIRST);
+    run.plans().replace(loaded(SECOND).unwrap().plan(), When::PlanEnds);
+    assert_eq!([run.turn("a"), run.turn("")], ["1 climb since 0 input 1", "1 climb since 0 input 2"]);
+    assert_eq!(run.turn("b"), "2 drift since 0 input 1");
+    assert_eq!(run.turn("c"), "over");
+}
+
+#[test]
+fn a_plan_that_is_rolled_back_to_has_lost_no_time() {
+    let mut run = Run::of(FIRST);
+    run.turn("a");
+    assert_eq!(run.turns(3), "1 climb since 0 input 4");
+    run.plans().replace(loaded(SECOND).unwrap().plan(), When::Now);
+    assert_eq!(run.turns(20), "2 drift since 0 input 20");
+    run.plans().rollback("asked for").unwrap();
+    // The turn that it would have made at 0.4 s, with its law made anew.
+    assert_eq!(run.turn(""), "1 climb since 0.4 input 1");
+    assert_eq!(run.turns(5), "1 climb since 0.4 input 6");
+    // Its atom ends 1 s after it began.
+    assert_eq!(run.turn(""), "1 idle since 1 input 1");
+    assert_eq!(run.plans().rollback("again"), Err(NoTrial));
+    let back = PlanEvent::RolledBack { from: 2, to: 1, why: "asked for".to_owned() };
+    assert_eq!(run.journal, [PlanEvent::Armed(2), PlanEvent::Began(2), back]);
+}
+
+#[test]
+fn a_trial_ends_after_its_time() {
+    let mut run = Run::of(FIRST);
+    run.plans().set_trial(Nanos(500_000_000));
+    run.turn("");
+    run.plans().replace(loaded(SECOND).unwrap().plan(), When::Now);
+    run.turns(5);
+    assert_eq!(run.journal, [PlanEvent::Armed(2), PlanEvent::Began(2)]);
+    run.turn("");
+    assert_eq!(run.journal.last(), Some(&PlanEvent::Accepted(2)));
+    assert_eq!(run.plans().rollback("too late"), Err(NoTrial));
+}
+
+#[test]
+fn a_plan_can_replace_itself_in_every_turn() {
+    let mut run = Run::of(FIRST);
+    let plan = loaded(SECOND).unwrap();
+    for number in 2..50 {
+        run.plans().replace(plan.plan(), When::Now);
+        assert_eq!(run.turn(""), format!("{number} drift since 0 input 1"));
+    }
+}
+
+/// Makes turns until the compiler has answered.
+fn answer(run: &mut Run) -> PlanEvent {
+    loop {
+        run.turn("");
+        if let Some(answer) = run.journal.pop() {
+            return answer;
+        }
+        std::thread::yield_now();
+    }
+}
+
+#[test]
+fn a_text_is_compiled_beside_the_turns() {
+    let mut run = Run::of(FIRST);
+    run.plans().compile_with(Box::new(loaded)).unwrap();
+    let number = run.plans().swap("{ Main (a) (Atom (wiat 1) seek) }", When::Now);
+    let PlanEvent::Refused(2, diagnostics) = answer(&mut run) else { panic!("{:?}", run.journal) };
+    assert!(number == 2 && diagnostics.contains("there is no interrupt called `wiat`"), "{diagnostics}");
+    let now = Nanos(run.turns * 100_000_000).seconds();
+    assert_eq!(run.turn("a"), format!("1 climb since {now} input 1"), "the plan before goes on");
+    run.plans().swap(SECOND, When::Now);
+    assert_eq!(answer(&mut run), PlanEvent::Armed(3));
+    assert_eq!(run.turn(""), "3 drift since 0 input 1");
+}
+
+#[test]
+fn a_request_can_be_cancelled() {
+    let mut run = Run::of(FIRST);
+    run.turn("");
+    run.plans().replace(loaded(SECOND).unwrap().plan(), When::AtomEnds);
+    run.plans().cancel();
+    assert_eq!(run.turn("a"), "1 climb since 0.1 input 1");
+    assert_eq!(run.journal, [PlanEvent::Armed(2), PlanEvent::Cancelled(2)]);
+    // A newer request replaces an older one.
+    run.plans().replace(loaded(SECOND).unwrap().plan(), When::PlanEnds);
+    run.plans().replace(loaded(SECOND).unwrap().plan(), When::Now);
+    assert_eq!(run.turn(""), "4 drift since 0 input 1");
+}
