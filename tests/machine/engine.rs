@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use mdle_compiler::load::{self, Loaded};
 use mdle_engine::{Engine, Library, NoTrial, PlanEvent, Plans, When};
-use mdle_host::{Moment, Pace, Pilot, RunTerms, Time, Transitions};
+use mdle_host::{Moment, Pace, Pilot, RunTerms, StopRequest, Time, Transitions};
 use mdle_runtime::{Nanos, Turn};
 use mdle_scripted::alphabet::Alphabet;
 use mdle_scripted::{INTERRUPTS, LAWS, Output};
@@ -31,8 +31,12 @@ const SECOND: &str = "{ Main (c OR wait 5) (Atom (f) drift) }";
 
 impl Run {
     fn of(text: &str) -> Self {
-        let terms = RunTerms { time: Time::Stepped(Pace::Max), period: Duration::from_millis(100) };
-        let engine = Engine::new(loaded(text).unwrap().plan(), &Library::new(), terms).unwrap();
+        let terms = RunTerms {
+            time: Time::Stepped(Pace::Max),
+            period: Duration::from_millis(100),
+            request: StopRequest::default(),
+        };
+        let engine = Engine::new(loaded(text).unwrap().plan(), &Library::new(), &terms).unwrap();
         Self { engine, turns: 0, journal: Vec::new() }
     }
 

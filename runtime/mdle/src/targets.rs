@@ -8,7 +8,7 @@ use mdle_compiler::fsm::Machine;
 use mdle_compiler::load::{self, LoadError, Loaded};
 use mdle_engine::{Engine, EngineAlphabet, Library};
 use mdle_files::{Input, Target};
-use mdle_host::{Call, Program};
+use mdle_host::{Call, Program, RunTerms};
 use mdle_runtime::{Alphabet, Robot, Sensed};
 
 /// A robot whose driver is part of this program.
@@ -77,7 +77,7 @@ where
     A: EngineAlphabet<Output = Sensed, Input = <T::Robot as Robot>::Input>,
 {
     fn run(&self, name: &str, call: Call, library: &Library<Sensed>) -> ExitCode {
-        let engine = |terms| Engine::<A>::new(self.loaded.plan(), library, terms);
+        let engine = |terms: &RunTerms| Engine::<A>::new(self.loaded.plan(), library, terms);
         mdle_host::run_piloted::<T, _>(name, call, || self.loaded.plan(), engine)
     }
 }

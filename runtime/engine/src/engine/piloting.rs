@@ -33,7 +33,11 @@ impl<A: EngineAlphabet> Engine<A> {
     ///
     /// # Errors
     /// A module is refused (exit status 2), or the system gives no threads.
-    pub fn new(plan: LoadedPlan<A>, library: &Library<A::Output>, terms: RunTerms) -> Result<Self, mdle_host::Refusal> {
+    pub fn new(
+        plan: LoadedPlan<A>,
+        library: &Library<A::Output>,
+        terms: &RunTerms,
+    ) -> Result<Self, mdle_host::Refusal> {
         let (threads, service, patience) = match terms.time {
             Time::Wall => (Threads::Workers(WORKERS, claim_for_worker), Service::WhenReady, Some(terms.period)),
             Time::Stepped(_) => (Threads::Sequential, Service::WhenDue, None),
@@ -91,18 +95,23 @@ impl<A: EngineAlphabet> Engine<A> {
 
     /// Makes the turn break, as far as it follows from the turn.
     fn turn_break(&mut self) -> Result<(), PilotFault> {
-        let mut result = Ok(());
+        let (mut result, mut is_given_up) = (Ok(()), false);
         for event in self.modules.events() {
             match event {
                 Event::GivenUp(name) if &**name == PLAN => {
                     let sentence = "the plan has not ended its turn";
                     result = self.plans.rollback(sentence).map_err(|_| PilotFault::Stopped(sentence.to_owned()));
+                    is_given_up = true;
                 }
                 Event::Loaded(_) | Event::Unloaded(_) | Event::Started(_) | Event::Stopped(_) => {}
                 Event::Failed(..) | Event::Late(_) | Event::GivenUp(_) | Event::Ended(_) | Event::NotANumber(_) => {
                     self.messages.push(format!("warning: {event}"));
                 }
             }
+        }
+        if is_given_up && result.is_ok() {
+            // The plan before goes on, with a module of its own.
+            self.load_plan_module();
         }
         result
     }
@@ -121,16 +130,24 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
         self.modules.turn(y.clone(), number, t, deadline);
         let turn = self.land(t, transitions)?;
         self.modules.settle();
-        let had_plan = self.plans.machine().is_some();
         self.turn_break()?;
-        if !had_plan && self.plans.machine().is_some() {
-            // The plan before one that hangs goes on, with a module of its own.
-            self.load_plan_module();
-        }
         self.plans.arm();
         self.modules.drop_later(self.plans.take_spent());
         self.modules.prepare();
         Ok(turn)
+    }
+
+    fn divert(&mut self, plan: LoadedPlan<A>, _: Moment<'_, A::Output>) {
+        let was_late = self.plans.is_late();
+        self.plans.divert(plan);
+        if was_late {
+            self.load_plan_module();
+            self.modules.prepare();
+        }
+    }
+
+    fn plan_number(&self) -> u64 {
+        self.plans.number().into()
     }
 
     fn machine(&self) -> Option<&Machine<LoadedPlan<A>>> {

@@ -182,11 +182,7 @@ impl<A: EngineAlphabet> Plans<A> {
         let from = std::mem::replace(&mut self.driving, to);
         match &mut self.current {
             Some(flight) => self.spent.push(std::mem::replace(&mut flight.current, old)),
-            // The plan on trial panicked, or hangs: its thread keeps it.
-            None => {
-                self.current = Some(Flight::new(old));
-                self.desk = Arc::default();
-            }
+            None => self.leave_behind(old),
         }
         self.events.push(PlanEvent::RolledBack { from, to, why: why.to_owned() });
         Ok(())
@@ -195,6 +191,32 @@ impl<A: EngineAlphabet> Plans<A> {
     /// Takes the events since the last call, in order.
     pub fn take_events(&mut self) -> impl Iterator<Item = PlanEvent> {
         self.events.drain(..)
+    }
+
+    /// Replaces the plan that drives at once and without a trial, as for a supervisor; a plan that is armed is cancelled.
+    pub(crate) fn divert(&mut self, plan: LoadedPlan<A>) {
+        self.cancel();
+        self.last = self.last.saturating_add(1);
+        self.driving = self.last;
+        let plan = Running::new(self.last, plan);
+        match &mut self.current {
+            Some(flight) => self.spent.push(std::mem::replace(&mut flight.current, plan)),
+            None => self.leave_behind(plan),
+        }
+        self.spent.extend(self.suspended.take().map(|(old, _)| old));
+        self.resumes = None;
+        self.events.push(PlanEvent::Began(self.last));
+    }
+
+    /// Goes on with this plan; the thread of the plan that drove panicked or hangs, and keeps it.
+    fn leave_behind(&mut self, plan: Running<A>) {
+        self.current = Some(Flight::new(plan));
+        self.desk = Arc::default();
+    }
+
+    /// Returns `true` while the turn of the plan that drives is late, or after it has panicked.
+    pub(crate) fn is_late(&self) -> bool {
+        self.current.is_none()
     }
 
     /// Returns the number of the plan that drives.
