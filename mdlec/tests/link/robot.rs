@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use mdlec::link::{Built, Cache, LinkError, Package, Progress, TargetCrate, build};
 
@@ -22,11 +23,18 @@ mdle-runtime = "0.1"
 mdle-host = "0.1"
 "#;
 
+/// Returns the folder of what cargo has built in a cache.
+pub(crate) fn target(cache: &Cache) -> PathBuf {
+    cache.folder().join("target")
+}
+
 /// A target crate by path in a folder of its own.
 pub(crate) struct Robot {
     pub(crate) folder: PathBuf,
     /// Outlives the tests: only the first run compiles the runtime.
     pub(crate) cache: Cache,
+    /// The right to use the cache, and to damage it: one test after the other.
+    _turn: MutexGuard<'static, ()>,
 }
 
 impl Robot {
@@ -36,11 +44,29 @@ impl Robot {
         fs::create_dir_all(folder.join("rover/src")).unwrap();
         fs::write(folder.join("rover/Cargo.toml"), manifest).unwrap();
         fs::write(folder.join("rover/src/lib.rs"), rust).unwrap();
-        Self { folder, cache: Cache::at(&tests.join("cache")).unwrap() }
+        static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+        // A test that failed is no reason for the next to fail.
+        let turn = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
+        let cache = Cache::at(&tests.join("cache")).unwrap();
+        // The first build, of all libraries, mends a cache: that costs no other build of all libraries.
+        if !target(&cache).exists() {
+            fs::write(target(&cache), "garbage").unwrap();
+        }
+        Self { folder, cache, _turn: turn }
     }
 
     /// Builds `rust`, as if emitted from `plan`; the executable is beside the plan.
     pub(crate) fn build(&self, plan: &str, rust: &str) -> Result<(Built, PathBuf), LinkError> {
+        self.build_with(plan, rust, &mut |_| {})
+    }
+
+    /// Builds like [`Robot::build`], and reports the progress.
+    pub(crate) fn build_with(
+        &self,
+        plan: &str,
+        rust: &str,
+        progress: &mut dyn FnMut(Progress),
+    ) -> Result<(Built, PathBuf), LinkError> {
         let plan_file = self.folder.join(plan);
         fs::create_dir_all(plan_file.parent().unwrap()).unwrap();
         fs::write(&plan_file, "{ Nap (bumper) (Atom (null) stop) }").unwrap();
@@ -56,7 +82,7 @@ impl Robot {
             target: &target,
         };
         let output = plan_file.with_extension("");
-        let built = build(&self.cache, &package, &output, &mut |_: Progress| {})?;
+        let built = build(&self.cache, &package, &output, progress)?;
         Ok((built, output))
     }
 }

@@ -1,28 +1,27 @@
 //! A cache that is damaged mends: what comes out of it is what was built from the plan as it is now.
-#![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "a test may, and files are what this is about")]
-
-#[path = "link/robot.rs"]
-mod robot;
+//!
+//! To compile all libraries again takes long. If the variable `MDLE_LONG` is more than 1, each damage of them is mended
+//! to the end; else libraries of mdlec alone are damaged, or the test ends when it is reported that all are compiled again.
 
 use std::fs::{self, File};
 use std::os::unix::fs::MetadataExt;
+use std::panic::{self, AssertUnwindSafe};
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, SystemTime};
 
-use mdlec::link::{Cache, LinkError};
-use robot::{MANIFEST, PLAN, ROVER, Robot};
+use mdlec::link::{LinkError, Progress};
 
-/// The robot with its cache, and the right to damage it: one test after the other.
-fn robot() -> (Robot, MutexGuard<'static, ()>) {
-    static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
-    // A test that failed is no reason for the next to fail.
-    let turn = ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner);
-    let robot = Robot::new("damaged", MANIFEST, ROVER);
-    // The cache that other tests share stays whole.
-    let cache = Cache::at(&robot.folder.join("cache")).unwrap();
-    (Robot { cache, ..robot }, turn)
+use crate::robot::{MANIFEST, PLAN, ROVER, Robot, target};
+
+/// Returns the robot whose cache is damaged.
+fn robot() -> Robot {
+    Robot::new("damaged", MANIFEST, ROVER)
+}
+
+/// Returns `true` if all libraries may be compiled again and again.
+fn is_long() -> bool {
+    std::env::var("MDLE_LONG").is_ok_and(|factor| factor != "1")
 }
 
 /// Builds the plan that ends by this cause, and runs it.
@@ -30,6 +29,24 @@ fn assert_builds(robot: &Robot, cause: &str) {
     let (_, output) = robot.build("nap.mdle", &PLAN.replace("morning", cause)).unwrap();
     let message = Command::new(output).output().unwrap();
     assert!(String::from_utf8(message.stdout).unwrap().contains(&format!("plan over: {cause}")));
+}
+
+/// Asserts that a build finds that everything has to be compiled again. With [`is_long`] it is, and the plan that ends by
+/// this cause runs; else `restore` undoes the damage.
+fn assert_mends(robot: &Robot, cause: &str, restore: impl FnOnce()) {
+    if is_long() {
+        return assert_builds(robot, cause);
+    }
+    let mut leave = |progress| {
+        if progress == Progress::Mending {
+            // Without a message: it is no failure.
+            panic::resume_unwind(Box::new(progress));
+        }
+    };
+    let rust = PLAN.replace("morning", cause);
+    let ended = panic::catch_unwind(AssertUnwindSafe(|| robot.build_with("nap.mdle", &rust, &mut leave)));
+    restore();
+    assert_eq!(ended.unwrap_err().downcast_ref(), Some(&Progress::Mending));
 }
 
 /// The files below `folder` of whose names this is true.
@@ -57,9 +74,9 @@ fn cut(files: &[PathBuf], hundredths: u64) {
 
 #[test]
 fn a_stored_executable_that_is_damaged_is_built_anew() {
-    let (robot, _turn) = robot();
+    let robot = robot();
     assert_builds(&robot, "morning");
-    let libraries = fs::metadata(robot.cache.folder().join("target")).unwrap().ino();
+    let libraries = fs::metadata(target(&robot.cache)).unwrap().ino();
     let stored = || {
         let stored = files(robot.cache.folder(), &|name| name.starts_with("plan-nap-") && !name.contains('.'));
         assert_eq!(stored.len(), 1);
@@ -74,38 +91,49 @@ fn a_stored_executable_that_is_damaged_is_built_anew() {
     assert_builds(&robot, "morning");
     fs::remove_file(&stored()[0]).unwrap();
     assert_builds(&robot, "morning");
-    assert_eq!(fs::metadata(robot.cache.folder().join("target")).unwrap().ino(), libraries, "the rest stays");
+    assert_eq!(fs::metadata(target(&robot.cache)).unwrap().ino(), libraries, "the rest stays");
 }
 
 #[test]
 fn libraries_that_are_damaged_are_built_anew() {
-    let (robot, _turn) = robot();
+    let robot = robot();
     assert_builds(&robot, "morning");
-    let libraries = |ending: &str| files(&robot.cache.folder().join("target"), &|name| name.ends_with(ending));
+    let is_chosen =
+        |name: &str| is_long() || ["libmdle_", "libthread_priority"].iter().any(|own| name.starts_with(own));
+    let libraries = |ending: &str| files(&target(&robot.cache), &|name| name.ends_with(ending) && is_chosen(name));
     cut(&libraries(".rlib"), 50);
     assert_builds(&robot, "noon");
     cut(&libraries(".rmeta"), 0);
     assert_builds(&robot, "night");
 
     // A library of a stranger is compiled again, beside others of which nothing is left.
-    let compiled = files(&robot.cache.folder().join("target"), &|name| name.starts_with("lib-thread_priority"));
+    let compiled = files(&target(&robot.cache), &|name| name.starts_with("lib-thread_priority"));
     cut(&libraries(".rmeta"), 0);
     compiled.iter().for_each(|fingerprint| fs::remove_file(fingerprint).unwrap());
     assert!(!compiled.is_empty());
     assert_builds(&robot, "noon");
+}
 
-    fs::remove_dir_all(robot.cache.folder().join("target")).unwrap();
-    fs::write(robot.cache.folder().join("target"), "garbage").unwrap();
+#[test]
+fn a_file_in_place_of_all_libraries_is_removed() {
+    let robot = robot();
     assert_builds(&robot, "morning");
+    let (libraries, aside) = (target(&robot.cache), robot.folder.join("aside"));
+    let _ = fs::remove_dir_all(&aside);
+    fs::rename(&libraries, &aside).unwrap();
+    fs::write(&libraries, "garbage").unwrap();
+    assert_mends(&robot, "noon", || {
+        fs::remove_file(&libraries).unwrap();
+        fs::rename(&aside, &libraries).unwrap();
+    });
+    assert_builds(&robot, "noon");
 }
 
 #[test]
 fn a_library_that_another_was_put_in_place_of_is_not_used() {
-    let (robot, _turn) = robot();
+    let robot = robot();
     assert_builds(&robot, "morning");
-    let host = files(&robot.cache.folder().join("target"), &|name| {
-        name.starts_with("libmdle_host-") && name.ends_with(".rlib")
-    });
+    let host = files(&target(&robot.cache), &|name| name.starts_with("libmdle_host-") && name.ends_with(".rlib"));
     let [host] = host.as_slice() else { panic!("{host:?}") };
     let mut bytes = fs::read(host).unwrap();
     let times = fs::metadata(host).unwrap().modified().unwrap();
@@ -121,34 +149,36 @@ fn a_library_that_another_was_put_in_place_of_is_not_used() {
 
 #[test]
 fn damage_that_makes_cargo_panic_is_mended() {
-    let (robot, _turn) = robot();
+    let robot = robot();
     assert_builds(&robot, "morning");
-    let outputs = files(&robot.cache.folder().join("target"), &|name| name == "root-output");
+    let outputs = files(&target(&robot.cache), &|name| name == "root-output");
     assert!(!outputs.is_empty());
-    for output in outputs {
-        fs::write(output, b"\xFF").unwrap();
-    }
+    let texts: Vec<_> = outputs.iter().map(|output| fs::read(output).unwrap()).collect();
+    outputs.iter().for_each(|output| fs::write(output, b"\xFF").unwrap());
+    assert_mends(&robot, "noon", || {
+        outputs.iter().zip(texts).for_each(|(output, text)| fs::write(output, text).unwrap());
+    });
     assert_builds(&robot, "noon");
 }
 
 #[test]
 fn a_fault_of_the_target_is_not_taken_for_damage() {
-    let (robot, _turn) = robot();
+    let robot = robot();
     assert_builds(&robot, "morning");
-    let libraries = fs::metadata(robot.cache.folder().join("target")).unwrap().ino();
+    let libraries = fs::metadata(target(&robot.cache)).unwrap().ino();
     fs::write(robot.folder.join("rover/src/lib.rs"), ROVER.replace("Ok(Self)", "Ok(Rower)")).unwrap();
     assert!(matches!(robot.build("nap.mdle", PLAN), Err(LinkError::TargetBroken { .. })));
     fs::write(robot.folder.join("rover/src/lib.rs"), format!("extern crate forgotten;\n{ROVER}")).unwrap();
     assert!(matches!(robot.build("nap.mdle", PLAN), Err(LinkError::TargetBroken { .. })));
     fs::write(robot.folder.join("rover/src/lib.rs"), ROVER).unwrap();
     assert!(matches!(robot.build("nap.mdle", "nonsense"), Err(LinkError::TargetMisfit { .. })));
-    assert_eq!(fs::metadata(robot.cache.folder().join("target")).unwrap().ino(), libraries);
+    assert_eq!(fs::metadata(target(&robot.cache)).unwrap().ino(), libraries);
     assert_builds(&robot, "morning");
 }
 
 #[test]
 fn files_of_the_package_that_are_damaged_are_written_anew() {
-    let (robot, _turn) = robot();
+    let robot = robot();
     assert_builds(&robot, "morning");
     let package = fs::read_dir(robot.cache.folder().join("plans")).unwrap().next().unwrap().unwrap().path();
     for name in ["Cargo.toml", "Cargo.lock", "seed.lock", "src/main.rs", "src/plan.rs", "built"] {
@@ -168,10 +198,10 @@ fn files_of_the_package_that_are_damaged_are_written_anew() {
 
 #[test]
 fn a_clock_that_was_set_back_does_not_bring_an_old_plan_back() {
-    let (robot, _turn) = robot();
+    let robot = robot();
     assert_builds(&robot, "morning");
     let tomorrow = SystemTime::now() + Duration::from_secs(24 * 60 * 60);
-    for file in files(&robot.cache.folder().join("target"), &|name| name.contains("plan")) {
+    for file in files(&target(&robot.cache), &|name| name.contains("plan")) {
         File::options().append(true).open(file).unwrap().set_modified(tomorrow).unwrap();
     }
     assert_builds(&robot, "noon");

@@ -1,16 +1,11 @@
 //! Emitted Rust becomes a static executable; an error message explains what prevents it.
-//!
-//! All tests share a cache that outlives them: only the first run compiles the runtime.
-#![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "a test may, and files are what this is about")]
-
-#[path = "link/robot.rs"]
-mod robot;
 
 use std::fs;
 use std::process::Command;
 
 use mdlec::link::{Built, LinkError};
-use robot::{MANIFEST, PLAN, ROVER, Robot};
+
+use crate::robot::{MANIFEST, PLAN, ROVER, Robot};
 
 #[test]
 fn the_executable_is_static_and_holds_no_path_of_this_machine() {
@@ -74,18 +69,15 @@ fn a_plan_that_does_not_fit_the_target_is_not_quoted() {
 
 #[test]
 fn a_target_must_be_what_its_alphabet_says() {
-    let robot = Robot::new("other", &MANIFEST.replace("mdle-rover", "mdle-scout"), ROVER);
-    let error = robot.build("nap.mdle", PLAN).unwrap_err();
+    let refused = |name: &str, manifest: &str| Robot::new(name, manifest, ROVER).build("nap.mdle", PLAN).unwrap_err();
+    let error = refused("other", &MANIFEST.replace("mdle-rover", "mdle-scout"));
     assert!(matches!(&error, LinkError::OtherCrate { found, .. } if found == "`mdle_scout`"), "{error:?}");
-
-    let robot = Robot::new("without", &MANIFEST.replace("mdle-host", "mdle-home"), ROVER);
-    let error = robot.build("nap.mdle", PLAN).unwrap_err();
+    let error = refused("without", &MANIFEST.replace("mdle-host", "mdle-home"));
     assert!(matches!(error, LinkError::TargetLacks { missing: "mdle-host", .. }), "{error:?}");
-
-    let robot = Robot::new("garbled", "[package", ROVER);
-    let error = robot.build("nap.mdle", PLAN).unwrap_err();
+    let error = refused("garbled", "[package");
     assert!(matches!(error, LinkError::TargetRefused { .. }), "{error:?}");
 
+    let robot = Robot::new("none", MANIFEST, ROVER);
     fs::remove_file(robot.folder.join("rover/Cargo.toml")).unwrap();
     let error = robot.build("nap.mdle", PLAN).unwrap_err();
     assert!(matches!(error, LinkError::NotACrate(_)), "{error:?}");
