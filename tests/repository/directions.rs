@@ -60,6 +60,7 @@ const PACKAGES: &[(&str, &[&str])] = &[
             "mdle-atoms",
             "mdle-sim",
             "mdle-emulator",
+            "mdle-engine",
             "mdle-scout-emulator",
             "mdle-scout",
             "mdle-atrv",

@@ -9,5 +9,6 @@ mod movement;
 mod operands;
 mod paths;
 mod power;
+mod safety;
 mod scout;
 mod several;

@@ -34,7 +34,8 @@ pub fn judge(file: &TextFile, target: Option<&str>) -> (Vec<Compiled>, String) {
 }
 
 /// A file after those of the alphabets.
-fn sources(file: &TextFile) -> (Sources, SourceId) {
+#[must_use]
+pub fn sources(file: &TextFile) -> (Sources, SourceId) {
     let mut sources = Sources::default();
     for alphabet in builtin::alphabets() {
         sources.add(alphabet.file, alphabet.text);

@@ -11,6 +11,7 @@ mod fork;
 mod library;
 mod module;
 mod plans;
+pub mod safety;
 #[cfg(test)]
 mod tests;
 

@@ -15,6 +15,8 @@ pub enum Quantity {
     Speed,
     /// A turn rate, in degrees per second.
     TurnRate,
+    /// An acceleration, in metres per second squared.
+    Acceleration,
     /// A voltage, in volts.
     Voltage,
     /// A frequency, in hertz.
@@ -25,8 +27,16 @@ pub enum Quantity {
 type Unit = (&'static str, f64, f64);
 
 impl Quantity {
-    const ALL: [Self; 7] =
-        [Self::Time, Self::Length, Self::Angle, Self::Speed, Self::TurnRate, Self::Voltage, Self::Frequency];
+    const ALL: [Self; 8] = [
+        Self::Time,
+        Self::Length,
+        Self::Angle,
+        Self::Speed,
+        Self::TurnRate,
+        Self::Acceleration,
+        Self::Voltage,
+        Self::Frequency,
+    ];
 
     /// Reads a finite number followed by a unit, such as `3s`; `bare` is the unit of a number alone. The result is in
     /// the unit of the variant.
@@ -76,6 +86,7 @@ impl Quantity {
             Self::Angle => &[("deg", 1.0, 1.0), ("rad", 180.0, std::f64::consts::PI)],
             Self::Speed => &[("m/s", 1.0, 1.0), ("cm/s", 1.0, 100.0), ("mm/s", 1.0, 1000.0), ("in/s", 254.0, 10_000.0)],
             Self::TurnRate => &[("deg/s", 1.0, 1.0), ("rad/s", 180.0, std::f64::consts::PI)],
+            Self::Acceleration => &[("m/s2", 1.0, 1.0), ("cm/s2", 1.0, 100.0), ("mm/s2", 1.0, 1000.0)],
             Self::Voltage => &[("V", 1.0, 1.0)],
             Self::Frequency => &[("Hz", 1.0, 1.0)],
         }
@@ -89,6 +100,7 @@ impl Quantity {
             Self::Angle => "an angle",
             Self::Speed => "a speed",
             Self::TurnRate => "a turn rate",
+            Self::Acceleration => "an acceleration",
             Self::Voltage => "a voltage",
             Self::Frequency => "a frequency",
         }
@@ -138,6 +150,7 @@ mod tests {
         }
         let length = |text| Quantity::Length.read(text, "m");
         assert_eq!(["20cm", "5mm", "10in", "1ft", "-2m"].map(length), [0.2, 0.005, 0.254, 0.3048, -2.0].map(Ok));
+        assert_eq!(Quantity::Acceleration.read("-50cm/s2", "m/s2"), Ok(-0.5));
         assert_eq!(Quantity::Angle.read("1.5rad", "deg"), Ok(1.5 * 180.0 / std::f64::consts::PI));
     }
 

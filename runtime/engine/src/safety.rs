@@ -1,0 +1,20 @@
+//! The safety rules of a run: they lie between every input and the robot, whatever the plan (docs/src/safety.md).
+//!
+//! [`read()`] reads the rules of a file, [`Conditions`] compiles the conditions of its guards for a robot, and an
+//! [`Envelope`] of both decides which input the robot is sent.
+
+mod conditions;
+mod envelope;
+mod fence;
+mod read;
+mod rules;
+mod section;
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests;
+
+pub use conditions::{Conditions, GuardError};
+pub use envelope::{Envelope, RuleId};
+pub use fence::Fence;
+pub use read::{RulesError, read};
+pub use rules::{Condition, Guard, Limits, Measure, Rules, Then};

@@ -1,0 +1,262 @@
+//! The envelope: decides, by the rules, which input a robot is sent. It reads no clock and no file, so that the same
+//! run has the same decisions again.
+
+use std::time::Duration;
+
+use mdle_host::{Intervention, Verdict};
+use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, SonarRing};
+use mdle_runtime::{MetersPerSecond, Nanos, RadiansPerSecond, Twist};
+
+use super::{Fence, Rules, Then};
+
+/// The speed below which a fence counts as a hold, in metres per second: 1 cm/s.
+const CREEP: f64 = 0.01;
+/// The number of turn rates that are tried at a fence, from that of the plan to that of the robot.
+const RATES: u32 = 4;
+
+/// The rules that lie between a plan and a robot, and what they remember of a run.
+#[derive(Debug, Clone)]
+pub struct Envelope {
+    rules: Rules,
+    /// Period of a turn, in seconds.
+    period: f64,
+    /// The input that was sent last.
+    last: Twist,
+    /// Time of the last decision.
+    at: Option<Nanos>,
+    /// The number of late turns in a row.
+    late: u64,
+    /// The rules that have diverted.
+    spent: Vec<RuleId>,
+    /// Verdict of the last turn, and its rule.
+    verdict: Option<(Verdict, RuleId)>,
+    /// Number of turns in which each rule has decided, in the order of [`Envelope::names`].
+    counts: Vec<(RuleId, u64)>,
+}
+
+/// A rule.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RuleId {
+    /// Every input is a number.
+    Finite,
+    /// `[stale]`.
+    Stale,
+    /// `[overrun]`.
+    Overrun,
+    /// `[contact]`.
+    Contact,
+    /// The guard of this number, from 0.
+    Guard(usize),
+    /// `speed` of `[limits]`.
+    Speed,
+    /// `turn_rate` of `[limits]`.
+    TurnRate,
+    /// `acceleration` of `[limits]`.
+    Acceleration,
+    /// The fence of this number, from 0.
+    Fence(usize),
+}
+
+impl Envelope {
+    /// Returns the envelope of these rules for a run with this period.
+    #[must_use]
+    pub fn new(rules: Rules, period: Duration) -> Self {
+        let mut envelope = Self {
+            rules,
+            period: period.as_secs_f64(),
+            last: Twist::default(),
+            at: None,
+            late: 0,
+            spent: Vec::new(),
+            verdict: None,
+            counts: Vec::new(),
+        };
+        envelope.counts = envelope.ids().map(|id| (id, 0)).collect();
+        envelope
+    }
+
+    /// Returns the input to send instead of `asked`, in the turn with output `y` at time `now`. `fired` holds for each
+    /// guard `true` if its condition is true of `y`.
+    pub fn filter<Y>(&mut self, asked: Twist, y: &Y, now: Nanos, fired: &[bool]) -> Twist
+    where
+        Y: Odometry + Bumpers + SonarRing + DiffDrive,
+    {
+        self.observe(now);
+        let demand = self.demand(asked, y, now, fired);
+        let (sent, verdict) = match demand {
+            Some((Then::End, id)) => (Twist::default(), Some((Verdict::Ended, id))),
+            Some((Then::Divert(plan), id)) => {
+                self.spent.push(id);
+                (Twist::default(), Some((Verdict::Diverted(plan), id)))
+            }
+            Some((Then::Hold, id)) => (Twist::default(), Some((Verdict::Held, id))),
+            Some((Then::HoldForward, id)) if asked.v.0 > 0.0 => {
+                let (sent, _) = self.limited(Twist { v: MetersPerSecond(0.0), ..asked }, y);
+                (sent, Some((Verdict::Held, id)))
+            }
+            Some((Then::HoldForward, _)) | None => self.limited(asked, y),
+        };
+        self.last = sent;
+        self.verdict = verdict;
+        if let Some((_, id)) = verdict
+            && let Some((_, count)) = self.counts.iter_mut().find(|(known, _)| *known == id)
+        {
+            *count = count.saturating_add(1);
+        }
+        sent
+    }
+
+    /// Counts turns that begin late: more than half a period after their time.
+    fn observe(&mut self, now: Nanos) {
+        let is_late = self.at.is_some_and(|at| now.since(at).seconds() > 1.5 * self.period);
+        self.late = if is_late { self.late.saturating_add(1) } else { 0 };
+        self.at = Some(now);
+    }
+
+    /// Returns the strictest demand of the rules that look at the output, and the rule; of equals the first.
+    fn demand<Y>(&self, asked: Twist, y: &Y, now: Nanos, fired: &[bool]) -> Option<(Then, RuleId)>
+    where
+        Y: Bumpers + SonarRing,
+    {
+        let Rules { contact, stale, overrun, guards, .. } = &self.rules;
+        let finite = (!(asked.v.0.is_finite() && asked.omega.0.is_finite())).then_some((Then::End, RuleId::Finite));
+        let stale = stale.filter(|(age, _)| now.since(y.now()) > *age).map(|(_, then)| (then, RuleId::Stale));
+        let overrun = overrun.filter(|(turns, _)| self.late >= *turns).map(|(_, then)| (then, RuleId::Overrun));
+        let contact = contact.filter(|_| y.pressed()).map(|then| (then, RuleId::Contact));
+        let guards = guards.iter().zip(fired).enumerate().filter(|(_, (_, fired))| **fired);
+        let guards = guards.map(|(number, (guard, _))| (guard.then, RuleId::Guard(number)));
+        let demands = [finite, stale, overrun, contact].into_iter().flatten().chain(guards);
+        let demands = demands.filter(|(_, id)| !self.spent.contains(id));
+        demands.reduce(|strictest, other| if other.0 > strictest.0 { other } else { strictest })
+    }
+
+    /// Returns the input within limits and fences, and the rule that had the last word.
+    fn limited<Y: Odometry + DiffDrive>(&self, asked: Twist, y: &Y) -> (Twist, Option<(Verdict, RuleId)>) {
+        let limits = self.rules.limits;
+        let mut input = Limited { v: asked.v.0, omega: asked.omega.0, by: None };
+        input.turn_within(limits.turn_rate, RuleId::TurnRate);
+        input.drive_within(limits.speed, RuleId::Speed);
+        let before = self.last.v.0;
+        let kept = if input.v * before > 0.0 { before.abs() } else { 0.0 };
+        input.drive_within(kept + limits.acceleration * self.period, RuleId::Acceleration);
+        for (number, fence) in self.rules.fences.iter().enumerate() {
+            let id = RuleId::Fence(number);
+            let (pose, turns) = (y.pose(), y.velocity().omega.0);
+            input.turn(self.turn_rate_at(fence, input.omega, y), id);
+            // Until the wheels have followed, the robot turns as it did.
+            let fastest = |omega| fence.fastest(&pose, input.v, omega, self.period);
+            input.drive_within(fastest(input.omega).min(fastest(turns)), id);
+        }
+        let is_held = input.v.abs() < CREEP && asked.v.0.abs() >= CREEP;
+        let verdict = input.by.map(|id| {
+            let is_fence = matches!(id, RuleId::Fence(_));
+            (if is_fence && is_held { Verdict::Held } else { Verdict::Limited }, id)
+        });
+        (Twist { v: MetersPerSecond(input.v), omega: RadiansPerSecond(input.omega) }, verdict)
+    }
+
+    /// Returns a turn rate with which the robot can brake before a fence: the plan's, or else one between it and the
+    /// rate at which the robot turns. A robot that drives along a fence cannot turn into it and then brake, and wheels
+    /// that change the turn rate as fast as they can do not brake.
+    fn turn_rate_at<Y: Odometry + DiffDrive>(&self, fence: &Fence, asked: f64, y: &Y) -> f64 {
+        let (sent, Twist { v, omega }) = (self.last.v.0, y.velocity());
+        let rolls = if v.0.abs() > sent.abs() { v.0 } else { sent };
+        let fastest = |rate| fence.fastest(&y.pose(), rolls, rate, self.period);
+        let brakes = fence.deceleration * self.period;
+        let asked = if fastest(omega.0) < rolls.abs() {
+            let change = 2.0 * brakes / y.wheel_base().0;
+            omega.0 + within(asked - omega.0, change)
+        } else {
+            asked
+        };
+        let rates = (0..RATES).map(|part| asked + (omega.0 - asked) * f64::from(part) / f64::from(RATES));
+        let mut rates = rates.filter(|rate| fastest(*rate) >= rolls.abs() - brakes);
+        rates.next().unwrap_or(omega.0)
+    }
+
+    /// Returns what the last [`Envelope::filter`] did.
+    #[must_use]
+    pub fn intervention(&self) -> Option<Intervention<'_>> {
+        self.verdict.map(|(verdict, id)| Intervention { verdict, rule: self.name(id) })
+    }
+
+    /// Returns the rules.
+    #[must_use]
+    pub fn rules(&self) -> &Rules {
+        &self.rules
+    }
+
+    /// Returns the rules, to be changed from the next turn on. Guards and fences keep their numbers.
+    pub fn rules_mut(&mut self) -> &mut Rules {
+        &mut self.rules
+    }
+
+    /// Returns each rule with the number of turns in which it decided.
+    pub fn counts(&self) -> impl Iterator<Item = (RuleId, u64)> {
+        self.counts.iter().copied()
+    }
+
+    /// Returns the name of a rule, as reports have it.
+    #[must_use]
+    pub fn name(&self, id: RuleId) -> &str {
+        match id {
+            RuleId::Finite => "not a number",
+            RuleId::Stale => "stale",
+            RuleId::Overrun => "overrun",
+            RuleId::Contact => "contact",
+            RuleId::Guard(number) => self.rules.guards.get(number).map_or("", |guard| &guard.name),
+            RuleId::Speed => "speed",
+            RuleId::TurnRate => "turn_rate",
+            RuleId::Acceleration => "acceleration",
+            RuleId::Fence(number) => self.rules.fences.get(number).map_or("", |fence| &fence.name),
+        }
+    }
+
+    /// The rules that can decide.
+    fn ids(&self) -> impl Iterator<Item = RuleId> + use<> {
+        let Rules { fences, contact, stale, overrun, guards, .. } = &self.rules;
+        let own = [
+            (true, RuleId::Finite),
+            (stale.is_some(), RuleId::Stale),
+            (overrun.is_some(), RuleId::Overrun),
+            (contact.is_some(), RuleId::Contact),
+            (true, RuleId::Speed),
+            (true, RuleId::TurnRate),
+            (true, RuleId::Acceleration),
+        ];
+        let own = own.into_iter().filter_map(|(is_there, id)| is_there.then_some(id));
+        own.chain((0..guards.len()).map(RuleId::Guard)).chain((0..fences.len()).map(RuleId::Fence))
+    }
+}
+
+/// An input that is being limited, and the rule that changed it last.
+#[derive(Debug)]
+struct Limited {
+    v: f64,
+    omega: f64,
+    by: Option<RuleId>,
+}
+
+impl Limited {
+    fn turn_within(&mut self, most: f64, rule: RuleId) {
+        self.turn(within(self.omega, most), rule);
+    }
+
+    fn turn(&mut self, omega: f64, rule: RuleId) {
+        if self.omega != omega {
+            (self.omega, self.by) = (omega, Some(rule));
+        }
+    }
+
+    fn drive_within(&mut self, most: f64, rule: RuleId) {
+        let v = within(self.v, most);
+        if self.v != v {
+            (self.v, self.by) = (v, Some(rule));
+        }
+    }
+}
+
+/// Returns the value, or the nearest one that is at most `most` away from 0.
+fn within(value: f64, most: f64) -> f64 {
+    if value.abs() > most { most.copysign(value) } else { value }
+}

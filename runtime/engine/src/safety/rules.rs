@@ -1,0 +1,132 @@
+//! The rules of a safety file, in SI units.
+
+use mdle_quantity::Quantity;
+use mdle_runtime::{Nanos, Radians};
+
+use super::Fence;
+
+/// The rules of a safety file. Without any, every input but one that is no number passes.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Rules {
+    /// Limits of inputs.
+    pub limits: Limits,
+    /// Areas that the robot must not leave.
+    pub fences: Vec<Fence>,
+    /// What follows from contact of a bumper.
+    pub contact: Option<Then>,
+    /// The age of an output from which it is stale, and what follows.
+    pub stale: Option<(Nanos, Then)>,
+    /// The number of turns in a row that begin late, and what follows.
+    pub overrun: Option<(u64, Then)>,
+    /// Conditions of the plan language, in the order of the file.
+    pub guards: Vec<Guard>,
+    /// Files of the plans to which rules divert, as the safety file names them, each once.
+    pub plans: Vec<String>,
+}
+
+/// Limits of inputs. A limit that is absent is infinite.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// The maximum speed, forwards and backwards, in metres per second; above 0.
+    pub speed: f64,
+    /// The maximum turn rate in either direction, in radians per second; above 0.
+    pub turn_rate: f64,
+    /// The maximum increase of the speed, in metres per second squared; above 0. Braking has no limit.
+    pub acceleration: f64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self { speed: f64::INFINITY, turn_rate: f64::INFINITY, acceleration: f64::INFINITY }
+    }
+}
+
+/// A guard of the safety file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Guard {
+    /// Name of the guard.
+    pub name: String,
+    /// The condition on the output.
+    pub when: Condition,
+    /// What follows while the condition is true.
+    pub then: Then,
+}
+
+/// The text of a condition, and its place in the safety file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Condition {
+    /// The text, in the plan language.
+    pub text: String,
+    /// Line of the text, from 1.
+    pub line: usize,
+    /// Number of characters before the text in its line.
+    pub indent: usize,
+}
+
+/// What follows from a rule, the weakest first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Then {
+    /// The robot is sent no forward speed.
+    HoldForward,
+    /// The robot is sent the null input.
+    Hold,
+    /// Another plan takes over: the number of one of [`Rules::plans`]. The rule is off from then on.
+    Divert(usize),
+    /// The plan is ended.
+    End,
+}
+
+/// The quantities of the rules that are changed by name, as they are while a plan runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Measure {
+    /// [`Limits::speed`].
+    Speed,
+    /// [`Limits::turn_rate`].
+    TurnRate,
+    /// [`Limits::acceleration`].
+    Acceleration,
+}
+
+impl Measure {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Speed, Self::TurnRate, Self::Acceleration];
+
+    /// Returns the key of the quantity in a safety file.
+    #[must_use]
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Speed => "speed",
+            Self::TurnRate => "turn_rate",
+            Self::Acceleration => "acceleration",
+        }
+    }
+
+    /// Returns the kind of the quantity, and a unit in which it is written.
+    #[must_use]
+    pub fn quantity(self) -> (Quantity, &'static str) {
+        match self {
+            Self::Speed => (Quantity::Speed, "m/s"),
+            Self::TurnRate => (Quantity::TurnRate, "deg/s"),
+            Self::Acceleration => (Quantity::Acceleration, "m/s2"),
+        }
+    }
+
+    /// Converts a value in that unit to SI.
+    #[must_use]
+    pub fn in_si(self, value: f64) -> f64 {
+        match self {
+            Self::TurnRate => Radians::from_degrees(value).0,
+            Self::Speed | Self::Acceleration => value,
+        }
+    }
+
+    /// Returns the limit.
+    #[must_use]
+    pub fn of(self, limits: &mut Limits) -> &mut f64 {
+        match self {
+            Self::Speed => &mut limits.speed,
+            Self::TurnRate => &mut limits.turn_rate,
+            Self::Acceleration => &mut limits.acceleration,
+        }
+    }
+}
