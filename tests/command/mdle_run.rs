@@ -101,6 +101,30 @@ fn the_settings_beside_a_plan_hold_for_its_run() {
 }
 
 #[test]
+fn safety_rules_stand_between_plan_and_robot() {
+    let folder = with_plan("safety");
+    let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
+    write("none.toml", "# no rules\n");
+    write("end.toml", "[guards.far]\nwhen = \"x > 20cm\"\nthen = \"end\"\n");
+    write("back.toml", "[guards.far]\nwhen = \"x > 20cm\"\nthen = \"plans/back.mdle\"\n");
+    write("wrong.toml", "\n[limits]\nspeed = 3\n");
+    write("condition.toml", "[guards.far]\nwhen = \"x > 20kg\"\nthen = \"end\"\n");
+    write("memory.toml", "[guards.far]\nwhen = \"wait 3s\"\nthen = \"end\"\n");
+    write("lost.toml", "[contact]\nthen = \"lost.mdle\"\n");
+    fs::write(folder.join("latin.toml"), b"# \xE4\n").unwrap();
+    fs::create_dir_all(folder.join("plans")).unwrap();
+    write("plans/back.mdle", "{ Back (wait 1s) (Atom (null) (go -20 0)) }\n");
+    let fast = "--target sim --speed max --world hall";
+    let plain = report(&folder, &format!("run plan.mdle {fast}"));
+    let unruled = report(&folder, &format!("run plan.mdle {fast} --safety none.toml"));
+    assert_eq!(unruled.split_once('\n').unwrap().1, plain.split_once('\n').unwrap().1);
+    let files = ["end", "back", "wrong", "condition", "memory", "lost", "latin", "missing"];
+    let runs = files.map(|file| report(&folder, &format!("run plan.mdle {fast} --safety {file}.toml")));
+    let written = report(&folder, &format!("run plan.mdle {fast} --safety back.toml --log plans/back.mdle"));
+    insta::assert_snapshot!(format!("{}\n{written}", runs.join("\n")));
+}
+
+#[test]
 fn a_plan_comes_from_standard_input() {
     let folder = folder("standard_input");
     let mut command = Command::new(mdle());

@@ -50,7 +50,7 @@ fn conditions(rules: &Rules) -> (Sources, Result<Conditions<mdle_sim::alphabet::
 fn run(plan: &str, rules: &Rules, make: &Make, turns: u64) -> Vec<Turned> {
     let world = World::named("hall").unwrap().unwrap();
     let mut robot = Simulated::with(make, &world, world.start, PERIOD).unwrap();
-    let mut conditions = conditions(rules).1.unwrap();
+    let mut conditions = conditions(rules).1.unwrap().watch();
     let mut envelope = Envelope::new(rules.clone(), PERIOD);
     let plan = loaded(plan);
     let (mut input, mut machine) = (Twist::default(), None);

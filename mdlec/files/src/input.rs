@@ -145,10 +145,7 @@ pub fn read_plan(path: &Path, target: &Target) -> Result<Input, InputError> {
 /// # Errors
 /// The text is too long.
 pub fn plan(path: &Path, text: String, target: &Target) -> Result<Input, InputError> {
-    let mut sources = Sources::default();
-    for (name, text) in &target.sources {
-        sources.add(name, text);
-    }
+    let mut sources = target.sources();
     let source = add(&mut sources, path, text)?;
     let paths = BTreeMap::from([(source, path.to_owned())]);
     let read = path.canonicalize().map(|place| (place, source)).into_iter().collect();

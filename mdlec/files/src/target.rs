@@ -29,6 +29,16 @@ impl Target {
         self.sources.iter().map(|(_, text)| text.as_str())
     }
 
+    /// Returns the alphabet's files alone, as messages show them.
+    #[must_use]
+    pub fn sources(&self) -> Sources {
+        let mut sources = Sources::default();
+        for (name, text) in &self.sources {
+            sources.add(name, text);
+        }
+        sources
+    }
+
     /// Files that were read for the target.
     pub fn files(&self) -> impl Iterator<Item = PathBuf> {
         let own =

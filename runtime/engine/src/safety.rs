@@ -6,6 +6,7 @@
 mod conditions;
 mod envelope;
 mod fence;
+mod guardian;
 mod read;
 mod rules;
 mod section;
@@ -13,8 +14,9 @@ mod section;
 #[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests;
 
-pub use conditions::{Conditions, GuardError};
+pub use conditions::{Conditions, GuardError, Watched};
 pub use envelope::{Envelope, RuleId};
 pub use fence::Fence;
+pub use guardian::Guardian;
 pub use read::{RulesError, read};
 pub use rules::{Condition, Guard, Limits, Measure, Rules, Then};

@@ -123,33 +123,20 @@ where
     execute(program.into(), call, &PlanOnTarget::<T, P, _>::new(&plan, &|_| Ok(PlanAlone::new(&plan))))
 }
 
-/// Runs a plan as [`run_called`] does, with turns that the pilot makes which `pilot` returns. The plan that `plan` makes
-/// is read beforehand, for its texts and paths.
-pub fn run_piloted<'a, T: Target, B>(
+/// Runs a plan as [`run_called`] does, with turns that the pilot makes which `pilot` returns, under a supervisor if there
+/// is one. The plan that `plan` makes is read beforehand, for its texts and paths. Exit status 6: the supervisor ended
+/// the plan; 0 also if it ended the run.
+pub fn run_piloted<'a, 's, T: Target, B>(
     program: impl Into<Program<'a>>,
     call: Call,
-    plan: impl Fn() -> B::Plan + Sync,
+    plan: &(dyn Fn() -> B::Plan + Sync),
     pilot: impl Fn(&RunTerms) -> Result<B, Refusal> + Sync,
+    supervision: Option<Supervision<'s, B::Plan>>,
 ) -> ExitCode
 where
     B: Pilot<Plan: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>>,
 {
-    execute(program.into(), call, &PlanOnTarget::<T, _, _>::new(&plan, &pilot))
-}
-
-/// Runs a plan as [`run_called`] does, under a supervisor. Exit status 6: the supervisor ended the plan; 0 also if it
-/// ended the run.
-pub fn run_supervised<'a, 's, T: Target, P>(
-    program: impl Into<Program<'a>>,
-    call: Call,
-    plan: &'s (dyn Fn() -> P + Sync),
-    supervision: Supervision<'s, P>,
-) -> ExitCode
-where
-    P: Plan<Output = <T::Robot as Robot>::Output, Input = <T::Robot as Robot>::Input>,
-{
-    let pilot = |_: &RunTerms| Ok(PlanAlone::new(plan));
-    execute(program.into(), call, &PlanOnTarget::<T, P, _>::new(plan, &pilot).supervised(Some(supervision)))
+    execute(program.into(), call, &PlanOnTarget::<T, _, _>::new(plan, &pilot).supervised(supervision))
 }
 
 /// Returns the text that [`run_called`] refuses these options with, if a program for the target `T` does not have them.

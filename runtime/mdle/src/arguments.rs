@@ -18,6 +18,8 @@ pub(crate) struct Run {
     pub(crate) target: Option<String>,
     /// Name of the plan, for a file with several.
     pub(crate) plan: Option<String>,
+    /// File of the safety rules.
+    pub(crate) safety: Option<PathBuf>,
     /// `true` if warnings count as errors.
     pub(crate) deny_warnings: bool,
     /// Words that repeat the call, but for the options of the run.
@@ -27,7 +29,7 @@ pub(crate) struct Run {
 }
 
 /// Options of `mdle` itself that have a value.
-const WITH_VALUE: [&str; 2] = ["--target", "--plan"];
+const WITH_VALUE: [&str; 3] = ["--target", "--plan", "--safety"];
 /// Options that ask for help.
 const HELP: [&str; 2] = ["-h", "--help"];
 /// Option of `mdle` itself without a value.
@@ -51,6 +53,7 @@ fn of(run: &ArgMatches, words: Vec<OsString>, options: Vec<OsString>) -> Run {
         file: run.get_one("file").cloned().unwrap_or_default(),
         target: run.get_one("target").cloned(),
         plan: run.get_one("plan").cloned(),
+        safety: run.get_one("safety").cloned(),
         deny_warnings: run.get_flag("deny-warnings"),
         words,
         options,
@@ -131,13 +134,21 @@ fn run() -> Command {
                 .help("Plan of the file to run [default: the only plan that no other plan uses]"),
         )
         .arg(
+            Arg::new("safety")
+                .long("safety")
+                .value_name("FILE")
+                .help("File of safety rules, which lie between the plan and the robot [default: none]")
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(
             Arg::new("deny-warnings")
                 .long("deny-warnings")
                 .action(ArgAction::SetTrue)
                 .help("Treat warnings as errors"),
         )
         .after_help(
-            "Exit status: that of the executable; 1 if the plan has errors, 2 for wrong usage or a file that cannot be read",
+            "Exit status: that of the executable; 1 if the plan has errors, 2 for wrong usage or a file that cannot be read, 6 if \
+             a safety rule ended the plan",
         )
 }
 

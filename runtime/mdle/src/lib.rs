@@ -7,6 +7,7 @@
 mod arguments;
 mod failure;
 mod run;
+mod safety;
 mod targets;
 
 use std::process::ExitCode;

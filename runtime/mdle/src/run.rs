@@ -11,6 +11,7 @@ use mdle_runtime::Sensed;
 
 use crate::arguments::Run;
 use crate::failure::{self, Failure};
+use crate::safety::SafetyFile;
 use crate::targets::{self, Linked, Ready};
 
 /// Runs a plan with these modules; returns the exit status of the run.
@@ -22,8 +23,9 @@ pub(crate) fn run(arguments: Run, library: &Library<Sensed>) -> Result<ExitCode,
     let name = settings.name_of_target(arguments.target.as_deref()).ok_or(InputError::NoTarget)?;
     let linked = targets::linked(&name).map_err(Failure::Usage)?;
     let target = settings.target(arguments.target.as_deref())?;
+    let safety = arguments.safety.as_deref().map(SafetyFile::read).transpose()?;
     let mut input = read_plan(&arguments.file, &target)?;
-    let (plan, ready) = compiled(&arguments, &linked, &target, &mut input)?;
+    let (plan, ready) = compiled(&arguments, &linked, &target, &mut input, safety.as_ref())?;
     let program = Program { plan: &plan, version: "" };
     let given: Vec<_> = arguments.options.iter().map(|option| option.to_string_lossy().into_owned()).collect();
     let mut options: Vec<OsString> = Vec::new();
@@ -33,7 +35,7 @@ pub(crate) fn run(arguments: Run, library: &Library<Sensed>) -> Result<ExitCode,
         options.extend(option.arguments);
     }
     options.extend(arguments.options);
-    let read = input.inputs(&target);
+    let read = input.inputs(&target).into_iter().chain(safety.iter().flat_map(SafetyFile::files)).collect();
     drop(input);
     Ok(ready.run(&plan, Call { words: arguments.words, options, read }, library))
 }
@@ -44,6 +46,7 @@ fn compiled(
     linked: &Linked,
     target: &Target,
     input: &mut Input,
+    safety: Option<&SafetyFile>,
 ) -> Result<(String, Box<dyn Ready>), Failure> {
     let wanted = arguments.plan.as_deref();
     if let Some(name) = wanted {
@@ -58,6 +61,6 @@ fn compiled(
     let named = plans.into_iter().map(|compiled| (compiled.plan.root.name, compiled.machine));
     let named = named.map(|(name, machine)| (name.clone(), (name, machine)));
     let (name, machine) = input.only(named.collect())?;
-    let ready = (linked.load)(&machine, input, target)?;
+    let ready = (linked.load)(&machine, input, target, safety)?;
     Ok((name, ready))
 }

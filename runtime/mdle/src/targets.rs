@@ -5,11 +5,14 @@ use std::sync::Arc;
 
 use mdle_compiler::alphabet::did_you_mean;
 use mdle_compiler::fsm::Machine;
-use mdle_compiler::load::{self, LoadError, Loaded};
+use mdle_compiler::load::{self, Loaded};
 use mdle_engine::{Engine, EngineAlphabet, Library};
 use mdle_files::{Input, Target};
-use mdle_host::{Call, Program, RunTerms};
-use mdle_runtime::{Alphabet, Robot, Sensed};
+use mdle_host::{Call, Program, RunTerms, Supervision};
+use mdle_runtime::{Alphabet, Robot, Sensed, Twist};
+
+use crate::failure::Failure;
+use crate::safety::{Guarded, SafetyFile};
 
 /// A robot whose driver is part of this program.
 #[derive(Clone, Copy)]
@@ -22,8 +25,8 @@ pub(crate) struct Linked {
     pub(crate) check: fn(Program<'_>, &Call) -> Result<(), String>,
 }
 
-/// Loads a plan of a file for a target.
-type Load = fn(&Machine, &Input, &Target) -> Result<Box<dyn Ready>, LoadError>;
+/// Loads a plan of a file for a target, with the safety rules of its runs.
+type Load = fn(&Machine, &Input, &Target, Option<&SafetyFile>) -> Result<Box<dyn Ready>, Failure>;
 
 /// A plan that is ready to run.
 pub(crate) trait Ready {
@@ -58,8 +61,8 @@ pub(crate) fn linked(name: &str) -> Result<Linked, String> {
 impl Linked {
     const fn new<T, A>() -> Self
     where
-        T: mdle_host::Target<Robot: Robot<Output = Sensed>> + 'static,
-        A: EngineAlphabet<Output = Sensed, Input = <T::Robot as Robot>::Input>,
+        T: mdle_host::Target<Robot: Robot<Output = Sensed, Input = Twist>> + 'static,
+        A: EngineAlphabet<Output = Sensed, Input = Twist>,
     {
         Self { name: T::NAME, load: load::<T, A>, check: mdle_host::check_options::<T> }
     }
@@ -68,25 +71,37 @@ impl Linked {
 /// A plan for the target `T`.
 struct PlanFor<T, A: Alphabet> {
     loaded: Arc<Loaded<A>>,
+    safety: Option<Guarded<A>>,
     target: std::marker::PhantomData<fn() -> T>,
 }
 
 impl<T, A> Ready for PlanFor<T, A>
 where
-    T: mdle_host::Target<Robot: Robot<Output = Sensed>>,
-    A: EngineAlphabet<Output = Sensed, Input = <T::Robot as Robot>::Input>,
+    T: mdle_host::Target<Robot: Robot<Output = Sensed, Input = Twist>>,
+    A: EngineAlphabet<Output = Sensed, Input = Twist>,
 {
     fn run(&self, name: &str, call: Call, library: &Library<Sensed>) -> ExitCode {
+        let plan = || self.loaded.plan();
         let engine = |terms: &RunTerms| Engine::<A>::new(self.loaded.plan(), library, terms);
-        mdle_host::run_piloted::<T, _>(name, call, || self.loaded.plan(), engine)
+        let Some(safety) = &self.safety else { return mdle_host::run_piloted::<T, _>(name, call, &plan, engine, None) };
+        let supervisor = |terms: &RunTerms| Box::new(safety.guardian(terms.period)) as _;
+        let diversions = |number| safety.diversion(number);
+        let supervision = Supervision { supervisor: &supervisor, diversions: &diversions, several: true };
+        mdle_host::run_piloted::<T, _>(name, call, &plan, engine, Some(supervision))
     }
 }
 
-fn load<T, A>(machine: &Machine, input: &Input, target: &Target) -> Result<Box<dyn Ready>, LoadError>
+fn load<T, A>(
+    machine: &Machine,
+    input: &Input,
+    target: &Target,
+    safety: Option<&SafetyFile>,
+) -> Result<Box<dyn Ready>, Failure>
 where
-    T: mdle_host::Target<Robot: Robot<Output = Sensed>> + 'static,
-    A: EngineAlphabet<Output = Sensed, Input = <T::Robot as Robot>::Input>,
+    T: mdle_host::Target<Robot: Robot<Output = Sensed, Input = Twist>> + 'static,
+    A: EngineAlphabet<Output = Sensed, Input = Twist>,
 {
     let loaded = Arc::new(load::load::<A>(machine, &input.sources, &target.alphabet)?);
-    Ok(Box::new(PlanFor::<T, A> { loaded, target: std::marker::PhantomData }))
+    let safety = safety.map(|safety| safety.compile(target)).transpose()?;
+    Ok(Box::new(PlanFor::<T, A> { loaded, safety, target: std::marker::PhantomData }))
 }

@@ -13,7 +13,10 @@ use mdle_runtime::{Machine, Nanos, Plan as _};
 use super::{Condition, Guard};
 
 /// The conditions of the guards of a safety file.
-pub struct Conditions<A: runtime::Alphabet> {
+pub struct Conditions<A: runtime::Alphabet>(Vec<Arc<Loaded<A>>>);
+
+/// The conditions in a run.
+pub struct Watched<A: runtime::Alphabet> {
     loaded: Vec<Arc<Loaded<A>>>,
     /// A plan for each condition that never leaves its first atom, once there is an output.
     machines: Vec<Machine<LoadedPlan<A>>>,
@@ -31,16 +34,15 @@ pub enum GuardError {
     Load(LoadError),
 }
 
-impl<A: runtime::Alphabet> Clone for Conditions<A> {
-    /// Returns the conditions before the first output.
-    fn clone(&self) -> Self {
-        Self { loaded: self.loaded.clone(), machines: Vec::new(), fired: Vec::new() }
+impl<A: runtime::Alphabet> fmt::Debug for Conditions<A> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Conditions of {} guards", self.0.len())
     }
 }
 
-impl<A: runtime::Alphabet> fmt::Debug for Conditions<A> {
+impl<A: runtime::Alphabet> fmt::Debug for Watched<A> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Conditions").field("fired", &self.fired).finish_non_exhaustive()
+        f.debug_struct("Watched").field("fired", &self.fired).finish_non_exhaustive()
     }
 }
 
@@ -57,9 +59,17 @@ impl<A: runtime::Alphabet> Conditions<A> {
         alphabet: &alphabet::Alphabet,
     ) -> Result<Self, GuardError> {
         let loaded = guards.iter().map(|guard| compiled(file, &guard.when, sources, alphabet));
-        Ok(Self { loaded: loaded.collect::<Result<_, _>>()?, machines: Vec::new(), fired: Vec::new() })
+        Ok(Self(loaded.collect::<Result<_, _>>()?))
     }
 
+    /// Returns the conditions before the first output of a run.
+    #[must_use]
+    pub fn watch(&self) -> Watched<A> {
+        Watched { loaded: self.0.clone(), machines: Vec::new(), fired: Vec::new() }
+    }
+}
+
+impl<A: runtime::Alphabet> Watched<A> {
     /// Returns for each guard `true` if its condition is true of the output `y`.
     pub fn fired(&mut self, y: &A::Output, t: Nanos) -> &[bool] {
         let Self { loaded, machines, fired } = self;

@@ -1,0 +1,50 @@
+//! The supervisor of a run under safety rules.
+
+use std::time::Duration;
+
+use mdle_host::{Intervention, Supervisor};
+use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, SonarRing};
+use mdle_runtime::{Alphabet, Nanos, Twist};
+
+use super::{Conditions, Envelope, Rules, Watched};
+
+/// An envelope with the conditions of its guards: the supervisor of one run.
+#[derive(Debug)]
+pub struct Guardian<A: Alphabet> {
+    envelope: Envelope,
+    conditions: Watched<A>,
+}
+
+impl<A: Alphabet> Guardian<A> {
+    /// Returns the guardian of a run with this period; the conditions are those of the rules' guards.
+    #[must_use]
+    pub fn new(rules: Rules, conditions: &Conditions<A>, period: Duration) -> Self {
+        Self { envelope: Envelope::new(rules, period), conditions: conditions.watch() }
+    }
+
+    /// Returns the envelope.
+    #[must_use]
+    pub fn envelope(&self) -> &Envelope {
+        &self.envelope
+    }
+
+    /// Returns the envelope, to change its rules.
+    pub fn envelope_mut(&mut self) -> &mut Envelope {
+        &mut self.envelope
+    }
+}
+
+impl<A> Supervisor<A::Output, Twist> for Guardian<A>
+where
+    A: Alphabet<Input = Twist>,
+    A::Output: Odometry + Bumpers + SonarRing + DiffDrive,
+{
+    fn filter(&mut self, asked: Twist, y: &A::Output, t: Nanos) -> Twist {
+        let fired = self.conditions.fired(y, t);
+        self.envelope.filter(asked, y, t, fired)
+    }
+
+    fn intervention(&self) -> Option<Intervention<'_>> {
+        self.envelope.intervention()
+    }
+}

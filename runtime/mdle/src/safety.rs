@@ -1,0 +1,105 @@
+//! The file of `--safety`: its rules, and the plans to which they divert.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use mdle_compiler::diagnostic::{Sources, judged};
+use mdle_compiler::load::{self, Loaded};
+use mdle_engine::safety::{Conditions, GuardError, Guardian, Rules, read};
+use mdle_files::{Target, read_plan};
+use mdle_runtime::{Alphabet, Plan as _};
+
+use crate::failure::{self, Failure};
+
+/// Maximum size of a safety file, in bytes.
+const LARGEST: u64 = 1_000_000;
+
+/// A safety file that was read.
+#[derive(Debug)]
+pub(crate) struct SafetyFile {
+    path: PathBuf,
+    rules: Rules,
+}
+
+/// The rules of a safety file, with what they need of a robot.
+pub(crate) struct Guarded<A: Alphabet> {
+    rules: Rules,
+    conditions: Conditions<A>,
+    diversions: Vec<Arc<Loaded<A>>>,
+}
+
+impl SafetyFile {
+    /// Reads the file.
+    ///
+    /// # Errors
+    /// It cannot be read, or is no safety file.
+    pub(crate) fn read(path: &Path) -> Result<Self, Failure> {
+        let name = path.display();
+        let unread = |error| Failure::Usage(format!("the safety file {name} cannot be read: {error}"));
+        let text = mdle_host::read_text(path, LARGEST).map_err(unread)?;
+        let rules = read(&text).map_err(|error| Failure::Usage(format!("{name}:{error}")))?;
+        Ok(Self { path: path.to_owned(), rules })
+    }
+
+    /// The files that the rules need: their own, and plans.
+    pub(crate) fn files(&self) -> impl Iterator<Item = PathBuf> {
+        let folder = self.path.parent().unwrap_or(Path::new(""));
+        let plans = self.rules.plans.iter().map(|plan| folder.join(plan));
+        [self.path.clone()].into_iter().chain(plans)
+    }
+
+    /// Compiles the conditions and the plans for the robot of a target.
+    ///
+    /// # Errors
+    /// A condition or a plan has errors.
+    pub(crate) fn compile<A: Alphabet>(&self, target: &Target) -> Result<Guarded<A>, Failure> {
+        let mut sources = target.sources();
+        let name = self.path.display().to_string();
+        let compiled = Conditions::compile(&name, &self.rules.guards, &mut sources, &target.alphabet);
+        let conditions = compiled.map_err(|error| refused(error, &name, &sources))?;
+        let plans = self.files().skip(1).map(|plan| diversion(&plan, target));
+        Ok(Guarded { rules: self.rules.clone(), conditions, diversions: plans.collect::<Result<_, _>>()? })
+    }
+}
+
+/// Prints what is wrong with a condition.
+fn refused(error: GuardError, name: &str, sources: &Sources) -> Failure {
+    match error {
+        GuardError::Faulty(diagnostics) => {
+            failure::print(sources, &diagnostics);
+            Failure::Usage(format!("the conditions of {name} have errors"))
+        }
+        GuardError::Unfit(line, sentence) => Failure::Usage(format!("{name}:{line}: {sentence}")),
+        GuardError::Load(error) => error.into(),
+    }
+}
+
+/// Compiles and loads a plan to which a rule diverts.
+fn diversion<A: Alphabet>(file: &Path, target: &Target) -> Result<Arc<Loaded<A>>, Failure> {
+    let mut input = read_plan(file, target)?;
+    let (plans, diagnostics) = input.compile(&target.alphabet, None);
+    failure::print(&input.sources, &diagnostics);
+    if let Err(sentence) = judged(&diagnostics, false) {
+        failure::error(&sentence);
+        return Err(Failure::Plan);
+    }
+    let machines = plans.into_iter().map(|compiled| (compiled.plan.root.name, compiled.machine));
+    let machine = input.only(machines.collect())?;
+    let loaded = Arc::new(load::load::<A>(&machine, &input.sources, &target.alphabet)?);
+    if loaded.plan().paths().is_empty() {
+        return Ok(loaded);
+    }
+    Err(Failure::Usage(format!("the plan {} replays paths, which a plan of a safety rule cannot", file.display())))
+}
+
+impl<A: Alphabet> Guarded<A> {
+    /// Returns the guardian of a run with this period.
+    pub(crate) fn guardian(&self, period: std::time::Duration) -> Guardian<A> {
+        Guardian::new(self.rules.clone(), &self.conditions, period)
+    }
+
+    /// Returns the plan of this number to which a rule diverts.
+    pub(crate) fn diversion(&self, number: usize) -> Option<load::LoadedPlan<A>> {
+        self.diversions.get(number).map(Loaded::plan)
+    }
+}
