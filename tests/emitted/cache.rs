@@ -200,7 +200,7 @@ fn without_rust_it_says_what_to_install() {
     let folder = with_plan("no_rust", 1);
     let message = refused(command(&folder, &BUILD).env("PATH", &folder));
     let advice = "install Rust from rustup.rs\n";
-    assert_eq!(message, format!("error: mdlec needs `rustc` to build an executable, and it is not there: {advice}"));
+    assert_eq!(message, format!("error: mdlec needs `rustc` to build an executable, and it is not installed: {advice}"));
 }
 
 #[test]
@@ -226,7 +226,7 @@ fn missing_libraries_are_an_error() {
     assert!(message.contains(&format!("{missing}they cannot be fetched: connect it to the network once")), "{message}");
     let message = nothing("CARGO_NET_OFFLINE", "true");
     assert!(
-        message.contains(&format!("{missing}cargo is told not to fetch them: unset CARGO_NET_OFFLINE")),
+        message.contains(&format!("{missing}cargo is configured not to fetch them: unset CARGO_NET_OFFLINE")),
         "{message}"
     );
 }

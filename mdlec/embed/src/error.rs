@@ -27,7 +27,9 @@ pub enum EmbedError {
     #[error("the variable OUT_DIR is not set: plans are embedded by the build script of a package")]
     NoOutDir,
     /// The name of an input has a line break, after which cargo would read another instruction.
-    #[error("the name {0:?} holds a line break, so cargo cannot watch this file\nhelp: rename the file or its folder")]
+    #[error(
+        "the name {0:?} contains a line break, so cargo cannot watch this file\nhelp: rename the file or its folder"
+    )]
     LineBreak(PathBuf),
     /// The file to write is one that was read.
     #[error("`{0}` is the plan itself and would be lost: rename the plan's file")]
@@ -41,7 +43,7 @@ pub enum EmbedError {
         error: io::Error,
     },
     /// Cargo cannot be informed on standard output.
-    #[error("cargo cannot be told what to watch: {0}")]
+    #[error("cargo does not get the list of files to watch: {0}")]
     Cargo(io::Error),
 }
 

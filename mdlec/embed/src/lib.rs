@@ -148,7 +148,7 @@ mod tests {
         assert_eq!(watched(Path::new("plans/round 1.mdle")).unwrap(), "cargo::rerun-if-changed=plans/round 1.mdle\n");
         for name in ["a\ncargo::rustc-link-arg=b", "a\r\nb"] {
             let refusal = watched(Path::new(name)).unwrap_err();
-            assert!(refusal.to_string().contains("holds a line break"));
+            assert!(refusal.to_string().contains("contains a line break"));
         }
     }
 

@@ -74,7 +74,7 @@ pub fn out_of_date(file: &Path) -> String {
     if !rust.is_file() {
         return format!("there is no `{bound}`\nhelp: `mdlec bind {file}` writes it");
     }
-    format!("`{bound}` is not what `{file}` says\nhelp: `mdlec bind {file}` writes it anew")
+    format!("`{bound}` differs from the bindings of `{file}`\nhelp: `mdlec bind {file}` writes it again")
 }
 
 /// Reads the target that `option` names: one that is part of mdlec, or the folder of another. Without a name it is a

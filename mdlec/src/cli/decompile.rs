@@ -61,7 +61,7 @@ fn print(file: &Path, plan: &str) -> Result<(), Failure> {
         Ok(text) => report::print(&text),
         Err(found) => {
             report::diagnostics(&sources, &found, false);
-            Err(refused(format!("{}: what it has as `laws` and `text` is no MDLe", file.display())))
+            Err(refused(format!("{}: what it has as `laws` and `text` is not valid MDLe", file.display())))
         }
     }
 }
@@ -79,11 +79,11 @@ fn printed(machine: &Machine, exactly: &Answer) -> String {
             (None, None) => format!("{} holds\n", rule.name),
             (Some(letter), Some(meant)) if letter == meant => format!("{} fails: {letter}\n", rule.name),
             (Some(letter), Some(meant)) => format!("{} fails: {meant}; to the letter: {letter}\n", rule.name),
-            (Some(letter), None) => format!("{} holds as it is meant, but to the letter: {letter}\n", rule.name),
+            (Some(letter), None) => format!("{} holds as intended, but to the letter: {letter}\n", rule.name),
             (None, Some(meant)) => format!("{} holds to the letter, but: {meant}\n", rule.name),
         };
     }
-    let verdict = |holds: bool| if holds { "there is a string" } else { "there is none" };
+    let verdict = |holds: bool| if holds { "there is a string" } else { "there is no string" };
     let letter = rules.iter().all(|rule| rule.letter.is_none());
     let meant = rules.iter().all(|rule| rule.meant.is_none());
     let exact = match exactly {
@@ -96,7 +96,7 @@ fn printed(machine: &Machine, exactly: &Answer) -> String {
         (true, Answer::String(_) | Answer::Stopped(_)) | (false, Answer::None(_) | Answer::Stopped(_)) => "",
     };
     text + &format!(
-        "to the letter: {}\nas meant:      {}\nexactly:       {exact}{differ}\n",
+        "to the letter: {}\nas intended:   {}\nexactly:       {exact}{differ}\n",
         verdict(letter),
         verdict(meant)
     )

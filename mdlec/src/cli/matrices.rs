@@ -28,7 +28,7 @@ pub(super) fn matrices(
         let text = equations::equation(&terms).ok_or_else(|| {
             Failure::usage(format!(
                 "this plan has {} states, and matrices of more than {} are not for a terminal\nhelp: have them written as \
-                 MatrixMarket files into a folder: `--emit matrices=FOLDER`; `--emit fsm` lists only what moves",
+                 MatrixMarket files into a folder: `--emit matrices=FOLDER`; `--emit fsm` lists only the transitions",
                 terms.states(),
                 equations::most_states(),
             ))
@@ -39,7 +39,7 @@ pub(super) fn matrices(
         let root = plan.plan().root.span;
         let message =
             format!("the {} matrices of this plan have {ones} ones; written are at most {most}", terms.live.len());
-        let help = "`--combine` makes one matrix of equal interrupts, and `--emit fsm` lists only what moves";
+        let help = "`--combine` makes one matrix of equal interrupts, and `--emit fsm` lists only the transitions";
         refused(Diagnostic::new(Code::E0502, message, root, "this plan").help(help))
     })?;
     let count = write(&files, folder, inputs)?;

@@ -40,7 +40,7 @@ pub(super) fn new_target(options: &NewTarget) -> Result<(), Failure> {
         let _ = fs::remove_dir_all(folder);
     })?;
     report::note(format_args!(
-        "`{name}` is a robot that drives at once: it is imagined in {name}/src/hardware.rs, where your driver goes\n\
+        "`{name}` is a robot that can already run plans: it is simulated in {name}/src/hardware.rs, where your driver goes\n\
          next: `mdlec PLAN --target {name}`, and the page \"Add your robot\" of the book"
     ));
     Ok(())

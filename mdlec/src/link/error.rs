@@ -90,7 +90,7 @@ pub enum LinkError {
     /// There is no linker, or no static C library.
     #[error(
         "the linker cannot make a static executable: install the C compiler and the static C library of this system \
-         (Debian: build-essential, Fedora: gcc and glibc-static); what it says is in `{log}`"
+         (Debian: build-essential, Fedora: gcc and glibc-static); its output is in `{log}`"
     )]
     Linker {
         /// File with the output of cargo and rustc.
@@ -99,7 +99,7 @@ pub enum LinkError {
     /// Libraries are missing and cannot be fetched.
     #[error(
         "the libraries that executables are built on are not on this machine yet, and they cannot be fetched: connect \
-         it to the network once and try again; what cargo says is in `{log}`"
+         it to the network once and try again; cargo's output is in `{log}`"
     )]
     NoLibraries {
         /// File with the output of cargo and rustc.
@@ -107,7 +107,7 @@ pub enum LinkError {
     },
     /// Libraries are missing, and cargo is configured not to fetch any.
     #[error(
-        "the libraries that executables are built on are not on this machine yet, and cargo is told not to fetch them: \
+        "the libraries that executables are built on are not on this machine yet, and cargo is configured not to fetch them: \
          unset CARGO_NET_OFFLINE, or `net.offline` in cargo's configuration, and try again with the network"
     )]
     Offline,
@@ -162,14 +162,14 @@ pub enum LinkError {
     },
 
     /// A path that cannot be written in a manifest.
-    #[error("`{0}` is not UTF-8, so cargo cannot be told of it: rename it")]
+    #[error("`{0}` is not UTF-8, which cargo's manifests need: rename it")]
     NotUtf8(PathBuf),
     /// The build was stopped.
     #[error("the build was stopped by signal {0}")]
     Stopped(u8),
     /// Cargo fails for an unknown reason.
     #[error(
-        "cargo failed; what it says is in `{log}`; if it makes no sense, delete the cache `{cache}` and try again; if this \
+        "cargo failed; its output is in `{log}`; if it makes no sense, delete the cache `{cache}` and try again; if this \
          stays, please report it with that file"
     )]
     Cargo {

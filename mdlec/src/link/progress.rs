@@ -44,10 +44,10 @@ impl fmt::Display for Progress {
             }
             Self::Blocked => f.write_str("waiting for another cargo to finish, which uses the same libraries"),
             Self::Discarding => {
-                f.write_str("compiled files in the cache are not as cargo wrote them: they are compiled anew")
+                f.write_str("compiled files in the cache are not as cargo wrote them: they are compiled again")
             }
             Self::Fetching => f.write_str("fetching the libraries that programs are built on; only the first time"),
-            Self::Mending => f.write_str("the cache is damaged: all that programs are built on is compiled anew"),
+            Self::Mending => f.write_str("the cache is damaged: all libraries are compiled again"),
             Self::Compiling(1) => f.write_str("compiling libraries; only the first time takes long"),
             Self::Compiling(done) => {
                 write!(f, "compiling libraries; only the first time takes long ({done} crates)")

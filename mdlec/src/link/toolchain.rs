@@ -39,7 +39,7 @@ impl Toolchain {
         let (Some(host), Some(release), true) = (field("host: "), field("release: "), found.status.success()) else {
             // Such as rustup without a toolchain; its first line says so.
             let errors = String::from_utf8_lossy(&found.stderr);
-            let why = errors.lines().next().unwrap_or("it says nothing").trim_start_matches("error: ").to_owned();
+            let why = errors.lines().next().unwrap_or("it printed no error").trim_start_matches("error: ").to_owned();
             return Err(LinkError::NoRust { tool: "rustc", why });
         };
         if version(release) < version(NEEDED) {
@@ -91,7 +91,7 @@ fn is_about_builds(name: &OsStr) -> bool {
 /// Error for a program that could not be run.
 pub(super) fn unusable(tool: &'static str, error: &io::Error) -> LinkError {
     let missing = error.kind() == io::ErrorKind::NotFound;
-    let why = if missing { "it is not there".to_owned() } else { format!("it cannot be run ({error})") };
+    let why = if missing { "it is not installed".to_owned() } else { format!("it cannot be run ({error})") };
     LinkError::NoRust { tool, why }
 }
 

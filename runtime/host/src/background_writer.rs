@@ -129,7 +129,7 @@ impl Outlet {
         }
         let mut piece = std::mem::take(&mut self.piece);
         if self.lost {
-            piece.splice(0..0, *b"(lines are missing here: nobody read them in time)\n");
+            piece.splice(0..0, *b"(lines are missing here: they were not read in time)\n");
         }
         let shared = Arc::clone(&self.shared);
         let begun = Instant::now();
@@ -206,7 +206,7 @@ fn too_slow(limit: Duration) -> io::Error {
 }
 
 fn unread(limit: Duration) -> String {
-    format!("nobody has taken it for {} s", limit.as_secs())
+    format!("it was not read for {} s", limit.as_secs())
 }
 
 impl Write for Outlet {

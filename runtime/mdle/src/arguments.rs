@@ -108,9 +108,9 @@ fn command() -> Command {
 
 fn run() -> Command {
     Command::new("run")
-        .about("Compile a plan and run it at once")
+        .about("Compile a plan and run it")
         .long_about(
-            "Compile a plan and run it at once\n\nThe options of the run follow the plan. They are those of the executable \
+            "Compile a plan and run it\n\nThe options of the run follow the plan. They are those of the executable \
              that mdlec builds: `mdle run PLAN --target sim --help` lists them.",
         )
         .override_usage("mdle run [OPTIONS] <PLAN> [OPTIONS OF THE RUN]")

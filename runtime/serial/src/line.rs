@@ -167,7 +167,7 @@ fn serial(path: &Path, speed: u32) -> Result<OwnedFd, LineFault> {
 fn connect(address: &str) -> Result<OwnedFd, LineFault> {
     let name = format!("tcp:{address}");
     let address: SocketAddr = address.parse().map_err(|_| {
-        LineFault::Open(name.clone(), "an address and a port are meant, as in `tcp:192.168.1.7:65001`".to_owned())
+        LineFault::Open(name.clone(), "expected an address and a port, as in `tcp:192.168.1.7:65001`".to_owned())
     })?;
     let refused = |error: io::Error| LineFault::Open(name.clone(), error.to_string());
     let stream = TcpStream::connect_timeout(&address, CONNECT).map_err(refused)?;

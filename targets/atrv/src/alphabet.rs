@@ -10,9 +10,9 @@ use ::mdle_atoms::alphabet as atoms;
 use ::mdle_runtime as runtime;
 /// The target's name, as `mdlec --target` takes it.
 pub const NAME: &str = "atrv";
-/// The period of a turn, unless the operator says otherwise.
+/// The default period of a turn.
 pub const PERIOD: runtime::Nanos = runtime::Nanos(100000000);
-/// Tells this alphabet from any other: a plan that was compiled for another one does not compile.
+/// Identifies this alphabet: a plan that was compiled for another alphabet does not compile.
 pub const HASH: u64 = 0x4551139732fb0fa2;
 /// `go <v in cm/s> <omega in rad/s>`: Drives with a forward speed and a turn rate, counter-clockwise positive, for ever.
 const fn go(arguments: &[runtime::Argument<'_>]) -> Option<Go> {

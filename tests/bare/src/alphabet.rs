@@ -9,9 +9,9 @@ use ::mdle_atoms::alphabet as atoms;
 use ::mdle_runtime as runtime;
 /// The target's name, as `mdlec --target` takes it.
 pub const NAME: &str = "bare";
-/// The period of a turn, unless the operator says otherwise.
+/// The default period of a turn.
 pub const PERIOD: runtime::Nanos = runtime::Nanos(100000000);
-/// Tells this alphabet from any other: a plan that was compiled for another one does not compile.
+/// Identifies this alphabet: a plan that was compiled for another alphabet does not compile.
 pub const HASH: u64 = 0x47b6f44f6695c133;
 
 runtime::alphabet! {

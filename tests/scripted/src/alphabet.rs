@@ -9,9 +9,9 @@ pub use crate::quarks::{
 use ::mdle_runtime as runtime;
 /// The target's name, as `mdlec --target` takes it.
 pub const NAME: &str = "scripted";
-/// The period of a turn, unless the operator says otherwise.
+/// The default period of a turn.
 pub const PERIOD: runtime::Nanos = runtime::Nanos(100000000);
-/// Tells this alphabet from any other: a plan that was compiled for another one does not compile.
+/// Identifies this alphabet: a plan that was compiled for another alphabet does not compile.
 pub const HASH: u64 = 0xc27050ccfd2b3202;
 /// `stuck <duration in s>`: Fires when the script says so and its scope has lasted as long.
 const fn stuck(arguments: &[runtime::Argument<'_>]) -> Option<Stuck> {

@@ -31,7 +31,7 @@ pub(super) fn check(alphabet: &AlphabetFile) -> Vec<Diagnostic> {
             found.push(at(declaration, message.into()));
         }
         if declaration.completes && declaration.kind != DeclarationKind::Control {
-            found.push(at(declaration, format!("only a law completes, and `{}` is none", declaration.name)));
+            found.push(at(declaration, format!("only a law completes, and `{}` is not a law", declaration.name)));
         }
         if declaration.exclusive {
             found.extend(exclusive(declaration));

@@ -203,7 +203,7 @@ impl<'t> Reader<'t> {
         let Some(kind) = kind else {
             return self.defect(
                 span,
-                "there is no such type of argument",
+                "unknown type of argument",
                 "the types are length, speed, angle, \
                 angular_rate, time, voltage, number, integer, count, bits[N], sonar, robot, module and file",
             );

@@ -243,8 +243,7 @@ fn same<T: PartialEq + fmt::Debug>(span: Span, what: &str, asked: T, made: T) ->
 }
 
 fn mismatch(span: Span, what: &str, asked: &str, made: &str) -> Diagnostic {
-    let message =
-        format!("the machine is not that of the plan: {what} is {asked} in the plan and {made} in the machine");
+    let message = format!("the machine differs from the plan: {what} is {asked} in the plan and {made} in the machine");
     Diagnostic::new(Code::E0901, message, span, "this is not what was made of it")
         .help("this is a defect of mdlec, not of the plan: please report it with the plan")
 }

@@ -97,7 +97,7 @@ fn constants(alphabet: &Alphabet) -> TokenStream {
     let period = alphabet.period.map(|nanos| {
         let nanos = Literal::u64_unsuffixed(nanos);
         quote! {
-            #[doc = " The period of a turn, unless the operator says otherwise."]
+            #[doc = " The default period of a turn."]
             pub const PERIOD: runtime::Nanos = runtime::Nanos(#nanos);
         }
     });
@@ -106,7 +106,7 @@ fn constants(alphabet: &Alphabet) -> TokenStream {
         #[doc = " The target's name, as `mdlec --target` takes it."]
         pub const NAME: &str = #name;
         #period
-        #[doc = " Tells this alphabet from any other: a plan that was compiled for another one does not compile."]
+        #[doc = " Identifies this alphabet: a plan that was compiled for another alphabet does not compile."]
         pub const HASH: u64 = #hash;
     }
 }

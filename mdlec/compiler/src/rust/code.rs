@@ -99,7 +99,7 @@ impl Meaning<'_> {
             }
         });
         quote! {
-            #[doc = " The law of the current atom, with what it remembers since the atom began."]
+            #[doc = " The law of the current atom, with its state since the atom began."]
             #[derive(Debug)]
             enum Running {
                 #[doc = " Before the plan begins."]
@@ -145,7 +145,7 @@ impl Meaning<'_> {
                 #paths
             }
 
-            #[doc = " The cursor of this plan: its levels of scopes and of loops are known."]
+            #[doc = " The plan's cursor, with a place for each level of scopes and for each level of loops."]
             type At = Cursor<#entered, [u64; #slots]>;
 
             fn text(texts: &'static [&'static str], index: u32) -> &'static str {

@@ -111,14 +111,14 @@ pub fn emit_as(shape: Shape, machine: &Machine, header: Header<'_>, alphabet: &A
     let tables = tables::tables(machine);
     let source = source::source(&fsm::words(machine, header.sources, alphabet));
     let file = quote! {
-        #[allow(unreachable_pub, reason = "who includes this file says how far it reaches")]
+        #[allow(unreachable_pub, reason = "the including module decides the visibility")]
         pub use machine::#plan;
 
         #[forbid(unsafe_code)]
-        #[allow(unreachable_pub, reason = "who includes this file says how far it reaches")]
+        #[allow(unreachable_pub, reason = "the including module decides the visibility")]
         #[allow(clippy::approx_constant, reason = "numbers are the plan's own")]
         #[allow(clippy::nonminimal_bool, clippy::eq_op, reason = "conditions are the plan's own")]
-        #[allow(unused_variables, reason = "a scope is asked with all that any scope may need")]
+        #[allow(unused_variables, reason = "all functions of scopes have the same parameters")]
         mod machine {
             use ::mdle_runtime as runtime;
             use ::mdle_runtime::fsm::{Atom, Bracket};

@@ -146,7 +146,7 @@ fn rows(machine: &Machine, paths: Option<&TokenStream>) -> TokenStream {
     });
     let (marks, facts) = (marks.iter().map(mark), facts.iter().map(fact));
     quote! {
-        #[doc = " What brackets and atoms mean, in the order of the tables below."]
+        #[doc = " The conditions of brackets and the laws of atoms, in the order of the tables below."]
         static ROWS: runtime::Rows<'static, robot::Alphabet> = runtime::Rows {
             fsm: FSM,
             guards: &[#(#guards),*],
@@ -167,7 +167,7 @@ pub(super) fn conditions(machine: &Machine) -> TokenStream {
     let conditions = rows.guards.iter().map(|guard| row(&guard.condition, machine));
     let operands = rows.operands.iter().map(|operand| row(operand, machine));
     quote! {
-        #[doc = " The conditions of brackets once more, read when somebody asks what has fired."]
+        #[doc = " The conditions of brackets as rows, for reports of the operands that have fired."]
         static OPERANDS: runtime::Conditions<'static, robot::AnyInterrupt> = runtime::Conditions {
             conditions: &[#(#conditions),*],
             operands: &[#(#operands),*],

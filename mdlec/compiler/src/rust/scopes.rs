@@ -22,7 +22,7 @@ impl Meaning<'_> {
                     if let Some(ending) = #function(cursor, y, t) { return Some(ending); }
                 }
             });
-            let order = if around.is_some() { ", and the scopes around it first" } else { "" };
+            let order = if around.is_some() { ", after the interrupts of enclosing scopes" } else { "" };
             let name = if element.name().is_empty() { "A scope without a name" } else { element.name() };
             let doc = format!(" {name} ({}){order}.", Printable(element.condition_text()));
             Some(quote! {

@@ -115,7 +115,7 @@ fn loop_count(site: &Site<'_, '_>) -> Option<Diagnostic> {
             let words = format!("write `ExecPlan {count} {{ … }}`");
             return Some(diagnostic.fix(&words, site.span(site.at - 1, site.at + 3), format!("ExecPlan {count} {{")));
         }
-        let message = "this loop does not say how often";
+        let message = "this loop has no count";
         let diagnostic = site.about(site.at - 1, message, "a count is missing after this");
         return Some(diagnostic.help("write `ExecPlan 3 { … }`, or `ExecPlan inf { … }` for ever"));
     }

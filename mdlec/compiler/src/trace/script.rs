@@ -114,7 +114,7 @@ impl Script {
             let written = written(content).map_err(refused)?;
             let at = nanos(written.t).ok_or_else(|| refused(format!("{} is no time in seconds", written.t)))?;
             let start = *start.get_or_insert(at);
-            let back = || refused(format!("the time {} is before that of the line before it", written.t));
+            let back = || refused(format!("the time {} is before the time of the previous line", written.t));
             let t = Nanos(at.checked_sub(start).ok_or_else(back)?);
             if turns.last().is_some_and(|before| t < before.t) {
                 return Err(back());
@@ -124,7 +124,7 @@ impl Script {
             if turns.last().is_some_and(|before| way < before.way) {
                 let absent = "; a line without `way` counts as 0";
                 let absent = if written.way == 0.0 { absent } else { "" };
-                let message = format!("the way {} is less than that of the line before it{absent}", written.way);
+                let message = format!("the way {} is less than the way of the previous line{absent}", written.way);
                 return Err(refused(message));
             }
             let heading = Radians::from_degrees(written.heading);
@@ -218,10 +218,10 @@ mod tests {
 
     #[test]
     fn a_time_that_goes_back_is_refused_with_its_line() {
-        assert_eq!(refused("{\"t\":1}\n\n{\"t\":0.9}"), "line 3: the time 0.9 is before that of the line before it");
+        assert_eq!(refused("{\"t\":1}\n\n{\"t\":0.9}"), "line 3: the time 0.9 is before the time of the previous line");
         assert_eq!(
             refused("{\"t\":1}\n{\"t\":3}\n{\"t\":2}"),
-            "line 3: the time 2 is before that of the line before it"
+            "line 3: the time 2 is before the time of the previous line"
         );
     }
 
@@ -239,11 +239,11 @@ mod tests {
     fn a_way_that_gets_shorter_is_refused_with_its_line() {
         assert_eq!(
             refused("{\"t\":0,\"way\":2}\n{\"t\":1,\"way\":1.5}"),
-            "line 2: the way 1.5 is less than that of the line before it"
+            "line 2: the way 1.5 is less than the way of the previous line"
         );
         assert_eq!(
             refused("{\"t\":0,\"way\":2}\n{\"t\":1}"),
-            "line 2: the way 0 is less than that of the line before it; a line without `way` counts as 0"
+            "line 2: the way 0 is less than the way of the previous line; a line without `way` counts as 0"
         );
         assert_eq!(refused("{\"t\":0,\"way\":-1}"), "line 1: -1 is no way in metres");
     }

@@ -38,7 +38,7 @@ fn a_slow_reader_loses_lines_and_the_robot_does_not_wait() {
     let text = reading.join().unwrap().unwrap();
     let lines: Vec<&str> = text.lines().map(str::trim_start).collect();
     assert_eq!(lines[..2], ["0", "1"]);
-    assert_eq!(lines[lines.len() - 2..], ["(lines are missing here: nobody read them in time)", "at last"]);
+    assert_eq!(lines[lines.len() - 2..], ["(lines are missing here: they were not read in time)", "at last"]);
     assert!(text.len() < WAITING + 100_000);
 }
 
@@ -68,7 +68,7 @@ fn a_reader_that_takes_nothing_is_given_up_after_the_stop() {
     let mut outlet = Outlet::open(writer, Keeps::WhatIsRead, &patience).unwrap();
     outlet.write_all(&vec![b'x'; 100_000]).unwrap();
     let begun = Instant::now();
-    assert_eq!(outlet.flush().unwrap_err().to_string(), "nobody has taken it for 2 s");
+    assert_eq!(outlet.flush().unwrap_err().to_string(), "it was not read for 2 s");
     assert!(begun.elapsed() >= AT_THE_END);
     // It has had its time.
     outlet.write_all(b"more").unwrap();

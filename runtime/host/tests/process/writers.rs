@@ -190,7 +190,7 @@ fn a_log_that_nobody_reads_stops_the_robot() {
     cart.blocked(Writer::Log);
     let mut child = cart.command.stderr(Stdio::piped()).spawn().unwrap();
     let lines: Vec<_> = lines(child.stderr.take().unwrap()).collect();
-    assert_eq!(lines[0], "error: the run log cannot be written, so the robot was stopped: nobody has taken it for 5 s");
+    assert_eq!(lines[0], "error: the run log cannot be written, so the robot was stopped: it was not read for 5 s");
     assert_eq!(cart.end(&mut child), (Some(3), true));
 }
 

@@ -5,9 +5,9 @@ pub use crate::quarks::{Reached, Halt, Write};
 use ::mdle_runtime as runtime;
 /// The target's name, as `mdlec --target` takes it.
 pub const NAME: &str = "workload";
-/// The period of a turn, unless the operator says otherwise.
+/// The default period of a turn.
 pub const PERIOD: runtime::Nanos = runtime::Nanos(100000000);
-/// Tells this alphabet from any other: a plan that was compiled for another one does not compile.
+/// Identifies this alphabet: a plan that was compiled for another alphabet does not compile.
 pub const HASH: u64 = 0x055e0f2c4ac744e8;
 /// `reached <limit>`: Fires once the measurement has reached this value.
 const fn reached(arguments: &[runtime::Argument<'_>]) -> Option<Reached> {

@@ -36,8 +36,8 @@ pub(super) fn wrong_count(call: &Call, declaration: &Declaration, needed: usize)
         && declaration.kind == DeclarationKind::Control
         && matches!(declaration.params.first(), Some(Param { kind: Kind::Angle, .. }))
     {
-        let message = format!("`{}` takes {takes}, and `{}` is none of them", declaration.name, side.node);
-        let found = Diagnostic::new(Code::E0301, message, side.span, "a number with a sign says it");
+        let message = format!("`{}` takes {takes}, and `{}` is not an argument", declaration.name, side.node);
+        let found = Diagnostic::new(Code::E0301, message, side.span, "write a number with a sign");
         return found.fix(law.words, call.span, law.call);
     }
     if call.args.len() > most {

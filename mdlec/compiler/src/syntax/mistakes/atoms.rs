@@ -78,7 +78,7 @@ fn law_outside(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let is_call = site.kind(first) == Some(Tok::Name(site.name_at(name)?)) || site.is_call(name, last.checked_sub(1)?);
     let law = site.text(first, last).filter(|_| is_call && site.name_at(name).is_some_and(is_law))?;
     let diagnostic = site.about(site.at, "the law of this atom is outside of its parentheses", "closes the atom");
-    Some(diagnostic.fix("move this `)` behind the law: {}", site.span(site.at, last), format!(" {law})")))
+    Some(diagnostic.fix("move this `)` after the law: {}", site.span(site.at, last), format!(" {law})")))
 }
 
 /// Index of the last token of a name and the numbers after it.
