@@ -1,7 +1,7 @@
 //! Detects a person who approaches the robot: the echoes ahead get nearer faster than the robot drives.
 
 use mdle_runtime::capability::SonarRing;
-use mdle_runtime::{Meters, Nanos, PINGS_KEPT, Pose, Radians, SONARS, SonarId};
+use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, SonarId};
 
 /// A sonar listens for somebody if its axis is no further off the way ahead than this.
 const AHEAD: Radians = Radians::from_degrees(14.0);
@@ -15,6 +15,13 @@ const FASTEST: f64 = 2.0;
 /// obstacle's ranges, which is 1.5 cm and a step of an inch.
 const NEARER: f64 = 0.1;
 
+/// Number of echoes kept.
+const KEPT: usize = 5;
+/// Minimum number of echoes in a row that come nearer.
+const AGREE: usize = 3;
+/// Minimum time for which they do where sonars fire in turn, whose wide cones hear rough walls beside the way, now one
+/// and now the other: three such ranges are in order by chance.
+const LASTS: Nanos = Nanos(1_400_000_000);
 /// Maximum lateral distance, in metres, between two echoes of one object.
 const ACROSS: f64 = 0.25;
 
@@ -42,7 +49,7 @@ struct Relative {
 /// The last echoes ahead, newest first, without silence between them.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Approach {
-    heard: [Option<Echo>; PINGS_KEPT],
+    heard: [Option<Echo>; KEPT],
 }
 
 impl Approach {
@@ -55,22 +62,20 @@ impl Approach {
         }
         let axis = Radians(ping.pose.theta.0 + sonar.bearing().0);
         let looked = Radians(axis.0 - way.0).wrapped().0.abs() <= AHEAD.0;
-        let [first, second, _] = self.heard;
-        self.heard = match ping.range.filter(|_| looked) {
-            Some(range) => {
-                let place = ping.pose.towards(axis, Meters(y.ring_radius().0 + range.0));
-                [Some(Echo { at: ping.at, place }), first, second]
-            }
-            None => Default::default(),
+        let Some(range) = ping.range.filter(|_| looked) else {
+            self.heard = Default::default();
+            return;
         };
+        let place = ping.pose.towards(axis, Meters(y.ring_radius().0 + range.0));
+        self.heard.rotate_right(1);
+        self.heard[0] = Some(Echo { at: ping.at, place });
     }
 
     /// Returns the seconds from the newest echo until a person who approaches reaches the robot; `None` if nobody
     /// approaches.
     ///
-    /// Fixed obstacles stay at the same place. As many echoes must agree as confirm that a way is free, and no echo
-    /// that is still kept may contradict them.
-    pub(crate) fn seconds(&self, here: Pose, way: Radians, confirmation: usize) -> Option<f64> {
+    /// Fixed obstacles stay at the same place.
+    pub(crate) fn seconds(&self, here: Pose, way: Radians, in_turn: bool) -> Option<f64> {
         let (sin, cos) = libm::sincos(way.0);
         let mut heard = self.heard.iter().flatten().map(|Echo { at, place }| {
             let (x, y) = (place.x.0 - here.x.0, place.y.0 - here.y.0);
@@ -83,13 +88,13 @@ impl Approach {
             let comes = (SLOWEST..=FASTEST).contains(&((before.along - oldest.along) / seconds));
             let turned = Radians(oldest.axis.0 - before.axis.0).wrapped().0.abs();
             if !comes || turned > TURNS * seconds || (before.across - oldest.across).abs() > ACROSS {
-                return None;
+                break;
             }
             (oldest, agree) = (before, agree + 1);
         }
-        let nearer = oldest.along - newest.along;
-        let comes = agree >= confirmation && nearer >= NEARER && newest.along > 0.0;
-        comes.then(|| newest.along * newest.at.since(oldest.at).seconds() / nearer)
+        let (nearer, lasted) = (oldest.along - newest.along, newest.at.since(oldest.at));
+        let is_sure = agree >= AGREE && nearer >= NEARER && (!in_turn || lasted >= LASTS);
+        (is_sure && newest.along > 0.0).then(|| newest.along * lasted.seconds() / nearer)
     }
 }
 
@@ -107,8 +112,8 @@ mod tests {
 
     /// Returns the seconds until somebody arrives who is heard at these ranges, one second apart, by a robot that
     /// drives at `v` m/s and turns at `omega` rad/s.
-    fn seconds(ranges: &[Option<f64>], v: f64, omega: f64, confirmation: usize) -> Option<f64> {
-        let (mut y, mut approach) = (Sensed { confirmation, ..Sensed::default() }, Approach::default());
+    fn seconds(ranges: &[Option<f64>], v: f64, omega: f64) -> Option<f64> {
+        let (mut y, mut approach) = (Sensed::default(), Approach::default());
         for (second, range) in (0..).zip(ranges) {
             y.ping_at(SonarId::new(0), *range, Nanos(second * 1_000_000_000));
             approach.take(&y, y.pose, Radians(0.0));
@@ -117,31 +122,47 @@ mod tests {
                 y.drive(input);
             }
         }
-        approach.seconds(y.pose, Radians(0.0), confirmation)
+        approach.seconds(y.pose, Radians(0.0), false)
     }
 
     #[test]
     fn a_person_faster_than_the_robot_differs_from_a_wall() {
         let comes = [Some(5.0), Some(3.8), Some(2.6)];
         // 2.6 m and the ring's radius, of which the robot has driven 0.2 m since.
-        let arrives = seconds(&comes, 0.2, 0.0, 3).expect("somebody");
+        let arrives = seconds(&comes, 0.2, 0.0).expect("somebody");
         assert!((arrives - 2.59).abs() < 1e-9, "{arrives}");
-        assert_eq!(seconds(&[Some(5.0), Some(4.8), Some(4.6)], 0.2, 0.0, 3), None, "a wall");
-        assert_eq!(seconds(&[Some(5.0), Some(4.6), Some(4.2)], 0.2, 0.0, 3), None, "too slow");
-        assert_eq!(seconds(&[Some(5.0), Some(2.6), Some(0.2)], 0.2, 0.0, 3), None, "too fast");
+        assert_eq!(seconds(&[Some(5.0), Some(4.8), Some(4.6)], 0.2, 0.0), None, "a wall");
+        assert_eq!(seconds(&[Some(5.0), Some(4.6), Some(4.2)], 0.2, 0.0), None, "too slow");
+        assert_eq!(seconds(&[Some(5.0), Some(2.6), Some(0.2)], 0.2, 0.0), None, "too fast");
     }
 
     #[test]
-    fn as_many_echoes_must_agree_as_confirm_a_free_way_and_none_may_gainsay() {
-        assert!(seconds(&[None, Some(3.8), Some(2.6)], 0.2, 0.0, 2).is_some());
-        assert_eq!(seconds(&[None, Some(3.8), Some(2.6)], 0.2, 0.0, 3), None);
-        assert_eq!(seconds(&[Some(3.8), None, Some(2.6)], 0.2, 0.0, 2), None);
-        assert_eq!(seconds(&[Some(4.0), Some(3.8), Some(2.6)], 0.2, 0.0, 2), None);
+    fn three_echoes_in_a_row_must_come_nearer() {
+        assert!(seconds(&[Some(3.0), Some(5.0), Some(3.8), Some(2.6)], 0.2, 0.0).is_some());
+        assert_eq!(seconds(&[None, Some(3.8), Some(2.6)], 0.2, 0.0), None);
+        assert_eq!(seconds(&[Some(3.8), None, Some(2.6)], 0.2, 0.0), None);
+        assert_eq!(seconds(&[Some(4.0), Some(3.8), Some(2.6)], 0.2, 0.0), None);
+    }
+
+    /// Returns `true` if a robot at rest whose sonars fire in turn avoids somebody who comes at 1 m/s and is heard this
+    /// many times, 0.36 s apart.
+    fn avoids(echoes: u64) -> bool {
+        let (mut y, mut approach) = (Sensed::default(), Approach::default());
+        for echo in 0..echoes {
+            y.ping_at(SonarId::new(0), Some(4.0 - 0.36 * echo as f64), Nanos(echo * 360_000_000));
+            approach.take(&y, y.pose, Radians(0.0));
+        }
+        approach.seconds(y.pose, Radians(0.0), true).is_some()
+    }
+
+    #[test]
+    fn where_sonars_fire_in_turn_echoes_come_nearer_longer() {
+        assert!(avoids(5) && !avoids(4));
     }
 
     #[test]
     fn nobody_is_heard_by_a_robot_that_turns() {
-        assert!(seconds(&[Some(5.0), Some(3.8), Some(2.6)], 0.0, 0.01, 3).is_some());
-        assert_eq!(seconds(&[Some(5.0), Some(3.8), Some(2.6)], 0.0, 0.03, 3), None);
+        assert!(seconds(&[Some(5.0), Some(3.8), Some(2.6)], 0.0, 0.01).is_some());
+        assert_eq!(seconds(&[Some(5.0), Some(3.8), Some(2.6)], 0.0, 0.03), None);
     }
 }

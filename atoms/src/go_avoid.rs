@@ -119,7 +119,7 @@ impl GoingRound {
         let goal = self.direction(here);
         self.approach.take(y, here, goal);
         let gives_way = self.gives_way.filter(|gives_way| t < gives_way.until);
-        self.gives_way = match self.approach.seconds(here, goal, y.confirmation()) {
+        self.gives_way = match self.approach.seconds(here, goal, fire_in_turn(y)) {
             Some(seconds) => {
                 let seconds = (seconds + PASSES).min(PASSES_MOST);
                 let until = Nanos(t.0.saturating_add((seconds * 1e9) as u64));
