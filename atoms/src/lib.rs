@@ -14,6 +14,7 @@ mod advance;
 mod align;
 pub mod alphabet;
 mod approach;
+mod askew;
 mod at_isection;
 mod bumper;
 mod crossing;
