@@ -200,7 +200,10 @@ fn without_rust_it_says_what_to_install() {
     let folder = with_plan("no_rust", 1);
     let message = refused(command(&folder, &BUILD).env("PATH", &folder));
     let advice = "install Rust from rustup.rs\n";
-    assert_eq!(message, format!("error: mdlec needs `rustc` to build an executable, and it is not installed: {advice}"));
+    assert_eq!(
+        message,
+        format!("error: mdlec needs `rustc` to build an executable, and it is not installed: {advice}")
+    );
 }
 
 #[test]

@@ -28,7 +28,7 @@ const FILES: [&str; 2] = ["run.jsonl", "trail.csv"];
 
 /// All that a run leaves: report, messages, exit status, and the files that it writes.
 #[derive(Debug, PartialEq, Eq)]
-struct Left {
+struct RunOutput {
     out: String,
     err: String,
     status: Option<i32>,
@@ -36,7 +36,7 @@ struct Left {
 }
 
 /// Takes what a run in `folder` left; `called` are the words of its command before the options, for messages.
-fn left(folder: &Path, called: &str, output: Output) -> Left {
+fn left(folder: &Path, called: &str, output: Output) -> RunOutput {
     let files = FILES.map(|file| {
         let text = fs::read_to_string(folder.join(file)).ok();
         let _ = fs::remove_file(folder.join(file));
@@ -44,12 +44,12 @@ fn left(folder: &Path, called: &str, output: Output) -> Left {
     });
     let text = |bytes| String::from_utf8(bytes).unwrap().replace(called, "PROGRAM");
     let [out, err] = [output.stdout, output.stderr].map(text);
-    Left { out, err, status: output.status.code(), files: files.into() }
+    RunOutput { out, err, status: output.status.code(), files: files.into() }
 }
 
 /// Runs the plan of a file both ways with the same options, and compares what the runs leave. Warnings about the plan,
 /// which `mdlec` prints when it builds, come before the run.
-fn compare(folder: &Path, file: &str, target: &str, options: &[&str]) -> Left {
+fn compare(folder: &Path, file: &str, target: &str, options: &[&str]) -> RunOutput {
     let run = |mut command: Command| {
         let called = called(&command);
         left(folder, &called, command.args(options).current_dir(folder).output().unwrap())
@@ -113,7 +113,7 @@ fn every_plan_runs_as_its_executable_does() {
         }
         build(&folder, file, "sim");
         for body in ["ideal", "scout", "atrv"] {
-            let Left { status, files, out, .. } = compare(&folder, file, "sim", &in_simulator(body, "7"));
+            let RunOutput { status, files, out, .. } = compare(&folder, file, "sim", &in_simulator(body, "7"));
             assert!([Some(0), Some(4)].contains(&status), "{file} {body}: {out}");
             assert!(files.iter().all(|file| file.as_ref().is_some_and(|text| text.len() > 1000)), "{file} {body}");
         }
@@ -158,7 +158,7 @@ fn simulated(body: Body, step: Duration) -> Simulated {
 }
 
 /// Runs a command on an emulated robot in lockstep.
-fn emulated<R: Emulated + Send>(folder: &Path, mut robot: R, mut command: Command) -> Left {
+fn emulated<R: Emulated + Send>(folder: &Path, mut robot: R, mut command: Command) -> RunOutput {
     let called = called(&command);
     let (port, over) = (Port::open().unwrap(), AtomicBool::new(false));
     let output = thread::scope(|scope| {

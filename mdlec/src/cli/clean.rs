@@ -1,13 +1,13 @@
 //! `mdlec clean`: empties the cache.
 
-use super::executable::Shown;
+use super::executable::ProgressOutput;
 use super::{Failure, report};
 use crate::link::{self, Cache};
 
 /// Removes the contents of the cache, and prints their size.
 pub(super) fn clean() -> Result<(), Failure> {
     let folder = Cache::folder_of_user()?;
-    let mut shown = Shown::default();
+    let mut shown = ProgressOutput::default();
     let freed = link::clear(&folder, &mut |progress| shown.progress(&progress));
     shown.close();
     let freed = freed?;

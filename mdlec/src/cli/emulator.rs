@@ -3,7 +3,7 @@
 use std::os::unix::process::CommandExt;
 use std::process::Command;
 
-use super::executable::{Shown, become_program, take_signals};
+use super::executable::{ProgressOutput, become_program, take_signals};
 use super::{Emulator, Failure};
 use crate::link::{self, Cache};
 
@@ -11,7 +11,7 @@ use crate::link::{self, Cache};
 pub(super) fn emulator(options: &Emulator) -> Result<(), Failure> {
     take_signals()?;
     let robot = &options.robot;
-    let mut shown = Shown::default();
+    let mut shown = ProgressOutput::default();
     let built =
         Cache::of_user().and_then(|cache| link::emulator(&cache, robot, &mut |progress| shown.progress(&progress)));
     shown.close();

@@ -42,7 +42,7 @@ pub(super) fn begin(options: &Executable) -> Result<&Path, Failure> {
 
 /// Makes signals end this process without leaving processes or files.
 pub(super) fn take_signals() -> Result<(), Failure> {
-    link::leave_nothing_behind(Shown::wipe)
+    link::leave_nothing_behind(ProgressOutput::wipe)
         .map_err(|error| Failure::usage(format!("this system does not let signals be caught: {error}")))
 }
 
@@ -78,7 +78,7 @@ pub(super) fn build(options: &Executable, path: &Path, output: Option<PathBuf>) 
         rust: &rust,
         target: &target_crate,
     };
-    let mut shown = Shown::default();
+    let mut shown = ProgressOutput::default();
     let built = Cache::of_user()
         .and_then(|cache| link::build(&cache, &package, &output, &mut |progress| shown.progress(&progress)));
     shown.close();
@@ -135,11 +135,11 @@ pub(super) fn become_program(command: &mut Command) -> Result<(), Failure> {
 
 /// Progress output: a line that is overwritten on a terminal, else one line for each new step.
 #[derive(Default)]
-pub(super) struct Shown {
+pub(super) struct ProgressOutput {
     open: bool,
 }
 
-impl Shown {
+impl ProgressOutput {
     pub(super) fn progress(&mut self, progress: &Progress) {
         if report::is_json() {
             return;

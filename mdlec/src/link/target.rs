@@ -178,13 +178,13 @@ struct Metadata {
 struct Described {
     name: String,
     manifest_path: PathBuf,
-    targets: Vec<Made>,
+    targets: Vec<BuiltCrate>,
     dependencies: Vec<Dependency>,
 }
 
 /// A crate that a package builds.
 #[derive(Debug, Deserialize)]
-struct Made {
+struct BuiltCrate {
     name: String,
     kind: Vec<String>,
 }

@@ -6,20 +6,20 @@ use std::io::{self, Write};
 const MOST: usize = 1 << 20;
 
 /// A writer that passes everything on when it is flushed, and not before.
-pub(crate) struct Held<W> {
+pub(crate) struct HeldReport<W> {
     to: W,
     text: Vec<u8>,
     cut: bool,
 }
 
-impl<W: Write> Held<W> {
+impl<W: Write> HeldReport<W> {
     /// Returns an empty writer, which will write to `to`.
     pub(crate) fn new(to: W) -> Self {
         Self { to, text: Vec::new(), cut: false }
     }
 }
 
-impl<W: Write> Write for Held<W> {
+impl<W: Write> Write for HeldReport<W> {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         self.text.extend_from_slice(bytes);
         if self.text.len() > MOST {
@@ -45,7 +45,7 @@ mod tests {
 
     #[test]
     fn everything_comes_at_the_end_and_the_last_of_too_much() {
-        let mut held = Held::new(Vec::new());
+        let mut held = HeldReport::new(Vec::new());
         held.write_all(b"one\n").unwrap();
         assert_eq!(held.to, b"");
         held.flush().unwrap();

@@ -58,12 +58,12 @@ impl Entry<'_> {
 /// A file that is to be written in a run, such as its log, open and unchanged. If the file is new, dropping this
 /// removes it.
 #[derive(Debug)]
-pub(crate) struct Untouched<'p> {
+pub(crate) struct UnchangedFile<'p> {
     file: File,
     new: Option<New<'p>>,
 }
 
-impl<'p> Untouched<'p> {
+impl<'p> UnchangedFile<'p> {
     /// Opens the file at `path`.
     ///
     /// # Errors

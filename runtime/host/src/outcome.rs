@@ -25,7 +25,7 @@ pub(crate) enum Outcome {
 
 /// A run that has ended.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Done {
+pub(crate) struct EndedRun {
     pub(crate) seed: u64,
     pub(crate) outcome: Outcome,
     /// The plan's time at which it ended.

@@ -16,7 +16,7 @@ use mdle_runtime::{Nanos, PrintableLines};
 use crate::clock::{Clock, Instants};
 use crate::cycle::Limits;
 use crate::drive::Drive;
-use crate::outcome::{Done, Outcome};
+use crate::outcome::{EndedRun, Outcome};
 use crate::progress::Progress;
 use crate::report::Report;
 use crate::required::Required;
@@ -95,7 +95,7 @@ pub(crate) fn run(
         }
     });
     drop(progress);
-    runs.sort_by_key(|run: &Done| run.seed.wrapping_sub(batch.first));
+    runs.sort_by_key(|run: &EndedRun| run.seed.wrapping_sub(batch.first));
     let summary = Summary {
         runs: &runs,
         asked: batch.runs.get(),
@@ -114,7 +114,7 @@ pub(crate) fn run(
 }
 
 /// Makes runs as long as there are some to be made, and no signal comes.
-fn work(batch: &Runs<'_>, terms: &Terms<'_>, next: &AtomicU64, done: Sender<Done>) {
+fn work(batch: &Runs<'_>, terms: &Terms<'_>, next: &AtomicU64, done: Sender<EndedRun>) {
     loop {
         let number = next.fetch_add(1, Ordering::Relaxed);
         if number >= batch.runs.get() || terms.signals.caught().is_some() {
@@ -128,11 +128,11 @@ fn work(batch: &Runs<'_>, terms: &Terms<'_>, next: &AtomicU64, done: Sender<Done
 }
 
 /// Performs the run of a seed; `None` if a signal cut it short.
-fn one(batch: &Runs<'_>, seed: u64, terms: &Terms<'_>) -> Option<Done> {
-    let mut run = Done { seed, outcome: Outcome::Ended, t: Nanos::ZERO, over: None, contacts: 0 };
+fn one(batch: &Runs<'_>, seed: u64, terms: &Terms<'_>) -> Option<EndedRun> {
+    let mut run = EndedRun { seed, outcome: Outcome::Ended, t: Nanos::ZERO, over: None, contacts: 0 };
     let mut drive = match shielded(|| (batch.drive)(seed)).unwrap_or_else(panicked) {
         Ok(drive) => drive,
-        Err(sentence) => return Some(Done { outcome: Outcome::Failed(sentence), ..run }),
+        Err(sentence) => return Some(EndedRun { outcome: Outcome::Failed(sentence), ..run }),
     };
     let mut clock = Clock::begin(StoppedClock, Time::Stepped(Pace::Max), terms.period, None);
     let mut nobody = std::io::sink();

@@ -15,8 +15,8 @@ use crate::clock::{Clock, Instants};
 use crate::cycle::Limits;
 use crate::drive::Drive;
 use crate::executable::Executable;
-use crate::held_report::Held;
-use crate::log::{Log, Untouched};
+use crate::held_report::HeldReport;
+use crate::log::{Log, UnchangedFile};
 use crate::paths::{self, Recorder};
 use crate::progress::Progress;
 use crate::report::Report;
@@ -67,7 +67,7 @@ where
         Ok(Some(answer)) => return answered(&answer, &mut *out()),
         Ok(None) => {}
     }
-    let Prepared { store, paths, required } = match prepared(&target, &matches, executable) {
+    let PlanData { store, paths, required } = match prepared(&target, &matches, executable) {
         Err(refusal) => return refusal.tell(err),
         Ok(prepared) => prepared,
     };
@@ -98,7 +98,7 @@ where
     let screen = (target.screen)(&matches);
     let mut out = out();
     if screen {
-        out = Box::new(Held::new(out));
+        out = Box::new(HeldReport::new(out));
     }
     let mut report = Report::new(&mut *out, is_watched(time) && !screen);
     if time == Time::Wall
@@ -154,7 +154,7 @@ fn warn_of_lateness(refused: &str, program: Option<&OsString>, err: &mut dyn Wri
 }
 
 /// Data of the plan that the options ask for.
-struct Prepared {
+struct PlanData {
     /// The paths that the plan replays, read.
     store: PathStore,
     /// The names of these paths.
@@ -164,12 +164,12 @@ struct Prepared {
 }
 
 /// Reads the paths that the plan replays, and the causes by which it must end.
-fn prepared(target: &TargetOptions, matches: &ArgMatches, executable: &dyn Executable) -> Result<Prepared, Refusal> {
+fn prepared(target: &TargetOptions, matches: &ArgMatches, executable: &dyn Executable) -> Result<PlanData, Refusal> {
     let prepared = shielded(|| {
         let plan = executable.plan();
         let required = Required::of(matches, &*plan).map_err(Refusal::Usage)?;
         let store = paths::load(target, matches, plan.paths())?;
-        Ok(Prepared { store, paths: plan.paths().to_vec(), required })
+        Ok(PlanData { store, paths: plan.paths().to_vec(), required })
     });
     prepared.unwrap_or_else(bug_before)
 }
@@ -322,10 +322,10 @@ fn ended_at_the_start(signals: &Signals, stopped: Result<(), String>, err: &mut 
 }
 
 /// A file that the run is to write, open and as it was, if it was asked for.
-fn untouched<'p>(what: &str, path: Option<&'p Path>) -> Result<Option<Untouched<'p>>, Refusal> {
+fn untouched<'p>(what: &str, path: Option<&'p Path>) -> Result<Option<UnchangedFile<'p>>, Refusal> {
     let refused =
         |path: &Path, error| Refusal::Usage(format!("the {what} {} cannot be written: {error}", path.display()));
-    path.map(|path| Untouched::open(path).map_err(|error| refused(path, error))).transpose()
+    path.map(|path| UnchangedFile::open(path).map_err(|error| refused(path, error))).transpose()
 }
 
 /// A panic before anything ran.

@@ -8,13 +8,13 @@ use mdle_runtime::Nanos;
 use mdle_runtime::trace::{Json, Seconds};
 
 use crate::call::quoted;
-use crate::outcome::{Done, Outcome};
+use crate::outcome::{EndedRun, Outcome};
 use crate::report::Over;
 use crate::run_end;
 
 /// The runs of a batch, in the order of their seeds.
 pub(crate) struct Summary<'a> {
-    pub(crate) runs: &'a [Done],
+    pub(crate) runs: &'a [EndedRun],
     /// Number of runs that were to be made: more than were made if a signal ended the batch.
     pub(crate) asked: u64,
     /// The first seed.
@@ -75,13 +75,13 @@ impl Summary<'_> {
     }
 
     /// The runs that are as they were to be.
-    fn good(&self) -> impl Iterator<Item = &Done> {
+    fn good(&self) -> impl Iterator<Item = &EndedRun> {
         self.runs.iter().filter(|run| run.outcome.is_good())
     }
 
     /// The median of the times of the good runs, and the slowest of these.
-    fn times(&self) -> Option<(Nanos, &Done)> {
-        let mut good: Vec<&Done> = self.good().collect();
+    fn times(&self) -> Option<(Nanos, &EndedRun)> {
+        let mut good: Vec<&EndedRun> = self.good().collect();
         // The first of equals is the one with the first seed: sorting keeps their order.
         good.sort_by_key(|run| run.t);
         let worst = *good.last()?;
@@ -92,7 +92,7 @@ impl Summary<'_> {
     }
 
     /// The command that makes a run alone.
-    fn command(&self, run: &Done) -> String {
+    fn command(&self, run: &EndedRun) -> String {
         let timeout = self.timeout.filter(|_| run.outcome == Outcome::TimedOut);
         let timeout = timeout.map(|timeout| ["--timeout".to_owned(), timeout.as_secs().to_string()]);
         let options = (self.alone)(run.seed).into_iter().chain(timeout.into_iter().flatten());
@@ -127,7 +127,7 @@ impl Summary<'_> {
         }
         json += ",\"each\":[";
         for (number, run) in self.runs.iter().enumerate() {
-            let Done { seed, outcome, t, over, contacts } = run;
+            let EndedRun { seed, outcome, t, over, contacts } = run;
             let name = outcome.name().replace(' ', "_");
             let between = if number == 0 { "" } else { "," };
             let _ = write!(json, "{between}{{\"seed\":{seed},\"outcome\":{},\"t\":{}", Json(&name), Seconds(*t));
@@ -176,13 +176,13 @@ impl fmt::Display for Summary<'_> {
 
 /// Runs with the same outcome, by the same cause.
 struct Group<'a> {
-    first: &'a Done,
+    first: &'a EndedRun,
     count: u64,
 }
 
 impl Group<'_> {
     /// Returns `true` if a run went as those of the group. Measured values and places differ from run to run.
-    fn holds(&self, run: &Done) -> bool {
+    fn holds(&self, run: &EndedRun) -> bool {
         let is_alike = match (&self.first.outcome, &run.outcome) {
             (Outcome::Astray(_), Outcome::Astray(_)) => true,
             (one, other) => one == other,
@@ -193,7 +193,7 @@ impl Group<'_> {
 
 impl fmt::Display for Group<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Done { seed, outcome, t, over, .. } = self.first;
+        let EndedRun { seed, outcome, t, over, .. } = self.first;
         write!(f, "{} {}", self.count, outcome.name())?;
         match (outcome, over) {
             (Outcome::Failed(sentence), _) => write!(f, ": {sentence}")?,

@@ -12,7 +12,7 @@ use mdle_runtime::Sensed;
 use crate::arguments::Run;
 use crate::failure::{self, Failure};
 use crate::safety::SafetyFile;
-use crate::targets::{self, Linked, Ready};
+use crate::targets::{self, LinkedTarget, Ready};
 
 /// Runs a plan with these modules; returns the exit status of the run.
 ///
@@ -43,7 +43,7 @@ pub(crate) fn run(arguments: Run, library: &Library<Sensed>) -> Result<ExitCode,
 /// Compiles the only plan to run and loads it; returns it with its name. Messages go to standard error.
 fn compiled(
     arguments: &Run,
-    linked: &Linked,
+    linked: &LinkedTarget,
     target: &Target,
     input: &mut Input,
     safety: Option<&SafetyFile>,

@@ -16,7 +16,7 @@ use crate::safety::{Guarded, SafetyFile};
 
 /// A robot whose driver is part of this program.
 #[derive(Clone, Copy)]
-pub(crate) struct Linked {
+pub(crate) struct LinkedTarget {
     /// Name of the target.
     pub(crate) name: &'static str,
     /// Loads a plan.
@@ -35,17 +35,17 @@ pub(crate) trait Ready {
 }
 
 /// The robots.
-const LINKED: [Linked; 3] = [
-    Linked::new::<mdle_atrv::Target, mdle_atrv::alphabet::Alphabet>(),
-    Linked::new::<mdle_scout::Target, mdle_scout::alphabet::Alphabet>(),
-    Linked::new::<mdle_sim::Target, mdle_sim::alphabet::Alphabet>(),
+const LINKED: [LinkedTarget; 3] = [
+    LinkedTarget::new::<mdle_atrv::Target, mdle_atrv::alphabet::Alphabet>(),
+    LinkedTarget::new::<mdle_scout::Target, mdle_scout::alphabet::Alphabet>(),
+    LinkedTarget::new::<mdle_sim::Target, mdle_sim::alphabet::Alphabet>(),
 ];
 
 /// Returns the robot of this name.
 ///
 /// # Errors
 /// A sentence with the names that there are.
-pub(crate) fn linked(name: &str) -> Result<Linked, String> {
+pub(crate) fn linked(name: &str) -> Result<LinkedTarget, String> {
     if let Some(linked) = LINKED.iter().find(|linked| linked.name == name) {
         return Ok(*linked);
     }
@@ -58,7 +58,7 @@ pub(crate) fn linked(name: &str) -> Result<Linked, String> {
     ))
 }
 
-impl Linked {
+impl LinkedTarget {
     const fn new<T, A>() -> Self
     where
         T: mdle_host::Target<Robot: Robot<Output = Sensed, Input = Twist>> + 'static,

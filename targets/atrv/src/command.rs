@@ -1,7 +1,7 @@
 //! Commands to an rFLEX controller that a driver needs, as frames. See docs/src/reference/protocols.md, 2.3.
 
 use crate::avoid::{ESCAPE, avoided};
-use crate::frame::{Packet, Written, check};
+use crate::frame::{FrameBytes, Packet, check};
 
 /// Maximum number of data bytes of a command.
 const MOST: usize = 14;
@@ -63,7 +63,7 @@ pub enum Escape {
 impl Command {
     /// Returns the frame of this command.
     #[must_use]
-    pub fn frame(&self, escape: Escape) -> Written {
+    pub fn frame(&self, escape: Escape) -> FrameBytes {
         let mut nudge = 0;
         loop {
             let (port, opcode, data) = self.data(escape, nudge);

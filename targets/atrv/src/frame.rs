@@ -37,7 +37,7 @@ pub struct Packet<'a> {
 
 /// A frame's bytes on the line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Written {
+pub struct FrameBytes {
     bytes: [u8; ROOM],
     count: usize,
 }
@@ -77,11 +77,11 @@ impl Packet<'_> {
     /// Returns the frame's bytes on the line. Only the first 32 bytes of the data are sent. Bytes that are 1B are
     /// marked if `marks` is `true`.
     #[must_use]
-    pub fn written(&self, marks: bool) -> Written {
+    pub fn written(&self, marks: bool) -> FrameBytes {
         let data = self.data.get(..self.data.len().min(MOST)).unwrap_or_default();
         let head = [self.port, self.id, self.opcode, data.len() as u8];
         let check = check(&head) ^ check(data);
-        let mut written = Written { bytes: [0; ROOM], count: 0 };
+        let mut written = FrameBytes { bytes: [0; ROOM], count: 0 };
         written.put(&[ESCAPE, START]);
         for byte in head.iter().chain(data).chain([&check]) {
             written.put(&[*byte]);
@@ -94,7 +94,7 @@ impl Packet<'_> {
     }
 }
 
-impl Written {
+impl FrameBytes {
     fn put(&mut self, bytes: &[u8]) {
         for byte in bytes {
             if let Some(place) = self.bytes.get_mut(self.count) {

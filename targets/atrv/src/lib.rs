@@ -25,7 +25,7 @@ pub use command::{Axis, Command, Escape, Motion};
 pub use config::{Bumpers, Config, Configured};
 pub use driver::Atrv;
 pub use fault::Fault;
-pub use frame::{Garbled, Packet, Reader, Written};
+pub use frame::{FrameBytes, Garbled, Packet, Reader};
 pub use mdle_runtime::Sensed;
 /// The robot's output.
 pub use mdle_runtime::Sensed as Output;

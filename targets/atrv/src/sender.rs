@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use mdle_serial::{Line, Moment};
 
 use crate::fault::Fault;
-use crate::frame::Written;
+use crate::frame::FrameBytes;
 
 /// Maximum time for the line to accept the watchdog's commands.
 const STOPPING: Duration = Duration::from_millis(100);
@@ -52,7 +52,7 @@ impl Shared {
 impl Mouth {
     /// Creates the output to `line`. With a limit, the watchdog sends `stop` when no motion command follows another
     /// within the limit.
-    pub(crate) fn new(line: Line, watchdog: Option<(Duration, [Written; 2])>) -> Self {
+    pub(crate) fn new(line: Line, watchdog: Option<(Duration, [FrameBytes; 2])>) -> Self {
         let watch = Watch { last_motion: None, has_bitten: false, is_over: false };
         let limit = watchdog.as_ref().map(|(limit, _)| *limit);
         let shared = Arc::new(Shared { line, watch: Mutex::new(watch), over: Condvar::new() });
@@ -74,7 +74,7 @@ impl Mouth {
     ///
     /// # Errors
     /// The line is closed, or takes nothing until `deadline`.
-    pub(crate) fn say(&self, frame: &Written, deadline: Instant) -> Result<(), Fault> {
+    pub(crate) fn say(&self, frame: &FrameBytes, deadline: Instant) -> Result<(), Fault> {
         // No command of the watchdog's is to come into the middle of it.
         let _watch = self.shared.watch();
         Ok(self.shared.line.write(frame.bytes(), deadline)?)
@@ -84,7 +84,7 @@ impl Mouth {
     ///
     /// # Errors
     /// The line is closed, or takes nothing until `deadline`, or the watchdog has stopped the robot.
-    pub(crate) fn say_motion(&self, frame: &Written, deadline: Instant) -> Result<(), Fault> {
+    pub(crate) fn say_motion(&self, frame: &FrameBytes, deadline: Instant) -> Result<(), Fault> {
         let mut watch = self.shared.watch();
         self.is_in_time(&watch)?;
         watch.last_motion = Some(Moment::now());
@@ -125,7 +125,7 @@ impl Drop for Mouth {
 }
 
 /// Runs the watchdog until the output is dropped.
-fn keep_watch(shared: &Shared, limit: Duration, stop: &[Written; 2]) {
+fn keep_watch(shared: &Shared, limit: Duration, stop: &[FrameBytes; 2]) {
     let mut watch = shared.watch();
     while !watch.is_over {
         let silent = watch.last_motion.map(Moment::elapsed);

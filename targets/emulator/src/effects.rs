@@ -12,7 +12,7 @@ use mdle_runtime::{Sensed, SonarId};
 use crate::fault::{At, Fault};
 use crate::orders::Order;
 use crate::serve::Emulated as _;
-use crate::trial::{Motion, Ran, Trial, ran, started};
+use crate::trial::{FinishedRun, Motion, Trial, ran, started};
 
 /// World time at which a fault begins, in seconds.
 const BEGINS: u64 = 3;
@@ -105,7 +105,7 @@ impl Effect {
     fn differences<T: Trial>(&self) -> Result<(), String> {
         let faults: Vec<String> = self.faults.iter().map(|fault| begun(fault)).collect();
         let faults: Vec<&str> = faults.iter().map(String::as_str).collect();
-        let Ran { output, stop, robot } = ran::<T>(self.turns, &faults, self.speed.function())?;
+        let FinishedRun { output, stop, robot } = ran::<T>(self.turns, &faults, self.speed.function())?;
         let output = match (self.output, output) {
             (Ok(feels), Ok(sensed)) if self.speed == Speed::Ahead && self.turns == 50 => feels.check(&sensed),
             (expected, output) => {

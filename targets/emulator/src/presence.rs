@@ -13,12 +13,12 @@ use rustix::io::Errno;
 #[derive(Debug)]
 pub(crate) struct Presence {
     watch: OwnedFd,
-    lines: Vec<Seen>,
+    lines: Vec<Observation>,
 }
 
 /// The last observation of a line: whether a program has it open.
 #[derive(Debug, Clone, Copy)]
-struct Seen {
+struct Observation {
     /// Number by which the system's reports name the line.
     number: i32,
     /// Number of times that the line is open; `has_begun` is `true` if it ever was open.
@@ -35,7 +35,7 @@ impl Presence {
         let watch = inotify::init(CreateFlags::NONBLOCK | CreateFlags::CLOEXEC)?;
         let events = WatchFlags::OPEN | WatchFlags::CLOSE_WRITE | WatchFlags::CLOSE_NOWRITE;
         let seen = |device: &Path| inotify::add_watch(&watch, device, events);
-        let lines = devices.map(|device| Ok(Seen { number: seen(device)?, users: 0, has_begun: false }));
+        let lines = devices.map(|device| Ok(Observation { number: seen(device)?, users: 0, has_begun: false }));
         let lines = lines.collect::<io::Result<_>>()?;
         Ok(Self { watch, lines })
     }

@@ -35,7 +35,7 @@ pub struct Options {
     ///
     /// The robots hear and touch each other. Each has a device of its own; with --link PATH its link is PATH-NAME.
     #[arg(long, value_name = "NAME=X,Y,DEG", allow_hyphen_values = true, conflicts_with = "start")]
-    robot: Vec<Named>,
+    robot: Vec<NamedStart>,
     /// Random seed for sensor and wheel errors [default: no random errors]
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
@@ -68,9 +68,9 @@ fn step_of_lockstep(text: &str) -> Result<Duration, String> {
 
 /// A robot's name and its start pose.
 #[derive(Debug, Clone)]
-struct Named(String, Start);
+struct NamedStart(String, Start);
 
-impl FromStr for Named {
+impl FromStr for NamedStart {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -147,7 +147,7 @@ fn bodies(
     step: Duration,
 ) -> Result<Vec<(Option<String>, Simulated)>, String> {
     let alone = [(None, options.start.map_or(world.start, |start| start.0))];
-    let named = options.robot.iter().map(|Named(name, start)| (Some(name.clone()), start.0));
+    let named = options.robot.iter().map(|NamedStart(name, start)| (Some(name.clone()), start.0));
     let starts: Vec<_> = if options.robot.is_empty() { alone.to_vec() } else { named.collect() };
     if starts.len() > 1 && !world.things.is_empty() {
         return Err("several robots need a world in which nothing else moves".to_owned());

@@ -15,13 +15,13 @@ use crate::serve::{Emulated, Pace, serve};
 #[derive(Debug)]
 pub struct Staged<T> {
     device: PathBuf,
-    seen: Arc<Seen<T>>,
+    seen: Arc<SharedState<T>>,
     serving: Option<JoinHandle<io::Result<()>>>,
 }
 
 /// State of a robot as a test sees it, and requests to its world.
 #[derive(Debug)]
-struct Seen<T> {
+struct SharedState<T> {
     now: Mutex<T>,
     /// Number of periods that are to pass without a command.
     idle: AtomicU32,
@@ -35,7 +35,7 @@ struct Watched<R, T> {
     robot: R,
     look: fn(&R) -> T,
     period: Duration,
-    seen: Arc<Seen<T>>,
+    seen: Arc<SharedState<T>>,
 }
 
 impl<T: Clone + Send + 'static> Staged<T> {
@@ -48,8 +48,12 @@ impl<T: Clone + Send + 'static> Staged<T> {
         let port = Port::open()?;
         let device = port.path().to_owned();
         let now = Mutex::new(look(&robot));
-        let seen =
-            Arc::new(Seen { now, idle: AtomicU32::new(0), ailment: Mutex::new(None), is_over: AtomicBool::new(false) });
+        let seen = Arc::new(SharedState {
+            now,
+            idle: AtomicU32::new(0),
+            ailment: Mutex::new(None),
+            is_over: AtomicBool::new(false),
+        });
         let mut watched = Watched { robot, look, period, seen: Arc::clone(&seen) };
         let serving = thread::spawn(move || {
             let seen = Arc::clone(&watched.seen);

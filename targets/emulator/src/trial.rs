@@ -162,7 +162,7 @@ pub fn memory_asked_for<T: Trial>(asked: fn() -> u64) -> Result<u64, String> {
 }
 
 /// A run that is over, of a robot with faults in front of a wall.
-pub(crate) struct Ran<T: Trial> {
+pub(crate) struct FinishedRun<T: Trial> {
     /// The last output, or the fault that ended the run.
     pub(crate) output: Result<Sensed, FaultOf<T>>,
     /// The result of the stop.
@@ -176,7 +176,11 @@ pub(crate) struct Ran<T: Trial> {
 /// # Errors
 /// There is no such fault, the driver could not connect, or the line was closed without a fault that closes it, or left
 /// open with one.
-pub(crate) fn ran<T: Trial>(turns: u32, faults: &[&str], speed: fn(turn: u32) -> f64) -> Result<Ran<T>, String> {
+pub(crate) fn ran<T: Trial>(
+    turns: u32,
+    faults: &[&str],
+    speed: fn(turn: u32) -> f64,
+) -> Result<FinishedRun<T>, String> {
     let Driven { result, served, robot } = driven(faulty::<T>(faults)?, Pace::Lockstep(period::<T>()), |device| {
         let mut driver = connected::<T>(device, PATIENCE)?.map_err(|fault| fault.to_string())?;
         let mut exchange = |turn| driver.exchange(&Twist { v: MetersPerSecond(speed(turn)), ..Twist::default() });
@@ -189,7 +193,7 @@ pub(crate) fn ran<T: Trial>(turns: u32, faults: &[&str], speed: fn(turn: u32) ->
         return Err(format!("{faults:?}: {served:?}"));
     }
     let (output, stop) = result?;
-    Ok(Ran { output, stop, robot: robot.into_robot() })
+    Ok(FinishedRun { output, stop, robot: robot.into_robot() })
 }
 
 /// Returns what the driver says at the start of a robot that has this fault from the beginning.

@@ -32,7 +32,7 @@ fn turns(plan: impl Plan<Output = Output, Input = Input>) -> fmt::Result {
             Turn::Cut | Turn::Over => None,
         };
         let source = machine.plan().source();
-        let fired = transitions.made.iter().flatten().map(|Made { transition, operands }| {
+        let fired = transitions.made.iter().flatten().map(|ReportedTransition { transition, operands }| {
             let texts = source.operands_of(transition.scope).zip(0_u32..);
             let fired = texts.filter(|(_, number)| operands.iter().flatten().any(|operand| operand == number));
             transition.fired(machine.plan(), fired.map(|(words, _)| words.text))
@@ -52,11 +52,11 @@ fn turns(plan: impl Plan<Output = Output, Input = Input>) -> fmt::Result {
 struct Transitions {
     /// The operands of the next one.
     operands: [Option<u32>; 8],
-    made: [Option<Made>; 8],
+    made: [Option<ReportedTransition>; 8],
 }
 
 /// A transition, and the numbers of the first operands that have fired.
-struct Made {
+struct ReportedTransition {
     transition: Transition,
     operands: [Option<u32>; 8],
 }
@@ -71,7 +71,7 @@ impl Watch for Transitions {
     fn transition(&mut self, transition: Transition) {
         let operands = core::mem::take(&mut self.operands);
         if let Some(free) = self.made.iter_mut().find(|place| place.is_none()) {
-            *free = Some(Made { transition, operands });
+            *free = Some(ReportedTransition { transition, operands });
         }
     }
 }

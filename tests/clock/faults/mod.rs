@@ -67,7 +67,7 @@ const BESIDES: [(Happening, &str); 4] = [
 ];
 
 /// Makes an emulated robot.
-type Made<R> = fn(Pace) -> (R, Nature<R>);
+type MakeRobot<R> = fn(Pace) -> (R, Nature<R>);
 /// A case of the table: it lets an event happen.
 type Case<'r> = Box<dyn FnOnce() -> Row + Send + 'r>;
 
@@ -99,7 +99,7 @@ impl Robot {
     /// Returns the row of an event on a connected robot, and how long after its beginning the executable has ended.
     fn with<R: Emulated>(
         &self,
-        made: Made<R>,
+        made: MakeRobot<R>,
         pace: Pace,
         fault: Option<Fault>,
         happening: Happening,
@@ -144,7 +144,7 @@ fn atrv(pace: Pace) -> (Atrv, Nature<Atrv>) {
 /// Everything that happens, in the order of the table.
 fn cases<R: Emulated + 'static>(
     robot: &Robot,
-    made: Made<R>,
+    made: MakeRobot<R>,
     on_another: fn(&Robot) -> Row,
 ) -> Vec<(String, Case<'_>)> {
     let mut cases: Vec<(String, Case<'_>)> = vec![
@@ -235,7 +235,7 @@ const LATER: [End; 3] = [
 
 /// Asserts that the executable ends in time. By the clock the minimum of a few tries counts, as a busy machine can only
 /// increase it.
-fn assert_ends<R: Emulated>(robot: &Robot, made: Made<R>, (fault, happening, soon, further): End) {
+fn assert_ends<R: Emulated>(robot: &Robot, made: MakeRobot<R>, (fault, happening, soon, further): End) {
     let (in_lockstep, _) = robot.with(made, IN_LOCKSTEP, fault, happening);
     let mut least = (f64::INFINITY, f64::INFINITY);
     for _ in 0..5 {

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::choices::{Read, When};
-use super::known::{KnownFacts, Wanted};
+use super::known::{KnownFacts, Question};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::fsm::Machine;
 use crate::plan::{Condition, Interrupt, condition_text};
@@ -150,7 +150,7 @@ impl<'l> Constants<'l> {
     fn is_possible(&self, bracket: u32, values: &[(&'l Condition, bool)], when: When) -> bool {
         let wanted = values
             .iter()
-            .map(|(condition, fired)| Wanted { any: vec![Read { condition, bracket, when }], fired: *fired });
+            .map(|(condition, fired)| Question { any: vec![Read { condition, bracket, when }], fired: *fired });
         self.alone.is_possible(&wanted.collect::<Vec<_>>(), &BTreeMap::new())
     }
 

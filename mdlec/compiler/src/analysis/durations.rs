@@ -5,7 +5,7 @@
 use mdle_runtime::TRANSITIONS_PER_TURN;
 
 use super::transitions::Most;
-use super::walk::{Found, Reach};
+use super::walk::{BracketFacts, Reach};
 use crate::fsm::{ElementKind, Machine};
 use crate::plan::Condition;
 
@@ -57,7 +57,7 @@ impl Longest {
 }
 
 /// Adds up the longest times of all that is reached.
-pub(super) fn longest(machine: &Machine, found: &[Found], most: Most) -> Longest {
+pub(super) fn longest(machine: &Machine, found: &[BracketFacts], most: Most) -> Longest {
     let mut inside = vec![Longest::NONE; machine.elements().len()];
     // The last element first: then the elements inside and after an element are known.
     for (element, found) in machine.elements().zip(found).rev() {

@@ -7,12 +7,12 @@
 use std::collections::BTreeSet;
 
 use super::facts::PossibleFacts;
-use super::walk::{Found, Outcome, Reach, Walked, walk};
+use super::walk::{BracketFacts, Outcome, PlanFacts, Reach, walk};
 use crate::fsm::{Element, ElementKind, Machine};
 use crate::plan::RecordId;
 
 /// Walks over a machine with the records that its runs can have. `one_turn` is as for [`walk`].
-pub(super) fn walk_with_records(machine: &Machine, one_turn: bool) -> Walked {
+pub(super) fn walk_with_records(machine: &Machine, one_turn: bool) -> PlanFacts {
     /// Maximum number of walks: each but the last finds elements that end because of what the one before found.
     const WALKS: usize = 8;
     let mut facts = BTreeSet::new();
@@ -28,7 +28,7 @@ pub(super) fn walk_with_records(machine: &Machine, one_turn: bool) -> Walked {
 }
 
 /// Returns the facts that the elements record which can end, by what a walk has found.
-fn recorded(machine: &Machine, found: &[Found]) -> BTreeSet<(RecordId, u32)> {
+fn recorded(machine: &Machine, found: &[BracketFacts]) -> BTreeSet<(RecordId, u32)> {
     let mut ends = vec![false; found.len()];
     let mut facts = BTreeSet::new();
     // Those inside an element have higher numbers.
@@ -47,7 +47,7 @@ fn recorded(machine: &Machine, found: &[Found]) -> BTreeSet<(RecordId, u32)> {
 }
 
 /// Returns `true` if an element can end; `ends` has the answer for each element inside it.
-fn can_end(element: Element<'_>, found: &Found, ends: &[bool]) -> bool {
+fn can_end(element: Element<'_>, found: &BracketFacts, ends: &[bool]) -> bool {
     let inside = || element.children().last().is_some_and(|last| ends[last.index()]);
     let by_its_body = match element.kind() {
         ElementKind::Atom(_) => false,
@@ -58,6 +58,6 @@ fn can_end(element: Element<'_>, found: &Found, ends: &[bool]) -> bool {
 }
 
 /// Returns `true` if an element can end by an operand with this outcome.
-fn can_fire(found: &Found, outcome: Outcome) -> bool {
+fn can_fire(found: &BracketFacts, outcome: Outcome) -> bool {
     found.reach != Reach::Never && outcome == Outcome::Possible
 }

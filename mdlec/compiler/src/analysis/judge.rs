@@ -3,20 +3,20 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::choices::When;
-use super::known::Wanted;
+use super::known::Question;
 use super::variables::Variable;
-use super::walk::{Found, Outcome, Reach, Skip, Walk};
+use super::walk::{BracketFacts, Outcome, Reach, Skip, Walk};
 use crate::plan::Condition;
 
 impl<'l> Walk<'l> {
     /// Finds out what can end a scope that is reached, and when at the earliest.
-    pub(super) fn judge(&mut self, number: u32, found: &mut Found) -> Option<u64> {
+    pub(super) fn judge(&mut self, number: u32, found: &mut BracketFacts) -> Option<u64> {
         let clock = self.clock?;
         let condition = self.element(number).condition();
         // Where a search is cut, what it has come to is read again in the next turn.
         let when = if self.one_turn { When::Entered } else { When::Later };
-        let none = Wanted { any: vec![self.read(condition, number, when)], fired: false };
-        let just = Wanted { any: self.facts.clone(), fired: true };
+        let none = Question { any: vec![self.read(condition, number, when)], fired: false };
+        let just = Question { any: self.facts.clone(), fired: true };
         let fixed = BTreeMap::new();
         let behind = just.any.first().map(|read| read.bracket);
         if !self.world.stays(number, condition, when) {
@@ -28,7 +28,7 @@ impl<'l> Walk<'l> {
             found.reach = Reach::Skipped;
             let operands = condition.operands().iter();
             let asked = operands.map(|operand| {
-                let fired = Wanted { any: vec![self.read(operand, number, when)], fired: true };
+                let fired = Question { any: vec![self.read(operand, number, when)], fired: true };
                 let asked = if just.any.is_empty() { vec![fired] } else { vec![fired, just.clone()] };
                 if self.world.is_possible(&asked, &fixed) { Outcome::Possible } else { Outcome::Never }
             });
@@ -54,7 +54,7 @@ impl<'l> Walk<'l> {
     fn earliest(&self, operand: &'l Condition, number: u32) -> Option<u64> {
         /// Maximum number of timers of which every order with the present is tried.
         const TIMERS: usize = 8;
-        let asked = [Wanted { any: vec![self.read(operand, number, When::Later)], fired: true }];
+        let asked = [Question { any: vec![self.read(operand, number, When::Later)], fired: true }];
         let mut variables = BTreeSet::new();
         let fits = self.world.variables(asked[0].any[0], &mut variables);
         let timers: Vec<(Variable, u64)> = variables
@@ -90,7 +90,7 @@ impl<'l> Walk<'l> {
         {
             return Outcome::Repeated(outer);
         }
-        if !self.alone.is_possible(&[Wanted { any: vec![read], fired: true }], &BTreeMap::new()) {
+        if !self.alone.is_possible(&[Question { any: vec![read], fired: true }], &BTreeMap::new()) {
             return Outcome::Never;
         }
         let mut variables = BTreeSet::new();

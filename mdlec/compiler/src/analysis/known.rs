@@ -19,7 +19,7 @@ const CLAUSES: usize = 8;
 
 /// Question about conditions: whether at least one has fired, or none has.
 #[derive(Debug, Clone)]
-pub(super) struct Wanted<'l> {
+pub(super) struct Question<'l> {
     pub(super) any: Vec<Read<'l>>,
     pub(super) fired: bool,
 }
@@ -47,7 +47,7 @@ pub(super) struct KnownFacts<'l> {
 
 /// Knowledge that a scope has added for the elements inside it.
 #[derive(Debug, Default)]
-pub(super) struct Added {
+pub(super) struct Assumptions {
     units: Vec<Variable>,
     clauses: Vec<Variable>,
     deadline: bool,
@@ -106,8 +106,8 @@ impl<'l> KnownFacts<'l> {
     }
 
     /// Adds the knowledge that the interrupt of this bracket has not fired.
-    pub(super) fn open(&mut self, bracket: u32, condition: &'l Condition) -> Added {
-        let mut added = Added::default();
+    pub(super) fn open(&mut self, bracket: u32, condition: &'l Condition) -> Assumptions {
+        let mut added = Assumptions::default();
         for condition in flat(condition) {
             let read = Read { condition, bracket, when: When::Later };
             if let Condition::Driven { from, until: None, .. } = condition {
@@ -146,7 +146,7 @@ impl<'l> KnownFacts<'l> {
     }
 
     /// Forgets what a scope has added.
-    pub(super) fn close(&mut self, added: Added) {
+    pub(super) fn close(&mut self, added: Assumptions) {
         for variable in added.units {
             self.units.remove(&variable);
             self.relate(variable, false);
@@ -163,7 +163,7 @@ impl<'l> KnownFacts<'l> {
     }
 
     /// Adds the knowledge that the scope of this bracket ends after a path of this length.
-    fn add_distance(&mut self, nanometers: u64, bracket: u32, added: &mut Added) {
+    fn add_distance(&mut self, nanometers: u64, bracket: u32, added: &mut Assumptions) {
         match self.distances.last_mut() {
             Some((shortest, _)) if *shortest <= nanometers => {}
             Some((shortest, owner)) if *owner == bracket => *shortest = nanometers,
@@ -196,7 +196,7 @@ impl<'l> KnownFacts<'l> {
         found
     }
 
-    fn add_clause(&mut self, read: Read<'l>, added: &mut Added) {
+    fn add_clause(&mut self, read: Read<'l>, added: &mut Assumptions) {
         let mut variables = BTreeSet::new();
         if !self.variables(read, &mut variables) {
             return;
@@ -255,7 +255,7 @@ impl<'l> KnownFacts<'l> {
     }
 
     /// Returns `true` if all this can be true in one turn; `fixed` gives the values of some variables.
-    pub(super) fn is_possible(&self, wanted: &[Wanted<'l>], fixed: &BTreeMap<Variable, bool>) -> bool {
+    pub(super) fn is_possible(&self, wanted: &[Question<'l>], fixed: &BTreeMap<Variable, bool>) -> bool {
         let mut variables = BTreeSet::new();
         let reads = wanted.iter().flat_map(|wanted| &wanted.any);
         if !reads.into_iter().all(|read| self.variables(*read, &mut variables)) {
@@ -279,7 +279,7 @@ impl<'l> KnownFacts<'l> {
         for read in clauses {
             table = table.and(&choices.fired(read, self.machine).not());
         }
-        for Wanted { any, fired } in wanted {
+        for Question { any, fired } in wanted {
             let none = choices.constant(false);
             let some = any.iter().fold(none, |some, read| some.or(&choices.fired(*read, self.machine)));
             table = table.and(&if *fired { some } else { some.not() });
@@ -291,7 +291,7 @@ impl<'l> KnownFacts<'l> {
     pub(super) fn stays(&self, bracket: u32, condition: &'l Condition, when: When) -> bool {
         let not = |condition| {
             let any = vec![Read { condition, bracket, when }];
-            self.is_possible(&[Wanted { any, fired: false }], &BTreeMap::new())
+            self.is_possible(&[Question { any, fired: false }], &BTreeMap::new())
         };
         // Of an OR too long to be looked at, each operand may be short enough.
         let operands = condition.operands();

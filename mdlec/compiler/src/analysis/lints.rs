@@ -6,13 +6,13 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use super::constants::Constants;
-use super::walk::{Found, Outcome, Skip};
+use super::walk::{BracketFacts, Outcome, Skip};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::fsm::{Atom, Element, Exit, Machine};
 use crate::plan::{Condition, Interrupt, Quark, condition_text};
 
 /// Returns the warnings about a machine.
-pub(super) fn lints(machine: &Machine, found: &[Found]) -> Vec<Diagnostic> {
+pub(super) fn lints(machine: &Machine, found: &[BracketFacts]) -> Vec<Diagnostic> {
     let lints = Lints { machine, constants: Constants::new(machine) };
     let mut uses: BTreeMap<Span, usize> = BTreeMap::new();
     let mut warnings: BTreeMap<(Span, Code), (usize, Diagnostic)> = BTreeMap::new();
@@ -37,7 +37,7 @@ struct Lints<'l> {
 }
 
 impl<'l> Lints<'l> {
-    fn element(&self, element: Element<'l>, interrupt: &'l Interrupt, found: &Found) -> Vec<Option<Diagnostic>> {
+    fn element(&self, element: Element<'l>, interrupt: &'l Interrupt, found: &BracketFacts) -> Vec<Option<Diagnostic>> {
         let operands = interrupt.condition.operands().iter().zip(&found.operands);
         let mut lints: Vec<_> =
             operands.map(|(operand, outcome)| self.operand(element, interrupt, operand, *outcome)).collect();
@@ -86,7 +86,7 @@ impl<'l> Lints<'l> {
     }
 
     /// An operand that asks a record for what is never in it.
-    fn unrecorded(&self, interrupt: &Interrupt, found: &Found) -> Option<Diagnostic> {
+    fn unrecorded(&self, interrupt: &Interrupt, found: &BracketFacts) -> Option<Diagnostic> {
         let operands = interrupt.condition.operands();
         let asks = |operand: &Condition| operand.any(&|part| matches!(part, Condition::After(_)));
         let never = operands.iter().zip(&found.operands).find(|(_, outcome)| **outcome == Outcome::Never);
@@ -102,7 +102,7 @@ impl<'l> Lints<'l> {
     }
 
     /// An element that is always skipped.
-    fn skipped(&self, element: Element<'l>, interrupt: &'l Interrupt, found: &Found) -> Option<Diagnostic> {
+    fn skipped(&self, element: Element<'l>, interrupt: &'l Interrupt, found: &BracketFacts) -> Option<Diagnostic> {
         let (span, text) = (interrupt.span, &interrupt.text);
         let behind = match found.skipped? {
             Skip::Inside => return None,

@@ -26,7 +26,7 @@ use mdle_runtime::TRANSITIONS_PER_TURN;
 use serde::Serialize;
 pub use sizes::Bytes;
 pub use walk::Reach;
-use walk::{Found, Outcome};
+use walk::{BracketFacts, Outcome};
 
 use crate::diagnostic::Diagnostic;
 use crate::fsm::{ElementKind, Machine};
@@ -184,7 +184,7 @@ struct Answers {
 }
 
 impl Answers {
-    fn new(machine: &Machine, found: &[Found]) -> Self {
+    fn new(machine: &Machine, found: &[BracketFacts]) -> Self {
         let mut answers = Self { scopes: Vec::new(), atoms: Vec::new() };
         // For each bracket the number of the innermost scope that it is or is in, and whether anything ends that.
         let mut scope_of: Vec<(usize, bool)> = Vec::with_capacity(found.len());
@@ -230,7 +230,7 @@ impl Answers {
 }
 
 /// Returns the texts of the operands by which an interrupt can fire, and of those by which it cannot, without `null`.
-fn by(condition: &Condition, found: &Found, machine: &Machine) -> (Vec<String>, Vec<String>) {
+fn by(condition: &Condition, found: &BracketFacts, machine: &Machine) -> (Vec<String>, Vec<String>) {
     let (mut can, mut never) = (Vec::new(), Vec::new());
     for (operand, outcome) in condition.operands().iter().zip(&found.operands) {
         let text = || condition_text(operand, &|id| machine.quark(id).text.clone());

@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use super::choices::{Read, When};
 use super::facts::PossibleFacts;
-use super::known::{Added, KnownFacts};
+use super::known::{Assumptions, KnownFacts};
 use crate::fsm::{Element, ElementKind, Machine, Visit};
 use crate::plan::{Condition, QuarkId};
 
@@ -29,7 +29,7 @@ pub enum Reach {
 
 /// Facts about a bracket.
 #[derive(Debug, Clone)]
-pub(super) struct Found {
+pub(super) struct BracketFacts {
     pub(super) reach: Reach,
     /// An answer for each operand of the outermost OR of the bracket's interrupt.
     pub(super) operands: Vec<Outcome>,
@@ -78,20 +78,20 @@ struct Open {
     /// Earliest entry of the bracket; `own` is its earliest end by itself.
     clock: Option<u64>,
     own: Option<u64>,
-    added: Added,
+    added: Assumptions,
     /// Set to `true` if the element before the bracket ends, as far as the text alone shows.
     written: bool,
 }
 
 /// Facts about each bracket, and the earliest end of the plan.
-pub(super) struct Walked {
-    pub(super) found: Vec<Found>,
+pub(super) struct PlanFacts {
+    pub(super) found: Vec<BracketFacts>,
     pub(super) shortest: Option<u64>,
 }
 
 /// Walks over a machine whose records may come to hold these facts. `one_turn` is `true` if every search for the next atom
 /// ends within one turn.
-pub(super) fn walk(machine: &Machine, one_turn: bool, facts: &PossibleFacts) -> Walked {
+pub(super) fn walk(machine: &Machine, one_turn: bool, facts: &PossibleFacts) -> PlanFacts {
     let mut walk = Walk {
         world: KnownFacts::new(machine, facts),
         alone: KnownFacts::new(machine, facts),
@@ -111,7 +111,7 @@ pub(super) fn walk(machine: &Machine, one_turn: bool, facts: &PossibleFacts) -> 
             Visit::Leave(element) => walk.leave(element),
         }
     }
-    Walked { found: walk.found, shortest: walk.clock }
+    PlanFacts { found: walk.found, shortest: walk.clock }
 }
 
 pub(super) struct Walk<'l> {
@@ -119,7 +119,7 @@ pub(super) struct Walk<'l> {
     /// The knowledge about a place that no scope encloses.
     pub(super) alone: KnownFacts<'l>,
     open: Vec<Open>,
-    found: Vec<Found>,
+    found: Vec<BracketFacts>,
     /// The timers that are operands of interrupts around, by their brackets.
     pub(super) waits: BTreeMap<QuarkId, Vec<u32>>,
     /// Earliest entry of the next element; `None` if it is never entered.
@@ -149,7 +149,7 @@ impl<'l> Walk<'l> {
         };
         let is_cut_off = reach == Reach::Never && self.written;
         self.world.entered[element.index()] = self.clock.unwrap_or(0);
-        let mut found = Found {
+        let mut found = BracketFacts {
             reach,
             operands: vec![Outcome::Unread; condition.operands().len()],
             completes: false,
@@ -158,7 +158,7 @@ impl<'l> Walk<'l> {
         };
         // It is told once, for the first of what is never reached.
         let written = self.written && !is_cut_off;
-        let mut open = Open { reach, clock: self.clock, own: None, added: Added::default(), written };
+        let mut open = Open { reach, clock: self.clock, own: None, added: Assumptions::default(), written };
         self.written = written;
         match element.kind() {
             ElementKind::Loop { times } if times != Some(1) && reach == Reach::Runs => self.repeat(element),

@@ -5,14 +5,14 @@ use mdle_runtime::{Printable, is_printable};
 
 /// A file whose text has characters that are not printable, with its printable form.
 #[derive(Debug)]
-pub(super) struct Shown {
+pub(super) struct PrintableFile {
     /// File with printable name and text.
     pub(super) file: SimpleFile<String, String>,
     /// Offsets after each replaced character: in the text, and in the printable text.
     replaced: Vec<(usize, usize)>,
 }
 
-impl Shown {
+impl PrintableFile {
     /// Printable form of a text; `None` if the text is printable already.
     pub(super) fn of(name: &str, text: &str) -> Option<Self> {
         let mut shown = String::new();
@@ -51,12 +51,12 @@ impl Shown {
 
 #[cfg(test)]
 mod tests {
-    use super::Shown;
+    use super::PrintableFile;
 
     #[test]
     fn each_place_of_a_text_has_one_where_it_is_shown() {
         let text = "größe\u{1b}[1m\tA\r\n\u{202e}\rB\n\u{7f}";
-        let shown = Shown::of("a", text).expect("a text with such characters");
+        let shown = PrintableFile::of("a", text).expect("a text with such characters");
         assert_eq!(shown.file.source(), "größeU+001B[1m\tA\r\nU+202EU+000DB\nU+007F");
         for (byte, letter) in text.char_indices() {
             let place = shown.place(byte);
@@ -64,6 +64,6 @@ mod tests {
             assert_eq!(shown.origin(place), byte);
         }
         assert_eq!(shown.place(text.len()), shown.file.source().len());
-        assert!(Shown::of("a", "größe\r\n\t∞").is_none());
+        assert!(PrintableFile::of("a", "größe\r\n\t∞").is_none());
     }
 }

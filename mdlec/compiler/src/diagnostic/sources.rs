@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use codespan_reporting::files::{Error as FilesError, Files, SimpleFile, column_index};
 
-use super::shown::Shown;
+use super::shown::PrintableFile;
 use super::{SourceId, Span};
 
 /// The files that spans refer to.
@@ -14,19 +14,19 @@ pub struct Sources {
     /// Files in ascending order of their offsets.
     files: Vec<(SourceId, File)>,
     /// Place that was looked up last.
-    last: Cell<Option<Known>>,
+    last: Cell<Option<LineAndColumn>>,
 }
 
 /// A file as it is written, and as it is shown if that differs.
 #[derive(Debug)]
 struct File {
     written: SimpleFile<String, String>,
-    shown: Option<Shown>,
+    shown: Option<PrintableFile>,
 }
 
 /// A place with its line and column; both count from 1 here.
 #[derive(Debug, Clone, Copy)]
-struct Known {
+struct LineAndColumn {
     source: SourceId,
     byte: usize,
     line: usize,
@@ -40,7 +40,7 @@ impl Sources {
     /// Adds a file for which there is [room](Self::refusal), with its name in messages and its text.
     pub fn add(&mut self, name: impl Into<String>, text: impl Into<String>) -> SourceId {
         let (id, name, text) = (self.next(), name.into(), text.into());
-        let shown = Shown::of(&name, &text);
+        let shown = PrintableFile::of(&name, &text);
         self.files.push((id, File { written: SimpleFile::new(name, text), shown }));
         id
     }
@@ -83,20 +83,20 @@ impl Sources {
     pub(super) fn line_and_column(&self, source: SourceId, byte: usize) -> (usize, usize) {
         let known = self.place_near(source, byte).or_else(|| {
             let at = self.written(source)?.location((), byte).ok()?;
-            Some(Known { source, byte, line: at.line_number, column: at.column_number })
+            Some(LineAndColumn { source, byte, line: at.line_number, column: at.column_number })
         });
         self.last.set(known);
         known.map_or((1, 1), |known| (known.line, known.column))
     }
 
     /// Place of a byte that is in the line of the last place.
-    fn place_near(&self, source: SourceId, byte: usize) -> Option<Known> {
+    fn place_near(&self, source: SourceId, byte: usize) -> Option<LineAndColumn> {
         let last = self.last.get().filter(|last| last.source == source)?;
         let line = self.written(source)?.line_index((), byte).ok();
         let line = line.map(|line| line + 1).filter(|line| *line == last.line)?;
         let between = self.text(source).get(last.byte.min(byte)..last.byte.max(byte))?.chars().count();
         let column = if byte < last.byte { last.column.checked_sub(between)? } else { last.column + between };
-        Some(Known { source, byte, line, column })
+        Some(LineAndColumn { source, byte, line, column })
     }
 
     /// Returns the name of the file that contains a span, and the line in which the span begins, from 1.

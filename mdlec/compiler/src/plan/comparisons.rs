@@ -103,8 +103,8 @@ pub(super) fn resolve(
     let text = format!("{left} {} {text}", operator.symbol());
     let comparison = Comparison { signal: signal.quark, operator, with, tolerance };
     let counted = match signal.declaration {
-        time if is_time(time) => Some((Counted::Time, interval(&comparison, Counted::Time, span)?)),
-        way if is_way(way) => Some((Counted::Way, interval(&comparison, Counted::Way, span)?)),
+        time if is_time(time) => Some((EntrySignal::Time, interval(&comparison, EntrySignal::Time, span)?)),
+        way if is_way(way) => Some((EntrySignal::Way, interval(&comparison, EntrySignal::Way, span)?)),
         _ => None,
     };
     let quark = quarks.add(Quark {
@@ -118,8 +118,8 @@ pub(super) fn resolve(
         text,
     });
     Ok(match counted {
-        Some((Counted::Time, (from, until))) => Condition::Elapsed { from, until, quark },
-        Some((Counted::Way, (from, until))) => Condition::Driven { from, until, quark },
+        Some((EntrySignal::Time, (from, until))) => Condition::Elapsed { from, until, quark },
+        Some((EntrySignal::Way, (from, until))) => Condition::Driven { from, until, quark },
         None => Condition::Quark(quark),
     })
 }
@@ -191,7 +191,7 @@ fn same_kind(one: Signal<'_>, other: Signal<'_>, span: Span) -> Resolved<Value> 
 
 /// A signal that counts from the entry of a scope.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Counted {
+enum EntrySignal {
     /// `t`, in nanoseconds.
     Time,
     /// `way`, in nanometres.
@@ -199,7 +199,7 @@ enum Counted {
 }
 
 /// Interval in which a comparison of `t` or `way` holds: its first count, and the count that ends it, exclusive.
-fn interval(comparison: &Comparison, counted: Counted, span: Span) -> Resolved<(u64, Option<u64>)> {
+fn interval(comparison: &Comparison, counted: EntrySignal, span: Span) -> Resolved<(u64, Option<u64>)> {
     let nanos = |value: &Value| match value {
         Value::Quantity { exact, .. } => exact.to_nanos(),
         Value::Infinity(_) => Some(u64::MAX),
@@ -213,8 +213,8 @@ fn interval(comparison: &Comparison, counted: Counted, span: Span) -> Resolved<(
     };
     let (Some(time), Some(tolerance)) = (time, nanos(&comparison.tolerance)) else {
         let message = match counted {
-            Counted::Time => "`t` is the time since the scope was entered: from 0 to some hundred years",
-            Counted::Way => {
+            EntrySignal::Time => "`t` is the time since the scope was entered: from 0 to some hundred years",
+            EntrySignal::Way => {
                 "`way` is the length of the path driven since the scope was entered: from 0 to some million kilometres"
             }
         };

@@ -4,7 +4,7 @@ use crate::alphabet::{Kind, Unit};
 use crate::syntax::tree::{Arg, Call, Number};
 
 /// A law that is probably meant.
-pub(in crate::plan) struct Meant {
+pub(in crate::plan) struct Proposal {
     pub(in crate::plan) name: &'static str,
     pub(in crate::plan) call: String,
     /// The help, where `{}` is the call.
@@ -12,7 +12,7 @@ pub(in crate::plan) struct Meant {
 }
 
 /// The law that a call such as `turnLeft 90`, `backup 50cm` or `forward 20` means.
-pub(in crate::plan) fn meant(call: &Call) -> Option<Meant> {
+pub(in crate::plan) fn meant(call: &Call) -> Option<Proposal> {
     let word = call.name.to_ascii_lowercase().replace('_', "");
     let number = match call.args {
         [] => None,
@@ -25,7 +25,7 @@ pub(in crate::plan) fn meant(call: &Call) -> Option<Meant> {
         kind.is_none_or(|kind| kind.is_some_and(|kind| kinds.contains(&kind)))
     };
     let is_positive = number.is_none_or(|number| !number.digits().starts_with(['-', '+']));
-    let law = |name, call, words| Some(Meant { name, call, words });
+    let law = |name, call, words| Some(Proposal { name, call, words });
     match word.as_str() {
         "left" | "turnleft" | "rotateleft" if is(&[Kind::Angle]) && is_positive => {
             let angle = number.map_or("90deg".to_owned(), amount);

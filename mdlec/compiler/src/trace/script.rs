@@ -87,7 +87,7 @@ impl std::error::Error for ScriptError {}
 /// A line as it is written; a list that is missing is empty.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Written {
+struct ScriptLine {
     t: f64,
     /// Reading of the odometer, in metres.
     #[serde(default)]
@@ -164,7 +164,7 @@ fn nanos(seconds: f64) -> Option<u64> {
 }
 
 /// Parses a line.
-fn written(line: &str) -> Result<Written, String> {
+fn written(line: &str) -> Result<ScriptLine, String> {
     let expected = r#"expected one object per line, as in {"t": 0.0, "fired": ["bumper"]}"#;
     // Without this check, a list of values would be read as an object with them.
     match line.trim_start().chars().next() {

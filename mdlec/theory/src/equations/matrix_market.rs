@@ -44,12 +44,12 @@ struct Entry<'t> {
     text: &'t str,
     #[serde(skip_serializing_if = "Option::is_none")]
     file: Option<String>,
-    places: Vec<Listed<'t>>,
+    places: Vec<ScopeStates<'t>>,
 }
 
 /// The states of a scope, from 1.
 #[derive(Debug, Serialize)]
-struct Listed<'t> {
+struct ScopeStates<'t> {
     number: usize,
     scope: &'t str,
     first: usize,
@@ -102,7 +102,7 @@ fn file_name(term: &Term<'_>) -> String {
 fn entry<'t>(term: &'t Term<'_>, file: Option<String>) -> Entry<'t> {
     let listed = |place: &Extent<'t>| {
         let Extent { number, scope, first, last, row: _ } = *place;
-        Listed { number, scope, first: first + 1, last: last + 1 }
+        ScopeStates { number, scope, first: first + 1, last: last + 1 }
     };
     Entry { name: &term.name, text: term.text, file, places: term.places.iter().map(listed).collect() }
 }

@@ -43,7 +43,7 @@ pub(crate) struct Body {
 
 /// The obstacle that the body met in a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Met {
+enum Obstacle {
     Nothing,
     /// A wall that lets it go forward only this fast, in m/s, and does not let it turn if `turns` is `false`.
     Wall {
@@ -110,7 +110,7 @@ impl Body {
             let across = self.right - self.left;
             self.left = approached(self.left, left, acceleration * step);
             self.right = approached(self.right, right, acceleration * step);
-            if let Met::Wall { forward, turns } = self.step(step, walls) {
+            if let Obstacle::Wall { forward, turns } = self.step(step, walls) {
                 // The wheels stall as far as they push, and gain speed only against each other.
                 let across = if turns { approached(across, right - left, 2.0 * acceleration * step) } else { 0.0 };
                 (self.left, self.right) = (forward - across / 2.0, forward + across / 2.0);
@@ -124,7 +124,7 @@ impl Body {
     }
 
     /// Makes one step of the integration, of `step` seconds.
-    fn step(&mut self, step: f64, walls: &Walls) -> Met {
+    fn step(&mut self, step: f64, walls: &Walls) -> Obstacle {
         let Twist { v, omega } = self.velocity();
         let (way, turn) = (v.0 * step, omega.0 * step);
         let there = self.pose.moved(Meters(way), Radians(turn));
@@ -132,7 +132,7 @@ impl Body {
         if moved == 0.0 || self.is_free(&there, moved, walls) {
             self.pose = there;
             self.odometry.rolled(way, turn);
-            return Met::Nothing;
+            return Obstacle::Nothing;
         }
         let here = Place::of(&self.pose);
         let straight = Place { x: there.x.0 - here.x, y: there.y.0 - here.y };
@@ -151,11 +151,11 @@ impl Body {
         self.clear = 0.0;
         let forward = forward / step;
         if turns && (v.0 == 0.0 || forward / v.0 >= GLANCES) {
-            return Met::Nothing;
+            return Obstacle::Nothing;
         }
         // It is not to come out faster, or backwards.
         let forward = if v.0 > 0.0 { forward.clamp(0.0, v.0) } else { forward.clamp(v.0, 0.0) };
-        Met::Wall { forward, turns }
+        Obstacle::Wall { forward, turns }
     }
 
     /// Returns `true` if the body overlaps nothing at `there`, after its places have moved by at most `way` metres.

@@ -20,9 +20,9 @@ const LEAVE: &str = "\x1b[0m\x1b[?25h\x1b[?1049l";
 
 /// Settings of the terminal before its screen was taken, as long as it is taken: a process has one screen, and its
 /// panic hook uses the same.
-static FOUND: Mutex<Option<Found>> = Mutex::new(None);
+static FOUND: Mutex<Option<SavedSettings>> = Mutex::new(None);
 
-struct Found(Option<Termios>);
+struct SavedSettings(Option<Termios>);
 
 /// The terminal, so that writing to it never waits, and the rest of a picture that it has not yet taken.
 static TERMINAL: Mutex<Option<Terminal>> = Mutex::new(None);
@@ -70,7 +70,7 @@ impl Screen {
             quiet.local_modes &= !(LocalModes::ECHO | LocalModes::ICANON);
             let _ = tcsetattr(stdout(), OptionalActions::Now, &quiet);
         }
-        *FOUND.lock().unwrap_or_else(PoisonError::into_inner) = Some(Found(found));
+        *FOUND.lock().unwrap_or_else(PoisonError::into_inner) = Some(SavedSettings(found));
         *terminal() = opened();
         write(ENTER);
         Self
@@ -98,7 +98,7 @@ impl Drop for Screen {
 
 /// Gives the screen back, if it is taken.
 fn leave() {
-    let Some(Found(found)) = FOUND.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
+    let Some(SavedSettings(found)) = FOUND.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
     write_to_the_end(LEAVE);
     restore(found);
 }
@@ -108,7 +108,7 @@ pub(super) fn leave_at_once() {
     if terminal().is_some() {
         return leave();
     }
-    let Some(Found(found)) = FOUND.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
+    let Some(SavedSettings(found)) = FOUND.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
     restore(found);
 }
 
