@@ -90,7 +90,7 @@ fn table_in<'a>(table: &'a mut toml::Table, name: &str) -> Result<&'a mut toml::
     table.get_mut(name).and_then(toml::Value::as_table_mut).ok_or_else(|| format!("Cargo.toml has no table `{name}`"))
 }
 
-/// Adds what is in `folder`, with the names below `name`.
+/// Adds the files in `folder` and below, with names that begin with `name`.
 fn collect(folder: &Path, name: &str, files: &mut Vec<(String, PathBuf)>) -> Result<(), Box<dyn Error>> {
     for entry in fs::read_dir(folder)? {
         let path = entry?.path();

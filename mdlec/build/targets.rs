@@ -4,7 +4,7 @@ use std::error::Error;
 use std::fs;
 use std::path::Path;
 
-/// The folder below `targets` that is no robot: `mdlec new-target` makes one of it.
+/// Folder below `targets` that contains no robot, but the template for `mdlec new-target`.
 const TEMPLATE: &str = "template";
 
 /// The folders below `targets` that are packages with an alphabet, the template aside.

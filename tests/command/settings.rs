@@ -42,7 +42,7 @@ fn assert_success(output: &Output) {
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
-/// The pose in the first turn of a run, as its trail has it.
+/// Returns the pose in the first turn of a run, from its trail.
 fn first_pose(folder: &Path) -> String {
     let trail = fs::read_to_string(folder.join("trail.csv")).unwrap();
     trail.lines().nth(1).unwrap().to_owned()

@@ -249,7 +249,7 @@ fn memories_link_and_run() {
     insta::assert_snapshot!(turns);
 }
 
-/// The conditions of a plan that ended nothing in these turns.
+/// Returns the conditions of a plan that ended no element in these turns.
 fn never_fired(plan: &str, turns: &str) -> Vec<String> {
     let (Compiled { machine, .. }, _) = compiled(plan);
     let interrupts = machine.elements().filter_map(mdle_compiler::fsm::Element::interrupt);

@@ -13,7 +13,7 @@ const MANIFEST: &str = "[workspace]\n\n[package]\nname = \"mdle-rover\"\nversion
                         [dependencies]\nmdle-runtime = \"0.1\"\nmdle-host = \"0.1\"\n";
 const PLAN: &str = "{ Main (low 11) (Atom (low 13) count -3) (Atom (low) count 5) }\n";
 
-/// A plan, and the rover beside it with this alphabet; not bound yet.
+/// Returns a folder with a plan, and beside it the target `rover` with this alphabet, without bindings.
 fn with_rover(test: &str, alphabet: &str) -> PathBuf {
     let folder = folder(test);
     fs::create_dir_all(folder.join("rover/src")).unwrap();

@@ -48,7 +48,7 @@ fn removing_degeneracy_and_writing_loops_out_commute_and_change_no_trace() {
     assert!(seen.tried > plans / 10 * 9 && seen.both > plans / 10, "{seen:?}");
 }
 
-/// Holds a plan to it; whether it repeats interrupts, and whether it has loops to write out.
+/// Checks the property for a plan; returns whether the plan repeats interrupts, and whether it has loops to write out.
 fn hold(compiled: &Compiled, script: &Script, text: &str) -> (bool, bool) {
     let Compiled { plan, nondegenerate, .. } = compiled;
     let expanded = Plan { root: written_out(&plan.root), quarks: plan.quarks.clone() };

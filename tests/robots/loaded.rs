@@ -62,7 +62,7 @@ fn compare(folder: &Path, file: &str, target: &str, options: &[&str]) -> RunOutp
     loaded
 }
 
-/// The words of a command.
+/// Returns the program and the arguments of a command, as a shell takes them.
 fn called(command: &Command) -> String {
     let words = [command.get_program()].into_iter().chain(command.get_args());
     words.map(|word| word.to_str().unwrap()).collect::<Vec<_>>().join(" ")

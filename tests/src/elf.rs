@@ -26,7 +26,7 @@ fn word(bytes: &[u8], at: usize) -> usize {
     u64::from_ne_bytes(bytes[at..at + 8].try_into().unwrap()).try_into().unwrap()
 }
 
-/// The text that a zero ends.
+/// Returns the text before the first zero byte.
 fn text(bytes: &[u8]) -> String {
     bytes.iter().take_while(|byte| **byte != 0).map(|byte| char::from(*byte)).collect()
 }

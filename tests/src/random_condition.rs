@@ -64,7 +64,7 @@ const TIMERS: &[&str] = &[
     "wait 0.001h",
 ];
 
-/// The laws of the target `scripted`, as any notation has them.
+/// Laws of the target `scripted` that every notation can write.
 const LAWS: &[&str] = &[
     "idle",
     "drift",

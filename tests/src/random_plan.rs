@@ -56,7 +56,7 @@ enum Element {
     Reference(&'static str, Option<String>),
 }
 
-/// Names that scopes may have, some of which emitted code has uses of its own for.
+/// Names of scopes, among them names that emitted code uses itself.
 const NAMES: &[&str] = &[
     "P", "Shake", "shake", "Running", "text", "turned", "fn", "Output", "None", "größe", "Atom1", "x_", "t", "Y",
     "law", "cursor", "Self_", "loop",
@@ -153,7 +153,7 @@ impl Growth<'_> {
         Scope { label: label.unwrap_or_default(), name, condition, formal: None, body: self.body(depth), end }
     }
 
-    /// A label that no other is like.
+    /// Returns a label that differs from all earlier ones.
     fn label(&mut self, start: &str) -> String {
         self.labels += 1;
         format!("{start}{}", self.labels)

@@ -12,7 +12,7 @@ pub struct TextFile {
     pub text: String,
 }
 
-/// The folder that holds everything.
+/// Returns the folder of the repository.
 #[must_use]
 pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()

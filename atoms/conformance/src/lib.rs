@@ -98,7 +98,7 @@ impl<'s, S: Stage> Suite<'s, S> {
         Self { stage, asked: Vec::new(), checked: Vec::new() }
     }
 
-    /// `diff_drive`: what an input does to the body, what stops it, and the laws that need nothing else.
+    /// Checks `diff_drive`: the effect of an input on the body, stops, and the laws that need no other capability.
     #[must_use]
     pub fn diff_drive(self) -> Self
     where
@@ -121,8 +121,7 @@ impl<'s, S: Stage> Suite<'s, S> {
         )
     }
 
-    /// `odometry`: the motion that the robot reports against the true motion of its body, and the laws that turn by
-    /// odometry.
+    /// Checks `odometry`: the reported motion against the true motion of the body, and the laws that turn by odometry.
     #[must_use]
     pub fn odometry(self) -> Self
     where
@@ -144,7 +143,7 @@ impl<'s, S: Stage> Suite<'s, S> {
         )
     }
 
-    /// `bumper`: contact.
+    /// Checks `bumper`: reports of contact.
     #[must_use]
     pub fn bumper(self) -> Self
     where
@@ -153,7 +152,7 @@ impl<'s, S: Stage> Suite<'s, S> {
         self.check("bumper", &[("it is pressed in contact, not before and not after", contact::is_felt)])
     }
 
-    /// `sonar[16]`: what each sonar hears where, and the quarks that go by it.
+    /// Checks `sonar[16]`: the range and the direction of each sonar, and the quarks that use them.
     #[must_use]
     pub fn sonar(self) -> Self
     where
@@ -175,7 +174,7 @@ impl<'s, S: Stage> Suite<'s, S> {
         )
     }
 
-    /// `paths`: those that the robot was given.
+    /// Checks `paths`: the paths that the robot was given.
     #[must_use]
     pub fn paths(self) -> Self
     where
@@ -190,7 +189,7 @@ impl<'s, S: Stage> Suite<'s, S> {
         )
     }
 
-    /// `power`: the battery and the charger.
+    /// Checks `power`: the battery and the charger.
     #[must_use]
     pub fn power(self) -> Self
     where

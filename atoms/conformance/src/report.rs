@@ -10,7 +10,7 @@ const KNOWN: [&str; 6] = ["diff_drive", "odometry", "bumper", "sonar[16]", "path
 /// The result of a check.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Verdict {
-    /// The robot does what it must.
+    /// The robot passes the check.
     Holds,
     /// The alphabet has no such quark or signal, so no plan can ask for it.
     NotOffered,
@@ -36,7 +36,7 @@ pub struct Checked {
     pub verdict: Verdict,
 }
 
-/// All checks that were made. It prints a line for each, and what is wrong under those that fail.
+/// Results of all checks. Displayed, it has a line for each check, and the reason below each that fails.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Report {
     checked: Vec<Checked>,

@@ -11,7 +11,7 @@ use mdle_compiler::diagnostic::{Diagnostic, Sources};
 pub enum InputError {
     /// A file cannot be read, or a folder is no target: a sentence.
     Unusable(String),
-    /// No target is named, and Rust is written for a robot.
+    /// No target is named, although Rust can only be written for one.
     NoTarget,
     /// There is no target of this name.
     UnknownTarget(String),
@@ -40,7 +40,8 @@ pub enum InputError {
         /// Names of the file's plans.
         plans: Vec<String>,
     },
-    /// No name was asked for, and not exactly one plan of the file is used by no other plan.
+    /// The choice of a plan is not clear: none was named, and the file has no plan, or several, that no other plan
+    /// uses.
     NotOnePlan {
         /// Name of the file.
         file: String,

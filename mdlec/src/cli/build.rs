@@ -62,7 +62,7 @@ pub(super) fn build(options: &Build) -> Result<Option<Runnable>, Failure> {
     Ok(None)
 }
 
-/// Returns a form of the plan as text, with the files that were read for it.
+/// Returns the plan's text in the form `kind`, and the files that were read.
 fn stage(options: &Executable, path: &Path, kind: EmitKind) -> Result<(String, Vec<PathBuf>), Failure> {
     let settings = Settings::beside(path)?;
     let target = settings.target(options.target.as_deref())?;

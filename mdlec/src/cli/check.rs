@@ -32,8 +32,8 @@ pub(super) fn check(options: &Check) -> Result<(), Failure> {
     })
 }
 
-/// Returns the target of the `mdle.toml` beside the plan in the file `plan`, after a check of what a run would take
-/// from the file.
+/// Returns the target of the `mdle.toml` beside the file `plan`, after a check of the options that a run would take
+/// from it.
 fn checked_target(plan: &Path) -> Result<Target, Failure> {
     let settings = Settings::beside(plan)?;
     let target = settings.target(None)?;

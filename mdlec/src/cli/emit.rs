@@ -1,4 +1,4 @@
-//! The argument of `--emit`: the form of a plan to print, and the file for it.
+//! Argument of `--emit`: the form in which a plan is printed, and the file to which it is written.
 
 use std::path::PathBuf;
 

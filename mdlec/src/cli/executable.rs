@@ -26,7 +26,7 @@ pub(super) fn run(options: &Run) -> Result<(), Failure> {
     build(&options.executable, path, output)?.become_it(options.executable.target.as_deref(), &options.args)
 }
 
-/// Checks, before anything is built, what a run with the arguments `args` takes from an `mdle.toml`.
+/// Checks, before the build, the options that a run with the arguments `args` takes from an `mdle.toml`.
 pub(super) fn settings_fit(options: &Executable, args: &[String]) -> Result<(), Failure> {
     let Some(path) = &options.plan else { return Ok(()) };
     let settings = Settings::beside(path)?;
@@ -92,7 +92,7 @@ pub(super) fn build(options: &Executable, path: &Path, output: Option<PathBuf>) 
     Ok(Runnable { path: output, settings })
 }
 
-/// Names a configuration near the target or the plan that mdlec ignores, but that cargo would read there.
+/// Notes a configuration file near the target or the plan that mdlec ignores although cargo would read it.
 fn note_ignored(plan: &Path, target: &Target) {
     let beside = plan.parent().filter(|folder| *folder != Path::new("")).unwrap_or(Path::new("."));
     let folders: Vec<&Path> = target.folder.as_deref().into_iter().chain([beside]).collect();

@@ -12,7 +12,7 @@ use super::{Cli, Failure};
 use crate::link;
 use mdle_compiler::{alphabet, builtin};
 
-/// Names of commands, each with other words for it.
+/// Names of commands, each with its synonyms.
 const SYNONYMS: &[(&str, &[&str])] = &[
     ("run", &["simulate", "start", "exec", "execute", "launch", "play"]),
     ("build", &["compile", "make"]),

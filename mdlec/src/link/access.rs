@@ -11,7 +11,7 @@ use super::LinkError;
 /// Mode of the cache: its user has all permissions, other users none.
 const OWN: u32 = 0o700;
 
-/// In a folder with this bit, such as a shared temporary one, nobody can remove or rename the files of others.
+/// Bit of folders, such as shared temporary ones, in which users cannot remove or rename the files of other users.
 const STICKY: u32 = 0o1000;
 
 /// A folder that only its user can access.

@@ -21,7 +21,7 @@ pub(super) fn write(plan: &PlanPackage, executable: &Path) -> Result<(), LinkErr
     Ok(())
 }
 
-/// Returns `true` if `executable` is, to the last byte, what was built from `plan` in its present state.
+/// Returns `true` if `executable` is, to the last byte, the one that was built from `plan` in its present state.
 pub(super) fn fits(plan: &PlanPackage, executable: &Path) -> bool {
     let executable = fs::read(executable).map(|bytes| hash(&bytes));
     let noted = read(&plan.folder);

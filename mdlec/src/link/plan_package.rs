@@ -11,7 +11,7 @@ use super::cache::write_if_changed;
 pub(super) struct PlanPackage {
     /// Folder of the package; package and executable have the same name.
     pub(super) folder: PathBuf,
-    /// Hash of all files that mdlec wrote there.
+    /// Hash of all files that mdlec wrote into the folder.
     pub(super) hash: String,
 }
 

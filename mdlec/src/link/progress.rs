@@ -1,4 +1,4 @@
-//! Progress of a build, for the user who waits for it.
+//! Progress of a build, for display.
 
 use std::fmt;
 
@@ -15,7 +15,7 @@ pub enum Progress {
     Mending,
     /// Compiled files in the cache differ from what cargo wrote, and are compiled again.
     Discarding,
-    /// This many crates have been compiled so far, from 1; the plan itself does not count.
+    /// Number of crates compiled so far, from 1; the plan itself does not count.
     Compiling(usize),
 }
 

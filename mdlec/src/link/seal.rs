@@ -124,7 +124,7 @@ fn workers() -> usize {
     thread::available_parallelism().map_or(1, |all| all.get().min(4))
 }
 
-/// Adds the files below `folder` that a build uses to `files`: all links, and with `all` every file.
+/// Adds to `files` the files below `folder` that a build uses and all links; with `all`, every file.
 fn taken(folder: &Path, all: bool, files: &mut Vec<PathBuf>) -> io::Result<()> {
     let entries = match fs::read_dir(folder) {
         Err(error) if matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory) => return Ok(()),

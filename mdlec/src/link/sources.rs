@@ -46,7 +46,7 @@ fn worlds(target: &str) -> impl Iterator<Item = &'static str> {
     embedded::FILES.iter().filter_map(move |(file, _)| file.strip_prefix(&*folder)?.strip_suffix(".toml"))
 }
 
-/// Returns what is known of a target before a run; nothing of a target that is no part of mdlec.
+/// Returns the worlds and options of a target, as far as they are known before a run: none for a target outside mdlec.
 pub fn known(target: &str) -> Known {
     Known { worlds: worlds(target).collect(), options: options(target) }
 }

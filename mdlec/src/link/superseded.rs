@@ -29,7 +29,7 @@ pub(super) fn remove_before(cache: &Cache, plan_file: &Path, package: &PlanPacka
     Ok(())
 }
 
-/// Removes cargo's results of the package `name`: the executable, under both of its names, and the notes on it.
+/// Removes cargo's results for the package `name`: the executable, under both of its names, and its fingerprints.
 fn remove_results(cache: &Cache, name: &OsStr) -> Result<(), LinkError> {
     let Some(name) = name.to_str() else { return Ok(()) };
     let names = [name.to_owned(), name.replace('-', "_")];

@@ -1,4 +1,4 @@
-//! A cache that is damaged mends: what comes out of it is what was built from the plan as it is now.
+//! A damaged cache is repaired: the executable is the one that the current plan gives.
 //!
 //! To compile all libraries again takes long. If the variable `MDLE_LONG` is more than 1, each damage of them is mended
 //! to the end; else libraries of mdlec alone are damaged, or the test ends when it is reported that all are compiled again.

@@ -1,4 +1,4 @@
-//! A robot of a third party, for tests of `link`, and what is built for it.
+//! A robot of a third party, for tests of `link`, and the builds for it.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -14,13 +14,13 @@ pub trait Alphabet {
     type Output: Output;
     /// Input of the robot; its default is the null input.
     type Input: Default;
-    /// Any of its interrupts, with its arguments.
+    /// An interrupt of the alphabet with its arguments.
     type Interrupt: Interrupt<Self::Output>;
-    /// Any of its signals, with its arguments.
+    /// A signal of the alphabet with its arguments.
     type Signal: Signal<Self::Output>;
-    /// Any of its laws, with its arguments.
+    /// A law of the alphabet with its arguments.
     type Control: Control<Self::Output, Law = Self::Law>;
-    /// Any of its laws as it runs; a law that never completes is never done.
+    /// A running law of the alphabet; a law that has no completion never completes.
     type Law: Law<Self::Output, Input = Self::Input> + Completes<Self::Output>;
 
     /// Name of the target, as `--target` takes it.
@@ -160,7 +160,7 @@ macro_rules! alphabet {
             $(#[doc = concat!("`", $control_name, "`.")] $control($control),)*
         }
 
-        /// Any law of this robot as it runs: one at a time, so that there need be no allocator.
+        /// Any running law of this robot. One runs at a time, so no allocator is needed.
         #[derive(Debug)]
         pub enum AnyLaw {
             $(#[doc = concat!("`", $control_name, "`.")] $control(<$control as $crate::Control<Output>>::Law),)*

@@ -5,9 +5,9 @@ use crate::{Nanometers, Nanos, Output, Pose, Radians, Slots};
 
 /// Storage for the entry of each level of scopes: times alone, or [`Stamps`].
 pub trait Entries {
-    /// Returns `true` if no level is kept.
+    /// Returns `true` if this stores no level.
     fn is_empty(&self) -> bool;
-    /// Returns the time at which the scope of this level was entered; `None` if the level is not kept.
+    /// Returns the time at which the scope of this level was entered; `None` if the level is not stored.
     fn time(&self, level: u16) -> Option<Nanos>;
     /// Notes that the scope of this level is entered at time `t`.
     fn note(&mut self, level: u16, t: Nanos);

@@ -33,7 +33,7 @@ impl<'a> Fsm<'a> {
     }
 }
 
-/// A scope or a loop, and the atoms it holds.
+/// A scope or a loop, and the atoms inside it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Bracket {
     /// A scope or a loop.

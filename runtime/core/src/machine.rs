@@ -13,7 +13,7 @@ pub struct Transition {
     pub from: u64,
     /// The scope that ended, by its bracket.
     pub scope: u32,
-    /// Why it ended.
+    /// Cause of the end.
     pub cause: Cause,
     /// The atom entered, as written, from 0; `None` when the plan is over.
     pub atom: Option<u32>,

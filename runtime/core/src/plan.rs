@@ -79,7 +79,7 @@ pub trait Plan {
     }
 }
 
-/// Why a scope ended.
+/// Cause of the end of a scope.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Cause {
     /// The interrupt of the scope of this level has fired.

@@ -13,7 +13,7 @@ pub trait Robot {
     type Output: Output;
     /// Input `u` of the actuators; its default is the null input.
     type Input: Default;
-    /// Why an exchange failed, in a sentence for the operator.
+    /// Reason why an exchange failed, as a sentence for the operator.
     type Error: core::fmt::Display;
 
     /// Applies `input` for one period and returns the output that follows.

@@ -73,7 +73,8 @@ impl<T: Table, E: Entries, P: Slots<u64>, M: Memory> InRows<T, E, P, M> {
         guard.condition.fired(&reading(&self.table, &self.memory, guard, cursor, y, t), 0)
     }
 
-    /// Writes down what ends with the scope that has this cause, and forgets what was inside.
+    /// Records the facts about the elements that end with a scope by this cause, and clears the facts of elements
+    /// inside it.
     fn record(&mut self, cursor: &Cursor<E, P>, cause: Cause, y: &OutputOf<T>, t: Nanos) {
         let Self { table, memory, .. } = self;
         let (fsm, marks, facts) = (table.fsm(), table.marks(), table.facts());

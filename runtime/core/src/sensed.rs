@@ -49,8 +49,8 @@ pub struct Shape {
     pub half_width: Meters,
     /// The distance between its wheels.
     pub wheel_base: Meters,
-    /// Distance between the places on a wall beside the robot that two sonars hear, which look before and behind the
-    /// direction to it; `None` on a robot whose heading by odometry is better than one by such a wall.
+    /// Distance, on a wall beside the robot, between the places that the two neighbours of the sonar square to it hear;
+    /// `None` for a robot whose heading by odometry is better than its heading by walls.
     pub sonars_apart: Option<Meters>,
     /// The distance of the sonars from its centre.
     pub ring_radius: Meters,

@@ -56,7 +56,7 @@ impl Pings {
         self.kept = [Some(ping), first, second];
     }
 
-    /// The pings kept, newest first; fewer than [`PINGS_KEPT`] right after the start.
+    /// Returns the stored pings, newest first; fewer than [`PINGS_KEPT`] shortly after the start.
     pub fn newest_first(&self) -> impl Iterator<Item = &Ping> {
         self.kept.iter().flatten()
     }

@@ -1,4 +1,4 @@
-//! The text of a plan as its writer has it: the words of conditions and operands, and the lines that they are in.
+//! The source text of a plan: the words of conditions and operands, and their lines.
 
 /// The words and places of a plan, for reports: constants of an executable, or owned by a plan that was loaded.
 pub trait Words {
@@ -6,7 +6,7 @@ pub trait Words {
     fn bracket(&self, bracket: u32) -> Option<BracketWords<'_>>;
     /// Returns the words of an operand of a bracket's condition, by its number among them, from 0.
     fn operand(&self, bracket: u32, number: u32) -> Option<OperandWords<'_>>;
-    /// Returns the name of the file that a line is in; empty if there is none.
+    /// Returns the name of the file of a line; empty if the file is not known.
     fn file(&self, at: SourceLine) -> &str;
 }
 
@@ -33,7 +33,7 @@ pub struct Source<'a> {
 pub struct SourceLine {
     /// The number of the file in [`Source::files`].
     pub file: u16,
-    /// The line, from 1.
+    /// Number of the line, from 1.
     pub line: u32,
 }
 
@@ -57,7 +57,7 @@ pub struct OperandWords<'a> {
     pub text: &'a str,
     /// The operand as it is written.
     pub written: &'a str,
-    /// The line in which it begins.
+    /// The line in which the bracket begins.
     pub at: SourceLine,
     /// The places in the written words at which measured values are shown: of the signal, then of the signal that it is
     /// compared with.

@@ -22,7 +22,7 @@ pub struct Line<'a, F> {
     pub fired: F,
 }
 
-/// A transition as a trace has it.
+/// A transition in a trace.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Fired<'a, O> {
     /// The state left.
@@ -55,7 +55,7 @@ impl Transition {
         self.cause.by(plan.condition(self.scope))
     }
 
-    /// Returns this transition of `plan` as a trace has it, with the texts of the operands that have fired.
+    /// Returns this transition of `plan` for a trace, with the texts of the operands that have fired.
     pub fn fired<'p, P: Plan, O>(&self, plan: &'p P, operands: O) -> Fired<'p, O> {
         Fired { from: self.from, level: usize::from(self.cause.level()), by: self.by(plan), operands }
     }

@@ -1,4 +1,4 @@
-//! A writer that never makes a robot wait: a thread of its own writes what the turns hand over.
+//! A writer that never makes a robot wait: a thread of its own writes the text that the turns hand over.
 
 #[cfg(test)]
 mod tests;
@@ -61,7 +61,7 @@ struct Queue {
     /// Time at which the reader took something last, or at which something was handed over to a waiting thread.
     moved: Instant,
     is_closed: bool,
-    /// Why the thread has ended.
+    /// Error that ended the thread.
     error: Option<io::Error>,
     has_ended: bool,
 }

@@ -17,7 +17,7 @@ const DECIMALS: usize = 2;
 /// Maximum number of decimals of a value.
 const DECIMALS_MOST: usize = 9;
 
-/// Why a scope ended, as a report has it: `r1 = 0.38 m < 40cm (wall.mdle:7)`.
+/// Cause of a scope's end in a report: `r1 = 0.38 m < 40cm (wall.mdle:7)`.
 pub(crate) struct CauseText<'a> {
     pub(crate) plan: &'a dyn Texts,
     pub(crate) transition: &'a Transition,

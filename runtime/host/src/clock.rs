@@ -28,7 +28,7 @@ pub(crate) trait Instants {
     fn now(&mut self) -> Duration;
     /// Lets about this much time pass.
     fn sleep(&mut self, time: Duration);
-    /// Does what it can to be awake when time is up.
+    /// Asks the system to wake this thread on time.
     ///
     /// # Errors
     /// What the system does not permit, in words.
@@ -56,7 +56,7 @@ impl Instants for SinceBoot {
     }
 }
 
-/// The one clock of a run.
+/// The clock of a run.
 #[derive(Debug)]
 pub(crate) struct Clock<I> {
     instants: I,

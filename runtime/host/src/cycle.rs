@@ -47,7 +47,7 @@ pub(crate) trait Turns {
     fn pace(&mut self) -> Option<Pace> {
         None
     }
-    /// Reports how late turns begin and how long they take, as somebody has asked for it.
+    /// Reports how late turns begin and how long they take, after a request by SIGUSR1.
     fn tell_timing(&mut self, timing: &Timing);
     /// Called when the cycle ends, the last turn having been at `t`; the robot has not been stopped yet.
     fn ended(&mut self, ending: &RunEnd, t: Nanos);

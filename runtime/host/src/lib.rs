@@ -151,7 +151,7 @@ pub fn check_options<T: Target>(program: Program<'_>, call: &Call) -> Result<(),
     }
 }
 
-/// Runs an executable that was called like this.
+/// Runs an executable with the arguments of `call`.
 fn execute(program: Program<'_>, call: Call, executable: &dyn Executable) -> ExitCode {
     let signals = signals::Signals::listen();
     let leave_screen = executable.target().leave_screen;

@@ -15,7 +15,7 @@ const LINKS: usize = 40;
 pub struct NamedFile {
     /// The option, as in `--log`.
     pub option: &'static str,
-    /// The file's name, as given.
+    /// Path of the file, as on the command line.
     pub path: PathBuf,
     /// `true` if the run writes the file, `false` if the run reads it.
     pub is_written: bool,

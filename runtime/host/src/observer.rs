@@ -1,11 +1,11 @@
-//! The observer of a run: what a simulated robot makes of its own run, beside driving, and what a driver never needs.
-//! See docs/src/reference/interfaces.md, 7.4.
+//! Observer of a run: a simulated robot's view of its own run, which a driver of a real robot does not need. See
+//! docs/src/reference/interfaces.md, 7.4.
 
 use std::fmt;
 
 use mdle_runtime::Nanos;
 
-/// Follows what a plan does on a robot: for pictures, a live view, or a goal.
+/// Follows the course of a plan on a robot: for pictures, a live view, or a goal.
 pub trait Observer {
     /// An atom began in the turn at time `t`, and its law is now applied. `number` is its state in the first pass of
     /// the loops around it, so that every pass of an atom as written has one number.
@@ -22,8 +22,8 @@ pub trait Observer {
     /// A turn was made, and this is where the plan stands.
     fn turned(&mut self, _standing: &PlanPosition<'_>) {}
 
-    /// Returns the result of a run whose plan is over; `None` if the robot was to come to no goal. Asked after the
-    /// robot was stopped.
+    /// Returns the result of a run whose plan is over; `None` if the run has no goal. Called after the robot was
+    /// stopped.
     fn judged(&self) -> Option<Judgement> {
         None
     }
@@ -33,7 +33,8 @@ pub trait Observer {
         0
     }
 
-    /// Called once after the robot was stopped, on every orderly way out: write what was asked for, such as a plot.
+    /// Writes the requested files, such as a plot. Called once after the robot was stopped, at every orderly end of a
+    /// run.
     ///
     /// # Errors
     /// A sentence for the operator about what could not be written.
@@ -87,7 +88,7 @@ pub struct Around<'a> {
     pub since: Nanos,
 }
 
-/// Result of a run whose plan is over, for a robot that was to come to a goal.
+/// Result of a run with a goal whose plan is over.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Judgement {
     /// The robot is in its goal, and touches nothing.

@@ -16,7 +16,8 @@ enum Token<'a> {
     Number(Option<Quantity>, f64),
 }
 
-/// Returns `true` if `text` is this operand: in its canonical form, as the plan has it, or with other units and spaces.
+/// Returns `true` if `text` is this operand: in its canonical form, as written in the plan, or with other units and
+/// spaces.
 pub(crate) fn is_operand(text: &str, operand: &OperandWords<'_>) -> bool {
     let unit = operand.values.first().map_or("", |signal| signal.unit);
     let asked = tokens(text, unit);

@@ -1,4 +1,4 @@
-//! The store of paths: what a plan replays is read before its robot moves, and what a robot drives can be recorded.
+//! The store of paths: replayed paths are read before the robot moves, and the driven path can be recorded.
 
 mod record;
 #[cfg(test)]

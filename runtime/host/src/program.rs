@@ -5,7 +5,7 @@
 pub struct Program<'a> {
     /// Name of the plan, which `--help` shows.
     pub plan: &'a str,
-    /// Answer to `--version` after the name of the plan; if it is empty, there is no such option.
+    /// Answer to `--version` after the name of the plan; if it is empty, the executable has no `--version`.
     pub version: &'a str,
 }
 

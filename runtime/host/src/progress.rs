@@ -30,7 +30,8 @@ impl<'e> Progress<'e> {
         Self { err, now, next: EVERY, shown: false }
     }
 
-    /// A run has come to time `t`, with this atom. What it has reported is shown first, if it is time to show anything.
+    /// Shows the report of a run and its progress, if it is time to show anything: its atom has the law `law` at time
+    /// `t`.
     pub(crate) fn run(&mut self, t: Nanos, law: &str, report: &mut Report<'_>) {
         let Some(now) = self.due() else { return };
         self.clear();

@@ -1,6 +1,6 @@
 //! Reasons why a target does not begin a run.
 
-/// Why a robot could not be opened.
+/// Reason why a robot could not be opened.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Refusal {
     /// An option, a world or a start pose is no good.

@@ -23,7 +23,7 @@ pub(crate) struct Report<'a> {
     state: ReportState,
     /// The passes of loops.
     passes: Passes,
-    /// Why the current atom runs; empty for the plan's first.
+    /// Cause of the last transition, which began the current atom; empty for the plan's first atom.
     since: String,
     /// End of the plan, once it is over.
     over: Option<Over>,
@@ -36,7 +36,7 @@ pub(crate) struct Report<'a> {
 /// End of a plan.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct Over {
-    /// The words of a report.
+    /// Cause of the end, in the words of a report.
     pub(crate) cause: String,
     /// The condition text of the interrupt, or `completed`.
     pub(crate) by: String,

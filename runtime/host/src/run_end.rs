@@ -24,7 +24,7 @@ pub(crate) const OTHERWISE: u8 = 5;
 /// Exit status: a rule of the supervisor ended the plan.
 pub(crate) const SAFETY: u8 = 6;
 
-/// Why a run ended.
+/// Reason of the end of a run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum RunEnd {
     /// The plan is over.

@@ -41,7 +41,7 @@ pub(crate) struct Runs<'p> {
     alone: Box<dyn Fn(u64) -> Vec<String> + Send + Sync>,
 }
 
-/// A robot with its plan, before the first exchange, or why there is none.
+/// A robot with its plan, before the first exchange, or the reason why the robot could not be made.
 pub(crate) type Prepared<'p> = Result<Box<dyn Drive + 'p>, String>;
 
 impl<'p> Runs<'p> {

@@ -279,7 +279,7 @@ struct Ready<'p> {
     path: io::Result<Option<Recorder>>,
 }
 
-/// Opens what a run needs. A start that is refused leaves the files that it writes as they were.
+/// Opens the robot and the files of a run. A refused start leaves the files unchanged.
 fn ready<'p>(
     executable: &'p dyn Executable,
     matches: &ArgMatches,

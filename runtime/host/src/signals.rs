@@ -201,7 +201,7 @@ impl Signals {
         }
     }
 
-    /// Does what the system does when the signal comes.
+    /// Ends the process as the system does by default for this signal.
     #[cfg(test)]
     pub(crate) fn raise(&self, signal: Signal) {
         self.caught.store(usize::from(signal.number()), Ordering::SeqCst);

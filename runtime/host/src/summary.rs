@@ -17,7 +17,7 @@ pub(crate) struct Summary<'a> {
     pub(crate) runs: &'a [EndedRun],
     /// Number of runs that were to be made: more than were made if a signal ended the batch.
     pub(crate) asked: u64,
-    /// The first seed.
+    /// Seed of the first run.
     pub(crate) first: u64,
     /// Returns the options that repeat the run of a seed by itself.
     pub(crate) alone: &'a dyn Fn(u64) -> Vec<String>,

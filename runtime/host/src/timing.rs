@@ -17,7 +17,8 @@ const BOUNDS: [u64; 19] = {
     bounds
 };
 
-/// Number of successive turns longer than the period that ends a run: the robot does not get what the plan asks for.
+/// Number of successive turns longer than the period after which a run ends, since the robot gets its commands too
+/// late.
 const LIMIT: u32 = 10;
 
 /// Statistics of a run's turns: how many were on time, and how many were late.

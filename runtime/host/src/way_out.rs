@@ -15,7 +15,8 @@ pub(crate) fn bug(Panicked(message): Panicked) -> RunEnd {
     RunEnd::Bug(message)
 }
 
-/// Stops the robot; returns the ending after that, whether the robot's code can still be trusted, and the faults.
+/// Stops the robot; returns the end of the run after the stop, `true` if the robot's code can still be trusted, and the
+/// faults.
 ///
 /// The null input is sent once more where the robot still listens, then the stop command in any case.
 pub(crate) fn stop(drive: &mut dyn Drive, ending: RunEnd) -> (RunEnd, bool, Vec<RunFault>) {
@@ -70,7 +71,7 @@ pub(crate) fn judge(drive: &mut dyn Drive, ending: RunEnd, required: &Required, 
 /// The files that a run has written.
 pub(crate) struct Files {
     pub(crate) log: Option<Log>,
-    /// Why the path could not be written.
+    /// Error that kept the path from being written.
     pub(crate) path: Option<io::Error>,
 }
 

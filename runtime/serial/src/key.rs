@@ -13,7 +13,7 @@ pub struct Key {
     pub unit: &'static str,
     /// A few words on the value, after the unit.
     pub help: &'static str,
-    /// `false` if nobody has compared the default with a real robot.
+    /// `true` if the default has been compared with a real robot.
     pub is_verified: bool,
     /// Minimum and maximum of a number.
     pub range: Option<(f64, f64)>,

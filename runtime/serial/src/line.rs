@@ -71,7 +71,7 @@ impl Line {
     /// Opens a serial port at `speed` bits per second, or `tcp:ADDRESS:PORT`. Nothing is sent.
     ///
     /// # Errors
-    /// It is missing, busy, no terminal, or nobody listens.
+    /// The device is missing, busy or no terminal, or nothing listens at the address.
     pub fn open(device: &str, speed: u32) -> Result<Self, LineFault> {
         let port = match device.strip_prefix("tcp:") {
             Some(address) => connect(address)?,

@@ -41,7 +41,7 @@ struct Band {
     /// Ends of the band: `low` is at most zero, `high` at least zero.
     low: f64,
     high: f64,
-    /// The last command.
+    /// Last commanded speed, in m/s.
     command: f64,
     /// The rate at which the band narrows, in m/s².
     brakes: f64,

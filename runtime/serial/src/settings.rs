@@ -88,14 +88,14 @@ impl Settings {
         self.file.as_ref().map_or_else(|| why.to_owned(), |file| format!("{file}: {why}"))
     }
 
-    /// Returns what the file has, or else the default, and takes it down.
+    /// Returns the value of the file, or else the default, and records it for `--print-config`.
     fn chosen<W: fmt::Debug>(&mut self, key: Key, written: Option<W>, default: W) -> W {
         let file = self.file.as_deref().filter(|_| written.is_some());
         let from = file.unwrap_or("default").to_owned();
         self.noted(key, written.unwrap_or(default), from)
     }
 
-    /// Returns `value`, once it is taken down with where it came from.
+    /// Records `value` with its origin for `--print-config`, and returns it.
     fn noted<W: fmt::Debug>(&mut self, key: Key, value: W, from: String) -> W {
         self.entries.push(Entry { key, value: format!("{value:?}"), from });
         value

@@ -8,7 +8,7 @@ use crate::config::Config;
 
 /// Maximum way of a robot between two reports, in metres; a greater difference of positions is not accepted.
 const LEAP: f64 = 1.0;
-/// If leaps outnumber steps by this many, the positions are meaningless.
+/// Excess of leaps over steps at which the positions are taken to be meaningless.
 const LEAPS: u8 = 4;
 
 /// The commands for this input, translation first, no side above the fastest: both axes are slowed down alike, so that

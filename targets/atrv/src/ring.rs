@@ -1,5 +1,5 @@
-//! From the reports of the boards to pings in the sixteen directions.
-//! See docs/src/reference/protocols.md, 2.6.
+//! Converts the reports of the sonar boards to pings in the sixteen directions. See docs/src/reference/protocols.md,
+//! 2.6.
 
 use mdle_runtime::{Meters, Nanos, PINGS_KEPT, Ping, Pings, Pose, SONARS};
 
@@ -66,7 +66,7 @@ impl Ring {
         }
     }
 
-    /// Returns the lowest direction with fewer pings than are kept.
+    /// Returns the lowest direction that has not yet pinged as often as pings are stored.
     pub(crate) fn unheard(&self) -> Option<u8> {
         let all = (0..).zip(&self.pings);
         all.filter(|(_, pings)| pings.newest_first().count() < PINGS_KEPT).map(|(direction, _)| direction).next()
@@ -90,7 +90,7 @@ impl Ring {
         all.filter(|(_, sonar)| speaks(sonar)).fold(0, |bits, (number, _): (u32, _)| bits | 1 << number)
     }
 
-    /// The nearest of what the transducers of this direction have reported.
+    /// Returns the ping with the smallest range of all transducers of this direction.
     fn ping(&mut self, direction: usize, at: Nanos, pose: Pose) {
         let (Some(reported), Some(pings)) = (self.reported.get_mut(direction), self.pings.get_mut(direction)) else {
             return;

@@ -65,7 +65,7 @@ impl Mouth {
         Self { shared, watching, limit }
     }
 
-    /// The line, to listen to.
+    /// Returns the line, from which reports are read.
     pub(crate) fn line(&self) -> &Line {
         &self.shared.line
     }

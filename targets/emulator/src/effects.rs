@@ -205,8 +205,8 @@ pub fn untrue_effects<T: Trial>(effects: &[Effect], refusals: &[(&'static str, &
     untrue.into_inner().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Returns a sentence for each fault that the robot can have and that no effect is of. Frames that come late need a
-/// clock, which robots in lockstep do not have.
+/// Returns a sentence for each fault that the robot can have, but that is in no row. Late frames are not among them,
+/// since they need a clock, which robots in lockstep do not have.
 fn missing<T: Trial>(effects: &[Effect]) -> Vec<String> {
     let faults = effects.iter().flat_map(|effect| effect.faults).filter_map(|fault| fault.parse::<At>().ok());
     let names: Vec<String> = faults.map(|at| at.fault.to_string()).collect();

@@ -38,9 +38,9 @@ pub enum Fault {
 /// A fault of the robot itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ailment {
-    /// It receives nothing: the line to the robot is cut.
+    /// The robot receives nothing: the line to it is cut.
     Deaf,
-    /// It keeps its speed, against all commands and its own watchdog.
+    /// The robot keeps its speed, against all commands and its own watchdog.
     Runaway,
     /// The right side does not move.
     StuckWheel,
@@ -54,19 +54,19 @@ pub enum Ailment {
     LowBattery,
     /// The charger is plugged in.
     PluggedIn,
-    /// Bytes that a reader must skip are in each frame.
+    /// Each frame contains filler, which a reader must skip.
     Filler,
-    /// It sends the same report of itself again and again.
+    /// The robot repeats the same report.
     Hang,
     /// The sonars no longer ping.
     NoPings,
-    /// It no longer reports its bumpers.
+    /// The robot no longer reports its bumpers.
     NoBumpers,
-    /// It no longer reports how far it has gone.
+    /// The robot no longer reports the distance driven.
     NoTranslation,
-    /// It no longer reports how far it has turned.
+    /// The robot no longer reports the angle turned.
     NoRotation,
-    /// It no longer answers questions about its brake and battery.
+    /// The robot no longer answers requests about its brake and battery.
     NoStatus,
     /// Each position that it reports is metres away from the one before.
     Leap,

@@ -1,9 +1,9 @@
-//! The motion commands that an emulated robot has received: what a test asks for when a run is over.
+//! The motion commands that an emulated robot has received, which tests read after a run.
 
 use std::collections::VecDeque;
 use std::time::Duration;
 
-/// Maximum number of orders that are kept.
+/// Maximum number of stored orders.
 const KEPT: usize = 64;
 
 /// The meaning of a motion command.
@@ -19,7 +19,7 @@ pub enum Order {
     Brake,
 }
 
-/// The orders that have arrived, the oldest first, each with the age of the robot's world. The last 64 are kept.
+/// The last 64 orders that have arrived, oldest first, each with the age of the robot's world.
 #[derive(Debug, Clone, Default)]
 pub struct Orders(VecDeque<(Duration, Order)>);
 
@@ -32,7 +32,7 @@ impl Orders {
         self.0.push_back((age, order));
     }
 
-    /// Returns the orders that are kept.
+    /// Returns the stored orders, oldest first.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = (Duration, Order)> {
         self.0.iter().copied()
     }

@@ -16,7 +16,7 @@ pub(crate) struct Presence {
     lines: Vec<Observation>,
 }
 
-/// The last observation of a line: whether a program has it open.
+/// The last observation of a line.
 #[derive(Debug, Clone, Copy)]
 struct Observation {
     /// Number by which the system's reports name the line.

@@ -28,7 +28,7 @@ pub struct Options {
     /// World: office, maze, hall, room, or a TOML file
     #[arg(long, value_name = "NAME|FILE", default_value = "office")]
     world: String,
-    /// Start pose, in metres and degrees counter-clockwise [default: that of the world]
+    /// Start pose, in metres and degrees counter-clockwise [default: the world's]
     #[arg(long, value_name = "X,Y,DEG", allow_hyphen_values = true)]
     start: Option<Start>,
     /// Name and start pose of a robot; once per robot, for several robots in one world

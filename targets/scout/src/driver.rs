@@ -145,8 +145,8 @@ impl Scout {
         self.line.ask(&command, Instant::now() + patience)
     }
 
-    /// Sends "stop" repeatedly to a robot that does not answer, for the time that it may take to come to rest: it may
-    /// receive commands even if its answers are lost.
+    /// Sends "stop" again and again to a robot that does not answer, for the time that it may take to come to rest: it
+    /// may receive commands even if its answers are lost.
     fn insist(&mut self, begun: Instant, limit: Duration) {
         for attempts in 1.. {
             let deadline = Instant::now() + AGAIN;

@@ -29,13 +29,13 @@ pub struct Frame {
 /// Reason why bytes are not a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Garbled {
-    /// The first byte is this one.
+    /// The bytes begin with this one instead of the first byte of a frame.
     Start(u8),
-    /// No frame of a Scout is that long or that short.
+    /// The frame gives this length, which no frame of a Scout has.
     Length(u16),
     /// The sum of the bytes is the first number; the frame's own sum is the second.
     Sum(u8, u8),
-    /// This byte follows the sum.
+    /// This byte follows the sum instead of the last byte of a frame.
     End(u8),
 }
 

@@ -27,7 +27,7 @@ impl Line {
     /// Opens a serial port, or `tcp:ADDRESS:PORT`. Nothing is sent.
     ///
     /// # Errors
-    /// It is missing, busy, no terminal, or nobody listens.
+    /// The device is missing, busy or no terminal, or nothing listens at the address.
     pub(crate) fn open(device: &str) -> Result<Self, Fault> {
         Ok(Self { line: mdle_serial::Line::open(device, SPEED)?, reader: Reader::default() })
     }
@@ -120,7 +120,7 @@ impl Line {
         wrong.or(garbled).unwrap_or(Fault::Line(LineFault::Silent))
     }
 
-    /// Throws away what has come in.
+    /// Discards the bytes that have arrived.
     fn drain(&mut self) -> Result<(), Fault> {
         // A robot that never stops talking is found out where its answer is read.
         let most = 64;
@@ -133,7 +133,7 @@ impl Line {
         Ok(())
     }
 
-    /// Takes in what is there; whether there was anything.
+    /// Reads the bytes that have arrived; returns `true` if there were any.
     fn take_in(&mut self) -> Result<bool, Fault> {
         let mut chunk = [0; CHUNK];
         let count = self.line.read(&mut chunk)?;

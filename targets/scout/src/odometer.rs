@@ -9,11 +9,12 @@ use crate::wheels::UNIT;
 /// Count of the numbers in sign and magnitude, from -32767 to 32767.
 const NUMBERS: i32 = 65_535;
 
-/// No robot goes further than this between two states, in metres, besides what it can drive in the time between them.
+/// Maximum distance between two states beyond what the robot can drive in the time between them, in metres; more is a
+/// leap.
 const LEAP: f64 = 1.0;
 /// Maximum ratio of a wheel's speed to its commanded speed.
 const FASTER: f64 = 2.0;
-/// If leaps outnumber steps by this many, the positions are meaningless.
+/// Excess of leaps over steps at which the positions are taken to be meaningless.
 const LEAPS: u8 = 4;
 
 /// Follows the numbers of the line from state to state.

@@ -10,9 +10,9 @@ pub(crate) const CHUNK: usize = 512;
 pub struct Reader {
     /// Empty, or from where a frame may begin.
     waiting: Vec<u8>,
-    /// The first defect.
+    /// First defect of the bytes since the last good frame.
     garbled: Option<Garbled>,
-    /// `true` once a frame was wrong that was as long as it says it is.
+    /// `true` after a defective frame whose length was right.
     was_whole: bool,
 }
 
@@ -73,7 +73,7 @@ impl Reader {
         Some(frame)
     }
 
-    /// Returns what was wrong first with what has come in.
+    /// Returns the first defect of the received bytes.
     #[must_use]
     pub fn garbled(&self) -> Option<Garbled> {
         self.garbled

@@ -1,5 +1,5 @@
-//! From the bytes of sixteen sonars to their pings: which of them are new, and how old the others are.
-//! See docs/src/reference/protocols.md, 1.6.
+//! Converts the bytes of the sixteen sonars to pings, and finds which of them are new and how old the others are. See
+//! docs/src/reference/protocols.md, 1.6.
 
 use mdle_runtime::{Meters, Nanos, Ping, Pings, Pose, SONARS};
 

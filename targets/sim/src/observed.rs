@@ -46,7 +46,7 @@ impl Table {
 }
 
 impl From<Simulated> for Observed {
-    /// The robot with nobody looking on.
+    /// A robot whose run is neither drawn nor recorded.
     fn from(robot: Simulated) -> Self {
         Self { robot, goal: None, touches: false, contacts: 0, pictures: None, table: None, watch: None }
     }

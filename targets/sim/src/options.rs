@@ -175,7 +175,7 @@ pub(crate) fn world(matches: &ArgMatches) -> Result<World, String> {
     }
 }
 
-/// The goal of `--goal`: that of the world, or one of its own.
+/// Returns the goal of `--goal`: the goal of the world, or the one that the option describes.
 pub(crate) fn goal(matches: &ArgMatches, world: &World) -> Result<Option<Goal>, String> {
     let Some(text) = matches.get_one::<String>("goal") else { return Ok(None) };
     if text == "world" {

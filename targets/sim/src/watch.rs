@@ -19,7 +19,7 @@ pub(crate) fn leave_screen() {
     screen::leave_at_once();
 }
 
-/// Minimum time between two pictures: nobody sees faster changes.
+/// Minimum time between two pictures: the eye sees no faster changes.
 const EVERY: Duration = Duration::from_millis(50);
 
 /// A live view.
@@ -27,7 +27,7 @@ pub(crate) struct Watch {
     screen: Option<Screen>,
     world: World,
     map: Option<Map>,
-    /// The way so far, not denser than a centimetre.
+    /// Places of the way so far, at least a centimetre apart.
     way: Vec<Place>,
     echoes: Vec<Place>,
     /// Displacement of each moving object of the world; `None` for an open door.

@@ -30,7 +30,8 @@ const FASTEST: MetersPerSecond = MetersPerSecond(0.5);
 /// REPLACE by the turn rate that no law may exceed.
 const FASTEST_TURN: RadiansPerSecond = RadiansPerSecond(2.0);
 
-/// Why the robot cannot go on. Add what can go wrong with yours: a line that is closed, no answer, an emergency stop.
+/// Reason why the robot cannot go on. Add what can go wrong with yours: a line that is closed, no answer, an emergency
+/// stop.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fault {
     /// A law has asked for a speed that is no number.
@@ -78,7 +79,7 @@ impl mdle_host::Target for Target {
         command.arg(speed.help("Speed of the simulated time: as fast as the clock, or as possible [default: real]"))
     }
 
-    /// REPLACE: take it away, and time passes by the clock. Only where nothing is real can it be hurried.
+    /// REPLACE: remove this function, and time passes by the clock. Only simulated time can run faster.
     fn time(options: &ArgMatches) -> Result<Time, String> {
         let is_hurried = options.get_one::<String>("speed").is_some_and(|speed| speed == "max");
         Ok(Time::Stepped(if is_hurried { Pace::Max } else { Pace::Times(1.0) }))
@@ -125,8 +126,8 @@ impl Robot for Hardware {
 }
 
 impl Hardware {
-    /// Where the robot is that is imagined, from where it was opened. REPLACE: of a real one nobody knows that in here;
-    /// take it away, and have `tests/conformance.rs` find out.
+    /// Pose of the simulated robot, relative to its start. REPLACE: remove this function, since the true pose of a real
+    /// robot is not known here; `tests/conformance.rs` has to measure it.
     #[must_use]
     pub fn imagined(&self) -> Pose {
         self.pose

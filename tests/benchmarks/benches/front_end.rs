@@ -57,7 +57,7 @@ fn time(repeats: usize, mut reads: impl FnMut(usize) -> bool) -> Duration {
     time
 }
 
-/// Reads a text; whether it had no fault.
+/// Parses a text; returns `true` if it has no errors.
 fn reads(text: &str, arena: &Arena) -> bool {
     let (file, found) = parse(SourceId(0), black_box(text), arena);
     black_box(&file);

@@ -155,7 +155,7 @@ impl Writer {
         }
     }
 
-    /// A plan by name.
+    /// Writes a plan by its name.
     fn reference(&mut self) {
         let how = self.chance.pick(&["", "FRAME 180deg ", "ExecPlan 3 "]);
         let arguments = if self.chance.percent(30) { "(15cm/s, 0100)" } else { "" };

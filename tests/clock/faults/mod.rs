@@ -216,7 +216,7 @@ const SOON: f64 = 1.5;
 /// The fault that ends a run, the time limit, and the distance that the body may move further than in lockstep.
 type End = (Option<Fault>, Happening, f64, f64);
 
-/// The faults that end a run in different ways on either robot.
+/// Faults, each of which ends a run in another way on both robots.
 const ENDS: [End; 6] = [
     (Some(Fault::Silence), Happening::OnCommand, SOON, FURTHER),
     (Some(Fault::Check), Happening::OnCommand, SOON, FURTHER),

@@ -37,7 +37,7 @@ impl Row {
     }
 }
 
-/// The whole page.
+/// Returns the text of the page.
 pub(crate) fn text(plan: &str, robots: &[(&str, Vec<(String, Row)>)]) -> String {
     let mut text = format!(
         "# Faults\n\n\

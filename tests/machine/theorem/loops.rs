@@ -10,7 +10,7 @@ pub(crate) fn plan_of_loops(chance: &mut Chance, atoms: usize) -> String {
     format!("{{ Main ({condition}) {body}}}\n")
 }
 
-/// A condition that no other is like.
+/// Returns a condition that differs from all earlier ones.
 fn condition(waits: &mut usize) -> String {
     *waits += 1;
     format!("wait {waits}")

@@ -35,7 +35,7 @@ pub(crate) struct AtOnce<'m> {
 pub(crate) enum BuildState {
     Built,
     DoesNotCompile,
-    /// It cannot be chosen while the program runs.
+    /// A mutant that cannot be selected at run time.
     Apart,
 }
 

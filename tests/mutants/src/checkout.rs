@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// The folder that holds everything.
+/// Returns the folder of the repository.
 pub(crate) fn root() -> &'static Path {
     let package = Path::new(env!("CARGO_MANIFEST_DIR"));
     package.ancestors().nth(2).expect("the package lies two folders deep")
@@ -42,7 +42,7 @@ impl Checkout {
         checkout
     }
 
-    /// The copied files.
+    /// Returns the folder of the copied files.
     pub(crate) fn sources(&self) -> PathBuf {
         self.folder.join("checkout")
     }

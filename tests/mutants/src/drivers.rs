@@ -59,7 +59,7 @@ struct Fault {
     to: String,
 }
 
-/// Tries all faults and prints what became of each; whether all were caught.
+/// Tries all faults and prints the outcome of each; returns `true` if all were caught.
 pub(crate) fn all_are_caught() -> bool {
     let Faults { fault: faults } = toml::from_str(LIST).expect("tests/mutants/drivers.toml is as its head says");
     let checkout = Checkout::copy();

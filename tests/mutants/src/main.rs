@@ -45,7 +45,7 @@ struct Options {
     /// Random seed that selects the mutants; the hash of the commit by default.
     #[arg(long)]
     seed: Option<u64>,
-    /// Only mutants whose lines, as they are printed, contain this.
+    /// Text that the printed line of a mutant has to contain.
     #[arg(long, default_value = "")]
     only: String,
     /// Try the faults of `drivers.toml` in the drivers of robots, on the robots' conformance.

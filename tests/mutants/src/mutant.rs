@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use crate::finder;
 
-/// One fault.
+/// A fault in the code.
 #[derive(Debug, Clone)]
 pub(crate) struct Mutant {
     /// The place of the mutant's area in the list of areas.

@@ -74,7 +74,7 @@ impl fmt::Display for Report {
     }
 }
 
-/// An outcome in words.
+/// Returns an outcome as words of a report.
 pub(crate) fn verdict(outcome: Outcome) -> String {
     match outcome {
         Outcome::DoesNotCompile => "does not compile".to_owned(),

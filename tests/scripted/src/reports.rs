@@ -133,7 +133,7 @@ impl From<&'static str> for Argument {
     }
 }
 
-/// A time in seconds, as its text has it.
+/// Returns a time in seconds; infinite for [`Nanos::MAX`].
 pub(crate) fn duration(time: Nanos) -> f64 {
     if time == Nanos::MAX { f64::INFINITY } else { time.seconds() }
 }

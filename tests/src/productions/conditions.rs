@@ -53,7 +53,7 @@ impl Counter<'_> {
         }
     }
 
-    /// An operand of an OR.
+    /// Counts the productions of an operand of OR.
     fn and(&mut self, condition: &Condition<'_>) {
         if self.is_parenthesized(condition) {
             self.met("And = Not");

@@ -23,9 +23,9 @@ pub enum Kind {
     Integer,
     /// A number of passes: a positive whole number, or `inf`.
     Count,
-    /// This many digits 0 and 1.
+    /// A word of this many bits.
     Bits(u32),
-    /// One of the sixteen sonars.
+    /// The number of a sonar, 0 to 15.
     Sonar,
     /// The name of a robot.
     Robot,
@@ -121,9 +121,9 @@ pub struct Unit {
     pub name: &'static str,
     /// Kind of quantity that the unit measures.
     pub kind: Kind,
-    /// Exact factor to the unit of the family: this whole number …
+    /// Whole number of the exact factor to the unit of the family, which is `factor` times ten to the power `exponent`.
     pub factor: u32,
-    /// … times ten to this power.
+    /// Power of ten of the exact factor.
     pub exponent: i32,
     /// Unit of the family, in which exact values are compared: degrees and radians are two families.
     pub family: &'static str,

@@ -1,6 +1,6 @@
 //! Other words for quarks, which people type before they know an alphabet.
 
-/// Names of quarks, each with other words for it.
+/// Names of quarks, each with its synonyms.
 const SYNONYMS: &[(&str, &[&str])] = &[
     ("go", &["forward", "drive", "move", "ahead", "straight", "forwards", "run", "velocity"]),
     ("goAvoid", &["goto", "moveTo", "driveTo", "navigate", "avoid"]),

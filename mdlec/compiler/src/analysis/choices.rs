@@ -107,7 +107,7 @@ impl Choices {
 
 /// Adds the variables of a condition; `false` where there are too many.
 pub(super) fn variables(read: Read<'_>, machine: &Machine, found: &mut BTreeSet<Variable>) -> bool {
-    /// More than can be tried, since some may have one value only.
+    /// Maximum number of variables: more than can be tried, since some may have one value only.
     const MOST: usize = 4 * VARIABLES;
     let Read { condition, bracket, when } = read;
     let timer = |nanos| match when {

@@ -105,7 +105,7 @@ impl<'l> Constants<'l> {
         }
     }
 
-    /// A condition with the opposites of those operands that are true at once.
+    /// Returns a condition in which operands that are true from the start are negated.
     fn opposite(&self, bracket: u32, condition: &'l Condition) -> Option<String> {
         // Where each operand may be false at once, only what joins them is at fault.
         if condition.operands().iter().all(|operand| self.stays(bracket, operand)) {

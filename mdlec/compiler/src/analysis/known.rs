@@ -69,7 +69,7 @@ impl<'l> KnownFacts<'l> {
         }
     }
 
-    /// Returns what is known of a place without anything around it, where every signal is a number.
+    /// Returns the knowledge about a place without enclosing scopes: every signal is a number.
     pub(super) fn of_numbers(machine: &'l Machine) -> Self {
         Self { readings: Readings::Numbers, ..Self::new(machine, &PossibleFacts::Any) }
     }
@@ -145,7 +145,7 @@ impl<'l> KnownFacts<'l> {
         added
     }
 
-    /// Forgets what a scope has added.
+    /// Removes the knowledge that a scope has added.
     pub(super) fn close(&mut self, added: Assumptions) {
         for variable in added.units {
             self.units.remove(&variable);

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::{Analysis, AtomAnswer, Duration, Reach, ScopeAnswer};
 
-/// Maximum number of scopes that are named for what ends an atom.
+/// Maximum number of scopes that are named among the causes of an atom's end.
 const AROUND: usize = 3;
 
 impl Analysis {
@@ -106,7 +106,7 @@ fn longest(longest: &Duration) -> String {
     }
 }
 
-/// `1 atom`, `2 atoms`.
+/// Writes a number with its noun: `1 atom`, `2 atoms`.
 fn count(number: u64, thing: &str) -> String {
     if number == 1 { format!("1 {thing}") } else { format!("{number} {thing}s") }
 }

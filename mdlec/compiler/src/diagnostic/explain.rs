@@ -9,7 +9,7 @@ pub struct Explanation(pub(super) &'static str);
 /// An example of an explanation.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Example {
-    /// Arguments of `mdlec` for the example.
+    /// Arguments of `mdlec` that cause the message for the example.
     pub arguments: Vec<String>,
     /// Text of the example's file.
     pub text: String,

@@ -13,7 +13,7 @@ pub struct Message<'a> {
     pub severity: &'static str,
     /// Text of the message.
     pub message: &'a str,
-    /// Places, that of the defect first.
+    /// Places in the text: first the defect, then others that explain it.
     pub spans: Vec<Place<'a>>,
     /// Advice for the user.
     pub help: Vec<&'a str>,

@@ -107,7 +107,7 @@ impl Sources {
         (self.name(source), line.map_or(0, |line| line + 1))
     }
 
-    /// Returns the text of a span; empty if there is no such file.
+    /// Returns the text of a span; empty if the file is not known.
     #[must_use]
     pub fn slice(&self, span: Span) -> &str {
         let (source, range) = self.range(span);

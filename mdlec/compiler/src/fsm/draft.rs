@@ -31,7 +31,7 @@ pub struct Draft {
     pub records: BTreeMap<RecordId, RecordPlace>,
     /// Every quark with its arguments.
     pub quarks: Vec<Quark>,
-    /// The sizes of what a machine keeps from turn to turn.
+    /// Sizes of the state that a machine keeps between turns.
     pub sizes: Sizes,
 }
 
@@ -64,7 +64,7 @@ pub struct RecordPlace {
     pub facts: u32,
 }
 
-/// The sizes of what a machine keeps from turn to turn.
+/// Sizes of the state that a machine keeps between turns.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Sizes {
     /// Maximum number of memories of a level of scopes: those of RISING in the scope's interrupt, and after them the

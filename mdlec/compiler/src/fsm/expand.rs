@@ -24,7 +24,7 @@ pub fn expand(plan: &Nondegenerate) -> Result<Nondegenerate, Diagnostic> {
 /// Checks that the expanded form of a plan is within the limits of states, conditions and texts.
 ///
 /// # Errors
-/// E0501 and E0502, as [`expand`] has them.
+/// Fails with E0501 or E0502 as [`expand`] does.
 pub(super) fn fits(plan: &Nondegenerate) -> Result<(), Diagnostic> {
     expanded_states(plan)?;
     let parts = Count {

@@ -69,7 +69,7 @@ pub struct ScopeEntry {
 /// Returns the file of a plan: its transition matrices, with the columns that each lists.
 ///
 /// # Errors
-/// E0501 and E0502, as [`expand`](super::expand) has them.
+/// Fails with E0501 or E0502 as [`expand`](super::expand) does.
 pub fn fsm_file(plan: &Nondegenerate) -> Result<FsmFile, Diagnostic> {
     // The file repeats the text of a condition for each state that it is copied to.
     fits(plan)?;

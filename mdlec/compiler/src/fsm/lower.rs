@@ -103,7 +103,8 @@ impl Lowering {
         1
     }
 
-    /// The innermost scope with `FRAME here` for what is inside a scope at `place`, which may have one itself.
+    /// Returns the innermost scope with `FRAME here` that encloses the elements of a scope at `place`, which may be
+    /// that scope itself.
     fn here(&mut self, is_here: bool, place: NodePlace) -> Option<u16> {
         if !is_here {
             return place.here;

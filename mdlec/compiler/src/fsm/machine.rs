@@ -116,7 +116,7 @@ impl Machine {
         self.0.records.get(&id).copied()
     }
 
-    /// The sizes of what a machine keeps from turn to turn.
+    /// Returns the sizes of the state that a machine keeps between turns.
     #[must_use]
     pub fn sizes(&self) -> Sizes {
         self.0.sizes

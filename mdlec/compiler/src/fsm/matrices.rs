@@ -101,7 +101,7 @@ impl Mul<UnitVector> for &Matrix {
 /// The transition matrices of a plan.
 ///
 /// # Errors
-/// E0501 and E0502, as [`expand`](super::expand) has them.
+/// Fails with E0501 or E0502 as [`expand`](super::expand) does.
 pub fn matrices(plan: &Nondegenerate) -> Result<Matrices<'_>, Diagnostic> {
     expanded_states(plan)?;
     let mut brackets = Brackets { all: Vec::new(), laws: Vec::new(), frames: Vec::new(), interrupts: 0 };
@@ -162,7 +162,7 @@ struct BracketPlace {
 /// Destination of an interrupt.
 struct Destination<'p> {
     row: usize,
-    /// The first interrupt that starts afresh there.
+    /// First interrupt whose scope restarts at the destination.
     afresh: usize,
     /// The labels of what ends because its last element has.
     ends_with: Vec<&'p Mark>,

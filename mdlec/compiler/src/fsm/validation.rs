@@ -18,8 +18,7 @@ use crate::plan::{Interrupt, Mark, Node, Nondegenerate, Record, Scope};
 /// Checks that `draft` is the machine of `plan`.
 ///
 /// # Errors
-/// E0901: the first place at which it is not, with what the plan asks for and what the machine has. That is a defect of
-/// the compiler.
+/// E0901: the first difference between plan and machine, which is a defect of the compiler.
 pub fn validate(plan: &Nondegenerate, draft: &Draft) -> Result<(), Diagnostic> {
     let root = &plan.plan().root;
     let mut walk = Walk { draft, brackets: 0, atoms: 0 };
@@ -33,7 +32,7 @@ pub fn validate(plan: &Nondegenerate, draft: &Draft) -> Result<(), Diagnostic> {
 /// Surroundings of a node of the plan.
 #[derive(Clone, Copy)]
 struct Around {
-    /// Bracket of the enclosing node; of the plan, its own.
+    /// Bracket of the enclosing node; for the plan, the plan's own bracket.
     holder: u32,
     /// Set to `true` if another node follows in the same string; `None` for the plan.
     behind: Option<bool>,
@@ -43,7 +42,7 @@ struct Around {
     loops: u16,
     /// Number of states of the expanded plan before the node, in the first pass of every loop.
     states: u128,
-    /// The level of the innermost scope around it that is entered in a frame of its own.
+    /// Level of the innermost enclosing scope that is entered in a frame of its own.
     here: Option<u16>,
 }
 
@@ -52,7 +51,7 @@ struct Around {
 enum Step {
     /// The plan is over.
     Over,
-    /// This atom becomes current; what is in this bracket starts afresh.
+    /// The atom `atom` becomes current, and everything inside the bracket `inside` restarts.
     Enters { atom: u32, inside: u32 },
     /// The string of this enclosing bracket has ended: a loop may repeat it.
     Ends { bracket: u32 },
@@ -154,7 +153,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Counts the next bracket, and returns its number and that of the first atom in it.
+    /// Counts the next bracket; returns its number, and the number of the first atom inside it.
     fn met(&mut self) -> (u32, u32) {
         self.brackets += 1;
         (self.brackets - 1, self.atoms)

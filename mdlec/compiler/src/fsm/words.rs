@@ -41,7 +41,7 @@ pub struct OperandText {
     pub text: String,
     /// The operand as it is written.
     pub written: String,
-    /// The line in which it begins.
+    /// The line in which the element begins.
     pub at: SourceLine,
     /// The places at which measured values are shown.
     pub values: Vec<ValueWords<'static>>,

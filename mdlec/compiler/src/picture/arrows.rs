@@ -13,7 +13,7 @@ pub(super) enum Arrow {
     Port,
     /// The way out of a scope when its own condition fires.
     Exit,
-    /// The next pass of a loop.
+    /// An arrow back to the beginning of a loop, for its next pass.
     Again,
 }
 

@@ -7,15 +7,15 @@ use crate::fsm::{Element, ElementKind, Exit, Machine};
 /// A destination of an element that ends.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Destination<'m> {
-    /// The element after it; `last_pass` where only the last pass of a loop leads there.
+    /// The end leads to the next element; `last_pass` is `true` if only the last pass of a loop leads there.
     After { next: Element<'m>, last_pass: bool },
     /// The beginning of this loop, for the next pass.
     Again { repeated: Element<'m>, times: Option<u64> },
-    /// The end of the plan; `last_pass` where only the last pass of a loop leads there.
+    /// The end leads to the end of the plan; `last_pass` is `true` if only the last pass of a loop leads there.
     Over { last_pass: bool },
 }
 
-/// Returns the destinations of an element: each loop that ends with it, and what comes after all of these.
+/// Returns the destinations of an element: each loop that ends with it, and the element after these loops.
 pub(super) fn destinations(element: Element<'_>) -> Vec<Destination<'_>> {
     let (mut all, mut exit, mut last_pass) = (Vec::new(), element.exit(), false);
     loop {
@@ -46,7 +46,7 @@ pub(super) fn destinations(element: Element<'_>) -> Vec<Destination<'_>> {
 /// The ways in which an element can end.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct WaysOut {
-    /// `true` if it ends at all, by itself or with its last element.
+    /// `true` if the element can end, by itself or with its last element.
     pub(super) ever: bool,
     /// `true` if it ends with its last element; of an atom, if anything ends it.
     pub(super) at_its_end: bool,

@@ -18,7 +18,7 @@ const BOTTOM: i64 = 16;
 /// The room below for the arrow that begins the next pass.
 const AGAIN: i64 = 30;
 const PADDING: i64 = 10;
-/// Maximum width of an atom in letters; `LINES` is the maximum number of lines of a text in it.
+/// Maximum width of an atom's text, in letters; `LINES` is the maximum number of its lines.
 const LETTERS: usize = 30;
 const LINES: usize = 3;
 
@@ -38,7 +38,8 @@ pub(super) struct Placed {
     pub(super) y: i64,
     pub(super) width: i64,
     pub(super) height: i64,
-    /// Distance from the upper edge of the arrow that leads to the box; `leaves` is that of the arrow that leaves it.
+    /// Distances from the upper edge of the arrow that leads to the box (`enters`) and of the one that leaves it
+    /// (`leaves`).
     pub(super) enters: i64,
     pub(super) leaves: i64,
     /// Lines at the head of the box, from above.
@@ -48,7 +49,7 @@ pub(super) struct Placed {
     pub(super) rows: Vec<usize>,
     /// Number of scopes and loops around the box.
     pub(super) depth: usize,
-    /// Set to `true` if the element ends at all; `flows`, if it ends with its last element, or is an atom that ends.
+    /// `true` if the element can end; `flows` is `true` if it ends with its last element, or is an atom that ends.
     pub(super) ends: bool,
     pub(super) flows: bool,
 }

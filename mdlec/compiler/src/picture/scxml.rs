@@ -56,7 +56,7 @@ struct Machine<'m, 'p> {
     made: &'m Matrices<'p>,
     /// `true` if the plan reads the length of the path driven; asked once, as the conditions of all states may be many.
     drives: bool,
-    /// For each state the interrupts whose scopes hold it, the outermost first.
+    /// For each state, the interrupts of its enclosing scopes, outermost first.
     listing: Vec<Vec<usize>>,
     /// Number of facts of each record.
     facts: BTreeMap<RecordId, u32>,
@@ -148,7 +148,7 @@ impl<'p> Machine<'_, 'p> {
         self.line(1, "</state>");
     }
 
-    /// A turn begins: memories are set by what was so at the end of the last one, and everything is read anew.
+    /// Begins a turn: sets the memories by the values at the end of the previous turn, and reads all values again.
     fn turn(&mut self, state: usize, law: &Quark) {
         self.line(2, "<transition event=\"turn\">");
         for number in self.listing[state].clone() {

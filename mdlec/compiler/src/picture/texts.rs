@@ -88,12 +88,12 @@ pub(super) fn tooltip(element: Element<'_>) -> String {
     bounded(&text)
 }
 
-/// `^3`, or `^inf`.
+/// Writes the exponent of a loop: `^3`, or `^inf`.
 pub(super) fn exponent(times: Option<u64>) -> String {
     times.map_or_else(|| "^inf".into(), |times| format!("^{times}"))
 }
 
-/// `3 passes`, `1 pass`, `for ever`.
+/// Writes the number of a loop's passes: `3 passes`, `1 pass`, `for ever`.
 pub(super) fn passes(times: Option<u64>) -> String {
     match times {
         None => "for ever".into(),
@@ -102,7 +102,7 @@ pub(super) fn passes(times: Option<u64>) -> String {
     }
 }
 
-/// A text without what makes it longer than anybody reads.
+/// Shortens a text that is too long to be read.
 pub(super) fn bounded(text: &str) -> String {
     match text.char_indices().nth(TOOLTIP) {
         None => text.to_owned(),

@@ -124,7 +124,7 @@ pub(super) fn resolve(
     })
 }
 
-/// Reports a name that is nearly the one of a parameter, and no signal.
+/// Reports an unknown signal whose name is similar to the name of a parameter.
 fn like_parameter(call: &Call, quarks: &Quarks<'_>, names: Names<'_, '_>) -> Option<Diagnostic> {
     let name = call.name;
     let is_known = names.parameters.get(name).is_some() || names.parameters.is_untyped(name);
@@ -194,7 +194,7 @@ fn same_kind(one: Signal<'_>, other: Signal<'_>, span: Span) -> Resolved<Value> 
 enum EntrySignal {
     /// `t`, in nanoseconds.
     Time,
-    /// `way`, in nanometres.
+    /// The signal `way`, compared in nanometres.
     Way,
 }
 

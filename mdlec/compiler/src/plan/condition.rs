@@ -157,7 +157,7 @@ impl Condition {
         Self::And(vec![Self::Quark(quark), Self::Wait { nanos, quark }])
     }
 
-    /// Returns the quark and the nanoseconds of a condition that is a `stuck T`: the quark of its timer is its own.
+    /// Returns the quark and the nanoseconds of a condition `stuck T`, which is joined of that quark and a timer.
     #[must_use]
     pub fn lasting(&self) -> Option<(QuarkId, u64)> {
         let Self::And(operands) = self else { return None };

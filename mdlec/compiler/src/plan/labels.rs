@@ -31,7 +31,7 @@ struct Label {
 pub(super) enum EndCauses {
     /// The element ends by these operands of its interrupt.
     Operands(Vec<String>),
-    /// The end of the element's last element: it has no interrupt of its own.
+    /// The element ends with its last element, since it has no interrupt of its own.
     WithItsLast,
     /// Unknown, since the plan there is used by name and not copied yet.
     Unknown,

@@ -139,7 +139,7 @@ pub enum Value {
 }
 
 impl Value {
-    /// Returns the value of a quantity in SI units, which is all that signals are compared with; 0 for what is no
+    /// Returns the value of a quantity in SI units, with which signals are compared; 0 for a value that is not a
     /// quantity.
     #[must_use]
     pub fn in_si(&self) -> f64 {

@@ -25,7 +25,7 @@ pub(super) struct Parameters<'s> {
     untyped: BTreeSet<&'s str>,
 }
 
-/// A parameter with the argument given to it.
+/// A parameter with its argument.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Parameter<'s> {
     pub(super) name: Name<'s>,

@@ -68,7 +68,7 @@ impl Printer<'_> {
     }
 }
 
-/// `{ Leg (bumper)`
+/// Writes the head of a scope: `{ Leg (bumper)`.
 fn scope_head(scope: &Scope) -> String {
     let name = if scope.name.is_empty() { "_" } else { scope.name.as_str() };
     let condition = condition(&scope.interrupt);

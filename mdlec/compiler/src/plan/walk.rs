@@ -29,7 +29,7 @@ pub enum Visit<'p> {
 #[derive(Debug)]
 pub struct Walk<'p> {
     root: Option<&'p Scope>,
-    /// The parts that were entered and not left, each with what it still holds.
+    /// Parts that were entered but not left, each with its remaining nodes.
     open: Vec<(Part<'p>, slice::Iter<'p, Node>)>,
 }
 

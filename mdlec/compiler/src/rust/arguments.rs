@@ -7,7 +7,8 @@ use super::names::quark_type;
 use crate::alphabet::Kind;
 use crate::plan::{Compared, Comparison, Operator, Quark, QuarkId, Value, in_degrees};
 
-/// `robot::Go`, or for a comparison `runtime::Comparison<robot::R, robot::X>`: the type of a quark among `quarks`.
+/// Emits the type of a quark among `quarks`: `robot::Go`, or for a comparison `runtime::Comparison<robot::R,
+/// robot::X>`.
 pub(super) fn type_of(quark: &Quark, quarks: &[Quark]) -> TokenStream {
     let Some(comparison) = &quark.comparison else {
         let kind = quark_type(&quark.name, quark.overload);
@@ -21,8 +22,8 @@ pub(super) fn type_of(quark: &Quark, quarks: &[Quark]) -> TokenStream {
     quote!(runtime::Comparison<#signal, #with>)
 }
 
-/// `runtime::Comparison::new(…)`, with its signals as `signal` writes them; a value is compared as if it were one of
-/// type `none`.
+/// Emits a comparison: `runtime::Comparison::new(…)`. `signal` emits its signals; `none` is the type that stands for
+/// the second signal where the comparison is with a value.
 pub(super) fn compared(
     comparison: &Comparison,
     none: &TokenStream,
@@ -51,7 +52,7 @@ pub(super) fn compared(
     quote!(runtime::Comparison::new(#left, runtime::Operator::#operator, #with))
 }
 
-/// `robot::Go::new(…)`: a quark among `quarks`, with its arguments, for a constant.
+/// Emits a quark among `quarks` with its arguments, for a constant: `robot::Go::new(…)`.
 pub(super) fn made(quark: &Quark, quarks: &[Quark]) -> TokenStream {
     if let Some(comparison) = &quark.comparison {
         return compared(comparison, &quote!(runtime::NoSignal), |signal| made(&quarks[signal.0 as usize], quarks));
@@ -71,7 +72,7 @@ pub(super) fn angle(radians: f64) -> TokenStream {
     quote!(runtime::Radians(#radians))
 }
 
-/// A number with its sign apart, as Rust's syntax has it.
+/// Emits a number: in Rust's syntax the sign is a token of its own.
 pub(super) fn number(value: f64) -> TokenStream {
     let digits = Literal::f64_unsuffixed(value.abs());
     if value.is_sign_negative() { quote!(-#digits) } else { quote!(#digits) }

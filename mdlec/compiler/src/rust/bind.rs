@@ -68,7 +68,7 @@ fn heading(purpose: &str) -> String {
     )
 }
 
-/// `pub use` of every quark from where it is implemented, and `use` of the shared alphabets.
+/// Emits `pub use` of every quark from the module that implements it, and `use` of the shared alphabets.
 fn imports(quarks: &[Bound<'_>], home: &TokenStream) -> TokenStream {
     let mut places = BTreeMap::<&str, Vec<&Ident>>::new();
     for quark in quarks {
@@ -91,7 +91,7 @@ fn imports(quarks: &[Bound<'_>], home: &TokenStream) -> TokenStream {
     quote!(#(#imports)*)
 }
 
-/// `NAME`, `PERIOD` if the alphabet has one, and `HASH`.
+/// Emits the constants `NAME`, `PERIOD` if the alphabet has a period, and `HASH`.
 fn constants(alphabet: &Alphabet) -> TokenStream {
     let name = &alphabet.name;
     let period = alphabet.period.map(|nanos| {
@@ -116,7 +116,7 @@ pub(super) fn hash(alphabet: &Alphabet) -> TokenStream {
     LitInt::new(&format!("0x{:016x}", alphabet.hash()), Span::call_site()).into_token_stream()
 }
 
-/// `runtime::alphabet! { … }`: the robot's capabilities, limits and quarks, a line for each.
+/// Writes `runtime::alphabet! { … }` with the robot's capabilities, limits and quarks, a line for each.
 fn tables(alphabet: &Alphabet, quarks: &[Bound<'_>]) -> String {
     let capabilities = alphabet.capabilities().iter().map(|capability| {
         let needed = capability_trait(capability).map(|needed| format!(" as {needed}")).unwrap_or_default();

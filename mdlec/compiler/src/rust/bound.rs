@@ -18,8 +18,8 @@ pub(super) struct Bound<'a> {
 }
 
 impl<'a> Bound<'a> {
-    /// All of them: `wait`, `t` and `way` are the machine's business, and a quark whose capability the robot lacks
-    /// needs no code, nor does a shared one whose capability has no trait yet.
+    /// Returns the quarks of an alphabet that need code: not `wait`, `t` and `way`, which the machine evaluates, nor
+    /// quarks whose capability the robot lacks, nor shared ones whose capability has no trait yet.
     pub(super) fn all(alphabet: &'a Alphabet) -> Vec<Self> {
         let mut overloads = BTreeMap::<&str, usize>::new();
         let mut functions = Distinct::quark_functions();

@@ -48,7 +48,7 @@ pub(super) fn machine(plan: &Ident, doc: &str, machine: &Machine, paths: Option<
 }
 
 impl Meaning<'_> {
-    /// `const GO_20_0: robot::Go = robot::Go::new(…);` for each quark that is not a `wait`.
+    /// Emits a constant for each quark that is not a `wait`: `const GO_20_0: robot::Go = robot::Go::new(…);`.
     pub(super) fn constants(&self) -> TokenStream {
         let signals = self.signals();
         let quarks = (0..).map(QuarkId).zip(self.machine.quarks()).zip(&self.constants);
@@ -87,7 +87,7 @@ impl Meaning<'_> {
         signals
     }
 
-    /// `enum Running`: the law of the current atom with its state.
+    /// Emits `enum Running`: the law of the current atom with its state.
     pub(super) fn running(&self) -> TokenStream {
         let variants = self.machine.atoms().map(|atom| {
             let kind = quark_type(&atom.law().name, atom.law().overload);
@@ -109,7 +109,7 @@ impl Meaning<'_> {
         }
     }
 
-    /// `impl Plan for LabTour`: what the machine asks of a plan.
+    /// Emits `impl Plan for LabTour`, by which the machine evaluates the plan.
     fn implementation(&self, plan: &Ident, paths: Option<&TokenStream>) -> TokenStream {
         let slots = Literal::usize_unsuffixed(self.machine.sizes().slots);
         let (entered, begins) = entries(self.machine);
@@ -154,7 +154,7 @@ impl Meaning<'_> {
         }
     }
 
-    /// `fn enter`: makes the law of the atom that is entered.
+    /// Emits `fn enter`, which makes the law of the atom that is entered.
     pub(super) fn enter(&self) -> TokenStream {
         let arms = self.machine.atoms().map(|atom| {
             let number = Literal::usize_unsuffixed(atom.index());
@@ -173,8 +173,8 @@ impl Meaning<'_> {
         }
     }
 
-    /// `fn next`: asks the plan's own interrupt, then has an arm for each atom, which asks the scope around it first
-    /// and itself last.
+    /// Emits `fn next`, which evaluates the plan's own interrupt, and then, in an arm for each atom, the interrupts of
+    /// the enclosing scopes, the atom's interrupt, and the completion of its law.
     pub(super) fn next(&self) -> TokenStream {
         let arms = self.machine.atoms().map(|atom| {
             let (variant, element) = (atom_variant(atom.index()), atom.element());
@@ -204,7 +204,7 @@ impl Meaning<'_> {
         }
     }
 
-    /// `fn stalled`: the report of the law of the current atom, in a plan with `stuck`.
+    /// Emits `fn stalled`, the report of the current atom's law about its progress, for a plan with `stuck`.
     fn stalled(&self) -> Option<TokenStream> {
         let variants = self.machine.atoms().map(|atom| atom_variant(atom.index()));
         asks_for_progress(self.machine).then(|| {
@@ -219,7 +219,7 @@ impl Meaning<'_> {
         })
     }
 
-    /// `fn input`: the law of the current atom.
+    /// Emits `fn input`, which applies the law of the current atom.
     pub(super) fn input(&self) -> TokenStream {
         let variants = self.machine.atoms().map(|atom| atom_variant(atom.index()));
         quote! {
@@ -233,22 +233,22 @@ impl Meaning<'_> {
     }
 }
 
-/// `FRAME 90 (Atom (bumper) stop)`: an atom as written, for a comment, in which Rust has no carriage return alone and
-/// nothing that turns text around.
+/// Writes an atom for a comment: `FRAME 90 (Atom (bumper) stop)`. Rust allows neither a lone carriage return nor
+/// characters that reverse text in a comment.
 pub(super) fn atom_doc(atom: Atom<'_>) -> String {
     let interrupt = atom.element().interrupt().filter(|interrupt| !interrupt.removed);
     let condition = interrupt.map_or("null", |interrupt| &interrupt.text);
     format!("{}(Atom ({}) {})", frame_text(atom.frame()), Printable(condition), Printable(&atom.law().text))
 }
 
-/// Ends the scopes that this function asks for, before anything further inside is asked.
+/// Emits the call of a scope's function, which ends the turn's evaluation if that scope or an enclosing one ends.
 fn asked_first(function: &Ident) -> TokenStream {
     quote! {
         if let Some(ending) = #function(cursor, y, t) { return Some(ending); }
     }
 }
 
-/// `begin`, or `begin` in a frame that is turned.
+/// Emits `begin`, or `begin.turned(…)` in a turned frame.
 fn turned(frame: f64) -> TokenStream {
     if frame == 0.0 {
         return quote!(begin);

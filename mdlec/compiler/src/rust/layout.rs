@@ -153,7 +153,7 @@ mod tests {
 
     use super::{PIECE, laid_out};
 
-    /// Returns the layout of a file in pieces, and its layout at once.
+    /// Returns the text of a file laid out piece by piece, and laid out as a whole.
     fn both(file: &TokenStream) -> [String; 2] {
         let whole = prettyplease::unparse(&syn::parse2(file.clone()).expect("a file"));
         let pieces: Vec<_> =

@@ -30,7 +30,7 @@ pub use names::plan_type;
 /// Content of the head of an emitted file, and the texts to which the code refers.
 #[derive(Debug, Clone, Copy)]
 pub struct Header<'a> {
-    /// The plan's text and that of the files that it uses, for reports.
+    /// Texts of the plan and of the files that it uses, for reports.
     pub sources: &'a Sources,
     /// The plan's file, without folders.
     pub file: &'a str,

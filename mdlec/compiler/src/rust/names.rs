@@ -108,7 +108,7 @@ impl Distinct {
         self.distinct(&name)
     }
 
-    /// `name`, or `name_2`, `name_3`, … where that is taken.
+    /// Returns `name`, or the first of `name_2`, `name_3`, … that is not in use.
     fn distinct(&mut self, name: &str) -> Ident {
         let mut distinct = name.to_owned();
         while !self.taken.insert(distinct.clone()) {

@@ -11,7 +11,7 @@ use super::tables::{entries, follows};
 use crate::fsm::{self, Machine, Rows};
 use crate::plan::{Quark, QuarkId};
 
-/// The plan's type, which hands everything on to the runtime's, and its rows.
+/// Emits the plan's type, which delegates to the runtime's type, and its rows.
 pub(super) fn machine(plan: &Ident, doc: &str, machine: &Machine, paths: Option<&TokenStream>) -> TokenStream {
     let slots = Literal::usize_unsuffixed(machine.sizes().slots);
     let (entered, begins) = entries(machine);
@@ -113,7 +113,7 @@ fn memory_updates(machine: &Machine) -> Option<TokenStream> {
     })
 }
 
-/// The type of the plan's memory, none for a plan that remembers nothing, and how the plan is made.
+/// Emits the type of the plan's memory, if the plan remembers anything, and the expression that creates the plan.
 fn memory(machine: &Machine, begins: &TokenStream) -> (Option<TokenStream>, TokenStream) {
     let slots = Literal::usize_unsuffixed(machine.sizes().slots);
     let slots = quote!(#begins, [0; #slots]);
@@ -126,7 +126,7 @@ fn memory(machine: &Machine, begins: &TokenStream) -> (Option<TokenStream>, Toke
     (Some(quote!(, runtime::Memories<[bool; #size]>)), new)
 }
 
-/// `static ROWS`: when each bracket ends, the operands of their conditions, the law of each atom.
+/// Emits `static ROWS`: the condition of each bracket with its operands, and the law of each atom.
 fn rows(machine: &Machine, paths: Option<&TokenStream>) -> TokenStream {
     let Rows { guards, operands, laws, marks, facts } = fsm::rows(machine);
     let guards = guards.iter().map(|Guard { condition, level, around, follows: after }| {
@@ -161,7 +161,8 @@ fn rows(machine: &Machine, paths: Option<&TokenStream>) -> TokenStream {
     }
 }
 
-/// `static OPERANDS`: the conditions of a plan that is code, for reports of the ones that fired.
+/// Emits `static OPERANDS`: the conditions of a plan that is emitted as code, for reports of the operands that have
+/// fired.
 pub(super) fn conditions(machine: &Machine) -> TokenStream {
     let rows = fsm::rows(machine);
     let conditions = rows.guards.iter().map(|guard| row(&guard.condition, machine));
@@ -175,7 +176,7 @@ pub(super) fn conditions(machine: &Machine) -> TokenStream {
     }
 }
 
-/// `runtime::MarkRow { … }`.
+/// Emits `runtime::MarkRow { … }`.
 fn mark(mark: &MarkRow) -> TokenStream {
     let MarkRow { bracket, level, first, count, first_fact, facts } = mark;
     let level = Literal::u16_unsuffixed(*level);
@@ -188,7 +189,7 @@ fn mark(mark: &MarkRow) -> TokenStream {
     }
 }
 
-/// `runtime::Fact { memory: 0, operand: Some(1) }`.
+/// Emits `runtime::Fact { memory: 0, operand: Some(1) }`.
 fn fact(Fact { memory, operand }: &Fact) -> TokenStream {
     let memory = Literal::u32_unsuffixed(*memory);
     let operand = match operand.map(Literal::u32_unsuffixed) {
@@ -198,7 +199,7 @@ fn fact(Fact { memory, operand }: &Fact) -> TokenStream {
     quote!(runtime::Fact { memory: #memory, operand: #operand })
 }
 
-/// `runtime::Condition::Or(0, 2)`: a condition or an operand.
+/// Emits a condition or an operand: `runtime::Condition::Or(0, 2)`.
 fn row(condition: &Condition<QuarkId>, machine: &Machine) -> TokenStream {
     let variant = match condition {
         Condition::Null => quote!(Null),
@@ -256,7 +257,7 @@ fn interrupt(id: QuarkId, quarks: &[Quark]) -> TokenStream {
     quote!(robot::AnyInterrupt::Comparison(#comparison))
 }
 
-/// `robot::AnyControl::Go(robot::Go::new(…))`: a quark as one of its alphabet's.
+/// Emits a quark as a variant of its alphabet's enum: `robot::AnyControl::Go(robot::Go::new(…))`.
 fn variant(any: &str, quark: &Quark, quarks: &[Quark]) -> TokenStream {
     let any = quote::format_ident!("{any}");
     let kind = quark_type(&quark.name, quark.overload);

@@ -11,7 +11,7 @@ use crate::fsm::{Element, Machine};
 use crate::plan::{Condition, QuarkId};
 
 impl Meaning<'_> {
-    /// For each scope with an interrupt: `fn shake(cursor, y, t) -> Option<runtime::Ending>`.
+    /// Emits a function for each scope with an interrupt: `fn shake(cursor, y, t) -> Option<runtime::Ending>`.
     pub(super) fn scope_functions(&self) -> TokenStream {
         let functions = self.machine.elements().filter_map(|element| {
             let function = self.function(element)?;
@@ -97,8 +97,8 @@ pub(super) fn asks_for_progress(machine: &Machine) -> bool {
     machine.elements().any(|element| element.condition().any(&|part| part.lasting().is_some()))
 }
 
-/// The answer of the scope that this element is when it ends: `Cause::Fired(level).then(…)`, or without what follows
-/// where that depends on a loop's count.
+/// Emits the end of an element: `Cause::Fired(level).then(…)`, without `then` if the next atom depends on a loop's
+/// count.
 pub(super) fn ending(element: Element<'_>, cause: &TokenStream) -> TokenStream {
     let level = level(element);
     match element.follows().map(follows) {
@@ -107,13 +107,13 @@ pub(super) fn ending(element: Element<'_>, cause: &TokenStream) -> TokenStream {
     }
 }
 
-/// `Nanos(500)`.
+/// Emits `Nanos(500)`.
 fn nanoseconds(nanos: u64) -> TokenStream {
     let nanos = Literal::u64_unsuffixed(nanos);
     quote!(Nanos(#nanos))
 }
 
-/// `runtime::Nanometers(500)`.
+/// Emits `runtime::Nanometers(500)`.
 pub(super) fn nanometers(length: u64) -> TokenStream {
     let length = Literal::u64_unsuffixed(length);
     quote!(runtime::Nanometers(#length))

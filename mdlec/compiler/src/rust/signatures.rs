@@ -1,4 +1,4 @@
-//! The signatures of an alphabet's quarks as Rust: what a crate must have, with a type for each unit.
+//! Emits the signatures of an alphabet's quarks, which a target's crate has to implement, with a type for each unit.
 
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};

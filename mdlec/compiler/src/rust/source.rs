@@ -7,7 +7,7 @@ use quote::quote;
 use super::arguments::number;
 use crate::fsm::{BracketText, OperandText, PlanWords};
 
-/// `const SOURCE`: the words of each bracket, and those of each operand.
+/// Emits `const SOURCE`: the texts of each bracket and of each operand, for reports.
 pub(super) fn source(words: &PlanWords) -> TokenStream {
     let PlanWords { files, elements, operands } = words;
     let brackets = elements.iter().map(bracket);
@@ -22,14 +22,14 @@ pub(super) fn source(words: &PlanWords) -> TokenStream {
     }
 }
 
-/// `runtime::BracketWords { at: …, condition: "bumper OR wait 10min", first: 0, count: 2 }`.
+/// Emits `runtime::BracketWords { at: …, condition: "bumper OR wait 10min", first: 0, count: 2 }`.
 fn bracket(BracketText { at, condition, first, count }: &BracketText) -> TokenStream {
     let at = line(*at);
     let [first, count] = [*first, *count].map(Literal::u32_unsuffixed);
     quote!(runtime::BracketWords { at: #at, condition: #condition, first: #first, count: #count })
 }
 
-/// `runtime::OperandWords { text: "r1 < 0.4", written: "r1 < 40cm", at: …, values: &[…] }`.
+/// Emits `runtime::OperandWords { text: "r1 < 0.4", written: "r1 < 40cm", at: …, values: &[…] }`.
 fn operand(OperandText { text, written, at, values }: &OperandText) -> TokenStream {
     let at = line(*at);
     let values = values.iter().map(|ValueWords { after, unit, scale }| {
@@ -39,7 +39,7 @@ fn operand(OperandText { text, written, at, values }: &OperandText) -> TokenStre
     quote!(runtime::OperandWords { text: #text, written: #written, at: #at, values: &[#(#values),*] })
 }
 
-/// `runtime::SourceLine { file: 0, line: 7 }`.
+/// Emits `runtime::SourceLine { file: 0, line: 7 }`.
 fn line(SourceLine { file, line }: SourceLine) -> TokenStream {
     let (file, line) = (Literal::u16_unsuffixed(file), Literal::u32_unsuffixed(line));
     quote!(runtime::SourceLine { file: #file, line: #line })

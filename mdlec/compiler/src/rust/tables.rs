@@ -8,7 +8,7 @@ use super::arguments::angle;
 use crate::alphabet::Alphabet;
 use crate::fsm::{self, Element, ElementKind, Machine};
 
-/// `const FSM`, `LAWS`, `CONDITIONS`, `NAMES`, and `HERE` for a plan with `FRAME here`.
+/// Emits the constants `FSM`, `LAWS`, `CONDITIONS`, `NAMES`, and `HERE` for a plan with `FRAME here`.
 pub(super) fn tables(machine: &Machine) -> TokenStream {
     let brackets = machine.elements().map(bracket);
     let atoms = machine.atoms().map(|atom| {
@@ -42,7 +42,7 @@ pub(super) fn tables(machine: &Machine) -> TokenStream {
     }
 }
 
-/// `const HERE`: the frame of each atom that is inside a `FRAME here`; nothing for a plan without.
+/// Emits `const HERE`: the frame of each atom that is inside a `FRAME here`; `None` for a plan without `FRAME here`.
 fn frames(machine: &Machine) -> Option<TokenStream> {
     let frames = machine.frames().iter().map(|here| match here {
         Some(Here { level, turned }) => {
@@ -74,7 +74,7 @@ pub(super) fn entries(machine: &Machine) -> (TokenStream, TokenStream) {
     (quote!([Nanos; #levels]), quote!([Nanos::ZERO; #levels]))
 }
 
-/// `Bracket::scope(level, first, last, parent)` or `Bracket::repeat(times, slot, stride, first, last, parent)`.
+/// Emits `Bracket::scope(level, first, last, parent)` or `Bracket::repeat(times, slot, stride, first, last, parent)`.
 fn bracket(element: Element<'_>) -> TokenStream {
     let parent = element.parent().unwrap_or(element);
     let [first, last] = [element.first(), element.last()].map(|atom| Literal::u32_unsuffixed(atom.number()));
@@ -93,7 +93,7 @@ pub(super) fn level(element: Element<'_>) -> u16 {
     element.level().unwrap_or(0)
 }
 
-/// `runtime::Follows::new(atom, from, to)`.
+/// Emits `runtime::Follows::new(atom, from, to)`.
 pub(super) fn follows(follows: Follows) -> TokenStream {
     let Follows { atom, from, to } = follows;
     let atom = Literal::u32_unsuffixed(atom);

@@ -1,5 +1,5 @@
-//! Removes from the tree what a defect has upset: where the parser has lost its way, it may have read names where none
-//! were meant, and later stages must not complain about those. Elements beside a defect stay.
+//! Removes from the tree the elements that a defect has spoiled: after a syntax error the parser may have read other
+//! words as names, and later stages must not report those. Elements beside a defect stay.
 
 use bumpalo::Bump;
 

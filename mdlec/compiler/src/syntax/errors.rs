@@ -55,7 +55,7 @@ fn rewritten(source: Source<'_>, tokens: &[Token<'_>], diagnostic: &Diagnostic) 
     edits.flat_map(first).collect::<Vec<_>>().into_iter()
 }
 
-/// Index of the token where the parser stopped, with the terminals that it expected there.
+/// Returns the index of the token at which the parser stopped, and the terminals that it expected.
 fn place_of(recovery: Recovery<'_>, end: usize) -> (usize, Vec<String>) {
     match recovery.error {
         ParseError::UnrecognizedToken { token: (at, _, _), expected } => (at.token as usize, expected),

@@ -373,7 +373,7 @@ impl<'s> Rewriting<'_, 's> {
         Some(self.past_condition(body))
     }
 
-    /// `[Atom (bumper) stop]`; what closes it is left for when it is reached.
+    /// Reports `[Atom (bumper) stop]`; its closing bracket is reported when it is reached.
     fn atom_in_brackets(&mut self, at: usize) -> Option<usize> {
         let next = self.kind(at + 1)?;
         let is_atom = next == Tok::Atom || matches!(next, Tok::Name(name) if is_like_atom(name));

@@ -44,7 +44,7 @@ pub fn format(id: SourceId, text: &str) -> Result<String, Vec<Diagnostic>> {
 struct Layout<'s> {
     id: SourceId,
     pieces: Pieces<'s>,
-    /// The next piece.
+    /// Index of the next piece of the text to be laid out.
     at: usize,
     lines: Lines,
     depth: usize,

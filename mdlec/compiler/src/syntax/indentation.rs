@@ -8,7 +8,7 @@ use super::token::{Tok, Token};
 /// Braces that end before a token.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum End {
-    /// All open braces: a plan of its own begins.
+    /// All open braces: at this indentation another plan begins.
     OfPlan,
     /// The brace that opens at this token, and the brackets inside it.
     OfBrace(usize),

@@ -308,7 +308,7 @@ pub(crate) fn nearest_unit(written: &str) -> Option<&'static str> {
     })
 }
 
-/// All units, as a list for a sentence.
+/// Returns the list of all units, for a sentence.
 fn units() -> String {
     let names: Vec<String> = Unit::ALL.iter().map(|unit| format!("`{}`", unit.name)).collect();
     names.join(" ")

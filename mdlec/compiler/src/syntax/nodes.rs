@@ -34,7 +34,7 @@ pub(super) struct Nodes<'t, 's> {
     pub(super) source: Source<'s>,
     /// Arena of the tree.
     arena: &'s Bump,
-    /// The tokens, for what is broken.
+    /// Tokens of the text, from which broken elements are made.
     pub(super) tokens: &'t [Token<'s>],
     /// The doc comments, each with the token that follows it.
     docs: &'t [(usize, &'s str)],
@@ -113,7 +113,7 @@ impl<'t, 's> Nodes<'t, 's> {
         self.waiting.params.push(Param { name, type_name });
     }
 
-    /// The name before a brace, `A { … }`: reported already, but other plans may refer to it.
+    /// Returns the name before a brace, `A { … }`. Its place has been reported, but other plans may refer to the name.
     fn name_before(&self, brace: Location) -> Option<Name<'s>> {
         let before = self.tokens.get((brace.token as usize).checked_sub(1)?)?;
         let Tok::Name(name) = before.kind else { return None };

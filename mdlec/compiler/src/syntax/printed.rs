@@ -161,8 +161,8 @@ fn ends_element([before, last]: [Option<Tok<'_>>; 2], is_outside: bool) -> bool 
     }
 }
 
-/// Returns `true` if an element follows this comma. In parentheses a condition may follow it, so that a name, or a
-/// group that may be a condition, is none.
+/// Returns `true` if an element follows this comma. In parentheses a condition may follow it, so a name, or a group
+/// that may be a condition, does not count as an element.
 fn begins_element(tokens: &[Token<'_>], comma: usize, inside: Option<Inside>) -> bool {
     let kind = |ahead: usize| tokens.get(comma + ahead).map(|token| token.kind);
     let Some(next) = kind(1).filter(|_| inside != Some(Inside::Others)) else { return false };

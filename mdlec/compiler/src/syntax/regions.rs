@@ -28,7 +28,7 @@ impl Regions {
         self.of_token.push(self.current);
     }
 
-    /// Marks the current region: an error has been reported there.
+    /// Marks the current region as one with a reported error.
     pub(super) fn spoil(&mut self) {
         if let Some(spoiled) = self.spoiled.get_mut(self.current) {
             *spoiled = true;

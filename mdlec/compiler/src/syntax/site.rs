@@ -202,7 +202,7 @@ impl<'s> Site<'_, 's> {
         self.about(self.at, message, "not expected here")
     }
 
-    /// The unexpected token in words.
+    /// Returns the unexpected token as words of a message.
     pub(super) fn found_words(&self) -> String {
         let Some(found) = self.found() else { return "the end of the file".to_owned() };
         let text = self.text(self.at, self.at).unwrap_or("…");
@@ -249,7 +249,7 @@ const WHOLES: &[(&[&str], &str, &[&str])] = &[
     (&["name", "("], "a law", &["name", "("]),
 ];
 
-/// A terminal of the grammar in words.
+/// Returns a terminal of the grammar as words of a message.
 fn terminal_words(terminal: &str) -> String {
     match terminal {
         "name" => "a name".to_owned(),

@@ -14,7 +14,7 @@ pub(super) struct Source<'s> {
 /// A stretch of the text, in bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Place {
-    /// The first byte.
+    /// Offset of the first byte.
     pub(super) start: usize,
     /// The byte after the last.
     pub(super) end: usize,

@@ -95,8 +95,8 @@ impl<'p> MatrixProduct<'p> {
         self.listing[self.e.row].iter().map(|number| *number as usize)
     }
 
-    /// Returns the first listed interrupt that has fired, which has the lowest number; else that of the atom, if the
-    /// law has completed.
+    /// Returns the fired interrupt with the lowest number, or else the completion of the current atom, if its law has
+    /// completed.
     fn fired(&self, y: &Reports) -> Option<Factor<'p>> {
         for number in self.listed() {
             let (interrupt, at) = (self.matrices.transitions[number].interrupt, At { product: self, number, y });

@@ -48,7 +48,7 @@ struct Open {
     index: usize,
     /// For a loop: the number of the pass, from 1.
     pass: u64,
-    /// Number of the first state of this pass. `here` is that of the open element.
+    /// Number of the first state of this pass; `here` is the number of the state of the open element.
     first: u64,
     here: u64,
     /// Memories of RISING in the element's interrupt.

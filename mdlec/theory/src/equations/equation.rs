@@ -72,12 +72,12 @@ fn width(text: &str) -> usize {
     text.chars().filter(|letter| *letter != '\u{304}').count()
 }
 
-/// `ξ2` for `x2`.
+/// Returns the symbol of an interrupt: `ξ2` for `x2`.
 fn symbol(name: &str) -> String {
     name.strip_prefix('x').map_or_else(|| format!("ξ_{name}"), |number| format!("ξ{number}"))
 }
 
-/// `ξ̄2` for `x2`: it is 1 when the interrupt has fired.
+/// Returns the symbol of an interrupt's complement, `ξ̄2` for `x2`, which is 1 when the interrupt has fired.
 fn complement(name: &str) -> String {
     symbol(name).replacen('ξ', "ξ\u{304}", 1)
 }

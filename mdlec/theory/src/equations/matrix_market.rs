@@ -60,7 +60,7 @@ impl MatrixFiles<'_, '_> {
     /// The name of the list among the files.
     pub const LIST: &'static str = "matrices.json";
 
-    /// Every file of a matrix: its name and its text, made when it is asked for.
+    /// Returns the name and the text of each file; a text is made when the iterator reaches it.
     pub fn files(&self) -> impl Iterator<Item = (String, String)> {
         self.0.live.iter().map(|term| (file_name(term), self.file(term)))
     }

@@ -27,7 +27,7 @@ pub struct Terms<'p> {
 /// An interrupt with its transition matrix.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Term<'p> {
-    /// `x1`, `x2`, …, or `completed`; of an interrupt in several places, that of the first.
+    /// Name of the interrupt: `x1`, `x2`, …, or `completed`. An interrupt in several places has the name of the first.
     pub name: String,
     /// Text of the interrupt's condition.
     pub text: &'p str,
@@ -44,9 +44,9 @@ pub struct Extent<'p> {
     pub number: usize,
     /// The scope's name; empty for an atom.
     pub scope: &'p str,
-    /// The first column.
+    /// First column of the range.
     pub first: usize,
-    /// The last column.
+    /// Last column of the range.
     pub last: usize,
     /// The row.
     pub row: usize,
@@ -75,7 +75,7 @@ impl Terms<'_> {
 /// The terms of a plan, its finite loops written out; `combined` counts equal interrupts once.
 ///
 /// # Errors
-/// E0501 and E0502, as [`expand`](mdle_compiler::fsm::expand) has them.
+/// Fails with E0501 or E0502 as [`expand`](mdle_compiler::fsm::expand) does.
 pub fn terms(plan: &Nondegenerate, combined: bool) -> Result<Terms<'_>, Diagnostic> {
     let made = matrices(plan)?;
     let plan = plan.plan();

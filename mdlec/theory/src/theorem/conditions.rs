@@ -10,9 +10,9 @@ use super::{InterruptId, Machine, State};
 /// A stretch of neighbouring states in an order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Stretch {
-    /// The first.
+    /// First state of the range.
     pub first: State,
-    /// The last.
+    /// Last state of the range.
     pub last: State,
 }
 

@@ -25,7 +25,7 @@ pub use string::string;
 /// Default limit of steps in the search among orders: a few seconds.
 pub const STEPS: u64 = 1_000_000;
 
-/// The interrupt that a law raises when it completes: a plan has it without writing it.
+/// Name of the interrupt that a law raises when it completes, which is not written in a plan.
 const COMPLETED: &str = "completed";
 
 /// A state of a machine, by its index in the file.
@@ -91,9 +91,9 @@ pub struct Found {
 pub struct Run {
     /// The interrupt.
     pub interrupt: InterruptId,
-    /// The first place.
+    /// First place of the range, in the order of the states.
     pub first: usize,
-    /// The last place.
+    /// Last place of the range, in the order of the states.
     pub last: usize,
     /// The place to which it leads: after the last one, or the start of a loop.
     pub to: usize,
@@ -102,9 +102,9 @@ pub struct Run {
 /// An endless loop, as the places that it encloses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Loop {
-    /// The first place.
+    /// First place of the range, in the order of the states.
     pub first: usize,
-    /// The last place.
+    /// Last place of the range, in the order of the states.
     pub last: usize,
 }
 

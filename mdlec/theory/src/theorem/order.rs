@@ -1,4 +1,4 @@
-//! Finds an order of a machine's states in which all interrupts lead forwards or, if there is none, one close to it.
+//! Finds an order of a machine's states in which all interrupts lead forwards, or almost all if no order has all.
 
 use super::{Machine, State};
 

@@ -88,7 +88,7 @@ impl Lowest {
 }
 
 impl Columns<'_> {
-    /// Every move from one place to another.
+    /// Returns every move of an interrupt from one place to another.
     fn moves(&self) -> impl Iterator<Item = (InterruptId, usize, usize)> {
         let from = self.order.iter().enumerate();
         let all = from.flat_map(|(place, state)| self.machine.exits(*state).iter().map(move |exit| (place, exit)));

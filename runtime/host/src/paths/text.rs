@@ -13,7 +13,7 @@ pub(super) const APART: Duration = Duration::from_secs(1);
 const HEADER: &str = "`time s, heading deg, speed cm/s`";
 /// Factor by which a path may exceed the robot's limits: values that were measured at the limits may lie above them.
 const MARGIN: f64 = 1.05;
-/// The latest time, in nanoseconds: up to there they are whole in a number with a fraction. Three months.
+/// The latest time of a row, in nanoseconds: three months. An `f64` holds every whole number up to it.
 const LATEST: f64 = (1_u64 << 53) as f64;
 
 /// A column, and its units as nanoseconds, radians, or metres a second.
@@ -57,7 +57,7 @@ impl Cell<'_> {
     }
 }
 
-/// The text that a file holds.
+/// Returns the bytes of a file as text.
 pub(super) fn utf8(bytes: &[u8]) -> Result<&str, Wrong> {
     from_utf8(bytes).map_err(|error| {
         let before = String::from_utf8_lossy(bytes.get(..error.valid_up_to()).unwrap_or_default());

@@ -22,7 +22,7 @@ const ABOVE: f64 = 1.82;
 /// is higher than that of any battery.
 const LOW: u32 = 1850;
 const PLUGGED: u32 = 2650;
-/// The distance between its sides, in metres, as its body has it.
+/// Distance between the robot's sides, in metres, as in the model of its body.
 const BETWEEN: f64 = 0.4;
 
 /// Returns the time step of the robot's body: the step of `pace`, divided so that no part is longer than [`STEP`].

@@ -42,7 +42,7 @@ impl Incoming {
         self.bytes.len()
     }
 
-    /// The next command that is whole. One with a wrong length or check, or with a 1B in it that it does not know, is
+    /// Returns the next complete command. A command with a wrong length or check, or with an unknown mark after 1B, is
     /// lost.
     pub fn next_request(&mut self) -> Option<Request> {
         loop {

@@ -134,7 +134,7 @@ impl Scout {
         self.orders.push(self.age, order);
     }
 
-    /// The sonars that ping say what they heard last.
+    /// Takes over the last echoes of the sonars that have pinged.
     fn listen(&mut self) {
         if self.is_mute {
             return;

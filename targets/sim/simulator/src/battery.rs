@@ -23,7 +23,7 @@ pub(crate) struct Pack {
 
 /// Joules of a watt-hour.
 const WATT_HOUR: f64 = 3600.0;
-/// The voltage of an empty and of a full cell at rest, and of one that has to be charged: 10.8 V of a battery of six.
+/// Voltages of a cell at rest: empty, full, and below which it has to be charged, which is 10.8 V for a battery of six.
 const EMPTY: f64 = 1.75;
 const FULL: f64 = 2.12;
 const LOW: f64 = 1.8;

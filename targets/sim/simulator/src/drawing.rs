@@ -16,8 +16,8 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// Begins the record of `robot` in `world`; `setup` names the world, the body and the seed in titles. Only a record
-    /// that is `animated` keeps what a moving picture needs.
+    /// Begins the record of `robot` in `world`; `setup` names the world, the body and the seed in titles. Only an
+    /// `animated` record keeps the data of a moving picture.
     #[must_use]
     pub fn of(robot: &Simulated, world: &World, setup: String, animated: bool) -> Self {
         let mut trail = Trail::from(&robot.footprint());

@@ -18,13 +18,13 @@ pub(crate) struct Frame {
     pub(crate) things: Vec<Option<Place>>,
 }
 
-/// The moments kept.
+/// Recorded moments of a run, thinned out as the run gets longer.
 #[derive(Debug, Clone)]
 pub(crate) struct Frames {
     kept: Vec<Frame>,
     /// The last moment of the run, kept or not.
     last: Option<Frame>,
-    /// Number of moments of which one is kept.
+    /// Number of moments for each recorded one.
     stride: u64,
     seen: u64,
 }
@@ -52,7 +52,7 @@ impl Frames {
         self.seen = self.seen.saturating_add(1);
     }
 
-    /// The moments kept, in order, the last one among them.
+    /// Returns the recorded moments in order, and the last moment.
     pub(crate) fn all(&self) -> Vec<Frame> {
         let last = self.last.as_ref().filter(|last| self.kept.last() != Some(last));
         self.kept.iter().chain(last).cloned().collect()

@@ -10,7 +10,7 @@ use crate::place::Place;
 const CELLS_FOR_EACH: f64 = 3.0;
 /// Maximum number of cells along one axis.
 const CELLS_MOST: f64 = 4096.0;
-/// The cells that a segment of mean length crosses at most: a world of long walls gets larger cells.
+/// Maximum number of cells that a segment of mean length crosses: a world of long walls gets larger cells.
 const CROSSED_MOST: f64 = 8.0;
 /// Part of a cell by which a segment is entered beyond its ends, so that rounding loses none.
 const BEYOND: f64 = 1e-6;

@@ -112,8 +112,8 @@ pub(crate) struct Hearing {
     pub(crate) transducers: Vec<Transducer>,
     /// The distance from the centre at which laws take the transducers to be.
     pub(crate) ring_radius: f64,
-    /// The distance between the places of a wall beside the robot that two sonars hear, which look before and behind
-    /// the direction to it; `None` where ranges are too coarse to measure a heading by it.
+    /// Distance, on a wall beside the robot, between the places that the two neighbours of the sonar square to it hear,
+    /// in metres; `None` if ranges are too coarse to measure a heading.
     pub(crate) beside_apart: Option<f64>,
     /// Angle of the outermost rays from the axis.
     pub(crate) half_cone: Radians,

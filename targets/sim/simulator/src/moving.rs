@@ -26,7 +26,7 @@ pub struct Thing {
 pub enum Schedule {
     /// A door, closed except at these times: from, to.
     Open {
-        /// The times, none of which overlaps another.
+        /// Intervals during which the door is open: each its beginning and its end, in seconds. None overlaps another.
         times: Vec<[f64; 2]>,
         /// Period after which the times repeat, in seconds; `None` if they do not.
         every: Option<f64>,
@@ -65,7 +65,7 @@ impl Thing {
         stops.iter().map(|stop| stop.at)
     }
 
-    /// All places of its corners between which it goes.
+    /// Returns the corners of the object at each of its stops.
     pub(crate) fn places(&self) -> impl Iterator<Item = Place> {
         let still = Place { x: 0.0, y: 0.0 };
         let first = self.way().next();

@@ -30,7 +30,7 @@ pub struct Simulated {
     /// Number of bumper switches.
     switches: u8,
     period: Duration,
-    /// Exchanges so far; the first is at time 0.
+    /// Number of exchanges so far; the first is at time 0.
     exchanges: u64,
 }
 
@@ -53,7 +53,7 @@ impl Make {
     }
 }
 
-/// Why an exchange failed.
+/// Reason why an exchange failed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fault {
     /// The input is not finite: a law has computed nonsense.
@@ -75,7 +75,7 @@ impl Simulated {
     /// noisy with a seed.
     ///
     /// # Errors
-    /// When it cannot stand there.
+    /// The robot cannot stand at `start`.
     pub fn new(world: &World, start: Pose, seed: Option<u64>, period: Duration) -> Result<Self, StartError> {
         Self::with(&Make { seed, ..Make::default() }, world, start, period)
     }
@@ -83,7 +83,7 @@ impl Simulated {
     /// A robot of this make at rest at `start` in `world`, whose odometry begins there.
     ///
     /// # Errors
-    /// When it cannot stand there.
+    /// The robot cannot stand at `start`.
     pub fn with(make: &Make, world: &World, start: Pose, period: Duration) -> Result<Self, StartError> {
         let walls = Walls::of(world);
         let Model { drive, hearing, switches, pack } = Model::of(make.body, &make.without);

@@ -20,7 +20,7 @@ const SIGHT: f64 = 1e7;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Start(pub Pose);
 
-/// Why a robot cannot start there.
+/// Reason why a robot cannot start at a pose.
 #[derive(Debug, Clone, PartialEq)]
 pub enum StartError {
     /// The text is not `x,y,deg`.

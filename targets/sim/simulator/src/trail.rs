@@ -44,7 +44,7 @@ pub(crate) struct Trail {
     pub(crate) frames: Option<Frames>,
 }
 
-/// A run in words.
+/// Descriptions of a run, for titles.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct About {
     /// World, body and seed.
@@ -76,7 +76,7 @@ impl Trail {
         }
     }
 
-    /// The robot has come to `pose`.
+    /// Records that the robot is at `pose`.
     pub(crate) fn went(&mut self, pose: &Pose) {
         self.here = *pose;
         self.ways.went(Place::of(pose));
@@ -119,7 +119,7 @@ impl Trail {
         self.about.end = format!("{how} after {:.1} s: {by}", t.seconds());
     }
 
-    /// All places kept.
+    /// Returns all recorded places.
     pub(crate) fn places(&self) -> impl Iterator<Item = Place> {
         self.ways.places().chain([Place::of(&self.here)])
     }

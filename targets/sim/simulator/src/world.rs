@@ -73,7 +73,7 @@ impl World {
         standing.chain(self.things.iter().flat_map(Thing::places))
     }
 
-    /// All walls and sides of boxes, each with its outline.
+    /// Returns all walls and sides of boxes, each with its outline.
     pub fn segments(&self) -> impl Iterator<Item = (&Outline, Place, Place)> {
         self.outlines.iter().flat_map(Outline::segments)
     }

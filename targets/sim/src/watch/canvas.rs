@@ -26,7 +26,7 @@ impl Ink {
     }
 }
 
-/// Letters of dots.
+/// A drawing in Braille letters, each of which is a block of 2 by 4 dots.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Canvas {
     pub(super) columns: usize,

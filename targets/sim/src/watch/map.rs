@@ -1,4 +1,4 @@
-//! The floor as dots: walls and goal once, the way as it grows, and over them the robot and what it hears.
+//! The floor as dots: walls and goal once, the growing way, and over them the robot with its echoes.
 
 use mdle_runtime::{Meters, Radians};
 use mdle_simulator::{Footprint, Form, Place, Thing, World, Zone, edge};
@@ -140,7 +140,7 @@ impl Map {
         }
     }
 
-    /// Every other dot of the edge of a goal that is a rectangle.
+    /// Draws every other dot of the edge of a rectangular goal.
     fn rectangle(&mut self, min: Place, max: Place) {
         let ((left, low), (right, high)) = (self.at(min), self.at(max));
         let within = |value: f64, most: usize| value.clamp(0.0, most as f64) as i64;

@@ -13,7 +13,7 @@ use rustix::termios::{
     LocalModes, OptionalActions, QueueSelector, Termios, tcflush, tcgetattr, tcgetwinsize, tcsetattr,
 };
 
-/// The other screen, without a cursor.
+/// Codes that switch to the terminal's alternate screen, without a cursor.
 const ENTER: &str = "\x1b[?1049h\x1b[?25l\x1b[2J";
 /// Colours, cursor and screen as they were.
 const LEAVE: &str = "\x1b[0m\x1b[?25h\x1b[?1049l";
@@ -46,7 +46,7 @@ pub(super) fn is_there() -> bool {
     stdout().is_terminal()
 }
 
-/// The columns and rows of the terminal; the usual ones where it does not say.
+/// Returns the columns and rows of the terminal; 80 and 24 if the terminal does not report them.
 pub(super) fn size() -> (usize, usize) {
     let size = tcgetwinsize(stdout()).ok().map(|size| (usize::from(size.ws_col), usize::from(size.ws_row)));
     size.filter(|(columns, rows)| *columns > 0 && *rows > 0)

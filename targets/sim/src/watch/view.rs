@@ -44,7 +44,7 @@ impl Now {
         }
     }
 
-    /// The line above the map.
+    /// Returns the line above the map.
     pub(super) fn above(&self, columns: usize) -> String {
         let (x, y) = (self.pose.x.0, self.pose.y.0);
         let heading = libm::round(self.pose.theta.degrees()) + 0.0;
@@ -57,7 +57,7 @@ impl Now {
         format!("\x1b[7m{:<columns$}", cut(&text, columns))
     }
 
-    /// The lines below it.
+    /// Returns the lines below the map.
     pub(super) fn below(&self, columns: usize) -> Vec<String> {
         let mut lines = vec![format!("\x1b[1m{}", cut(&self.atom, columns))];
         let widest = self.scopes.iter().map(|scope| scope.title.chars().count()).max().unwrap_or(0);

@@ -69,7 +69,7 @@ impl Terminal {
         kill_process(Pid::from_child(&self.child), signal).unwrap();
     }
 
-    /// Waits for the end of a program of which nobody reads anything.
+    /// Waits for the end of a program without reading its output.
     pub(crate) fn end_unread(&mut self) -> ExitStatus {
         self.child.wait().unwrap()
     }
@@ -81,7 +81,7 @@ impl Terminal {
         most.trim().trim_end_matches(" kB").parse().unwrap()
     }
 
-    /// Waits for the end; all that was written, and the exit status. The terminal is as it was.
+    /// Waits for the end of the program; returns its output and its exit status.
     pub(crate) fn end(mut self) -> (String, ExitStatus) {
         while self.read() {}
         let status = self.child.wait().unwrap();

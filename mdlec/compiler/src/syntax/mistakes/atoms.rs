@@ -68,7 +68,7 @@ fn law_in_group<'s>(site: &Site<'_, 's>, group: usize) -> Option<(usize, &'s str
     site.text(group + 1, end - 1).filter(|_| is_only).map(|law| (group, law))
 }
 
-/// `(Atom (bumper)) (go 20 0)`: the law follows the atom.
+/// Reports a law after its atom: `(Atom (bumper)) (go 20 0)`.
 fn law_outside(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let first = site.at + 1;
     let (name, last) = match site.kind(first)? == Tok::LParen {
@@ -90,7 +90,7 @@ pub(super) fn end_of_call(site: &Site<'_, '_>, name: usize) -> usize {
     (name + 1..).take_while(is_literal).last().unwrap_or(name)
 }
 
-/// `(Atom (wait 5) ((go 20 0) (turn 90)))`
+/// Reports several laws in an atom: `(Atom (wait 5) ((go 20 0) (turn 90)))`.
 fn several_laws(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let (group, is_law) = (site.opener()?, site.expects("name") && !site.expects_condition());
     let in_atom = site.kind(site.opener_of(group)? + 1) == Some(Tok::Atom) && site.kind(group - 1) == Some(Tok::RParen);
@@ -165,7 +165,7 @@ fn second_law(site: &Site<'_, '_>) -> Option<String> {
     Some(format!("(Atom ({}) {law})", condition_for(law)))
 }
 
-/// `(Atom (wait 5s) { go 20 0 })`
+/// Reports a law in braces: `(Atom (wait 5s) { go 20 0 })`.
 fn law_in_braces(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let (first, end) = (site.at + 1, site.end_of_group(site.at));
     let last = end.checked_sub(1).filter(|last| *last >= first && site.kind(end) == Some(Tok::RBrace))?;

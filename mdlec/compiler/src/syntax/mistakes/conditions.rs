@@ -87,7 +87,7 @@ fn turned(site: &Site<'_, '_>) -> Option<Diagnostic> {
     Some(diagnostic.fix("write {}", site.span(site.at, end), replacement))
 }
 
-/// `(r0 < 50cm wait 5s)`
+/// Reports two conditions without an operator between them: `(r0 < 50cm wait 5s)`.
 fn not_joined(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let next = site.name_at(site.at).filter(|_| site.expects("OR") && site.expects("AND"))?;
     let is_compared =

@@ -1,4 +1,4 @@
-//! Between plans: what belongs into a plan, names before their plans, and files that are used.
+//! Mistakes between plans: elements outside of a plan, names before their plans, and `use` of files.
 
 use super::plan_names::{name_before_plan, not_a_label};
 use crate::diagnostic::Diagnostic;
@@ -6,7 +6,7 @@ use crate::syntax::foreign;
 use crate::syntax::site::Site;
 use crate::syntax::token::Tok;
 
-/// Between plans: no element, no name, no file without quotes.
+/// Reports an element, a name or a file without quotes between plans.
 pub(super) fn at_file_level(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if site.before(1) == Some(Tok::Use) {
         let diagnostic = site.about(
@@ -88,7 +88,7 @@ pub(super) fn at_file_level(site: &Site<'_, '_>) -> Option<Diagnostic> {
     }
 }
 
-/// `use "a.mdle" "b.mdle"`, `use "a.mdle" as a`
+/// Reports more than one file, or another name for it, after `use`: `use "a.mdle" "b.mdle"`, `use "a.mdle" as a`.
 fn after_used_file(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let first = if site.found() == Some(Tok::Comma) { site.at + 1 } else { site.at };
     if let Some(Tok::Str(_)) = site.kind(first) {
@@ -102,7 +102,7 @@ fn after_used_file(site: &Site<'_, '_>) -> Option<Diagnostic> {
     (first == site.at).then(|| diagnostic.fix(words, site.span(site.at, last), ""))
 }
 
-/// `( Tour (bumper) …`: a plan with parentheses for its braces.
+/// Reports a plan in parentheses instead of braces: `( Tour (bumper) …`.
 fn plan_in_parentheses(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let name = site.name_at(site.at + 1).filter(|_| site.kind(site.at + 2) == Some(Tok::LParen))?;
     let diagnostic = site.about(site.at, format!("the plan `{name}` begins with `(`"), "expected a `{`");

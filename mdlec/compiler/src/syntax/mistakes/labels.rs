@@ -6,7 +6,7 @@ use crate::diagnostic::Diagnostic;
 use crate::syntax::site::Site;
 use crate::syntax::token::Tok;
 
-/// `=` without a label, a label without `=`, and `=` for `==`.
+/// Reports `=` without a label, a label without `=`, and `=` instead of `==`.
 pub(super) fn label_and_equals(site: &Site<'_, '_>) -> Option<Diagnostic> {
     if site.found() == Some(Tok::Colon)
         && let Some(argument) = named_argument(site)
@@ -65,7 +65,7 @@ pub(super) fn label_and_equals(site: &Site<'_, '_>) -> Option<Diagnostic> {
     }
 }
 
-/// `{ Leg (far = length) …`
+/// Reports `=` instead of a colon in a parameter: `{ Leg (far = length) …`.
 fn parameter_with_equals(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let name = site.name_at(site.at.checked_sub(1)?)?;
     let kind = site.name_at(site.at + 1).filter(|kind| Kind::NAMES.contains(kind))?;
@@ -75,7 +75,7 @@ fn parameter_with_equals(site: &Site<'_, '_>) -> Option<Diagnostic> {
     is_header.then(|| diagnostic.fix(words, site.span(site.at - 1, site.at + 1), format!("{name}: {kind}")))
 }
 
-/// `Leg(d = 3m)`, `Leg(d: 3m)`
+/// Reports an argument with its name: `Leg(d = 3m)`, `Leg(d: 3m)`.
 fn named_argument(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let name = site.at.checked_sub(1)?;
     let text = site.name_at(name).filter(|_| site.opener_kind() == Some(Tok::TouchParen))?;
@@ -91,7 +91,7 @@ fn named_argument(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// `(go v=20 omega=0)`
+/// Reports arguments of a law with their names: `(go v=20 omega=0)`.
 fn named_arguments_of_law(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let first = site.at.checked_sub(1).filter(|_| site.expects_argument())?;
     let names = (first..).step_by(3).take_while(|at| {
@@ -104,7 +104,7 @@ fn named_arguments_of_law(site: &Site<'_, '_>) -> Option<Diagnostic> {
     Some(diagnostic.fix("write the values alone: {}", site.span(first, last), values.join(" ")))
 }
 
-/// `"there": (Atom …)`
+/// Reports a label in quotes: `"there": (Atom …)`.
 pub(super) fn label_in_quotes(site: &Site<'_, '_>) -> Option<Diagnostic> {
     let Some(Tok::Str(text)) = site.found() else { return None };
     let is_name = text.starts_with(char::is_alphabetic) && text.chars().all(|c| c.is_alphanumeric() || c == '_');
@@ -124,7 +124,7 @@ pub(super) fn label_behind(site: &Site<'_, '_>) -> Option<Diagnostic> {
     })
 }
 
-/// `after (ahead)`, `after "ahead"`
+/// Reports a label of `after` in parentheses or quotes: `after (ahead)`, `after "ahead"`.
 pub(super) fn label_of_after(site: &Site<'_, '_>) -> Option<Diagnostic> {
     #[allow(clippy::wildcard_enum_match_arm, reason = "all other tokens hold no name")]
     let (label, last) = match site.found()? {

@@ -10,7 +10,7 @@ use crate::trail::{Mark, Trail};
 
 /// Maximum duration of the film, in seconds, before its pause at the end.
 const SHOWN_MOST: f64 = 20.0;
-/// Maximum number of places of a way that are written down one by one: some 200 m.
+/// Maximum number of places of all ways for a film that draws each place, about 200 m.
 const PLACES_MOST: usize = 20_000;
 /// Maximum number of atoms that begin and are all shown; of more, those that begin and end between two moments are left
 /// out.

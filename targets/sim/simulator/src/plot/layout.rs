@@ -80,7 +80,7 @@ impl Layout {
         overlaps(range(x.into_iter()), self.view.x) && overlaps(range(y.into_iter()), self.view.y)
     }
 
-    /// The whole width.
+    /// Returns the width of the picture, in pixels.
     pub(super) fn width(&self) -> f64 {
         self.chart + self.legend
     }

@@ -18,9 +18,9 @@ const LINES: usize = 3;
 /// The lines of a title.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Title {
-    /// Each with the size of its letters.
+    /// Lines of the title, each with the size of its letters in pixels.
     lines: Vec<(u32, String)>,
-    /// The whole in one line.
+    /// The title in one line.
     pub(super) whole: String,
 }
 

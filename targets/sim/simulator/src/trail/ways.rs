@@ -27,7 +27,7 @@ pub(crate) struct Ways {
     by_number: BTreeMap<u64, usize>,
     /// The atom that runs, and the time from which its total is to be counted on.
     running: Option<(usize, Nanos)>,
-    /// Number of places kept.
+    /// Number of recorded places.
     count: usize,
     /// Minimum distance between two places kept, in metres.
     apart: f64,
@@ -72,7 +72,7 @@ impl Ways {
         }
     }
 
-    /// The robot has come to this place.
+    /// Records that the robot is at this place.
     pub(super) fn went(&mut self, place: Place) {
         let apart = self.apart;
         let way = self.last();
@@ -85,7 +85,7 @@ impl Ways {
         }
     }
 
-    /// The way that the robot is on.
+    /// Returns the way of the current pass of an atom.
     fn last(&mut self) -> &mut Vec<Place> {
         self.marks.last_mut().map_or(&mut self.before, |mark| &mut mark.way)
     }
@@ -151,13 +151,13 @@ impl Ways {
         }
     }
 
-    /// No atom runs any more.
+    /// Records that the plan has ended at time `t`.
     pub(super) fn ended(&mut self, t: Nanos) {
         self.passed(t);
         self.running = None;
     }
 
-    /// All places kept.
+    /// Returns all recorded places.
     pub(super) fn places(&self) -> impl Iterator<Item = Place> {
         self.before.iter().chain(self.marks.iter().flat_map(|mark| &mark.way)).copied()
     }

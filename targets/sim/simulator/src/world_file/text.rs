@@ -11,7 +11,7 @@ use toml::Spanned;
 /// Numbers in a row: a place, a size, a time and a place.
 pub(super) type Numbers = Spanned<Vec<Spanned<f64>>>;
 
-/// The file.
+/// Content of a world file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct WorldText {
