@@ -166,7 +166,7 @@ const MISTAKES: &[(&str, &str, &str)] = &[
         "{ Dock (bumper)\n  (Atom (bumper OR) stop)\n  (Atom (NOT) stop)\n}\n",
         "or remove `OR`",
     ),
-    ("a law outside of its atom", "{ Dock (bumper)\n  (Atom (r0 < 50cm)) (go 20 0)\n}\n", "behind the law"),
+    ("a law outside of its atom", "{ Dock (bumper)\n  (Atom (r0 < 50cm)) (go 20 0)\n}\n", "after the law"),
     ("`int` for a count", "{ Dock Leg(4) }\n{ Leg (n: int)\n  (Atom (null) turn 90)^n\n}\n", "write `count`"),
     (
         "a missing `)` before a behavior",
