@@ -10,7 +10,7 @@ use mdle_compiler::{Compiled, check_with, compile_with, syntax};
 
 use crate::read::Unread;
 use crate::text::{read_text, shown, without_mark};
-use crate::{InputError, Target, read};
+use crate::{InputError, Target, Unsaved, read, unsaved};
 
 /// A plan file, together with the alphabet's files and the files that it uses.
 #[derive(Debug)]
@@ -23,9 +23,23 @@ pub struct Input {
     paths: BTreeMap<SourceId, PathBuf>,
     /// Files that were read, by their canonical paths.
     read: BTreeMap<PathBuf, SourceId>,
+    /// Texts that are used in place of files.
+    unsaved: Unsaved,
 }
 
 impl Input {
+    /// Uses the texts of an editor in place of the files that they will be saved to.
+    #[must_use]
+    pub fn with_unsaved(self, unsaved: Unsaved) -> Self {
+        Self { unsaved, ..self }
+    }
+
+    /// Path of a file that was read for the plan.
+    #[must_use]
+    pub fn path(&self, source: SourceId) -> Option<&Path> {
+        self.paths.get(&source).map(PathBuf::as_path)
+    }
+
     /// Compiles the plans of the file, or only its plan `wanted`.
     pub fn compile(&mut self, alphabet: &Alphabet, wanted: Option<&str>) -> (Vec<Compiled>, Vec<Diagnostic>) {
         let text = self.sources.text(self.source).to_owned();
@@ -112,11 +126,14 @@ impl syntax::Loader for Input {
             ),
             false => why.of(&name),
         };
-        let place = file.canonicalize().map_err(|error| refused(Unread::System(error)))?;
+        let place = self.unsaved.place(&file).map_err(|error| refused(Unread::System(error)))?;
         if let Some(source) = self.read.get(&place) {
             return Ok(*source);
         }
-        let bytes = read::file(&place, read::LARGEST_PLAN).map_err(refused)?;
+        let bytes = match self.unsaved.text(&place) {
+            Some(text) => text.as_bytes().to_vec(),
+            None => read::file(&place, read::LARGEST_PLAN).map_err(refused)?,
+        };
         if let Some(refusal) = self.sources.refusal(&name, bytes.len()) {
             return Err(refusal);
         }
@@ -148,8 +165,8 @@ pub fn plan(path: &Path, text: String, target: &Target) -> Result<Input, InputEr
     let mut sources = target.sources();
     let source = add(&mut sources, path, text)?;
     let paths = BTreeMap::from([(source, path.to_owned())]);
-    let read = path.canonicalize().map(|place| (place, source)).into_iter().collect();
-    Ok(Input { sources, source, paths, read })
+    let read = unsaved::place(path).map(|place| (place, source)).into_iter().collect();
+    Ok(Input { sources, source, paths, read, unsaved: Unsaved::default() })
 }
 
 /// Adds the text of a plan file.

@@ -10,9 +10,11 @@ pub mod read;
 mod settings;
 mod target;
 mod text;
+mod unsaved;
 
 pub use error::{InputError, Spelling};
 pub use input::{Input, add, plan, read_plan};
 pub use settings::{Known, RunOption, Settings, file_beside};
 pub use target::{Target, alphabet, bound, out_of_date, target};
 pub use text::{read_text, without_mark};
+pub use unsaved::{Unsaved, place};

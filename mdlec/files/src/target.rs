@@ -116,16 +116,17 @@ fn read_alphabets(own: Option<(String, String)>, name: &str) -> Result<Target, I
     }
     let alphabet = match own {
         Some((file, text)) => reading.read(file, text).map(|file| {
-            let (mut alphabet, found) = language::combine(file, &shared);
+            let (alphabet, found) = language::combine(file, &shared);
             reading.found.extend(found);
-            alphabet.robots = robots();
             alphabet
         }),
         None => shared.into_iter().next().map(Alphabet::shared),
     };
+
     match alphabet {
         // An alphabet causes no warnings.
-        Some(alphabet) if !has_errors(&reading.found) => {
+        Some(mut alphabet) if !has_errors(&reading.found) => {
+            alphabet.robots = robots();
             Ok(Target { alphabet, folder: None, settings: None, sources: reading.files })
         }
         Some(_) | None => {

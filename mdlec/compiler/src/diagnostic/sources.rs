@@ -72,7 +72,8 @@ impl Sources {
     }
 
     /// File of a span, with its byte range there.
-    pub(super) fn range(&self, span: Span) -> (SourceId, Range<usize>) {
+    #[must_use]
+    pub fn range(&self, span: Span) -> (SourceId, Range<usize>) {
         let source = self.file(span.start).map_or(SourceId(0), |(id, _)| *id);
         (source, span.within(source))
     }
