@@ -145,15 +145,18 @@ fn stopped(mut cart: Cart) -> (Option<i32>, bool) {
 
 #[test]
 fn a_writer_that_is_blocked_holds_up_no_robot() {
-    // A log or a path that lacks its end is a fault.
-    for (writer, status) in WRITERS.into_iter().zip([143, 143, 3, 143]) {
-        let mut cart = Cart::new(&format!("blocked_{writer:?}"), &[]);
-        cart.blocked(writer);
-        assert_eq!(stopped(cart), (Some(status), true), "{writer:?}");
-    }
-    let mut all = Cart::new("blocked_all", &[]);
-    WRITERS.into_iter().for_each(|writer| all.blocked(writer));
-    assert_eq!(stopped(all), (Some(3), true));
+    let writers = WRITERS.map(|writer| vec![writer]).into_iter().chain([WRITERS.to_vec()]);
+    // Each waits for seconds, so they do beside each other.
+    thread::scope(|scope| {
+        // A log or a path that lacks its end is a fault.
+        for (writers, status) in writers.zip([143, 143, 3, 143, 3]) {
+            scope.spawn(move || {
+                let mut cart = Cart::new(&format!("blocked_{}", writers.len() * 10 + writers[0] as usize), &[]);
+                writers.iter().for_each(|writer| cart.blocked(*writer));
+                assert_eq!(stopped(cart), (Some(status), true), "{writers:?}");
+            });
+        }
+    });
 }
 
 #[test]

@@ -141,25 +141,32 @@ fn an_emergency_stop_is_reported() {
 
 #[test]
 fn silence_garbage_and_other_robots_differ() {
-    assert_eq!(fault_of(|_| Vec::new()), Fault::Line(LineFault::Silent));
-    assert_eq!(fault_of(|_| b"Noise on the line.".to_vec()), Fault::Garbled(Garbled::Outside(b'N')));
     let report = |port, code, data: &[u8]| mdle_atrv_emulator::wire::report(port, 0, code, data, &[]);
     let bad_check = || {
         let mut bytes = report(2, 33, &[0; 25]);
         bytes[10] ^= 1;
         bytes
     };
-    assert!(matches!(fault_of(|_| bad_check()), Fault::Garbled(Garbled::Check(..))));
-    assert_eq!(fault_of(|_| report(9, 4, &[0; 25])), Fault::Unreadable(Unreadable::Unknown(9, 4)));
-    assert_eq!(fault_of(|_| report(2, 33, &[0; 24])), Fault::Unreadable(Unreadable::Short(2, 33, 24)));
     // It tells where it is, and nothing else; or where it was.
     let axes = |time: u8| {
         let axis = |axis: u8| report(2, 33, &[&[0, 0, 0, 0, 0, 0, 0, time][..], &[axis], &[0; 16]].concat());
         [axis(0), axis(1)].concat()
     };
     let time = AtomicU8::new(0);
-    assert_eq!(fault_of(|_| axes(time.fetch_add(1, Ordering::Relaxed))), Fault::Unheard);
-    assert_eq!(fault_of(|_| axes(0)), Fault::Repeated);
+    // Each driver waits for seconds, so they do beside each other.
+    thread::scope(|scope| {
+        scope.spawn(|| assert_eq!(fault_of(|_| Vec::new()), Fault::Line(LineFault::Silent)));
+        scope.spawn(|| {
+            assert_eq!(fault_of(|_| b"Noise on the line.".to_vec()), Fault::Garbled(Garbled::Outside(b'N')));
+        });
+        scope.spawn(|| assert!(matches!(fault_of(|_| bad_check()), Fault::Garbled(Garbled::Check(..)))));
+        scope.spawn(|| assert_eq!(fault_of(|_| report(9, 4, &[0; 25])), Fault::Unreadable(Unreadable::Unknown(9, 4))));
+        scope.spawn(|| {
+            assert_eq!(fault_of(|_| report(2, 33, &[0; 24])), Fault::Unreadable(Unreadable::Short(2, 33, 24)));
+        });
+        scope.spawn(|| assert_eq!(fault_of(|_| axes(time.fetch_add(1, Ordering::Relaxed))), Fault::Unheard));
+        scope.spawn(|| assert_eq!(fault_of(|_| axes(0)), Fault::Repeated));
+    });
 }
 
 #[test]
