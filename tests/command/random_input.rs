@@ -61,7 +61,7 @@ const WORDS: [&str; 48] = [
 ];
 
 /// Number of files of each sort.
-const FILES: u64 = 40;
+const FILES: u64 = 14;
 
 fn bytes(chance: &mut Chance) -> Vec<u8> {
     let length = chance.below(1500);

@@ -20,7 +20,7 @@ use mdle_tests::random_script::script;
 use mdle_tests::repository::root;
 
 /// Number of random plans that are emitted in each shape, and of scripts on which each plan runs.
-const PLANS: u64 = 60;
+const PLANS: u64 = 20;
 const SCRIPTS: u64 = 25;
 
 /// Names of plans, each of which a generated file may have a use of its own for.
@@ -76,7 +76,7 @@ fn random(seed: u64) -> Case {
         let mut chance = Chance::new(1_000_000 + seed + drawn * plans);
         // From the first plan to the last, some 4 to 24 atoms.
         let size = 4 + (20 * seed / plans) as usize;
-        let text = RandomPlan::new(&mut chance, size, seed % 40 == 39).named(root).to_string();
+        let text = RandomPlan::new(&mut chance, size, seed % 20 == 19).named(root).to_string();
         // Loops in loops in loops can make too many states.
         let compiled = compile_plan(&text, root).ok()?;
         if seed.is_multiple_of(2) && compiled.machine.sizes().memories > 0 {

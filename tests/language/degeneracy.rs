@@ -13,7 +13,7 @@ use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::random_script::script;
 
 /// Number of plans that are tried, and the maximum number of states of a plan that is written out.
-const PLANS: u64 = 500;
+const PLANS: u64 = 170;
 const STATES: u64 = 2000;
 
 /// Properties of the plans, counted.

@@ -22,7 +22,7 @@ use mdle_tests::random_plan::RandomPlan;
 use mdle_tests::random_script::script;
 
 /// Number of random plans.
-const PLANS: u64 = 10_000;
+const PLANS: u64 = 3_400;
 
 /// Events in the runs of random plans, to check that they include all that the test is meant to try.
 #[derive(Debug, Default)]

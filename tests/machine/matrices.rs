@@ -15,7 +15,7 @@ use mdle_theory::equations::{Terms, equation, matrix_files, most_states, terms};
 use serde_json::Value;
 
 /// Number of random plans.
-const PLANS: u64 = 400;
+const PLANS: u64 = 140;
 /// Plans of more states are left out: each matrix is read as a whole.
 const STATES: u64 = 300;
 
@@ -198,7 +198,8 @@ fn matrices_that_are_read_back_drive_the_transitions_of_the_table() {
         }
     }
     println!("{plans} plans, {small} in the paper's notation, {transitions} transitions, {summed} sums");
-    assert!(plans > 300 && small > 200 && transitions > 10_000 && summed > 200);
+    let tried = repeated(PLANS) as usize;
+    assert!(plans > tried * 3 / 4 && small > tried / 2 && transitions > tried * 25 && summed > tried / 2);
 }
 
 /// A plan with a matrix of each of the paper's three types.

@@ -16,7 +16,7 @@ use mdle_tests::scxml::Machine;
 use mdle_tests::xml::read;
 
 /// Number of random plans.
-const PLANS: u64 = 150;
+const PLANS: u64 = 50;
 /// Plans of more states are left out.
 const STATES: u64 = 150;
 
@@ -94,8 +94,12 @@ fn the_machine_does_what_the_plan_does() {
         }
     }
     println!("{seen:?}");
-    assert!(seen.plans > 100 && seen.transitions > 5000, "{seen:?}");
-    assert!([seen.over, seen.cut * 10, seen.rising, seen.after, seen.done].iter().all(|count| *count > 10), "{seen:?}");
+    let tried = repeated(PLANS) as usize;
+    assert!(seen.plans > tried * 2 / 3 && seen.transitions > tried * 33, "{seen:?}");
+    assert!(
+        [seen.over, seen.cut * 10, seen.rising, seen.after, seen.done].iter().all(|count| *count > tried / 15),
+        "{seen:?}"
+    );
 }
 
 #[test]

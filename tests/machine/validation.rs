@@ -10,7 +10,7 @@ use mdle_tests::pipeline::compile;
 use mdle_tests::random_plan::RandomPlan;
 
 /// Number of mutated machines.
-const MUTATIONS: u64 = 500;
+const MUTATIONS: u64 = 170;
 
 /// Makes a machine wrong in a place that chance picks, or leaves it as it is.
 type Mutation = fn(&mut Draft, &mut Chance);

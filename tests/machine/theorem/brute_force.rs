@@ -13,7 +13,7 @@ use super::machines::{Row, Table, likely, machine};
 static DEFINITIONS: LazyLock<Vec<Definition>> = LazyLock::new(|| (1..=4).map(Definition::new).collect());
 
 /// Number of samples of each size.
-const SAMPLES: u64 = 100_000;
+const SAMPLES: u64 = 34_000;
 
 /// Numbers of machines that were compared, that have a string, and that have a string with a loop.
 #[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
