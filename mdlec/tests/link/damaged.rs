@@ -1,7 +1,8 @@
 //! A damaged cache is repaired: the executable is the one that the current plan gives.
 //!
 //! To compile all libraries again takes long. If the variable `MDLE_LONG` is more than 1, each damage of them is mended
-//! to the end; else libraries of mdlec alone are damaged, or the test ends when it is reported that all are compiled again.
+//! to the end; otherwise a test damages the libraries of mdlec alone, or ends when the build reports that it compiles
+//! all again.
 
 use std::fs::{self, File};
 use std::os::unix::fs::MetadataExt;
@@ -31,8 +32,8 @@ fn assert_builds(robot: &Robot, cause: &str) {
     assert!(String::from_utf8(message.stdout).unwrap().contains(&format!("plan over: {cause}")));
 }
 
-/// Asserts that a build finds that everything has to be compiled again. With [`is_long`] it is, and the plan that ends by
-/// this cause runs; else `restore` undoes the damage.
+/// Asserts that a build finds that everything has to be compiled again. With [`is_long`] everything is, and the plan
+/// that ends by this cause runs; otherwise `restore` undoes the damage.
 fn assert_mends(robot: &Robot, cause: &str, restore: impl FnOnce()) {
     if is_long() {
         return assert_builds(robot, cause);
