@@ -44,8 +44,8 @@ impl Run {
         self.engine.plans()
     }
 
-    /// Makes a turn in which this interrupt fires, and returns the law that is applied: the time at which its atom began
-    /// by the clock of its plan, and the number of inputs that it has computed.
+    /// Makes a turn in which this interrupt fires, and returns the law that is applied: the time at which its atom
+    /// began by the clock of its plan, and the number of inputs that it has computed.
     fn turn(&mut self, interrupt: &str) -> String {
         let bit = INTERRUPTS.iter().position(|known| *known == interrupt);
         let y = Output { fired: bit.map_or(0, |bit| 1 << bit), ..Output::default() };

@@ -1,5 +1,5 @@
-//! Interface of the code that makes a run's turns: one plan in an executable, an engine with modules in `mdle`. Exchange,
-//! limits, signals, reports and the safe stop are the host's in every case.
+//! Interface of the code that makes a run's turns: one plan in an executable, an engine with modules in `mdle`.
+//! Exchange, limits, signals, reports and the safe stop are the host's in every case.
 
 use std::time::Duration;
 

@@ -72,7 +72,8 @@ impl<Y> Seat<Y> {
         self.progress.store(Progress::Queued as u8, Ordering::Release);
     }
 
-    /// At the deadline: lets no thread begin the module any more. Returns `true` if a thread runs it, so that it is late.
+    /// At the deadline: lets no thread begin the module any more. Returns `true` if a thread runs it, so that it is
+    /// late.
     pub(crate) fn cut(&self) -> bool {
         !self.moved(Progress::Queued, Progress::Skipped) && self.moved(Progress::Running, Progress::Late)
     }

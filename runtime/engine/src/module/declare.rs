@@ -1,4 +1,5 @@
-//! Declaration of a module: the attributes that it publishes and reads, its settings, and its place among other modules.
+//! Declaration of a module: the attributes that it publishes and reads, its settings, and its place among other
+//! modules.
 
 use std::sync::Arc;
 
