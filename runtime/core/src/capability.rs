@@ -1,7 +1,7 @@
 //! Capabilities: one trait for each capability that an alphabet can name, implemented by the robot's output.
-//! `state_link` and `modules` have no trait yet, so no robot can offer them. See docs/src/reference/interfaces.md, 7.2.
+//! `state_link` has no trait yet, so no robot can offer it. See docs/src/reference/interfaces.md, 7.2.
 
-use crate::{Meters, Nanos, Output, Pings, Pose, Radians, Setpoint, SonarId, Twist, Volts};
+use crate::{Meters, Nanos, Output, Pings, Pose, PublishedNumber, Radians, Setpoint, SonarId, Twist, Volts};
 
 /// `odometry`: the robot knows where it is and how fast it moves, in axes that stay put while it is switched on.
 pub trait Odometry: Output {
@@ -92,4 +92,10 @@ pub trait Power: Output {
 pub trait Paths: Output {
     /// The setpoints of a path; `None` if there is no path of this name.
     fn path(&self, name: &str) -> Option<&[Setpoint]>;
+}
+
+/// `modules`: an engine runs the plan, with modules that publish what no sensor of the robot measures.
+pub trait Modules: Output {
+    /// Returns the number that this module has published last under this name; `None` before the first.
+    fn published(&self, module: &str, attribute: &str) -> Option<PublishedNumber>;
 }

@@ -1,7 +1,7 @@
 //! Answers of a plan to the machine: the enclosing scope that ends, and the cause (docs/src/reference/semantics.md,
 //! 5.2).
 
-use crate::{Begin, Cursor, Entries, Follows, Fsm, Measured, Nanos, Output, Slots, Source, Words};
+use crate::{Begin, Cursor, Entries, Follows, Fsm, Measured, ModuleRead, Nanos, Output, Slots, Source, Words};
 
 /// Meaning of the atoms and the scopes of a plan on one robot: emitted by `mdlec`, or loaded from text.
 ///
@@ -75,6 +75,11 @@ pub trait Plan {
 
     /// Returns the names of the paths that its laws replay: the caller loads these paths before the plan begins.
     fn paths(&self) -> &[&'static str] {
+        &[]
+    }
+
+    /// Returns the attributes of modules that it reads: it begins once all of them have been published.
+    fn reads(&self) -> &'static [ModuleRead] {
         &[]
     }
 }

@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use crate::{Nanometers, Pose};
+use crate::{Nanometers, Pose, Published};
 
 /// A robot: takes an input, gives the output that follows it, and can be stopped.
 ///
@@ -50,4 +50,8 @@ pub trait Output {
     fn way(&self) -> Option<Nanometers> {
         None
     }
+
+    /// Takes the numbers that modules have published for the plan. An engine calls it before each turn; an output whose
+    /// quarks read no modules ignores them.
+    fn take_published(&mut self, _published: Published) {}
 }

@@ -4,7 +4,7 @@ use crate::condition::Reading;
 use crate::fsm::Kind;
 use crate::{
     Alphabet, Begin, Cause, Completes, Condition, Control, Cursor, Ending, Entries, Fsm, Guard, Interrupt, Law, LawRow,
-    MarkRow, Measured, Memory, Nanos, Plan, Radians, Slots, Table, Words,
+    MarkRow, Measured, Memory, ModuleRead, Nanos, Plan, Radians, Slots, Table, Words,
 };
 
 /// A plan in rows that a [`Machine`](crate::Machine) runs.
@@ -227,6 +227,10 @@ impl<T: Table, E: Entries + Clone, P: Slots<u64> + Clone, M: Memory> Plan for In
 
     fn paths(&self) -> &[&'static str] {
         self.table.paths()
+    }
+
+    fn reads(&self) -> &'static [ModuleRead] {
+        self.table.reads()
     }
 }
 

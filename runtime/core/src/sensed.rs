@@ -1,9 +1,12 @@
 //! The output of a robot on two driven wheels with odometry, bumper switches, sixteen sonars, a battery and a store of
 //! paths: the values, and the capabilities that they give it (`y = h(x)`, paper, Eq. 1).
 
-use crate::capability::{Bumpers, DiffDrive, Odometry, Paths, Power, SonarRing, Steering};
+use crate::capability::{Bumpers, DiffDrive, Modules, Odometry, Paths, Power, SonarRing, Steering};
 use crate::drift::drift;
-use crate::{Meters, Nanos, Output, PathStore, Pings, Pose, Radians, SONARS, Setpoint, SonarId, Twist, Volts};
+use crate::{
+    Meters, Nanos, Output, PathStore, Pings, Pose, Published, PublishedNumber, Radians, SONARS, Setpoint, SonarId,
+    Twist, Volts,
+};
 
 /// The output of one turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,6 +28,8 @@ pub struct Sensed {
     pub shape: Shape,
     /// The paths that the plan can replay; empty on a robot without paths.
     pub paths: PathStore,
+    /// The numbers of modules that the plan reads, which an engine fills in.
+    pub published: Published,
 }
 
 /// Power supply as a robot reports it.
@@ -63,6 +68,10 @@ pub struct Shape {
 impl Output for Sensed {
     fn here(&self) -> Pose {
         self.odometry
+    }
+
+    fn take_published(&mut self, published: Published) {
+        self.published = published;
     }
 }
 
@@ -146,5 +155,11 @@ impl Power for Sensed {
 impl Paths for Sensed {
     fn path(&self, name: &str) -> Option<&[Setpoint]> {
         self.paths.path(name)
+    }
+}
+
+impl Modules for Sensed {
+    fn published(&self, module: &str, attribute: &str) -> Option<PublishedNumber> {
+        self.published.number(module, attribute)
     }
 }

@@ -4,7 +4,7 @@
 //! tables. A row costs rustc next to nothing, and a turn reads as many rows as there are scopes that enclose the
 //! current atom.
 
-use crate::{Alphabet, Condition, Fact, Follows, Fsm, MarkRow, Radians, Source, Words};
+use crate::{Alphabet, Condition, Fact, Follows, Fsm, MarkRow, ModuleRead, Radians, Source, Words};
 
 /// The tables of a plan: [`Rows`] of constants, or tables that a loaded plan owns.
 pub trait Table {
@@ -33,6 +33,11 @@ pub trait Table {
     fn source(&self) -> &dyn Words;
     /// Returns the names of the paths that its laws replay.
     fn paths(&self) -> &[&'static str];
+
+    /// Returns the attributes of modules that the plan reads.
+    fn reads(&self) -> &'static [ModuleRead] {
+        &[]
+    }
 }
 
 /// Meaning of the brackets and atoms of a plan.

@@ -4,7 +4,7 @@
 use std::time::{Duration, Instant};
 
 use mdle_host::StopRequest;
-use mdle_runtime::{Meters, Nanos, PathStore, Robot, Sensed, Shape, Twist};
+use mdle_runtime::{Meters, Nanos, PathStore, Published, Robot, Sensed, Shape, Twist};
 use mdle_serial::{Clock, Line, LineFault, Obedience, Times, time_of};
 
 use crate::command::Command;
@@ -266,6 +266,7 @@ impl Robot for Atrv {
                 steering: self.config.steering,
             },
             paths: self.paths,
+            published: Published::NONE,
         })
     }
 

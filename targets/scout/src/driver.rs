@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use mdle_host::StopRequest;
-use mdle_runtime::{Meters, Nanos, PathStore, Robot, Sensed, Shape, Supply, Twist, Volts};
+use mdle_runtime::{Meters, Nanos, PathStore, Published, Robot, Sensed, Shape, Supply, Twist, Volts};
 use mdle_serial::{Clock, LineFault, Moment, Obedience, Times, time_of};
 
 use crate::command::Command;
@@ -221,6 +221,7 @@ impl Robot for Scout {
                 steering: self.config.steering,
             },
             paths: self.paths,
+            published: Published::NONE,
         })
     }
 

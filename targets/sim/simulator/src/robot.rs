@@ -4,7 +4,7 @@ use std::fmt;
 use std::time::Duration;
 
 use mdle_runtime::capability::Steering;
-use mdle_runtime::{Meters, Nanos, PathStore, Pose, Robot, Sensed, Shape, Supply, Twist};
+use mdle_runtime::{Meters, Nanos, PathStore, Pose, Published, Robot, Sensed, Shape, Supply, Twist};
 
 use crate::battery::Battery;
 use crate::body::{Body, STEP};
@@ -245,6 +245,7 @@ impl Robot for Simulated {
             supply: self.supplied(),
             shape: self.shape,
             paths: self.paths,
+            published: Published::NONE,
         })
     }
 
