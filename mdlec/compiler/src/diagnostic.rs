@@ -118,6 +118,7 @@ codes! {
     E0305 "invalid loop count",
     E0401 "missing capability",
     E0402 "value beyond the limits of the robot",
+    E0403 "modules in an executable",
     E0501 "too many states",
     E0502 "expanded form too large",
     E0601 "invalid alphabet",

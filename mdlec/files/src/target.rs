@@ -141,7 +141,8 @@ fn robots() -> Vec<(String, Vec<Capability>)> {
     let targets = builtin::alphabets().iter().filter(|alphabet| alphabet.target);
     let head = |builtin: &builtin::Alphabet| {
         let (file, _) = language::read(Sources::default().add(builtin.file, builtin.text), builtin.text);
-        Some((builtin.name.to_owned(), file?.target?.capabilities))
+        let head = file?.target?;
+        Some((builtin.name.to_owned(), [head.capabilities, head.engine].concat()))
     };
     targets.filter_map(head).collect()
 }

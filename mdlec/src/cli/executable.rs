@@ -57,7 +57,8 @@ pub(super) fn build(options: &Executable, path: &Path, output: Option<PathBuf>) 
     let started = Instant::now();
     let settings = Settings::beside(path)?;
     needs_target(settings.names_target(options.target.as_deref()))?;
-    let target = settings.target(options.target.as_deref())?;
+    let mut target = settings.target(options.target.as_deref())?;
+    target.alphabet.has_engine = false;
     let Emitted { target, input, plan_name, rust } =
         emitted(path, target, options.name.as_deref(), options.deny_warnings)?;
     // Standard input has no name of its own.

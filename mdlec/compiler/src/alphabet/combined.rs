@@ -17,6 +17,10 @@ pub struct Alphabet {
     pub period: Option<u64>,
     /// Capabilities of the robot.
     pub capabilities: Vec<Capability>,
+    /// Capabilities that the robot has if an engine runs its plan.
+    pub engine: Vec<Capability>,
+    /// `false` if the plan is for an executable, in which there is no engine.
+    pub has_engine: bool,
     /// Robots that messages may suggest, each with its capabilities.
     pub robots: Vec<(String, Vec<Capability>)>,
     /// `true` if there is no target: the robot then has every capability.
@@ -48,6 +52,8 @@ pub fn combine(target: AlphabetFile, shared: &[AlphabetFile]) -> (Alphabet, Vec<
         name: target.name,
         crate_name: head.as_ref().map(|head| head.crate_name.clone()).unwrap_or_default(),
         period: head.as_ref().and_then(|head| head.period),
+        engine: head.as_ref().map(|head| head.engine.clone()).unwrap_or_default(),
+        has_engine: true,
         capabilities: head.map(|head| head.capabilities).unwrap_or_default(),
         robots: Vec::new(),
         everything: false,
@@ -65,6 +71,8 @@ impl Alphabet {
             crate_name: String::new(),
             period: None,
             capabilities: Vec::new(),
+            engine: Vec::new(),
+            has_engine: true,
             robots: Vec::new(),
             everything: true,
             declarations: file.declarations,
@@ -95,7 +103,13 @@ impl Alphabet {
     /// Returns `true` if the robot has the capability, in at least this number.
     #[must_use]
     pub fn has(&self, needed: &Capability) -> bool {
-        self.everything || is_among(needed, &self.capabilities)
+        self.everything || is_among(needed, &self.capabilities) || self.has_engine && is_among(needed, &self.engine)
+    }
+
+    /// Returns `true` if the robot has the capability only if an engine runs its plan.
+    #[must_use]
+    pub fn needs_engine(&self, needed: &Capability) -> bool {
+        !is_among(needed, &self.capabilities) && is_among(needed, &self.engine)
     }
 
     /// Names of the robots that have all these capabilities.
@@ -127,6 +141,9 @@ impl Alphabet {
         let text = format!("{} {} {:?} {:?}", self.name, self.crate_name, self.period, self.capabilities);
         let mut hasher = blake3::Hasher::new();
         hasher.update(text.as_bytes());
+        if !self.engine.is_empty() {
+            hasher.update(format!(" engine {:?}", self.engine).as_bytes());
+        }
         for declaration in &self.declarations {
             hasher.update(declaration.to_string().as_bytes());
         }
@@ -189,6 +206,9 @@ impl fmt::Display for Declaration {
             write!(f, "{}: {:?} {unit:?} {:?} {:?}, ", param.name, param.kind, param.default, param.range)?;
             if let Some(except) = param.except {
                 write!(f, "not {except:?}, ")?;
+            }
+            if !param.with.is_empty() {
+                write!(f, "with {:?}, ", param.with)?;
             }
         }
         let unit = self.unit.map(|(unit, tolerance)| (unit.name, tolerance));

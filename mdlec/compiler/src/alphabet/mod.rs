@@ -40,6 +40,8 @@ pub struct TargetHead {
     pub period: Option<u64>,
     /// Capabilities of the robot.
     pub capabilities: Vec<Capability>,
+    /// Capabilities that the robot has if an engine runs its plan, and not in an executable.
+    pub engine: Vec<Capability>,
 }
 
 /// A capability with its size, such as `sonar[16]`.
@@ -113,4 +115,6 @@ pub struct Param {
     pub range: Option<(f64, f64)>,
     /// Value in the range that is not allowed, in that unit.
     pub except: Option<f64>,
+    /// Attributes that the quark reads of a module; a signal without any reads the attribute of its own name.
+    pub with: Vec<String>,
 }

@@ -58,6 +58,7 @@ impl<'t> Reader<'t> {
             let origin = if target.is_some() { Origin::Target } else { Origin::Shared(name.clone()) };
             let read = match (self.peek_word(), &mut target) {
                 (Some("capability"), Some(head)) => self.capabilities().map(|more| head.capabilities.extend(more)),
+                (Some("engine"), Some(head)) => self.capabilities().map(|more| head.engine.extend(more)),
                 (Some("use"), Some(_)) => self.used().map(|used| uses.push(used)),
                 _ => self.declaration(docs, origin).map(|declaration| declarations.push(declaration)),
             };
@@ -87,7 +88,7 @@ impl<'t> Reader<'t> {
                     self.keyword("period")?;
                     period = Some(self.period()?);
                 }
-                (name, Some(TargetHead { crate_name, period, capabilities: Vec::new() }))
+                (name, Some(TargetHead { crate_name, period, capabilities: Vec::new(), engine: Vec::new() }))
             }
             _ => return self.unexpected("`target NAME : crate NAME;` or `alphabet NAME;`"),
         };
@@ -106,7 +107,7 @@ impl<'t> Reader<'t> {
         }
     }
 
-    /// Reads `"capability" CAP { "," CAP }`.
+    /// Reads `( "capability" | "engine" ) CAP { "," CAP }`.
     fn capabilities(&mut self) -> Read<Vec<Capability>> {
         self.at += 1;
         self.capability_list()
@@ -150,7 +151,7 @@ impl<'t> Reader<'t> {
             Some("interrupt") => DeclarationKind::Interrupt,
             Some("signal") => DeclarationKind::Signal,
             _ if origin == Origin::Target => {
-                return self.unexpected("`capability`, `use`, `control`, `interrupt` or `signal`");
+                return self.unexpected("`capability`, `engine`, `use`, `control`, `interrupt` or `signal`");
             }
             _ => return self.unexpected("`control`, `interrupt` or `signal`"),
         };
@@ -189,7 +190,8 @@ impl<'t> Reader<'t> {
         Ok(params)
     }
 
-    /// Reads `NAME ":" type [ UNIT ] [ "=" NUMBER ] [ "in" NUMBER ".." NUMBER ] [ "not" NUMBER ]`.
+    /// Reads `NAME ":" type [ UNIT ] [ "=" NUMBER ] [ "in" NUMBER ".." NUMBER ] [ "not" NUMBER ]
+    /// [ "with" NAME { "," NAME } ]`. After a comma, a name without a type is one more attribute.
     fn param(&mut self) -> Read<Param> {
         let name = self.name()?.0;
         self.require(Token::Colon)?;
@@ -209,7 +211,7 @@ impl<'t> Reader<'t> {
             );
         };
         let unit = match self.peek_word() {
-            Some(word) if !matches!(word, "in" | "not") => Some(self.unit(kind)?),
+            Some(word) if !matches!(word, "in" | "not" | "with") => Some(self.unit(kind)?),
             Some(_) | None => kind.base_unit(),
         };
         let default = if self.take(Token::Equals) { Some(self.number()?.0) } else { None };
@@ -225,7 +227,32 @@ impl<'t> Reader<'t> {
             self.at += 1;
             except = Some(self.value()?);
         }
-        Ok(Param { name, kind, unit, default, range, except })
+        let with = self.with(kind)?;
+        Ok(Param { name, kind, unit, default, range, except, with })
+    }
+
+    /// Reads `[ "with" NAME { "," NAME } ]`, the attributes of a module.
+    fn with(&mut self, kind: Kind) -> Read<Vec<String>> {
+        let mut with = Vec::new();
+        if self.peek_word() != Some("with") {
+            return Ok(with);
+        }
+        let (_, span) = self.word()?;
+        if kind != Kind::Module {
+            return self.defect(span, "only a module has attributes", "`with` follows the type `module`");
+        }
+        with.push(self.name()?.0);
+        while self.names_attribute() {
+            self.at += 1;
+            with.push(self.name()?.0);
+        }
+        Ok(with)
+    }
+
+    /// Returns `true` if a comma follows, and then a name that begins no parameter.
+    fn names_attribute(&self) -> bool {
+        let token = |ahead: usize| self.tokens.get(self.at + ahead).map(|(token, _)| *token);
+        token(0) == Some(Token::Comma) && token(1) == Some(Token::Word) && token(2) != Some(Token::Colon)
     }
 
     fn unit(&mut self, kind: Kind) -> Read<Unit> {

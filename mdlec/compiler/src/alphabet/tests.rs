@@ -32,7 +32,7 @@ fn defects(text: &str) -> String {
 #[test]
 fn our_own_alphabets_are_read() {
     let atoms = good(ATOMS);
-    assert_eq!((atoms.name.as_str(), atoms.declarations.len()), ("atoms", 28));
+    assert_eq!((atoms.name.as_str(), atoms.declarations.len()), ("atoms", 31));
     let sim = good(SIM);
     let head = sim.target.unwrap();
     assert_eq!((head.crate_name.as_str(), head.period), ("mdle_sim", Some(100_000_000)));
@@ -40,6 +40,29 @@ fn our_own_alphabets_are_read() {
         head.capabilities.iter().map(ToString::to_string).collect::<Vec<_>>().join(" "),
         "diff_drive sonar[16] bumper odometry paths power"
     );
+    assert_eq!(head.engine.iter().map(ToString::to_string).collect::<Vec<_>>(), ["modules"]);
+}
+
+#[test]
+fn a_quark_names_the_attributes_that_it_reads() {
+    let file = good(
+        "alphabet a; control f(of: module with bearing, range, n: count); signal s(of: module) unit m tolerance 0;",
+    );
+    let with: Vec<_> =
+        file.declarations.iter().flat_map(|found| &found.params).map(|param| param.with.join(" ")).collect();
+    assert_eq!(with, ["bearing range", "", ""]);
+    let report = defects("alphabet a; control f(n: count with range);");
+    assert!(report.contains("only a module has attributes"), "{report}");
+}
+
+#[test]
+fn an_executable_lacks_what_an_engine_has() {
+    let mut sim = sim();
+    let modules = Capability { name: "modules".into(), size: None };
+    assert!(sim.has(&modules) && sim.needs_engine(&modules));
+    let hash = sim.hash();
+    sim.has_engine = false;
+    assert!(!sim.has(&modules) && sim.hash() == hash);
 }
 
 #[test]

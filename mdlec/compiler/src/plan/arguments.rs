@@ -118,8 +118,15 @@ pub fn signature(declaration: &Declaration) -> String {
 /// Converts a number to a value of the kind of `unit`, with its text in that unit; errors name `declaration`. A number
 /// without a unit has the unit `bare`.
 pub(super) fn value(number: &Number, bare: Unit, unit: Unit, declaration: &Declaration) -> Fitted {
-    let param =
-        Param { name: String::new(), kind: unit.kind, unit: Some(unit), default: None, range: None, except: None };
+    let param = Param {
+        name: String::new(),
+        kind: unit.kind,
+        unit: Some(unit),
+        default: None,
+        range: None,
+        except: None,
+        with: Vec::new(),
+    };
     let here = format!("`{}` is {}", declaration.name, unit.kind.words());
     Fitting { declaration, robot: "" }.quantity(number, &param, Some(bare)).map_err(|mut found| {
         found.labels.iter_mut().for_each(|label| label.text.clone_from(&here));

@@ -43,7 +43,7 @@ fn declaration(plan: &tree::Plan<'_>, parameters: &Parameters<'_>) -> Declaratio
     let param = |param: &tree::Param<'_>| {
         let parameter = parameters.get(param.name.node)?;
         let (name, unit) = (param.name.node.to_owned(), parameter.unit());
-        Some(Param { name, kind: parameter.kind, unit, default: None, range: None, except: None })
+        Some(Param { name, kind: parameter.kind, unit, default: None, range: None, except: None, with: Vec::new() })
     };
     Declaration {
         docs: String::new(),

@@ -106,6 +106,12 @@ impl<'a> Quarks<'a> {
             return Ok(());
         }
         let quark = &declaration.name;
+        let needs_engine = |capability| self.alphabet.has(capability) || self.alphabet.needs_engine(capability);
+        if declaration.needs.iter().all(needs_engine) {
+            let message = format!("`{quark}` reads modules, and an executable has none");
+            let report = Diagnostic::new(Code::E0403, message, call.span, "needs an engine");
+            return Err(vec![report.help(format!("`mdle run PLAN --target {}` runs the plan", self.alphabet.name))]);
+        }
         let missing = missing.join(" and ");
         let robot = &self.alphabet.name;
         let verb = match declaration.kind {

@@ -118,7 +118,7 @@ pub(super) fn hash(alphabet: &Alphabet) -> TokenStream {
 
 /// Writes `runtime::alphabet! { … }` with the robot's capabilities, limits and quarks, a line for each.
 fn tables(alphabet: &Alphabet, quarks: &[Bound<'_>]) -> String {
-    let capabilities = alphabet.capabilities().iter().map(|capability| {
+    let capabilities = alphabet.capabilities().iter().chain(&alphabet.engine).map(|capability| {
         let needed = capability_trait(capability).map(|needed| format!(" as {needed}")).unwrap_or_default();
         format!("{:?}{needed}", capability.to_string())
     });

@@ -71,6 +71,7 @@ pub(super) fn capability_trait(capability: &Capability) -> Option<Ident> {
         "sonar" => "SonarRing",
         "paths" => "Paths",
         "power" => "Power",
+        "modules" => "Modules",
         _ => return None,
     };
     Some(format_ident!("{name}"))
