@@ -8,6 +8,7 @@ mod lower;
 mod machine;
 mod matrices;
 mod observation;
+mod reads;
 mod rows;
 #[cfg(test)]
 mod tests;
@@ -21,6 +22,7 @@ pub use lower::{STATES, lower};
 pub use machine::{Atom, Element, ElementKind, Exit, Machine, Visit};
 pub use matrices::{Matrices, Matrix, Transition, UnitVector, matrices};
 pub use observation::observation1;
+pub use reads::{AttributeRead, module_reads};
 pub use rows::{Rows, replayed_files, rows};
 pub use validation::validate;
 pub use words::{BracketText, OperandText, PlanWords, words};

@@ -8,7 +8,7 @@ mod table;
 use std::error::Error;
 use std::fmt;
 
-use mdle_runtime::{Guard, LawRow};
+use mdle_runtime::{Guard, LawRow, PUBLISHED};
 
 use crate::alphabet;
 use crate::diagnostic::Sources;
@@ -27,6 +27,8 @@ pub enum LoadError {
     Unbound(String),
     /// The plans of this process have more than [`MOST_NAMES`] bytes of names.
     TooManyNames,
+    /// The plan reads more than [`PUBLISHED`] attributes of modules: the number.
+    TooManyReads(usize),
 }
 
 impl fmt::Display for LoadError {
@@ -41,6 +43,9 @@ impl fmt::Display for LoadError {
                 "the plans of this program have more than {} kB of names of files and modules, which is the most",
                 MOST_NAMES / 1000
             ),
+            Self::TooManyReads(count) => {
+                write!(f, "the plan reads {count} attributes of modules, and {PUBLISHED} is the most")
+            }
         }
     }
 }
@@ -85,8 +90,9 @@ pub fn with_rows<A: mdle_runtime::Alphabet>(
     let paths = fsm::replayed_files(machine, alphabet).into_iter().map(names::interned);
     let (guards, operands, laws) =
         (guards.collect::<Result<_, _>>()?, operands.collect::<Result<_, _>>()?, laws.collect::<Result<_, _>>()?);
+    let reads = names::reads(fsm::module_reads(machine, alphabet))?;
     Ok(Loaded::new(
         machine,
-        table::Owned { guards, operands, laws, marks, facts, words, paths: paths.collect::<Result<_, _>>()? },
+        table::Owned { guards, operands, laws, marks, facts, words, paths: paths.collect::<Result<_, _>>()?, reads },
     ))
 }

@@ -3,20 +3,50 @@
 use std::collections::BTreeSet;
 use std::sync::{Mutex, PoisonError};
 
+use mdle_runtime::{ModuleRead, PUBLISHED};
+
 use super::LoadError;
+use crate::fsm::AttributeRead;
 
 /// The most bytes of all names in the plans that a process loads.
 ///
 /// A quark keeps its names for ever, so a process that loads plan after plan with new names needs ever more memory.
 pub const MOST_NAMES: usize = 1_000_000;
 
+/// The names of this process.
+static NAMES: Mutex<Names> = Mutex::new(Names { kept: BTreeSet::new(), bytes: 0 });
+
 /// Returns a name that stays; a text is kept once.
 ///
 /// # Errors
 /// There are too many names.
 pub(super) fn interned(name: &str) -> Result<&'static str, LoadError> {
-    static NAMES: Mutex<Names> = Mutex::new(Names { kept: BTreeSet::new(), bytes: 0 });
     NAMES.lock().unwrap_or_else(PoisonError::into_inner).keep(name)
+}
+
+/// Returns attributes of modules as a list that stays; equal lists are kept once.
+///
+/// # Errors
+/// There are too many names, or too many attributes for one plan.
+pub(super) fn reads(reads: BTreeSet<AttributeRead<'_>>) -> Result<&'static [ModuleRead], LoadError> {
+    static LISTS: Mutex<BTreeSet<&'static [ModuleRead]>> = Mutex::new(BTreeSet::new());
+    if reads.len() > PUBLISHED {
+        return Err(LoadError::TooManyReads(reads.len()));
+    }
+    let interned = reads.into_iter().map(|AttributeRead { module, attribute, unit }| {
+        Ok(ModuleRead { module: interned(module)?, attribute: interned(attribute)?, unit })
+    });
+    let list: Vec<_> = interned.collect::<Result<_, _>>()?;
+    let mut lists = LISTS.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(known) = lists.get(&*list) {
+        return Ok(known);
+    }
+    // Its names count once more, so that lists have a limit as well.
+    let bytes = list.iter().map(|read| read.module.len() + read.attribute.len()).sum();
+    NAMES.lock().unwrap_or_else(PoisonError::into_inner).count(bytes)?;
+    let list: &'static [ModuleRead] = list.leak();
+    lists.insert(list);
+    Ok(list)
 }
 
 /// Names that were kept.
@@ -30,14 +60,20 @@ impl Names {
         if let Some(known) = self.kept.get(name) {
             return Ok(known);
         }
-        let bytes = self.bytes.saturating_add(name.len());
+        self.count(name.len())?;
+        let kept: &'static str = Box::leak(name.into());
+        self.kept.insert(kept);
+        Ok(kept)
+    }
+
+    /// Counts bytes that stay.
+    fn count(&mut self, more: usize) -> Result<(), LoadError> {
+        let bytes = self.bytes.saturating_add(more);
         if bytes > MOST_NAMES {
             return Err(LoadError::TooManyNames);
         }
         self.bytes = bytes;
-        let kept: &'static str = Box::leak(name.into());
-        self.kept.insert(kept);
-        Ok(kept)
+        Ok(())
     }
 }
 

@@ -3,7 +3,9 @@
 use std::sync::Arc;
 
 use mdle_runtime::fsm::{Atom, Bracket};
-use mdle_runtime::{Alphabet, Condition, Fact, Fsm, Guard, InRows, LawRow, MarkRow, Memories, Table, Words};
+use mdle_runtime::{
+    Alphabet, Condition, Fact, Fsm, Guard, InRows, LawRow, MarkRow, Memories, ModuleRead, Table, Words,
+};
 
 use super::Entered;
 use crate::fsm::{self, Element, Machine, PlanWords};
@@ -32,6 +34,7 @@ pub(super) struct Owned<A: Alphabet> {
     pub(super) facts: Vec<Fact>,
     pub(super) words: PlanWords,
     pub(super) paths: Vec<&'static str>,
+    pub(super) reads: &'static [ModuleRead],
 }
 
 /// Tables that several machines may run, each from its own position.
@@ -121,6 +124,10 @@ impl<A: Alphabet> Table for Shared<A> {
 
     fn paths(&self) -> &[&'static str] {
         &self.0.owned.paths
+    }
+
+    fn reads(&self) -> &'static [ModuleRead] {
+        self.0.owned.reads
     }
 }
 
