@@ -2,7 +2,8 @@
 #![cfg_attr(rustfmt, rustfmt_skip)]
 use crate::{
     Bumper, AtIsection, LowBattery, Charger, Stuck, Go, Stop, Rotate, Turn, Advance,
-    GoAvoid, Align, Path, R, Age, X, Y, Theta, V, Omega, Battery,
+    GoAvoid, GoAvoid2, Align, Path, R, Age, X, Y, Theta, V, Omega, Battery, Bearing,
+    Range, Age2,
 };
 use ::mdle_runtime as runtime;
 /// `bumper`: Fires on contact of any bumper.
@@ -86,6 +87,13 @@ pub const fn go_avoid(arguments: &[runtime::Argument<'_>]) -> Option<GoAvoid> {
     Some(GoAvoid::new(bearing, range, speed))
 }
 
+/// `goAvoid <module>`: Drives towards what a module publishes, whatever the frame is, round obstacles, for ever.
+#[must_use]
+pub const fn go_avoid2(arguments: &[runtime::Argument<'_>]) -> Option<GoAvoid2> {
+    let &[runtime::Argument::Name(target)] = arguments else { return None };
+    Some(GoAvoid2::new(target))
+}
+
 /// `align <sonar 0 to 15> <sonar 0 to 15>`: Turns until two sonars return equal ranges, whatever the frame is.
 #[must_use]
 pub const fn align(arguments: &[runtime::Argument<'_>]) -> Option<Align> {
@@ -155,4 +163,25 @@ pub const fn omega(arguments: &[runtime::Argument<'_>]) -> Option<Omega> {
 pub const fn battery(arguments: &[runtime::Argument<'_>]) -> Option<Battery> {
     let &[] = arguments else { return None };
     Some(Battery::new())
+}
+
+/// `bearing <module>`: The direction that a module publishes, from where the robot heads, counter-clockwise positive.
+#[must_use]
+pub const fn bearing(arguments: &[runtime::Argument<'_>]) -> Option<Bearing> {
+    let &[runtime::Argument::Name(of)] = arguments else { return None };
+    Some(Bearing::new(of))
+}
+
+/// `range <module>`: The distance that a module publishes.
+#[must_use]
+pub const fn range(arguments: &[runtime::Argument<'_>]) -> Option<Range> {
+    let &[runtime::Argument::Name(of)] = arguments else { return None };
+    Some(Range::new(of))
+}
+
+/// `age <module>`: How long ago a module published its bearing; infinite before the first time.
+#[must_use]
+pub const fn age2(arguments: &[runtime::Argument<'_>]) -> Option<Age2> {
+    let &[runtime::Argument::Name(of)] = arguments else { return None };
+    Some(Age2::new(of))
 }

@@ -114,6 +114,11 @@ struct GivesWay {
 }
 
 impl GoingRound {
+    /// Returns this law on its way to the goal of another.
+    pub(crate) fn with_goal_of(self, other: &Self) -> Self {
+        Self { goal: other.goal, ..self }
+    }
+
     /// Detects a person who approaches along the way to the goal, so that the robot gives way.
     fn look_out<Y: SonarRing>(&mut self, y: &Y, obstacles: &Obstacles, here: Pose, t: Nanos) {
         let goal = self.direction(here);

@@ -1,8 +1,8 @@
 //! The paper's quarks (section IV-A), for any robot whose output has what they need.
 //!
 //! A quark is a type that holds its arguments, in the order of `alphabet.mdle`, and asks for the capabilities that the
-//! alphabet names. `wait` is no type here: time is the machine's business. There is none yet for `sync`, `rendezvous`,
-//! `goAvoid` with a module and `Follow`, whose capabilities no robot can offer yet either.
+//! alphabet names. `wait` is no type here: time is the machine's business. There is none yet for `sync`, `rendezvous`
+//! and `Follow`, whose capability no robot can offer yet either.
 //!
 //! No allocation, no unsafe code, no path that panics; trigonometry from `libm`, so a law computes the same bits on
 //! every machine.
@@ -24,6 +24,7 @@ mod go_avoid;
 mod hallway;
 mod heading;
 mod memory;
+mod modules;
 mod path;
 mod power;
 mod rotate;
@@ -41,6 +42,7 @@ pub use at_isection::AtIsection;
 pub use bumper::Bumper;
 pub use go::Go;
 pub use go_avoid::{GoAvoid, GoingRound};
+pub use modules::{Age2, Bearing, Following, GoAvoid2, Range};
 pub use path::{Path, Replaying};
 pub use power::{Battery, Charger, LowBattery};
 pub use rotate::{Rotate, Rotating};

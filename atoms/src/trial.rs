@@ -2,10 +2,10 @@
 
 use core::f64::consts::PI;
 
-use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, Paths, Power, SonarRing};
+use mdle_runtime::capability::{Bumpers, DiffDrive, Modules, Odometry, Paths, Power, SonarRing};
 use mdle_runtime::{
-    Begin, Completes, Frame, Law, Meters, Nanos, Output, PathStore, Ping, Pings, Pose, Radians, SONARS, Setpoint,
-    SonarId, Supply, Twist, Volts,
+    Begin, Completes, Frame, Law, Meters, Nanos, Output, PathStore, Ping, Pings, Pose, Published, PublishedNumber,
+    Radians, SONARS, Setpoint, SonarId, Supply, Twist, Volts,
 };
 
 /// The period of a turn in these trials, in seconds.
@@ -22,6 +22,7 @@ pub(crate) struct Sensed {
     pub(crate) confirmation: usize,
     pub(crate) supply: Supply,
     pub(crate) paths: PathStore,
+    pub(crate) published: Published,
 }
 
 impl Default for Sensed {
@@ -35,6 +36,7 @@ impl Default for Sensed {
             confirmation: 3,
             supply: Supply::default(),
             paths: PathStore::EMPTY,
+            published: Published::NONE,
         }
     }
 }
@@ -127,6 +129,12 @@ impl Power for Sensed {
 
     fn is_plugged(&self) -> bool {
         self.supply.is_plugged
+    }
+}
+
+impl Modules for Sensed {
+    fn published(&self, module: &str, attribute: &str) -> Option<PublishedNumber> {
+        self.published.number(module, attribute)
     }
 }
 

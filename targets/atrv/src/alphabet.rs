@@ -3,8 +3,8 @@
 pub use crate::{Input, Output};
 pub use crate::quarks::{Go, Advance, GoAvoid};
 pub use ::mdle_atoms::{
-    Bumper, AtIsection, LowBattery, Charger, Stuck, Stop, Rotate, Turn, Align, Path, R,
-    Age, X, Y, Theta, V, Omega, Battery,
+    Bumper, AtIsection, LowBattery, Charger, Stuck, Stop, Rotate, Turn, GoAvoid2, Align,
+    Path, R, Age, X, Y, Theta, V, Omega, Battery, Bearing, Range, Age2,
 };
 use ::mdle_atoms::alphabet as atoms;
 use ::mdle_runtime as runtime;
@@ -13,7 +13,7 @@ pub const NAME: &str = "atrv";
 /// The default period of a turn.
 pub const PERIOD: runtime::Nanos = runtime::Nanos(100000000);
 /// Identifies this alphabet: a plan that was compiled for another alphabet does not compile.
-pub const HASH: u64 = 0x4551139732fb0fa2;
+pub const HASH: u64 = 0x6f54c8ad8e585977;
 /// `go <v in cm/s> <omega in rad/s>`: Drives with a forward speed and a turn rate, counter-clockwise positive, for ever.
 const fn go(arguments: &[runtime::Argument<'_>]) -> Option<Go> {
     let &[runtime::Argument::Speed(v), runtime::Argument::AngularRate(omega)] = arguments
@@ -43,6 +43,7 @@ runtime::alphabet! {
         "odometry" as Odometry,
         "paths" as Paths,
         "power" as Power,
+        "modules" as Modules,
     ];
     limits: [
         "stuck" "duration" in 0.0..10000000000.0,
@@ -69,6 +70,9 @@ runtime::alphabet! {
         "v" => V(atoms::v),
         "omega" => Omega(atoms::omega),
         "battery" => Battery(atoms::battery),
+        "bearing" => Bearing(atoms::bearing),
+        "range" => Range(atoms::range),
+        "age" => Age2(atoms::age2),
     ];
     controls: [
         "go" => Go(go),
@@ -77,6 +81,7 @@ runtime::alphabet! {
         "turn" => Turn(atoms::turn) completes,
         "advance" => Advance(advance) completes,
         "goAvoid" => GoAvoid(go_avoid) completes,
+        "goAvoid" => GoAvoid2(atoms::go_avoid2),
         "align" => Align(atoms::align) completes,
         "path" => Path(atoms::path) completes,
     ];
