@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 use std::io;
 use std::sync::Arc;
 
-use mdle_runtime::Nanos;
+use mdle_runtime::{ModuleRead, Nanos};
 
 use super::event::{Arrivals, Event};
 use super::janitor::Janitor;
@@ -37,8 +37,8 @@ pub struct Modules<Y> {
     pub(super) fork: Fork<Y>,
     pub(super) service: Service,
     pub(super) janitor: Janitor,
-    /// Places on the board that the plan reads, now or soon.
-    pub(super) plan_reads: Vec<usize>,
+    /// Attributes that plans read, now or soon.
+    pub(super) plan_reads: Vec<ModuleRead>,
     /// `true` if relevance has to be found anew.
     pub(super) has_changed: bool,
     pub(super) events: Vec<Event>,

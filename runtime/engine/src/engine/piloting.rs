@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use mdle_compiler::load::LoadedPlan;
 use mdle_host::{Moment, Pilot, PilotFault, RunTerms, Time, Transitions, claim_for_worker};
-use mdle_runtime::{Machine, Nanos, Turn};
+use mdle_runtime::{Machine, Nanos, Output as _, Turn};
 
 use super::event::Event;
 use super::modules::{Modules, Service};
@@ -50,6 +50,7 @@ impl<A: EngineAlphabet> Engine<A> {
             let loaded = candidate.and_then(|candidate| engine.modules.load(candidate));
             loaded.map_err(|refusal| mdle_host::Refusal::Usage(refusal.to_string()))?;
         }
+        engine.modules.plan_reads(engine.plans.reads());
         engine.modules.prepare();
         Ok(engine)
     }
@@ -125,14 +126,19 @@ impl<A: EngineAlphabet> Pilot for Engine<A> {
         Moment { y, t, number }: Moment<'_, A::Output>,
         transitions: &mut Transitions,
     ) -> Result<Turn<A::Input>, PilotFault> {
-        self.plans.take_off(t);
+        let published = self.plans.take_off(t, self.modules.board()).map_err(PilotFault::Stopped)?;
+        let mut y = y.clone();
+        if let Some(published) = published {
+            y.take_published(published);
+        }
         let deadline = self.patience.map(|patience| Instant::now() + patience);
-        self.modules.turn(y.clone(), number, t, deadline);
+        self.modules.turn(y, number, t, deadline);
         let turn = self.land(t, transitions)?;
         self.modules.settle();
         self.turn_break()?;
         self.plans.arm();
         self.modules.drop_later(self.plans.take_spent());
+        self.modules.plan_reads(self.plans.reads());
         self.modules.prepare();
         Ok(turn)
     }

@@ -2,15 +2,15 @@
 
 use super::loaded::Loaded;
 
-/// Returns for each module `true` if it is relevant; the plan reads the places on the board that `plan` lists.
-pub(crate) fn relevant<Y>(modules: &[Loaded<Y>], plan: &[usize]) -> Vec<bool> {
+/// Returns for each module `true` if it is relevant; the plan reads the places on the board that `plan` yields.
+pub(crate) fn relevant<Y>(modules: &[Loaded<Y>], plan: impl Iterator<Item = usize>) -> Vec<bool> {
     let owner = |place: usize| {
         let count = |module: &Loaded<Y>| module.declared.publishes.len();
         modules.iter().position(|module| (module.first..module.first + count(module)).contains(&place))
     };
     let mut relevant = vec![false; modules.len()];
     let always = (0..).zip(modules).filter(|(_, module)| module.is_always_relevant()).map(|(number, _)| number);
-    let mut found: Vec<usize> = always.chain(plan.iter().filter_map(|place| owner(*place))).collect();
+    let mut found: Vec<usize> = always.chain(plan.filter_map(owner)).collect();
     while let Some(number) = found.pop() {
         let Some(is_relevant) = relevant.get_mut(number).filter(|is_relevant| !**is_relevant) else { continue };
         *is_relevant = true;

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use mdle_runtime::Nanos;
+use mdle_runtime::{ModuleRead, Nanos};
 
 use super::event::{Arrivals, End, Event};
 use super::loaded::{Loaded, Runs, Standing};
@@ -57,7 +57,8 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
     /// reads.
     pub fn prepare(&mut self) {
         if std::mem::take(&mut self.has_changed) {
-            let relevant = relevant(&self.loaded, &self.plan_reads);
+            let places = self.plan_reads.iter().filter_map(|read| self.board.place(read.module, read.attribute));
+            let relevant = relevant(&self.loaded, places);
             for (module, is_relevant) in self.loaded.iter_mut().zip(relevant) {
                 let is_wanted = is_relevant && !module.is_held;
                 self.events.extend(module.becomes(is_wanted));
@@ -85,12 +86,11 @@ impl<Y: Send + Sync + 'static> Modules<Y> {
         }
     }
 
-    /// Sets the places on the board that the plan reads, now or soon: modules that only it needs make turns as long as
-    /// it needs them.
-    pub fn plan_reads(&mut self, places: &[usize]) {
-        if self.plan_reads != places {
+    /// Sets the attributes that plans read: modules that only plans need make turns as long as plans need them.
+    pub(crate) fn plan_reads(&mut self, reads: impl Iterator<Item = &'static ModuleRead> + Clone) {
+        if !self.plan_reads.iter().eq(reads.clone()) {
             self.plan_reads.clear();
-            self.plan_reads.extend_from_slice(places);
+            self.plan_reads.extend(reads);
             self.has_changed = true;
         }
     }

@@ -4,7 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use mdle_host::Transitions;
-use mdle_runtime::{Alphabet, Nanos, Turn};
+use mdle_runtime::{Alphabet, Nanos, Output as _, Published, Turn};
 
 use super::running::Running;
 use super::{EngineAlphabet, When};
@@ -15,6 +15,8 @@ pub(crate) struct Flight<A: Alphabet> {
     pub(crate) current: Running<A>,
     /// The plan that takes over in this turn, if what it waits for happens.
     pub(crate) next: Option<(Running<A>, When)>,
+    /// The numbers of modules that the next plan reads.
+    pub(crate) published: Published,
     /// Transitions of the current plan.
     pub(crate) transitions: Transitions,
     /// Result of the turn.
@@ -23,8 +25,8 @@ pub(crate) struct Flight<A: Alphabet> {
     pub(crate) at: Nanos,
 }
 
-/// Place where the control thread and the thread of the plan meet. It is never locked while code of a plan runs, so that
-/// a plan that hangs keeps its own turn and nothing else.
+/// Place where the control thread and the thread of the plan meet. It is never locked while code of a plan runs, so
+/// that a plan that hangs keeps its own turn and nothing else.
 pub(crate) struct Desk<A: Alphabet>(Mutex<OnDesk<A>>);
 
 struct OnDesk<A: Alphabet> {
@@ -69,7 +71,7 @@ impl<A: EngineAlphabet> Flight<A> {
     /// Returns the turns of a plan.
     pub(crate) fn new(current: Running<A>) -> Box<Self> {
         let transitions = Transitions::default();
-        Box::new(Self { current, next: None, transitions, turn: None, at: Nanos::ZERO })
+        Box::new(Self { current, next: None, published: Published::NONE, transitions, turn: None, at: Nanos::ZERO })
     }
 
     /// Makes the turn. A plan that is replaced is laid on the desk before its successor runs, which may hang.
@@ -86,7 +88,9 @@ impl<A: EngineAlphabet> Flight<A> {
                 // The input of the turn is dropped, and the law that computed it has had no effect.
                 desk.lock().replaced = Some(std::mem::replace(&mut self.current, next));
                 self.transitions.clear();
-                Some(self.current.turn(y, now, &mut self.transitions))
+                let mut y = y.clone();
+                y.take_published(self.published);
+                Some(self.current.turn(&y, now, &mut self.transitions))
             }
             None => Some(turn),
         };

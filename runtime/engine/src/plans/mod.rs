@@ -1,11 +1,12 @@
 //! Plans at run time: the plan that drives, the plan that is to follow, and the suspended plan to which the engine can
 //! roll back (paper, section III-D).
 //!
-//! A front end makes requests with [`Plans::swap`], [`Plans::cancel`] and [`Plans::rollback`] at a turn break, and reads
-//! the answers from [`Plans::take_events`] after each turn.
+//! A front end makes requests with [`Plans::swap`], [`Plans::cancel`] and [`Plans::rollback`] at a turn break, and
+//! reads the answers from [`Plans::take_events`] after each turn.
 
 mod compiler;
 mod flight;
+mod reads;
 mod running;
 
 use std::fmt;
@@ -18,9 +19,11 @@ pub(crate) use flight::PlanModule;
 use flight::{Desk, Flight, Landed};
 use mdle_compiler::load::LoadedPlan;
 use mdle_host::Transitions;
-use mdle_runtime::{Machine, Nanos, Turn};
+use mdle_runtime::{Machine, ModuleRead, Nanos, Published, Turn};
 pub use running::EngineAlphabet;
 use running::Running;
+
+use crate::board::Board;
 
 /// Time for which a new plan is on trial, unless [`Plans::set_trial`] sets another.
 pub const TRIAL: Nanos = Nanos(3_000_000_000);
@@ -193,7 +196,8 @@ impl<A: EngineAlphabet> Plans<A> {
         self.events.drain(..)
     }
 
-    /// Replaces the plan that drives at once and without a trial, as for a supervisor; a plan that is armed is cancelled.
+    /// Replaces the plan that drives at once and without a trial, as for a supervisor; a plan that is armed is
+    /// cancelled.
     pub(crate) fn divert(&mut self, plan: LoadedPlan<A>) {
         self.cancel();
         self.last = self.last.saturating_add(1);
@@ -242,22 +246,58 @@ impl<A: EngineAlphabet> Plans<A> {
         PlanModule(Arc::clone(&self.desk))
     }
 
-    /// Lays the plan's turn at time `now` on the desk of its module.
-    pub(crate) fn take_off(&mut self, now: Nanos) {
-        let Some(mut flight) = self.current.take() else { return };
+    /// Lays the plan's turn at time `now` on the desk of its module; returns the numbers of modules that the plan
+    /// reads. A plan that cannot begin yet makes no turn.
+    ///
+    /// # Errors
+    /// Why the first plan never begins: a sentence.
+    pub(crate) fn take_off(&mut self, now: Nanos, board: &Board) -> Result<Option<Published>, String> {
+        let next = self.ready_to_follow(now, board);
+        let Some(mut flight) = self.current.take() else { return Ok(None) };
         if let Some(suspended) = self.resumes.take() {
             flight.current.resume(suspended, now);
         }
-        match self.armed.take() {
-            Some((next, When::Now)) => {
+        if let Some((next, when, published)) = next {
+            flight.published = published;
+            if when == When::Now {
                 let old = std::mem::replace(&mut flight.current, next);
                 self.begins(old, flight.current.number, now);
+            } else {
+                flight.next = Some((next, when));
             }
-            armed => flight.next = armed,
         }
-        flight.transitions.clear();
-        (flight.turn, flight.at) = (None, now);
-        self.desk.lay(flight);
+        let published = flight.current.published(board, now);
+        if let Ok(Some(_)) = published {
+            flight.transitions.clear();
+            (flight.turn, flight.at) = (None, now);
+            self.desk.lay(flight);
+        } else {
+            self.current = Some(flight);
+        }
+        published
+    }
+
+    /// Takes the plan that is armed if it can begin in the turn at `now`, with the numbers of modules that it reads.
+    fn ready_to_follow(&mut self, now: Nanos, board: &Board) -> Option<(Running<A>, When, Published)> {
+        let (mut next, when) = self.armed.take_if(|_| self.current.is_some())?;
+        match next.published(board, now) {
+            Ok(Some(published)) => return Some((next, when, published)),
+            Ok(None) => self.armed = Some((next, when)),
+            Err(sentence) => {
+                self.events.push(PlanEvent::Refused(next.number, sentence));
+                self.spent.push(next);
+            }
+        }
+        None
+    }
+
+    /// Returns the attributes of modules that plans read: the plan that drives, the next one, and the suspended one.
+    pub(crate) fn reads(&self) -> impl Iterator<Item = &'static ModuleRead> + Clone {
+        let next = |flight: &Flight<A>| flight.next.as_ref().map(|(next, _)| next.reads);
+        let current = self.current.iter().flat_map(move |flight| [Some(flight.current.reads), next(flight)]).flatten();
+        let armed = self.armed.iter().map(|(armed, _)| armed.reads);
+        let suspended = self.suspended.iter().map(|(suspended, _)| suspended.reads);
+        current.chain(armed).chain(suspended).flatten()
     }
 
     /// Takes the plan's turn at time `now` from the desk; `transitions` takes those of the plan that drives now.

@@ -1,7 +1,10 @@
 //! A plan that runs, or is about to, with its own clock.
 
 use mdle_compiler::load::LoadedPlan;
-use mdle_runtime::{Alphabet, Machine, Nanos, Turn, Watch};
+use mdle_runtime::{Alphabet, Machine, ModuleRead, Nanos, Plan, Published, Turn, Watch};
+
+use super::reads::{self, Unready};
+use crate::board::Board;
 
 /// Alphabet of a robot whose plans an engine runs: its quarks move between threads.
 pub trait EngineAlphabet:
@@ -35,14 +38,40 @@ pub(crate) struct Running<A: Alphabet> {
     pub(crate) machine: Option<Machine<LoadedPlan<A>>>,
     /// The engine's time at which the plan began, moved on by the time for which it was suspended.
     pub(crate) zero: Nanos,
+    /// Attributes of modules that it reads.
+    pub(crate) reads: &'static [ModuleRead],
+    /// Time since which it waits for what it reads.
+    waits_since: Option<Nanos>,
     /// `true` if it was suspended before this turn.
     is_back: bool,
 }
 
 impl<A: Alphabet> Running<A> {
     /// Returns a plan before its first turn.
-    pub(crate) const fn new(number: u32, plan: LoadedPlan<A>) -> Self {
-        Self { number, ready: Some(plan), machine: None, zero: Nanos::ZERO, is_back: false }
+    pub(crate) fn new(number: u32, plan: LoadedPlan<A>) -> Self {
+        let reads = Plan::reads(&plan);
+        let zero = Nanos::ZERO;
+        Self { number, ready: Some(plan), machine: None, zero, reads, waits_since: None, is_back: false }
+    }
+
+    /// Returns the numbers of modules that the plan reads in the turn at `now`; `None` if it cannot begin yet.
+    ///
+    /// # Errors
+    /// Why it never begins: a sentence.
+    pub(crate) fn published(&mut self, board: &Board, now: Nanos) -> Result<Option<Published>, String> {
+        if self.ready.is_none() {
+            return Ok(Some(reads::current(self.reads, board, now)));
+        }
+        let since = *self.waits_since.get_or_insert(now);
+        match reads::published(self.reads, board, now) {
+            Ok(published) => Ok(Some(published)),
+            Err(Unready::OtherKind(sentence)) => Err(sentence),
+            Err(Unready::Missing(_)) if now.since(since) < reads::PATIENCE => Ok(None),
+            Err(Unready::Missing(missing)) => {
+                let seconds = reads::PATIENCE.seconds();
+                Err(format!("the plan reads {missing}, which no module has published within {seconds} s"))
+            }
+        }
     }
 
     /// Makes a turn at the engine's time `now`. The plan's time is zero in its first turn.
@@ -59,8 +88,8 @@ impl<A: Alphabet> Running<A> {
         machine.turn(y, t, watch)
     }
 
-    /// Lets the plan go on at `now` as if no time had passed since it was suspended. The law of its atom begins anew, as
-    /// the robot is somewhere else.
+    /// Lets the plan go on at `now` as if no time had passed since it was suspended. The law of its atom begins anew,
+    /// as the robot is somewhere else.
     pub(crate) fn resume(&mut self, suspended: Nanos, now: Nanos) {
         self.zero = Nanos(self.zero.0.saturating_add(now.since(suspended).0));
         self.is_back = true;

@@ -2,6 +2,8 @@
 
 use std::sync::{Arc, Mutex};
 
+use mdle_runtime::ModuleRead;
+
 use super::{number, sequential, turn};
 use crate::{
     Candidate, Event, Fault, In, Module, Modules, Out, Refusal, Relevance, Service, Standing, Threads, Turn, Value,
@@ -214,12 +216,12 @@ fn a_module_that_nothing_reads_makes_no_turns() {
     }
     modules.prepare();
     turn(&mut modules, 0);
-    let place = modules.board().place("planned", "out").unwrap();
-    modules.plan_reads(&[place]);
+    static READ: ModuleRead = ModuleRead { module: "planned", attribute: "out", unit: None };
+    modules.plan_reads([&READ].into_iter());
     modules.prepare();
     assert_eq!(modules.events(), [Event::Started("planned".into())]);
     turn(&mut modules, 1);
-    modules.plan_reads(&[]);
+    modules.plan_reads([].into_iter());
     modules.unload("reader").unwrap();
     modules.prepare();
     (2..4).for_each(|number| turn(&mut modules, number));
