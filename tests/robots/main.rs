@@ -5,6 +5,7 @@ mod batches;
 mod emulators;
 mod lab_tour;
 mod loaded;
+mod modules;
 mod movement;
 mod operands;
 mod paths;

@@ -13,6 +13,7 @@ mod targets;
 use std::process::ExitCode;
 
 use failure::Failure;
+pub use mdle_engine as engine;
 use mdle_engine::Library;
 use mdle_runtime::Sensed;
 

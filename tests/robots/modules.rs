@@ -1,0 +1,240 @@
+//! Plans that read modules: a robot that follows what a module publishes, and what happens if no module does.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::sync::Arc;
+use std::time::Duration;
+
+use mdle_compiler::compile;
+use mdle_compiler::diagnostic::Sources;
+use mdle_compiler::load::{self, Loaded};
+use mdle_engine::{
+    Background, Declare, Engine, Exchange, Fault, In, Library, Module, Modules, Out, PlanEvent, Relevance, Standing,
+    Turn, When,
+};
+use mdle_host::{Moment, Pace, Pilot, PilotFault, RunTerms, StopRequest, Time, Transitions};
+use mdle_runtime::{Meters, Nanos, Pose, Radians, Robot, Sensed, Turn as PlanTurn, Twist};
+use mdle_sim::alphabet::Alphabet;
+use mdle_sim::{Simulated, World};
+use mdle_tests::executable::{folder, run_mdlec};
+use mdle_tests::golden;
+
+const PERIOD: Duration = Duration::from_millis(100);
+/// Drives to whatever the module `heading` publishes.
+const FOLLOW: &str = "{ Sound (bumper OR age(heading module) > 5s)
+  (Atom (range(heading module) < 60cm) goAvoid(heading module))
+  (Atom (wait 1) stop)
+}";
+/// Where the sound comes from.
+const SOURCE: (f64, f64) = (3.0, 1.0);
+
+/// Publishes the place of the robot.
+struct Place(Out<Pose>);
+
+impl Module<Sensed> for Place {
+    fn turn(&mut self, turn: &mut Turn<'_, Sensed>) -> Result<(), Fault> {
+        turn.publish(self.0, turn.y.odometry);
+        Ok(())
+    }
+}
+
+/// Hears the sound, as two microphones would, a while after it was made.
+struct Ears {
+    place: In<Pose>,
+    bearing: Out<Radians>,
+    range: Out<Meters>,
+}
+
+impl Background for Ears {
+    fn run(self: Box<Self>, mut exchange: Exchange) {
+        let Self { place, bearing, range } = *self;
+        let hear = move |offer: &mut mdle_engine::Offer<'_>| {
+            let Some(pose) = offer.get(place) else { return };
+            let (x, y) = (SOURCE.0 - pose.x.0, SOURCE.1 - pose.y.0);
+            offer.publish(bearing, Radians(libm::atan2(y, x) - pose.theta.0).wrapped());
+            offer.publish(range, Meters(libm::hypot(x, y)));
+        };
+        while exchange.exchange(hear).is_ok() {}
+    }
+}
+
+/// Passes on what is new of what the ears hear.
+struct Heading {
+    heard: (In<Radians>, In<Meters>),
+    bearing: Out<Radians>,
+    range: Out<Meters>,
+}
+
+impl Module<Sensed> for Heading {
+    fn turn(&mut self, turn: &mut Turn<'_, Sensed>) -> Result<(), Fault> {
+        let (bearing, range) = self.heard;
+        if let (Some(bearing), Some(range)) = (turn.get(bearing), turn.get(range)) {
+            turn.publish(self.bearing, bearing);
+            turn.publish(self.range, range);
+        }
+        Ok(())
+    }
+}
+
+/// The modules by which a robot follows a sound.
+fn followers() -> Library<Sensed> {
+    let mut library = Library::new();
+    library.registered("place", |declare| Place(declare.publishes("pose")));
+    library.background("ears", |declare| {
+        declare.latency(Nanos(150_000_000));
+        Ears {
+            place: declare.reads("place", "pose"),
+            bearing: declare.publishes("bearing"),
+            range: declare.publishes("range"),
+        }
+    });
+    library.registered("heading", |declare| {
+        declare.relevance(Relevance::WhenRead);
+        Heading {
+            heard: (declare.reads("ears", "bearing"), declare.reads("ears", "range")),
+            bearing: declare.publishes("bearing"),
+            range: declare.publishes("range"),
+        }
+    });
+    library
+}
+
+fn loaded(text: &str) -> Arc<Loaded<Alphabet>> {
+    let alphabet = golden::alphabet(Some("sim"));
+    let mut sources = Sources::default();
+    let (mut compiled, found) = compile(sources.add("plan.mdle", text), text, &alphabet, None);
+    let machine = compiled.pop().unwrap_or_else(|| panic!("{found:?}")).machine;
+    load::load(&machine, &sources, &alphabet).map(Arc::new).unwrap()
+}
+
+/// A simulated robot in the hall, and the engine that drives it.
+struct Run {
+    robot: Simulated,
+    engine: Engine<Alphabet>,
+    input: Twist,
+    /// Place of the robot by odometry.
+    place: Pose,
+    turns: u64,
+}
+
+impl Run {
+    fn of(text: &str, library: &Library<Sensed>) -> Self {
+        let world = World::named("hall").unwrap().unwrap();
+        let robot = Simulated::new(&world, world.start, Some(3), PERIOD).unwrap();
+        let terms = RunTerms { time: Time::Stepped(Pace::Max), period: PERIOD, request: StopRequest::default() };
+        let engine = Engine::new(loaded(text).plan(), library, &terms).unwrap();
+        Self { robot, engine, input: Twist::default(), place: Pose::ORIGIN, turns: 0 }
+    }
+
+    fn turn(&mut self) -> Result<PlanTurn<Twist>, PilotFault> {
+        let y = self.robot.exchange(&self.input).unwrap();
+        self.place = y.odometry;
+        let t = Nanos(self.turns * 100_000_000);
+        let moment = Moment { y: &y, t, number: self.turns };
+        let turn = self.engine.turn(moment, &mut Transitions::default())?;
+        self.turns += 1;
+        self.input = turn.input();
+        Ok(turn)
+    }
+
+    /// Drives until the plan is over, for at most a minute; returns the inputs.
+    fn drive(&mut self) -> Vec<Twist> {
+        let mut inputs = Vec::new();
+        while self.turns < 600 {
+            match self.turn().unwrap() {
+                PlanTurn::Over => return inputs,
+                PlanTurn::Law(_) | PlanTurn::Cut => inputs.push(self.input),
+            }
+        }
+        panic!("the plan goes on")
+    }
+
+    fn distance(&self) -> f64 {
+        libm::hypot(SOURCE.0 - self.place.x.0, SOURCE.1 - self.place.y.0)
+    }
+}
+
+#[test]
+fn a_robot_follows_what_a_module_publishes() {
+    let mut run = Run::of(FOLLOW, &followers());
+    let inputs = run.drive();
+    assert!(run.distance() < 0.6, "{} m away after {} turns", run.distance(), run.turns);
+    // The place is published at break 0, heard at break 3, and passed on at break 4: before, the plan has not begun.
+    let first = inputs.iter().position(|input| *input != Twist::default());
+    assert_eq!(first, Some(5));
+    assert_eq!(run.engine.zero(), Nanos(500_000_000), "the plan's time begins with it");
+    // The threads of modules in the background decide nothing.
+    assert_eq!(Run::of(FOLLOW, &followers()).drive(), inputs);
+}
+
+#[test]
+fn a_plan_that_waits_in_vain_never_begins() {
+    let mut run = Run::of(FOLLOW, &Library::new());
+    let fault = std::iter::repeat_with(|| run.turn()).find_map(Result::err).unwrap();
+    let sentence =
+        "the plan reads /usr/heading/bearing and /usr/heading/range, which no module has published within 2 s";
+    assert_eq!((fault, run.turns, run.input), (PilotFault::Stopped(sentence.into()), 20, Twist::default()));
+}
+
+/// A module `heading` whose bearing is no angle.
+fn wrong() -> Library<Sensed> {
+    struct Wrong;
+    impl Module<Sensed> for Wrong {
+        fn turn(&mut self, _: &mut Turn<'_, Sensed>) -> Result<(), Fault> {
+            Ok(())
+        }
+    }
+    let mut library = Library::new();
+    library.registered("heading", |declare: &mut Declare| {
+        let _: Out<Meters> = declare.publishes("bearing");
+        Wrong
+    });
+    library
+}
+
+#[test]
+fn a_plan_and_a_module_agree_on_kinds() {
+    let fault = Run::of(FOLLOW, &wrong()).turn().unwrap_err();
+    let sentence = "the plan reads /usr/heading/bearing in rad, and it is a length";
+    assert_eq!(fault, PilotFault::Stopped(sentence.into()));
+}
+
+#[test]
+fn a_plan_that_reads_nothing_new_takes_over_at_once() {
+    let mut run = Run::of("{ Stand (wait 60) (Atom (null) stop) }", &followers());
+    (0..10).for_each(|_| _ = run.turn().unwrap());
+    let standing = |modules: &Modules<Sensed>| modules.names().find(|(name, _)| *name == "heading").unwrap().1;
+    assert_eq!(standing(run.engine.modules()), Standing::Stopped, "nothing reads it");
+    run.engine.plans().replace(loaded(FOLLOW).plan(), When::Now);
+    // It is started for the plan that is to follow, which takes over once it has published.
+    let taken = (0..10).position(|_| {
+        run.turn().unwrap();
+        run.engine.plans().number() == 2
+    });
+    assert_eq!((taken, standing(run.engine.modules())), (Some(2), Standing::Active));
+    run.drive();
+    assert!(run.distance() < 0.6);
+}
+
+#[test]
+fn a_plan_that_cannot_take_over_is_refused() {
+    let mut run = Run::of("{ Stand (wait 60) (Atom (null) stop) }", &Library::new());
+    run.engine.plans().replace(loaded(FOLLOW).plan(), When::Now);
+    (0..25).for_each(|_| _ = run.turn().unwrap());
+    let events: Vec<_> = run.engine.plans().take_events().collect();
+    let [PlanEvent::Armed(2), PlanEvent::Refused(2, sentence)] = &events[..] else { panic!("{events:?}") };
+    assert!(sentence.contains("/usr/heading/range, which no module has published"), "{sentence}");
+    assert_eq!(run.engine.plans().number(), 1);
+}
+
+#[test]
+fn an_executable_has_no_modules() {
+    let folder = folder("modules");
+    fs::write(folder.join("follow.mdle"), FOLLOW).unwrap();
+    let checked = run_mdlec(&folder, &["check", "follow.mdle", "--target", "sim"]);
+    assert_eq!(String::from_utf8(checked.stderr).unwrap(), "");
+    let built = run_mdlec(&folder, &["follow.mdle", "--target", "sim"]);
+    assert_eq!(built.status.code(), Some(1));
+    insta::assert_snapshot!(String::from_utf8(built.stderr).unwrap());
+}
