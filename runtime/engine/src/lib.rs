@@ -14,6 +14,7 @@ mod plans;
 pub mod safety;
 #[cfg(test)]
 mod tests;
+pub mod tree;
 
 pub use attribute::{Attribute, AttributeKind, AttributeName, In, Out, Reading, Value};
 pub use board::{Board, Post};

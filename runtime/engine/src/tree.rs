@@ -1,0 +1,17 @@
+//! The tree of attributes (paper, III-H): what people and programs may read, set and call while a plan runs.
+//!
+//! A front end, on a thread of its own, turns what is typed into a [`Request`] and asks the [`Hub`]. Readings come from
+//! the snapshot of a break; changes wait in a queue until a break. The thread that drives the robot has the [`Desk`],
+//! and never waits for a front end.
+
+mod desk;
+mod hub;
+mod node;
+mod request;
+mod value;
+
+pub use desk::{Desk, Reply, Served};
+pub use hub::{Hub, QUEUE, hub};
+pub use node::{Access, Kind, Node, Role, Tree};
+pub use request::{Answer, Change, Operation, Request};
+pub use value::{Value, read};

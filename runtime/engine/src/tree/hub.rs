@@ -1,0 +1,177 @@
+//! The hub between the front ends and the thread that drives the robot.
+
+use std::collections::BTreeSet;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, SyncSender, TrySendError, channel, sync_channel};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
+
+use mdle_compiler::alphabet::nearest;
+
+use super::desk::{Desk, Pending};
+use super::{Access, Answer, Change, Node, Operation, Request, Tree, Value};
+
+/// Maximum number of changes that wait for a break.
+pub const QUEUE: usize = 64;
+/// Maximum wait for a snapshot that is not older than the question.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// Everything that can be read, as it was at one break.
+#[derive(Debug, Default)]
+pub(super) struct Snapshot {
+    pub(super) tree: Arc<Tree>,
+    /// Values in the order of the nodes; `None` for one that has no value yet, and for methods.
+    pub(super) values: Vec<Option<Value>>,
+    /// Number of the snapshot, from 1.
+    pub(super) number: u64,
+}
+
+/// What both sides share.
+#[derive(Debug, Default)]
+pub(super) struct Shared {
+    pub(super) snapshot: Mutex<Arc<Snapshot>>,
+    pub(super) changed: Condvar,
+    /// `true` if a front end waits for a snapshot.
+    pub(super) wanted: AtomicBool,
+    pub(super) ended: AtomicBool,
+}
+
+/// The front ends' side. Its methods may wait.
+#[derive(Debug, Clone)]
+pub struct Hub {
+    shared: Arc<Shared>,
+    queue: SyncSender<Pending>,
+}
+
+/// Returns a hub, and the desk that answers it.
+#[must_use]
+pub fn hub() -> (Hub, Desk) {
+    let (queue, requests): (_, Receiver<Pending>) = sync_channel(QUEUE);
+    let shared = Arc::new(Shared::default());
+    (Hub { shared: Arc::clone(&shared), queue }, Desk::new(shared, requests))
+}
+
+impl Hub {
+    /// Waits for the first break of the run; returns `false` if the run has ended before it.
+    #[must_use]
+    pub fn has_begun(&self) -> bool {
+        self.shared.wanted.store(true, Ordering::SeqCst);
+        let waits = |kept: &mut Arc<Snapshot>| kept.number == 0 && !self.shared.ended.load(Ordering::SeqCst);
+        let kept = self.shared.changed.wait_while(self.lock(), waits).unwrap_or_else(PoisonError::into_inner);
+        kept.number > 0
+    }
+
+    /// Answers a request. A change waits until a break has carried it out; after the run, only readings are answered.
+    #[must_use]
+    pub fn ask(&self, request: Request) -> Answer {
+        let Some(snapshot) = self.snapshot() else { return Answer::Ended };
+        let path = request.path.trim_end_matches('/').to_owned();
+        match request.operation {
+            Operation::List => {
+                let names = names(&snapshot.tree, &path);
+                if names.is_empty() { nothing(&snapshot.tree, &path) } else { Answer::Entries(names) }
+            }
+            Operation::Get => match snapshot.tree.keys().position(|key| *key == path) {
+                None => nothing(&snapshot.tree, &path),
+                Some(place) => match snapshot.values.get(place) {
+                    Some(Some(value)) => Answer::Value(value.to_string()),
+                    _ if snapshot.tree.get(&path).is_some_and(|node| node.access == Access::Call) => {
+                        Answer::Refused(format!("`{path}` is a method: call it"))
+                    }
+                    Some(None) | None => Answer::Value("(no value yet)".to_owned()),
+                },
+            },
+            Operation::Change(ref change) => {
+                let Some(node) = snapshot.tree.get(&path) else { return nothing(&snapshot.tree, &path) };
+                match refusal(&path, node, change, &request) {
+                    Some(refusal) => Answer::Refused(refusal),
+                    None => self.change(Request { path, ..request }),
+                }
+            }
+        }
+    }
+
+    /// Returns the paths that begin so, each up to the next `/`.
+    #[must_use]
+    pub fn complete(&self, begun: &str) -> Vec<String> {
+        let snapshot = Arc::clone(&self.lock());
+        let paths = snapshot.tree.keys().filter_map(|path| {
+            let rest = path.strip_prefix(begun)?;
+            Some(rest.find('/').map_or(path.as_str(), |end| path.get(..=begun.len() + end).unwrap_or(path)).to_owned())
+        });
+        paths.collect::<BTreeSet<_>>().into_iter().collect()
+    }
+
+    /// Returns the node of this path, as the last snapshot has it.
+    #[must_use]
+    pub fn node(&self, path: &str) -> Option<Node> {
+        self.lock().tree.get(path).copied()
+    }
+
+    /// Hands a change over, and waits for its answer.
+    fn change(&self, request: Request) -> Answer {
+        let (reply, answer) = channel();
+        match self.queue.try_send(Pending { request, reply }) {
+            Ok(()) => answer.recv().unwrap_or(Answer::Ended),
+            Err(TrySendError::Full(_)) => {
+                Answer::Refused(format!("{QUEUE} changes are waiting already: try again later"))
+            }
+            Err(TrySendError::Disconnected(_)) => Answer::Ended,
+        }
+    }
+
+    /// Returns a snapshot that was made after the call, or the last one if the robot makes no turn or the run has ended;
+    /// `None` if there is none.
+    fn snapshot(&self) -> Option<Arc<Snapshot>> {
+        let mut kept = self.lock();
+        let before = kept.number;
+        self.shared.wanted.store(true, Ordering::SeqCst);
+        let is_old = |kept: &mut Arc<Snapshot>| kept.number == before && !self.shared.ended.load(Ordering::SeqCst);
+        kept = self.shared.changed.wait_timeout_while(kept, PATIENCE, is_old).unwrap_or_else(PoisonError::into_inner).0;
+        (kept.number > 0).then(|| Arc::clone(&kept))
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Arc<Snapshot>> {
+        self.shared.snapshot.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// The names in a folder; those of folders end with `/`.
+fn names(tree: &Tree, folder: &str) -> Vec<String> {
+    let inside = format!("{folder}/");
+    let names = tree.keys().filter_map(|path| path.strip_prefix(&inside));
+    let names = names.map(|rest| rest.split_once('/').map_or(rest.to_owned(), |(folder, _)| format!("{folder}/")));
+    names.collect::<BTreeSet<_>>().into_iter().collect()
+}
+
+/// The answer about a path that leads nowhere.
+fn nothing(tree: &Tree, path: &str) -> Answer {
+    if !names(tree, path).is_empty() {
+        return Answer::Refused(format!("`{path}` is a folder: `ls {path}` lists it"));
+    }
+    if tree.contains_key(path) {
+        return Answer::Refused(format!("`{path}` is no folder"));
+    }
+    let near = nearest(path, tree.keys().map(String::as_str));
+    let near = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+    let path = if path.is_empty() { "/" } else { path };
+    Answer::Refused(format!("there is nothing at `{path}`{near}"))
+}
+
+/// Returns why a node does not take a change, as far as the node itself decides it.
+fn refusal(path: &str, node: &Node, change: &Change, request: &Request) -> Option<String> {
+    match (change, node.access) {
+        (Change::Set(_), Access::Read) => return Some(format!("`{path}` is read-only")),
+        (Change::Set(_), Access::Call) => return Some(format!("`{path}` is a method: call it")),
+        (Change::Call(_), Access::Read | Access::Write) => return Some(format!("`{path}` is an attribute: read it")),
+        (Change::Set(_), Access::Write) | (Change::Call(_), Access::Call) => {}
+    }
+    if request.role < node.role {
+        let (needed, own) = (node.role.name(), request.role.name());
+        return Some(format!("`{path}` needs the role {needed}, and this session has {own}"));
+    }
+    match change {
+        Change::Set(text) => super::read(text, node.kind).err().map(|refusal| format!("`{path}`: {refusal}")),
+        Change::Call(_) => None,
+    }
+}

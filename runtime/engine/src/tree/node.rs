@@ -1,0 +1,94 @@
+//! The nodes of the tree: what may be done with each, by whom.
+
+use std::collections::BTreeMap;
+
+use mdle_quantity::Quantity;
+
+/// The nodes by their paths. A folder is a path that others begin with.
+pub type Tree = BTreeMap<String, Node>;
+
+/// An attribute or a method.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Node {
+    /// What may be done with it.
+    pub access: Access,
+    /// Kind of its value.
+    pub kind: Kind,
+    /// The least role that may set or call it.
+    pub role: Role,
+    /// A noun phrase about it.
+    pub doc: &'static str,
+}
+
+/// What may be done with a node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Access {
+    /// It is read.
+    Read,
+    /// It is read and set.
+    Write,
+    /// It is called.
+    Call,
+}
+
+/// Kind of a value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// `true` or `false`.
+    Flag,
+    /// A whole number.
+    Integer,
+    /// A number with this unit, which is the one of the quantity that [`Quantity::read`] returns.
+    Quantity(Quantity, &'static str),
+    /// Text.
+    Text,
+}
+
+/// The roles of those who ask. Each may do what those before it may.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Role {
+    /// Reads.
+    View,
+    /// Changes settings.
+    Tune,
+    /// Replaces plans.
+    Swap,
+    /// Changes safety rules, and ends the session.
+    Admin,
+}
+
+impl Role {
+    /// All roles, the least first.
+    pub const ALL: [Self; 4] = [Self::View, Self::Tune, Self::Swap, Self::Admin];
+
+    /// Returns the name of the role.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::View => "view",
+            Self::Tune => "tune",
+            Self::Swap => "swap",
+            Self::Admin => "admin",
+        }
+    }
+}
+
+impl Node {
+    /// Returns an attribute that is only read.
+    #[must_use]
+    pub const fn reading(kind: Kind, doc: &'static str) -> Self {
+        Self { access: Access::Read, kind, role: Role::View, doc }
+    }
+
+    /// Returns an attribute that this role may set.
+    #[must_use]
+    pub const fn setting(kind: Kind, role: Role, doc: &'static str) -> Self {
+        Self { access: Access::Write, kind, role, doc }
+    }
+
+    /// Returns a method that this role may call.
+    #[must_use]
+    pub const fn method(role: Role, doc: &'static str) -> Self {
+        Self { access: Access::Call, kind: Kind::Text, role, doc }
+    }
+}

@@ -1,0 +1,49 @@
+//! Requests to the tree, and their answers: the same from wherever they come.
+
+use super::Role;
+
+/// A request.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Request {
+    /// Path of a node or a folder, such as `/clock/pace`.
+    pub path: String,
+    /// What to do with it.
+    pub operation: Operation,
+    /// The role of who asks.
+    pub role: Role,
+}
+
+/// What to do with a node.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Operation {
+    /// Returns the names in a folder.
+    List,
+    /// Returns the value of an attribute.
+    Get,
+    /// Sets or calls: waits for a break.
+    Change(Change),
+}
+
+/// A change, which a break carries out.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Change {
+    /// Sets an attribute to the value that this text is.
+    Set(String),
+    /// Calls a method with these arguments.
+    Call(Vec<String>),
+}
+
+/// The answer to a request.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Answer {
+    /// The names in a folder; those of folders end with `/`.
+    Entries(Vec<String>),
+    /// A value.
+    Value(String),
+    /// The change was carried out: a sentence, which may be empty.
+    Done(String),
+    /// The request was refused: a sentence.
+    Refused(String),
+    /// The run has ended, or has not begun: there is nobody to ask.
+    Ended,
+}
