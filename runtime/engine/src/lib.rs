@@ -12,6 +12,7 @@ mod library;
 mod module;
 mod plans;
 pub mod safety;
+pub mod shell;
 #[cfg(test)]
 mod tests;
 pub mod tree;

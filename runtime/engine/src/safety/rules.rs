@@ -120,6 +120,15 @@ impl Measure {
         }
     }
 
+    /// Converts a value in SI to that unit.
+    #[must_use]
+    pub fn in_its_unit(self, value: f64) -> f64 {
+        match self {
+            Self::TurnRate => Radians(value).degrees(),
+            Self::Speed | Self::Acceleration => value,
+        }
+    }
+
     /// Returns the limit.
     #[must_use]
     pub fn of(self, limits: &mut Limits) -> &mut f64 {

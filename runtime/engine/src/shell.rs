@@ -1,0 +1,15 @@
+//! The shell: a session of a person or a file of commands with a run (paper, III-H; docs/src/shell.md).
+//!
+//! A [`Session`] is the supervisor of the run: it serves requests at breaks, and lets the clock stand. The front end,
+//! [`converse`], runs on a thread of its own.
+
+mod clock;
+mod command;
+mod converse;
+mod lines;
+mod parts;
+mod session;
+
+pub use converse::{Conversation, converse};
+pub use lines::{Input, Lines, Terminal, Typed};
+pub use session::Session;

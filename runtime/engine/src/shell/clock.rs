@@ -1,0 +1,172 @@
+//! The clock of a session: pause, resume, single turns and the pace of stepped time.
+
+use std::time::Duration;
+
+use mdle_host::{Break, Pace, Time};
+use mdle_quantity::Quantity;
+use mdle_runtime::Nanos;
+
+use crate::tree::{Answer, Change, Kind, Node, Reply, Role, Served, Value, read};
+
+/// Seconds in the tree.
+const SECONDS: Kind = Kind::Quantity(Quantity::Time, "s");
+
+/// The clock of a session.
+#[derive(Debug)]
+pub(super) struct SessionClock {
+    period: Duration,
+    /// The pace as it was asked for; `None` where time is the wall clock's.
+    pace: Option<Pace>,
+    /// A pace that the run does not have yet.
+    pub(super) ordered: Option<Pace>,
+    pub(super) is_paused: bool,
+    /// The number of turns after which the clock stands again, and whom to tell.
+    steps: Option<(u64, Reply)>,
+    /// Those who wait for a time, or for the end of the plan.
+    waits: Vec<(Nanos, Reply)>,
+}
+
+impl SessionClock {
+    pub(super) fn new(period: Duration, time: Time, is_paused: bool) -> Self {
+        let pace = match time {
+            Time::Wall => None,
+            Time::Stepped(pace) => Some(pace),
+        };
+        let is_paused = is_paused && pace.is_some();
+        Self { period, pace, ordered: None, is_paused, steps: None, waits: Vec::new() }
+    }
+
+    /// Tells those whose turn or whose time has come.
+    pub(super) fn made<Y, U>(&mut self, moment: &Break<'_, Y, U>) {
+        let now = said(moment);
+        if let Some((_, reply)) = self.steps.take_if(|(turns, _)| moment.turns >= *turns || moment.is_over) {
+            self.is_paused = true;
+            reply.answer(Answer::Done(now.clone()));
+        }
+        let waits = std::mem::take(&mut self.waits);
+        for (until, reply) in waits {
+            if moment.is_over || moment.turns > 0 && moment.t >= until {
+                reply.answer(Answer::Done(now.clone()));
+            } else {
+                self.waits.push((until, reply));
+            }
+        }
+    }
+
+    fn step<Y, U>(&mut self, arguments: &[String], moment: &Break<'_, Y, U>, reply: Reply) {
+        let count = match arguments {
+            [] => Ok(1),
+            [count] => match read(count, Kind::Integer) {
+                Ok(Value::Integer(count @ 1..)) => Ok(count),
+                Ok(_) => Err("`step` takes a number of turns from 1".to_owned()),
+                Err(refusal) => Err(format!("`step`: {refusal}")),
+            },
+            [_, _, ..] => Err("`step` takes one number of turns".to_owned()),
+        };
+        match count {
+            Err(refusal) => reply.answer(Answer::Refused(refusal)),
+            Ok(_) if self.pace.is_none() => reply.answer(Answer::Refused(REAL.to_owned())),
+            Ok(count) => {
+                self.is_paused = false;
+                self.steps = Some((moment.turns.saturating_add(count), reply));
+            }
+        }
+    }
+
+    fn wait<Y, U>(&mut self, arguments: &[String], moment: &Break<'_, Y, U>, reply: Reply) {
+        let time = match arguments {
+            [] => Ok(Nanos::MAX),
+            [time] => match read(time, SECONDS) {
+                Ok(Value::Quantity(seconds, _)) => Duration::try_from_secs_f64(seconds)
+                    .map(|time| Nanos(moment.t.0.saturating_add(u64::try_from(time.as_nanos()).unwrap_or(u64::MAX))))
+                    .map_err(|_| format!("`wait` takes a time of at least 0s; found `{time}`")),
+                Ok(_) => Err("`wait` takes a time".to_owned()),
+                Err(refusal) => Err(format!("`wait`: {refusal}")),
+            },
+            [_, _, ..] => Err("`wait` takes one time".to_owned()),
+        };
+        match time {
+            Err(refusal) => reply.answer(Answer::Refused(refusal)),
+            Ok(_) if self.is_paused => {
+                reply.answer(Answer::Refused(
+                    "the clock stands: `resume` lets it go on, and `step N` for N turns".into(),
+                ));
+            }
+            Ok(until) => self.waits.push((until, reply)),
+        }
+    }
+
+    fn set_pace(&mut self, text: &str) -> Answer {
+        let number = text.parse().ok().filter(|times: &f64| times.is_finite() && *times > 0.0);
+        let pace = if text == "max" { Some(Pace::Max) } else { number.map(Pace::Times) };
+        match (pace, &mut self.pace) {
+            (_, None) => Answer::Refused(REAL.to_owned()),
+            (None, Some(_)) => {
+                Answer::Refused(format!("`/clock/pace`: expected a number above 0 or `max`, found `{text}`"))
+            }
+            (Some(pace), Some(kept)) => {
+                (*kept, self.ordered) = (pace, Some(pace));
+                Answer::Done(String::new())
+            }
+        }
+    }
+}
+
+/// The refusal where time is the wall clock's.
+const REAL: &str = "the time of a real robot goes on by itself";
+
+/// The time of a break, for an answer.
+fn said<Y, U>(moment: &Break<'_, Y, U>) -> String {
+    let (turns, t) = (moment.turns, Value::Quantity(moment.t.seconds(), "s"));
+    let word = if turns == 1 { "turn" } else { "turns" };
+    let over = if moment.is_over { ", and the plan is over" } else { "" };
+    format!("{turns} {word}, {t}{over}")
+}
+
+impl<Y, U> Served<Break<'_, Y, U>> for SessionClock {
+    fn nodes(&self) -> Vec<(String, Node)> {
+        let nodes = [
+            ("now", Node::reading(SECONDS, "time of the last turn")),
+            ("turns", Node::reading(Kind::Integer, "number of turns that have been made")),
+            ("period", Node::reading(SECONDS, "time from the start of a turn to the start of the next")),
+            ("pace", Node::setting(Kind::Text, Role::Tune, "pace of stepped time: a multiple of real time, or `max`")),
+            ("state", Node::reading(Kind::Text, "`runs` or `stands`")),
+            ("pause", Node::method(Role::Tune, "stops stepped time after this turn")),
+            ("resume", Node::method(Role::Tune, "lets stepped time go on")),
+            ("step", Node::method(Role::Tune, "makes one turn, or as many as the argument says, and stops the time")),
+            ("wait", Node::method(Role::View, "answers after a time, or at the end of the plan")),
+        ];
+        nodes.map(|(name, node)| (format!("/clock/{name}"), node)).into()
+    }
+
+    fn values(&self, moment: &Break<'_, Y, U>, to: &mut Vec<Option<Value>>) {
+        let pace = match self.pace {
+            None => "real".to_owned(),
+            Some(Pace::Max) => "max".to_owned(),
+            Some(Pace::Times(times)) => times.to_string(),
+        };
+        let state = if self.is_paused { "stands" } else { "runs" };
+        to.extend([
+            Some(Value::Quantity(moment.t.seconds(), "s")),
+            Some(Value::Integer(moment.turns)),
+            Some(Value::Quantity(self.period.as_secs_f64(), "s")),
+            Some(Value::Text(pace)),
+            Some(Value::Text(state.to_owned())),
+        ]);
+        to.extend([const { None }; 4]);
+    }
+
+    fn change(&mut self, path: &str, change: &Change, moment: &Break<'_, Y, U>, reply: Reply) {
+        match (path, change) {
+            ("/clock/step", Change::Call(arguments)) => return self.step(arguments, moment, reply),
+            ("/clock/wait", Change::Call(arguments)) => return self.wait(arguments, moment, reply),
+            (_, Change::Set(text)) => return reply.answer(self.set_pace(text)),
+            (_, Change::Call(arguments)) if !arguments.is_empty() => {
+                return reply.answer(Answer::Refused(format!("`{path}` takes no arguments")));
+            }
+            (_, Change::Call(_)) if self.pace.is_none() => return reply.answer(Answer::Refused(REAL.to_owned())),
+            (_, Change::Call(_)) => self.is_paused = path == "/clock/pause",
+        }
+        reply.answer(Answer::Done(said(moment)));
+    }
+}

@@ -1,0 +1,129 @@
+//! The commands of the shell: a line becomes a request.
+
+use crate::tree::{Change, Operation};
+
+/// A command that was typed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Command {
+    /// An empty line or a comment.
+    Nothing,
+    /// A request for the node or the folder of this path.
+    Ask(String, Operation),
+    /// Changes the folder that paths begin at.
+    Enter(String),
+    /// Prints that folder.
+    Here,
+    /// Prints the commands, or what a node is.
+    Help(Option<String>),
+    /// Ends the session, as the end of the commands does.
+    Quit,
+}
+
+/// The commands, with their arguments and what they do.
+pub(super) const COMMANDS: [(&str, &str, &str); 13] = [
+    ("ls", "[PATH]", "list a folder"),
+    ("cd", "[PATH]", "change the folder"),
+    ("pwd", "", "print the folder"),
+    ("get", "PATH", "print a value"),
+    ("set", "PATH VALUE", "set a value, as in `set /clock/pace 2`"),
+    ("call", "PATH [ARGUMENTS]", "call a method"),
+    ("help", "[PATH]", "print the commands, or what a node is"),
+    ("pause", "", "stop stepped time"),
+    ("resume", "", "let stepped time go on"),
+    ("step", "[N]", "make N turns, and stop the time"),
+    ("wait", "[TIME]", "wait for this long by the robot's clock, or for the end of the plan"),
+    ("pace", "N|max", "set the pace of stepped time"),
+    ("quit", "", "stop the robot, and end the session"),
+];
+
+/// Reads a line, typed in the folder `here`.
+///
+/// # Errors
+/// A sentence with what to type instead.
+pub(super) fn command(line: &str, here: &str) -> Result<Command, String> {
+    let line = line.trim();
+    if line.is_empty() || line.starts_with('#') {
+        return Ok(Command::Nothing);
+    }
+    let (name, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+    let rest = rest.trim();
+    let (first, others) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
+    let Some((_, arguments, _)) = COMMANDS.iter().find(|(known, ..)| *known == name) else {
+        let names = COMMANDS.map(|(name, ..)| name);
+        let near = mdle_compiler::alphabet::did_you_mean(name, &names);
+        return Err(format!("there is no command `{name}`{near}; `help` lists them"));
+    };
+    let usage = || match *arguments {
+        "" => Err(format!("`{name}` takes no arguments")),
+        arguments => Err(format!("`{name}` is used as `{name} {arguments}`")),
+    };
+    let words = || rest.split_whitespace().map(str::to_owned).collect();
+    let call = |path: &str, arguments| Ok(Command::Ask(path.to_owned(), Operation::Change(Change::Call(arguments))));
+    let path = || path(first, here);
+    match name {
+        "pwd" | "pause" | "resume" | "quit" if !rest.is_empty() => usage(),
+        "ls" | "cd" | "get" | "help" if !others.is_empty() => usage(),
+        "get" | "call" | "set" | "pace" if first.is_empty() => usage(),
+        "set" if others.trim().is_empty() => usage(),
+        "ls" => Ok(Command::Ask(path(), Operation::List)),
+        "cd" if first.is_empty() => Ok(Command::Enter("/".to_owned())),
+        "cd" => Ok(Command::Enter(path())),
+        "pwd" => Ok(Command::Here),
+        "get" => Ok(Command::Ask(path(), Operation::Get)),
+        "set" => Ok(Command::Ask(path(), Operation::Change(Change::Set(others.trim().to_owned())))),
+        "call" => call(&path(), others.split_whitespace().map(str::to_owned).collect()),
+        "help" => Ok(Command::Help((!first.is_empty()).then(path))),
+        "pace" => Ok(Command::Ask("/clock/pace".to_owned(), Operation::Change(Change::Set(rest.to_owned())))),
+        "quit" => Ok(Command::Quit),
+        other => call(&format!("/clock/{other}"), words()),
+    }
+}
+
+/// Returns an absolute path for one that was typed in the folder `here`.
+fn path(typed: &str, here: &str) -> String {
+    let from = if typed.starts_with('/') { "" } else { here };
+    let mut parts: Vec<&str> = Vec::new();
+    for part in from.split('/').chain(typed.split('/')) {
+        match part {
+            "" | "." => {}
+            ".." => drop(parts.pop()),
+            name => parts.push(name),
+        }
+    }
+    format!("/{}", parts.join("/"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_becomes_a_request() {
+        let ask = |path: &str, operation| Ok(Command::Ask(path.to_owned(), operation));
+        assert_eq!(command("  # nothing", "/"), Ok(Command::Nothing));
+        assert_eq!(command("ls", "/usr"), ask("/usr", Operation::List));
+        assert_eq!(command("get ../clock/./now", "/usr"), ask("/clock/now", Operation::Get));
+        assert_eq!(command("cd ../../..", "/usr"), Ok(Command::Enter("/".to_owned())));
+        let set = Operation::Change(Change::Set("a b".to_owned()));
+        assert_eq!(command("set x\t a b ", "/"), ask("/x", set));
+        let step = Operation::Change(Change::Call(vec!["3".to_owned()]));
+        assert_eq!(command("step 3", "/"), ask("/clock/step", step));
+    }
+
+    #[test]
+    fn a_wrong_line_is_refused_with_what_to_type() {
+        let lines = ["fly", "sett x 1", "set", "set x", "get", "get a b", "pause now", "pace", "ls a b", "call"];
+        insta::assert_snapshot!(lines.map(|line| command(line, "/").unwrap_err()).join("\n"), @"
+        there is no command `fly`; `help` lists them
+        there is no command `sett`; did you mean `set`?; `help` lists them
+        `set` is used as `set PATH VALUE`
+        `set` is used as `set PATH VALUE`
+        `get` is used as `get PATH`
+        `get` is used as `get PATH`
+        `pause` takes no arguments
+        `pace` is used as `pace N|max`
+        `ls` is used as `ls [PATH]`
+        `call` is used as `call PATH [ARGUMENTS]`
+        ");
+    }
+}

@@ -1,0 +1,130 @@
+//! The front end of the shell: reads commands, asks the hub, and prints the answers.
+
+use std::io::Write;
+
+use mdle_runtime::PrintableLines;
+
+use super::command::{COMMANDS, Command, command};
+use super::{Lines, Typed};
+use crate::tree::{Access, Answer, Change, Hub, Kind, Node, Operation, Request, Role};
+
+/// The way in which a session talks.
+#[derive(Debug, Clone)]
+pub struct Conversation {
+    /// Name of the file of commands, for messages about its lines; `None` at a terminal.
+    pub file: Option<String>,
+    /// The role of who asks.
+    pub role: Role,
+    /// `true` if the first error ends the session.
+    pub stops_at_errors: bool,
+    /// `true` if each command is printed before its answer.
+    pub echoes: bool,
+}
+
+/// Carries out commands until there are no more, the session ends, or an error ends it; then the run is ended as well.
+/// Returns `true` if every command was carried out. A run that never begins has reported why.
+pub fn converse(
+    hub: &Hub,
+    conversation: &Conversation,
+    lines: &mut dyn Lines,
+    out: &mut dyn Write,
+    err: &mut dyn Write,
+) -> bool {
+    if !hub.has_begun() {
+        return true;
+    }
+    let mut here = "/".to_owned();
+    let mut is_well = true;
+    loop {
+        let (number, line) = match lines.next(&here) {
+            Typed::End => break,
+            Typed::Line(number, line) => (number, Ok(line)),
+            Typed::Unusable(number, sentence) => (number, Err(sentence)),
+        };
+        if let (Ok(line), true) = (&line, conversation.echoes) {
+            let _ = writeln!(out, "> {}", PrintableLines(line));
+        }
+        let command = line.and_then(|line| command(&line, &here));
+        if command == Ok(Command::Quit) {
+            break;
+        }
+        let answer = match command {
+            Ok(command) => carried_out(hub, conversation.role, command, &mut here),
+            Err(sentence) => Answer::Refused(sentence),
+        };
+        let has_ended = answer == Answer::Ended;
+        let sentence = match answer {
+            Answer::Entries(entries) => Ok(entries.join("\n")),
+            Answer::Value(text) | Answer::Done(text) => Ok(text),
+            Answer::Refused(sentence) => Err(sentence),
+            Answer::Ended => Err("the run has ended".to_owned()),
+        };
+        let is_done = sentence.is_ok();
+        match sentence {
+            Ok(text) if text.is_empty() => {}
+            Ok(text) => drop(writeln!(out, "{}", PrintableLines(text))),
+            Err(sentence) => {
+                is_well = false;
+                let place = conversation.file.as_ref().map(|file| format!("{file}:{number}: ")).unwrap_or_default();
+                let _ = writeln!(err, "error: {place}{}", PrintableLines(&sentence));
+            }
+        }
+        let _ = out.flush();
+        if has_ended || !is_done && conversation.stops_at_errors {
+            break;
+        }
+    }
+    // The run is the session's, whatever its role.
+    let quit = Operation::Change(Change::Call(Vec::new()));
+    let _ = hub.ask(Request { path: "/engine/quit".to_owned(), operation: quit, role: Role::Admin });
+    is_well
+}
+
+/// Carries out a command.
+fn carried_out(hub: &Hub, role: Role, command: Command, here: &mut String) -> Answer {
+    match command {
+        Command::Nothing | Command::Quit => Answer::Done(String::new()),
+        Command::Ask(path, operation) => hub.ask(Request { path, operation, role }),
+        Command::Here => Answer::Done(here.clone()),
+        Command::Help(None) => {
+            let line =
+                |(name, arguments, does): (&str, &str, &str)| format!("{:20} {does}", format!("{name} {arguments}"));
+            Answer::Done(COMMANDS.map(line).join("\n"))
+        }
+        Command::Help(Some(path)) => {
+            match (hub.ask(Request { path: path.clone(), operation: Operation::List, role }), hub.node(&path)) {
+                (Answer::Ended, _) => Answer::Ended,
+                (_, Some(node)) => Answer::Done(described(&path, &node)),
+                (answer, None) => answer,
+            }
+        }
+        Command::Enter(path) => {
+            let answer = hub.ask(Request { path: path.clone(), operation: Operation::List, role });
+            match answer {
+                Answer::Entries(_) => {
+                    *here = path;
+                    Answer::Done(String::new())
+                }
+                Answer::Refused(_) if hub.node(&path).is_some() => Answer::Refused(format!("`{path}` is no folder")),
+                other @ (Answer::Value(_) | Answer::Done(_) | Answer::Refused(_) | Answer::Ended) => other,
+            }
+        }
+    }
+}
+
+/// A line about a node.
+fn described(path: &str, node: &Node) -> String {
+    let kind = match node.kind {
+        Kind::Flag => "true or false".to_owned(),
+        Kind::Integer => "a whole number".to_owned(),
+        Kind::Quantity(_, unit) => format!("in {unit}"),
+        Kind::Text => "text".to_owned(),
+    };
+    let role = node.role.name();
+    let access = match node.access {
+        Access::Read => format!("{kind}, read-only"),
+        Access::Write => format!("{kind}, set by the role {role}"),
+        Access::Call => format!("called by the role {role}"),
+    };
+    format!("{path}: {} ({access})", node.doc)
+}
