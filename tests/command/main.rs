@@ -9,6 +9,7 @@ mod help;
 mod hostile_text;
 mod large_input;
 mod mdle_run;
+mod mdle_shell;
 mod newcomer;
 mod proposals;
 mod random_input;

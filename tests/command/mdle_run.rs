@@ -56,7 +56,7 @@ fn failures_to_run_have_a_help() {
 #[test]
 fn help_names_every_option() {
     let folder = with_plan("help");
-    insta::assert_snapshot!([report(&folder, "--help"), report(&folder, "run --help")].join("\n"));
+    insta::assert_snapshot!(["--help", "run --help", "shell --help"].map(|line| report(&folder, line)).join("\n"));
     let help = report(&folder, "run plan.mdle --target sim --help");
     assert!(help.contains("Usage: mdle run plan.mdle --target sim [OPTIONS]\n"), "{help}");
     assert!(help.contains("--start-noise") && help.ends_with("[0]\n"), "{help}");

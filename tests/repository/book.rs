@@ -84,7 +84,7 @@ impl Walk<'_> {
             "text" => self.compare(fence),
             // Later commands of the page use these files; those of the two pages on applications,
             // tests/emitted/embed.rs builds.
-            "csv" | "json" | "rust" | "toml" => drop(self.write(fence.file().unwrap(), fence)),
+            "commands" | "csv" | "json" | "rust" | "toml" => drop(self.write(fence.file().unwrap(), fence)),
             "sh" => {}
             other => panic!("{}: what is `{other}`?", self.page.path),
         }

@@ -5,6 +5,7 @@
 
 mod conditions;
 mod envelope;
+mod error;
 mod fence;
 mod guardian;
 mod read;
@@ -16,7 +17,8 @@ mod tests;
 
 pub use conditions::{Conditions, GuardError, Watched};
 pub use envelope::{Envelope, RuleId};
+pub use error::RulesError;
 pub use fence::Fence;
 pub use guardian::Guardian;
-pub use read::{RulesError, read};
+pub use read::read;
 pub use rules::{Condition, Guard, Limits, Measure, Rules, Then};

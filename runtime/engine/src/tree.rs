@@ -8,10 +8,11 @@ mod desk;
 mod hub;
 mod node;
 mod request;
+mod shared;
 mod value;
 
 pub use desk::{Desk, Reply, Served};
-pub use hub::{Hub, QUEUE, hub};
+pub use hub::{Hub, QUEUE};
 pub use node::{Access, Kind, Node, Role, Tree};
 pub use request::{Answer, Change, Operation, Request};
 pub use value::{Value, read};

@@ -17,6 +17,8 @@ use crate::{Pace, Refusal, Replays, StopRequest, Supervision, Target, Time};
 pub(crate) trait Executable: Sync {
     /// Returns the target's options and their defaults.
     fn target(&self) -> TargetOptions;
+    /// Returns `true` if standard output is that of a session.
+    fn is_session(&self) -> bool;
     /// Makes a plan, for its texts.
     fn plan(&self) -> Box<dyn Texts + '_>;
     /// Opens the robot, with the plan that will drive it and the paths that the plan replays: [`Target::connect`].
@@ -82,6 +84,10 @@ where
         TargetOptions::of::<T>()
     }
 
+    fn is_session(&self) -> bool {
+        self.supervision.is_some_and(|supervision| supervision.session)
+    }
+
     fn plan(&self) -> Box<dyn Texts + '_> {
         Box::new((self.plan)())
     }
@@ -104,7 +110,7 @@ where
     fn batch(&self, matches: &ArgMatches, period: Duration, store: PathStore) -> Result<Option<Runs<'_>>, Refusal> {
         let Some(observation) = T::OBSERVATION else { return Ok(None) };
         let batch = (observation.batch)(matches, period)?;
-        if batch.is_some() && self.supervision.is_some_and(|supervision| !supervision.several) {
+        if batch.is_some() && self.is_session() {
             return Err(Refusal::Usage("a session is one run: leave --runs out".to_owned()));
         }
         let terms = RunTerms { time: Time::Stepped(Pace::Max), period, request: StopRequest::default() };

@@ -164,7 +164,7 @@ fn execute(program: Program<'_>, call: Call, executable: &dyn Executable) -> Exi
             return ExitCode::from(run_end::FAULT);
         }
     };
-    let (out, err) = match standard_streams(signals.patience()) {
+    let (out, err) = match standard_streams(signals.patience(), executable.is_session()) {
         Ok(streams) => streams,
         Err(error) => {
             run_end::say(&mut io::stderr(), format_args!("error: the system gives no threads: {error}"));
@@ -173,17 +173,20 @@ fn execute(program: Program<'_>, call: Call, executable: &dyn Executable) -> Exi
     };
     panic_hook::tell_to(err.aside());
     let begun = std::time::Instant::now();
-    let seen = io::stderr().is_terminal().then(|| Box::new(move || begun.elapsed()) as Box<dyn FnMut() -> _>);
+    // A person in a session types where the line would be.
+    let shows_progress = io::stderr().is_terminal() && !executable.is_session();
+    let seen = shows_progress.then(|| Box::new(move || begun.elapsed()) as Box<dyn FnMut() -> _>);
     let (out, mut err) = (|| Box::new(out) as Box<dyn Write>, err);
     let surroundings = session::Surroundings { instants: clock::SinceBoot, signals, out, err: &mut err, seen };
     ExitCode::from(session::session(program, call, executable, surroundings))
 }
 
 /// Returns standard output and standard error, each with a thread that writes to it. The library's own buffer of
-/// standard output is left out: its content may be lost when the program ends.
-fn standard_streams(patience: &Patience) -> io::Result<(Outlet, Outlet)> {
+/// standard output is left out: its content may be lost when the program ends. In a session both are standard error.
+fn standard_streams(patience: &Patience, is_session: bool) -> io::Result<(Outlet, Outlet)> {
     let open = |stream: BorrowedFd<'_>| -> io::Result<Outlet> {
         Outlet::open(File::from(stream.try_clone_to_owned()?), Keeps::WhatIsRead, patience)
     };
-    Ok((open(io::stdout().as_fd())?, open(io::stderr().as_fd())?))
+    let out = if is_session { open(io::stderr().as_fd()) } else { open(io::stdout().as_fd()) };
+    Ok((out?, open(io::stderr().as_fd())?))
 }

@@ -114,8 +114,8 @@ pub struct Supervision<'s, P: Plan> {
     pub supervisor: &'s MakeSupervisor<'s, P::Output, P::Input>,
     /// Makes the plan of this number, to which [`Verdict::Diverted`] leads; `None` if there is no such plan.
     pub diversions: &'s (dyn Fn(usize) -> Option<P> + Sync),
-    /// `true` if there may be several runs, each with a supervisor of its own.
-    pub several: bool,
+    /// `true` for a session: one run only, whose report goes to standard error, as standard output is the session's.
+    pub session: bool,
 }
 
 /// Makes the supervisor of a run with these terms.
@@ -131,6 +131,6 @@ impl<P: Plan> Copy for Supervision<'_, P> {}
 
 impl<P: Plan> fmt::Debug for Supervision<'_, P> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Supervision").field("several", &self.several).finish_non_exhaustive()
+        f.debug_struct("Supervision").field("session", &self.session).finish_non_exhaustive()
     }
 }

@@ -7,6 +7,8 @@ use std::path::PathBuf;
 
 use clap::{Arg, ArgAction, ArgMatches, Command, value_parser};
 
+use mdle_engine::tree::Role;
+
 use crate::Failure;
 
 /// The arguments of `mdle run`.
@@ -26,14 +28,31 @@ pub(crate) struct Run {
     pub(crate) words: Vec<OsString>,
     /// The options of the run.
     pub(crate) options: Vec<OsString>,
+    /// The session of `mdle shell`; `None` for `mdle run`.
+    pub(crate) session: Option<SessionOptions>,
+}
+
+/// The options of a session.
+#[derive(Debug, PartialEq, Eq)]
+pub(crate) struct SessionOptions {
+    /// File of commands; `None` for the terminal or a pipe.
+    pub(crate) commands: Option<PathBuf>,
+    /// `true` if the first error ends the session.
+    pub(crate) stops_at_errors: bool,
+    /// `true` if each command is printed before its answer.
+    pub(crate) echoes: bool,
+    /// Role of who types.
+    pub(crate) role: Role,
+    /// `true` if stepped time stands before the first turn.
+    pub(crate) is_paused: bool,
 }
 
 /// Options of `mdle` itself that have a value.
-const WITH_VALUE: [&str; 3] = ["--target", "--plan", "--safety"];
+const WITH_VALUE: [&str; 6] = ["--target", "--plan", "--safety", "-c", "--commands", "--role"];
 /// Options that ask for help.
 const HELP: [&str; 2] = ["-h", "--help"];
-/// Option of `mdle` itself without a value.
-const DENY_WARNINGS: &str = "--deny-warnings";
+/// Options of `mdle` itself without a value.
+const FLAGS: [&str; 4] = ["--deny-warnings", "-e", "-x", "--paused"];
 
 /// Parses the arguments of the process, the program's own name first.
 ///
@@ -42,13 +61,28 @@ const DENY_WARNINGS: &str = "--deny-warnings";
 pub(crate) fn parse(arguments: Vec<OsString>) -> Result<Run, Failure> {
     let (own, options) = apart(arguments)?;
     let matches = command().try_get_matches_from(&own).map_err(Failure::Unparsed)?;
-    let Some(("run", run)) = matches.subcommand() else {
-        return Err(Failure::Usage("no command was given\nhelp: `mdle run PLAN` runs a plan".to_owned()));
-    };
-    Ok(of(run, own, options))
+    match matches.subcommand() {
+        Some(("run", run)) => Ok(of(run, own, options, None)),
+        Some(("shell", shell)) => {
+            let session = session(shell);
+            Ok(of(shell, own, options, Some(session)))
+        }
+        Some(_) | None => Err(Failure::Usage("no command was given\nhelp: `mdle run PLAN` runs a plan".to_owned())),
+    }
 }
 
-fn of(run: &ArgMatches, words: Vec<OsString>, options: Vec<OsString>) -> Run {
+fn session(shell: &ArgMatches) -> SessionOptions {
+    let role = shell.get_one::<String>("role").and_then(|name| Role::ALL.into_iter().find(|role| role.name() == name));
+    SessionOptions {
+        commands: shell.get_one("commands").cloned(),
+        stops_at_errors: shell.get_flag("errors"),
+        echoes: shell.get_flag("echo"),
+        role: role.unwrap_or(Role::Admin),
+        is_paused: shell.get_flag("paused"),
+    }
+}
+
+fn of(run: &ArgMatches, words: Vec<OsString>, options: Vec<OsString>, session: Option<SessionOptions>) -> Run {
     Run {
         file: run.get_one("file").cloned().unwrap_or_default(),
         target: run.get_one("target").cloned(),
@@ -57,6 +91,7 @@ fn of(run: &ArgMatches, words: Vec<OsString>, options: Vec<OsString>) -> Run {
         deny_warnings: run.get_flag("deny-warnings"),
         words,
         options,
+        session,
     }
 }
 
@@ -74,9 +109,9 @@ fn apart(arguments: Vec<OsString>) -> Result<(Vec<OsString>, Vec<OsString>), Fai
         rest = others;
         let text = first.to_str().unwrap_or_default();
         let name = text.split_once('=').map_or(text, |(name, _)| name);
-        if WITH_VALUE.contains(&name) || text == DENY_WARNINGS {
+        if WITH_VALUE.contains(&name) || FLAGS.contains(&text) {
             own.push(first.clone());
-            if name == text && name != DENY_WARNINGS {
+            if name == text && !FLAGS.contains(&text) {
                 let (value, others) = rest.split_at(rest.len().min(1));
                 own.extend_from_slice(value);
                 rest = others;
@@ -104,9 +139,53 @@ fn command() -> Command {
         .subcommand_required(true)
         .arg_required_else_help(true)
         .subcommand(run())
+        .subcommand(shell())
 }
 
+fn shell() -> Command {
+    let command = Command::new("shell")
+        .about("Run a plan in a session: read and change what a tree of names holds while it runs")
+        .long_about(
+            "Run a plan in a session: read and change what a tree of names holds while it runs\n\nCommands come from the \
+             terminal, from a pipe, or from a file; `help` lists them. The report of the run goes to standard error. At the \
+             end of the commands the robot is stopped. The options of the run follow the plan, as for `mdle run`.",
+        )
+        .override_usage("mdle shell [OPTIONS] <PLAN> [OPTIONS OF THE RUN]");
+    let flag = |name: &'static str| Arg::new(name).action(ArgAction::SetTrue);
+    with_plan(command)
+        .arg(
+            Arg::new("commands")
+                .short('c')
+                .long("commands")
+                .value_name("FILE")
+                .help("File of commands [default: standard input]")
+                .value_parser(value_parser!(PathBuf)),
+        )
+        .arg(flag("errors").short('e').help("End the session at the first error of a command"))
+        .arg(flag("echo").short('x').help("Print each command before its answer"))
+        .arg(flag("paused").long("paused").help("Begin with the clock stopped, where time is simulated"))
+        .arg(
+            Arg::new("role")
+                .long("role")
+                .value_name("ROLE")
+                .help("Role of who types: what may be changed [default: admin]")
+                .value_parser(Role::ALL.map(Role::name)),
+        )
+        .after_help(
+            "Exit status: that of the run, 0 if the session ended it; 1 if the plan has errors or a command was refused, 2 for \
+             wrong usage or a file that cannot be read",
+        )
+}
+
+/// Exit statuses of `mdle run`.
+const AFTER: &str = "Exit status: that of the executable; 1 if the plan has errors, 2 for wrong usage or a file that cannot \
+                     be read, 6 if a safety rule ended the plan";
+
 fn run() -> Command {
+    with_plan(run_alone())
+}
+
+fn run_alone() -> Command {
     Command::new("run")
         .about("Compile a plan and run it")
         .long_about(
@@ -114,6 +193,12 @@ fn run() -> Command {
              that mdlec builds: `mdle run PLAN --target sim --help` lists them.",
         )
         .override_usage("mdle run [OPTIONS] <PLAN> [OPTIONS OF THE RUN]")
+        .after_help(AFTER)
+}
+
+/// Adds the plan to a command, and what it is compiled with.
+fn with_plan(command: Command) -> Command {
+    command
         .arg(
             Arg::new("file")
                 .value_name("PLAN")
@@ -141,14 +226,7 @@ fn run() -> Command {
                 .value_parser(value_parser!(PathBuf)),
         )
         .arg(
-            Arg::new("deny-warnings")
-                .long("deny-warnings")
-                .action(ArgAction::SetTrue)
-                .help("Treat warnings as errors"),
-        )
-        .after_help(
-            "Exit status: that of the executable; 1 if the plan has errors, 2 for wrong usage or a file that cannot be read, 6 if \
-             a safety rule ended the plan",
+            Arg::new("deny-warnings").long("deny-warnings").action(ArgAction::SetTrue).help("Treat warnings as errors"),
         )
 }
 

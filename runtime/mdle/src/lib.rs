@@ -8,6 +8,7 @@ mod arguments;
 mod failure;
 mod run;
 mod safety;
+mod session;
 mod targets;
 
 use std::process::ExitCode;

@@ -12,6 +12,7 @@ use mdle_runtime::Sensed;
 use crate::arguments::Run;
 use crate::failure::{self, Failure};
 use crate::safety::SafetyFile;
+use crate::session;
 use crate::targets::{self, LinkedTarget, Ready};
 
 /// Runs a plan with these modules; returns the exit status of the run.
@@ -37,7 +38,9 @@ pub(crate) fn run(arguments: Run, library: &Library<Sensed>) -> Result<ExitCode,
     options.extend(arguments.options);
     let read = input.inputs(&target).into_iter().chain(safety.iter().flat_map(SafetyFile::files)).collect();
     drop(input);
-    Ok(ready.run(&plan, Call { words: arguments.words, options, read }, library))
+    let call = Call { words: arguments.words, options, read };
+    let Some(session) = &arguments.session else { return Ok(ready.run(&plan, call, library)) };
+    session::held(session, &arguments.file, |seat| ready.session(&plan, call, library, seat))
 }
 
 /// Compiles the only plan to run and loads it; returns it with its name. Messages go to standard error.

@@ -1,11 +1,13 @@
 //! The robots that this program can run plans on.
 
 use std::process::ExitCode;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use mdle_compiler::alphabet::did_you_mean;
 use mdle_compiler::fsm::Machine;
 use mdle_compiler::load::{self, Loaded};
+use mdle_engine::shell::Session;
+use mdle_engine::tree::Desk;
 use mdle_engine::{Engine, EngineAlphabet, Library};
 use mdle_files::{Input, Target};
 use mdle_host::{Call, Program, RunTerms, Supervision};
@@ -13,6 +15,7 @@ use mdle_runtime::{Alphabet, Robot, Sensed, Twist};
 
 use crate::failure::Failure;
 use crate::safety::{Guarded, SafetyFile};
+use crate::session::Seat;
 
 /// A robot whose driver is part of this program.
 #[derive(Clone, Copy)]
@@ -32,6 +35,9 @@ type Load = fn(&Machine, &Input, &Target, Option<&SafetyFile>) -> Result<Box<dyn
 pub(crate) trait Ready {
     /// Runs the plan of this name, with these modules.
     fn run(&self, name: &str, call: Call, library: &Library<Sensed>) -> ExitCode;
+
+    /// Runs the plan of this name in a session, with these modules.
+    fn session(&self, name: &str, call: Call, library: &Library<Sensed>, seat: Seat) -> ExitCode;
 }
 
 /// The robots.
@@ -86,7 +92,21 @@ where
         let Some(safety) = &self.safety else { return mdle_host::run_piloted::<T, _>(name, call, &plan, engine, None) };
         let supervisor = |terms: &RunTerms| Box::new(safety.guardian(terms.period)) as _;
         let diversions = |number| safety.diversion(number);
-        let supervision = Supervision { supervisor: &supervisor, diversions: &diversions, several: true };
+        let supervision = Supervision { supervisor: &supervisor, diversions: &diversions, session: false };
+        mdle_host::run_piloted::<T, _>(name, call, &plan, engine, Some(supervision))
+    }
+
+    fn session(&self, name: &str, call: Call, library: &Library<Sensed>, Seat { desk, is_paused }: Seat) -> ExitCode {
+        let (plan, desk) = (|| self.loaded.plan(), Mutex::new(Some(desk)));
+        let engine = |terms: &RunTerms| Engine::<A>::new(self.loaded.plan(), library, terms);
+        let supervisor = |terms: &RunTerms| {
+            let guardian = self.safety.as_ref().map(|safety| safety.guardian(terms.period));
+            // A session is one run.
+            let desk = desk.lock().unwrap_or_else(PoisonError::into_inner).take().unwrap_or_else(|| Desk::with_hub().1);
+            Box::new(Session::<A>::new(desk, guardian, terms, is_paused)) as _
+        };
+        let diversions = |number| self.safety.as_ref().and_then(|safety| safety.diversion(number));
+        let supervision = Supervision { supervisor: &supervisor, diversions: &diversions, session: true };
         mdle_host::run_piloted::<T, _>(name, call, &plan, engine, Some(supervision))
     }
 }

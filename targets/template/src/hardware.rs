@@ -7,8 +7,8 @@ use mdle_host::clap::{Arg, ArgMatches, Command};
 use mdle_host::{Pace, Refusal, StopRequest, Time};
 use mdle_runtime::capability::Steering;
 use mdle_runtime::{
-    Meters, MetersPerSecond, Nanos, PathStore, Pings, Pose, Radians, RadiansPerSecond, Robot, SONARS, Sensed, Shape,
-    Supply,
+    Meters, MetersPerSecond, Nanos, PathStore, Pings, Pose, Published, Radians, RadiansPerSecond, Robot, SONARS,
+    Sensed, Shape, Supply,
 };
 
 use crate::{Input, Output, alphabet};
@@ -114,6 +114,7 @@ impl Robot for Hardware {
             supply: Supply::default(),
             shape: SHAPE,
             paths: PathStore::EMPTY,
+            published: Published::NONE,
         })
     }
 

@@ -23,8 +23,8 @@ pub struct Fence {
 type Point = [f64; 2];
 
 impl Fence {
-    /// Returns the maximum speed of a robot at this pose, in metres per second, that has the speed `v` and the turn rate
-    /// `omega`; `period` is in seconds. A negative `v` drives backwards.
+    /// Returns the maximum speed, in metres per second, of a robot at this pose that has the speed `v` and the turn
+    /// rate `omega`; `period` is in seconds. A negative `v` drives backwards.
     ///
     /// While the robot brakes it turns on, so every direction counts that it can have until it stands.
     pub(super) fn fastest(&self, pose: &Pose, v: f64, omega: f64, period: f64) -> f64 {

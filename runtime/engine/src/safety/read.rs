@@ -1,30 +1,12 @@
 //! Reads the rules of a safety file (docs/src/safety.md).
 
-use std::fmt;
-
 use mdle_quantity::Quantity;
 use mdle_runtime::{Nanos, Printable};
 use toml::de::{DeTable, DeValue};
 
+use super::error::RulesError;
 use super::section::{Section, Value, kind, line};
 use super::{Condition, Fence, Guard, Limits, Measure, Rules, Then};
-
-/// Reason why a text is no safety file.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct RulesError {
-    /// Line of the file, from 1.
-    pub line: usize,
-    /// A sentence with what to write instead.
-    pub message: String,
-}
-
-impl fmt::Display for RulesError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: {}", self.line, self.message)
-    }
-}
-
-impl std::error::Error for RulesError {}
 
 /// The tables of a safety file.
 const TABLES: [&str; 6] = ["limits", "fence", "contact", "stale", "overrun", "guards"];

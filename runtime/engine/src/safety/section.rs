@@ -10,7 +10,7 @@ use mdle_runtime::Printable;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::RulesError;
+use super::error::RulesError;
 
 /// A key as TOML represents it.
 pub(super) type Key<'i> = Spanned<Cow<'i, str>>;

@@ -22,8 +22,8 @@ pub(super) struct SessionClock {
     pub(super) is_paused: bool,
     /// The number of turns after which the clock stands again, and whom to tell.
     steps: Option<(u64, Reply)>,
-    /// Those who wait for a time, or for the end of the plan.
-    waits: Vec<(Nanos, Reply)>,
+    /// Those who wait for a time, or for the end of the plan; `true` if the clock stands again then.
+    waits: Vec<(Nanos, bool, Reply)>,
 }
 
 impl SessionClock {
@@ -44,11 +44,12 @@ impl SessionClock {
             reply.answer(Answer::Done(now.clone()));
         }
         let waits = std::mem::take(&mut self.waits);
-        for (until, reply) in waits {
+        for (until, stands, reply) in waits {
             if moment.is_over || moment.turns > 0 && moment.t >= until {
+                self.is_paused |= stands;
                 reply.answer(Answer::Done(now.clone()));
             } else {
-                self.waits.push((until, reply));
+                self.waits.push((until, stands, reply));
             }
         }
     }
@@ -87,12 +88,7 @@ impl SessionClock {
         };
         match time {
             Err(refusal) => reply.answer(Answer::Refused(refusal)),
-            Ok(_) if self.is_paused => {
-                reply.answer(Answer::Refused(
-                    "the clock stands: `resume` lets it go on, and `step N` for N turns".into(),
-                ));
-            }
-            Ok(until) => self.waits.push((until, reply)),
+            Ok(until) => self.waits.push((until, std::mem::take(&mut self.is_paused), reply)),
         }
     }
 
@@ -134,7 +130,13 @@ impl<Y, U> Served<Break<'_, Y, U>> for SessionClock {
             ("pause", Node::method(Role::Tune, "stops stepped time after this turn")),
             ("resume", Node::method(Role::Tune, "lets stepped time go on")),
             ("step", Node::method(Role::Tune, "makes one turn, or as many as the argument says, and stops the time")),
-            ("wait", Node::method(Role::View, "answers after a time, or at the end of the plan")),
+            (
+                "wait",
+                Node::method(
+                    Role::Tune,
+                    "answers after a time, or at the end of the plan; a clock that stands goes on until then",
+                ),
+            ),
         ];
         nodes.map(|(name, node)| (format!("/clock/{name}"), node)).into()
     }

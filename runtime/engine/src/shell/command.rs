@@ -31,7 +31,7 @@ pub(super) const COMMANDS: [(&str, &str, &str); 13] = [
     ("pause", "", "stop stepped time"),
     ("resume", "", "let stepped time go on"),
     ("step", "[N]", "make N turns, and stop the time"),
-    ("wait", "[TIME]", "wait for this long by the robot's clock, or for the end of the plan"),
+    ("wait", "[TIME]", "let the robot's clock go on for this long, or until the end of the plan"),
     ("pace", "N|max", "set the pace of stepped time"),
     ("quit", "", "stop the robot, and end the session"),
 ];

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use mdle_host::{Break, Intervention, Orders, StopRequest, Supervisor, Terms};
+use mdle_host::{Break, Intervention, Orders, RunTerms, StopRequest, Supervisor};
 use mdle_runtime::capability::{Bumpers, DiffDrive, Odometry, SonarRing};
 use mdle_runtime::{Alphabet, Nanos, Twist};
 
@@ -27,7 +27,7 @@ pub struct Session<A: Alphabet> {
 impl<A: Alphabet> Session<A> {
     /// Returns the session of a run with these terms. If `is_paused`, stepped time stands before the first turn.
     #[must_use]
-    pub fn new(desk: Desk, guardian: Option<Guardian<A>>, terms: &Terms, is_paused: bool) -> Self {
+    pub fn new(desk: Desk, guardian: Option<Guardian<A>>, terms: &RunTerms, is_paused: bool) -> Self {
         let clock = SessionClock::new(terms.period, terms.time, is_paused);
         Self { desk, guardian, clock, engine: EnginePart::default(), request: terms.request.clone() }
     }

@@ -1,22 +1,16 @@
 //! The side of the hub that the thread which drives the robot has.
 
 use std::sync::atomic::Ordering;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, sync_channel};
 use std::sync::{Arc, PoisonError};
 use std::time::Duration;
 
-use super::hub::{Shared, Snapshot};
-use super::{Answer, Change, Node, Request, Tree, Value};
+use super::hub::{Hub, QUEUE};
+use super::shared::{Pending, Shared, Snapshot};
+use super::{Answer, Change, Node, Tree, Value};
 
 /// Maximum number of changes that one break carries out.
 const EACH_BREAK: usize = 16;
-
-/// A change that waits, and where its answer goes.
-#[derive(Debug)]
-pub(super) struct Pending {
-    pub(super) request: Request,
-    pub(super) reply: Sender<Answer>,
-}
 
 /// The way back to who asked for a change. Dropping it says that the run has ended.
 #[derive(Debug)]
@@ -54,8 +48,13 @@ pub struct Desk {
 }
 
 impl Desk {
-    pub(super) fn new(shared: Arc<Shared>, requests: Receiver<Pending>) -> Self {
-        Self { shared, requests, tree: Arc::default(), places: Vec::new(), number: 0 }
+    /// Returns a desk, and the hub whose requests it answers.
+    #[must_use]
+    pub fn with_hub() -> (Hub, Self) {
+        let (queue, requests) = sync_channel(QUEUE);
+        let shared = Arc::new(Shared::default());
+        let hub = Hub::new(Arc::clone(&shared), queue);
+        (hub, Self { shared, requests, tree: Arc::default(), places: Vec::new(), number: 0 })
     }
 
     /// Carries out the changes that wait, and hands out a snapshot if somebody wants one.

@@ -1,40 +1,20 @@
 //! The hub between the front ends and the thread that drives the robot.
 
 use std::collections::BTreeSet;
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, SyncSender, TrySendError, channel, sync_channel};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::{SyncSender, TrySendError, channel};
+use std::sync::{Arc, MutexGuard, PoisonError};
 use std::time::Duration;
 
 use mdle_compiler::alphabet::nearest;
 
-use super::desk::{Desk, Pending};
-use super::{Access, Answer, Change, Node, Operation, Request, Tree, Value};
+use super::shared::{Pending, Shared, Snapshot};
+use super::{Access, Answer, Change, Node, Operation, Request, Tree};
 
 /// Maximum number of changes that wait for a break.
 pub const QUEUE: usize = 64;
 /// Maximum wait for a snapshot that is not older than the question.
 const PATIENCE: Duration = Duration::from_secs(2);
-
-/// Everything that can be read, as it was at one break.
-#[derive(Debug, Default)]
-pub(super) struct Snapshot {
-    pub(super) tree: Arc<Tree>,
-    /// Values in the order of the nodes; `None` for one that has no value yet, and for methods.
-    pub(super) values: Vec<Option<Value>>,
-    /// Number of the snapshot, from 1.
-    pub(super) number: u64,
-}
-
-/// What both sides share.
-#[derive(Debug, Default)]
-pub(super) struct Shared {
-    pub(super) snapshot: Mutex<Arc<Snapshot>>,
-    pub(super) changed: Condvar,
-    /// `true` if a front end waits for a snapshot.
-    pub(super) wanted: AtomicBool,
-    pub(super) ended: AtomicBool,
-}
 
 /// The front ends' side. Its methods may wait.
 #[derive(Debug, Clone)]
@@ -43,15 +23,12 @@ pub struct Hub {
     queue: SyncSender<Pending>,
 }
 
-/// Returns a hub, and the desk that answers it.
-#[must_use]
-pub fn hub() -> (Hub, Desk) {
-    let (queue, requests): (_, Receiver<Pending>) = sync_channel(QUEUE);
-    let shared = Arc::new(Shared::default());
-    (Hub { shared: Arc::clone(&shared), queue }, Desk::new(shared, requests))
-}
-
 impl Hub {
+    /// Returns the front ends' side of what both sides share.
+    pub(super) fn new(shared: Arc<Shared>, queue: SyncSender<Pending>) -> Self {
+        Self { shared, queue }
+    }
+
     /// Waits for the first break of the run; returns `false` if the run has ended before it.
     #[must_use]
     pub fn has_begun(&self) -> bool {
@@ -120,8 +97,8 @@ impl Hub {
         }
     }
 
-    /// Returns a snapshot that was made after the call, or the last one if the robot makes no turn or the run has ended;
-    /// `None` if there is none.
+    /// Returns a snapshot that was made after the call, or the last one if the robot makes no turn or the run has
+    /// ended; `None` if there is none.
     fn snapshot(&self) -> Option<Arc<Snapshot>> {
         let mut kept = self.lock();
         let before = kept.number;

@@ -145,7 +145,7 @@ impl Stage {
         let plan = || self.plan.clone();
         let make = |terms: &RunTerms| (self.supervisor.expect("a supervisor"))(terms);
         let diversions = |number| (number == 0).then(ToyPlan::lab);
-        let supervision = Supervision { supervisor: &make, diversions: &diversions, several: false };
+        let supervision = Supervision { supervisor: &make, diversions: &diversions, session: true };
         let supervision = self.supervisor.map(|_| supervision);
         let pilot = |_: &RunTerms| Ok(PlanAlone::new(&plan));
         let executable = PlanOnTarget::<ToyTarget, _, _>::new(&plan, &pilot).supervised(supervision);

@@ -1,0 +1,20 @@
+//! The reason why a text is no safety file.
+
+use std::fmt;
+
+/// Reason why a text is no safety file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RulesError {
+    /// Line of the file, from 1.
+    pub line: usize,
+    /// A sentence with what to write instead.
+    pub message: String,
+}
+
+impl fmt::Display for RulesError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.line, self.message)
+    }
+}
+
+impl std::error::Error for RulesError {}

@@ -1,0 +1,34 @@
+//! What the hub and the desk share.
+
+use std::sync::atomic::AtomicBool;
+use std::sync::mpsc::Sender;
+use std::sync::{Arc, Condvar, Mutex};
+
+use super::{Answer, Request, Tree, Value};
+
+/// Everything that can be read, as it was at one break.
+#[derive(Debug, Default)]
+pub(super) struct Snapshot {
+    pub(super) tree: Arc<Tree>,
+    /// Values in the order of the nodes; `None` for one that has no value yet, and for methods.
+    pub(super) values: Vec<Option<Value>>,
+    /// Number of the snapshot, from 1.
+    pub(super) number: u64,
+}
+
+/// What both sides share.
+#[derive(Debug, Default)]
+pub(super) struct Shared {
+    pub(super) snapshot: Mutex<Arc<Snapshot>>,
+    pub(super) changed: Condvar,
+    /// `true` if a front end waits for a snapshot.
+    pub(super) wanted: AtomicBool,
+    pub(super) ended: AtomicBool,
+}
+
+/// A change that waits, and where its answer goes.
+#[derive(Debug)]
+pub(super) struct Pending {
+    pub(super) request: Request,
+    pub(super) reply: Sender<Answer>,
+}

@@ -1,0 +1,163 @@
+//! `mdle shell`: whole dialogues in stepped time, and what is wrong with commands.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::io::{Read as _, Write as _};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+
+use mdle_tests::executable::{folder, mdle};
+use rustix::process::{Pid, Signal, kill_process};
+
+/// A plan that drives ahead, and then turns on the spot.
+const PLAN: &str = "{ Ahead (bumper)\n  (Atom (wait 2s) (go 60 0))\n  (Atom (wait 1s) (go 0 1rad/s))\n}\n";
+const RULES: &str = "[limits]\nspeed = \"40cm/s\"\n\n[guards.far]\nwhen = \"x > 5m\"\nthen = \"end\"\n";
+
+/// What a session left.
+#[derive(Debug, PartialEq, Eq)]
+struct Left {
+    out: String,
+    err: String,
+    status: Option<i32>,
+}
+
+fn with_plan(test: &str) -> PathBuf {
+    let folder = folder(test);
+    fs::write(folder.join("plan.mdle"), PLAN).unwrap();
+    fs::write(folder.join("rules.toml"), RULES).unwrap();
+    folder
+}
+
+/// Starts a session on the simulated robot, whose clock stands.
+fn started(folder: &Path, options: &[&str]) -> Child {
+    let mut command = Command::new(mdle());
+    command.args(["shell", "plan.mdle", "--target", "sim", "--world", "hall", "--speed", "max", "--paused"]);
+    command.args(options).current_dir(folder);
+    command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+/// Lets a session take these bytes as its standard input.
+fn piped(folder: &Path, options: &[&str], input: &[u8]) -> Left {
+    let mut child = started(folder, options);
+    // A session may end before it has read everything.
+    let _ = child.stdin.take().unwrap().write_all(input);
+    let output = child.wait_with_output().unwrap();
+    let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).unwrap());
+    Left { out, err, status: output.status.code() }
+}
+
+/// The dialogue, what standard error has, and the exit status.
+fn dialogue(folder: &Path, options: &[&str], commands: &str) -> String {
+    let Left { out, err, status } = piped(folder, &[&["-x"], options].concat(), commands.as_bytes());
+    format!("{out}---\n{err}[{}]\n", status.unwrap())
+}
+
+#[test]
+fn a_session_reads_and_changes_what_runs() {
+    let folder = with_plan("shell_dialogue");
+    let commands = "# The paper's shell\nls\nls /usr/mdle\ncd usr/robot\npwd\nget x\nstep 6\nget x\nget input/v\n\
+                    get /usr/mdle/plan\nget /usr/mdle/atom\nget /usr/mdle/place\nget /usr/mdle/scopes\n\
+                    set /safety/limits/speed 20cm/s\nstep\nget input/v\nget /safety/rules/speed/count\n\
+                    help /clock/step\npace 10\nget /clock/pace\nstep 20\nget /usr/mdle/since\nget ranges/r0\npace max\n\
+                    step 100\nget /clock/now\nget /usr/mdle/atom\n";
+    insta::assert_snapshot!(dialogue(&folder, &["--safety", "rules.toml"], commands));
+}
+
+#[test]
+fn a_file_of_commands_waits_for_the_end_of_the_plan() {
+    let folder = with_plan("shell_file");
+    fs::write(folder.join("session"), "wait 1s\nget /clock/now\nwait\nget /usr/robot/theta\n").unwrap();
+    let Left { out, err, status } = piped(&folder, &["-c", "session"], b"");
+    assert_eq!((out.lines().last(), status), (Some("22.912004deg"), Some(0)), "{out}{err}");
+    assert!(err.ends_with("3.0 s  plan over: wait 1s (plan.mdle:3)\n"), "{err}");
+}
+
+#[test]
+fn a_refused_command_says_what_to_type() {
+    let folder = with_plan("shell_refused");
+    let commands = "get /usr/robot\nget /usr/robot/z\nget /clock/step\nls /usr/robot/x\nls /nowhere\ncd /clock/now\n\
+                    set /usr/robot/x 3m\nset /clock/step 3\ncall /clock/now\nset /clock/pace fast\nset /clock/pace 0\n\
+                    set /clock/pace inf\nset /safety/limits/speed 1.2ft\nset /safety/limits/speed 60\n\
+                    set /safety/limits/speed 0m/s\nset /safety/limits/speed yes\nstep 0\nstep 1.5\nstep 1 2\nwait 3\n\
+                    wait -3s\npause now\ncall /engine/quit now\nfly\nset\nhelp /clock/nwo\n\u{1b}[31mls\n";
+    insta::assert_snapshot!(dialogue(&folder, &["--safety", "rules.toml"], commands));
+}
+
+#[test]
+fn a_role_may_do_what_those_before_it_may() {
+    let folder = with_plan("shell_roles");
+    let commands = "step\nset /safety/limits/speed 1m/s\nget /clock/turns\ncall /engine/quit\nget /clock/turns\n";
+    let all = ["view", "tune", "swap", "admin"]
+        .map(|role| dialogue(&folder, &["--safety", "rules.toml", "--role", role], commands));
+    insta::assert_snapshot!(all.join("\n"));
+}
+
+#[test]
+fn an_error_in_line_40_is_told_with_its_line() {
+    let folder = with_plan("shell_line_40");
+    let commands = format!("{}set /clock/now 3s\nstep 3\nget /clock/turns\n", "# nothing\n".repeat(39));
+    fs::write(folder.join("session"), commands).unwrap();
+    let error = "error: session:40: `/clock/now` is read-only\n";
+    let left = piped(&folder, &["-c", "session"], b"");
+    assert_eq!((&*left.err, left.status), (error, Some(1)), "{left:?}");
+    assert_eq!(left.out, "3 turns, 0.2s\n3\n");
+    let left = piped(&folder, &["-e", "-c", "session"], b"");
+    assert_eq!(left, Left { out: String::new(), err: error.to_owned(), status: Some(1) });
+}
+
+#[test]
+fn input_of_any_bytes_ends_the_session() {
+    let folder = with_plan("shell_bytes");
+    let told = |input: &[u8]| {
+        let left = piped(&folder, &[], input);
+        assert_eq!(left.status, Some(1), "{left:?}");
+        left.err
+    };
+    assert_eq!(told(b"\xFF\xFE\n"), "error: standard input:1: the line is not UTF-8 text\n");
+    assert_eq!(told(b"\0"), "error: standard input:1: there is no command `U+0000`; `help` lists them\n");
+    let long = [vec![b'x'; 300_000], b"\nfly".to_vec()].concat();
+    assert_eq!(
+        told(&long),
+        "error: standard input:1: the line is longer than 65536 bytes\n\
+         error: standard input:2: there is no command `fly`; `help` lists them\n"
+    );
+    let middle = "error: standard input:2: the input ends in the middle of a command\n";
+    assert_eq!(told(b"get \\\n/clock/\\"), middle);
+    assert_eq!(piped(&folder, &[], b"").status, Some(0), "an empty input ends it as well");
+}
+
+#[test]
+fn what_cannot_begin_is_told_once() {
+    let folder = with_plan("shell_unbegun");
+    let started = |options: &[&str]| {
+        let Left { out, err, status } = piped(&folder, options, b"get /clock/now\n");
+        format!("{}\n{out}{err}[{}]\n", options.join(" "), status.unwrap())
+    };
+    let all = [
+        &["-c", "missing"][..],
+        &["-c", "."],
+        &["--role", "king"],
+        &["--runs", "3"],
+        &["--turns", "0"],
+        &["--safety", "missing"],
+    ]
+    .map(started);
+    insta::assert_snapshot!(all.join("\n"));
+}
+
+#[test]
+fn a_signal_ends_a_session_whose_clock_stands() {
+    let folder = with_plan("shell_signal");
+    let mut child = started(&folder, &[]);
+    let mut input = child.stdin.take().unwrap();
+    input.write_all(b"step 3\n").unwrap();
+    let mut answer = [0; 14];
+    child.stdout.as_mut().unwrap().read_exact(&mut answer).unwrap();
+    assert_eq!(&answer, b"3 turns, 0.2s\n");
+    kill_process(Pid::from_child(&child), Signal::TERM).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(
+        (output.status.code(), String::from_utf8(output.stderr).unwrap()),
+        (Some(143), "stopped by SIGTERM\n".to_owned())
+    );
+}
