@@ -4,7 +4,7 @@ mod excerpt;
 mod explain;
 mod help;
 mod json;
-mod shown;
+mod printable_file;
 mod sources;
 
 use std::fmt;

@@ -159,7 +159,7 @@ impl<I: Instants> Clock<I> {
         }
     }
 
-    /// Moves on to the next turn's place; returns its start in real nanoseconds, or `None` for at once.
+    /// Advances to the next turn; returns its start in real nanoseconds, or `None` if it starts without a wait.
     fn deadline(&mut self) -> Option<u64> {
         self.place = self.place.saturating_add(1);
         match self.time {

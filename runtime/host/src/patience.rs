@@ -23,7 +23,7 @@ pub(crate) struct Patience {
 /// Result of the attempt to stop the robot.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Stopped {
-    /// Time at which the stop had been tried.
+    /// Time at which the attempt to stop ended.
     pub(crate) at: Instant,
     /// The exit status as far as it was known then; `None` if only a signal ends the run.
     pub(crate) status: Option<u8>,

@@ -24,7 +24,7 @@ pub(crate) struct Run {
     pub(crate) safety: Option<PathBuf>,
     /// `true` if warnings count as errors.
     pub(crate) deny_warnings: bool,
-    /// Words that repeat the call, but for the options of the run.
+    /// Program and arguments of this call, without the options of the run.
     pub(crate) words: Vec<OsString>,
     /// The options of the run.
     pub(crate) options: Vec<OsString>,

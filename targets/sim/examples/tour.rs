@@ -22,7 +22,7 @@ fn main() -> ExitCode {
 /// The simulated robot as a target, with one more option.
 struct Fragile;
 
-/// The robot, and how many exchanges it has left.
+/// A robot, and the number of exchanges before it breaks down.
 struct Breaking {
     robot: Observed,
     left: Option<u64>,

@@ -210,7 +210,7 @@ fn each_fault_stops_the_robot_or_is_borne() {
 /// Maximum distance in metres by which a body moves further by the clock than in lockstep: a fault may come a turn
 /// later after the last answer, and so may the command before it.
 const FURTHER: f64 = 0.05;
-/// The time from a fault to the end of the program, in seconds.
+/// Maximum time from a fault to the end of the program, in seconds.
 const SOON: f64 = 1.5;
 
 /// The fault that ends a run, the time limit, and the distance that the body may move further than in lockstep.

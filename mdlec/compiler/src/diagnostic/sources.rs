@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use codespan_reporting::files::{Error as FilesError, Files, SimpleFile, column_index};
 
-use super::shown::PrintableFile;
+use super::printable_file::PrintableFile;
 use super::{SourceId, Span};
 
 /// The files that spans refer to.

@@ -253,7 +253,7 @@ impl<'s> Rewriting<'_, 's> {
         Some(self.past_condition(at + 1))
     }
 
-    /// The condition in the parentheses that open at `at`, if it can be written elsewhere.
+    /// Returns the condition in the parentheses that open at `at`, if it is short and simple enough for a proposal.
     fn condition_at(&self, at: usize) -> Option<&'s str> {
         let end = self.end_of(at).filter(|_| self.kind(at) != Some(Tok::LBrace))?;
         let inside = self.old.get(at + 1..end)?;

@@ -4,7 +4,6 @@
 mod arithmetic;
 mod brackets;
 mod broken;
-mod dropped;
 mod errors;
 mod files;
 pub(crate) mod foreign;
@@ -18,6 +17,7 @@ mod number;
 mod one_line;
 pub mod outline;
 mod printed;
+mod recovered_nodes;
 mod regions;
 mod single;
 mod site;

@@ -50,7 +50,7 @@ pub(super) struct Stage {
     pub(super) interrupted: Option<Signal>,
     pub(super) stop: Act,
     pub(super) finish: Result<(), String>,
-    /// The result of its run, if it has a goal.
+    /// Result of the robot's run, if the run has a goal.
     pub(super) judgement: Option<Judgement>,
     /// `true` if the robot asks for the plan's state after each turn.
     pub(super) looks: bool,

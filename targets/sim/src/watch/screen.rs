@@ -24,7 +24,7 @@ static FOUND: Mutex<Option<SavedSettings>> = Mutex::new(None);
 
 struct SavedSettings(Option<Termios>);
 
-/// The terminal, so that writing to it never waits, and the rest of a picture that it has not yet taken.
+/// The terminal, opened so that writes never wait, and the unwritten rest of a picture.
 static TERMINAL: Mutex<Option<Terminal>> = Mutex::new(None);
 
 struct Terminal {
