@@ -16,7 +16,7 @@ mod machine {
     use ::mdle_runtime::{Begin, Cursor, Fsm, Nanos};
     use ::mdle_sim::alphabet::{self as robot, Input, Output};
     const _: () = assert!(
-        robot::HASH == 0x4464bf5cdda51bc6,
+        robot::HASH == 0x230caf10834072bc,
         "the crate of target `sim` is bound to another alphabet: run `mdlec bind`"
     );
     /// The plan `Lab1ToOfficePlan`.
