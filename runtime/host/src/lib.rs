@@ -2,8 +2,8 @@
 //!
 //! For people who write a robot: [`Target`], [`Time`] and [`Refusal`], [`Observer`] where its runs are watched and
 //! [`Batch`] where it can be started over, [`Replays`] where it replays paths, [`read_file`] and [`output_format`]
-//! where its options name files, [`Quantity`] where they take lengths and times. For generated code: [`run`]. For an engine that makes
-//! the turns of a run itself: [`Pilot`].
+//! where its options name files, [`Quantity`] where they take lengths and times. For generated code: [`run`]. For an
+//! engine that makes the turns of a run itself: [`Pilot`].
 //!
 //! The robot is stopped in every case: when the plan is over, when an exchange fails, when code panics, when a signal
 //! arrives, when a limit is reached.
@@ -123,9 +123,9 @@ where
     execute(program.into(), call, &PlanOnTarget::<T, P, _>::new(&plan, &|_| Ok(PlanAlone::new(&plan))))
 }
 
-/// Runs a plan as [`run_called`] does, with turns that the pilot makes which `pilot` returns, under a supervisor if there
-/// is one. The plan that `plan` makes is read beforehand, for its texts and paths. Exit status 6: the supervisor ended
-/// the plan; 0 also if it ended the run.
+/// Runs a plan as [`run_called`] does, with turns that the pilot makes which `pilot` returns, under a supervisor if
+/// there is one. The plan that `plan` makes is read beforehand, for its texts and paths. Exit status 6: the supervisor
+/// ended the plan; 0 also if it ended the run.
 pub fn run_piloted<'a, 's, T: Target, B>(
     program: impl Into<Program<'a>>,
     call: Call,
