@@ -9,7 +9,6 @@ use mdle_runtime::{
 use crate::approach::Approach;
 use crate::crossing::crosses;
 use crate::gains::{Gains, fire_in_turn};
-use crate::hallway::Hallway;
 use crate::memory::Memory;
 use crate::stuck::Progress;
 use crate::tangent::{Obstacles, Side, Wish};
@@ -68,19 +67,17 @@ impl GoAvoid {
 
 /// The law of [`GoAvoid`]: done within 0.12 m of the goal, or within 0.3 m where something is in the way of the rest.
 ///
-/// Wheels that slip when they turn leave odometry a heading that is off, and the goal off with it. On a robot whose
-/// sonars fire in turn, the law therefore corrects its heading by walls: where it drives between two straight and
-/// parallel ones, at most 1.5 m from both, that run within 40° of an axis of the frame, they are taken to run along
-/// that axis, and the goal is turned by the difference, around the place where the atom began. Until it knows them it
-/// goes by the drift that the robot measures at one wall, if it does.
+/// Wheels that slip when they turn leave odometry a heading that is off, and the goal off with it. A robot that knows
+/// the drift of its heading by walls ([`Odometry::drift`]) therefore turns the goal by it, around the place where the
+/// atom began: walls are taken to run along the axes of the frame.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GoingRound {
     goal: Pose,
     progress: Progress,
     /// The pose where the atom began, the direction of the goal from there, and its distance.
     from: (Pose, Radians, Meters),
-    /// The hallway by which the heading is corrected; `None` on a robot that trusts its odometry.
-    hallway: Option<Hallway>,
+    /// The direction of the frame's first axis.
+    axis: Radians,
     speed: MetersPerSecond,
     look_ahead: Meters,
     previous: Option<Radians>,
@@ -208,13 +205,12 @@ impl<Y: DiffDrive + Odometry + SonarRing> Control<Y> for GoAvoid {
 
     fn begin(&self, y: &Y, begin: Begin) -> GoingRound {
         let (here, bearing) = (y.pose(), begin.frame.outward(self.bearing));
-        let axis = begin.frame.outward(Radians(0.0));
         let goal = here.towards(bearing, self.range);
         GoingRound {
             goal,
             progress: Progress::begin(here, &goal, begin.now),
             from: (here, bearing, self.range),
-            hallway: fire_in_turn(y).then(|| Hallway::begin(y, here, bearing, axis)),
+            axis: begin.frame.outward(Radians(0.0)),
             speed: self.speed,
             look_ahead: Gains::of(y).look_ahead,
             previous: None,
@@ -234,10 +230,8 @@ impl<Y: DiffDrive + Odometry + SonarRing> Law<Y> for GoingRound {
 
     fn input(&mut self, y: &Y, t: Nanos) -> Twist {
         let here = y.pose();
-        if let Some(hallway) = &mut self.hallway {
-            let (begun, bearing, range) = self.from;
-            self.goal = begun.towards(Radians(bearing.0 + hallway.turned(y).0), range);
-        }
+        let (begun, bearing, range) = self.from;
+        self.goal = begun.towards(Radians(bearing.0 + y.drift(self.axis).0), range);
         self.progress.take(here, &self.goal, t);
         self.memory.take(y);
         let seen = Obstacles::seen(y, here);

@@ -21,7 +21,6 @@ mod crossing;
 mod gains;
 mod go;
 mod go_avoid;
-mod hallway;
 mod heading;
 mod memory;
 mod modules;

@@ -9,8 +9,8 @@ pub trait Odometry: Output {
     fn pose(&self) -> Pose;
     /// The measured velocities.
     fn velocity(&self) -> Twist;
-    /// Returns the angle by which walls beside the robot are off the axes of a frame, one of which has the direction
-    /// `axis`, as far as the heading has drifted: 0 unless the robot can measure it better than it drifts.
+    /// Returns the angle by which walls are off the axes of a frame, one of which has the direction `axis`, as far as
+    /// the heading has drifted: 0 unless the robot knows it better than its odometry, as by a [`crate::Compass`].
     fn drift(&self, _axis: Radians) -> Radians {
         Radians(0.0)
     }

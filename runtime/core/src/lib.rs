@@ -16,9 +16,9 @@ extern crate std;
 
 mod alphabet;
 pub mod capability;
+mod compass;
 mod condition;
 mod cursor;
-mod drift;
 mod entries;
 mod follows;
 pub mod fsm;
@@ -49,9 +49,9 @@ mod units;
 mod way;
 
 pub use alphabet::{Alphabet, Argument, Limit};
+pub use compass::Compass;
 pub use condition::Condition;
 pub use cursor::Cursor;
-pub use drift::off_axis;
 pub use entries::{Entries, Here, Stamp, Stamps};
 pub use follows::Follows;
 pub use fsm::Fsm;

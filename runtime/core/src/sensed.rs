@@ -2,10 +2,9 @@
 //! paths: the values, and the capabilities that they give it (`y = h(x)`, paper, Eq. 1).
 
 use crate::capability::{Bumpers, DiffDrive, Modules, Odometry, Paths, Power, SonarRing, Steering};
-use crate::drift::drift;
 use crate::{
-    Meters, Nanos, Output, PathStore, Pings, Pose, Published, PublishedNumber, Radians, SONARS, Setpoint, SonarId,
-    Twist, Volts,
+    Compass, Meters, Nanos, Output, PathStore, Pings, Pose, Published, PublishedNumber, Radians, SONARS, Setpoint,
+    SonarId, Twist, Volts,
 };
 
 /// The output of one turn.
@@ -22,6 +21,8 @@ pub struct Sensed {
     pub switches: u32,
     /// The last pings of each sonar.
     pub pings: [Pings; SONARS],
+    /// The drift of its heading by odometry, measured by walls; the default on a robot whose odometry does not drift.
+    pub compass: Compass,
     /// Power supply as the robot reports it; the default on a robot that reports nothing of it.
     pub supply: Supply,
     /// Constants of the body.
@@ -85,8 +86,7 @@ impl Odometry for Sensed {
     }
 
     fn drift(&self, axis: Radians) -> Radians {
-        let Some(apart) = self.shape.sonars_apart else { return Radians(0.0) };
-        drift(&self.pings, self.odometry.theta, axis, apart)
+        self.compass.drift(axis)
     }
 }
 

@@ -4,7 +4,7 @@
 use std::time::{Duration, Instant};
 
 use mdle_host::StopRequest;
-use mdle_runtime::{Meters, Nanos, PathStore, Published, Robot, Sensed, Shape, Twist};
+use mdle_runtime::{Compass, Meters, Nanos, PathStore, Published, Robot, Sensed, Shape, Twist};
 use mdle_serial::{Clock, Line, LineFault, Obedience, Times, time_of};
 
 use crate::command::Command;
@@ -50,6 +50,8 @@ pub struct Atrv {
     clock: Clock,
     times: Times,
     hearing: Hearing,
+    /// Drift of the odometry, measured by walls.
+    compass: Compass,
     obedience: Obedience,
     /// Interval of the position reports; in lockstep, `a_turn` is their number in a turn.
     reports: Duration,
@@ -98,7 +100,8 @@ impl Atrv {
         let mouth = Mouth::new(line, watchdog);
         let times = Times::new(clock);
         let (asked, paths) = (Nanos::ZERO, PathStore::EMPTY);
-        let mut atrv = Self { mouth, config, clock, times, hearing, obedience, reports, a_turn, asked, paths };
+        let compass = Compass::default();
+        let mut atrv = Self { mouth, config, clock, times, hearing, compass, obedience, reports, a_turn, asked, paths };
         match atrv.prepare(period, request) {
             Ok(()) => Ok(atrv),
             Err(Fault::Ended(_)) => Err(Fault::Ended(atrv.stop().err().map(Box::new))),
@@ -248,23 +251,26 @@ impl Robot for Atrv {
         if self.obedience.is_broken(at, command, motion::sides(&self.hearing.velocity(), &self.config)) {
             return Err(Fault::Disobeys(self.config.disobey));
         }
+        let shape = Shape {
+            body_radius: RADIUS,
+            half_length: HALF_LENGTH,
+            half_width: HALF_WIDTH,
+            sonars_apart: Some(SONARS_APART),
+            wheel_base: Meters(self.config.wheel_base),
+            ring_radius: Meters(RING_RADIUS),
+            confirmation: CONFIRMATION,
+            steering: self.config.steering,
+        };
+        self.compass.take(self.hearing.pings(), self.hearing.pose(), &shape);
         Ok(Sensed {
             at,
             odometry: self.hearing.pose(),
             velocity: self.hearing.velocity(),
             switches: self.hearing.switches(),
             pings: *self.hearing.pings(),
+            compass: self.compass,
             supply: self.hearing.supply(),
-            shape: Shape {
-                body_radius: RADIUS,
-                half_length: HALF_LENGTH,
-                half_width: HALF_WIDTH,
-                sonars_apart: Some(SONARS_APART),
-                wheel_base: Meters(self.config.wheel_base),
-                ring_radius: Meters(RING_RADIUS),
-                confirmation: CONFIRMATION,
-                steering: self.config.steering,
-            },
+            shape,
             paths: self.paths,
             published: Published::NONE,
         })

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use mdle_host::StopRequest;
-use mdle_runtime::{Meters, Nanos, PathStore, Published, Robot, Sensed, Shape, Supply, Twist, Volts};
+use mdle_runtime::{Compass, Meters, Nanos, PathStore, Published, Robot, Sensed, Shape, Supply, Twist, Volts};
 use mdle_serial::{Clock, LineFault, Moment, Obedience, Times, time_of};
 
 use crate::command::Command;
@@ -42,6 +42,8 @@ pub struct Scout {
     clock: Clock,
     odometer: Odometer,
     ring: Ring,
+    /// Drift of the odometry, measured by walls.
+    compass: Compass,
     freshness: Freshness,
     obedience: Obedience,
     times: Times,
@@ -70,8 +72,9 @@ impl Scout {
         // Each wheel brakes for both: where it goes forward and turns, half as hard for either.
         let brakes = config.acceleration / 2.0;
         let obedience = Obedience::new(brakes, brakes, Duration::from_millis(config.disobey));
-        let (commanded, paths) = (None, PathStore::EMPTY);
-        let mut scout = Self { line, config, clock, odometer, ring, freshness, obedience, times, commanded, paths };
+        let (commanded, paths, compass) = (None, PathStore::EMPTY, Compass::default());
+        let mut scout =
+            Self { line, config, clock, odometer, ring, compass, freshness, obedience, times, commanded, paths };
         match scout.prepare(period, request) {
             Ok(()) => Ok(scout),
             Err(Fault::Ended(_)) => Err(Fault::Ended(scout.stop().err().map(Box::new))),
@@ -203,23 +206,27 @@ impl Robot for Scout {
         if self.obedience.is_broken(at, metres([right, left]), metres([state.right, state.left])) {
             return Err(Fault::Disobeys(self.config.disobey));
         }
+        let shape = Shape {
+            body_radius: RADIUS,
+            half_length: RADIUS,
+            half_width: RADIUS,
+            sonars_apart: None,
+            wheel_base: Meters(WHEEL_BASE),
+            ring_radius: Meters(self.config.ring_radius),
+            confirmation: CONFIRMATION,
+            steering: self.config.steering,
+        };
+        let pings = self.ring.take_in(&state.sonars, at, odometry);
+        self.compass.take(&pings, odometry, &shape);
         Ok(Sensed {
             at,
             odometry,
             velocity: wheels::twist(state.right, state.left),
             switches: state.bumper,
-            pings: self.ring.take_in(&state.sonars, at, odometry),
+            pings,
+            compass: self.compass,
             supply: supply(&state, &self.config),
-            shape: Shape {
-                body_radius: RADIUS,
-                half_length: RADIUS,
-                half_width: RADIUS,
-                sonars_apart: None,
-                wheel_base: Meters(WHEEL_BASE),
-                ring_radius: Meters(self.config.ring_radius),
-                confirmation: CONFIRMATION,
-                steering: self.config.steering,
-            },
+            shape,
             paths: self.paths,
             published: Published::NONE,
         })

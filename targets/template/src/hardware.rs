@@ -7,8 +7,8 @@ use mdle_host::clap::{Arg, ArgMatches, Command};
 use mdle_host::{Pace, Refusal, StopRequest, Time};
 use mdle_runtime::capability::Steering;
 use mdle_runtime::{
-    Meters, MetersPerSecond, Nanos, PathStore, Pings, Pose, Published, Radians, RadiansPerSecond, Robot, SONARS,
-    Sensed, Shape, Supply,
+    Compass, Meters, MetersPerSecond, Nanos, PathStore, Pings, Pose, Published, Radians, RadiansPerSecond, Robot,
+    SONARS, Sensed, Shape, Supply,
 };
 
 use crate::{Input, Output, alphabet};
@@ -110,6 +110,7 @@ impl Robot for Hardware {
             // What the alphabet does not declare, no plan can ask for: this stays empty until the robot has it.
             switches: 0,
             pings: [Pings::default(); SONARS],
+            compass: Compass::default(),
             at: Nanos::ZERO,
             supply: Supply::default(),
             shape: SHAPE,

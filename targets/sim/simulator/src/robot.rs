@@ -4,7 +4,7 @@ use std::fmt;
 use std::time::Duration;
 
 use mdle_runtime::capability::Steering;
-use mdle_runtime::{Meters, Nanos, PathStore, Pose, Published, Robot, Sensed, Shape, Supply, Twist};
+use mdle_runtime::{Compass, Meters, Nanos, PathStore, Pose, Published, Robot, Sensed, Shape, Supply, Twist};
 
 use crate::battery::Battery;
 use crate::body::{Body, STEP};
@@ -23,6 +23,8 @@ pub struct Simulated {
     body: Body,
     ring: Ring,
     shape: Shape,
+    /// Drift of its odometry, measured by walls.
+    compass: Compass,
     battery: Battery,
     charger: Option<Charger>,
     /// Paths that the plan can replay.
@@ -104,6 +106,7 @@ impl Simulated {
             body: Body::new(drive, start, make.seed),
             ring: Ring::new(hearing, make.seed),
             shape,
+            compass: Compass::default(),
             battery: Battery::new(pack, 1.0),
             charger: world.charger,
             paths: PathStore::EMPTY,
@@ -236,12 +239,14 @@ impl Robot for Simulated {
             self.battery.passed(seconds, self.body.wheels() * seconds, is_plugged);
         }
         self.exchanges = self.exchanges.saturating_add(1);
+        self.compass.take(&self.ring.pings, self.body.odometry(), &self.shape);
         Ok(Sensed {
             at: now,
             odometry: self.body.odometry(),
             velocity: self.body.velocity(),
             switches: self.body.pressed(self.switches, &self.walls),
             pings: self.ring.pings,
+            compass: self.compass,
             supply: self.supplied(),
             shape: self.shape,
             paths: self.paths,
