@@ -1,5 +1,5 @@
-//! Detects that a robot whose sonars fire in turn is askew to the walls: a wall faces it between the front, the left, the
-//! back and the right.
+//! Detects that a robot whose sonars fire in turn is askew to the walls: a wall faces it between the front, the left,
+//! the back and the right.
 
 use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Meters, Nanos, Ping, Radians, SONARS, SonarId};

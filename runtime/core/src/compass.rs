@@ -1,8 +1,8 @@
-//! The drift of a heading by odometry, measured by walls: wheels that slip in turns leave odometry a heading that is off,
-//! and walls do not turn.
+//! The drift of a heading by odometry, measured by walls: wheels that slip in turns leave odometry a heading that is
+//! off, and walls do not turn.
 //!
-//! Walls are taken to run at right angles to each other. The drift is a number with an error, which grows with each turn
-//! and way; a measurement counts by its own error, and one that is off by more than both is of something else.
+//! Walls are taken to run at right angles to each other. The drift is a number with an error, which grows with each
+//! turn and way; a measurement counts by its own error, and one that is off by more than both is of something else.
 
 use core::f64::consts::FRAC_PI_2;
 
