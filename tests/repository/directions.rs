@@ -33,6 +33,7 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("mdlec/theory", &["mdle-runtime", "mdle-compiler"]),
     ("mdlec/files", &["mdle-runtime", "mdle-compiler"]),
     ("mdlec/embed", &["mdle-runtime", "mdle-compiler", "mdle-files"]),
+    ("editors/server", &["mdle-runtime", "mdle-compiler", "mdle-files"]),
     ("mdlec", &["mdle-runtime", "mdle-compiler", "mdle-theory", "mdle-files"]),
     ("targets/sim/simulator", &["mdle-runtime", "mdle-quantity", "mdle-atoms"]),
     // The conformance of robots is there for their tests alone.

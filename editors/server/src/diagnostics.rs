@@ -1,0 +1,63 @@
+//! Diagnostics of a document and of the files that it uses, as `mdlec check` shows them.
+
+use std::ops::Range;
+
+use mdle_compiler::diagnostic::{Code, Diagnostic, Label, Severity, SourceId, Sources, Span, most_shown};
+
+/// A place in a file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Place {
+    /// The file.
+    pub source: SourceId,
+    /// Byte range in the file.
+    pub range: Range<usize>,
+}
+
+/// A diagnostic for an editor.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Finding {
+    /// Code of the diagnostic.
+    pub code: Code,
+    /// Place of the defect.
+    pub place: Place,
+    /// The message, the text at the place, and the help, a line each.
+    pub message: String,
+    /// Places that explain the defect, each with its text.
+    pub related: Vec<(Place, String)>,
+}
+
+impl Finding {
+    /// Returns `true` for an error, `false` for a warning.
+    #[must_use]
+    pub fn is_error(&self) -> bool {
+        self.code.severity() == Severity::Error
+    }
+}
+
+/// Returns the place of a span.
+#[must_use]
+pub fn place(sources: &Sources, span: Span) -> Place {
+    let (source, range) = sources.range(span);
+    Place { source, range }
+}
+
+/// Converts diagnostics: as many as people are shown.
+#[must_use]
+pub fn findings(sources: &Sources, diagnostics: &[Diagnostic]) -> Vec<Finding> {
+    let shown = diagnostics.iter().take(most_shown(diagnostics));
+    shown.filter_map(|diagnostic| finding(sources, diagnostic)).collect()
+}
+
+fn finding(sources: &Sources, diagnostic: &Diagnostic) -> Option<Finding> {
+    let mut labels = diagnostic.labels.iter();
+    let Label { span, text, .. } = labels.next()?;
+    let here = Some(text.clone()).filter(|text| !text.is_empty());
+    let help = diagnostic.help.iter().map(|help| format!("help: {}", help.text));
+    let message: Vec<_> = std::iter::once(diagnostic.message.clone()).chain(here).chain(help).collect();
+    Some(Finding {
+        code: diagnostic.code,
+        place: place(sources, *span),
+        message: message.join("\n"),
+        related: labels.map(|label| (place(sources, label.span), label.text.clone())).collect(),
+    })
+}

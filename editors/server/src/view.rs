@@ -1,0 +1,79 @@
+//! A checked document as the features see it: text, tree and alphabet.
+
+use std::ops::Range;
+
+use mdle_compiler::alphabet::Alphabet;
+use mdle_compiler::diagnostic::{SourceId, Sources, Span};
+use mdle_compiler::syntax::tree::{File, Plan};
+use mdle_compiler::syntax::{Files, Loader, arena_for, parse, parse_with};
+
+/// A document with its tree and the trees of the files that it uses.
+#[derive(Debug)]
+pub struct View<'v> {
+    /// Identifier of the document among `sources`.
+    pub source: SourceId,
+    /// Text of the document.
+    pub text: &'v str,
+    /// Tree of the document itself.
+    pub file: &'v File<'v>,
+    /// Plans of the document, and of the files that it uses.
+    pub files: &'v Files<'v>,
+    /// Alphabet of the robot.
+    pub alphabet: &'v Alphabet,
+    /// Texts of all these files.
+    pub sources: &'v Sources,
+}
+
+impl View<'_> {
+    /// Plans of the document itself.
+    #[must_use]
+    pub fn own(&self) -> &[Plan<'_>] {
+        self.files.plans.get(..self.files.own).unwrap_or(&[])
+    }
+
+    /// Byte range of a span if it is in the document itself.
+    #[must_use]
+    pub fn range(&self, span: Span) -> Option<Range<usize>> {
+        let (source, range) = self.sources.range(span);
+        (source == self.source).then_some(range)
+    }
+
+    /// Returns `true` if the span is in the document and contains the byte, or ends with it.
+    #[must_use]
+    pub fn contains(&self, span: Span, byte: usize) -> bool {
+        self.range(span).is_some_and(|range| range.start <= byte && byte <= range.end)
+    }
+
+    /// Text of a span with single spaces and without line breaks.
+    #[must_use]
+    pub fn words(&self, span: Span) -> String {
+        self.sources.slice(span).split_whitespace().collect::<Vec<_>>().join(" ")
+    }
+}
+
+/// Files with their texts, as the loader of a document.
+pub trait Texts: Loader {
+    /// Texts of the files that were read.
+    fn sources(&self) -> &Sources;
+}
+
+impl Texts for mdle_files::Input {
+    fn sources(&self) -> &Sources {
+        &self.sources
+    }
+}
+
+/// Parses the document `source` and shows it to `feature`.
+pub fn view<T>(
+    source: SourceId,
+    texts: &mut impl Texts,
+    alphabet: &Alphabet,
+    feature: impl FnOnce(&View<'_>) -> T,
+) -> T {
+    let text = texts.sources().text(source).to_owned();
+    let arena = arena_for(&text);
+    let (file, _) = parse(source, &text, &arena);
+    let (files, _) = parse_with(source, &text, &arena, texts);
+    let sources = texts.sources();
+    feature(&View { source, text: &text, file: &file, files: &files, alphabet, sources })
+}

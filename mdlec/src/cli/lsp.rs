@@ -1,0 +1,13 @@
+//! `mdlec lsp`: serves an editor on standard input and output.
+
+use mdle_language_server::ServeError;
+
+use super::Failure;
+
+/// Serves an editor until it ends the server; a client that vanishes is exit status 1, one that breaks the protocol 2.
+pub(super) fn lsp() -> Result<(), Failure> {
+    mdle_language_server::serve().map_err(|error| match error {
+        ServeError::Vanished => Failure::of(1, error.to_string()),
+        ServeError::Protocol(_) => Failure::usage(error.to_string()),
+    })
+}
