@@ -1,0 +1,312 @@
+//! The place of the cursor in an unfinished text: which words may follow.
+
+use std::ops::Range;
+
+use crate::words::{Kind, Word, words};
+
+/// Words that may follow.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Expected {
+    /// A plan or `use`, outside of all brackets.
+    Plan,
+    /// An element.
+    Element,
+    /// An operand of a condition.
+    Operand,
+    /// A law.
+    Law,
+    /// A label, after `after`.
+    Label,
+    /// The type of a parameter.
+    Type,
+    /// The unit of the number that the cursor touches.
+    Unit,
+    /// An argument, or what follows the call.
+    Argument,
+    /// Nothing: in a comment, in a text, or where a name is chosen.
+    Nothing,
+}
+
+/// A call that is being written.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct OpenCall<'t> {
+    /// Name of the quark or plan.
+    pub name: &'t str,
+    /// Number of arguments before the cursor.
+    pub args: usize,
+    /// `true` in a condition, `false` for a law or a plan.
+    pub is_condition: bool,
+}
+
+/// The place of the cursor.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Context<'t> {
+    /// Words that may follow.
+    pub expected: Expected,
+    /// Byte range of the word that the cursor ends: a completion replaces it.
+    pub typed: Range<usize>,
+    /// Innermost call around the cursor.
+    pub call: Option<OpenCall<'t>>,
+    /// Labels of the plan around the cursor.
+    pub labels: Vec<&'t str>,
+}
+
+/// Kind of a bracket that is open.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Bracket {
+    Plan,
+    Parameters,
+    Body,
+    Atom,
+    Condition,
+    /// Arguments of the call that the enclosing bracket has open.
+    Arguments,
+}
+
+/// A bracket with what was read in it.
+#[derive(Debug, Clone)]
+struct Open<'t> {
+    bracket: Bracket,
+    /// Number of words and brackets read directly in it.
+    items: usize,
+    last: &'t str,
+    call: Option<OpenCall<'t>>,
+}
+
+impl Open<'_> {
+    fn new(bracket: Bracket) -> Self {
+        Self { bracket, items: 0, last: "", call: None }
+    }
+}
+
+/// Reads the text up to the cursor at `byte`; the labels are those of the whole plan.
+#[must_use]
+pub fn context(text: &str, byte: usize) -> Context<'_> {
+    let mut stack: Vec<Open<'_>> = Vec::new();
+    let mut found: Option<Context<'_>> = None;
+    let mut labels = Vec::new();
+    let mut before: Option<Word<'_>> = None;
+    for word in words(text) {
+        // A bracket that ends at the cursor is before it; a name is being typed.
+        let is_at_cursor = word.range.start >= byte || (word.range.end >= byte && word.kind != Kind::Sign);
+        if found.is_none() && is_at_cursor {
+            found = Some(at_cursor(&stack, &word, byte));
+            if stack.is_empty() {
+                break;
+            }
+        }
+        if stack.is_empty() {
+            if found.is_some() {
+                break;
+            }
+            labels.clear();
+        }
+        if word.kind == Kind::Opaque {
+            continue;
+        }
+        if let (":", Some(name)) = (word.text, before.as_ref().filter(|name| name.kind == Kind::Name))
+            && stack.last().is_some_and(|open| open.bracket != Bracket::Parameters)
+        {
+            labels.push(name.text);
+        }
+        let touches =
+            before.as_ref().is_some_and(|before| before.kind == Kind::Name && before.range.end == word.range.start);
+        read(&mut stack, &word, touches);
+        before = Some(word);
+    }
+    let mut found = found.unwrap_or_else(|| {
+        let end = Word { kind: Kind::Sign, text: "", range: byte..byte };
+        at_cursor(&stack, &end, byte)
+    });
+    found.labels = labels;
+    found
+}
+
+/// Reads one word in the innermost bracket.
+fn read<'t>(stack: &mut Vec<Open<'t>>, word: &Word<'t>, touches: bool) {
+    match word.text {
+        "{" | "(" => {
+            let bracket = opened(stack.last(), word.text, touches);
+            if let Some(outer) = stack.last_mut() {
+                outer.items += 1;
+            }
+            stack.push(Open::new(bracket));
+        }
+        "}" | ")" => {
+            stack.pop();
+            if let Some(outer) = stack.last_mut() {
+                outer.last = ")";
+            }
+        }
+        text => {
+            let Some(open) = stack.last_mut() else { return };
+            if text == "Atom" && open.items == 0 {
+                open.bracket = Bracket::Atom;
+            }
+            read_in(open, word);
+            open.items += usize::from(text != ",");
+            open.last = text;
+        }
+    }
+}
+
+/// Kind of the bracket `sign` in this one.
+fn opened(outer: Option<&Open<'_>>, sign: &str, touches: bool) -> Bracket {
+    let Some(outer) = outer else { return if sign == "{" { Bracket::Plan } else { Bracket::Body } };
+    match (sign, outer.bracket) {
+        ("{", _) if outer.last.starts_with(|letter: char| letter.is_ascii_digit()) || outer.last == "inf" => {
+            Bracket::Body
+        }
+        ("{", _) => Bracket::Plan,
+        (_, Bracket::Plan) if outer.items == 1 && touches => Bracket::Parameters,
+        (_, Bracket::Plan) if outer.items == 1 || (outer.items == 2 && outer.last == ")") => Bracket::Condition,
+        (_, Bracket::Atom) if outer.items == 1 => Bracket::Condition,
+        (_, _) if touches && !is_keyword(outer.last) => Bracket::Arguments,
+        (_, Bracket::Condition) if outer.call.is_none() => Bracket::Condition,
+        (_, Bracket::Condition | Bracket::Arguments) => Bracket::Arguments,
+        (_, Bracket::Plan | Bracket::Body | Bracket::Parameters) => Bracket::Body,
+        // The law, in parentheses of its own.
+        (_, Bracket::Atom) => Bracket::Arguments,
+    }
+}
+
+fn is_keyword(word: &str) -> bool {
+    ["OR", "AND", "NOT", "RISING", "or", "and", "not", "rising", "after", "Atom", "ExecPlan"].contains(&word)
+}
+
+/// Keeps track of the call that is written in a bracket.
+fn read_in<'t>(open: &mut Open<'t>, word: &Word<'t>) {
+    let is_condition = open.bracket == Bracket::Condition;
+    let begins = |name| Some(OpenCall { name, args: 0, is_condition });
+    match (word.kind, &mut open.call) {
+        (Kind::Sign, _) if matches!(word.text, "<" | ">" | "=" | ",") => open.call = None,
+        (Kind::Name, _) if is_keyword(word.text) => open.call = None,
+        (Kind::Name, _) if open.last == "after" => open.call = None,
+        (Kind::Name, None) if open.bracket != Bracket::Plan || open.items > 0 => open.call = begins(word.text),
+        (Kind::Name | Kind::Number, Some(call)) if open.bracket != Bracket::Plan && open.bracket != Bracket::Body => {
+            call.args += 1;
+        }
+        (Kind::Name, Some(_)) => open.call = begins(word.text),
+        (Kind::Name | Kind::Number | Kind::Opaque | Kind::Sign, _) => {}
+    }
+}
+
+/// The place of the cursor, which is in or at the end of `word`, or before it.
+fn at_cursor<'t>(stack: &[Open<'t>], word: &Word<'t>, byte: usize) -> Context<'t> {
+    let is_in = word.range.start < byte;
+    let typed = if is_in && word.kind == Kind::Name { word.range.start..byte } else { byte..byte };
+    let call = call(stack);
+    let expected = match word.kind {
+        Kind::Opaque if is_in && (word.range.end > byte || word.text.starts_with("//")) => Expected::Nothing,
+        Kind::Number if is_in => Expected::Unit,
+        Kind::Name | Kind::Number | Kind::Opaque | Kind::Sign => expected(stack),
+    };
+    let typed = if expected == Expected::Unit { unit_at(word, byte) } else { typed };
+    Context { expected, typed, call, labels: Vec::new() }
+}
+
+/// Byte range of the unit of a number up to the cursor.
+fn unit_at(number: &Word<'_>, byte: usize) -> Range<usize> {
+    let digits = number.text.find(|letter: char| letter.is_alphabetic()).unwrap_or(number.text.len());
+    (number.range.start + digits).min(byte)..byte
+}
+
+/// Innermost call around the cursor: in a bracket of arguments, that of the bracket around it.
+fn call<'t>(stack: &[Open<'t>]) -> Option<OpenCall<'t>> {
+    let open = stack.last()?;
+    match (open.bracket, stack.len().checked_sub(2).and_then(|outer| stack.get(outer))) {
+        (Bracket::Arguments, Some(outer)) => match &outer.call {
+            // Words in the parentheses are arguments, also the first.
+            Some(call) => Some(OpenCall { args: call.args + open.items, ..call.clone() }),
+            None => open.call.clone(),
+        },
+        _ => open.call.clone(),
+    }
+}
+
+fn expected(stack: &[Open<'_>]) -> Expected {
+    let Some(open) = stack.last() else { return Expected::Plan };
+    let outer = stack.len().checked_sub(2).and_then(|outer| stack.get(outer));
+    match open.bracket {
+        _ if open.last == "after" => Expected::Label,
+        Bracket::Plan if open.items == 0 => Expected::Nothing,
+        Bracket::Plan | Bracket::Body => Expected::Element,
+        Bracket::Parameters if open.last == ":" => Expected::Type,
+        Bracket::Parameters => Expected::Nothing,
+        Bracket::Atom if open.call.is_none() && open.items >= 2 => Expected::Law,
+        Bracket::Atom if open.items < 2 => Expected::Nothing,
+        Bracket::Condition if open.call.is_none() => Expected::Operand,
+        Bracket::Arguments
+            if open.items == 0 && outer.is_some_and(|outer| outer.bracket == Bracket::Atom && outer.call.is_none()) =>
+        {
+            Expected::Law
+        }
+        Bracket::Atom | Bracket::Condition | Bracket::Arguments => Expected::Argument,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Words that may follow at the bar.
+    fn at(text: &str) -> Expected {
+        let byte = text.find('|').unwrap_or(text.len());
+        context(&text.replace('|', ""), byte).expected
+    }
+
+    fn call_at(text: &str) -> String {
+        let byte = text.find('|').unwrap_or(text.len());
+        let text = text.replace('|', "");
+        context(&text, byte).call.map(|call| format!("{} {}", call.name, call.args)).unwrap_or_default()
+    }
+
+    #[test]
+    fn the_brackets_decide_which_words_may_follow() {
+        for (text, expected) in [
+            ("|", Expected::Plan),
+            ("{ P | }", Expected::Element),
+            ("{ | }", Expected::Nothing),
+            ("{ P (|", Expected::Operand),
+            ("{ P (bum|per) }", Expected::Operand),
+            ("{ P (bumper OR |", Expected::Operand),
+            ("{ P (NOT (| ", Expected::Operand),
+            ("{ P (bumper) Le|", Expected::Element),
+            ("{ P (Atom (|", Expected::Operand),
+            ("{ P (Atom (bumper) |", Expected::Law),
+            ("{ P (Atom (bumper) (|", Expected::Law),
+            ("{ P (Atom (bumper) (go |", Expected::Argument),
+            ("{ P (Atom (bumper) (go 20|", Expected::Unit),
+            ("{ P (Atom (wait 2m|", Expected::Unit),
+            ("{ P a: (Atom (bumper) stop) (Atom (after |", Expected::Label),
+            ("{ P(x: |", Expected::Type),
+            ("{ P // |\n }", Expected::Nothing),
+            ("{ P // c\n | }", Expected::Element),
+            ("{ P ExecPlan 3 { |", Expected::Element),
+        ] {
+            assert_eq!(at(text), expected, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_call_counts_the_arguments_before_the_cursor() {
+        for (text, call) in [
+            ("{ P (Atom (bumper) (go |", "go 0"),
+            ("{ P (Atom (bumper) (go 20 |", "go 1"),
+            ("{ P (Atom (bumper) go(20, |", "go 1"),
+            ("{ P (Atom (bumper) go (20 |", "go 1"),
+            ("{ P (Atom (wait |", "wait 0"),
+            ("{ P (Atom (bumper OR atIsection |", "atIsection 0"),
+            ("{ P Leg(0deg, |", "Leg 1"),
+            ("{ P |", ""),
+        ] {
+            assert_eq!(call_at(text), call, "{text}");
+        }
+    }
+
+    #[test]
+    fn labels_are_those_of_the_plan_around_the_cursor() {
+        let text = "{ A x: Leg } { B(p: speed) y: Leg (Atom (after ) stop) z: Leg } { C w: Leg }";
+        assert_eq!(context(text, text.find("after ").unwrap_or(0) + 6).labels, ["y", "z"]);
+    }
+}

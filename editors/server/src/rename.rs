@@ -1,0 +1,93 @@
+//! Definitions, references, and other names for plans, parameters and labels.
+
+use std::collections::BTreeSet;
+
+use mdle_compiler::diagnostic::SourceId;
+use mdle_compiler::diagnostic::Span;
+use mdle_compiler::syntax::tree::{Element, Primary};
+use mdle_compiler::syntax::{Arena, parse};
+
+use crate::diagnostics::{Place, place};
+use crate::mentions::{Mention, Role, mentions};
+use crate::view::View;
+
+/// The name at a byte: the place of its definition, and its own.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Named {
+    /// Place of the name where it is defined.
+    pub defined: Place,
+    /// Place of the name at the byte.
+    pub here: Place,
+    /// The name.
+    pub name: String,
+}
+
+/// Returns the plan, parameter or label at a byte; `None` for what no plan defines.
+#[must_use]
+pub fn named(view: &View<'_>, byte: usize) -> Option<Named> {
+    let mentions = mentions(view.files, view.alphabet);
+    let mention = mentions.iter().find(|mention| mention.defined.is_some() && view.contains(mention.span, byte))?;
+    let at = |span: Span| place(view.sources, span);
+    Some(Named { defined: at(mention.defined?), here: at(mention.span), name: mention.text.to_owned() })
+}
+
+/// Path of the used file that is named at a byte, as it is written.
+#[must_use]
+pub fn used_file(view: &View<'_>, byte: usize) -> Option<String> {
+    let used = view.file.uses.iter().find(|used| view.contains(used.span, byte))?;
+    Some(used.node.to_owned())
+}
+
+/// Lists the places of the document itself where the name is written that is defined at a place that `is_meant`
+/// accepts.
+#[must_use]
+pub fn references(view: &View<'_>, is_meant: impl Fn(&Place) -> bool) -> Vec<Place> {
+    let of_definition = |mention: &Mention<'_>| {
+        view.range(mention.span).is_some() && mention.defined.is_some_and(|span| is_meant(&place(view.sources, span)))
+    };
+    let mentions = mentions(view.files, view.alphabet);
+    let places: BTreeSet<_> =
+        mentions.iter().filter(|mention| of_definition(mention)).map(|mention| mention.span).collect();
+    places.into_iter().map(|span| place(view.sources, span)).collect()
+}
+
+/// Returns `true` if a text can be the name of a plan, as the parser reads it.
+#[must_use]
+pub fn is_name(name: &str) -> bool {
+    let text = format!("{{ {name} Other }}");
+    let arena = Arena::new();
+    let (file, found) = parse(SourceId(0), &text, &arena);
+    let [plan] = file.plans.as_slice() else { return false };
+    let is_other = |element: &Element<'_>| matches!(element.primary, Primary::Ref(call) if call.name == "Other");
+    found.is_empty() && plan.name.node == name && matches!(plan.elements, [only] if is_other(only))
+}
+
+/// Number of mentions in the document, by role and definition: equal before and after a rename that keeps all meanings.
+#[must_use]
+pub fn meanings(view: &View<'_>) -> Vec<(u8, Option<usize>)> {
+    let mentions = mentions(view.files, view.alphabet);
+    let role = |role: Role| match role {
+        Role::Plan => 0,
+        Role::Parameter => 1,
+        Role::Label => 2,
+        Role::Quark(_) => 3,
+        Role::Type => 4,
+        Role::Number(_) => 5,
+        Role::Text => 6,
+    };
+    let index = |span: Span| mentions.iter().position(|mention| mention.span == span);
+    mentions.iter().map(|mention| (role(mention.role), mention.defined.and_then(index))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_name;
+
+    #[test]
+    fn a_name_is_what_the_parser_reads_as_one() {
+        assert!(["Leg", "größe", "x_1", "_"].into_iter().all(is_name));
+        assert!(
+            !["", "a b", "1a", "Atom", "OR", "inf", "a-b", "P } { Q", "a (b)", "//", "use"].into_iter().any(is_name)
+        );
+    }
+}

@@ -1,0 +1,61 @@
+//! Splits a text into words for completion, where the text is unfinished and the tree has a hole.
+
+use std::ops::Range;
+
+/// Kind of a word.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// A name or a keyword.
+    Name,
+    /// Digits, with the unit that touches them.
+    Number,
+    /// A comment or a text in quotes.
+    Opaque,
+    /// A bracket or an operator.
+    Sign,
+}
+
+/// A word with its place.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Word<'t> {
+    pub(crate) kind: Kind,
+    pub(crate) text: &'t str,
+    pub(crate) range: Range<usize>,
+}
+
+/// Returns the words of a text.
+pub(crate) fn words(text: &str) -> impl Iterator<Item = Word<'_>> {
+    let mut at = 0;
+    std::iter::from_fn(move || {
+        let rest = text.get(at..)?;
+        at += rest.len() - rest.trim_start().len();
+        let rest = text.get(at..).filter(|rest| !rest.is_empty())?;
+        let (kind, length) = next(rest);
+        let start = at;
+        at += length;
+        Some(Word { kind, text: text.get(start..at)?, range: start..at })
+    })
+}
+
+/// Kind and length of the word with which a text begins.
+fn next(text: &str) -> (Kind, usize) {
+    let while_in = |is_in: fn(char) -> bool| text.find(|letter| !is_in(letter)).unwrap_or(text.len());
+    let first = text.chars().next().unwrap_or(' ');
+    let is_digit = |at: usize| text.as_bytes().get(at).is_some_and(u8::is_ascii_digit);
+    if text.starts_with("//") {
+        (Kind::Opaque, text.find('\n').unwrap_or(text.len()))
+    } else if text.starts_with("/*") {
+        (Kind::Opaque, text.find("*/").map_or(text.len(), |end| end + 2))
+    } else if first == '"' {
+        let end = text.get(1..).and_then(|rest| rest.find(['"', '\n']));
+        (Kind::Opaque, end.map_or(text.len(), |end| end + 2).min(text.len()))
+    } else if is_digit(0) || (matches!(first, '+' | '-') && is_digit(1)) {
+        let rest = text.get(1..).unwrap_or("");
+        let is_inside = |letter: char| letter.is_alphanumeric() || matches!(letter, '.' | '/' | '_');
+        (Kind::Number, 1 + rest.find(|letter| !is_inside(letter)).unwrap_or(rest.len()))
+    } else if first.is_alphabetic() || first == '_' {
+        (Kind::Name, while_in(|letter| letter.is_alphanumeric() || letter == '_'))
+    } else {
+        (Kind::Sign, first.len_utf8())
+    }
+}
