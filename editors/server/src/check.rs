@@ -1,0 +1,79 @@
+//! Checks an open document as `mdlec check` does.
+
+use std::collections::BTreeMap;
+
+use mdle_compiler::alphabet;
+use mdle_compiler::diagnostic::Sources;
+use mdle_files::InputError;
+use serde_json::Value;
+
+use crate::convert::{self, Converter};
+use crate::diagnostics::findings;
+use crate::documents::{Document, Documents, is_alphabet};
+use crate::lines::Lines;
+
+/// Diagnostics of one check.
+#[derive(Debug, Default)]
+pub(crate) struct Checked {
+    /// Diagnostics by the URI of the document that contains them.
+    pub(crate) diagnostics: BTreeMap<String, Vec<Value>>,
+    /// `true` if the document uses other files, or tries to.
+    pub(crate) uses_files: bool,
+}
+
+/// Checks the document `uri`; `book` is the address of the book.
+pub(crate) fn check(documents: &Documents, uri: &str, document: &Document, book: Option<&str>) -> Checked {
+    if is_alphabet(&document.path) {
+        return Checked { diagnostics: [(uri.to_owned(), of_alphabet(document))].into(), uses_files: false };
+    }
+    let mut plan = match documents.plan(document) {
+        Ok(plan) => plan,
+        Err(error) => {
+            let diagnostics = [(uri.to_owned(), vec![convert::unplaced(&words(error))])];
+            return Checked { diagnostics: diagnostics.into(), uses_files: false };
+        }
+    };
+    let found = plan.input.check(&plan.target.alphabet);
+    let findings = findings(&plan.input.sources, &found);
+    let mut converter = Converter::new(documents, &plan);
+    let mut diagnostics: BTreeMap<String, Vec<Value>> = BTreeMap::new();
+    for finding in &findings {
+        let of = converter.uri(finding.place.source).unwrap_or_else(|| uri.to_owned());
+        diagnostics.entry(of).or_default().push(converter.diagnostic(finding, book));
+    }
+    let uses_files = plan.input.files().count() > 1 || found.iter().any(|found| found.code.name() == "E0205");
+    Checked { diagnostics, uses_files }
+}
+
+/// Diagnostics of an alphabet.
+fn of_alphabet(document: &Document) -> Vec<Value> {
+    let mut sources = Sources::default();
+    let (text, lines) = (document.text.as_str(), Lines::of(&document.text));
+    let source = sources.add("alphabet.mdle", text);
+    let (_, found) = alphabet::read(source, text);
+    let diagnostic = |finding: crate::diagnostics::Finding| {
+        let mut value = convert::unplaced(&finding.message);
+        value["range"] = convert::range(text, &lines, &finding.place.range);
+        value["code"] = finding.code.name().into();
+        value
+    };
+    findings(&sources, &found).into_iter().map(diagnostic).collect()
+}
+
+/// Words for an input that cannot be checked: those of `mdlec check`, with the first defect of the file that is to blame.
+fn words(error: InputError) -> String {
+    let own = Some(error.to_string()).filter(|own| !own.is_empty());
+    let first = match error.cause() {
+        InputError::Faulty { sources, diagnostics, .. } => diagnostics.first().map(|first| {
+            let (file, line) = first.span().map_or(("", 0), |span| sources.line(span));
+            format!("{file}:{line}: {}", first.message)
+        }),
+        InputError::Unusable(_)
+        | InputError::NoTarget
+        | InputError::UnknownTarget(_)
+        | InputError::InSettings { .. }
+        | InputError::UnknownPlan { .. }
+        | InputError::NotOnePlan { .. } => None,
+    };
+    own.into_iter().chain(first).collect::<Vec<_>>().join("\n")
+}

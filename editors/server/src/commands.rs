@@ -1,0 +1,33 @@
+//! The commands of the code lenses: `mdle.run` answers with the command line to type, `mdle.draw` with a picture.
+
+use mdle_compiler::picture;
+use serde_json::{Value, json};
+
+use crate::documents::Documents;
+use crate::requests::Refusal;
+
+/// Command that runs a plan: answers with the words of the command line, for the editor's terminal.
+pub(crate) const RUN: &str = "mdle.run";
+/// Command that draws a plan: answers with the SVG.
+pub(crate) const DRAW: &str = "mdle.draw";
+
+/// Executes a command, whose arguments are the URI of a document and the name of a plan.
+pub(crate) fn execute(documents: &Documents, params: &Value) -> Result<Value, Refusal> {
+    let argument = |at: usize| params.pointer(&format!("/arguments/{at}")).and_then(Value::as_str);
+    let (Some(uri), Some(name)) = (argument(0), argument(1)) else {
+        return Err(Refusal::params("the arguments are the URI of a document and the name of a plan"));
+    };
+    let document = documents.open.get(uri).ok_or_else(|| Refusal::unknown(uri))?;
+    match params.get("command").and_then(Value::as_str) {
+        Some(RUN) => Ok(json!(["mdlec", "run", document.path.display().to_string(), "--plan", name])),
+        Some(DRAW) => {
+            let mut plan = documents.plan(document).map_err(|error| Refusal::failed(error.to_string()))?;
+            plan.input.must_have(name).map_err(|error| Refusal::failed(error.to_string()))?;
+            let (compiled, _) = plan.input.compile(&plan.target.alphabet, Some(name));
+            let compiled = compiled.first().ok_or_else(|| Refusal::failed(format!("`{name}` has errors")))?;
+            let drawn = picture::svg(&compiled.machine).map_err(|too_large| Refusal::failed(too_large.message))?;
+            Ok(json!({ "svg": drawn }))
+        }
+        other => Err(Refusal::params(&format!("mdlec has no command `{}`", other.unwrap_or_default()))),
+    }
+}

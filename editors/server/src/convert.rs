@@ -1,0 +1,92 @@
+//! Answers in the words of the protocol.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use mdle_compiler::diagnostic::SourceId;
+use serde_json::{Value, json};
+
+use crate::diagnostics::{Finding, Place};
+use crate::documents::{Documents, Plan};
+use crate::lines::{Lines, Position};
+
+/// Converts places of a plan's files; finds the lines of each file once.
+#[derive(Debug)]
+pub(crate) struct Converter<'d> {
+    documents: &'d Documents,
+    plan: &'d Plan,
+    lines: BTreeMap<SourceId, Lines>,
+}
+
+/// A position of the protocol.
+pub(crate) fn position(at: Position) -> Value {
+    json!({ "line": at.line, "character": at.character })
+}
+
+/// A range of the protocol.
+pub(crate) fn range(text: &str, lines: &Lines, range: &Range<usize>) -> Value {
+    let [start, end] = [range.start, range.end].map(|byte| position(lines.position(text, byte)));
+    json!({ "start": start, "end": end })
+}
+
+impl<'d> Converter<'d> {
+    pub(crate) fn new(documents: &'d Documents, plan: &'d Plan) -> Self {
+        Self { documents, plan, lines: BTreeMap::new() }
+    }
+
+    /// URI of a file that was read for the plan; `None` for the files of alphabets.
+    pub(crate) fn uri(&self, source: SourceId) -> Option<String> {
+        self.plan.input.path(source).map(|path| self.documents.uri(path))
+    }
+
+    /// Range in the plan's own document.
+    pub(crate) fn own(&mut self, range: &Range<usize>) -> Value {
+        self.range(&Place { source: self.plan.input.source, range: range.clone() })
+    }
+
+    /// Range of a place in its file.
+    pub(crate) fn range(&mut self, place: &Place) -> Value {
+        let text = self.plan.input.sources.text(place.source);
+        let lines = self.lines.entry(place.source).or_insert_with(|| Lines::of(text));
+        range(text, lines, &place.range)
+    }
+
+    /// Location of a place.
+    pub(crate) fn location(&mut self, place: &Place) -> Option<Value> {
+        Some(json!({ "uri": self.uri(place.source)?, "range": self.range(place) }))
+    }
+
+    /// A diagnostic, with a link to the page of messages in the `book` if one is known.
+    pub(crate) fn diagnostic(&mut self, finding: &Finding, book: Option<&str>) -> Value {
+        let related = finding.related.iter();
+        let related: Vec<_> = related
+            .filter_map(|(place, text)| {
+                let text = if text.is_empty() { "here" } else { text };
+                Some(json!({ "location": self.location(place)?, "message": text }))
+            })
+            .collect();
+        let code = finding.code.name();
+        let mut diagnostic = json!({
+            "range": self.range(&finding.place),
+            "severity": if finding.is_error() { 1 } else { 2 },
+            "code": code,
+            "source": SOURCE,
+            "message": finding.message,
+            "relatedInformation": related,
+        });
+        if let Some(book) = book {
+            let page = format!("{}/messages.html#{}", book.trim_end_matches('/'), code.to_lowercase());
+            diagnostic["codeDescription"] = json!({ "href": page });
+        }
+        diagnostic
+    }
+}
+
+/// Source of all diagnostics.
+const SOURCE: &str = "mdlec";
+
+/// A diagnostic without a place in the plan, as of an `mdle.toml`, at the first character of the document.
+pub(crate) fn unplaced(message: &str) -> Value {
+    let start = json!({ "line": 0, "character": 0 });
+    json!({ "range": { "start": start, "end": start }, "severity": 1, "source": SOURCE, "message": message })
+}

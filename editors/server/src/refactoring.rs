@@ -1,0 +1,183 @@
+//! Definition, references and rename across the files of a project.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use mdle_compiler::diagnostic::{Code, Severity};
+use mdle_files::{place, read};
+use serde_json::{Value, json};
+
+use crate::answers::Asked;
+use crate::convert;
+use crate::diagnostics::Place;
+use crate::documents::{Document, Documents, Plan};
+use crate::lines::Lines;
+use crate::rename::{self as names, Named};
+use crate::requests::{Params, Refusal};
+
+/// Place of a definition: the place of its file, and the byte range of the name.
+type Definition = (PathBuf, Range<usize>);
+
+/// Place of a definition whatever file it is seen from.
+fn global(plan: &Plan, defined: &Place) -> Option<Definition> {
+    let path = plan.input.path(defined.source)?;
+    Some((place(path).unwrap_or_else(|_| path.to_owned()), defined.range.clone()))
+}
+
+fn named(asked: &mut Asked<'_>, params: &Params) -> Result<Option<(Named, Definition)>, Refusal> {
+    let byte = asked.byte(params.position)?;
+    let named = asked.view(|view| names::named(view, byte));
+    Ok(named.and_then(|named| {
+        let definition = global(&asked.plan, &named.defined)?;
+        Some((named, definition))
+    }))
+}
+
+pub(crate) fn definition(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Refusal> {
+    let byte = asked.byte(params.position)?;
+    if let Some(used) = asked.view(|view| names::used_file(view, byte)) {
+        let file = asked.document.path.parent().unwrap_or(Path::new("")).join(used);
+        let start = json!({ "line": 0, "character": 0 });
+        return Ok(json!({ "uri": asked.documents.uri(&file), "range": { "start": start, "end": start } }));
+    }
+    let found = named(asked, params)?;
+    Ok(found.and_then(|(named, _)| asked.converter().location(&named.defined)).unwrap_or_default())
+}
+
+pub(crate) fn highlights(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Refusal> {
+    let Some((named, _)) = named(asked, params)? else { return Ok(Value::Null) };
+    let places = asked.view(|view| names::references(view, |place| *place == named.defined));
+    let mut converter = asked.converter();
+    Ok(places.iter().map(|place| json!({ "range": converter.range(place) })).collect())
+}
+
+pub(crate) fn references(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Refusal> {
+    let Some((_, definition)) = named(asked, params)? else { return Ok(Value::Null) };
+    let declared = params.context.as_ref().and_then(|context| context.get("includeDeclaration"));
+    let with_definition = declared.and_then(Value::as_bool).unwrap_or(true);
+    let mut locations = Vec::new();
+    for (path, File { text, ranges, .. }) in files_with(asked.documents, &definition) {
+        let (uri, lines) = (asked.documents.uri(&path), Lines::of(&text));
+        let is_shown = |range: &&Range<usize>| with_definition || **range != definition.1 || path != definition.0;
+        let range = |range: &Range<usize>| json!({ "uri": uri, "range": convert::range(&text, &lines, range) });
+        locations.extend(ranges.iter().filter(is_shown).map(range));
+    }
+    Ok(locations.into())
+}
+
+pub(crate) fn prepare(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Refusal> {
+    let Some((named, _)) = named(asked, params)? else { return Ok(Value::Null) };
+    Ok(json!({ "range": asked.converter().range(&named.here), "placeholder": named.name }))
+}
+
+pub(crate) fn rename(asked: &mut Asked<'_>, params: &Params) -> Result<Value, Refusal> {
+    let name = params.new_name.as_deref().ok_or_else(|| Refusal::params("missing `newName`"))?;
+    if !names::is_name(name) {
+        return Err(Refusal::failed(format!("`{name}` is no name: letters, digits and `_`, and no keyword")));
+    }
+    let Some((named, definition)) = named(asked, params)? else {
+        return Err(Refusal::failed("only plans, parameters and labels can be renamed"));
+    };
+    let files = files_with(asked.documents, &definition);
+    keeps_meanings(asked.documents, &files, name)
+        .map_err(|reason| Refusal::failed(format!("`{}` cannot become `{name}`: {reason}", named.name)))?;
+    let mut changes = BTreeMap::new();
+    for (path, File { text, ranges, .. }) in files.iter().filter(|(_, file)| !file.ranges.is_empty()) {
+        let lines = Lines::of(text);
+        let edit = |range: &Range<usize>| json!({ "range": convert::range(text, &lines, range), "newText": name });
+        changes.insert(asked.documents.uri(path), ranges.iter().map(edit).collect::<Vec<_>>());
+    }
+    Ok(json!({ "changes": changes }))
+}
+
+/// A file that sees a definition.
+#[derive(Debug)]
+struct File {
+    text: String,
+    /// Byte ranges of the name.
+    ranges: Vec<Range<usize>>,
+    meanings: Vec<(u8, Option<usize>)>,
+    errors: Vec<Code>,
+}
+
+/// Files of the project that see a definition, by their places.
+fn files_with(documents: &Documents, definition: &Definition) -> BTreeMap<PathBuf, File> {
+    let mut files = BTreeMap::new();
+    let mut paths: BTreeSet<PathBuf> = documents.project();
+    paths.insert(definition.0.clone());
+    for path in paths {
+        let at = place(&path).unwrap_or_else(|_| path.clone());
+        let opened = documents.open.values().find(|document| document.path == path);
+        let opened = opened
+            .or_else(|| documents.open.values().find(|document| place(&document.path).is_ok_and(|own| own == at)));
+        let text = opened.map(|document| document.text.clone());
+        let text = text.or_else(|| mdle_files::read_text(&path, read::LARGEST_PLAN).ok());
+        let Some(text) = text.filter(|_| !files.contains_key(&at)) else { continue };
+        if let Some(file) = seen(documents, &path, text, definition) {
+            files.insert(at, file);
+        }
+    }
+    files
+}
+
+/// Reads a file, if it sees the definition.
+fn seen(documents: &Documents, path: &Path, text: String, definition: &Definition) -> Option<File> {
+    let document = Document { path: path.to_owned(), text, version: 0 };
+    let mut plan = documents.plan_for_any(&document).ok()?;
+    let source = plan.input.source;
+    // The places of definitions are compared after the view, which has the input's files.
+    let (all, meanings) = plan.view(|view| {
+        let places = view.sources;
+        let all: Vec<_> = crate::mentions::mentions(view.files, view.alphabet)
+            .into_iter()
+            .filter_map(|mention| {
+                let defined = crate::diagnostics::place(places, mention.defined?);
+                Some((crate::diagnostics::place(places, mention.span), defined))
+            })
+            .collect();
+        (all, names::meanings(view))
+    });
+    let is_meant = |defined: &Place| global(&plan, defined).is_some_and(|found| found == *definition);
+    let meant: Vec<_> = all.iter().filter(|(_, defined)| is_meant(defined)).collect();
+    if meant.is_empty() {
+        return None;
+    }
+    let own = meant.iter().filter(|(place, _)| place.source == source);
+    let ranges: BTreeSet<_> = own.map(|(place, _)| (place.range.start, place.range.end)).collect();
+    let found = plan.input.check(&plan.target.alphabet);
+    let errors = found.iter().filter(|found| found.code.severity() == Severity::Error).map(|found| found.code);
+    Some(File {
+        errors: errors.collect(),
+        ranges: ranges.into_iter().map(|(start, end)| start..end).collect(),
+        meanings,
+        text: document.text,
+    })
+}
+
+/// Checks that all names mean the same with another name for this one.
+fn keeps_meanings(documents: &Documents, files: &BTreeMap<PathBuf, File>, name: &str) -> Result<(), String> {
+    let mut renamed = documents.clone();
+    for (path, file) in files {
+        let mut text = file.text.clone();
+        for range in file.ranges.iter().rev() {
+            text.replace_range(range.clone(), name);
+        }
+        let document = Document { path: path.clone(), text, version: 0 };
+        renamed.open.insert(documents.uri(path), document);
+    }
+    for (path, file) in files {
+        let Some(document) = renamed.open.get(&documents.uri(path)) else { continue };
+        let mut plan = renamed.plan_for_any(document).map_err(|error| error.to_string())?;
+        let found = plan.input.check(&plan.target.alphabet);
+        let errors: Vec<_> = found.iter().filter(|found| found.code.severity() == Severity::Error).collect();
+        if errors.len() > file.errors.len() {
+            let new = errors.iter().find(|found| !file.errors.contains(&found.code)).or(errors.first());
+            return Err(new.map_or_else(String::new, |found| found.message.clone()));
+        }
+        if plan.view(names::meanings) != file.meanings {
+            return Err(format!("another name in `{}` would change its meaning", path.display()));
+        }
+    }
+    Ok(())
+}
