@@ -10,6 +10,7 @@ use crate::approach::Approach;
 use crate::crossing::crosses;
 use crate::gains::{Gains, fire_in_turn};
 use crate::memory::Memory;
+use crate::narrow::{Ahead, Narrow};
 use crate::stuck::Progress;
 use crate::tangent::{Obstacles, Side, Wish};
 
@@ -45,6 +46,10 @@ const PASSES: f64 = 1.0;
 const PASSES_MOST: f64 = 8.0;
 /// Number of turns in a row in which somebody must be heard: the edge of a cone that touches a wall is heard in fewer.
 const SURE: u32 = 5;
+/// Time without progress for which the robot follows ways on its map, which is too small to show a way out of a large
+/// corner, and for which it then goes round obstacles without the map, in turns.
+const SQUEEZES: Nanos = Nanos(30_000_000_000);
+const GOES_ROUND: Nanos = Nanos(60_000_000_000);
 /// Time for which the robot stands after it has heard somebody come who is about to cross its way.
 const STANDS: Nanos = Nanos(2_500_000_000);
 
@@ -91,6 +96,7 @@ pub struct GoingRound {
     /// Time until which the robot stands, since somebody crosses its way.
     stands_until: Nanos,
     memory: Memory,
+    narrow: Narrow,
 }
 
 /// A way round something that leads far off the goal's direction: kept on one side until it has helped, or the robot
@@ -140,7 +146,8 @@ impl GoingRound {
     /// Notes whether something keeps the robot, which is near the goal, from coming nearer.
     fn notice(&mut self, obstacles: &Obstacles, here: Pose, t: Nanos) {
         let Meters(distance) = here.distance(&self.goal);
-        let is_kept_off = distance <= NEAR.0 && obstacles.free(self.direction(here)).0 < distance - ARRIVED.0;
+        let is_in_the_way = obstacles.free(self.direction(here)).0 < distance - ARRIVED.0 || self.narrow.stands();
+        let is_kept_off = distance <= NEAR.0 && is_in_the_way;
         self.kept_off = self.kept_off.or(Some(t)).filter(|_| is_kept_off);
     }
 
@@ -194,6 +201,32 @@ impl GoingRound {
     }
 }
 
+impl GoingRound {
+    /// The input in a narrow place, or before one; `None` elsewhere.
+    fn squeeze<Y: DiffDrive>(
+        &mut self,
+        y: &Y,
+        here: Pose,
+        t: Nanos,
+        seen: &Obstacles,
+        chosen: Radians,
+    ) -> Option<Twist> {
+        let stalled = self.progress.stalled(here, &self.goal, t);
+        if self.gives_way.is_some() || stalled.0 % (SQUEEZES.0 + GOES_ROUND.0) >= SQUEEZES.0 {
+            self.narrow.leave();
+            return None;
+        }
+        let distance = here.distance(&self.goal);
+        let asked = Meters(self.look_ahead.0.min(distance.0));
+        let (from, free) = match self.detour {
+            Some(detour) => (Meters(detour.from.0.min(distance.0)), None),
+            None => (distance, Some((seen.free(self.direction(here)), asked))),
+        };
+        let ahead = Ahead { goal: self.goal, from, chosen, free, speed: self.speed };
+        self.narrow.input(y, here, t, &ahead)
+    }
+}
+
 /// The side to which to give way.
 fn freer(obstacles: &Obstacles, goal: Radians) -> Side {
     let [left, right] = [90.0, -90.0].map(|side| obstacles.free(Radians(goal.0 + Radians::from_degrees(side).0)));
@@ -221,6 +254,7 @@ impl<Y: DiffDrive + Odometry + SonarRing> Control<Y> for GoAvoid {
             crossed: 0,
             stands_until: Nanos::ZERO,
             memory: Memory::EMPTY,
+            narrow: Narrow::EMPTY,
         }
     }
 }
@@ -230,10 +264,14 @@ impl<Y: DiffDrive + Odometry + SonarRing> Law<Y> for GoingRound {
 
     fn input(&mut self, y: &Y, t: Nanos) -> Twist {
         let here = y.pose();
-        let (begun, bearing, range) = self.from;
-        self.goal = begun.towards(Radians(bearing.0 + y.drift(self.axis).0), range);
+        // Beside obstacles that the robot passes closely, walls are no hallway.
+        if !self.narrow.follows() {
+            let (begun, bearing, range) = self.from;
+            self.goal = begun.towards(Radians(bearing.0 + y.drift(self.axis).0), range);
+        }
         self.progress.take(here, &self.goal, t);
         self.memory.take(y);
+        self.narrow.take(y, here);
         let seen = Obstacles::seen(y, here);
         let obstacles = if self.goes_along(t) { seen.with(&self.memory, here, t) } else { seen };
         self.look_out(y, &seen, here, t);
@@ -249,6 +287,9 @@ impl<Y: DiffDrive + Odometry + SonarRing> Law<Y> for GoingRound {
             return Twist::default();
         }
         let chosen = self.choose(&obstacles, here, t);
+        if let Some(twist) = self.squeeze(y, here, t, &seen, chosen) {
+            return twist;
+        }
         let Radians(off) = Radians(chosen.0 - here.theta.0).wrapped();
         let Meters(ahead) = seen.free(here.theta);
         let Meters(distance) = here.distance(&self.goal);

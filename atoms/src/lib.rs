@@ -22,14 +22,18 @@ mod gains;
 mod go;
 mod go_avoid;
 mod heading;
+mod map;
 mod memory;
 mod modules;
+mod narrow;
 mod path;
+mod plan;
 mod power;
 mod rotate;
 mod signals;
 mod stop;
 mod stuck;
+mod swept;
 mod tangent;
 #[cfg(test)]
 mod trial;

@@ -23,6 +23,8 @@ pub(crate) struct Sensed {
     pub(crate) supply: Supply,
     pub(crate) paths: PathStore,
     pub(crate) published: Published,
+    /// Half of the body's length and of its width, in metres; a disc if they are equal.
+    pub(crate) halves: [f64; 2],
 }
 
 impl Default for Sensed {
@@ -37,6 +39,7 @@ impl Default for Sensed {
             supply: Supply::default(),
             paths: PathStore::EMPTY,
             published: Published::NONE,
+            halves: [0.205; 2],
         }
     }
 }
@@ -92,7 +95,16 @@ impl Bumpers for Sensed {
 
 impl DiffDrive for Sensed {
     fn body_radius(&self) -> Meters {
-        Meters(0.205)
+        let [length, width] = self.halves;
+        Meters(if length > width { libm::hypot(length, width) } else { length })
+    }
+
+    fn half_length(&self) -> Meters {
+        Meters(self.halves[0])
+    }
+
+    fn half_width(&self) -> Meters {
+        Meters(self.halves[1])
     }
 
     fn wheel_base(&self) -> Meters {
@@ -142,6 +154,11 @@ impl Paths for Sensed {
     fn path(&self, name: &str) -> Option<&[Setpoint]> {
         self.paths.path(name)
     }
+}
+
+/// A robot of this half length and half width, in metres.
+pub(crate) fn sized(half_length: f64, half_width: f64) -> Sensed {
+    Sensed { halves: [half_length, half_width], ..Sensed::default() }
 }
 
 /// An atom that begins at time 0 in the odometry's own axes.

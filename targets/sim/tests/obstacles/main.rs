@@ -18,14 +18,8 @@ fn number(name: &str, usual: u64) -> u64 {
     std::env::var(name).map_or(usual, |text| text.parse().expect("a whole number"))
 }
 
-/// The outcomes of a few runs.
-struct Outcomes {
-    clean: u64,
-    touched: u64,
-    count: u64,
-}
-
-fn outcomes(name: &str, crossing: fn(Body, u64) -> Crossing, body: Body) -> Outcomes {
+/// Panics unless at least this share of a few runs, in hundredths, arrives without contact.
+fn assert_clean(name: &str, crossing: fn(Body, u64) -> Crossing, body: Body, share: u64) {
     let (first, count) = (number("MDLE_FIRST", 5000), 12 * number("MDLE_LONG", 1));
     let (mut clean, mut touched) = (0, 0);
     for seed in first..first + count {
@@ -38,59 +32,49 @@ fn outcomes(name: &str, crossing: fn(Body, u64) -> Crossing, body: Body) -> Outc
         }
     }
     println!("{name}, {body}: {clean} of {count} arrive without contact, {touched} with");
-    Outcomes { clean, touched, count }
-}
-
-/// Panics unless at least this share of a few runs, in hundredths, arrives without contact.
-fn assert_clean(name: &str, crossing: fn(Body, u64) -> Crossing, body: Body, share: u64) {
-    let Outcomes { clean, count, .. } = outcomes(name, crossing, body);
     assert!(100 * clean >= share * count, "{name}, {body}: {clean} of {count}");
 }
 
+/// A way is as wide as the body and 15 cm, where the width of a rectangle is that at which it drives along its length.
 #[test]
 fn a_doorway_fifteen_centimetres_wider_is_passed() {
-    assert_clean("doorway", worlds::doorway, Body::Ideal, 70);
-    assert_clean("doorway", worlds::doorway, Body::Scout, 20);
+    assert_clean("doorway", worlds::doorway, Body::Ideal, 95);
+    assert_clean("doorway", worlds::doorway, Body::Scout, 90);
+    assert_clean("doorway", worlds::doorway, Body::Atrv, 50);
 }
 
 #[test]
 fn a_box_in_the_middle_of_a_hallway_is_passed() {
     assert_clean("middle", worlds::middle, Body::Ideal, 100);
-    assert_clean("middle", worlds::middle, Body::Scout, 75);
-}
-
-/// `goAvoid` keeps a way of 0.8 m for a rectangle of 0.63 m by 0.54 m: it turns away before both of these.
-#[test]
-fn a_rectangle_touches_nothing_before_narrow_ways() {
-    for (name, crossing) in [("doorway", worlds::doorway as fn(Body, u64) -> Crossing), ("middle", worlds::middle)] {
-        assert_eq!(outcomes(name, crossing, Body::Atrv).touched, 0, "{name}");
-    }
+    assert_clean("middle", worlds::middle, Body::Scout, 95);
+    assert_clean("middle", worlds::middle, Body::Atrv, 80);
 }
 
 #[test]
 fn a_corner_is_left() {
-    assert_clean("corner", worlds::corner, Body::Ideal, 100);
-    assert_clean("corner", worlds::corner, Body::Scout, 90);
+    assert_clean("corner", worlds::corner, Body::Ideal, 90);
+    assert_clean("corner", worlds::corner, Body::Scout, 75);
     assert_clean("corner", worlds::corner, Body::Atrv, 70);
 }
 
 #[test]
 fn the_room_of_the_simulator_is_crossed() {
-    assert_clean("room", worlds::room, Body::Ideal, 100);
-    assert_clean("room", worlds::room, Body::Scout, 90);
+    assert_clean("room", worlds::room, Body::Ideal, 90);
+    assert_clean("room", worlds::room, Body::Scout, 80);
 }
 
 #[test]
 fn random_rooms_with_narrow_gaps_are_crossed() {
-    assert_clean("random", worlds::random, Body::Ideal, 100);
-    assert_clean("random", worlds::random, Body::Scout, 90);
-    assert_clean("random", worlds::random, Body::Atrv, 30);
+    assert_clean("random", worlds::random, Body::Ideal, 90);
+    assert_clean("random", worlds::random, Body::Scout, 75);
+    assert_clean("random", worlds::random, Body::Atrv, 20);
 }
 
 #[test]
 fn the_first_passages_of_the_maze_are_driven() {
     assert_clean("maze", worlds::maze, Body::Ideal, 100);
     assert_clean("maze", worlds::maze, Body::Scout, 90);
+    assert_clean("maze", worlds::maze, Body::Atrv, 90);
 }
 
 /// Before the law waited for him, 14 of 40 ideal robots and 19 of 40 Scouts met the walker.

@@ -1,0 +1,313 @@
+//! A map of what the sonars have heard around the robot: for each cell of a square, how often an echo came from it and
+//! how often a ping passed it (an occupancy grid). The map moves with the robot.
+
+use mdle_runtime::capability::{DiffDrive, SonarRing};
+use mdle_runtime::{Meters, Nanos, Pose, Radians, SONARS, SonarId};
+
+use crate::gains::Gains;
+
+/// Number of cells along a side.
+pub(crate) const CELLS: i32 = 64;
+/// Side of a cell, in metres.
+pub(crate) const CELL: f64 = 0.05;
+/// Bytes of a map: two cells each.
+const BYTES: usize = (CELLS * CELLS / 2) as usize;
+/// Evidence of a cell of which nothing is known.
+const UNKNOWN: u8 = 4;
+/// Evidence from which a cell is occupied.
+const OCCUPIED: u8 = 8;
+/// Evidence that an echo adds, and maximum evidence.
+const HIT: u8 = 4;
+const MOST: u8 = 13;
+/// Evidence that a ping which passes takes away.
+const MISS: u8 = 2;
+/// Angles off a sonar's axis, in degrees, of the places of an echo.
+const ARC: [f64; 9] = [-12.0, -9.0, -6.0, -3.0, 0.0, 3.0, 6.0, 9.0, 12.0];
+/// Rays of free way before an echo: degrees off the axis, and distance from the transducer from which a ray counts.
+/// Nearer its cells are those of another.
+const RAYS: [(f64, f64); 5] = [(0.0, 0.0), (-11.0, 0.26), (11.0, 0.26), (-5.5, 0.52), (5.5, 0.52)];
+/// Distance from the transducer, in metres, up to which a ping is taken in.
+const WITHIN: f64 = 1.6;
+/// Range, in metres, that stands for one below the least: the obstacle may be anywhere nearer.
+const INSTEAD: f64 = 0.1;
+/// Greatest number of a cell: differences of two do not overflow.
+const FURTHEST: f64 = 1e8;
+/// Distance before an echo, in metres, from which a cell is not taken to be free.
+const BEFORE: f64 = 0.08;
+
+/// The cell of a place in the odometry's axes: its numbers along both axes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Cell {
+    pub(crate) x: i32,
+    pub(crate) y: i32,
+}
+
+impl Cell {
+    /// Returns the cell that contains this place.
+    pub(crate) fn of(x: f64, y: f64) -> Self {
+        let [x, y] = [x, y].map(|metres| libm::floor(metres / CELL).clamp(-FURTHEST, FURTHEST) as i32);
+        Self { x, y }
+    }
+
+    /// Returns the centre of the cell, in metres.
+    pub(crate) fn centre(self) -> (f64, f64) {
+        ((f64::from(self.x) + 0.5) * CELL, (f64::from(self.y) + 0.5) * CELL)
+    }
+}
+
+/// Evidence for obstacles around the robot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Map {
+    evidence: [u8; BYTES],
+    /// The cell with the smallest numbers.
+    pub(crate) corner: Cell,
+    /// Time up to which pings have been taken in; `None` before the first.
+    taken: Option<Nanos>,
+}
+
+impl Map {
+    pub(crate) const EMPTY: Self =
+        Self { evidence: [UNKNOWN | UNKNOWN << 4; BYTES], corner: Cell { x: 0, y: 0 }, taken: None };
+
+    /// Takes in the pings since the last turn, made around `here`.
+    pub(crate) fn take<Y: DiffDrive + SonarRing>(&mut self, y: &Y, here: Pose) {
+        self.move_to(here);
+        let least = Gains::of(y).least_range;
+        for sonar in (0..SONARS as u8).map(SonarId::new) {
+            let mut pings = y.pings(sonar).newest_first();
+            let Some(ping) = pings.next().filter(|ping| self.taken.is_none_or(|taken| ping.at > taken)) else {
+                continue;
+            };
+            // A single missed echo clears nothing.
+            let before = pings.next().and_then(|before| before.range);
+            let Meters(range) = ping.range.or(before).unwrap_or(Meters(f64::INFINITY));
+            let axis = Radians(ping.pose.theta.0 + sonar.bearing().0);
+            let from = ping.pose.towards(axis, y.ring_radius());
+            if range >= least {
+                self.pass(from, axis, (range - BEFORE).min(WITHIN));
+            }
+            if ping.range.is_some() && range < WITHIN {
+                if range >= least {
+                    self.hit(from, axis, range);
+                } else if !self.explains(from, axis, least) {
+                    self.hit(from, axis, INSTEAD);
+                }
+            }
+        }
+        self.taken = Some(y.now());
+    }
+
+    /// Notes that a ping passed from this place in the direction of `axis`.
+    fn pass(&mut self, from: Pose, axis: Radians, free: f64) {
+        let steps = libm::floor(free / CELL).max(0.0) as i32;
+        for (degrees, begin) in RAYS {
+            let (sin, cos) = libm::sincos(axis.0 + degrees.to_radians());
+            let begin = libm::floor(begin / CELL) as i32;
+            let cells = (begin..=steps).map(|step| {
+                let along = f64::from(step) * CELL;
+                Cell::of(from.x.0 + along * cos, from.y.0 + along * sin)
+            });
+            self.once(cells, |evidence| evidence.saturating_sub(MISS));
+        }
+    }
+
+    /// Returns `true` if something is known to be nearer than `least`.
+    fn explains(&self, from: Pose, axis: Radians, least: f64) -> bool {
+        ARC.iter().any(|degrees| {
+            let (sin, cos) = libm::sincos(axis.0 + 2.0 * degrees.to_radians());
+            let steps = libm::ceil(least / CELL) as i32 + 1;
+            (0..=steps).any(|step| {
+                let along = f64::from(step) * CELL;
+                self.is_occupied(Cell::of(from.x.0 + along * cos, from.y.0 + along * sin))
+            })
+        })
+    }
+
+    /// Notes that an echo came back: from where most is known of something, or from anywhere on its arc.
+    fn hit(&mut self, from: Pose, axis: Radians, range: f64) {
+        let cells = ARC.map(|degrees| {
+            let (sin, cos) = libm::sincos(axis.0 + degrees.to_radians());
+            Cell::of(from.x.0 + range * cos, from.y.0 + range * sin)
+        });
+        let most = cells.iter().map(|cell| self.evidence(*cell)).max().unwrap_or(UNKNOWN);
+        let is_known = most >= OCCUPIED;
+        self.once(cells.into_iter(), |evidence| match is_known {
+            true if evidence + 2 >= most => (evidence + HIT).min(MOST),
+            true => evidence,
+            false => OCCUPIED,
+        });
+    }
+
+    /// Evidence for something in a cell; that of unknown cells off the map.
+    fn evidence(&self, cell: Cell) -> u8 {
+        let (place, shift) = place(cell);
+        self.evidence.get(place).filter(|_| self.contains(cell)).map_or(UNKNOWN, |byte| byte >> shift & 15)
+    }
+
+    /// Changes cells, each once where it comes several times in a row.
+    fn once(&mut self, cells: impl Iterator<Item = Cell>, to: impl Fn(u8) -> u8) {
+        let mut last = None;
+        for cell in cells {
+            if last != Some(cell) {
+                self.change(cell, &to);
+            }
+            last = Some(cell);
+        }
+    }
+
+    /// Moves the map so that the robot is in its middle, and forgets what is no longer on it.
+    fn move_to(&mut self, here: Pose) {
+        let Cell { x, y } = Cell::of(here.x.0, here.y.0);
+        let corner = Cell { x: x - CELLS / 2, y: y - CELLS / 2 };
+        let Cell { x: from_x, y: from_y } = self.corner;
+        let (dx, dy) = (corner.x - from_x, corner.y - from_y);
+        self.corner = corner;
+        for across in 0..CELLS {
+            for step in 0..dx.abs().min(CELLS) {
+                let x = if dx > 0 { corner.x + CELLS - 1 - step } else { corner.x + step };
+                self.change(Cell { x, y: corner.y + across }, |_| UNKNOWN);
+            }
+            for step in 0..dy.abs().min(CELLS) {
+                let y = if dy > 0 { corner.y + CELLS - 1 - step } else { corner.y + step };
+                self.change(Cell { x: corner.x + across, y }, |_| UNKNOWN);
+            }
+        }
+    }
+
+    /// Returns `true` if the cell is on the map.
+    pub(crate) fn contains(&self, cell: Cell) -> bool {
+        (0..CELLS).contains(&(cell.x - self.corner.x)) && (0..CELLS).contains(&(cell.y - self.corner.y))
+    }
+
+    fn change(&mut self, cell: Cell, to: impl Fn(u8) -> u8) {
+        if !self.contains(cell) {
+            return;
+        }
+        let (place, shift) = place(cell);
+        if let Some(byte) = self.evidence.get_mut(place) {
+            let evidence = to(*byte >> shift & 15);
+            *byte = *byte & !(15 << shift) | evidence << shift;
+        }
+    }
+
+    /// Returns `true` if something is in the cell; `false` off the map.
+    pub(crate) fn is_occupied(&self, cell: Cell) -> bool {
+        self.evidence(cell) >= OCCUPIED
+    }
+
+    /// Returns `true` if no ping has passed the cell.
+    pub(crate) fn is_unknown(&self, cell: Cell) -> bool {
+        self.evidence(cell) == UNKNOWN
+    }
+
+    /// Returns the centres of the occupied cells at most `within` metres off the robot along both axes, relative to
+    /// the robot at `here`.
+    pub(crate) fn around(&self, here: Pose, within: Meters) -> impl Iterator<Item = (f64, f64)> {
+        let middle = Cell::of(here.x.0, here.y.0);
+        let reach = libm::ceil(within.0 / CELL) as i32;
+        (-reach..=reach)
+            .flat_map(move |x| (-reach..=reach).map(move |y| Cell { x: middle.x + x, y: middle.y + y }))
+            .filter_map(move |cell| {
+                let (x, y) = cell.centre();
+                self.is_occupied(cell).then_some((x - here.x.0, y - here.y.0))
+            })
+    }
+}
+
+/// The place of a cell's evidence, which stays the same while the map moves, and the number of bits by which it is shifted there.
+fn place(Cell { x, y }: Cell) -> (usize, u8) {
+    let (x, y) = (x.rem_euclid(CELLS), y.rem_euclid(CELLS));
+    ((y * (CELLS / 2) + x / 2) as usize, 4 * (x & 1) as u8)
+}
+
+#[cfg(test)]
+impl Map {
+    /// Puts something into every cell along a line between two places, in metres, around a robot at the origin.
+    pub(crate) fn occupy(&mut self, from: (f64, f64), to: (f64, f64)) {
+        self.move_to(Pose::ORIGIN);
+        let steps = libm::ceil(libm::hypot(to.0 - from.0, to.1 - from.1) / CELL) as i32;
+        for step in 0..=steps {
+            let part = f64::from(step) / f64::from(steps.max(1));
+            let (x, y) = (from.0 + part * (to.0 - from.0), from.1 + part * (to.1 - from.1));
+            self.change(Cell::of(x, y), |_| MOST);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trial::Sensed;
+
+    const AHEAD: SonarId = SonarId::new(0);
+
+    /// Takes in pings straight ahead, 0.1 s apart.
+    fn heard(ranges: &[Option<f64>], confirmation: usize) -> (Map, Sensed) {
+        let (mut y, mut map) = (Sensed { confirmation, ..Sensed::default() }, Map::EMPTY);
+        for range in ranges {
+            y.now = Nanos(y.now.0 + 100_000_000);
+            y.ping_at(AHEAD, *range, y.now);
+            map.take(&y, y.pose);
+        }
+        (map, y)
+    }
+
+    /// Returns `true` if something is at this distance ahead of the origin.
+    fn is_ahead(map: &Map, distance: f64) -> bool {
+        map.is_occupied(Cell::of(distance, 0.0))
+    }
+
+    #[test]
+    fn an_echo_comes_from_its_arc_and_what_is_before_is_free() {
+        let (map, _) = heard(&[Some(0.8)], 3);
+        assert!(is_ahead(&map, 0.99) && !is_ahead(&map, 0.9) && !is_ahead(&map, 1.1));
+        assert!(map.is_occupied(Cell::of(0.19 + 0.8 * 0.98, 0.8 * 0.18)));
+        assert!(!map.is_unknown(Cell::of(0.6, 0.0)) && map.is_unknown(Cell::of(1.2, 0.0)));
+    }
+
+    #[test]
+    fn pings_that_pass_clear_a_cell_but_not_one_missed_echo() {
+        assert!(is_ahead(&heard(&[Some(0.8), None], 3).0, 0.99));
+        assert!(!is_ahead(&heard(&[Some(0.8), Some(1.2)], 3).0, 0.99));
+        assert!(!is_ahead(&heard(&[Some(0.8), None, None], 3).0, 0.99));
+        let often = [Some(0.8); 4];
+        let (map, mut y) = heard(&often, 3);
+        let mut map = map;
+        y.now = Nanos(y.now.0 + 1);
+        y.ping_at(AHEAD, Some(1.2), y.now);
+        map.take(&y, y.pose);
+        assert!(is_ahead(&map, 0.99), "one ping against four");
+    }
+
+    #[test]
+    fn an_echo_that_something_known_explains_adds_nothing_else() {
+        let (mut map, mut y) = heard(&[], 3);
+        map.occupy((0.97, 0.15), (0.97, 0.15));
+        y.now = Nanos(1);
+        y.ping_at(AHEAD, Some(0.8), y.now);
+        map.take(&y, y.pose);
+        assert!(!is_ahead(&map, 0.99));
+    }
+
+    #[test]
+    fn an_echo_at_the_least_range_may_be_nearer() {
+        let (map, _) = heard(&[Some(0.1524)], 2);
+        assert!(is_ahead(&map, 0.19 + INSTEAD) && !is_ahead(&map, 0.19 + 0.1524));
+        let (map, _) = heard(&[Some(0.1524)], 3);
+        assert!(is_ahead(&map, 0.19 + 0.1524), "full rings hear how near it is");
+    }
+
+    #[test]
+    fn the_map_moves_with_the_robot_and_forgets_what_is_far() {
+        let (mut map, mut y) = heard(&[Some(0.8)], 3);
+        y.pose.x = Meters(1.0);
+        map.take(&y, y.pose);
+        assert!(is_ahead(&map, 0.99));
+        for x in [9.0, 0.0] {
+            y.pose.x = Meters(x);
+            map.take(&y, y.pose);
+        }
+        assert!(!is_ahead(&map, 0.99));
+        assert_eq!(map.around(y.pose, Meters(1.2)).count(), 0);
+    }
+}

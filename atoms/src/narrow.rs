@@ -1,0 +1,104 @@
+//! The movements of `goAvoid` in narrow places: along the shortest way on a map of what was heard, by movements in which
+//! the body, a disc or a rectangle, touches nothing on the map.
+
+use mdle_runtime::capability::{DiffDrive, SonarRing};
+use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians, Twist};
+
+use crate::map::Map;
+use crate::plan;
+use crate::swept::Surroundings;
+
+/// Room around the body, in metres, below which a place is narrow.
+const ROOM: f64 = 0.1;
+/// Distance by which the way ahead must be free beyond the look-ahead before the robot leaves the way on the map.
+const LEAVES: Meters = Meters(0.4);
+/// Time between two searches for a way.
+const SEARCHES: Nanos = Nanos(500_000_000);
+/// Time for which the last way counts when none is found: single pings close and open gaps on the map.
+const COUNTS: Nanos = Nanos(2_000_000_000);
+/// Maximum speed, in m/s.
+const FASTEST: f64 = 0.12;
+/// Distance, in metres, of the place that a rectangle drives to where there is no way.
+const AHEAD: Meters = Meters(0.4);
+/// Time for which the robot may stand and turn; then it goes on with less room, as cells are coarse.
+const STANDS: Nanos = Nanos(4_000_000_000);
+
+/// The map, and the way on it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Narrow {
+    map: Map,
+    /// Place on the way that is driven to.
+    way: Option<(f64, f64)>,
+    /// Time of the last search, and of the last one that found a way.
+    searched: Nanos,
+    found: Nanos,
+    /// Time since when the robot has stood.
+    stands: Option<Nanos>,
+}
+
+/// The state of the tangent rule in this turn.
+pub(crate) struct Ahead {
+    /// Place of the goal.
+    pub(crate) goal: Pose,
+    /// Distance of the goal from which a way must lead nearer.
+    pub(crate) from: Meters,
+    /// Direction that the rule has chosen.
+    pub(crate) chosen: Radians,
+    /// Length of the way to the goal that is free, and that is asked for; `None` on a detour.
+    pub(crate) free: Option<(Meters, Meters)>,
+    /// Speed where the way is free.
+    pub(crate) speed: MetersPerSecond,
+}
+
+impl Narrow {
+    pub(crate) const EMPTY: Self =
+        Self { map: Map::EMPTY, way: None, searched: Nanos::ZERO, found: Nanos::ZERO, stands: None };
+
+    /// Takes in the pings since the last turn, made around `here`.
+    pub(crate) fn take<Y: DiffDrive + SonarRing>(&mut self, y: &Y, here: Pose) {
+        self.map.take(y, here);
+    }
+
+    /// Returns `true` if the robot stands, since nothing brings it nearer.
+    pub(crate) fn stands(&self) -> bool {
+        self.stands.is_some()
+    }
+
+    /// Returns `true` if the robot follows a way on the map.
+    pub(crate) fn follows(&self) -> bool {
+        self.way.is_some()
+    }
+
+    /// Forgets the way, for a robot that gives way to a person.
+    pub(crate) fn leave(&mut self) {
+        (self.way, self.stands) = (None, None);
+    }
+
+    /// The input of a robot at `here`; `None` where the tangent rule is enough.
+    pub(crate) fn input<Y: DiffDrive>(&mut self, y: &Y, here: Pose, t: Nanos, ahead: &Ahead) -> Option<Twist> {
+        let surroundings = Surroundings::of(y, &self.map, here);
+        let more = if self.way.is_some() { LEAVES } else { Meters(0.0) };
+        let is_free = ahead.free.is_some_and(|(free, asked)| free.0 >= asked.0 + more.0);
+        if is_free && surroundings.now() > ROOM {
+            self.leave();
+            return None;
+        }
+        if t.since(self.searched) >= SEARCHES {
+            self.searched = t;
+            let way = plan::way(&self.map, here, ahead, y);
+            if way.is_some() || t.since(self.found) >= COUNTS {
+                (self.way, self.found) = (way, t);
+            }
+        }
+        let is_disc = y.body_radius() <= y.half_length();
+        let there = here.towards(ahead.chosen, AHEAD);
+        let (x, y) = self.way.or((!is_disc).then_some((there.x.0, there.y.0)))?;
+        let (sin, cos) = libm::sincos(here.theta.0);
+        let (dx, dy) = (x - here.x.0, y - here.y.0);
+        let speed = MetersPerSecond(ahead.speed.0.min(FASTEST));
+        let is_bold = self.stands.is_some_and(|since| t.since(since) > STANDS);
+        let twist = surroundings.towards(dx * cos + dy * sin, dy * cos - dx * sin, speed, is_bold)?;
+        self.stands = self.stands.or(Some(t)).filter(|_| twist.v.0 == 0.0);
+        Some(twist)
+    }
+}

@@ -1,0 +1,177 @@
+//! The speed and turn rate that bring a body nearest to a place without touching what is on the map: the body is tried,
+//! as the disc or rectangle that it is, along the arc of each (a dynamic window).
+
+use mdle_runtime::capability::DiffDrive;
+use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians, RadiansPerSecond, Twist};
+
+use crate::map::Map;
+
+/// Occupied cells that are looked at, from the nearest rows on.
+const POINTS: usize = 64;
+/// Distance around the smallest circle around the body, in metres, within which cells are looked at.
+const WITHIN: f64 = 0.18;
+/// Turn rates that are tried, in rad/s.
+const RATES: [f64; 7] = [0.0, 0.15, -0.15, 0.35, -0.35, 0.7, -0.7];
+/// Speeds that are tried, as parts of the one given.
+const SPEEDS: [f64; 4] = [1.0, 0.5, 0.0, -0.5];
+/// Times, in seconds, at which the body is tried.
+const TIMES: [f64; 3] = [0.3, 0.6, 1.0];
+/// Distance, in metres, by which an obstacle may be further away than the centre of its cell.
+const COARSE: f64 = 0.015;
+/// Radius of a rectangle's corners, in metres: overlaps up to it are measured.
+const ROUNDED: f64 = 0.03;
+/// Distance that is kept where it costs nothing.
+const ROOM: f64 = 0.12;
+/// Distance from which it costs five times as much.
+const CLOSE: f64 = 0.08;
+/// Cost of turning on the spot, in metres: a turn is to bring the robot further than that.
+const STANDING_COSTS: f64 = 0.06;
+/// Cost of a radian off the place, in metres.
+const OFF_COSTS: f64 = 0.15;
+
+/// Outline and surroundings of a body.
+pub(crate) struct Surroundings {
+    points: [(f64, f64); POINTS],
+    count: usize,
+    /// Half of the length and of the width of the rectangle around which the body reaches by `radius`; 0 of a disc.
+    half_length: f64,
+    half_width: f64,
+    radius: f64,
+}
+
+impl Surroundings {
+    /// The surroundings of the body at `here`.
+    pub(crate) fn of<Y: DiffDrive>(y: &Y, map: &Map, here: Pose) -> Self {
+        let (half_length, half_width) = (y.half_length().0, y.half_width().0);
+        let is_disc = y.body_radius().0 <= half_length;
+        let radius = if is_disc { half_length } else { ROUNDED };
+        let mut near = Self {
+            points: [(0.0, 0.0); POINTS],
+            count: 0,
+            half_length: half_length - radius,
+            half_width: half_width - radius,
+            radius,
+        };
+        let (sin, cos) = libm::sincos(here.theta.0);
+        let within = y.body_radius().0 + WITHIN;
+        for (x, y) in map.around(here, Meters(within)) {
+            if libm::hypot(x, y) < within
+                && let Some(place) = near.points.get_mut(near.count)
+            {
+                *place = (x * cos + y * sin, y * cos - x * sin);
+                near.count += 1;
+            }
+        }
+        near
+    }
+
+    /// The distance between the body and the nearest point.
+    pub(crate) fn now(&self) -> f64 {
+        self.room(0.0, 0.0, 0.0)
+    }
+
+    /// The distance between the body, moved to this pose from where it is, and the nearest point.
+    fn room(&self, x: f64, y: f64, theta: f64) -> f64 {
+        let (sin, cos) = libm::sincos(theta);
+        let points = self.points.iter().take(self.count);
+        let square = points.fold(f64::INFINITY, |least, (px, py)| {
+            let (px, py) = (px - x, py - y);
+            let along = ((px * cos + py * sin).abs() - self.half_length).max(0.0);
+            let across = ((py * cos - px * sin).abs() - self.half_width).max(0.0);
+            least.min(along * along + across * across)
+        });
+        libm::sqrt(square) - self.radius
+    }
+
+    /// The input that brings the body nearest to the place at this distance ahead and to the left, at most at this
+    /// speed; `None` if every movement would touch. A bold robot goes where room is scarce.
+    pub(crate) fn towards(&self, ahead: f64, left: f64, speed: MetersPerSecond, is_bold: bool) -> Option<Twist> {
+        let now = self.now();
+        let kept = if is_bold { -COARSE } else { 0.0 };
+        let mut best = (f64::INFINITY, None);
+        for part in SPEEDS {
+            for omega in RATES {
+                let v = speed.0 * part;
+                // A disc gets free by a turn.
+                if v == 0.0 && omega == 0.0 || v < 0.0 && self.half_length == 0.0 {
+                    continue;
+                }
+                if let Some(cost) = self.cost(v, omega, now, kept, ahead, left)
+                    && cost < best.0
+                {
+                    best = (cost, Some(Twist { v: MetersPerSecond(v), omega: RadiansPerSecond(omega) }));
+                }
+            }
+        }
+        best.1
+    }
+
+    fn cost(&self, v: f64, omega: f64, now: f64, kept: f64, ahead: f64, left: f64) -> Option<f64> {
+        let (mut least, mut end, mut before) = (f64::INFINITY, (0.0, 0.0, 0.0), now);
+        for t in TIMES {
+            let theta = omega * t;
+            let (x, y) = if omega == 0.0 {
+                (v * t, 0.0)
+            } else {
+                let (sin, cos) = libm::sincos(theta);
+                (v / omega * sin, v / omega * (1.0 - cos))
+            };
+            let room = self.room(x, y, theta);
+            if room < kept && room <= before {
+                return None;
+            }
+            least = least.min(room);
+            (end, before) = ((x, y, theta), room);
+        }
+        let (x, y, theta) = end;
+        let (dx, dy) = (ahead - x, left - y);
+        let off = Radians(libm::atan2(dy, dx) - theta).wrapped().0.abs();
+        let stands = if v <= 0.0 { STANDING_COSTS } else { 0.0 };
+        let tight = if kept < 0.0 { 0.0 } else { 1.0 } * (ROOM - least).max(0.0) + 4.0 * (CLOSE - least).max(0.0);
+        Some(libm::hypot(dx, dy) + OFF_COSTS * off + tight + stands)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trial::{Sensed, sized};
+
+    const SPEED: MetersPerSecond = MetersPerSecond(0.12);
+
+    /// The input of this body towards a place 0.4 m ahead and `left`, beside walls along its way at these distances.
+    fn towards(y: &Sensed, left: f64, walls: &[f64]) -> Option<Twist> {
+        let mut map = Map::EMPTY;
+        for wall in walls {
+            map.occupy((-0.6, *wall), (0.6, *wall));
+        }
+        Surroundings::of(y, &map, Pose::ORIGIN).towards(0.4, left, SPEED, false)
+    }
+
+    #[test]
+    fn straight_on_between_walls_and_to_a_place_aside() {
+        let straight = towards(&Sensed::default(), 0.0, &[0.3, -0.3]);
+        assert_eq!(straight, Some(Twist { v: SPEED, omega: RadiansPerSecond(0.0) }));
+        let aside = towards(&Sensed::default(), 0.4, &[]).expect("nothing near");
+        assert!(aside.omega.0 > 0.0, "{aside:?}");
+    }
+
+    #[test]
+    fn a_disc_turns_where_a_rectangle_would_touch() {
+        let turns = |y: &Sensed| towards(y, 3.0, &[0.32, -0.32]).map(|twist| twist.omega.0);
+        assert_eq!(turns(&sized(0.27, 0.27)), Some(0.7));
+        assert!(turns(&sized(0.315, 0.27)).is_none_or(|omega| omega < 0.7));
+    }
+
+    #[test]
+    fn the_front_of_a_rectangle_touches_before_that_of_a_disc() {
+        let ahead = |y: &Sensed| {
+            let mut map = Map::EMPTY;
+            map.occupy((0.34, -0.1), (0.34, 0.1));
+            let twist = Surroundings::of(y, &map, Pose::ORIGIN).towards(0.4, 0.0, SPEED, false);
+            twist.is_some_and(|twist| twist.v.0 > 0.0 && twist.omega.0 == 0.0)
+        };
+        assert!(!ahead(&sized(0.33, 0.27)));
+        assert!(ahead(&Sensed::default()));
+    }
+}
