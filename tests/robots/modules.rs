@@ -160,7 +160,7 @@ fn a_robot_follows_what_a_module_publishes() {
     let mut run = Run::of(FOLLOW, &followers());
     let inputs = run.drive();
     assert!(run.distance() < 0.6, "{} m away after {} turns", run.distance(), run.turns);
-    // The ears have the place from break 2 on, publish at break 4, 150 ms after, and the heading is passed on at break 5.
+    // The ears have the place from break 2 on, publish at break 4, 150 ms after, and the heading goes on at break 5.
     let first = inputs.iter().position(|input| *input != Twist::default());
     assert_eq!(first, Some(6));
     assert_eq!(run.engine.zero(), Nanos(600_000_000), "the plan's time begins with it");
