@@ -9,7 +9,7 @@ use mdle_tests::executable::{folder, run_mdlec};
 use mdle_tests::repository::root;
 
 /// The commands of `mdlec`; the first is the bare form, which builds.
-const COMMANDS: [&str; 18] = [
+const COMMANDS: [&str; 19] = [
     "",
     "build",
     "run",
@@ -25,6 +25,7 @@ const COMMANDS: [&str; 18] = [
     "bind",
     "new-target",
     "emulator",
+    "lsp",
     "clean",
     "completions",
     "man",

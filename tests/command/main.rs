@@ -4,6 +4,7 @@ mod bad_input;
 mod budgets;
 mod command_line;
 mod cut_short;
+mod editor;
 mod explain;
 mod help;
 mod hostile_text;

@@ -34,7 +34,7 @@ const PACKAGES: &[(&str, &[&str])] = &[
     ("mdlec/files", &["mdle-runtime", "mdle-compiler"]),
     ("mdlec/embed", &["mdle-runtime", "mdle-compiler", "mdle-files"]),
     ("editors/server", &["mdle-runtime", "mdle-compiler", "mdle-files"]),
-    ("mdlec", &["mdle-runtime", "mdle-compiler", "mdle-theory", "mdle-files"]),
+    ("mdlec", &["mdle-runtime", "mdle-compiler", "mdle-theory", "mdle-files", "mdle-language-server"]),
     ("targets/sim/simulator", &["mdle-runtime", "mdle-quantity", "mdle-atoms"]),
     // The conformance of robots is there for their tests alone.
     ("targets/sim", &["mdle-runtime", "mdle-host", "mdle-simulator", "mdle-conformance"]),

@@ -152,6 +152,11 @@ pub(super) enum Command {
     /// Opens a pseudo-terminal, speaks the protocol of the robot on it, and moves a simulated body in a world. `mdlec`
     /// becomes the emulator, which runs until a signal comes.
     Emulator(Emulator),
+    /// Serve an editor as its language server
+    ///
+    /// Speaks the Language Server Protocol on standard input and output: an editor starts it and ends it. The page
+    /// "Editors" of the book has the lines for VS Code, Neovim, Helix, Zed and Emacs.
+    Lsp,
     /// Remove everything that mdlec keeps in its cache
     ///
     /// Compiled libraries, unpacked sources and the packages of plans: the next build makes them again. The cache is

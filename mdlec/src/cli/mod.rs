@@ -18,6 +18,7 @@ mod executable;
 mod explain;
 mod fmt;
 mod lists;
+mod lsp;
 mod manual;
 mod matrices;
 mod mistyped;
@@ -171,6 +172,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Emulator(emulator)) => emulator::emulator(&emulator),
         Some(Command::Clean) => clean::clean(),
         Some(Command::Completions(completions)) => manual::completions(&completions),
+        Some(Command::Lsp) => lsp::lsp(),
         Some(Command::Man(man)) => manual::man(&man),
         Some(Command::Quarks(quarks)) => lists::print_quarks(quarks.target.as_deref()),
     }
