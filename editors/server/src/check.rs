@@ -60,7 +60,7 @@ fn of_alphabet(document: &Document) -> Vec<Value> {
     findings(&sources, &found).into_iter().map(diagnostic).collect()
 }
 
-/// Words for an input that cannot be checked: those of `mdlec check`, with the first defect of the file that is to blame.
+/// Words for an input that cannot be checked: those of `mdlec check`, with the first defect of the file at fault.
 fn words(error: InputError) -> String {
     let own = Some(error.to_string()).filter(|own| !own.is_empty());
     let first = match error.cause() {
