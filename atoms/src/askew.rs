@@ -4,7 +4,7 @@
 use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Meters, Nanos, Ping, Radians, SONARS, SonarId};
 
-use crate::at_isection::{CONE, DIRECTIONS, after, newest, off, towards};
+use crate::directions::{CONE, DIRECTIONS, after, newest, off, towards};
 
 /// Multiple of the range below which a direction is blocked; up to it a wall faces a diagonal.
 const ALSO_FACES: f64 = 1.5;

@@ -10,9 +10,10 @@ use crate::approach::Approach;
 use crate::crossing::crosses;
 use crate::gains::{Gains, fire_in_turn};
 use crate::memory::Memory;
-use crate::narrow::{Ahead, Narrow};
+use crate::narrow::Narrow;
 use crate::stuck::Progress;
 use crate::tangent::{Obstacles, Side, Wish};
+use crate::wave::Ahead;
 
 /// Distance from the goal below which it is reached.
 const ARRIVED: Meters = Meters(0.12);

@@ -18,6 +18,7 @@ mod askew;
 mod at_isection;
 mod bumper;
 mod crossing;
+mod directions;
 mod gains;
 mod go;
 mod go_avoid;
@@ -27,7 +28,6 @@ mod memory;
 mod modules;
 mod narrow;
 mod path;
-mod plan;
 mod power;
 mod rotate;
 mod signals;
@@ -38,6 +38,7 @@ mod tangent;
 #[cfg(test)]
 mod trial;
 mod turn;
+mod wave;
 
 pub use advance::{Advance, Advancing};
 pub use align::{Align, Aligning};

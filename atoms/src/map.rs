@@ -214,7 +214,8 @@ impl Map {
     }
 }
 
-/// The place of a cell's evidence, which stays the same while the map moves, and the number of bits by which it is shifted there.
+/// The place of a cell's evidence, which stays the same while the map moves, and the number of bits by which it is
+/// shifted there.
 fn place(Cell { x, y }: Cell) -> (usize, u8) {
     let (x, y) = (x.rem_euclid(CELLS), y.rem_euclid(CELLS));
     ((y * (CELLS / 2) + x / 2) as usize, 4 * (x & 1) as u8)

@@ -1,12 +1,12 @@
-//! The movements of `goAvoid` in narrow places: along the shortest way on a map of what was heard, by movements in which
-//! the body, a disc or a rectangle, touches nothing on the map.
+//! The movements of `goAvoid` in narrow places: along the shortest way on a map of what was heard, by movements in
+//! which the body, a disc or a rectangle, touches nothing on the map.
 
 use mdle_runtime::capability::{DiffDrive, SonarRing};
-use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Radians, Twist};
+use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Twist};
 
 use crate::map::Map;
-use crate::plan;
 use crate::swept::Surroundings;
+use crate::wave::{self, Ahead};
 
 /// Room around the body, in metres, below which a place is narrow.
 const ROOM: f64 = 0.1;
@@ -34,20 +34,6 @@ pub(crate) struct Narrow {
     found: Nanos,
     /// Time since when the robot has stood.
     stands: Option<Nanos>,
-}
-
-/// The state of the tangent rule in this turn.
-pub(crate) struct Ahead {
-    /// Place of the goal.
-    pub(crate) goal: Pose,
-    /// Distance of the goal from which a way must lead nearer.
-    pub(crate) from: Meters,
-    /// Direction that the rule has chosen.
-    pub(crate) chosen: Radians,
-    /// Length of the way to the goal that is free, and that is asked for; `None` on a detour.
-    pub(crate) free: Option<(Meters, Meters)>,
-    /// Speed where the way is free.
-    pub(crate) speed: MetersPerSecond,
 }
 
 impl Narrow {
@@ -85,7 +71,7 @@ impl Narrow {
         }
         if t.since(self.searched) >= SEARCHES {
             self.searched = t;
-            let way = plan::way(&self.map, here, ahead, y);
+            let way = wave::way(&self.map, here, ahead, y);
             if way.is_some() || t.since(self.found) >= COUNTS {
                 (self.way, self.found) = (way, t);
             }

@@ -38,8 +38,8 @@ const PLANS: u64 = 1000;
 const CHOICES: usize = 16;
 /// Maximum number of situations of a plan, if all choices are tried, and if they are not.
 const SITUATIONS: [usize; 2] = [1000, 80];
-/// Steps between turns, in nanoseconds: zero, one shorter than the shortest timer, timers' own lengths and windows, and one
-/// longer than all timers.
+/// Steps between turns, in nanoseconds: zero, one shorter than the shortest timer, timers' own lengths and windows, and
+/// one longer than all timers.
 const STEPS: [u64; 5] = [0, 40_000_000, 100_000_000, 1_000_000_000, 5_000_000_000];
 
 /// Counts over all plans.

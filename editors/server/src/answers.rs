@@ -11,7 +11,7 @@ use crate::documents::{At, Document, Documents, Plan, Positions};
 use crate::formatting::TextEdit;
 use crate::lines::{Lines, Position};
 use crate::outline::{Symbol, SymbolKind};
-use crate::requests::{Params, Refusal};
+use crate::params::{Params, Refusal};
 use crate::tokens as colours;
 use crate::view::{View, view};
 use crate::{

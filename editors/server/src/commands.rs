@@ -4,7 +4,7 @@ use mdle_compiler::picture;
 use serde_json::{Value, json};
 
 use crate::documents::Documents;
-use crate::requests::Refusal;
+use crate::params::Refusal;
 
 /// Command that runs a plan: answers with the words of the command line, for the editor's terminal.
 pub(crate) const RUN: &str = "mdle.run";

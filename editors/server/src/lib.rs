@@ -20,6 +20,7 @@ pub mod lenses;
 pub mod lines;
 pub mod mentions;
 pub mod outline;
+mod params;
 mod refactoring;
 pub mod rename;
 mod requests;

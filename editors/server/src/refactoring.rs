@@ -13,8 +13,8 @@ use crate::convert;
 use crate::diagnostics::Place;
 use crate::documents::{Document, Documents, Plan};
 use crate::lines::Lines;
+use crate::params::{Params, Refusal};
 use crate::rename::{self as names, Named};
-use crate::requests::{Params, Refusal};
 
 /// Place of a definition: the place of its file, and the byte range of the name.
 type Definition = (PathBuf, Range<usize>);

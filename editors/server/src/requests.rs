@@ -1,53 +1,12 @@
 //! The requests of the protocol, each with the function that answers it.
 
 use lsp_server::ErrorCode;
-use serde::Deserialize;
 use serde_json::{Value, json};
 
 use crate::answers::{self, Asked};
-use crate::documents::{At, Documents, Positions, is_alphabet};
+use crate::documents::{Documents, is_alphabet};
+use crate::params::{Params, Refusal};
 use crate::{commands, refactoring, tokens};
-
-/// Error that answers a request.
-#[derive(Debug)]
-pub(crate) struct Refusal {
-    pub(crate) code: ErrorCode,
-    pub(crate) message: String,
-}
-
-impl Refusal {
-    /// Parameters that are not those of the protocol.
-    pub(crate) fn params(message: &str) -> Self {
-        Self { code: ErrorCode::InvalidParams, message: message.to_owned() }
-    }
-
-    /// A document that the client has not opened.
-    pub(crate) fn unknown(uri: &str) -> Self {
-        Self::params(&format!("`{uri}` is not open"))
-    }
-
-    /// A request that cannot be met, with the reason for the user.
-    pub(crate) fn failed(message: impl Into<String>) -> Self {
-        Self { code: ErrorCode::RequestFailed, message: message.into() }
-    }
-}
-
-/// Parameters of the requests about a document, as far as they have them.
-#[derive(Debug, Deserialize)]
-#[serde(rename_all = "camelCase")]
-pub(crate) struct Params {
-    text_document: Named,
-    pub(crate) position: Option<At>,
-    pub(crate) range: Option<Positions>,
-    pub(crate) positions: Option<Vec<At>>,
-    pub(crate) new_name: Option<String>,
-    pub(crate) context: Option<Value>,
-}
-
-#[derive(Debug, Deserialize)]
-struct Named {
-    uri: String,
-}
 
 /// Lists the abilities of the server, as `initialize` answers.
 pub(crate) fn capabilities() -> Value {

@@ -11,7 +11,8 @@ use serde_json::{Value, json};
 
 use crate::ServeError;
 use crate::documents::{Change, Document, Documents};
-use crate::requests::{self, Refusal};
+use crate::params::Refusal;
+use crate::requests;
 use crate::{check, uri};
 
 /// Pause of the client after which a document is checked: shorter than that between two keystrokes.

@@ -89,8 +89,8 @@ pub(super) struct PlanFacts {
     pub(super) shortest: Option<u64>,
 }
 
-/// Walks over a machine whose records may come to hold these facts. `one_turn` is `true` if every search for the next atom
-/// ends within one turn.
+/// Walks over a machine whose records may come to hold these facts. `one_turn` is `true` if every search for the next
+/// atom ends within one turn.
 pub(super) fn walk(machine: &Machine, one_turn: bool, facts: &PossibleFacts) -> PlanFacts {
     let mut walk = Walk {
         world: KnownFacts::new(machine, facts),

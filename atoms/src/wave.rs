@@ -1,11 +1,10 @@
-//! The shortest way on a map to where the robot is nearer to its goal: a wave that starts at the goal, or at the edge of
-//! the map on the way to it, and costs more beside obstacles.
+//! The shortest way on a map to where the robot is nearer to its goal: a wave that starts at the goal, or at the edge
+//! of the map on the way to it, and costs more beside obstacles.
 
 use mdle_runtime::capability::DiffDrive;
-use mdle_runtime::{Meters, Pose};
+use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians};
 
 use crate::map::{CELLS, Cell, Map};
-use crate::narrow::Ahead;
 
 /// Cells along a side of the wave: those of the map, and one around them.
 const SIDE: usize = CELLS as usize + 2;
@@ -31,6 +30,20 @@ const LONGER: i32 = 600;
 const EDGE: f64 = 2.4;
 /// Distance along the way, in cells, of the place that is driven to.
 const AHEAD: u32 = 7;
+
+/// The state of the tangent rule in this turn.
+pub(crate) struct Ahead {
+    /// Place of the goal.
+    pub(crate) goal: Pose,
+    /// Distance of the goal from which a way must lead nearer.
+    pub(crate) from: Meters,
+    /// Direction that the rule has chosen.
+    pub(crate) chosen: Radians,
+    /// Length of the way to the goal that is free, and that is asked for; `None` on a detour.
+    pub(crate) free: Option<(Meters, Meters)>,
+    /// Speed where the way is free.
+    pub(crate) speed: MetersPerSecond,
+}
 
 /// The distance of each cell from the end of the way, and its class.
 struct Wave {
@@ -209,7 +222,8 @@ mod tests {
     use crate::trial::{Sensed, sized};
     use mdle_runtime::{MetersPerSecond, Radians};
 
-    /// Returns the place to drive to first, past a wall 0.6 m ahead with a gap of this width, in metres, whose middle is
+    /// Returns the place to drive to first, past a wall 0.6 m ahead with a gap of this width, in metres, whose middle
+    /// is
     /// 0.3 m to the left.
     fn through(gap: f64, y: &Sensed) -> Option<(f64, f64)> {
         let mut map = Map::EMPTY;

@@ -1,0 +1,116 @@
+//! What the sonars of a robot have heard in its four directions, whichever of them looked there.
+
+use mdle_runtime::capability::SonarRing;
+use mdle_runtime::{Meters, Ping, Radians, SONARS, SonarId};
+
+/// The sonars that look front, left, back and right: the order in which the bits are written.
+pub(crate) const DIRECTIONS: [SonarId; 4] = [SonarId::new(0), SonarId::new(4), SonarId::new(8), SonarId::new(12)];
+
+/// Maximum angle between a ping's axis and a direction for the ping to count there: half the angle between two sonars
+/// and a little more, so that a robot that turns slowly always has one sonar in each direction.
+const WITHIN: Radians = Radians::from_degrees(14.0);
+/// Ranges of two pings of one sonar that differ by less, in metres, are of one thing, and not random.
+const SAME: f64 = 0.1;
+
+/// Half the angle of the cone in which a sonar hears a rough wall.
+pub(crate) const CONE: Radians = Radians::from_degrees(12.5);
+/// Greatest distance, in metres, from the edge of a cone to the wall that it reaches.
+const OF_WALL: f64 = 0.08;
+/// Factor and step, in metres, by which the ranges of the neighbours of a sonar may exceed its own along a straight
+/// wall; an echo from beyond an opening is further.
+const SLANT: (f64, f64) = (1.08, 0.02);
+
+/// Returns the minimum range of the two newest pings in the present direction of a sonar; infinite if both heard
+/// nothing.
+///
+/// `None` where too few looked there: one ping that hears something near is believed, one that does not opens no way.
+pub(crate) fn towards<Y: SonarRing>(y: &Y, direction: SonarId) -> Option<Meters> {
+    let newest = newest(y, direction, |sonar, ping| !is_of_side(y, direction, sonar, ping));
+    let nearest = nearest(newest);
+    match nearest.filter(|range| *range < y.blocked_within()) {
+        Some(near) => Some(near),
+        None => newest[1].map(|_| overheard(y, direction).or(nearest).unwrap_or(Meters(f64::INFINITY))),
+    }
+}
+
+/// The two newest pings in the direction of a sonar now that count.
+pub(crate) fn newest<Y: SonarRing>(
+    y: &Y,
+    direction: SonarId,
+    counts: impl Fn(SonarId, &Ping) -> bool,
+) -> [Option<(SonarId, &Ping)>; 2] {
+    let mut newest: [Option<(SonarId, &Ping)>; 2] = [None; 2];
+    for number in 0..SONARS as u8 {
+        let sonar = SonarId::new(number);
+        let is_there = |ping: &&Ping| looked_there(y, direction, sonar, ping) && counts(sonar, ping);
+        for ping in y.pings(sonar).newest_first().filter(is_there) {
+            let [first, second] = newest;
+            if first.is_none_or(|(_, first)| first.at < ping.at) {
+                newest = [Some((sonar, ping)), first];
+            } else if second.is_none_or(|(_, second)| second.at < ping.at) {
+                newest = [first, Some((sonar, ping))];
+            }
+        }
+    }
+    newest
+}
+
+/// Returns `true` if this ping of `sonar` was in the direction in which `direction` looks now, and its echo, if it had
+/// one, still lies in that direction: a jamb that the robot has passed no longer does.
+fn looked_there<Y: SonarRing>(y: &Y, direction: SonarId, sonar: SonarId, ping: &Ping) -> bool {
+    let here = y.here();
+    let axis = Radians(ping.pose.theta.0 + sonar.bearing().0);
+    let is_within = |angle: f64| Radians(angle - here.theta.0 - direction.bearing().0).wrapped().0.abs() <= WITHIN.0;
+    let Some(range) = ping.range.filter(|_| sonar != direction) else { return is_within(axis.0) };
+    let place = ping.pose.towards(axis, Meters(y.ring_radius().0 + range.0));
+    is_within(axis.0) && is_within(libm::atan2(place.y.0 - here.y.0, place.x.0 - here.x.0))
+}
+
+/// Returns the angle from the direction of a sonar now to the axis of this ping of `sonar`.
+pub(crate) fn off<Y: SonarRing>(y: &Y, direction: SonarId, sonar: SonarId, ping: &Ping) -> Radians {
+    Radians(ping.pose.theta.0 + sonar.bearing().0 - y.here().theta.0 - direction.bearing().0).wrapped()
+}
+
+/// Returns `true` if the near echo of this ping may be of a wall along the way in `direction`: the ping looked to the
+/// side of that wall, and the edge of its cone reaches it. A rough wall along the way is heard so, and closes nothing.
+fn is_of_side<Y: SonarRing>(y: &Y, direction: SonarId, sonar: SonarId, ping: &Ping) -> bool {
+    let Some(range) = ping.range.filter(|range| *range < y.blocked_within()) else { return false };
+    let (Radians(off), here) = (off(y, direction, sonar, ping), y.here());
+    let side = after(direction, if off < 0.0 { 12 } else { 4 });
+    let Some(wall) = nearest(newest(y, side, |_, _| true)) else { return false };
+    let axis = ping.pose.theta.0 + sonar.bearing().0;
+    let transducer = ping.pose.towards(Radians(axis), y.ring_radius());
+    let edge = transducer.towards(Radians(axis + libm::copysign(CONE.0, off)), range);
+    let (sin, cos) = libm::sincos(here.theta.0 + side.bearing().0);
+    let to_side = (edge.x.0 - here.x.0) * cos + (edge.y.0 - here.y.0) * sin;
+    to_side > y.ring_radius().0 + wall.0 - OF_WALL
+}
+
+/// Returns the sonar this many places counter-clockwise after another.
+pub(crate) fn after(sonar: SonarId, further: usize) -> SonarId {
+    SonarId::new(((sonar.number() + further) % SONARS) as u8)
+}
+
+/// Returns the minimum range of these pings; `None` if none of them heard anything.
+fn nearest(pings: [Option<(SonarId, &Ping)>; 2]) -> Option<Meters> {
+    let heard = pings.into_iter().flatten().filter_map(|(_, ping)| ping.range);
+    heard.reduce(|one, other| if other < one { other } else { one })
+}
+
+/// Returns the range of a wall that a sonar no longer hears in its two last pings, because they missed it, strayed, or
+/// look past it by now. The sonar must have heard the wall before, and both its neighbours must have heard it lately
+/// and nothing further.
+fn overheard<Y: SonarRing>(y: &Y, sonar: SonarId) -> Option<Meters> {
+    let [new, old, before] = [0, 1, 2].map(|number| y.pings(sonar).newest_first().nth(number)?.range);
+    let before = before.filter(|range| *range < y.blocked_within())?;
+    if new.zip(old).is_some_and(|(new, old)| (new.0 - old.0).abs() < SAME) {
+        return None;
+    }
+    let most = SLANT.0 * before.0 + SLANT.1;
+    let hears = |further: u8| {
+        let beside = SonarId::new(sonar.number() as u8 + further);
+        let mut ranges = y.pings(beside).newest_first().take(2).filter_map(|ping| ping.range).peekable();
+        ranges.peek().is_some() && ranges.all(|range| range.0 < most)
+    };
+    (hears(1) && hears(SONARS as u8 - 1)).then_some(before)
+}
