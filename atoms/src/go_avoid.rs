@@ -51,6 +51,8 @@ const SURE: u32 = 5;
 /// corner, and for which it then goes round obstacles without the map, in turns.
 const SQUEEZES: Nanos = Nanos(30_000_000_000);
 const GOES_ROUND: Nanos = Nanos(60_000_000_000);
+/// Time without progress after which the robot follows ways on its map.
+const HELD_UP: Nanos = Nanos(1_200_000_000);
 /// Time for which the robot stands after it has heard somebody come who is about to cross its way.
 const STANDS: Nanos = Nanos(2_500_000_000);
 
@@ -120,7 +122,7 @@ struct GivesWay {
 impl GoingRound {
     /// Returns this law on its way to the goal of another.
     pub(crate) fn with_goal_of(self, other: &Self) -> Self {
-        Self { goal: other.goal, ..self }
+        Self { goal: other.goal, from: other.from, axis: other.axis, ..self }
     }
 
     /// Detects a person who approaches along the way to the goal, so that the robot gives way.
@@ -213,6 +215,9 @@ impl GoingRound {
         chosen: Radians,
     ) -> Option<Twist> {
         let stalled = self.progress.stalled(here, &self.goal, t);
+        if stalled < HELD_UP && !self.narrow.follows() {
+            return None;
+        }
         if self.gives_way.is_some() || stalled.0 % (SQUEEZES.0 + GOES_ROUND.0) >= SQUEEZES.0 {
             self.narrow.leave();
             return None;

@@ -33,7 +33,8 @@ pub fn kept() -> Vec<(String, String)> {
 #[must_use]
 pub fn literals() -> Vec<(String, String)> {
     let mut texts = Vec::new();
-    for file in files(&[".rs"]) {
+    // Plans in tests of the language server have a mark where the cursor is.
+    for file in files(&[".rs"]).into_iter().filter(|file| !file.path.starts_with("editors/")) {
         let Ok(tokens) = file.text.parse::<TokenStream>() else { continue };
         let mut found = Vec::new();
         strings(tokens, &mut found);

@@ -54,8 +54,11 @@ impl Target {
     pub fn must_be_bound(&self) -> Result<(), InputError> {
         let Some(folder) = &self.folder else { return Ok(()) };
         let file = folder.join("alphabet.mdle");
+        // The crate serves an engine as well, whatever this plan is for.
+        let mut alphabet = self.alphabet.clone();
+        alphabet.has_engine = true;
         let is_up_to_date =
-            read::file(&bound(&file), LARGEST_PLAN).is_ok_and(|found| found == rust::bind(&self.alphabet).as_bytes());
+            read::file(&bound(&file), LARGEST_PLAN).is_ok_and(|found| found == rust::bind(&alphabet).as_bytes());
         if is_up_to_date { Ok(()) } else { Err(InputError::Unusable(out_of_date(&file))) }
     }
 }

@@ -15,9 +15,17 @@ use mdlec::link::{LinkError, Progress};
 
 use crate::robot::{MANIFEST, PLAN, ROVER, Robot, target};
 
-/// Returns the robot whose cache is damaged.
+/// Returns the robot whose cache is damaged: it has libraries of earlier runs of the tests, but no plans of theirs.
 fn robot() -> Robot {
-    Robot::new("damaged", MANIFEST, ROVER)
+    let robot = Robot::new("damaged", MANIFEST, ROVER);
+    for plan in files(robot.cache.folder(), &|name| name.starts_with("plan-nap-")) {
+        fs::remove_file(plan).unwrap();
+    }
+    let packages = robot.cache.folder().join("plans");
+    if packages.exists() {
+        fs::remove_dir_all(packages).unwrap();
+    }
+    robot
 }
 
 /// Returns `true` if all libraries may be compiled again and again.

@@ -19,12 +19,12 @@ const APART: f64 = 0.1;
 /// Greatest number of echoes that a line remembers.
 const KEPT: f64 = 24.0;
 /// Least sum of squared distances along a wall, in square metres, by which its direction is known: errors of 1.5 cm are
-/// then 2 degrees.
-const KNOWN: f64 = 0.2;
+/// then 1 degree. Sides of boxes are shorter, and may stand at any angle.
+const KNOWN: f64 = 1.0;
 /// Least such sum by which the next echo of the wall is expected.
 const GUESSED: f64 = 0.02;
 /// Least such sum by which the direction of a wall alone is known.
-const LONG: f64 = 0.5;
+const LONG: f64 = 4.0;
 /// Greatest difference of the slopes of walls on both sides.
 const PARALLEL: f64 = 0.14;
 /// Greatest difference, in metres, of the ranges to both sides of a wall to which the robot is nearly square.

@@ -177,16 +177,16 @@ fn every_atom_ends_in_its_zone_by_its_cause() {
      1   23.2 s  atIsection 0100   0.04   4.30   90
      2   36.8 s  atIsection 0010   0.04   4.32    1
      3   37.4 s  completed         0.04   4.32  360
-     4   76.4 s  atIsection 1000   7.02   4.79  359
-     5   90.0 s  atIsection 0100   7.04   4.79  271
-     6   90.4 s  completed         7.04   4.79  271
-     7   97.4 s  wait 7            7.16   3.50  295
-     8  113.3 s  atIsection 1000   7.40   0.43  270
-     9  115.7 s  atIsection 1001   7.40  -0.04  270
-    10  120.3 s  atIsection 0011   7.40  -0.06  359
-    11  120.5 s  completed         7.40  -0.06    0
-    12  140.0 s  atIsection 0100  11.24  -0.05    0
-    13  143.1 s  completed        11.27  -0.05  271
+     4   74.1 s  atIsection 1000   7.02   4.78  359
+     5   87.7 s  atIsection 0100   7.04   4.78  271
+     6   88.1 s  completed         7.04   4.78  271
+     7   95.1 s  wait 7            7.13   3.49  296
+     8  111.0 s  atIsection 1000   7.40   0.43  270
+     9  113.4 s  atIsection 1001   7.40  -0.05  270
+    10  118.0 s  atIsection 0011   7.40  -0.07  359
+    11  118.2 s  completed         7.40  -0.07    0
+    12  137.7 s  atIsection 0100  11.24  -0.06    0
+    13  140.8 s  completed        11.27  -0.06  271
     ");
 }
 
