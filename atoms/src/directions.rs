@@ -1,4 +1,4 @@
-//! What the sonars of a robot have heard in its four directions, whichever of them looked there.
+//! The echoes that sonars have heard in the four directions of a robot, whichever sonar looked there.
 
 use mdle_runtime::capability::SonarRing;
 use mdle_runtime::{Meters, Ping, Radians, SONARS, SonarId};

@@ -57,7 +57,7 @@ const ALIGNED: f64 = 0.02;
 /// Greatest drift from an axis of a frame; at 45° a wall might as well run along the other axis.
 const MOST: Radians = Radians::from_degrees(40.0);
 
-/// How far the heading by odometry has drifted from walls at right angles to each other.
+/// The drift of the heading by odometry from walls at right angles to each other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Compass {
     /// The direction of the walls in the axes of odometry, in radians; 0 if nothing has drifted.

@@ -111,7 +111,7 @@ impl Desk {
         let values = self.places.iter().map(|place| values.get_mut(*place).and_then(Option::take)).collect();
         self.number = self.number.saturating_add(1);
         let snapshot = Arc::new(Snapshot { tree: Arc::clone(&self.tree), values, number: self.number });
-        // Whoever holds the lock copies a pointer; the next break tries again.
+        // A front end holds the lock while it copies a pointer; the next break tries again.
         if let Ok(mut kept) = self.shared.snapshot.try_lock() {
             self.shared.wanted.store(false, Ordering::SeqCst);
             *kept = snapshot;

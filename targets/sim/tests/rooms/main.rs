@@ -30,14 +30,12 @@ fn clean(name: &str, runs: impl Iterator<Item = (u64, Outcome)>) -> usize {
     clean.count()
 }
 
-/// Of rooms 0..200, all are crossed without contact.
 #[test]
 fn rooms_of_convex_obstacles_are_crossed() {
     let runs = (0..24).map(|seed| (seed, drive(&ideal(), &room(seed, GAP), Place { x: 7.0, y: 7.0 })));
     assert!(clean("ideal", runs) >= 23);
 }
 
-/// Of rooms 0..200, 199 are crossed without contact, and one with.
 #[test]
 fn rooms_are_crossed_by_a_scout_too() {
     let runs = (0..24).map(|seed| (seed, drive(&scout(seed), &room(seed, GAP), Place { x: 7.0, y: 7.0 })));
