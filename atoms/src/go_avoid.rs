@@ -13,7 +13,7 @@ use crate::memory::Memory;
 use crate::narrow::Narrow;
 use crate::stuck::Progress;
 use crate::tangent::{Obstacles, Side, Wish};
-use crate::wave::Ahead;
+use crate::way::Ahead;
 
 /// Distance from the goal below which it is reached.
 const ARRIVED: Meters = Meters(0.12);
@@ -228,8 +228,8 @@ impl GoingRound {
             Some(detour) => (Meters(detour.from.0.min(distance.0)), None),
             None => (distance, Some((seen.free(self.direction(here)), asked))),
         };
-        let ahead = Ahead { goal: self.goal, from, chosen, free, speed: self.speed };
-        self.narrow.input(y, here, t, &ahead)
+        let ahead = Ahead { goal: self.goal, from, chosen, free, speed: self.speed, before: None };
+        self.narrow.input(y, here, t, ahead)
     }
 }
 

@@ -39,6 +39,7 @@ mod tangent;
 mod trial;
 mod turn;
 mod wave;
+mod way;
 
 pub use advance::{Advance, Advancing};
 pub use align::{Align, Aligning};

@@ -81,8 +81,8 @@ impl Map {
             // A single missed echo clears nothing.
             let before = pings.next().and_then(|before| before.range);
             let Meters(range) = ping.range.or(before).unwrap_or(Meters(f64::INFINITY));
-            let axis = Radians(ping.pose.theta.0 + sonar.bearing().0);
-            let from = ping.pose.towards(axis, y.ring_radius());
+            let centre = ping.axis(sonar);
+            let (axis, from) = (centre.theta, centre.towards(centre.theta, y.ring_radius()));
             if range >= least {
                 self.pass(from, axis, (range - BEFORE).min(WITHIN));
             }

@@ -6,7 +6,7 @@ use mdle_runtime::{Meters, MetersPerSecond, Nanos, Pose, Twist};
 
 use crate::map::Map;
 use crate::swept::Surroundings;
-use crate::wave::{self, Ahead};
+use crate::way::{Ahead, Next, way};
 
 /// Room around the body, in metres, below which a place is narrow.
 const ROOM: f64 = 0.1;
@@ -28,7 +28,7 @@ const STANDS: Nanos = Nanos(4_000_000_000);
 pub(crate) struct Narrow {
     map: Map,
     /// Place on the way that is driven to.
-    way: Option<(f64, f64)>,
+    way: Option<Next>,
     /// Time of the last search, and of the last one that found a way.
     searched: Nanos,
     found: Nanos,
@@ -61,7 +61,7 @@ impl Narrow {
     }
 
     /// The input of a robot at `here`; `None` where the tangent rule is enough.
-    pub(crate) fn input<Y: DiffDrive>(&mut self, y: &Y, here: Pose, t: Nanos, ahead: &Ahead) -> Option<Twist> {
+    pub(crate) fn input<Y: DiffDrive>(&mut self, y: &Y, here: Pose, t: Nanos, mut ahead: Ahead) -> Option<Twist> {
         let surroundings = Surroundings::of(y, &self.map, here);
         let more = if self.way.is_some() { LEAVES } else { Meters(0.0) };
         let is_free = ahead.free.is_some_and(|(free, asked)| free.0 >= asked.0 + more.0);
@@ -71,19 +71,21 @@ impl Narrow {
         }
         if t.since(self.searched) >= SEARCHES {
             self.searched = t;
-            let way = wave::way(&self.map, here, ahead, y);
+            ahead.before = self.way;
+            let way = way(&self.map, here, &ahead, y);
             if way.is_some() || t.since(self.found) >= COUNTS {
                 (self.way, self.found) = (way, t);
             }
         }
         let is_disc = y.body_radius() <= y.half_length();
         let there = here.towards(ahead.chosen, AHEAD);
-        let (x, y) = self.way.or((!is_disc).then_some((there.x.0, there.y.0)))?;
+        let anyhow = Next { x: there.x.0, y: there.y.0, is_straight: false };
+        let Next { x, y, is_straight } = self.way.or((!is_disc).then_some(anyhow))?;
         let (sin, cos) = libm::sincos(here.theta.0);
         let (dx, dy) = (x - here.x.0, y - here.y.0);
         let speed = MetersPerSecond(ahead.speed.0.min(FASTEST));
         let is_bold = self.stands.is_some_and(|since| t.since(since) > STANDS);
-        let twist = surroundings.towards(dx * cos + dy * sin, dy * cos - dx * sin, speed, is_bold)?;
+        let twist = surroundings.towards(dx * cos + dy * sin, dy * cos - dx * sin, speed, is_straight, is_bold)?;
         self.stands = self.stands.or(Some(t)).filter(|_| twist.v.0 == 0.0);
         Some(twist)
     }

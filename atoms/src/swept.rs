@@ -26,8 +26,9 @@ const ROOM: f64 = 0.12;
 const CLOSE: f64 = 0.08;
 /// Cost of turning on the spot, in metres: a turn is to bring the robot further than that.
 const STANDING_COSTS: f64 = 0.06;
-/// Cost of a radian off the place, in metres.
+/// Cost of a radian off the place, in metres, and where the body cannot turn on the way there.
 const OFF_COSTS: f64 = 0.15;
+const OFF_COSTS_STRAIGHT: f64 = 1.0;
 
 /// Outline and surroundings of a body.
 pub(crate) struct Surroundings {
@@ -84,8 +85,16 @@ impl Surroundings {
     }
 
     /// The input that brings the body nearest to the place at this distance ahead and to the left, at most at this
-    /// speed; `None` if every movement would touch. A bold robot goes where room is scarce.
-    pub(crate) fn towards(&self, ahead: f64, left: f64, speed: MetersPerSecond, is_bold: bool) -> Option<Twist> {
+    /// speed; `None` if every movement would touch. A bold robot goes where room is scarce; one that has to go straight
+    /// first turns to the place.
+    pub(crate) fn towards(
+        &self,
+        ahead: f64,
+        left: f64,
+        speed: MetersPerSecond,
+        is_straight: bool,
+        is_bold: bool,
+    ) -> Option<Twist> {
         let now = self.now();
         let kept = if is_bold { -COARSE } else { 0.0 };
         let mut best = (f64::INFINITY, None);
@@ -96,7 +105,7 @@ impl Surroundings {
                 if v == 0.0 && omega == 0.0 || v < 0.0 && self.half_length == 0.0 {
                     continue;
                 }
-                if let Some(cost) = self.cost(v, omega, now, kept, ahead, left)
+                if let Some(cost) = self.cost(v, omega, now, kept, (ahead, left), is_straight)
                     && cost < best.0
                 {
                     best = (cost, Some(Twist { v: MetersPerSecond(v), omega: RadiansPerSecond(omega) }));
@@ -106,7 +115,7 @@ impl Surroundings {
         best.1
     }
 
-    fn cost(&self, v: f64, omega: f64, now: f64, kept: f64, ahead: f64, left: f64) -> Option<f64> {
+    fn cost(&self, v: f64, omega: f64, now: f64, kept: f64, to: (f64, f64), is_straight: bool) -> Option<f64> {
         let (mut least, mut end, mut before) = (f64::INFINITY, (0.0, 0.0, 0.0), now);
         for t in TIMES {
             let theta = omega * t;
@@ -124,11 +133,11 @@ impl Surroundings {
             (end, before) = ((x, y, theta), room);
         }
         let (x, y, theta) = end;
-        let (dx, dy) = (ahead - x, left - y);
+        let (dx, dy) = (to.0 - x, to.1 - y);
         let off = Radians(libm::atan2(dy, dx) - theta).wrapped().0.abs();
         let stands = if v <= 0.0 { STANDING_COSTS } else { 0.0 };
         let tight = if kept < 0.0 { 0.0 } else { 1.0 } * (ROOM - least).max(0.0) + 4.0 * (CLOSE - least).max(0.0);
-        Some(libm::hypot(dx, dy) + OFF_COSTS * off + tight + stands)
+        Some(libm::hypot(dx, dy) + if is_straight { OFF_COSTS_STRAIGHT } else { OFF_COSTS } * off + tight + stands)
     }
 }
 
@@ -145,7 +154,7 @@ mod tests {
         for wall in walls {
             map.occupy((-0.6, *wall), (0.6, *wall));
         }
-        Surroundings::of(y, &map, Pose::ORIGIN).towards(0.4, left, SPEED, false)
+        Surroundings::of(y, &map, Pose::ORIGIN).towards(0.4, left, SPEED, false, false)
     }
 
     #[test]
@@ -168,7 +177,7 @@ mod tests {
         let ahead = |y: &Sensed| {
             let mut map = Map::EMPTY;
             map.occupy((0.34, -0.1), (0.34, 0.1));
-            let twist = Surroundings::of(y, &map, Pose::ORIGIN).towards(0.4, 0.0, SPEED, false);
+            let twist = Surroundings::of(y, &map, Pose::ORIGIN).towards(0.4, 0.0, SPEED, false, false);
             twist.is_some_and(|twist| twist.v.0 > 0.0 && twist.omega.0 == 0.0)
         };
         assert!(!ahead(&sized(0.33, 0.27)));

@@ -267,8 +267,8 @@ fn on_arc<const N: usize>(
     here: Pose,
     off_axis: [Radians; N],
 ) -> [Point; N] {
-    let axis = Radians(ping.pose.theta.0 + sonar.bearing().0);
-    let transducer = ping.pose.towards(axis, ring);
+    let from = ping.axis(sonar);
+    let (axis, transducer) = (from.theta, from.towards(from.theta, ring));
     off_axis.map(|off_axis| {
         let point = transducer.towards(Radians(axis.0 + off_axis.0), range);
         Point { x: point.x.0 - here.x.0, y: point.y.0 - here.y.0 }

@@ -4,8 +4,8 @@ use core::f64::consts::PI;
 
 use mdle_runtime::capability::{Bumpers, DiffDrive, Modules, Odometry, Paths, Power, SonarRing};
 use mdle_runtime::{
-    Begin, Completes, Frame, Law, Meters, Nanos, Output, PathStore, Ping, Pings, Pose, Published, PublishedNumber,
-    Radians, SONARS, Setpoint, SonarId, Supply, Twist, Volts,
+    Begin, Completes, Frame, Law, Meters, Mount, Nanos, Output, PathStore, Ping, Pings, Pose, Published,
+    PublishedNumber, Radians, SONARS, Setpoint, SonarId, Supply, Twist, Volts,
 };
 
 /// The period of a turn in these trials, in seconds.
@@ -57,7 +57,7 @@ impl Sensed {
 
     /// Takes in a ping of this time, made where the robot is.
     pub(crate) fn ping_at(&mut self, sonar: SonarId, range: Option<f64>, at: Nanos) {
-        let ping = Ping { range: range.map(Meters), at, pose: self.pose };
+        let ping = Ping { range: range.map(Meters), at, pose: self.pose, mount: Mount::default() };
         self.pings.get_mut(sonar.number()).expect("one of the sixteen").push(ping);
     }
 

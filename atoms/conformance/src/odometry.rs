@@ -18,7 +18,7 @@ fn counted(what: &str, unit: &str, found: f64, wanted: f64, within: f64) -> Resu
     Measured { what, unit, whose: "odometry", found, wanted, within }.check()
 }
 
-/// Checks that odometry reports the way `reported`, when the body truly went `went`.
+/// Checks that the way `reported` by odometry is the way that the body truly `went`. `did` names the motion in errors.
 fn check_way(did: &str, reported: &Way, went: &Way) -> Result<(), String> {
     let says = |what: &str| format!("{did}, and by odometry it {what}");
     let (metres, radians) = (METRES + PART * went.far(), RADIANS + PART * went.turn.abs());

@@ -274,8 +274,8 @@ impl Line {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Ping;
     use crate::capability::Steering;
+    use crate::{Mount, Ping};
 
     const SHAPE: Shape = Shape {
         body_radius: Meters(0.3),
@@ -304,7 +304,8 @@ mod tests {
         fn hears(&mut self, pose: Pose, ranges: &[(usize, f64)], shape: &Shape) {
             self.now = Nanos(self.now.0 + 500_000_000);
             for (sonar, range) in ranges {
-                self.pings[*sonar].push(Ping { range: Some(Meters(*range)), at: self.now, pose });
+                let range = Some(Meters(*range));
+                self.pings[*sonar].push(Ping { range, at: self.now, pose, mount: Mount::default() });
             }
             self.compass.take(&self.pings, pose, shape);
         }

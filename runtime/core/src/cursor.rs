@@ -55,6 +55,11 @@ impl<E: Entries, P: Slots<u64>> Cursor<E, P> {
         self.stalled = stalled;
     }
 
+    /// Takes the output of the first turn after the plan was suspended.
+    pub(crate) fn resume<Y: Output>(&mut self, y: &Y) {
+        self.entered.resume(y);
+    }
+
     /// Returns the frame of the current atom, if a `FRAME here` encloses it.
     #[inline(always)]
     pub(crate) fn frame(&self) -> Option<Frame> {

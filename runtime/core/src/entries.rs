@@ -3,7 +3,7 @@
 
 use crate::{Nanometers, Nanos, Output, Pose, Radians, Slots};
 
-/// Storage for the entry of each level of scopes: times alone, or [`Stamps`].
+/// Storage for when each level of scopes was entered: times alone, or [`Stamps`].
 pub trait Entries {
     /// Returns `true` if this stores no level.
     fn is_empty(&self) -> bool;
@@ -14,6 +14,9 @@ pub trait Entries {
     /// Takes the output of a turn, before anything in the turn is read or entered.
     #[inline(always)]
     fn observe<Y: Output>(&mut self, _y: &Y) {}
+    /// Takes the output of the first turn of a plan that was suspended while another one drove: the path driven
+    /// meanwhile is none of its own.
+    fn resume<Y: Output>(&mut self, _y: &Y) {}
     /// Returns the length of the path driven since the scope of this level was entered.
     #[inline(always)]
     fn way(&self, _level: u16) -> Nanometers {
@@ -119,6 +122,17 @@ impl<S: Slots<Stamp>, F: AsRef<[Option<Here>]>> Entries for Stamps<S, F> {
         self.now.heading = here.theta;
     }
 
+    fn resume<Y: Output>(&mut self, y: &Y) {
+        let here = y.here();
+        if let Some(reading) = y.way() {
+            let meanwhile = reading.since(self.now.way);
+            self.slots.as_mut().iter_mut().for_each(|stamp| stamp.way = stamp.way.plus(meanwhile));
+            self.now.way = reading;
+        }
+        self.now.heading = here.theta;
+        self.last = Some(here);
+    }
+
     fn way(&self, level: u16) -> Nanometers {
         let entered = self.slots.as_ref().get(usize::from(level)).map_or(self.now.way, |stamp| stamp.way);
         self.now.way.since(entered)
@@ -175,5 +189,20 @@ mod tests {
         stamps.note(0, Nanos(0));
         stamps.observe(&At(at(3.0, 0.0, 0.0).0, Some(Nanometers(100))));
         assert_eq!(stamps.way(0), Nanometers(30));
+        stamps.resume(&At(Pose::ORIGIN, Some(Nanometers(500))));
+        stamps.observe(&At(Pose::ORIGIN, Some(Nanometers(507))));
+        assert_eq!(stamps.way(0), Nanometers(37), "400 were driven while the plan was suspended");
+    }
+
+    #[test]
+    fn the_way_of_another_plan_does_not_count() {
+        let mut stamps = Stamps::new([Stamp::START; 1], []);
+        stamps.observe(&at(5.0, 0.0, 90.0));
+        stamps.note(0, Nanos(0));
+        stamps.observe(&at(5.3, 0.4, 90.0));
+        stamps.resume(&at(9.0, 9.0, 30.0));
+        assert_eq!((stamps.way(0).0, libm::round(stamps.heading(7).degrees())), (500_000_000, 30.0));
+        stamps.observe(&at(9.0, 9.1, 30.0));
+        assert_eq!(stamps.way(0), Nanometers(600_000_000));
     }
 }

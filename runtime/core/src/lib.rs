@@ -73,7 +73,7 @@ pub use sensed::{Sensed, Supply};
 pub use shape::Shape;
 pub use signal::{Comparison, NoSignal, Operand, Signal};
 pub use slots::Slots;
-pub use sonar::{PINGS_KEPT, Ping, Pings, SONARS, SonarId};
+pub use sonar::{Mount, PINGS_KEPT, Ping, Pings, SONARS, SonarId};
 pub use source::{BracketWords, OperandWords, Source, SourceLine, ValueWords, Words};
 pub use table::{Guard, LawRow, Rows, Table, Texts};
 pub use time::Nanos;

@@ -128,7 +128,7 @@ impl<P: Plan> Machine<P> {
         }
     }
 
-    /// The state and the scope that are about to be left, once `watch` has the operands that have fired.
+    /// Passes the operands that have fired to `watch`, and returns the state and the scope that are about to be left.
     fn look<W: Watch>(&self, cause: Cause, y: &P::Output, t: Nanos, watch: &mut W) -> (u64, u32) {
         let fsm = self.plan.fsm();
         let scope = self.cursor.scope(fsm, cause.level());
@@ -141,8 +141,15 @@ impl<P: Plan> Machine<P> {
         (self.cursor.state(fsm), scope)
     }
 
-    /// Makes the law of the current atom anew, for a plan that goes on after another plan has driven the robot.
+    /// Takes the output at which the plan is suspended, to which its last input has led.
+    pub fn suspend(&mut self, y: &P::Output) {
+        self.cursor.observe(y, None);
+    }
+
+    /// Makes the law of the current atom anew, for a plan that goes on after another plan has driven the robot. The
+    /// path driven since [`Machine::suspend`] does not count.
     pub fn reenter(&mut self, y: &P::Output, t: Nanos) {
+        self.cursor.resume(y);
         if !self.is_over() {
             self.plan.enter(self.cursor.atom(), y, self.cursor.begins(Begin { now: t, frame: self.frame }));
         }

@@ -32,6 +32,8 @@ pub struct PublishedNumber {
 pub struct Published {
     names: &'static [ModuleRead],
     numbers: [Option<PublishedNumber>; PUBLISHED],
+    /// Age of the oldest number that somebody waits for.
+    oldest: Nanos,
 }
 
 impl Published {
@@ -42,7 +44,19 @@ impl Published {
     /// none.
     #[must_use]
     pub const fn new(names: &'static [ModuleRead]) -> Self {
-        Self { names, numbers: [None; PUBLISHED] }
+        Self { names, numbers: [None; PUBLISHED], oldest: Nanos::ZERO }
+    }
+
+    /// Sets the age of the oldest number that a plan or a safety rule reads.
+    #[must_use]
+    pub const fn as_old_as(self, oldest: Nanos) -> Self {
+        Self { oldest, ..self }
+    }
+
+    /// Returns the age of the oldest number that the plan or a safety rule reads; zero if they read none.
+    #[must_use]
+    pub const fn oldest(&self) -> Nanos {
+        self.oldest
     }
 
     /// Sets the number of the attribute at this place among the names.

@@ -2,7 +2,7 @@
 
 use core::time::Duration;
 
-use crate::{Nanometers, Pose, Published};
+use crate::{Nanometers, Nanos, Pose, Published};
 
 /// A robot: takes an input, gives the output that follows it, and can be stopped.
 ///
@@ -54,4 +54,9 @@ pub trait Output {
     /// Takes the numbers that modules have published for the plan. An engine calls it before each turn; an output whose
     /// quarks read no modules ignores them.
     fn take_published(&mut self, _published: Published) {}
+
+    /// Returns the age of the oldest number of a module that the plan or a safety rule reads; zero if they read none.
+    fn oldest_published(&self) -> Nanos {
+        Nanos::ZERO
+    }
 }

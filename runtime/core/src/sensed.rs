@@ -52,6 +52,10 @@ impl Output for Sensed {
     fn take_published(&mut self, published: Published) {
         self.published = published;
     }
+
+    fn oldest_published(&self) -> Nanos {
+        self.published.oldest()
+    }
 }
 
 impl Odometry for Sensed {

@@ -1,5 +1,7 @@
 //! Sonar readings with their age and the pose they were taken from, in the paper's sixteen directions.
 
+use core::f64::consts::FRAC_PI_2;
+
 use crate::{Meters, Nanos, Pose, Radians};
 
 /// The number of sonars, and of the directions the paper's plans count them in.
@@ -41,6 +43,40 @@ pub struct Ping {
     pub at: Nanos,
     /// Pose of the robot by odometry when the ping was taken.
     pub pose: Pose,
+    /// Mount of the transducer that heard the echo.
+    pub mount: Mount,
+}
+
+/// Place and direction of a transducer compared to those of its sonar on the ring. Single precision: an output keeps 48
+/// pings.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Mount {
+    /// Distance, in metres, by which the transducer's axis passes the robot's centre on the left.
+    pub left: f32,
+    /// Angle, in radians, by which the transducer's axis is turned counter-clockwise from that of the sonar.
+    pub turned: f32,
+}
+
+impl Mount {
+    /// Returns the mount of a transducer at `x` metres ahead and `y` to the left of the centre, which looks along
+    /// `bearing` and speaks for `sonar`.
+    #[must_use]
+    pub fn of(x: f64, y: f64, bearing: Radians, sonar: SonarId) -> Self {
+        let (sin, cos) = libm::sincos(bearing.0);
+        let turned = Radians(bearing.0 - sonar.bearing().0).wrapped();
+        Self { left: (y * cos - x * sin) as f32, turned: turned.0 as f32 }
+    }
+}
+
+impl Ping {
+    /// Returns the transducer's axis as a pose: its heading, and the place from which the range, with the ring's radius
+    /// added, counts along it. For a transducer on the ring that is the robot's centre.
+    #[must_use]
+    pub fn axis(&self, sonar: SonarId) -> Pose {
+        let theta = Radians(self.pose.theta.0 + sonar.bearing().0 + f64::from(self.mount.turned));
+        let left = Meters(self.mount.left.into());
+        Pose { theta, ..self.pose.towards(Radians(theta.0 + FRAC_PI_2), left) }
+    }
 }
 
 /// The last pings of one sonar, newest first.
@@ -80,7 +116,7 @@ mod tests {
     fn pings(ranges: &[Option<f64>]) -> Pings {
         let mut pings = Pings::default();
         for range in ranges {
-            pings.push(Ping { range: range.map(Meters), at: Nanos::ZERO, pose: Pose::ORIGIN });
+            pings.push(Ping { range: range.map(Meters), at: Nanos::ZERO, pose: Pose::ORIGIN, mount: Mount::default() });
         }
         pings
     }

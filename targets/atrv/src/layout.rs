@@ -1,6 +1,6 @@
 //! Directions of the sonars of the two known ATRV-minis, and the paper's sixteen directions that each sonar stands for.
 
-use mdle_runtime::SONARS;
+use mdle_runtime::{Mount, Radians, SONARS, SonarId};
 
 /// Maximum number of sonars that an ATRV-mini has.
 pub(crate) const MOST: usize = 24;
@@ -93,24 +93,23 @@ fn at(id: usize, (x, y, degrees): (f64, f64, f64), directions: &[usize]) -> Tran
 }
 
 impl Transducer {
-    /// A range of this sonar as one of the ring: from the centre to the place of the echo, less the ring's radius.
-    ///
-    /// One that speaks for several directions looks between them, so that the place is not to be believed: there it is
-    /// how far off that place is along the axis. A wall beside the robot is then as far in all directions that hear it
-    /// alike.
+    /// Returns a range of this sonar as one from the ring: along the sonar's axis from the place nearest to the centre,
+    /// less the ring's radius.
     pub(crate) fn on_the_ring(&self, range: f64) -> f64 {
         let (sin, cos) = libm::sincos(self.degrees.to_radians());
-        let far = if self.directions.count_ones() == 1 {
-            libm::hypot(self.x + range * cos, self.y + range * sin)
-        } else {
-            self.x * cos + self.y * sin + range
-        };
-        (far - RING_RADIUS).max(0.0)
+        (self.x * cos + self.y * sin + range - RING_RADIUS).max(0.0)
+    }
+
+    /// Returns the mount of this sonar as one that speaks for a direction.
+    pub(crate) fn mount(&self, direction: usize) -> Mount {
+        Mount::of(self.x, self.y, Radians::from_degrees(self.degrees), SonarId::new(direction as u8))
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use mdle_runtime::{Meters, Nanos, Ping, Pose};
+
     use super::*;
 
     /// The ids of the sonars that speak for each direction.
@@ -191,6 +190,21 @@ mod tests {
                 sonar.on_the_ring((sin.signum() - sonar.y) / sin)
             };
             assert!((range(before) - range(behind)).abs() < 1e-9, "{sonars} {before} {behind}");
+        }
+    }
+    #[test]
+    fn a_range_from_the_ring_is_one_along_the_axis_of_the_sonar() {
+        let robot = Pose { x: Meters(2.0), y: Meters(-1.0), theta: Radians(0.7) };
+        for sonar in transducers(24).into_iter().flatten() {
+            let direction = (0..SONARS).find(|direction| sonar.directions & (1 << direction) != 0).expect("one");
+            let range = Some(Meters(sonar.on_the_ring(1.0)));
+            let ping = Ping { range, at: Nanos::ZERO, pose: robot, mount: sonar.mount(direction) };
+            let axis = ping.axis(SonarId::new(direction as u8));
+            let heard = axis.towards(axis.theta, Meters(RING_RADIUS + sonar.on_the_ring(1.0)));
+            let bearing = sonar.degrees.to_radians();
+            let (x, y) = (sonar.x + libm::cos(bearing), sonar.y + libm::sin(bearing));
+            let place = robot.towards(Radians(0.7 + libm::atan2(y, x)), Meters(libm::hypot(x, y)));
+            assert!(heard.distance(&place).0 < 1e-6, "{sonar:?}: {heard:?}");
         }
     }
 }

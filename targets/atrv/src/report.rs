@@ -65,7 +65,7 @@ impl<'a> Report<'a> {
     /// Returns the content of this packet.
     ///
     /// # Errors
-    /// No rFLEX sends such packets, or the packet is too short for its content.
+    /// The packet is of a kind that no rFLEX sends, or too short for its content.
     pub fn read(packet: &Packet<'a>) -> Result<Self, Unreadable> {
         let short = || Unreadable::Short(packet.port, packet.opcode, packet.data.len());
         match (packet.port, packet.opcode) {

@@ -1,7 +1,7 @@
 //! Converts the reports of the sonar boards to pings in the sixteen directions. See docs/src/reference/protocols.md,
 //! 2.6.
 
-use mdle_runtime::{Meters, Nanos, PINGS_KEPT, Ping, Pings, Pose, SONARS};
+use mdle_runtime::{Meters, Mount, Nanos, PINGS_KEPT, Ping, Pings, Pose, SONARS};
 
 use crate::config::Config;
 use crate::layout::{MOST, Transducer, transducers};
@@ -95,9 +95,12 @@ impl Ring {
         let (Some(reported), Some(pings)) = (self.reported.get_mut(direction), self.pings.get_mut(direction)) else {
             return;
         };
-        let heard = (0..).zip(&self.ranges).filter(|(number, _): &(u32, _)| *reported & (1 << number) != 0);
-        let range = heard.filter_map(|(_, range)| *range).reduce(f64::min).map(Meters);
-        pings.push(Ping { range, at, pose });
+        let all = (0_u32..).zip(self.transducers.iter().zip(&self.ranges));
+        let heard = all.filter(|(number, _)| *reported & (1 << number) != 0);
+        let heard = heard.filter_map(|(_, (transducer, range))| Some(((*transducer)?, (*range)?)));
+        let nearest = heard.reduce(|one, other| if other.1 < one.1 { other } else { one });
+        let mount = nearest.map_or(Mount::default(), |(transducer, _)| transducer.mount(direction));
+        pings.push(Ping { range: nearest.map(|(_, range)| Meters(range)), at, pose, mount });
         *reported = 0;
     }
 }
@@ -127,13 +130,13 @@ mod tests {
         take(2, 1550, 1);
         take(9, 1550, 1);
         take(3, 775, 2);
-        assert_eq!(heard(&ring, 1), [(1, Some(1009))]);
-        assert_eq!(heard(&ring, 2), [(2, Some(516))]);
+        assert_eq!(heard(&ring, 1), [(1, Some(1007))]);
+        assert_eq!(heard(&ring, 2), [(2, Some(515))]);
         assert_eq!(heard(&ring, 3), []);
         // Without an echo, and from an empty channel.
         ring.take(1, 32_766, Nanos(3), Pose::ORIGIN);
         ring.take(1, 0, Nanos(4), Pose::ORIGIN);
-        assert_eq!(heard(&ring, 1), [(4, None), (3, None), (1, Some(1009))]);
+        assert_eq!(heard(&ring, 1), [(4, None), (3, None), (1, Some(1007))]);
     }
 
     #[test]

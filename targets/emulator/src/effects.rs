@@ -19,7 +19,7 @@ const BEGINS: u64 = 3;
 /// The longest time for which a driver goes on giving orders, from the first order to stand after the fault.
 const STOPPING: Duration = Duration::from_millis(2500);
 /// Number of runs at the same time: most of them wait for an answer that never comes.
-const AT_ONCE: usize = 8;
+const AT_ONCE: usize = 32;
 
 /// The speed that a driver asks for, in turns of 100 ms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -157,7 +157,7 @@ impl<R: Embodied> Embodied for Faulty<R> {
 mod tests {
     use super::*;
 
-    /// A robot that sends the same frame in each period, and can suffer all ailments but filler.
+    /// A robot that sends the same frame in each period, and can have every [`Ailment`] except filler.
     #[derive(Default)]
     struct Robot(Vec<Ailment>);
 

@@ -1,7 +1,7 @@
 //! Converts the bytes of the sixteen sonars to pings, and finds which of them are new and how old the others are. See
 //! docs/src/reference/protocols.md, 1.6.
 
-use mdle_runtime::{Meters, Nanos, Ping, Pings, Pose, SONARS};
+use mdle_runtime::{Meters, Mount, Nanos, Ping, Pings, Pose, SONARS};
 
 /// Metres in an inch.
 const INCH: f64 = 0.0254;
@@ -24,16 +24,24 @@ pub(crate) struct Ring {
     around: Nanos,
     /// Time after which an unchanged range is a new ping.
     again: Nanos,
+    /// The time between two pings.
+    gap: Nanos,
 }
 
 impl Ring {
     /// Creates a ring of these sonars, one after the other with `gap` between two pings.
     pub(crate) fn new(order: &[u8], gap: Nanos) -> Self {
-        let active = std::array::from_fn(|sonar| order.iter().any(|number| usize::from(*number) == sonar));
-        let times = |count: usize| Nanos(gap.0.saturating_mul(count as u64));
-        let around = times(order.len());
-        let again = times(order.len() + SLACK);
-        Self { pings: [Pings::default(); SONARS], last: [None; SONARS], active, around, again }
+        let (pings, last, active) = ([Pings::default(); SONARS], [None; SONARS], [false; SONARS]);
+        let mut ring = Self { pings, last, active, around: Nanos::ZERO, again: Nanos::ZERO, gap };
+        ring.reorder(order);
+        ring
+    }
+
+    /// Lets these sonars ping from now on, one after the other. The pings so far are kept.
+    pub(crate) fn reorder(&mut self, order: &[u8]) {
+        self.active = std::array::from_fn(|sonar| order.iter().any(|number| usize::from(*number) == sonar));
+        let times = |count: usize| Nanos(self.gap.0.saturating_mul(count as u64));
+        (self.around, self.again) = (times(order.len()), times(order.len() + SLACK));
     }
 
     /// Returns the time until each sonar has pinged.
@@ -48,7 +56,7 @@ impl Ring {
             let is_old = last.is_some_and(|(byte, since)| byte == *heard && at.since(since) < self.again);
             if !is_old {
                 let range = (*heard != NOTHING).then(|| Meters(f64::from(*heard) * INCH));
-                pings.push(Ping { range, at, pose });
+                pings.push(Ping { range, at, pose, mount: Mount::default() });
                 *last = Some((*heard, at));
             }
         }
@@ -81,6 +89,17 @@ mod tests {
         assert_eq!(heard(101, 449), [(two, 150), (one, 0)]);
         assert_eq!(heard(101, 450), [(two, 450), (two, 150), (one, 0)]);
         assert_eq!(heard(NOTHING, 451), [(None, 451), (two, 450), (two, 150)]);
+    }
+
+    #[test]
+    fn a_new_order_keeps_the_pings_so_far() {
+        let mut ring = Ring::new(&[2, 3], GAP);
+        ring.take_in(&[7; SONARS], Nanos::ZERO, Pose::ORIGIN);
+        ring.reorder(&[3]);
+        assert_eq!(ring.around(), GAP);
+        let pings = ring.take_in(&[9; SONARS], Nanos(1), Pose::ORIGIN);
+        let counts = [2, 3, 4].map(|sonar: usize| pings[sonar].newest_first().count());
+        assert_eq!(counts, [1, 2, 0]);
     }
 
     #[test]

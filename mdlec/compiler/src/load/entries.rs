@@ -57,6 +57,13 @@ impl Entries for Entered {
         }
     }
 
+    fn resume<Y: Output>(&mut self, y: &Y) {
+        match self {
+            Self::Times(_) => {}
+            Self::Stamps(stamps) => stamps.resume(y),
+        }
+    }
+
     #[inline(always)]
     fn way(&self, level: u16) -> Nanometers {
         match self {

@@ -2,7 +2,7 @@
 //!
 //! It shares nothing with the driver's: what one of them gets wrong about the language, the other one finds.
 
-/// Maximum length of a command on the line, in bytes: a longer one has lost its end.
+/// Maximum length of a command, in bytes. In a longer one the end mark was lost on the line.
 const LONGEST: usize = 1000;
 
 /// A command: for which part of the robot, what, with which arguments.

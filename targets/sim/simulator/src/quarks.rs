@@ -1,3 +1,3 @@
-//! The quarks that this robot's alphabet declares itself, for their ranges: their laws are the shared ones.
+//! The quarks that this robot's alphabet declares itself, because their ranges differ. Their laws are the shared ones.
 
 pub use mdle_atoms::{Advance, Go, GoAvoid};

@@ -163,6 +163,20 @@ impl Simulated {
         &self.ring.heard
     }
 
+    /// Returns the numbers of the sonars in the order in which they ping; `None` on a body whose sonars ping together.
+    #[must_use]
+    pub fn sonar_order(&self) -> Option<Vec<u8>> {
+        self.ring.order()
+    }
+
+    /// Lets these sonars ping from the next exchange on, one after the other; ignored on a body whose sonars ping
+    /// together.
+    pub fn order_sonars(&mut self, order: &[u8]) {
+        if self.ring.order().is_some() {
+            self.ring.reorder(order);
+        }
+    }
+
     /// Returns the displacement of each moving object of the world; `None` for an open door.
     pub fn gone(&self) -> impl Iterator<Item = Option<Place>> {
         self.walls.gone()

@@ -4,7 +4,7 @@ mod echo;
 #[cfg(test)]
 mod tests;
 
-use mdle_runtime::{Meters, Nanos, Ping, Pings, Pose, Radians, SONARS};
+use mdle_runtime::{Meters, Mount, Nanos, Ping, Pings, Pose, Radians, SONARS};
 
 use crate::model::{Hearing, Order, Transducer};
 use crate::noise::{Noise, Purpose};
@@ -67,6 +67,27 @@ impl Ring {
         self.hearing.order.as_ref().map(|_| self.next.1)
     }
 
+    /// Returns the numbers of the sonars in the order in which they ping, if they ping one after the other.
+    pub(crate) fn order(&self) -> Option<Vec<u8>> {
+        let groups = &self.hearing.order.as_ref()?.groups;
+        let sonar = |group: &Vec<usize>| match group.as_slice() {
+            [only] => u8::try_from(self.hearing.transducers.get(*only)?.sonar.number()).ok(),
+            [..] => None,
+        };
+        groups.iter().map(sonar).collect()
+    }
+
+    /// Lets these sonars ping from now on, one after the other, where they do so.
+    pub(crate) fn reorder(&mut self, sonars: &[u8]) {
+        let transducers = &self.hearing.transducers;
+        let of = |sonar: &u8| transducers.iter().position(|known| known.sonar.number() == usize::from(*sonar));
+        let groups: Vec<Vec<usize>> = sonars.iter().filter_map(of).map(|number| vec![number]).collect();
+        if let Some(order) = self.hearing.order.as_mut().filter(|_| !groups.is_empty()) {
+            order.groups = groups;
+            self.next.0 = 0;
+        }
+    }
+
     /// Fires the sonars that are due at `at`, from the robot at `pose`, which is at `odometry` by its own reckoning.
     pub(crate) fn ping(&mut self, pose: &Pose, odometry: Pose, at: Nanos, walls: &Walls) {
         let Some(Order { groups, gap }) = &self.hearing.order else {
@@ -74,7 +95,7 @@ impl Ring {
                 self.listen(number, pose, at, walls);
             }
             for (sonar, pings) in (0..).zip(&mut self.pings) {
-                pings.push(Ping { range: nearest(&self.hearing, &self.ranges, sonar), at, pose: odometry });
+                pings.push(nearest(&self.hearing, &self.ranges, sonar, at, odometry));
             }
             return;
         };
@@ -84,8 +105,7 @@ impl Ring {
             self.listen(number, pose, at, walls);
             // A sonar of several transducers has pinged when the last of them has.
             if let Some(sonar) = self.completed(group, number) {
-                let range = nearest(&self.hearing, &self.ranges, sonar);
-                self.pings[sonar].push(Ping { range, at, pose: odometry });
+                self.pings[sonar].push(nearest(&self.hearing, &self.ranges, sonar, at, odometry));
             }
         }
     }
@@ -149,9 +169,7 @@ impl Errors {
 /// Returns the place and the direction of a transducer.
 fn placed(transducer: &Transducer, pose: &Pose, ring_radius: f64) -> (Place, Radians) {
     let axis = Radians(pose.theta.0 + transducer.bearing.0);
-    let on_the_ring = transducer.bearing == transducer.sonar.bearing()
-        && (libm::hypot(transducer.x, transducer.y) - ring_radius).abs() < 1e-9;
-    if on_the_ring {
+    if is_on_the_ring(transducer, ring_radius) {
         return (Place::of(&pose.towards(axis, Meters(ring_radius))), axis);
     }
     let (sin, cos) = libm::sincos(pose.theta.0);
@@ -159,16 +177,24 @@ fn placed(transducer: &Transducer, pose: &Pose, ring_radius: f64) -> (Place, Rad
     (Place { x: pose.x.0 + x * cos - y * sin, y: pose.y.0 + x * sin + y * cos }, axis)
 }
 
-/// A transducer's range as that of the sonar of the ring that it speaks for: as far from the centre.
+fn is_on_the_ring(transducer: &Transducer, ring_radius: f64) -> bool {
+    transducer.bearing == transducer.sonar.bearing()
+        && (libm::hypot(transducer.x, transducer.y) - ring_radius).abs() < 1e-9
+}
+
+/// A transducer's range as one from the ring: along the transducer's axis from the place nearest to the centre, less
+/// the ring's radius.
 fn as_of_the_ring(range: f64, transducer: &Transducer, hearing: &Hearing) -> f64 {
-    let (sin, cos) = libm::sincos(transducer.bearing.0);
-    let (x, y) = (transducer.x + range * cos, transducer.y + range * sin);
-    let from_the_centre = libm::hypot(x, y);
-    // On the ring these are the same, but for the last bit.
-    if (libm::hypot(transducer.x, transducer.y) + range - from_the_centre).abs() < 1e-9 {
+    if is_on_the_ring(transducer, hearing.ring_radius) {
         return range;
     }
-    (from_the_centre - hearing.ring_radius).max(0.0)
+    let (sin, cos) = libm::sincos(transducer.bearing.0);
+    (transducer.x * cos + transducer.y * sin + range - hearing.ring_radius).max(0.0)
+}
+
+fn mount(transducer: &Transducer, ring_radius: f64) -> Mount {
+    let Transducer { x, y, bearing, sonar } = *transducer;
+    if is_on_the_ring(transducer, ring_radius) { Mount::default() } else { Mount::of(x, y, bearing, sonar) }
 }
 
 fn stepped(range: f64, step: f64) -> f64 {
@@ -176,8 +202,11 @@ fn stepped(range: f64, step: f64) -> f64 {
     if step > 0.0 { libm::floor(range / step + 1e-9) * step } else { range }
 }
 
-/// Returns the minimum of the ranges that the transducers of this sonar heard last.
-fn nearest(hearing: &Hearing, ranges: &[Option<f64>], sonar: usize) -> Option<Meters> {
+/// Returns the ping of this sonar by the nearest echo that its transducers heard last.
+fn nearest(hearing: &Hearing, ranges: &[Option<f64>], sonar: usize, at: Nanos, odometry: Pose) -> Ping {
     let speaking = hearing.transducers.iter().zip(ranges).filter(|(transducer, _)| transducer.sonar.number() == sonar);
-    speaking.filter_map(|(_, range)| *range).reduce(f64::min).map(Meters)
+    let heard = speaking.filter_map(|(transducer, range)| Some((transducer, (*range)?)));
+    let nearest = heard.reduce(|one, other| if other.1 < one.1 { other } else { one });
+    let mount = nearest.map_or(Mount::default(), |(transducer, _)| mount(transducer, hearing.ring_radius));
+    Ping { range: nearest.map(|(_, range)| Meters(range)), at, pose: odometry, mount }
 }

@@ -107,8 +107,8 @@ pub(crate) fn surface(segment: &Segment, ends: &Ends, at: Place, way: Place, ran
     Surface { range, normal, edge, rough: 0.0 }
 }
 
-/// Returns `true` if the end of a surface that runs `outward` to it and looks along `normal` is an edge seen from that
-/// side.
+/// Returns `true` if this end of a surface is a free edge, seen from the side to which `normal` points. `outward`
+/// points along the surface to the end.
 fn is_edge(end: &End, outward: Place, normal: Place) -> bool {
     match end {
         End::Edge => true,

@@ -7,6 +7,7 @@
 mod chance;
 #[path = "../rooms/room.rs"]
 mod room;
+mod walker;
 mod worlds;
 
 use mdle_sim::{Body, Make};
@@ -40,7 +41,7 @@ fn assert_clean(name: &str, crossing: fn(Body, u64) -> Crossing, body: Body, sha
 fn a_doorway_fifteen_centimetres_wider_is_passed() {
     assert_clean("doorway", worlds::doorway, Body::Ideal, 95);
     assert_clean("doorway", worlds::doorway, Body::Scout, 90);
-    assert_clean("doorway", worlds::doorway, Body::Atrv, 50);
+    assert_clean("doorway", worlds::doorway, Body::Atrv, 80);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Pings of the sonar in front of a simulated Scout at a wall or a column.
+//! Pings of a simulated Scout's front sonar, which is aimed at a wall or a column.
 
 use std::time::Duration;
 

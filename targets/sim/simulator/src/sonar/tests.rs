@@ -198,6 +198,24 @@ fn a_scout_pings_in_its_order_sixty_milliseconds_apart() {
 }
 
 #[test]
+fn sonars_ping_in_the_order_that_is_asked_for() {
+    let mut ring = pinged(Body::Scout, &[], "[[wall]]\npoints = [[-1, 2], [1, 2]]");
+    assert_eq!(ring.order().map(|order| order.len()), Some(16));
+    ring.reorder(&[4, 0]);
+    assert_eq!(ring.order(), Some(vec![4, 0]));
+    let before = ring.pings;
+    for _ in 0..4 {
+        let at = ring.due().expect("an order");
+        ring.ping(&Pose::ORIGIN, Pose::ORIGIN, at, &walls("[[wall]]\npoints = [[-1, 3], [1, 3]]"));
+    }
+    let changed: Vec<_> = (0..16).filter(|sonar| ring.pings[*sonar] != before[*sonar]).collect();
+    assert_eq!(changed, [0, 4]);
+    for body in [Body::Ideal, Body::Atrv] {
+        assert_eq!(pinged(body, &[], "[[wall]]\npoints = [[-1, 2], [1, 2]]").order(), None);
+    }
+}
+
+#[test]
 fn an_atrv_has_all_sixteen_directions_from_its_twenty_four() {
     let around = "[[box]]\nmin = [-1.5, -1.5]\nmax = [1.5, 1.5]";
     let ring = pinged(Body::Atrv, &[Part::Specular], around);
@@ -207,4 +225,27 @@ fn an_atrv_has_all_sixteen_directions_from_its_twenty_four() {
     }
     let front = range(&ring, 0).expect("a wall ahead") + 0.28;
     assert!((front - 1.5).abs() < 0.02, "{front}");
+}
+
+#[test]
+fn a_ping_lies_on_the_axis_of_its_transducer() {
+    let around = "[[box]]\nmin = [-1.5, -1.2]\nmax = [1.5, 1.2]";
+    let ring = pinged(Body::Atrv, &[], around);
+    let mut heard = 0;
+    for (number, pings) in (0..).zip(&ring.pings) {
+        let ping = pings.newest_first().next().expect("a ping");
+        let Some(Meters(range)) = ping.range else { continue };
+        let axis = ping.axis(SonarId::new(number));
+        let place = Place::of(&axis.towards(axis.theta, Meters(0.28 + range)));
+        let is_there = |(transducer, heard): (&Transducer, &Heard)| {
+            let (sin, cos) = libm::sincos(transducer.bearing.0);
+            let Some(Meters(range)) = heard.range.filter(|_| transducer.sonar.number() == number.into()) else {
+                return false;
+            };
+            libm::hypot(transducer.x + range * cos - place.x, transducer.y + range * sin - place.y) < 1e-6
+        };
+        assert!(ring.hearing.transducers.iter().zip(&ring.heard).any(is_there), "sonar {number}: {place:?}");
+        heard += 1;
+    }
+    assert!(heard > 6, "{heard} directions");
 }

@@ -221,7 +221,7 @@ impl Unit {
     }
 }
 
-/// Roughness of a file or of one obstacle; `whole` where the text gives none.
+/// Returns the roughness that is written for the whole file or for one obstacle, or `whole` if none is written.
 pub(super) fn rough(written: Option<&Spanned<f64>>, whole: f64) -> Result<f64, Wrong> {
     let Some(written) = written else { return Ok(whole) };
     let value = *written.get_ref();

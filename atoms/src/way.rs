@@ -1,0 +1,235 @@
+//! The way to where the robot is nearer to its goal: the shortest one on a map. A rectangle keeps to it until another
+//! is much shorter, and goes straight through places in which it cannot turn: from the last place before, in which it
+//! turns to the first place beyond.
+
+use mdle_runtime::capability::DiffDrive;
+use mdle_runtime::{Meters, MetersPerSecond, Pose, Radians};
+
+use crate::map::{CELLS, Cell, Map};
+use crate::wave::{EDGE, SIDE, Wave, index};
+
+/// Most centimetres, by cost, that a way may be longer than the straight one.
+const LONGER: i32 = 600;
+/// Number of cells along the way to the place that a disc drives to.
+const AHEAD: u32 = 7;
+/// Distance, in cells, of the place that a rectangle drives to where it can turn.
+const NEAR: f64 = 7.0;
+/// Distance along the way, in cells, up to which a rectangle goes straight where it cannot turn.
+const STRAIGHT_MOST: u32 = 24;
+/// Number of cells beyond a narrow stretch to the place that a rectangle goes straight to.
+const BEYOND: u32 = 3;
+/// Number of cells before a narrow stretch within which a rectangle begins to go straight.
+const BEFORE: f64 = 1.5;
+/// Most centimetres, by cost, that the way chosen before may be longer than the best one, which changes with what
+/// single pings hear.
+const KEEPS: i32 = 80;
+
+/// The state of the tangent rule in this turn.
+pub(crate) struct Ahead {
+    /// Place of the goal.
+    pub(crate) goal: Pose,
+    /// Distance of the goal from which a way must lead nearer.
+    pub(crate) from: Meters,
+    /// Direction that the rule has chosen.
+    pub(crate) chosen: Radians,
+    /// Length of the way to the goal that is free, and that is asked for; `None` on a detour.
+    pub(crate) free: Option<(Meters, Meters)>,
+    /// Speed where the way is free.
+    pub(crate) speed: MetersPerSecond,
+    /// Place that the last way led to.
+    pub(crate) before: Option<Next>,
+}
+
+/// The next place on a way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Next {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    /// `true` if the body cannot turn on the way there, and so has to go straight.
+    pub(crate) is_straight: bool,
+}
+
+/// Returns the place at which the body of `y`, at `here`, next has to be on its way to the goal; `None` if the map has
+/// no way that leads nearer.
+pub(crate) fn way<Y: DiffDrive>(map: &Map, here: Pose, ahead: &Ahead, y: &Y) -> Option<Next> {
+    let (goal, straight) = (&ahead.goal, here.distance(&ahead.goal).0);
+    let base = (straight - EDGE).max(0.0);
+    let way = Way { wave: Wave::over(map, goal, ahead.from, base, y), here: index(CELLS / 2, CELLS / 2) };
+    if way.wave.left(way.here)? > libm::round(100.0 * (straight - base)) as i32 + LONGER {
+        return None;
+    }
+    let is_disc = y.body_radius() <= y.half_length();
+    let (to, is_straight) = if is_disc { (way.ahead(), false) } else { way.beyond(map, ahead.before) };
+    let corner = map.corner;
+    let end = Cell::of(goal.x.0, goal.y.0);
+    if map.contains(end) && to == index(end.x - corner.x, end.y - corner.y) {
+        return Some(Next { x: goal.x.0, y: goal.y.0, is_straight });
+    }
+    let cell = Cell { x: corner.x + (to % SIDE) as i32 - 1, y: corner.y + (to / SIDE) as i32 - 1 };
+    let (x, y) = cell.centre();
+    Some(Next { x, y, is_straight })
+}
+
+/// The wave, and the cell of the robot.
+struct Way {
+    wave: Wave,
+    here: usize,
+}
+
+impl Way {
+    /// Returns the cell of the place that the last way led to, if that way is still good.
+    fn kept(&self, map: &Map, before: &Next) -> Option<usize> {
+        let at = Cell::of(before.x, before.y);
+        let cell = map.contains(at).then(|| index(at.x - map.corner.x, at.y - map.corner.y))?;
+        let total = self.wave.left(cell)? + self.wave.cost(self.here, apart(self.here, cell));
+        (self.sees(cell) && total <= self.wave.left(self.here)? + KEEPS).then_some(cell)
+    }
+
+    /// Returns the cell a few steps along the way.
+    fn ahead(&self) -> usize {
+        (0..AHEAD).fold(self.here, |cell, _| self.wave.next(cell).unwrap_or(cell))
+    }
+
+    /// Returns the cell that a rectangle drives to, and `true` if it has to go straight: the last cell in which it can
+    /// turn, and from there the first one beyond, as far as a straight line leads.
+    fn beyond(&self, map: &Map, before: Option<Next>) -> (usize, bool) {
+        let before = before.and_then(|before| Some((self.kept(map, &before)?, before.is_straight)));
+        let is_tight = |cell: usize| self.wave.is_tight(cell);
+        let goes_straight = |(cell, is_straight): (usize, bool)| is_straight && line(self.here, cell).any(is_tight);
+        let mut is_straight = is_tight(self.here) || before.is_some_and(goes_straight);
+        let (mut cell, mut left) = (before.map_or(self.here, |(cell, _)| cell), BEYOND);
+        for _ in 0..STRAIGHT_MOST {
+            let Some(next) = self.wave.next(cell) else { break };
+            if is_tight(next) && !is_straight {
+                if apart(self.here, cell) > BEFORE {
+                    return (cell, false);
+                }
+                is_straight = true;
+            }
+            let is_far = apart(self.here, cell) >= NEAR;
+            if is_far && (!is_straight || left == 0 || !self.sees(next)) {
+                break;
+            }
+            if is_straight && !is_tight(next) {
+                left = left.saturating_sub(1);
+            }
+            cell = next;
+        }
+        (cell, is_straight)
+    }
+
+    /// Returns `true` if the body can pass all cells on the line to this one.
+    fn sees(&self, to: usize) -> bool {
+        line(self.here, to).all(|cell| self.wave.is_free(cell))
+    }
+}
+
+/// The distance between two cells, in cells.
+fn apart(from: usize, to: usize) -> f64 {
+    let ((x, y), (to_x, to_y)) = (place(from), place(to));
+    libm::hypot(to_x - x, to_y - y)
+}
+
+/// The column and the row of a cell.
+fn place(cell: usize) -> (f64, f64) {
+    ((cell % SIDE) as f64, (cell / SIDE) as f64)
+}
+
+/// The cells on the line between two.
+fn line(from: usize, to: usize) -> impl Iterator<Item = usize> {
+    let ((x, y), (to_x, to_y)) = (place(from), place(to));
+    let steps = libm::ceil(2.0 * apart(from, to)).max(1.0);
+    (0..=steps as usize).map(move |step| {
+        let part = step as f64 / steps;
+        libm::round(y + part * (to_y - y)) as usize * SIDE + libm::round(x + part * (to_x - x)) as usize
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trial::{Sensed, sized};
+
+    /// Returns the place to drive to first, past a wall 0.6 m ahead with a gap of this width, in metres, whose middle
+    /// is 0.3 m to the left.
+    fn through(gap: f64, y: &Sensed) -> Option<(f64, f64)> {
+        let mut map = Map::EMPTY;
+        map.occupy((0.6, 0.3 + gap / 2.0), (0.6, 1.55));
+        map.occupy((0.6, 0.3 - gap / 2.0), (0.6, -1.55));
+        let goal = Pose { x: Meters(5.0), ..Pose::ORIGIN };
+        let speed = MetersPerSecond(0.2);
+        let ahead = Ahead { goal, from: Meters(5.0), chosen: Radians(0.0), free: None, speed, before: None };
+        way(&map, Pose::ORIGIN, &ahead, y).map(|next| (next.x, next.y))
+    }
+
+    #[test]
+    fn a_gap_wider_than_the_body_is_a_way() {
+        let y = Sensed::default();
+        let (x, left) = through(0.6, &y).expect("a way");
+        assert!(x > 0.1 && left > 0.05, "({x}, {left})");
+        assert_eq!(through(0.38, &y), None);
+    }
+
+    #[test]
+    fn a_rectangle_needs_a_gap_of_its_width() {
+        let y = sized(0.315, 0.27);
+        assert!(through(0.75, &y).is_some());
+        assert_eq!(through(0.5, &y), None);
+    }
+
+    #[test]
+    fn a_goal_on_the_map_is_driven_to() {
+        let goal = Pose { x: Meters(0.2), y: Meters(0.1), ..Pose::ORIGIN };
+        let ahead = Ahead {
+            goal,
+            from: Meters(0.22),
+            chosen: Radians(0.0),
+            free: None,
+            speed: MetersPerSecond(0.2),
+            before: None,
+        };
+        let mut map = Map::EMPTY;
+        map.occupy((1.0, 1.0), (1.0, 1.0));
+        let next = Some(Next { x: 0.2, y: 0.1, is_straight: false });
+        assert_eq!(way(&map, Pose::ORIGIN, &ahead, &Sensed::default()), next);
+    }
+
+    /// Returns the next place of an ATRV-mini at this distance before a doorway of 0.7 m.
+    fn before_a_doorway(distance: f64, before: Option<Next>) -> Next {
+        let mut map = Map::EMPTY;
+        for side in [-1.0, 1.0] {
+            map.occupy((distance, 0.35 * side), (distance, 1.55 * side));
+        }
+        let goal = Pose { x: Meters(5.0), ..Pose::ORIGIN };
+        let (chosen, speed) = (Radians(0.0), MetersPerSecond(0.2));
+        let ahead = Ahead { goal, from: Meters(5.0), chosen, free: None, speed, before };
+        way(&map, Pose::ORIGIN, &ahead, &sized(0.315, 0.27)).expect("a way")
+    }
+
+    #[test]
+    fn a_rectangle_turns_before_a_doorway_and_goes_straight() {
+        let first = before_a_doorway(0.7, None);
+        assert!(!first.is_straight && (0.25..0.45).contains(&first.x), "{first:?}");
+        for distance in [0.3, 0.1] {
+            let next = before_a_doorway(distance, None);
+            assert!(next.is_straight && next.x > distance + 0.25 && next.y.abs() < 0.06, "{next:?}");
+        }
+        let next = before_a_doorway(-0.6, None);
+        assert!(!next.is_straight, "{next:?}");
+    }
+
+    #[test]
+    fn a_way_is_kept_until_another_is_much_shorter() {
+        // A post ahead is passed on both sides alike.
+        let mut map = Map::EMPTY;
+        map.occupy((0.6, -0.1), (0.6, 0.1));
+        let next = |left: f64| {
+            let before = Some(Next { x: 0.3, y: left, is_straight: false });
+            let goal = Pose { x: Meters(5.0), ..Pose::ORIGIN };
+            let (chosen, speed) = (Radians(0.0), MetersPerSecond(0.2));
+            let ahead = Ahead { goal, from: Meters(5.0), chosen, free: None, speed, before };
+            way(&map, Pose::ORIGIN, &ahead, &sized(0.315, 0.27)).expect("a way").y
+        };
+        assert!(next(0.3) > 0.1 && next(-0.3) < -0.1);
+    }
+}
