@@ -10,9 +10,10 @@ use std::{env, fs};
 use crate::targets::targets;
 
 /// The packages that targets share; the targets come on top.
-const SHARED: [&str; 7] = [
+const SHARED: [&str; 8] = [
     "runtime/core",
     "runtime/quantity",
+    "runtime/record",
     "runtime/host",
     "runtime/serial",
     "atoms",

@@ -56,7 +56,24 @@ pub fn compile_with(
     wanted: Option<&str>,
     loader: &mut dyn syntax::Loader,
 ) -> (Vec<Compiled>, Vec<Diagnostic>) {
-    stages(source, text, alphabet, wanted, loader, true)
+    compile_within(source, text, alphabet, wanted, loader, |_| Ok(()))
+}
+
+/// A limit on the size of a plan, for a use of it: the error, if the plan is too large.
+pub type Limit = fn(&plan::Nondegenerate) -> Result<(), Diagnostic>;
+
+/// Compiles like [`compile_with`]. If there is one plan, and it exceeds the limit, it is not lowered: that takes far
+/// longer than all before it.
+#[must_use]
+pub fn compile_within(
+    source: SourceId,
+    text: &str,
+    alphabet: &Alphabet,
+    wanted: Option<&str>,
+    loader: &mut dyn syntax::Loader,
+    limit: Limit,
+) -> (Vec<Compiled>, Vec<Diagnostic>) {
+    stages(source, text, alphabet, wanted, loader, Some(limit))
 }
 
 /// Returns the diagnostics of [`compile_with`] for a file that may use others, without keeping the compiled plans.
@@ -67,17 +84,17 @@ pub fn check_with(
     alphabet: &Alphabet,
     loader: &mut dyn syntax::Loader,
 ) -> Vec<Diagnostic> {
-    stages(source, text, alphabet, None, loader, false).1
+    stages(source, text, alphabet, None, loader, None).1
 }
 
-/// Runs all stages, one plan after the other, and keeps the compiled plans if `keeps` is set.
+/// Runs all stages, one plan after the other, and keeps the compiled plans if there is a limit for them.
 fn stages(
     source: SourceId,
     text: &str,
     alphabet: &Alphabet,
     wanted: Option<&str>,
     loader: &mut dyn syntax::Loader,
-    keeps: bool,
+    limit: Option<Limit>,
 ) -> (Vec<Compiled>, Vec<Diagnostic>) {
     let arena = syntax::arena_for(text);
     let (mut files, mut found) = syntax::parse_with(source, text, &arena, loader);
@@ -87,10 +104,15 @@ fn stages(
     let mut compiled = Vec::new();
     if !diagnostic::has_errors(&found) {
         found.extend(plan::lints::bare_numbers(&files, alphabet));
+        let is_only = plans.len() == 1;
         for plan in plans {
-            let kept = keeps.then(|| plan.clone());
+            let kept = limit.map(|_| plan.clone());
             let (nondegenerate, warnings) = plan::remove_degeneracy(plan);
             found.extend(warnings);
+            if let Some(Err(too_large)) = limit.filter(|_| is_only).map(|limit| limit(&nondegenerate)) {
+                found.push(too_large);
+                continue;
+            }
             found.extend(plan::lints::lints(&nondegenerate));
             match fsm::lower(&nondegenerate) {
                 Ok(machine) => {

@@ -83,7 +83,9 @@ impl Embed {
 
     /// Writes the Rust to `output`, and returns the instructions for cargo.
     fn write_to(&self, output: &Path) -> Result<String, EmbedError> {
-        let target = mdle_files::target(Some(self.target.as_deref().ok_or(InputError::NoTarget)?))?;
+        let mut target = mdle_files::target(Some(self.target.as_deref().ok_or(InputError::NoTarget)?))?;
+        // An application runs no modules beside its plan.
+        target.alphabet.has_engine = false;
         let mut input = mdle_files::read_plan(&self.file, &target)?;
         if let Some(name) = &self.plan {
             input.must_have(name)?;
@@ -150,6 +152,15 @@ mod tests {
             let refusal = watched(Path::new(name)).unwrap_err();
             assert!(refusal.to_string().contains("contains a line break"));
         }
+    }
+
+    #[test]
+    fn a_plan_that_reads_modules_is_refused() {
+        let file = std::env::temp_dir().join(format!("mdle-embed-modules-{}.mdle", std::process::id()));
+        fs::write(&file, "{ Follow (bumper) (Atom (range(heading module) < 1m) (go 20 0)) }\n").unwrap();
+        let refusal = plan(&file).target("sim").write_to(&file.with_extension("rs")).unwrap_err().to_string();
+        fs::remove_file(file).unwrap();
+        assert!(refusal.contains("error[E0403]: `range` reads modules, and an executable has none"), "{refusal}");
     }
 
     #[test]

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use mdle_compiler::alphabet::{Alphabet, nearest};
 use mdle_compiler::diagnostic::{Diagnostic, SourceId, Sources};
 use mdle_compiler::rust::{self, Header};
-use mdle_compiler::{Compiled, check_with, compile_with, syntax};
+use mdle_compiler::{Compiled, Limit, check_with, compile_within, syntax};
 
 use crate::read::Unread;
 use crate::text::{read_text, shown, without_mark};
@@ -42,8 +42,18 @@ impl Input {
 
     /// Compiles the plans of the file, or only its plan `wanted`.
     pub fn compile(&mut self, alphabet: &Alphabet, wanted: Option<&str>) -> (Vec<Compiled>, Vec<Diagnostic>) {
+        self.compile_within(alphabet, wanted, |_| Ok(()))
+    }
+
+    /// Compiles like [`Input::compile`]; a plan that exceeds the limit is an error.
+    pub fn compile_within(
+        &mut self,
+        alphabet: &Alphabet,
+        wanted: Option<&str>,
+        limit: Limit,
+    ) -> (Vec<Compiled>, Vec<Diagnostic>) {
         let text = self.sources.text(self.source).to_owned();
-        compile_with(self.source, &text, alphabet, wanted, self)
+        compile_within(self.source, &text, alphabet, wanted, self, limit)
     }
 
     /// Returns the diagnostics of the file.
@@ -107,7 +117,7 @@ impl Input {
     /// # Errors
     /// E0501 for a plan that is too large.
     pub fn rust(&self, compiled: &Compiled, target: &Target) -> Result<String, Diagnostic> {
-        rust::fits(&compiled.machine, compiled.plan.root.span)?;
+        rust::fits(&compiled.nondegenerate)?;
         let file = self.paths.get(&self.source).and_then(|path| path.file_name()).unwrap_or_default();
         let header = Header { sources: &self.sources, file: &file.to_string_lossy(), plan: &compiled.plan.root.name };
         Ok(rust::emit(&compiled.machine, header, &target.alphabet))

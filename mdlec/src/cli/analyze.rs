@@ -11,7 +11,13 @@ pub(super) fn analyze(options: &Analyze) -> Result<(), Failure> {
     let mut input = mdle_files::read_plan(&options.plan, &target)?;
     // An analysis needs the machine alone, and of a long plan the rest is as large again.
     let judge = |Compiled { machine, .. }: Compiled| analysis(&machine);
-    let analysis =
-        compiled::compile_judged(&mut input, &target, options.name.as_deref(), options.deny_warnings, judge)?;
+    let analysis = compiled::compile_judged(
+        &mut input,
+        &target,
+        options.name.as_deref(),
+        options.deny_warnings,
+        |_| Ok(()),
+        judge,
+    )?;
     if options.json { report::print_exactly(&analysis.to_json()) } else { report::print(&analysis.to_text()) }
 }

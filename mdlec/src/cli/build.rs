@@ -7,7 +7,7 @@ use super::executable::{self, Runnable};
 use super::{Bare, Build, Emit, EmitKind, Executable, Failure, endings, matrices, report};
 use crate::link;
 use mdle_compiler::syntax::outline;
-use mdle_compiler::{fsm, picture, syntax};
+use mdle_compiler::{Limit, fsm, picture, rust, syntax};
 use mdle_files::{Settings, read_plan};
 
 /// Runs a command line without a command.
@@ -15,6 +15,10 @@ pub(super) fn bare(options: &Bare) -> Result<(), Failure> {
     let makes_none = options.build.emit.as_ref().is_some_and(|emit| emit.kind != EmitKind::Exe);
     if options.run && makes_none {
         return Err(Failure::usage("`--run` runs an executable, and this `--emit` makes none"));
+    }
+    if options.run && options.build.machine.is_some() {
+        let why = "`--run` runs the executable here, and `--machine` builds it for another machine: copy it there";
+        return Err(Failure::usage(why));
     }
     if options.run {
         executable::settings_fit(&options.build.executable, &options.args)?;
@@ -27,7 +31,7 @@ pub(super) fn bare(options: &Bare) -> Result<(), Failure> {
 
 /// Builds the executable of a plan, or prints another form of the plan. Returns the executable, if it was built.
 pub(super) fn build(options: &Build) -> Result<Option<Runnable>, Failure> {
-    let Build { executable: about, emit, combine } = options;
+    let Build { executable: about, emit, combine, machine } = options;
     let path = executable::begin(about)?;
     let (kind, file) = match emit {
         None => (EmitKind::Exe, about.output.clone()),
@@ -40,7 +44,10 @@ pub(super) fn build(options: &Build) -> Result<Option<Runnable>, Failure> {
         endings::no_picture(file, kind, path)?;
     }
     if kind == EmitKind::Exe {
-        return executable::build(about, path, file).map(Some);
+        return executable::build(about, path, file, machine.as_deref()).map(Some);
+    }
+    if machine.is_some() {
+        return Err(Failure::usage("`--machine` is for executables, and this `--emit` makes none"));
     }
     if *combine && kind != EmitKind::Matrices {
         return Err(Failure::usage("`--combine` sums matrices: it goes with `--emit matrices`"));
@@ -48,7 +55,7 @@ pub(super) fn build(options: &Build) -> Result<Option<Runnable>, Failure> {
     if kind == EmitKind::Matrices {
         let target = Settings::beside(path)?.target(about.target.as_deref())?;
         let mut input = read_plan(path, &target)?;
-        let compiled = compile_one(&mut input, &target, about.name.as_deref(), about.deny_warnings)?;
+        let compiled = compile_one(&mut input, &target, about.name.as_deref(), about.deny_warnings, limit(kind))?;
         let inputs = input.inputs(&target);
         matrices::matrices(&compiled.nondegenerate, *combine, file.as_deref(), &input.sources, &inputs)?;
         return Ok(None);
@@ -62,6 +69,17 @@ pub(super) fn build(options: &Build) -> Result<Option<Runnable>, Failure> {
     Ok(None)
 }
 
+/// Returns the limit on the size of plans that have this form.
+fn limit(kind: EmitKind) -> Limit {
+    match kind {
+        EmitKind::Tree | EmitKind::Plan | EmitKind::Nondegenerate | EmitKind::Formal => |_| Ok(()),
+        EmitKind::Expanded | EmitKind::Fsm => fsm::expands,
+        EmitKind::Matrices | EmitKind::Scxml => |plan| fsm::expanded_states(plan).map(drop),
+        EmitKind::Dot | EmitKind::Mermaid => picture::fits,
+        EmitKind::Rust | EmitKind::Exe => rust::fits,
+    }
+}
+
 /// Returns the plan's text in the form `kind`, and the files that were read.
 fn stage(options: &Executable, path: &Path, kind: EmitKind) -> Result<(String, Vec<PathBuf>), Failure> {
     let settings = Settings::beside(path)?;
@@ -73,7 +91,7 @@ fn stage(options: &Executable, path: &Path, kind: EmitKind) -> Result<(String, V
         let good = report::diagnostics(&input.sources, &found, options.deny_warnings);
         return if good { Ok((outline::outline(&tree), input.inputs(&target))) } else { Err(Failure::PLAN) };
     }
-    let compiled = compile_one(&mut input, &target, options.name.as_deref(), options.deny_warnings)?;
+    let compiled = compile_one(&mut input, &target, options.name.as_deref(), options.deny_warnings, limit(kind))?;
     let nondegenerate = &compiled.nondegenerate;
     let text = match kind {
         EmitKind::Plan => Ok(compiled.plan.to_string()),

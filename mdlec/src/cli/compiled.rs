@@ -2,19 +2,20 @@
 
 use std::path::Path;
 
-use mdle_compiler::Compiled;
+use mdle_compiler::{Compiled, Limit, rust};
 use mdle_files::{Input, InputError, Target, read_plan};
 
 use super::{Failure, report};
 
-/// Compiles the only plan to run; messages go to standard error.
+/// Compiles the only plan to run, if it is within the limit; messages go to standard error.
 pub(super) fn compile_one(
     input: &mut Input,
     target: &Target,
     name: Option<&str>,
     deny_warnings: bool,
+    limit: Limit,
 ) -> Result<Compiled, Failure> {
-    compile_judged(input, target, name, deny_warnings, |compiled| compiled)
+    compile_judged(input, target, name, deny_warnings, limit, |compiled| compiled)
 }
 
 /// Compiles the only plan to run, and passes it to `judge` by value, which can drop the parts that it does not need.
@@ -23,12 +24,13 @@ pub(super) fn compile_judged<T>(
     target: &Target,
     name: Option<&str>,
     deny_warnings: bool,
+    limit: Limit,
     mut judge: impl FnMut(Compiled) -> T,
 ) -> Result<T, Failure> {
     if let Some(name) = name {
         input.must_have(name)?;
     }
-    let (compiled, found) = input.compile(&target.alphabet, name);
+    let (compiled, found) = input.compile_within(&target.alphabet, name, limit);
     let named = |compiled: Compiled| (compiled.plan.root.name.clone(), compiled);
     let judged: Vec<_> = compiled.into_iter().map(named).map(|(name, compiled)| (name, judge(compiled))).collect();
     if !report::diagnostics(&input.sources, &found, deny_warnings) {
@@ -58,7 +60,7 @@ pub(super) fn emitted(
     deny_warnings: bool,
 ) -> Result<Emitted, Failure> {
     let mut input = read_plan(path, &target)?;
-    let compiled = compile_one(&mut input, &target, name, deny_warnings)?;
+    let compiled = compile_one(&mut input, &target, name, deny_warnings, rust::fits)?;
     target.must_be_bound()?;
     let rust = input.rust(&compiled, &target).map_err(|too_large| {
         report::diagnostics(&input.sources, &[too_large], false);

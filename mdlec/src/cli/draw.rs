@@ -12,7 +12,7 @@ pub(super) fn draw(options: &Draw) -> Result<(), Failure> {
     }
     let target = Settings::beside(&options.plan)?.target(options.target.as_deref())?;
     let mut input = mdle_files::read_plan(&options.plan, &target)?;
-    let compiled = compiled::compile_one(&mut input, &target, options.name.as_deref(), false)?;
+    let compiled = compiled::compile_one(&mut input, &target, options.name.as_deref(), false, picture::fits)?;
     let drawn = picture::svg(&compiled.machine).map_err(|too_large| {
         report::diagnostics(&input.sources, &[too_large], false);
         Failure::PLAN

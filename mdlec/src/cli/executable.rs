@@ -23,7 +23,7 @@ pub(super) fn run(options: &Run) -> Result<(), Failure> {
         endings::no_picture(output, EmitKind::Exe, path)?;
     }
     settings_fit(&options.executable, &options.args)?;
-    build(&options.executable, path, output)?.become_it(options.executable.target.as_deref(), &options.args)
+    build(&options.executable, path, output, None)?.become_it(options.executable.target.as_deref(), &options.args)
 }
 
 /// Checks, before the build, the options that a run with the arguments `args` takes from an `mdle.toml`.
@@ -52,8 +52,13 @@ pub(super) struct Runnable {
     settings: Settings,
 }
 
-/// Builds the executable of the plan in `path`, by default in the current folder.
-pub(super) fn build(options: &Executable, path: &Path, output: Option<PathBuf>) -> Result<Runnable, Failure> {
+/// Builds the executable of the plan in `path` for a machine, by default in the current folder and for this machine.
+pub(super) fn build(
+    options: &Executable,
+    path: &Path,
+    output: Option<PathBuf>,
+    machine: Option<&str>,
+) -> Result<Runnable, Failure> {
     let started = Instant::now();
     let settings = Settings::beside(path)?;
     needs_target(settings.names_target(options.target.as_deref()))?;
@@ -78,6 +83,7 @@ pub(super) fn build(options: &Executable, path: &Path, output: Option<PathBuf>) 
         plan_type: &plan_type,
         rust: &rust,
         target: &target_crate,
+        machine,
     };
     let mut shown = ProgressOutput::default();
     let built = Cache::of_user()

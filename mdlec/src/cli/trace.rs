@@ -3,6 +3,8 @@
 use std::io::{self, BufWriter, Write};
 
 use super::{Failure, Trace, TraceMachine, report};
+use mdle_compiler::Limit;
+use mdle_compiler::fsm::expanded_states;
 use mdle_compiler::trace::{Counted, MatrixProduct, Script, Table, TraceLine, Tree, run};
 use mdle_files::Settings;
 use mdle_files::read::LARGEST_DATA;
@@ -14,7 +16,11 @@ pub(super) fn trace(options: &Trace) -> Result<(), Failure> {
     }
     let target = Settings::beside(&options.plan)?.target(options.target.as_deref())?;
     let mut input = mdle_files::read_plan(&options.plan, &target)?;
-    let compiled = super::compiled::compile_one(&mut input, &target, options.name.as_deref(), false)?;
+    let limit: Limit = match options.machine {
+        TraceMachine::Table | TraceMachine::Matrix => |plan| expanded_states(plan).map(drop),
+        TraceMachine::Tree | TraceMachine::Counted => |_| Ok(()),
+    };
+    let compiled = super::compiled::compile_one(&mut input, &target, options.name.as_deref(), false, limit)?;
     let text = mdle_files::read_text(&options.script, LARGEST_DATA)?;
     let script = Script::read(&text)
         .and_then(|script| script.in_words_of(&compiled.plan, &target.alphabet))

@@ -36,7 +36,9 @@ pub(super) fn fault(job: &Job<'_>, run: &Run, target: &TargetCrate<'_>, dependen
     }
     let errors = run.complaints.iter().filter(|complaint| complaint.is_error);
     if errors.clone().any(|error| LINKER.iter().any(|sign| error.text.starts_with(sign))) {
-        return LinkError::Linker { log };
+        let foreign = job.machine.foreign().map(str::to_owned);
+        return foreign
+            .map_or(LinkError::Linker { log: log.clone() }, |triple| LinkError::MachineLinker { triple, log });
     }
     let (plan, ours) = (job.plan.manifest(), &dependencies.ours);
     // The crate that fails first is the cause: what depends on it is not compiled.

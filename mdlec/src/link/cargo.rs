@@ -4,10 +4,11 @@ use std::env;
 use std::ffi::OsString;
 use std::process::{Command, Stdio};
 
+use super::machine::Machine;
 use super::messages::{self, Run};
 use super::plan_package::PlanPackage;
 use super::seal::Seal;
-use super::toolchain::{self, Toolchain, absolute, output, unusable};
+use super::toolchain::{self, absolute, output, unusable};
 use super::{Cache, LinkError, Progress, cleanup, orphan};
 
 /// Settings of the profile for cargo's `--config`, which neither a configuration file nor the environment overrides.
@@ -35,7 +36,7 @@ const PROFILE: [&str; 13] = [
 #[derive(Debug)]
 pub(super) struct Job<'a> {
     pub(super) cache: &'a Cache,
-    pub(super) toolchain: &'a Toolchain,
+    pub(super) machine: &'a Machine,
     pub(super) plan: &'a PlanPackage,
 }
 
@@ -79,12 +80,13 @@ impl Job<'_> {
     fn command(&self, name: &str) -> Command {
         let mut command = toolchain::command("cargo");
         // With an explicit triple the flags are for the plan alone: a static procedural macro could not be loaded.
-        command.args([name, "--release", "--color=never", "--target", &self.toolchain.host]);
+        command.args([name, "--release", "--color=never", "--target", &self.machine.triple]);
         command.arg("--manifest-path").arg(self.plan.manifest());
         command.arg("--target-dir").arg(self.cache.target());
         command.args(PROFILE.iter().flat_map(|setting| ["--config", setting]));
         // Both win over cargo's configuration. What is compiled stays in the cache.
         command.env("CARGO_BUILD_BUILD_DIR", self.cache.target()).env("CARGO_INCREMENTAL", "0");
+        command.envs(self.machine.linker());
         command
     }
 

@@ -87,6 +87,37 @@ pub enum LinkError {
         /// Rust version that is installed.
         found: String,
     },
+    /// rustc does not know the machine.
+    #[error(
+        "`{0}` is no machine that this Rust compiles for: name aarch64, armv7, x86_64, or a line of \
+         `rustc --print target-list`"
+    )]
+    NoMachine(String),
+    /// The machine does not run Linux.
+    #[error(
+        "executables run on Linux, and `{0}` does not: for a microcontroller, print the plan as Rust with `--emit rust`"
+    )]
+    NotLinux(String),
+    /// The standard library of the machine is not installed, and rustup has it.
+    #[error("Rust's standard library for `{0}` is not installed: run `rustup target add {0}`")]
+    MachineToAdd(String),
+    /// The standard library of the machine is not installed, and rustup does not offer it.
+    #[error(
+        "Rust's standard library for `{0}` is not installed, and rustup is not here or does not have it: install it as \
+         your distribution or the makers of the machine advise"
+    )]
+    MachineMissing(String),
+    /// There is no linker for another machine.
+    #[error(
+        "the linker cannot make a static executable for `{triple}`: name a linker for it in the configuration in cargo's \
+         home, as `[target.{triple}]` and `linker = \"…\"`; its output is in `{log}`"
+    )]
+    MachineLinker {
+        /// Target triple of the machine.
+        triple: String,
+        /// File with the output of cargo and rustc.
+        log: PathBuf,
+    },
     /// There is no linker, or no static C library.
     #[error(
         "the linker cannot make a static executable: install the C compiler and the static C library of this system \
@@ -221,6 +252,11 @@ impl LinkError {
             | Self::DiskFull(_)
             | Self::NoRust { .. }
             | Self::OldRust { .. }
+            | Self::NoMachine(_)
+            | Self::NotLinux(_)
+            | Self::MachineToAdd(_)
+            | Self::MachineMissing(_)
+            | Self::MachineLinker { .. }
             | Self::Linker { .. }
             | Self::NoLibraries { .. }
             | Self::Offline

@@ -10,7 +10,7 @@
 //! src-VERSION-HASH/       the unpacked sources; those of versions that are no longer used are removed
 //! target/                 the build results of cargo, for all plans
 //! tmp/                    temporary files of the current build
-//! plans/plan-NAME-HASH/   the package of a plan; HASH is of its text as Rust and of the target
+//! plans/plan-NAME-HASH/   the package of a plan; HASH is of its text as Rust, of the target and of the machine
 //! ```
 //!
 //! Only its user has access to the cache. mdlec repairs damage in it: files of mdlec are compared byte by byte, build
@@ -35,6 +35,7 @@ mod clear;
 mod error;
 mod hash;
 mod ignored;
+mod machine;
 mod messages;
 mod orphan;
 mod output;
@@ -61,6 +62,7 @@ pub use sources::{emulators, known};
 pub use target::TargetCrate;
 
 use cargo::Job;
+use machine::Machine;
 use messages::{Executable, Run};
 use output::Destination;
 use seal::Seal;
@@ -85,6 +87,8 @@ pub struct Package<'a> {
     pub rust: &'a str,
     /// Crate of the robot.
     pub target: &'a TargetCrate<'a>,
+    /// Machine that will run the executable, as a target triple or a short name; `None` for this one.
+    pub machine: Option<&'a str>,
 }
 
 /// A built executable.
@@ -100,7 +104,7 @@ pub struct Built {
 ///
 /// # Errors
 /// Fails if `output` cannot be written, which is checked before the build; if the target's crate does not compile; if
-/// this machine lacks something that a build needs; or if mdlec emitted invalid Rust.
+/// this machine lacks something that a build needs, also one for `package.machine`; or if mdlec emitted invalid Rust.
 pub fn build(
     cache: &Cache,
     package: &Package<'_>,
@@ -111,11 +115,12 @@ pub fn build(
     package.target.must_not_lose(output)?;
     let locked = cache.lock(progress)?;
     let toolchain = Toolchain::find()?;
+    let machine = Machine::find(package.machine, &toolchain.host)?;
     let sources = Sources::unpack(cache)?;
     let dependencies = target::dependencies(package.target, &sources)?;
-    let plan = package::write(cache, package, &dependencies, &toolchain)?;
-    superseded::remove_before(cache, package.plan_file, &plan)?;
-    let job = Job { cache, toolchain: &toolchain, plan: &plan };
+    let plan = package::write(cache, package, &dependencies, &toolchain, &machine)?;
+    superseded::remove_before(cache, package.plan_file, &machine, &plan)?;
+    let job = Job { cache, machine: &machine, plan: &plan };
     let executable = make(&job, package.target, &dependencies, progress)?;
     let size = destination.copy(&executable.path)?;
     // Until here: another build of this plan would write over the executable.
@@ -139,12 +144,12 @@ pub struct Emulator {
 /// Fails if this machine lacks something that a build needs, or if `robot` has no emulator.
 pub fn emulator(cache: &Cache, robot: &str, progress: &mut dyn FnMut(Progress)) -> Result<Emulator, LinkError> {
     let locked = cache.lock(progress)?;
-    let toolchain = Toolchain::find()?;
+    let machine = Machine::host(&Toolchain::find()?.host);
     let sources = Sources::unpack(cache)?;
     let dependencies = target::emulator_dependencies(robot, &sources)?;
     let crate_name: String = dependencies.packages.iter().map(|(package, _)| package.replace('-', "_")).collect();
     let package = package::write_emulator(cache, robot, &crate_name, &dependencies)?;
-    let job = Job { cache, toolchain: &toolchain, plan: &package };
+    let job = Job { cache, machine: &machine, plan: &package };
     let target = TargetCrate::Builtin { name: robot, crate_name: &crate_name };
     let executable = make(&job, &target, &dependencies, progress)?;
     Ok(Emulator { path: executable.path, _locked: locked })

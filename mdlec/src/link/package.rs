@@ -5,6 +5,7 @@ use std::path::Path;
 
 use super::cache::{remove, write_if_changed};
 use super::hash::hash;
+use super::machine::Machine;
 use super::plan_package::PlanPackage;
 use super::target::{Dependencies, utf8};
 use super::toolchain::Toolchain;
@@ -16,9 +17,10 @@ pub(super) fn write(
     package: &Package<'_>,
     dependencies: &Dependencies,
     toolchain: &Toolchain,
+    machine: &Machine,
 ) -> Result<PlanPackage, LinkError> {
     let main = main(package, &version(package, dependencies, toolchain));
-    let name = name(package, &main, &dependencies.identity);
+    let name = name(package, &main, &dependencies.identity, &machine.triple);
     write_package(cache, &name, &[("src/main.rs", &main), ("src/plan.rs", package.rust)], dependencies)
 }
 
@@ -78,11 +80,11 @@ fn write_files(folder: &Path, files: &[(&str, &str)], lock: &str) -> Result<(), 
     Ok(())
 }
 
-/// Returns a readable package name that no other text or target has: all executables are built in one folder, and their
-/// bytes depend on the name.
-fn name(package: &Package<'_>, main: &str, target: &str) -> String {
+/// Returns a readable package name that no other text, target or machine has: all executables are built in one folder,
+/// and their bytes depend on the name.
+fn name(package: &Package<'_>, main: &str, target: &str, machine: &str) -> String {
     let mut hasher = blake3::Hasher::new();
-    for part in [main, package.rust, target] {
+    for part in [main, package.rust, target, machine] {
         hasher.update(&part.len().to_le_bytes()).update(part.as_bytes());
     }
     let stem = package.plan_file.file_stem().unwrap_or_default().to_string_lossy();
@@ -135,8 +137,9 @@ mod tests {
 
     use super::super::tests::cache;
     use super::super::{Cache, Package, TargetCrate, build_record};
-    use super::{Dependencies, PlanPackage, Toolchain, manifest};
+    use super::{Dependencies, Machine, PlanPackage, Toolchain, manifest};
 
+    const HOST: &str = "x86_64-unknown-linux-gnu";
     const TARGET: TargetCrate<'static> = TargetCrate::Builtin { name: "sim", crate_name: "mdle_sim" };
 
     fn package<'a>(plan_file: &'a str, rust: &'a str) -> Package<'a> {
@@ -148,6 +151,7 @@ mod tests {
             inputs: &[],
             rust,
             target: &TARGET,
+            machine: None,
         }
     }
 
@@ -162,11 +166,11 @@ mod tests {
     }
 
     fn toolchain() -> Toolchain {
-        Toolchain { host: "x86_64-unknown-linux-gnu".to_owned(), release: "1.95.0".to_owned() }
+        Toolchain { host: HOST.to_owned(), release: "1.95.0".to_owned() }
     }
 
     fn write(cache: &Cache, plan_file: &str, rust: &str) -> PlanPackage {
-        super::write(cache, &package(plan_file, rust), &dependencies(), &toolchain()).unwrap()
+        super::write(cache, &package(plan_file, rust), &dependencies(), &toolchain(), &Machine::host(HOST)).unwrap()
     }
 
     #[test]
@@ -181,13 +185,14 @@ mod tests {
 
     #[test]
     fn a_name_is_one_that_cargo_takes() {
-        let name = |file, rust, target| super::name(&package(file, rust), "", target);
+        let name = |file, rust, target| super::name(&package(file, rust), "", target, HOST);
         assert!(name("plans/größe 2.mdle", "", "sim").starts_with("plan-gr__e_2-"));
         assert!(name("-", "", "sim").starts_with("plan-_-"));
         let nap = name("nap.mdle", "", "sim");
         assert_eq!(name("elsewhere/nap.mdle", "", "sim"), nap);
         assert_ne!(name("nap.mdle", "mod a {}", "sim"), nap);
         assert_ne!(name("nap.mdle", "", "scout"), nap);
+        assert_ne!(super::name(&package("nap.mdle", ""), "", "sim", "aarch64-unknown-linux-musl"), nap);
     }
 
     #[test]

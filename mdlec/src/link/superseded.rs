@@ -8,16 +8,25 @@ use std::path::{Path, PathBuf};
 
 use super::cache::{remove, write_if_changed};
 use super::hash::hash;
+use super::machine::Machine;
 use super::plan_package::PlanPackage;
 use super::{Cache, LinkError};
 
-/// Name of the file in a package's folder that contains the hash of the plan file's path.
+/// Name of the file in a package's folder that contains the hash of the plan file's path, and of the machine if it is
+/// another.
 const OWNER: &str = "owner";
 
-/// Records that `plan_file` was last built as `package`, and removes the packages that it was built as before.
-pub(super) fn remove_before(cache: &Cache, plan_file: &Path, package: &PlanPackage) -> Result<(), LinkError> {
+/// Records that `plan_file` was last built for `machine` as `package`, and removes the packages that it was built as
+/// before for that machine.
+pub(super) fn remove_before(
+    cache: &Cache,
+    plan_file: &Path,
+    machine: &Machine,
+    package: &PlanPackage,
+) -> Result<(), LinkError> {
     let file = plan_file.canonicalize().unwrap_or_else(|_| plan_file.to_owned());
-    let owner = hash(file.as_os_str().as_encoded_bytes());
+    let foreign = machine.foreign().unwrap_or_default().as_bytes();
+    let owner = hash(&[file.as_os_str().as_encoded_bytes(), foreign].concat());
     write_if_changed(&package.folder.join(OWNER), owner.as_bytes())?;
     for folder in entries(&cache.plans())? {
         let is_before = || fs::read(folder.join(OWNER)).is_ok_and(|before| before == owner.as_bytes());

@@ -217,7 +217,7 @@ impl Dependency {
         self.kind.is_none() && SHARED.iter().any(|(name, _)| *name == self.name)
     }
 
-    /// Source of the dependency, as a `[patch]` table is named.
+    /// Returns the source of the dependency, in the form in which a `[patch]` table names it.
     fn patched_source(&self) -> String {
         let source = self.source.as_deref().unwrap_or_default();
         if self.registry.is_none() && !source.starts_with("git+") {

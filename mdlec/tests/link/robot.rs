@@ -80,6 +80,7 @@ impl Robot {
             inputs: &inputs,
             rust,
             target: &target,
+            machine: None,
         };
         let output = plan_file.with_extension("");
         let built = build(&self.cache, &package, &output, progress)?;

@@ -1,6 +1,6 @@
 //! Writes finite loops out (paper, section II-A: `(s1 s2)^3 → s1 s2 s1 s2 s1 s2`), so that every state has a number.
 
-use super::lower;
+use super::{STATES, lower};
 use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::plan::{Loop, Node, Nondegenerate, Part, Scope};
 
@@ -17,7 +17,7 @@ const TEXT: u64 = 1 << 26;
 /// E0501 for a plan that cannot be lowered, E0502 for one of more than 100,000 states, or of too many conditions in all
 /// of them.
 pub fn expand(plan: &Nondegenerate) -> Result<Nondegenerate, Diagnostic> {
-    fits(plan)?;
+    expands(plan)?;
     Ok(plan.map(expand_scope))
 }
 
@@ -25,7 +25,7 @@ pub fn expand(plan: &Nondegenerate) -> Result<Nondegenerate, Diagnostic> {
 ///
 /// # Errors
 /// Fails with E0501 or E0502 as [`expand`] does.
-pub(super) fn fits(plan: &Nondegenerate) -> Result<(), Diagnostic> {
+pub fn expands(plan: &Nondegenerate) -> Result<(), Diagnostic> {
     expanded_states(plan)?;
     let parts = Count {
         unit: "parts of conditions",
@@ -53,13 +53,17 @@ pub(super) fn fits(plan: &Nondegenerate) -> Result<(), Diagnostic> {
 /// # Errors
 /// E0501 for a plan that cannot be lowered, E0502 for one of more than 100,000 states.
 pub fn expanded_states(plan: &Nondegenerate) -> Result<u64, Diagnostic> {
-    let states = lower(plan)?.states();
+    let count = Count { unit: "states", of: |part| u64::from(part.atom().is_some()) };
+    let expanded = Expanded::of(Part::Scope(&plan.plan().root), &count, true);
+    let states = expanded.all.saturating_add(1);
     if states <= EXPANDED {
         return Ok(states);
     }
-    let count = Count { unit: "states", of: |part| u64::from(part.atom().is_some()) };
-    let expanded = Expanded { all: states, ..Expanded::of(Part::Scope(&plan.plan().root), &count, true) };
-    Err(too_large(&expanded, &count, EXPANDED, plan))
+    if states > STATES {
+        // It says which loops multiply.
+        lower(plan)?;
+    }
+    Err(too_large(&Expanded { all: states, ..expanded }, &count, EXPANDED, plan))
 }
 
 fn expand_scope(scope: &Scope) -> Scope {

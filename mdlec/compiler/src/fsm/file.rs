@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use super::expand::fits;
+use super::expand::expands;
 use super::{Transition, matrices};
 use crate::diagnostic::Diagnostic;
 use crate::plan::{Condition, Nondegenerate};
@@ -72,7 +72,7 @@ pub struct ScopeEntry {
 /// Fails with E0501 or E0502 as [`expand`](super::expand) does.
 pub fn fsm_file(plan: &Nondegenerate) -> Result<FsmFile, Diagnostic> {
     // The file repeats the text of a condition for each state that it is copied to.
-    fits(plan)?;
+    expands(plan)?;
     let matrices = matrices(plan)?;
     let plan = plan.plan();
     let state = |number: usize| if number == matrices.laws.len() { "end".into() } else { format!("a{}", number + 1) };

@@ -352,7 +352,7 @@ impl<'m> Atom<'m> {
         self.number as usize
     }
 
-    /// Returns the atom among the elements.
+    /// Returns this atom as an element.
     #[must_use]
     pub fn element(self) -> Element<'m> {
         self.machine.element(self.machine.0.atoms[self.index()].scope)

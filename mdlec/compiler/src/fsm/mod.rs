@@ -16,7 +16,7 @@ mod validation;
 mod words;
 
 pub use draft::{Draft, LawMeaning, RecordPlace, ScopeMeaning, Sizes};
-pub use expand::{expand, expanded_states};
+pub use expand::{expand, expanded_states, expands};
 pub use file::{FsmFile, InterruptEntry, Moves, ScopeEntry, fsm_file};
 pub use lower::{STATES, lower};
 pub use machine::{Atom, Element, ElementKind, Exit, Machine, Visit};

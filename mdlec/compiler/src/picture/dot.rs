@@ -5,7 +5,7 @@ use mdle_runtime::{Printable, is_printable};
 use super::exits::{Destination, destinations};
 use super::measure::wrapped;
 use super::texts::{bounded, exponent, labels, law, passes, tooltip, until};
-use super::{can_be_shown, too_many};
+use super::{can_be_shown, place, too_many};
 use crate::diagnostic::Diagnostic;
 use crate::fsm::{Atom, Element, ElementKind, Machine, Visit};
 
@@ -27,7 +27,7 @@ pub fn dot(machine: &Machine) -> Result<String, Diagnostic> {
     for element in machine.elements() {
         graph.edges(element);
         if graph.edges > EDGES {
-            return Err(too_many(machine, graph.edges, "transitions", EDGES));
+            return Err(too_many(place(machine), graph.edges, "transitions", EDGES));
         }
     }
     graph.text += "}\n";

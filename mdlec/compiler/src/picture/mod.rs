@@ -19,25 +19,44 @@ pub use mermaid::mermaid;
 pub use scxml::scxml;
 pub use svg::svg;
 
-use crate::diagnostic::{Code, Diagnostic};
+use crate::diagnostic::{Code, Diagnostic, Span};
 use crate::fsm::Machine;
+use crate::plan::Nondegenerate;
 
 /// Maximum number of atoms, and of scopes and loops, that a picture shows: a person does not find his way in more.
 const SHOWN: usize = 1000;
 
-/// Refuses a machine with too many atoms, or scopes and loops, for a picture.
+/// Checks that a plan can be drawn.
+///
+/// # Errors
+/// E0502 for a plan of more than 1,000 atoms, or of as many scopes and loops.
+pub fn fits(plan: &Nondegenerate) -> Result<(), Diagnostic> {
+    let plan = plan.plan();
+    let (elements, atoms) =
+        plan.parts().fold((0, 0), |(all, atoms), part| (all + 1, atoms + usize::from(part.atom().is_some())));
+    within(elements, atoms, plan.root.interrupt.span)
+}
+
+/// Refuses a machine that [`fits`] refuses as a plan.
 fn can_be_shown(machine: &Machine) -> Result<(), Diagnostic> {
-    let atoms = machine.atoms().len();
-    let others = machine.elements().len() - atoms;
-    let (count, what) = if atoms > SHOWN { (atoms, "atoms") } else { (others, "scopes and loops") };
-    if count > SHOWN { Err(too_many(machine, count, what, SHOWN)) } else { Ok(()) }
+    within(machine.elements().len(), machine.atoms().len(), place(machine))
+}
+
+/// Refuses too many atoms, or scopes and loops, for a picture.
+fn within(elements: usize, atoms: usize, place: Span) -> Result<(), Diagnostic> {
+    let (count, what) = if atoms > SHOWN { (atoms, "atoms") } else { (elements - atoms, "scopes and loops") };
+    if count > SHOWN { Err(too_many(place, count, what, SHOWN)) } else { Ok(()) }
+}
+
+/// Returns the place of a plan in its text.
+fn place(machine: &Machine) -> Span {
+    let root = machine.root();
+    root.interrupt().map_or(root.span(), |interrupt| interrupt.span)
 }
 
 /// Reports a plan that is too large for a picture: `count` exceeds `most`.
-fn too_many(machine: &Machine, count: usize, what: &str, most: usize) -> Diagnostic {
+fn too_many(place: Span, count: usize, what: &str, most: usize) -> Diagnostic {
     let message = format!("this plan has {count} {what}; a picture shows {most} at most");
     let help = "draw a part of it: `--plan NAME` takes any plan of the file, also one that others use";
-    let root = machine.root();
-    let place = root.interrupt().map_or(root.span(), |interrupt| interrupt.span);
     Diagnostic::new(Code::E0502, message, place, "this plan").help(help)
 }

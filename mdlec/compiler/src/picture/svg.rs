@@ -27,7 +27,7 @@ const COLOURS: usize = 4;
 /// The picture of a plan.
 ///
 /// # Errors
-/// E0502 for a plan of more than 1,000 atoms, or of as many scopes and loops.
+/// E0502 for a plan of more than 1,000 atoms, or of more than 1,000 scopes and loops together.
 pub fn svg(machine: &Machine) -> Result<String, Diagnostic> {
     can_be_shown(machine)?;
     let mut all = places(machine);

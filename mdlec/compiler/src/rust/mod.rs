@@ -22,8 +22,9 @@ use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
 use crate::alphabet::Alphabet;
-use crate::diagnostic::{Code, Diagnostic, Sources, Span};
+use crate::diagnostic::{Code, Diagnostic, Sources};
 use crate::fsm::{self, Element, Machine};
+use crate::plan::Nondegenerate;
 pub use bind::bind;
 pub use names::plan_type;
 
@@ -67,12 +68,15 @@ impl Shape {
 /// more.
 const EMITTED: usize = 1 << 18;
 
-/// Checks that a plan, which is defined at `place`, is not too large to be emitted.
+/// Checks that a plan is not too large to be emitted.
 ///
 /// # Errors
 /// E0501 for a plan that rustc would compile for minutes.
-pub fn fits(machine: &Machine, place: Span) -> Result<(), Diagnostic> {
-    let (brackets, parts) = (machine.elements().len(), parts(machine));
+pub fn fits(plan: &Nondegenerate) -> Result<(), Diagnostic> {
+    let plan = plan.plan();
+    let (brackets, parts) = plan.parts().fold((0_usize, 0_usize), |(brackets, parts), part| {
+        (brackets + 1, parts + part.interrupt().map_or(0, |interrupt| interrupt.condition.parts()))
+    });
     if brackets.saturating_add(parts) <= EMITTED {
         return Ok(());
     }
@@ -80,7 +84,7 @@ pub fn fits(machine: &Machine, place: Span) -> Result<(), Diagnostic> {
         "this plan has {brackets} atoms, scopes and loops, and conditions of {parts} parts; Rust is emitted for {EMITTED} in all"
     );
     let help = "use a loop where the same is written many times, or cut the plan into several";
-    Err(Diagnostic::new(Code::E0501, message, place, "this plan").help(help))
+    Err(Diagnostic::new(Code::E0501, message, plan.root.span, "this plan").help(help))
 }
 
 /// The parts of all conditions.

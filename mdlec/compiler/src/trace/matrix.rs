@@ -1,10 +1,10 @@
-//! Oracle of the machines that robots run, by the paper's own algebra: `matrix`, an execution as a product of
-//! transition matrices (paper, Eq. 4; docs/src/reference/semantics.md, 8.4 and 9). It shares no stepping code with
-//! them.
+//! The oracle `matrix` computes an execution as a product of transition matrices, by the paper's own algebra (paper,
+//! Eq. 4; docs/src/reference/semantics.md, 8.4 and 9). The machines that robots run are compared with it; it shares no
+//! stepping code with them.
 //!
 //! Of the product `E_i(tm) … E_i(t2) E_i(t1)` of the interrupts that have fired, in order, only the column of the first
-//! state is ever computed: `e(t)` is that product applied to `e(0)`. The scopes that start afresh with a state are not
-//! in the matrices.
+//! state is ever computed: `e(t)` is that product applied to `e(0)`. The matrices do
+//! not say which scopes begin anew when a state is entered.
 
 use std::collections::BTreeSet;
 

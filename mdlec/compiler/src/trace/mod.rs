@@ -13,7 +13,7 @@ pub use matrix::MatrixProduct;
 use script::Moment;
 pub use script::{Reports, Script, ScriptError};
 pub use table::Table;
-pub use tree::Tree;
+pub use tree::{OpenPart, Step, Tree};
 pub use write::{Applied, COMPLETED, Fired, Outcome, TraceLine};
 
 /// An interpreter of a plan.

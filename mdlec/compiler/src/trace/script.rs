@@ -46,12 +46,22 @@ pub(super) struct Moment {
 impl Moment {
     /// Returns `true` if at least `nanos` nanoseconds have passed since this moment.
     pub(super) fn waited(self, nanos: u64, now: &Reports) -> bool {
-        now.t.since(self.t) >= Nanos(nanos)
+        self.since(now) >= Nanos(nanos)
     }
 
     /// Returns `true` if at least `nanometers` nanometres have been driven since this moment.
     pub(super) fn driven(self, nanometers: u64, now: &Reports) -> bool {
-        now.way.since(self.way) >= Nanometers(nanometers)
+        self.way_since(now) >= Nanometers(nanometers)
+    }
+
+    /// Time that has passed since this moment.
+    pub(super) fn since(self, now: &Reports) -> Nanos {
+        now.t.since(self.t)
+    }
+
+    /// Length of the path driven since this moment.
+    pub(super) fn way_since(self, now: &Reports) -> Nanometers {
+        now.way.since(self.way)
     }
 
     /// Frame with the heading of this moment, turned counter-clockwise by `turned` radians.

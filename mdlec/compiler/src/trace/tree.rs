@@ -2,18 +2,23 @@
 //! (docs/src/reference/semantics.md, 2 to 6). It is the reference for all other machines, so it shares no stepping code
 //! with them.
 
-use mdle_runtime::{Frame, TRANSITIONS_PER_TURN};
+mod steps;
+
+use std::sync::Arc;
+
+use mdle_runtime::Frame;
+pub use steps::{OpenPart, Step};
 
 use super::{Applied, COMPLETED, Fired, Machine, Moment, Outcome, Reports};
 use crate::plan::{Atom, Interrupt, Loop, Mark, Node, Plan, QuarkId, RecordId, Scope, Situation};
 
 /// A walk over a plan.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Tree<'p> {
     plan: &'p Plan,
     /// Scopes, loops and atoms of the plan. Each is before its own elements, the plan itself first: a flat list,
     /// because a plan may be nested deeper than the stack allows for recursion.
-    elements: Vec<Element<'p>>,
+    elements: Arc<[Element<'p>]>,
     /// Open elements, outermost first; the last is the current atom. Empty before the first turn and after the plan has
     /// ended.
     open: Vec<Open>,
@@ -40,7 +45,7 @@ enum NodeKind<'p> {
 }
 
 /// An element that has been entered.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 struct Open {
     element: usize,
     entered: Moment,
@@ -104,7 +109,7 @@ impl<'p> Tree<'p> {
     /// Creates the walk, before the first turn.
     #[must_use]
     pub fn new(plan: &'p Plan) -> Self {
-        Self { plan, elements: flat(&plan.root), open: Vec::new(), has_begun: false }
+        Self { plan, elements: flat(&plan.root).into(), open: Vec::new(), has_begun: false }
     }
 
     /// Enters an element and all elements that open with it, down to an atom.
@@ -180,8 +185,9 @@ impl<'p> Tree<'p> {
         }
     }
 
-    /// Ends a scope, continues outwards to the first element that has a successor, and enters that successor.
-    fn leave(&mut self, ending: &EndedScope<'p>, now: Moment) {
+    /// Ends a scope, continues outwards to the first element that has a successor, and enters that successor. Returns
+    /// the number of open elements that have stayed open.
+    fn leave(&mut self, ending: &EndedScope<'p>, now: Moment) -> usize {
         let mut ended = Vec::new();
         let first = self.elements[self.open[ending.place].element].kind;
         ended.push((first.marks(), ending.operand));
@@ -207,8 +213,11 @@ impl<'p> Tree<'p> {
             }
             let (next, first) = (held + open.index, open.here);
             self.record(&ended);
-            return self.enter(next, first, now);
+            let kept = self.open.len();
+            self.enter(next, first, now);
+            return kept;
         }
+        0
     }
 
     /// Replaces the record of each definition whose labelled elements have ended, each with the operand that was its
@@ -234,22 +243,17 @@ impl<'p> Tree<'p> {
 
 impl<'p> Machine<'p> for Tree<'p> {
     fn turn(&mut self, reports: &Reports) -> Outcome<'p> {
-        if !std::mem::replace(&mut self.has_begun, true) {
-            self.enter(0, 1, reports.moment());
-        }
-        let mut fired = Vec::new();
-        while let Some(mut ending) = self.fired(reports) {
-            if fired.len() == TRANSITIONS_PER_TURN as usize {
-                self.settle(reports);
-                return Outcome { state: self.state(), applied: Applied::Cut, frame: None, fired };
+        self.begin(reports);
+        let mut transitions = Vec::new();
+        loop {
+            match self.step(reports, transitions.len()) {
+                Step::Transition { fired, .. } => transitions.push(fired),
+                Step::End(applied) => {
+                    let frame = self.frame().filter(|_| matches!(applied, Applied::Law(_)));
+                    return Outcome { state: self.state(), applied, frame, fired: transitions };
+                }
             }
-            let operands = std::mem::take(&mut ending.operands);
-            fired.push(Fired { from: self.state(), level: ending.level, by: ending.by, operands });
-            self.leave(&ending, reports.moment());
         }
-        self.settle(reports);
-        let applied = self.law().map_or(Applied::Over, |law| Applied::Law(&law.text));
-        Outcome { state: self.state(), applied, frame: self.frame(), fired }
     }
 }
 

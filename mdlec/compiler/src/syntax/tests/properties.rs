@@ -185,3 +185,25 @@ fn a_hundred_thousand_elements_are_read() {
     assert_eq!(diagnostics, []);
     assert_eq!(file.plans[0].elements.len(), 100_000);
 }
+
+#[test]
+fn long_words_and_comments_take_no_stack() {
+    let long = "x".repeat(4_000_000);
+    let texts = [
+        format!("// {long}\n{{ P (Atom (null) stop) }}"),
+        format!("{}{{ P (Atom (null) stop) }}", "// a line\n".repeat(400_000)),
+        format!("{}{{ P (Atom (null) stop) }}", "/* a */ ".repeat(500_000)),
+        format!("{}{{ P (Atom (null) stop) }}", r"\\ ".repeat(1_000_000)),
+        format!("/// {long}\n{{ P (Atom (null) stop) }}"),
+        format!("/* {long} */{{ P (Atom (null) stop) }}"),
+        format!("{{ P{}(Atom (null) stop) }}", " ;\n".repeat(1_000_000)),
+        format!("{{ {long} (Atom (null) stop) }}"),
+        format!("{{ P (Atom (wait {}) stop) }}", "7".repeat(4_000_000)),
+        format!("{{ P (Atom (null) (path \"{long}\")) }}"),
+    ];
+    // Half of the stack that a thread has by default.
+    let thread = std::thread::Builder::new()
+        .stack_size(1 << 20)
+        .spawn(move || texts.map(|text| lex(Source::new(SourceId(0), &text)).tokens.len()));
+    assert_eq!(thread.unwrap().join().unwrap(), [10, 10, 10, 10, 10, 10, 10, 10, 11, 13]);
+}

@@ -1,0 +1,123 @@
+//! The walk in single steps, and what its open elements keep, for a debugger.
+
+use mdle_runtime::{Nanometers, Nanos, TRANSITIONS_PER_TURN};
+
+use super::{Applied, Fired, NodeKind, Open, Read, Reports, Tree};
+use crate::diagnostic::Span;
+use crate::plan::{Condition, Part};
+
+/// A step of a turn.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Step<'p> {
+    /// A scope has ended, and what follows it was entered.
+    Transition {
+        /// The transition, as a trace has it.
+        fired: Fired<'p>,
+        /// Number of open elements that enclose the scope that has ended.
+        ended: usize,
+        /// Number of open elements that have stayed open: the others were entered by this step.
+        kept: usize,
+    },
+    /// The turn is over, with this input.
+    End(Applied<'p>),
+}
+
+/// A scope, a loop or an atom that is open in a walk.
+#[derive(Debug, Clone, Copy)]
+pub struct OpenPart<'t, 'p> {
+    tree: &'t Tree<'p>,
+    open: &'t Open,
+}
+
+impl<'p> Tree<'p> {
+    /// Enters the plan, if this was not done before, at the reports of the first turn.
+    pub fn begin(&mut self, reports: &Reports) {
+        if !std::mem::replace(&mut self.has_begun, true) {
+            self.enter(0, 1, reports.moment());
+        }
+    }
+
+    /// Makes the next step of a turn in which `made` transitions have been made; [`begin`](Self::begin) comes first.
+    pub fn step(&mut self, reports: &Reports, made: usize) -> Step<'p> {
+        match self.fired(reports) {
+            Some(mut ending) if made < TRANSITIONS_PER_TURN as usize => {
+                let operands = std::mem::take(&mut ending.operands);
+                let fired = Fired { from: self.state(), level: ending.level, by: ending.by, operands };
+                let kept = self.leave(&ending, reports.moment());
+                Step::Transition { fired, ended: ending.place, kept }
+            }
+            cut => {
+                self.settle(reports);
+                let law = || self.law().map_or(Applied::Over, |law| Applied::Law(&law.text));
+                Step::End(cut.map_or_else(law, |_| Applied::Cut))
+            }
+        }
+    }
+
+    /// Returns the elements that are open, the plan first and the current atom last; none before the first turn and
+    /// after the end of the plan.
+    pub fn open(&self) -> impl DoubleEndedIterator<Item = OpenPart<'_, 'p>> + ExactSizeIterator {
+        self.open.iter().map(|open| OpenPart { tree: self, open })
+    }
+
+    /// Returns the places of the operands that hold in the interrupt by which the next step ends a scope; none if it
+    /// ends none, or the law has completed.
+    #[must_use]
+    pub fn firing(&self, reports: &Reports) -> Vec<Span> {
+        let fired = |part: &OpenPart<'_, 'p>| {
+            part.part().interrupt().is_some_and(|interrupt| part.holds(&interrupt.condition, reports))
+        };
+        let Some(part) = self.open().find(fired) else { return Vec::new() };
+        let Some(interrupt) = part.part().interrupt() else { return Vec::new() };
+        let operands = interrupt.condition.joined().into_iter().zip(&interrupt.operands);
+        operands.filter(|(operand, _)| part.holds(operand, reports)).map(|(_, place)| place.span).collect()
+    }
+}
+
+impl<'t, 'p> OpenPart<'t, 'p> {
+    /// Returns the part of the plan that is open.
+    #[must_use]
+    pub fn part(self) -> Part<'p> {
+        match self.tree.elements[self.open.element].kind {
+            NodeKind::Scope(scope) => Part::Scope(scope),
+            NodeKind::Loop(repeated) => Part::Loop(repeated),
+            NodeKind::Atom(atom) => Part::Atom(atom),
+        }
+    }
+
+    /// Returns the time since the part was entered.
+    #[must_use]
+    pub fn since(self, reports: &Reports) -> Nanos {
+        self.open.entered.since(reports)
+    }
+
+    /// Returns the length of the path driven since the part was entered.
+    #[must_use]
+    pub fn way(self, reports: &Reports) -> Nanometers {
+        self.open.entered.way_since(reports)
+    }
+
+    /// Returns the number of a loop's current pass, from 1.
+    #[must_use]
+    pub fn pass(self) -> u64 {
+        self.open.pass
+    }
+
+    /// Returns the memories of RISING in the part's interrupt: `true` once the operand was false.
+    #[must_use]
+    pub fn memories(self) -> &'t [bool] {
+        &self.open.memories
+    }
+
+    /// Returns the facts that hold in the record of a plan that uses `after`.
+    #[must_use]
+    pub fn facts(self) -> &'t [bool] {
+        &self.open.facts
+    }
+
+    /// Returns `true` if a condition of the part's interrupt, or a part of it, holds.
+    #[must_use]
+    pub fn holds(self, condition: &Condition, reports: &Reports) -> bool {
+        condition.fired(&Read { tree: self.tree, open: self.open, reports })
+    }
+}

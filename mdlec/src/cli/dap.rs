@@ -1,0 +1,13 @@
+//! `mdlec dap`: serves an editor as a debugger on standard input and output.
+
+use mdle_debugger::ServeError;
+
+use super::Failure;
+
+/// Serves an editor until it ends the session; a client that vanishes is exit status 1, one that breaks the protocol 2.
+pub(super) fn dap() -> Result<(), Failure> {
+    mdle_debugger::serve().map_err(|error| match error {
+        ServeError::Vanished => Failure::of(1, error.to_string()),
+        ServeError::Protocol(_) => Failure::usage(error.to_string()),
+    })
+}

@@ -1,0 +1,105 @@
+//! The machine that an executable is built for: this one, or another, of which rustc only needs the library.
+
+use std::fs;
+use std::path::Path;
+
+use super::LinkError;
+use super::toolchain::{command, output};
+
+/// Short names of machines, with the target triples of static executables that rustc links without a C compiler.
+const SHORT: [(&str, &str); 3] = [
+    ("aarch64", "aarch64-unknown-linux-musl"),
+    ("armv7", "armv7-unknown-linux-musleabihf"),
+    ("x86_64", "x86_64-unknown-linux-musl"),
+];
+
+/// Linker of rustc itself, which every installation has.
+const OWN_LINKER: &str = "rust-lld";
+
+/// A machine that executables are built for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Machine {
+    /// Target triple.
+    pub(super) triple: String,
+    /// `true` if it is not the machine that builds.
+    is_foreign: bool,
+}
+
+impl Machine {
+    /// The machine with this target triple, which builds for itself.
+    pub(super) fn host(triple: &str) -> Self {
+        Self { triple: triple.to_owned(), is_foreign: false }
+    }
+
+    /// Finds the machine `name`, a target triple or a short name; `None` is the `host`.
+    ///
+    /// # Errors
+    /// Fails if rustc does not know the machine, if it does not run Linux, or if its standard library is not installed.
+    pub(super) fn find(name: Option<&str>, host: &str) -> Result<Self, LinkError> {
+        let name = name.unwrap_or(host);
+        let triple = SHORT.iter().find(|(short, _)| *short == name).map_or(name, |(_, triple)| triple);
+        if triple == host {
+            return Ok(Self::host(host));
+        }
+        let mut rustc = command("rustc");
+        rustc.args(["--print=target-libdir", "--print=cfg", "--target", triple]);
+        let found = output(rustc, "rustc")?;
+        let text = String::from_utf8_lossy(&found.stdout);
+        let triple = triple.to_owned();
+        let Some((libraries, about)) = text.split_once('\n').filter(|_| found.status.success()) else {
+            return Err(LinkError::NoMachine(triple));
+        };
+        if !about.lines().any(|line| line == "target_os=\"linux\"") {
+            return Err(LinkError::NotLinux(triple));
+        }
+        if has_standard_library(Path::new(libraries)) {
+            Ok(Self { triple, is_foreign: true })
+        } else if is_offered_by_rustup(&triple) {
+            Err(LinkError::MachineToAdd(triple))
+        } else {
+            Err(LinkError::MachineMissing(triple))
+        }
+    }
+
+    /// Returns the variable that names the linker to cargo, with its value, where rustc's own linker does all that is
+    /// needed: for the C library musl, the files that a static executable begins and ends with come with rustc.
+    pub(super) fn linker(&self) -> Option<(String, &'static str)> {
+        let own = self.is_foreign && self.triple.contains("-linux-musl");
+        own.then(|| {
+            (format!("CARGO_TARGET_{}_LINKER", self.triple.to_uppercase().replace(['-', '.'], "_")), OWN_LINKER)
+        })
+    }
+
+    /// Returns the triple if it is not the machine that builds.
+    pub(super) fn foreign(&self) -> Option<&str> {
+        self.is_foreign.then_some(&self.triple)
+    }
+}
+
+/// Returns `true` if the folder of a machine's libraries contains the standard library.
+fn has_standard_library(folder: &Path) -> bool {
+    let mut entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    entries.any(|entry| entry.file_name().to_string_lossy().starts_with("libstd-"))
+}
+
+/// Returns `true` if rustup can add the standard library of this machine.
+fn is_offered_by_rustup(triple: &str) -> bool {
+    let mut rustup = command("rustup");
+    rustup.args(["target", "list"]);
+    let listed = output(rustup, "rustup").map(|listed| listed.stdout).unwrap_or_default();
+    String::from_utf8_lossy(&listed).lines().any(|line| line.split(' ').next() == Some(triple))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Machine;
+
+    #[test]
+    fn musl_is_linked_by_rustc_itself() {
+        let machine = |triple: &str, is_foreign| Machine { triple: triple.to_owned(), is_foreign };
+        let linker = machine("aarch64-unknown-linux-musl", true).linker();
+        assert_eq!(linker, Some(("CARGO_TARGET_AARCH64_UNKNOWN_LINUX_MUSL_LINKER".to_owned(), "rust-lld")));
+        assert_eq!(machine("aarch64-unknown-linux-gnu", true).linker(), None);
+        assert_eq!(machine("x86_64-unknown-linux-musl", false).linker(), None);
+    }
+}
