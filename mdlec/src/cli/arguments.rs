@@ -157,6 +157,11 @@ pub(super) enum Command {
     /// Speaks the Language Server Protocol on standard input and output: an editor starts it and ends it. The page
     /// "Editors" of the book has the lines for VS Code, Neovim, Helix, Zed and Emacs.
     Lsp,
+    /// Serve an editor as its debugger
+    ///
+    /// Speaks the Debug Adapter Protocol on standard input and output: an editor starts it and ends it. It runs a plan
+    /// on a script of interrupts, as `mdlec trace` does, forward and back.
+    Dap,
     /// Remove everything that mdlec keeps in its cache
     ///
     /// Compiled libraries, unpacked sources and the packages of plans: the next build makes them again. The cache is
@@ -210,6 +215,12 @@ pub(super) struct Build {
     /// Merge the matrices of equal interrupts, with `--emit matrices`
     #[arg(long)]
     pub(super) combine: bool,
+    /// Machine to build for: aarch64, armv7, x86_64, or a target triple of Rust [default: this one]
+    ///
+    /// The short names stand for static executables for Linux with the C library musl, which need no C compiler. Rust's
+    /// library for the machine comes with `rustup target add TRIPLE`.
+    #[arg(long, value_name = "NAME|TRIPLE")]
+    pub(super) machine: Option<String>,
 }
 
 /// The plan that an executable is built of, and for which robot.

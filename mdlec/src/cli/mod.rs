@@ -7,6 +7,7 @@ mod build;
 mod check;
 mod clean;
 mod compiled;
+mod dap;
 mod decompile;
 mod draw;
 mod each;
@@ -172,6 +173,7 @@ fn run(cli: Cli) -> Result<(), Failure> {
         Some(Command::Emulator(emulator)) => emulator::emulator(&emulator),
         Some(Command::Clean) => clean::clean(),
         Some(Command::Completions(completions)) => manual::completions(&completions),
+        Some(Command::Dap) => dap::dap(),
         Some(Command::Lsp) => lsp::lsp(),
         Some(Command::Man(man)) => manual::man(&man),
         Some(Command::Quarks(quarks)) => lists::print_quarks(quarks.target.as_deref()),

@@ -1,0 +1,136 @@
+//! The breakpoints of a session: at places of the plan, at the entry of what has a name, and at times.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use mdle_compiler::alphabet::{Decimal, Kind, Unit};
+use mdle_compiler::diagnostic::{SourceId, Span};
+use mdle_compiler::plan::{Part, Plan};
+use mdle_runtime::Nanos;
+
+use crate::launch::Loaded;
+use crate::places::{Place, meant, places};
+use crate::run::{Run, Step};
+
+/// Number of a breakpoint.
+pub(crate) type Id = i64;
+
+/// The breakpoints of a session.
+#[derive(Debug)]
+pub(crate) struct Breakpoints {
+    places: Vec<Place>,
+    /// Breakpoints of each file, with the spans at which they stop.
+    lines: BTreeMap<SourceId, Vec<(Id, Place)>>,
+    names: Vec<(Id, Name)>,
+    last: Id,
+}
+
+/// The condition of a breakpoint that is in no file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Name {
+    /// A scope of this name, or an atom with this law, is entered.
+    Entered(String),
+    /// The first turn at this time of the plan or after it.
+    Time(Nanos),
+}
+
+impl Breakpoints {
+    /// Makes the list of a plan, without any breakpoint.
+    pub(crate) fn new(loaded: &Loaded) -> Self {
+        Self { places: places(loaded), lines: BTreeMap::new(), names: Vec::new(), last: 0 }
+    }
+
+    /// Returns all places at which a run can stop.
+    pub(crate) fn places(&self) -> &[Place] {
+        &self.places
+    }
+
+    /// Replaces the breakpoints of a file by those at these lines and columns, which count from 0. Returns for each its
+    /// number, and its place or the reason why it has none.
+    pub(crate) fn set(
+        &mut self,
+        loaded: &Loaded,
+        path: &Path,
+        wanted: &[(u32, Option<u32>)],
+    ) -> Vec<(Id, Result<Place, String>)> {
+        let source = loaded.source(path);
+        let mut set = Vec::new();
+        for (line, column) in wanted {
+            self.last += 1;
+            let place = match source {
+                None => Err("this file has no part of the plan that runs".to_owned()),
+                Some(source) => meant(&self.places, source, *line, *column)
+                    .ok_or_else(|| "nothing of the plan that runs begins here or after this line".to_owned()),
+            };
+            set.push((self.last, place));
+        }
+        if let Some(source) = source {
+            let placed = set.iter().filter_map(|(id, place)| Some((*id, place.clone().ok()?)));
+            self.lines.insert(source, placed.collect());
+        }
+        set
+    }
+
+    /// Replaces the breakpoints that are in no file. Returns for each its number, or the reason why it cannot stop a
+    /// run.
+    pub(crate) fn set_names(&mut self, plan: &Plan, wanted: &[String]) -> Vec<(Id, Result<(), String>)> {
+        self.names.clear();
+        let mut set = Vec::new();
+        for text in wanted {
+            self.last += 1;
+            let name = name(plan, text.trim());
+            self.names.extend(name.clone().ok().map(|name| (self.last, name)));
+            set.push((self.last, name.map(drop)));
+        }
+        set
+    }
+
+    /// Returns the breakpoints at the position of a run to which `step` has led; `None` at the start of the run.
+    pub(crate) fn hits(&self, run: &Run<'_>, plan: &Plan, step: Option<Step>) -> Vec<Id> {
+        let entered = match step {
+            None => 0,
+            Some(Step::Transition { kept, .. }) => kept,
+            Some(Step::Turn | Step::End) => usize::MAX,
+        };
+        let entered: Vec<Part<'_>> = run.open().skip(entered).map(|open| open.part()).collect();
+        let firing = if self.lines.values().all(Vec::is_empty) { Vec::new() } else { run.firing() };
+        let is_hit = |place: &Place| {
+            let has = |span: &Span| *span == place.span;
+            if place.is_operand { firing.iter().any(has) } else { entered.iter().any(|part| has(&part.span())) }
+        };
+        let at_places = self.lines.values().flatten().filter(|(_, place)| is_hit(place)).map(|(id, _)| *id);
+        let by_name = self.names.iter().filter(|(_, name)| match name {
+            Name::Entered(name) => entered.iter().any(|part| is_called(*part, plan, name)),
+            Name::Time(time) => {
+                let begins = matches!(step, None | Some(Step::Turn));
+                begins && run.reports().t >= *time && run.reports_before().is_none_or(|before| before.t < *time)
+            }
+        });
+        at_places.chain(by_name.map(|(id, _)| *id)).collect()
+    }
+}
+
+/// Reads the text of a breakpoint that is in no file: a name, or a time with its unit.
+fn name(plan: &Plan, text: &str) -> Result<Name, String> {
+    if text.starts_with(|c: char| c.is_ascii_digit()) {
+        return time(text).map(Name::Time).ok_or_else(|| format!("`{text}` is no time: write it as `2.5s` or `500ms`"));
+    }
+    let is_there = plan.parts().any(|part| is_called(part, plan, text));
+    let words = || format!("`{text}` is no plan, no behavior and no law of this plan; a time is written as `2.5s`");
+    if is_there { Ok(Name::Entered(text.to_owned())) } else { Err(words()) }
+}
+
+fn time(text: &str) -> Option<Nanos> {
+    let (number, unit) = text.split_at(text.find(|c: char| c.is_ascii_alphabetic())?);
+    let unit = Unit::from_name(unit).filter(|unit| unit.kind == Kind::Time)?;
+    Decimal::parse(number.trim())?.scaled(unit.factor, unit.exponent).to_nanos().map(Nanos)
+}
+
+/// Returns `true` for a scope of this name, and for an atom whose law has it.
+fn is_called(part: Part<'_>, plan: &Plan, name: &str) -> bool {
+    match part {
+        Part::Scope(scope) => scope.name == name,
+        Part::Atom(atom) => plan.quark(atom.law).name == name,
+        Part::Loop(_) => false,
+    }
+}

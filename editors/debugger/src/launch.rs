@@ -1,0 +1,163 @@
+//! Reads the plan and the script of a session.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use mdle_compiler::Compiled;
+use mdle_compiler::diagnostic::{Diagnostic, SourceId, Sources, Span, has_errors, judged, most_shown};
+use mdle_compiler::plan::{Condition, RecordId};
+use mdle_compiler::trace::{Reports, Script};
+use mdle_files::read::LARGEST_DATA;
+use mdle_files::{Input, InputError, Settings};
+use mdle_language_server::lines::Lines;
+use serde::Deserialize;
+
+/// Arguments of `launch`.
+#[derive(Debug, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub(crate) struct Launch {
+    /// Path of the plan file.
+    program: PathBuf,
+    /// Path of the script.
+    script: PathBuf,
+    /// Robot for a plan without an `mdle.toml`.
+    target: Option<String>,
+    /// Name of the plan, if the file contains several.
+    plan: Option<String>,
+    /// `true` to stop where the plan is entered.
+    #[serde(default)]
+    pub(crate) stop_on_entry: bool,
+}
+
+/// A plan that is debugged.
+#[derive(Debug)]
+pub(crate) struct Loaded {
+    pub(crate) compiled: Compiled,
+    input: Input,
+    script: Script,
+    /// Lines of the files that were read.
+    lines: BTreeMap<SourceId, Lines>,
+    /// Texts of the `after` conditions, by the facts that they read.
+    facts: BTreeMap<(RecordId, u32), String>,
+}
+
+impl Loaded {
+    /// Compiles the plan and reads the script.
+    ///
+    /// # Errors
+    /// A file cannot be read, or contains errors; the text has one line for each error.
+    pub(crate) fn read(launch: &Launch) -> Result<Self, String> {
+        let Launch { program, script, target, plan, .. } = launch;
+        let settings = Settings::beside(program).map_err(words)?;
+        let target = target.as_deref().filter(|target| !target.is_empty() && !settings.names_target(None));
+        let target = settings.target(target).map_err(words)?;
+        let mut input = mdle_files::read_plan(program, &target).map_err(words)?;
+        let plan = plan.as_deref().filter(|plan| !plan.is_empty());
+        if let Some(plan) = plan {
+            input.must_have(plan).map_err(words)?;
+        }
+        let (compiled, found) = input.compile(&target.alphabet, plan);
+        if has_errors(&found) {
+            return Err(rendered(&input.sources, &found));
+        }
+        let named = compiled.into_iter().map(|compiled| (compiled.plan.root.name.clone(), compiled)).collect();
+        let compiled: Compiled = input.only(named).map_err(words)?;
+        let text = mdle_files::read_text(script, LARGEST_DATA).map_err(words)?;
+        let script = Script::read(&text)
+            .and_then(|script| script.in_words_of(&compiled.plan, &target.alphabet))
+            .map_err(|error| format!("{}:{}: {}", launch.script.display(), error.line, error.message))?;
+        if script.turns().is_empty() {
+            return Err(format!(
+                "{}: the script has no turns\nhelp: a turn is a line such as {{\"t\": 0.0, \"fired\": [\"bumper\"]}}",
+                launch.script.display()
+            ));
+        }
+        let facts = facts(&compiled);
+        let mut loaded = Self { compiled, input, script, lines: BTreeMap::new(), facts };
+        loaded.lines = loaded.sources().into_iter().map(|source| (source, Lines::of(loaded.text(source)))).collect();
+        Ok(loaded)
+    }
+
+    /// Returns the turns of the script, of which there is at least one.
+    pub(crate) fn turns(&self) -> &[Reports] {
+        self.script.turns()
+    }
+
+    /// Returns the files with parts of the plan.
+    fn sources(&self) -> Vec<SourceId> {
+        let mut sources: Vec<_> =
+            self.compiled.plan.parts().map(|part| self.input.sources.range(part.span()).0).collect();
+        sources.sort();
+        sources.dedup();
+        sources
+    }
+
+    fn text(&self, source: SourceId) -> &str {
+        self.input.sources.text(source)
+    }
+
+    /// Returns the text of a span.
+    pub(crate) fn slice(&self, span: Span) -> &str {
+        self.input.sources.slice(span)
+    }
+
+    /// Returns the absolute path of a file.
+    pub(crate) fn path(&self, source: SourceId) -> Option<PathBuf> {
+        std::path::absolute(self.input.path(source)?).ok()
+    }
+
+    /// Returns the file at a path, if it has parts of the plan.
+    pub(crate) fn source(&self, path: &Path) -> Option<SourceId> {
+        let place = mdle_files::place(path).ok()?;
+        let is_there = |source: &SourceId| {
+            self.input.path(*source).and_then(|path| mdle_files::place(path).ok()).is_some_and(|found| found == place)
+        };
+        self.lines.keys().copied().find(is_there)
+    }
+
+    /// Returns the file of a span, with the line and the column of its start, both from 0, the column in UTF-16.
+    pub(crate) fn place(&self, span: Span) -> (SourceId, u32, u32) {
+        let (source, range) = self.input.sources.range(span);
+        let at = self.lines.get(&source).map(|lines| lines.position(self.text(source), range.start));
+        (source, at.map_or(0, |at| at.line), at.map_or(0, |at| at.character))
+    }
+
+    /// Returns the `after` conditions about a record, with the numbers of their facts.
+    pub(crate) fn facts(&self, record: RecordId) -> impl Iterator<Item = (u32, &str)> {
+        self.facts.range((record, 0)..=(record, u32::MAX)).map(|((_, fact), text)| (*fact, text.as_str()))
+    }
+}
+
+/// Returns the texts of the `after` conditions of a plan, by the facts that they read.
+fn facts(compiled: &Compiled) -> BTreeMap<(RecordId, u32), String> {
+    let mut facts = BTreeMap::new();
+    for interrupt in compiled.plan.parts().filter_map(mdle_compiler::plan::Part::interrupt) {
+        interrupt.condition.fold((), &mut |(), part| {
+            if let Condition::After(after) = part {
+                facts.insert((after.record, after.fact), after.text.clone());
+            }
+        });
+    }
+    facts
+}
+
+/// Returns the diagnostics of a plan with errors, and their number.
+fn rendered(sources: &Sources, found: &[Diagnostic]) -> String {
+    let shown = found.iter().take(most_shown(found)).map(|found| sources.render(found));
+    shown.chain(judged(found, false).err()).collect::<Vec<_>>().join("\n")
+}
+
+/// Returns the message of a file that cannot be read, with the diagnostics of a faulty one.
+fn words(error: InputError) -> String {
+    let own = error.to_string();
+    let found = match error.cause() {
+        InputError::Faulty { sources, diagnostics, .. } => Some(rendered(&sources, &diagnostics)),
+        InputError::Unusable(_)
+        | InputError::NoTarget
+        | InputError::UnknownTarget(_)
+        | InputError::InSettings { .. }
+        | InputError::UnknownPlan { .. }
+        | InputError::NotOnePlan { .. } => None,
+    };
+    found.into_iter().chain(Some(own).filter(|own| !own.is_empty())).collect::<Vec<_>>().join("\n")
+}

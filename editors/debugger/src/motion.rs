@@ -1,0 +1,128 @@
+//! Motions of a run: continue, steps, and steps back.
+
+use mdle_compiler::plan::Part;
+use serde_json::{Value, json};
+
+use crate::ServeError;
+use crate::breakpoints::Id;
+use crate::run::Step;
+use crate::session::Session;
+
+/// Number of steps between two looks at the client.
+const LOOK: u64 = 4_096;
+
+/// A motion that the client asks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Motion {
+    /// To the next breakpoint, or to the end.
+    Continue,
+    /// To the end of the turn, or of the next one.
+    Turn,
+    /// To the next transition.
+    Transition,
+    /// Until the innermost scope around the atom has ended.
+    Out,
+    /// To the end of the turn before.
+    TurnBack,
+    /// To the transition before.
+    TransitionBack,
+    /// To the breakpoint before, or to the start.
+    ContinueBack,
+}
+
+impl Motion {
+    /// Returns the motion of a command; `None` for another command.
+    pub(crate) fn of(command: &str, arguments: &Value) -> Option<Self> {
+        let is_fine = arguments.get("granularity").and_then(Value::as_str) == Some("instruction");
+        match (command, is_fine) {
+            ("continue", _) => Some(Self::Continue),
+            ("next", false) => Some(Self::Turn),
+            ("next", true) | ("stepIn", _) => Some(Self::Transition),
+            ("stepOut", _) => Some(Self::Out),
+            ("stepBack", false) => Some(Self::TurnBack),
+            ("stepBack", true) => Some(Self::TransitionBack),
+            ("reverseContinue", _) => Some(Self::ContinueBack),
+            _ => None,
+        }
+    }
+}
+
+impl Session<'_, '_, '_> {
+    /// Begins the run.
+    pub(crate) fn start(&mut self, stops_on_entry: bool) -> Result<(), ServeError> {
+        if stops_on_entry {
+            return self.stopped("entry", "The plan is entered", &[]);
+        }
+        match self.breakpoints.hits(&self.run, &self.loaded.compiled.plan, None).as_slice() {
+            [] => self.go(Motion::Continue),
+            hits => self.stopped("breakpoint", "Breakpoint", hits),
+        }
+    }
+
+    /// Makes a motion, and reports where it stopped.
+    pub(crate) fn go(&mut self, motion: Motion) -> Result<(), ServeError> {
+        self.lists.clear();
+        match motion {
+            Motion::Continue | Motion::Turn | Motion::Transition | Motion::Out => self.forward(motion),
+            Motion::TurnBack => self.back("step", |_, step| step == Some(Step::End)),
+            Motion::TransitionBack => self.back("step", |_, step| matches!(step, Some(Step::Transition { .. }))),
+            Motion::ContinueBack => self.back("breakpoint", |hits, _| !hits.is_empty()),
+        }
+    }
+
+    fn forward(&mut self, motion: Motion) -> Result<(), ServeError> {
+        let is_scope = |part: Part<'_>| matches!(part, Part::Scope(_));
+        let scope = self.run.open().enumerate().filter(|(_, open)| is_scope(open.part())).map(|(at, _)| at).next_back();
+        let mut steps = 0_u64;
+        loop {
+            steps += 1;
+            if steps.is_multiple_of(LOOK) && self.client.interrupts()? {
+                return Ok(());
+            }
+            let Some(step) = self.run.step() else {
+                // Nothing is left to be stepped over: the client has seen the end.
+                return if steps == 1 { self.client.event("terminated", json!({})) } else { self.ended() };
+            };
+            let hits = self.breakpoints.hits(&self.run, &self.loaded.compiled.plan, Some(step));
+            if !hits.is_empty() {
+                return self.stopped("breakpoint", "Breakpoint", &hits);
+            }
+            let is_there = match (motion, step) {
+                (Motion::Turn, Step::End) | (Motion::Transition, Step::Transition { .. }) => true,
+                (Motion::Out, Step::Transition { ended, .. }) => scope.is_none_or(|scope| ended <= scope),
+                _ => false,
+            };
+            if is_there {
+                return self.stopped("step", "Step", &[]);
+            }
+        }
+    }
+
+    fn ended(&mut self) -> Result<(), ServeError> {
+        let text = if self.run.is_over() { "The plan has ended" } else { "The script has ended" };
+        self.stopped("end", text, &[])
+    }
+
+    /// Goes back to the last position that `is_there` accepts, by its breakpoints and the step that leads to it.
+    fn back(&mut self, reason: &str, is_there: impl Fn(&[Id], Option<Step>) -> bool) -> Result<(), ServeError> {
+        let (breakpoints, plan) = (&self.breakpoints, &self.loaded.compiled.plan);
+        self.run.back(|run, step| is_there(&breakpoints.hits(run, plan, step), step));
+        if self.run.at().steps == 0 {
+            return self.stopped("entry", "The start of the run", &[]);
+        }
+        self.stopped(reason, if reason == "step" { "Step back" } else { "Breakpoint" }, &[])
+    }
+
+    /// Reports that the run has stopped.
+    pub(crate) fn stopped(&mut self, reason: &str, description: &str, hits: &[Id]) -> Result<(), ServeError> {
+        self.lists.clear();
+        let body = json!({
+            "reason": reason,
+            "description": description,
+            "threadId": crate::requests::THREAD,
+            "allThreadsStopped": true,
+            "hitBreakpointIds": hits,
+        });
+        self.client.event("stopped", body)
+    }
+}

@@ -1,0 +1,69 @@
+//! The places of a plan at which a run can stop: where elements begin, and the operands of conditions.
+
+use mdle_compiler::diagnostic::{SourceId, Span};
+use mdle_compiler::plan::Part;
+
+use crate::launch::Loaded;
+
+/// A place at which a run can stop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Place {
+    source: SourceId,
+    /// Line and column of its start, from 0.
+    pub(crate) line: u32,
+    pub(crate) column: u32,
+    /// `true` for an operand of a condition, `false` for a scope, a loop or an atom.
+    pub(crate) is_operand: bool,
+    pub(crate) span: Span,
+}
+
+/// Returns all places of a plan in the order of their files.
+pub(crate) fn places(loaded: &Loaded) -> Vec<Place> {
+    let place = |span: Span, is_operand: bool| {
+        let (source, line, column) = loaded.place(span);
+        Place { source, line, column, is_operand, span }
+    };
+    let mut places = Vec::new();
+    for part in loaded.compiled.plan.parts() {
+        // A loop is entered together with its first element.
+        if !matches!(part, Part::Loop(_)) {
+            places.push(place(part.span(), false));
+        }
+        let operands = part.interrupt().into_iter().flat_map(|interrupt| &interrupt.operands);
+        places.extend(operands.map(|operand| place(operand.span, true)));
+    }
+    places.sort();
+    // A plan that is used twice has its places twice.
+    places.dedup();
+    places
+}
+
+/// Returns the place that a breakpoint means: with a column the operand around it, or else the first place from there
+/// on in the line; without a column the element that begins in the line, or else the first place from there on.
+pub(crate) fn meant(places: &[Place], source: SourceId, line: u32, column: Option<u32>) -> Option<Place> {
+    let from = places.partition_point(|place| (place.source, place.line) < (source, line));
+    let to = places.partition_point(|place| (place.source, place.line) <= (source, line));
+    let (in_line, after) = (places.get(from..to)?, places.get(from..)?);
+    let next = || after.iter().find(|place| place.source == source);
+    let found = match column {
+        Some(column) => {
+            let around = |place: &&Place| place.is_operand && place.column <= column && column < place.end_column();
+            let behind = || in_line.iter().find(|place| place.column >= column);
+            in_line.iter().rev().find(around).or_else(behind).or_else(|| in_line.last())
+        }
+        None => in_line.iter().find(|place| !place.is_operand),
+    };
+    found.or_else(next).copied()
+}
+
+/// Returns the places that begin in these lines.
+pub(crate) fn between(places: &[Place], source: SourceId, first: u32, last: u32) -> impl Iterator<Item = &Place> {
+    places.iter().filter(move |place| place.source == source && (first..=last).contains(&place.line))
+}
+
+impl Place {
+    /// Column behind the place, if it ends in its line: operands contain no character of two UTF-16 units.
+    fn end_column(&self) -> u32 {
+        self.column.saturating_add(self.span.end.saturating_sub(self.span.start))
+    }
+}

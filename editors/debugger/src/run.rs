@@ -1,0 +1,252 @@
+//! A run of a plan on a script, which goes forward step by step, and back: a run is deterministic, so going back is
+//! going forward again from a copy of an earlier state.
+
+use mdle_compiler::diagnostic::Span;
+use mdle_compiler::plan::Plan;
+use mdle_compiler::trace::{Applied, OpenPart, Reports, Step as TreeStep, Tree};
+
+/// Maximum number of copies; with more of them every other one is dropped.
+const MOST_COPIES: usize = 64;
+
+/// A position in a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct At {
+    /// Number of steps from the start of the run.
+    pub(crate) steps: u64,
+    /// Number of the turn, from 0.
+    pub(crate) turn: usize,
+    /// Number of transitions that were made in the turn.
+    made: usize,
+    /// Input of the turn, once the turn is over.
+    pub(crate) input: Option<Input>,
+}
+
+/// The input of a turn that is over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Input {
+    /// The law of the current atom.
+    Law,
+    /// The null input, because the turn reached the limit of transitions.
+    Cut,
+    /// The null input, because the plan has ended.
+    Over,
+}
+
+/// A step forward.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Step {
+    /// The next turn has begun: time has passed.
+    Turn,
+    /// A scope has ended, which `ended` open elements enclosed. Of the open elements, `kept` were not entered anew.
+    Transition { ended: usize, kept: usize },
+    /// The turn is over.
+    End,
+}
+
+/// A run of a plan.
+#[derive(Debug)]
+pub(crate) struct Run<'p> {
+    turns: &'p [Reports],
+    tree: Tree<'p>,
+    at: At,
+    /// Copies in the order of the run; the first is its start.
+    copies: Vec<(At, Tree<'p>)>,
+    /// Number of turns between two copies.
+    apart: usize,
+}
+
+impl<'p> Run<'p> {
+    /// Enters the plan at the first of the turns; `None` if there is none.
+    pub(crate) fn new(plan: &'p Plan, turns: &'p [Reports]) -> Option<Self> {
+        let mut tree = Tree::new(plan);
+        tree.begin(turns.first()?);
+        let at = At { steps: 0, turn: 0, made: 0, input: None };
+        Some(Self { turns, at, copies: vec![(at, tree.clone())], tree, apart: 32 })
+    }
+
+    /// Returns the position.
+    pub(crate) fn at(&self) -> At {
+        self.at
+    }
+
+    /// Returns the reports of the turn.
+    pub(crate) fn reports(&self) -> &'p Reports {
+        &self.turns[self.at.turn]
+    }
+
+    /// Returns the reports of the turn before, if there was one.
+    pub(crate) fn reports_before(&self) -> Option<&'p Reports> {
+        self.turns.get(self.at.turn.checked_sub(1)?)
+    }
+
+    /// Returns the open elements, the plan first and the current atom last; none when the plan has ended.
+    pub(crate) fn open(&self) -> impl DoubleEndedIterator<Item = OpenPart<'_, 'p>> + ExactSizeIterator {
+        self.tree.open()
+    }
+
+    /// Returns the places of the operands by which the next step ends a scope.
+    pub(crate) fn firing(&self) -> Vec<Span> {
+        if self.at.input.is_some() { Vec::new() } else { self.tree.firing(self.reports()) }
+    }
+
+    /// Returns `true` once the plan has ended.
+    pub(crate) fn is_over(&self) -> bool {
+        self.open().len() == 0
+    }
+
+    /// Makes a step; `None` at the end of the plan and of the script.
+    pub(crate) fn step(&mut self) -> Option<Step> {
+        let step = if self.at.input.is_some() { self.next_turn()? } else { self.go_on() };
+        self.at.steps += 1;
+        Some(step)
+    }
+
+    fn next_turn(&mut self) -> Option<Step> {
+        if self.is_over() || self.at.turn + 1 >= self.turns.len() {
+            return None;
+        }
+        if self.copies.last().is_none_or(|(at, _)| at.turn + self.apart <= self.at.turn) {
+            self.copy();
+        }
+        self.at = At { turn: self.at.turn + 1, made: 0, input: None, ..self.at };
+        Some(Step::Turn)
+    }
+
+    fn go_on(&mut self) -> Step {
+        match self.tree.step(&self.turns[self.at.turn], self.at.made) {
+            TreeStep::Transition { ended, kept, .. } => {
+                self.at.made += 1;
+                Step::Transition { ended, kept }
+            }
+            TreeStep::End(applied) => {
+                self.at.input = Some(match applied {
+                    Applied::Law(_) => Input::Law,
+                    Applied::Cut => Input::Cut,
+                    Applied::Over => Input::Over,
+                });
+                Step::End
+            }
+        }
+    }
+
+    fn copy(&mut self) {
+        if self.copies.len() >= MOST_COPIES {
+            let mut number = 0_usize;
+            self.copies.retain(|_| {
+                number += 1;
+                number % 2 == 1
+            });
+            self.apart *= 2;
+        }
+        self.copies.push((self.at, self.tree.clone()));
+    }
+
+    /// Goes back to the last position before this one to which a step leads that `is_there` accepts, or else to the
+    /// start; `is_there` sees the start without a step. Returns `false` at the start, where nothing is before.
+    pub(crate) fn back(&mut self, mut is_there: impl FnMut(&Self, Option<Step>) -> bool) -> bool {
+        let here = self.at.steps;
+        if here == 0 {
+            return false;
+        }
+        let mut end = here;
+        while let Some((copied, tree)) = self.copies.iter().rev().find(|(at, _)| at.steps < end).cloned() {
+            (self.at, self.tree) = (copied, tree);
+            let mut last = (copied.steps == 0 && is_there(self, None)).then_some(0);
+            while self.at.steps < end {
+                let Some(step) = self.step() else { break };
+                if self.at.steps < here && is_there(self, Some(step)) {
+                    last = Some(self.at.steps);
+                }
+            }
+            if let Some(steps) = last.or((copied.steps == 0).then_some(0)) {
+                self.go_to(steps);
+                return true;
+            }
+            // The step that leads to a copy was made on the way to it.
+            end = copied.steps;
+        }
+        false
+    }
+
+    /// Goes to the position after `steps` steps from the start of the run.
+    fn go_to(&mut self, steps: u64) {
+        if let Some((at, tree)) = self.copies.iter().rev().find(|(at, _)| at.steps <= steps).cloned() {
+            (self.at, self.tree) = (at, tree);
+        }
+        while self.at.steps < steps && self.step().is_some() {}
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+    use mdle_compiler::compile;
+    use mdle_compiler::diagnostic::SourceId;
+    use mdle_compiler::trace::Script;
+
+    use super::*;
+
+    const PLAN: &str = "{ P (wait 9000)
+      ExecPlan inf { (Atom (RISING bumper OR wait 3) (go 20 0)) (Atom (bumper AND wait 1) (go 10 0))^3 }
+    }";
+
+    /// A plan and a script in which bumper has fired in every third and every seventh turn.
+    fn with_run(turns: usize, test: impl FnOnce(Run<'_>)) {
+        let target = mdle_files::target(Some("sim")).unwrap();
+        let (compiled, _) = compile(SourceId(0), PLAN, &target.alphabet, None);
+        let line = |turn: usize| {
+            let fired = if turn.is_multiple_of(3) || turn.is_multiple_of(7) { "\"bumper\"" } else { "" };
+            format!("{{\"t\": {}.5, \"fired\": [{fired}]}}\n", turn)
+        };
+        let script = Script::read(&(0..turns).map(line).collect::<String>()).unwrap();
+        test(Run::new(&compiled[0].plan, script.turns()).unwrap());
+    }
+
+    /// All that a run keeps.
+    fn state(run: &Run<'_>) -> String {
+        format!("{:?} {:?}", run.at, run.tree)
+    }
+
+    #[test]
+    fn going_back_and_forth_ends_in_the_same_state() {
+        with_run(1_200, |mut run| {
+            let mut states = vec![state(&run)];
+            while run.step().is_some() {
+                states.push(state(&run));
+            }
+            assert!(states.len() > 2_500 && run.copies.len() > 4, "{} {}", states.len(), run.copies.len());
+            for expected in states.iter().rev().skip(1) {
+                assert!(run.back(|_, _| true));
+                assert_eq!(state(&run), *expected);
+            }
+            assert!(!run.back(|_, _| true));
+            for expected in &states[1..] {
+                run.step().unwrap();
+                assert_eq!(state(&run), *expected);
+            }
+        });
+    }
+
+    #[test]
+    fn back_finds_the_last_place_and_else_the_start() {
+        with_run(1_200, |mut run| {
+            while run.at.turn < 1_100 {
+                run.step();
+            }
+            assert!(run.back(|run, step| step == Some(Step::Turn) && run.at.turn == 3));
+            assert_eq!(run.at.turn, 3);
+            assert!(run.back(|_, _| false));
+            assert_eq!(run.at.steps, 0);
+        });
+    }
+
+    #[test]
+    fn copies_of_a_long_run_are_few() {
+        with_run(20_000, |mut run| {
+            while run.step().is_some() {}
+            assert!(run.copies.len() <= MOST_COPIES);
+            assert_eq!(run.copies[0].0.steps, 0);
+        });
+    }
+}
