@@ -1,0 +1,9 @@
+//! Sessions of the debugger: what it answers to the requests of a client.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a test fails by panicking")]
+
+mod breakpoints;
+mod client;
+mod life_cycle;
+mod steps;
+mod values;

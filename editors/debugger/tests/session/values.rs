@@ -1,0 +1,96 @@
+//! Variables, and why a condition does not hold.
+
+use serde_json::{Value, json};
+
+use crate::client::Session;
+
+/// Goes to the end of the turn at 3 s minus one step, and asks for these expressions.
+fn evaluated(test: &str, steps: usize, expressions: &[&str]) -> Vec<String> {
+    let mut session = Session::launched(test);
+    session.requests(&["configurationDone"]);
+    session.requests(&vec!["next"; steps]);
+    let ask = |expression: &&str| {
+        session.request("evaluate", json!({ "expression": expression, "frameId": 1, "context": "hover" }))
+    };
+    let seqs: Vec<i64> = expressions.iter().map(ask).collect();
+    let messages = session.end();
+    let result = |seq: i64| match messages.response(seq)["success"] == true {
+        true => messages.body(seq)["result"].as_str().unwrap().to_owned(),
+        false => format!("error: {}", messages.refusal(seq)),
+    };
+    seqs.into_iter().map(result).collect()
+}
+
+#[test]
+fn a_condition_says_which_of_its_operands_hold() {
+    let found = evaluated(
+        "why_not",
+        2,
+        &[
+            "bumper AND wait 2s OR atIsection 1000",
+            "(bumper  AND wait 2s)",
+            "bumper",
+            "wait",
+            "wait 100s",
+            "Shake",
+            "go",
+        ],
+    );
+    assert_eq!(
+        found,
+        [
+            "does not hold; `bumper` holds; `wait 2` does not hold: 1 s of 2 s have passed; `atIsection 1000` does not hold",
+            "does not hold; `bumper` holds; `wait 2` does not hold: 1 s of 2 s have passed",
+            "holds",
+            "does not hold: 1 s of 2 s have passed",
+            "does not hold: 1 s of 100 s have passed",
+            "error: `Shake` is no condition of the atom or of a scope around it, and no operand of one",
+            "error: `go` is no condition of the atom or of a scope around it, and no operand of one",
+        ]
+    );
+}
+
+#[test]
+fn memories_and_records_are_seen() {
+    let found = evaluated("memory", 4, &["RISING bumper", "wait 1s"]);
+    assert_eq!(
+        found,
+        ["does not hold: its operand was never false before; `bumper` holds", "does not hold: 0 s of 1 s have passed"]
+    );
+    let found = evaluated("record", 9, &["after s1 atIsection 1000", "after s1 atIsection 1000 OR wait 5s"]);
+    assert_eq!(
+        found,
+        [
+            "does not hold",
+            "does not hold; `after s1 atIsection 1000` does not hold; `wait 5` does not hold: 1 s of 5 s have passed"
+        ]
+    );
+}
+
+#[test]
+fn a_frame_has_its_condition_what_it_keeps_and_the_turn() {
+    let mut session = Session::launched("variables");
+    session.requests(&["configurationDone"]);
+    session.requests(&["next"; 5]);
+    let stack = session.request("stackTrace", json!({ "threadId": 1 }));
+    let scopes: Vec<i64> = (1..=3).map(|frame| session.request("scopes", json!({ "frameId": frame }))).collect();
+    let lists: Vec<i64> =
+        (1..=12).map(|list| session.request("variables", json!({ "variablesReference": list }))).collect();
+    let beyond = session.request("scopes", json!({ "frameId": 4 }));
+    let stale = session.request("variables", json!({ "variablesReference": 99 }));
+    let messages = session.end();
+    let shown: Vec<String> = scopes
+        .iter()
+        .zip(messages.stack(stack))
+        .map(|(seq, frame)| {
+            let groups = messages.body(*seq)["scopes"].as_array().unwrap().iter().map(|scope: &Value| {
+                let list = scope["variablesReference"].as_u64().unwrap() as usize;
+                format!("  {}: {}", scope["name"].as_str().unwrap(), messages.variables(lists[list - 1]).join("; "))
+            });
+            format!("{frame}\n{}", groups.collect::<Vec<_>>().join("\n"))
+        })
+        .collect();
+    insta::assert_snapshot!(shown.join("\n"));
+    assert_eq!(messages.refusal(beyond), "there is no such frame: the run has gone on");
+    assert_eq!(messages.refusal(stale), "there are no such variables: the run has gone on");
+}
